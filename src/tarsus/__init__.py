@@ -1,0 +1,1 @@
+"""Tarsus: the toolkit for six-legged robots."""

@@ -1,0 +1,247 @@
+"""Arrays of any kind: one code for NumPy, JAX and whatever else follows the array API standard.
+
+NumPy arrays take the short way, without a detour through `array_api_compat`: one robot's inverse kinematics
+is a few dozen calls of about a microsecond each, and finding the namespace anew in each would double that.
+"""
+
+from __future__ import annotations
+
+import math
+import sys
+from collections.abc import Iterator
+from typing import Any, TypeAlias
+
+import numpy as np
+
+from tarsus.errors import InputError
+
+__all__ = [
+    "BLOCK",
+    "Array",
+    "Index",
+    "Namespace",
+    "as_array",
+    "as_floats",
+    "batch_blocks",
+    "broadcast_shapes",
+    "is_traced",
+    "namespace",
+    "require_finite",
+    "require_shape",
+    "stack_last",
+    "take_block",
+]
+
+Array: TypeAlias = Any
+Namespace: TypeAlias = Any
+Index: TypeAlias = tuple[int | slice, ...]
+
+BLOCK = 4096
+"""Legs worked through at a time: a dozen arrays of this many doubles stay in a core's second-level cache."""
+
+
+def namespace(*arrays: Array) -> Namespace:
+    """Return the namespace in which `arrays` are computed: NumPy, unless one of them is of another library.
+
+    Parameters
+    ----------
+    *arrays : array
+        Arrays, numbers or nested sequences.
+    """
+    others = [a for a in arrays if not isinstance(a, np.ndarray | np.generic) and hasattr(a, "shape")]
+    if not others:
+        return np
+    import array_api_compat
+
+    return array_api_compat.array_namespace(*others)
+
+
+def as_array(xp: Namespace, values: Array) -> Array:
+    """Return `values` as an array of the namespace `xp`, without a copy where it is one already.
+
+    Parameters
+    ----------
+    xp : namespace
+        The array library.
+    values : array
+        Any shape.
+    """
+    if xp is np:
+        return np.asarray(values)
+    return xp.asarray(values) if isinstance(values, np.ndarray) or not hasattr(values, "shape") else values
+
+
+def as_floats(xp: Namespace, values: Array, *, name: str) -> Array:
+    """Return `values` as a floating-point array of `xp`.
+
+    Parameters
+    ----------
+    xp : namespace
+        The array library.
+    values : array
+        Any shape, real numbers.
+    name : str
+        What the values are, for the message.
+
+    Raises
+    ------
+    InputError
+        If the values are not real numbers.
+    """
+    if xp is np:
+        if type(values) is np.ndarray and values.dtype == np.float64:
+            return values
+        try:
+            return np.asarray(values, dtype=np.float64)
+        except (TypeError, ValueError) as error:
+            raise InputError(
+                f"{name}: expected an array of real numbers, got {values!r:.80}: {error}"
+            ) from None
+    array = as_array(xp, values)
+    return array if xp.isdtype(array.dtype, "real floating") else xp.astype(array, xp.float64)
+
+
+def is_traced(array: Array) -> bool:
+    """Return whether `array` is an abstract value inside `jax.jit`, `jax.vmap` or `jax.grad`.
+
+    Parameters
+    ----------
+    array : array
+        Any array.
+    """
+    jax = sys.modules.get("jax")
+    return jax is not None and isinstance(array, jax.core.Tracer)
+
+
+def require_finite(name: str, array: Array) -> None:
+    """Refuse NaN and infinities; values that are being traced can't be looked at and pass.
+
+    Parameters
+    ----------
+    name : str
+        What the array is, for the message.
+    array : array
+        Any shape.
+
+    Raises
+    ------
+    InputError
+        If an element is NaN or infinite; the message says which.
+    """
+    if is_traced(array):
+        return
+    xp = namespace(array)
+    if bool(xp.all(xp.isfinite(array))):
+        return
+    values = np.asarray(array)
+    wrong = np.argwhere(~np.isfinite(values))
+    where = ", ".join(str(int(i)) for i in wrong[0])
+    raise InputError(
+        f"{name}[{where}] is {values[tuple(wrong[0])]}; {len(wrong)} of {values.size} values are not finite numbers"
+    )
+
+
+def require_shape(name: str, array: Array, tail: tuple[int, ...]) -> None:
+    """Refuse an array whose last axes are not `tail`.
+
+    Parameters
+    ----------
+    name : str
+        What the array is, for the message.
+    array : array
+        Any shape.
+    tail : tuple of int
+        The lengths that the last axes must have.
+
+    Raises
+    ------
+    InputError
+        If they differ.
+    """
+    if array.shape[-len(tail) :] != tail:
+        expected = ", ".join(["...", *map(str, tail)])
+        raise InputError(f"{name} has shape {tuple(array.shape)}; expected ({expected})")
+
+
+def stack_last(xp: Namespace, parts: tuple[Array, ...]) -> Array:
+    """Join equally shaped arrays along a new last axis (what `stack(parts, axis=-1)` does, faster for NumPy).
+
+    Parameters
+    ----------
+    xp : namespace
+        The array library.
+    parts : tuple of array
+        Arrays that broadcast against each other.
+    """
+    if xp is not np:
+        return xp.stack(xp.broadcast_arrays(*parts), axis=-1)
+    shape = np.broadcast_shapes(*(part.shape for part in parts))
+    joined = np.empty((*shape, len(parts)), dtype=np.result_type(*parts))
+    for i, part in enumerate(parts):
+        joined[..., i] = part
+    return joined
+
+
+def broadcast_shapes(what: str, *shapes: tuple[int, ...]) -> tuple[int, ...]:
+    """Return the shape that batch shapes have together.
+
+    Parameters
+    ----------
+    what : str
+        Whose batch axes these are, for the message.
+    *shapes : tuple of int
+        Batch shapes.
+
+    Raises
+    ------
+    InputError
+        If they don't broadcast.
+    """
+    try:
+        return np.broadcast_shapes(*shapes)
+    except ValueError:
+        listed = " and ".join(str(tuple(shape)) for shape in shapes)
+        raise InputError(f"the batch axes of {what} don't fit together: {listed}") from None
+
+
+def batch_blocks(shape: tuple[int, ...], size: int) -> Iterator[Index]:
+    """Cut a batch into blocks of at most `size` items, yielding the index of each.
+
+    Parameters
+    ----------
+    shape : tuple of int
+        The batch axes.
+    size : int
+        Most items in a block; at least 1.
+    """
+    if math.prod(shape) <= size:
+        yield (slice(None),) * len(shape)
+        return
+    row = math.prod(shape[1:])
+    if row > size:
+        for i in range(shape[0]):
+            for rest in batch_blocks(shape[1:], size):
+                yield (slice(i, i + 1), *rest)
+        return
+    step = size // row
+    for start in range(0, shape[0], step):
+        yield (slice(start, start + step), *(slice(None),) * (len(shape) - 1))
+
+
+def take_block(array: Array, index: Index, *, tail: int) -> Array:
+    """Return the part of `array` that belongs to a block of the batch it broadcasts to.
+
+    Parameters
+    ----------
+    array : array
+        Batch axes, then `tail` more.
+    index : tuple of slice
+        The block, from `batch_blocks`.
+    tail : int
+        How many of the last axes are not batch axes.
+    """
+    batch = array.ndim - tail
+    if batch == 0:
+        return array
+    own = index[len(index) - batch :]
+    return array[tuple(slice(None) if n == 1 else part for n, part in zip(array.shape, own, strict=False))]

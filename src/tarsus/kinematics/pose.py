@@ -1,0 +1,190 @@
+"""A rigid body's place: rotation and position, one or a batch."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Self, overload
+
+import numpy as np
+
+from tarsus.arrays import (
+    Array,
+    as_floats,
+    broadcast_shapes,
+    namespace,
+    require_finite,
+    require_shape,
+    stack_last,
+)
+from tarsus.errors import InputError
+
+__all__ = ["Pose", "rpy_from_rotation"]
+
+
+def _locked(array: Array) -> Array:
+    """Copy a NumPy array and lock it; arrays of other libraries can't be written to or are not ours to lock."""
+    if isinstance(array, np.ndarray) and array.flags.writeable:
+        array = array.copy()
+        array.setflags(write=False)
+    return array
+
+
+_IDENTITY = _locked(np.eye(3))
+_ORIGIN = _locked(np.zeros(3))
+
+
+@dataclass(frozen=True, eq=False)
+class Pose:
+    """The place of one frame in another: ``T_to_from @ points_in_from`` gives points in the frame `to`.
+
+    Attributes
+    ----------
+    rotation : array, shape (..., 3, 3)
+        Rotation matrices.
+    position : array, shape (..., 3)
+        Where the origin is [m].
+    """
+
+    rotation: Array = _IDENTITY
+    position: Array = _ORIGIN
+
+    def __post_init__(self) -> None:
+        if self.rotation is _IDENTITY and self.position is _ORIGIN:
+            return
+        xp = namespace(self.rotation, self.position)
+        rotation = as_floats(xp, self.rotation, name="rotation")
+        position = as_floats(xp, self.position, name="position")
+        require_shape("rotation", rotation, (3, 3))
+        require_shape("position", position, (3,))
+        require_finite("rotation", rotation)
+        require_finite("position", position)
+        object.__setattr__(self, "rotation", _locked(rotation))
+        object.__setattr__(self, "position", _locked(position))
+
+    @classmethod
+    def from_rpy(
+        cls, roll: Array = 0.0, pitch: Array = 0.0, yaw: Array = 0.0, position: Array = (0.0, 0.0, 0.0)
+    ) -> Self:
+        """Build a pose from roll, pitch and yaw: ``Rz(yaw) Ry(pitch) Rx(roll)``.
+
+        Parameters
+        ----------
+        roll, pitch, yaw : array, shape (...)
+            Turns about x, y and z [rad].
+        position : array, shape (..., 3)
+            Where the origin is [m].
+
+        Raises
+        ------
+        InputError
+            If a value is NaN or infinite, or the shapes don't broadcast.
+        """
+        xp = namespace(roll, pitch, yaw, position)
+        angles = [as_floats(xp, a, name=n) for a, n in ((roll, "roll"), (pitch, "pitch"), (yaw, "yaw"))]
+        for angle, name in zip(angles, ("roll", "pitch", "yaw"), strict=True):
+            require_finite(name, angle)
+        (cr, cp, cy), (sr, sp, sy) = [xp.cos(a) for a in angles], [xp.sin(a) for a in angles]
+        rows = (
+            (cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr),
+            (sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr),
+            (-sp, cp * sr, cp * cr),
+        )
+        flat = stack_last(xp, tuple(entry for row in rows for entry in row))
+        return cls(xp.reshape(flat, (*flat.shape[:-1], 3, 3)), position)
+
+    @property
+    def batch_shape(self) -> tuple[int, ...]:
+        """Batch axes that rotation and position have together."""
+        return broadcast_shapes("a pose", self.rotation.shape[:-2], self.position.shape[:-1])
+
+    @overload
+    def __matmul__(self, other: Pose) -> Pose: ...
+    @overload
+    def __matmul__(self, other: Array) -> Array: ...
+    def __matmul__(self, other: Any) -> Any:
+        """Carry points over, or chain poses.
+
+        Parameters
+        ----------
+        other : Pose or array, shape (..., 3)
+            A pose; or points, whose leading axes are the pose's batch axes, with any more axes between them and
+            the last: a single pose carries ``(3,)``, ``(legs, 3)`` and ``(legs, 4, 3)``; ``n`` poses carry
+            ``(n, legs, 3)``.
+
+        Raises
+        ------
+        InputError
+            If the points are not finite, or their axes don't fit the pose's.
+        """
+        if isinstance(other, Pose):
+            xp = namespace(self.rotation, other.rotation, other.position)
+            return Pose(
+                xp.matmul(xp.asarray(self.rotation), xp.asarray(other.rotation)),
+                self._carry(other.position[..., None, :])[..., 0, :],
+            )
+        xp = namespace(other, self.rotation, self.position)
+        points = as_floats(xp, other, name="points")
+        require_shape("points", points, (3,))
+        batch = self.batch_shape
+        between = max(points.ndim - 1 - len(batch), 0)
+        broadcast_shapes("the pose and the points", batch, points.shape[: points.ndim - 1 - between])
+        if between == 0:
+            return self._carry(points[..., None, :])[..., 0, :]
+        flat = xp.reshape(points, (*points.shape[: points.ndim - 1 - between], -1, 3))
+        carried = self._carry(flat)
+        return xp.reshape(carried, (*carried.shape[:-2], *points.shape[points.ndim - 1 - between :]))
+
+    def _carry(self, points: Array) -> Array:
+        """Carry points ``(..., k, 3)`` whose leading axes broadcast with the batch axes."""
+        xp = namespace(points, self.rotation, self.position)
+        rotation, position = xp.asarray(self.rotation), xp.asarray(self.position)
+        return xp.matmul(xp.asarray(points), xp.matrix_transpose(rotation)) + position[..., None, :]
+
+    def inverse(self) -> Pose:
+        """Return the pose that undoes this one: ``T_from_to`` of ``T_to_from``."""
+        xp = namespace(self.rotation, self.position)
+        back = xp.matrix_transpose(xp.asarray(self.rotation))
+        return Pose(back, -xp.matmul(back, xp.asarray(self.position)[..., None])[..., 0])
+
+    def __getitem__(self, index: Any) -> Pose:
+        """Return the poses at `index` of the batch axes."""
+        xp = namespace(self.rotation, self.position)
+        batch = self.batch_shape
+        if not batch:
+            raise InputError("this is a single pose; it has no batch axis to take an item from")
+        rotation = xp.broadcast_to(xp.asarray(self.rotation), (*batch, 3, 3))
+        position = xp.broadcast_to(xp.asarray(self.position), (*batch, 3))
+        index = index if isinstance(index, tuple) else (index,)
+        return Pose(rotation[(*index, ..., slice(None), slice(None))], position[(*index, ..., slice(None))])
+
+    @property
+    def rpy(self) -> Array:
+        """Roll, pitch and yaw ``(..., 3)`` [rad]."""
+        return rpy_from_rotation(self.rotation)
+
+
+def rpy_from_rotation(rotation: Array) -> Array:
+    """Return roll, pitch and yaw of rotation matrices ``Rz(yaw) Ry(pitch) Rx(roll)``.
+
+    Parameters
+    ----------
+    rotation : array, shape (..., 3, 3)
+        Rotation matrices.
+
+    Returns
+    -------
+    array, shape (..., 3)
+        Roll, pitch, yaw [rad]; pitch in -pi/2..pi/2. At pitch +-pi/2, where only the sum of roll and yaw is
+        determined, whatever rounding leaves of them.
+    """
+    xp = namespace(rotation)
+    r = as_floats(xp, rotation, name="rotation")
+    cos_pitch = xp.sqrt(r[..., 0, 0] ** 2 + r[..., 1, 0] ** 2)
+    return stack_last(
+        xp,
+        (
+            xp.atan2(r[..., 2, 1], r[..., 2, 2]),
+            xp.atan2(-r[..., 2, 0], cos_pitch),
+            xp.atan2(r[..., 1, 0], r[..., 0, 0]),
+        ),
+    )

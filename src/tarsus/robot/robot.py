@@ -1,0 +1,372 @@
+"""What the robot is: a value of arrays in SI units, one robot or a batch of designs."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from os import PathLike
+from typing import Any, Self
+
+import numpy as np
+
+from tarsus.arrays import Array, broadcast_shapes, namespace
+from tarsus.errors import InputError, MissingDataError, UnknownNameError
+from tarsus.robot.geometry import LegGeometry
+from tarsus.robot.servo import Servo
+
+__all__ = ["JOINTS", "GaitDefaults", "Robot", "Source", "stack_robots"]
+
+JOINTS = ("coxa", "femur", "tibia")
+"""The joints of a leg, in the order of the last axis of an array of joint angles."""
+
+# The axes of each array that follow its batch axes; "legs" stands for the number of legs.
+_TAILS: dict[str, tuple[str | int, ...]] = {
+    "mount_position": ("legs", 3),
+    "mount_yaw": ("legs",),
+    "coxa": ("legs",),
+    "femur": ("legs",),
+    "tibia": ("legs",),
+    "femur_axis_offset": ("legs", 2),
+    "limits": ("legs", 3, 2),
+    "foot_radius": ("legs",),
+    "link_com": ("legs", 3),
+    "link_mass": ("legs", 3),
+    "body_mass": (),
+    "body_com": (3,),
+    "body_size": (3,),
+}
+_OPTIONAL = ("link_mass", "body_mass", "body_size")
+_POSITIVE = ("femur", "tibia", "body_mass", "body_size")
+_NOT_NEGATIVE = ("coxa", "foot_radius", "link_mass")
+
+
+@dataclass(frozen=True, kw_only=True)
+class GaitDefaults:
+    """How this robot walks unless told otherwise.
+
+    Attributes
+    ----------
+    name : str
+        The gait's name.
+    clearance : float or None
+        Height of the body's origin over the ground [m]; None for a height worked out from the legs.
+    lift : float or None
+        How high a swinging foot is lifted [m]; None for a share of the clearance.
+    """
+
+    name: str = "tripod"
+    clearance: float | None = None
+    lift: float | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Source:
+    """Where numbers of a robot file come from, and how sure they are.
+
+    Attributes
+    ----------
+    of : tuple of str
+        The keys it speaks of, such as ``"leg.coxa_mm"``.
+    source : str
+        Where they were found.
+    confidence : str
+        ``"A"`` read in the primary file, ``"B"`` in a secondary copy, ``"C"`` mostly general knowledge,
+        ``"guess"`` a guess of this project.
+    note : str
+        What else is known.
+    """
+
+    of: tuple[str, ...]
+    source: str
+    confidence: str
+    note: str = ""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Robot:
+    """A legged robot, or a batch of designs: every array may have leading batch axes, which broadcast.
+
+    Arrays given as NumPy arrays or sequences are copied in and locked; arrays of other libraries are kept as
+    they are, so that a design can be differentiated (``robot.replace(femur=traced_array)``).
+
+    Attributes
+    ----------
+    name : str
+        What the robot is called.
+    leg_names : tuple of str
+        The legs in the ring's order, counter-clockwise from the front left.
+    mount_position : array, shape (..., legs, 3)
+        Where the coxa axes are in the body frame B [m].
+    mount_yaw : array, shape (..., legs)
+        Direction of each leg in B, counter-clockwise from forward [rad].
+    coxa, femur, tibia : array, shape (..., legs)
+        Lengths of the links [m].
+    femur_axis_offset : array, shape (..., legs, 2)
+        Offset of the femur axis from the coxa axis, sideways and vertical [m].
+    limits : array, shape (..., legs, 3, 2)
+        Lowest and highest angle of each joint [rad].
+    foot_radius : array, shape (..., legs)
+        Radius of the foot's ball, for pictures and for the least distance between feet [m].
+    link_com : array, shape (..., legs, 3)
+        Distance of each link's centre of mass from its inner joint, along the link [m].
+    link_mass : array, shape (..., legs, 3), or None
+        Masses of the links [kg]; None where unknown.
+    body_mass : array, shape (...), or None
+        Mass of the body [kg]; None where unknown.
+    body_com : array, shape (..., 3)
+        Centre of mass of the body in B [m].
+    body_size : array, shape (..., 3), or None
+        Size of the body's box, centred on B's origin [m]; None for the flat polygon of the coxa axes.
+    servos : tuple of tuple of (Servo or None)
+        The servo of each leg's joints, ``servos[leg][joint]``; None where unknown.
+    gait : GaitDefaults
+        How it walks unless told otherwise.
+    sources : tuple of Source
+        Where its numbers come from.
+    """
+
+    name: str
+    leg_names: tuple[str, ...]
+    mount_position: Array
+    mount_yaw: Array
+    coxa: Array
+    femur: Array
+    tibia: Array
+    limits: Array
+    femur_axis_offset: Array = None
+    foot_radius: Array = None
+    link_com: Array = None
+    link_mass: Array = None
+    body_mass: Array = None
+    body_com: Array = None
+    body_size: Array = None
+    servos: tuple[tuple[Servo | None, ...], ...] = ()
+    gait: GaitDefaults = field(default_factory=GaitDefaults)
+    sources: tuple[Source, ...] = ()
+
+    def __post_init__(self) -> None:
+        fill = {
+            "femur_axis_offset": lambda: np.zeros((self.legs, 2)),
+            "foot_radius": lambda: np.zeros(self.legs),
+            "body_com": lambda: np.zeros(3),
+        }
+        for name in ("mount_position", "mount_yaw", "coxa", "femur", "tibia", "limits"):
+            self._lock(name, getattr(self, name))
+        for name, default in fill.items():
+            value = getattr(self, name)
+            self._lock(name, default() if value is None else value)
+        if self.link_com is None:
+            xp = namespace(self.coxa, self.femur, self.tibia)
+            lengths = xp.broadcast_arrays(self.coxa, self.femur, self.tibia)
+            object.__setattr__(self, "link_com", xp.stack(lengths, axis=-1) / 2)
+        for name in ("link_com", *_OPTIONAL):
+            self._lock(name, getattr(self, name))
+        object.__setattr__(self, "leg_names", tuple(self.leg_names))
+        servos = tuple(tuple(row) for row in self.servos) or ((None,) * 3,) * self.legs
+        object.__setattr__(self, "servos", servos)
+        _ = self.batch_shape  # refuses batch axes that don't broadcast
+
+    def _lock(self, name: str, value: Array) -> None:
+        """Copy a NumPy value in, lock it and check its shape and range."""
+        if value is None:
+            return
+        if isinstance(value, np.ndarray | np.generic) or not hasattr(value, "shape"):
+            try:
+                value = np.array(value, dtype=np.float64)
+            except (TypeError, ValueError) as error:
+                raise InputError(f"{self.name}: {name}: expected an array of numbers: {error}") from None
+            value.setflags(write=False)
+            self._check_range(name, value)
+        tail = tuple(self.legs if n == "legs" else n for n in _TAILS[name])
+        if tail and tuple(value.shape[-len(tail) :]) != tail:
+            expected = ", ".join(["...", *map(str, tail)])
+            raise InputError(f"{self.name}: {name} has shape {tuple(value.shape)}; expected ({expected})")
+        object.__setattr__(self, name, value)
+
+    def _check_range(self, name: str, value: np.ndarray[Any, Any]) -> None:
+        if not np.isfinite(value).all():
+            raise InputError(f"{self.name}: {name} holds a value that is not a finite number")
+        lowest = float(value.min()) if value.size else 0.0
+        if name in _POSITIVE and lowest <= 0:
+            raise InputError(f"{self.name}: {name} is {lowest:g}; it must be greater than 0")
+        if name in _NOT_NEGATIVE and lowest < 0:
+            raise InputError(f"{self.name}: {name} is {lowest:g}; it must not be negative")
+        if name == "limits" and (value[..., 0] > value[..., 1]).any():
+            raise InputError(f"{self.name}: limits: a lowest angle is greater than its highest")
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Robot):
+            return NotImplemented
+        for spec in dataclasses.fields(self):
+            mine, theirs = getattr(self, spec.name), getattr(other, spec.name)
+            if spec.name in _TAILS and mine is not None and theirs is not None:
+                if not np.array_equal(np.asarray(mine), np.asarray(theirs)):
+                    return False
+            elif mine is not theirs and mine != theirs:
+                return False
+        return True
+
+    def __hash__(self) -> int:
+        return hash((self.name, self.leg_names))
+
+    @property
+    def legs(self) -> int:
+        """Number of legs."""
+        return len(self.leg_names)
+
+    @cached_property
+    def batch_shape(self) -> tuple[int, ...]:
+        """Batch axes that the robot's arrays have together; empty for a single robot."""
+        shapes = []
+        for name, tail in _TAILS.items():
+            value = getattr(self, name)
+            if value is not None:
+                shapes.append(tuple(value.shape[: value.ndim - len(tail)]))
+        return broadcast_shapes(f"robot {self.name!r}", *shapes)
+
+    @cached_property
+    def geometry(self) -> LegGeometry:
+        """The constants of the legs' kinematics."""
+        arrays = {
+            name: getattr(self, name)
+            for name in (
+                "mount_position",
+                "mount_yaw",
+                "coxa",
+                "femur",
+                "tibia",
+                "femur_axis_offset",
+                "limits",
+            )
+        }
+        xp = namespace(*arrays.values())
+        return LegGeometry.of(xp, **{n: v if xp is np else xp.asarray(v) for n, v in arrays.items()})
+
+    @property
+    def has_masses(self) -> bool:
+        """Whether the masses of the body and of every link are known."""
+        return self.body_mass is not None and self.link_mass is not None
+
+    def require_masses(self) -> None:
+        """Ask for the masses where they are missing.
+
+        Raises
+        ------
+        MissingDataError
+            If the mass of the body or of a link is unknown.
+        """
+        missing = [
+            key
+            for key, value in (("[body] mass_kg", self.body_mass), ("[leg] mass_kg", self.link_mass))
+            if value is None
+        ]
+        if missing:
+            raise MissingDataError(
+                f"robot {self.name!r}: {' and '.join(missing)} missing from its file; "
+                "add what the body and each link weigh, servos included"
+            )
+
+    def leg_index(self, name: str) -> int:
+        """Return the number of the leg of that name.
+
+        Parameters
+        ----------
+        name : str
+            One of `leg_names`.
+
+        Raises
+        ------
+        UnknownNameError
+            If no leg has that name.
+        """
+        if name not in self.leg_names:
+            raise UnknownNameError.of("leg", name, self.leg_names)
+        return self.leg_names.index(name)
+
+    def replace(self, **changes: Any) -> Self:
+        """Return the robot with some of its attributes changed.
+
+        Parameters
+        ----------
+        **changes
+            Attributes and their new values.
+
+        Raises
+        ------
+        InputError
+            If a new value has the wrong shape or range.
+        """
+        return dataclasses.replace(self, **changes)
+
+    @classmethod
+    def from_dict(cls, document: dict[str, Any], *, where: str = "robot") -> Robot:
+        """Build a robot from the keys of a robot file.
+
+        Parameters
+        ----------
+        document : dict
+            The file's tables and keys, in mm, degrees and kg.
+        where : str
+            What to call it in messages.
+
+        Raises
+        ------
+        RobotFileError
+            If something in it is wrong; the message names key, value and what is allowed.
+        """
+        from tarsus.robot.file import robot_from_document
+
+        return robot_from_document(document, where=where)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the keys of a robot file, in mm, degrees and kg: what `from_dict` takes."""
+        from tarsus.robot.file import document_of
+
+        return document_of(self)
+
+    def save(self, path: str | PathLike[str]) -> None:
+        """Write the robot file; loading it gives the same robot to the bit.
+
+        Parameters
+        ----------
+        path : path
+            Where to write it.
+
+        Raises
+        ------
+        RobotFileError
+            If it can't be written, or the robot is a batch of designs.
+        """
+        from tarsus.robot.file import save_robot
+
+        save_robot(self, path)
+
+
+def stack_robots(robots: Sequence[Robot]) -> Robot:
+    """Join robots of the same make into one batch of designs along a new first axis.
+
+    Parameters
+    ----------
+    robots : sequence of Robot
+        At least one; all with the same legs, and masses known for all or for none.
+
+    Raises
+    ------
+    InputError
+        If there is none, or they differ in legs or in what is known.
+    """
+    if not robots:
+        raise InputError("stack_robots: there is no robot to stack")
+    first = robots[0]
+    changes: dict[str, Array] = {}
+    for name in _TAILS:
+        values = [getattr(robot, name) for robot in robots]
+        if any((v is None) != (values[0] is None) for v in values):
+            raise InputError(f"stack_robots: {name} is known for some of the robots and unknown for others")
+        if values[0] is not None:
+            if any(v.shape != values[0].shape for v in values):
+                raise InputError(f"stack_robots: {name} differs in shape between the robots")
+            changes[name] = np.stack([np.asarray(v) for v in values])
+    return first.replace(**changes)
