@@ -94,9 +94,7 @@ def as_floats(xp: Namespace, values: Array, *, name: str) -> Array:
         try:
             return np.asarray(values, dtype=np.float64)
         except (TypeError, ValueError) as error:
-            raise InputError(
-                f"{name}: expected an array of real numbers, got {values!r:.80}: {error}"
-            ) from None
+            raise InputError(f"{name}: expected an array of real numbers, got {values!r:.80}: {error}") from None
     array = as_array(xp, values)
     return array if xp.isdtype(array.dtype, "real floating") else xp.astype(array, xp.float64)
 
@@ -137,7 +135,8 @@ def require_finite(name: str, array: Array) -> None:
     wrong = np.argwhere(~np.isfinite(values))
     where = ", ".join(str(int(i)) for i in wrong[0])
     raise InputError(
-        f"{name}[{where}] is {values[tuple(wrong[0])]}; {len(wrong)} of {values.size} values are not finite numbers"
+        f"{name}[{where}] is {values[tuple(wrong[0])]}; "
+        f"{len(wrong)} of {values.size} values are not finite numbers"
     )
 
 

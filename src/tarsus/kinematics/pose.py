@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, Self, overload
 
 import numpy as np
@@ -45,8 +45,8 @@ class Pose:
         Where the origin is [m].
     """
 
-    rotation: Array = _IDENTITY
-    position: Array = _ORIGIN
+    rotation: Array = field(default_factory=lambda: _IDENTITY)
+    position: Array = field(default_factory=lambda: _ORIGIN)
 
     def __post_init__(self) -> None:
         if self.rotation is _IDENTITY and self.position is _ORIGIN:
