@@ -17,27 +17,32 @@ from tarsus.errors import InputError
 
 __all__ = [
     "BLOCK",
+    "SMALL",
     "Array",
     "Index",
     "Namespace",
     "as_array",
     "as_floats",
     "batch_blocks",
+    "block_shape",
     "broadcast_shapes",
+    "columns",
     "is_traced",
     "namespace",
     "require_finite",
     "require_shape",
     "stack_last",
-    "take_block",
 ]
 
 Array: TypeAlias = Any
 Namespace: TypeAlias = Any
-Index: TypeAlias = tuple[int | slice, ...]
+Index: TypeAlias = tuple[slice, ...]
 
-BLOCK = 4096
+BLOCK = 8192
 """Legs worked through at a time: a dozen arrays of this many doubles stay in a core's second-level cache."""
+
+SMALL = 1024
+"""Numbers in an array below which cutting it into blocks costs more than it saves."""
 
 
 def namespace(*arrays: Array) -> Namespace:
@@ -135,8 +140,7 @@ def require_finite(name: str, array: Array) -> None:
     wrong = np.argwhere(~np.isfinite(values))
     where = ", ".join(str(int(i)) for i in wrong[0])
     raise InputError(
-        f"{name}[{where}] is {values[tuple(wrong[0])]}; "
-        f"{len(wrong)} of {values.size} values are not finite numbers"
+        f"{name}[{where}] is {values[tuple(wrong[0])]}; {len(wrong)} of {values.size} values are not finite numbers"
     )
 
 
@@ -227,8 +231,24 @@ def batch_blocks(shape: tuple[int, ...], size: int) -> Iterator[Index]:
         yield (slice(start, start + step), *(slice(None),) * (len(shape) - 1))
 
 
-def take_block(array: Array, index: Index, *, tail: int) -> Array:
-    """Return the part of `array` that belongs to a block of the batch it broadcasts to.
+def block_shape(shape: tuple[int, ...], index: Index) -> tuple[int, ...]:
+    """Return the batch axes of a block.
+
+    Parameters
+    ----------
+    shape : tuple of int
+        The batch axes.
+    index : tuple of slice
+        The block, from `batch_blocks`.
+    """
+    return tuple(len(range(*part.indices(n))) for part, n in zip(index, shape, strict=True))
+
+
+def columns(array: Array, index: Index, block: tuple[int, ...], *, tail: int) -> Array:
+    """Return what a block needs of a NumPy array, transposed: the block's items side by side in the last axis.
+
+    An operation on ``(legs, block)`` runs over thousands of neighbouring numbers at a time; on ``(block, legs)``,
+    with the robot's numbers ``(legs,)`` broadcast, only over the legs: measured, a third of the speed.
 
     Parameters
     ----------
@@ -236,11 +256,23 @@ def take_block(array: Array, index: Index, *, tail: int) -> Array:
         Batch axes, then `tail` more.
     index : tuple of slice
         The block, from `batch_blocks`.
+    block : tuple of int
+        The block's shape.
     tail : int
         How many of the last axes are not batch axes.
+
+    Returns
+    -------
+    array
+        The last axes in reverse order, then one of the block's length, or of 1 where the array is the same
+        throughout.
     """
-    batch = array.ndim - tail
-    if batch == 0:
-        return array
-    own = index[len(index) - batch :]
-    return array[tuple(slice(None) if n == 1 else part for n, part in zip(array.shape, own, strict=False))]
+    own = array.ndim - tail
+    rest = array.shape[own:]
+    part = array
+    if own and index:
+        where = index[len(index) - own :]
+        part = array[tuple(slice(None) if n == 1 else cut for n, cut in zip(array.shape, where, strict=False))]
+    if math.prod(part.shape[:own]) != 1:
+        part = np.broadcast_to(part, (*block, *rest))
+    return np.ascontiguousarray(part.reshape(-1, *rest).T)

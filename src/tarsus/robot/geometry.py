@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from typing import NamedTuple, Self
 
-from tarsus.arrays import Array, Index, Namespace, as_array, take_block
+import numpy as np
+
+from tarsus.arrays import Array, Index, Namespace, as_array, columns
 
 __all__ = ["LegGeometry"]
 
@@ -14,7 +16,8 @@ class LegGeometry(NamedTuple):
 
     `side` and `up` are the femur axis' offsets from the coxa axis, sideways and vertical (the first is `coxa`).
     `farthest2` and `nearest2` are the squares of the longest and shortest distance from femur axis to foot,
-    `sum2` and `difference2` those of ``femur^2 +- tibia^2``. `lower` and `upper` are ``(..., legs, 3)``.
+    `sum2` and `difference2` are ``femur^2 +- tibia^2``. `knee_span` is how far from B's vertical axis a knee can
+    get, `axis_depth` the most that a coxa or femur axis lies below B's origin.
     """
 
     cos_yaw: Array
@@ -32,8 +35,14 @@ class LegGeometry(NamedTuple):
     nearest2: Array
     sum2: Array
     difference2: Array
-    lower: Array
-    upper: Array
+    knee_span: Array
+    axis_depth: Array
+    coxa_lower: Array
+    coxa_upper: Array
+    femur_lower: Array
+    femur_upper: Array
+    tibia_lower: Array
+    tibia_upper: Array
 
     @classmethod
     def of(
@@ -49,32 +58,44 @@ class LegGeometry(NamedTuple):
         limits: Array,
     ) -> Self:
         """Work the constants out from a robot's arrays (shapes as in `Robot`)."""
-        side = femur_axis_offset[..., 0]
+        side, up = femur_axis_offset[..., 0], femur_axis_offset[..., 1]
+        x, y, z = mount_position[..., 0], mount_position[..., 1], mount_position[..., 2]
         return cls(
             cos_yaw=xp.cos(mount_yaw),
             sin_yaw=xp.sin(mount_yaw),
-            mount_x=mount_position[..., 0],
-            mount_y=mount_position[..., 1],
-            mount_z=mount_position[..., 2],
+            mount_x=x,
+            mount_y=y,
+            mount_z=z,
             coxa=coxa,
             femur=femur,
             tibia=tibia,
             side=side,
-            up=femur_axis_offset[..., 1],
+            up=up,
             side2=side * side,
             farthest2=(femur + tibia) ** 2,
             nearest2=(femur - tibia) ** 2,
             sum2=femur * femur + tibia * tibia,
             difference2=(femur - tibia) * (femur + tibia),
-            lower=limits[..., 0],
-            upper=limits[..., 1],
+            knee_span=xp.sqrt(x * x + y * y) + coxa + xp.abs(side) + femur,
+            axis_depth=xp.abs(up) - z,
+            coxa_lower=limits[..., 0, 0],
+            coxa_upper=limits[..., 0, 1],
+            femur_lower=limits[..., 1, 0],
+            femur_upper=limits[..., 1, 1],
+            tibia_lower=limits[..., 2, 0],
+            tibia_upper=limits[..., 2, 1],
         )
 
     def to(self, xp: Namespace) -> LegGeometry:
         """Return the same numbers as arrays of the namespace `xp`."""
+        if xp is np:
+            return self
         return LegGeometry(*(as_array(xp, values) for values in self))
 
-    def take(self, index: Index) -> LegGeometry:
-        """Return the part that belongs to a block of the batch (see `tarsus.arrays.batch_blocks`)."""
-        tails = (1,) * 15 + (2, 2)
-        return LegGeometry(*(take_block(v, index, tail=t) for v, t in zip(self, tails, strict=True)))
+    def take(self, index: Index, block: tuple[int, ...]) -> LegGeometry:
+        """Return the part that belongs to a block of the batch, as columns (see `tarsus.arrays.columns`)."""
+        return LegGeometry(*(columns(values, index, block, tail=1) for values in self))
+
+    def pick(self, mask: Array) -> LegGeometry:
+        """Return the numbers of the legs that a NumPy mask picks, as ``(picked,)``."""
+        return LegGeometry(*(np.broadcast_to(values, mask.shape)[mask] for values in self))

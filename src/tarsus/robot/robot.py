@@ -300,6 +300,27 @@ class Robot:
         """
         return dataclasses.replace(self, **changes)
 
+    def item(self, index: tuple[int, ...], *, of: tuple[int, ...] | None = None) -> Self:
+        """Return one design of the batch, as NumPy arrays.
+
+        Parameters
+        ----------
+        index : tuple of int
+            Which, along every batch axis.
+        of : tuple of int, optional
+            The batch axes that `index` counts along, where the robot's broadcast to more; its own by default.
+        """
+        batch = self.batch_shape if of is None else of
+        if not self.batch_shape and isinstance(self.femur, np.ndarray):
+            return self
+        changes: dict[str, Array] = {}
+        for name, tail in _TAILS.items():
+            value = getattr(self, name)
+            if value is not None:
+                array = np.asarray(value)
+                changes[name] = np.broadcast_to(array, (*batch, *array.shape[array.ndim - len(tail) :]))[index]
+        return self.replace(**changes)
+
     @classmethod
     def from_dict(cls, document: dict[str, Any], *, where: str = "robot") -> Robot:
         """Build a robot from the keys of a robot file.

@@ -1,0 +1,159 @@
+"""Where the points of the legs are for given joint angles, and how they move with them.
+
+In the leg's own plane, with `r` outward and `z` up from the femur axis (source 002's two equations, signs as in
+this project: femur and tibia positive lift the foot)::
+
+    r = femur cos(q_femur) + tibia cos(q_femur + q_tibia)
+    z = femur sin(q_femur) + tibia sin(q_femur + q_tibia)
+
+The plane stands at `coxa` from the coxa axis, offset by source 001's `Dec_Y2` (sideways) and `Dec_Z2` (up), and
+turns with the coxa joint about the vertical.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TypeAlias
+
+import numpy as np
+
+from tarsus.arrays import (
+    BLOCK,
+    SMALL,
+    Array,
+    Namespace,
+    as_floats,
+    batch_blocks,
+    block_shape,
+    broadcast_shapes,
+    columns,
+    namespace,
+    require_finite,
+    require_shape,
+    stack_last,
+)
+from tarsus.robot.geometry import LegGeometry
+from tarsus.robot.robot import Robot
+
+__all__ = ["checked_angles", "forward_kinematics", "leg_jacobian", "point_parts"]
+
+
+def forward_kinematics(robot: Robot, angles: Array) -> Array:
+    """Return the points of every leg in the body frame.
+
+    Parameters
+    ----------
+    robot : Robot
+        The robot, or a batch of designs.
+    angles : array, shape (..., legs, 3)
+        Coxa, femur and tibia angle of each leg [rad].
+
+    Returns
+    -------
+    array, shape (..., legs, 4, 3)
+        Coxa axis, femur axis, knee and foot of each leg in B [m].
+
+    Raises
+    ------
+    InputError
+        If the angles have another shape, or are not finite.
+    """
+    return _by_blocks(point_parts, robot, angles, (4, 3))
+
+
+def leg_jacobian(robot: Robot, angles: Array) -> Array:
+    """Return how each foot moves in the body frame with its leg's joint angles.
+
+    Parameters
+    ----------
+    robot : Robot
+        The robot, or a batch of designs.
+    angles : array, shape (..., legs, 3)
+        Coxa, femur and tibia angle of each leg [rad].
+
+    Returns
+    -------
+    array, shape (..., legs, 3, 3)
+        ``d(foot in B) / d(angles)``: rows x, y, z, columns coxa, femur, tibia [m/rad].
+
+    Raises
+    ------
+    InputError
+        If the angles have another shape, or are not finite.
+    """
+    return _by_blocks(_jacobian_parts, robot, angles, (3, 3))
+
+
+def checked_angles(robot: Robot, angles: Array) -> tuple[Namespace, Array]:
+    """Return the namespace and the angles as floats, refusing what is not ``(..., legs, 3)`` finite numbers."""
+    xp = namespace(angles, robot.geometry.coxa)
+    q = as_floats(xp, angles, name="angles")
+    require_shape("angles", q, (robot.legs, 3))
+    require_finite("angles", q)
+    return xp, q
+
+
+Parts: TypeAlias = tuple[Array, ...]
+
+
+def _by_blocks(
+    kernel: Callable[[Namespace, LegGeometry, Array, Array, Array], Parts],
+    robot: Robot,
+    angles: Array,
+    tail: tuple[int, int],
+) -> Array:
+    """Run a kernel over the batch, in blocks that fit the cache where the arrays are NumPy's."""
+    xp, q = checked_angles(robot, angles)
+    geometry = robot.geometry.to(xp)
+    if xp is not np or (q.size <= SMALL and not robot.batch_shape):
+        flat = stack_last(xp, kernel(xp, geometry, q[..., 0], q[..., 1], q[..., 2]))
+        return xp.reshape(flat, (*flat.shape[:-1], *tail))
+    batch = broadcast_shapes("the robot and the angles", robot.batch_shape, q.shape[:-2])
+    out = np.empty((*batch, robot.legs, tail[0] * tail[1]))
+    same = geometry.take((), ())
+    for index in batch_blocks(batch, max(BLOCK // robot.legs, 1)):
+        block = block_shape(batch, index)
+        g = geometry.take(index, block) if robot.batch_shape else same
+        parts = kernel(np, g, *columns(q, index, block, tail=2))
+        view = out[index].reshape(-1, robot.legs, len(parts))
+        for i, part in enumerate(parts):
+            view[..., i] = part.T
+    return out.reshape(*batch, robot.legs, *tail)
+
+
+def _sines(xp: Namespace, g: LegGeometry, coxa: Array, femur: Array, tibia: Array) -> Parts:
+    """Cosines and sines of the leg plane's heading in B, of the femur's and of the tibia's slope."""
+    coxa_cos, coxa_sin = xp.cos(coxa), xp.sin(coxa)
+    heading_cos = g.cos_yaw * coxa_cos - g.sin_yaw * coxa_sin
+    heading_sin = g.sin_yaw * coxa_cos + g.cos_yaw * coxa_sin
+    slope = femur + tibia
+    return heading_cos, heading_sin, xp.cos(femur), xp.sin(femur), xp.cos(slope), xp.sin(slope)
+
+
+def point_parts(xp: Namespace, g: LegGeometry, coxa: Array, femur: Array, tibia: Array) -> Parts:
+    """Return x, y, z in B of coxa axis, femur axis, knee and foot, in any layout that fits the geometry's."""
+    heading_cos, heading_sin, femur_cos, femur_sin, tibia_cos, tibia_sin = _sines(xp, g, coxa, femur, tibia)
+    zero = xp.zeros_like(heading_cos)
+    knee_r = g.coxa + g.femur * femur_cos
+    foot_r = knee_r + g.tibia * tibia_cos
+    axis_z = g.mount_z + g.up + zero
+    knee_z = axis_z + g.femur * femur_sin
+    foot_z = knee_z + g.tibia * tibia_sin
+    side_x, side_y = g.mount_x - g.side * heading_sin, g.mount_y + g.side * heading_cos
+    parts = [g.mount_x + zero, g.mount_y + zero, g.mount_z + zero]
+    for r, z in ((g.coxa, axis_z), (knee_r, knee_z), (foot_r, foot_z)):
+        parts += [side_x + r * heading_cos, side_y + r * heading_sin, z]
+    return tuple(parts)
+
+
+def _jacobian_parts(xp: Namespace, g: LegGeometry, coxa: Array, femur: Array, tibia: Array) -> Parts:
+    heading_cos, heading_sin, femur_cos, femur_sin, tibia_cos, tibia_sin = _sines(xp, g, coxa, femur, tibia)
+    tibia_r, tibia_z = g.tibia * tibia_cos, g.tibia * tibia_sin
+    leg_r, leg_z = g.femur * femur_cos + tibia_r, g.femur * femur_sin + tibia_z
+    foot_r = g.coxa + leg_r
+    # About a joint axis, the foot moves perpendicularly to its arm: outward by -z, upward by +r.
+    return (
+        *(-foot_r * heading_sin - g.side * heading_cos, -leg_z * heading_cos, -tibia_z * heading_cos),
+        *(foot_r * heading_cos - g.side * heading_sin, -leg_z * heading_sin, -tibia_z * heading_sin),
+        *(xp.zeros_like(foot_r), leg_r, tibia_r),
+    )

@@ -1,0 +1,164 @@
+"""Where a leg's foot stands at rest: in the middle of what it can reach at the ground's height (source 001)."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tarsus.arrays import Array, Namespace, as_floats, is_traced, namespace, stack_last
+from tarsus.errors import InputError, UnreachableError
+from tarsus.kinematics.inverse import ANGLE_TOLERANCE
+from tarsus.kinematics.nearest import tibia_branch
+from tarsus.kinematics.triangle import root
+from tarsus.robot.geometry import LegGeometry
+from tarsus.robot.robot import Robot
+
+__all__ = ["default_clearance", "default_stance", "reachable_band"]
+
+
+def default_clearance(robot: Robot) -> float:
+    """Return the height of the body's origin over the ground that the robot walks at unless told otherwise [m].
+
+    The robot file's `clearance_mm`; where it has none, the height at which an upright tibia hangs from a femur
+    raised by 30 degrees, but at least half the tibia.
+
+    Parameters
+    ----------
+    robot : Robot
+        The robot; of a batch of designs, the least clearance of all.
+    """
+    if robot.gait.clearance is not None:
+        return robot.gait.clearance
+    g = robot.geometry
+    heights = np.maximum(np.asarray(g.tibia - g.femur / 2), np.asarray(g.tibia / 2))
+    return float(np.min(heights - np.asarray(g.mount_z + g.up)))
+
+
+def reachable_band(robot: Robot, height: Array) -> tuple[Array, Array]:
+    """Return the least and greatest distance at which each foot can stand straight out from its coxa axis.
+
+    Source 001's `x_min` and `x_max`, with the joint limits: the ends are where femur or tibia come to a limit, or the
+    leg is straight or folded. Where the reachable distances fall apart into several bands, the widest. The coxa
+    is at 0, or at the limit nearest to 0; the knee is up.
+
+    Parameters
+    ----------
+    robot : Robot
+        The robot, or a batch of designs.
+    height : array, shape (...)
+        Height of the feet in B [m]: the negative of the clearance.
+
+    Returns
+    -------
+    nearest, farthest : array, shape (..., legs)
+        Distances from the coxa axis along the leg's plane [m]. Both NaN where the height can't be reached.
+    """
+    g = robot.geometry
+    xp = namespace(height, g.coxa)
+    g = g.to(xp)
+    z = as_floats(xp, height, name="height")[..., None] - (g.mount_z + g.up)
+    ends = xp.sort(stack_last(xp, tuple(_band_ends(xp, g, z))), axis=-1)
+    zero = xp.zeros_like(ends[..., 0])
+    start, best_start, best_end = zero, zero, zero
+    was_open = zero > 1
+    for i in range(ends.shape[-1] - 1):
+        low, high = ends[..., i], ends[..., i + 1]
+        is_open = _in_limits(xp, g, (low + high) / 2, z)
+        start = xp.where(is_open & ~was_open, low, start)
+        wider = is_open & (high - start > best_end - best_start)
+        best_start, best_end = xp.where(wider, start, best_start), xp.where(wider, high, best_end)
+        # A gap of no width between two equal ends doesn't part a band.
+        was_open = is_open | (was_open & (high <= low))
+    none = best_end <= best_start
+    nan = xp.full_like(best_start, xp.nan)
+    return xp.where(none, nan, best_start + g.coxa), xp.where(none, nan, best_end + g.coxa)
+
+
+def _band_ends(xp: Namespace, g: LegGeometry, z: Array) -> list[Array]:
+    """Distances from the femur axis at which a joint is at a limit; none is behind the coxa axis."""
+    behind = -g.coxa + xp.zeros_like(z)
+    ends = [behind]
+    for tibia in tibia_branch(xp, g, knee=1):
+        across2 = g.sum2 + 2 * g.femur * g.tibia * xp.cos(tibia) - z * z
+        ends += [root(xp, across2), -root(xp, across2)]
+    for femur in (g.femur_lower, g.femur_upper):
+        drop = z - g.femur * xp.sin(femur)
+        across = root(xp, g.tibia * g.tibia - drop * drop)
+        ends += [g.femur * xp.cos(femur) + across, g.femur * xp.cos(femur) - across]
+    return [xp.maximum(end, behind) for end in ends]
+
+
+def _in_limits(xp: Namespace, g: LegGeometry, r: Array, z: Array) -> Array:
+    distance2 = r * r + z * z
+    far, near = g.farthest2 - distance2, distance2 - g.nearest2
+    height = root(xp, far * near)
+    base = distance2 + g.difference2
+    femur = xp.atan2(z * base + r * height, r * base - z * height)
+    tibia = -xp.atan2(height, distance2 - g.sum2)
+    within = (far >= 0) & (near >= 0)
+    for angle, lower, upper in ((femur, g.femur_lower, g.femur_upper), (tibia, g.tibia_lower, g.tibia_upper)):
+        within = within & (angle >= lower - ANGLE_TOLERANCE) & (angle <= upper + ANGLE_TOLERANCE)
+    return within
+
+
+def default_stance(robot: Robot, clearance: Array | None = None) -> Array:
+    """Return where the feet stand at rest, in the body frame.
+
+    Straight out from each coxa axis (or as near to that as its limits allow), in the middle of the reachable band:
+    source 001's ``x_min + (x_max - x_min) / 2``.
+
+    Parameters
+    ----------
+    robot : Robot
+        The robot, or a batch of designs.
+    clearance : array, shape (...), optional
+        Height of the body's origin over the ground [m]; `default_clearance` where left out.
+
+    Returns
+    -------
+    array, shape (..., legs, 3)
+        Footholds in B [m]; their height is the negative of the clearance.
+
+    Raises
+    ------
+    InputError
+        If the clearance is not a finite number.
+    UnreachableError
+        If a leg reaches the ground nowhere at that clearance; the message says which clearances work.
+    """
+    height = default_clearance(robot) if clearance is None else clearance
+    g = robot.geometry
+    xp = namespace(height, g.coxa)
+    g = g.to(xp)
+    z = -as_floats(xp, height, name="clearance")
+    if not is_traced(z) and not bool(xp.all(xp.isfinite(z))):
+        raise InputError(f"clearance is {height} m; it must be a finite number")
+    nearest, farthest = reachable_band(robot, z)
+    middle = (nearest + farthest) / 2
+    if not is_traced(middle) and bool(xp.any(xp.isnan(middle))):
+        raise UnreachableError(_why_no_stance(robot, height, np.asarray(middle)))
+    zero = xp.zeros_like(middle)
+    coxa = xp.minimum(xp.maximum(zero, g.coxa_lower), g.coxa_upper)
+    out_x, out_y = middle * xp.cos(coxa) - g.side * xp.sin(coxa), middle * xp.sin(coxa) + g.side * xp.cos(coxa)
+    x = g.mount_x + g.cos_yaw * out_x - g.sin_yaw * out_y
+    y = g.mount_y + g.sin_yaw * out_x + g.cos_yaw * out_y
+    return stack_last(xp, (x, y, z[..., None] + zero))
+
+
+def _why_no_stance(robot: Robot, clearance: Array, middle: Array) -> str:
+    """Say which leg has no foothold, and at which clearances all legs have one."""
+    leg = robot.leg_names[int(np.argwhere(np.isnan(middle))[0][-1])]
+    lowest = float(np.min(np.asarray(clearance)))
+    text = f"clearance {lowest * 1000:.1f} mm: leg {leg} reaches the ground nowhere within its joint limits"
+    if robot.batch_shape:
+        return text
+    g = robot.geometry
+    reach = float((g.femur + g.tibia).max() + np.abs(g.mount_z + g.up).max())
+    heights = np.linspace(-reach, reach, 4001)
+    works = heights[~np.isnan(reachable_band(robot, -heights)[0]).any(-1)]
+    if not len(works):
+        return f"{text}, and there is no clearance at which all legs reach it"
+    nearest = float(works[np.argmin(np.abs(works - lowest))])
+    return (
+        f"{text}; all legs reach it at clearances between {works.min() * 1000:.0f} and {works.max() * 1000:.0f} mm, "
+        f"nearest to it at {nearest * 1000:.1f} mm"
+    )
