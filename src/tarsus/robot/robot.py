@@ -147,16 +147,12 @@ class Robot:
     sources: tuple[Source, ...] = ()
 
     def __post_init__(self) -> None:
-        fill = {
-            "femur_axis_offset": lambda: np.zeros((self.legs, 2)),
-            "foot_radius": lambda: np.zeros(self.legs),
-            "body_com": lambda: np.zeros(3),
-        }
+        fill = {"femur_axis_offset": (self.legs, 2), "foot_radius": (self.legs,), "body_com": (3,)}
         for name in ("mount_position", "mount_yaw", "coxa", "femur", "tibia", "limits"):
             self._lock(name, getattr(self, name))
-        for name, default in fill.items():
+        for name, shape in fill.items():
             value = getattr(self, name)
-            self._lock(name, default() if value is None else value)
+            self._lock(name, np.zeros(shape) if value is None else value)
         if self.link_com is None:
             xp = namespace(self.coxa, self.femur, self.tibia)
             lengths = xp.broadcast_arrays(self.coxa, self.femur, self.tibia)
@@ -166,6 +162,8 @@ class Robot:
         object.__setattr__(self, "leg_names", tuple(self.leg_names))
         servos = tuple(tuple(row) for row in self.servos) or ((None,) * 3,) * self.legs
         object.__setattr__(self, "servos", servos)
+        if [len(row) for row in servos] != [3] * self.legs:
+            raise InputError(f"{self.name}: servos must be three, or None, for each of the {self.legs} legs")
         _ = self.batch_shape  # refuses batch axes that don't broadcast
 
     def _lock(self, name: str, value: Array) -> None:

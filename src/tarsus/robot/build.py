@@ -1,0 +1,162 @@
+"""From a checked robot file to a robot: each leg's keys over those of all legs, and what no single key can tell."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from decimal import Decimal
+from typing import Any, TypeAlias
+
+import numpy as np
+
+from tarsus.errors import RobotFileError
+from tarsus.robot.catalogue import load_servo, servo_of
+from tarsus.robot.problems import key_of
+from tarsus.robot.robot import JOINTS, GaitDefaults, Robot, Source
+from tarsus.robot.schema import JointTable, Leg, LegEntry, RobotFile, ServoFigures
+from tarsus.robot.servo import Servo
+from tarsus.robot.units import from_milli, radians
+
+__all__ = ["build_robot"]
+
+# A leg's keys with the joints' tables spread out: ``"limits_deg.coxa"``.
+_Flat: TypeAlias = dict[str, Any]
+_NEEDED = ("coxa_mm", "femur_mm", "tibia_mm", *(f"limits_deg.{joint}" for joint in JOINTS))
+_MASSES = tuple(f"mass_kg.{joint}" for joint in JOINTS)
+_SAME_PLACE_MM = 1.0
+
+
+def build_robot(file: RobotFile, *, where: str) -> Robot:
+    """Build the robot that a checked file describes; refuse one that is incomplete or contradicts itself."""
+    shared = _spread(file.leg)
+    legs = [shared | _spread(entry) for entry in file.legs]
+    problems = [*_missing(legs), *_same_name(file.legs), *_places(file.legs)]
+    if problems:
+        raise RobotFileError(where, problems)
+    return Robot(
+        name=file.name,
+        leg_names=tuple(entry.name for entry in file.legs),
+        mount_position=[_metres(entry.position_mm) for entry in file.legs],
+        mount_yaw=[radians(entry.yaw_deg) for entry in file.legs],
+        **_leg_arrays(legs),
+        **_body_arrays(file),
+        servos=tuple(tuple(_servo(leg.get(f"servo.{joint}")) for joint in JOINTS) for leg in legs),
+        gait=GaitDefaults(
+            name=file.gait.name,
+            clearance=_metre(file.gait.clearance_mm),
+            lift=_metre(file.gait.lift_mm),
+        ),
+        sources=tuple(
+            Source(of=tuple(entry.of), source=entry.source, confidence=entry.confidence, note=entry.note)
+            for entry in file.sources
+        ),
+    )
+
+
+def _spread(keys: Leg) -> _Flat:
+    """Return a leg's keys with the joints' tables spread out, so that they merge joint by joint."""
+    flat: _Flat = {}
+    for key in Leg.model_fields:
+        value = getattr(keys, key)
+        if key == "servo" and not isinstance(value, JointTable):
+            flat |= {f"{key}.{joint}": value for joint in JOINTS if value is not None}
+        elif isinstance(value, JointTable):
+            parts = {f"{key}.{joint}": getattr(value, joint) for joint in JOINTS}
+            flat |= {name: part for name, part in parts.items() if part is not None}
+        elif value is not None:
+            flat[key] = value
+    return flat
+
+
+def _missing(legs: Sequence[_Flat]) -> list[str]:
+    masses_known = any(key in leg for key in _MASSES for leg in legs)
+    problems = []
+    for key in (*_NEEDED, *(_MASSES if masses_known else ())):
+        lacking = [i for i, leg in enumerate(legs) if key not in leg]
+        hint = "give the mass of every link of every leg, or of none" if key in _MASSES else "every leg needs it"
+        if len(lacking) == len(legs):
+            problems.append(f"leg.{key}: missing; {hint}, in [leg] for all legs alike or in each [[legs]]")
+        else:
+            problems += [f"legs[{i}].{key}: missing; {hint}, here or in [leg]" for i in lacking]
+    return problems
+
+
+def _same_name(entries: Sequence[LegEntry]) -> list[str]:
+    first: dict[str, int] = {}
+    problems = []
+    for i, entry in enumerate(entries):
+        if entry.name in first:
+            problems.append(
+                f'{key_of(("legs", i, "name"))} = "{entry.name}": legs[{first[entry.name]}] is called that too'
+            )
+        first.setdefault(entry.name, i)
+    return problems
+
+
+def _places(entries: Sequence[LegEntry]) -> list[str]:
+    """Refuse legs in one place, and legs that do not follow each other round the body."""
+    points = np.array([[float(x) for x in entry.position_mm] for entry in entries])
+    problems = []
+    for i in range(len(points)):
+        for j in range(i):
+            if (apart := math.dist(points[i], points[j])) < _SAME_PLACE_MM:
+                problems.append(
+                    f"legs[{i}].position_mm = {points[i].tolist()}: in the same place as legs[{j}] "
+                    f"({apart:g} mm apart; at least {_SAME_PLACE_MM:g} mm)"
+                )
+    return problems or _out_of_order(entries, points)
+
+
+def _out_of_order(entries: Sequence[LegEntry], points: np.ndarray[Any, Any]) -> list[str]:
+    x, y, _ = (points - points.mean(axis=0)).T
+    # The rounding makes a leg straight ahead the first, whichever side of zero its y was rounded to.
+    angles = np.round(np.degrees(np.arctan2(y, x)), 9) % 360
+    order = np.argsort(angles, kind="stable")
+    if (order == np.arange(len(order))).all():
+        return []
+    wanted = ", ".join(f'"{entries[i].name}"' for i in order)
+    return [f"legs: they must go round the body counter-clockwise from the front left; in that order: {wanted}"]
+
+
+def _leg_arrays(legs: Sequence[_Flat]) -> dict[str, Any]:
+    offset = [leg.get("femur_axis_offset_mm", (Decimal(0), Decimal(0))) for leg in legs]
+    arrays: dict[str, Any] = {
+        "coxa": [from_milli(leg["coxa_mm"]) for leg in legs],
+        "femur": [from_milli(leg["femur_mm"]) for leg in legs],
+        "tibia": [from_milli(leg["tibia_mm"]) for leg in legs],
+        "limits": [[[radians(a) for a in leg[f"limits_deg.{joint}"]] for joint in JOINTS] for leg in legs],
+        "femur_axis_offset": [_metres(pair) for pair in offset],
+        "foot_radius": [from_milli(leg.get("foot_radius_mm", Decimal(0))) for leg in legs],
+        "link_com": [[_centre(leg, joint) for joint in JOINTS] for leg in legs],
+    }
+    if all(key in leg for key in _MASSES for leg in legs):
+        arrays["link_mass"] = [[float(leg[key]) for key in _MASSES] for leg in legs]
+    return arrays
+
+
+def _centre(leg: _Flat, joint: str) -> float:
+    given = leg.get(f"com_mm.{joint}")
+    return from_milli(leg[f"{joint}_mm"]) / 2 if given is None else from_milli(given)
+
+
+def _body_arrays(file: RobotFile) -> dict[str, Any]:
+    body = file.body
+    return {
+        "body_mass": None if body.mass_kg is None else float(body.mass_kg),
+        "body_com": None if body.com_mm is None else _metres(body.com_mm),
+        "body_size": None if body.size_mm is None else _metres(body.size_mm),
+    }
+
+
+def _metre(length: Decimal | None) -> float | None:
+    return None if length is None else from_milli(length)
+
+
+def _metres(lengths: Sequence[Decimal]) -> list[float]:
+    return [from_milli(length) for length in lengths]
+
+
+def _servo(entry: str | ServoFigures | None) -> Servo | None:
+    if isinstance(entry, ServoFigures):
+        return servo_of(entry.model_dump())
+    return None if entry is None else load_servo(entry)

@@ -1,0 +1,191 @@
+"""What may stand at a key of a robot file: each kind checks a value, words the refusal and describes itself.
+
+The check raises one kind of pydantic error whose text is the whole message, so that nothing of pydantic's own
+wording reaches a maker; the description goes into the JSON schema that editors use.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from decimal import Decimal
+from typing import Any
+
+import numpy as np
+from pydantic_core import CoreSchema, PydanticCustomError, core_schema
+
+from tarsus.errors import nearest_name
+from tarsus.robot.catalogue import list_servos
+from tarsus.robot.units import to_decimal
+
+__all__ = ["REFUSED", "Choice", "Number", "Numbers", "ServoName", "Text", "refuse"]
+
+REFUSED = "tarsus"
+"""The pydantic error type of every refusal that is worded here."""
+
+_LONGEST_TEXT = 1000
+_ORDINALS = ("first", "second", "third")
+
+
+def refuse(why: str) -> PydanticCustomError:
+    """Return the error that carries `why` as its whole message."""
+    return PydanticCustomError(REFUSED, "{why}", {"why": why})
+
+
+class _Kind:
+    """Something that checks one value; pydantic calls `check` and asks `describe` for the JSON schema."""
+
+    def check(self, value: object) -> Any:
+        raise NotImplementedError
+
+    def describe(self) -> dict[str, Any]:
+        raise NotImplementedError
+
+    def __get_pydantic_core_schema__(self, source: object, handler: object) -> CoreSchema:
+        return core_schema.no_info_plain_validator_function(self.check)
+
+    def __get_pydantic_json_schema__(self, schema: object, handler: object) -> dict[str, Any]:
+        return self.describe()
+
+
+@dataclass(frozen=True)
+class Number(_Kind):
+    """A finite number from `low` to `high`, in `unit`."""
+
+    low: float
+    high: float
+    unit: str
+
+    @property
+    def allowed(self) -> str:
+        """The range in words."""
+        return f"from {self.low:g} to {self.high:g} {self.unit}"
+
+    def check(self, value: object) -> Decimal:
+        """Return the value as the decimal that the file shows."""
+        number = _decimal(_unwrap(value))
+        if number is None:
+            raise refuse(f"must be a number {self.allowed}")
+        if not number.is_finite():
+            raise refuse(f"must be a finite number {self.allowed}")
+        if not to_decimal(self.low) <= number <= to_decimal(self.high):
+            raise refuse(f"must be {self.allowed}")
+        return number
+
+    def describe(self) -> dict[str, Any]:
+        """Return the JSON schema."""
+        return {"type": "number", "minimum": _plain(self.low), "maximum": _plain(self.high)}
+
+
+@dataclass(frozen=True)
+class Numbers(_Kind):
+    """A list of `count` numbers, each as `each` allows; with `ordered`, none less than the one before."""
+
+    count: int
+    each: Number
+    ordered: bool = False
+
+    def check(self, value: object) -> tuple[Decimal, ...]:
+        """Return the values as decimals."""
+        value = _unwrap(value)
+        what = f"a list of {self.count} numbers {self.each.allowed}"
+        if not isinstance(value, list | tuple):
+            raise refuse(f"must be {what}")
+        if len(value) != self.count:
+            raise refuse(f"must be {what}, and has {len(value)}")
+        numbers = []
+        for ordinal, item in zip(_ORDINALS, value, strict=False):
+            try:
+                numbers.append(self.each.check(item))
+            except PydanticCustomError as error:
+                raise refuse(f"the {ordinal} number {error.message()}") from None
+        if self.ordered and sorted(numbers) != numbers:
+            raise refuse("the limits are reversed: the lowest comes first, then the highest")
+        return tuple(numbers)
+
+    def describe(self) -> dict[str, Any]:
+        """Return the JSON schema."""
+        size = {"minItems": self.count, "maxItems": self.count}
+        return {"type": "array", "items": self.each.describe(), **size}
+
+
+@dataclass(frozen=True)
+class Text(_Kind):
+    """A string that is not empty, unless `empty` allows it."""
+
+    empty: bool = False
+
+    def check(self, value: object) -> str:
+        """Return the string."""
+        if not isinstance(value, str):
+            raise refuse('must be text in quotes, such as "front left"')
+        if len(value) > _LONGEST_TEXT:
+            raise refuse(f"must be no longer than {_LONGEST_TEXT} characters, and has {len(value)}")
+        if not value and not self.empty:
+            raise refuse("must not be empty")
+        if not value.isascii() and any(0xD800 <= ord(character) <= 0xDFFF for character in value):
+            raise refuse("must be text that can be written to a file; it holds half of a character")
+        return value
+
+    def describe(self) -> dict[str, Any]:
+        """Return the JSON schema."""
+        return {"type": "string", "minLength": int(not self.empty), "maxLength": _LONGEST_TEXT}
+
+
+@dataclass(frozen=True)
+class Choice(_Kind):
+    """One of the strings `options`."""
+
+    options: tuple[str, ...]
+
+    def check(self, value: object) -> str:
+        """Return the string."""
+        if isinstance(value, str) and value in self.options:
+            return value
+        raise refuse(f"must be one of {', '.join(self.options)}{_hint(value, self.options)}")
+
+    def describe(self) -> dict[str, Any]:
+        """Return the JSON schema."""
+        return {"type": "string", "enum": list(self.options)}
+
+
+@dataclass(frozen=True)
+class ServoName(_Kind):
+    """The name of a servo of the catalogue, in capitals or not."""
+
+    def check(self, value: object) -> str:
+        """Return the name."""
+        name, known = str(value), list_servos()
+        if name.lower() in {each.lower() for each in known}:
+            return name
+        raise refuse(f"the catalogue has no such servo{_hint(name, known)} It has {', '.join(known)}")
+
+    def describe(self) -> dict[str, Any]:
+        """Return the JSON schema."""
+        return {"type": "string", "examples": list(list_servos())}
+
+
+def _hint(value: object, options: tuple[str, ...]) -> str:
+    nearest = nearest_name(value[:_LONGEST_TEXT], options) if isinstance(value, str) else None
+    return f"; did you mean {nearest!r}?" if nearest else ""
+
+
+def _unwrap(value: object) -> object:
+    """Return NumPy's numbers and arrays as Python's: a document made in Python may hold them."""
+    return value.tolist() if isinstance(value, np.ndarray | np.generic) else value
+
+
+def _decimal(value: object) -> Decimal | None:
+    """Return a number as a decimal; None for what is no number, bools included."""
+    if isinstance(value, bool):
+        return None
+    if isinstance(value, int):
+        # An integer of a million digits, as 0x... may be, would take minutes to turn into a decimal.
+        return Decimal(value) if value.bit_length() <= 64 else Decimal(10**20).copy_sign(-1 if value < 0 else 1)
+    if isinstance(value, float):
+        return to_decimal(value) if math.isfinite(value) else Decimal("NaN")
+    return value if isinstance(value, Decimal) else None
+
+
+def _plain(value: float) -> float:
+    return int(value) if value == int(value) else value

@@ -1,0 +1,172 @@
+"""Robot files: reading, writing, and the presets that come with Tarsus."""
+
+from __future__ import annotations
+
+import os
+import re
+from decimal import Decimal
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from tarsus.errors import RobotFileError, nearest_name
+from tarsus.robot.document import decimal_document, plain
+from tarsus.robot.robot import Robot
+from tarsus.robot.writer import toml_string, toml_text
+
+__all__ = [
+    "document_of",
+    "list_robots",
+    "load_robot",
+    "robot_from_document",
+    "robot_schema",
+    "save_robot",
+    "template_text",
+]
+
+_HERE = Path(__file__).parent
+_LARGEST = 2**20
+
+
+def list_robots() -> tuple[str, ...]:
+    """Return the names of the robots that come with Tarsus."""
+    return tuple(sorted(path.stem for path in (_HERE / "presets").glob("*.toml")))
+
+
+def load_robot(name_or_path: str | os.PathLike[str]) -> Robot:
+    """Load a robot.
+
+    Parameters
+    ----------
+    name_or_path : str or path
+        One of `list_robots`, or the path of a robot file.
+
+    Raises
+    ------
+    RobotFileError
+        If there is no such robot, or its file can't be read, or something in it is wrong; each line of the message
+        names a key, its value and what is allowed.
+    """
+    if name_or_path in list_robots():
+        return _load_preset(str(name_or_path))
+    path = Path(name_or_path)
+    return robot_from_document(_parse(_read(path), where=str(path)), where=str(path))
+
+
+@cache
+def _load_preset(name: str) -> Robot:
+    path = _HERE / "presets" / f"{name}.toml"
+    return robot_from_document(_parse(_read(path), where=name), where=name)
+
+
+def robot_from_document(document: dict[str, Any], *, where: str) -> Robot:
+    """Build a robot from the keys of a robot file (see `Robot.from_dict`)."""
+    from pydantic import ValidationError
+
+    from tarsus.robot.build import build_robot
+    from tarsus.robot.problems import problems_of
+    from tarsus.robot.schema import RobotFile
+
+    try:
+        file = RobotFile.model_validate(document)
+    except ValidationError as error:
+        raise RobotFileError(where, problems_of(error)) from None
+    return build_robot(file, where=where)
+
+
+def document_of(robot: Robot) -> dict[str, Any]:
+    """Return the keys of a robot's file, in mm, degrees and kg (see `Robot.to_dict`)."""
+    document: dict[str, Any] = plain(decimal_document(robot))
+    return document
+
+
+def save_robot(robot: Robot, path: str | os.PathLike[str]) -> None:
+    """Write a robot's file (see `Robot.save`)."""
+    document = decimal_document(robot)
+    # What can't be loaded is not written: a robot made in Python may have a joint or a name that no file may have.
+    robot_from_document(document, where=f"robot {robot.name!r} as a file")
+    try:
+        Path(path).write_bytes(toml_text(document).encode())
+    except (OSError, ValueError) as error:
+        raise RobotFileError(str(path), [f"can't be written: {_reason(error)}"]) from None
+
+
+def robot_schema() -> dict[str, Any]:
+    """Return the JSON schema of a robot file, for editors that complete and check TOML."""
+    from tarsus.robot.schema import robot_schema
+
+    return robot_schema()
+
+
+def template_text(name: str) -> str:
+    """Return a commented robot file to start from: a plain symmetric hexapod.
+
+    Parameters
+    ----------
+    name : str
+        What the robot is to be called.
+    """
+    text = (_HERE / "template.toml").read_text(encoding="utf-8")
+    return text.replace('"my hexapod"', toml_string(name), 1)
+
+
+def _read(path: Path) -> str:
+    where = str(path)
+    if path.is_dir():
+        raise RobotFileError(where, ["this is a folder; a robot file is a TOML file"])
+    try:
+        with path.open("rb") as file:
+            content = file.read(_LARGEST + 1)
+    except FileNotFoundError:
+        raise RobotFileError(where, [_no_such_robot(where)]) from None
+    except (OSError, ValueError) as error:
+        raise RobotFileError(where, [f"can't be read: {_reason(error)}"]) from None
+    if len(content) > _LARGEST:
+        raise RobotFileError(where, ["larger than 1 MiB; a robot file is a few kilobytes of text"])
+    try:
+        # Windows editors put a mark before UTF-8 text.
+        text = content.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise RobotFileError(where, [f"byte {error.start} is not UTF-8: this is no text file"]) from None
+    if not text.strip():
+        raise RobotFileError(where, ["the file is empty; a robot file needs at least name, [leg] and [[legs]]"])
+    return text
+
+
+def _no_such_robot(name: str) -> str:
+    known = list_robots()
+    nearest = nearest_name(name.removesuffix(".toml"), known)
+    hint = f" Did you mean {nearest!r}?" if nearest else ""
+    return f"no such file, and no robot of that name.{hint} Robots there are: {', '.join(known)}"
+
+
+def _reason(error: OSError | ValueError) -> str:
+    return (error.strerror or "it is no file") if isinstance(error, OSError) else "this is no path"
+
+
+def _parse(text: str, *, where: str) -> dict[str, Any]:
+    import tomllib
+
+    try:
+        return tomllib.loads(text, parse_float=Decimal)
+    except tomllib.TOMLDecodeError as error:
+        problem = _not_toml(str(error), text)
+    except RecursionError:
+        problem = "lists or tables are nested too deeply; a robot file needs three levels"
+    except (ValueError, ArithmeticError):
+        problem = "a number has more digits, or a larger exponent, than any number of a robot"
+    raise RobotFileError(where, [problem])
+
+
+def _not_toml(message: str, text: str) -> str:
+    """Word a finding of the TOML parser, with the line it speaks of."""
+    reason, _, place = message.rpartition(" (at ")
+    reason = reason[:1].lower() + reason[1:]
+    found = re.fullmatch(r"line (\d+), column (\d+)\)", place)
+    lines = text.splitlines() or [""]
+    if found is None:
+        return f"line {len(lines)}, at the end: this is not TOML: {reason}"
+    number, column = int(found[1]), int(found[2])
+    line = text.split("\n")[number - 1].strip()
+    shown = line if len(line) <= 60 else line[:57] + "..."
+    return f"line {number}, column {column}: this is not TOML: {reason}; in: {shown}"
