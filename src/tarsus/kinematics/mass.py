@@ -1,0 +1,106 @@
+"""Where the robot's centre of mass is: body and links together."""
+
+from __future__ import annotations
+
+from tarsus.arrays import (
+    Array,
+    Namespace,
+    as_array,
+    as_floats,
+    broadcast_shapes,
+    namespace,
+    require_shape,
+    stack_last,
+)
+from tarsus.kinematics.leg import forward_kinematics
+from tarsus.robot.robot import Robot
+
+__all__ = ["centre_of_mass", "total_mass"]
+
+
+def total_mass(robot: Robot) -> Array:
+    """Return what the robot weighs: its body and all its links.
+
+    Parameters
+    ----------
+    robot : Robot
+        The robot, or a batch of designs.
+
+    Returns
+    -------
+    array, shape (...)
+        Mass [kg].
+
+    Raises
+    ------
+    MissingDataError
+        If the mass of the body or of a link is unknown.
+    """
+    robot.require_masses()
+    xp = namespace(robot.body_mass, robot.link_mass)
+    links = xp.sum(as_array(xp, robot.link_mass), axis=(-2, -1))
+    return xp.asarray(as_array(xp, robot.body_mass) + links)
+
+
+def centre_of_mass(robot: Robot, angles: Array, *, points: Array | None = None) -> Array:
+    """Return the centre of mass of body and links.
+
+    Each link's mass acts at the distance ``link_com`` from its inner joint, on the straight line to the next
+    point of the leg; where coxa axis and femur axis coincide, the coxa link's acts there.
+
+    Where the robot's file gives no masses, the links count as massless and the result is the body's own centre:
+    an assumption that whoever shows the result has to state (``robot.has_masses`` tells).
+
+    Parameters
+    ----------
+    robot : Robot
+        The robot, or a batch of designs.
+    angles : array, shape (..., legs, 3)
+        Joint angles [rad].
+    points : array, shape (..., legs, 4, 3), optional
+        The leg points of `forward_kinematics`, where they are known already; `angles` is then not looked at.
+
+    Returns
+    -------
+    array, shape (..., 3)
+        Centre of mass in B [m].
+
+    Raises
+    ------
+    InputError
+        If the angles have the wrong shape, or are NaN or infinite.
+
+    Notes
+    -----
+    The mean of the positions weighted by the masses. On a straight link, a mass at the share s of its length
+    acts as (1 - s) of it at the inner and s of it at the outer end, so the whole is one weighted sum of points.
+    """
+    points = forward_kinematics(robot, angles) if points is None else points
+    own = (robot.body_com, robot.body_mass, robot.link_mass) if robot.has_masses else (robot.body_com,)
+    xp = namespace(points, *own)
+    points = as_floats(xp, points, name="points")
+    require_shape("points", points, (robot.legs, 4, 3))
+    body_com = as_array(xp, robot.body_com)
+    if not robot.has_masses:
+        shape = broadcast_shapes("robot and angles", points.shape[:-3], body_com.shape[:-1])
+        return body_com + xp.zeros((*shape, 3), dtype=points.dtype)
+    masses = _point_masses(xp, robot)
+    weights = xp.reshape(masses, (*masses.shape[:-2], 1, 4 * robot.legs))
+    moment = xp.matmul(weights, xp.reshape(points, (*points.shape[:-3], 4 * robot.legs, 3)))[..., 0, :]
+    moment = moment + as_array(xp, robot.body_mass)[..., None] * body_com
+    return moment / as_array(xp, total_mass(robot))[..., None]
+
+
+def _point_masses(xp: Namespace, robot: Robot) -> Array:
+    """Share the links' masses out to the leg points ``(..., legs, 4)`` [kg]."""
+    legs = robot.geometry.to(xp)
+    coxa2 = legs.coxa * legs.coxa + legs.side2 + legs.up * legs.up
+    # A root has no derivative at zero: it is taken of 1 there, and the share set to 0 afterwards.
+    has_coxa = coxa2 > 0
+    coxa = xp.where(has_coxa, xp.sqrt(xp.where(has_coxa, coxa2, xp.ones_like(coxa2))), xp.asarray(xp.inf))
+    share = as_array(xp, robot.link_com) / stack_last(xp, (coxa, legs.femur, legs.tibia))
+    mass = as_array(xp, robot.link_mass)
+    outer = mass * share
+    inner = mass - outer
+    none = xp.zeros_like(outer[..., :1])
+    return xp.concat((inner, none), axis=-1) + xp.concat((none, outer), axis=-1)

@@ -1,0 +1,171 @@
+"""The convex polygon of a few points in the plane: how far inside it a point lies, and its corners."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tarsus.arrays import (
+    Array,
+    Index,
+    Namespace,
+    as_array,
+    as_floats,
+    batch_blocks,
+    broadcast_shapes,
+    namespace,
+    require_finite,
+    require_shape,
+)
+from tarsus.errors import InputError
+from tarsus.kinematics.pairs import Pairs, columns_of, root
+
+__all__ = ["as_mask", "hull_margin", "support_polygon"]
+
+_WORK = 1 << 17  # numbers in the largest array of a block: as many as a core's second-level cache holds
+
+
+def hull_margin(points: Array, mask: Array, point: Array) -> Array:
+    """Return how far inside the convex hull of some points another point lies.
+
+    Parameters
+    ----------
+    points : array, shape (..., n, 2)
+        The points in the plane [m].
+    mask : array of bool, shape (..., n)
+        Which of them count.
+    point : array, shape (..., 2)
+        The point asked about [m].
+
+    Returns
+    -------
+    array, shape (...)
+        Distance to the nearest edge of the hull where the point is inside; minus the distance to the hull where
+        it is outside [m]. One point, two, or several on a line have no inside: the margin is zero or negative.
+        Where no point counts, minus infinity.
+
+    Raises
+    ------
+    InputError
+        If a shape is wrong, a value is NaN or infinite, or the mask is not of booleans.
+
+    Notes
+    -----
+    Inside, ``min_u max_i u . (p_i - p)`` over the directions u across the pairs; outside, the least distance to
+    the segments of all pairs, which lie in the hull and have its edges among them.
+    """
+    xp = namespace(points, mask, point)
+    points = as_floats(xp, points, name="points")
+    point = as_floats(xp, point, name="point")
+    mask = as_mask(xp, mask, name="mask")
+    if points.ndim < 2:
+        raise InputError(f"points has shape {tuple(points.shape)}; expected (..., n, 2)")
+    n = points.shape[-2]
+    require_shape("points", points, (n, 2))
+    require_shape("mask", mask, (n,))
+    require_shape("point", point, (2,))
+    require_finite("points", points)
+    require_finite("point", point)
+    shapes = (points.shape[:-2], mask.shape[:-1], point.shape[:-1])
+    batch = broadcast_shapes("points, mask and point", *shapes)
+    if n == 0:
+        return xp.full(batch, -xp.inf, dtype=points.dtype)
+    if xp is not np:
+        return xp.reshape(_margin(xp, points, mask, point, batch, ()), batch)
+    margin = np.empty(batch)
+    for index in batch_blocks(batch, max(1, _WORK // n**3)):
+        margin[index] = _margin(np, points, mask, point, batch, index).reshape(margin[index].shape)
+    return margin[()]
+
+
+def as_mask(xp: Namespace, mask: Array, *, name: str) -> Array:
+    """Return `mask` as an array of booleans.
+
+    Parameters
+    ----------
+    xp : namespace
+        The array library.
+    mask : array of bool
+        Any shape.
+    name : str
+        What it is, for the message.
+
+    Raises
+    ------
+    InputError
+        If it holds anything but booleans: a 2 or a NaN would have no meaning.
+    """
+    mask = as_array(xp, mask)
+    if not xp.isdtype(mask.dtype, "bool"):
+        raise InputError(f"{name} holds {mask.dtype} values; expected booleans, True where a point counts")
+    return mask
+
+
+def _margin(xp: Namespace, points: Array, mask: Array, point: Array, batch: tuple[int, ...], index: Index) -> Array:
+    x, y = _split(columns_of(xp, points, batch, index, tail=2))
+    origin_x, origin_y = _split(columns_of(xp, point, batch, index, tail=1))
+    counts = columns_of(xp, mask, batch, index, tail=1)
+    x, y = _gathered(xp, x - origin_x, counts), _gathered(xp, y - origin_y, counts)
+    pairs = Pairs.of(xp, x, y)
+    depth, _ = pairs.depth_and_width(xp)
+    near_x, near_y, _ = pairs.nearest(xp)
+    gap = root(xp, xp.min(near_x * near_x + near_y * near_y, axis=0))
+    return xp.where(xp.any(counts, axis=0), xp.where(depth > 0, depth, -gap), -xp.inf)
+
+
+def _split(coordinates: Array) -> tuple[Array, Array]:
+    return coordinates[0, ...], coordinates[1, ...]
+
+
+def _gathered(xp: Namespace, values: Array, counts: Array) -> Array:
+    """Put each point that doesn't count where one is that does: the hull stays, and needs no mask any more."""
+    first = xp.argmax(xp.astype(counts, xp.int8), axis=0)[None, ...]
+    return xp.where(counts, values, xp.take_along_axis(values, first, axis=0))
+
+
+def support_polygon(feet_xy: Array, contacts: Array) -> Array:
+    """Return the corners of the convex hull of the feet in contact, for a picture.
+
+    Parameters
+    ----------
+    feet_xy : array, shape (n, 2) or (n, 3)
+        Where the feet are [m]; a height is left out of account.
+    contacts : array of bool, shape (n,)
+        Which of them are on the ground.
+
+    Returns
+    -------
+    array, shape (corners, 2)
+        The corners counter-clockwise from the one with the least x (and of those with the least y) [m], none
+        of them between two others on a line; two, one or none where the feet span no area.
+
+    Raises
+    ------
+    InputError
+        If a shape is wrong, a value is NaN or infinite, or `contacts` is not of booleans.
+
+    Notes
+    -----
+    Andrew's monotone chain (A. M. Andrew, Information Processing Letters 9, 1979).
+    """
+    feet = as_floats(np, feet_xy, name="feet_xy")
+    down = as_mask(np, contacts, name="contacts")
+    if feet.ndim != 2 or feet.shape[1] not in (2, 3):
+        raise InputError(f"feet_xy has shape {feet.shape}; expected (n, 2) or (n, 3): one configuration, no batch")
+    require_shape("contacts", down, feet.shape[:1])
+    require_finite("feet_xy", feet)
+    corners = sorted({(float(x), float(y)) for x, y in feet[down, :2]})
+    if len(corners) > 2:
+        corners = _half_hull(corners)[:-1] + _half_hull(corners[::-1])[:-1]
+    return np.asarray(corners, dtype=np.float64).reshape(-1, 2)
+
+
+def _half_hull(ordered: list[tuple[float, float]]) -> list[tuple[float, float]]:
+    chain: list[tuple[float, float]] = []
+    for x, y in ordered:
+        while len(chain) > 1:
+            (ax, ay), (bx, by) = chain[-2:]
+            if (bx - ax) * (y - ay) - (by - ay) * (x - ax) > 0:
+                break
+            chain.pop()
+        chain.append((x, y))
+    return chain

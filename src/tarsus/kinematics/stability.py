@@ -1,0 +1,58 @@
+"""How safely the robot stands: the static stability margin."""
+
+from __future__ import annotations
+
+from tarsus.arrays import Array, as_array, as_floats, broadcast_shapes, namespace, require_shape
+from tarsus.kinematics.leg import forward_kinematics
+from tarsus.kinematics.mass import centre_of_mass
+from tarsus.kinematics.polygon import as_mask, hull_margin
+from tarsus.kinematics.pose import Pose
+from tarsus.robot.robot import Robot
+
+__all__ = ["stability_margin"]
+
+
+def stability_margin(robot: Robot, angles: Array, body: Pose, contacts: Array, *, points: Array | None = None) -> Array:
+    """Return the static stability margin on flat ground.
+
+    Parameters
+    ----------
+    robot : Robot
+        The robot, or a batch of designs; where its file gives no masses, see `centre_of_mass`.
+    angles : array, shape (..., legs, 3)
+        Joint angles [rad].
+    body : Pose
+        The pose of B in G, one or a batch.
+    contacts : array of bool, shape (..., legs)
+        Which feet bear load.
+    points : array, shape (..., legs, 4, 3), optional
+        The leg points of `forward_kinematics`, where they are known already; `angles` is then not looked at.
+
+    Returns
+    -------
+    array, shape (...)
+        Distance on the ground from the projected centre of mass to the nearest edge of the polygon of the feet
+        in contact [m]; negative, the distance to the polygon, where the centre is outside it; minus infinity
+        where no foot is in contact.
+
+    Raises
+    ------
+    InputError
+        If a shape is wrong, an angle is NaN or infinite, or `contacts` is not of booleans.
+
+    Notes
+    -----
+    R. B. McGhee and A. A. Frank, "On the stability properties of quadruped creeping gaits", Mathematical
+    Biosciences 3 (1968). Where the body is over the ground cancels; only how it is turned counts.
+    """
+    points = forward_kinematics(robot, angles) if points is None else points
+    com = centre_of_mass(robot, angles, points=points)
+    xp = namespace(com, points, contacts, body.rotation, body.position)
+    contacts = as_mask(xp, contacts, name="contacts")
+    require_shape("contacts", contacts, (robot.legs,))
+    points = as_floats(xp, points, name="points")
+    level = xp.matrix_transpose(as_array(xp, body.rotation)[..., :2, :])
+    feet = xp.matmul(points[..., 3, :] - as_array(xp, com)[..., None, :], level)
+    batch = broadcast_shapes("angles, body and contacts", feet.shape[:-2], body.batch_shape, contacts.shape[:-1])
+    feet = xp.broadcast_to(feet, (*batch, robot.legs, 2))
+    return hull_margin(feet, contacts, xp.zeros(2, dtype=feet.dtype))
