@@ -100,11 +100,12 @@ def _in_limits(xp: Namespace, g: LegGeometry, r: Array, z: Array) -> Array:
     return within
 
 
-def default_stance(robot: Robot, clearance: Array | None = None) -> Array:
+def default_stance(robot: Robot, clearance: Array | None = None, *, lift: Array = 0.0) -> Array:
     """Return where the feet stand at rest, in the body frame.
 
     Straight out from each coxa axis (or as near to that as its limits allow), in the middle of the reachable band:
-    source 001's ``x_min + (x_max - x_min) / 2``.
+    source 001's ``x_min + (x_max - x_min) / 2``. For a walk, of what is reachable on the ground and lifted alike: a
+    leg that stands where it can't be lifted can't step.
 
     Parameters
     ----------
@@ -112,6 +113,8 @@ def default_stance(robot: Robot, clearance: Array | None = None) -> Array:
         The robot, or a batch of designs.
     clearance : array, shape (...), optional
         Height of the body's origin over the ground [m]; `default_clearance` where left out.
+    lift : array, shape (...)
+        How far above the ground a foot must be able to rise [m].
 
     Returns
     -------
@@ -132,10 +135,9 @@ def default_stance(robot: Robot, clearance: Array | None = None) -> Array:
     z = -as_floats(xp, height, name="clearance")
     if not is_traced(z) and not bool(xp.all(xp.isfinite(z))):
         raise InputError(f"clearance is {height} m; it must be a finite number")
-    nearest, farthest = reachable_band(robot, z)
-    middle = (nearest + farthest) / 2
+    middle = _middle(xp, robot, z, as_floats(xp, lift, name="lift"))
     if not is_traced(middle) and bool(xp.any(xp.isnan(middle))):
-        raise UnreachableError(_why_no_stance(robot, height, np.asarray(middle)))
+        raise UnreachableError(_why_no_stance(robot, height, lift, np.asarray(middle)))
     zero = xp.zeros_like(middle)
     coxa = xp.minimum(xp.maximum(zero, g.coxa_lower), g.coxa_upper)
     out_x, out_y = middle * xp.cos(coxa) - g.side * xp.sin(coxa), middle * xp.sin(coxa) + g.side * xp.cos(coxa)
@@ -144,21 +146,31 @@ def default_stance(robot: Robot, clearance: Array | None = None) -> Array:
     return stack_last(xp, (x, y, z[..., None] + zero))
 
 
-def _why_no_stance(robot: Robot, clearance: Array, middle: Array) -> str:
+def _middle(xp: Namespace, robot: Robot, height: Array, lift: Array) -> Array:
+    """Return the middle of what each foot reaches on the ground and lifted; NaN where there is nothing."""
+    nearest, farthest = reachable_band(robot, height)
+    nearest_lifted, farthest_lifted = reachable_band(robot, height + lift)
+    nearest, farthest = xp.maximum(nearest, nearest_lifted), xp.minimum(farthest, farthest_lifted)
+    return xp.where(nearest <= farthest, (nearest + farthest) / 2, xp.full_like(nearest, xp.nan))
+
+
+def _why_no_stance(robot: Robot, clearance: Array, lift: Array, middle: Array) -> str:
     """Say which leg has no foothold, and at which clearances all legs have one."""
     leg = robot.leg_names[int(np.argwhere(np.isnan(middle))[0][-1])]
     lowest = float(np.min(np.asarray(clearance)))
-    text = f"clearance {lowest * 1000:.1f} mm: leg {leg} reaches the ground nowhere within its joint limits"
+    rise = float(np.max(np.asarray(lift)))
+    lifted = f" and can be lifted {rise * 1000:.1f} mm" if rise else ""
+    text = f"clearance {lowest * 1000:.1f} mm: leg {leg} nowhere reaches the ground{lifted} within its joint limits"
     if robot.batch_shape:
         return text
     g = robot.geometry
     reach = float((g.femur + g.tibia).max() + np.abs(g.mount_z + g.up).max())
     heights = np.linspace(-reach, reach, 4001)
-    works = heights[~np.isnan(reachable_band(robot, -heights)[0]).any(-1)]
+    works = heights[~np.isnan(_middle(np, robot, -heights, np.asarray(rise))).any(-1)]
     if not len(works):
-        return f"{text}, and there is no clearance at which all legs reach it"
+        return f"{text}, and there is no clearance at which all legs do"
     nearest = float(works[np.argmin(np.abs(works - lowest))])
     return (
-        f"{text}; all legs reach it at clearances between {works.min() * 1000:.0f} and {works.max() * 1000:.0f} mm, "
+        f"{text}; all legs do at clearances between {works.min() * 1000:.0f} and {works.max() * 1000:.0f} mm, "
         f"nearest to it at {nearest * 1000:.1f} mm"
     )

@@ -19,7 +19,9 @@ __all__ = [
     "list_robots",
     "load_robot",
     "robot_from_document",
+    "robot_from_text",
     "robot_schema",
+    "robot_text",
     "save_robot",
     "template_text",
 ]
@@ -50,13 +52,13 @@ def load_robot(name_or_path: str | os.PathLike[str]) -> Robot:
     if name_or_path in list_robots():
         return _load_preset(str(name_or_path))
     path = Path(name_or_path)
-    return robot_from_document(_parse(_read(path), where=str(path)), where=str(path))
+    return robot_from_text(_read(path), where=str(path))
 
 
 @cache
 def _load_preset(name: str) -> Robot:
     path = _HERE / "presets" / f"{name}.toml"
-    return robot_from_document(_parse(_read(path), where=name), where=name)
+    return robot_from_text(_read(path), where=name)
 
 
 def robot_from_document(document: dict[str, Any], *, where: str) -> Robot:
@@ -80,13 +82,48 @@ def document_of(robot: Robot) -> dict[str, Any]:
     return document
 
 
-def save_robot(robot: Robot, path: str | os.PathLike[str]) -> None:
-    """Write a robot's file (see `Robot.save`)."""
+def robot_text(robot: Robot) -> str:
+    """Return the text of a robot's file; `robot_from_text` gives the same robot back, to the bit.
+
+    Parameters
+    ----------
+    robot : Robot
+        A single robot.
+
+    Raises
+    ------
+    RobotFileError
+        If no file can hold the robot: it is a batch of designs, or has a value that no file may have.
+    """
     document = decimal_document(robot)
     # What can't be loaded is not written: a robot made in Python may have a joint or a name that no file may have.
     robot_from_document(document, where=f"robot {robot.name!r} as a file")
+    return toml_text(document)
+
+
+def robot_from_text(text: str, *, where: str) -> Robot:
+    """Return the robot that a robot file's text describes.
+
+    Parameters
+    ----------
+    text : str
+        The file's text.
+    where : str
+        What to call it in messages.
+
+    Raises
+    ------
+    RobotFileError
+        If something in it is wrong.
+    """
+    return robot_from_document(_parse(text, where=where), where=where)
+
+
+def save_robot(robot: Robot, path: str | os.PathLike[str]) -> None:
+    """Write a robot's file (see `Robot.save`)."""
+    text = robot_text(robot)
     try:
-        Path(path).write_bytes(toml_text(document).encode())
+        Path(path).write_bytes(text.encode())
     except (OSError, ValueError) as error:
         raise RobotFileError(str(path), [f"can't be written: {_reason(error)}"]) from None
 

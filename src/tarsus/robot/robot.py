@@ -154,8 +154,10 @@ class Robot:
             value = getattr(self, name)
             self._lock(name, np.zeros(shape) if value is None else value)
         if self.link_com is None:
-            xp = namespace(self.coxa, self.femur, self.tibia)
-            lengths = xp.broadcast_arrays(self.coxa, self.femur, self.tibia)
+            lengths = (self.coxa, self.femur, self.tibia)
+            xp = namespace(*lengths)
+            broadcast_shapes(f"robot {self.name!r}", *(tuple(length.shape) for length in lengths))
+            lengths = xp.broadcast_arrays(*lengths)
             object.__setattr__(self, "link_com", xp.stack(lengths, axis=-1) / 2)
         for name in ("link_com", *_OPTIONAL):
             self._lock(name, getattr(self, name))
@@ -186,7 +188,7 @@ class Robot:
     def _check_range(self, name: str, value: np.ndarray[Any, Any]) -> None:
         if not np.isfinite(value).all():
             raise InputError(f"{self.name}: {name} holds a value that is not a finite number")
-        lowest = float(value.min()) if value.size else 0.0
+        lowest = float(value.min()) if value.size else np.inf
         if name in _POSITIVE and lowest <= 0:
             raise InputError(f"{self.name}: {name} is {lowest:g}; it must be greater than 0")
         if name in _NOT_NEGATIVE and lowest < 0:
@@ -213,6 +215,13 @@ class Robot:
     def legs(self) -> int:
         """Number of legs."""
         return len(self.leg_names)
+
+    @cached_property
+    def leg_codes(self) -> tuple[str, ...]:
+        """Short names of the legs: ``"front left"`` is ``LF``; the names themselves where that is not unique."""
+        words = [name.split() for name in self.leg_names]
+        codes = tuple((w[1][0] + w[0][0]).upper() if len(w) == 2 else "" for w in words)
+        return codes if all(codes) and len(set(codes)) == self.legs else self.leg_names
 
     @cached_property
     def batch_shape(self) -> tuple[int, ...]:

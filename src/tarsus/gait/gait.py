@@ -1,0 +1,159 @@
+"""In which order the legs step: duty factor and offsets, in the words of the literature."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Self
+
+from tarsus.arrays import Array, namespace
+from tarsus.errors import InputError, UnknownNameError
+
+__all__ = ["GAITS", "Gait"]
+
+
+def _tripod(legs: int) -> tuple[float, tuple[float, ...]]:
+    """Even legs against odd legs."""
+    return 1 / 2, tuple(0.5 * (leg % 2) for leg in range(legs))
+
+
+def _tetrapod(_legs: int) -> tuple[float, tuple[float, ...]]:
+    """Three diagonal pairs in turn, from back to front on each side."""
+    return 2 / 3, (2 / 3, 1 / 3, 0.0, 1 / 3, 2 / 3, 0.0)
+
+
+def _ripple(_legs: int) -> tuple[float, tuple[float, ...]]:
+    """Back to front on each side, the sides half a cycle apart: two legs in the air, overlapping."""
+    return 2 / 3, (4 / 6, 2 / 6, 0.0, 3 / 6, 5 / 6, 1 / 6)
+
+
+def _wave(legs: int) -> tuple[float, tuple[float, ...]]:
+    """One leg in the air: the left side from back to front, then the right side."""
+    left = legs // 2
+    order = [*range(left - 1, -1, -1), *range(left, legs)]
+    return (legs - 1) / legs, tuple(order.index(leg) / legs for leg in range(legs))
+
+
+_NAMED: dict[str, Callable[[int], tuple[float, tuple[float, ...]]]] = {
+    "tripod": _tripod,
+    "tetrapod": _tetrapod,
+    "ripple": _ripple,
+    "wave": _wave,
+}
+_ALIASES = {"amble": "tetrapod"}
+
+# What counts as the same moment, in cycles.
+_MOMENT = 1e-9
+
+GAITS = tuple(_NAMED)
+"""Names of the gaits that `Gait.named` knows."""
+
+
+@dataclass(frozen=True)
+class Gait:
+    """A periodic order of steps.
+
+    Attributes
+    ----------
+    duty : float
+        Duty factor: the share of the cycle that a foot is on the ground.
+    offsets : tuple of float
+        For each leg, the share of the cycle at which its foot touches down, in [0, 1).
+    name : str
+        What it is called.
+    """
+
+    duty: float
+    offsets: tuple[float, ...]
+    name: str = "custom"
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "offsets", tuple(float(offset) for offset in self.offsets))
+        if not 0 < self.duty < 1:
+            raise InputError(f"gait {self.name!r}: duty is {self.duty}; it must be between 0 and 1, both excluded")
+        for leg, offset in enumerate(self.offsets):
+            if not 0 <= offset < 1:
+                raise InputError(f"gait {self.name!r}: offsets[{leg}] is {offset}; it must be in [0, 1)")
+
+    @classmethod
+    def named(cls, name: str, *, legs: int = 6) -> Self:
+        """Return a gait of the literature.
+
+        Parameters
+        ----------
+        name : str
+            ``"tripod"`` (duty 1/2), ``"tetrapod"`` (2/3, also called amble), ``"ripple"`` (2/3) or ``"wave"``
+            ((legs - 1)/legs: 5/6 for six). Source 004's "ripple", with five feet down, is the wave.
+        legs : int
+            Number of legs: tetrapod and ripple are for six, tripod for an even number of at least six.
+
+        Raises
+        ------
+        UnknownNameError
+            If there is no such gait.
+        InputError
+            If the gait is not for that many legs.
+        """
+        key = _ALIASES.get(name.lower(), name.lower())
+        if key not in _NAMED:
+            raise UnknownNameError.of("gait", name, (*_NAMED, *_ALIASES))
+        fits = {"tripod": legs >= 6 and legs % 2 == 0, "wave": legs >= 4}.get(key, legs == 6)
+        if not fits:
+            raise InputError(f"the {key} gait is not for {legs} legs; the wave gait is for any number from 4")
+        duty, offsets = _NAMED[key](legs)
+        return cls(duty=duty, offsets=offsets, name=key)
+
+    @property
+    def legs(self) -> int:
+        """Number of legs."""
+        return len(self.offsets)
+
+    @property
+    def fewest_feet_down(self) -> int:
+        """The least number of feet that are on the ground at any moment of the cycle."""
+        # The number changes only at touchdowns and lift-offs; a moment after each tells all there is.
+        events = [*self.offsets, *(offset + self.duty for offset in self.offsets)]
+        return min(sum((event + 1e-9 - offset) % 1.0 < self.duty for offset in self.offsets) for event in events)
+
+    def phase(self, clock: Array) -> tuple[Array, Array, Array]:
+        """Return which step each leg is in, how far, and whether its foot is down.
+
+        At the moment of a touchdown or a lift-off the foot counts as down: where one foot takes over from another,
+        rounding never leaves both in the air.
+
+        Parameters
+        ----------
+        clock : array, shape (...)
+            Time in cycles.
+
+        Returns
+        -------
+        step : array, shape (..., legs)
+            Number of the step, a whole number; it begins with the touchdown.
+        phase : array, shape (..., legs)
+            Share of the step's cycle that is over, in [0, 1).
+        stance : array of bool, shape (..., legs)
+            Whether the foot is on the ground: while the phase is below the duty factor.
+        """
+        xp = namespace(clock)
+        since = xp.asarray(clock)[..., None] - xp.asarray(self.offsets)
+        step = xp.floor(since + _MOMENT)
+        phase = since - step
+        phase = xp.where(phase < 0, xp.zeros_like(phase), phase)
+        return step, phase, phase <= self.duty + _MOMENT
+
+    def require_legs(self, legs: int) -> None:
+        """Refuse a robot with another number of legs.
+
+        Parameters
+        ----------
+        legs : int
+            The robot's number of legs.
+
+        Raises
+        ------
+        InputError
+            If the gait is for another number.
+        """
+        if self.legs != legs:
+            raise InputError(f"gait {self.name!r} is for {self.legs} legs, the robot has {legs}")

@@ -1,0 +1,221 @@
+"""A motion: the body, the feet and the joints over time, with a verdict."""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tarsus.gait.gait import Gait
+from tarsus.gait.stroke import feet_distance
+from tarsus.kinematics.pose import Pose
+from tarsus.kinematics.reach import IKSolution, Reach
+from tarsus.kinematics.stability import stability_margin
+from tarsus.robot.robot import JOINTS, Robot
+
+if TYPE_CHECKING:
+    import xarray
+
+__all__ = ["Motion"]
+
+Floats = np.ndarray[Any, np.dtype[np.float64]]
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Motion:
+    """A motion of a robot, sampled in time.
+
+    Attributes
+    ----------
+    robot : Robot
+        Whose motion it is.
+    gait : Gait
+        The order of its steps.
+    time : array, shape (n,)
+        Moments, from 0 [s].
+    body : Pose
+        Places of B in G, ``(n,)``.
+    feet : array, shape (n, legs, 3)
+        Feet in G [m].
+    contacts : array of bool, shape (n, legs)
+        Whether each foot is on the ground.
+    angles : array, shape (n, legs, 3)
+        Joint angles [rad].
+    reach : array of int8, shape (n, legs)
+        Codes of `Reach`.
+    cycle_time, stroke, speed : float
+        Duration of a cycle [s]; stroke of the foot that goes farthest [m]; its speed past the body while cruising
+        [m/s], on a straight walk the body's speed.
+    clearance, lift, foot_distance : float
+        Height of the body's origin, lift of the swinging feet, least distance between feet that was asked for [m].
+    assumed : tuple of str
+        What was not given and had to be assumed.
+    """
+
+    robot: Robot
+    gait: Gait
+    time: Floats
+    body: Pose
+    feet: Floats
+    contacts: np.ndarray[Any, np.dtype[np.bool_]]
+    angles: Floats
+    reach: np.ndarray[Any, np.dtype[np.int8]]
+    cycle_time: float
+    stroke: float
+    speed: float
+    clearance: float
+    lift: float
+    foot_distance: float
+    assumed: tuple[str, ...] = field(default=())
+
+    def __post_init__(self) -> None:
+        for name in ("time", "feet", "contacts", "angles", "reach"):
+            array = np.array(getattr(self, name))
+            array.setflags(write=False)
+            object.__setattr__(self, name, array)
+
+    @cached_property
+    def margin(self) -> Floats:
+        """Static stability margin at every moment ``(n,)`` [m]."""
+        return np.asarray(stability_margin(self.robot, self.angles, self.body, self.contacts))
+
+    @cached_property
+    def joint_speed(self) -> Floats:
+        """Speed of every joint at every moment ``(n, legs, 3)`` [rad/s], by central differences."""
+        speed: Floats = np.gradient(self.angles, self.time, axis=0)
+        return speed
+
+    @cached_property
+    def feet_apart(self) -> Floats:
+        """Distance between the two nearest feet at every moment ``(n,)`` [m]."""
+        return feet_distance(self.feet)[0]
+
+    @property
+    def duration(self) -> float:
+        """How long it takes [s]."""
+        return float(self.time[-1])
+
+    @property
+    def steps(self) -> int:
+        """How many times a foot is lifted."""
+        return int((self.contacts[:-1] & ~self.contacts[1:]).sum())
+
+    @cached_property
+    def speed_ratio(self) -> Floats:
+        """Largest speed of each joint over its servo's no-load speed ``(legs, 3)``; NaN where that is unknown."""
+        limits = [[math.nan if s is None else s.no_load_speed or math.nan for s in leg] for leg in self.robot.servos]
+        fastest: Floats = np.abs(self.joint_speed).max(0)
+        return fastest / np.array(limits)
+
+    @cached_property
+    def problems(self) -> tuple[str, ...]:
+        """What of it is not possible: one line for each kind, with the worst moment; empty where all of it is."""
+        return tuple(self._problems())
+
+    @property
+    def ok(self) -> bool:
+        """Whether all of it is possible: reach, balance, distance between the feet, joint speeds."""
+        return not self.problems
+
+    def _problems(self) -> Iterator[str]:
+        if (self.reach != Reach.OK).any():
+            yield self._why_unreachable()
+        worst = int(np.argmin(self.margin))
+        if self.margin[worst] < 0:
+            yield (
+                f"tips over: at {self.time[worst]:.2f} s the centre of mass is {-self.margin[worst] * 1000:.1f} mm "
+                "outside the feet that are down"
+            )
+        distance, pair = feet_distance(self.feet)
+        near = int(np.argmin(distance))
+        if distance[near] < self.foot_distance - 1e-9:
+            legs = " and ".join(self.robot.leg_codes[i] for i in pair[near])
+            yield (
+                f"feet too near: at {self.time[near]:.2f} s {legs} are {distance[near] * 1000:.1f} mm apart, "
+                f"at least {self.foot_distance * 1000:.1f} mm are asked for"
+            )
+        ratio = np.nan_to_num(self.speed_ratio, nan=0.0)
+        leg, joint = np.unravel_index(int(np.argmax(ratio)), ratio.shape)
+        servo = self.robot.servos[leg][joint]
+        if ratio[leg, joint] > 1 and servo is not None and servo.no_load_speed is not None:
+            needed = math.degrees(ratio[leg, joint] * servo.no_load_speed)
+            yield (
+                f"too fast: the {JOINTS[joint]} of {self.robot.leg_codes[leg]} would have to turn at "
+                f"{needed:.0f} deg/s, its servo {servo.name} does {math.degrees(servo.no_load_speed):.0f} "
+                f"without load; a cycle of {self.cycle_time * ratio[leg, joint]:.2f} s or longer works"
+            )
+
+    def _why_unreachable(self) -> str:
+        moment = int(np.argmax((self.reach != Reach.OK).any(-1)))
+        solution = IKSolution(
+            robot=self.robot,
+            feet=self.feet[moment],
+            body=self.body[moment],
+            knee="up",
+            angles=self.angles[moment],
+            reach=self.reach[moment],
+        )
+        return f"out of reach: at {self.time[moment]:.2f} s {solution.explain().splitlines()[0]}"
+
+    def to_csv(self, path: str | os.PathLike[str]) -> None:
+        """Write a table: a row for each moment, angles in degrees, lengths in mm.
+
+        Parameters
+        ----------
+        path : path
+            Where to write it.
+
+        Raises
+        ------
+        InputError
+            If it can't be written.
+        """
+        from tarsus.gait.storage import write_csv
+
+        write_csv(self, path)
+
+    def to_dataset(self) -> xarray.Dataset:
+        """Return the motion as a labelled `xarray.Dataset` in SI units (needs the extra ``data``)."""
+        from tarsus.gait.storage import to_dataset
+
+        return to_dataset(self)
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write the motion, robot and all, to one compressed file (``.npz``).
+
+        Parameters
+        ----------
+        path : path
+            Where to write it.
+
+        Raises
+        ------
+        InputError
+            If it can't be written.
+        """
+        from tarsus.gait.storage import save_motion
+
+        save_motion(self, path)
+
+    @classmethod
+    def load(cls, path: str | os.PathLike[str]) -> Motion:
+        """Read a motion that `save` wrote.
+
+        Parameters
+        ----------
+        path : path
+            Where it is.
+
+        Raises
+        ------
+        InputError
+            If the file is not there, or is not a motion.
+        """
+        from tarsus.gait.storage import load_motion
+
+        return load_motion(path)

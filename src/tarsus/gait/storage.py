@@ -1,0 +1,147 @@
+"""Motions as files: a table for everybody, a labelled data set, and a file that gives the same motion back."""
+
+from __future__ import annotations
+
+import csv
+import json
+import os
+import zipfile
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tarsus.errors import InputError, TarsusError
+from tarsus.gait.gait import Gait
+from tarsus.gait.motion import Motion
+from tarsus.kinematics.pose import Pose
+from tarsus.kinematics.reach import Reach
+from tarsus.robot.file import robot_from_text, robot_text
+from tarsus.robot.robot import JOINTS
+
+if TYPE_CHECKING:
+    import xarray
+
+__all__ = ["load_motion", "save_motion", "to_dataset", "write_csv"]
+
+_ARRAYS = ("time", "feet", "contacts", "angles", "reach")
+_NUMBERS = ("cycle_time", "stroke", "speed", "clearance", "lift", "foot_distance")
+_FORMAT = "tarsus motion 1"
+
+
+def csv_columns(motion: Motion) -> dict[str, np.ndarray[Any, Any]]:
+    """Return the columns of a motion's table, in the units that their names state."""
+    x, y, z = (motion.body.position * 1000).T
+    roll, pitch, yaw = np.degrees(motion.body.rpy).T
+    table: dict[str, np.ndarray[Any, Any]] = {"time_s": motion.time}
+    for leg, name in enumerate(motion.robot.leg_codes):
+        for joint, joint_name in enumerate(JOINTS):
+            table[f"{name} {joint_name} deg"] = np.degrees(motion.angles[:, leg, joint])
+    table |= {"body x mm": x, "body y mm": y, "body z mm": z}
+    table |= {"body roll deg": roll, "body pitch deg": pitch, "body yaw deg": yaw}
+    for leg, name in enumerate(motion.robot.leg_codes):
+        for axis, letter in enumerate("xyz"):
+            table[f"{name} foot {letter} mm"] = motion.feet[:, leg, axis] * 1000
+        table[f"{name} down"] = motion.contacts[:, leg].astype(int)
+        table[f"{name} reach"] = np.array([Reach(int(code)).name for code in motion.reach[:, leg]])
+    table["margin mm"] = motion.margin * 1000
+    return {name.replace(" ", "_"): column for name, column in table.items()}
+
+
+def write_csv(motion: Motion, path: str | os.PathLike[str]) -> None:
+    """Write a motion's table (see `Motion.to_csv`)."""
+    table = csv_columns(motion)
+    columns = [_formatted(column) for column in table.values()]
+    try:
+        with open(path, "w", newline="", encoding="utf-8") as file:
+            writer = csv.writer(file)
+            writer.writerow(table)
+            writer.writerows(zip(*columns, strict=True))
+    except OSError as error:
+        raise InputError(f"{path} can't be written: {error.strerror}") from None
+
+
+def _formatted(column: np.ndarray[Any, Any]) -> list[str]:
+    """Write numbers to a micrometre or a microdegree: finer than any robot, and no noise behind it."""
+    if column.dtype.kind != "f":
+        return [str(value) for value in column.tolist()]
+    return [f"{value + 0.0:.6f}" for value in np.round(column, 6).tolist()]
+
+
+def to_dataset(motion: Motion) -> xarray.Dataset:
+    """Return a motion as a labelled data set (see `Motion.to_dataset`)."""
+    try:
+        import xarray
+    except ImportError:
+        raise InputError("Motion.to_dataset needs xarray: pip install 'tarsus[data]'") from None
+    per_leg = ("time", "leg")
+    return xarray.Dataset(
+        {
+            "angles": ((*per_leg, "joint"), motion.angles, {"units": "rad"}),
+            "feet": ((*per_leg, "axis"), motion.feet, {"units": "m", "frame": "ground"}),
+            "contacts": (per_leg, motion.contacts),
+            "reach": (per_leg, motion.reach, {"codes": {code.name: int(code) for code in Reach}}),
+            "body_position": (("time", "axis"), motion.body.position, {"units": "m", "frame": "ground"}),
+            "body_rotation": (("time", "axis", "body_axis"), motion.body.rotation),
+            "margin": (("time",), motion.margin, {"units": "m"}),
+        },
+        coords={
+            "time": ("time", motion.time, {"units": "s"}),
+            "leg": list(motion.robot.leg_codes),
+            "joint": list(JOINTS),
+            "axis": list("xyz"),
+            "body_axis": list("xyz"),
+        },
+        attrs={
+            "robot": motion.robot.name,
+            "gait": motion.gait.name,
+            **{name: getattr(motion, name) for name in _NUMBERS},
+        },
+    )
+
+
+def save_motion(motion: Motion, path: str | os.PathLike[str]) -> None:
+    """Write a motion to a file (see `Motion.save`)."""
+    about = {
+        "format": _FORMAT,
+        "robot": robot_text(motion.robot),
+        "gait": {"duty": motion.gait.duty, "offsets": motion.gait.offsets, "name": motion.gait.name},
+        "assumed": motion.assumed,
+        **{name: getattr(motion, name) for name in _NUMBERS},
+    }
+    arrays = {name: getattr(motion, name) for name in _ARRAYS}
+    try:
+        with open(path, "wb") as file:
+            np.savez_compressed(
+                file,
+                about=np.array(json.dumps(about)),
+                rotation=motion.body.rotation,
+                position=motion.body.position,
+                **arrays,
+            )
+    except OSError as error:
+        raise InputError(f"{path} can't be written: {error.strerror}") from None
+
+
+def load_motion(path: str | os.PathLike[str]) -> Motion:
+    """Read a motion from a file (see `Motion.load`)."""
+    where = Path(path)
+    try:
+        with np.load(where, allow_pickle=False) as file:
+            about = json.loads(str(file["about"]))
+            if about["format"] != _FORMAT:
+                raise InputError(f"{where} is of the format {about['format']!r}; this version reads {_FORMAT!r}")
+            return Motion(
+                robot=robot_from_text(about["robot"], where=f"the robot in {where}"),
+                gait=Gait(**about["gait"]),
+                body=Pose(file["rotation"], file["position"]),
+                assumed=tuple(about["assumed"]),
+                **{name: file[name] for name in _ARRAYS},
+                **{name: about[name] for name in _NUMBERS},
+            )
+    except OSError as error:
+        raise InputError(f"{where} can't be read: {error.strerror or error}") from None
+    except TarsusError:
+        raise
+    except (KeyError, TypeError, ValueError, EOFError, zipfile.BadZipFile) as error:
+        raise InputError(f"{where} is not a motion that Tarsus saved: {error}") from None

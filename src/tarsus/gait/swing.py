@@ -1,0 +1,35 @@
+"""How a foot swings from one foothold to the next."""
+
+from __future__ import annotations
+
+from tarsus.arrays import Array, namespace, stack_last
+
+__all__ = ["swing"]
+
+
+def swing(start: Array, end: Array, share: Array, lift: Array) -> Array:
+    """Return where a swinging foot is, in the ground frame.
+
+    Over the ground, the quintic ``10 s^3 - 15 s^4 + 6 s^5``: its velocity and acceleration are 0 at both ends, so that
+    the foot leaves and meets the ground without scuffing. Upwards, ``64 s^3 (1 - s)^3``, with the same property.
+
+    Parameters
+    ----------
+    start, end : array, shape (..., 3)
+        Footholds in G [m].
+    share : array, shape (...)
+        Share of the swing, 0 to 1.
+    lift : array, shape (...)
+        Greatest height above the straight line [m].
+
+    Returns
+    -------
+    array, shape (..., 3)
+        Points in G [m].
+    """
+    xp = namespace(start, end, share)
+    s = xp.asarray(share)
+    along = s * s * s * (10 - 15 * s + 6 * s * s)
+    up = lift * (4 * s * (1 - s)) ** 3
+    parts = [start[..., i] + (end[..., i] - start[..., i]) * along for i in range(3)]
+    return stack_last(xp, (parts[0], parts[1], parts[2] + up))
