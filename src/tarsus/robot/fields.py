@@ -7,6 +7,7 @@ wording reaches a maker; the description goes into the JSON schema that editors 
 from __future__ import annotations
 
 import math
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from decimal import Decimal
 from typing import Any
@@ -32,14 +33,16 @@ def refuse(why: str) -> PydanticCustomError:
     return PydanticCustomError(REFUSED, "{why}", {"why": why})
 
 
-class _Kind:
+class _Kind(ABC):
     """Something that checks one value; pydantic calls `check` and asks `describe` for the JSON schema."""
 
+    @abstractmethod
     def check(self, value: object) -> Any:
-        raise NotImplementedError
+        """Return the value as the robot is built from it; refuse what may not stand there."""
 
+    @abstractmethod
     def describe(self) -> dict[str, Any]:
-        raise NotImplementedError
+        """Return the JSON schema."""
 
     def __get_pydantic_core_schema__(self, source: object, handler: object) -> CoreSchema:
         return core_schema.no_info_plain_validator_function(self.check)

@@ -26,6 +26,7 @@ from tarsus.robot.schema import (
     ServoFigures,
     SourceEntry,
 )
+from tarsus.robot.writer import toml_number
 
 __all__ = ["key_of", "problems_of", "show"]
 
@@ -80,6 +81,12 @@ def _show_int(value: int) -> str:
     return str(value) if value.bit_length() <= 128 else "an integer of more than 38 digits"
 
 
+def _show_decimal(value: Decimal) -> str:
+    # Without its exponent, 1e999999999 would fill the memory.
+    plain = value.is_finite() and abs(value.adjusted()) < _LONGEST_VALUE
+    return toml_number(value) if plain else str(value).replace("Infinity", "inf").lower()
+
+
 # The kinds of value that a file can hold; bool stands before int, of which it is one.
 _SHOWN: dict[type, Callable[[Any], str]] = {
     dict: lambda _: _TABLE,
@@ -88,7 +95,7 @@ _SHOWN: dict[type, Callable[[Any], str]] = {
     bool: lambda value: str(value).lower(),
     int: _show_int,
     float: str,
-    Decimal: str,
+    Decimal: _show_decimal,
     str: lambda value: json.dumps(value[: 2 * _LONGEST_VALUE], ensure_ascii=False),
     datetime.date: datetime.date.isoformat,
     datetime.time: datetime.time.isoformat,

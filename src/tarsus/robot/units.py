@@ -42,8 +42,6 @@ def degrees(value: float) -> Decimal:
     if value == 0:
         return to_decimal(value)
     exact = _CONTEXT.divide(_CONTEXT.multiply(Decimal(value), Decimal(180)), _PI)
-    for digits in range(1, _DIGITS_OF_A_DOUBLE + 1):
-        rounded = Context(prec=digits, traps=[]).plus(exact)
-        if radians(rounded) == value:
-            return rounded
-    return exact
+    # The last of them always does: half a unit of a 17th digit is less than half the distance between doubles.
+    roundings = (Context(prec=digits, traps=[]).plus(exact) for digits in range(1, _DIGITS_OF_A_DOUBLE + 1))
+    return next(rounded for rounded in roundings if radians(rounded) == value)
