@@ -1,1 +1,143 @@
-"""Tarsus: the toolkit for six-legged robots."""
+"""Tarsus: the toolkit for six-legged robots, from a robot file to joint angles and walks.
+
+Everything public is here::
+
+    import tarsus
+
+    robot = tarsus.load_robot("strider")
+    walk = tarsus.plan_walk(robot, tarsus.Gait.named("tripod"), tarsus.straight_path(1.0))
+
+Inside, all is SI: metres, radians, seconds, kilograms. Files and the command line speak millimetres and degrees.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from tarsus.errors import (
+        CollisionError,
+        InputError,
+        MissingDataError,
+        RobotFileError,
+        StrokeError,
+        TarsusError,
+        UnknownNameError,
+        UnreachableError,
+    )
+    from tarsus.gait.cycle import cycle_feet
+    from tarsus.gait.gait import GAITS, Gait
+    from tarsus.gait.motion import Motion
+    from tarsus.gait.path import Path, curved_path, straight_path, twist_path
+    from tarsus.gait.plan import plan_walk
+    from tarsus.gait.stroke import max_stroke
+    from tarsus.kinematics.body import coxa_frames, reachable_share
+    from tarsus.kinematics.inverse import inverse_kinematics
+    from tarsus.kinematics.leg import forward_kinematics, leg_jacobian
+    from tarsus.kinematics.mass import centre_of_mass, total_mass
+    from tarsus.kinematics.polygon import support_polygon
+    from tarsus.kinematics.pose import Pose
+    from tarsus.kinematics.reach import IKSolution, Reach
+    from tarsus.kinematics.rest import Rest, resting_pose
+    from tarsus.kinematics.stability import stability_margin
+    from tarsus.kinematics.stance import default_clearance, default_stance, reachable_band
+    from tarsus.robot.catalogue import list_servos, load_servo
+    from tarsus.robot.file import list_robots, load_robot, robot_schema
+    from tarsus.robot.robot import JOINTS, GaitDefaults, Robot, Source, stack_robots
+    from tarsus.robot.servo import Servo
+
+__version__ = "0.1.0"
+
+# Where each public name lives. It is imported when first asked for: `import tarsus` and `tarsus --help` do not wait
+# for NumPy. A test holds this table, the imports above and `__all__` against each other.
+_HOMES = {
+    "tarsus.errors": (
+        *("CollisionError", "InputError", "MissingDataError", "RobotFileError", "StrokeError", "TarsusError"),
+        *("UnknownNameError", "UnreachableError"),
+    ),
+    "tarsus.gait.cycle": ("cycle_feet",),
+    "tarsus.gait.gait": ("GAITS", "Gait"),
+    "tarsus.gait.motion": ("Motion",),
+    "tarsus.gait.path": ("Path", "curved_path", "straight_path", "twist_path"),
+    "tarsus.gait.plan": ("plan_walk",),
+    "tarsus.gait.stroke": ("max_stroke",),
+    "tarsus.kinematics.body": ("coxa_frames", "reachable_share"),
+    "tarsus.kinematics.inverse": ("inverse_kinematics",),
+    "tarsus.kinematics.leg": ("forward_kinematics", "leg_jacobian"),
+    "tarsus.kinematics.mass": ("centre_of_mass", "total_mass"),
+    "tarsus.kinematics.polygon": ("support_polygon",),
+    "tarsus.kinematics.pose": ("Pose",),
+    "tarsus.kinematics.reach": ("IKSolution", "Reach"),
+    "tarsus.kinematics.rest": ("Rest", "resting_pose"),
+    "tarsus.kinematics.stability": ("stability_margin",),
+    "tarsus.kinematics.stance": ("default_clearance", "default_stance", "reachable_band"),
+    "tarsus.robot.catalogue": ("list_servos", "load_servo"),
+    "tarsus.robot.file": ("list_robots", "load_robot", "robot_schema"),
+    "tarsus.robot.robot": ("JOINTS", "GaitDefaults", "Robot", "Source", "stack_robots"),
+    "tarsus.robot.servo": ("Servo",),
+}
+_HOME_OF = {name: module for module, names in _HOMES.items() for name in names}
+
+__all__ = [
+    "GAITS",
+    "JOINTS",
+    "CollisionError",
+    "Gait",
+    "GaitDefaults",
+    "IKSolution",
+    "InputError",
+    "MissingDataError",
+    "Motion",
+    "Path",
+    "Pose",
+    "Reach",
+    "Rest",
+    "Robot",
+    "RobotFileError",
+    "Servo",
+    "Source",
+    "StrokeError",
+    "TarsusError",
+    "UnknownNameError",
+    "UnreachableError",
+    "__version__",
+    "centre_of_mass",
+    "coxa_frames",
+    "curved_path",
+    "cycle_feet",
+    "default_clearance",
+    "default_stance",
+    "forward_kinematics",
+    "inverse_kinematics",
+    "leg_jacobian",
+    "list_robots",
+    "list_servos",
+    "load_robot",
+    "load_servo",
+    "max_stroke",
+    "plan_walk",
+    "reachable_band",
+    "reachable_share",
+    "resting_pose",
+    "robot_schema",
+    "stability_margin",
+    "stack_robots",
+    "straight_path",
+    "support_polygon",
+    "total_mass",
+    "twist_path",
+]
+
+
+def __getattr__(name: str) -> Any:
+    """Import a public name from where it lives."""
+    if name not in _HOME_OF:
+        raise AttributeError(f"module 'tarsus' has no attribute {name!r}")
+    value = getattr(import_module(_HOME_OF[name]), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

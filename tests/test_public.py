@@ -1,0 +1,76 @@
+"""The public face: what `import tarsus` offers is what its tables say, everywhere documented and acyclic."""
+
+import ast
+import importlib
+import inspect
+import pkgutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import tarsus
+
+SOURCE = Path(tarsus.__file__)
+MODULES = sorted(info.name for info in pkgutil.walk_packages(tarsus.__path__, "tarsus."))
+
+
+def test_the_tables_of_names_agree():
+    tree = ast.parse(SOURCE.read_text(encoding="utf-8"))
+    typed = {
+        (node.module, alias.name)
+        for branch in tree.body
+        if isinstance(branch, ast.If)
+        for node in branch.body
+        if isinstance(node, ast.ImportFrom)
+        for alias in node.names
+    }
+    lazy = {(module, name) for module, names in tarsus._HOMES.items() for name in names}
+    assert typed == lazy
+    assert {name for _, name in lazy} | {"__version__"} == set(tarsus.__all__)
+    assert len(tarsus.__all__) == len(set(tarsus.__all__))
+
+
+@pytest.mark.parametrize("name", sorted(set(tarsus.__all__) - {"__version__"}))
+def test_every_public_name_is_there_and_documented(name):
+    value = getattr(tarsus, name)
+    assert value is getattr(importlib.import_module(tarsus._HOME_OF[name]), name)
+    if callable(value):
+        assert inspect.getdoc(value)
+
+
+@pytest.mark.parametrize("module", MODULES)
+def test_every_module_imports_and_its_all_is_true(module):
+    loaded = importlib.import_module(module)
+    assert loaded.__doc__
+    for name in getattr(loaded, "__all__", ()):
+        assert hasattr(loaded, name)
+
+
+def test_an_unknown_name_is_an_attribute_error():
+    with pytest.raises(AttributeError, match="no attribute 'leg_count'"):
+        _ = tarsus.leg_count
+    assert dir(tarsus) == sorted(tarsus.__all__)
+
+
+def test_importing_tarsus_loads_nothing_heavy():
+    code = "import sys, tarsus; print(sorted({'numpy', 'pydantic', 'matplotlib', 'rich'} & set(sys.modules)))"
+    answer = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert answer.stdout.strip() == "[]"
+
+
+def test_planning_a_walk_loads_nothing_but_numpy():
+    code = (
+        "import sys, tarsus; r = tarsus.load_robot('strider')\n"
+        "tarsus.plan_walk(r, tarsus.Gait.named('wave'), tarsus.straight_path(0.1)).margin\n"
+        "print(sorted({'matplotlib', 'rich', 'click', 'xarray', 'scipy', 'jax'} & set(sys.modules)))"
+    )
+    answer = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert answer.stdout.strip() == "[]"
+
+
+def test_the_version_is_the_packages():
+    from importlib.metadata import version
+
+    assert tarsus.__version__ == version("tarsus")

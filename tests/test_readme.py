@@ -1,0 +1,52 @@
+"""The README's example runs, and prints what the README says it prints."""
+
+import contextlib
+import io
+import re
+from pathlib import Path
+
+ROOT = Path(__file__).parents[1]
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+
+
+def blocks(language):
+    return re.findall(rf"```{language}\n(.*?)```", README, flags=re.DOTALL)
+
+
+def test_the_example_prints_what_the_readme_shows():
+    (example,), (shown,) = blocks("python"), blocks("text")
+    printed = io.StringIO()
+    with contextlib.redirect_stdout(printed):
+        exec(compile(example, "README.md", "exec"), {})
+    assert printed.getvalue() == shown
+
+
+def test_the_example_is_about_ten_lines():
+    (example,) = blocks("python")
+    assert len([line for line in example.splitlines() if line.strip()]) <= 10
+
+
+def test_every_file_the_documents_point_to_is_there():
+    for document in [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *(ROOT / "docs").glob("*.md")]:
+        links = re.findall(r"\]\(([^)#:]+)(?:#[^)]*)?\)", document.read_text(encoding="utf-8"))
+        missing = [link for link in links if not (document.parent / link).exists()]
+        assert not missing, f"{document.name} points to {missing}"
+
+
+def test_every_make_target_the_documents_name_exists():
+    makefile = (ROOT / "Makefile").read_text(encoding="utf-8")
+    for document in [ROOT / "README.md", ROOT / "CONTRIBUTING.md"]:
+        for target in re.findall(r"^make (\w+)|`make (\w+)`", document.read_text(encoding="utf-8"), flags=re.MULTILINE):
+            assert re.search(rf"^{''.join(target)}:", makefile, flags=re.MULTILINE), target
+
+
+def test_every_command_the_readme_shows_parses():
+    from click.testing import CliRunner
+
+    from tarsus.cli import main
+
+    shell = "\n".join(blocks("sh"))
+    commands = re.findall(r"^tarsus (\w+)", shell, flags=re.MULTILINE)
+    assert commands
+    for command in commands:
+        assert CliRunner().invoke(main, [command, "--help"]).exit_code == 0
