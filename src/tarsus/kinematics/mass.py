@@ -76,8 +76,7 @@ def centre_of_mass(robot: Robot, angles: Array, *, points: Array | None = None) 
     acts as (1 - s) of it at the inner and s of it at the outer end, so the whole is one weighted sum of points.
     """
     points = forward_kinematics(robot, angles) if points is None else points
-    own = (robot.body_com, robot.body_mass, robot.link_mass) if robot.has_masses else (robot.body_com,)
-    xp = namespace(points, *own)
+    xp = namespace(points, robot.body_com, robot.body_mass, robot.link_mass, robot.link_com)
     points = as_floats(xp, points, name="points")
     require_shape("points", points, (robot.legs, 4, 3))
     body_com = as_array(xp, robot.body_com)

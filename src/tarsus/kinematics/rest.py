@@ -1,0 +1,211 @@
+"""How the robot rests on flat ground, whatever its joint angles."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from tarsus.arrays import (
+    BLOCK,
+    Array,
+    Index,
+    Namespace,
+    as_array,
+    batch_blocks,
+    block_shape,
+    broadcast_shapes,
+    is_traced,
+    namespace,
+    stack_last,
+)
+from tarsus.errors import InputError
+from tarsus.kinematics.leg import forward_kinematics
+from tarsus.kinematics.mass import centre_of_mass
+from tarsus.kinematics.pairs import columns_of
+from tarsus.kinematics.pose import Pose
+from tarsus.kinematics.roll import Settled, rotation_rows, settle
+from tarsus.robot.robot import Robot
+
+__all__ = ["Rest", "resting_pose"]
+
+CORNERS = np.array(list(itertools.product((-0.5, 0.5), repeat=3)))
+"""The corners of a body's box in the order of `Rest.corners_down`, as shares of its size: x varies slowest."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Rest:
+    """How a robot rests on flat ground, one configuration or a batch.
+
+    Attributes
+    ----------
+    robot : Robot
+        The robot, or the batch of designs.
+    body : Pose
+        Where B is in G: yaw 0, over G's origin. At pitch +-90 degrees, where yaw and roll are one, roll 0.
+    contacts : array of bool, shape (..., legs)
+        The feet that touch the ground.
+    leg_points_down : array of bool, shape (..., legs, 4)
+        The leg points that touch: coxa axis, femur axis, knee, foot.
+    corners_down : array of bool, shape (..., 8)
+        The corners of the body's box that touch, in the order of `CORNERS`; ``(..., 0)`` where it has no box.
+    margin : array, shape (...)
+        How far inside the polygon of all points that touch the centre of mass is [m].
+    stable : array of bool, shape (...)
+        Whether it rests; False where it was still rolling after `max_rolls`, or where the centre of mass that its
+        file gives lies outside the robot, so that nothing holds it.
+    rolls : array of int, shape (...)
+        How often it rolled on from one set of contacts to the next.
+    """
+
+    robot: Robot
+    body: Pose
+    contacts: Array
+    leg_points_down: Array
+    corners_down: Array
+    margin: Array
+    stable: Array
+    rolls: Array
+
+    def describe(self) -> str:
+        """Return in words how the robot rests.
+
+        Raises
+        ------
+        InputError
+            If this is a batch.
+        """
+        if self.margin.ndim:
+            raise InputError(
+                f"describe() speaks of one configuration; this is a batch of shape {tuple(self.margin.shape)}"
+            )
+        where = self._where(np.asarray(self.leg_points_down))
+        if not bool(self.stable):
+            return f"does not come to rest; after {int(self.rolls)} rolls it {where}"
+        massless = "" if self.robot.has_masses else " (masses unknown: that of the body's own centre)"
+        return f"{where}; margin {1000 * float(self.margin):.1f} mm{massless}"
+
+    def _where(self, down: Array) -> str:
+        names = [_short(name) for name in self.robot.leg_names]
+        parts = []
+        for point, part in ((3, "foot"), (2, "knee"), (1, "femur axis")):
+            legs = [name for name, touches in zip(names, down[:, point], strict=True) if touches]
+            if legs:
+                parts.append(f"the {_PLURALS[part] if len(legs) > 1 else part} {', '.join(legs)}")
+        if bool(np.any(np.asarray(self.corners_down))) or bool(down[:, 0].any()):
+            return f"lies on {' and '.join([self._face(), *parts])}"
+        if down[:, 1:3].any():
+            return f"rests on {' and '.join(parts)}"
+        feet = [name for name, touches in zip(names, down[:, 3], strict=True) if touches]
+        return f"stands on {len(feet)} {'foot' if len(feet) == 1 else 'feet'}: {', '.join(feet)}"
+
+    def _face(self) -> str:
+        """Name the side of the body that looks down most."""
+        up = np.asarray(self.body.rotation)[2]
+        axis = int(np.argmax(np.abs(up)))
+        return _FACES[axis][int(up[axis] > 0)]
+
+
+_PLURALS = {"foot": "feet", "knee": "knees", "femur axis": "femur axes"}
+_FACES = (("its front", "its rear"), ("its left side", "its right side"), ("its back", "its belly"))
+
+
+def _short(name: str) -> str:
+    """``"front left"`` becomes ``"LF"``; a name that is not of two words stays."""
+    words = name.split()
+    return (words[1][0] + words[0][0]).upper() if len(words) == 2 else name
+
+
+def resting_pose(robot: Robot, angles: Array, *, max_rolls: int = 64) -> Rest:
+    """Return how the robot rests on flat ground with its joints held at the given angles.
+
+    It is let down upright, B's z up, until something touches, and rolls slowly from contact to contact until its
+    centre of mass is held: on its feet, a knee, its belly, side or back. What can touch are the points of the
+    legs (the foot a point) and the corners of the body's box, centred on B's origin; without ``body_size``, the
+    coxa axes are the body. Points less than a nanometre above the ground touch it (in single precision, less
+    than eight micrometres).
+
+    Balanced on one point, it falls forward (along B's x, seen from above); on an edge, to the forward side of it,
+    or to the left where the edge leads forward. With the centre of mass just over the edge of a polygon that has
+    an area, it rests with margin 0.
+
+    Parameters
+    ----------
+    robot : Robot
+        The robot, or a batch of designs; where its file gives no masses, see `centre_of_mass`.
+    angles : array, shape (..., legs, 3)
+        Joint angles [rad].
+    max_rolls : int
+        After how many rolls it is given up, and `Rest.stable` is False. 0 tells whether it rests as let down.
+
+    Returns
+    -------
+    Rest
+        Pose of the body, what touches, and how safely it lies.
+
+    Raises
+    ------
+    InputError
+        If the angles have the wrong shape, are NaN or infinite, or are being traced by JAX; if `max_rolls` is
+        negative.
+
+    Notes
+    -----
+    The steepest descent of the centre of mass, followed exactly: see `tarsus.kinematics.roll`.
+    """
+    if max_rolls < 0:
+        raise InputError(f"max_rolls is {max_rolls}; it must not be negative")
+    points = forward_kinematics(robot, angles)
+    com = centre_of_mass(robot, angles, points=points)
+    if any(is_traced(array) for array in (points, com, robot.body_size)):
+        raise InputError("resting_pose can't be traced: how often a robot rolls depends on the values; call it outside")
+    xp = namespace(points, com, robot.body_size)
+    points, com = as_array(xp, points), as_array(xp, com)
+    cloud = [xp.reshape(points, (*points.shape[:-3], 4 * robot.legs, 3))]
+    if robot.body_size is not None:
+        cloud.append(as_array(xp, robot.body_size)[..., None, :] * xp.asarray(CORNERS))
+    batch = broadcast_shapes("robot and angles", com.shape[:-1], *(part.shape[:-2] for part in cloud))
+    size = BLOCK // robot.legs if xp is np else max(1, math.prod(batch))
+    blocks = [_settle_block(xp, cloud, com, batch, index, max_rolls) for index in batch_blocks(batch, size)]
+    return _rest(xp, robot, blocks, batch)
+
+
+def _settle_block(
+    xp: Namespace, cloud: list[Array], com: Array, batch: tuple[int, ...], index: Index, max_rolls: int
+) -> Settled:
+    parts = [columns_of(xp, part, batch, index, tail=2) for part in cloud]
+    centre = columns_of(xp, com, batch, index, tail=1)
+    items = math.prod(block_shape(batch, index))
+    points = xp.concat([xp.broadcast_to(part, (*part.shape[:2], items)) for part in parts], axis=1)
+    centre = xp.broadcast_to(centre, (3, items))
+    return settle(
+        xp,
+        (points[0, ...], points[1, ...], points[2, ...]),
+        (centre[0, ...], centre[1, ...], centre[2, ...]),
+        max_rolls=max_rolls,
+    )
+
+
+def _rest(xp: Namespace, robot: Robot, blocks: list[Settled], batch: tuple[int, ...]) -> Rest:
+    def joined(parts: list[Array], *tail: int) -> Array:
+        return xp.reshape(xp.concat(parts, axis=0), (*batch, *tail))
+
+    up = [joined([block.up[axis] for block in blocks]) for axis in range(3)]
+    rows = rotation_rows(xp, (up[0], up[1], up[2]))
+    rotation = xp.reshape(stack_last(xp, (*rows[0], *rows[1], *rows[2])), (*batch, 3, 3))
+    height = joined([block.height for block in blocks])
+    level = xp.zeros_like(height)
+    down = joined([xp.matrix_transpose(block.down) for block in blocks], blocks[0].down.shape[0])
+    leg_points = xp.reshape(down[..., : 4 * robot.legs], (*batch, robot.legs, 4))
+    return Rest(
+        robot=robot,
+        body=Pose(rotation, stack_last(xp, (level, level, height))),
+        contacts=leg_points[..., 3],
+        leg_points_down=leg_points,
+        corners_down=down[..., 4 * robot.legs :],
+        margin=joined([block.margin for block in blocks]),
+        stable=joined([block.stable for block in blocks]),
+        rolls=joined([block.rolls for block in blocks]),
+    )

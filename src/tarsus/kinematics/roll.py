@@ -1,0 +1,193 @@
+"""How a rigid body of points rolls on flat ground until it rests.
+
+The height of the centre of mass c over the ground is ``H(up) = max_i up . (c - p_i)`` over the points p_i, for the
+direction `up` in the body. A body that rolls slowly follows the steepest descent of H over the sphere of all
+directions. It does so in great circles: about the point of the contact polygon that is nearest to the projected
+centre of mass, be it a corner, inside an edge, or on the edge of a face, until the next point touches. So the way
+is followed exactly, from touch to touch, whatever the contacts are.
+
+Points lead in the arrays, ``(points, batch)``: sums over a few points then run along contiguous memory.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from tarsus.arrays import Array, Namespace
+from tarsus.kinematics.pairs import Pairs, root
+
+__all__ = ["Settled", "rotation_rows", "settle"]
+
+_TOUCH = 1e-9  # [m] far above the rounding of a dozen rolls (1e-14), far below what could be built
+_ALONG = 1e-9  # slope of an edge's normal below which the edge leads forward, its sideways slip being rounding
+_LEVEL = 1e-12  # cosine of the pitch below which roll and yaw can't be told apart
+
+Vector = tuple[Array, Array, Array]
+
+
+class Settled(NamedTuple):
+    """How bodies rest: arrays ``(batch,)``, but `up` ``(batch,)`` thrice and `down` ``(points, batch)``.
+
+    `up` is the ground's z in the body, `height` that of the body's origin over the ground [m], `down` the points
+    that touch, `margin` how far the centre of mass is inside their polygon [m], `rolls` how often it rolled.
+    """
+
+    up: Vector
+    height: Array
+    down: Array
+    margin: Array
+    stable: Array
+    rolls: Array
+
+
+class _Stance(NamedTuple):
+    """Where everything is, seen from over the ground with the centre of mass projected into the origin."""
+
+    rows: tuple[Vector, Vector, Vector]
+    x: Array
+    y: Array
+    height: Array
+    lowest: Array
+    down: Array
+
+
+class _Balance(NamedTuple):
+    """How the centre of mass lies over the contacts: and if it is not held, about what and whither it rolls."""
+
+    margin: Array
+    stable: Array
+    pivot_x: Array
+    pivot_y: Array
+    toward_x: Array
+    toward_y: Array
+
+
+def settle(xp: Namespace, points: Vector, com: Vector, *, max_rolls: int) -> Settled:
+    """Let bodies down upright and let them roll until they rest.
+
+    Parameters
+    ----------
+    xp : namespace
+        The array library.
+    points : three arrays, shape (points, batch)
+        Coordinates of each body's points, in the body [m].
+    com : three arrays, shape (batch,)
+        Coordinates of its centre of mass [m].
+    max_rolls : int
+        How often it may roll before it is given up.
+
+    Returns
+    -------
+    Settled
+        How they rest, or lie after the last roll.
+    """
+    touch = max(_TOUCH, 64 * float(xp.finfo(com[0].dtype).eps))
+    up = (xp.zeros_like(com[0]), xp.zeros_like(com[0]), xp.ones_like(com[0]))
+    rolls = xp.zeros(com[0].shape, dtype=xp.int32)
+    stance = _stance(xp, up, points, com, touch)
+    balance = _balance(xp, stance, touch)
+    for _ in range(max_rolls):
+        if bool(xp.all(balance.stable)):
+            break
+        rolled, moves = _roll(xp, stance, balance)
+        up = (
+            xp.where(moves, rolled[0], up[0]),
+            xp.where(moves, rolled[1], up[1]),
+            xp.where(moves, rolled[2], up[2]),
+        )
+        rolls = rolls + xp.astype(moves, rolls.dtype)
+        stance = _stance(xp, up, points, com, touch)
+        balance = _balance(xp, stance, touch)
+    margin = xp.where(balance.stable, xp.clip(balance.margin, 0.0, None), balance.margin)
+    return Settled(up, -stance.lowest, stance.down, margin, balance.stable, rolls)
+
+
+def rotation_rows(xp: Namespace, up: Vector) -> tuple[Vector, Vector, Vector]:
+    """Return the rows of the rotation of yaw 0 that has `up` upright; at pitch +-90 degrees the one of roll 0."""
+    cos_pitch = xp.sqrt(up[1] * up[1] + up[2] * up[2])
+    level = cos_pitch > _LEVEL
+    divisor = xp.where(level, cos_pitch, 1.0)
+    sin_roll, cos_roll = xp.where(level, up[1] / divisor, 0.0), xp.where(level, up[2] / divisor, 1.0)
+    return (
+        (cos_pitch, 0.0 - up[0] * sin_roll, 0.0 - up[0] * cos_roll),
+        (xp.zeros_like(cos_pitch), cos_roll, 0.0 - sin_roll),
+        (up[0], cos_pitch * sin_roll, cos_pitch * cos_roll),
+    )
+
+
+def _along(row: Vector, vector: Vector) -> Array:
+    return row[0] * vector[0] + row[1] * vector[1] + row[2] * vector[2]
+
+
+def _stance(xp: Namespace, up: Vector, points: Vector, com: Vector, touch: float) -> _Stance:
+    rows = rotation_rows(xp, up)
+    z = _along(rows[2], points)
+    lowest = xp.min(z, axis=0)
+    height = z - lowest
+    x, y = (_along(row, points) - _along(row, com) for row in rows[:2])
+    return _Stance(rows, x, y, height, lowest, height < touch)
+
+
+def _balance(xp: Namespace, stance: _Stance, touch: float) -> _Balance:
+    pairs = _contact_pairs(xp, stance)
+    depth, width = pairs.depth_and_width(xp)
+    near_x, near_y, share = pairs.nearest(xp)
+    nearest = xp.argmin(near_x * near_x + near_y * near_y, axis=0)
+    near_x, near_y, share, length = (_pick(xp, v, nearest) for v in (near_x, near_y, share, pairs.length))
+    gap = root(xp, near_x * near_x + near_y * near_y)
+    margin = xp.where(depth > 0, depth, -gap)
+
+    across = pairs.normals(xp)
+    # The exact normal of an edge, not the offset's direction: of a tiny offset that is rounding.
+    edge_x, edge_y = (_pick(xp, v, nearest) for v in across)
+    side = xp.where(edge_x * near_x + edge_y * near_y > 0, -1.0, xp.ones_like(near_x))
+    on_edge = (share > 0) & (share < 1) & (length > 0)
+    apart = xp.where(gap > 0, gap, 1.0)
+    toward_x = xp.where(on_edge, side * edge_x, -near_x / apart)
+    toward_y = xp.where(on_edge, side * edge_y, -near_y / apart)
+
+    fall_x, fall_y = _fall(xp, pairs, across, touch)
+    balanced = gap <= touch
+    toward_x, toward_y = xp.where(balanced, fall_x, toward_x), xp.where(balanced, fall_y, toward_y)
+    return _Balance(margin, (margin >= -touch) & (width > touch), near_x, near_y, toward_x, toward_y)
+
+
+def _fall(xp: Namespace, pairs: Pairs, across: tuple[Array, Array], touch: float) -> tuple[Array, Array]:
+    """Whither a body falls that is balanced on a point or an edge: forward; left, where the edge leads forward."""
+    longest = xp.argmax(pairs.length, axis=0)
+    x, y, length = (_pick(xp, v, longest) for v in (*across, pairs.length))
+    sign = xp.where(xp.where(xp.abs(x) > _ALONG, x, y) < 0, -1.0, xp.ones_like(x))
+    point = length <= touch
+    return xp.where(point, 1.0, sign * x), xp.where(point, 0.0, sign * y)
+
+
+def _contact_pairs(xp: Namespace, stance: _Stance) -> Pairs:
+    """Join the points that touch; the lowest point stands in where a body has fewer than others of its batch."""
+    counts = xp.sum(xp.astype(stance.down, xp.int32), axis=0)
+    most = int(xp.max(counts)) if counts.shape[0] else 1
+    order = xp.argsort(stance.height, axis=0)[:most, ...]
+    down = xp.take_along_axis(stance.down, order, axis=0)
+    x, y = (xp.take_along_axis(values, order, axis=0) for values in (stance.x, stance.y))
+    return Pairs.of(xp, xp.where(down, x, x[:1, ...]), xp.where(down, y, y[:1, ...]))
+
+
+def _pick(xp: Namespace, values: Array, which: Array) -> Array:
+    return xp.take_along_axis(values, which[None, ...], axis=0)[0, ...]
+
+
+def _roll(xp: Namespace, stance: _Stance, balance: _Balance) -> tuple[Vector, Array]:
+    """Roll until the next point touches: `up` after it, and which bodies rolled.
+
+    A point at the height h, the distance u ahead of the axis, comes down after the angle ``atan2(h, u)``: the
+    first to do so is the one with the greatest ``u / h``, the angle's cotangent.
+    """
+    ahead = balance.toward_x * (stance.x - balance.pivot_x) + balance.toward_y * (stance.y - balance.pivot_y)
+    cotangents = xp.where(stance.down, -xp.inf, ahead / xp.where(stance.down, 1.0, stance.height))
+    cotangent = xp.max(cotangents, axis=0)
+    moves = ~balance.stable & xp.isfinite(cotangent)
+    cotangent = xp.where(moves, cotangent, 0.0)
+    scale = 1 / xp.sqrt(1 + cotangent * cotangent)
+    weights = (-balance.toward_x * scale, -balance.toward_y * scale, cotangent * scale)
+    up = tuple(_along(weights, column) for column in zip(*stance.rows, strict=True))
+    length = xp.sqrt(_along(up, up))
+    return (up[0] / length, up[1] / length, up[2] / length), moves
