@@ -110,7 +110,7 @@ def _by_blocks(
         return xp.reshape(flat, (*flat.shape[:-1], *tail))
     batch = broadcast_shapes("the robot and the angles", robot.batch_shape, q.shape[:-2])
     out = np.empty((*batch, robot.legs, tail[0] * tail[1]))
-    same = geometry.take((), ())
+    same = geometry if robot.batch_shape else geometry.take((), ())
     for index in batch_blocks(batch, max(BLOCK // robot.legs, 1)):
         block = block_shape(batch, index)
         g = geometry.take(index, block) if robot.batch_shape else same
