@@ -15,7 +15,7 @@ from tarsus.arrays import (
 from tarsus.kinematics.leg import forward_kinematics
 from tarsus.robot.robot import Robot
 
-__all__ = ["centre_of_mass", "total_mass"]
+__all__ = ["centre_of_mass", "point_masses", "total_mass"]
 
 
 def total_mass(robot: Robot) -> Array:
@@ -83,15 +83,28 @@ def centre_of_mass(robot: Robot, angles: Array, *, points: Array | None = None) 
     if not robot.has_masses:
         shape = broadcast_shapes("robot and angles", points.shape[:-3], body_com.shape[:-1])
         return body_com + xp.zeros((*shape, 3), dtype=points.dtype)
-    masses = _point_masses(xp, robot)
+    masses = point_masses(xp, robot)
     weights = xp.reshape(masses, (*masses.shape[:-2], 1, 4 * robot.legs))
     moment = xp.matmul(weights, xp.reshape(points, (*points.shape[:-3], 4 * robot.legs, 3)))[..., 0, :]
     moment = moment + as_array(xp, robot.body_mass)[..., None] * body_com
     return moment / as_array(xp, total_mass(robot))[..., None]
 
 
-def _point_masses(xp: Namespace, robot: Robot) -> Array:
-    """Share the links' masses out to the leg points ``(..., legs, 4)`` [kg]."""
+def point_masses(xp: Namespace, robot: Robot) -> Array:
+    """Share the links' masses out to the leg points: same weight, same centre of mass for any joint angles.
+
+    Parameters
+    ----------
+    xp : namespace
+        The array library.
+    robot : Robot
+        The robot, or a batch of designs; its masses must be known.
+
+    Returns
+    -------
+    array, shape (..., legs, 4)
+        Masses at coxa axis, femur axis, knee and foot [kg]; negative where a centre of mass is beyond its link.
+    """
     legs = robot.geometry.to(xp)
     coxa2 = legs.coxa * legs.coxa + legs.side2 + legs.up * legs.up
     # A root has no derivative at zero: it is taken of 1 there, and the share set to 0 afterwards.

@@ -19,7 +19,7 @@ from tarsus.arrays import (
 from tarsus.errors import InputError
 from tarsus.kinematics.pairs import Pairs, columns_of, root
 
-__all__ = ["as_mask", "hull_margin", "support_polygon"]
+__all__ = ["as_mask", "hull_margin", "margin_and_nearest", "support_polygon"]
 
 _WORK = 1 << 17  # numbers in the largest array of a block: as many as a core's second-level cache holds
 
@@ -104,12 +104,37 @@ def _margin(xp: Namespace, points: Array, mask: Array, point: Array, batch: tupl
     x, y = _split(columns_of(xp, points, batch, index, tail=2))
     origin_x, origin_y = _split(columns_of(xp, point, batch, index, tail=1))
     counts = columns_of(xp, mask, batch, index, tail=1)
-    x, y = _gathered(xp, x - origin_x, counts), _gathered(xp, y - origin_y, counts)
+    return margin_and_nearest(xp, x - origin_x, y - origin_y, counts)[0]
+
+
+def margin_and_nearest(xp: Namespace, x: Array, y: Array, counts: Array) -> tuple[Array, Array, Array]:
+    """Return the origin's margin in the hull of points, and the hull's point nearest to it.
+
+    Parameters
+    ----------
+    xp : namespace
+        The array library.
+    x, y : array, shape (n, batch)
+        The points [m].
+    counts : array of bool, shape (n, batch)
+        Which of them count.
+
+    Returns
+    -------
+    margin, nearest_x, nearest_y : array, shape (batch,)
+        As in `hull_margin` [m]; the nearest point is the origin itself where that is inside [m].
+    """
+    x, y = _gathered(xp, x, counts), _gathered(xp, y, counts)
     pairs = Pairs.of(xp, x, y)
     depth, _ = pairs.depth_and_width(xp)
     near_x, near_y, _ = pairs.nearest(xp)
-    gap = root(xp, xp.min(near_x * near_x + near_y * near_y, axis=0))
-    return xp.where(xp.any(counts, axis=0), xp.where(depth > 0, depth, -gap), -xp.inf)
+    gap2 = near_x * near_x + near_y * near_y
+    closest = xp.argmin(gap2, axis=0)[None, ...]
+    gap = root(xp, xp.min(gap2, axis=0))
+    margin = xp.where(xp.any(counts, axis=0), xp.where(depth > 0, depth, -gap), -xp.inf)
+    inside = depth > 0
+    here = [xp.take_along_axis(near, closest, axis=0)[0, ...] for near in (near_x, near_y)]
+    return margin, *(xp.where(inside, xp.zeros_like(near), near) for near in here)
 
 
 def _split(coordinates: Array) -> tuple[Array, Array]:

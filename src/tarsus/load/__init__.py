@@ -1,0 +1,1 @@
+"""What the joints bear: forces on the feet, torques, servos."""

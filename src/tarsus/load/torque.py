@@ -1,0 +1,125 @@
+"""What torque every joint's servo must exert to hold the robot: statics."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from tarsus.arrays import Array, Namespace, as_array, namespace, stack_last
+from tarsus.kinematics.leg import checked_angles, forward_kinematics
+from tarsus.kinematics.mass import point_masses
+from tarsus.kinematics.pose import Pose
+from tarsus.load.contact import GRAVITY, contact_forces
+from tarsus.load.payload import Payload
+from tarsus.robot.robot import Robot
+
+__all__ = ["joint_torques", "torques_of"]
+
+
+def joint_torques(
+    robot: Robot,
+    angles: Array,
+    body: Pose,
+    contacts: Array,
+    payload: Payload | float = 0.0,
+    *,
+    gravity: Sequence[float] = GRAVITY,
+    forces: Array | None = None,
+) -> tuple[Array, Array]:
+    """Return the torques that the servos must exert to hold the robot, and the ground's forces on its feet.
+
+    Quasi-static: what each link's weight turns the joint with, and ``-J^T f`` of the contact forces `f`. A positive
+    torque turns the joint the positive way; a standing leg pushes its foot down with a negative femur torque.
+
+    Parameters
+    ----------
+    robot : Robot
+        The robot, or a batch of designs; its masses must be known.
+    angles : array, shape (..., legs, 3)
+        Joint angles [rad].
+    body : Pose
+        Places of B in G.
+    contacts : array of bool, shape (..., legs)
+        Which feet are on the ground.
+    payload : Payload or float
+        What the body carries; a number is a mass at its origin [kg].
+    gravity : sequence of float
+        Gravity in G [m/s^2].
+    forces : array, shape (..., legs, 3), optional
+        Ground on foot in G [N], where they are known; `contact_forces` where left out.
+
+    Returns
+    -------
+    torques : array, shape (..., legs, 3)
+        Of coxa, femur and tibia [N m].
+    forces : array, shape (..., legs, 3)
+        Ground on foot, in G [N].
+
+    Raises
+    ------
+    MissingDataError
+        If the robot's masses are unknown.
+    InputError
+        If a shape is wrong, a value is not finite, or no foot is down.
+    """
+    robot.require_masses()
+    points = forward_kinematics(robot, angles)
+    if forces is None:
+        solved = contact_forces(robot, angles, body, contacts, payload=payload, gravity=gravity, points=points)
+        forces = solved.forces
+    xp, q = checked_angles(robot, angles)
+    xp = namespace(points, forces, body.rotation)
+    rotation = as_array(xp, body.rotation)
+    pushes = xp.matmul(as_array(xp, forces), rotation)
+    pull = xp.matmul(as_array(xp, np.asarray(gravity, dtype=float)), rotation)
+    masses = as_array(xp, point_masses(namespace(robot.link_mass, points), robot))
+    weights = masses[..., None] * pull[..., None, None, :]
+    return torques_of(xp, robot, as_array(xp, q), as_array(xp, points), weights, pushes), forces
+
+
+def torques_of(xp: Namespace, robot: Robot, angles: Array, points: Array, loads: Array, pushes: Array) -> Array:
+    """Return the torques that hold forces on the leg points, all in B.
+
+    Parameters
+    ----------
+    xp : namespace
+        The array library.
+    robot : Robot
+        The robot, or a batch of designs.
+    angles : array, shape (..., legs, 3)
+        Joint angles [rad].
+    points : array, shape (..., legs, 4, 3)
+        Leg points [m].
+    loads : array, shape (..., legs, 4, 3)
+        Forces on the points: weights, inertia [N].
+    pushes : array, shape (..., legs, 3)
+        Further forces on the feet: the ground's [N].
+    """
+    heading = as_array(xp, robot.mount_yaw) + angles[..., 0]
+    cos, sin = xp.cos(heading), xp.sin(heading)
+    foot = loads[..., 3, :] + pushes
+    forces = ((loads[..., 1, 0], loads[..., 1, 1], loads[..., 1, 2]), *_split(loads[..., 2, :], foot))
+    at = [tuple(points[..., i, axis] for axis in range(3)) for i in range(4)]
+    coxa = femur = tibia = 0.0
+    for point, (fx, fy, fz) in enumerate(forces, start=1):
+        arm = [at[point][axis] - at[0][axis] for axis in range(2)]
+        coxa = coxa - (arm[0] * fy - arm[1] * fx)
+        along = fx * cos + fy * sin
+        if point > 1:
+            femur = femur - _lifting(at[1], at[point], cos, sin, along, fz)
+        if point > 2:
+            tibia = tibia - _lifting(at[2], at[point], cos, sin, along, fz)
+    return stack_last(xp, (coxa, femur, tibia))
+
+
+def _split(*vectors: Array) -> list[tuple[Array, Array, Array]]:
+    return [(v[..., 0], v[..., 1], v[..., 2]) for v in vectors]
+
+
+def _lifting(
+    axis: tuple[Array, ...], point: tuple[Array, ...], cos: Array, sin: Array, along: Array, up: Array
+) -> Array:
+    """Return the moment, in the lifting sense, of a force in the leg's plane about a joint axis across it."""
+    out = (point[0] - axis[0]) * cos + (point[1] - axis[1]) * sin
+    return out * up - (point[2] - axis[2]) * along
