@@ -1,0 +1,58 @@
+"""The documents keep up with what they describe."""
+
+import re
+import tomllib
+from pathlib import Path
+
+import pytest
+
+import tarsus
+
+DOCS = Path(__file__).parents[1] / "docs"
+ROBOT_FILE = (DOCS / "robot-file.md").read_text(encoding="utf-8")
+CONVENTIONS = (DOCS / "conventions.md").read_text(encoding="utf-8")
+
+
+def schema_keys():
+    schema = tarsus.robot_schema()
+    tables = [schema, *schema["$defs"].values()]
+    return sorted({key for table in tables for key in table.get("properties", {})})
+
+
+@pytest.mark.parametrize("key", schema_keys())
+def test_every_key_of_a_robot_file_is_described(key):
+    assert re.search(rf"\b{key}\b", ROBOT_FILE)
+
+
+def test_every_key_the_page_describes_exists():
+    keys = set(schema_keys())
+    named = set(re.findall(r"`([a-z_]+_(?:mm|deg|kg|nm|v|rad_s|a|g))`", ROBOT_FILE))
+    assert named
+    assert named <= keys
+
+
+def test_the_pages_examples_are_toml():
+    blocks = re.findall(r"```toml\n(.*?)```", ROBOT_FILE, flags=re.DOTALL)
+    assert len(blocks) == 2
+    for block in blocks:
+        tomllib.loads(block)
+
+
+@pytest.mark.parametrize("name", tarsus.GAITS)
+def test_the_gaits_are_described_with_their_duty_factors(name):
+    row = re.search(rf"^\| {name}[^|]*\| (\d)/(\d) \|", CONVENTIONS, flags=re.MULTILINE)
+    assert row
+    assert tarsus.Gait.named(name).duty == pytest.approx(int(row[1]) / int(row[2]))
+
+
+def test_the_legs_are_numbered_as_described():
+    robot = tarsus.load_robot("strider")
+    assert f"| leg | {' | '.join(robot.leg_names)} |" in CONVENTIONS
+    assert f"| short | {' | '.join(robot.leg_codes)} |" in CONVENTIONS
+
+
+@pytest.mark.parametrize("path", sorted((DOCS.parent / "examples").glob("*.toml")), ids=lambda path: path.stem)
+def test_the_example_robots_load_and_account_for_their_numbers(path):
+    robot = tarsus.load_robot(path)
+    assert robot.has_masses
+    assert {"guess"} <= {source.confidence for source in robot.sources}
