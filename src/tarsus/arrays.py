@@ -6,9 +6,10 @@ is a few dozen calls of about a microsecond each, and finding the namespace anew
 
 from __future__ import annotations
 
+import functools
 import math
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -27,8 +28,10 @@ __all__ = [
     "block_shape",
     "broadcast_shapes",
     "columns",
+    "fold",
     "is_traced",
     "namespace",
+    "only_where_needed",
     "require_finite",
     "require_shape",
     "stack_last",
@@ -97,11 +100,18 @@ def as_floats(xp: Namespace, values: Array, *, name: str) -> Array:
         if type(values) is np.ndarray and values.dtype == np.float64:
             return values
         try:
-            return np.asarray(values, dtype=np.float64)
+            array = np.asarray(values)
         except (TypeError, ValueError) as error:
             raise InputError(f"{name}: expected an array of real numbers, got {values!r:.80}: {error}") from None
+        if array.dtype.kind not in "fiub":
+            raise InputError(f"{name}: expected an array of real numbers, got {array.dtype}: {values!r:.80}")
+        return array.astype(np.float64)
     array = as_array(xp, values)
-    return array if xp.isdtype(array.dtype, "real floating") else xp.astype(array, xp.float64)
+    if xp.isdtype(array.dtype, "real floating"):
+        return array
+    if xp.isdtype(array.dtype, "complex floating"):
+        raise InputError(f"{name}: expected an array of real numbers, got {array.dtype}")
+    return xp.astype(array, xp.float64)
 
 
 def is_traced(array: Array) -> bool:
@@ -138,6 +148,8 @@ def require_finite(name: str, array: Array) -> None:
         return
     values = np.asarray(array)
     wrong = np.argwhere(~np.isfinite(values))
+    if not values.ndim:
+        raise InputError(f"{name} is {values}; it must be a finite number")
     where = ", ".join(str(int(i)) for i in wrong[0])
     raise InputError(
         f"{name}[{where}] is {values[tuple(wrong[0])]}; {len(wrong)} of {values.size} values are not finite numbers"
@@ -164,6 +176,48 @@ def require_shape(name: str, array: Array, tail: tuple[int, ...]) -> None:
     if array.shape[-len(tail) :] != tail:
         expected = ", ".join(["...", *map(str, tail)])
         raise InputError(f"{name} has shape {tuple(array.shape)}; expected ({expected})")
+
+
+def only_where_needed(
+    needed: Array, compute: Callable[[], tuple[Array, ...]], otherwise: tuple[Array, ...]
+) -> tuple[Array, ...]:
+    """Return what `compute` returns where it is needed, else `otherwise`; under `jax.jit`, decided as the code runs.
+
+    Parameters
+    ----------
+    needed : array, shape ()
+        Whether to compute.
+    compute : callable
+        Takes nothing; returns arrays shaped as those of `otherwise`.
+    otherwise : tuple of array
+        What to return without computing.
+    """
+    if is_traced(needed):
+        chosen: tuple[Array, ...] = sys.modules["jax"].lax.cond(needed, compute, lambda: otherwise)
+        return chosen
+    return compute() if bool(needed) else otherwise
+
+
+def fold(
+    step: Callable[[tuple[Array, ...], Array], tuple[Array, ...]], state: tuple[Array, ...], values: tuple[float, ...]
+) -> tuple[Array, ...]:
+    """Return the state after a step for each value; under `jax.jit`, compiled as a loop rather than step by step.
+
+    Parameters
+    ----------
+    step : callable
+        Takes state and value; returns the next state, shaped as the last.
+    state : tuple of array
+        The state at the beginning.
+    values : tuple of float
+        What the steps are given, one after the other.
+    """
+    if any(is_traced(part) for part in state):
+        lax, xp = sys.modules["jax"].lax, namespace(*state)
+        final: tuple[Array, ...]
+        final, _ = lax.scan(lambda s, v: (step(s, v), None), state, xp.asarray(values, dtype=state[0].dtype))
+        return final
+    return functools.reduce(step, values, state)
 
 
 def stack_last(xp: Namespace, parts: tuple[Array, ...]) -> Array:

@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from tarsus.arrays import Array, namespace, stack_last
+from tarsus.errors import InputError
 from tarsus.kinematics.inverse import inverse_kinematics
 from tarsus.kinematics.pose import Pose
 from tarsus.robot.robot import Robot
 
 __all__ = ["coxa_frames", "reachable_share"]
 
-_HALVINGS = 40
+# The way is looked at in 32 steps, then the step where a foot first stays behind in 32 again, and so on.
+_STEPS = 32
+_ROUNDS = 8
 
 
 def coxa_frames(robot: Robot) -> Pose:
@@ -42,7 +47,7 @@ def coxa_frames(robot: Robot) -> Pose:
 def reachable_share(robot: Robot, feet: Array, start: Pose, goal: Pose) -> float:
     """Return how much of the way from one body pose to another all feet can stay where they stand.
 
-    Position, roll, pitch and yaw change in proportion.
+    Position, roll, pitch and yaw change in proportion, each angle the shorter way round.
 
     Parameters
     ----------
@@ -56,23 +61,32 @@ def reachable_share(robot: Robot, feet: Array, start: Pose, goal: Pose) -> float
     Returns
     -------
     float
-        0 where the start itself can't be reached, 1 where the goal can.
-    """
-    if not bool(inverse_kinematics(robot, feet, start).ok):
-        return 0.0
-    ends = (np.asarray(start.rpy), np.asarray(goal.rpy), np.asarray(start.position), np.asarray(goal.position))
+        0 where the start itself can't be reached, 1 where the whole way can.
 
-    def reached(shares: Array) -> Array:
-        share = np.asarray(shares)[:, None]
-        rpy, position = ends[0] + share * (ends[1] - ends[0]), ends[2] + share * (ends[3] - ends[2])
-        return inverse_kinematics(robot, feet, Pose.from_rpy(rpy[:, 0], rpy[:, 1], rpy[:, 2], position)).ok
+    Raises
+    ------
+    InputError
+        If robot or poses are batches, or the feet have another shape, or are not finite.
+    """
+    if robot.batch_shape or start.batch_shape or goal.batch_shape or np.ndim(feet) != 2:
+        raise InputError("reachable_share takes a single robot, one foot a leg, and single poses")
+    rpy, position = np.asarray(start.rpy), np.asarray(start.position)
+    turn, move = np.asarray(goal.rpy) - rpy, np.asarray(goal.position) - position
+    turn -= 2 * np.pi * np.round(turn / (2 * np.pi))
+
+    def reached(shares: np.ndarray[Any, Any]) -> Array:
+        roll, pitch, yaw = rpy[:, None] + turn[:, None] * shares
+        body = Pose.from_rpy(roll, pitch, yaw, position + shares[:, None] * move)
+        return np.asarray(inverse_kinematics(robot, feet, body).ok)
 
     low, high = 0.0, 1.0
-    for _ in range(_HALVINGS // 5):
-        shares = np.linspace(low, high, 33)
+    for _ in range(_ROUNDS):
+        shares = np.linspace(low, high, _STEPS + 1)
         ok = reached(shares)
         if ok.all():
-            return float(high)
+            return high
         first = int(np.argmin(ok))
+        if not first:
+            return low
         low, high = float(shares[first - 1]), float(shares[first])
     return low

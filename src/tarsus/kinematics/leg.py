@@ -105,10 +105,11 @@ def _by_blocks(
     """Run a kernel over the batch, in blocks that fit the cache where the arrays are NumPy's."""
     xp, q = checked_angles(robot, angles)
     geometry = robot.geometry.to(xp)
+    batch = broadcast_shapes("the robot and the angles", robot.batch_shape, q.shape[:-2])
     if xp is not np or (q.size <= SMALL and not robot.batch_shape):
+        q = q if xp is np else xp.broadcast_to(q, (*batch, robot.legs, 3))
         flat = stack_last(xp, kernel(xp, geometry, q[..., 0], q[..., 1], q[..., 2]))
         return xp.reshape(flat, (*flat.shape[:-1], *tail))
-    batch = broadcast_shapes("the robot and the angles", robot.batch_shape, q.shape[:-2])
     out = np.empty((*batch, robot.legs, tail[0] * tail[1]))
     same = geometry if robot.batch_shape else geometry.take((), ())
     for index in batch_blocks(batch, max(BLOCK // robot.legs, 1)):

@@ -3,24 +3,27 @@
 In the leg's plane the reachable points are the image of a box of femur and tibia angles; its boundary lies on five
 kinds of arcs: femur at a limit, tibia at a limit, and the straight or folded leg (which are limits too once the tibia
 is kept in one knee branch). The nearest point of an arc is where the ray from its centre meets it, or its nearer end:
-so the nearest point of the whole is the best of a few candidates, exactly. The plane itself is turned towards the
-target, away from it, or to a limit of the coxa.
+so the nearest point of the whole is the best of a few candidates, exactly.
+
+The plane itself is turned towards the target, away from it, or to a limit of the coxa: exactly, where the femur axis
+is not offset sideways. Where it is, the best turn depends on how far out the foot gets and the other way round, and
+both are corrected in turn, from several starts.
 """
 
 from __future__ import annotations
 
 import math
 
-from tarsus.arrays import Array, Namespace, is_traced
-from tarsus.kinematics.triangle import root
+from tarsus.arrays import Array, Namespace, fold
+from tarsus.kinematics.triangle import direction, root
 from tarsus.robot.geometry import LegGeometry
 
-__all__ = ["clip_angle", "nearest_angles", "tibia_branch"]
+__all__ = ["clip_angle", "nearest_angles", "tibia_bend", "tibia_branch"]
 
 _TURN = 2 * math.pi
-# With a sideways offset the best turn of the plane depends on how far the foot gets; this many corrections bring
-# the distance within a micrometre of the least.
-_CORRECTIONS = 12
+# By how many times its computed correction the turn is changed, one correction after the other: the corrections
+# shrink slowly where the target is near the coxa axis. A change that leads away from the target is not kept.
+_STRIDES = (1.0, 2.0, 6.0) * 5
 
 
 def wrap(xp: Namespace, angle: Array) -> Array:
@@ -44,10 +47,18 @@ def tibia_branch(xp: Namespace, geometry: LegGeometry, *, knee: int) -> tuple[Ar
     return xp.where(upper >= zero, xp.maximum(lower, zero), lower), upper
 
 
+def tibia_bend(xp: Namespace, geometry: LegGeometry, *, knee: int) -> Array:
+    """Return the sign of the tibia's angles in a knee branch; the other sign where the limits allow none of it."""
+    one = xp.ones_like(geometry.tibia_lower)
+    if knee > 0:
+        return xp.where(geometry.tibia_lower > 0, one, -one)
+    return xp.where(geometry.tibia_upper < 0, -one, one)
+
+
 def nearest_angles(
-    xp: Namespace, geometry: LegGeometry, x: Array, y: Array, z: Array, *, knee: int
-) -> tuple[Array, Array, Array]:
-    """Return the joint angles within the limits whose foot is nearest to a point of the leg frame.
+    xp: Namespace, geometry: LegGeometry, x: Array, y: Array, z: Array, *, knee: int, sideways: bool
+) -> tuple[Array, ...]:
+    """Return how near a foot comes to a point of the leg frame (squared [m^2]), and the joint angles for it.
 
     Parameters
     ----------
@@ -59,57 +70,76 @@ def nearest_angles(
         The target, from `to_leg_frame` [m].
     knee : int
         The knee branch, 1 up or -1 down.
+    sideways : bool
+        Whether any femur axis is offset sideways.
     """
     g = geometry
     along = root(xp, x * x + y * y - g.side2)
     lower, upper = g.coxa_lower, g.coxa_upper
-    towards = xp.atan2(y * along - x * g.side, x * along + y * g.side)
-    away = xp.atan2(-y * along - x * g.side, y * g.side - x * along)
-    zero = xp.zeros_like(towards)
-    best: tuple[Array, ...] = ()
-    for coxa in (clip_angle(xp, towards, lower, upper), clip_angle(xp, away, lower, upper), lower, upper):
-        best = _better(xp, best, _nearest_in_plane(xp, g, x, y, z, coxa + zero, knee=knee))
-    for _ in range(_CORRECTIONS if is_traced(g.side) or bool(xp.any(g.side != 0)) else 0):
-        foot_r = g.coxa + g.femur * xp.cos(best[2]) + g.tibia * xp.cos(best[2] + best[3])
-        coxa = clip_angle(xp, wrap(xp, xp.atan2(y, x) - xp.atan2(g.side + zero, foot_r)), lower, upper)
-        best = _better(xp, best, _nearest_in_plane(xp, g, x, y, z, coxa, knee=knee))
-    return best[1], best[2], best[3]
+    towards = direction(xp, y * along - x * g.side, x * along + y * g.side)
+    away = direction(xp, -y * along - x * g.side, y * g.side - x * along)
+    if not sideways:
+        return _best(xp, _in_planes(xp, g, x, y, z, clip_angle(xp, xp.stack((towards, away)), lower, upper), knee=knee))
+    zero = xp.zeros_like(x)
+    bearing = direction(xp, y, x)
+    turns = xp.stack((towards, away, lower + zero, upper + zero, bearing, wrap(xp, bearing + math.pi)))
+    found = _in_planes(xp, g, x, y, z, clip_angle(xp, turns, lower, upper), knee=knee)
+    first = _best(xp, found)
+    tracks = tuple(xp.stack((a, b[4, ...], b[5, ...])) for a, b in zip(first, found, strict=True))
+
+    def correct(tracks: tuple[Array, ...], stride: Array) -> tuple[Array, ...]:
+        foot_r = g.coxa + g.femur * xp.cos(tracks[2]) + g.tibia * xp.cos(tracks[2] + tracks[3])
+        correction = wrap(xp, bearing - direction(xp, g.side + xp.zeros_like(foot_r), foot_r) - tracks[1])
+        turns = clip_angle(xp, wrap(xp, tracks[1] + stride * correction), lower, upper)
+        return _better(xp, tracks, _in_planes(xp, g, x, y, z, turns, knee=knee))
+
+    return _best(xp, fold(correct, tracks, _STRIDES))
+
+
+def _best(xp: Namespace, candidates: tuple[Array, ...]) -> tuple[Array, ...]:
+    """Return, leg by leg, the best of candidates stacked along the first axis."""
+    first = xp.argmin(candidates[0], axis=0, keepdims=True)
+    return tuple(xp.take_along_axis(values, first, axis=0)[0, ...] for values in candidates)
 
 
 def _better(xp: Namespace, best: tuple[Array, ...], other: tuple[Array, ...]) -> tuple[Array, ...]:
     """Keep, leg by leg, the candidate (squared distance, angles...) whose distance is the smaller."""
-    if not best:
-        return other
     closer = other[0] < best[0]
     return tuple(xp.where(closer, new, old) for new, old in zip(other, best, strict=True))
 
 
-def _nearest_in_plane(
+def _in_planes(
     xp: Namespace, geometry: LegGeometry, x: Array, y: Array, z: Array, coxa: Array, *, knee: int
 ) -> tuple[Array, ...]:
-    """Return squared distance and angles of the nearest point with the plane turned to `coxa`."""
+    """Return squared distance and angles of the nearest points with the plane at each of the turns ``(turns, ...)``."""
     g = geometry
     cos, sin = xp.cos(coxa), xp.sin(coxa)
     r, off = x * cos + y * sin - g.coxa, y * cos - x * sin - g.side
-    low, high = g.femur_lower, g.femur_upper
     bent, straight = tibia_branch(xp, g, knee=knee)
-    direction = xp.atan2(z, r)
-    candidates = []
+    q1, q2 = _candidates(xp, g, r, z + xp.zeros_like(r), bent, straight, tibia_bend(xp, g, knee=knee))
+    q1 = clip_angle(xp, wrap(xp, q1), g.femur_lower, g.femur_upper)
+    q2 = clip_angle(xp, wrap(xp, q2), bent, straight)
+    miss_r = g.femur * xp.cos(q1) + g.tibia * xp.cos(q1 + q2) - r
+    miss_z = g.femur * xp.sin(q1) + g.tibia * xp.sin(q1 + q2) - z
+    miss2 = miss_r * miss_r + miss_z * miss_z + off * off
+    return _best(xp, (miss2, xp.broadcast_to(coxa, miss2.shape), q1, q2))
+
+
+def _candidates(
+    xp: Namespace, geometry: LegGeometry, r: Array, z: Array, bent: Array, straight: Array, bend: Array
+) -> tuple[Array, Array]:
+    """Return the femur and tibia angles of the five candidates ``(5, ...)``, limits not yet kept."""
+    g = geometry
+    zero = xp.zeros_like(r)
     distance2 = r * r + z * z
-    height = root(xp, (g.farthest2 - distance2) * (distance2 - g.nearest2))
-    inside = xp.atan2(height, distance2 + g.difference2)
-    candidates.append((direction + knee * inside, -knee * xp.atan2(height, distance2 - g.sum2)))
-    for femur in (low, high):
-        knee_r, knee_z = g.femur * xp.cos(femur), g.femur * xp.sin(femur)
-        candidates.append((femur + xp.zeros_like(r), xp.atan2(z - knee_z, r - knee_r) - femur))
+    height = bend * root(xp, (g.farthest2 - distance2) * (distance2 - g.nearest2))
+    slope = direction(xp, z, r)
+    femurs = [slope - direction(xp, height, distance2 + g.difference2)]
+    tibias = [direction(xp, height, distance2 - g.sum2)]
+    for femur in (g.femur_lower, g.femur_upper):
+        femurs.append(femur + zero)
+        tibias.append(direction(xp, z - g.femur * xp.sin(femur), r - g.femur * xp.cos(femur)) - femur)
     for tibia in (bent, straight):
-        inside = xp.atan2(g.tibia * xp.sin(tibia), g.femur + g.tibia * xp.cos(tibia))
-        candidates.append((direction - inside, tibia + xp.zeros_like(r)))
-    best: tuple[Array, ...] = ()
-    for femur, tibia in candidates:
-        q1 = clip_angle(xp, wrap(xp, femur), low, high)
-        q2 = clip_angle(xp, wrap(xp, tibia), bent, straight)
-        miss_r = g.femur * xp.cos(q1) + g.tibia * xp.cos(q1 + q2) - r
-        miss_z = g.femur * xp.sin(q1) + g.tibia * xp.sin(q1 + q2) - z
-        best = _better(xp, best, (miss_r * miss_r + miss_z * miss_z + off * off, coxa, q1, q2))
-    return best
+        femurs.append(slope - direction(xp, g.tibia * xp.sin(tibia), g.femur + g.tibia * xp.cos(tibia)))
+        tibias.append(tibia + zero)
+    return xp.stack(femurs), xp.stack(tibias)

@@ -23,10 +23,15 @@ __all__ = ["Pose", "rpy_from_rotation"]
 
 def _locked(array: Array) -> Array:
     """Copy a NumPy array and lock it; arrays of other libraries can't be written to or are not ours to lock."""
-    if isinstance(array, np.ndarray) and array.flags.writeable:
+    if isinstance(array, np.ndarray) and (array.flags.writeable or _is_writeable(array.base)):
         array = array.copy()
         array.setflags(write=False)
     return array
+
+
+def _is_writeable(base: object) -> bool:
+    """Return whether a locked array's numbers can change all the same, being a view of these."""
+    return base is not None and not (isinstance(base, np.ndarray) and not base.flags.writeable)
 
 
 _IDENTITY = _locked(np.eye(3))

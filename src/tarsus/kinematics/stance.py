@@ -2,24 +2,26 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
-from tarsus.arrays import Array, Namespace, as_floats, is_traced, namespace, stack_last
-from tarsus.errors import InputError, UnreachableError
-from tarsus.kinematics.inverse import ANGLE_TOLERANCE
-from tarsus.kinematics.nearest import tibia_branch
-from tarsus.kinematics.triangle import root
+from tarsus.arrays import Array, Namespace, as_floats, is_traced, namespace, require_finite, stack_last
+from tarsus.errors import UnreachableError
+from tarsus.kinematics.nearest import tibia_bend, tibia_branch
+from tarsus.kinematics.triangle import direction, root
+from tarsus.kinematics.verdict import ANGLE_TOLERANCE
 from tarsus.robot.geometry import LegGeometry
 from tarsus.robot.robot import Robot
 
 __all__ = ["default_clearance", "default_stance", "reachable_band"]
 
 
-def default_clearance(robot: Robot) -> float:
+def default_clearance(robot: Robot) -> Array:
     """Return the height of the body's origin over the ground that the robot walks at unless told otherwise [m].
 
-    The robot file's `clearance_mm`; where it has none, the height at which an upright tibia hangs from a femur
-    raised by 30 degrees, but at least half the tibia.
+    The robot file's `clearance_mm`; where it has none, the least height at which a leg's upright tibia hangs from a
+    femur raised by 30 degrees, but at least half the tibia below the femur axis.
 
     Parameters
     ----------
@@ -29,8 +31,10 @@ def default_clearance(robot: Robot) -> float:
     if robot.gait.clearance is not None:
         return robot.gait.clearance
     g = robot.geometry
-    heights = np.maximum(np.asarray(g.tibia - g.femur / 2), np.asarray(g.tibia / 2))
-    return float(np.min(heights - np.asarray(g.mount_z + g.up)))
+    xp = namespace(*g)
+    g = g.to(xp)
+    least = xp.min(xp.maximum(g.tibia - g.femur / 2, g.tibia / 2) - (g.mount_z + g.up))
+    return least if is_traced(least) else float(least)
 
 
 def reachable_band(robot: Robot, height: Array) -> tuple[Array, Array]:
@@ -51,11 +55,18 @@ def reachable_band(robot: Robot, height: Array) -> tuple[Array, Array]:
     -------
     nearest, farthest : array, shape (..., legs)
         Distances from the coxa axis along the leg's plane [m]. Both NaN where the height can't be reached.
+
+    Raises
+    ------
+    InputError
+        If a height is not a finite number.
     """
     g = robot.geometry
-    xp = namespace(height, g.coxa)
+    xp = namespace(height, *g)
     g = g.to(xp)
-    z = as_floats(xp, height, name="height")[..., None] - (g.mount_z + g.up)
+    z = as_floats(xp, height, name="height")
+    require_finite("height", z)
+    z = z[..., None] - (g.mount_z + g.up)
     ends = xp.sort(stack_last(xp, tuple(_band_ends(xp, g, z))), axis=-1)
     zero = xp.zeros_like(ends[..., 0])
     start, best_start, best_end = zero, zero, zero
@@ -90,10 +101,10 @@ def _band_ends(xp: Namespace, g: LegGeometry, z: Array) -> list[Array]:
 def _in_limits(xp: Namespace, g: LegGeometry, r: Array, z: Array) -> Array:
     distance2 = r * r + z * z
     far, near = g.farthest2 - distance2, distance2 - g.nearest2
-    height = root(xp, far * near)
+    height = tibia_bend(xp, g, knee=1) * root(xp, far * near)
     base = distance2 + g.difference2
-    femur = xp.atan2(z * base + r * height, r * base - z * height)
-    tibia = -xp.atan2(height, distance2 - g.sum2)
+    femur = direction(xp, z * base - r * height, r * base + z * height)
+    tibia = direction(xp, height, distance2 - g.sum2)
     within = (far >= 0) & (near >= 0)
     for angle, lower, upper in ((femur, g.femur_lower, g.femur_upper), (tibia, g.tibia_lower, g.tibia_upper)):
         within = within & (angle >= lower - ANGLE_TOLERANCE) & (angle <= upper + ANGLE_TOLERANCE)
@@ -130,14 +141,14 @@ def default_stance(robot: Robot, clearance: Array | None = None, *, lift: Array 
     """
     height = default_clearance(robot) if clearance is None else clearance
     g = robot.geometry
-    xp = namespace(height, g.coxa)
+    xp = namespace(height, lift, *g)
     g = g.to(xp)
-    z = -as_floats(xp, height, name="clearance")
-    if not is_traced(z) and not bool(xp.all(xp.isfinite(z))):
-        raise InputError(f"clearance is {height} m; it must be a finite number")
-    middle = _middle(xp, robot, z, as_floats(xp, lift, name="lift"))
+    z, rise = -as_floats(xp, height, name="clearance"), as_floats(xp, lift, name="lift")
+    require_finite("clearance", -z)
+    require_finite("lift", rise)
+    middle = _middle(xp, robot, z, rise)
     if not is_traced(middle) and bool(xp.any(xp.isnan(middle))):
-        raise UnreachableError(_why_no_stance(robot, height, lift, np.asarray(middle)))
+        raise UnreachableError(_why_no_stance(robot, -np.asarray(z), np.asarray(rise), np.asarray(middle)))
     zero = xp.zeros_like(middle)
     coxa = xp.minimum(xp.maximum(zero, g.coxa_lower), g.coxa_upper)
     out_x, out_y = middle * xp.cos(coxa) - g.side * xp.sin(coxa), middle * xp.sin(coxa) + g.side * xp.cos(coxa)
@@ -154,23 +165,28 @@ def _middle(xp: Namespace, robot: Robot, height: Array, lift: Array) -> Array:
     return xp.where(nearest <= farthest, (nearest + farthest) / 2, xp.full_like(nearest, xp.nan))
 
 
-def _why_no_stance(robot: Robot, clearance: Array, lift: Array, middle: Array) -> str:
-    """Say which leg has no foothold, and at which clearances all legs have one."""
-    leg = robot.leg_names[int(np.argwhere(np.isnan(middle))[0][-1])]
-    lowest = float(np.min(np.asarray(clearance)))
-    rise = float(np.max(np.asarray(lift)))
-    lifted = f" and can be lifted {rise * 1000:.1f} mm" if rise else ""
-    text = f"clearance {lowest * 1000:.1f} mm: leg {leg} nowhere reaches the ground{lifted} within its joint limits"
-    if robot.batch_shape:
-        return text
-    g = robot.geometry
+def _why_no_stance(
+    robot: Robot, clearance: np.ndarray[Any, Any], lift: np.ndarray[Any, Any], middle: np.ndarray[Any, Any]
+) -> str:
+    """Say which leg has no foothold, and at which clearances all legs of that design have one."""
+    *batch, leg = (int(i) for i in np.argwhere(np.isnan(middle))[0])
+    where, whole = tuple(batch), middle.shape[:-1]
+    wanted, rise = (float(np.broadcast_to(values, whole)[where]) * 1000 for values in (clearance, lift))
+    lifted = f" and can be lifted {rise:.1f} mm" if rise else ""
+    text = (
+        f"{f'{batch} ' if batch else ''}clearance {wanted:.1f} mm: leg {robot.leg_names[leg]} nowhere reaches the "
+        f"ground{lifted} within its joint limits"
+    )
+    one = robot.item(where, of=whole)
+    g = one.geometry
     reach = float((g.femur + g.tibia).max() + np.abs(g.mount_z + g.up).max())
-    heights = np.linspace(-reach, reach, 4001)
-    works = heights[~np.isnan(_middle(np, robot, -heights, np.asarray(rise))).any(-1)]
+    # In tenths of a millimetre, so that the clearances work as they are written.
+    steps = np.arange(-np.ceil(reach * 1e4), np.ceil(reach * 1e4) + 1)
+    works = steps[~np.isnan(_middle(np, one, -steps / 1e4, np.asarray(rise / 1000))).any(-1)] / 10
     if not len(works):
         return f"{text}, and there is no clearance at which all legs do"
-    nearest = float(works[np.argmin(np.abs(works - lowest))])
+    nearest = works[np.argmin(np.abs(works - wanted))]
     return (
-        f"{text}; all legs do at clearances between {works.min() * 1000:.0f} and {works.max() * 1000:.0f} mm, "
-        f"nearest to it at {nearest * 1000:.1f} mm"
+        f"{text}; all legs do at clearances between {works.min():.1f} and {works.max():.1f} mm, "
+        f"nearest to it at {nearest:.1f} mm"
     )

@@ -19,7 +19,7 @@ import numpy as np
 from tarsus.arrays import Array, Namespace
 from tarsus.robot.geometry import LegGeometry
 
-__all__ = ["Triangle", "root", "solve_triangle", "to_leg_frame"]
+__all__ = ["Triangle", "direction", "root", "solve_triangle", "to_leg_frame"]
 
 
 class Triangle(NamedTuple):
@@ -43,6 +43,13 @@ def root(xp: Namespace, square: Array) -> Array:
         return np.sqrt(np.maximum(square, 0.0))
     positive = square > 0
     return xp.where(positive, xp.sqrt(xp.where(positive, square, xp.ones_like(square))), xp.zeros_like(square))
+
+
+def direction(xp: Namespace, y: Array, x: Array) -> Array:
+    """Return ``atan2(y, x)``, with a gradient that stays finite at the origin."""
+    if xp is np:
+        return np.atan2(y, x)
+    return xp.atan2(y, xp.where((x == 0) & (y == 0), xp.ones_like(x), x))
 
 
 def to_leg_frame(geometry: LegGeometry, x: Array, y: Array, z: Array) -> tuple[Array, Array, Array]:
@@ -79,9 +86,9 @@ def solve_triangle(
     height = root(xp, far * near)
     base = distance2 + g.difference2
     return Triangle(
-        coxa=xp.atan2(y * along - x * g.side, x * along + y * g.side),
-        femur=xp.atan2(z * base + knee * (r * height), r * base - knee * (z * height)),
-        tibia=-knee * xp.atan2(height, distance2 - g.sum2),
+        coxa=direction(xp, y * along - x * g.side, x * along + y * g.side),
+        femur=direction(xp, z * base + knee * (r * height), r * base - knee * (z * height)),
+        tibia=-knee * direction(xp, height, distance2 - g.sum2),
         far=far,
         near=near,
         beside=beside,

@@ -1,0 +1,77 @@
+"""A body's place over the ground, and which legs dip below it."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple, Self
+
+import numpy as np
+
+from tarsus.arrays import Array, Index, Namespace, columns
+from tarsus.kinematics.leg import point_parts
+from tarsus.kinematics.pose import Pose
+from tarsus.kinematics.reach import Reach
+from tarsus.kinematics.verdict import LENGTH_TOLERANCE, mark
+from tarsus.robot.geometry import LegGeometry
+
+__all__ = ["BodyPlace", "mark_below_ground", "surely_above"]
+
+
+class BodyPlace(NamedTuple):
+    """A body's pose taken apart, in a layout that fits the geometry's: ``rotation[row][column]`` and position."""
+
+    rotation: tuple[tuple[Array, ...], ...]
+    position: tuple[Array, ...]
+
+    @classmethod
+    def of_block(cls, body: Pose, index: Index, block: tuple[int, ...]) -> Self:
+        """Take apart what belongs to a block of the batch, as columns (see `tarsus.arrays.columns`)."""
+        rotation, position = (
+            columns(body.rotation, index, block, tail=2),
+            columns(body.position, index, block, tail=1),
+        )
+        return cls(tuple(tuple(rotation[j, i] for j in range(3)) for i in range(3)), tuple(position))
+
+    @classmethod
+    def of(cls, xp: Namespace, body: Pose) -> Self:
+        """Take a pose apart as ``(..., 1)``, the last axis standing for the legs."""
+        rotation, position = xp.asarray(body.rotation)[..., None], xp.asarray(body.position)[..., None]
+        elements = tuple(tuple(rotation[..., i, j, :] for j in range(3)) for i in range(3))
+        return cls(elements, tuple(position[..., i, :] for i in range(3)))
+
+    def into_body(self, x: Array, y: Array, z: Array) -> tuple[Array, ...]:
+        """Carry points of G into B."""
+        (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = self.rotation
+        x, y, z = x - self.position[0], y - self.position[1], z - self.position[2]
+        return xx * x + yx * y + zx * z, xy * x + yy * y + zy * z, xz * x + yz * y + zz * z
+
+    def height(self, x: Array, y: Array, z: Array) -> Array:
+        """Return the height over the ground of points of B."""
+        zx, zy, zz = self.rotation[2]
+        return zx * x + zy * y + zz * z + self.position[2]
+
+
+def mark_below_ground(
+    xp: Namespace, geometry: LegGeometry, joints: tuple[Array, ...], codes: Array, body: BodyPlace
+) -> Array:
+    """Mark the legs whose coxa axis is below the ground, and those within reach whose femur axis or knee is."""
+    parts = point_parts(xp, geometry, *joints)
+    attachment, axis, knee = (body.height(*parts[i : i + 3]) < -LENGTH_TOLERANCE for i in (0, 3, 6))
+    return mark(xp, codes, attachment | ((codes == 0) & (axis | knee)), Reach.BELOW_GROUND)
+
+
+def surely_above(geometry: LegGeometry, femur: Array, body: BodyPlace) -> bool:
+    """Return whether all bodies are so high that no point of a NumPy leg but the foot can be below the ground."""
+    g = geometry
+    zx, zy, zz = body.rotation[2]
+    if not femur.size:
+        return True
+    if zz.min() < 0:
+        return False
+    lean = math.sqrt(float((zx * zx + zy * zy).max()))
+    # Between -pi/2 and pi the sine is least at the lowest angle, or positive.
+    low = max(-float(femur.min()), 0.0)
+    drop = math.sin(low) if low < math.pi / 2 and float(femur.max()) < math.pi else 1.0
+    # A point above B's origin counts as level with it: a tilted body brings it down by an unknown share of its height.
+    lowest = lean * g.knee_span + np.maximum(drop * g.femur + g.axis_depth, 0.0)
+    return bool(body.position[2].min() > lowest.max())
