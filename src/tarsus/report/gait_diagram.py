@@ -1,0 +1,105 @@
+"""The gait diagram: which foot is down when, and how safely the robot stands meanwhile."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from tarsus.gait.motion import Motion
+from tarsus.report.style import INK, WARNING, leg_colours, new_figure, stance_spans, thinned, tidy_axes
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from tarsus.robot.robot import Robot
+
+__all__ = ["draw_stance", "plot_gait", "rows_of_legs"]
+
+
+def plot_gait(motion: Motion) -> Figure:
+    """Draw the gait diagram, a bar for each stance, with the stability margin below it.
+
+    Parameters
+    ----------
+    motion : Motion
+        The motion.
+
+    Returns
+    -------
+    Figure
+        To be saved by `tarsus.report.style.save_figure`, or shown in a notebook.
+
+    Raises
+    ------
+    TarsusError
+        If matplotlib is not installed.
+    """
+    figure = new_figure(width=9, height=3.2 + 0.28 * motion.robot.legs)
+    above, below = figure.subplots(2, 1, sharex=True, height_ratios=[0.3 * motion.robot.legs, 2])
+    tidy_axes(above, y="leg")
+    draw_stance(above, motion)
+    tidy_axes(below, x="time (s)", y="stability margin (mm)")
+    _draw_margin(below, motion)
+    below.set_xlim(0, motion.duration)
+    gait = motion.gait
+    text = f"{motion.robot.name}: {gait.name} gait, duty factor {gait.duty:.3g}, cycle {motion.cycle_time:.3g} s"
+    figure.suptitle(f"{text}. Bars: foot on the ground", x=0.01, ha="left", color=INK)
+    return figure
+
+
+def rows_of_legs(robot: Robot) -> list[int]:
+    """Return the legs as a gait diagram lists them: the left side from front to rear, then the right side.
+
+    Parameters
+    ----------
+    robot : Robot
+        A single robot.
+    """
+    mounts = np.asarray(robot.mount_position)
+    return sorted(range(robot.legs), key=lambda leg: (mounts[leg, 1] <= 0, -mounts[leg, 0]))
+
+
+def draw_stance(axes: Axes, motion: Motion) -> None:
+    """Draw a row for each leg, with a bar while its foot is down.
+
+    Parameters
+    ----------
+    axes : Axes
+        Where; its x axis is time [s].
+    motion : Motion
+        The motion.
+    """
+    rows, colours = rows_of_legs(motion.robot), leg_colours(motion.robot)
+    for row, leg in enumerate(rows):
+        axes.broken_barh(stance_spans(motion, leg), (row - 0.38, 0.76), facecolor=colours[leg], linewidth=0)
+    axes.set_yticks(range(len(rows)), [motion.robot.leg_codes[leg] for leg in rows], fontsize=8)
+    axes.set_ylim(len(rows) - 0.4, -0.6)
+    axes.grid(visible=False, axis="y")
+
+
+def _draw_margin(axes: Axes, motion: Motion) -> None:
+    shown = thinned(motion)
+    # Without a foot on the ground the margin is minus infinity: a gap in the line.
+    margin = np.where(np.isfinite(motion.margin), motion.margin, np.nan) * 1000
+    axes.plot(motion.time[shown], margin[shown], color=INK, linewidth=1.5)
+    axes.axhline(0, color=WARNING, linewidth=1.1, linestyle=(0, (6, 3)))
+    if not np.isfinite(margin).any():
+        return
+    axes.fill_between(motion.time[shown], 0, np.minimum(margin[shown], 0), color=WARNING, alpha=0.25, linewidth=0)
+    worst = int(np.nanargmin(margin))
+    axes.plot(motion.time[worst], margin[worst], "o", color=INK, markersize=5)
+    high = float(np.nanmax(margin))
+    axes.set_ylim(min(0.0, 1.35 * float(margin[worst])) - 0.05 * abs(high), max(1.15 * high, 5.0))
+    late = motion.time[worst] > 0.7 * motion.duration
+    axes.annotate(
+        f"least: {margin[worst]:.1f} mm at {motion.time[worst]:.2f} s",
+        (float(motion.time[worst]), float(margin[worst])),
+        xytext=(-8 if late else 8, -11),
+        textcoords="offset points",
+        ha="right" if late else "left",
+        va="center",
+        color=INK,
+        fontsize=9,
+    )

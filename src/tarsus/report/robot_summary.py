@@ -1,0 +1,136 @@
+"""A robot in numbers: what `tarsus robots` prints and `--json` returns."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from tarsus.errors import InputError, UnreachableError
+from tarsus.gait.gait import Gait
+from tarsus.gait.stroke import max_stroke
+from tarsus.kinematics.mass import total_mass
+from tarsus.kinematics.stance import default_clearance
+from tarsus.robot.robot import JOINTS, Robot, Source
+
+__all__ = ["Check", "check_robot", "dimensions", "robot_summary"]
+
+Check = dict[str, Any]
+
+_SAID = ("source", "confidence", "note")
+
+
+def robot_summary(robot: Robot) -> dict[str, Any]:
+    """Return a robot in one line's worth of numbers, in the units that the keys name; None where unknown.
+
+    Parameters
+    ----------
+    robot : Robot
+        A single robot.
+    """
+    servos = sorted({servo.name for row in robot.servos for servo in row if servo is not None})
+    lengths = {f"{joint}_mm": (getattr(robot, joint) * 1000).tolist() for joint in JOINTS}
+    return {
+        "name": robot.name,
+        "legs": robot.legs,
+        **{key: values[0] if len(set(values)) == 1 else values for key, values in lengths.items()},
+        "body_mm": None if robot.body_size is None else (np.asarray(robot.body_size) * 1000).tolist(),
+        "mass_kg": float(total_mass(robot)) if robot.has_masses else None,
+        "servos": servos,
+        "gait": robot.gait.name,
+        "clearance_mm": default_clearance(robot) * 1000,
+    }
+
+
+def dimensions(robot: Robot) -> list[dict[str, Any]]:
+    """Return every number of a robot's file with where it comes from.
+
+    Parameters
+    ----------
+    robot : Robot
+        A single robot.
+
+    Returns
+    -------
+    list of dict
+        In the file's order: key, value, the number of its source in the file (from 1), and that source's text,
+        confidence and note; None where the file names no source.
+    """
+    rows = []
+    for key, spoken_of, value in _keys(robot.to_dict()):
+        source = _source_of(spoken_of, robot.sources)
+        said = dict.fromkeys(_SAID) if source is None else {name: getattr(source, name) for name in _SAID}
+        place = None if source is None else robot.sources.index(source) + 1
+        rows.append({"key": key, "value": value, "source_number": place, **said})
+    return rows
+
+
+def _keys(document: dict[str, Any]) -> Iterator[tuple[str, tuple[str, ...], Any]]:
+    """Go through the numbers of a robot file: key, the names under which a source may speak of it, value."""
+    for table in ("body", "leg", "gait"):
+        for key, value in document.get(table, {}).items():
+            yield f"{table}.{key}", (f"{table}.{key}", table), value
+    for leg in document["legs"]:
+        for key, value in leg.items():
+            if key != "name":
+                yield f"{leg['name']}: {key}", (f"legs.{key}", f"leg.{key}", "legs"), value
+
+
+def _source_of(names: tuple[str, ...], sources: tuple[Source, ...]) -> Source | None:
+    """Return the source that speaks of a key, by the first of its names that any source knows."""
+    for name in names:
+        for source in sources:
+            if any(of == name or of.startswith(f"{name}.") for of in source.of if "." in name or of == name):
+                return source
+    return None
+
+
+def check_robot(robot: Robot) -> Check:
+    """Return what a robot's file lacks, and whether the robot can walk as it is.
+
+    Parameters
+    ----------
+    robot : Robot
+        A single robot.
+
+    Returns
+    -------
+    dict
+        `problems`: why it can't walk, empty where it can; `missing`: what isn't known, and what that costs;
+        `longest_stroke_mm`: with its own gait, straight ahead, or None.
+    """
+    problems: list[str] = []
+    longest = None
+    try:
+        longest = max_stroke(robot, Gait.named(robot.gait.name, legs=robot.legs)) * 1000
+        if longest == 0:
+            problems.append("the robot can't step: in its rest stance a leg can't be lifted, or two feet are too near")
+    except (InputError, UnreachableError) as error:
+        problems.append(str(error))
+    return {
+        "robot": robot_summary(robot),
+        "possible": not problems,
+        "problems": problems,
+        "missing": list(_missing(robot)),
+        "longest_stroke_mm": longest,
+    }
+
+
+def _missing(robot: Robot) -> Iterator[str]:
+    if robot.body_mass is None:
+        yield "body.mass_kg: without it, no torques, and the stability margin is that of the body's own centre"
+    if robot.link_mass is None:
+        yield "leg.mass_kg: without it, no torques, and the links count as massless"
+    if robot.body_size is None:
+        yield "body.size_mm: without it, the body is the flat polygon of the coxa axes"
+    servos = [servo for row in robot.servos for servo in row]
+    if None in servos:
+        yield "leg.servo: without it, no verdict on joint speeds"
+    slow = sorted({servo.name for servo in servos if servo is not None and servo.no_load_speed is None})
+    for name in slow:
+        yield f"no_load_rad_s of the servo {name}: without it, no verdict on joint speeds"
+    if robot.gait.clearance is None:
+        yield f"gait.clearance_mm: {default_clearance(robot) * 1000:.0f} mm is taken, from the lengths of the legs"
+    if robot.gait.lift is None:
+        yield "gait.lift_mm: a quarter of the clearance is taken"

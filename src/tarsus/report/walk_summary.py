@@ -1,0 +1,88 @@
+"""A walk in numbers: what the command line prints and `--json` returns."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from tarsus.gait.motion import Motion
+from tarsus.robot.robot import JOINTS
+
+__all__ = ["walk_summary"]
+
+
+def walk_summary(motion: Motion) -> dict[str, Any]:
+    """Return a motion in numbers, in the units that the keys name.
+
+    Parameters
+    ----------
+    motion : Motion
+        The motion.
+
+    Returns
+    -------
+    dict
+        Strings, numbers, lists and dicts; what is unknown is None. `speed_mm_s` and `stroke_mm` are those of the foot
+        that goes farthest past the body: on a straight walk, the body's.
+    """
+    worst = int(np.argmin(motion.margin))
+    return {
+        "robot": motion.robot.name,
+        "gait": motion.gait.name,
+        "duty_factor": motion.gait.duty,
+        "duration_s": motion.duration,
+        "cycle_time_s": motion.cycle_time,
+        "steps": motion.steps,
+        "stroke_mm": motion.stroke * 1000,
+        "speed_mm_s": motion.speed * 1000,
+        "clearance_mm": motion.clearance * 1000,
+        "lift_mm": motion.lift * 1000,
+        "end": _end(motion),
+        "joint_speed": {joint: _joint_speed(motion, number) for number, joint in enumerate(JOINTS)},
+        "least_margin": {"mm": motion.margin[worst] * 1000, "at_s": motion.time[worst]},
+        "nearest_feet": _nearest_feet(motion),
+        "possible": motion.ok,
+        "problems": list(motion.problems),
+        "assumed": list(motion.assumed),
+    }
+
+
+def _end(motion: Motion) -> dict[str, float]:
+    """Return where the body is in the end, and how far it has turned, whole turns included."""
+    x, y = motion.body.position[-1, :2] * 1000
+    yaw = np.unwrap(motion.body.rpy[:, 2])
+    return {"x_mm": x, "y_mm": y, "turned_deg": math.degrees(yaw[-1] - yaw[0])}
+
+
+def _nearest_feet(motion: Motion) -> dict[str, Any]:
+    """Return which two feet come nearest to each other, when, and how near."""
+    moment = int(np.argmin(motion.feet_apart))
+    feet, codes = motion.feet[moment], motion.robot.leg_codes
+    apart = np.linalg.norm(feet[:, None] - feet, axis=-1) + np.diag(np.full(len(feet), np.inf))
+    pair = np.unravel_index(int(np.argmin(apart)), apart.shape)
+    return {
+        "mm": motion.feet_apart[moment] * 1000,
+        "at_s": motion.time[moment],
+        "legs": [codes[int(leg)] for leg in pair],
+        "least_allowed_mm": motion.foot_distance * 1000,
+    }
+
+
+def _joint_speed(motion: Motion, joint: int) -> dict[str, Any]:
+    """Return one kind of joint's greatest speed, and what share of its servo's speed without load that is."""
+    fastest = np.abs(motion.joint_speed[:, :, joint]).max(0)
+    leg = int(np.argmax(fastest))
+    ratio = motion.speed_ratio[:, joint]
+    # With different servos, the leg nearest to its servo's limit is not always the fastest.
+    tightest = leg if np.isnan(ratio).all() else int(np.nanargmax(ratio))
+    servo = motion.robot.servos[tightest][joint]
+    limit = None if servo is None or servo.no_load_speed is None else math.degrees(servo.no_load_speed)
+    return {
+        "deg_s": math.degrees(fastest[leg]),
+        "leg": motion.robot.leg_codes[leg],
+        "servo": None if servo is None else servo.name,
+        "no_load_deg_s": limit,
+        "share_of_no_load": None if limit is None else ratio[tightest],
+    }
