@@ -1,0 +1,91 @@
+"""`tarsus rest`: how the robot lies or stands with given joint angles."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from tarsus.cli.output import print_json, show
+from tarsus.cli.values import Numbers, examples, json_option, robot_argument
+
+if TYPE_CHECKING:
+    from tarsus.robot.robot import Robot
+
+__all__ = ["rest"]
+
+
+# Angles are mostly negative, and must not be taken for options.
+@click.command(
+    context_settings={"ignore_unknown_options": True},
+    epilog=examples(
+        "tarsus rest strider --all 0,-30,-60",
+        "tarsus rest strider 0 40 -100 0 40 -100 0 40 -100 0 40 -100 0 40 -100 0 90 -90",
+        "tarsus rest strider --file angles.json --json",
+        "tarsus rest phantomx --all 0,60,-110 --picture rest.png",
+    ),
+)
+@robot_argument
+@click.argument("angles", nargs=-1, metavar="[ANGLE]...")
+@click.option("--all", "alike", type=Numbers("C", "F", "T"), metavar="C,F,T", help="Every leg alike: three angles.")
+@click.option("--file", type=click.Path(path_type=Path), metavar="FILE", help="Read them from a JSON file.")
+@click.option(
+    "--picture", type=click.Path(path_type=Path), metavar="FILE", help="Draw it to this file (png, svg, pdf)."
+)
+@json_option
+def rest(
+    robot: str,
+    angles: tuple[str, ...],
+    alike: tuple[float, float, float] | None,
+    file: Path | None,
+    picture: Path | None,
+    as_json: bool,
+) -> int:
+    """Tell how the robot rests on flat ground with its joints held at ANGLES, in deg.
+
+    Three angles for each leg (coxa, femur, tibia), the legs in their order. A JSON file holds them as a list, a list
+    of three for each leg, or under the key angles_deg: what tarsus pose --json prints. The exit code is 0 only if the
+    robot rests and no angle is out of its joint's limits.
+    """
+    import numpy as np
+
+    from tarsus.cli.angles import read_angles
+    from tarsus.kinematics.rest import resting_pose
+    from tarsus.report.standing_summary import rest_summary
+    from tarsus.report.tables import verdict
+    from tarsus.robot.file import load_robot
+
+    loaded = load_robot(robot)
+    radians = np.radians(read_angles(loaded, angles, alike=alike, file=file))
+    result = resting_pose(loaded, radians)
+    summary = rest_summary(loaded, radians, result)
+    if picture is not None:
+        _draw(loaded, radians, result, picture)
+        summary["files"] = [str(picture)]
+    if as_json:
+        print_json(summary)
+    else:
+        _print(summary)
+        show(verdict(summary))
+        if picture is not None:
+            click.echo(f"wrote {picture}")
+    return 0 if summary["possible"] else 1
+
+
+def _print(summary: dict[str, Any]) -> None:
+    body = summary["body"]
+    show(
+        f"{summary['robot']} {summary['description']}",
+        f"roll {body['roll_deg'] + 0.0:.2f} deg, pitch {body['pitch_deg'] + 0.0:.2f} deg, height {body['z_mm']:.1f} mm",
+        f"feet on the ground: {', '.join(summary['contacts']) or 'none'}",
+        *(f"assumed: {text}" for text in summary["assumed"]),
+    )
+
+
+def _draw(robot: Robot, radians: Any, result: Any, picture: Path) -> None:
+    from tarsus.report.skeleton import plot_robot
+    from tarsus.report.style import save_figure
+
+    title = f"{robot.name} {result.describe()}"
+    save_figure(plot_robot(robot, radians, body=result.body, contacts=result.contacts, title=title), picture)

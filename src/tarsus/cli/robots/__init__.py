@@ -1,0 +1,31 @@
+"""`tarsus robots`: the robots there are, and robot files."""
+
+from __future__ import annotations
+
+import click
+
+from tarsus.cli.robots.check import check
+from tarsus.cli.robots.list import list_all
+from tarsus.cli.robots.new import new
+from tarsus.cli.robots.schema import schema
+from tarsus.cli.robots.show import show_robot
+from tarsus.cli.values import examples
+
+__all__ = ["robots"]
+
+
+@click.group(
+    epilog=examples(
+        "tarsus robots list",
+        "tarsus robots show strider",
+        "tarsus robots new my-robot --out my-robot.toml",
+        "tarsus robots check my-robot.toml",
+        "tarsus robots schema",
+    )
+)
+def robots() -> None:
+    """List robots, show where their numbers come from, start and check robot files."""
+
+
+for command in (list_all, show_robot, new, check, schema):
+    robots.add_command(command)

@@ -1,0 +1,32 @@
+"""`tarsus robots list`: the robots that come with Tarsus."""
+
+from __future__ import annotations
+
+import click
+
+from tarsus.cli.output import print_json, show
+from tarsus.cli.values import examples, json_option
+
+__all__ = ["list_all"]
+
+
+@click.command(
+    "list",
+    epilog=examples(
+        "tarsus robots list",
+        "tarsus robots list --json",
+    ),
+)
+@json_option
+def list_all(as_json: bool) -> int:
+    """List the robots that come with Tarsus: sizes, masses, servos."""
+    from tarsus.report.robot_summary import robot_summary
+    from tarsus.report.tables import robot_table
+    from tarsus.robot.file import list_robots, load_robot
+
+    summaries = [robot_summary(load_robot(name)) for name in list_robots()]
+    if as_json:
+        print_json(summaries)
+    else:
+        show(robot_table(summaries))
+    return 0

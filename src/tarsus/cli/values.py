@@ -1,0 +1,75 @@
+"""Values of options: finite numbers, and several of them with commas."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, TypeVar
+
+import click
+
+__all__ = ["Numbers", "examples", "json_option", "number_option", "robot_argument"]
+
+# Far beyond any robot, and far from where squares overflow.
+_LARGEST = 1e9
+_F = TypeVar("_F", bound=Callable[..., Any])
+
+
+def _finite(text: str) -> float | None:
+    try:
+        value = float(text)
+    except ValueError:
+        return None
+    return value if abs(value) <= _LARGEST else None
+
+
+class Number(click.ParamType[Any]):
+    """A finite number."""
+
+    name = "number"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> float:
+        """Return the number; refuse NaN and infinities too."""
+        number = _finite(str(value))
+        if number is None:
+            self.fail(f"{value!r} is not a number between -1e9 and 1e9", param, ctx)
+        return number
+
+
+class Numbers(click.ParamType[Any]):
+    """So many finite numbers with commas between them."""
+
+    name = "numbers"
+
+    def __init__(self, *names: str) -> None:
+        self.names = names
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> tuple[float, ...]:
+        """Return the numbers."""
+        if isinstance(value, tuple):
+            return value
+        numbers = [_finite(part) for part in str(value).split(",")]
+        if len(numbers) != len(self.names) or None in numbers:
+            self.fail(
+                f"{value!r} is not {len(self.names)} numbers between -1e9 and 1e9, {','.join(self.names)}", param, ctx
+            )
+        return tuple(number for number in numbers if number is not None)
+
+
+def number_option(flag: str, unit: str, text: str, **more: Any) -> Callable[[_F], _F]:
+    """Return an option for a finite number; its unit stands in the help."""
+    return click.option(flag, type=Number(), metavar=unit, help=text, **more)
+
+
+def robot_argument(function: _F) -> _F:
+    """Add the argument ROBOT."""
+    return click.argument("robot", metavar="ROBOT")(function)
+
+
+def json_option(function: _F) -> _F:
+    """Add the option ``--json``."""
+    return click.option("--json", "as_json", is_flag=True, help="Print one JSON document instead.")(function)
+
+
+def examples(*lines: str) -> str:
+    """Return command lines as the end of a command's help: one a line, not folded."""
+    return "\n".join(("\b", "Examples:", *(f"  {line}" for line in lines)))
