@@ -61,7 +61,9 @@ def namespace(*arrays: Array) -> Namespace:
         return np
     import array_api_compat
 
-    return array_api_compat.array_namespace(*others)
+    # What else has a shape (a table of pandas, an array of xarray) is taken as NumPy takes it.
+    others = [a for a in others if array_api_compat.is_array_api_obj(a)]
+    return array_api_compat.array_namespace(*others) if others else np
 
 
 def as_array(xp: Namespace, values: Array) -> Array:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from typing import Any, Self, overload
 
@@ -63,6 +64,8 @@ class Pose:
         require_shape("position", position, (3,))
         require_finite("rotation", rotation)
         require_finite("position", position)
+        if rotation.ndim > 2 and position.ndim > 1:
+            broadcast_shapes("a pose", rotation.shape[:-2], position.shape[:-1])
         object.__setattr__(self, "rotation", _locked(rotation))
         object.__setattr__(self, "position", _locked(position))
 
@@ -88,6 +91,7 @@ class Pose:
         angles = [as_floats(xp, a, name=n) for a, n in ((roll, "roll"), (pitch, "pitch"), (yaw, "yaw"))]
         for angle, name in zip(angles, ("roll", "pitch", "yaw"), strict=True):
             require_finite(name, angle)
+        broadcast_shapes("roll, pitch and yaw", *(angle.shape for angle in angles))
         (cr, cp, cy), (sr, sp, sy) = [xp.cos(a) for a in angles], [xp.sin(a) for a in angles]
         rows = (
             (cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr),
@@ -130,14 +134,15 @@ class Pose:
         xp = namespace(other, self.rotation, self.position)
         points = as_floats(xp, other, name="points")
         require_shape("points", points, (3,))
+        require_finite("points", points)
         batch = self.batch_shape
         between = max(points.ndim - 1 - len(batch), 0)
         broadcast_shapes("the pose and the points", batch, points.shape[: points.ndim - 1 - between])
         if between == 0:
             return self._carry(points[..., None, :])[..., 0, :]
-        flat = xp.reshape(points, (*points.shape[: points.ndim - 1 - between], -1, 3))
-        carried = self._carry(flat)
-        return xp.reshape(carried, (*carried.shape[:-2], *points.shape[points.ndim - 1 - between :]))
+        leading, middle = points.shape[: points.ndim - 1 - between], points.shape[points.ndim - 1 - between : -1]
+        carried = self._carry(xp.reshape(points, (*leading, math.prod(middle), 3)))
+        return xp.reshape(carried, (*carried.shape[:-2], *middle, 3))
 
     def _carry(self, points: Array) -> Array:
         """Carry points ``(..., k, 3)`` whose leading axes broadcast with the batch axes."""
@@ -160,7 +165,9 @@ class Pose:
         rotation = xp.broadcast_to(xp.asarray(self.rotation), (*batch, 3, 3))
         position = xp.broadcast_to(xp.asarray(self.position), (*batch, 3))
         index = index if isinstance(index, tuple) else (index,)
-        return Pose(rotation[(*index, ..., slice(None), slice(None))], position[(*index, ..., slice(None))])
+        if not any(part is Ellipsis for part in index):
+            index = (*index, ...)
+        return Pose(rotation[(*index, slice(None), slice(None))], position[(*index, slice(None))])
 
     @property
     def rpy(self) -> Array:

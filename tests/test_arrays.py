@@ -1,0 +1,190 @@
+import math
+import sys
+
+import array_api_strict
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tarsus import arrays
+from tarsus.errors import InputError
+
+shapes = st.lists(st.integers(0, 7), max_size=4).map(tuple)
+
+
+def test_numpy_and_what_has_no_namespace_is_computed_with_numpy():
+    assert arrays.namespace() is np
+    assert arrays.namespace(1.0, [1, 2], np.float64(3), np.zeros(2)) is np
+
+
+def test_the_namespace_is_that_of_the_array_that_is_not_numpys():
+    assert arrays.namespace(np.zeros(2), jnp.zeros(2)) is jnp
+    assert arrays.namespace(array_api_strict.zeros(2), np.zeros(2)).__name__ == "array_api_strict"
+
+
+def test_a_table_with_a_shape_of_its_own_is_computed_with_numpy():
+    class Table:
+        shape = (2,)
+
+        def __array__(self, dtype=None, copy=None):
+            return np.array([1, 2], dtype=dtype)
+
+    assert arrays.namespace(Table()) is np
+    assert arrays.as_floats(np, Table(), name="v").tolist() == [1.0, 2.0]
+
+
+@pytest.mark.parametrize("xp", [np, jnp, array_api_strict])
+def test_as_array_converts_once_and_never_copies_its_own(xp):
+    own = xp.asarray([1.0, 2.0])
+    assert arrays.as_array(xp, own) is own
+    other = arrays.as_array(xp, [1.0, 2.0])
+    assert type(other) is type(own)
+    assert bool(xp.all(arrays.as_array(xp, np.array([1.0, 2.0])) == own))
+
+
+@pytest.mark.parametrize("xp", [np, jnp, array_api_strict])
+@pytest.mark.parametrize("values", [[1, 2], [True, False], [1.5, -2.0]])
+def test_as_floats_takes_every_kind_of_real_number(xp, values):
+    found = arrays.as_floats(xp, xp.asarray(values), name="v")
+    assert found.dtype == xp.float64
+    assert [float(v) for v in found] == [float(v) for v in values]
+
+
+@pytest.mark.parametrize("kind", [np.float16, np.float32, np.int8, np.uint64])
+def test_as_floats_widens_numpy_numbers(kind):
+    assert arrays.as_floats(np, np.array([1, 2], dtype=kind), name="v").dtype == np.float64
+
+
+def test_as_floats_keeps_the_width_of_other_libraries():
+    assert arrays.as_floats(jnp, jnp.zeros(2, dtype=jnp.float32), name="v").dtype == jnp.float32
+
+
+def test_as_floats_does_not_copy_what_is_right_already():
+    values = np.zeros(3)
+    assert arrays.as_floats(np, values, name="v") is values
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    ["text", ["1.0", "2.0"], np.array(["1.0"]), [1j], np.array([1 + 0j]), None, [None], [[1.0], [1.0, 2.0]], object()],
+)
+def test_as_floats_refuses_what_is_no_real_number(wrong):
+    with pytest.raises(InputError, match=r"^heights: expected an array of real numbers, got "):
+        arrays.as_floats(np, wrong, name="heights")
+
+
+@pytest.mark.parametrize("xp", [jnp, array_api_strict])
+def test_as_floats_refuses_complex_numbers_of_any_library(xp):
+    with pytest.raises(InputError, match=r"heights: expected an array of real numbers, got .*complex128"):
+        arrays.as_floats(xp, xp.asarray([1j]), name="heights")
+
+
+def test_traced_values_are_told_from_concrete_ones(monkeypatch):
+    seen = []
+    jax.jit(lambda x: seen.append(arrays.is_traced(x)) or x)(1.0)
+    assert seen == [True]
+    assert not arrays.is_traced(jnp.zeros(1))
+    assert not arrays.is_traced(np.zeros(1))
+    monkeypatch.delitem(sys.modules, "jax")
+    assert not arrays.is_traced(np.zeros(1))
+
+
+@pytest.mark.parametrize("xp", [np, jnp, array_api_strict])
+@pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf])
+def test_require_finite_says_where_and_how_many(xp, bad):
+    values = np.zeros((2, 3))
+    values[1, 2] = bad
+    with pytest.raises(InputError) as caught:
+        arrays.require_finite("feet", xp.asarray(values))
+    assert str(caught.value) == f"feet[1, 2] is {bad}; 1 of 6 values are not finite numbers"
+
+
+def test_require_finite_of_a_single_number():
+    arrays.require_finite("height", np.asarray(1.0))
+    with pytest.raises(InputError, match=r"^height is nan; it must be a finite number$"):
+        arrays.require_finite("height", np.asarray(math.nan))
+
+
+def test_require_finite_lets_pass_what_can_not_be_looked_at():
+    def f(x):
+        arrays.require_finite("x", x)
+        return x
+
+    assert math.isnan(jax.jit(f)(math.nan))
+
+
+def test_require_shape():
+    arrays.require_shape("feet", np.zeros((9, 6, 3)), (6, 3))
+    for shape in ((6, 4), (3,), (), (3, 6)):
+        with pytest.raises(InputError) as caught:
+            arrays.require_shape("feet", np.zeros(shape), (6, 3))
+        assert str(caught.value) == f"feet has shape {shape}; expected (..., 6, 3)"
+
+
+def test_only_where_needed_computes_only_where_needed():
+    calls = []
+
+    def compute():
+        calls.append(1)
+        return (1,)
+
+    assert arrays.only_where_needed(np.bool_(False), compute, (2,)) == (2,)
+    assert not calls
+    assert arrays.only_where_needed(np.bool_(True), compute, (2,)) == (1,)
+
+
+def test_only_where_needed_is_decided_as_jitted_code_runs():
+    f = jax.jit(lambda x: arrays.only_where_needed(x > 0, lambda: (x * 2,), (x * 3,))[0])
+    assert float(f(1.0)) == 2.0
+    assert float(f(-1.0)) == -3.0
+
+
+def test_fold_steps_alike_traced_or_not():
+    def power(x):
+        return arrays.fold(lambda state, v: (state[0] * v, state[1] + state[0]), (x, x), (1.0, 2.0, 5.0))
+
+    plain, traced = power(np.asarray(3.0)), jax.jit(power)(3.0)
+    assert [float(v) for v in plain] == [30.0, 3 + 3 + 3 + 6]
+    assert [float(v) for v in traced] == [float(v) for v in plain]
+
+
+@pytest.mark.parametrize("xp", [np, jnp, array_api_strict])
+def test_stack_last_is_stack_of_the_broadcast_parts(xp):
+    a, b = np.arange(6.0).reshape(2, 3), np.arange(3.0)
+    found = np.asarray(arrays.stack_last(xp, (xp.asarray(a), xp.asarray(b))))
+    assert np.array_equal(found, np.stack(np.broadcast_arrays(a, b), axis=-1))
+
+
+def test_broadcast_shapes():
+    assert arrays.broadcast_shapes("a and b", (4, 1), (3,)) == (4, 3)
+    with pytest.raises(InputError) as caught:
+        arrays.broadcast_shapes("the robot and the feet", (4,), (3,))
+    assert str(caught.value) == "the batch axes of the robot and the feet don't fit together: (4,) and (3,)"
+
+
+@given(shape=shapes, size=st.integers(1, 30))
+def test_blocks_cover_every_item_once_and_are_small(shape, size):
+    count = np.zeros(shape, dtype=int)
+    for index in arrays.batch_blocks(shape, size):
+        block = arrays.block_shape(shape, index)
+        assert count[index].shape == block
+        assert math.prod(block) <= size
+        count[index] += 1
+    assert (count == 1).all()
+
+
+@given(shape=st.lists(st.integers(1, 5), min_size=1, max_size=3).map(tuple), size=st.integers(1, 10), data=st.data())
+def test_columns_are_the_block_transposed(shape, size, data):
+    own = tuple(data.draw(st.sampled_from([1, n])) for n in shape)[data.draw(st.integers(0, len(shape))) :]
+    array = np.arange(math.prod(own) * 6.0).reshape(*own, 2, 3)
+    whole = np.broadcast_to(array, (*shape, 2, 3))
+    for index in arrays.batch_blocks(shape, size):
+        block = arrays.block_shape(shape, index)
+        found = arrays.columns(array, index, block, tail=2)
+        expected = whole[index].reshape(-1, 2, 3).T
+        assert found.shape in (expected.shape, (3, 2, 1))
+        assert np.array_equal(np.broadcast_to(found, expected.shape), expected)
+        assert found.flags.c_contiguous
