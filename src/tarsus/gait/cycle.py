@@ -41,11 +41,10 @@ def cycle_feet(
     contacts : array of bool, shape (m, legs)
         Whether each foot is on the ground.
     """
-    xp = namespace(rest, phases, lift)
-    rest, phases = as_array(xp, rest), as_array(xp, phases)
+    xp = namespace(rest, twist, phases, lift)
+    rest, twist, phases = as_array(xp, rest), as_array(xp, twist), as_array(xp, phases)
     _, phase, contacts = gait.phase(phases)
-    displacement = [as_array(xp, twist)[..., i] for i in range(3)]
-    displacement = [part[..., None, None] for part in displacement]
+    displacement = [twist[..., i, None, None] for i in range(3)]
     # Seen from the body's place in the middle of the stance, the foothold is `rest`; the next is a cycle further.
     since_middle = phase / gait.duty - 0.5
     here = exponential(displacement, since_middle)

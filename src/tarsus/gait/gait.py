@@ -6,6 +6,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Self
 
+import numpy as np
+
 from tarsus.arrays import Array, namespace
 from tarsus.errors import InputError, UnknownNameError
 
@@ -68,7 +70,13 @@ class Gait:
     name: str = "custom"
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "offsets", tuple(float(offset) for offset in self.offsets))
+        try:
+            object.__setattr__(self, "duty", float(self.duty))
+            object.__setattr__(self, "offsets", tuple(float(offset) for offset in self.offsets))
+        except (TypeError, ValueError) as error:
+            raise InputError(f"gait {self.name!r}: duty and offsets must be numbers: {error}") from None
+        if not self.offsets:
+            raise InputError(f"gait {self.name!r} has no legs: offsets must be one for each leg")
         if not 0 < self.duty < 1:
             raise InputError(f"gait {self.name!r}: duty is {self.duty}; it must be between 0 and 1, both excluded")
         for leg, offset in enumerate(self.offsets):
@@ -94,9 +102,9 @@ class Gait:
         InputError
             If the gait is not for that many legs.
         """
-        key = _ALIASES.get(name.lower(), name.lower())
+        key = _ALIASES.get(str(name).lower(), str(name).lower())
         if key not in _NAMED:
-            raise UnknownNameError.of("gait", name, (*_NAMED, *_ALIASES))
+            raise UnknownNameError.of("gait", str(name), (*_NAMED, *_ALIASES))
         fits = {"tripod": legs >= 6 and legs % 2 == 0, "wave": legs >= 4}.get(key, legs == 6)
         if not fits:
             raise InputError(f"the {key} gait is not for {legs} legs; the wave gait is for any number from 4")
@@ -111,9 +119,9 @@ class Gait:
     @property
     def fewest_feet_down(self) -> int:
         """The least number of feet that are on the ground at any moment of the cycle."""
-        # The number changes only at touchdowns and lift-offs; a moment after each tells all there is.
-        events = [*self.offsets, *(offset + self.duty for offset in self.offsets)]
-        return min(sum((event + 1e-9 - offset) % 1.0 < self.duty for offset in self.offsets) for event in events)
+        # It falls only at lift-offs; a moment after each tells all there is.
+        after = np.asarray(self.offsets) + self.duty + 2 * _MOMENT
+        return int(self.phase(after)[2].sum(-1).min())
 
     def phase(self, clock: Array) -> tuple[Array, Array, Array]:
         """Return which step each leg is in, how far, and whether its foot is down.

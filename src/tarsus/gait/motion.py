@@ -11,8 +11,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from tarsus.errors import InputError
+from tarsus.gait.branch import branches
 from tarsus.gait.gait import Gait
-from tarsus.gait.stroke import feet_distance
+from tarsus.gait.spacing import feet_distance
 from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.reach import IKSolution, Reach
 from tarsus.kinematics.stability import stability_margin
@@ -24,6 +26,9 @@ if TYPE_CHECKING:
 __all__ = ["Motion"]
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]
+
+# A leg that goes over to another way to reach its foot, and a joint with it by more than this, jumps [rad].
+_JUMP = 0.1
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -78,6 +83,20 @@ class Motion:
             array = np.array(getattr(self, name))
             array.setflags(write=False)
             object.__setattr__(self, name, array)
+        self._check_shapes()
+
+    def _check_shapes(self) -> None:
+        """Refuse arrays that don't fit together."""
+        n, legs = self.time.size, self.robot.legs
+        self.gait.require_legs(legs)
+        shapes = {"time": (n,), "feet": (n, legs, 3), "contacts": (n, legs), "angles": (n, legs, 3), "reach": (n, legs)}
+        for name, shape in shapes.items():
+            if getattr(self, name).shape != shape:
+                raise InputError(f"a motion's {name} has shape {getattr(self, name).shape}; expected {shape}")
+        if self.body.batch_shape != (n,):
+            raise InputError(f"a motion's body has batch axes {self.body.batch_shape}; expected {(n,)}")
+        if n < 2 or not (np.diff(self.time) > 0).all():
+            raise InputError("a motion needs two moments or more, each later than the one before")
 
     @cached_property
     def margin(self) -> Floats:
@@ -110,27 +129,48 @@ class Motion:
         """Largest speed of each joint over its servo's no-load speed ``(legs, 3)``; NaN where that is unknown."""
         limits = [[math.nan if s is None else s.no_load_speed or math.nan for s in leg] for leg in self.robot.servos]
         fastest: Floats = np.abs(self.joint_speed).max(0)
-        return fastest / np.array(limits)
+        return np.asarray(fastest / np.array(limits))
 
     @cached_property
     def problems(self) -> tuple[str, ...]:
-        """What of it is not possible: one line for each kind, with the worst moment; empty where all of it is."""
+        """What of it is not possible, a line for each kind with its first or worst moment; empty where all of it is."""
         return tuple(self._problems())
 
     @property
     def ok(self) -> bool:
-        """Whether all of it is possible: reach, balance, distance between the feet, joint speeds."""
+        """Whether all of it is possible: reach without jumps, balance, distance between the feet, joint speeds."""
         return not self.problems
 
     def _problems(self) -> Iterator[str]:
         if (self.reach != Reach.OK).any():
             yield self._why_unreachable()
-        worst = int(np.argmin(self.margin))
-        if self.margin[worst] < 0:
+        yield from self._jumps()
+        yield from self._tips_over()
+        yield from self._feet_too_near()
+        yield from self._too_fast()
+
+    def _jumps(self) -> Iterator[str]:
+        """Tell where a leg goes over to another way to reach its foot, as inverse kinematics may have it."""
+        side = branches(self.robot, self.angles)
+        change = np.abs(np.diff(self.angles, axis=0))
+        change *= (side[1:] != side[:-1]).any(-1)[..., None]
+        moment, leg, joint = np.unravel_index(int(np.argmax(change)), change.shape)
+        if change[moment, leg, joint] > _JUMP:
+            turn = math.degrees(change[moment, leg, joint])
             yield (
-                f"tips over: at {self.time[worst]:.2f} s the centre of mass is {-self.margin[worst] * 1000:.1f} mm "
-                "outside the feet that are down"
+                f"jumps: at {self.time[moment]:.2f} s the {JOINTS[joint]} of {self.robot.leg_codes[leg]} would have to "
+                f"turn {turn:.0f} deg at once, to another way to reach the same foot"
             )
+
+    def _tips_over(self) -> Iterator[str]:
+        worst = int(np.argmin(self.margin))
+        at = f"tips over: at {self.time[worst]:.2f} s"
+        if not self.contacts[worst].any():
+            yield f"{at} no foot is on the ground"
+        elif self.margin[worst] < 0:
+            yield f"{at} the centre of mass is {-self.margin[worst] * 1000:.1f} mm outside the feet that are down"
+
+    def _feet_too_near(self) -> Iterator[str]:
         distance, pair = feet_distance(self.feet)
         near = int(np.argmin(distance))
         if distance[near] < self.foot_distance - 1e-9:
@@ -139,6 +179,8 @@ class Motion:
                 f"feet too near: at {self.time[near]:.2f} s {legs} are {distance[near] * 1000:.1f} mm apart, "
                 f"at least {self.foot_distance * 1000:.1f} mm are asked for"
             )
+
+    def _too_fast(self) -> Iterator[str]:
         ratio = np.nan_to_num(self.speed_ratio, nan=0.0)
         leg, joint = np.unravel_index(int(np.argmax(ratio)), ratio.shape)
         servo = self.robot.servos[leg][joint]

@@ -79,7 +79,7 @@ class Path:
         x, y, yaw = self.displacement
         xp = namespace(feet)
         across, along = x - yaw * feet[..., 1], y + yaw * feet[..., 0]
-        return xp.sqrt(across * across + along * along)
+        return xp.hypot(across, along)
 
 
 def exponential(displacement: Sequence[float] | Array, share: Array) -> Array:

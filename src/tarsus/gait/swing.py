@@ -2,9 +2,19 @@
 
 from __future__ import annotations
 
-from tarsus.arrays import Array, namespace, stack_last
+from tarsus.arrays import Array, as_array, namespace, stack_last
 
-__all__ = ["swing"]
+__all__ = ["ground_share", "height_share", "swing"]
+
+
+def ground_share(share: Array) -> Array:
+    """Return the share of the way over the ground after a share of the swing: ``10 s^3 - 15 s^4 + 6 s^5``."""
+    return share * share * share * (10 - 15 * share + 6 * share * share)
+
+
+def height_share(share: Array) -> Array:
+    """Return the height over the lift after a share of the swing: ``64 s^3 (1 - s)^3``, 1 in the middle."""
+    return (4 * share * (1 - share)) ** 3
 
 
 def swing(start: Array, end: Array, share: Array, lift: Array) -> Array:
@@ -27,9 +37,8 @@ def swing(start: Array, end: Array, share: Array, lift: Array) -> Array:
     array, shape (..., 3)
         Points in G [m].
     """
-    xp = namespace(start, end, share)
-    s = xp.asarray(share)
-    along = s * s * s * (10 - 15 * s + 6 * s * s)
-    up = lift * (4 * s * (1 - s)) ** 3
+    xp = namespace(start, end, share, lift)
+    start, end, share = as_array(xp, start), as_array(xp, end), as_array(xp, share)
+    along, up = ground_share(share), as_array(xp, lift) * height_share(share)
     parts = [start[..., i] + (end[..., i] - start[..., i]) * along for i in range(3)]
     return stack_last(xp, (parts[0], parts[1], parts[2] + up))

@@ -11,7 +11,18 @@ import numpy as np
 from tarsus.arrays import Array
 from tarsus.gait.gait import Gait
 
-__all__ = ["BodyClock", "Steps", "plan_steps"]
+__all__ = ["BodyClock", "Steps", "least_step_share", "plan_steps"]
+
+# Steps shorter than this share of a stroke are not worth lifting a foot for; nor is more than this of a path left out.
+_LEAST_STEP = 0.01
+_LEAST_STEP = 0.01
+_MOST_LEFT_OUT = 0.25
+_MOST_LEFT_OUT = 0.25
+
+
+def least_step_share(strokes: float) -> float:
+    """Return the share of a path of so many strokes that is not worth a step."""
+    return min(_LEAST_STEP / strokes, _MOST_LEFT_OUT)
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,155 @@
+"""How far from their rest footholds feet get in a walk, start and stop included, whatever its length."""
+
+from __future__ import annotations
+
+import functools
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from tarsus.arrays import Array
+from tarsus.gait.gait import Gait
+from tarsus.gait.path import carry, exponential
+from tarsus.gait.swing import ground_share, height_share
+from tarsus.gait.timing import BodyClock, least_step_share, plan_steps
+
+__all__ = ["Excursions", "extreme_excursions", "walk_excursions"]
+
+_OFFSETS = 24
+_SHARES = np.linspace(0.0, 1.0, 49)
+# Cruising times between start and stop [cycles]: from 2 on, no step both starts and stops.
+_CRUISES = (0.0, 0.25, 0.5, 0.75, 1.0, 1.5, 2.0)
+_CRUISES_OF_WALKS = (0.0, 0.75, 1.5, 2.0, 2.25)
+_STANCE = np.linspace(-0.5, 0.5, 9)
+_INWARD = (0.0, 0.1, 0.3, 1.0)
+_MOMENTS_OF_SWING = 24
+
+
+class Excursions(NamedTuple):
+    """Moments of feet: arrays ``(k, legs)``, or ``(k, 1)`` where any leg may come by them.
+
+    Attributes
+    ----------
+    last, following : array
+        Where the body has the last and the next foothold at rest, less where it is, in strokes along the path.
+    along : array
+        Share of the way over the ground from the one to the other.
+    up : array
+        Height over the lift.
+    """
+
+    last: np.ndarray[Any, Any]
+    following: np.ndarray[Any, Any]
+    along: np.ndarray[Any, Any]
+    up: np.ndarray[Any, Any]
+
+    @classmethod
+    def joined(cls, *parts: Excursions) -> Excursions:
+        """Join the moments of several."""
+        return cls(*(np.concatenate(columns) for columns in zip(*parts, strict=True)))
+
+    @property
+    def offset(self) -> np.ndarray[Any, Any]:
+        """Place along a straight path, from the rest foothold, in strokes."""
+        return np.asarray(self.last + (self.following - self.last) * self.along)
+
+    def feet(self, rest: Array, twist: Array, lift: float) -> np.ndarray[Any, Any]:
+        """Return the feet in the body's heading frame on the ground.
+
+        Parameters
+        ----------
+        rest : array, shape (legs, 3)
+            Rest footholds [m].
+        twist : array, shape (..., 3)
+            What the body moves in one stance time: forward [m], left [m], yaw [rad].
+        lift : float
+            Lift [m].
+
+        Returns
+        -------
+        array, shape (..., k, legs, 3)
+            Feet [m].
+        """
+        displacement = [np.asarray(twist)[..., i, None, None] for i in range(3)]
+        each = np.asarray(rest)[:, None, :]
+        start = carry(exponential(displacement, self.last), each)[..., 0, :]
+        end = carry(exponential(displacement, self.following), each)[..., 0, :]
+        feet = start + (end - start) * self.along[..., None]
+        feet[..., 2] += self.up * lift
+        return np.asarray(feet)
+
+
+@functools.lru_cache(maxsize=64)
+def extreme_excursions(duty: float, *, curved: bool) -> Excursions:
+    """Return the moments ``(k, 1)`` at which a foot is farthest from its track, of all walks with a duty factor.
+
+    A step while the body gathers speed is shorter than one in cruise, so that the foot hangs over farther before it
+    lands; how far depends on when in the cycle the leg starts, and on how long the walk is. Of all steps of all
+    such walks these are, at every height of the foot, the farthest ahead or behind; with them one steady cycle.
+    Round a centre the swings cut across the arc, the deeper the longer the step: of a curved walk these are also the
+    farthest in directions between ahead or behind and inwards.
+
+    Parameters
+    ----------
+    duty : float
+        Duty factor.
+    curved : bool
+        Whether the walk turns.
+    """
+    every = Excursions.joined(*(_swings(duty, cruise) for cruise in _CRUISES))
+    ahead = every.offset.reshape(-1, len(_SHARES))
+    length = (every.following - every.last).reshape(ahead.shape)
+    number = np.arange(len(_SHARES))
+    # A foot that rises hangs behind, one that sinks ahead.
+    sides = (-1.0, 1.0) if curved else (np.sign(_SHARES - 0.5),)
+    scores = [side * ahead + inward * length for side in sides for inward in (_INWARD if curved else (0.0,))]
+    picked = np.unique(np.concatenate([score.argmax(0) * len(_SHARES) + number for score in scores]))
+    still = _STANCE[:, None]
+    extreme = Excursions(*(column[picked] for column in every))
+    return Excursions.joined(Excursions(still, still, 0 * still, 0 * still), _steady_swing(duty), extreme)
+
+
+@functools.lru_cache(maxsize=64)
+def walk_excursions(gait: Gait) -> Excursions:
+    """Return the moments ``(k, legs)`` of whole short walks, every leg at the same moment.
+
+    Parameters
+    ----------
+    gait : Gait
+        The gait.
+    """
+    return Excursions.joined(*(_walk(gait, cruise) for cruise in _CRUISES_OF_WALKS))
+
+
+def _steady_swing(duty: float) -> Excursions:
+    """Return one swing in cruise."""
+    share = _SHARES[::2, None]
+    since = 0.5 + share * (1 - duty) / duty
+    return Excursions(-since, 1 / duty - since, ground_share(share), height_share(share))
+
+
+def _swings(duty: float, cruise: float) -> Excursions:
+    """Return all swings of a walk with so many cycles of cruise, of legs that start anywhere in the cycle."""
+    gait = Gait(duty, tuple(np.arange(_OFFSETS) / _OFFSETS))
+    clock = BodyClock(rate=1 / (1 + cruise), ramp=1.0, cruise=cruise)
+    strokes = (1 + cruise) / duty
+    steps = plan_steps(gait, clock, cycle_time=1.0, least_step=least_step_share(strokes))
+    number = np.arange(-2, int(np.ceil(cruise)) + 3)[:, None]
+    last, following = steps.foothold_share(number), steps.foothold_share(number + 1)
+    lift_off = number + np.asarray(gait.offsets) + duty
+    moves = last != following
+    body = clock.share(lift_off[moves][:, None] + _SHARES * (1 - duty))
+    start, end = ((share[moves][:, None] - body) * strokes for share in (last, following))
+    along, up = ground_share(_SHARES) + 0 * body, height_share(_SHARES) + 0 * body
+    return Excursions(*(column.reshape(-1, 1) for column in (start, end, along, up)))
+
+
+def _walk(gait: Gait, cruise: float) -> Excursions:
+    """Return a walk with so many cycles of cruise."""
+    clock = BodyClock(rate=1 / (1 + cruise), ramp=1.0, cruise=cruise)
+    strokes = (1 + cruise) / gait.duty
+    steps = plan_steps(gait, clock, cycle_time=1.0, least_step=least_step_share(strokes))
+    time = np.arange(steps.start, steps.end, (1 - gait.duty) / _MOMENTS_OF_SWING)
+    last, following, swung, _ = steps.at(time)
+    body = clock.share(time)[:, None]
+    return Excursions((last - body) * strokes, (following - body) * strokes, ground_share(swung), height_share(swung))

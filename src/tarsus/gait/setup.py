@@ -1,0 +1,188 @@
+"""What a walk is set up with besides its path and pace: robot, gait, heights, tilt; checked, nothing left open."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, Self
+
+import numpy as np
+
+from tarsus.arrays import Array
+from tarsus.errors import InputError
+from tarsus.gait.cycle import tilted_body
+from tarsus.gait.gait import Gait
+from tarsus.gait.spacing import default_foot_distance
+from tarsus.kinematics.inverse import inverse_kinematics
+from tarsus.kinematics.reach import IKSolution
+from tarsus.kinematics.stance import default_clearance, default_stance
+from tarsus.robot.robot import Robot
+
+__all__ = ["Setup", "default_lift", "require_number"]
+
+# No length of a walk's step is greater [m]: what is, is a slip, and its square may overflow.
+_MOST = 1e3
+
+
+def default_lift(robot: Robot) -> float:
+    """Return how high a swinging foot is lifted unless told otherwise [m].
+
+    The robot file's `lift_mm`; where it has none, a quarter of the clearance.
+
+    Parameters
+    ----------
+    robot : Robot
+        The robot.
+    """
+    return robot.gait.lift if robot.gait.lift is not None else abs(default_clearance(robot)) / 4
+
+
+def require_number(name: str, value: float, *, zero: bool, most: float = math.inf) -> float:
+    """Return a number that is not negative, as a float.
+
+    Parameters
+    ----------
+    name : str
+        What it is, for the message.
+    value : float
+        The number.
+    zero : bool
+        Whether it may be 0.
+    most : float
+        The greatest that it may be.
+
+    Raises
+    ------
+    InputError
+        If it is something else.
+    """
+    try:
+        number = float(value)
+    except (TypeError, ValueError):
+        raise InputError(f"{name} is {value!r}; it must be a number") from None
+    if not 0 <= number < math.inf:
+        raise InputError(f"{name} is {number:g}; it must be a finite number, not negative")
+    if number > most:
+        raise InputError(f"{name} is {number:g}; it must be at most {most:g}")
+    if number == 0 and not zero:
+        raise InputError(f"{name} is 0; it must be greater than 0")
+    return number
+
+
+@dataclass(frozen=True)
+class Setup:
+    """A robot and how it is to walk, complete but for path and pace.
+
+    Attributes
+    ----------
+    robot : Robot
+        A single robot.
+    gait : Gait
+        For that many legs.
+    rest : array, shape (legs, 3)
+        Rest footholds in the body's heading frame on the ground [m].
+    clearance, lift : float
+        Height of the body's origin, lift of the swinging feet [m].
+    body_tilt : (roll, pitch)
+        Tilt of the body against the ground [rad].
+    foot_distance : float
+        Least distance between two feet [m].
+    """
+
+    robot: Robot
+    gait: Gait
+    rest: np.ndarray[Any, Any]
+    clearance: float
+    lift: float
+    body_tilt: tuple[float, float]
+    foot_distance: float
+
+    @classmethod
+    def of(
+        cls,
+        robot: Robot,
+        gait: Gait,
+        *,
+        clearance: float | None,
+        lift: float | None,
+        body_tilt: Sequence[float],
+        foot_distance: float | None,
+    ) -> Self:
+        """Check what is given, and take the robot's own values for what is not.
+
+        Parameters
+        ----------
+        robot, gait, clearance, lift, body_tilt, foot_distance
+            As the attributes; None for the robot's own.
+
+        Raises
+        ------
+        InputError
+            If the robot is a batch, the gait is for another number of legs, or a number is out of its range.
+        UnreachableError
+            If a leg reaches the ground nowhere at that clearance.
+        """
+        if robot.batch_shape:
+            raise InputError(f"a walk is planned for a single robot, not for a batch {robot.batch_shape} of designs")
+        gait.require_legs(robot.legs)
+        robot = robot.item(())
+        lift = default_lift(robot) if lift is None else require_number("lift", lift, zero=True, most=_MOST)
+        distance = default_foot_distance(robot) if foot_distance is None else foot_distance
+        height = default_clearance(robot) if clearance is None else clearance
+        if not abs(height) <= _MOST:
+            raise InputError(f"clearance is {height} m; it must be a finite number, at most {_MOST:g}")
+        stance = default_stance(robot, height, lift=lift)
+        return cls(
+            robot=robot,
+            gait=gait,
+            rest=stance * np.array([1.0, 1.0, 0.0]),
+            clearance=float(height),
+            lift=lift,
+            body_tilt=_tilt(body_tilt),
+            foot_distance=require_number("foot_distance", distance, zero=True),
+        )
+
+    def assumed(self, clearance: float | None, lift: float | None) -> list[str]:
+        """Say what neither the caller nor the robot file gives.
+
+        Parameters
+        ----------
+        clearance, lift : float, optional
+            What the caller gave.
+        """
+        assumed = []
+        if clearance is None and self.robot.gait.clearance is None:
+            assumed.append(f"clearance {self.clearance * 1000:.0f} mm: from the lengths of femur and tibia")
+        if lift is None and self.robot.gait.lift is None:
+            assumed.append(f"lift {self.lift * 1000:.0f} mm: a quarter of the clearance")
+        if not self.robot.has_masses:
+            assumed.append(
+                "the robot file gives no masses: the stability margin is that of the body's centre of mass, "
+                "the links counted as massless"
+            )
+        return assumed
+
+    def solve(self, feet: Array, place: Array | None = None) -> IKSolution:
+        """Return the joint angles for feet on the ground.
+
+        Parameters
+        ----------
+        feet : array, shape (..., legs, 3)
+            In G; where `place` is left out, in the heading frame [m].
+        place : array, shape (..., 3), optional
+            The body's places on the ground: x [m], y [m] and yaw [rad].
+        """
+        at = np.zeros(3) if place is None else place
+        body = tilted_body(at, clearance=np.asarray(self.clearance), body_tilt=self.body_tilt)
+        return inverse_kinematics(self.robot, feet, body)
+
+
+def _tilt(body_tilt: Sequence[float]) -> tuple[float, float]:
+    try:
+        roll, pitch = (float(v) for v in body_tilt)
+    except (TypeError, ValueError):
+        raise InputError(f"body_tilt is {body_tilt!r}; it must be two numbers, roll and pitch in rad") from None
+    if not (abs(roll) < math.pi / 2 and abs(pitch) < math.pi / 2):
+        raise InputError(f"body_tilt is ({roll}, {pitch}) rad; roll and pitch must be between -pi/2 and pi/2")
+    return roll, pitch
