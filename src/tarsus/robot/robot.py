@@ -13,75 +13,12 @@ import numpy as np
 
 from tarsus.arrays import Array, broadcast_shapes, namespace
 from tarsus.errors import InputError, MissingDataError, UnknownNameError
+from tarsus.robot.about import GaitDefaults, Source
 from tarsus.robot.geometry import LegGeometry
 from tarsus.robot.servo import Servo
+from tarsus.robot.shape import JOINTS, OPTIONAL, TAILS, locked
 
 __all__ = ["JOINTS", "GaitDefaults", "Robot", "Source", "stack_robots"]
-
-JOINTS = ("coxa", "femur", "tibia")
-"""The joints of a leg, in the order of the last axis of an array of joint angles."""
-
-# The axes of each array that follow its batch axes; "legs" stands for the number of legs.
-_TAILS: dict[str, tuple[str | int, ...]] = {
-    "mount_position": ("legs", 3),
-    "mount_yaw": ("legs",),
-    "coxa": ("legs",),
-    "femur": ("legs",),
-    "tibia": ("legs",),
-    "femur_axis_offset": ("legs", 2),
-    "limits": ("legs", 3, 2),
-    "foot_radius": ("legs",),
-    "link_com": ("legs", 3),
-    "link_mass": ("legs", 3),
-    "body_mass": (),
-    "body_com": (3,),
-    "body_size": (3,),
-}
-_OPTIONAL = ("link_mass", "body_mass", "body_size")
-_POSITIVE = ("femur", "tibia", "body_mass", "body_size")
-_NOT_NEGATIVE = ("coxa", "foot_radius", "link_mass")
-
-
-@dataclass(frozen=True, kw_only=True)
-class GaitDefaults:
-    """How this robot walks unless told otherwise.
-
-    Attributes
-    ----------
-    name : str
-        The gait's name.
-    clearance : float or None
-        Height of the body's origin over the ground [m]; None for a height worked out from the legs.
-    lift : float or None
-        How high a swinging foot is lifted [m]; None for a share of the clearance.
-    """
-
-    name: str = "tripod"
-    clearance: float | None = None
-    lift: float | None = None
-
-
-@dataclass(frozen=True, kw_only=True)
-class Source:
-    """Where numbers of a robot file come from, and how sure they are.
-
-    Attributes
-    ----------
-    of : tuple of str
-        The keys it speaks of, such as ``"leg.coxa_mm"``.
-    source : str
-        Where they were found.
-    confidence : str
-        ``"A"`` read in the primary file, ``"B"`` in a secondary copy, ``"C"`` mostly general knowledge,
-        ``"guess"`` a guess of this project.
-    note : str
-        What else is known.
-    """
-
-    of: tuple[str, ...]
-    source: str
-    confidence: str
-    note: str = ""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -159,7 +96,7 @@ class Robot:
             broadcast_shapes(f"robot {self.name!r}", *(tuple(length.shape) for length in lengths))
             lengths = xp.broadcast_arrays(*lengths)
             object.__setattr__(self, "link_com", xp.stack(lengths, axis=-1) / 2)
-        for name in ("link_com", *_OPTIONAL):
+        for name in ("link_com", *OPTIONAL):
             self._lock(name, getattr(self, name))
         object.__setattr__(self, "leg_names", tuple(self.leg_names))
         servos = tuple(tuple(row) for row in self.servos) or ((None,) * 3,) * self.legs
@@ -169,39 +106,15 @@ class Robot:
         _ = self.batch_shape  # refuses batch axes that don't broadcast
 
     def _lock(self, name: str, value: Array) -> None:
-        """Copy a NumPy value in, lock it and check its shape and range."""
-        if value is None:
-            return
-        if isinstance(value, np.ndarray | np.generic) or not hasattr(value, "shape"):
-            try:
-                value = np.array(value, dtype=np.float64)
-            except (TypeError, ValueError) as error:
-                raise InputError(f"{self.name}: {name}: expected an array of numbers: {error}") from None
-            value.setflags(write=False)
-            self._check_range(name, value)
-        tail = tuple(self.legs if n == "legs" else n for n in _TAILS[name])
-        if tail and tuple(value.shape[-len(tail) :]) != tail:
-            expected = ", ".join(["...", *map(str, tail)])
-            raise InputError(f"{self.name}: {name} has shape {tuple(value.shape)}; expected ({expected})")
-        object.__setattr__(self, name, value)
-
-    def _check_range(self, name: str, value: np.ndarray[Any, Any]) -> None:
-        if not np.isfinite(value).all():
-            raise InputError(f"{self.name}: {name} holds a value that is not a finite number")
-        lowest = float(value.min()) if value.size else np.inf
-        if name in _POSITIVE and lowest <= 0:
-            raise InputError(f"{self.name}: {name} is {lowest:g}; it must be greater than 0")
-        if name in _NOT_NEGATIVE and lowest < 0:
-            raise InputError(f"{self.name}: {name} is {lowest:g}; it must not be negative")
-        if name == "limits" and (value[..., 0] > value[..., 1]).any():
-            raise InputError(f"{self.name}: limits: a lowest angle is greater than its highest")
+        if value is not None:
+            object.__setattr__(self, name, locked(name, value, legs=self.legs, robot=self.name))
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Robot):
             return NotImplemented
         for spec in dataclasses.fields(self):
             mine, theirs = getattr(self, spec.name), getattr(other, spec.name)
-            if spec.name in _TAILS and mine is not None and theirs is not None:
+            if spec.name in TAILS and mine is not None and theirs is not None:
                 if not np.array_equal(np.asarray(mine), np.asarray(theirs)):
                     return False
             elif mine is not theirs and mine != theirs:
@@ -227,7 +140,7 @@ class Robot:
     def batch_shape(self) -> tuple[int, ...]:
         """Batch axes that the robot's arrays have together; empty for a single robot."""
         shapes = []
-        for name, tail in _TAILS.items():
+        for name, tail in TAILS.items():
             value = getattr(self, name)
             if value is not None:
                 shapes.append(tuple(value.shape[: value.ndim - len(tail)]))
@@ -321,7 +234,7 @@ class Robot:
         if not self.batch_shape and isinstance(self.femur, np.ndarray):
             return self
         changes: dict[str, Array] = {}
-        for name, tail in _TAILS.items():
+        for name, tail in TAILS.items():
             value = getattr(self, name)
             if value is not None:
                 array = np.asarray(value)
@@ -389,7 +302,7 @@ def stack_robots(robots: Sequence[Robot]) -> Robot:
         raise InputError("stack_robots: there is no robot to stack")
     first = robots[0]
     changes: dict[str, Array] = {}
-    for name in _TAILS:
+    for name in TAILS:
         values = [getattr(robot, name) for robot in robots]
         if any((v is None) != (values[0] is None) for v in values):
             raise InputError(f"stack_robots: {name} is known for some of the robots and unknown for others")

@@ -1,0 +1,80 @@
+"""The arrays that make up a robot: their axes, and what their numbers may be."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from tarsus.arrays import Array
+from tarsus.errors import InputError
+
+__all__ = ["JOINTS", "OPTIONAL", "TAILS", "locked"]
+
+JOINTS = ("coxa", "femur", "tibia")
+"""The joints of a leg, in the order of the last axis of an array of joint angles."""
+
+# The axes of each array that follow its batch axes; "legs" stands for the number of legs.
+TAILS: dict[str, tuple[str | int, ...]] = {
+    "mount_position": ("legs", 3),
+    "mount_yaw": ("legs",),
+    "coxa": ("legs",),
+    "femur": ("legs",),
+    "tibia": ("legs",),
+    "femur_axis_offset": ("legs", 2),
+    "limits": ("legs", 3, 2),
+    "foot_radius": ("legs",),
+    "link_com": ("legs", 3),
+    "link_mass": ("legs", 3),
+    "body_mass": (),
+    "body_com": (3,),
+    "body_size": (3,),
+}
+OPTIONAL = ("link_mass", "body_mass", "body_size")
+_POSITIVE = ("femur", "tibia", "body_mass", "body_size")
+_NOT_NEGATIVE = ("coxa", "foot_radius", "link_mass")
+
+
+def locked(name: str, value: Array, *, legs: int, robot: str) -> Array:
+    """Copy a NumPy value and lock it, having checked its shape and range; arrays of other libraries stay as they are.
+
+    Parameters
+    ----------
+    name : str
+        One of `TAILS`.
+    value : array
+        Its value.
+    legs : int
+        Number of legs.
+    robot : str
+        The robot's name, for the message.
+
+    Raises
+    ------
+    InputError
+        If its shape is wrong, or a number is not finite or out of its range.
+    """
+    if isinstance(value, np.ndarray | np.generic) or not hasattr(value, "shape"):
+        try:
+            value = np.array(value, dtype=np.float64)
+        except (TypeError, ValueError) as error:
+            raise InputError(f"{robot}: {name}: expected an array of numbers: {error}") from None
+        value.setflags(write=False)
+        _check_range(name, value, robot=robot)
+    tail = tuple(legs if n == "legs" else n for n in TAILS[name])
+    if tail and tuple(value.shape[-len(tail) :]) != tail:
+        expected = ", ".join(["...", *map(str, tail)])
+        raise InputError(f"{robot}: {name} has shape {tuple(value.shape)}; expected ({expected})")
+    return value
+
+
+def _check_range(name: str, value: np.ndarray[Any, Any], *, robot: str) -> None:
+    if not np.isfinite(value).all():
+        raise InputError(f"{robot}: {name} holds a value that is not a finite number")
+    lowest = float(value.min()) if value.size else np.inf
+    if name in _POSITIVE and lowest <= 0:
+        raise InputError(f"{robot}: {name} is {lowest:g}; it must be greater than 0")
+    if name in _NOT_NEGATIVE and lowest < 0:
+        raise InputError(f"{robot}: {name} is {lowest:g}; it must not be negative")
+    if name == "limits" and (value[..., 0] > value[..., 1]).any():
+        raise InputError(f"{robot}: limits: a lowest angle is greater than its highest")
