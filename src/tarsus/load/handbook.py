@@ -1,0 +1,269 @@
+"""The torques of source 004's hand calculation, line by line: for students, and for checking with pencil and paper.
+
+It is a hand method: the body hangs on a cantilever, and where the feet stand does not enter. What the joints really
+bear is `joint_torques`; `compare_with_statics` puts both side by side.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from tarsus.errors import InputError, UnknownNameError
+from tarsus.load.handbook_lines import Line, Sheet, Term, plain_number
+from tarsus.load.handbook_sections import work_out
+from tarsus.load.handbook_source import NOTES, NOTES_ONE_LEG_UP, printed_numbers
+from tarsus.robot.robot import JOINTS, Robot
+
+__all__ = ["Handbook", "handbook"]
+
+_FEMUR_RAISED = math.pi / 4
+_HEADER = ("key", "symbol", "formula", "with numbers", "value", "unit", "source 004", "note")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Handbook:
+    """The hand calculation of a robot's torques, every line of it.
+
+    Attributes
+    ----------
+    robot : Robot
+        Whose torques they are.
+    leg : int
+        Which leg's numbers stand for every leg's.
+    feet_down : int
+        How many feet stand at a time.
+    safety_factor : float
+        By what the walking torque is multiplied at the end.
+    corrected : bool
+        Whether the source's slips are put right.
+    lines : tuple of Line
+        The lines, in the source's order.
+    """
+
+    robot: Robot
+    leg: int
+    feet_down: int
+    safety_factor: float
+    corrected: bool
+    lines: tuple[Line, ...]
+
+    @property
+    def gait(self) -> str:
+        """What a gait with so many feet down is called; source 004 calls the wave "ripple"."""
+        legs = self.robot.legs
+        names = {legs: "standing on every foot", legs - 1: 'wave gait (source 004\'s "ripple")'}
+        if legs == 6:
+            names |= {3: "tripod gait", 4: "tetrapod or ripple gait (in the literature's sense)"}
+        return names.get(self.feet_down, f"{self.feet_down} feet down")
+
+    @property
+    def title(self) -> str:
+        """What this is the calculation of, in one line."""
+        return (
+            f"{self.robot.name}: {self.feet_down} of {self.robot.legs} feet down, {self.gait}; every leg as the "
+            f"{self.robot.leg_names[self.leg]} one, {'slips corrected' if self.corrected else 'as printed'}"
+        )
+
+    def line(self, key: str) -> Line:
+        """Return a line.
+
+        Parameters
+        ----------
+        key : str
+            Its key, such as ``"stance.femur"``.
+
+        Raises
+        ------
+        UnknownNameError
+            If there is no such line.
+        """
+        for line in self.lines:
+            if line.key == key:
+                return line
+        raise UnknownNameError.of("line of the hand calculation", key, [line.key for line in self.lines])
+
+    def value(self, key: str) -> float:
+        """Return what comes out of a line, in SI units.
+
+        Parameters
+        ----------
+        key : str
+            Its key, such as ``"stance.femur"``.
+
+        Raises
+        ------
+        UnknownNameError
+            If there is no such line.
+        """
+        return self.line(key).value
+
+    def torque(self, joint: str, *, factor: bool = False) -> float:
+        """Return the torque that a joint has to exert while its foot stands [N m].
+
+        Femur and tibia hold the robot up; the coxa pushes it forward.
+
+        Parameters
+        ----------
+        joint : str
+            ``"coxa"``, ``"femur"`` or ``"tibia"``.
+        factor : bool
+            Whether multiplied by the safety factor.
+
+        Raises
+        ------
+        UnknownNameError
+            If there is no such joint.
+        """
+        if joint not in JOINTS:
+            raise UnknownNameError.of("joint", joint, JOINTS)
+        torque = self.value("walk.coxa" if joint == "coxa" else f"stance.{joint}")
+        return torque * self.safety_factor if factor else torque
+
+    def table(self) -> tuple[tuple[str, ...], ...]:
+        """Return the lines as rows of texts, a header first: for printing."""
+        rows = (
+            (
+                line.key,
+                line.symbol,
+                line.formula,
+                line.substitution,
+                plain_number(line.value, line.unit),
+                line.unit,
+                line.printed or "",
+                line.note,
+            )
+            for line in self.lines
+        )
+        return (_HEADER, *rows)
+
+
+def handbook(  # noqa: PLR0913 - the calculation's assumptions are one list, all of it optional
+    robot: Robot,
+    *,
+    feet_down: int = 3,
+    gravity: float = 9.8,
+    sweep: float = math.pi / 3,
+    sweep_time: float = 2.0,
+    acceleration: float = 1.0,
+    safety_factor: float = 3.0,
+    corrected: bool = True,
+    femur_out: float | None = None,
+    leg: int | None = None,
+) -> Handbook:
+    """Work out a robot's torques by hand, as source 004 does: free swing, stance, walking.
+
+    All legs are taken to be like one. Offsets of the femur axes and the place of the body's centre of mass do not
+    enter.
+
+    Parameters
+    ----------
+    robot : Robot
+        A single robot with masses.
+    feet_down : int
+        How many feet stand at a time: 3 for the tripod, 5 for the wave, which the source calls "ripple".
+    gravity : float
+        Strength of gravity [m/s^2]; the source's 9.8.
+    sweep, sweep_time : float
+        How far a swinging coxa turns [rad], from rest to rest, and in what time [s].
+    acceleration : float
+        With what the body speeds up [m/s^2].
+    safety_factor : float
+        By what the walking torque is multiplied.
+    corrected : bool
+        Whether the source's slips are put right. If not, they are made for any robot, and for the source's own the
+        calculation goes on with the printed, rounded numbers, as the source does.
+    femur_out : float, optional
+        How far out the standing femur reaches [m]; its length at 45 deg, to the millimetre, where left out: that gives
+        the source's 0.069.
+    leg : int, optional
+        Which leg stands for all; where left out, the worst: the one whose femur has most to bear in stance.
+
+    Raises
+    ------
+    MissingDataError
+        If the robot's masses are unknown.
+    InputError
+        If the robot is a batch, there is no such leg, or a number is out of its range.
+    """
+    if robot.batch_shape:
+        raise InputError(f"handbook takes a single robot, not a batch {robot.batch_shape}")
+    robot.require_masses()
+    choices = {
+        "gravity": gravity,
+        "sweep": sweep,
+        "sweep_time": sweep_time,
+        "acceleration": acceleration,
+        "safety_factor": safety_factor,
+    }
+    _check(robot, feet_down, leg, choices | ({} if femur_out is None else {"femur_out": femur_out}))
+    feet_down, leg = int(feet_down), _worst_leg(robot, feet_down, gravity) if leg is None else int(leg)
+    values = _given(robot, leg, femur_out)
+    printed = printed_numbers(values, choices, legs=robot.legs, feet_down=feet_down)
+    one_up = robot.legs - feet_down == 1
+    sheet = Sheet(printed, {**NOTES, **(NOTES_ONE_LEG_UP if one_up else {})}, carry_printed=not corrected)
+    terms = {key.partition(".")[2]: sheet.give(key, *_symbol(key), value) for key, value in values.items()}
+    terms |= {
+        "g": Term(gravity, "g", plain_number(gravity)),
+        "sweep": Term(sweep, "Δθ", plain_number(sweep)),
+        "time": Term(sweep_time, "t", plain_number(sweep_time)),
+        "a": Term(acceleration, "a", plain_number(acceleration)),
+        "factor": Term(safety_factor, "k", plain_number(safety_factor)),
+        "up": Term(robot.legs - feet_down, "n_up", str(robot.legs - feet_down)),
+        "down": Term(feet_down, "n_down", str(feet_down)),
+    }
+    work_out(sheet, terms, corrected=corrected, one_leg_up=one_up)
+    return Handbook(
+        robot=robot,
+        leg=leg,
+        feet_down=feet_down,
+        safety_factor=safety_factor,
+        corrected=corrected,
+        lines=tuple(sheet.lines),
+    )
+
+
+def _check(robot: Robot, feet_down: int, leg: int | None, numbers: Mapping[str, float]) -> None:
+    if feet_down not in range(3, robot.legs + 1):
+        raise InputError(f"feet_down is {feet_down}; it must be a whole number from 3 to {robot.legs}")
+    if leg is not None and leg not in range(robot.legs):
+        raise InputError(f"leg is {leg}; it must be from 0 to {robot.legs - 1}")
+    for name, value in numbers.items():
+        if not 0 < value < math.inf:
+            raise InputError(f"{name} is {value}; it must be a finite number greater than 0")
+
+
+def _worst_leg(robot: Robot, feet_down: int, gravity: float) -> int:
+    """Return the leg whose femur has most to bear in stance, were all legs like it; the first of equal ones."""
+    masses, radius = np.asarray(robot.link_mass), _radius(robot)
+    load = (float(robot.body_mass) + (robot.legs - feet_down) * masses.sum(-1)) * gravity / feet_down
+    femur = masses[:, 0] * gravity * robot.link_com[:, 0] + load * (robot.coxa + radius)
+    return int(np.argmax(femur > femur.max() * (1 - 1e-5)))
+
+
+def _radius(robot: Robot) -> np.ndarray[Any, Any]:
+    """How far each coxa axis is from the body's origin, seen from above [m]."""
+    radius: np.ndarray[Any, Any] = np.hypot(robot.mount_position[:, 0], robot.mount_position[:, 1])
+    return radius
+
+
+def _given(robot: Robot, leg: int, femur_out: float | None) -> dict[str, float]:
+    """Return the numbers that the calculation starts from [kg, m]."""
+    lengths = [float(length[leg]) for length in (robot.coxa, robot.femur, robot.tibia)]
+    given = {"given.m_body": float(robot.body_mass)}
+    given |= {f"given.m_{joint}": float(robot.link_mass[leg, i]) for i, joint in enumerate(JOINTS)}
+    given |= {f"given.L_{joint}": lengths[i] for i, joint in enumerate(JOINTS)}
+    given |= {f"given.l_{joint}": float(robot.link_com[leg, i]) for i, joint in enumerate(JOINTS)}
+    given["given.R_b"] = float(_radius(robot)[leg])
+    given["given.L_femur_out"] = round(lengths[1] * math.cos(_FEMUR_RAISED), 3) if femur_out is None else femur_out
+    return given
+
+
+def _symbol(key: str) -> tuple[str, str]:
+    """Return symbol and unit of a given number."""
+    symbol = key.partition(".")[2]
+    return symbol, "kg" if symbol.startswith("m_") else "m"

@@ -1,0 +1,131 @@
+"""The tables of docs/handbook.md, worked out afresh: so that the page can't drift from the code.
+
+A table stands between ``<!-- table: NAME -->`` and ``<!-- end -->``; `docs_page` puts it there.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable, Sequence
+
+from tarsus.errors import UnknownNameError
+from tarsus.load.handbook import Handbook, handbook
+from tarsus.load.handbook_comparison import SPEEDING, Comparison
+from tarsus.load.handbook_lines import Line, plain_number
+from tarsus.load.handbook_statics import compare_with_statics
+from tarsus.robot.robot import Robot
+
+__all__ = ["TABLES", "docs_page", "markdown_table"]
+
+_CLEARANCES = (0.04, 0.06, 0.08, 0.11, 0.14)
+_BLOCK = re.compile(r"(<!-- table: ([^>]*?) -->\n).*?(<!-- end -->)", flags=re.DOTALL)
+
+
+def docs_page(text: str, robot: Robot) -> str:
+    """Return a page with every table in it worked out afresh.
+
+    Parameters
+    ----------
+    text : str
+        The page.
+    robot : Robot
+        The robot that the tables are of.
+
+    Raises
+    ------
+    UnknownNameError
+        If the page asks for a table that there is not.
+    """
+
+    def fresh(found: re.Match[str]) -> str:
+        if found[2] not in TABLES:
+            raise UnknownNameError.of("table", found[2], TABLES)
+        return f"{found[1]}{TABLES[found[2]](robot)}\n{found[3]}"
+
+    return _BLOCK.sub(fresh, text)
+
+
+def markdown_table(rows: Iterable[Sequence[str]]) -> str:
+    """Return a Markdown table.
+
+    Parameters
+    ----------
+    rows : iterable of sequence of str
+        Its rows, the header first.
+    """
+    header, *body = rows
+    lines = [header, ["---"] * len(header), *body]
+    return "\n".join("| " + " | ".join(row) + " |" for row in lines)
+
+
+def _line_rows(lines: Iterable[Line]) -> str:
+    rows = (
+        (
+            f"`{line.key}`",
+            line.symbol + (f" = {line.formula}" if line.formula else ""),
+            line.substitution,
+            f"{plain_number(line.value, line.unit)} {line.unit}",
+            line.printed or "",
+            line.note,
+        )
+        for line in lines
+    )
+    return markdown_table([("key", "line", "with numbers", "value", "source 004", "note"), *rows])
+
+
+def _section(hand: Handbook, *sections: str) -> str:
+    return _line_rows(line for line in hand.lines if line.key.partition(".")[0] in sections)
+
+
+def _slips(robot: Robot) -> str:
+    """Where the corrected value is not the printed one."""
+    rows = [("line", "feet down", "source 004", "corrected", "unit", "note")]
+    for feet_down in (3, 5):
+        for line in handbook(robot, feet_down=feet_down).lines:
+            if line.agrees is False and (feet_down == 3 or line.key.startswith("walk.")):
+                down = str(feet_down) if line.key.startswith("walk.") else "any"
+                value = plain_number(float(f"{line.value:.4g}"))
+                rows.append((f"`{line.key}`", down, line.printed or "", value, line.unit, line.note))
+    return markdown_table(rows)
+
+
+def _statics(robot: Robot, gait: str) -> str:
+    comparison = compare_with_statics(robot, gait=gait)
+    return "\n\n".join(
+        [
+            markdown_table((*row[:8], row[9]) for row in comparison.table()),
+            markdown_table((*row[:4], *row[5:8]) for row in comparison.table(reasons=True)),
+            "\n".join(f"- {sentence}" for sentence in comparison.sentences),
+        ]
+    )
+
+
+def _clearances(robot: Robot) -> str:
+    """How much of the hand method's torque is left, by how high the body is."""
+    rows = [
+        ("clearance", "gait", "femur: hand / statics", "with the factor", "tibia: hand / statics", "with the factor")
+    ]
+    for clearance in _CLEARANCES:
+        for gait in ("tripod", "wave"):
+            comparison = compare_with_statics(robot, gait=gait, clearance=clearance)
+            rows.append((f"{clearance * 1000:.0f} mm", gait, *_left(comparison, "femur"), *_left(comparison, "tibia")))
+    return markdown_table(rows)
+
+
+def _left(comparison: Comparison, joint: str) -> tuple[str, str]:
+    row = comparison.row(SPEEDING, joint)
+    return f"{row.ratio:.2f}", f"{row.reserve:.2f}"
+
+
+TABLES: dict[str, Callable[[Robot], str]] = {
+    "given": lambda robot: _section(handbook(robot), "given"),
+    "free swing": lambda robot: _section(handbook(robot), "weight", "swing", "inertia"),
+    "three feet down": lambda robot: _section(handbook(robot), "stance", "walk"),
+    "five feet down": lambda robot: _section(handbook(robot, feet_down=5), "stance", "walk"),
+    "slips": _slips,
+    "tripod": lambda robot: _statics(robot, "tripod"),
+    "wave": lambda robot: _statics(robot, "wave"),
+    "ripple": lambda robot: _statics(robot, "ripple"),
+    "clearances": _clearances,
+}
+"""The tables, and how each is worked out."""
