@@ -23,6 +23,7 @@ __all__ = ["main"]
 
 
 @click.group(
+    "tarsus",
     cls=TarsusGroup,
     context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
     epilog=examples(

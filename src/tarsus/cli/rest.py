@@ -84,8 +84,16 @@ def _print(summary: dict[str, Any]) -> None:
 
 
 def _draw(robot: Robot, radians: Any, result: Any, picture: Path) -> None:
+    from tarsus.report.sample import touching_points
     from tarsus.report.skeleton import plot_robot
     from tarsus.report.style import save_figure
 
-    title = f"{robot.name} {result.describe()}"
-    save_figure(plot_robot(robot, radians, body=result.body, contacts=result.contacts, title=title), picture)
+    figure = plot_robot(
+        robot,
+        radians,
+        body=result.body,
+        contacts=result.contacts,
+        support=touching_points(result, radians),
+        title=f"{robot.name} {result.describe().partition(';')[0]}",
+    )
+    save_figure(figure, picture)

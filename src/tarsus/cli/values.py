@@ -3,9 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
+
+if TYPE_CHECKING:
+    _ParamType = click.ParamType[Any]
+else:  # older versions of click can't be subscripted
+    _ParamType = click.ParamType
 
 __all__ = ["Numbers", "examples", "json_option", "number_option", "robot_argument"]
 
@@ -22,7 +27,7 @@ def _finite(text: str) -> float | None:
     return value if abs(value) <= _LARGEST else None
 
 
-class Number(click.ParamType[Any]):
+class Number(_ParamType):
     """A finite number."""
 
     name = "number"
@@ -35,7 +40,7 @@ class Number(click.ParamType[Any]):
         return number
 
 
-class Numbers(click.ParamType[Any]):
+class Numbers(_ParamType):
     """So many finite numbers with commas between them."""
 
     name = "numbers"

@@ -80,11 +80,11 @@ def _write(motion: Motion, out: Path, *, animation: bool, quiet: bool) -> list[P
 
 def _make_folder(out: Path) -> None:
     """Find out before the work, not after it, that nothing can be written."""
-    import os
+    import tempfile
 
     try:
         out.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=out):
+            pass
     except OSError as error:
-        raise click.UsageError(f"--out {out}: the folder can't be made: {error.strerror}") from None
-    if not os.access(out, os.W_OK | os.X_OK):
-        raise click.UsageError(f"--out {out}: nothing can be written there")
+        raise click.UsageError(f"--out {out}: nothing can be written there: {error.strerror}") from None

@@ -9,7 +9,7 @@ import numpy as np
 from tarsus.kinematics.polygon import support_polygon
 from tarsus.report.sample import Sample
 from tarsus.report.solid import body_solid
-from tarsus.report.style import INK, WARNING, leg_colours
+from tarsus.report.style import INK, WARNING, halo, leg_colours
 from tarsus.report.view import View
 from tarsus.robot.robot import Robot
 
@@ -98,8 +98,6 @@ class RobotDrawing:
         ]
 
     def _name(self, leg: int) -> Any:
-        from matplotlib.patheffects import withStroke
-
         return self._axes.annotate(
             self._robot.leg_codes[leg],
             (0, 0),
@@ -109,7 +107,7 @@ class RobotDrawing:
             va="center",
             color=self._colours[leg],
             fontweight="bold",
-            path_effects=[withStroke(linewidth=2.5, foreground="white")],
+            path_effects=halo(),
             zorder=_SOLID + _ORDER + 1,
         )
 
@@ -172,7 +170,7 @@ class RobotDrawing:
         corners = np.asarray(sample.body @ self._solid.corners) * on_ground
         around = support_polygon(corners, np.ones(len(corners), dtype=bool))
         self._shadow.set_xy(self._flat(np.column_stack([around, np.zeros(len(around))])))
-        hull = support_polygon(sample.points[:, 3], sample.contacts)
+        hull = support_polygon(sample.support, np.ones(len(sample.support), dtype=bool))
         self._support.set_visible(len(hull) > 1)
         if len(hull) > 1:
             self._support.set_xy(self._flat(np.column_stack([hull, np.zeros(len(hull))])))

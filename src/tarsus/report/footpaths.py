@@ -8,7 +8,7 @@ import numpy as np
 
 from tarsus.gait.motion import Motion
 from tarsus.report.solid import body_outline
-from tarsus.report.style import INK, PALE, leg_colours, new_figure, thinned, tidy_axes
+from tarsus.report.style import INK, PALE, halo, leg_colours, new_figure, thinned, tidy_axes
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -153,6 +153,8 @@ def _name_leg(axes: Axes, motion: Motion, leg: int, colour: str) -> None:
         color=colour,
         fontweight="bold",
         fontsize=10,
+        path_effects=halo(),
+        zorder=6,
     )
 
 

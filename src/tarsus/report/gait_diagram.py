@@ -91,7 +91,9 @@ def _draw_margin(axes: Axes, motion: Motion) -> None:
     worst = int(np.nanargmin(margin))
     axes.plot(motion.time[worst], margin[worst], "o", color=INK, markersize=5)
     high = float(np.nanmax(margin))
-    axes.set_ylim(min(0.0, 1.35 * float(margin[worst])) - 0.05 * abs(high), max(1.15 * high, 5.0))
+    low, high = min(0.0, float(margin[worst])), max(high, 5.0)
+    # Room for the words below the least margin, wherever that is.
+    axes.set_ylim(low - 0.17 * (high - low), high + 0.1 * (high - low))
     late = motion.time[worst] > 0.7 * motion.duration
     axes.annotate(
         f"least: {margin[worst]:.1f} mm at {motion.time[worst]:.2f} s",

@@ -10,11 +10,12 @@ import numpy as np
 
 from tarsus.kinematics.leg import forward_kinematics
 from tarsus.kinematics.mass import centre_of_mass
+from tarsus.kinematics.polygon import hull_margin
 from tarsus.kinematics.pose import Pose
-from tarsus.kinematics.stability import stability_margin
+from tarsus.kinematics.rest import CORNERS, Rest
 from tarsus.robot.robot import Robot
 
-__all__ = ["Sample", "sample_of"]
+__all__ = ["Sample", "sample_of", "touching_points"]
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]
 
@@ -33,14 +34,17 @@ class Sample:
         Which feet are on the ground.
     com : array, shape (3,)
         Centre of mass in G [m].
+    support : array, shape (k, 3)
+        The points on the ground that hold it, in G [m]: mostly the feet that are down.
     margin : float
-        Stability margin [m].
+        How far inside their polygon the centre of mass is [m]; minus infinity where nothing holds it.
     """
 
     points: Floats
     body: Pose
     contacts: np.ndarray[Any, Any]
     com: Floats
+    support: Floats
     margin: float
 
     @property
@@ -57,6 +61,7 @@ def sample_of(
     *,
     body: Pose | None = None,
     contacts: Sequence[bool] | np.ndarray[Any, Any] | None = None,
+    support: Floats | None = None,
 ) -> Sample:
     """Return what is to be drawn of one configuration.
 
@@ -70,6 +75,8 @@ def sample_of(
         The body's place in G; left out, level and so high that the lowest foot touches the ground.
     contacts : sequence of bool, optional
         Which feet bear load; left out, those within a millimetre of the ground.
+    support : array, shape (k, 3), optional
+        The points of G that hold the robot [m]; left out, the feet that bear load.
 
     Raises
     ------
@@ -81,10 +88,35 @@ def sample_of(
         body = Pose.from_rpy(position=(0.0, 0.0, -float(points[:, 3, 2].min())))
     in_ground = np.asarray(body @ points)
     down = in_ground[:, 3, 2] < 0.001 if contacts is None else np.asarray(contacts, dtype=bool)
+    com = np.asarray(body @ centre_of_mass(robot, angles, points=points))
+    held = in_ground[down, 3] if support is None else np.asarray(support)
     return Sample(
         points=in_ground,
         body=body,
         contacts=down,
-        com=np.asarray(body @ centre_of_mass(robot, angles, points=points)),
-        margin=float(stability_margin(robot, angles, body, down, points=points)),
+        com=com,
+        support=held,
+        margin=float(hull_margin(held[:, :2], np.ones(len(held), dtype=bool), com[:2])),
     )
+
+
+def touching_points(rest: Rest, angles: Floats) -> Floats:
+    """Return the points of a resting robot that touch the ground.
+
+    Parameters
+    ----------
+    rest : Rest
+        How it rests; one configuration.
+    angles : array, shape (legs, 3)
+        Its joint angles [rad].
+
+    Returns
+    -------
+    array, shape (k, 3)
+        In G [m].
+    """
+    parts = [np.asarray(forward_kinematics(rest.robot, angles))[np.asarray(rest.leg_points_down)]]
+    if rest.robot.body_size is not None:
+        parts.append((CORNERS * np.asarray(rest.robot.body_size))[np.asarray(rest.corners_down)])
+    touching: Floats = np.asarray(rest.body @ np.concatenate(parts))
+    return touching

@@ -32,6 +32,7 @@ def plot_robot(
     *,
     body: Pose | None = None,
     contacts: Sequence[bool] | np.ndarray[Any, Any] | None = None,
+    support: Floats | None = None,
     view: View = _VIEW,
     title: str = "",
 ) -> Figure:
@@ -47,6 +48,8 @@ def plot_robot(
         The body's place in G; left out, level and so high that the lowest foot touches the ground.
     contacts : sequence of bool, optional
         Which feet bear load; left out, those within a millimetre of the ground.
+    support : array, shape (k, 3), optional
+        The points of G that hold the robot [m]; left out, the feet that bear load.
     view : View
         From where it is looked at.
     title : str
@@ -64,20 +67,15 @@ def plot_robot(
     TarsusError
         If matplotlib is not installed.
     """
-    sample = sample_of(robot, angles, body=body, contacts=contacts)
+    sample = sample_of(robot, angles, body=body, contacts=contacts, support=support)
     figure = new_figure(width=7.2, height=5.2, by_hand=True)
-    axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
+    axes = figure.add_axes((0.0, 0.06, 1.0, 0.86))
     frame_axes(axes, [sample], view=view)
     Ground(axes, view).update()
     RobotDrawing(axes, robot, view=view, names=True).update(sample)
-    margin = (
-        f"stability margin {sample.margin * 1000:.1f} mm" if np.isfinite(sample.margin) else "no foot on the ground"
-    )
-    for place, text, size, side in (
-        (0.98, title or robot.name, 12, "top"),
-        (0.02, f"{margin}; grid 100 mm", 9, "bottom"),
-    ):
-        axes.text(0.015, place, text, transform=axes.transAxes, color=INK, fontsize=size, va=side)
+    stands = f"stability margin {sample.margin * 1000:.1f} mm" if len(sample.support) else "nothing on the ground"
+    figure.text(0.015, 0.975, title or robot.name, color=INK, fontsize=12, va="top")
+    figure.text(0.015, 0.02, f"{stands}; grid 100 mm", color=INK, fontsize=9)
     return figure
 
 

@@ -20,7 +20,18 @@ if TYPE_CHECKING:
 
     from tarsus.gait.motion import Motion
 
-__all__ = ["INK", "PALE", "WARNING", "leg_colours", "new_figure", "save_figure", "stance_spans", "thinned", "tidy_axes"]
+__all__ = [
+    "INK",
+    "PALE",
+    "WARNING",
+    "halo",
+    "leg_colours",
+    "new_figure",
+    "save_figure",
+    "stance_spans",
+    "thinned",
+    "tidy_axes",
+]
 
 INK = "#222222"
 """Text and outlines."""
@@ -121,6 +132,13 @@ def save_figure(figure: Figure, path: str | os.PathLike[str]) -> None:
         raise InputError(f"{path} can't be written: {error.strerror or error}") from None
     except ValueError as error:
         raise InputError(f"{path} can't be written: {error}") from None
+
+
+def halo() -> list[Any]:
+    """Return the effect that keeps words legible over lines: a white rim."""
+    from matplotlib.patheffects import withStroke
+
+    return [withStroke(linewidth=2.5, foreground="white")]
 
 
 def thinned(motion: Motion) -> slice:

@@ -1,0 +1,107 @@
+"""Every command's help shows examples, and every example does what it says."""
+
+import shlex
+import subprocess
+import sys
+from pathlib import Path
+
+import click
+import pytest
+
+from sample_commands import run
+from tarsus import __version__
+from tarsus.cli import main
+
+ANGLES = "[" + ", ".join(["0, 40, -100"] * 6) + "]"
+
+
+def commands(command=main, path=()):
+    yield path, command
+    for name, child in getattr(command, "commands", {}).items():
+        yield from commands(child, (*path, name))
+
+
+COMMANDS = dict(commands())
+
+
+def examples_of(command):
+    return [line.strip() for line in command.epilog.splitlines() if line.startswith("  ")]
+
+
+EXAMPLES = sorted({example for command in COMMANDS.values() for example in examples_of(command)})
+
+
+@pytest.mark.parametrize("path", COMMANDS, ids=" ".join)
+def test_help_shows_the_examples(path):
+    result = run(*path, "--help")
+    assert result.exit_code == 0
+    examples = examples_of(COMMANDS[path])
+    assert examples
+    for example in examples:
+        assert example.startswith("tarsus " + " ".join(path))
+        assert example in result.stdout
+
+
+@pytest.mark.parametrize("path", [path for path, command in COMMANDS.items() if not hasattr(command, "commands")])
+def test_every_command_takes_json_and_tells_what_each_option_is(path):
+    options = [option for option in COMMANDS[path].params if isinstance(option, click.Option)]
+    assert "--json" in {flag for option in options for flag in option.opts}
+    assert all(option.help for option in options)
+
+
+@pytest.mark.parametrize("example", EXAMPLES)
+def test_examples_run(example, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    if "check my-robot.toml" in example:
+        assert run("robots", "new", "my-robot").exit_code == 0
+    Path("angles.json").write_text(ANGLES, encoding="utf-8")
+    result = run(*shlex.split(example)[1:])
+    assert result.exit_code == 0, result.output
+    assert result.stderr == ""
+    words = shlex.split(example)
+    for option in ("--out", "--picture"):
+        if option in words:
+            assert Path(words[words.index(option) + 1]).exists()
+
+
+def test_the_version():
+    assert run("--version").stdout == f"tarsus, version {__version__}\n"
+
+
+def test_without_a_command_the_help_is_shown():
+    result = run()
+    assert result.exit_code == 2
+    assert result.stderr.startswith("Usage: tarsus")
+
+
+def test_a_command_that_is_none_is_named():
+    result = run("wlak")
+    assert result.exit_code == 2
+    assert "wlak" in result.stderr
+
+
+@pytest.mark.parametrize("command", [[], ["walk"], ["robots", "list"]])
+def test_help_loads_nothing_heavy(command):
+    code = (
+        "import sys\nfrom tarsus.cli import main\n"
+        f"try:\n    main({[*command, '--help']!r})\nexcept SystemExit as done:\n    assert not done.code\n"
+        "print(sorted({'numpy', 'pydantic', 'matplotlib', 'rich'} & set(sys.modules)))"
+    )
+    answer = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert answer.stdout.splitlines()[-1] == "[]"
+
+
+def test_the_installed_command_runs():
+    script = Path(sys.executable).with_name("tarsus")
+    answer = subprocess.run([script, "pose", "strider", "--pitch", "26"], capture_output=True, text=True, check=False)
+    assert answer.returncode == 1
+    assert "not possible" in answer.stdout
+    assert answer.stderr == ""
+
+
+def test_a_reader_that_has_enough_is_no_error():
+    script = Path(sys.executable).with_name("tarsus")
+    with subprocess.Popen([script, "robots", "schema"], stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
+        process.stdout.close()
+        complaint = process.stderr.read()
+    assert complaint == b""

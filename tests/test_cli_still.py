@@ -1,0 +1,221 @@
+"""`tarsus pose` and `tarsus rest`: the same numbers as from Python, and every way of giving angles."""
+
+import json
+import math
+import os
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from sample_commands import run, run_json
+from tarsus.kinematics.body import reachable_share
+from tarsus.kinematics.inverse import inverse_kinematics
+from tarsus.kinematics.pose import Pose
+from tarsus.kinematics.rest import resting_pose
+from tarsus.kinematics.stance import default_stance
+from tarsus.robot.file import load_robot
+
+STRIDER = load_robot("strider")
+EIGHTEEN = ["0", "40", "-100"] * 6
+
+
+def posed(roll=0.0, pitch=0.0, yaw=0.0, by=(0.0, 0.0, 0.0), clearance=110.0, knee="up"):
+    height = clearance / 1000
+    feet = default_stance(STRIDER, height) + np.array([0, 0, height])
+    place = np.array([0, 0, height]) + np.array(by) / 1000
+    body = Pose.from_rpy(*np.radians([roll, pitch, yaw]), position=place)
+    return inverse_kinematics(STRIDER, feet, body, knee=knee)
+
+
+@pytest.mark.parametrize(
+    ("options", "move"),
+    [
+        ("", {}),
+        ("--pitch 12 --z 20", {"pitch": 12, "by": (0, 0, 20)}),
+        ("--x -30 --y 10 --yaw -8", {"yaw": -8, "by": (-30, 10, 0)}),
+        ("--roll 5 --clearance 130", {"roll": 5, "clearance": 130}),
+        ("--roll=-5 --pitch=-3.5", {"roll": -5, "pitch": -3.5}),
+        ("--pitch 26", {"pitch": 26}),
+        ("--z 300", {"by": (0, 0, 300)}),
+    ],
+)
+def test_pose_gives_the_angles_of_inverse_kinematics(options, move):
+    code, document = run_json("pose", "strider", *options.split())
+    solution = posed(**move)
+    np.testing.assert_allclose(document["angles_deg"], np.degrees(solution.angles), atol=1e-6)
+    assert document["legs"] == list(STRIDER.leg_codes)
+    assert document["possible"] == bool(solution.ok)
+    assert code == (0 if solution.ok else 1)
+    if not solution.ok:
+        assert document["problems"][: (solution.reach != 0).sum()] == solution.explain().splitlines()
+        start = Pose.from_rpy(position=(0, 0, 0.11))
+        share = reachable_share(STRIDER, solution.feet, start, solution.body)
+        assert document["share_that_works"] == pytest.approx(share, abs=1e-6)
+
+
+def test_the_share_that_works_works():
+    _, document = run_json("pose", "strider", "--pitch", "26")
+    share = document["share_that_works"]
+    assert run("pose", "strider", "--pitch", f"{26 * share - 0.01:.3f}").exit_code == 0
+    assert run("pose", "strider", "--pitch", f"{26 * share + 0.01:.3f}").exit_code == 1
+
+
+def test_knees_down_are_knees_down():
+    _, document = run_json("pose", "mithi", "--knee", "down")
+    assert (np.array(document["angles_deg"])[:, 2] > 0).all()
+    assert document["share_that_works"] is None
+
+
+def test_pose_prints_the_angles_the_margin_and_the_verdict():
+    good = run("pose", "strider", "--pitch", "5")
+    assert good.exit_code == 0
+    for angle in posed(pitch=5).angles[1]:
+        assert f"{math.degrees(angle):.2f}" in good.stdout
+    assert good.stdout.strip().endswith("possible")
+    bad = run("pose", "strider", "--pitch", "26")
+    assert bad.exit_code == 1
+    assert "FEMUR_LIMIT" in bad.stdout
+    assert "tips over" in bad.stdout
+    assert "% of this move works" in bad.stdout
+    assert "none, no leg stands" in run("pose", "strider", "--z", "300").stdout
+    assert "assumed: the robot file gives no masses" in run("pose", "mithi").stdout
+
+
+def test_no_leg_has_no_margin_in_json():
+    _, document = run_json("pose", "strider", "--z", "300")
+    assert document["margin_mm"] is None
+    assert document["stands"] is False
+
+
+@pytest.mark.parametrize(
+    ("options", "code", "said"),
+    [
+        ("--pitch nan", 2, "'nan' is not a number"),
+        ("--z 1e300", 2, "is not a number between"),
+        ("--knee sideways", 2, "'sideways' is not one of"),
+        ("--clearance 900", 1, "nowhere reaches the ground"),
+        ("--picture /dev/null/pose.png", 2, "can't be written"),
+        ("--picture pose.nonsense", 2, "can't be written"),
+    ],
+)
+def test_poses_asked_for_wrongly_are_told(options, code, said):
+    result = run("pose", "strider", *options.split())
+    assert result.exit_code == code, result.output
+    assert said in result.stderr
+
+
+def test_poses_and_rests_are_drawn(tmp_path):
+    result = run("pose", "strider", "--pitch", "26", "--picture", tmp_path / "pose.png")
+    assert result.exit_code == 1
+    assert f"wrote {tmp_path / 'pose.png'}" in result.stdout
+    code, document = run_json("rest", "strider", "--all", "0,-30,-60", "--picture", tmp_path / "rest.png")
+    assert code == 0
+    assert document["files"] == [str(tmp_path / "rest.png")]
+    for name in ("pose.png", "rest.png"):
+        with Image.open(tmp_path / name) as picture:
+            assert len(picture.convert("RGB").getcolors(2**24)) > 50
+
+
+# Resting
+
+
+def test_angles_as_arguments_alike_and_from_files_are_the_same(tmp_path):
+    numbers = [float(angle) for angle in EIGHTEEN]
+    forms = {
+        "flat.json": numbers,
+        "nested.json": np.reshape(numbers, (6, 3)).tolist(),
+        "object.json": {"angles_deg": np.reshape(numbers, (6, 3)).tolist(), "robot": "strider"},
+    }
+    answers = [run_json("rest", "strider", *EIGHTEEN), run_json("rest", "strider", "--all", "0,40,-100")]
+    for name, form in forms.items():
+        (tmp_path / name).write_text(json.dumps(form), encoding="utf-8")
+        answers.append(run_json("rest", "strider", "--file", tmp_path / name))
+    assert all(answer == answers[0] for answer in answers)
+    code, document = answers[0]
+    assert code == 0
+    rest = resting_pose(STRIDER, np.radians(np.reshape(numbers, (6, 3))))
+    assert document["description"] == rest.describe()
+    assert document["body"]["z_mm"] == pytest.approx(rest.body.position[2] * 1000, abs=1e-6)
+    assert document["contacts"] == list(STRIDER.leg_codes)
+
+
+def test_what_pose_prints_can_be_laid_down(tmp_path):
+    file = tmp_path / "pose.json"
+    file.write_text(run("pose", "strider", "--pitch", "5", "--json").stdout, encoding="utf-8")
+    _, document = run_json("rest", "strider", "--file", file)
+    assert document["body"]["pitch_deg"] == pytest.approx(5, abs=1e-4)
+    assert document["body"]["z_mm"] == pytest.approx(110, abs=1e-3)
+
+
+def test_rest_says_how_it_lies():
+    result = run("rest", "strider", "--all", "0,80,0")
+    assert result.exit_code == 0
+    assert "lies on its belly" in result.stdout
+    assert "roll 0.00 deg, pitch 0.00 deg, height 25.0 mm" in result.stdout
+    assert "feet on the ground: none" in result.stdout
+    assert "assumed" in run("rest", "mithi", "--all", "0,40,-100").stdout
+
+
+def test_angles_out_of_limits_are_not_possible():
+    result = run("rest", "strider", "--all", "0,-90,-60")
+    assert result.exit_code == 1
+    assert "front left: the femur at -90 deg is out of its limits, -80 to 100" in result.stdout
+    code, document = run_json("rest", "strider", "--all", "0,-90,-60")
+    assert code == 1
+    assert len(document["problems"]) == 6
+
+
+@pytest.mark.parametrize(
+    ("args", "said"),
+    [
+        ([], "in one way"),
+        (["--all", "0,0,0", *EIGHTEEN], "in one way"),
+        (EIGHTEEN[:-1], "17 angles; strider needs 18"),
+        ([*EIGHTEEN, "1"], "19 angles"),
+        ([*EIGHTEEN[:-1], "nan"], "'nan' is not an angle"),
+        ([*EIGHTEEN[:-1], "-inf"], "'-inf' is not an angle"),
+        ([*EIGHTEEN[:-1], "--bogus"], "'--bogus' is not an angle"),
+        ([*EIGHTEEN[:-1], "1e300"], "is not an angle"),
+        (["--all", "0,0"], "is not 3 numbers"),
+        (["--file", "missing.json"], "No such file"),
+        (["--file", "/"], "Is a directory"),
+    ],
+)
+def test_angles_given_wrongly_are_told(args, said):
+    result = run("rest", "strider", *args)
+    assert result.exit_code == 2, result.output
+    assert said in result.stderr
+    code, document = run_json("rest", "strider", *args)
+    assert code == 2
+    assert said in document["error"]
+
+
+@pytest.mark.parametrize(
+    ("content", "said"),
+    [
+        (b"", "this is not JSON"),
+        (os.urandom(100), "this is not JSON"),
+        (b"\xff\xfe\x00", "this is not JSON"),
+        (b"[" * 100_000, "this is not JSON"),
+        (b"[" + b"0," * 5_000_000 + b"0]", "larger than 1 MiB"),
+        (b"7", "expected a list"),
+        (b'{"angles": []}', "expected a list"),
+        (b"[[1, 2, 3], [4, 5]]", "5 angles"),
+        (b'["x"]', "'x' is not an angle"),
+        (b"[true]", "'True' is not an angle"),
+        (b"[null]", "'None' is not an angle"),
+        (b"[NaN]", "'nan' is not an angle"),
+        (b"[1e999]", "'inf' is not an angle"),
+        (b"[1" + b"0" * 400 + b"]", "is not an angle"),
+        (b"[[[1]]]", "is not an angle"),
+    ],
+    ids=range(15),
+)
+def test_files_of_angles_that_are_none_are_told(tmp_path, content, said):
+    file = tmp_path / "angles.json"
+    file.write_bytes(content)
+    result = run("rest", "strider", "--file", file)
+    assert result.exit_code == 2, result.output
+    assert said in result.stderr
+    assert len(result.stderr) < 2000

@@ -1,0 +1,322 @@
+"""What the commands print is what the Python functions say, in the units that the keys name."""
+
+import io
+import math
+
+import numpy as np
+import pytest
+from rich.console import Console
+
+from sample_walks import WALKS, ring_robot, sample_walk
+from tarsus.gait.gait import Gait
+from tarsus.gait.path import curved_path, straight_path
+from tarsus.gait.plan import plan_walk
+from tarsus.gait.stroke import max_stroke
+from tarsus.kinematics.inverse import inverse_kinematics
+from tarsus.kinematics.mass import total_mass
+from tarsus.kinematics.pose import Pose
+from tarsus.kinematics.rest import resting_pose
+from tarsus.kinematics.stance import default_clearance, default_stance
+from tarsus.report.robot_summary import check_robot, dimensions, robot_summary
+from tarsus.report.standing_summary import Standing, rest_summary
+from tarsus.report.tables import angle_table, number, robot_table, source_table, verdict, walk_table
+from tarsus.report.walk_summary import walk_summary
+from tarsus.robot.file import list_robots, load_robot
+from tarsus.robot.robot import GaitDefaults
+
+
+def text_of(part):
+    console = Console(width=200, file=io.StringIO())
+    console.print(part)
+    return console.file.getvalue()
+
+
+def changed(motion, **changes):
+    return type(motion)(**{name: getattr(motion, name) for name in motion.__dataclass_fields__} | changes)
+
+
+# Walks
+
+
+@pytest.mark.parametrize("kind", WALKS)
+def test_a_walks_numbers_are_the_motions(kind):
+    motion = sample_walk(kind)
+    summary = walk_summary(motion)
+    assert summary["possible"] is motion.ok
+    assert summary["problems"] == list(motion.problems)
+    assert summary["assumed"] == list(motion.assumed)
+    assert summary["steps"] == motion.steps
+    assert summary["duration_s"] == motion.duration
+    assert summary["stroke_mm"] == pytest.approx(motion.stroke * 1000)
+    assert summary["speed_mm_s"] == pytest.approx(motion.speed * 1000)
+    assert summary["least_margin"]["mm"] == pytest.approx(motion.margin.min() * 1000)
+    at = np.isclose(motion.time, summary["least_margin"]["at_s"])
+    assert motion.margin[at] == pytest.approx(motion.margin.min())
+    near = summary["nearest_feet"]
+    assert near["mm"] == pytest.approx(motion.feet_apart.min() * 1000)
+    first, second = (motion.robot.leg_codes.index(code) for code in near["legs"])
+    feet = motion.feet[np.isclose(motion.time, near["at_s"])][0]
+    assert math.dist(feet[first], feet[second]) * 1000 == pytest.approx(near["mm"])
+    for number_of, speed in enumerate(summary["joint_speed"].values()):
+        assert speed["deg_s"] == pytest.approx(np.degrees(np.abs(motion.joint_speed[..., number_of]).max()))
+
+
+def test_the_share_of_the_servos_speed_is_of_the_leg_nearest_to_its_limit():
+    motion = sample_walk("too fast")
+    for joint, speed in enumerate(walk_summary(motion)["joint_speed"].values()):
+        assert speed["share_of_no_load"] == pytest.approx(motion.speed_ratio[:, joint].max())
+        assert speed["no_load_deg_s"] == pytest.approx(math.degrees(motion.robot.servos[0][joint].no_load_speed))
+        assert speed["servo"] == "DS3225"
+
+
+def test_unknown_servos_have_no_share():
+    summary = walk_summary(sample_walk("round"))
+    for speed in summary["joint_speed"].values():
+        assert (speed["servo"], speed["no_load_deg_s"], speed["share_of_no_load"]) == (None, None, None)
+    assert "speed of the servo unknown" in text_of(walk_table(summary))
+
+
+def test_turns_are_counted_whole():
+    motion = plan_walk(load_robot("strider"), Gait.named("tripod"), curved_path(math.radians(-400)), rate=20)
+    assert walk_summary(motion)["end"]["turned_deg"] == pytest.approx(-400)
+
+
+def test_the_table_of_a_walk_has_its_numbers_and_its_verdict():
+    summary = walk_summary(sample_walk("too fast"))
+    text = text_of(walk_table(summary))
+    for value in (
+        f"{summary['stroke_mm']:.1f} mm at 900.0 mm/s",
+        f"{summary['least_margin']['mm']:.1f} mm at",
+        "x 200.0 mm, y 0.0 mm, turned 0.0 deg",
+        "of what DS3225 does without load",
+        summary["assumed"][0],
+    ):
+        assert value in text
+    said = text_of(verdict(summary))
+    assert said.startswith("not possible")
+    assert summary["problems"][0] in said
+    assert text_of(verdict({"possible": True, "problems": []})).strip() == "possible"
+
+
+def test_in_the_air_there_is_no_margin():
+    motion = sample_walk("straight")
+    flying = changed(motion, contacts=np.zeros_like(motion.contacts))
+    assert "no foot is on the ground" in text_of(walk_table(walk_summary(flying)))
+
+
+@pytest.mark.parametrize(("value", "said"), [(None, "unknown"), (1.25, "1.2 mm"), (-3.0, "-3.0 mm")])
+def test_a_number_has_its_unit_or_is_unknown(value, said):
+    assert number(value, "mm") == said
+
+
+# Standing
+
+
+def standing(name, *, knee="up", **move):
+    robot = load_robot(name) if isinstance(name, str) else name
+    height = default_clearance(robot)
+    start = Pose.from_rpy(position=(0, 0, height))
+    feet = default_stance(robot) + np.array([0, 0, height])
+    body = Pose.from_rpy(
+        move.get("roll", 0.0), move.get("pitch", 0.0), 0.0, (move.get("x", 0), 0, height + move.get("z", 0))
+    )
+    return Standing(solution=inverse_kinematics(robot, feet, body, knee=knee), start=start)
+
+
+def test_where_all_legs_reach_the_robot_stands():
+    stands = standing("strider", pitch=0.1)
+    summary = stands.summary()
+    assert summary["possible"]
+    assert summary["problems"] == []
+    assert summary["share_that_works"] == 1.0
+    assert set(summary["reach"]) == {"OK"}
+    np.testing.assert_allclose(np.radians(summary["angles_deg"]), stands.solution.angles)
+    assert summary["body"]["pitch_deg"] == pytest.approx(math.degrees(0.1))
+    assert summary["margin_mm"] == pytest.approx(stands.margin * 1000)
+    assert summary["stands"]
+
+
+def test_legs_that_do_not_reach_are_in_the_air_and_the_others_may_still_hold_the_robot():
+    stands = standing("strider", roll=0.34)
+    summary = stands.summary()
+    assert not summary["possible"]
+    assert 0 < stands.contacts.sum() < 6
+    assert len(summary["problems"]) >= (~stands.contacts).sum()
+    assert summary["stands"] == (stands.margin >= 0)
+    assert ("tips over" in summary["problems"][-1]) == (stands.margin < 0)
+    assert 0 < summary["share_that_works"] < 1
+
+
+def test_a_robot_that_tips_over_is_told_by_how_much():
+    stands = standing("strider", pitch=math.radians(26))
+    assert stands.margin < 0
+    assert stands.summary()["problems"][-1] == (
+        f"the robot tips over: its centre of mass is {-stands.margin * 1000:.1f} mm outside the feet that stand"
+    )
+
+
+def test_with_no_leg_in_reach_nothing_holds_it():
+    summary = standing("strider", z=0.3).summary()
+    assert summary["problems"][-1] == "no leg reaches its foothold: nothing holds the robot"
+    assert not summary["stands"]
+
+
+def test_a_body_below_the_ground_is_a_problem():
+    problems = standing("strider", z=-0.090).summary()["problems"]
+    assert any(problem.startswith("the body's box is 5.0 mm below the ground") for problem in problems)
+    assert not any("box" in problem for problem in standing("phoenix", z=-0.05).summary()["problems"])
+
+
+def test_with_the_knees_down_no_share_is_worked_out():
+    summary = standing("mithi", knee="down").summary()
+    assert summary["share_that_works"] is None
+    assert summary["knee"] == "down"
+    assert summary["assumed"]
+
+
+# Resting
+
+
+def test_how_it_rests_is_what_resting_pose_says():
+    robot = load_robot("strider")
+    angles = np.radians(np.tile([0.0, -30.0, -60.0], (6, 1)))
+    angles[0] = np.radians([0, 60, -60])
+    rest = resting_pose(robot, angles)
+    summary = rest_summary(robot, angles, rest)
+    assert summary["description"] == rest.describe()
+    assert summary["contacts"] == [code for code, down in zip(robot.leg_codes, rest.contacts, strict=True) if down]
+    assert summary["margin_mm"] == pytest.approx(float(rest.margin) * 1000)
+    assert summary["body"]["z_mm"] == pytest.approx(rest.body.position[2] * 1000)
+    np.testing.assert_allclose(
+        [summary["body"][f"{turn}_deg"] for turn in ("roll", "pitch", "yaw")], np.degrees(rest.body.rpy)
+    )
+    assert summary["possible"]
+
+
+def test_angles_out_of_their_limits_are_each_named():
+    robot = load_robot("strider")
+    angles = np.radians(np.tile([0.0, 40.0, -100.0], (6, 1)))
+    angles[2, 0] = math.radians(61)
+    angles[5, 2] = math.radians(-161)
+    problems = rest_summary(robot, angles, resting_pose(robot, angles))["problems"]
+    assert problems == [
+        "rear left: the coxa at 61 deg is out of its limits, -60 to 60",
+        "front right: the tibia at -161 deg is out of its limits, -160 to 10",
+    ]
+
+
+def test_an_angle_at_its_limit_is_within_it():
+    robot = load_robot("strider")
+    summary = rest_summary(robot, robot.limits[..., 1], resting_pose(robot, robot.limits[..., 1]))
+    assert summary["possible"]
+
+
+def test_a_robot_that_never_rests_is_not_possible():
+    robot = load_robot("strider")
+    angles = np.radians(np.tile([0.0, -30.0, -60.0], (6, 1)))
+    angles[:3] = np.radians([0.0, 60.0, 0.0])
+    summary = rest_summary(robot, angles, resting_pose(robot, angles, max_rolls=0))
+    assert summary["problems"] == ["the robot does not come to rest with these angles"]
+
+
+def test_angles_are_printed_with_two_digits_and_no_negative_zero():
+    text = text_of(angle_table({"legs": ["LF"], "joints": ["a", "b", "c"], "angles_deg": [[-0.001, 12.345, -90.0]]}))
+    assert text.split()[-4:] == ["LF", "0.00", f"{12.345:.2f}", "-90.00"]
+
+
+# Robots
+
+
+@pytest.mark.parametrize("name", list_robots())
+def test_a_robots_summary_is_the_robots(name):
+    robot = load_robot(name)
+    summary = robot_summary(robot)
+    assert summary["coxa_mm"] == pytest.approx(robot.coxa[0] * 1000)
+    assert (summary["mass_kg"] is None) == (not robot.has_masses)
+    if robot.has_masses:
+        assert summary["mass_kg"] == pytest.approx(float(total_mass(robot)))
+    assert summary["clearance_mm"] == pytest.approx(default_clearance(robot) * 1000)
+    text = text_of(robot_table([summary]))
+    assert name in text
+    assert all(servo in text for servo in summary["servos"] or ["unknown"])
+
+
+def test_lengths_that_differ_are_all_told():
+    robot = load_robot("strider")
+    longer = robot.replace(femur=np.linspace(0.09, 0.1, 6))
+    assert robot_summary(longer)["femur_mm"] == pytest.approx(np.linspace(90, 100, 6))
+    assert "[90, 92, 94, 96, 98, 100]" in text_of(robot_table([robot_summary(longer)]))
+
+
+@pytest.mark.parametrize("name", list_robots())
+def test_every_number_of_a_preset_has_its_source(name):
+    robot = load_robot(name)
+    for row in dimensions(robot):
+        assert row["source"], row["key"]
+        assert robot.sources[row["source_number"] - 1].source == row["source"]
+        assert row["confidence"] in ("A", "A-", "B", "C", "guess")
+    assert "none named" not in text_of(source_table(dimensions(robot)))
+
+
+def test_the_nearest_of_two_sources_is_named():
+    rows = {row["key"]: row for row in dimensions(load_robot("phantomx"))}
+    assert rows["leg.servo"]["note"] == "The repository does not name the servo."
+    assert rows["body.size_mm"]["note"].startswith("Only the underside")
+    assert rows["front left: yaw_deg"]["value"] == 45
+    assert rows["gait.lift_mm"]["source_number"] == 4
+
+
+def test_numbers_without_a_source_say_so():
+    text = text_of(source_table(dimensions(ring_robot(6))))
+    assert "none named" in text
+    assert "unknown" in text
+
+
+def test_a_check_says_what_a_file_lacks_and_what_that_costs():
+    robot = ring_robot(6)
+    report = check_robot(robot)
+    assert report["possible"]
+    assert report["longest_stroke_mm"] == pytest.approx(max_stroke(robot, Gait.named("tripod")) * 1000)
+    keys = [line.split(":")[0] for line in report["missing"]]
+    assert keys == [
+        *("body.mass_kg", "leg.mass_kg", "body.size_mm", "leg.servo"),
+        *("gait.clearance_mm", "gait.lift_mm"),
+    ]
+    assert check_robot(load_robot("strider"))["missing"] == []
+
+
+def test_a_check_names_servos_whose_speed_is_unknown():
+    robot = load_robot("strider")
+    from dataclasses import replace
+
+    slow = replace(robot.servos[0][0], no_load_speed=None)
+    report = check_robot(robot.replace(servos=((slow,) * 3,) * 6))
+    assert report["missing"] == ["no_load_rad_s of the servo DS3225: without it, no verdict on joint speeds"]
+
+
+@pytest.mark.parametrize(
+    ("gait", "said"),
+    [
+        (GaitDefaults(name="tetrapod"), "not for 4 legs"),
+        (GaitDefaults(name="wave", clearance=0.5), "nowhere reaches the ground"),
+    ],
+)
+def test_a_check_says_why_a_robot_can_not_walk(gait, said):
+    report = check_robot(ring_robot(4).replace(gait=gait))
+    assert not report["possible"]
+    assert said in report["problems"][0]
+    assert report["longest_stroke_mm"] is None
+
+
+def test_a_robot_that_can_not_step_is_found():
+    robot = load_robot("strider")
+    locked = np.array(robot.limits)
+    locked[:, 1] = locked[:, 2] = np.radians([[-0.001, 0.001]])
+    report = check_robot(robot.replace(limits=locked, gait=GaitDefaults(clearance=0.0, lift=0.05)))
+    assert not report["possible"]
+
+
+def test_straight_ahead_the_body_ends_where_it_was_sent():
+    motion = plan_walk(load_robot("strider"), Gait.named("tripod"), straight_path(0.1, math.pi / 2), rate=20)
+    end = walk_summary(motion)["end"]
+    assert (end["x_mm"], end["y_mm"], end["turned_deg"]) == pytest.approx((0, 100, 0), abs=1e-9)
