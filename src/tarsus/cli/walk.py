@@ -44,7 +44,7 @@ __all__ = ["walk"]
 @number_option("--foot-distance", "MM", "Least distance between two feet.")
 @number_option("--rate", "HZ", "Samples per second.", default=100.0, show_default=True)
 @click.option("--out", type=click.Path(path_type=Path), metavar="DIR", help="Write angles (CSV) and pictures here.")
-@click.option("--no-animation", is_flag=True, help="Leave out the animation, which takes longest.")
+@click.option("--no-animation", is_flag=True, help="Leave out the animation (of the first 20 s at most).")
 @json_option
 def walk(robot: str, out: Path | None, no_animation: bool, as_json: bool, **asked: Any) -> int:
     """Plan a walk and tell whether the robot can do it.
