@@ -87,3 +87,16 @@ def robots(draw: st.DrawFn, *, legs: st.SearchStrategy[int] | None = None, **kin
     """Random robots."""
     count = draw(legs if legs is not None else st.sampled_from([4, 5, 6, 8]))
     return random_robot(np.random.default_rng(draw(seeds())), legs=count, **kinds)
+
+
+def edge_angles(rng: np.random.Generator, robot: Robot, batch: tuple[int, ...] = ()) -> np.ndarray:
+    """Angles within the limits of which about half are at a limit."""
+    low, high = np.moveaxis(robot.limits, -1, 0)
+    inside = random_angles(rng, robot, batch)
+    pick = rng.integers(0, 4, inside.shape)
+    return np.where(pick == 0, low, np.where(pick == 1, high, inside))
+
+
+def front(robot: Robot, angles: np.ndarray) -> np.ndarray:
+    """How far in front of the coxa axis each foot is, in its leg's plane [m]."""
+    return robot.coxa + robot.femur * np.cos(angles[..., 1]) + robot.tibia * np.cos(angles[..., 1:].sum(-1))

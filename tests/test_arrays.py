@@ -142,13 +142,24 @@ def test_only_where_needed_is_decided_as_jitted_code_runs():
     assert float(f(-1.0)) == -3.0
 
 
-def test_fold_steps_alike_traced_or_not():
-    def power(x):
-        return arrays.fold(lambda state, v: (state[0] * v, state[1] + state[0]), (x, x), (1.0, 2.0, 5.0))
+def test_improve_steps_alike_traced_or_not():
+    def halve(x):
+        return arrays.improve(lambda state: (state[0] / 2, state[1] + 1), (x, 0 * x), times=4, enough=0.0)
 
-    plain, traced = power(np.asarray(3.0)), jax.jit(power)(3.0)
-    assert [float(v) for v in plain] == [30.0, 3 + 3 + 3 + 6]
-    assert [float(v) for v in traced] == [float(v) for v in plain]
+    assert [float(v) for v in halve(np.asarray(8.0))] == [0.5, 4.0]
+    assert [float(v) for v in jax.jit(halve)(8.0)] == [0.5, 4.0]
+
+
+def test_improve_ends_for_each_element_when_a_step_brings_it_no_more_than_enough():
+    steps = []
+
+    def step(state):
+        steps.append(1)
+        return (state[0] / np.array([1, 2, 2]),)
+
+    found = arrays.improve(step, (np.array([5.0, 8.0, 64.0]),), times=100, enough=1.0)
+    assert found[0].tolist() == [5.0, 1.0, 1.0]
+    assert len(steps) == 6
 
 
 @pytest.mark.parametrize("xp", [np, jnp, array_api_strict])

@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import math
 
-from tarsus.arrays import Array, Namespace, fold
+from tarsus.arrays import Array, Namespace, improve
 from tarsus.kinematics.triangle import direction, root
 from tarsus.robot.geometry import LegGeometry
 
@@ -23,7 +23,9 @@ __all__ = ["clip_angle", "nearest_angles", "tibia_bend", "tibia_branch"]
 _TURN = 2 * math.pi
 # By how many times its computed correction the turn is changed, one correction after the other: the corrections
 # shrink slowly where the target is near the coxa axis. A change that leads away from the target is not kept.
-_STRIDES = (1.0, 2.0, 6.0) * 5
+_STRIDES = (1.0, 2.0, 6.0)
+_ROUNDS = 8
+_ENOUGH = 1e-15
 
 
 def wrap(xp: Namespace, angle: Array) -> Array:
@@ -87,13 +89,16 @@ def nearest_angles(
     first = _best(xp, found)
     tracks = tuple(xp.stack((a, b[4, ...], b[5, ...])) for a, b in zip(first, found, strict=True))
 
-    def correct(tracks: tuple[Array, ...], stride: Array) -> tuple[Array, ...]:
-        foot_r = g.coxa + g.femur * xp.cos(tracks[2]) + g.tibia * xp.cos(tracks[2] + tracks[3])
-        correction = wrap(xp, bearing - direction(xp, g.side + xp.zeros_like(foot_r), foot_r) - tracks[1])
-        turns = clip_angle(xp, wrap(xp, tracks[1] + stride * correction), lower, upper)
-        return _better(xp, tracks, _in_planes(xp, g, x, y, z, turns, knee=knee))
+    def correct(tracks: tuple[Array, ...]) -> tuple[Array, ...]:
+        for stride in _STRIDES:
+            foot_r = g.coxa + g.femur * xp.cos(tracks[2]) + g.tibia * xp.cos(tracks[2] + tracks[3])
+            right = bearing - direction(xp, g.side + xp.zeros_like(foot_r), foot_r)
+            turns = wrap(xp, tracks[1] + stride * wrap(xp, right - tracks[1]))
+            found = _in_planes(xp, g, x, y, z, clip_angle(xp, turns, lower, upper), knee=knee)
+            tracks = _better(xp, tracks, found)
+        return tracks
 
-    return _best(xp, fold(correct, tracks, _STRIDES))
+    return _best(xp, improve(correct, tracks, times=_ROUNDS, enough=_ENOUGH))
 
 
 def _best(xp: Namespace, candidates: tuple[Array, ...]) -> tuple[Array, ...]:
