@@ -2,9 +2,9 @@ import array_api_strict
 import jax
 import jax.numpy as jnp
 import numpy as np
-import pinocchio as pin
 import pytest
 
+from pinocchio_model import Reference
 from sample_robots import hexapod, random_hexapod, standing
 from tarsus.errors import InputError, MissingDataError
 from tarsus.kinematics.leg import forward_kinematics
@@ -14,37 +14,12 @@ from tarsus.robot.robot import stack_robots
 jax.config.update("jax_enable_x64", True)
 
 
-def pinocchio_com(robot, angles):
-    """Mass and centre of mass of the same robot, built joint by joint in Pinocchio."""
-    model = pin.Model()
-    free = model.addJoint(0, pin.JointModelFreeFlyer(), pin.SE3.Identity(), "body")
-    model.appendBodyToJoint(
-        free, pin.Inertia(float(robot.body_mass), robot.body_com, np.zeros((3, 3))), pin.SE3.Identity()
-    )
-    lift = np.array([0.0, -1.0, 0.0])
-    for leg in range(robot.legs):
-        axis = np.array([robot.coxa[leg], *robot.femur_axis_offset[leg]])
-        ends = (axis, [robot.femur[leg], 0, 0], [robot.tibia[leg], 0, 0])
-        mount = pin.SE3(pin.utils.rotate("z", float(robot.mount_yaw[leg])), robot.mount_position[leg])
-        joints = (pin.JointModelRZ(), pin.JointModelRevoluteUnaligned(lift), pin.JointModelRevoluteUnaligned(lift))
-        parent, place = free, mount
-        for i, (joint, end) in enumerate(zip(joints, ends, strict=True)):
-            parent = model.addJoint(parent, joint, place, f"{leg}.{i}")
-            place = pin.SE3(np.eye(3), np.asarray(end, dtype=float))
-            lever = place.translation / np.linalg.norm(place.translation) * robot.link_com[leg, i]
-            inertia = pin.Inertia(float(robot.link_mass[leg, i]), lever, np.zeros((3, 3)))
-            model.appendBodyToJoint(parent, inertia, pin.SE3.Identity())
-    data = model.createData()
-    com = pin.centerOfMass(model, data, np.concatenate([[0, 0, 0, 0, 0, 0, 1], angles.ravel()]))
-    return data.mass[0], com.copy()
-
-
 @pytest.mark.parametrize("seed", range(8))
 def test_agrees_with_pinocchio(seed):
     rng = np.random.default_rng(seed)
     robot = random_hexapod(rng)
     for angles in rng.uniform(-np.pi, np.pi, (5, 6, 3)):
-        mass, com = pinocchio_com(robot, angles)
+        mass, com = Reference(robot).com(angles)
         np.testing.assert_allclose(centre_of_mass(robot, angles), com, rtol=0, atol=1e-12)
         np.testing.assert_allclose(total_mass(robot), mass, rtol=1e-14)
 

@@ -37,6 +37,7 @@ __all__ = ["GRAVITY", "ContactForces", "contact_forces"]
 GRAVITY = (0.0, 0.0, -9.80665)
 """Standard gravity in the ground frame [m/s^2]."""
 
+_ROUNDING = 1e-12  # how far outside the polygon rounding may put a load that acts on its very edge [m]
 _BLOCK = 1024  # samples in a block: the pairs of their feet stay in a core's second-level cache
 
 
@@ -61,8 +62,8 @@ class ContactForces:
 
     @cached_property
     def balanced(self) -> Array:
-        """Whether there is an equilibrium ``(...)``."""
-        return self.margin >= 0
+        """Whether there is an equilibrium ``(...)``; a load on the very edge of the polygon still has one."""
+        return self.margin >= -_ROUNDING
 
     @property
     def tipping_moment(self) -> Array:
@@ -112,15 +113,12 @@ def contact_forces(
     """
     robot.require_masses()
     carried = as_payload(payload)
-    points = forward_kinematics(robot, angles) if points is None else points
-    xp = namespace(points, contacts, body.rotation, robot.body_mass, robot.link_mass)
-    points, contacts = as_array(xp, points), as_mask(xp, contacts, name="contacts")
-    require_shape("contacts", contacts, (robot.legs,))
-    if not is_traced(contacts) and not bool(xp.all(xp.any(contacts, axis=-1))):
-        raise InputError("in at least one sample no foot is on the ground: nothing carries the robot")
     strength, axes = upward(gravity)
-    mass = as_array(xp, total_mass(robot))
-    com = as_array(xp, centre_of_mass(robot, angles, points=points))
+    points = forward_kinematics(robot, angles) if points is None else points
+    mass, com = total_mass(robot), centre_of_mass(robot, angles, points=points)
+    xp = namespace(points, contacts, body.rotation, mass, com)
+    contacts = checked_contacts(xp, robot, contacts)
+    points, mass, com = as_array(xp, points), as_array(xp, mass), as_array(xp, com)
     load = (com * mass[..., None] + carried.mass * as_array(xp, np.array(carried.position))) / (
         mass[..., None] + carried.mass
     )
@@ -128,10 +126,37 @@ def contact_forces(
     across = xp.matmul(as_array(xp, axes[1:]), as_array(xp, body.rotation))
     feet = xp.matmul(points[..., 3, :] - load[..., None, :], xp.matrix_transpose(across))
     batch = broadcast_shapes("robot, angles, body and contacts", feet.shape[:-2], contacts.shape[:-1])
-    shares, margin = _shares(xp, feet, contacts, batch)
+    shares, margin, _ = shared(xp, feet, contacts, batch)
     weight = (mass + carried.mass) * strength + xp.zeros(batch, dtype=feet.dtype)
     forces = (shares * weight[..., None])[..., None] * as_array(xp, axes[0])
     return ContactForces(forces=forces, margin=margin, weight=weight)
+
+
+def checked_contacts(xp: Namespace, robot: Robot, contacts: Array) -> Array:
+    """Return which feet are down, refusing samples in which none is.
+
+    Parameters
+    ----------
+    xp : namespace
+        The array library.
+    robot : Robot
+        Whose feet.
+    contacts : array of bool, shape (..., legs)
+        Which feet are on the ground.
+
+    Raises
+    ------
+    InputError
+        If the shape is wrong, they are not booleans, or no foot is down in some sample; the message says in which.
+    """
+    contacts = as_mask(xp, contacts, name="contacts")
+    require_shape("contacts", contacts, (robot.legs,))
+    if not is_traced(contacts) and not bool(xp.all(xp.any(contacts, axis=-1))):
+        hanging = np.argwhere(~np.asarray(contacts).any(-1))
+        where = f" in sample {', '.join(map(str, hanging[0]))}" if contacts.ndim > 1 else ""
+        more = f" (and {len(hanging) - 1} more)" if len(hanging) > 1 else ""
+        raise InputError(f"no foot is on the ground{where}{more}: nothing carries the robot")
+    return contacts
 
 
 def upward(gravity: Sequence[float]) -> tuple[float, np.ndarray[Any, Any]]:
@@ -160,26 +185,46 @@ def upward(gravity: Sequence[float]) -> tuple[float, np.ndarray[Any, Any]]:
     return strength, np.stack([up, first, np.cross(up, first)])
 
 
-def _shares(xp: Namespace, feet: Array, contacts: Array, batch: tuple[int, ...]) -> tuple[Array, Array]:
-    """Return each foot's share of the load ``(..., legs)``, and the load's margin in their polygon ``(...)``."""
+def shared(xp: Namespace, feet: Array, contacts: Array, batch: tuple[int, ...]) -> tuple[Array, Array, Array]:
+    """Return how feet share a load that acts at the origin of a plane, or the nearest point where it can act.
+
+    Parameters
+    ----------
+    xp : namespace
+        The array library.
+    feet : array, shape (..., legs, 2)
+        The feet in that plane [m].
+    contacts : array of bool, shape (..., legs)
+        Which of them are down.
+    batch : tuple of int
+        The batch axes that these have together.
+
+    Returns
+    -------
+    shares : array, shape (..., legs)
+        Shares of the load, not negative.
+    margin : array, shape (...)
+        How far inside the polygon of the feet the load acts [m]; negative outside.
+    nearest : array, shape (..., 2)
+        The nearest point of the polygon: the origin where that is inside [m].
+    """
     legs = feet.shape[-2]
     if xp is not np:
-        shares, margin = _share_block(xp, feet, contacts, batch, ())
-        return xp.reshape(xp.permute_dims(shares, (1, 0)), (*batch, legs)), xp.reshape(margin, batch)
-    all_shares, all_margins = np.empty((*batch, legs)), np.empty(batch)
-    for index in batch_blocks(batch, _BLOCK):
-        shares, margin = _share_block(np, feet, contacts, batch, index)
-        all_shares[index] = shares.T.reshape(all_shares[index].shape)
-        all_margins[index] = margin.reshape(all_margins[index].shape)
-    return all_shares, all_margins
+        rows = _share_block(xp, feet, contacts, batch, ())
+    else:
+        rows = np.empty((legs + 3, *batch))
+        for index in batch_blocks(batch, _BLOCK):
+            part = (slice(None), *index)
+            rows[part] = _share_block(np, feet, contacts, batch, index).reshape(rows[part].shape)
+    by_sample = xp.reshape(xp.permute_dims(xp.reshape(rows, (legs + 3, -1)), (1, 0)), (*batch, legs + 3))
+    return by_sample[..., :legs], by_sample[..., legs], by_sample[..., legs + 1 :]
 
 
-def _share_block(
-    xp: Namespace, feet: Array, contacts: Array, batch: tuple[int, ...], index: Index
-) -> tuple[Array, Array]:
+def _share_block(xp: Namespace, feet: Array, contacts: Array, batch: tuple[int, ...], index: Index) -> Array:
     both = columns_of(xp, feet, batch, index, tail=2)
     x, y = both[0, ...], both[1, ...]
     down = columns_of(xp, contacts, batch, index, tail=1)
     x, y, down = (xp.broadcast_to(part, np.broadcast_shapes(x.shape, down.shape)) for part in (x, y, down))
     margin, near_x, near_y = margin_and_nearest(xp, x, y, down)
-    return shared_load(xp, x - near_x, y - near_y, down), margin
+    shares = shared_load(xp, x - near_x, y - near_y, down)
+    return xp.concat((shares, xp.stack((margin, near_x, near_y))), axis=0)

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tarsus.arrays import Array
 from tarsus.errors import InputError
 
 __all__ = ["Payload", "as_payload"]
@@ -29,15 +28,23 @@ class Payload:
     position: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
     def __post_init__(self) -> None:
-        if not 0 <= self.mass < math.inf:
-            raise InputError(f"a payload's mass is {self.mass} kg; it must be a finite number, not negative")
-        position = tuple(float(v) for v in self.position)
-        if len(position) != 3 or not np.isfinite(position).all():
-            raise InputError(f"a payload's position is {self.position}; it must be three finite numbers")
-        object.__setattr__(self, "position", position)
+        try:
+            mass = float(self.mass)
+        except (TypeError, ValueError):
+            mass = math.nan
+        if not 0 <= mass < math.inf:
+            raise InputError(f"a payload's mass is {self.mass!r} kg; it must be one finite number, not negative")
+        try:
+            position = np.asarray(self.position, dtype=np.float64)
+        except (TypeError, ValueError):
+            position = np.empty(0)
+        if position.shape != (3,) or not np.isfinite(position).all():
+            raise InputError(f"a payload's position is {self.position!r}; it must be three finite numbers [m]")
+        object.__setattr__(self, "mass", mass)
+        object.__setattr__(self, "position", tuple(position.tolist()))
 
 
-def as_payload(payload: Payload | Array) -> Payload:
+def as_payload(payload: Payload | float) -> Payload:
     """Return a payload; a bare number is a mass [kg] at the body's origin.
 
     Parameters
@@ -48,6 +55,6 @@ def as_payload(payload: Payload | Array) -> Payload:
     Raises
     ------
     InputError
-        If the mass is negative or not finite.
+        If the mass is negative, or not one finite number.
     """
-    return payload if isinstance(payload, Payload) else Payload(float(payload))
+    return payload if isinstance(payload, Payload) else Payload(payload)

@@ -4,17 +4,24 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-import numpy as np
-
-from tarsus.arrays import Array, Namespace, as_array, namespace, stack_last
+from tarsus.arrays import (
+    Array,
+    Namespace,
+    as_array,
+    as_floats,
+    namespace,
+    require_finite,
+    require_shape,
+    stack_last,
+)
 from tarsus.kinematics.leg import checked_angles, forward_kinematics
 from tarsus.kinematics.mass import point_masses
 from tarsus.kinematics.pose import Pose
-from tarsus.load.contact import GRAVITY, contact_forces
+from tarsus.load.contact import GRAVITY, contact_forces, upward
 from tarsus.load.payload import Payload
 from tarsus.robot.robot import Robot
 
-__all__ = ["joint_torques", "torques_of"]
+__all__ = ["checked_forces", "joint_torques", "torques_of"]
 
 
 def joint_torques(
@@ -47,7 +54,8 @@ def joint_torques(
     gravity : sequence of float
         Gravity in G [m/s^2].
     forces : array, shape (..., legs, 3), optional
-        Ground on foot in G [N], where they are known; `contact_forces` where left out.
+        Ground on foot in G [N], where they are known: `contacts` and `payload` are then not looked at. Left out,
+        those of `contact_forces`.
 
     Returns
     -------
@@ -61,21 +69,46 @@ def joint_torques(
     MissingDataError
         If the robot's masses are unknown.
     InputError
-        If a shape is wrong, a value is not finite, or no foot is down.
+        If a shape is wrong, a value is not finite, no foot is down, or there is no gravity.
     """
     robot.require_masses()
+    strength, axes = upward(gravity)
     points = forward_kinematics(robot, angles)
     if forces is None:
         solved = contact_forces(robot, angles, body, contacts, payload=payload, gravity=gravity, points=points)
         forces = solved.forces
-    xp, q = checked_angles(robot, angles)
-    xp = namespace(points, forces, body.rotation)
+    q = checked_angles(robot, angles)[1]
+    masses = point_masses(namespace(points, robot.link_mass, robot.link_com), robot)
+    xp = namespace(points, forces, body.rotation, masses)
     rotation = as_array(xp, body.rotation)
-    pushes = xp.matmul(as_array(xp, forces), rotation)
-    pull = xp.matmul(as_array(xp, np.asarray(gravity, dtype=float)), rotation)
-    masses = as_array(xp, point_masses(namespace(robot.link_mass, points), robot))
-    weights = masses[..., None] * pull[..., None, None, :]
+    forces = checked_forces(xp, robot, forces)
+    pull = xp.matmul(as_array(xp, -strength * axes[0]), rotation)
+    weights = as_array(xp, masses)[..., None] * pull[..., None, None, :]
+    pushes = xp.matmul(forces, rotation)
     return torques_of(xp, robot, as_array(xp, q), as_array(xp, points), weights, pushes), forces
+
+
+def checked_forces(xp: Namespace, robot: Robot, forces: Array) -> Array:
+    """Return forces on the feet as floats, refusing what is not ``(..., legs, 3)`` finite numbers.
+
+    Parameters
+    ----------
+    xp : namespace
+        The array library.
+    robot : Robot
+        Whose feet.
+    forces : array, shape (..., legs, 3)
+        Ground on foot in G [N].
+
+    Raises
+    ------
+    InputError
+        If the shape is wrong, or a force is NaN or infinite.
+    """
+    forces = as_floats(xp, forces, name="forces")
+    require_shape("forces", forces, (robot.legs, 3))
+    require_finite("forces", forces)
+    return forces
 
 
 def torques_of(xp: Namespace, robot: Robot, angles: Array, points: Array, loads: Array, pushes: Array) -> Array:
