@@ -1,0 +1,168 @@
+"""What inertia adds to the torques: those of a robot that moves.
+
+A link is a slender uniform rod about its own centre of mass: of mass m and length L it has the moment of inertia
+``m L^2 / 12`` across its axis, and none about it. The body is a homogeneous box of `body_size`, or a point where its
+size is unknown; the payload is a point. What turns inside the servos is left out.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from tarsus.arrays import Array, as_array, broadcast_shapes, namespace
+from tarsus.kinematics.leg import forward_kinematics
+from tarsus.kinematics.pose import Pose
+from tarsus.load.acceleration import BodyRates, JointRates, differences
+from tarsus.load.contact import GRAVITY, checked_contacts, contact_forces
+from tarsus.load.inertial_loads import inertial_loads
+from tarsus.load.payload import Payload
+from tarsus.load.torque import checked_forces, joint_torques, torques_of
+from tarsus.load.zero_moment import ground_forces
+from tarsus.robot.robot import Robot
+
+if TYPE_CHECKING:
+    from tarsus.gait.motion import Motion
+
+__all__ = ["MotionTorques", "dynamic_torques", "motion_torques"]
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class MotionTorques:
+    """Torques of a motion.
+
+    Attributes
+    ----------
+    torques : array, shape (..., legs, 3)
+        What the servos must exert [N m].
+    forces : array, shape (..., legs, 3)
+        Ground on foot, in G [N].
+    margin : array, shape (...)
+        How far inside the polygon of the feet the load acts, or with inertia the zero-moment point [m]; negative
+        outside: the robot tips.
+    assumed : tuple of str
+        What had to be assumed.
+    """
+
+    torques: Array
+    forces: Array
+    margin: Array
+    assumed: tuple[str, ...] = ()
+
+
+def motion_torques(
+    robot: Robot,
+    motion: Motion,
+    *,
+    payload: Payload | float = 0.0,
+    gravity: Sequence[float] = GRAVITY,
+    inertial: bool = True,
+) -> MotionTorques:
+    """Return the torques along a motion, with the inertia of legs, body and payload or without.
+
+    Parameters
+    ----------
+    robot : Robot
+        The robot, or a batch of designs ``(..., 1)`` whose last axis is that of time; its masses must be known.
+    motion : Motion
+        How it moves, on flat ground; its angles are taken as they are.
+    payload : Payload or float
+        What the body carries; a number is a mass at its origin [kg].
+    gravity : sequence of float
+        Gravity in G [m/s^2]: tilted, it is that of a slope.
+    inertial : bool
+        Whether inertia counts; if not, statics alone.
+
+    Returns
+    -------
+    MotionTorques
+        Over the motion's samples ``(n,)``.
+
+    Raises
+    ------
+    MissingDataError
+        If the robot's masses are unknown.
+    InputError
+        If a value is not finite or out of its range, or no foot is down.
+
+    Notes
+    -----
+    Speeds and accelerations are central differences of the samples (`differences`): with steps h the error of an
+    acceleration is ``h^2/12`` times the fourth derivative.
+    """
+    angles, body, contacts = motion.angles, motion.body, motion.contacts
+    if not inertial:
+        statics = contact_forces(robot, angles, body, contacts, payload=payload, gravity=gravity)
+        torques, forces = joint_torques(robot, angles, body, contacts, gravity=gravity, forces=statics.forces)
+        return MotionTorques(torques=torques, forces=forces, margin=statics.margin)
+    velocity, acceleration = differences(motion.time, angles)
+    joints = JointRates(velocity=velocity, acceleration=acceleration)
+    rates = BodyRates.of(motion.time, body)
+    return dynamic_torques(robot, angles, body, contacts, joints, rates, payload=payload, gravity=gravity)
+
+
+def dynamic_torques(
+    robot: Robot,
+    angles: Array,
+    body: Pose,
+    contacts: Array,
+    joints: JointRates,
+    rates: BodyRates,
+    *,
+    payload: Payload | float = 0.0,
+    gravity: Sequence[float] = GRAVITY,
+    forces: Array | None = None,
+) -> MotionTorques:
+    """Return the torques that move a robot as given: inverse dynamics with contacts.
+
+    Parameters
+    ----------
+    robot : Robot
+        The robot, or a batch of designs; its masses must be known.
+    angles : array, shape (..., legs, 3)
+        Joint angles [rad].
+    body : Pose
+        Places of B in G.
+    contacts : array of bool, shape (..., legs)
+        Which feet are on the ground.
+    joints : JointRates
+        How the angles change.
+    rates : BodyRates
+        How the body's place changes.
+    payload : Payload or float
+        What the body carries; a number is a mass at its origin [kg].
+    gravity : sequence of float
+        Gravity in G [m/s^2].
+    forces : array, shape (..., legs, 3), optional
+        Ground on foot in G [N], where they are known; `margin` is of the zero-moment point all the same.
+
+    Raises
+    ------
+    MissingDataError
+        If the robot's masses are unknown.
+    InputError
+        If a shape is wrong, a value is not finite, or no foot is down.
+    """
+    points = forward_kinematics(robot, angles)
+    loads = inertial_loads(robot, angles, body, joints, rates, payload=payload, gravity=gravity, points=points)
+    xp = namespace(points, loads.force, contacts, forces)
+    contacts = checked_contacts(xp, robot, contacts)
+    points, rotation = as_array(xp, points), as_array(xp, body.rotation)
+    to_ground = xp.matrix_transpose(rotation)
+    feet = xp.matmul(points[..., 3, :], to_ground)
+    batch = broadcast_shapes(
+        "robot, angles, body, rates and contacts", feet.shape[:-2], loads.force.shape[:-1], contacts.shape[:-1]
+    )
+    needed = [-xp.matmul(as_array(xp, v)[..., None, :], to_ground)[..., 0, :] for v in (loads.force, loads.moment)]
+    solved, margin = ground_forces(xp, feet, contacts, needed[0], needed[1], batch)
+    forces = solved if forces is None else checked_forces(xp, robot, forces)
+    pushes = xp.matmul(forces, rotation)
+    torques = torques_of(xp, robot, as_array(xp, angles), points, as_array(xp, loads.points), pushes)
+    return MotionTorques(torques=torques, forces=forces, margin=margin, assumed=_assumed(robot))
+
+
+def _assumed(robot: Robot) -> tuple[str, ...]:
+    """Say what inverse dynamics takes for granted."""
+    body = "a homogeneous box" if robot.body_size is not None else "a point, as its size is not known"
+    return (f"inertia: each link is a slender uniform rod, the body {body}; the servos' rotors are left out",)
