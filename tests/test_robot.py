@@ -192,8 +192,8 @@ def test_the_geometry_moves_to_another_library():
         np.testing.assert_array_equal(np.asarray(theirs), mine)
 
 
-def test_the_geometry_of_a_mask_is_that_of_its_legs():
-    picked = six().geometry.pick(np.array([[True] + [False] * 5, [False] * 5 + [True]]))
+def test_the_geometry_of_picked_legs_is_theirs():
+    picked = six().geometry.pick((np.array([0, 1]), np.array([0, 5])), (2, 6))
     assert isinstance(picked, LegGeometry)
     np.testing.assert_array_equal(picked.mount_x, [0, 15])
 

@@ -33,6 +33,14 @@ class BodyPlace(NamedTuple):
         return cls(tuple(tuple(rotation[j, i] for j in range(3)) for i in range(3)), tuple(position))
 
     @classmethod
+    def of_picked(cls, body: Pose, where: tuple[Array, ...], batch: tuple[int, ...]) -> Self:
+        """Take apart the NumPy poses of single legs; `where` counts along the batch axes."""
+        rotation = np.broadcast_to(body.rotation, (*batch, 3, 3))[where]
+        position = np.broadcast_to(body.position, (*batch, 3))[where]
+        rows = tuple(tuple(rotation[..., i, j] for j in range(3)) for i in range(3))
+        return cls(rows, tuple(position[..., i] for i in range(3)))
+
+    @classmethod
     def of(cls, xp: Namespace, body: Pose) -> Self:
         """Take a pose apart as ``(..., 1)``, the last axis standing for the legs."""
         rotation, position = xp.asarray(body.rotation)[..., None], xp.asarray(body.position)[..., None]

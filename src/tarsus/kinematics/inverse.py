@@ -27,13 +27,16 @@ from tarsus.errors import InputError
 from tarsus.kinematics.ground import BodyPlace, mark_below_ground, surely_above
 from tarsus.kinematics.nearest import nearest_angles
 from tarsus.kinematics.pose import Pose
-from tarsus.kinematics.reach import IKSolution
+from tarsus.kinematics.reach import IKSolution, Reach
 from tarsus.kinematics.triangle import solve_triangle, to_leg_frame
 from tarsus.kinematics.verdict import LENGTH_TOLERANCE, all_within, reach_codes
 from tarsus.robot.geometry import LegGeometry
 from tarsus.robot.robot import Robot
 
 __all__ = ["inverse_kinematics"]
+
+# Legs tried again at a time; each has ten candidates.
+_AGAIN = BLOCK // 8
 
 
 def inverse_kinematics(
@@ -76,10 +79,11 @@ def inverse_kinematics(
     batch = broadcast_shapes("the robot, the feet and the body's poses", *batches)
     if xp is not np:
         angles, reach = _solve_everywhere(xp, robot, xp.broadcast_to(p, (*batch, *p.shape[-2:])), body, branch)
-    elif p.size <= SMALL and batch == p.shape[:-2] and not robot.batch_shape:
-        angles, reach = _solve_small(robot.geometry, p, body, branch)
     else:
-        angles, reach = _solve_blocks(robot, p, body, branch, batch)
+        angles, reach = _solve_first(robot, p, body, branch, batch)
+        # After the first pass over all legs, so that few that can't reach cost little, however they are scattered.
+        if reach.any():
+            _try_again(robot, p, body, branch, angles, reach)
     return IKSolution(robot=robot, feet=_kept(p), body=body, knee=knee, angles=angles, reach=reach)
 
 
@@ -94,14 +98,15 @@ def _kept(feet: Array) -> Array:
 def _solve_everywhere(xp: Namespace, robot: Robot, feet: Array, body: Pose | None, knee: int) -> tuple[Array, Array]:
     """Solve without branching on values, as `jax.jit` needs it."""
     g = robot.geometry.to(xp)
-    sideways = is_traced(robot.geometry.side) or bool(namespace(robot.geometry.side).any(robot.geometry.side != 0))
+    offset = robot.femur_axis_offset[..., 0]  # not the geometry's, which is traced as soon as any of its numbers is
+    sideways = is_traced(offset) or bool(namespace(offset).any(offset != 0))
     feet = xp.astype(feet, xp.result_type(feet, *g))
     x, y, z = feet[..., 0], feet[..., 1], feet[..., 2]
     place = None if body is None else BodyPlace.of(xp, body)
     if place is not None:
         x, y, z = place.into_body(x, y, z)
     x, y, z = to_leg_frame(g, x, y, z)
-    solution = solve_triangle(xp, g, x, y, z, knee=knee)
+    solution = solve_triangle(xp, g, x, y, z, knee=knee, sideways=sideways)
     codes = reach_codes(xp, g, solution)
 
     def try_again() -> tuple[Array, ...]:
@@ -114,25 +119,24 @@ def _solve_everywhere(xp: Namespace, robot: Robot, feet: Array, body: Pose | Non
     return stack_last(xp, tuple(joints)), codes
 
 
-def _solve_small(g: LegGeometry, feet: Array, body: Pose | None, knee: int) -> tuple[Array, Array]:
-    """Solve a few NumPy legs with as few calls as possible: one robot in a control loop."""
-    place = None if body is None else BodyPlace.of(np, body)
-    *joints, codes = _solve_where_needed(g, feet[..., 0], feet[..., 1], feet[..., 2], place, knee)
-    return stack_last(np, tuple(joints)), codes
-
-
-def _solve_blocks(
+def _solve_first(
     robot: Robot, feet: Array, body: Pose | None, knee: int, batch: tuple[int, ...]
 ) -> tuple[Array, Array]:
-    """Solve many NumPy legs, in blocks that fit the cache."""
+    """Solve NumPy legs with their planes turned towards their feet; many in blocks that fit the cache."""
+    sideways = bool(robot.geometry.side.any())
+    if feet.size <= SMALL and batch == feet.shape[:-2] and not robot.batch_shape:
+        place = None if body is None else BodyPlace.of(np, body)
+        x, y, z = feet[..., 0], feet[..., 1], feet[..., 2]
+        *joints, codes = _first_tries(robot.geometry, x, y, z, place, knee=knee, sideways=sideways)
+        return stack_last(np, tuple(joints)), codes
     angles, reach = np.empty((*batch, robot.legs, 3)), np.empty((*batch, robot.legs), dtype=np.int8)
     same = robot.geometry if robot.batch_shape else robot.geometry.take((), ())
     for index in batch_blocks(batch, max(BLOCK // robot.legs, 1)):
         block = block_shape(batch, index)
-        x, y, z = columns(feet, index, block, tail=2)
         place = None if body is None else BodyPlace.of_block(body, index, block)
         g = robot.geometry.take(index, block) if robot.batch_shape else same
-        *joints, codes = _solve_where_needed(g, x, y, z, place, knee)
+        x, y, z = columns(feet, index, block, tail=2)
+        *joints, codes = _first_tries(g, x, y, z, place, knee=knee, sideways=sideways)
         view = angles[index].reshape(-1, robot.legs, 3)
         for i, joint in enumerate(joints):
             view[..., i] = joint.T
@@ -140,41 +144,46 @@ def _solve_blocks(
     return angles, reach
 
 
-def _solve_where_needed(
-    g: LegGeometry, x: Array, y: Array, z: Array, body: BodyPlace | None, knee: int
+def _first_tries(
+    g: LegGeometry, x: Array, y: Array, z: Array, body: BodyPlace | None, *, knee: int, sideways: bool
 ) -> tuple[Array, ...]:
-    """Solve NumPy legs in any layout; the rarer ways only for the legs that need them."""
+    """Solve NumPy legs in any layout with their planes turned towards their feet."""
     if body is not None:
         x, y, z = body.into_body(x, y, z)
-    x, y, z = to_leg_frame(g, x, y, z)
-    solution = solve_triangle(np, g, x, y, z, knee=knee)
-    joints = list(solution[:3])
-    if all_within(g, solution):
-        codes = np.zeros(x.shape, dtype=np.int8)
-    else:
-        codes = reach_codes(np, g, solution)
-        bad = codes != 0
-        if bad.any():
-            # Designs that differ in their femurs alone have one coxa angle for all, until a leg is moved elsewhere.
-            x, y, z, *joints = (_spread(a, bad.shape) for a in (x, y, z, *joints))
-            picked, sideways = g.pick(bad), bool(np.any(g.side))
-            second = _second_tries(np, picked, x[bad], y[bad], z[bad], codes[bad], knee=knee, sideways=sideways)
-            for values, new in zip((*joints, codes), second, strict=True):
-                values[bad] = new
-    if body is not None and not surely_above(g, joints[1], body):
-        codes = mark_below_ground(np, g, tuple(joints), codes, body)
+    solution = solve_triangle(np, g, *to_leg_frame(g, x, y, z), knee=knee, sideways=sideways)
+    joints = solution[:3]
+    within = all_within(g, solution)
+    codes = np.zeros(solution.far.shape, dtype=np.int8) if within else reach_codes(np, g, solution)
+    if body is not None and not surely_above(g, solution.femur, body):
+        # Of the legs that are to be tried again, nothing is known yet.
+        codes = np.where(codes == 0, mark_below_ground(np, g, joints, codes, body), codes)
     return *joints, codes
 
 
-def _spread(array: Array, shape: tuple[int, ...]) -> Array:
-    return array if array.shape == shape else np.broadcast_to(array, shape).copy()
+def _try_again(robot: Robot, feet: Array, body: Pose | None, knee: int, angles: Array, reach: Array) -> None:
+    """Solve the NumPy legs that the first pass could not, and write them into its results."""
+    legs = reach.shape
+    failed = np.nonzero((reach != 0) & (reach != Reach.BELOW_GROUND))
+    sideways = bool(robot.geometry.side.any())
+    for start in range(0, len(failed[0]), _AGAIN):
+        where = tuple(indices[start : start + _AGAIN] for indices in failed)
+        g = robot.geometry.pick(where, legs)
+        place = None if body is None else BodyPlace.of_picked(body, where[:-1], legs[:-1])
+        x, y, z = np.broadcast_to(feet, angles.shape)[where].T
+        if place is not None:
+            x, y, z = place.into_body(x, y, z)
+        x, y, z = to_leg_frame(g, x, y, z)
+        *joints, codes = _second_tries(np, g, x, y, z, reach[where], knee=knee, sideways=sideways)
+        if place is not None:
+            codes = mark_below_ground(np, g, tuple(joints), codes, place)
+        angles[where], reach[where] = stack_last(np, tuple(joints)), codes
 
 
 def _second_tries(
     xp: Namespace, g: LegGeometry, x: Array, y: Array, z: Array, codes: Array, *, knee: int, sideways: bool
 ) -> tuple[Array, ...]:
     """Solve the legs that can't reach their foot turned towards it: turned away, or as near as they get."""
-    away = solve_triangle(xp, g, x, y, z, knee=knee, facing=-1)
+    away = solve_triangle(xp, g, x, y, z, knee=knee, facing=-1, sideways=sideways)
     turned = reach_codes(xp, g, away) == 0
     miss2, *nearest = nearest_angles(xp, g, x, y, z, knee=knee, sideways=sideways)
     # Where a joint's angle makes no difference (a foot on its axis) or little (a straight leg), the first solution may

@@ -6,8 +6,9 @@ With `r`, `z` the foot seen from the femur axis, `d^2 = r^2 + z^2`, and the two 
 
 the tibia's angle is ``atan2(sqrt(far near), d^2 - femur^2 - tibia^2)`` and the femur's is the direction of the
 foot plus ``atan2(sqrt(far near), d^2 + femur^2 - tibia^2)``: the law of cosines of sources 000 to 004 with the sine
-beside the cosine. An arc cosine alone loses half the digits where the leg is straight or folded; the two sides do
-not.
+beside the cosine. Near the straight or folded leg a rounded position tells either angle to half the digits only; but
+both come from the same root, so that their errors cancel and the foot keeps all its digits. Those of two arc cosines
+don't cancel: at a bend of 1e-7 rad the foot is 2.5e-10 m off.
 """
 
 from __future__ import annotations
@@ -60,7 +61,15 @@ def to_leg_frame(geometry: LegGeometry, x: Array, y: Array, z: Array) -> tuple[A
 
 
 def solve_triangle(
-    xp: Namespace, geometry: LegGeometry, x: Array, y: Array, z: Array, *, knee: int, facing: int = 1
+    xp: Namespace,
+    geometry: LegGeometry,
+    x: Array,
+    y: Array,
+    z: Array,
+    *,
+    knee: int,
+    facing: int = 1,
+    sideways: bool = True,
 ) -> Triangle:
     """Return the joint angles that put the foot at a point of the leg frame.
 
@@ -76,19 +85,23 @@ def solve_triangle(
         1 for the solution with the knee above the line from femur axis to foot, -1 for the one below.
     facing : int
         1 for the leg's plane turned towards the foot, -1 for turned away, the foot reached behind the coxa axis.
+    sideways : bool
+        Whether any femur axis is offset sideways; where none is, a sixth of the work can be left out.
     """
     g = geometry
-    beside = x * x + y * y - g.side2
+    across2 = x * x + y * y
+    beside = across2 - g.side2 if sideways else across2
     along = root(xp, beside) if facing > 0 else -root(xp, beside)
+    ahead, aside = (x * along + y * g.side, y * along - x * g.side) if sideways else (facing * x, facing * y)
     r = along - g.coxa
     distance2 = r * r + z * z
     far, near = g.farthest2 - distance2, distance2 - g.nearest2
-    height = root(xp, far * near)
+    bend = knee * root(xp, far * near)
     base = distance2 + g.difference2
     return Triangle(
-        coxa=direction(xp, y * along - x * g.side, x * along + y * g.side),
-        femur=direction(xp, z * base + knee * (r * height), r * base - knee * (z * height)),
-        tibia=-knee * direction(xp, height, distance2 - g.sum2),
+        coxa=direction(xp, aside, ahead),
+        femur=direction(xp, z * base + r * bend, r * base - z * bend),
+        tibia=-direction(xp, bend, distance2 - g.sum2),
         far=far,
         near=near,
         beside=beside,

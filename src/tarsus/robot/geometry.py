@@ -96,6 +96,8 @@ class LegGeometry(NamedTuple):
         """Return the part that belongs to a block of the batch, as columns (see `tarsus.arrays.columns`)."""
         return LegGeometry(*(columns(values, index, block, tail=1) for values in self))
 
-    def pick(self, mask: Array) -> LegGeometry:
-        """Return the numbers of the legs that a NumPy mask picks, as ``(picked,)``."""
-        return LegGeometry(*(np.broadcast_to(values, mask.shape)[mask] for values in self))
+    def pick(self, where: tuple[Array, ...], shape: tuple[int, ...]) -> LegGeometry:
+        """Return the numbers of single NumPy legs as ``(picked,)``; `where` counts along the axes of `shape`."""
+        return LegGeometry(
+            *(values[where[-1]] if values.ndim == 1 else np.broadcast_to(values, shape)[where] for values in self)
+        )
