@@ -13,7 +13,7 @@ from tarsus.gait.path import carry, exponential
 from tarsus.gait.swing import ground_share, height_share
 from tarsus.gait.timing import BodyClock, least_step_share, plan_steps
 
-__all__ = ["Excursions", "extreme_excursions", "walk_excursions"]
+__all__ = ["MOMENTS_OF_SWING", "Excursions", "extreme_excursions", "walk_excursions"]
 
 _OFFSETS = 24
 _SHARES = np.linspace(0.0, 1.0, 49)
@@ -22,7 +22,9 @@ _CRUISES = (0.0, 0.25, 0.5, 0.75, 1.0, 1.5, 2.0)
 _CRUISES_OF_WALKS = (0.0, 0.75, 1.5, 2.0, 2.25)
 _STANCE = np.linspace(-0.5, 0.5, 9)
 _INWARD = (0.0, 0.1, 0.3, 1.0)
-_MOMENTS_OF_SWING = 24
+
+MOMENTS_OF_SWING = 24
+"""Moments of every swing at which feet are looked at for how near they come to each other."""
 
 
 class Excursions(NamedTuple):
@@ -99,11 +101,16 @@ def extreme_excursions(duty: float, *, curved: bool) -> Excursions:
     every = Excursions.joined(*(_swings(duty, cruise) for cruise in _CRUISES))
     ahead = every.offset.reshape(-1, len(_SHARES))
     length = (every.following - every.last).reshape(ahead.shape)
-    number = np.arange(len(_SHARES))
-    # A foot that rises hangs behind, one that sinks ahead.
-    sides = (-1.0, 1.0) if curved else (np.sign(_SHARES - 0.5),)
-    scores = [side * ahead + inward * length for side in sides for inward in (_INWARD if curved else (0.0,))]
-    picked = np.unique(np.concatenate([score.argmax(0) * len(_SHARES) + number for score in scores]))
+    picked = np.unique(
+        [
+            (side * ahead + inward * length)[:, moment].argmax() * len(_SHARES) + moment
+            for moment, share in enumerate(_SHARES)
+            for side in (-1, 1)
+            # A foot that rises hangs behind, one that sinks ahead.
+            if (curved and moment % 2 == 0) or (share - 0.5) * side >= 0
+            for inward in (_INWARD if curved else _INWARD[:1])
+        ]
+    )
     still = _STANCE[:, None]
     extreme = Excursions(*(column[picked] for column in every))
     return Excursions.joined(Excursions(still, still, 0 * still, 0 * still), _steady_swing(duty), extreme)
@@ -149,7 +156,7 @@ def _walk(gait: Gait, cruise: float) -> Excursions:
     clock = BodyClock(rate=1 / (1 + cruise), ramp=1.0, cruise=cruise)
     strokes = (1 + cruise) / gait.duty
     steps = plan_steps(gait, clock, cycle_time=1.0, least_step=least_step_share(strokes))
-    time = np.arange(steps.start, steps.end, (1 - gait.duty) / _MOMENTS_OF_SWING)
+    time = np.arange(steps.start, steps.end, (1 - gait.duty) / MOMENTS_OF_SWING)
     last, following, swung, _ = steps.at(time)
     body = clock.share(time)[:, None]
     return Excursions((last - body) * strokes, (following - body) * strokes, ground_share(swung), height_share(swung))

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tarsus.arrays import Array, Namespace, namespace, stack_last
+from tarsus.arrays import Array, Namespace, as_array, namespace, stack_last
 from tarsus.errors import InputError
 
 __all__ = ["Path", "carry", "carry_back", "curved_path", "straight_path", "twist_path"]
@@ -78,15 +78,17 @@ class Path:
         """
         x, y, yaw = self.displacement
         xp = namespace(feet)
+        feet = as_array(xp, feet)
         across, along = x - yaw * feet[..., 1], y + yaw * feet[..., 0]
         return xp.hypot(across, along)
 
 
 def exponential(displacement: Sequence[float] | Array, share: Array) -> Array:
     """Return the place ``(..., 3)`` reached after a share ``(...)`` of a constant twist."""
-    xp = namespace(share)
-    share = xp.asarray(share)
-    x, y, yaw = (displacement[i] * share for i in range(3))
+    parts = [displacement[i] for i in range(3)]
+    xp = namespace(share, *parts)
+    share = as_array(xp, share)
+    x, y, yaw = (as_array(xp, part) * share for part in parts)
     half = yaw / 2
     # sin(yaw)/yaw and (1 - cos(yaw))/yaw, both exact to rounding at small angles
     straight = _sinc(xp, yaw)
@@ -95,13 +97,17 @@ def exponential(displacement: Sequence[float] | Array, share: Array) -> Array:
 
 
 def _sinc(xp: Namespace, angle: Array) -> Array:
-    nonzero = xp.where(angle == 0, xp.ones_like(angle), angle)
-    return xp.where(angle == 0, xp.ones_like(angle), xp.sin(nonzero) / nonzero)
+    # The series is exact to rounding where it is taken, and so is its derivative; that of the quotient is not.
+    small = xp.abs(angle) < 1e-2
+    safe = xp.where(small, xp.ones_like(angle), angle)
+    square = angle * angle
+    return xp.where(small, 1 - square / 6 * (1 - square / 20 * (1 - square / 42)), xp.sin(safe) / safe)
 
 
 def carry(place: Array, points: Array) -> Array:
     """Carry points ``(..., k, 3)`` from the heading frame at places ``(..., 3)`` into G; heights stay."""
     xp = namespace(place, points)
+    place, points = as_array(xp, place), as_array(xp, points)
     cos, sin = xp.cos(place[..., None, 2]), xp.sin(place[..., None, 2])
     x, y = points[..., 0], points[..., 1]
     moved = (place[..., None, 0] + cos * x - sin * y, place[..., None, 1] + sin * x + cos * y)
@@ -111,6 +117,7 @@ def carry(place: Array, points: Array) -> Array:
 def carry_back(place: Array, points: Array) -> Array:
     """Carry points ``(..., k, 3)`` from G into the heading frame at places ``(..., 3)``."""
     xp = namespace(place, points)
+    place, points = as_array(xp, place), as_array(xp, points)
     cos, sin = xp.cos(place[..., None, 2]), xp.sin(place[..., None, 2])
     x, y = points[..., 0] - place[..., None, 0], points[..., 1] - place[..., None, 1]
     moved = (cos * x + sin * y, cos * y - sin * x)
@@ -132,6 +139,8 @@ def straight_path(distance: float, heading: float = 0.0) -> Path:
     InputError
         If the distance is 0, or a value is not finite.
     """
+    if not (math.isfinite(distance) and math.isfinite(heading)):
+        raise InputError(f"the path's distance is {distance} m, its heading {heading} rad; both must be finite numbers")
     return Path((distance * math.cos(heading), distance * math.sin(heading), 0.0))
 
 

@@ -10,6 +10,7 @@ import numpy as np
 
 from tarsus.errors import CollisionError, InputError, StrokeError, UnreachableError
 from tarsus.gait.cycle import tilted_body
+from tarsus.gait.excursion import MOMENTS_OF_SWING
 from tarsus.gait.gait import Gait
 from tarsus.gait.motion import Motion
 from tarsus.gait.pace import choose_pace
@@ -26,8 +27,6 @@ __all__ = ["plan_walk"]
 _MOST_SAMPLES = 2_000_000
 _LEAST_PATH = 1e-9
 _LONGEST_STROKE = 1e3
-# However few samples are asked for, the feet are looked at this often in a swing for how near they come.
-_LOOKS = 24
 
 
 def plan_walk(  # noqa: PLR0913 - what a walk can be told is one list, all of it optional
@@ -184,7 +183,7 @@ def _sample(setup: Setup, path: Path, steps: Steps, *, stroke: float, rate: floa
 def _refuse_near_feet(setup: Setup, path: Path, steps: Steps, motion: Motion) -> None:
     """Raise if the feet come too near to each other, at a sample or between."""
     time, feet = motion.time, motion.feet
-    between = steps.cycle_time * (1 - setup.gait.duty) / _LOOKS
+    between = steps.cycle_time * (1 - setup.gait.duty) / MOMENTS_OF_SWING
     if time[1] - time[0] > between:
         time = np.arange(0, steps.end - steps.start, between)
         feet = _walk_feet(setup, path, steps, time + steps.start)[0]

@@ -1,0 +1,201 @@
+import itertools
+
+import array_api_strict
+import jax
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tarsus.errors import InputError, UnknownNameError
+from tarsus.gait.gait import GAITS, Gait
+
+LF, LM, LR, RR, RM, RF = range(6)
+
+
+def feet_down(gait, clock):
+    """How many feet are down, counted leg by leg."""
+    return np.array([sum(((c - o) % 1.0) < gait.duty for o in gait.offsets) for c in clock])
+
+
+def air_pairs(gait, moments=6000):
+    """Pairs of legs that are ever in the air together, at moments that are no event."""
+    clock = (np.arange(moments) + 0.37) / moments
+    down = gait.phase(clock)[2]
+    return {(a, b) for a in range(gait.legs) for b in range(a + 1, gait.legs) if (~down[:, a] & ~down[:, b]).any()}
+
+
+def touchdown_order(gait):
+    return sorted(range(gait.legs), key=lambda leg: gait.offsets[leg])
+
+
+def test_tripod_is_even_legs_against_odd_legs():
+    gait = Gait.named("tripod")
+    assert gait.duty == 0.5
+    assert len({gait.offsets[leg] for leg in (LF, LR, RM)}) == 1
+    assert (gait.offsets[LF] - gait.offsets[LM]) % 1 == 0.5
+    assert air_pairs(gait) == {(LF, LR), (LF, RM), (LR, RM), (LM, RR), (LM, RF), (RR, RF)}
+
+
+def test_tetrapod_is_three_diagonal_pairs_from_back_to_front():
+    gait = Gait.named("tetrapod")
+    assert gait.duty == pytest.approx(2 / 3)
+    assert air_pairs(gait) == {(LF, RM), (LM, RR), (LR, RF)}
+    for side in ((LR, LM, LF), (RR, RM, RF)):
+        steps = [(gait.offsets[b] - gait.offsets[a]) % 1 for a, b in itertools.pairwise(side)]
+        assert steps == pytest.approx([1 / 3, 1 / 3])
+
+
+def test_ripple_has_two_legs_in_the_air_overlapping_and_alternates_the_sides():
+    gait = Gait.named("ripple")
+    assert gait.duty == pytest.approx(2 / 3)
+    assert sorted(gait.offsets) == pytest.approx(np.arange(6) / 6)
+    down = gait.phase((np.arange(600) + 0.5) / 600)[2]
+    np.testing.assert_array_equal((~down).sum(-1), 2)
+    left = [leg <= LR for leg in touchdown_order(gait)]
+    assert all(a != b for a, b in itertools.pairwise(left))
+    for side in ((LR, LM, LF), (RR, RM, RF)):
+        assert [(gait.offsets[b] - gait.offsets[a]) % 1 for a, b in itertools.pairwise(side)] == pytest.approx(
+            [1 / 3, 1 / 3]
+        )
+
+
+def test_wave_lifts_one_leg_at_a_time_one_side_after_the_other_from_the_back():
+    gait = Gait.named("wave")
+    assert gait.duty == pytest.approx(5 / 6)
+    assert touchdown_order(gait) == [LR, LM, LF, RR, RM, RF]
+    assert air_pairs(gait) == set()
+
+
+@pytest.mark.parametrize("name", GAITS)
+def test_no_two_neighbours_of_the_ring_are_ever_in_the_air_together(name):
+    gait = Gait.named(name)
+    neighbours = {(i, i + 1) for i in range(5)} | {(0, 5)}
+    assert not air_pairs(gait) & neighbours
+
+
+@pytest.mark.parametrize(("name", "fewest"), [("tripod", 3), ("tetrapod", 4), ("ripple", 4), ("wave", 5)])
+def test_fewest_feet_down(name, fewest):
+    assert Gait.named(name).fewest_feet_down == fewest
+
+
+def test_names_in_any_case_and_by_alias():
+    assert Gait.named("Amble") == Gait.named("tetrapod")
+    assert Gait.named("TRIPOD").name == "tripod"
+    assert GAITS == ("tripod", "tetrapod", "ripple", "wave")
+
+
+def test_an_unknown_name_lists_what_there_is_and_suggests_the_nearest():
+    with pytest.raises(UnknownNameError, match=r"no gait is called 'tripd'. Did you mean 'tripod'\? There are: tripod"):
+        Gait.named("tripd")
+    with pytest.raises(UnknownNameError, match="amble"):
+        Gait.named(3)
+
+
+@pytest.mark.parametrize("legs", [4, 5, 8, 9])
+def test_wave_for_any_number_of_legs_from_four(legs):
+    gait = Gait.named("wave", legs=legs)
+    assert gait.legs == legs
+    assert gait.duty == (legs - 1) / legs
+    assert gait.fewest_feet_down == legs - 1
+    assert air_pairs(gait) == set()
+
+
+def test_tripod_for_eight_legs_is_four_against_four():
+    gait = Gait.named("tripod", legs=8)
+    assert gait.fewest_feet_down == 4
+    assert not air_pairs(gait) & ({(i, i + 1) for i in range(7)} | {(0, 7)})
+
+
+@pytest.mark.parametrize(
+    ("name", "legs"), [("tripod", 4), ("tripod", 5), ("tripod", 7), ("tetrapod", 8), ("ripple", 4), ("wave", 3)]
+)
+def test_gaits_refuse_numbers_of_legs_they_are_not_for(name, legs):
+    with pytest.raises(InputError, match=f"the {name} gait is not for {legs} legs; the wave gait"):
+        Gait.named(name, legs=legs)
+
+
+@pytest.mark.parametrize("duty", [0.0, 1.0, -0.2, 1.3, float("nan"), float("inf")])
+def test_duty_must_be_inside_0_and_1(duty):
+    with pytest.raises(InputError, match="duty is"):
+        Gait(duty, (0.0, 0.5))
+
+
+@pytest.mark.parametrize("offset", [1.0, -1e-9, float("nan"), float("inf")])
+def test_offsets_must_be_in_0_to_1(offset):
+    with pytest.raises(InputError, match=r"offsets\[1\] is"):
+        Gait(0.5, (0.0, offset))
+
+
+@pytest.mark.parametrize(("duty", "offsets"), [("x", (0.0,)), (0.5, ("a",)), (0.5, 3), (None, (0.0,))])
+def test_duty_and_offsets_must_be_numbers(duty, offsets):
+    with pytest.raises(InputError, match="must be numbers"):
+        Gait(duty, offsets)
+
+
+def test_a_gait_has_legs():
+    with pytest.raises(InputError, match="has no legs"):
+        Gait(0.5, ())
+
+
+def test_a_custom_gait_is_a_value_of_plain_numbers():
+    gait = Gait(np.float32(0.5), np.array([0.0, 0.25]))
+    assert gait == Gait(0.5, (0.0, 0.25))
+    assert hash(gait) == hash(Gait(0.5, (0.0, 0.25)))
+    assert type(gait.duty) is float
+    assert [type(offset) for offset in gait.offsets] == [float, float]
+    assert gait.name == "custom"
+
+
+def test_another_number_of_legs_is_refused():
+    Gait.named("wave", legs=8).require_legs(8)
+    with pytest.raises(InputError, match="gait 'wave' is for 8 legs, the robot has 6"):
+        Gait.named("wave", legs=8).require_legs(6)
+
+
+gaits = st.builds(
+    Gait,
+    st.floats(0.05, 0.95),
+    st.lists(st.floats(0, 0.999), min_size=1, max_size=9).map(tuple),
+)
+
+
+@given(gaits, st.floats(-50, 50))
+def test_phase_counts_steps_from_the_touchdown(gait, clock):
+    step, phase, stance = gait.phase(np.array(clock))
+    np.testing.assert_allclose(step + phase + gait.offsets, clock, atol=2e-9)
+    assert (step == np.floor(step)).all()
+    assert ((phase >= 0) & (phase < 1)).all()
+    sure = np.abs(phase - gait.duty) > 2e-9
+    np.testing.assert_array_equal(stance[sure], (phase < gait.duty)[sure])
+
+
+@given(gaits)
+def test_fewest_feet_down_is_what_a_count_over_the_cycle_finds(gait):
+    events = np.sort(np.concatenate([gait.offsets, np.array(gait.offsets) + gait.duty]) % 1)
+    between = np.diff(events, append=events[0] + 1)
+    middles = (events + between / 2)[between > 1e-6]
+    counts = feet_down(gait, middles)
+    # Events nearer to each other than a millionth of a cycle are left out of the count.
+    assert gait.fewest_feet_down <= counts.min()
+    if between[between > 0].min(initial=1.0) > 1e-6:
+        assert gait.fewest_feet_down == counts.min()
+
+
+@pytest.mark.parametrize("name", GAITS)
+def test_at_a_handover_both_feet_count_as_down_whatever_rounding_does(name):
+    gait = Gait.named(name)
+    events = np.concatenate([gait.offsets, np.array(gait.offsets) + gait.duty])
+    for cycle in (0, 1, 7, 1000, 100_000):
+        for slip in (-2e-10, 0.0, 2e-10):
+            down = gait.phase(cycle + events + slip)[2].sum(-1)
+            assert down.min() >= gait.fewest_feet_down + 1
+
+
+@pytest.mark.parametrize("library", ["jax", "strict"])
+def test_phase_is_the_same_in_every_array_library(library):
+    xp = {"jax": jax.numpy, "strict": array_api_strict}[library]
+    gait = Gait.named("ripple")
+    clock = (np.arange(50) + 0.3) / 17
+    for mine, theirs in zip(gait.phase(clock), gait.phase(xp.asarray(clock)), strict=True):
+        np.testing.assert_allclose(np.asarray(theirs), mine, atol=1e-14)
