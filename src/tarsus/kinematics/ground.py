@@ -14,7 +14,7 @@ from tarsus.kinematics.reach import Reach
 from tarsus.kinematics.verdict import LENGTH_TOLERANCE, mark
 from tarsus.robot.geometry import LegGeometry
 
-__all__ = ["BodyPlace", "mark_below_ground", "surely_above"]
+__all__ = ["BodyPlace", "mark_below_ground", "points_in_body", "surely_above"]
 
 
 class BodyPlace(NamedTuple):
@@ -57,6 +57,13 @@ class BodyPlace(NamedTuple):
         """Return the height over the ground of points of B."""
         zx, zy, zz = self.rotation[2]
         return zx * x + zy * y + zz * z + self.position[2]
+
+
+def points_in_body(body: Pose, points: Array) -> Array:
+    """Carry NumPy points ``(..., k, 3)`` of G into B as `BodyPlace.into_body` does, to the bit, in half the calls."""
+    rotation, away = body.rotation[..., None, :, :], points - body.position[..., None, :]
+    carried = away[..., 0:1] * rotation[..., 0, :] + away[..., 1:2] * rotation[..., 1, :]
+    return carried + away[..., 2:3] * rotation[..., 2, :]
 
 
 def mark_below_ground(

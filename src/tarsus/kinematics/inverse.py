@@ -24,7 +24,7 @@ from tarsus.arrays import (
     stack_last,
 )
 from tarsus.errors import InputError
-from tarsus.kinematics.ground import BodyPlace, mark_below_ground, surely_above
+from tarsus.kinematics.ground import BodyPlace, mark_below_ground, points_in_body, surely_above
 from tarsus.kinematics.nearest import nearest_angles
 from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.reach import IKSolution, Reach
@@ -126,7 +126,8 @@ def _solve_first(
     sideways = bool(robot.geometry.side.any())
     if feet.size <= SMALL and batch == feet.shape[:-2] and not robot.batch_shape:
         place = None if body is None else BodyPlace.of(np, body)
-        x, y, z = feet[..., 0], feet[..., 1], feet[..., 2]
+        points = feet if body is None else points_in_body(body, feet)
+        x, y, z = points[..., 0], points[..., 1], points[..., 2]
         *joints, codes = _first_tries(robot.geometry, x, y, z, place, knee=knee, sideways=sideways)
         return stack_last(np, tuple(joints)), codes
     angles, reach = np.empty((*batch, robot.legs, 3)), np.empty((*batch, robot.legs), dtype=np.int8)
@@ -136,6 +137,8 @@ def _solve_first(
         place = None if body is None else BodyPlace.of_block(body, index, block)
         g = robot.geometry.take(index, block) if robot.batch_shape else same
         x, y, z = columns(feet, index, block, tail=2)
+        if place is not None:
+            x, y, z = place.into_body(x, y, z)
         *joints, codes = _first_tries(g, x, y, z, place, knee=knee, sideways=sideways)
         view = angles[index].reshape(-1, robot.legs, 3)
         for i, joint in enumerate(joints):
@@ -147,9 +150,7 @@ def _solve_first(
 def _first_tries(
     g: LegGeometry, x: Array, y: Array, z: Array, body: BodyPlace | None, *, knee: int, sideways: bool
 ) -> tuple[Array, ...]:
-    """Solve NumPy legs in any layout with their planes turned towards their feet."""
-    if body is not None:
-        x, y, z = body.into_body(x, y, z)
+    """Solve NumPy legs in any layout, their feet in B, with their planes turned towards them."""
     solution = solve_triangle(np, g, *to_leg_frame(g, x, y, z), knee=knee, sideways=sideways)
     joints = solution[:3]
     within = all_within(g, solution)
