@@ -1,0 +1,322 @@
+"""Measure Tarsus and print one table; `--write` also writes it to docs/benchmarks.md."""
+
+from __future__ import annotations
+
+import argparse
+import importlib.util
+import math
+import platform
+import shutil
+import sys
+from collections.abc import Callable, Iterator, Sequence
+from functools import partial
+from pathlib import Path
+from typing import Any, TypeAlias
+
+# Before NumPy is loaded: this one chooses the core and the number of threads.
+from measure import Row, medians, peak_bytes, start_time, use_one_core  # isort: split
+
+import numpy as np
+
+from native import FLAGS, CLoop
+from tarsus import (
+    Gait,
+    Pose,
+    Robot,
+    default_stance,
+    forward_kinematics,
+    inverse_kinematics,
+    load_robot,
+    plan_walk,
+    straight_path,
+)
+
+FloatArray: TypeAlias = np.ndarray[Any, np.dtype[np.float64]]
+
+ROBOTS = 100_000
+"""Robots in a batch: 600,000 legs."""
+
+DESIGNS, POSES = 1000, 32
+CLEARANCE = 0.11
+OF_C = 0.15
+"""What share of the C loop's speed is asked for."""
+
+SCATTERED = 0.001
+"""A share of legs out of reach that leaves hardly any block of a batch without one."""
+
+AGREEMENT = 1e-9
+"""How far the angles of the two implementations may differ [rad]."""
+
+TABLE = Path(__file__).parent.parent / "docs" / "benchmarks.md"
+
+
+def footholds(robot: Robot, rng: np.random.Generator) -> FloatArray:
+    """Return feet in B about a stance, all of them within reach with the body tilted by 5 degrees about each axis."""
+    spread = rng.uniform((-0.02, -0.02, 0.0), (0.02, 0.02, 0.01), (ROBOTS, robot.legs, 3))
+    return np.asarray(default_stance(robot, CLEARANCE, lift=0.05) + spread)
+
+
+def tilted(degrees: float, rng: np.random.Generator) -> Pose:
+    """Return body poses turned at random by up to `degrees` about each axis, and moved by up to 10 mm."""
+    roll, pitch, yaw = rng.uniform(-1, 1, (3, ROBOTS)) * math.radians(degrees)
+    middle = np.array([0, 0, CLEARANCE])
+    return Pose.from_rpy(roll, pitch, yaw, rng.uniform(-0.01, 0.01, (ROBOTS, 3)) + middle)
+
+
+def batches(robot: Robot) -> Iterator[tuple[str, FloatArray, Pose | None, float]]:
+    """Yield the batches that both implementations solve: what they are, feet, body, the share that is out of reach."""
+    rng = np.random.default_rng(1)
+    feet = footholds(robot, rng)
+    yield "feet in B", feet, None, 0.0
+    for degrees in (2, 5):
+        yield f"body poses, up to {degrees} deg", feet + np.array([0, 0, CLEARANCE]), tilted(degrees, rng), 0.0
+    g = robot.geometry
+    outward = np.stack([g.cos_yaw, g.sin_yaw, np.zeros(robot.legs)], axis=-1)
+    for share in (SCATTERED, 0.1):
+        away = np.where(rng.random((ROBOTS, robot.legs, 1)) < share, 0.3, 0.0) * outward
+        yield f"feet in B, {share:.1%} out of reach", feet + away, None, share
+
+
+def require_agreement(c_loop: CLoop, robot: Robot, feet: FloatArray, body: Pose | None, out_of_reach: float) -> None:
+    """Refuse to time two implementations that differ, or a batch that is not what it says it is."""
+    solution = inverse_kinematics(robot, feet, body)
+    c_loop(feet, body)
+    apart = float(np.abs(solution.angles - c_loop.angles).max())
+    codes = int((solution.reach != c_loop.codes).sum())
+    if apart > AGREEMENT or codes:
+        raise SystemExit(f"the C loop and Tarsus differ by up to {apart:.3g} rad, and in {codes} reach codes")
+    share = float((c_loop.codes != 0).mean())
+    if not math.isclose(share, out_of_reach, rel_tol=0.1):
+        raise SystemExit(f"{share:.2%} of the legs are out of reach where {out_of_reach:.2%} should be")
+
+
+def inverse_rows(robot: Robot, c_loop: CLoop | None) -> Iterator[Row]:
+    """Whole-robot inverse kinematics with verdicts, against a C loop."""
+    for name, feet, body, out_of_reach in batches(robot):
+        contestants: dict[str, Callable[[], object]] = {"tarsus": partial(inverse_kinematics, robot, feet, body)}
+        if c_loop is not None:
+            require_agreement(c_loop, robot, feet, body, out_of_reach)
+            contestants["c"] = partial(c_loop, feet, body)
+        times = medians(contestants, rounds=15)
+        compared, met = "no gcc here: not compared", None
+        if "c" in times:
+            ratio = times["c"] / times["tarsus"]
+            compared, met = f"C: {speed(times['c'])}; {ratio:.2f} of it", ratio >= OF_C
+        yield Row(
+            what=f"inverse kinematics with verdicts, {name}",
+            measured=speed(times["tarsus"]),
+            compared=compared,
+            target=f">= {OF_C} of C",
+            met=met,
+        )
+
+
+def speed(seconds: float, legs: int = 6 * ROBOTS) -> str:
+    """Return how many legs a second that is."""
+    return f"{legs / seconds / 1e6:.1f} M legs/s"
+
+
+def single_rows(robot: Robot) -> Iterator[Row]:
+    """One robot, as in a control loop."""
+    feet = default_stance(robot, CLEARANCE) * (1, 1, 0)
+    body = Pose.from_rpy(0.03, -0.02, 0.1, (0.005, 0.0, CLEARANCE))
+    angles = inverse_kinematics(robot, feet, body).require().angles
+    times = medians(
+        {
+            "inverse kinematics": lambda: inverse_kinematics(robot, feet, body),
+            "forward kinematics": lambda: forward_kinematics(robot, angles),
+        },
+        loops=300,
+    )
+    for (name, seconds), most in zip(times.items(), (60, 30), strict=True):
+        yield Row(
+            what=f"{name} of one robot{', with a body pose' if most == 60 else ''}",
+            measured=f"{seconds * 1e6:.0f} us",
+            target=f"<= {most} us",
+            met=seconds * 1e6 <= most,
+        )
+
+
+def memory_rows(robot: Robot) -> Iterator[Row]:
+    """The most memory held while a batch is solved, against what goes in and comes out."""
+    for name, feet, body, out_of_reach in batches(robot):
+        if out_of_reach == SCATTERED or name.endswith("2 deg"):
+            continue  # the same again
+        solution = inverse_kinematics(robot, feet, body)
+        given = feet.nbytes + (0 if body is None else body.rotation.nbytes + body.position.nbytes)
+        needed = given + solution.angles.nbytes + solution.reach.nbytes
+        del solution
+        held = given + peak_bytes(partial(inverse_kinematics, robot, feet, body))
+        yield Row(
+            what=f"memory for 600,000 legs, {name}",
+            measured=f"{held / 2**20:.0f} MiB",
+            compared=f"input and output: {needed / 2**20:.0f} MiB; {held / needed:.2f} times",
+            target="< 5 times",
+            met=held < 5 * needed,
+        )
+
+
+def forward_rows(robot: Robot) -> Iterator[Row]:
+    """Forward kinematics, and both through `jax.jit` on the same core."""
+    feet = footholds(robot, np.random.default_rng(2))
+    angles = inverse_kinematics(robot, feet).require().angles
+    times = medians({"fk": lambda: forward_kinematics(robot, angles)})
+    yield Row(what="forward kinematics, 600,000 legs", measured=speed(times["fk"]))
+    if importlib.util.find_spec("jax") is None:
+        yield Row(what="jax.jit, 600,000 legs", measured="JAX is not installed: not measured")
+        return
+    import jax
+
+    jax.config.update("jax_enable_x64", True)
+    jitted_ik = jax.jit(lambda feet: (s := inverse_kinematics(robot, feet)).angles + 0 * s.reach[..., None])
+    jitted_fk = jax.jit(lambda angles: forward_kinematics(robot, angles))
+    jax_feet, jax_angles = jax.numpy.asarray(feet), jax.numpy.asarray(angles)
+    times |= medians(
+        {
+            "jax fk": lambda: jitted_fk(jax_angles).block_until_ready(),
+            "jax ik": lambda: jitted_ik(jax_feet).block_until_ready(),
+            "ik": lambda: inverse_kinematics(robot, feet),
+            "fk": lambda: forward_kinematics(robot, angles),
+        }
+    )
+    for name, what in (("ik", "inverse kinematics with verdicts"), ("fk", "forward kinematics")):
+        yield Row(
+            what=f"{what}, jax.jit, 600,000 legs",
+            measured=speed(times[f"jax {name}"]),
+            compared=f"NumPy: {speed(times[name])}; {times[name] / times[f'jax {name}']:.2f} of it",
+        )
+
+
+def design_rows(robot: Robot) -> Iterator[Row]:
+    """Many designs at once, against a Python loop over them."""
+    rng = np.random.default_rng(3)
+    scale = rng.uniform(0.95, 1.05, (3, DESIGNS, 1))
+    lengths = {name: getattr(robot, name) * scale[i] for i, name in enumerate(("coxa", "femur", "tibia"))}
+    together = robot.replace(**{name: length[:, None] for name, length in lengths.items()})
+    designs = [robot.replace(**{name: length[i] for name, length in lengths.items()}) for i in range(DESIGNS)]
+    feet = footholds(robot, rng)[:POSES]
+    times = medians(
+        {
+            "one call": lambda: inverse_kinematics(together, feet),
+            "loop": lambda: [inverse_kinematics(design, feet) for design in designs],
+        }
+    )
+    yield Row(
+        what=f"inverse kinematics of {DESIGNS} designs in {POSES} poses, one call",
+        measured=f"{times['one call'] * 1e3:.1f} ms",
+        compared=f"a loop over the designs: {times['loop'] * 1e3:.0f} ms; "
+        f"{times['loop'] / times['one call']:.1f} times as fast",
+    )
+
+
+def walk_rows(robot: Robot) -> Iterator[Row]:
+    """A walk of 1 m, sampled at 100 Hz."""
+    gait, path = Gait.named("tripod"), straight_path(1.0)
+    samples = {name: len(plan_walk(robot, gait, path, **given).time) for name, given in WALKS}
+    times = medians({name: partial(plan_walk, robot, gait, path, **given) for name, given in WALKS})
+    for name, seconds in times.items():
+        yield Row(
+            what=f"planning a walk of 1 m at 100 Hz, {name} ({samples[name]} samples)",
+            measured=f"{seconds * 1e3:.1f} ms",
+            target="<= 50 ms",
+            met=seconds <= 0.05,
+        )
+
+
+WALKS: tuple[tuple[str, dict[str, Any]], ...] = (
+    ("stroke given", {"stroke": 0.05}),
+    ("stroke and pace left to the plan", {}),
+)
+
+
+def start_rows() -> Iterator[Row]:
+    """How long it takes until something happens."""
+    command = shutil.which("tarsus", path=str(Path(sys.executable).parent))
+    commands: list[tuple[str, Sequence[str] | None]] = [
+        ("import tarsus", (sys.executable, "-c", "import tarsus")),
+        ("tarsus --help", None if command is None else (command, "--help")),
+    ]
+    for name, arguments in commands:
+        if arguments is None:
+            yield Row(what=name, measured="the command is not installed: not measured", target="< 0.3 s")
+            continue
+        seconds = start_time(arguments)
+        yield Row(what=name, measured=f"{seconds:.2f} s", target="< 0.3 s", met=seconds < 0.3)
+
+
+def rows(robot: Robot, c_loop: CLoop | None) -> Iterator[Row]:
+    """Measure everything."""
+    yield from inverse_rows(robot, c_loop)
+    for group in (single_rows, memory_rows, forward_rows, design_rows, walk_rows):
+        yield from group(robot)
+    yield from start_rows()
+
+
+WRITTEN = (
+    "Written by `python benchmarks/run.py --write`; [how it is measured](../benchmarks/README.md). "
+    "The numbers of another machine differ; the ratios less so."
+)
+HEADINGS = ("what", "median", "compared", "target", "")
+
+
+def cells(row: Row) -> tuple[str, ...]:
+    """Return a row's columns."""
+    return row.what, row.measured, row.compared, row.target, row.verdict
+
+
+def circumstances(c_loop: CLoop | None) -> str:
+    """Say under what the numbers came about."""
+    compiled = "no gcc, so no C loop"
+    if c_loop is not None:
+        how = f"vectorised, with {', '.join(c_loop.vectors)}" if c_loop.vectors else "without vector functions"
+        compiled = f"C: gcc {' '.join(FLAGS)}, {how}"
+    return (
+        f"One core of the machine it ran on ({platform.machine()}), Python {platform.python_version()}, "
+        f"NumPy {np.__version__}; {compiled}. Batches are of 600,000 legs: 100,000 robots."
+    )
+
+
+def show(table: Sequence[Row], caption: str) -> None:
+    """Print the table."""
+    from rich.console import Console
+    from rich.table import Table
+
+    shown = Table(*HEADINGS, title="Tarsus", caption=caption)
+    for row in table:
+        shown.add_row(*cells(row), style="red" if row.met is False else None)
+    # A pipe has no width; the table keeps its lines whole there.
+    Console(width=None if sys.stdout.isatty() else 170).print(shown)
+
+
+def write(table: Sequence[Row], caption: str) -> None:
+    """Write the table to the documentation."""
+    lines = [
+        "# Benchmarks",
+        "",
+        WRITTEN,
+        "",
+        caption,
+        "",
+        "| " + " | ".join(HEADINGS) + " |",
+        "|---" * len(HEADINGS) + "|",
+        *("| " + " | ".join(cells(row)) + " |" for row in table),
+    ]
+    TABLE.write_text("\n".join(lines) + "\n", encoding="utf-8")
+
+
+def main() -> None:
+    """Measure, print, and write where asked to."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--write", action="store_true", help=f"write the table to {TABLE.parent.name}/{TABLE.name}")
+    options = parser.parse_args()
+    use_one_core()
+    robot = load_robot("strider")
+    c_loop = CLoop.compiled(robot, ROBOTS)
+    table, caption = list(rows(robot, c_loop)), circumstances(c_loop)
+    show(table, caption)
+    if options.write:
+        write(table, caption)
+
+
+if __name__ == "__main__":
+    main()
