@@ -13,9 +13,11 @@ except ImportError:  # the package without its extra: say which
 
 from tarsus import __version__
 from tarsus.cli.group import TarsusGroup
+from tarsus.cli.loads import loads
 from tarsus.cli.pose import pose
 from tarsus.cli.rest import rest
 from tarsus.cli.robots import robots
+from tarsus.cli.servos import servos
 from tarsus.cli.values import examples
 from tarsus.cli.walk import walk
 
@@ -30,6 +32,7 @@ __all__ = ["main"]
         "tarsus walk strider --out walk",
         "tarsus pose strider --pitch 5",
         "tarsus rest strider --all 0,-30,-60",
+        "tarsus loads strider",
         "tarsus robots list",
     ),
 )
@@ -43,5 +46,5 @@ def main() -> None:
     """
 
 
-for command in (walk, pose, rest, robots):
+for command in (walk, pose, rest, loads, servos, robots):
     main.add_command(command)

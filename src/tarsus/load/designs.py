@@ -226,17 +226,16 @@ class _Sweep:
             where = np.nonzero(again)
             few = self.picked(where)
             rows = few.by_angles()
-            into = (..., *where)
             for target, values in zip((angles, torques, forces, reach, balanced), rows, strict=True):
-                target[into] = values
+                target[(..., *where)] = values
         return self.result(angles, torques, forces, reach, balanced)
 
     def as_one(self) -> CycleTorques:
         """Work through designs of any library at once, without branching on values."""
         shape = (self.robot.legs, len(self.cycle.phases), *self.batch)
-        *rows, reach, balanced = self.by_angles()
-        shaped = [self.xp.reshape(row, (3, *shape)) for row in rows]
-        return self.result(*shaped, self.xp.reshape(reach, shape), self.xp.reshape(balanced, shape[1:]))
+        rows = zip(self.by_angles(), ((3, *shape), (3, *shape), (3, *shape), shape, shape[1:]), strict=True)
+        angles, torques, forces, reach, balanced = (self.xp.reshape(row, into) for row, into in rows)
+        return self.result(angles, torques, forces, reach, balanced)
 
     def by_angles(self) -> tuple[Array, ...]:
         """Return angles, torques, forces, reach and balance of all designs, in a row, from their joint angles."""

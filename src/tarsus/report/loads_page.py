@@ -1,0 +1,96 @@
+"""One page with a walk's loads: verdict, pictures, tables. It asks no other place for anything."""
+
+from __future__ import annotations
+
+import base64
+from collections.abc import Sequence
+from html import escape
+from pathlib import Path
+from typing import Any
+
+from tarsus.report.loads_table import LOAD_COLUMNS, load_rows, loads_lines, loads_verdict
+
+__all__ = ["loads_page"]
+
+_STYLE = """
+body { font: 15px/1.5 system-ui, sans-serif; color: #222; background: #fff; max-width: 70rem; margin: 2rem auto;
+       padding: 0 1rem; }
+h1 { font-size: 1.5rem; margin-bottom: 0; } h2 { font-size: 1.1rem; margin-top: 2rem; }
+img { max-width: 100%; }
+table { border-collapse: collapse; font-variant-numeric: tabular-nums; }
+th, td { padding: .15rem .6rem; text-align: left; white-space: nowrap; }
+th { border-bottom: 1px solid #222; } tr.worst td { font-weight: bold; }
+td.number { text-align: right; } td.bar { font-family: monospace; }
+.verdict { font-size: 1.2rem; font-weight: bold; padding: .4rem .8rem; border-left: .4rem solid; }
+.carried { border-color: #009E73; } .not-carried { border-color: #b00020; }
+.wide { overflow-x: auto; }
+"""
+
+_LEGEND = (
+    "factor: stall torque over peak torque (below 1 cannot stand, below 1.5 stalls or burns, below 3 marginal). "
+    "line used: of the servo's line from stall torque to its speed without load. heat: root mean square torque "
+    "over a fifth of the stall torque, which a servo bears lastingly."
+)
+_TITLES = {"torques": "Torque over the walk", "torque-speed": "Torque over speed"}
+_NUMBERS = {"peak N m", "RMS N m", "factor", "deg/s", "line used", "heat"}
+
+
+def loads_page(summary: dict[str, Any], pictures: Sequence[Path]) -> str:
+    """Return an HTML page with its pictures in it.
+
+    Parameters
+    ----------
+    summary : dict
+        From `tarsus.report.loads_summary.loads_summary`.
+    pictures : sequence of Path
+        PNG files.
+    """
+    title = f"{summary['robot']}: what its servos bear"
+    state = "carried" if summary["carried"] else "not-carried"
+    parts = [
+        f"<h1>{escape(title)}</h1>",
+        f"<p>{escape(_walk(summary))}</p>",
+        f'<p class="verdict {state}">{escape(str(loads_verdict(summary)))}</p>',
+        *(_picture(path) for path in pictures),
+        "<h2>Every joint</h2>",
+        f'<div class="wide">{_table(summary)}</div>',
+        f"<p>{escape(_LEGEND)}</p>",
+        "<h2>In words</h2>",
+        f"<ul>{''.join(f'<li>{escape(line)}</li>' for line in loads_lines(summary))}</ul>",
+    ]
+    return (
+        '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
+        '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
+        f"<title>{escape(title)}</title>\n<style>{_STYLE}</style>\n</head>\n<body>\n"
+        + "\n".join(parts)
+        + "\n</body>\n</html>\n"
+    )
+
+
+def _walk(summary: dict[str, Any]) -> str:
+    payload = f", with {summary['payload_kg']:g} kg of payload" if summary["payload_kg"] else ""
+    inertia = "with inertia" if summary["inertial"] else "statics alone"
+    return (
+        f"{summary['gait']} gait, {summary['distance_m'] * 1000:.0f} mm at {summary['speed_mm_s']:.0f} mm/s, body "
+        f"{summary['clearance_mm']:.0f} mm over the ground{payload}; {inertia}."
+    )
+
+
+def _picture(path: Path) -> str:
+    title = escape(_TITLES.get(path.stem, path.stem))
+    data = base64.b64encode(path.read_bytes()).decode("ascii")
+    return f'<h2>{title}</h2>\n<img alt="{title}" src="data:image/png;base64,{data}">'
+
+
+def _table(summary: dict[str, Any]) -> str:
+    head = "".join(f"<th>{escape(column)}</th>" for column in LOAD_COLUMNS)
+    rows = []
+    for row in load_rows(summary):
+        cells = "".join(_cell(column, text) for column, text in zip(LOAD_COLUMNS, row, strict=True))
+        rows.append(f'<tr class="worst">{cells}</tr>' if row[0] in summary["worst"] else f"<tr>{cells}</tr>")
+    return f"<table>\n<tr>{head}</tr>\n" + "\n".join(rows) + "\n</table>"
+
+
+def _cell(column: str, text: str) -> str:
+    kind = ' class="number"' if column in _NUMBERS else ' class="bar"' if column == "of stall" else ""
+    return f"<td{kind}>{escape(text)}</td>"
