@@ -31,6 +31,7 @@ from tarsus import (
     stability_margin,
     straight_path,
 )
+from tarsus.load.handbook import handbook
 from tarsus.load.torque import joint_torques
 
 PAGE = Path(__file__).parent.parent / "docs" / "sources.md"
@@ -862,6 +863,35 @@ def test_004_erratum_ripple_walking_adds_an_inertia_to_a_torque() -> None:
     assert from_acceleration + 0.0379 == pytest.approx(0.1812, abs=1e-4)
     corrected = from_acceleration + cube(mass, S004["R_b"] ** 2) * S004["swing"]
     assert S004["safety"] * corrected == pytest.approx(0.4750, abs=1e-4)
+
+
+@pytest.mark.parametrize(("gait", "walking"), [("tripod", 0.7260), ("ripple", 0.5382)])
+def test_004_the_hand_method_as_printed_and_corrected(gait: str, walking: float) -> None:
+    """`handbook` on strider: the sums of this file where the rows are corrected, the document's numbers where not."""
+    mass, feet_down, load = CARRIED[gait]
+    r_b, swing = S004["R_b"], S004["swing"]
+    from_acceleration, torque = mass * S004["a"] * r_b, cube(mass, r_b**2) * swing
+    right, as_printed = (
+        {line.key: line.value for line in handbook(load_robot("strider"), feet_down=feet_down, corrected=c).lines}
+        for c in (True, False)
+    )
+    femur, tibia = stance_004(load)
+    for key, corrected, document in (
+        ("swing.femur", femur_swing(S004["com_femur"]), 0.1913),
+        ("swing.tibia", weight("tibia") * S004["com_tibia"], 0.06115),
+        ("inertia.coxa", coxa_inertia(), 0.0001233),
+        ("inertia.femur_at_coxa", inertia("femur", S004["femur"], 0.117), 0.000347),
+        ("inertia.leg", leg_inertia(), 0.0054503),
+        ("swing.gravity", 0.0, 0.38808),
+        ("stance.mass", mass, mass),
+        ("stance.load", load, load),
+        ("stance.femur", femur, {"tripod": 1.13315, "ripple": 0.5162}[gait]),
+        ("stance.tibia", tibia, {"tripod": 1.716, "ripple": 0.8226}[gait]),
+        ("walk.inertia", cube(mass, r_b**2), {"tripod": 0.04835, "ripple": 0.0362}[gait]),
+        ("walk.coxa_with_factor", S004["safety"] * (from_acceleration + torque), walking),
+    ):
+        assert right[key] == pytest.approx(corrected, rel=1e-5), key
+        assert as_printed[key] == printed(document), key
 
 
 def test_004_loose_stance_model_is_not_the_static_torque() -> None:
