@@ -1,0 +1,159 @@
+"""In words and numbers: why a leg can't have its foot where it should be, and what it could do instead."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Self
+
+import numpy as np
+
+from tarsus.kinematics.inverse import inverse_kinematics
+from tarsus.kinematics.leg import forward_kinematics
+from tarsus.kinematics.pose import Pose
+from tarsus.kinematics.reach import Reach
+from tarsus.kinematics.triangle import solve_triangle, to_leg_frame
+from tarsus.robot.robot import JOINTS, Robot
+
+if TYPE_CHECKING:
+    from tarsus.kinematics.reach import IKSolution
+
+__all__ = ["explain_leg"]
+
+_STEP = 1e-4  # metres: the steps in which raised bodies are told
+_TRIES = 64
+_OF_LEGS = (
+    *("mount_position", "mount_yaw", "coxa", "femur", "tibia", "femur_axis_offset"),
+    *("limits", "foot_radius", "link_com", "link_mass"),
+)
+
+
+def explain_leg(solution: IKSolution, index: tuple[int, ...]) -> str:
+    """Return a line on one leg that fails.
+
+    Parameters
+    ----------
+    solution : IKSolution
+        The solution.
+    index : tuple of int
+        Where in `solution.reach` the leg is.
+    """
+    *batch, leg = index
+    one = _Leg.of(solution, tuple(batch), leg)
+    code = Reach(int(np.asarray(solution.reach)[index]))
+    where = f"{batch} " if batch else ""
+    return f"{where}{solution.robot.leg_names[leg]}: {code.name}: {one.why(code)}. {one.what_works(code)}"
+
+
+@dataclass(frozen=True, eq=False)
+class _Leg:
+    """One leg of a solution, alone on its body, as plain numbers; points in the frame that the feet were given in."""
+
+    robot: Robot
+    knee: Any
+    wanted: np.ndarray[Any, Any]
+    body: Pose | None
+    points: np.ndarray[Any, Any]
+    in_leg: tuple[float, float, float]
+
+    @classmethod
+    def of(cls, solution: IKSolution, batch: tuple[int, ...], leg: int) -> Self:
+        whole = np.asarray(solution.reach).shape[:-1]
+        robot = _alone(solution.robot.item(batch, of=whole), leg)
+        wanted = np.broadcast_to(np.asarray(solution.feet), np.shape(solution.angles))[batch][[leg]]
+        points = forward_kinematics(robot, np.asarray(solution.angles)[batch][[leg]])
+        body, in_body = None, wanted
+        if solution.body is not None:
+            pose = solution.body
+            rotation = np.broadcast_to(np.asarray(pose.rotation), (*whole, 3, 3))[batch]
+            position = np.broadcast_to(np.asarray(pose.position), (*whole, 3))[batch]
+            body = Pose(rotation, position)
+            points, in_body = body @ points, body.inverse() @ wanted
+        x, y, z = to_leg_frame(robot.geometry, in_body[:, 0], in_body[:, 1], in_body[:, 2])
+        return cls(robot, solution.knee, wanted[0], body, points[0], (float(x[0]), float(y[0]), float(z[0])))
+
+    def why(self, code: Reach) -> str:
+        """Return what is wrong, the number against its bound."""
+        if code is Reach.BELOW_GROUND:
+            lowest = int(np.argmin(self.points[:3, 2]))
+            point, depth = ("coxa axis", "femur axis", "knee")[lowest], -float(self.points[lowest, 2])
+            return f"the {point} is {depth * 1000:.1f} mm below the ground"
+        if code in (Reach.TOO_FAR, Reach.TOO_NEAR):
+            return self._why_distance(code)
+        return self._why_limit(code)
+
+    def what_works(self, code: Reach) -> str:
+        """Return the nearest thing that works."""
+        if code is Reach.BELOW_GROUND and self.body is not None:
+            return self._raised(self.body)
+        x, y, z = np.round(self.points[3] * 1000, 1) + 0.0  # no -0.0
+        miss = math.dist(self.points[3], self.wanted) * 1000
+        return f"Nearest that works: the foot at ({x:.1f}, {y:.1f}, {z:.1f}) mm, {miss:.1f} mm away"
+
+    def _raised(self, body: Pose) -> str:
+        """Return how far the body must be raised, the feet where they are, for the leg to be above the ground."""
+        g = self.robot.geometry
+        # No point of the leg but the foot is farther than this from the coxa axis.
+        span = g.coxa + np.abs(g.side) + np.abs(g.up) + g.femur
+        most = math.ceil((float(span[0]) - float(self.points[0, 2])) / _STEP) + 1
+        coarse = math.ceil(most / _TRIES)
+        end = self._first_above(body, np.arange(coarse, most + coarse, coarse))[0]
+        rise, code = self._first_above(body, np.arange(end - coarse + 1, end + 1))
+        told = f"{rise * _STEP * 1000:.1f} mm"
+        if code is Reach.OK:
+            return f"Raise the body by {told}"
+        return f"With the body raised by {told} it is above, but the foot is out of reach ({code.name})"
+
+    def _first_above(self, body: Pose, steps: np.ndarray[Any, Any]) -> tuple[int, Reach]:
+        """Return the first rise, in steps, at which the leg is above the ground, and its code there."""
+        higher = Pose(body.rotation, body.position + steps[:, None] * np.array([0.0, 0.0, _STEP]))
+        reach = inverse_kinematics(self.robot, self.wanted[None], higher, knee=self.knee).reach[:, 0]
+        first = int(np.argmax(reach != Reach.BELOW_GROUND))
+        return int(steps[first]), Reach(int(reach[first]))
+
+    def _why_distance(self, code: Reach) -> str:
+        g = self.robot.geometry
+        x, y, z = self.in_leg
+        side, beside = abs(float(g.side[0])) * 1000, math.hypot(x, y) * 1000
+        if beside < side:
+            return (
+                f"the foot is {beside:.1f} mm from the coxa axis, and the femur axis' sideways offset keeps it at "
+                f"least {side:.1f} mm away: {side - beside:.1f} mm too near"
+            )
+        r = math.sqrt(max(x * x + y * y - float(g.side2[0]), 0.0)) - float(g.coxa[0])
+        distance = math.hypot(r, z) * 1000
+        femur, tibia = float(g.femur[0]) * 1000, float(g.tibia[0]) * 1000
+        if code is Reach.TOO_FAR:
+            return (
+                f"the foot is {distance:.1f} mm from the femur axis, and femur and tibia together reach "
+                f"{femur + tibia:.1f} mm: {distance - femur - tibia:.1f} mm too far"
+            )
+        folded = abs(femur - tibia)
+        return (
+            f"the foot is {distance:.1f} mm from the femur axis, and the folded leg can't come nearer than "
+            f"{folded:.1f} mm: {folded - distance:.1f} mm too near"
+        )
+
+    def _why_limit(self, code: Reach) -> str:
+        joint = int(code) - int(Reach.COXA_LIMIT)
+        knee = 1 if self.knee == "up" else -1
+        triangle = solve_triangle(np, self.robot.geometry, *np.array(self.in_leg)[:, None], knee=knee)
+        angle = math.degrees(float(triangle[joint][0]))
+        low, high = (math.degrees(v) for v in self.robot.limits[0, joint])
+        above, below = (angle - high) % 360.0, (low - angle) % 360.0
+        if above < below:
+            return (
+                f"the {JOINTS[joint]} would have to be at {high + above:.1f} deg, its highest angle is {high:.1f}: "
+                f"{above:.1f} deg too far"
+            )
+        return (
+            f"the {JOINTS[joint]} would have to be at {low - below:.1f} deg, its lowest angle is {low:.1f}: "
+            f"{below:.1f} deg too far"
+        )
+
+
+def _alone(robot: Robot, leg: int) -> Robot:
+    """Return the robot with one leg only."""
+    own = slice(leg, leg + 1)
+    arrays = {name: getattr(robot, name)[own] for name in _OF_LEGS if getattr(robot, name) is not None}
+    return robot.replace(leg_names=robot.leg_names[own], servos=robot.servos[own], **arrays)
