@@ -143,8 +143,12 @@ def test_feet_apart_is_the_distance_of_the_nearest_two():
 
 def test_out_of_reach_tells_moment_leg_and_reason():
     motion = walk(stroke=0.3, path=straight_path(1.5), strict=False)
-    first = int(np.argmax((motion.reach != 0).any(-1)))
-    assert motion.problems[0].startswith(f"out of reach: at {motion.time[first]:.2f} s ")
+    reached = motion.body @ forward_kinematics(motion.robot, motion.angles)[..., 3, :]
+    miss = np.linalg.norm(reached - motion.feet, axis=-1)
+    worst, leg = np.unravel_index(int(np.argmax(miss)), miss.shape)
+    name = motion.robot.leg_names[leg]
+    assert motion.problems[0].startswith(f"out of reach: at {motion.time[worst]:.2f} s {name}: ")
+    assert motion.problems[0].endswith(f"{miss[worst, leg] * 1000:.1f} mm away")
     assert "TOO_FAR" in motion.problems[0]
     assert not motion.ok
 

@@ -499,3 +499,10 @@ def test_samples_out_of_reach_are_refused_even_where_the_stroke_s_verdict_is_goo
 def test_rest_footholds_are_those_that_can_be_lifted():
     robot = preset("phoenix")
     np.testing.assert_allclose(rest_of(robot)[:, :2], default_stance(robot, lift=robot.gait.lift)[:, :2])
+
+
+def test_a_stroke_out_of_reach_says_nothing_of_the_pace():
+    robot = load_robot("strider")
+    motion = plan_walk(robot, Gait.named("tripod"), straight_path(0.5), stroke=0.3, strict=False)
+    assert motion.cycle_time == 1.0
+    assert not motion.ok

@@ -15,6 +15,7 @@ from tarsus.errors import InputError
 from tarsus.gait.branch import branches
 from tarsus.gait.gait import Gait
 from tarsus.gait.spacing import feet_distance
+from tarsus.kinematics.leg import forward_kinematics
 from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.reach import IKSolution, Reach
 from tarsus.kinematics.stability import stability_margin
@@ -193,16 +194,19 @@ class Motion:
             )
 
     def _why_unreachable(self) -> str:
-        moment = int(np.argmax((self.reach != Reach.OK).any(-1)))
+        failing = self.reach != Reach.OK
+        reached = self.body @ forward_kinematics(self.robot, self.angles)[..., 3, :]
+        miss = np.linalg.norm(reached - self.feet, axis=-1)
+        moment, leg = np.unravel_index(int(np.argmax(np.where(failing, miss, -1.0))), miss.shape)
         solution = IKSolution(
             robot=self.robot,
             feet=self.feet[moment],
-            body=self.body[moment],
+            body=self.body[int(moment)],
             knee="up",
             angles=self.angles[moment],
-            reach=self.reach[moment],
+            reach=np.where(np.arange(self.robot.legs) == leg, self.reach[moment], Reach.OK),
         )
-        return f"out of reach: at {self.time[moment]:.2f} s {solution.explain().splitlines()[0]}"
+        return f"out of reach: at {self.time[moment]:.2f} s {solution.explain()}"
 
     def to_csv(self, path: str | os.PathLike[str]) -> None:
         """Write a table: a row for each moment, angles in degrees, lengths in mm.

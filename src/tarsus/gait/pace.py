@@ -100,7 +100,10 @@ def _servo_cycle_time(setup: Setup, path: Path, stroke: float, assumed: list[str
     count = min(math.ceil(_MOMENTS_OF_SWING / (1 - setup.gait.duty)), _MOST_MOMENTS)
     phases = (np.arange(count)[:, None] / count + np.array([-0.5, 0.5]) * _DIFFERENCE).ravel()
     twist = unit_twist(setup.rest, path.displacement) * stroke
-    angles = np.asarray(steady_solution(setup, twist, phases).angles).reshape(count, 2, setup.robot.legs, 3)
+    solution = steady_solution(setup, twist, phases)
+    if not solution.ok.all():
+        return _CYCLE_TIME  # the walk can't be: where its joints would jump to says nothing of its pace
+    angles = np.asarray(solution.angles).reshape(count, 2, setup.robot.legs, 3)
     per_cycle = np.abs(angles[:, 1] - angles[:, 0]).max(0) / _DIFFERENCE
     needed = float((per_cycle / np.array(speeds, dtype=float)).max()) / _SHARE_OF_SERVO_SPEED
     if needed > _CYCLE_TIME:
