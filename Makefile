@@ -30,6 +30,7 @@ bench: $(VENV)/.dev
 
 figures: $(VENV)/.dev
 	$(BIN)/python docs/make_figures.py
+	$(BIN)/python docs/refresh.py
 
 schema: $(VENV)/.dev
 	$(BIN)/tarsus robots schema > src/tarsus/robot/robot.schema.json

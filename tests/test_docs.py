@@ -1,5 +1,6 @@
 """The documents keep up with what they describe."""
 
+import importlib.util
 import re
 import tomllib
 from pathlib import Path
@@ -56,3 +57,16 @@ def test_the_example_robots_load_and_account_for_their_numbers(path):
     robot = tarsus.load_robot(path)
     assert robot.has_masses
     assert {"guess"} <= {source.confidence for source in robot.sources}
+
+
+def refresh_module():
+    spec = importlib.util.spec_from_file_location("refresh", DOCS / "refresh.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+@pytest.mark.parametrize("page", ["README.md", "docs/commands.md"])
+def test_what_the_pages_show_is_what_is_printed(page):
+    text = (DOCS.parent / page).read_text(encoding="utf-8")
+    assert refresh_module().refreshed(text) == text, "run: make figures"
