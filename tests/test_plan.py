@@ -502,7 +502,7 @@ def test_rest_footholds_are_those_that_can_be_lifted():
 
 
 def test_a_stroke_out_of_reach_says_nothing_of_the_pace():
-    robot = load_robot("strider")
+    robot = preset("strider")
     motion = plan_walk(robot, Gait.named("tripod"), straight_path(0.5), stroke=0.3, strict=False)
     assert motion.cycle_time == 1.0
     assert not motion.ok
