@@ -224,10 +224,11 @@ class _Sweep:
             again[index] = ~solved.reshape(again[index].shape)
         if again.any():
             where = np.nonzero(again)
-            few = self.picked(where)
-            rows = few.by_angles()
-            for target, values in zip((angles, torques, forces, reach, balanced), rows, strict=True):
-                target[(..., *where)] = values
+            rows = self.picked(where).by_angles()
+            single: Any = (..., *where)
+            for target, values in zip((angles, torques, forces), rows[:3], strict=True):
+                target[single] = values
+            reach[single], balanced[single] = rows[3:]
         return self.result(angles, torques, forces, reach, balanced)
 
     def as_one(self) -> CycleTorques:

@@ -133,8 +133,8 @@ class JointVerdict:
 
     @property
     def fast_enough(self) -> bool:
-        """Whether the torque-speed line covers every moment; False where the speed is unknown."""
-        return self.utilisation <= 1
+        """Whether the torque-speed line covers every moment, driven ones included; False where the speed is unknown."""
+        return self.utilisation <= 1 and self.peak_speed <= self.no_load_speed
 
     @property
     def lasting(self) -> bool:

@@ -8,7 +8,7 @@ import numpy as np
 
 from tarsus.load.loads import Loads
 from tarsus.load.verdict import CONTINUOUS_SHARE, SAFETY_FACTOR
-from tarsus.report.style import INK, PALE, WARNING, leg_colours, new_figure, thinned, tidy_axes
+from tarsus.report.style import INK, PALE, WARNING, halo, leg_colours, new_figure, thinned, tidy_axes
 from tarsus.robot.robot import JOINTS
 
 if TYPE_CHECKING:
@@ -63,7 +63,7 @@ def _draw_demand(axes: Axes, found: Loads, joint: int) -> None:
 
 
 def _draw_servo(axes: Axes, found: Loads, joint: int) -> None:
-    """Draw the line of the weakest servo, flat where it is driven; dashed its third, dotted its fifth."""
+    """Draw the line of the weakest servo, flat where it is driven, and a third and a fifth of its stall torque."""
     stalls = found.stall_torque[:, joint]
     left = min(axes.get_xlim()[0], 0.0)
     if np.isnan(stalls).all():
@@ -78,8 +78,19 @@ def _draw_servo(axes: Axes, found: Loads, joint: int) -> None:
             note += ": speed unknown"
         else:
             axes.plot([left, 0, free], [stall, stall, 0], color=WARNING, linewidth=1.4)
-        for share, style in ((1 / SAFETY_FACTOR, "--"), (CONTINUOUS_SHARE, ":")):
+        for share, style, name in ((1 / SAFETY_FACTOR, "--", "1/3"), (CONTINUOUS_SHARE, ":", "1/5")):
             axes.axhline(share * stall, color=WARNING, linewidth=1.0, linestyle=style)
+            axes.annotate(
+                name,
+                (1, share * stall),
+                xycoords=("axes fraction", "data"),
+                xytext=(-3, 2),
+                textcoords="offset points",
+                ha="right",
+                fontsize=8,
+                color=WARNING,
+                path_effects=halo(),
+            )
     axes.annotate(
         note,
         (1, 1),

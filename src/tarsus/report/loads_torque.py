@@ -9,7 +9,7 @@ import numpy as np
 from tarsus.load.loads import Loads
 from tarsus.load.verdict import CONTINUOUS_SHARE, SAFETY_FACTOR
 from tarsus.report.gait_diagram import draw_stance
-from tarsus.report.style import INK, PALE, WARNING, leg_colours, new_figure, thinned, tidy_axes
+from tarsus.report.style import INK, PALE, WARNING, halo, leg_colours, new_figure, thinned, tidy_axes
 from tarsus.robot.robot import JOINTS
 
 if TYPE_CHECKING:
@@ -112,6 +112,7 @@ def _draw_limits(axes: Axes, found: Loads, joint: int) -> None:
             va="bottom",
             fontsize=8,
             color=WARNING,
+            path_effects=halo(),
         )
     beyond = [
         f"{name} ({value:.2f} N m)" if "N m" not in name else name

@@ -1,0 +1,177 @@
+"""Other servos, payloads and lengths put into a robot: masses where they belong, and the loads worked out anew."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from sample_loads import robot_of, sample_loads, sample_motion
+from tarsus.errors import InputError, MissingDataError, UnknownNameError
+from tarsus.kinematics.mass import total_mass
+from tarsus.load.fit import largest_payload, length_sensitivity, why_masses_stay, with_lengths, with_servos
+from tarsus.load.loads import loads
+from tarsus.load.payload import Payload
+from tarsus.robot.catalogue import load_servo
+from tarsus.robot.robot import JOINTS
+from tarsus.robot.servo import Servo
+
+HEAVY = Servo(name="heavy", stall_torque=5.0, no_load_speed=6.0, mass=0.1)
+
+
+def light(mass):
+    return Servo(name=f"of {mass} kg", stall_torque=5.0, no_load_speed=6.0, mass=mass)
+
+
+# Servos
+
+
+def test_masses_of_servos_are_exchanged_in_the_part_inside_of_the_joint():
+    robot = robot_of("burnt-mg996r")  # links of 75, 75 and 42 g, servos of 55 g
+    changed = with_servos(robot, dict.fromkeys(JOINTS, HEAVY))
+    assert changed.body_mass == pytest.approx(robot.body_mass + 6 * 0.045)
+    np.testing.assert_allclose(changed.link_mass - robot.link_mass, np.tile([0.045, 0.045, 0.0], (6, 1)))
+    assert changed.servos == ((HEAVY,) * 3,) * 6
+    only = with_servos(robot, {"femur": HEAVY})
+    np.testing.assert_allclose(only.link_mass - robot.link_mass, np.tile([0.045, 0.0, 0.0], (6, 1)))
+    assert only.servos[0] == (robot.servos[0][0], HEAVY, robot.servos[0][2])
+
+
+def test_a_servo_that_the_inner_part_is_too_light_for_sits_outside():
+    robot = robot_of("strider")  # links of 40, 160 and 80 g, servos of 60 g: the femur holds two
+    changed = with_servos(robot, dict.fromkeys(JOINTS, light(0.01)))
+    assert changed.body_mass == pytest.approx(robot.body_mass - 6 * 0.05)
+    np.testing.assert_allclose(changed.link_mass - robot.link_mass, np.tile([0.0, -0.1, 0.0], (6, 1)))
+
+
+def test_the_same_servos_change_nothing():
+    robot = robot_of("phantomx")
+    same = with_servos(robot, dict.fromkeys(JOINTS, robot.servos[0][0]))
+    np.testing.assert_allclose(same.link_mass, robot.link_mass, rtol=1e-15)
+    assert total_mass(same) == pytest.approx(total_mass(robot))
+
+
+@pytest.mark.parametrize(
+    ("servos", "why"),
+    [
+        ((), "no servo is named for the coxa of LF"),
+        (((Servo(name="X", stall_torque=1.0),) * 3,) * 6, "the mass of the present servo X is unknown (mass_g)"),
+        (((light(5.0),) * 3,) * 6, "leg LF weighs less than its present servos"),
+    ],
+)
+def test_where_masses_cannot_be_told_apart_they_stay_and_it_is_said(servos, why):
+    robot = robot_of("strider").replace(servos=servos)
+    assert why_masses_stay(robot) == why
+    changed = with_servos(robot, dict.fromkeys(JOINTS, HEAVY))
+    assert changed.servos == ((HEAVY,) * 3,) * 6
+    np.testing.assert_array_equal(changed.link_mass, robot.link_mass)
+    assert changed.body_mass == robot.body_mass
+
+
+def test_masses_can_be_told_apart_in_the_examples():
+    assert why_masses_stay(robot_of("strider")) is None
+    assert why_masses_stay(robot_of("burnt-5kg")) is None
+
+
+def test_what_cannot_be_put_in_is_refused():
+    robot = robot_of("strider")
+    with pytest.raises(MissingDataError, match="the mass of LSS-ST1 is unknown; give its mass_g"):
+        with_servos(robot, {"coxa": load_servo("LSS-ST1")})
+    with pytest.raises(InputError, match="no joint 'hip'; there are coxa, femur, tibia"):
+        with_servos(robot, {"hip": HEAVY})
+    with pytest.raises(MissingDataError, match="mass_kg"):
+        with_servos(robot.replace(body_mass=None), {"coxa": HEAVY})
+
+
+# Payload
+
+
+@pytest.mark.parametrize("rule", ["factor", "continuous"])
+def test_the_largest_payload_is_just_carried(rule):
+    found = sample_loads("strider", "wave", inertial=False)
+    strong = replace(found, robot=found.robot.replace(servos=((replace(HEAVY, stall_torque=9.0),) * 3,) * 6))
+    most = largest_payload(strong, safety_factor=3.0, rule=rule)
+    assert most > 0.1
+
+    def used(mass):
+        heavier = loads(strong.robot, strong.motion, payload=mass, inertial=False)
+        return (3 / heavier.factor if rule == "factor" else 5 * heavier.rms / heavier.stall_torque).max()
+
+    assert used(most) <= 1 < used(most + 2e-4)
+
+
+def test_a_payload_at_the_centre_of_mass_adds_in_proportion():
+    """Without legs' weight and with the body's centre over the origin, torques go with body and payload together."""
+    motion = sample_motion()
+    robot = motion.robot.replace(link_mass=np.zeros((6, 3)), body_com=np.zeros(3), body_mass=2.0)
+    found = loads(robot, motion, inertial=False)
+    factor = found.factor.min()
+    assert largest_payload(found, safety_factor=factor / 1.75) == pytest.approx(1.5, abs=2e-4)
+
+
+def test_nothing_is_carried_by_servos_that_do_not_carry_the_robot():
+    assert largest_payload(sample_loads("burnt-5kg"), safety_factor=3.0) == 0.0
+
+
+def test_a_payload_that_tips_the_robot_is_not_carried():
+    found = sample_loads(payload=Payload(0.0, (0.4, 0.0, 0.0)))
+    most = largest_payload(found, safety_factor=0.01)
+    assert 0 < most < 100
+    assert loads(found.robot, found.motion, payload=Payload(most, (0.4, 0.0, 0.0))).balanced
+    assert not loads(found.robot, found.motion, payload=Payload(most + 1e-3, (0.4, 0.0, 0.0))).balanced
+
+
+def test_beyond_a_tonne_nobody_looks():
+    found = sample_loads()
+    strong = replace(found, robot=found.robot.replace(servos=((replace(HEAVY, stall_torque=1e9),) * 3,) * 6))
+    assert largest_payload(strong, safety_factor=3.0) == pytest.approx(1000.0, abs=1e-3)
+
+
+def test_what_limits_the_payload_must_be_known():
+    found = sample_loads()
+    with pytest.raises(MissingDataError, match="the file names none for some joints"):
+        largest_payload(replace(found, robot=found.robot.replace(servos=())))
+    with pytest.raises(UnknownNameError, match="no rule is called 'half'"):
+        largest_payload(found, rule="half")
+    with pytest.raises(InputError, match="safety_factor"):
+        largest_payload(found, safety_factor=math.nan)
+
+
+# Lengths
+
+
+def test_lengths_change_with_the_centres_of_mass():
+    robot = robot_of("strider")
+    longer = with_lengths(robot, femur=1.1, tibia=0.9)
+    np.testing.assert_allclose(longer.femur, 1.1 * robot.femur)
+    np.testing.assert_allclose(longer.tibia, 0.9 * robot.tibia)
+    np.testing.assert_allclose(longer.link_com, robot.link_com * [1, 1.1, 0.9])
+    np.testing.assert_array_equal(longer.coxa, robot.coxa)
+    np.testing.assert_array_equal(longer.link_mass, robot.link_mass)
+    with pytest.raises(InputError, match="no link 'foot'"):
+        with_lengths(robot, foot=2.0)
+
+
+def test_a_longer_coxa_relieves_the_femur_by_the_foots_load():
+    """With massless legs and feet that stay, the femur's arm is shorter by as much as the coxa is longer."""
+    motion = sample_motion()
+    robot = motion.robot.replace(link_mass=np.zeros((6, 3)))
+    found = loads(robot, motion, inertial=False)
+    change = length_sensitivity(found)["coxa"]
+    leg = found.worst(1)
+    load = found.forces[found.peak_sample[leg, 1], leg, 2]
+    assert change[1] == pytest.approx(-load, rel=1e-6)
+
+
+def test_the_change_is_that_of_two_calculations():
+    found = sample_loads("phantomx", inertial=False)
+    fine, coarse = length_sensitivity(found, step=0.002), length_sensitivity(found, step=0.02)
+    for link in JOINTS:
+        np.testing.assert_allclose(fine[link], coarse[link], atol=0.15, rtol=0.05)
+
+
+def test_what_cannot_be_reached_or_has_no_length_has_no_change():
+    motion = sample_motion()
+    found = loads(motion.robot.replace(coxa=np.zeros(6), link_com=motion.robot.link_com * [0, 1, 1]), motion)
+    assert np.isnan(length_sensitivity(found)["coxa"]).all()
+    assert np.isnan(length_sensitivity(sample_loads(), step=0.6)["femur"]).all()

@@ -1,0 +1,259 @@
+"""Loads over a motion: peaks, work, speeds and the servo's line, against sums and a robot that stands still."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from sample_loads import BURNT, robot_of, sample_loads, sample_motion
+from tarsus.errors import InputError, MissingDataError
+from tarsus.kinematics.mass import total_mass
+from tarsus.load.inertia import motion_torques
+from tarsus.load.loads import at_supply, loads, utilisation
+from tarsus.load.payload import Payload
+from tarsus.load.verdict import BURNS_BELOW, joint_verdicts
+from tarsus.robot.catalogue import load_servo
+from tarsus.robot.robot import JOINTS
+from tarsus.robot.servo import Servo
+
+
+def test_peak_its_moment_and_its_leg_are_those_of_the_torques():
+    found = sample_loads()
+    for leg in range(6):
+        for joint in range(3):
+            column = np.abs(found.torques[:, leg, joint])
+            sample = found.peak_sample[leg, joint]
+            assert column[sample] == found.peak[leg, joint] == max(column)
+    for joint in range(3):
+        assert found.peak[found.worst(joint), joint] == found.peak[:, joint].max()
+
+
+def test_torques_are_those_of_the_motion_with_inertia_and_without():
+    motion = sample_motion()
+    for inertial in (True, False):
+        solved = motion_torques(motion.robot, motion, payload=0.3, inertial=inertial)
+        found = loads(motion.robot, motion, payload=0.3, inertial=inertial)
+        np.testing.assert_array_equal(found.torques, solved.torques)
+        np.testing.assert_array_equal(found.forces, solved.forces)
+        np.testing.assert_array_equal(found.margin, solved.margin)
+        assert found.inertial is inertial
+
+
+def test_a_constant_torque_heats_as_much_as_it_weighs():
+    found = sample_loads()
+    constant = replace(found, torques=np.broadcast_to([0.1, -0.5, 0.2], found.torques.shape))
+    np.testing.assert_allclose(constant.rms, np.broadcast_to([0.1, 0.5, 0.2], (6, 3)), rtol=1e-12)
+    assert (found.rms <= found.peak).all()
+
+
+def test_energy_is_the_work_of_lifting():
+    """A joint that turns against a constant torque does torque times angle as work; a driven one gets none back."""
+    found = sample_loads()
+    n = len(found.motion.time)
+    angles = np.zeros((n, 6, 3))
+    angles[:, 0, 1] = np.linspace(0, 0.8, n)
+    angles[:, 1, 1] = np.linspace(0, -0.8, n)
+    torques = np.zeros((n, 6, 3))
+    torques[:, :2, 1] = 0.5
+    turned = replace(found, motion=replace(found.motion, angles=angles), torques=torques)
+    assert turned.energy == pytest.approx(0.4)
+    assert turned.power[:, 1, 1].max() < 0
+    np.testing.assert_allclose(turned.peak_speed[0, 1], 0.8 / found.motion.duration)
+
+
+def test_the_cost_of_transport_is_energy_over_weight_and_way():
+    found = sample_loads(payload=0.5)
+    weight = 9.80665 * (total_mass(found.robot) + 0.5)
+    assert found.weight == pytest.approx(weight)
+    assert found.distance == pytest.approx(0.3)
+    assert found.cost_of_transport == pytest.approx(found.energy / (weight * 0.3))
+    body = found.motion.body[np.zeros(len(found.motion.time), dtype=int)]
+    assert replace(found, motion=replace(found.motion, body=body)).cost_of_transport == math.inf
+
+
+def test_weight_is_that_under_the_gravity_asked_for():
+    moon = sample_loads(gravity=(0.0, 0.0, -1.62), inertial=False)
+    earth = sample_loads(inertial=False)
+    assert moon.weight / earth.weight == pytest.approx(1.62 / 9.80665)
+    np.testing.assert_allclose(moon.peak[:, 1:] * 9.80665 / 1.62, earth.peak[:, 1:])
+    assert moon.conditions == {"gravity": (0.0, 0.0, -1.62), "inertial": False, "supply": None}
+
+
+def test_the_cause_names_the_moment_the_feet_and_the_share():
+    found = sample_loads(inertial=False)
+    leg = found.worst(1)
+    sample = found.peak_sample[leg, 1]
+    text = found.cause(leg, 1)
+    assert text.startswith(f"at {found.motion.time[sample]:.2f} s, standing on ")
+    down = [code for code, at in zip(found.robot.leg_codes, found.motion.contacts[sample], strict=True) if at]
+    assert f"standing on {' '.join(down)}, " in text
+    assert f"{found.forces[sample, leg, 2] / found.forces[sample, :, 2].sum():.0%} of the weight" in text
+    air = replace(found, motion=replace(found.motion, contacts=np.zeros_like(found.motion.contacts)))
+    assert air.cause(leg, 1).endswith("s, swinging")
+
+
+# The servo's figures
+
+
+@given(volts=st.floats(1, 30))
+def test_torque_and_speed_go_with_the_voltage(volts):
+    servo = Servo(name="a", stall_torque=2.0, torque_at=6.0, no_load_speed=5.0, speed_at=5.0)
+    assert at_supply(servo, volts) == pytest.approx((2 * volts / 6, volts))
+    assert at_supply(servo, None) == (2.0, 5.0)
+    unsaid = Servo(name="b", stall_torque=2.0, no_load_speed=5.0)
+    assert at_supply(unsaid, volts) == (2.0, 5.0)
+
+
+def test_what_is_unknown_of_a_servo_is_nan():
+    np.testing.assert_array_equal(at_supply(None, 6.0), (math.nan, math.nan))
+    np.testing.assert_array_equal(at_supply(Servo(name="a", stall_torque=2.0), 6.0), (2.0, math.nan))
+
+
+@given(
+    share=st.floats(0, 1),
+    stall=st.floats(0.1, 10),
+    free=st.floats(0.1, 20),
+    sign=st.sampled_from([-1, 1]),
+)
+def test_the_line_from_stall_to_running_free_is_used_up_wholly_all_along(share, stall, free, sign):
+    torque, speed = np.array(sign * share * stall), np.array(sign * (1 - share) * free)
+    assert utilisation(torque, speed, stall, free) == pytest.approx(1 if share else (share or 0.0), abs=1e-9)
+    # A servo that is driven needs torque alone.
+    assert utilisation(torque, -speed, stall, free) == pytest.approx(share, abs=1e-9)
+
+
+def test_factor_and_utilisation_of_the_joints():
+    found = sample_loads()
+    servo = load_servo("DS3225")
+    np.testing.assert_allclose(found.factor, servo.stall_torque / found.peak)
+    used = found.utilisation
+    assert used.shape == found.torques.shape
+    assert (used >= np.abs(found.torques) / servo.stall_torque).all()
+    assert sample_loads(supply=3.4).factor == pytest.approx(found.factor / 2)
+
+
+# What is assumed, and what is missing
+
+
+def test_what_is_assumed_stands_in_the_result():
+    strider = sample_loads().assumed
+    assert any("slender uniform rod" in text for text in strider)
+    assert "DS3225 at 6.8 V, that of its stall torque" in strider
+    given_volts = sample_loads(supply=9.0).assumed
+    assert "DS3225 is made for 4.8 to 6.8 V, and is given 9 V" in given_volts
+    assert not any("that of its stall torque" in text for text in given_volts)
+    assert not any("rod" in text for text in sample_loads(inertial=False).assumed)
+    assert not any("DS3225" in text for text in sample_loads(supply=6.0).assumed)
+
+
+@pytest.mark.parametrize(
+    ("servo", "supply", "said"),
+    [
+        (Servo(name="X", stall_torque=2.0), None, "X at a voltage that is not known, that of its stall torque"),
+        (
+            Servo(name="X", stall_torque=2.0),
+            6.0,
+            "X: not known at which voltage its figures hold; taken as they are at 6 V",
+        ),
+        (
+            Servo(name="X", stall_torque=2.0, torque_at=6.0, no_load_speed=5.0),
+            5.0,
+            "X: not known at which voltage its figures hold; taken as they are at 5 V",
+        ),
+    ],
+)
+def test_a_voltage_that_is_not_known_is_said(servo, supply, said):
+    motion = sample_motion()
+    robot = motion.robot.replace(servos=((servo,) * 3,) * 6)
+    assert said in loads(robot, motion, supply=supply).assumed
+
+
+def test_joints_without_a_servo_are_named():
+    motion = sample_motion()
+    rows = [list(row) for row in motion.robot.servos]
+    rows[2][1] = None
+    some = loads(motion.robot.replace(servos=rows), motion)
+    assert "the robot file names no servo for femur of LR: not judged" in some.assumed
+    assert np.isnan(some.factor[2, 1])
+    assert np.isnan(some.factor).sum() == 1
+    none = loads(motion.robot.replace(servos=()), motion)
+    assert "the robot file names no servo for any joint: not judged" in none.assumed
+
+
+def test_feet_out_of_reach_are_said():
+    motion = sample_motion()
+    reach = motion.reach.copy()
+    reach[3:5, 1] = 1
+    found = loads(motion.robot, replace(motion, reach=reach))
+    assert f"in 2 of {len(motion.time)} samples a foot is out of reach: its leg is as near as it gets" in found.assumed
+
+
+def test_masses_are_asked_for_by_name():
+    motion = sample_motion()
+    with pytest.raises(MissingDataError, match=r"\[body\] mass_kg and \[leg\] mass_kg missing"):
+        loads(motion.robot.replace(body_mass=None, link_mass=None), motion)
+
+
+@pytest.mark.parametrize("supply", [0.0, -6.0, math.nan, math.inf])
+def test_a_supply_that_is_none_is_refused(supply):
+    with pytest.raises(InputError, match="supply is"):
+        loads(sample_motion().robot, sample_motion(), supply=supply)
+
+
+def test_a_motion_of_other_legs_is_refused():
+    robot = sample_motion().robot
+    four = robot.from_dict({**robot.to_dict(), "legs": [robot.to_dict()["legs"][i] for i in (0, 2, 3, 5)]})
+    with pytest.raises(InputError, match="the motion is of 6 legs, robot 'strider' has 4"):
+        loads(four, sample_motion())
+
+
+def test_a_payload_off_the_middle_tips_the_robot():
+    motion = sample_motion()
+    assert loads(motion.robot, motion).balanced
+    tipping = loads(motion.robot, motion, payload=Payload(3.0, (0.4, 0.0, 0.0)))
+    assert not tipping.balanced
+    assert tipping.to_dict()["balanced"] is False
+
+
+def test_the_document_is_plain_and_has_every_joint():
+    found = sample_loads(payload=0.2)
+    document = found.to_dict()
+    assert [(row["leg"], row["joint"]) for row in document["joints"]] == [
+        (code, joint) for code in found.robot.leg_codes for joint in JOINTS
+    ]
+    row = document["joints"][4]
+    assert row["peak_nm"] == found.peak[1, 1]
+    assert row["peak_at_s"] == found.motion.time[found.peak_sample[1, 1]]
+    assert row["peak_power_w"] == found.power[:, 1, 1].max()
+    assert row["factor"] == found.factor[1, 1]
+    assert document["payload_kg"] == 0.2
+    nameless = loads(found.robot.replace(servos=()), found.motion).to_dict()["joints"][0]
+    assert (nameless["servo"], nameless["stall_nm"], nameless["factor"]) == (None, None, None)
+
+
+# Robots whose fate is known
+
+
+@pytest.mark.parametrize("name", BURNT)
+@pytest.mark.parametrize("inertial", [True, False])
+def test_robots_that_burnt_are_below_one_and_a_half_by_their_femurs(name, inertial):
+    found = sample_loads(name, inertial=inertial)
+    worst = min(joint_verdicts(found), key=lambda verdict: verdict.factor)
+    assert worst.joint == "femur"
+    assert worst.factor < BURNS_BELOW
+    assert worst.class_name in ("cannot stand", "stalls or burns")
+
+
+@pytest.mark.parametrize("living", ["phantomx", "strider"])
+@pytest.mark.parametrize("gait", ["tripod", "wave"])
+def test_robots_that_live_come_out_better_than_those_that_burnt(living, gait):
+    for dead in BURNT:
+        assert sample_loads(living, gait).factor.min() > sample_loads(dead, gait).factor.min()
+
+
+def test_the_burnt_robots_weigh_what_their_builders_say():
+    assert total_mass(robot_of("burnt-5kg")) == pytest.approx(5.0)
+    assert total_mass(robot_of("burnt-mg996r")) == pytest.approx(1.8 + 0.25, abs=0.001)

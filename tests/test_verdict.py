@@ -1,0 +1,154 @@
+"""Verdicts: the classes at their bounds, the heat, the speed, in numbers and in words."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from sample_loads import sample_loads, sample_motion
+from tarsus.errors import InputError, UnknownNameError
+from tarsus.load.loads import loads
+from tarsus.load.verdict import CLASSES, JointVerdict, class_of, joint_verdicts, require_rule
+from tarsus.robot.servo import Servo
+
+SERVO = Servo(name="S", stall_torque=3.0, no_load_speed=6.0)
+
+
+def verdict(**changes):
+    values = {
+        "leg": "LM",
+        "joint": "femur",
+        "servo": SERVO,
+        "peak": 1.0,
+        "rms": 0.5,
+        "peak_speed": 3.0,
+        "stall_torque": 3.0,
+        "no_load_speed": 6.0,
+        "utilisation": 0.5,
+        "cause": "at 1.00 s",
+        "safety_factor": 3.0,
+    }
+    return JointVerdict(**{**values, **changes})
+
+
+@pytest.mark.parametrize(
+    ("factor", "name"),
+    [
+        (0.0, "cannot stand"),
+        (np.nextafter(1.0, 0), "cannot stand"),
+        (1.0, "stalls or burns"),
+        (np.nextafter(1.5, 0), "stalls or burns"),
+        (1.5, "marginal"),
+        (np.nextafter(3.0, 0), "marginal"),
+        (3.0, "good"),
+        (1e9, "good"),
+        (math.inf, "good"),
+        (math.nan, "unknown"),
+    ],
+)
+def test_the_classes_begin_where_they_should(factor, name):
+    assert class_of(factor) == name
+
+
+@given(factor=st.floats(0, 100))
+def test_a_greater_factor_is_never_in_a_worse_class(factor):
+    names = [name for _, name in CLASSES]
+    assert names.index(class_of(factor)) <= names.index(class_of(factor * 1.5 + 0.1))
+
+
+@given(stall=st.floats(0.1, 10), peak=st.floats(0.01, 10), rms=st.floats(0, 5))
+def test_numbers(stall, peak, rms):
+    one = verdict(stall_torque=stall, peak=peak, rms=rms)
+    assert one.factor == stall / peak
+    assert one.thermal_ratio == pytest.approx(5 * rms / stall)
+    assert one.lasting == (one.thermal_ratio <= 1)
+    assert one.strong_enough == one.keeps("factor") == (stall >= 3 * peak or stall / peak >= 3)
+    assert one.keeps("continuous") == one.lasting
+    assert one.class_name == class_of(stall / peak)
+
+
+def test_a_joint_that_bears_nothing_is_carried_by_any_servo_but_by_none():
+    assert verdict(peak=0.0, rms=0.0).factor == math.inf
+    assert verdict(peak=0.0, rms=0.0).text() == "bears nothing"
+    assert math.isnan(verdict(peak=0.0, servo=None, stall_torque=math.nan).factor)
+
+
+@pytest.mark.parametrize(
+    ("changes", "text"),
+    [
+        ({}, "carries with factor 3.0"),
+        ({"peak": 2.4}, "stalls or burns: factor 1.25, too weak by 4.20 N m for factor 3"),
+        ({"peak": 4.0, "rms": 0.0}, "cannot stand: factor 0.75, too weak by 9.00 N m for factor 3"),
+        ({"peak": 1.5, "safety_factor": 2.0}, "carries with factor 2.0"),
+        ({"rms": 0.9}, "carries with factor 3.0; warm: its lasting load is 1.5 times a fifth of its stall torque"),
+        ({"peak_speed": 8.0, "utilisation": 1.4}, "carries with factor 3.0; too slow by 115 deg/s"),
+        (
+            {"utilisation": 1.1},
+            "carries with factor 3.0; too slow under load: torque and speed together are 1.10 of what it gives",
+        ),
+        (
+            {"no_load_speed": math.nan, "utilisation": math.nan},
+            "carries with factor 3.0; the speed of S is unknown: give its no_load_rad_s in the robot file",
+        ),
+        (
+            {"servo": None, "stall_torque": math.nan, "no_load_speed": math.nan, "utilisation": math.nan},
+            "no servo is named in the robot file; 3.00 N m are needed",
+        ),
+    ],
+)
+def test_words(changes, text):
+    assert verdict(**changes).text() == text
+
+
+@pytest.mark.parametrize(
+    ("changes", "factor", "continuous"),
+    [
+        ({}, True, True),
+        ({"utilisation": 1.01}, False, False),
+        ({"peak_speed": 6.01}, False, False),
+        ({"utilisation": math.nan}, False, False),
+        ({"peak": 2.0}, False, True),
+        ({"rms": 0.7}, True, False),
+        ({"stall_torque": math.nan, "servo": None}, False, False),
+    ],
+)
+def test_what_does_must_keep_the_rule_and_be_known_to_be_fast_enough(changes, factor, continuous):
+    assert verdict(**{"rms": 0.5, **changes}).does("factor") is factor
+    assert verdict(**{"rms": 0.5, **changes}).does("continuous") is continuous
+
+
+def test_verdicts_are_of_every_joint_in_order():
+    found = sample_loads()
+    verdicts = joint_verdicts(found, safety_factor=2.0)
+    assert [v.leg for v in verdicts[::3]] == list(found.robot.leg_codes)
+    assert [v.joint for v in verdicts[:3]] == ["coxa", "femur", "tibia"]
+    for number, one in enumerate(verdicts):
+        leg, joint = divmod(number, 3)
+        assert one.peak == found.peak[leg, joint]
+        assert one.rms == found.rms[leg, joint]
+        assert one.factor == pytest.approx(found.factor[leg, joint])
+        assert one.utilisation == found.utilisation[:, leg, joint].max()
+        assert one.cause == found.cause(leg, joint)
+        assert one.safety_factor == 2.0
+
+
+def test_a_servo_without_speed_is_asked_for_it_by_name():
+    motion = sample_motion()
+    robot = motion.robot.replace(servos=((Servo(name="mystery", stall_torque=9.0),) * 3,) * 6)
+    for one in joint_verdicts(loads(robot, motion)):
+        assert "the speed of mystery is unknown: give its no_load_rad_s" in one.text()
+        assert not one.fast_enough
+
+
+@pytest.mark.parametrize("factor", [0.0, -1.0, math.nan, math.inf])
+def test_a_safety_factor_that_is_none_is_refused(factor):
+    with pytest.raises(InputError, match="safety_factor is"):
+        joint_verdicts(sample_loads(), safety_factor=factor)
+
+
+def test_a_rule_that_is_none_is_refused_with_those_there_are():
+    with pytest.raises(UnknownNameError, match="Did you mean 'continuous'"):
+        require_rule("continous")
+    require_rule("factor")
