@@ -1,4 +1,4 @@
-"""Tarsus: the toolkit for six-legged robots, from a robot file to joint angles and walks.
+"""Tarsus: the toolkit for six-legged robots, from a robot file to joint angles, walks, torques and servos.
 
 Everything public is here::
 
@@ -42,6 +42,23 @@ if TYPE_CHECKING:
     from tarsus.kinematics.rest import Rest, resting_pose
     from tarsus.kinematics.stability import stability_margin
     from tarsus.kinematics.stance import default_clearance, default_stance, reachable_band
+    from tarsus.load.contact import ContactForces, contact_forces
+    from tarsus.load.designs import CycleTorques, cycle_torques
+    from tarsus.load.friction import contact_forces_with_friction
+    from tarsus.load.handbook import handbook
+    from tarsus.load.handbook_statics import compare_with_statics
+    from tarsus.load.inertia import MotionTorques, motion_torques
+    from tarsus.load.loads import Loads, loads
+    from tarsus.load.payload import Payload
+    from tarsus.load.sizing import ServoSizing, size_servos
+    from tarsus.load.supply import Supply, supply
+    from tarsus.load.torque import joint_torques
+    from tarsus.load.verdict import JointVerdict, joint_verdicts
+    from tarsus.report.angles import plot_angles
+    from tarsus.report.animation import animate
+    from tarsus.report.footpaths import plot_footpaths
+    from tarsus.report.gait_diagram import plot_gait
+    from tarsus.report.skeleton import plot_robot
     from tarsus.robot.catalogue import list_servos, load_servo
     from tarsus.robot.file import list_robots, load_robot, robot_schema
     from tarsus.robot.robot import JOINTS, GaitDefaults, Robot, Source, stack_robots
@@ -72,6 +89,23 @@ _HOMES = {
     "tarsus.kinematics.rest": ("Rest", "resting_pose"),
     "tarsus.kinematics.stability": ("stability_margin",),
     "tarsus.kinematics.stance": ("default_clearance", "default_stance", "reachable_band"),
+    "tarsus.load.contact": ("ContactForces", "contact_forces"),
+    "tarsus.load.designs": ("CycleTorques", "cycle_torques"),
+    "tarsus.load.friction": ("contact_forces_with_friction",),
+    "tarsus.load.handbook": ("handbook",),
+    "tarsus.load.handbook_statics": ("compare_with_statics",),
+    "tarsus.load.inertia": ("MotionTorques", "motion_torques"),
+    "tarsus.load.loads": ("Loads", "loads"),
+    "tarsus.load.payload": ("Payload",),
+    "tarsus.load.sizing": ("ServoSizing", "size_servos"),
+    "tarsus.load.supply": ("Supply", "supply"),
+    "tarsus.load.torque": ("joint_torques",),
+    "tarsus.load.verdict": ("JointVerdict", "joint_verdicts"),
+    "tarsus.report.angles": ("plot_angles",),
+    "tarsus.report.animation": ("animate",),
+    "tarsus.report.footpaths": ("plot_footpaths",),
+    "tarsus.report.gait_diagram": ("plot_gait",),
+    "tarsus.report.skeleton": ("plot_robot",),
     "tarsus.robot.catalogue": ("list_servos", "load_servo"),
     "tarsus.robot.file": ("list_robots", "load_robot", "robot_schema"),
     "tarsus.robot.robot": ("JOINTS", "GaitDefaults", "Robot", "Source", "stack_robots"),
@@ -83,47 +117,71 @@ __all__ = [
     "GAITS",
     "JOINTS",
     "CollisionError",
+    "ContactForces",
+    "CycleTorques",
     "Gait",
     "GaitDefaults",
     "IKSolution",
     "InputError",
+    "JointVerdict",
+    "Loads",
     "MissingDataError",
     "Motion",
+    "MotionTorques",
     "Path",
+    "Payload",
     "Pose",
     "Reach",
     "Rest",
     "Robot",
     "RobotFileError",
     "Servo",
+    "ServoSizing",
     "Source",
     "StrokeError",
+    "Supply",
     "TarsusError",
     "UnknownNameError",
     "UnreachableError",
     "__version__",
+    "animate",
     "centre_of_mass",
+    "compare_with_statics",
+    "contact_forces",
+    "contact_forces_with_friction",
     "coxa_frames",
     "curved_path",
     "cycle_feet",
+    "cycle_torques",
     "default_clearance",
     "default_stance",
     "forward_kinematics",
+    "handbook",
     "inverse_kinematics",
+    "joint_torques",
+    "joint_verdicts",
     "leg_jacobian",
     "list_robots",
     "list_servos",
     "load_robot",
     "load_servo",
+    "loads",
     "max_stroke",
+    "motion_torques",
     "plan_walk",
+    "plot_angles",
+    "plot_footpaths",
+    "plot_gait",
+    "plot_robot",
     "reachable_band",
     "reachable_share",
     "resting_pose",
     "robot_schema",
+    "size_servos",
     "stability_margin",
     "stack_robots",
     "straight_path",
+    "supply",
     "support_polygon",
     "total_mass",
     "twist_path",
