@@ -97,7 +97,7 @@ def test_no_stance_exceeds_half_a_stroke_on_either_side(gait, strokes):
 
 
 @given(gaits)
-def test_steps_shorter_than_a_hundredth_of_a_stroke_are_left_out(gait):
+def test_steps_shorter_than_a_twentieth_of_a_stroke_are_left_out(gait):
     strokes = 7.3
     steps = walk(gait, strokes=strokes, cycle_time=1.0)
     numbers = np.arange(-3, 30)[:, None]

@@ -11,14 +11,15 @@ from tarsus.arrays import Array
 from tarsus.gait.gait import Gait
 from tarsus.gait.path import carry, exponential
 from tarsus.gait.swing import ground_share, height_share
-from tarsus.gait.timing import BodyClock, least_step_share, plan_steps
+from tarsus.gait.timing import BodyClock, Steps, least_step_share, plan_steps
 
 __all__ = ["MOMENTS_OF_SWING", "Excursions", "extreme_excursions", "walk_excursions"]
 
 _OFFSETS = 24
 _SHARES = np.linspace(0.0, 1.0, 49)
-# Cruising times between start and stop [cycles]: from 2 on, no step both starts and stops.
-_CRUISES = (0.0, 0.25, 0.5, 0.75, 1.0, 1.5, 2.0)
+# Cruising time between start and stop [cycles] with which no step both starts and stops; shorter walks, and those of
+# another number of cycles, get no farther from rest (measured: by 0.001 of a stroke).
+_CRUISE = 2.0
 _CRUISES_OF_WALKS = (0.0, 0.75, 1.5, 2.0, 2.25)
 _STANCE = np.linspace(-0.5, 0.5, 9)
 _INWARD = (0.0, 0.1, 0.3, 1.0)
@@ -98,7 +99,7 @@ def extreme_excursions(duty: float, *, curved: bool) -> Excursions:
     curved : bool
         Whether the walk turns.
     """
-    every = Excursions.joined(*(_swings(duty, cruise) for cruise in _CRUISES))
+    every = _swings(duty)
     ahead = every.offset.reshape(-1, len(_SHARES))
     length = (every.following - every.last).reshape(ahead.shape)
     picked = np.unique(
@@ -107,7 +108,7 @@ def extreme_excursions(duty: float, *, curved: bool) -> Excursions:
             for moment, share in enumerate(_SHARES)
             for side in (-1, 1)
             # A foot that rises hangs behind, one that sinks ahead.
-            if (curved and moment % 2 == 0) or (share - 0.5) * side >= 0
+            if (share - 0.5) * side >= 0
             for inward in (_INWARD if curved else _INWARD[:1])
         ]
     )
@@ -135,17 +136,15 @@ def _steady_swing(duty: float) -> Excursions:
     return Excursions(-since, 1 / duty - since, ground_share(share), height_share(share))
 
 
-def _swings(duty: float, cruise: float) -> Excursions:
-    """Return all swings of a walk with so many cycles of cruise, of legs that start anywhere in the cycle."""
+def _swings(duty: float) -> Excursions:
+    """Return all swings of a walk, of legs that start anywhere in the cycle."""
     gait = Gait(duty, tuple(np.arange(_OFFSETS) / _OFFSETS))
-    clock = BodyClock(rate=1 / (1 + cruise), ramp=1.0, cruise=cruise)
-    strokes = (1 + cruise) / duty
-    steps = plan_steps(gait, clock, cycle_time=1.0, least_step=least_step_share(strokes))
-    number = np.arange(-2, int(np.ceil(cruise)) + 3)[:, None]
+    steps, strokes = _walk_steps(gait, _CRUISE)
+    number = np.arange(-2, int(_CRUISE) + 3)[:, None]
     last, following = steps.foothold_share(number), steps.foothold_share(number + 1)
     lift_off = number + np.asarray(gait.offsets) + duty
     moves = last != following
-    body = clock.share(lift_off[moves][:, None] + _SHARES * (1 - duty))
+    body = steps.clock.share(lift_off[moves][:, None] + _SHARES * (1 - duty))
     start, end = ((share[moves][:, None] - body) * strokes for share in (last, following))
     along, up = ground_share(_SHARES) + 0 * body, height_share(_SHARES) + 0 * body
     return Excursions(*(column.reshape(-1, 1) for column in (start, end, along, up)))
@@ -153,10 +152,15 @@ def _swings(duty: float, cruise: float) -> Excursions:
 
 def _walk(gait: Gait, cruise: float) -> Excursions:
     """Return a walk with so many cycles of cruise."""
-    clock = BodyClock(rate=1 / (1 + cruise), ramp=1.0, cruise=cruise)
-    strokes = (1 + cruise) / gait.duty
-    steps = plan_steps(gait, clock, cycle_time=1.0, least_step=least_step_share(strokes))
+    steps, strokes = _walk_steps(gait, cruise)
     time = np.arange(steps.start, steps.end, (1 - gait.duty) / MOMENTS_OF_SWING)
     last, following, swung, _ = steps.at(time)
-    body = clock.share(time)[:, None]
+    body = steps.clock.share(time)[:, None]
     return Excursions((last - body) * strokes, (following - body) * strokes, ground_share(swung), height_share(swung))
+
+
+def _walk_steps(gait: Gait, cruise: float) -> tuple[Steps, float]:
+    """Return the steps of a walk with so many cycles of cruise, a second each, and its length in strokes."""
+    clock = BodyClock(rate=1 / (1 + cruise), ramp=1.0, cruise=cruise)
+    strokes = (1 + cruise) / gait.duty
+    return plan_steps(gait, clock, cycle_time=1.0, least_step=least_step_share(strokes)), strokes

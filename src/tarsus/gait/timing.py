@@ -15,8 +15,6 @@ __all__ = ["BodyClock", "Steps", "least_step_share", "plan_steps"]
 
 # Steps shorter than this share of a stroke are not worth lifting a foot for; nor is more than this of a path left out.
 _LEAST_STEP = 0.05
-_LEAST_STEP = 0.05
-_MOST_LEFT_OUT = 0.25
 _MOST_LEFT_OUT = 0.25
 
 
