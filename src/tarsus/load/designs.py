@@ -23,6 +23,7 @@ from tarsus.arrays import (
     batch_blocks,
     broadcast_shapes,
     namespace,
+    require_finite,
     stack_last,
 )
 from tarsus.errors import InputError
@@ -158,14 +159,15 @@ def cycle_torques(
         as_floats(xp, value, name=name)
         for name, value in (("stroke", stroke), ("clearance", clearance), ("lift", lift))
     )
+    require_finite("stroke", stroke)
     rest = default_stance(robot, clearance, lift=lift)
     batch = broadcast_shapes(
         "robot, stroke, clearance and lift", robot.batch_shape, *(v.shape for v in (stroke, clearance, lift))
     )
     cycle = _Cycle.of(gait, heading, phases)
     cycle = _Cycle.of(gait, heading, int(phases))
-    sweep = _Sweep(xp, robot, carried, rest, stroke, clearance, lift, batch, cycle)
-    return sweep.by_blocks() if xp is np else sweep.as_one()
+    sweep = _Sweep(xp, robot, carried, rest, stroke, clearance, lift, batch or (1,), cycle)
+    return sweep.result(sweep.by_blocks() if xp is np else sweep.by_angles(), batch)
 
 
 class _Cycle(NamedTuple):
@@ -204,7 +206,7 @@ class _Sweep:
     batch: tuple[int, ...]
     cycle: _Cycle
 
-    def by_blocks(self) -> CycleTorques:
+    def by_blocks(self) -> tuple[Array, ...]:
         """Work through NumPy designs; those whose feet don't tell all, together at the end."""
         legs, moments = self.robot.legs, len(self.cycle.phases)
         shape = (legs, moments, *self.batch)
@@ -229,14 +231,7 @@ class _Sweep:
             for target, values in zip((angles, torques, forces), rows[:3], strict=True):
                 target[single] = values
             reach[single], balanced[single] = rows[3:]
-        return self.result(angles, torques, forces, reach, balanced)
-
-    def as_one(self) -> CycleTorques:
-        """Work through designs of any library at once, without branching on values."""
-        shape = (self.robot.legs, len(self.cycle.phases), *self.batch)
-        rows = zip(self.by_angles(), ((3, *shape), (3, *shape), (3, *shape), shape, shape[1:]), strict=True)
-        angles, torques, forces, reach, balanced = (self.xp.reshape(row, into) for row, into in rows)
-        return self.result(angles, torques, forces, reach, balanced)
+        return angles, torques, forces, reach, balanced
 
     def by_angles(self) -> tuple[Array, ...]:
         """Return angles, torques, forces, reach and balance of all designs, in a row, from their joint angles."""
@@ -314,22 +309,23 @@ class _Sweep:
         robot = self.robot.replace(**arrays)
         return replace(self, robot=robot, rest=pick(self.rest, 2), batch=(len(where[0]),), **numbers)
 
-    def result(self, angles: Array, torques: Array, forces: Array, reach: Array, balanced: Array) -> CycleTorques:
-        """Put the axes into their order, without copying."""
-        xp, axes = self.xp, tuple(range(3, 3 + len(self.batch)))
+    def result(self, rows: tuple[Array, ...], batch: tuple[int, ...]) -> CycleTorques:
+        """Put the axes into their order, without copying what is NumPy's."""
+        xp, legs, moments = self.xp, self.robot.legs, len(self.cycle.phases)
 
-        def ordered(rows: Array) -> Array:
-            return xp.permute_dims(rows, (*axes, 2, 1, 0))
+        def ordered(values: Array, *front: int) -> Array:
+            axes = tuple(range(len(front), len(front) + len(batch)))
+            return xp.permute_dims(xp.reshape(values, (*front, *batch)), (*axes, *reversed(range(len(front)))))
 
-        flat = tuple(axis - 1 for axis in axes)
+        angles, torques, forces = (ordered(part, 3, legs, moments) for part in rows[:3])
         return CycleTorques(
             phases=self.cycle.phases,
             contacts=self.cycle.contacts,
-            angles=ordered(angles),
-            reach=xp.permute_dims(reach, (*flat, 1, 0)),
-            torques=ordered(torques),
-            forces=ordered(forces),
-            balanced=xp.permute_dims(balanced, (*(axis - 2 for axis in axes), 0)),
+            angles=angles,
+            reach=ordered(rows[3], legs, moments),
+            torques=torques,
+            forces=forces,
+            balanced=ordered(rows[4], moments),
         )
 
 

@@ -1,0 +1,215 @@
+"""`tarsus loads` and `tarsus servos`: what they say is what the functions say, and the exit code is the verdict."""
+
+import csv
+import json
+
+import numpy as np
+import pytest
+
+from sample_commands import run, run_json
+from sample_loads import EXAMPLES
+from tarsus.gait.gait import Gait
+from tarsus.gait.path import straight_path
+from tarsus.gait.plan import plan_walk
+from tarsus.load.loads import loads
+from tarsus.load.sizing import size_servos
+from tarsus.report.loads_summary import servos_summary
+from tarsus.robot.file import load_robot
+
+SHORT = ("--distance", "150", "--rate", "40")
+
+
+def short_walk(name="strider", gait="tripod"):
+    robot = load_robot(name)
+    return plan_walk(robot, Gait.named(gait), straight_path(0.15), rate=40)
+
+
+@pytest.mark.parametrize(
+    ("options", "conditions"),
+    [
+        ("", {}),
+        ("--static", {"inertial": False}),
+        ("--payload 0.4 --supply 6", {"payload": 0.4, "supply": 6.0}),
+    ],
+)
+def test_the_numbers_are_those_of_the_functions(options, conditions):
+    code, document = run_json("loads", "strider", *SHORT, *options.split())
+    motion = short_walk()
+    found = loads(motion.robot, motion, **conditions)
+    assert code == (0 if found.factor.min() >= 1.5 else 1)
+    assert document["carried"] is (code == 0)
+    for row, peak, rms, factor in zip(
+        document["joints"], found.peak.ravel(), found.rms.ravel(), found.factor.ravel(), strict=True
+    ):
+        assert row["peak_nm"] == pytest.approx(peak, abs=1e-6)
+        assert row["rms_nm"] == pytest.approx(rms, abs=1e-6)
+        assert row["factor"] == (pytest.approx(factor, abs=1e-6) if np.isfinite(factor) else None)
+    assert document["cost_of_transport"] == pytest.approx(found.cost_of_transport, abs=1e-6)
+    assert document["files"] == []
+
+
+@pytest.mark.parametrize(
+    ("name", "code", "said"),
+    [
+        ("strider", 0, "marginal: "),
+        (str(EXAMPLES / "burnt-mg996r.toml"), 1, "at least 1.5 is needed to last"),
+        (str(EXAMPLES / "burnt-5kg.toml"), 1, "cannot stand: "),
+    ],
+)
+def test_the_exit_code_is_the_verdict_and_the_femur_is_named(name, code, said):
+    result = run("loads", name, *SHORT)
+    assert result.exit_code == code
+    last = result.stdout.splitlines()[-1]
+    assert said in last
+    assert "femur" in last
+
+
+def test_a_good_robot_is_called_good():
+    result = run("loads", "strider", *SHORT, "--gait", "wave", "--clearance", "140")
+    assert result.exit_code == 0
+    assert result.stdout.splitlines()[-1].startswith("good: ")
+
+
+def test_the_table_has_every_joint_with_its_bar():
+    lines = run("loads", "strider", *SHORT).stdout.splitlines()
+    rows = [line for line in lines if " DS3225 " in line and line.rstrip().endswith("%")]
+    assert len(rows) == 18
+    assert all("█" in line for line in rows if "femur" in line)
+    assert any(line.startswith("assumed: inertia") for line in lines)
+    assert any("stall current is of DS3225" in line for line in lines)
+    assert any(line.startswith("cost of transport: 0.") for line in lines)
+
+
+def test_current_and_battery_where_the_stall_current_is_known():
+    name = EXAMPLES / "burnt-mg996r.toml"
+    text = run("loads", name, *SHORT, "--capacity", "3").stdout
+    _, document = run_json("loads", name, *SHORT, "--capacity", "3")
+    drawn = document["supply"]
+    assert drawn["battery_min"] == pytest.approx(3 / drawn["mean_a"] * 60)
+    assert f"{drawn['mean_a']:.1f} A on average" in text
+    assert f"the battery lasts {drawn['battery_min']:.0f} min" in text
+
+
+def test_a_robot_without_servos_is_not_known_to_be_carried(tmp_path):
+    load_robot("strider").replace(servos=()).save(tmp_path / "bare.toml")
+    result = run("loads", tmp_path / "bare.toml", *SHORT, "--out", tmp_path / "out")
+    assert result.exit_code == 1
+    assert "not known: " in result.stdout
+    assert "has no servo in the robot file" in result.stdout
+    code, document = run_json("loads", tmp_path / "bare.toml", *SHORT)
+    assert (code, document["class"]) == (1, "unknown")
+    sized = run("servos", tmp_path / "bare.toml", *SHORT, "--factor", "1.5")
+    assert sized.exit_code == 1
+    assert "payload: unknown" in sized.stdout
+    assert "no servo is named for the coxa of LF: the masses in the robot file stay" in sized.stdout
+
+
+def test_a_robot_that_tips_is_not_carried(tmp_path):
+    load_robot("strider").replace(body_com=np.array([0.4, 0.0, 0.0])).save(tmp_path / "nose.toml")
+    result = run("loads", tmp_path / "nose.toml", *SHORT)
+    assert result.exit_code == 1
+    assert "the robot tips: its load is " in result.stdout
+    assert "not carried: the robot tips" in result.stdout
+    sized = run("servos", tmp_path / "nose.toml", *SHORT, "--factor", "0.01")
+    assert sized.exit_code == 1
+    assert "and the robot tips" in sized.stdout
+
+
+def test_files_are_written_and_the_table_is_the_torques(tmp_path):
+    code, document = run_json("loads", "strider", *SHORT, "--out", tmp_path)
+    assert code == 0
+    assert document["files"] == [
+        str(tmp_path / name) for name in ("loads.csv", "torques.png", "torque-speed.png", "report.html")
+    ]
+    with (tmp_path / "loads.csv").open(encoding="utf-8") as stream:
+        rows = list(csv.DictReader(stream))
+    motion = short_walk()
+    found = loads(motion.robot, motion)
+    assert len(rows) == len(motion.time)
+    np.testing.assert_allclose([float(row["RM_femur_nm"]) for row in rows], found.torques[:, 4, 1], atol=1e-6)
+    np.testing.assert_allclose([float(row["LF_fz_n"]) for row in rows], found.forces[:, 0, 2], atol=1e-6)
+    np.testing.assert_allclose([float(row["margin_mm"]) for row in rows], found.margin * 1000, atol=1e-3)
+    shown = run("loads", "strider", *SHORT, "--out", tmp_path).stdout
+    assert f"wrote {tmp_path / 'report.html'}" in shown
+
+
+@pytest.mark.parametrize("name", ["loads.csv", "report.html", "torques.png"])
+def test_a_file_that_can_not_be_written_is_told(tmp_path, name):
+    (tmp_path / name).mkdir()
+    result = run("loads", "strider", *SHORT, "--out", tmp_path)
+    assert result.exit_code == 2
+    assert f"{name} can't be written" in result.stderr
+
+
+def test_servos_say_what_size_servos_says():
+    code, document = run_json("servos", "strider", *SHORT, "--factor", "1.5", "--payload", "0.1")
+    motion = short_walk()
+    found = loads(motion.robot, motion, payload=0.1)
+    expected = servos_summary(size_servos(motion.robot, found, safety_factor=1.5), found)
+    assert code == 0
+    assert document["candidates"]
+    assert [c["name"] for c in document["candidates"]] == [c["name"] for c in expected["candidates"]]
+    assert document["mixed"]["servos"] == expected["mixed"]["servos"]
+    assert document["payload_carried_kg"] == pytest.approx(expected["payload_carried_kg"], abs=1e-5)
+    assert json.dumps(document["left_out"]) == json.dumps(expected["left_out"])
+    text = run("servos", "strider", *SHORT, "--factor", "1.5", "--payload", "0.1").stdout
+    for candidate in expected["candidates"]:
+        assert candidate["name"] in text
+    for advice in expected["advice"]:
+        assert f"length: {advice}" in text
+    for name, reason in expected["left_out"].items():
+        assert f"not tried: {name}, as {reason}" in text
+    assert text.splitlines()[-1] == "its servos do"
+
+
+def test_servos_that_do_not_do_are_told_with_what_would():
+    result = run("servos", EXAMPLES / "burnt-mg996r.toml", *SHORT)
+    assert result.exit_code == 1
+    assert "LM femur (MG996R): " in result.stdout or "RM femur (MG996R): " in result.stdout
+    assert "XM430-W350-T" in result.stdout
+    assert "coxa / femur / tibia: " in result.stdout
+    assert result.stdout.splitlines()[-1] == "its servos don't do"
+    hopeless = run("servos", EXAMPLES / "burnt-5kg.toml", *SHORT, "--factor", "50")
+    assert "no servo of the catalogue would do in all joints" in hopeless.stdout
+
+
+def test_the_rule_for_lasting_loads():
+    code, document = run_json(
+        "servos", "strider", *SHORT, "--rule", "continuous", "--gait", "wave", "--clearance", "140"
+    )
+    assert document["rule"] == "continuous"
+    assert document["present_do"] is (code == 0)
+    text = run("servos", "strider", *SHORT, "--rule", "continuous").stdout
+    assert "kg with the rule for lasting loads" in text
+
+
+@pytest.mark.parametrize("command", ["loads", "servos"])
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        ("--payload -1", "payload"),
+        ("--supply 0", "supply is 0"),
+        ("--payload many", "'many' is not a number"),
+        ("--gait rippel", "Did you mean 'ripple'?"),
+        ("--distance 0", "goes nowhere"),
+    ],
+)
+def test_what_is_asked_for_wrongly_is_told_in_a_sentence(command, options, said):
+    result = run(command, "strider", *options.split())
+    assert result.exit_code == 2
+    assert said in result.stderr
+    assert result.stdout == ""
+
+
+def test_options_of_one_command_alone_are_checked_too():
+    assert "capacity is 0" in run("loads", "strider", *SHORT, "--capacity", "0").stderr
+    assert "safety_factor is 0" in run("servos", "strider", *SHORT, "--factor", "0").stderr
+    assert "'half' is not one of" in run("servos", "strider", "--rule", "half").stderr
+    assert "nothing can be written there" in run("loads", "strider", "--out", "/dev/null/x").stderr
+
+
+@pytest.mark.parametrize("command", ["loads", "servos"])
+def test_masses_are_asked_for_by_name(command):
+    result = run(command, "freenove", *SHORT)
+    assert result.exit_code == 1
+    assert "missing from its file" in result.stderr

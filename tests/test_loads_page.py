@@ -1,0 +1,86 @@
+"""docs/loads.md: its table is what the functions say now, and its blocks of code run."""
+
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from sample_loads import sample_loads, sample_motion
+from tarsus.load.loads import loads
+from tarsus.load.torque import joint_torques
+from tarsus.load.verdict import class_of
+from tarsus.robot.robot import JOINTS
+
+PAGE = Path(__file__).parents[1] / "docs" / "loads.md"
+TEXT = PAGE.read_text(encoding="utf-8")
+FATES = {
+    "burnt-mg996r": "femur servos dead in days",
+    "burnt-5kg": "burnt while standing",
+    "phantomx": "alive",
+    "strider": "alive",
+}
+
+
+def _worst(factor):
+    joint = JOINTS[int(np.argmin(factor.min(0)))]
+    return f"{factor.min():.2f} ({joint})"
+
+
+def six_feet(name):
+    """Least factor of standing still on all feet, where the walk begins."""
+    motion = sample_motion(name)
+    start = motion.body[0]
+    torques, _ = joint_torques(motion.robot, motion.angles[0], start, np.ones(6, dtype=bool))
+    stall = np.array([[servo.stall_torque for servo in leg] for leg in motion.robot.servos])
+    with np.errstate(divide="ignore"):
+        return stall / np.abs(torques)
+
+
+def fates():
+    """The lines of the table."""
+    lines = [
+        "| robot | fate | tripod walk | class | heat | 30 mm higher | class | on six feet | class |",
+        "| --- | --- | --- | --- | --- | --- | --- | --- | --- |",
+    ]
+    for name, fate in FATES.items():
+        walk = sample_loads(name)
+        motion = sample_motion(name, clearance=walk.motion.clearance + 0.03)
+        high, still = loads(motion.robot, motion).factor, six_feet(name)
+        heat = (5 * walk.rms / walk.stall_torque).max()
+        cells = [name, fate, _worst(walk.factor), class_of(walk.factor.min()), f"{heat:.0%}".replace("%", " %")]
+        cells += [_worst(high), class_of(high.min()), _worst(still), class_of(still.min())]
+        lines.append(f"| {' | '.join(cells)} |")
+    return lines
+
+
+def test_the_table_of_fates_is_what_is_worked_out_now():
+    block = re.search(r"<!-- table: fates -->\n(.*?)<!-- end -->", TEXT, flags=re.DOTALL)
+    assert block[1].splitlines() == fates()
+
+
+def test_what_the_page_says_of_the_phantomx():
+    walk = sample_loads("phantomx")
+    assert walk.factor.min() < 1.5
+    motion, high = sample_motion("phantomx"), sample_motion("phantomx", clearance=0.12)
+    out, nearer = (
+        np.linalg.norm((walk.feet[0] - walk.body.position[0] - walk.robot.mount_position)[1, :2])
+        for walk in (motion, high)
+    )
+    words = " ".join(TEXT.split())
+    assert f"{out * 1000:.0f} mm out from the coxa axis" in words
+    assert f"At 120 mm they stand {nearer * 1000:.0f} mm out" in words
+    assert nearer - motion.robot.coxa[1] < (out - motion.robot.coxa[1]) / 2
+    short = sample_motion("phantomx", stroke=0.02)
+    assert (
+        f"in place of {motion.stroke * 1000:.0f} mm the factor is {loads(short.robot, short).factor.min():.2f}" in TEXT
+    )
+    share = walk.forces[..., 2].max() / walk.weight
+    assert f"a middle leg carries {share:.0%}".replace("%", " %") in TEXT
+    assert walk.worst(1) in (1, 4)
+
+
+@pytest.mark.parametrize("block", re.findall(r"```python\n(.*?)```", TEXT, flags=re.DOTALL))
+def test_the_code_on_the_page_runs(block, capsys):
+    exec(compile(block, str(PAGE), "exec"), {})
+    assert capsys.readouterr().out
