@@ -20,7 +20,11 @@ _MOST_LINES = 12
 
 
 class Reach(enum.IntEnum):
-    """Why a leg can't have its foot where it should be; the first that holds, in this order."""
+    """Why a leg can't have its foot where it should be.
+
+    Of several reasons: a coxa axis below the ground comes first, then the distance, then the limit of the innermost
+    joint, then a femur axis or knee below the ground.
+    """
 
     OK = 0
     TOO_FAR = 1

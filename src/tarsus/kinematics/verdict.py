@@ -30,9 +30,10 @@ def reach_codes(xp: Namespace, geometry: LegGeometry, solution: Triangle) -> Arr
         codes = mark(xp, codes, broken, code)
     # A distance off by the tolerance is a square off by twice the tolerance times that distance.
     slack = 2 * LENGTH_TOLERANCE
-    too_near = (solution.near < -slack * xp.abs(g.femur - g.tibia)) | (solution.beside < -slack * xp.abs(g.side))
-    codes = mark(xp, codes, too_near, Reach.TOO_NEAR)
-    return mark(xp, codes, solution.far < -slack * (g.femur + g.tibia), Reach.TOO_FAR)
+    codes = mark(xp, codes, solution.near < -slack * xp.abs(g.femur - g.tibia), Reach.TOO_NEAR)
+    codes = mark(xp, codes, solution.far < -slack * (g.femur + g.tibia), Reach.TOO_FAR)
+    # Beside the leg's plane there is no triangle that could be too long.
+    return mark(xp, codes, solution.beside < -slack * xp.abs(g.side), Reach.TOO_NEAR)
 
 
 def mark(xp: Namespace, codes: Array, broken: Array, code: Reach) -> Array:
