@@ -18,6 +18,7 @@ from measure import Row, medians, peak_bytes, start_time, use_one_core  # isort:
 
 import numpy as np
 
+from loads import load_rows
 from native import FLAGS, CLoop
 from tarsus import (
     Gait,
@@ -247,7 +248,7 @@ def start_rows() -> Iterator[Row]:
 def rows(robot: Robot, c_loop: CLoop | None) -> Iterator[Row]:
     """Measure everything."""
     yield from inverse_rows(robot, c_loop)
-    for group in (single_rows, memory_rows, forward_rows, design_rows, walk_rows):
+    for group in (single_rows, memory_rows, forward_rows, design_rows, walk_rows, load_rows):
         yield from group(robot)
     yield from start_rows()
 

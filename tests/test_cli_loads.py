@@ -70,7 +70,8 @@ def test_a_good_robot_is_called_good():
     assert result.stdout.splitlines()[-1].startswith("good: ")
 
 
-def test_the_table_has_every_joint_with_its_bar():
+def test_the_table_has_every_joint_with_its_bar(monkeypatch):
+    monkeypatch.setenv("COLUMNS", "120")
     lines = run("loads", "strider", *SHORT).stdout.splitlines()
     rows = [line for line in lines if " DS3225 " in line and line.rstrip().endswith("%")]
     assert len(rows) == 18

@@ -1,0 +1,129 @@
+"""Rows on loads: all torques of a walk, and a cycle of many designs against Python loops over them."""
+
+from __future__ import annotations
+
+import importlib.util
+from collections.abc import Iterator
+from functools import partial
+from typing import Any
+
+# Before NumPy is loaded: this one chooses the number of threads.
+from measure import Row, medians  # isort: split
+
+import numpy as np
+
+from tarsus import (
+    Gait,
+    Pose,
+    Robot,
+    cycle_feet,
+    default_clearance,
+    default_stance,
+    inverse_kinematics,
+    plan_walk,
+    straight_path,
+)
+from tarsus.load.designs import cycle_torques
+from tarsus.load.loads import loads
+from tarsus.load.torque import joint_torques
+
+__all__ = ["load_rows"]
+
+DESIGNS, PHASES = 10_000, 32
+LOOPED = 50
+"""So many designs go through the loops, whose times are then taken in proportion."""
+
+STROKE = 0.06
+TIMES_A_LOOP = 50
+
+
+def load_rows(robot: Robot) -> Iterator[Row]:
+    """Loads: a walk, a batch of designs."""
+    yield from walk_rows(robot)
+    yield from cycle_rows(robot)
+
+
+def walk_rows(robot: Robot) -> Iterator[Row]:
+    """All torques of a walk of 1 m at 100 Hz, the planning apart."""
+    walk = plan_walk(robot, Gait.named("tripod"), straight_path(1.0))
+    contestants = {
+        name: partial(worked_out, robot, walk, inertial=inertial)
+        for name, inertial in (("with inertia", True), ("statics alone", False))
+    }
+    for name, seconds in medians(contestants).items():
+        yield Row(
+            what=f"loads of a walk of 1 m at 100 Hz, {name} ({len(walk.time)} samples)",
+            measured=f"{seconds * 1e3:.1f} ms",
+            target="<= 100 ms",
+            met=seconds <= 0.1,
+        )
+
+
+def worked_out(robot: Robot, walk: Any, *, inertial: bool) -> object:
+    """Return the peaks, so that nothing is left for later."""
+    return loads(robot, walk, inertial=inertial).peak
+
+
+def designs_of(robot: Robot) -> Robot:
+    """Return designs with other lengths."""
+    scale = np.random.default_rng(4).uniform(0.95, 1.05, (3, DESIGNS, 1))
+    return robot.replace(**{name: getattr(robot, name) * scale[i] for i, name in enumerate(("coxa", "femur", "tibia"))})
+
+
+def by_steps(robot: Robot, gait: Gait, lift: float) -> object:
+    """Return one design's torques by the functions for any pose: what a loop would call without `cycle_torques`."""
+    clearance = default_clearance(robot)
+    rest = default_stance(robot, clearance, lift=lift)
+    moments = np.arange(PHASES) / PHASES
+    feet, contacts = cycle_feet(gait, rest, (STROKE, 0.0, 0.0), lift=np.asarray(lift), phases=moments)
+    body = Pose(position=(0, 0, clearance))
+    angles = inverse_kinematics(robot, feet + np.array([0, 0, clearance]), body).angles
+    return joint_torques(robot, angles, body, contacts)
+
+
+def cycle_rows(robot: Robot) -> Iterator[Row]:
+    """A tripod cycle of many designs in one call, against Python loops over single designs."""
+    gait, lift, together = Gait.named("tripod"), 0.03, designs_of(robot)
+    singles = [together.item((i,)) for i in range(LOOPED)]
+    for single in singles:
+        _ = single.geometry  # worked out once for a design, whoever asks
+    times = medians(
+        {
+            "batch": lambda: cycle_torques(together, gait, stroke=STROKE, lift=lift, phases=PHASES),
+            "alone": lambda: [cycle_torques(one, gait, stroke=STROKE, lift=lift, phases=PHASES) for one in singles],
+            "steps": lambda: [by_steps(one, gait, lift) for one in singles],
+        },
+        rounds=7,
+    )
+    each = {name: seconds / (DESIGNS if name == "batch" else LOOPED) for name, seconds in times.items()}
+    for name, loop in (("alone", "the same function"), ("steps", "the functions for any pose")):
+        ratio = each[name] / each["batch"]
+        yield Row(
+            what=f"torques of {DESIGNS} designs x {PHASES} phases of a tripod cycle, one call",
+            measured=f"{1 / each['batch']:.0f} designs/s",
+            compared=f"a loop with {loop}: {1 / each[name]:.0f} designs/s; {ratio:.0f} times as fast",
+            target=f">= {TIMES_A_LOOP} times a loop",
+            met=ratio >= TIMES_A_LOOP,
+        )
+    if importlib.util.find_spec("jax") is not None:
+        yield jitted_row(robot, together, gait, lift, each["batch"])
+
+
+def jitted_row(robot: Robot, together: Robot, gait: Gait, lift: float, numpy_time: float) -> Row:
+    """The same through `jax.jit` on the same core."""
+    import jax
+
+    jax.config.update("jax_enable_x64", True)
+
+    def torques(coxa: Any, femur: Any, tibia: Any) -> Any:
+        design = robot.replace(coxa=coxa, femur=femur, tibia=tibia)
+        return cycle_torques(design, gait, stroke=STROKE, lift=lift, phases=PHASES).torques
+
+    compiled = jax.jit(torques)
+    arrays = [jax.numpy.asarray(getattr(together, name)) for name in ("coxa", "femur", "tibia")]
+    seconds = medians({"jit": lambda: compiled(*arrays).block_until_ready()}, rounds=3)["jit"] / DESIGNS
+    return Row(
+        what=f"torques of {DESIGNS} designs x {PHASES} phases of a tripod cycle, jax.jit",
+        measured=f"{1 / seconds:.0f} designs/s",
+        compared=f"NumPy: {1 / numpy_time:.0f} designs/s; {numpy_time / seconds:.2f} of it",
+    )
