@@ -24,6 +24,7 @@ from tarsus.kinematics.inverse import inverse_kinematics
 from tarsus.kinematics.leg import forward_kinematics
 from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.reach import Reach
+from tarsus.robot.file import list_robots, load_robot
 from tarsus.robot.robot import stack_robots
 
 KNEES = ("up", "down")
@@ -63,6 +64,20 @@ def test_every_foot_that_angles_within_the_limits_reach_is_reached(draw, with_bo
     assert np.abs(feet_of(robot, solution.angles) - feet).max() <= 1e-12
 
 
+@pytest.mark.parametrize("knee", KNEES)
+@pytest.mark.parametrize("draw", [random_angles, edge_angles])
+@pytest.mark.parametrize("name", list_robots())
+def test_every_preset_reaches_all_that_its_limits_allow(name, draw, knee):
+    rng = np.random.default_rng(9)
+    robot = load_robot(name)
+    feet = feet_of(robot, draw(rng, in_branch(robot, knee), (2000,)))
+    body = random_body(rng, (2000,))
+    for asked, place in ((feet, None), (body @ feet, body)):
+        solution = inverse_kinematics(robot, asked, place, knee=knee)
+        assert solution.ok.all()
+        assert np.abs(feet_of(robot, solution.angles) - feet).max() <= 1e-12
+
+
 @given(seed=seeds(), equal=st.booleans())
 def test_anywhere_within_whole_turns_both_knees_reach(seed, equal):
     rng = np.random.default_rng(seed)
@@ -80,7 +95,7 @@ def test_the_angles_come_back(seed, equal):
     """IK(FK(q)) = q to 1e-10 rad, the knee up, the foot in front of the coxa axis by a millimetre or more.
 
     Within 1 mrad of the straight or folded leg the foot's position, itself rounded to 1e-16 m, no longer tells
-    the angles: there to 3e-7 rad, at a femur axis that the foot almost touches to 1e-16 m over their distance.
+    the angles: there to 1e-6 rad, at a femur axis that the foot almost touches to 1e-16 m over their distance.
     """
     rng = np.random.default_rng(seed)
     robot = random_robot(rng, limits="up", equal=equal)
@@ -95,7 +110,7 @@ def test_the_angles_come_back(seed, equal):
     telling = (np.abs(q[..., 2]) >= 1e-3) & (q[..., 2] >= 1e-3 - np.pi)
     assert off[ahead & telling].max() <= 1e-10
     clear = ahead & ~telling & (apart > 1e-3)
-    assert off[clear].max(initial=0) <= 3e-7
+    assert off[clear].max(initial=0) <= 1e-6
 
 
 def with_decimals(robot, leg, foot):
@@ -284,15 +299,27 @@ def test_a_foot_behind_the_coxa_axis_is_reached_backwards():
 @pytest.mark.parametrize("with_body", [False, True])
 @pytest.mark.parametrize(
     ("legs", "batch"),
-    [(4, (7,)), (5, (3, 5)), (6, (0,)), (6, (0, 2)), (8, (7,)), (8, (400,)), (6, (2, BLOCK // 12 + 5)), (4, (BLOCK,))],
+    [
+        (4, (7,)),
+        (5, (3, 5)),
+        (6, (0,)),
+        (6, (0, 2)),
+        (8, (7,)),
+        (8, (400,)),
+        (6, (2, BLOCK // 12 + 5)),
+        (4, (BLOCK // 4 + 3,)),
+    ],
 )
 def test_a_batch_is_its_loop(batch, legs, with_body):
     rng = np.random.default_rng(legs)
     robot = random_robot(rng, legs=legs)
-    feet = rng.uniform(-0.4, 0.4, (*batch, legs, 3))
-    body = (
-        Pose.from_rpy(*rng.uniform(-0.5, 0.5, (3, *batch)), rng.uniform(-0.2, 0.4, (*batch, 3))) if with_body else None
-    )
+    feet = feet_of(robot, random_angles(rng, robot, batch)) + rng.normal(0, 0.003, (*batch, legs, 3))
+    body = None
+    if with_body:
+        body = Pose.from_rpy(
+            *rng.uniform(-0.5, 0.5, (3, *batch)), rng.uniform([-1, -1, -0.1], [1, 1, 0.4], (*batch, 3))
+        )
+        feet = body @ feet
     found = inverse_kinematics(robot, feet, body)
     assert found.angles.shape == (*batch, legs, 3)
     assert found.reach.shape == (*batch, legs)
@@ -311,9 +338,10 @@ def test_a_thousand_designs_in_one_call(with_body):
     feet, body = rng.uniform(-0.3, 0.3, (6, 3)), random_body(rng) if with_body else None
     feet = feet if body is None else body @ feet
     found = inverse_kinematics(stack_robots(designs), feet, body)
-    loop = [inverse_kinematics(r, feet, body) for r in designs]
-    assert np.array_equal(found.reach, np.stack([s.reach for s in loop]))
-    assert np.abs(found.angles - np.stack([s.angles for s in loop])).max() <= 1e-14
+    loop = [inverse_kinematics(r, feet, body) for r in designs[::7]]
+    assert found.angles.shape == (1000, 6, 3)
+    assert np.array_equal(found.reach[::7], np.stack([s.reach for s in loop]))
+    assert np.abs(found.angles[::7] - np.stack([s.angles for s in loop])).max() <= 1e-14
 
 
 def both(solve, xp, *arrays):
@@ -379,12 +407,11 @@ def assert_alike(found, expected, *, sideways):
 def test_other_libraries_give_numpys_numbers(xp, sideways):
     robot, feet, body = mixed_case(np.random.default_rng(5), sideways=sideways)
     theirs = Pose(xp.asarray(np.asarray(body.rotation)), xp.asarray(np.asarray(body.position)))
-    for mine, other in ((None, None), (body, theirs)):
-        found = inverse_kinematics(robot, xp.asarray(feet), other)
-        expected = inverse_kinematics(robot, feet, mine)
-        assert type(found.angles) is type(xp.zeros(1))
-        assert_alike((found.angles, found.reach), expected, sideways=sideways)
-        assert np.array_equal(np.asarray(found.ok), expected.ok)
+    found = inverse_kinematics(robot, xp.asarray(feet), theirs)
+    expected = inverse_kinematics(robot, feet, body)
+    assert type(found.angles) is type(xp.zeros(1))
+    assert_alike((found.angles, found.reach), expected, sideways=sideways)
+    assert np.array_equal(np.asarray(found.ok), expected.ok)
     assert set(np.unique(expected.reach)) >= {0, 6}
     if not sideways:
         assert found.explain() == expected.explain()
@@ -440,7 +467,8 @@ def test_gradients_with_respect_to_a_length_are_the_finite_differences():
 
 
 @pytest.mark.parametrize(("offset", "equal"), [(0.0, True), (0.01, False)])
-def test_gradients_are_finite_at_singular_and_unreachable_points_too(offset, equal):
+def test_gradients_are_finite_at_singular_and_unreachable_points_too(offset, equal, monkeypatch):
+    monkeypatch.setattr("tarsus.kinematics.nearest._STRIDES", (1.0,))  # one correction compiles in a third of the time
     robot = plain_hexapod(
         femur_axis_offset=np.tile([offset, 0], (6, 1)), **({"tibia": np.full(6, 0.098)} if equal else {})
     )
