@@ -6,13 +6,10 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
-from hypothesis import given
 from hypothesis import strategies as st
 
 from tarsus import arrays
 from tarsus.errors import InputError
-
-shapes = st.lists(st.integers(0, 7), max_size=4).map(tuple)
 
 
 def test_numpy_and_what_has_no_namespace_is_computed_with_numpy():
@@ -174,28 +171,3 @@ def test_broadcast_shapes():
     with pytest.raises(InputError) as caught:
         arrays.broadcast_shapes("the robot and the feet", (4,), (3,))
     assert str(caught.value) == "the batch axes of the robot and the feet don't fit together: (4,) and (3,)"
-
-
-@given(shape=shapes, size=st.integers(1, 30))
-def test_blocks_cover_every_item_once_and_are_small(shape, size):
-    count = np.zeros(shape, dtype=int)
-    for index in arrays.batch_blocks(shape, size):
-        block = arrays.block_shape(shape, index)
-        assert count[index].shape == block
-        assert math.prod(block) <= size
-        count[index] += 1
-    assert (count == 1).all()
-
-
-@given(shape=st.lists(st.integers(1, 5), min_size=1, max_size=3).map(tuple), size=st.integers(1, 10), data=st.data())
-def test_columns_are_the_block_transposed(shape, size, data):
-    own = tuple(data.draw(st.sampled_from([1, n])) for n in shape)[data.draw(st.integers(0, len(shape))) :]
-    array = np.arange(math.prod(own) * 6.0).reshape(*own, 2, 3)
-    whole = np.broadcast_to(array, (*shape, 2, 3))
-    for index in arrays.batch_blocks(shape, size):
-        block = arrays.block_shape(shape, index)
-        found = arrays.columns(array, index, block, tail=2)
-        expected = whole[index].reshape(-1, 2, 3).T
-        assert found.shape in (expected.shape, (3, 2, 1))
-        assert np.array_equal(np.broadcast_to(found, expected.shape), expected)
-        assert found.flags.c_contiguous

@@ -77,7 +77,7 @@ def test_the_table_has_every_joint_with_its_bar(monkeypatch):
     assert len(rows) == 18
     assert all("█" in line for line in rows if "femur" in line)
     assert any(line.startswith("assumed: inertia") for line in lines)
-    assert any("stall current is of DS3225" in line for line in lines)
+    assert any("for want of the stall current of DS3225" in line for line in lines)
     assert any(line.startswith("cost of transport: 0.") for line in lines)
 
 

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from robots import plain_hexapod, random_angles, random_robot, robots, seeds
-from tarsus.arrays import BLOCK
+from tarsus.blocks import BLOCK
 from tarsus.errors import InputError
 from tarsus.kinematics.leg import forward_kinematics, leg_jacobian
 from tarsus.robot.robot import stack_robots

@@ -7,7 +7,8 @@ from typing import NamedTuple, Self
 
 import numpy as np
 
-from tarsus.arrays import Array, Index, Namespace, columns
+from tarsus.arrays import Array, Namespace
+from tarsus.blocks import Index, columns
 from tarsus.kinematics.leg import point_parts
 from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.reach import Reach
@@ -25,7 +26,7 @@ class BodyPlace(NamedTuple):
 
     @classmethod
     def of_block(cls, body: Pose, index: Index, block: tuple[int, ...]) -> Self:
-        """Take apart what belongs to a block of the batch, as columns (see `tarsus.arrays.columns`)."""
+        """Take apart what belongs to a block of the batch, as columns (see `tarsus.blocks.columns`)."""
         rotation, position = (
             columns(body.rotation, index, block, tail=2),
             columns(body.position, index, block, tail=1),

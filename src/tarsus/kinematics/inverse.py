@@ -7,15 +7,10 @@ from typing import Literal
 import numpy as np
 
 from tarsus.arrays import (
-    BLOCK,
-    SMALL,
     Array,
     Namespace,
     as_floats,
-    batch_blocks,
-    block_shape,
     broadcast_shapes,
-    columns,
     is_traced,
     namespace,
     only_where_needed,
@@ -23,6 +18,7 @@ from tarsus.arrays import (
     require_shape,
     stack_last,
 )
+from tarsus.blocks import BLOCK, SMALL, batch_blocks, block_shape, columns
 from tarsus.errors import InputError
 from tarsus.kinematics.ground import BodyPlace, mark_below_ground, points_in_body, surely_above
 from tarsus.kinematics.nearest import nearest_angles

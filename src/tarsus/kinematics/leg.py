@@ -18,20 +18,16 @@ from typing import TypeAlias
 import numpy as np
 
 from tarsus.arrays import (
-    BLOCK,
-    SMALL,
     Array,
     Namespace,
     as_floats,
-    batch_blocks,
-    block_shape,
     broadcast_shapes,
-    columns,
     namespace,
     require_finite,
     require_shape,
     stack_last,
 )
+from tarsus.blocks import BLOCK, SMALL, batch_blocks, block_shape, columns
 from tarsus.robot.geometry import LegGeometry
 from tarsus.robot.robot import Robot
 

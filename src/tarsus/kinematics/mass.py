@@ -2,16 +2,7 @@
 
 from __future__ import annotations
 
-from tarsus.arrays import (
-    Array,
-    Namespace,
-    as_array,
-    as_floats,
-    broadcast_shapes,
-    namespace,
-    require_shape,
-    stack_last,
-)
+from tarsus.arrays import Array, Namespace, as_array, as_floats, broadcast_shapes, namespace, require_shape, stack_last
 from tarsus.kinematics.leg import forward_kinematics
 from tarsus.robot.robot import Robot
 

@@ -14,7 +14,8 @@ from typing import Any, NamedTuple, Self
 
 import numpy as np
 
-from tarsus.arrays import Array, Index, Namespace, block_shape, columns
+from tarsus.arrays import Array, Namespace
+from tarsus.blocks import Index, block_shape, columns
 
 __all__ = ["Pairs", "columns_of", "root"]
 

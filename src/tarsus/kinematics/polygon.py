@@ -6,16 +6,15 @@ import numpy as np
 
 from tarsus.arrays import (
     Array,
-    Index,
     Namespace,
     as_array,
     as_floats,
-    batch_blocks,
     broadcast_shapes,
     namespace,
     require_finite,
     require_shape,
 )
+from tarsus.blocks import Index, batch_blocks
 from tarsus.errors import InputError
 from tarsus.kinematics.pairs import Pairs, columns_of, root
 

@@ -8,15 +8,7 @@ from typing import Any, Self, overload
 
 import numpy as np
 
-from tarsus.arrays import (
-    Array,
-    as_floats,
-    broadcast_shapes,
-    namespace,
-    require_finite,
-    require_shape,
-    stack_last,
-)
+from tarsus.arrays import Array, as_floats, broadcast_shapes, namespace, require_finite, require_shape, stack_last
 from tarsus.errors import InputError
 
 __all__ = ["Pose", "rpy_from_rotation"]

@@ -8,19 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tarsus.arrays import (
-    BLOCK,
-    Array,
-    Index,
-    Namespace,
-    as_array,
-    batch_blocks,
-    block_shape,
-    broadcast_shapes,
-    is_traced,
-    namespace,
-    stack_last,
-)
+from tarsus.arrays import Array, Namespace, as_array, broadcast_shapes, is_traced, namespace, stack_last
+from tarsus.blocks import BLOCK, Index, batch_blocks, block_shape
 from tarsus.errors import InputError
 from tarsus.kinematics.leg import forward_kinematics
 from tarsus.kinematics.mass import centre_of_mass

@@ -11,17 +11,16 @@ import numpy as np
 
 from tarsus.arrays import (
     Array,
-    Index,
     Namespace,
     as_array,
     as_floats,
-    batch_blocks,
     broadcast_shapes,
     is_traced,
     namespace,
     require_finite,
     require_shape,
 )
+from tarsus.blocks import Index, batch_blocks
 from tarsus.errors import InputError
 from tarsus.kinematics.leg import forward_kinematics
 from tarsus.kinematics.mass import centre_of_mass, total_mass

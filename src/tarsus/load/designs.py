@@ -14,18 +14,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from tarsus.arrays import (
-    Array,
-    Index,
-    Namespace,
-    as_array,
-    as_floats,
-    batch_blocks,
-    broadcast_shapes,
-    namespace,
-    require_finite,
-    stack_last,
-)
+from tarsus.arrays import Array, Namespace, as_array, as_floats, broadcast_shapes, namespace, require_finite, stack_last
+from tarsus.blocks import Index, batch_blocks
 from tarsus.errors import InputError
 from tarsus.gait.cycle import cycle_feet
 from tarsus.gait.gait import Gait

@@ -4,16 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from tarsus.arrays import (
-    Array,
-    Namespace,
-    as_array,
-    as_floats,
-    namespace,
-    require_finite,
-    require_shape,
-    stack_last,
-)
+from tarsus.arrays import Array, Namespace, as_array, as_floats, namespace, require_finite, require_shape, stack_last
 from tarsus.kinematics.leg import checked_angles, forward_kinematics
 from tarsus.kinematics.mass import point_masses
 from tarsus.kinematics.pose import Pose

@@ -112,7 +112,7 @@ def loads_lines(summary: dict[str, Any]) -> list[str]:
     lines = [f"{name}: {by_name[name]['text']}; peak {by_name[name]['peak_cause']}" for name in summary["worst"]]
     drawn = summary["supply"]
     if drawn["stall_current_unknown"]:
-        lines.append(f"current: unknown, as the stall current is of {', '.join(drawn['stall_current_unknown'])}")
+        lines.append(f"current: unknown, for want of the stall current of {', '.join(drawn['stall_current_unknown'])}")
     else:
         battery = "" if drawn["battery_min"] is None else f"; the battery lasts {drawn['battery_min']:.0f} min"
         lines.append(f"current: {drawn['mean_a']:.1f} A on average, {drawn['peak_a']:.1f} A at its peak{battery}")

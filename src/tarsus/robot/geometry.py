@@ -6,7 +6,8 @@ from typing import NamedTuple, Self
 
 import numpy as np
 
-from tarsus.arrays import Array, Index, Namespace, as_array, columns
+from tarsus.arrays import Array, Namespace, as_array
+from tarsus.blocks import Index, columns
 
 __all__ = ["LegGeometry"]
 
@@ -93,7 +94,7 @@ class LegGeometry(NamedTuple):
         return LegGeometry(*(as_array(xp, values) for values in self))
 
     def take(self, index: Index, block: tuple[int, ...]) -> LegGeometry:
-        """Return the part that belongs to a block of the batch, as columns (see `tarsus.arrays.columns`)."""
+        """Return the part that belongs to a block of the batch, as columns (see `tarsus.blocks.columns`)."""
         return LegGeometry(*(columns(values, index, block, tail=1) for values in self))
 
     def pick(self, where: tuple[Array, ...], shape: tuple[int, ...]) -> LegGeometry:
