@@ -18,7 +18,7 @@ from robots import (
     robots,
     seeds,
 )
-from tarsus.arrays import BLOCK
+from tarsus.blocks import BLOCK
 from tarsus.errors import InputError
 from tarsus.kinematics.inverse import inverse_kinematics
 from tarsus.kinematics.leg import forward_kinematics
