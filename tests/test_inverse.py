@@ -355,20 +355,28 @@ def both(solve, xp, *arrays):
     return tuple(np.asarray(a) for a in compute(*(xp.asarray(a) for a in arrays)))
 
 
+DIFFERENT = {
+    "coxa": np.linspace(0.03, 0.15, 5)[:, None] * np.ones(6),
+    "femur": np.linspace(0.03, 0.15, 5)[:, None] * np.ones(6),
+    "mount_yaw": np.linspace(0.03, 0.15, 5)[:, None] * np.ones(6),
+    "limits": np.linspace(0.2, 3, 5)[:, None, None, None] * np.array([-1, 1]) * np.ones((6, 3, 1)),
+    "body_mass": np.linspace(1, 2, 5),
+}
+
+
 @pytest.mark.parametrize(
-    ("xp", "what"),
-    [(np, "coxa"), (np, "femur"), (np, "mount_yaw"), (np, "body_mass"), (jnp, "femur"), (jnp, "body_mass")],
+    ("xp", "what"), [*((np, what) for what in DIFFERENT), (jnp, "femur"), (jnp, "limits"), (jnp, "body_mass")]
 )
-def test_designs_that_differ_in_one_number(xp, what):
-    values = np.linspace(0.03, 0.15, 5)
-    one = plain_hexapod()
-    batch = one.replace(**{what: values if what == "body_mass" else values[:, None] * np.ones(6)})
-    feet = np.random.default_rng(2).uniform(-0.4, 0.4, (7, 1, 6, 3))
+@pytest.mark.parametrize("spread", [0.001, 0.2])
+def test_designs_that_differ_in_one_number(xp, what, spread):
+    one, values = plain_hexapod(), DIFFERENT[what]
+    batch = one.replace(**{what: values})
+    rng = np.random.default_rng(2)
+    feet = feet_of(one, np.tile([0.0, 0.1, -0.2], (6, 1))) + rng.uniform(-spread, spread, (7, 1, 6, 3))
     angles, reach = both(lambda p: inverse_kinematics(batch, p), xp, feet)
     assert angles.shape == (7, 5, 6, 3)
     for i, value in enumerate(values):
-        alone = one.replace(**{what: value if what == "body_mass" else np.full(6, value)})
-        expected = inverse_kinematics(alone, feet[:, 0])
+        expected = inverse_kinematics(one.replace(**{what: value}), feet[:, 0])
         assert np.array_equal(reach[:, i], expected.reach)
         assert np.abs(angles[:, i] - expected.angles).max() <= 1e-13
 

@@ -156,3 +156,28 @@ def test_a_knee_branch_is_what_the_limits_leave_of_it_or_the_other(limits, up, d
     for knee, (low, high, sign) in ((1, up), (-1, down)):
         found = (*tibia_branch(np, robot.geometry, knee=knee), tibia_bend(np, robot.geometry, knee=knee))
         assert [set(v.tolist()) for v in found] == [{low}, {high}, {sign}]
+
+
+def test_turning_freely_comes_as_near_as_the_best_of_many_fixed_turns():
+    """Near the coxa axis, where turn and distance settle slowest: against 2 x 181 legs whose coxas can't turn."""
+    rng = np.random.default_rng(1)
+    robot = random_robot(rng, legs=300, sideways=0.03, limits="full")
+    limits = np.array(robot.limits)
+    limits[::2, 0] = np.stack([rng.uniform(-3, 0, 150), rng.uniform(0, 3, 150)], axis=-1)
+    robot = robot.replace(limits=limits)
+    feet = rng.uniform(-1, 1, (300, 3)) * np.stack(
+        [*[np.abs(robot.femur_axis_offset[:, 0]) + 1e-3] * 2, robot.tibia], -1
+    )
+    feet += robot.mount_position
+    mine = misses(robot, inverse_kinematics(robot, feet).angles, feet)
+    low, high = robot.limits[:, 0].T
+    turns = low + np.linspace(0, 1, 181)[:, None] * (high - low)
+    for pitch in ((high - low) / 180, None):
+        fixed = np.array(np.broadcast_to(robot.limits, (181, 300, 3, 2)))
+        fixed[..., 0, :] = turns[..., None]
+        still = robot.replace(limits=fixed)
+        least = misses(still, inverse_kinematics(still, feet).angles, feet)
+        assert (mine <= least.min(0) + 1e-6).all()
+        if pitch is not None:
+            best = np.take_along_axis(turns, least.argmin(0)[None], axis=0)[0]
+            turns = np.clip(best + np.linspace(-1, 1, 181)[:, None] * pitch, low, high)

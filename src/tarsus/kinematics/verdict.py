@@ -44,8 +44,9 @@ def mark(xp: Namespace, codes: Array, broken: Array, code: Reach) -> Array:
 def all_within(geometry: LegGeometry, solution: Triangle) -> bool:
     """Return whether every NumPy leg is within reach and limits: the common case, told in a few passes."""
     g, s = geometry, solution
+    # Not in place: designs that differ in their limits alone make each of these wider than the one before.
     broken = (s.far < 0) | (s.near < 0) | (s.beside < 0)
-    broken |= (s.coxa < g.coxa_lower) | (s.coxa > g.coxa_upper)
-    broken |= (s.femur < g.femur_lower) | (s.femur > g.femur_upper)
-    broken |= (s.tibia < g.tibia_lower) | (s.tibia > g.tibia_upper)
+    broken = broken | (s.coxa < g.coxa_lower) | (s.coxa > g.coxa_upper)
+    broken = broken | (s.femur < g.femur_lower) | (s.femur > g.femur_upper)
+    broken = broken | (s.tibia < g.tibia_lower) | (s.tibia > g.tibia_upper)
     return not broken.any()
