@@ -28,11 +28,11 @@ from tarsus import (
     load_robot,
     stack_robots,
 )
-from tarsus.load.handbook import handbook
-from tarsus.load.handbook_comparison import ComparisonRow
-from tarsus.load.handbook_lines import Line, Term, plain_number
-from tarsus.load.handbook_page import TABLES, docs_page
-from tarsus.load.handbook_statics import compare_with_statics, fewest_down
+from tarsus.load.handbook.comparison import ComparisonRow
+from tarsus.load.handbook.lines import Line, Term, plain_number
+from tarsus.load.handbook.method import handbook
+from tarsus.load.handbook.page import TABLES, docs_page
+from tarsus.load.handbook.statics import compare_with_statics, fewest_down
 from tarsus.load.torque import joint_torques
 from tarsus.robot.robot import JOINTS
 
@@ -728,7 +728,7 @@ def test_the_pages_tables_are_worked_out_afresh():
     asked = re.findall(r"<!-- table: (.*?) -->", page)
     assert sorted(asked) == sorted(TABLES)
     assert docs_page(page, STRIDER) == page, (
-        "docs/handbook.md is behind: write docs_page(text, load_robot('strider')) of tarsus.load.handbook_page to it"
+        "docs/handbook.md is behind: write docs_page(text, load_robot('strider')) of tarsus.load.handbook.page to it"
     )
 
 

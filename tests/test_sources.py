@@ -31,7 +31,7 @@ from tarsus import (
     stability_margin,
     straight_path,
 )
-from tarsus.load.handbook import handbook
+from tarsus.load.handbook.method import handbook
 from tarsus.load.torque import joint_torques
 
 PAGE = Path(__file__).parent.parent / "docs" / "sources.md"

@@ -45,8 +45,8 @@ if TYPE_CHECKING:
     from tarsus.load.contact import ContactForces, contact_forces
     from tarsus.load.designs import CycleTorques, cycle_torques
     from tarsus.load.friction import contact_forces_with_friction
-    from tarsus.load.handbook import handbook
-    from tarsus.load.handbook_statics import compare_with_statics
+    from tarsus.load.handbook.method import handbook
+    from tarsus.load.handbook.statics import compare_with_statics
     from tarsus.load.inertia import MotionTorques, motion_torques
     from tarsus.load.loads import Loads, loads
     from tarsus.load.payload import Payload
@@ -92,8 +92,8 @@ _HOMES = {
     "tarsus.load.contact": ("ContactForces", "contact_forces"),
     "tarsus.load.designs": ("CycleTorques", "cycle_torques"),
     "tarsus.load.friction": ("contact_forces_with_friction",),
-    "tarsus.load.handbook": ("handbook",),
-    "tarsus.load.handbook_statics": ("compare_with_statics",),
+    "tarsus.load.handbook.method": ("handbook",),
+    "tarsus.load.handbook.statics": ("compare_with_statics",),
     "tarsus.load.inertia": ("MotionTorques", "motion_torques"),
     "tarsus.load.loads": ("Loads", "loads"),
     "tarsus.load.payload": ("Payload",),

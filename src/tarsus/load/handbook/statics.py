@@ -16,8 +16,8 @@ from tarsus.gait.plan import plan_walk
 from tarsus.kinematics.leg import forward_kinematics
 from tarsus.kinematics.pose import Pose
 from tarsus.load.contact import contact_forces
-from tarsus.load.handbook import Handbook, handbook
-from tarsus.load.handbook_comparison import SPEEDING, STANDING, SWINGING, WALKING, Comparison, ComparisonRow
+from tarsus.load.handbook.comparison import SPEEDING, STANDING, SWINGING, WALKING, Comparison, ComparisonRow
+from tarsus.load.handbook.method import Handbook, handbook
 from tarsus.load.torque import joint_torques
 from tarsus.robot.robot import JOINTS, Robot
 

@@ -5,7 +5,7 @@ Each writes its lines on the sheet, and adds what later sections need to the ter
 
 from __future__ import annotations
 
-from tarsus.load.handbook_lines import Sheet, Term
+from tarsus.load.handbook.lines import Sheet, Term
 from tarsus.robot.robot import JOINTS
 
 __all__ = ["work_out"]

@@ -9,10 +9,10 @@ import re
 from collections.abc import Callable, Iterable, Sequence
 
 from tarsus.errors import UnknownNameError
-from tarsus.load.handbook import Handbook, handbook
-from tarsus.load.handbook_comparison import SPEEDING, Comparison
-from tarsus.load.handbook_lines import Line, plain_number
-from tarsus.load.handbook_statics import compare_with_statics
+from tarsus.load.handbook.comparison import SPEEDING, Comparison
+from tarsus.load.handbook.lines import Line, plain_number
+from tarsus.load.handbook.method import Handbook, handbook
+from tarsus.load.handbook.statics import compare_with_statics
 from tarsus.robot.robot import Robot
 
 __all__ = ["TABLES", "docs_page", "markdown_table"]

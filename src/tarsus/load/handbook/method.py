@@ -14,9 +14,9 @@ from typing import Any
 import numpy as np
 
 from tarsus.errors import InputError, UnknownNameError
-from tarsus.load.handbook_lines import Line, Sheet, Term, plain_number
-from tarsus.load.handbook_sections import work_out
-from tarsus.load.handbook_source import NOTES, NOTES_ONE_LEG_UP, printed_numbers
+from tarsus.load.handbook.lines import Line, Sheet, Term, plain_number
+from tarsus.load.handbook.sections import work_out
+from tarsus.load.handbook.source import NOTES, NOTES_ONE_LEG_UP, printed_numbers
 from tarsus.robot.robot import JOINTS, Robot
 
 __all__ = ["Handbook", "handbook"]

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 from tarsus.errors import UnknownNameError
 from tarsus.gait.motion import Motion
-from tarsus.load.handbook import Handbook
-from tarsus.load.handbook_lines import plain_number
+from tarsus.load.handbook.lines import plain_number
+from tarsus.load.handbook.method import Handbook
 from tarsus.robot.robot import JOINTS
 
 __all__ = ["SPEEDING", "STANDING", "SWINGING", "WALKING", "Comparison", "ComparisonRow"]

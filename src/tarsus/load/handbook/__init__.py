@@ -1,0 +1,1 @@
+"""Source 004's hand calculation of torques, line by line, and beside the statics."""
