@@ -386,7 +386,7 @@ def test_a_stroke_without_lift_slides_and_may():
 def test_senseless_sizes_are_refused():
     robot = preset("strider")
     for bad, match in (
-        ({"stroke": 1e4}, "stroke is 10000; it must be at most 1000"),
+        ({"stroke": 1e4}, "stroke is 10000 m; it must be at most 1000 m"),
         ({"speed": 1e300, "cycle_time": 1e300}, "stroke is inf"),
         ({"speed": 1e-300, "cycle_time": 1e-300}, "a swing takes|stroke is 0"),
         ({"speed": 1e-9, "cycle_time": 1.0}, "at most 2000000 are planned at once"),

@@ -264,4 +264,4 @@ class Motion:
         """
         from tarsus.gait.storage import load_motion
 
-        return load_motion(path)
+        return load_motion(path, kind=cls)

@@ -38,6 +38,17 @@ def default_lift(robot: Robot) -> float:
     return robot.gait.lift if robot.gait.lift is not None else abs(default_clearance(robot)) / 4
 
 
+_UNITS = {
+    "stroke": " m",
+    "clearance": " m",
+    "lift": " m",
+    "foot_distance": " m",
+    "speed": " m/s",
+    "cycle_time": " s",
+    "rate": " Hz",
+}
+
+
 def require_number(name: str, value: float, *, zero: bool, most: float = math.inf) -> float:
     """Return a number that is not negative, as a float.
 
@@ -61,10 +72,11 @@ def require_number(name: str, value: float, *, zero: bool, most: float = math.in
         number = float(value)
     except (TypeError, ValueError):
         raise InputError(f"{name} is {value!r}; it must be a number") from None
+    unit = _UNITS.get(name, "")
     if not 0 <= number < math.inf:
-        raise InputError(f"{name} is {number:g}; it must be a finite number, not negative")
+        raise InputError(f"{name} is {number:g}{unit}; it must be a finite number, not negative")
     if number > most:
-        raise InputError(f"{name} is {number:g}; it must be at most {most:g}")
+        raise InputError(f"{name} is {number:g}{unit}; it must be at most {most:g}{unit}")
     if number == 0 and not zero:
         raise InputError(f"{name} is 0; it must be greater than 0")
     return number

@@ -12,7 +12,6 @@ import numpy as np
 
 from tarsus.errors import InputError, TarsusError
 from tarsus.gait.gait import Gait
-from tarsus.gait.motion import Motion
 from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.reach import Reach
 from tarsus.robot.file import robot_from_text, robot_text
@@ -20,6 +19,8 @@ from tarsus.robot.robot import JOINTS
 
 if TYPE_CHECKING:
     import xarray
+
+    from tarsus.gait.motion import Motion
 
 __all__ = ["load_motion", "save_motion", "to_dataset", "write_csv"]
 
@@ -122,8 +123,8 @@ def save_motion(motion: Motion, path: str | os.PathLike[str]) -> None:
         raise InputError(f"{path} can't be written: {error.strerror}") from None
 
 
-def load_motion(path: str | os.PathLike[str]) -> Motion:
-    """Read a motion from a file (see `Motion.load`)."""
+def load_motion(path: str | os.PathLike[str], *, kind: type[Motion]) -> Motion:
+    """Read a motion of a kind from a file (see `Motion.load`)."""
     where = Path(path)
     try:
         with open(where, "rb") as raw, np.load(raw, allow_pickle=False) as file:
@@ -131,7 +132,7 @@ def load_motion(path: str | os.PathLike[str]) -> Motion:
             if about["format"] != _FORMAT:
                 raise InputError(f"{where} is of the format {about['format']!r}; this version reads {_FORMAT!r}")
             numbers: dict[str, Any] = {name: float(about[name]) for name in _NUMBERS}
-            return Motion(
+            return kind(
                 robot=robot_from_text(about["robot"], where=f"the robot in {where}"),
                 gait=Gait(**about["gait"]),
                 body=Pose(file["rotation"], file["position"]),
