@@ -225,3 +225,13 @@ def test_a_preset_survives_its_dict_and_a_file(tmp_path):
     assert Robot.from_dict(robot.to_dict()) == robot
     robot.save(tmp_path / "strider.toml")
     assert load_robot(tmp_path / "strider.toml") == robot
+
+
+def test_limits_beyond_half_a_turn_are_refused():
+    robot = load_robot("strider")
+    limits = np.array(robot.limits)
+    limits[0, 1, 1] = np.pi
+    assert robot.replace(limits=limits).limits[0, 1, 1] == np.pi
+    limits[0, 1, 1] = np.radians(200)
+    with pytest.raises(InputError, match=r"limits reach to 200.0 deg; they must be from -180 to 180 deg"):
+        robot.replace(limits=limits)

@@ -32,6 +32,8 @@ TAILS: dict[str, tuple[str | int, ...]] = {
 }
 OPTIONAL = ("link_mass", "body_mass", "body_size")
 _POSITIVE = ("femur", "tibia", "body_mass", "body_size")
+# What rounding may add to half a turn [rad].
+_ROUNDING = 1e-9
 _NOT_NEGATIVE = ("coxa", "foot_radius", "link_mass")
 
 
@@ -78,3 +80,7 @@ def _check_range(name: str, value: np.ndarray[Any, Any], *, robot: str) -> None:
         raise InputError(f"{robot}: {name} is {lowest:g}; it must not be negative")
     if name == "limits" and (value[..., 0] > value[..., 1]).any():
         raise InputError(f"{robot}: limits: a lowest angle is greater than its highest")
+    if name == "limits" and value.size and np.abs(value).max() > np.pi + _ROUNDING:
+        raise InputError(
+            f"{robot}: limits reach to {np.degrees(np.abs(value).max()):.1f} deg; they must be from -180 to 180 deg"
+        )
