@@ -131,6 +131,7 @@ def test_a_robot_without_servos_is_sized_with_the_masses_in_its_file():
 
 def test_where_servos_sit_is_said():
     found = sample_loads("strider")
+    assert "the coxa joints bear no friction" in size_servos(found.robot, found).assumed[-2]
     assert size_servos(found.robot, found).assumed[-1].startswith("a servo sits in the part inside of its joint")
 
 

@@ -28,6 +28,11 @@ from tarsus.robot.servo import Servo
 __all__ = ["Candidate", "ServoSizing", "size_servos"]
 
 
+_COXA_CAUTION = (
+    "the coxa joints bear no friction between the feet, no slope and no obstacle: their servos may well need more"
+)
+
+
 @dataclass(frozen=True, kw_only=True)
 class Candidate:
     """Servos that would carry the robot, their own masses counted.
@@ -152,7 +157,7 @@ def size_servos(
         sensitivity=length_sensitivity(base),
         safety_factor=safety_factor,
         rule=rule,
-        assumed=(*base.assumed, _where_servos_sit(robot)),
+        assumed=(*base.assumed, _COXA_CAUTION, _where_servos_sit(robot)),
     )
 
 
