@@ -664,7 +664,9 @@ def test_003_no_solution_where_an_attachment_is_below_the_ground() -> None:
 
 def test_003_no_solution_where_a_joint_is_out_of_its_range() -> None:
     robot = load_robot("strider")
-    over = forward_kinematics(robot.replace(limits=robot.limits * 4), np.tile([1.2, 0.5, -1.5], (6, 1)))[:, 3]
+    over = forward_kinematics(
+        robot.replace(limits=np.clip(robot.limits * 4, -math.pi, math.pi)), np.tile([1.2, 0.5, -1.5], (6, 1))
+    )[:, 3]
     solution = inverse_kinematics(robot, over)
     assert (solution.reach == Reach.COXA_LIMIT).all()
     assert "its highest angle is 60.0" in solution.explain()
