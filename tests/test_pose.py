@@ -198,3 +198,16 @@ def test_gradients_pass_through_poses():
     step = 1e-6
     expected = [(height(at + step * e) - height(at - step * e)) / (2 * step) for e in np.eye(3)]
     assert np.abs(jax.jit(jax.grad(height))(jnp.asarray(at)) - np.array(expected)).max() <= 1e-9
+
+
+@pytest.mark.parametrize(
+    "wrong", [2 * np.eye(3), np.diag([1.0, 1.0, -1.0]), np.diag([2.0, 0.5, 1.0]), np.zeros((3, 3))]
+)
+def test_what_stretches_or_mirrors_is_no_pose(wrong):
+    with pytest.raises(InputError, match="rotation is no rotation matrix"):
+        Pose(np.stack([np.eye(3), wrong]), np.zeros(3))
+
+
+def test_a_rotation_in_single_precision_is_one():
+    rotation = np.asarray(Pose.from_rpy(0.3, -0.7, 2.0).rotation, dtype=np.float32)
+    assert np.allclose(Pose(rotation, np.zeros(3)).rotation, rotation)

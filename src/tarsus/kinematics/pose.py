@@ -8,7 +8,17 @@ from typing import Any, Self, overload
 
 import numpy as np
 
-from tarsus.arrays import Array, as_floats, broadcast_shapes, namespace, require_finite, require_shape, stack_last
+from tarsus.arrays import (
+    Array,
+    Namespace,
+    as_floats,
+    broadcast_shapes,
+    is_traced,
+    namespace,
+    require_finite,
+    require_shape,
+    stack_last,
+)
 from tarsus.errors import InputError
 
 __all__ = ["Pose", "rpy_from_rotation"]
@@ -26,6 +36,29 @@ def _is_writeable(base: object) -> bool:
     """Return whether a locked array's numbers can change all the same, being a view of these."""
     return base is not None and not (isinstance(base, np.ndarray) and not base.flags.writeable)
 
+
+def _require_rotation(xp: Namespace, rotation: Array) -> None:
+    """Refuse matrices that stretch, shear or mirror; traced ones can't be looked at and pass."""
+    if is_traced(rotation):
+        return
+    first, second, third = (tuple(rotation[..., i, j] for j in range(3)) for i in range(3))
+    size2 = xp.sum(xp.reshape(rotation * rotation, (*rotation.shape[:-2], 9)), axis=-1)
+    volume = (
+        first[0] * (second[1] * third[2] - second[2] * third[1])
+        + first[1] * (second[2] * third[0] - second[0] * third[2])
+        + first[2] * (second[0] * third[1] - second[1] * third[0])
+    )
+    # Of all matrices whose elements' squares add up to 3, rotations alone have the determinant 1.
+    off = xp.maximum(xp.abs(size2 - 3), xp.abs(volume - 1))
+    if bool(xp.any(off > _STRETCH)):
+        raise InputError(
+            f"rotation is no rotation matrix: its determinant and its squares' sum are off 1 and 3 by up to "
+            f"{float(xp.max(off)):.3g}; at most {_STRETCH:g} is taken for rounding"
+        )
+
+
+# How far determinant and squares may be off by rounding: wide enough for single precision.
+_STRETCH = 1e-4
 
 _IDENTITY = _locked(np.eye(3))
 _ORIGIN = _locked(np.zeros(3))
@@ -56,6 +89,7 @@ class Pose:
         require_shape("position", position, (3,))
         require_finite("rotation", rotation)
         require_finite("position", position)
+        _require_rotation(xp, rotation)
         if rotation.ndim > 2 and position.ndim > 1:
             broadcast_shapes("a pose", rotation.shape[:-2], position.shape[:-1])
         object.__setattr__(self, "rotation", _locked(rotation))
