@@ -89,7 +89,8 @@ class Pose:
         require_shape("position", position, (3,))
         require_finite("rotation", rotation)
         require_finite("position", position)
-        _require_rotation(xp, rotation)
+        if self.rotation is not _IDENTITY:
+            _require_rotation(xp, rotation)
         if rotation.ndim > 2 and position.ndim > 1:
             broadcast_shapes("a pose", rotation.shape[:-2], position.shape[:-1])
         object.__setattr__(self, "rotation", _locked(rotation))
@@ -125,7 +126,13 @@ class Pose:
             (-sp, cp * sr, cp * cr),
         )
         flat = stack_last(xp, tuple(entry for row in rows for entry in row))
-        return cls(xp.reshape(flat, (*flat.shape[:-1], 3, 3)), position)
+        rotation = xp.reshape(flat, (*flat.shape[:-1], 3, 3))
+        # What cosines and sines make is a rotation; looking whether it is would take as long as making it.
+        pose = cls(position=position)
+        if rotation.ndim > 2 and pose.position.ndim > 1:
+            broadcast_shapes("a pose", rotation.shape[:-2], pose.position.shape[:-1])
+        object.__setattr__(pose, "rotation", _locked(rotation))
+        return pose
 
     @property
     def batch_shape(self) -> tuple[int, ...]:
