@@ -26,6 +26,7 @@ __all__ = [
     "only_where_needed",
     "require_finite",
     "require_shape",
+    "root",
     "stack_last",
 ]
 
@@ -221,6 +222,22 @@ def improve(
         if not bool(xp.any(going)):
             break
     return state
+
+
+def root(xp: Namespace, square: Array) -> Array:
+    """Return the square root: 0 for negative numbers, and with a gradient that stays finite at 0, where it has none.
+
+    Parameters
+    ----------
+    xp : namespace
+        The array library.
+    square : array
+        Any shape.
+    """
+    if xp is np:
+        return np.sqrt(np.maximum(square, 0.0))
+    positive = square > 0
+    return xp.where(positive, xp.sqrt(xp.where(positive, square, xp.ones_like(square))), xp.zeros_like(square))
 
 
 def stack_last(xp: Namespace, parts: tuple[Array, ...]) -> Array:

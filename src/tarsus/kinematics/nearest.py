@@ -14,8 +14,8 @@ from __future__ import annotations
 
 import math
 
-from tarsus.arrays import Array, Namespace, improve
-from tarsus.kinematics.triangle import direction, root
+from tarsus.arrays import Array, Namespace, improve, root
+from tarsus.kinematics.triangle import direction
 from tarsus.robot.geometry import LegGeometry
 
 __all__ = ["clip_angle", "nearest_angles", "tibia_bend", "tibia_branch"]

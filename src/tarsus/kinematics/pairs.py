@@ -14,10 +14,10 @@ from typing import Any, NamedTuple, Self
 
 import numpy as np
 
-from tarsus.arrays import Array, Namespace
+from tarsus.arrays import Array, Namespace, root
 from tarsus.blocks import Index, block_shape, columns
 
-__all__ = ["Pairs", "columns_of", "root"]
+__all__ = ["Pairs", "columns_of"]
 
 
 class Pairs(NamedTuple):
@@ -93,12 +93,6 @@ def columns_of(xp: Namespace, array: Array, batch: tuple[int, ...], index: Index
     rest = tuple(array.shape[array.ndim - tail :])
     flat = xp.reshape(xp.broadcast_to(array, (*batch, *rest)), (math.prod(batch), *rest))
     return xp.permute_dims(flat, tuple(range(tail, -1, -1)))
-
-
-def root(xp: Namespace, square: Array) -> Array:
-    """Return the square root, with derivative 0 at 0, where it has none."""
-    positive = square > 0
-    return xp.where(positive, xp.sqrt(xp.where(positive, square, 1.0)), 0.0)
 
 
 @lru_cache(maxsize=64)

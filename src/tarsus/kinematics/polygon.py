@@ -13,10 +13,11 @@ from tarsus.arrays import (
     namespace,
     require_finite,
     require_shape,
+    root,
 )
 from tarsus.blocks import Index, batch_blocks
 from tarsus.errors import InputError
-from tarsus.kinematics.pairs import Pairs, columns_of, root
+from tarsus.kinematics.pairs import Pairs, columns_of
 
 __all__ = ["as_mask", "hull_margin", "margin_and_nearest", "support_polygon"]
 

@@ -13,8 +13,8 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from tarsus.arrays import Array, Namespace
-from tarsus.kinematics.pairs import Pairs, root
+from tarsus.arrays import Array, Namespace, root
+from tarsus.kinematics.pairs import Pairs
 
 __all__ = ["Settled", "rotation_rows", "settle"]
 

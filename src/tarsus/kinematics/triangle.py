@@ -17,10 +17,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tarsus.arrays import Array, Namespace
+from tarsus.arrays import Array, Namespace, root
 from tarsus.robot.geometry import LegGeometry
 
-__all__ = ["Triangle", "direction", "root", "solve_triangle", "to_leg_frame"]
+__all__ = ["Triangle", "direction", "solve_triangle", "to_leg_frame"]
 
 
 class Triangle(NamedTuple):
@@ -36,14 +36,6 @@ class Triangle(NamedTuple):
     far: Array
     near: Array
     beside: Array
-
-
-def root(xp: Namespace, square: Array) -> Array:
-    """Return the square root, 0 for negative numbers, with a gradient that stays finite there."""
-    if xp is np:
-        return np.sqrt(np.maximum(square, 0.0))
-    positive = square > 0
-    return xp.where(positive, xp.sqrt(xp.where(positive, square, xp.ones_like(square))), xp.zeros_like(square))
 
 
 def direction(xp: Namespace, y: Array, x: Array) -> Array:

@@ -11,10 +11,10 @@ from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
-from tarsus.arrays import Array, Namespace, only_where_needed
+from tarsus.arrays import Array, Namespace, only_where_needed, root
 from tarsus.kinematics.ground import BodyPlace, mark_below_ground, surely_above
 from tarsus.kinematics.polygon import margin_and_nearest
-from tarsus.kinematics.triangle import Triangle, root, solve_triangle, to_leg_frame
+from tarsus.kinematics.triangle import Triangle, solve_triangle, to_leg_frame
 from tarsus.kinematics.verdict import all_within, reach_codes
 from tarsus.load.share import shared_load
 from tarsus.robot.geometry import LegGeometry

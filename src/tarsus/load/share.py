@@ -20,8 +20,7 @@ from typing import Any
 
 import numpy as np
 
-from tarsus.arrays import Array, Namespace, is_traced
-from tarsus.kinematics.pairs import root
+from tarsus.arrays import Array, Namespace, is_traced, root
 from tarsus.load.spread import FLAT, Spread, Triple, plane
 
 __all__ = ["shared_load"]
