@@ -7,9 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tarsus.gait.motion import Motion
-from tarsus.report.gait_diagram import draw_stance
-from tarsus.report.style import INK, WARNING, leg_colours, new_figure, thinned, tidy_axes
-from tarsus.robot.robot import JOINTS
+from tarsus.report.joint_panels import joint_panels
+from tarsus.report.style import WARNING
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -42,29 +41,15 @@ def plot_angles(motion: Motion) -> Figure:
     TarsusError
         If matplotlib is not installed.
     """
-    figure = new_figure(width=9.6, height=8)
-    axes = figure.subplots(4, 1, sharex=True, height_ratios=[3, 3, 3, 1.3])
-    for joint, name in enumerate(JOINTS):
-        tidy_axes(axes[joint], y=f"{name} (°)")
-        _draw_joint(axes[joint], motion, joint)
-        _draw_limits(axes[joint], motion, joint)
-    tidy_axes(axes[3], x="time (s)", y="foot down")
-    draw_stance(axes[3], motion)
-    axes[3].set_xlim(0, motion.duration)
-    handles, labels = axes[0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside right upper", frameon=False)
-    figure.suptitle(f"{motion.robot.name}: joint angles, thick while the foot is down", x=0.01, ha="left", color=INK)
+    figure, panels = joint_panels(
+        motion,
+        np.degrees(motion.angles),
+        unit="°",
+        title=f"{motion.robot.name}: joint angles, thick while the foot is down",
+    )
+    for joint, axes in enumerate(panels):
+        _draw_limits(axes, motion, joint)
     return figure
-
-
-def _draw_joint(axes: Axes, motion: Motion, joint: int) -> None:
-    shown = thinned(motion)
-    time = motion.time[shown]
-    for leg, colour in enumerate(leg_colours(motion.robot)):
-        angles = np.degrees(motion.angles[shown, leg, joint])
-        axes.plot(time, angles, color=colour, linewidth=1.0)
-        standing = np.where(motion.contacts[shown, leg], angles, np.nan)
-        axes.plot(time, standing, color=colour, linewidth=2.6, label=motion.robot.leg_codes[leg])
 
 
 def _draw_limits(axes: Axes, motion: Motion, joint: int) -> None:

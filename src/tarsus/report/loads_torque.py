@@ -8,9 +8,8 @@ import numpy as np
 
 from tarsus.load.loads import Loads
 from tarsus.load.verdict import CONTINUOUS_SHARE, SAFETY_FACTOR
-from tarsus.report.gait_diagram import draw_stance
-from tarsus.report.style import INK, PALE, WARNING, halo, leg_colours, new_figure, thinned, tidy_axes
-from tarsus.robot.robot import JOINTS
+from tarsus.report.joint_panels import joint_panels
+from tarsus.report.style import PALE, WARNING, halo
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -61,36 +60,15 @@ def plot_torques(found: Loads) -> Figure:
     TarsusError
         If matplotlib is not installed.
     """
-    motion = found.motion
-    figure = new_figure(width=9.6, height=8)
-    axes = figure.subplots(4, 1, sharex=True, height_ratios=[3, 3, 3, 1.3])
-    for joint, name in enumerate(JOINTS):
-        tidy_axes(axes[joint], y=f"{name} (N m)")
-        _draw_joint(axes[joint], found, joint)
-        _draw_limits(axes[joint], found, joint)
-    tidy_axes(axes[3], x="time (s)", y="foot down")
-    draw_stance(axes[3], motion)
-    axes[3].set_xlim(0, motion.duration)
-    handles, labels = axes[0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside right upper", frameon=False)
-    figure.suptitle(
-        f"{motion.robot.name}: torques, thick while the foot is down, and what the servos bear",
-        x=0.01,
-        ha="left",
-        color=INK,
+    figure, panels = joint_panels(
+        found.motion,
+        np.abs(found.torques),
+        unit="N m",
+        title=f"{found.motion.robot.name}: torques, thick while the foot is down, and what the servos bear",
     )
+    for joint, axes in enumerate(panels):
+        _draw_limits(axes, found, joint)
     return figure
-
-
-def _draw_joint(axes: Axes, found: Loads, joint: int) -> None:
-    motion = found.motion
-    shown = thinned(motion)
-    time = motion.time[shown]
-    for leg, colour in enumerate(leg_colours(motion.robot)):
-        torque = np.abs(found.torques[shown, leg, joint])
-        axes.plot(time, torque, color=colour, linewidth=1.0)
-        standing = np.where(motion.contacts[shown, leg], torque, np.nan)
-        axes.plot(time, standing, color=colour, linewidth=2.6, label=motion.robot.leg_codes[leg])
 
 
 def _draw_limits(axes: Axes, found: Loads, joint: int) -> None:
