@@ -1,0 +1,47 @@
+"""The messages between studio and browser, as pydantic models; their TypeScript types are generated from them."""
+
+from __future__ import annotations
+
+from typing import Annotated, TypeAlias
+
+from pydantic import Field, TypeAdapter
+
+from tarsus.studio.messages.client import ClientMessage
+from tarsus.studio.messages.moving import DriveFrame, LoadsMessage, ServosMessage, WalkMessage
+from tarsus.studio.messages.plain import Done, ErrorMessage, FileMessage, SourceMessage
+from tarsus.studio.messages.still import PoseMessage, RobotMessage, StateMessage, Welcome, ZoneMessage
+
+__all__ = ["CLOSED", "SOCKET", "ClientMessage", "ServerMessage", "client_message"]
+
+SOCKET = "/session/1"
+"""Path of the socket; it ends with the version of the messages, so that an old page does not get a new server's."""
+
+CLOSED = {
+    "TOKEN": (4401, "Wrong token, or none: the page must be opened by the link that the server printed."),
+    "IDLE": (4408, "Nothing was said for too long. To connect again is fine."),
+    "RATE": (4429, "Too many messages, or malformed ones, one after the other."),
+    "FULL": (4503, "The server has as many sessions as it takes. To try again later is fine."),
+    "LARGE": (1009, "A message was larger than `bounds.message_bytes`."),
+}
+"""Codes with which the server closes the socket, and why."""
+
+ServerMessage: TypeAlias = Annotated[
+    Welcome
+    | RobotMessage
+    | StateMessage
+    | PoseMessage
+    | ZoneMessage
+    | WalkMessage
+    | LoadsMessage
+    | ServosMessage
+    | DriveFrame
+    | SourceMessage
+    | FileMessage
+    | ErrorMessage
+    | Done,
+    Field(discriminator="type"),
+]
+"""Any message of the server."""
+
+client_message: TypeAdapter[ClientMessage] = TypeAdapter(ClientMessage)
+"""Checks what a client says."""

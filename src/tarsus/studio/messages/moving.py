@@ -1,0 +1,169 @@
+"""What the server says of things that move: a walk, its loads, servos for it, live frames."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from pydantic import Field
+
+from tarsus.studio.messages.base import Message, Part
+
+__all__ = [
+    "Candidate",
+    "DriveFrame",
+    "JointLoad",
+    "JointSpeed",
+    "LoadsMessage",
+    "Moment",
+    "ServosMessage",
+    "WalkEnd",
+    "WalkMessage",
+]
+
+
+class Moment(Part):
+    """A length and when it is so."""
+
+    mm: float | None
+    at_s: float
+
+
+class WalkEnd(Part):
+    """Where the body is in the end."""
+
+    x_mm: float
+    y_mm: float
+    turned_deg: float
+
+
+class JointSpeed(Part):
+    """The greatest speed of one kind of joint."""
+
+    joint: Literal["coxa", "femur", "tibia"]
+    deg_s: float
+    leg: str
+    servo: str | None
+    no_load_deg_s: float | None
+    share_of_no_load: float | None
+
+
+class WalkMessage(Message):
+    """A whole walk, for playing without a round trip. Moments are `rate_hz` apart, the first at 0 s."""
+
+    type: Literal["walk"]
+    rate_hz: float
+    count: int = Field(description="How many moments: n.")
+    position_mm: list[float] = Field(description="n x (x, y, z) of B in G.")
+    rpy_deg: list[float] = Field(description="n x (roll, pitch, yaw), yaw without jumps.")
+    angles_deg: list[float] = Field(description="n x legs x (coxa, femur, tibia).")
+    contacts: list[str] = Field(description="n texts, a character a leg, 1 where the foot stands.")
+    reach: list[str] | None = Field(description="n texts, a code of Reach a leg; null where all reach.")
+    margin_mm: list[float | None] = Field(description="n; null where no foot stands.")
+    com_mm: list[float] = Field(description="n x (x, y) of the centre of mass over the ground in G.")
+    gait: str
+    duty: float
+    duration_s: float
+    cycle_time_s: float
+    steps: int
+    stroke_mm: float
+    speed_mm_s: float
+    clearance_mm: float
+    lift_mm: float
+    longest_stroke_mm: float | None
+    end: WalkEnd
+    joint_speed: list[JointSpeed]
+    least_margin: Moment
+    nearest_feet: Moment
+    nearest_legs: list[str]
+    possible: bool
+    problems: list[str]
+    assumed: list[str]
+
+
+class JointLoad(Part):
+    """What one joint bears over the walk."""
+
+    leg: str
+    joint: Literal["coxa", "femur", "tibia"]
+    servo: str | None
+    peak_nm: float
+    peak_at_s: float
+    peak_cause: str
+    rms_nm: float
+    peak_speed_deg_s: float
+    peak_power_w: float
+    stall_nm: float | None
+    factor: float | None
+    utilisation: float | None
+    thermal_ratio: float | None
+    grade: str = Field(description="good, marginal, stalls or burns, cannot stand, unknown.")
+    text: str
+
+
+class LoadsMessage(Message):
+    """What the joints bear at the moments of the walk that was sent last."""
+
+    type: Literal["loads"]
+    torques_nm: list[float] = Field(description="n x legs x (coxa, femur, tibia).")
+    forces_n: list[float] = Field(description="n x legs x (x, y, z), ground on foot in G.")
+    joints: list[JointLoad] = Field(description="Leg by leg.")
+    worst: list[str] = Field(description="The worst coxa, femur and tibia.")
+    grade: str
+    carried: bool
+    balanced: bool
+    weight_n: float
+    distance_m: float
+    energy_j: float
+    cost_of_transport: float | None
+    peak_current_a: float | None
+    mean_current_a: float | None
+    battery_min: float | None
+    supply_warning: str | None
+    assumed: list[str]
+
+
+class Candidate(Part):
+    """Servos of the catalogue that would do."""
+
+    name: str
+    coxa: str
+    femur: str
+    tibia: str
+    factor: float | None
+    thermal_ratio: float | None
+    servo_mass_kg: float
+    robot_mass_kg: float
+
+
+class ServosMessage(Message):
+    """Which servos would do."""
+
+    type: Literal["servos"]
+    present_do: bool
+    balanced: bool
+    worst: list[str] = Field(description="A line on the worst coxa, femur and tibia of the present servos.")
+    candidates: list[Candidate] = Field(description="The same servo in all joints, the lightest first.")
+    mixed: Candidate | None = Field(description="The lightest for each kind of joint.")
+    payload_kg: float | None = Field(description="The heaviest that the present servos carry.")
+    payload_before_burning_kg: float | None
+    advice: list[str]
+    left_out: Annotated[dict[str, Any], Field(json_schema_extra={"ts": "Record<string, string>"})]
+    assumed: list[str]
+
+
+class DriveFrame(Message):
+    """The live walker now; sixty a second while driving."""
+
+    type: Literal["frame"]
+    time_s: float
+    mode: str
+    gait: str
+    position_mm: list[float]
+    rpy_deg: list[float]
+    angles_deg: list[float]
+    contacts: str
+    margin_mm: float | None
+    com_mm: list[float] = Field(description="(x, y) of the centre of mass over the ground in G.")
+    twist: list[float] = Field(description="What it does: forward, left [mm/s], turn [deg/s].")
+    limited: list[str] = Field(description="Why the wish is not met in full.")
+    interventions: int = Field(description="How often the guard stepped in.")
