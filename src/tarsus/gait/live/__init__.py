@@ -1,0 +1,1 @@
+"""Live walking: from wishes to joint angles, tick by tick."""

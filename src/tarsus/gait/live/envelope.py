@@ -1,0 +1,160 @@
+"""What the robot can do while it walks as it stands now: where its feet may be, and how fast it may move."""
+
+from __future__ import annotations
+
+import dataclasses
+import functools
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from tarsus.gait.gait import Gait
+from tarsus.gait.live.support import safe_share
+from tarsus.gait.live.workspace import NORMALS, Parts, Stand, workspace
+from tarsus.gait.swing import ground_share
+from tarsus.kinematics.mass import centre_of_mass
+from tarsus.robot.robot import Robot
+
+__all__ = ["Envelope", "capped", "envelope", "overhang"]
+
+Floats = np.ndarray[Any, Any]
+
+# How far inside its support the centre of mass stays [m]: more than the legs shift it by being here or there.
+_LEAST_MARGIN = 0.004
+# What is left between the fastest steady walk and the polygons.
+_RESERVE = 0.97
+
+
+@dataclass(frozen=True, eq=False)
+class Envelope:
+    """Where the feet may be in all of some stands, and what twists that allows.
+
+    Attributes
+    ----------
+    bounds : array, shape (legs, 16)
+        Sides of the feet's polygons, from the heading frame's origin along `NORMALS` [m].
+    room : array, shape (legs, 8)
+        How far a foot may go from its rest foothold, either way across [m].
+    rest : complex array, shape (legs,)
+        Rest footholds of the last stand [m].
+    """
+
+    bounds: Floats
+    room: Floats
+    rest: Floats
+
+    @property
+    def possible(self) -> bool:
+        """Whether every foot can be at its rest foothold."""
+        return bool((self.room >= 0).all())
+
+    @property
+    def short(self) -> int:
+        """The leg with the least room."""
+        return int(self.room.min(-1).argmin())
+
+    def meet(self, other: Envelope) -> Envelope:
+        """Return what is possible in both.
+
+        Parameters
+        ----------
+        other : Envelope
+            The other.
+        """
+        return Envelope(np.minimum(self.bounds, other.bounds), np.minimum(self.room, other.room), self.rest)
+
+    def largest_share(self, twist: Floats, *, stance_time: float, duty: float) -> tuple[float, int]:
+        """Return how much of a twist the robot can walk at for good, and which leg stops it.
+
+        Parameters
+        ----------
+        twist : array, shape (3,)
+            Forward [m/s], left [m/s], turning [rad/s].
+        stance_time : float
+            How long a foot stays on the ground [s].
+        duty : float
+            Duty factor.
+
+        Returns
+        -------
+        share : float
+            From 0 up; above 1 where it could walk faster.
+        leg : int
+            The leg that allows no more.
+        """
+        past = (twist[0] + 1j * twist[1] + 1j * twist[2] * self.rest) * (overhang(duty) * stance_time / _RESERVE)
+        across = np.abs((NORMALS[:8].conj() * past[:, None]).real)
+        share = np.maximum(self.room, 0.0) / np.maximum(across, 1e-12)
+        worst = int(share.argmin())
+        return float(share.flat[worst]), worst // 8
+
+
+@functools.cache
+def overhang(duty: float) -> float:
+    """Return how far a foot is from its rest foothold at most in steady walking, over the stroke: 1/2 and a little.
+
+    Until it gathers speed, a foot that is lifted stays behind.
+
+    Parameters
+    ----------
+    duty : float
+        Duty factor.
+    """
+    share = np.linspace(0, 0.5, 51)
+    ratio = (1 - duty) / duty
+    return float((0.5 + ratio * share - (1 + ratio) * ground_share(share)).max())
+
+
+def capped(limits: Envelope, excursion: float) -> Envelope:
+    """Return the envelope with less room.
+
+    Parameters
+    ----------
+    limits : Envelope
+        What it was.
+    excursion : float
+        How far a foot may go from its rest foothold at most [m].
+    """
+    return dataclasses.replace(limits, room=np.minimum(limits.room, excursion))
+
+
+def envelope(robot: Robot, stands: Sequence[Stand], sets: Floats, *, foot_distance: float) -> Parts[Envelope]:
+    """Work out what is possible in all of some stands, in parts.
+
+    Parameters
+    ----------
+    robot : Robot
+        A single robot.
+    stands : sequence of Stand
+        At least one; the last is the one that stays.
+    sets : array of bool, shape (n, legs)
+        Feet that are down together.
+    foot_distance : float
+        Least distance between two feet [m].
+    """
+    bounds = np.full((robot.legs, len(NORMALS)), np.inf)
+    room = np.full(bounds.shape, np.inf)
+    for stand in stands:
+        sides = yield from workspace(robot, stand, foot_distance=foot_distance)
+        at_rest = (NORMALS.conj() * stand.rest[:, None]).real
+        yield
+        share = safe_share(sets, sides, stand.rest, _centre(robot, stand), margin=_LEAST_MARGIN)
+        free = sides - at_rest
+        free = np.where(free > 0, free * share, free)
+        # Where a centre of mass stands outside, no step is safe.
+        free = free if share > 0 else np.minimum(free, -1e-3)
+        bounds, room = np.minimum(bounds, at_rest + free), np.minimum(room, free)
+        yield
+    half = len(NORMALS) // 2
+    return Envelope(bounds, np.minimum(room[:, :half], room[:, half:]), stands[-1].rest)
+
+
+def _centre(robot: Robot, stand: Stand) -> complex:
+    """Return the projected centre of mass with the feet at rest [m]."""
+    zero = np.zeros(robot.legs)
+    solution = stand.solve(robot, stand.rest.real, stand.rest.imag, zero)
+    com = centre_of_mass(robot, np.stack(solution[:3], axis=-1))
+    x, y, _ = stand.rotation @ com + stand.position
+    return complex(x, y)

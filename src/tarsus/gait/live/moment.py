@@ -1,0 +1,263 @@
+"""The walking robot at one moment, and how it goes on from there: a function of the moment, without memory.
+
+Points of the ground plane are complex numbers here, x + iy; a turn by an angle is a product with ``exp(i angle)``.
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from tarsus.gait.gait import Gait
+from tarsus.gait.live.lag import Lag
+from tarsus.gait.swing import ground_share, height_share
+
+__all__ = ["FREEZE", "THERE", "TIE", "Course", "Moment", "carried", "final_rest", "go_on", "turned"]
+
+Floats = np.ndarray[Any, Any]
+
+FREEZE = 0.6
+"""Share of the swing after which the foot's target stays: what is left is enough to come to it gently."""
+
+TIE = 1e-9
+"""What counts as the same moment [cycles]."""
+
+# Below this speed [m/s] of the feet past the body, a robot told to stand is taken to be stopping: it steps to rest.
+_CREEPING = 0.01
+# A foot this near to its rest foothold is there [m]; a speed this low is none [m/s].
+THERE, _NO_SPEED = 1e-6, 1e-9
+
+
+class Moment(NamedTuple):
+    """Everything that the future of the walk depends on; each array ``(legs,)`` unless said otherwise.
+
+    Attributes
+    ----------
+    clock : float
+        Time in cycles.
+    number : array
+        The step that each leg is in, or swings out of: touchdown at ``offset + number``.
+    down : array of bool
+        Whether the foot is on the ground.
+    share : array
+        Share of the swing that is over.
+    foot, target : complex array
+        Where the feet are, and where they are or will be put down, in G [m].
+    pace, bend : complex array
+        First and second derivative of a swinging foot's way by its share [m].
+    ground, start_height : array
+        Height of the ground that each foot is on or bound for, and where its swing began [m].
+    origin : complex
+        The heading frame's origin in G [m].
+    yaw : float
+        Where it faces [rad].
+    twist : Lag
+        Its speed ``(3,)``: forward, left [m/s], turning [rad/s].
+    posture : Lag
+        The body over the heading frame, and the feet's rest: see `tarsus.gait.live.posture`.
+    """
+
+    clock: float
+    number: Floats
+    down: Floats
+    share: Floats
+    foot: Floats
+    target: Floats
+    pace: Floats
+    bend: Floats
+    ground: Floats
+    start_height: Floats
+    origin: complex
+    yaw: float
+    twist: Lag
+    posture: Lag
+
+    def height(self, lift: float) -> Floats:
+        """Return the feet's heights in G [m].
+
+        Parameters
+        ----------
+        lift : float
+            How high a swinging foot rises [m].
+        """
+        up, along = height_share(self.share), ground_share(self.share)
+        swinging = self.start_height + (self.ground - self.start_height) * along + lift * up
+        return np.where(self.down, self.ground, swinging)
+
+
+class Course(NamedTuple):
+    """What the robot is doing: constant for a tick.
+
+    Attributes
+    ----------
+    gait : Gait
+        Order of the steps.
+    offsets : array, shape (legs,)
+        The gait's.
+    frequency : float
+        Cycles a second [1/s].
+    twist, posture : array
+        What twist and posture follow.
+    bandwidth, posture_bandwidth : float
+        How fast they follow [rad/s].
+    steps : array of bool, shape (legs,)
+        Which legs may lift.
+    rest, final_rest : complex array, shape (legs,)
+        Rest footholds in the heading frame, now and once the posture is what it is to be [m].
+    """
+
+    gait: Gait
+    offsets: Floats
+    frequency: float
+    twist: Floats
+    posture: Floats
+    bandwidth: float
+    posture_bandwidth: float
+    steps: Floats
+    rest: Floats
+    final_rest: Floats
+
+
+def turned(angle: Any) -> Any:
+    """Return ``(exp(i angle) - 1) / (i angle)``: how a way bends that turns by an angle.
+
+    Parameters
+    ----------
+    angle : float or array
+        The angle [rad].
+    """
+    if isinstance(angle, float):
+        half = angle / 2
+        return cmath.exp(1j * half) * (math.sin(half) / half if abs(half) > 1e-6 else 1 - half * half / 6)
+    half = angle / 2
+    return np.exp(1j * half) * np.sinc(half / np.pi)
+
+
+def carried(origin: complex, yaw: float, travel: Floats) -> tuple[complex, float]:
+    """Return where the heading frame is after a travel ``(3,)``, the exponential of its displacement."""
+    x, y, angle = travel.tolist()
+    return origin + cmath.exp(1j * yaw) * complex(x, y) * turned(angle), yaw + angle
+
+
+def go_on(now: Moment, course: Course, dt: float) -> Moment:
+    """Return the moment after a time.
+
+    Parameters
+    ----------
+    now : Moment
+        The moment.
+    course : Course
+        What the robot is doing.
+    dt : float
+        The time [s].
+    """
+    twist = now.twist.step(course.twist, dt, bandwidth=course.bandwidth)
+    origin, yaw = carried(now.origin, now.yaw, now.twist.travel(course.twist, dt, bandwidth=course.bandwidth))
+    stopping = not course.twist.any()
+    if stopping and np.abs(twist.value).max() < _NO_SPEED:
+        twist = Lag.still(np.zeros(3))
+    posture = now.posture.step(course.posture, dt, bandwidth=course.posture_bandwidth)
+    clock = now.clock + course.frequency * dt
+    after = now._replace(clock=clock, origin=origin, yaw=yaw, twist=twist, posture=posture)
+    duty, swing = course.gait.duty, 1 - course.gait.duty
+    since_lift = clock - (course.offsets + duty + now.number)
+    due = now.down & (since_lift > TIE)
+    if not due.any() and now.down.all():
+        return after
+    if due.any():
+        after = _lift(after, course, due, final_rest(after, course) if stopping else None)
+    up = ~after.down
+    if not up.any():
+        return after
+    share = np.where(up, np.minimum(since_lift / swing, 1.0), 0.0)
+    target = after.target
+    free = up & (after.share <= FREEZE)
+    if free.any():
+        target = np.where(free, _foothold(after, course, share), target)
+    after = _swing(after, share, target)
+    landed = up & (since_lift >= swing - TIE)
+    return _land(after, landed) if landed.any() else after
+
+
+def _creeping(now: Moment) -> bool:
+    return bool(np.abs(now.twist.value).max() < _CREEPING)
+
+
+def final_rest(now: Moment, course: Course) -> Floats | None:
+    """Return where the feet rest once the robot stands, where it is about to; None while it is still fast."""
+    if not _creeping(now):
+        return None
+    w = course.bandwidth
+    origin, yaw = carried(now.origin, now.yaw, (2 * now.twist.value + now.twist.rate / w) / w)
+    final: Floats = origin + cmath.exp(1j * yaw) * course.final_rest
+    return final
+
+
+def _lift(now: Moment, course: Course, due: Floats, final: Floats | None) -> Moment:
+    """Lift the feet whose time has come; those that may not, or needn't, miss this step."""
+    wanted = due & course.steps
+    if final is not None:
+        wanted = wanted & (np.abs(now.foot - final) > THERE)
+    missed = due & ~wanted
+    return now._replace(
+        number=now.number + missed,
+        down=now.down & ~wanted,
+        share=np.where(wanted, 0.0, now.share),
+        pace=np.where(wanted, 0.0, now.pace),
+        bend=np.where(wanted, 0.0, now.bend),
+        start_height=np.where(wanted, now.ground, now.start_height),
+        ground=np.where(wanted, 0.0, now.ground),
+    )
+
+
+def _foothold(now: Moment, course: Course, share: Floats) -> Floats:
+    """Return where feet should land: where the body has their rest footholds in the middle of the stance."""
+    if not course.twist.any() and (final := final_rest(now, course)) is not None:
+        return final
+    duty = course.gait.duty
+    ahead = ((1 - share) * (1 - duty) + duty / 2) / course.frequency
+    w = course.bandwidth
+    slowing = (1 - np.exp(-w * ahead) * (1 + w * ahead)) / (w * w)
+    (x, y, angle), (ax, ay, turn) = now.twist.value.tolist(), now.twist.rate.tolist()
+    way, angles = complex(x, y) * ahead + complex(ax, ay) * slowing, angle * ahead + turn * slowing
+    place: Floats = now.origin + cmath.exp(1j * now.yaw) * (way * turned(angles) + np.exp(1j * angles) * course.rest)
+    return place
+
+
+def _swing(now: Moment, share: Floats, target: Floats) -> Moment:
+    """Move the swinging feet on: the quintic from here to the target, there at rest."""
+    left = 1 - now.share
+    x = np.where(left > 0, (share - now.share) / np.where(left > 0, left, 1.0), 1.0)
+    speed, half_bend = now.pace * left, now.bend * (left * left / 2)
+    gap = target - (now.foot + speed + half_bend)
+    missing, bent = -(speed + 2 * half_bend), -2 * half_bend
+    a3 = 10 * gap - 4 * missing + bent / 2
+    a4 = -15 * gap + 7 * missing - bent
+    a5 = 6 * gap - 3 * missing + bent / 2
+    foot = now.foot + x * (speed + x * (half_bend + x * (a3 + x * (a4 + x * a5))))
+    pace = speed + x * (2 * half_bend + x * (3 * a3 + x * (4 * a4 + x * 5 * a5)))
+    bend = 2 * half_bend + x * (6 * a3 + x * (12 * a4 + x * 20 * a5))
+    safe = np.where(left > 0, left, 1.0)
+    up = ~now.down
+    return now._replace(
+        share=share,
+        target=target,
+        foot=np.where(up, foot, now.foot),
+        pace=np.where(up, pace / safe, now.pace),
+        bend=np.where(up, bend / (safe * safe), now.bend),
+    )
+
+
+def _land(now: Moment, landed: Floats) -> Moment:
+    """Put feet down that have come to the end of their swing."""
+    return now._replace(
+        number=now.number + landed,
+        down=now.down | landed,
+        share=np.where(landed, 0.0, now.share),
+        foot=np.where(landed, now.target, now.foot),
+        pace=np.where(landed, 0.0, now.pace),
+        bend=np.where(landed, 0.0, now.bend),
+    )

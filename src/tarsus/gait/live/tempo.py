@@ -1,0 +1,148 @@
+"""How fast the legs may step: what the joints' speed and acceleration allow."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from tarsus.gait.cycle import cycle_feet
+from tarsus.gait.gait import Gait
+from tarsus.gait.live.envelope import Envelope
+from tarsus.gait.live.workspace import Parts, Stand
+from tarsus.robot.robot import Robot
+
+__all__ = ["Tempo", "joint_limits", "tempo"]
+
+Floats = np.ndarray[Any, Any]
+
+# What a joint turns at where its servo's speed isn't known [rad/s], and in what time it comes to that speed [s].
+_DEFAULT_SPEED = 6.0
+_SPEED_UP = 0.05
+# Shares of the joints' speed and acceleration that steady walking may take: the rest is for changing one's mind.
+_SPEED_SHARE, _ACCELERATION_SHARE = 0.95, 0.8
+_SIZES = np.linspace(0.0, 1.0, 6)
+_TWISTS = np.array(
+    [(np.cos(a), np.sin(a), 0.0) for a in np.arange(8) * np.pi / 4]
+    + [(0.0, 0.0, 1.0), (0.0, 0.0, -1.0)]
+    + [(x, y, z) for x, y in ((1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0)) for z in (4.0, -4.0)]
+)
+_MOMENTS = 33
+
+
+def joint_limits(robot: Robot, speed: float | None, acceleration: float | None) -> tuple[Floats, Floats]:
+    """Return the greatest speed and acceleration of each joint.
+
+    Parameters
+    ----------
+    robot : Robot
+        A single robot.
+    speed : float, optional
+        For all joints [rad/s]; left out, the no-load speed of each one's servo, 6 rad/s where that is unknown.
+    acceleration : float, optional
+        For all joints [rad/s^2]; left out, what reaches the speed in 0.05 s.
+
+    Returns
+    -------
+    speed, acceleration : array, shape (legs, 3)
+        [rad/s], [rad/s^2].
+    """
+    known = [
+        [servo.no_load_speed if servo and servo.no_load_speed else _DEFAULT_SPEED for servo in row]
+        for row in robot.servos
+    ]
+    speeds = np.array(known) if speed is None else np.full((robot.legs, 3), float(speed))
+    return speeds, speeds / _SPEED_UP if acceleration is None else np.full((robot.legs, 3), float(acceleration))
+
+
+class Tempo(NamedTuple):
+    """How fast the legs step, and how far.
+
+    Attributes
+    ----------
+    cycle_time : float
+        Duration of a cycle [s].
+    stroke : float
+        The longest stroke for which the joints are fast enough [m].
+    least_cycle_time : float
+        The shortest cycle in which the joints can lift the feet at all [s].
+    """
+
+    cycle_time: float
+    stroke: float
+    least_cycle_time: float
+
+
+def tempo(
+    robot: Robot,
+    gait: Gait,
+    stand: Stand,
+    limits: Envelope,
+    *,
+    speed: Floats,
+    acceleration: Floats,
+    cycle_time: float | None = None,
+) -> Parts[Tempo]:
+    """Work out how long a cycle must take for the joints to keep up, in parts.
+
+    Parameters
+    ----------
+    robot, gait, stand
+        What walks, how, and how it stands.
+    limits : Envelope
+        How far the feet may go.
+    speed, acceleration : array, shape (legs, 3)
+        Greatest of each joint [rad/s], [rad/s^2].
+    cycle_time : float, optional
+        Wished duration of a cycle [s]; left out, that which gets the robot farthest: in a shorter one the joints
+        allow shorter strokes only, in a longer one the legs no longer ones.
+    """
+    strokes, cycles = [], []
+    for twists in np.array_split(_TWISTS, 4):
+        largest = np.array([_largest(limits, twist, gait.duty) for twist in twists])
+        rest = limits.rest
+        strokes.append(np.abs(largest[:, :1] + 1j * largest[:, 1:2] + 1j * largest[:, 2:] * rest).max(-1))
+        cycles.append(_cycle_times(robot, gait, stand, _SIZES[:, None, None] * largest, speed, acceleration))
+        yield
+    # (sizes, twists): the shortest cycle for each size of each stroke.
+    stroke, shortest = np.concatenate(strokes), np.maximum.accumulate(np.concatenate(cycles, axis=1), axis=0)
+    least = float(shortest[0].max())
+    if cycle_time is None:
+        tried = least * np.geomspace(1.0, 4.0, 33)
+        sizes = np.array([_sizes(shortest, t) for t in tried])
+        # Forward, back, left and right; turning follows.
+        far = np.minimum(sizes[:, :8:2] * stroke[:8:2], _cap(sizes, stroke)[:, None]).mean(-1)
+        cycle_time = float(tried[int((far / tried).argmax())])
+    cycle_time = max(cycle_time, least)
+    return Tempo(cycle_time, float(_cap(_sizes(shortest, cycle_time)[None], stroke)[0]), least)
+
+
+def _cap(sizes: Floats, stroke: Floats) -> Floats:
+    """Return the stroke ``(n,)`` that works in every direction in which the joints, not the legs, set the bound."""
+    return np.asarray(np.where(sizes < 1, sizes * stroke, np.inf).min(-1))
+
+
+def _sizes(shortest: Floats, cycle_time: float) -> Floats:
+    """Return for each twist which share of the longest stroke a cycle time allows."""
+    sizes = [np.interp(cycle_time, column, _SIZES) for column in shortest.T]
+    return np.asarray(sizes)
+
+
+def _cycle_times(robot: Robot, gait: Gait, stand: Stand, twists: Floats, speed: Floats, acceleration: Floats) -> Floats:
+    """Return the shortest cycle ``(...)`` for what the body moves in one stance, ``(..., 3)``."""
+    rest = np.stack([stand.rest.real, stand.rest.imag, 0 * stand.rest.real], axis=-1)
+    # Every leg goes the same way through its own cycle: a swing, and a little of the stance on either side.
+    phases = np.linspace(gait.duty - 0.02, 1.02, _MOMENTS)
+    together = Gait(gait.duty, (0.0,) * gait.legs)
+    feet, _ = cycle_feet(together, rest, twists, lift=np.asarray(stand.lift), phases=phases)
+    angles = np.stack(stand.solve(robot, feet[..., 0], feet[..., 1], feet[..., 2])[:3], axis=-1)
+    rate = np.diff(angles, axis=-3) / (phases[1] - phases[0])
+    change = np.diff(rate, axis=-3) / (phases[1] - phases[0])
+    by_speed = np.abs(rate).max(axis=-3) / (_SPEED_SHARE * speed)
+    by_acceleration = np.sqrt(np.abs(change).max(axis=-3) / (_ACCELERATION_SHARE * acceleration))
+    return np.asarray(np.maximum(by_speed, by_acceleration).max(axis=(-2, -1)))
+
+
+def _largest(limits: Envelope, twist: Floats, duty: float) -> Floats:
+    share, _ = limits.largest_share(twist, stance_time=1.0, duty=duty)
+    return np.asarray(share * twist)
