@@ -109,7 +109,11 @@ export interface Download {
   what: "csv" | "html" | "toml" | "angles";
 }
 
-/** Put one foot elsewhere: in the view Joints that leg's angles follow, else its foothold. Answers: state, pose. */
+/**
+ * Put one foot elsewhere: in the view Joints that leg's angles follow, else its foothold.
+ *
+ * Answers: pose, and with `commit` the state before it.
+ */
 export interface DragFoot {
   id: number;
   /** Whether undo shall come back to what is here now. */

@@ -112,7 +112,10 @@ class SetBody(Change):
 
 
 class DragFoot(Change):
-    """Put one foot elsewhere: in the view Joints that leg's angles follow, else its foothold. Answers: state, pose."""
+    """Put one foot elsewhere: in the view Joints that leg's angles follow, else its foothold.
+
+    Answers: pose, and with `commit` the state before it.
+    """
 
     type: Literal["drag_foot"]
     leg: Leg

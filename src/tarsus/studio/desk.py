@@ -1,0 +1,81 @@
+"""What a session has worked out of its state, each thing once: robot, poses, walk, loads."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, TypeVar
+
+import numpy as np
+
+from tarsus.gait.motion import Motion
+from tarsus.gait.path import Path
+from tarsus.gait.setup import Setup
+from tarsus.kinematics.pose import Pose
+from tarsus.load.loads import Loads
+from tarsus.robot.robot import Robot
+from tarsus.studio.bearing import loads_of
+from tarsus.studio.messages.state import StudioState
+from tarsus.studio.poses import Resting, resting, standing
+from tarsus.studio.robots import robot_of
+from tarsus.studio.standing import OnFootholds
+from tarsus.studio.walks import path_of, plan, setup_of
+
+__all__ = ["Desk"]
+
+_T = TypeVar("_T")
+
+
+class Desk:
+    """Works things out of a state, and keeps the last of each kind."""
+
+    def __init__(self) -> None:
+        self._kept: dict[str, tuple[tuple[Any, ...], Any]] = {}
+
+    def _once(self, kind: str, given: tuple[Any, ...], make: Callable[[], _T]) -> _T:
+        """Return what was made of the same things before, or make it."""
+        known = self._kept.get(kind)
+        if known is not None and known[0] == given:
+            kept: _T = known[1]
+            return kept
+        made = make()
+        self._kept[kind] = (given, made)
+        return made
+
+    def robot(self, state: StudioState) -> Robot:
+        """Return the robot; the same object as long as it is the same robot."""
+        return self._once("robot", (state.robot,), lambda: robot_of(state.robot))
+
+    def resting(self, state: StudioState) -> Resting:
+        """Return how it rests with the view Joints' angles."""
+        robot = self.robot(state)
+        return self._once("resting", (robot, state.joints), lambda: resting(robot, state.joints))
+
+    def standing(self, state: StudioState) -> OnFootholds:
+        """Return how it stands with the view Body's pose."""
+        robot = self.robot(state)
+        return self._once("standing", (robot, state.body), lambda: standing(robot, state.body))
+
+    def walk(self, state: StudioState) -> Motion:
+        """Return the walk."""
+        robot = self.robot(state)
+        return self._once("walk", (robot, state.walk), lambda: plan(robot, state.walk))
+
+    def setup(self, state: StudioState) -> tuple[Setup, Path]:
+        """Return what the walk is set up with, and where it goes."""
+        return setup_of(self.robot(state), state.walk), path_of(state.walk)
+
+    def loads(self, state: StudioState) -> Loads:
+        """Return what the walk asks of the joints."""
+        motion = self.walk(state)
+        return self._once("loads", (motion, state.loads), lambda: loads_of(motion, state.loads))
+
+    def shown(self, state: StudioState) -> tuple[Pose, np.ndarray[Any, Any]]:
+        """Return the body's place and the joint angles of the pose that the view shows; of a walk, its beginning."""
+        if state.view == "joints":
+            pose = self.resting(state)
+            return pose.rest.body, pose.angles
+        if state.view in ("walk", "loads"):
+            motion = self.walk(state)
+            return motion.body[0], motion.angles[0]
+        found = self.standing(state)
+        return found.body, np.asarray(found.solution.angles)

@@ -1,0 +1,94 @@
+"""The files that can be taken away: a walk's table, the robot's file, the angles, the page that plays offline."""
+
+from __future__ import annotations
+
+import csv
+import io
+import re
+import tempfile
+from pathlib import Path
+
+import numpy as np
+
+from tarsus.gait.motion import Motion
+from tarsus.robot.file import robot_text
+from tarsus.robot.robot import JOINTS, Robot
+from tarsus.studio.messages.plain import FileMessage
+
+__all__ = ["angles_csv", "file_name", "text_file", "toml_of", "walk_csv"]
+
+_MIME = {"csv": "text/csv", "toml": "application/toml", "html": "text/html"}
+
+
+def text_file(name: str, text: str, *, id: int) -> FileMessage:
+    """Return a file as a message.
+
+    Parameters
+    ----------
+    name : str
+        Its name; the ending tells its kind.
+    text : str
+        What it holds.
+    id : int
+        Of the message that is answered.
+    """
+    return FileMessage(type="file", id=id, name=name, mime=_MIME[name.rpartition(".")[2]], text=text)
+
+
+def file_name(robot: Robot, what: str, ending: str) -> str:
+    """Return a name that every file system takes.
+
+    Parameters
+    ----------
+    robot : Robot
+        Whose name it begins with.
+    what : str
+        What it is; may be empty.
+    ending : str
+        ``"csv"`` and the like.
+    """
+    plain = re.sub(r"[^A-Za-z0-9]+", "-", robot.name)[:60].strip("-") or "robot"
+    return f"{'-'.join(part for part in (plain, what) if part)}.{ending}"
+
+
+def walk_csv(motion: Motion) -> str:
+    """Return a walk's table: what `Motion.to_csv` writes.
+
+    Parameters
+    ----------
+    motion : Motion
+        The walk.
+    """
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "walk.csv"
+        motion.to_csv(path)
+        return path.read_bytes().decode()
+
+
+def angles_csv(robot: Robot, angles: np.ndarray[tuple[int, ...], np.dtype[np.float64]]) -> str:
+    """Return the joint angles of one pose as a table.
+
+    Parameters
+    ----------
+    robot : Robot
+        A single robot.
+    angles : array, shape (legs, 3)
+        Joint angles [rad].
+    """
+    text = io.StringIO()
+    writer = csv.writer(text)
+    writer.writerow(["leg", *(f"{joint}_deg" for joint in JOINTS)])
+    for code, row in zip(robot.leg_codes, np.degrees(angles).tolist(), strict=True):
+        writer.writerow([code, *(f"{round(value, 6) + 0.0:.6f}" for value in row)])
+    return text.getvalue()
+
+
+def toml_of(robot: Robot) -> str:
+    """Return the text of the robot's file.
+
+    Parameters
+    ----------
+    robot : Robot
+        A single robot.
+    """
+    return robot_text(robot)

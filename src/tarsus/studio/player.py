@@ -1,0 +1,84 @@
+"""A walk as one self-contained page that plays offline: the front end's player with the walk's data put into it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from tarsus.errors import TarsusError
+from tarsus.gait.motion import Motion
+from tarsus.gait.path import Path as WalkPath
+from tarsus.gait.setup import Setup
+from tarsus.studio.bearing import loads_message, loads_of
+from tarsus.studio.messages.moving import LoadsMessage
+from tarsus.studio.messages.plain import PlayerData
+from tarsus.studio.messages.state import LoadOptions, RobotChoice
+from tarsus.studio.robots import robot_message
+from tarsus.studio.walks import walk_message
+
+__all__ = ["BUILD_HINT", "WEB", "player_data", "player_page"]
+
+WEB = Path(__file__).parent / "web_dist"
+"""Where the front end is built to."""
+
+BUILD_HINT = "the studio's pages are not built: run `make web` in the project's folder (it needs Node 20 or newer)"
+
+_PLACE = "__MOTION__"
+
+
+def player_data(
+    motion: Motion,
+    setup: Setup,
+    path: WalkPath,
+    *,
+    choice: RobotChoice | None = None,
+    options: LoadOptions | None = None,
+) -> PlayerData:
+    """Return what the page of a walk holds.
+
+    Parameters
+    ----------
+    motion : Motion
+        The walk.
+    setup : Setup
+        What it was set up with.
+    path : Path
+        Where it goes.
+    choice : RobotChoice, optional
+        How the robot was chosen.
+    options : LoadOptions, optional
+        Payload and supply of the loads.
+    """
+    chosen = RobotChoice(preset=None) if choice is None else choice
+    return PlayerData(
+        robot=robot_message(motion.robot, chosen, id=0),
+        walk=walk_message(motion, setup, path, id=0),
+        loads=_loads(motion, LoadOptions() if options is None else options),
+    )
+
+
+def _loads(motion: Motion, options: LoadOptions) -> LoadsMessage | None:
+    if not motion.robot.has_masses or not motion.contacts.any(1).all():
+        return None
+    return loads_message(loads_of(motion, options), options, id=0)
+
+
+def player_page(data: PlayerData) -> str:
+    """Return the page's text.
+
+    Parameters
+    ----------
+    data : PlayerData
+        What it shows.
+
+    Raises
+    ------
+    TarsusError
+        If the front end is not built.
+    """
+    try:
+        page = (WEB / "player.html").read_text(encoding="utf-8")
+    except OSError:
+        raise TarsusError(BUILD_HINT) from None
+    # Inside a script element only "<" could end it; JSON may write it so.
+    held = data.model_dump_json().replace("<", "\\u003c")
+    return page.replace(_PLACE, held, 1)

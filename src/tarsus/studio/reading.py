@@ -1,0 +1,59 @@
+"""From what came over the wire to a checked message, or to the error that answers it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from pydantic import ValidationError
+from pydantic_core import from_json
+
+from tarsus.studio.failure import malformed
+from tarsus.studio.messages import client_message
+from tarsus.studio.messages.plain import ErrorMessage
+
+if TYPE_CHECKING:
+    from tarsus.studio.messages import ClientMessage
+
+__all__ = ["read"]
+
+_LARGEST_ID = 2**53 - 1
+_MOST_TOLD = 3
+
+
+def read(text: str | bytes, *, most: int) -> ClientMessage | ErrorMessage:
+    """Return a client's message, or the error on what is none.
+
+    Parameters
+    ----------
+    text : str or bytes
+        JSON.
+    most : int
+        The most bytes that it may have.
+    """
+    size = len(text.encode(errors="replace")) if isinstance(text, str) else len(text)
+    if size > most:
+        return malformed(f"the message has {size} bytes; at most {most} are read").model_copy(update={"kind": "limit"})
+    try:
+        return client_message.validate_json(text)
+    except ValidationError as error:
+        return malformed(_words(error), id=_id_of(text))
+
+
+def _id_of(text: str | bytes) -> int | None:
+    try:
+        document = from_json(text)
+    except ValueError:
+        return None
+    number = document.get("id") if isinstance(document, dict) else None
+    return number if type(number) is int and 0 <= number <= _LARGEST_ID else None
+
+
+def _words(error: ValidationError) -> str:
+    found = error.errors(include_url=False, include_input=False, include_context=False)
+    lines = [f"{_where(line['loc'])}: {line['msg']}" for line in found[:_MOST_TOLD]]
+    more = f" (and {len(found) - _MOST_TOLD} more)" if len(found) > _MOST_TOLD else ""
+    return f"this is no message of the studio: {'; '.join(lines)}{more}"
+
+
+def _where(location: tuple[Any, ...]) -> str:
+    return ".".join(str(part)[:60] for part in location) or "all of it"

@@ -1,0 +1,197 @@
+"""Which robot, and what the browser is told of it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from tarsus.errors import InputError, UnknownNameError, UnreachableError
+from tarsus.gait.gait import GAITS, Gait
+from tarsus.gait.setup import default_lift
+from tarsus.kinematics.inverse import inverse_kinematics
+from tarsus.kinematics.mass import total_mass
+from tarsus.kinematics.pose import Pose
+from tarsus.kinematics.stance import default_clearance, default_stance
+from tarsus.report.robot_summary import check_robot, dimensions
+from tarsus.robot.file import list_robots, load_robot, robot_from_text
+from tarsus.robot.robot import Robot
+from tarsus.studio.messages.state import RobotChoice
+from tarsus.studio.messages.still import Dimension, RobotMessage
+from tarsus.studio.wire import degrees, millimetres, or_null
+
+__all__ = [
+    "MOST_LEGS",
+    "choice_of_document",
+    "choice_of_preset",
+    "choice_of_text",
+    "gaits_of",
+    "robot_message",
+    "robot_of",
+    "stance_of",
+]
+
+MOST_LEGS = 20
+"""Robots with more legs are for the command line: a walk's cost grows with the square of the legs."""
+
+
+def choice_of_preset(name: str) -> RobotChoice:
+    """Return the choice of a robot that comes with Tarsus.
+
+    Parameters
+    ----------
+    name : str
+        One of `list_robots`: never the path of a file.
+
+    Raises
+    ------
+    UnknownNameError
+        If there is no such robot.
+    """
+    if name not in list_robots():
+        raise UnknownNameError.of("robot", name[:200], list_robots())
+    return RobotChoice(preset=name)
+
+
+def choice_of_text(text: str, *, where: str) -> RobotChoice:
+    """Return the choice of the robot that a robot file's text describes.
+
+    Parameters
+    ----------
+    text : str
+        TOML.
+    where : str
+        What to call it in messages.
+
+    Raises
+    ------
+    RobotFileError
+        If something in it is wrong.
+    """
+    return choice_of_document(robot_from_text(text, where=where).to_dict())
+
+
+def choice_of_document(document: dict[str, Any]) -> RobotChoice:
+    """Return the choice of the robot with these keys of a robot file; a preset's own are that preset.
+
+    Parameters
+    ----------
+    document : dict
+        Keys of a robot file; checked only by `robot_of`.
+    """
+    name = document.get("name")
+    if isinstance(name, str) and name in list_robots() and load_robot(name).to_dict() == document:
+        return RobotChoice(preset=name)
+    return RobotChoice(preset=None, document=document)
+
+
+def robot_of(choice: RobotChoice) -> Robot:
+    """Return the robot.
+
+    Parameters
+    ----------
+    choice : RobotChoice
+        A preset's name, or a document.
+
+    Raises
+    ------
+    RobotFileError, UnknownNameError
+        If there is no such robot, or something in its document is wrong.
+    InputError
+        If it has too many legs, or neither name nor document is given.
+    """
+    if choice.document is not None:
+        robot = Robot.from_dict(choice.document, where="the robot")
+    elif choice.preset is not None:
+        robot = load_robot(str(choice_of_preset(choice.preset).preset))
+    else:
+        raise InputError("a robot is a preset or a document; neither is given")
+    if robot.legs > MOST_LEGS:
+        raise InputError(f"robot {robot.name!r} has {robot.legs} legs; the studio takes at most {MOST_LEGS}")
+    return robot
+
+
+def stance_of(robot: Robot) -> tuple[np.ndarray[Any, Any], np.ndarray[Any, Any]] | None:
+    """Return the feet in G at rest and the joint angles there, or None where the robot can't stand.
+
+    Parameters
+    ----------
+    robot : Robot
+        A single robot.
+    """
+    height = default_clearance(robot)
+    try:
+        feet = np.asarray(default_stance(robot, height)) + np.array([0.0, 0.0, height])
+    except UnreachableError:
+        return None
+    return feet, np.asarray(inverse_kinematics(robot, feet, Pose.from_rpy(position=(0.0, 0.0, height))).angles)
+
+
+def gaits_of(robot: Robot) -> list[str]:
+    """Return the names of the gaits that a robot of so many legs has.
+
+    Parameters
+    ----------
+    robot : Robot
+        A single robot.
+    """
+    return [name for name in GAITS if _has_gait(name, robot.legs)]
+
+
+def _has_gait(name: str, legs: int) -> bool:
+    try:
+        Gait.named(name, legs=legs)
+    except InputError:
+        return False
+    return True
+
+
+def robot_message(robot: Robot, choice: RobotChoice, *, id: int) -> RobotMessage:
+    """Return all that is to be known of a robot.
+
+    Parameters
+    ----------
+    robot : Robot
+        A single robot.
+    choice : RobotChoice
+        How it was chosen.
+    id : int
+        Of the message that is answered.
+    """
+    stance, check = stance_of(robot), check_robot(robot)
+    servos = [servo for row in robot.servos for servo in row]
+    return RobotMessage(
+        type="robot",
+        id=id,
+        name=robot.name,
+        preset=choice.preset if choice.document is None else None,
+        leg_names=list(robot.leg_names),
+        leg_codes=list(robot.leg_codes),
+        mount_mm=millimetres(robot.mount_position),
+        mount_yaw_deg=degrees(robot.mount_yaw),
+        coxa_mm=millimetres(robot.coxa),
+        femur_mm=millimetres(robot.femur),
+        tibia_mm=millimetres(robot.tibia),
+        femur_axis_offset_mm=millimetres(robot.femur_axis_offset),
+        limits_deg=degrees(robot.limits),
+        foot_radius_mm=millimetres(robot.foot_radius),
+        body_size_mm=None if robot.body_size is None else millimetres(robot.body_size),
+        mass_kg=float(total_mass(robot)) if robot.has_masses else None,
+        servos=[None if servo is None else servo.name for servo in servos],
+        stall_torque_nm=[None if servo is None else or_null(servo.stall_torque) for servo in servos],
+        clearance_mm=default_clearance(robot) * 1000,
+        lift_mm=default_lift(robot) * 1000,
+        gait=robot.gait.name,
+        gaits=gaits_of(robot),
+        stance_mm=None if stance is None else millimetres(stance[0]),
+        stance_angles_deg=None if stance is None else degrees(stance[1]),
+        longest_stroke_mm=check["longest_stroke_mm"],
+        document=robot.to_dict(),
+        dimensions=[_dimension(row) for row in dimensions(robot)],
+        missing=check["missing"],
+        problems=check["problems"],
+    )
+
+
+def _dimension(row: dict[str, Any]) -> Dimension:
+    return Dimension(**{key: row[key] for key in ("key", "value", "source", "confidence", "note")})

@@ -1,0 +1,306 @@
+"""One visitor's studio, without any transport: messages in, messages out, frames while driving."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+from tarsus import __version__
+from tarsus.gait.gait import GAITS
+from tarsus.robot.catalogue import list_servos
+from tarsus.robot.file import list_robots, robot_schema
+from tarsus.studio.driving import Driver
+from tarsus.studio.failure import error_message
+from tarsus.studio.history import History
+from tarsus.studio.messages import client as ask
+from tarsus.studio.messages.moving import DriveFrame
+from tarsus.studio.messages.plain import Done, ErrorMessage
+from tarsus.studio.messages.state import BodyState, JointsState, RobotChoice, StudioState, WalkOptions
+from tarsus.studio.messages.still import Bounds, StateMessage, Welcome
+from tarsus.studio.poses import drag_foothold, drag_joints
+from tarsus.studio.reading import read
+from tarsus.studio.robots import choice_of_document, choice_of_preset, choice_of_text, robot_message
+from tarsus.studio.state_text import state_of, text_of
+from tarsus.studio.views import Views, fitted
+from tarsus.studio.walks import MOST_SAMPLES
+
+if TYPE_CHECKING:
+    from tarsus.studio.messages import ClientMessage, ServerMessage
+
+__all__ = ["BOUNDS", "Session"]
+
+BOUNDS = Bounds(message_bytes=256 * 1024, messages_per_s=120, plan_samples=MOST_SAMPLES, idle_s=0)
+"""What a session takes unless the server says otherwise."""
+
+Answers: TypeAlias = "Iterator[ServerMessage]"
+
+
+class Session:
+    """One visitor's studio.
+
+    Nothing that a client says makes it raise: what is wrong or not possible is answered by an error, and the state
+    stays what it was.
+
+    Parameters
+    ----------
+    start : StudioState, optional
+        The state that it begins with.
+    bounds : Bounds
+        What the client is told that it may send.
+    public : bool
+        Whether it is told that this is a public server.
+    """
+
+    def __init__(self, start: StudioState | None = None, *, bounds: Bounds = BOUNDS, public: bool = False) -> None:
+        self._start = StudioState() if start is None else start
+        self._history = History(self._start)
+        self._views = Views()
+        self._bounds = bounds
+        self._public = public
+        self._driver: Driver | None = None
+        self._told: StudioState | None = None
+
+    @property
+    def state(self) -> StudioState:
+        """The state now."""
+        return self._history.present
+
+    @property
+    def driving(self) -> bool:
+        """Whether `frame` has something to give."""
+        return self._driver is not None
+
+    def receive(self, text: str | bytes) -> list[ServerMessage]:
+        """Answer a message as it comes over a wire.
+
+        Parameters
+        ----------
+        text : str or bytes
+            JSON.
+        """
+        message = read(text, most=self._bounds.message_bytes)
+        if isinstance(message, ErrorMessage):
+            return [message, self._done(message.id)]
+        return self.handle(message)
+
+    def handle(self, message: ClientMessage) -> list[ServerMessage]:
+        """Answer a message.
+
+        Parameters
+        ----------
+        message : ClientMessage
+            The message.
+
+        Returns
+        -------
+        list of ServerMessage
+            The answers; the last is `Done`.
+        """
+        answers: list[ServerMessage] = []
+        try:
+            answers.extend(_HANDLERS[type(message)](self, message))
+        except Exception as error:  # whatever goes wrong is answered: a visitor's session never falls
+            answers.append(error_message(error, id=message.id))
+        answers.append(self._done(message.id, tell=getattr(message, "commit", True)))
+        return answers
+
+    def frame(self, dt: float) -> DriveFrame | ErrorMessage | None:
+        """Return the live walker after another time step, or None where nobody drives.
+
+        Parameters
+        ----------
+        dt : float
+            The time step [s].
+        """
+        if self._driver is None:
+            return None
+        try:
+            return self._driver.step(dt)
+        except Exception as error:  # as above
+            driver, self._driver = self._driver, None
+            return error_message(error, id=driver.id)
+
+    def _done(self, id: int | None, *, tell: bool = False) -> Done:
+        text = None
+        if tell and self.state != self._told:
+            self._told = self.state
+            text = text_of(self.state)
+        history = self._history
+        return Done(type="done", id=id, undo=history.can_undo, redo=history.can_redo, state=text)
+
+    def _everything(self, state: StudioState, *, id: int) -> Answers:
+        """Give the robot, the state, and what its view shows."""
+        yield robot_message(self._views.desk.robot(state), state.robot, id=id)
+        yield StateMessage(type="state", id=id, state=state)
+        yield from self._views.shown(state, id=id)
+
+    def _take(self, state: StudioState, *, id: int, commit: bool) -> Answers:
+        """Go over to a state, after all of it was worked out."""
+        state = fitted(state, self._views.desk.robot(state))
+        answers = list(self._everything(state, id=id))
+        self._driver = None
+        self._history.change(state, commit=commit)
+        yield from answers
+
+    def _hello(self, message: ask.Hello) -> Answers:
+        yield Welcome(
+            type="welcome",
+            id=message.id,
+            version=__version__,
+            robots=list(list_robots()),
+            gaits=list(GAITS),
+            servos=list(list_servos()),
+            public=self._public,
+            bounds=self._bounds,
+            robot_schema=robot_schema(),
+        )
+        state = self.state
+        if message.state is not None:
+            try:
+                state = state_of(message.state)
+                state = fitted(state, self._views.desk.robot(state))
+            except Exception as error:  # a link of long ago: told, and the studio opens all the same
+                yield error_message(error, id=message.id)
+                state = self.state
+        self._history = History(state)
+        self._told = None
+        yield from self._everything(state, id=message.id)
+
+    def _ping(self, _message: ask.Ping) -> Answers:
+        yield from ()
+
+    def _view(self, message: ask.SetView) -> Answers:
+        picture = self.state.picture if message.picture is None else message.picture
+        state = self.state.model_copy(update={"view": message.view, "picture": picture})
+        answers = [] if message.view == self.state.view else list(self._views.shown(state, id=message.id))
+        if message.view != "drive":
+            self._driver = None
+        self._history.look(message.view, picture)
+        yield from answers
+
+    def _preset(self, message: ask.SetRobot) -> Answers:
+        anew = {"robot": choice_of_preset(message.preset), "joints": JointsState(), "body": BodyState()}
+        state = self.state.model_copy(update={**anew, "walk": WalkOptions()})
+        yield from self._take(state, id=message.id, commit=message.commit)
+
+    def _robot(self, choice: RobotChoice, message: ask.SetDocument | ask.SetToml) -> Answers:
+        state = self.state.model_copy(update={"robot": choice})
+        yield from self._take(state, id=message.id, commit=message.commit)
+
+    def _document(self, message: ask.SetDocument) -> Answers:
+        yield from self._robot(choice_of_document(message.document), message)
+
+    def _toml(self, message: ask.SetToml) -> Answers:
+        yield from self._robot(choice_of_text(message.text, where="the file"), message)
+
+    def _joints(self, message: ask.SetJoints) -> Answers:
+        yield from self._posed({"joints": message.joints}, message)
+
+    def _body(self, message: ask.SetBody) -> Answers:
+        yield from self._posed({"body": message.body}, message)
+
+    def _posed(self, change: dict[str, Any], message: ask.Change) -> Answers:
+        """Change a pose: the answer is of the view that shows it, whichever the present one is."""
+        state = self.state.model_copy(update=change)
+        view = "joints" if "joints" in change else "sources" if state.view == "sources" else "body"
+        seen = state.model_copy(update={"view": view})
+        answers: list[ServerMessage] = [self._views.pose(seen, id=message.id)]
+        if view == "sources":
+            answers.append(self._views.source(seen, id=message.id))
+        self._history.change(state, commit=message.commit)
+        yield from answers
+
+    def _drag(self, message: ask.DragFoot) -> Answers:
+        robot, state = self._views.desk.robot(self.state), self.state
+        change: dict[str, Any]
+        if state.view == "joints":
+            change = {"joints": drag_joints(robot, state.joints, message.leg, message.position_mm)}
+        else:
+            change = {"body": drag_foothold(robot, state.body, message.leg, message.position_mm)}
+        answers = list(self._posed(change, message))
+        if message.commit:
+            yield StateMessage(type="state", id=message.id, state=self.state)
+        yield from answers
+
+    def _walk(self, message: ask.SetWalk) -> Answers:
+        state = self.state.model_copy(update={"walk": message.walk})
+        answers: list[ServerMessage] = [self._views.walk(state, id=message.id)]
+        if state.view == "loads":
+            answers.append(self._loads_or_why(state, id=message.id))
+        self._history.change(state, commit=message.commit)
+        yield from answers
+
+    def _loads_or_why(self, state: StudioState, *, id: int) -> ServerMessage:
+        """Return a walk's loads; a walk without any is a walk all the same."""
+        try:
+            return self._views.loads(state, id=id)
+        except Exception as error:
+            return error_message(error, id=id)
+
+    def _loads(self, message: ask.SetLoads) -> Answers:
+        state = self.state.model_copy(update={"loads": message.loads})
+        # Loads are of the walk that the client has; it may not have this one yet.
+        walk = [] if self._views.has_sent_walk(state) else [self._views.walk(state, id=message.id)]
+        answer = self._views.loads(state, id=message.id)
+        self._history.change(state, commit=message.commit)
+        yield from walk
+        yield answer
+
+    def _servos(self, message: ask.SizeServos) -> Answers:
+        yield self._views.servos(self.state, id=message.id)
+
+    def _zone(self, message: ask.ShowZone) -> Answers:
+        yield self._views.zone(self.state, message.leg, id=message.id)
+
+    def _source(self, message: ask.ChooseSource) -> Answers:
+        state = self.state.model_copy(update={"source": message.source})
+        answer = self._views.source(state, id=message.id)
+        self._history.change(state, commit=message.commit)
+        yield answer
+
+    def _drive(self, message: ask.Drive) -> Answers:
+        self._driver = Driver(self._views.desk.robot(self.state), id=message.id) if message.on else None
+        yield from ()
+
+    def _wish(self, message: ask.Wish) -> Answers:
+        if self._driver is not None:
+            self._driver.wish(message)
+        yield from ()
+
+    def _undo(self, message: ask.Undo) -> Answers:
+        self._driver = None
+        yield from self._everything(self._history.undo(), id=message.id)
+
+    def _redo(self, message: ask.Redo) -> Answers:
+        self._driver = None
+        yield from self._everything(self._history.redo(), id=message.id)
+
+    def _open(self, message: ask.OpenState) -> Answers:
+        yield from self._take(state_of(message.state), id=message.id, commit=message.commit)
+
+    def _download(self, message: ask.Download) -> Answers:
+        yield self._views.file(self.state, message.what, id=message.id)
+
+
+_HANDLERS: dict[type[Any], Callable[[Session, Any], Answers]] = {
+    ask.Hello: Session._hello,
+    ask.Ping: Session._ping,
+    ask.SetView: Session._view,
+    ask.SetRobot: Session._preset,
+    ask.SetDocument: Session._document,
+    ask.SetToml: Session._toml,
+    ask.SetJoints: Session._joints,
+    ask.SetBody: Session._body,
+    ask.DragFoot: Session._drag,
+    ask.SetWalk: Session._walk,
+    ask.SetLoads: Session._loads,
+    ask.SizeServos: Session._servos,
+    ask.ShowZone: Session._zone,
+    ask.ChooseSource: Session._source,
+    ask.Drive: Session._drive,
+    ask.Wish: Session._wish,
+    ask.Undo: Session._undo,
+    ask.Redo: Session._redo,
+    ask.OpenState: Session._open,
+    ask.Download: Session._download,
+}

@@ -1,0 +1,1 @@
+"""The five source documents' equations, with live numbers in them."""

@@ -1,0 +1,221 @@
+"""The robot standing or resting: from the views Joints and Body to the message of a pose."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from tarsus.kinematics.explain import explain_leg
+from tarsus.kinematics.leg import forward_kinematics
+from tarsus.kinematics.mass import centre_of_mass
+from tarsus.kinematics.polygon import support_polygon
+from tarsus.kinematics.pose import Pose
+from tarsus.kinematics.reach import Reach
+from tarsus.kinematics.rest import CORNERS, Rest
+from tarsus.load.torque import joint_torques
+from tarsus.report.standing_summary import Standing, rest_summary
+from tarsus.robot.robot import JOINTS, Robot
+from tarsus.studio.messages.state import View
+from tarsus.studio.messages.still import BrokenLimit, LegProblem, PoseMessage
+from tarsus.studio.wire import degrees, flags, millimetres, or_null, plain
+
+__all__ = ["OnFootholds", "broken_limits", "resting_message", "standing_message"]
+
+# A foot dragged no higher than this is still on the ground [m]; so many feet hold a robot up.
+_ON_GROUND = 1e-5
+_LEAST_FEET = 3
+# What rounding may add to an angle at its limit [deg].
+_SLACK = 1e-6
+
+
+class OnFootholds(Standing):
+    """A robot on footholds of which some may be lifted off the ground."""
+
+    @property
+    def contacts(self) -> np.ndarray[Any, Any]:
+        """Which feet stand ``(legs,)``: those that reach their foothold, where that is on the ground."""
+        on_ground = np.asarray(self.solution.feet)[:, 2] <= _ON_GROUND
+        return np.asarray(super().contacts & on_ground)
+
+
+@dataclass(frozen=True, eq=False)
+class _Placed:
+    """Joint angles at a place, and what is on the ground."""
+
+    robot: Robot
+    angles: np.ndarray[Any, Any]
+    body: Pose
+    contacts: np.ndarray[Any, Any]
+
+    def points(self) -> np.ndarray[Any, Any]:
+        """Return the leg points in G ``(legs, 4, 3)``."""
+        return np.asarray(self.body @ forward_kinematics(self.robot, self.angles))
+
+    def com(self) -> list[float]:
+        return millimetres(self.body @ np.asarray(centre_of_mass(self.robot, self.angles)))
+
+    def statics(self, *, balanced: bool) -> tuple[list[float] | None, list[float] | None]:
+        """Return the forces on the feet and the joints' torques, where the feet alone hold the robot."""
+        if not (balanced and self.robot.has_masses and self.contacts.sum() >= _LEAST_FEET):
+            return None, None
+        torques, forces = joint_torques(self.robot, self.angles, self.body, self.contacts)
+        return plain(forces), plain(torques)
+
+
+def resting_message(robot: Robot, angles: np.ndarray[Any, Any], rest: Rest, *, id: int, view: View) -> PoseMessage:
+    """Return how the robot rests with its joints at the given angles.
+
+    Parameters
+    ----------
+    robot : Robot
+        A single robot.
+    angles : array, shape (legs, 3)
+        Joint angles [rad].
+    rest : Rest
+        What `resting_pose` says of them.
+    id : int
+        Of the message that is answered.
+    view : str
+        For which view.
+    """
+    down, corners = np.asarray(rest.leg_points_down), np.asarray(rest.corners_down)
+    placed = _Placed(robot, angles, rest.body, np.asarray(rest.contacts))
+    points, margin = placed.points(), float(rest.margin)
+    on_feet = not (down[:, :3].any() or corners.any())
+    forces, torques = placed.statics(balanced=on_feet and bool(rest.stable) and margin >= 0)
+    touching = points[down]
+    if corners.any():
+        box = np.asarray(rest.body @ (CORNERS * np.asarray(robot.body_size)))
+        touching = np.concatenate([touching, box[corners]])
+    summary = rest_summary(robot, angles, rest)
+    return PoseMessage(
+        type="pose",
+        id=id,
+        view=view,
+        position_mm=millimetres(rest.body.position),
+        rpy_deg=degrees(rest.body.rpy),
+        angles_deg=degrees(angles),
+        feet_mm=millimetres(points[:, 3]),
+        contacts=flags(rest.contacts),
+        points_down=flags(down),
+        corners_down=int(corners.sum()),
+        margin_mm=or_null(margin * 1000),
+        stable=bool(rest.stable),
+        com_mm=placed.com(),
+        support_mm=_polygon(touching),
+        forces_n=forces,
+        torques_nm=torques,
+        legs=[],
+        limits=broken_limits(robot, angles),
+        text=summary["description"],
+        problems=summary["problems"],
+        share=None,
+    )
+
+
+def standing_message(standing: OnFootholds, *, id: int, view: View) -> PoseMessage:
+    """Return how the robot stands with its body moved over its footholds.
+
+    Parameters
+    ----------
+    standing : OnFootholds
+        The inverse kinematics of one configuration.
+    id : int
+        Of the message that is answered.
+    view : str
+        For which view.
+    """
+    robot, solution = standing.solution.robot, standing.solution
+    angles, feet, contacts = np.asarray(solution.angles), np.asarray(solution.feet), standing.contacts
+    margin, problems = standing.margin, standing.problems
+    placed = _Placed(robot, angles, standing.body, contacts)
+    forces, torques = placed.statics(balanced=margin >= 0)
+    reached = placed.points()
+    down = np.zeros((robot.legs, 4), dtype=bool)
+    down[:, 3] = contacts
+    return PoseMessage(
+        type="pose",
+        id=id,
+        view=view,
+        position_mm=millimetres(standing.body.position),
+        rpy_deg=degrees(standing.body.rpy),
+        angles_deg=degrees(angles),
+        feet_mm=millimetres(feet),
+        contacts=flags(contacts),
+        points_down=flags(down),
+        corners_down=0,
+        margin_mm=or_null(margin * 1000),
+        stable=margin >= 0,
+        com_mm=placed.com(),
+        support_mm=_polygon(reached[contacts, 3]),
+        forces_n=forces,
+        torques_nm=torques,
+        legs=_leg_problems(standing, reached[:, 3] - feet),
+        limits=[],
+        text=_text(robot, contacts, margin),
+        problems=problems,
+        share=standing.share if problems else 1.0,
+    )
+
+
+def _text(robot: Robot, contacts: np.ndarray[Any, Any], margin: float) -> str:
+    codes = [code for code, down in zip(robot.leg_codes, contacts, strict=True) if down]
+    if not codes:
+        return "no foot is on the ground"
+    feet = f"{len(codes)} {'foot' if len(codes) == 1 else 'feet'}"
+    if margin < 0:
+        return f"tips over: {feet} on the ground, {', '.join(codes)}"
+    return f"stands on {feet}: {', '.join(codes)}; margin {margin * 1000:.1f} mm"
+
+
+def _leg_problems(standing: OnFootholds, miss: np.ndarray[Any, Any]) -> list[LegProblem]:
+    reach = np.asarray(standing.solution.reach)
+    return [
+        LegProblem(
+            leg=int(leg),
+            reach=Reach(int(reach[leg])).name,  # type: ignore[arg-type] # every code but OK is one of the names
+            miss_mm=or_null(float(np.linalg.norm(miss[leg])) * 1000) or 0.0,
+            text=explain_leg(standing.solution, (int(leg),)),
+        )
+        for leg in np.flatnonzero(reach)
+    ]
+
+
+def broken_limits(robot: Robot, angles: np.ndarray[Any, Any]) -> list[BrokenLimit]:
+    """Return which joints are beyond their limits, and by how much.
+
+    Parameters
+    ----------
+    robot : Robot
+        A single robot.
+    angles : array, shape (legs, 3)
+        Joint angles [rad].
+    """
+    turned, limits = np.degrees(angles), np.degrees(np.asarray(robot.limits))
+    broken = (turned < limits[..., 0] - _SLACK) | (turned > limits[..., 1] + _SLACK)
+    return [
+        _broken(leg, joint, float(turned[leg, joint]), *map(float, limits[leg, joint]))
+        for leg, joint in np.argwhere(broken).tolist()
+    ]
+
+
+def _broken(leg: int, joint: int, angle: float, low: float, high: float) -> BrokenLimit:
+    above = angle > high
+    bound, beyond = (high, angle - high) if above else (low, low - angle)
+    name = JOINTS[joint]
+    return BrokenLimit(
+        leg=leg,
+        joint=name,  # type: ignore[arg-type] # one of the three
+        angle_deg=round(angle, 3),
+        low_deg=round(low, 3),
+        high_deg=round(high, 3),
+        text=f"the {name} is at {angle:.1f} deg, its {'highest' if above else 'lowest'} angle is {bound:.1f}: "
+        f"{math.fabs(beyond):.1f} deg too far",
+    )
+
+
+def _polygon(points: np.ndarray[Any, Any]) -> list[float]:
+    return millimetres(support_polygon(points[:, :2].reshape(-1, 2), np.ones(len(points), dtype=bool)))

@@ -1,0 +1,236 @@
+"""From the view Walk's options to a motion, and what the browser is told of it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from tarsus.errors import InputError
+from tarsus.gait.gait import Gait
+from tarsus.gait.motion import Motion
+from tarsus.gait.pace import choose_pace
+from tarsus.gait.path import Path, curved_path, straight_path, twist_path
+from tarsus.gait.plan import plan_walk
+from tarsus.gait.setup import Setup, require_number
+from tarsus.gait.stroke import longest_stroke
+from tarsus.kinematics.mass import centre_of_mass
+from tarsus.report.walk_summary import walk_summary
+from tarsus.robot.robot import JOINTS, Robot
+from tarsus.studio.messages.moving import JointSpeed, Moment, WalkEnd, WalkMessage
+from tarsus.studio.messages.state import Curve, OwnGait, Straight, WalkOptions
+from tarsus.studio.wire import degrees, millimetres, or_null, rows_of_flags
+
+__all__ = ["MOST_SAMPLES", "gait_of", "path_of", "plan", "setup_of", "walk_message"]
+
+MOST_SAMPLES = 10_000
+"""Samples that a robot of six legs may have in a plan here; it is about 2 MB to send."""
+
+_USUAL_LEGS = 6
+
+
+def gait_of(robot: Robot, asked: str | OwnGait | None) -> Gait:
+    """Return the gait that is asked for.
+
+    Parameters
+    ----------
+    robot : Robot
+        A single robot.
+    asked : str, OwnGait or None
+        A name, a gait's own figures, or None for the robot's.
+
+    Raises
+    ------
+    UnknownNameError
+        If no gait has that name.
+    InputError
+        If there is no such gait for so many legs, or its figures are out of their range.
+    """
+    if isinstance(asked, OwnGait):
+        return Gait(duty=asked.duty, offsets=asked.offsets)
+    return Gait.named(asked or robot.gait.name, legs=robot.legs)
+
+
+def path_of(options: WalkOptions) -> Path:
+    """Return the path that is asked for.
+
+    Parameters
+    ----------
+    options : WalkOptions
+        What is asked for.
+
+    Raises
+    ------
+    InputError
+        If it goes nowhere.
+    """
+    way = options.path
+    if isinstance(way, Straight):
+        return straight_path(way.distance_mm / 1000, math.radians(way.heading_deg))
+    if isinstance(way, Curve):
+        return curved_path(math.radians(way.angle_deg), (way.centre_mm[0] / 1000, way.centre_mm[1] / 1000))
+    vx, vy = way.velocity_mm_s
+    return twist_path(vx / 1000, vy / 1000, math.radians(way.turn_deg_s), way.duration_s)
+
+
+@dataclass(frozen=True)
+class _Options:
+    """The options in SI units, by the names of `plan_walk`."""
+
+    pace: dict[str, float | None]
+    heights: dict[str, Any]
+
+    @classmethod
+    def of(cls, options: WalkOptions) -> _Options:
+        return cls(
+            pace={
+                "stroke": _metres(options.stroke_mm),
+                "speed": _metres(options.speed_mm_s),
+                "cycle_time": options.cycle_time_s,
+            },
+            heights={
+                "clearance": _metres(options.clearance_mm),
+                "lift": _metres(options.lift_mm),
+                "foot_distance": _metres(options.foot_distance_mm),
+                "body_tilt": (math.radians(options.roll_deg), math.radians(options.pitch_deg)),
+            },
+        )
+
+
+def _metres(mm: float | None) -> float | None:
+    return None if mm is None else mm / 1000
+
+
+def setup_of(robot: Robot, options: WalkOptions) -> Setup:
+    """Return what a walk is set up with besides its path and pace.
+
+    Parameters
+    ----------
+    robot : Robot
+        A single robot.
+    options : WalkOptions
+        What is asked for.
+
+    Raises
+    ------
+    TarsusError
+        If the robot can't stand or walk so.
+    """
+    return Setup.of(robot, gait_of(robot, options.gait), **_Options.of(options).heights)
+
+
+def plan(robot: Robot, options: WalkOptions) -> Motion:
+    """Return the walk that is asked for: what `plan_walk` gives, unless it is too long to be planned here.
+
+    Parameters
+    ----------
+    robot : Robot
+        A single robot.
+    options : WalkOptions
+        What is asked for.
+
+    Raises
+    ------
+    InputError
+        If it has too many samples.
+    TarsusError
+        If it is not possible.
+    """
+    asked, path, setup = _Options.of(options), path_of(options), setup_of(robot, options)
+    pace = {n: None if v is None else require_number(n, v, zero=False) for n, v in asked.pace.items()}
+    # The pace is chosen here, so that the number of samples is known before any is worked out.
+    assumed = setup.assumed(asked.heights["clearance"], asked.heights["lift"])
+    stroke, cycle_time = choose_pace(setup, path, **pace, assumed=assumed)
+    _refuse_long(robot, setup, path, stroke=stroke, cycle_time=cycle_time, rate=options.rate_hz)
+    motion = plan_walk(
+        robot,
+        setup.gait,
+        path,
+        stroke=stroke,
+        cycle_time=cycle_time,
+        rate=options.rate_hz,
+        strict=options.strict,
+        **asked.heights,
+    )
+    return replace(motion, assumed=tuple(assumed))
+
+
+def _refuse_long(robot: Robot, setup: Setup, path: Path, *, stroke: float, cycle_time: float, rate: float) -> None:
+    most = int(MOST_SAMPLES * min(1.0, (_USUAL_LEGS / robot.legs) ** 2))
+    travel = float(path.travel(setup.rest).max())
+    seconds = (travel / stroke * setup.gait.duty + 2) * cycle_time
+    if not seconds * rate <= most:
+        raise InputError(
+            f"the walk takes about {seconds:.3g} s: {seconds * rate:.3g} samples at {rate:g} a second, and the studio "
+            f"plans at most {most} at once for {robot.legs} legs; ask for a shorter walk or a lower rate"
+        )
+
+
+def walk_message(motion: Motion, setup: Setup, path: Path, *, id: int) -> WalkMessage:
+    """Return a motion with its summary.
+
+    Parameters
+    ----------
+    motion : Motion
+        The walk, its samples equally far apart.
+    setup : Setup
+        What it was set up with.
+    path : Path
+        Where it goes.
+    id : int
+        Of the message that is answered.
+    """
+    summary = walk_summary(motion)
+    rpy = np.array(motion.body.rpy)
+    rpy[:, 2] = np.unwrap(rpy[:, 2])
+    com = np.asarray(motion.body @ np.asarray(centre_of_mass(motion.robot, motion.angles))[:, None, :])[:, 0]
+    count = len(motion.time)
+    return WalkMessage(
+        type="walk",
+        id=id,
+        rate_hz=(count - 1) / motion.duration,
+        count=count,
+        position_mm=millimetres(motion.body.position),
+        rpy_deg=degrees(rpy),
+        angles_deg=degrees(motion.angles),
+        contacts=rows_of_flags(motion.contacts),
+        reach=rows_of_flags(motion.reach) if motion.reach.any() else None,
+        margin_mm=[or_null(value) for value in np.round(motion.margin * 1000, 2).tolist()],
+        com_mm=millimetres(com[:, :2]),
+        gait=motion.gait.name,
+        duty=motion.gait.duty,
+        duration_s=motion.duration,
+        cycle_time_s=motion.cycle_time,
+        steps=motion.steps,
+        stroke_mm=motion.stroke * 1000,
+        speed_mm_s=motion.speed * 1000,
+        clearance_mm=motion.clearance * 1000,
+        lift_mm=motion.lift * 1000,
+        longest_stroke_mm=longest_stroke(setup, path.displacement) * 1000,
+        end=WalkEnd(**{key: float(value) for key, value in summary["end"].items()}),
+        joint_speed=[_joint_speed(joint, summary["joint_speed"][joint]) for joint in JOINTS],
+        least_margin=_moment(summary["least_margin"]),
+        nearest_feet=_moment(summary["nearest_feet"]),
+        nearest_legs=summary["nearest_feet"]["legs"],
+        possible=summary["possible"],
+        problems=summary["problems"],
+        assumed=summary["assumed"],
+    )
+
+
+def _moment(found: dict[str, Any]) -> Moment:
+    return Moment(mm=or_null(found["mm"]), at_s=float(found["at_s"]))
+
+
+def _joint_speed(joint: str, found: dict[str, Any]) -> JointSpeed:
+    share = found["share_of_no_load"]
+    return JointSpeed(
+        joint=joint,  # type: ignore[arg-type] # one of the three
+        deg_s=float(found["deg_s"]),
+        leg=found["leg"],
+        servo=found["servo"],
+        no_load_deg_s=found["no_load_deg_s"],
+        share_of_no_load=None if share is None else or_null(share),
+    )
