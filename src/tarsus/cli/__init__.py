@@ -18,6 +18,7 @@ from tarsus.cli.pose import pose
 from tarsus.cli.rest import rest
 from tarsus.cli.robots import robots
 from tarsus.cli.servos import servos
+from tarsus.cli.studio import studio
 from tarsus.cli.values import examples
 from tarsus.cli.walk import walk
 
@@ -46,5 +47,5 @@ def main() -> None:
     """
 
 
-for command in (walk, pose, rest, loads, servos, robots):
+for command in (studio, walk, pose, rest, loads, servos, robots):
     main.add_command(command)

@@ -14,7 +14,7 @@ from tarsus.errors import InputError, StrokeError, TarsusError, UnknownNameError
 
 __all__ = ["TarsusGroup"]
 
-_EXTRAS = {"rich": "cli", "matplotlib": "plots", "PIL": "plots"}
+_EXTRAS = {"rich": "cli", "matplotlib": "plots", "PIL": "plots", "fastapi": "studio", "uvicorn": "studio"}
 _IMPOSSIBLE, _ASKED_WRONGLY, _BUG, _INTERRUPTED = 1, 2, 70, 130
 
 

@@ -1,0 +1,1 @@
+"""The server around the sessions: FastAPI, one WebSocket a visitor. Needs the extra ``studio``."""

@@ -1,0 +1,158 @@
+"""Who may come in: host, origin and token of every request, and the headers of every answer."""
+
+from __future__ import annotations
+
+import hmac
+from http.cookies import SimpleCookie
+from typing import TYPE_CHECKING
+from urllib.parse import parse_qs, urlsplit
+
+from tarsus.studio.messages import CLOSED
+from tarsus.studio.server.settings import Settings, is_loopback
+
+if TYPE_CHECKING:
+    from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+__all__ = ["HEADERS", "Guard"]
+
+HEADERS = {
+    "content-security-policy": "; ".join(
+        (
+            "default-src 'none'",
+            "script-src 'self' 'wasm-unsafe-eval'",
+            "style-src 'self' 'unsafe-inline'",
+            "img-src 'self' data: blob:",
+            "font-src 'self'",
+            "connect-src 'self'",
+            "worker-src 'self' blob:",
+            "manifest-src 'self'",
+            "base-uri 'none'",
+            "form-action 'none'",
+            "frame-ancestors 'none'",
+        )
+    ),
+    "cross-origin-opener-policy": "same-origin",
+    "cross-origin-resource-policy": "same-origin",
+    "permissions-policy": "camera=(), geolocation=(), microphone=()",
+    "referrer-policy": "no-referrer",
+    "x-content-type-options": "nosniff",
+    "x-frame-options": "DENY",
+}
+"""Headers of every answer: the page may fetch nothing from elsewhere, and nobody may frame it."""
+
+_OPEN = frozenset({"/health"})
+
+
+class Guard:
+    """Refuses what comes from elsewhere or without the token, before anything else sees it.
+
+    Parameters
+    ----------
+    app : ASGI application
+        What is guarded.
+    settings : Settings
+        Host and token.
+    """
+
+    def __init__(self, app: ASGIApp, settings: Settings) -> None:
+        self._app = app
+        self._settings = settings
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Let a request through, or answer it."""
+        if scope["type"] == "http":
+            await self._http(scope, receive, _with_headers(send))
+        elif scope["type"] == "websocket":
+            await self._socket(scope, receive, send)
+        else:
+            await self._app(scope, receive, send)
+
+    async def _http(self, scope: Scope, receive: Receive, send: Send) -> None:
+        headers = _headers(scope)
+        if not self._is_our_host(headers):
+            await _answer(send, 403, "this server does not go by that name")
+        elif scope["path"] in _OPEN or self._knows_token(scope, headers):
+            given = _query_token(scope)
+            if given is not None and self._settings.token is not None:
+                # The token leaves the address bar; what stands behind the # stays there, browsers keep it.
+                await _answer(send, 303, "", location=scope["path"], set_cookie=self._cookie(given))
+            else:
+                await self._app(scope, receive, send)
+        else:
+            await _answer(send, 401, "this studio is opened by the link that it printed where it was started")
+
+    async def _socket(self, scope: Scope, receive: Receive, send: Send) -> None:
+        headers = _headers(scope)
+        if not (self._is_our_host(headers) and _same_origin(headers)):
+            await receive()
+            await send({"type": "websocket.close", "code": 1008})  # before it is accepted: an HTTP 403
+        elif not self._knows_token(scope, headers):
+            # A browser tells its page the code of a socket that was open, but nothing of one that was refused.
+            await receive()
+            await send({"type": "websocket.accept"})
+            await send({"type": "websocket.close", "code": CLOSED["TOKEN"][0], "reason": CLOSED["TOKEN"][1]})
+        else:
+            await self._app(scope, receive, send)
+
+    def _is_our_host(self, headers: dict[str, str]) -> bool:
+        """Refuse other names for a server of this machine alone: a page elsewhere may have its name lead here."""
+        if not self._settings.loopback:
+            return True
+        try:
+            return is_loopback(urlsplit(f"//{headers.get('host', '')}").hostname or "")
+        except ValueError:
+            return False
+
+    def _knows_token(self, scope: Scope, headers: dict[str, str]) -> bool:
+        wanted = self._settings.token
+        if wanted is None:
+            return True
+        given = (_query_token(scope), _cookie_token(headers, self._settings.cookie))
+        return any(token is not None and hmac.compare_digest(token.encode(), wanted.encode()) for token in given)
+
+    def _cookie(self, token: str) -> str:
+        return f"{self._settings.cookie}={token}; Path=/; HttpOnly; SameSite=Lax"
+
+
+def _headers(scope: Scope) -> dict[str, str]:
+    return {name.decode("latin-1").lower(): value.decode("latin-1") for name, value in scope["headers"]}
+
+
+def _same_origin(headers: dict[str, str]) -> bool:
+    """Return whether a socket is opened by our own page, or by no page at all: browsers always say which."""
+    origin = headers.get("origin")
+    return origin is None or urlsplit(origin).netloc.lower() == headers.get("host", "").lower()
+
+
+def _query_token(scope: Scope) -> str | None:
+    found = parse_qs(scope.get("query_string", b"").decode("latin-1")).get("token")
+    return found[0] if found else None
+
+
+def _cookie_token(headers: dict[str, str], name: str) -> str | None:
+    cookies: SimpleCookie = SimpleCookie()
+    try:
+        cookies.load(headers.get("cookie", ""))
+    except Exception:  # a malformed cookie is none
+        return None
+    found = cookies.get(name)
+    return None if found is None else found.value
+
+
+def _with_headers(send: Send) -> Send:
+    extra = [(name.encode(), value.encode()) for name, value in HEADERS.items()]
+
+    async def sent(message: Message) -> None:
+        if message["type"] == "http.response.start":
+            message = {**message, "headers": [*message.get("headers", ()), *extra]}
+        await send(message)
+
+    return sent
+
+
+async def _answer(send: Send, status: int, text: str, **more: str) -> None:
+    headers = {"content-type": "text/plain; charset=utf-8", "cache-control": "no-store"}
+    headers |= {name.replace("_", "-"): value for name, value in more.items()}
+    pairs = [(name.encode(), value.encode()) for name, value in headers.items()]
+    await send({"type": "http.response.start", "status": status, "headers": pairs})
+    await send({"type": "http.response.body", "body": text.encode()})

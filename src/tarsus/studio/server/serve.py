@@ -1,0 +1,118 @@
+"""Listening: the socket, the link that is printed, and a start that is checked."""
+
+from __future__ import annotations
+
+import dataclasses
+import errno
+import json
+import os
+import socket
+import threading
+import urllib.request
+from typing import Any
+
+import uvicorn
+
+from tarsus.errors import InputError
+from tarsus.studio.server.app import studio_app
+from tarsus.studio.server.settings import Settings
+
+__all__ = ["Serving"]
+
+
+class Serving:
+    """A server that has its port, and can be run.
+
+    Parameters
+    ----------
+    settings : Settings
+        Where to listen; port 0 takes one that is free.
+
+    Raises
+    ------
+    InputError
+        If the port is taken, or there is no such address here.
+    """
+
+    def __init__(self, settings: Settings) -> None:
+        self._socket = _listen(settings.host, settings.port)
+        self.settings = dataclasses.replace(settings, port=self._socket.getsockname()[1])
+        limits = settings.limits
+        config = uvicorn.Config(
+            studio_app(self.settings),
+            ws="websockets-sansio",
+            ws_max_size=limits.message_bytes,
+            # On this machine compressing costs more than it saves.
+            ws_per_message_deflate=not settings.loopback,
+            log_level="warning",
+            access_log=False,
+            server_header=False,
+            timeout_graceful_shutdown=2,
+        )
+        self._server = uvicorn.Server(config)
+
+    @property
+    def url(self) -> str:
+        """The link that opens the studio, with its token."""
+        host = self.settings.host
+        if host in ("0.0.0.0", "::"):
+            host = socket.gethostname()
+        if ":" in host:
+            host = f"[{host}]"
+        token = "" if self.settings.token is None else f"?token={self.settings.token}"
+        return f"http://{host}:{self.settings.port}/{token}"
+
+    def run(self) -> None:
+        """Serve until interrupted."""
+        try:
+            self._server.run(sockets=[self._socket])
+        except KeyboardInterrupt:
+            pass  # that is how it is ended
+        finally:
+            self._socket.close()
+
+    def __enter__(self) -> Serving:
+        """Serve in a thread of its own."""
+        self._thread = threading.Thread(target=self.run, daemon=True)
+        self._thread.start()
+        return self
+
+    def __exit__(self, *_error: object) -> None:
+        """Stop, and wait until it has."""
+        self._server.should_exit = True
+        self._thread.join()
+
+    def health(self, *, timeout: float = 10.0) -> dict[str, Any]:
+        """Return what the running server says of itself.
+
+        Parameters
+        ----------
+        timeout : float
+            How long to wait for it [s].
+        """
+        family, address = self._socket.family, "127.0.0.1"
+        if family == socket.AF_INET6:
+            address = "[::1]"
+        if self.settings.host not in ("0.0.0.0", "::", "localhost"):
+            address = f"[{self.settings.host}]" if ":" in self.settings.host else self.settings.host
+        with urllib.request.urlopen(f"http://{address}:{self.settings.port}/health", timeout=timeout) as answer:
+            health: dict[str, Any] = json.load(answer)
+        return health
+
+
+def _listen(host: str, port: int) -> socket.socket:
+    try:
+        found = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0]
+        return socket.create_server(found[4][:2], family=found[0])
+    except OSError as error:
+        raise InputError(_why(host, port, error)) from None
+    except (OverflowError, UnicodeError):
+        raise InputError(f"{host!r}, port {port}: there is no such address") from None
+
+
+def _why(host: str, port: int, error: OSError) -> str:
+    if error.errno == errno.EADDRINUSE:
+        return f"port {port} at {host} is taken; choose another with --port, or --port 0 for any that is free"
+    if error.errno in (errno.EACCES, errno.EPERM):
+        return f"port {port} needs more rights than you have; choose one from 1024 on with --port"
+    return f"can't listen at {host}, port {port}: {os.strerror(error.errno) if error.errno else error}"

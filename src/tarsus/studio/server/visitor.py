@@ -1,0 +1,160 @@
+"""One visitor: a WebSocket, a session of its own, and the work between them."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+from collections.abc import Sequence
+from concurrent.futures import Executor
+from typing import TYPE_CHECKING
+
+from starlette.websockets import WebSocketDisconnect
+
+from tarsus.studio.failure import malformed
+from tarsus.studio.messages import CLOSED
+from tarsus.studio.messages.plain import Done, ErrorMessage
+from tarsus.studio.reading import read
+from tarsus.studio.server.inbox import Inbox
+from tarsus.studio.server.rate import Rate
+from tarsus.studio.server.settings import Settings
+from tarsus.studio.session import Session
+
+if TYPE_CHECKING:
+    from fastapi import WebSocket
+    from pydantic import BaseModel
+
+    from tarsus.studio.messages import ClientMessage
+
+__all__ = ["Visitor"]
+
+# A frame after a long wait makes no longer a step than this [s]: the walker is not made to leap.
+_LONGEST_STEP = 0.05
+
+
+class _SessionEnd(Exception):  # noqa: N818 - it is no error
+    """The session is over."""
+
+    def __init__(self, why: str) -> None:
+        super().__init__(why)
+        self.code, self.reason = CLOSED[why]
+
+
+class Visitor:
+    """A visitor from coming in to going.
+
+    Parameters
+    ----------
+    socket : WebSocket
+        The accepted connection.
+    settings : Settings
+        Of the server.
+    threads : Executor
+        Does what takes longer than a few milliseconds.
+    """
+
+    def __init__(self, socket: WebSocket, settings: Settings, threads: Executor) -> None:
+        self._socket = socket
+        self._limits = settings.limits
+        self._threads = threads
+        self._session = Session(settings.start, bounds=settings.limits.bounds, public=settings.public)
+        self._inbox = Inbox(settings.limits.waiting)
+        self._called = asyncio.Event()
+        self._sending = asyncio.Lock()
+        self._strikes = 0
+
+    async def stay(self) -> None:
+        """Read, work and answer until either side ends it."""
+        tasks = [asyncio.create_task(self._read()), asyncio.create_task(self._work())]
+        try:
+            done, _ = await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
+            for task in done:
+                task.result()
+        except _SessionEnd as end:
+            with contextlib.suppress(RuntimeError, WebSocketDisconnect):
+                await self._socket.close(end.code, end.reason)
+        except (WebSocketDisconnect, RuntimeError):
+            pass  # the visitor is gone; a write to a closed socket is a RuntimeError
+        finally:
+            for task in tasks:
+                task.cancel()
+            await asyncio.gather(*tasks, return_exceptions=True)
+
+    async def _read(self) -> None:
+        rate = Rate(self._limits.messages_per_s, _now())
+        while True:
+            try:
+                async with asyncio.timeout(self._limits.idle_s or None):
+                    received = await self._socket.receive()
+            except TimeoutError:
+                raise _SessionEnd("IDLE") from None
+            if received["type"] == "websocket.disconnect":
+                return
+            text = received.get("text")
+            await self._take(received.get("bytes") or b"" if text is None else text, allowed=rate.take(_now()))
+
+    async def _take(self, text: str | bytes, *, allowed: bool) -> None:
+        if not allowed:
+            await self._refuse(malformed(f"more than {self._limits.messages_per_s:g} messages a second"), kind="limit")
+            return
+        message = read(text, most=self._limits.message_bytes)
+        if isinstance(message, ErrorMessage):
+            await self._refuse(message, kind=message.kind)
+        elif self._inbox.full:
+            full = malformed(f"{len(self._inbox)} messages are waiting; wait for an answer", id=message.id)
+            await self._refuse(full, kind="limit")
+        else:
+            self._strikes = 0
+            dropped = self._inbox.push(message)
+            self._called.set()
+            await self._send(dropped)
+
+    async def _refuse(self, error: ErrorMessage, *, kind: str) -> None:
+        self._strikes += 1
+        if self._strikes > self._limits.malformed:
+            raise _SessionEnd("RATE")
+        await self._send([error.model_copy(update={"kind": kind}), Done(type="done", id=error.id)])
+
+    async def _work(self) -> None:
+        due = last = _now()
+        while True:
+            if self._session.driving:
+                await self._wait(due - _now())
+            else:
+                await self._called.wait()
+                due = last = _now()
+            if len(self._inbox):
+                await self._answer(self._inbox.pop())
+            else:
+                self._called.clear()
+            if self._session.driving and _now() >= due:
+                now = _now()
+                frame = self._session.frame(min(now - last, _LONGEST_STEP)) if now > last else None
+                last, due = now, max(due + 1 / self._limits.frame_hz, now)
+                await self._send([] if frame is None else [frame])
+
+    async def _wait(self, seconds: float) -> None:
+        """Wait for a message, but not past the next frame."""
+        with contextlib.suppress(TimeoutError):
+            async with asyncio.timeout(max(seconds, 0.0)):
+                await self._called.wait()
+
+    async def _answer(self, message: ClientMessage) -> None:
+        loop = asyncio.get_running_loop()
+        texts = await loop.run_in_executor(self._threads, self._answers, message)
+        await self._send_texts(texts)
+
+    def _answers(self, message: ClientMessage) -> list[str]:
+        return [answer.model_dump_json() for answer in self._session.handle(message)]
+
+    async def _send(self, messages: Sequence[BaseModel]) -> None:
+        await self._send_texts([message.model_dump_json() for message in messages])
+
+    async def _send_texts(self, texts: Sequence[str]) -> None:
+        # Reader and worker both send; answers to one message stay together.
+        async with self._sending:
+            for text in texts:
+                await self._socket.send_text(text)
+
+
+def _now() -> float:
+    return asyncio.get_running_loop().time()
