@@ -1,0 +1,28 @@
+import { useStudio } from "../state/store";
+import { ViewPanel } from "../views/ViewPanel";
+import { Banner } from "./Banner";
+import { Header } from "./Header";
+import { PicturePane } from "./PicturePane";
+import { Tabs } from "./Tabs";
+import { Toast } from "./Toast";
+import { useShortcuts } from "./useShortcuts";
+
+/** The page. */
+export function App() {
+  const view = useStudio((studio) => studio.state?.view ?? "walk");
+  useShortcuts();
+  return (
+    <div className="app" data-view={view}>
+      <Header />
+      <Tabs view={view} />
+      <main className="picture" aria-label="Picture">
+        <PicturePane view={view} />
+        <Banner />
+      </main>
+      <div className="panel" role="tabpanel" id="panel" aria-labelledby={`tab-${view}`} key={view}>
+        <ViewPanel view={view} />
+      </div>
+      <Toast />
+    </div>
+  );
+}

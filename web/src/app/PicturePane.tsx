@@ -1,0 +1,106 @@
+import { useMemo, useState } from "react";
+
+import { legColours } from "../scene/palette";
+import type { CameraName } from "../scene/cameras";
+import { footTrails } from "../scene/frames";
+import { shapeOf } from "../scene/kinematics";
+import { SceneCanvas } from "../scene/SceneCanvas";
+import { look } from "../state/session";
+import { useStudio, type View } from "../state/store";
+import { CameraBar } from "./CameraBar";
+import { PlayerBar } from "./PlayerBar";
+import { SceneExtras } from "./SceneExtras";
+import { StatusChips } from "./StatusChips";
+import { usePalette } from "./theme";
+import { lengthOf, useFraming, WALKING } from "./useFraming";
+import { useFloor } from "./useFloor";
+import { useShown } from "./useShown";
+
+const WORDS: Record<View, string> = {
+  joints: "The robot as it rests with these joint angles.",
+  body: "The robot with its body moved over its feet.",
+  walk: "The robot walking its planned walk.",
+  drive: "The robot as it is driven.",
+  loads: "The robot walking, with forces and torques.",
+  robot: "The robot as it is described.",
+  sources: "The robot whose numbers stand in the equations.",
+};
+
+/** The picture that all views share, with what lies over it. */
+export function PicturePane({ view }: { view: View }) {
+  const robot = useStudio((studio) => studio.robot);
+  const picture = useStudio((studio) => studio.state?.picture ?? null);
+  const walk = useStudio((studio) => studio.walk);
+  const palette = usePalette();
+  const [again, setAgain] = useState(0);
+  const camera: CameraName = picture?.camera ?? "free";
+  const framing = useFraming(view, camera === "follow", again);
+  const onFloor = useFloor(view);
+  useShown(view);
+
+  const shape = useMemo(() => (robot ? shapeOf(robot) : null), [robot]);
+  const colours = useMemo(() => (shape ? legColours(shape.mounts) : []), [shape]);
+  const walking = WALKING.has(view);
+  const trails = useMemo(
+    () => (walking && robot && walk ? footTrails(robot, walk) : undefined),
+    [walking, robot, walk],
+  );
+  if (!shape || !picture) return <Waiting />;
+  const start =
+    picture.eye_mm && picture.target_mm ? { eye: picture.eye_mm, target: picture.target_mm } : null;
+  return (
+    <>
+      <SceneCanvas
+        shape={shape}
+        colours={colours}
+        palette={palette}
+        camera={camera}
+        view={framing}
+        start={start}
+        trails={trails}
+        forces={view === "loads"}
+        torques={view === "loads"}
+        description={WORDS[view]}
+        onFloor={onFloor}
+        onRest={(eye, target) => look(null, { eye_mm: [...eye], target_mm: [...target] })}
+        onTurned={turnedByHand}
+      >
+        <SceneExtras view={view} shape={shape} palette={palette} />
+      </SceneCanvas>
+      <div className="over top">
+        <StatusChips />
+        <CameraBar
+          camera={camera}
+          onChoose={(name) => {
+            setAgain(again + 1);
+            look(null, { camera: name, eye_mm: null, target_mm: null });
+          }}
+        />
+      </div>
+      {walking && walk && (
+        <div className="over bottom">
+          <PlayerBar
+            duration={lengthOf(walk)}
+            rate={walk.rate_hz}
+            onRest={(time) => look(null, { time_s: time })}
+          />
+        </div>
+      )}
+    </>
+  );
+}
+
+/** Seen from where the hand put it, a camera is free; one that follows goes on following. */
+function turnedByHand() {
+  const camera = useStudio.getState().state?.picture.camera;
+  if (camera !== "free" && camera !== "follow") look(null, { camera: "free" });
+}
+
+function Waiting() {
+  const link = useStudio((studio) => studio.link);
+  return (
+    <p className="no-picture">
+      {link.kind === "connecting" || link.kind === "open" ? "The robot is coming …" : ""}
+    </p>
+  );
+}

@@ -1,0 +1,30 @@
+import { Centre } from "../scene/Centre";
+import type { Shape } from "../scene/frame";
+import { Handles } from "../scene/Handles";
+import type { Palette } from "../scene/palette";
+import { Zone } from "../scene/Zone";
+import { useStudio, type View } from "../state/store";
+import { dragged } from "./drag";
+
+interface Props {
+  view: View;
+  shape: Shape;
+  palette: Palette;
+}
+
+/** What only some views have in the picture: handles, a leg's zone, a curve's centre. */
+export function SceneExtras({ view, shape, palette }: Props) {
+  const leg = useStudio((studio) => studio.state?.picture.leg ?? null);
+  const zone = useStudio((studio) => studio.zone);
+  const path = useStudio((studio) => studio.state?.walk.path);
+  const posing = view === "joints" || view === "body";
+  return (
+    <>
+      {posing && <Handles shape={shape} palette={palette} body={view === "body"} onDrag={dragged} />}
+      {posing && zone?.leg === leg && (
+        <Zone ground={zone.ground_mm} plane={zone.plane_mm} palette={palette} />
+      )}
+      {view === "walk" && path?.way === "curve" && <Centre at={path.centre_mm} palette={palette} />}
+    </>
+  );
+}

@@ -1,0 +1,49 @@
+import { useRef, type KeyboardEvent } from "react";
+
+import { Icon } from "../controls/icons";
+import { look } from "../state/session";
+import type { View } from "../state/store";
+import { TABS } from "./tabList";
+
+const STEPS: Record<string, number> = { ArrowDown: 1, ArrowRight: 1, ArrowUp: -1, ArrowLeft: -1 };
+
+/** The tabs of the views: arrow keys go from one to the next, as in any list of tabs. */
+export function Tabs({ view }: { view: View }) {
+  const list = useRef<HTMLDivElement>(null);
+  const go = (to: View) => {
+    look(to);
+    list.current?.querySelector<HTMLButtonElement>(`#tab-${to}`)?.focus();
+  };
+  const keys = (event: KeyboardEvent) => {
+    const at = TABS.findIndex((tab) => tab.view === view);
+    const ends: Record<string, number> = { Home: 0, End: TABS.length - 1 };
+    const step = STEPS[event.key];
+    const next = step === undefined ? ends[event.key] : (at + step + TABS.length) % TABS.length;
+    const tab = next === undefined ? undefined : TABS[next];
+    if (!tab) return;
+    event.preventDefault();
+    go(tab.view);
+  };
+  return (
+    <div className="tabs" role="tablist" aria-label="Views" ref={list}>
+      {TABS.map((tab) => (
+        <button
+          key={tab.view}
+          id={`tab-${tab.view}`}
+          type="button"
+          role="tab"
+          className="tab"
+          aria-selected={tab.view === view}
+          aria-controls="panel"
+          tabIndex={tab.view === view ? 0 : -1}
+          data-testid={`tab-${tab.view}`}
+          onClick={() => look(tab.view)}
+          onKeyDown={keys}
+        >
+          <Icon name={tab.view} />
+          {tab.label}
+        </button>
+      ))}
+    </div>
+  );
+}

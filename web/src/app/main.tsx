@@ -1,0 +1,28 @@
+import { StrictMode } from "react";
+import { createRoot } from "react-dom/client";
+import { Object3D } from "three";
+
+import { begin } from "../state/session";
+import { App } from "./App";
+import { beginTheme } from "./theme";
+
+import "./theme.css";
+import "./layout.css";
+import "./picture.css";
+import "./controls.css";
+import "./parts.css";
+import "uplot/dist/uPlot.min.css";
+
+// The world is z up, as the robot's frames are.
+Object3D.DEFAULT_UP.set(0, 0, 1);
+
+beginTheme();
+begin();
+const root = document.getElementById("root");
+if (root) {
+  createRoot(root).render(
+    <StrictMode>
+      <App />
+    </StrictMode>,
+  );
+}

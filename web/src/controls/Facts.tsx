@@ -1,0 +1,20 @@
+import type { ReactNode } from "react";
+
+interface Props {
+  rows: readonly (readonly [string, ReactNode])[];
+  testId?: string;
+}
+
+/** Names and values, side by side. */
+export function Facts({ rows, testId }: Props) {
+  return (
+    <dl className="facts" data-testid={testId}>
+      {rows.map(([name, value]) => (
+        <div key={name} style={{ display: "contents" }}>
+          <dt>{name}</dt>
+          <dd>{value}</dd>
+        </div>
+      ))}
+    </dl>
+  );
+}

@@ -1,0 +1,23 @@
+import type { ReactNode } from "react";
+
+import type { ClientType } from "../state/outbox";
+import { useStudio } from "../state/store";
+import { Message } from "./Message";
+
+interface Props {
+  /** Of which questions. */
+  of: readonly ClientType[];
+  children?: ReactNode;
+}
+
+/** What the server refused, in its own words, and what would work. */
+export function Failure({ of, children }: Props) {
+  const failures = useStudio((studio) => studio.failures);
+  const shown = of.flatMap((type) => failures[type] ?? []);
+  return shown.map((failure) => (
+    <Message key={failure.type} kind="bad" alert testId="failure">
+      <p>{failure.text}</p>
+      {children}
+    </Message>
+  ));
+}

@@ -1,0 +1,31 @@
+import { useId } from "react";
+
+interface Props<T extends string> {
+  label: string;
+  value: T;
+  options: readonly { value: T; label: string; hint?: string }[];
+  testId?: string;
+  onChange: (value: T) => void;
+}
+
+/** One of a few, side by side: radio buttons in other clothes. */
+export function Segments<T extends string>({ label, value, options, testId, onChange }: Props<T>) {
+  const name = useId();
+  return (
+    <div role="radiogroup" aria-label={label} className="segments" data-testid={testId}>
+      {options.map((option) => (
+        <label key={option.value} title={option.hint}>
+          <input
+            type="radio"
+            name={name}
+            value={option.value}
+            checked={option.value === value}
+            data-testid={testId && `${testId}-${option.value}`}
+            onChange={() => onChange(option.value)}
+          />
+          {option.label}
+        </label>
+      ))}
+    </div>
+  );
+}

@@ -1,0 +1,88 @@
+import { useId } from "react";
+
+import { NumberInput } from "./NumberInput";
+import { clamp, decimalsOf, fixed } from "./numbers";
+import { useCommit } from "./useCommit";
+
+interface Props {
+  label: string;
+  value: number;
+  min: number;
+  max: number;
+  step: number;
+  unit: string;
+  /** Bounds of what may be typed, where they are wider than the slider's. */
+  typedMin?: number;
+  typedMax?: number;
+  /** The name for screen readers, where the label alone would not say enough. */
+  name?: string;
+  compact?: boolean;
+  bad?: boolean;
+  disabled?: boolean;
+  testId?: string;
+  /** Whether the value is left to the server, and how to leave it to it; left out where it can't be. */
+  auto?: boolean;
+  onAuto?: () => void;
+  onChange: (value: number, commit: boolean) => void;
+}
+
+/** A number to slide or to type, with its label and unit. */
+export function Slider(props: Props) {
+  const { label, value, min, max, step, unit, name, compact, bad, disabled, testId, auto, onAuto, onChange } =
+    props;
+  const id = useId();
+  const range = useCommit((rested) => onChange(rested, true));
+  const full = name ?? label;
+  const digits = decimalsOf(step);
+  return (
+    <div className={`slider${compact ? " compact" : ""}${bad ? " bad" : ""}`}>
+      <label htmlFor={id}>
+        {bad && <span aria-hidden="true">⚠ </span>}
+        {label}
+      </label>
+      <input
+        id={id}
+        ref={range}
+        data-testid={testId}
+        type="range"
+        min={min}
+        max={max}
+        step={step}
+        disabled={disabled}
+        aria-label={name}
+        aria-valuetext={`${fixed(value, digits)} ${unit}${auto ? ", automatic" : ""}`}
+        aria-invalid={bad}
+        value={clamp(value, min, max)}
+        onChange={(event) => onChange(event.target.valueAsNumber, false)}
+      />
+      <div className="number">
+        {onAuto && (
+          <button
+            type="button"
+            className="button auto"
+            aria-pressed={auto}
+            aria-label={`${full}: automatic`}
+            data-testid={testId && `${testId}-auto`}
+            onClick={() => (auto ? onChange(value, true) : onAuto())}
+          >
+            auto
+          </button>
+        )}
+        <NumberInput
+          id={`${id}n`}
+          value={value}
+          step={step}
+          min={props.typedMin ?? min}
+          max={props.typedMax ?? max}
+          disabled={disabled}
+          label={`${full} in ${unit || "numbers"}`}
+          testId={testId && `${testId}-number`}
+          onChange={(typed) => onChange(typed, true)}
+        />
+        <span className="unit" aria-hidden="true">
+          {unit}
+        </span>
+      </div>
+    </div>
+  );
+}

@@ -1,0 +1,105 @@
+import { useThree, type ThreeEvent } from "@react-three/fiber";
+import { useRef, useState } from "react";
+import { Vector3, type Mesh, type Plane } from "three";
+
+import { dragPlane, meet } from "./dragging";
+import { footOf, type Frame, type Shape, type Vec3 } from "./frame";
+import type { Palette } from "./palette";
+import { stage } from "./stage";
+import { useStage } from "./useStage";
+
+/** What is dragged: a leg's foot, or the body. */
+export type Grip = number | "body";
+
+export interface DragEvent {
+  grip: Grip;
+  /** Where the thing was when it was grabbed, and where it should be now [mm]. */
+  from: Vec3;
+  to: Vec3;
+  /** Whether it has been let go. */
+  done: boolean;
+}
+
+interface Props {
+  shape: Shape;
+  palette: Palette;
+  body: boolean;
+  onDrag: (event: DragEvent) => void;
+}
+
+/** Feet and body that can be grabbed, by mouse or finger. By keyboard the same is done in the panel. */
+export function Handles({ shape, palette, body, onDrag }: Props) {
+  const grips: Grip[] = [...shape.names.map((_, leg) => leg), ...(body ? (["body"] as const) : [])];
+  return (
+    <group name="handles">
+      {grips.map((grip) => (
+        <Handle key={grip} grip={grip} shape={shape} palette={palette} onDrag={onDrag} />
+      ))}
+    </group>
+  );
+}
+
+function placeOf(frame: Frame, grip: Grip): Vec3 {
+  return grip === "body" ? frame.position : footOf(frame, grip);
+}
+
+interface HandleProps extends Omit<Props, "body"> {
+  grip: Grip;
+}
+
+function Handle({ grip, shape, palette, onDrag }: HandleProps) {
+  const mesh = useRef<Mesh>(null);
+  const drag = useRef<{ plane: Plane; from: Vec3; offset: Vec3 } | null>(null);
+  const [hot, setHot] = useState(false);
+  const controls = useThree((state) => state.controls) as { enabled: boolean } | null;
+  const invalidate = useThree((state) => state.invalidate);
+  const radius = grip === "body" ? shape.reach * 0.12 : Math.max(shape.reach * 0.055, 16);
+
+  useStage((frame) => mesh.current?.position.set(...placeOf(frame, grip)));
+
+  const heat = (on: boolean) => {
+    setHot(on);
+    document.body.style.cursor = on ? "grab" : "";
+    invalidate();
+  };
+  const grab = (event: ThreeEvent<PointerEvent>) => {
+    if (!stage.current || event.button !== 0) return;
+    event.stopPropagation();
+    const from = placeOf(stage.current, grip);
+    const look = event.camera.getWorldDirection(new Vector3());
+    const plane = dragPlane(from, [look.x, look.y, look.z], event.shiftKey);
+    const hit = meet(event.ray, plane) ?? from;
+    drag.current = { plane, from, offset: [from[0] - hit[0], from[1] - hit[1], from[2] - hit[2]] };
+    (event.target as Element).setPointerCapture(event.pointerId);
+    if (controls) controls.enabled = false;
+    heat(true);
+  };
+  const move = (event: ThreeEvent<PointerEvent>, done: boolean) => {
+    if (!drag.current) return;
+    event.stopPropagation();
+    const { plane, from, offset } = drag.current;
+    const hit = meet(event.ray, plane);
+    if (hit) onDrag({ grip, from, to: [hit[0] + offset[0], hit[1] + offset[1], hit[2] + offset[2]], done });
+    if (!done) return;
+    drag.current = null;
+    (event.target as Element).releasePointerCapture(event.pointerId);
+    if (controls) controls.enabled = true;
+    heat(false);
+  };
+
+  return (
+    <mesh
+      ref={mesh}
+      name={`grip ${grip}`}
+      renderOrder={6}
+      onPointerOver={() => heat(true)}
+      onPointerOut={() => !drag.current && heat(false)}
+      onPointerDown={grab}
+      onPointerMove={(event) => move(event, false)}
+      onPointerUp={(event) => move(event, true)}
+    >
+      <sphereGeometry args={[radius, 20, 14]} />
+      <meshBasicMaterial color={palette.zone} transparent opacity={hot ? 0.45 : 0.14} depthWrite={false} />
+    </mesh>
+  );
+}

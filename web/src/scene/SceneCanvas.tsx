@@ -1,0 +1,115 @@
+import { Canvas, type ThreeEvent } from "@react-three/fiber";
+import { PCFShadowMap } from "three";
+import type { KeyboardEvent, ReactNode } from "react";
+
+import { Arrows } from "./Arrows";
+import { CameraRig, type View } from "./CameraRig";
+import type { CameraName } from "./cameras";
+import { Conductor } from "./Conductor";
+import type { Shape, Vec3 } from "./frame";
+import { Ground } from "./Ground";
+import { Lights } from "./Lights";
+import { Notes } from "./Notes";
+import type { Palette } from "./palette";
+import { Robot } from "./Robot";
+import { steer } from "./steer";
+import { Support } from "./Support";
+import { TorqueBars } from "./TorqueBars";
+import { Trails } from "./Trails";
+
+export interface SceneProps {
+  shape: Shape;
+  colours: readonly string[];
+  palette: Palette;
+  camera: CameraName;
+  view: View;
+  start?: { eye: Vec3; target: Vec3 } | null;
+  trails?: readonly ArrayLike<number>[];
+  forces?: boolean;
+  torques?: boolean;
+  names?: boolean;
+  /** Said to screen readers in place of the picture. */
+  description: string;
+  onRest?: (eye: Vec3, target: Vec3) => void;
+  onTurned?: () => void;
+  /** A click on the floor [mm]; left out where it means nothing. */
+  onFloor?: (x: number, y: number) => void;
+  children?: ReactNode;
+}
+
+const nothing = () => undefined;
+
+/** The picture: one canvas that all views share, and the player as well. */
+export function SceneCanvas(props: SceneProps) {
+  const {
+    shape,
+    colours,
+    palette,
+    camera,
+    view,
+    start = null,
+    trails,
+    forces,
+    torques,
+    names,
+    onFloor,
+  } = props;
+  const keys = (event: KeyboardEvent) => {
+    if (steer(event.key)) event.preventDefault();
+  };
+  return (
+    // Arrow keys turn the picture and + and - come closer: so it must be reachable by keyboard.
+    // eslint-disable-next-line jsx-a11y/no-noninteractive-element-interactions
+    <div
+      className="scene"
+      role="application"
+      aria-roledescription="3D picture"
+      aria-label={`${props.description} Arrow keys turn the picture, plus and minus come closer and go away.`}
+      data-testid="scene"
+      // eslint-disable-next-line jsx-a11y/no-noninteractive-tabindex
+      tabIndex={0}
+      onKeyDown={keys}
+    >
+      <Canvas
+        frameloop="demand"
+        shadows={{ type: PCFShadowMap }}
+        dpr={[1, 2]}
+        camera={{ fov: 32, near: 10, far: 20_000, up: [0, 0, 1], position: [-600, -500, 600] }}
+        gl={{ antialias: true, preserveDrawingBuffer: true, powerPreference: "low-power" }}
+        fallback={<p>This browser can't draw in 3D (WebGL is off). All numbers are in the panel.</p>}
+      >
+        <color attach="background" args={[palette.background]} />
+        <fog attach="fog" args={[palette.background, view.radius * 6 + 1200, view.radius * 10 + 3600]} />
+        <Conductor />
+        <Lights palette={palette} reach={shape.reach} />
+        <Ground palette={palette} />
+        {onFloor && (
+          <mesh
+            name="floor-pick"
+            position={[0, 0, -1]}
+            onClick={(event: ThreeEvent<MouseEvent>) =>
+              event.delta < 4 && onFloor(event.point.x, event.point.y)
+            }
+          >
+            <planeGeometry args={[20_000, 20_000]} />
+            <meshBasicMaterial transparent opacity={0} depthWrite={false} />
+          </mesh>
+        )}
+        <Support palette={palette} />
+        {trails && <Trails paths={trails} colours={colours} />}
+        <Robot shape={shape} colours={colours} palette={palette} />
+        {forces && <Arrows shape={shape} palette={palette} />}
+        {torques && <TorqueBars shape={shape} palette={palette} />}
+        <Notes shape={shape} colours={colours} names={names ?? true} />
+        {props.children}
+        <CameraRig
+          camera={camera}
+          view={view}
+          start={start}
+          onRest={props.onRest ?? nothing}
+          onTurned={props.onTurned ?? nothing}
+        />
+      </Canvas>
+    </div>
+  );
+}

@@ -1,0 +1,122 @@
+/** What the picture shows at one moment, in the ground frame: x forward, y left, z up; mm. */
+
+export type Vec3 = readonly [number, number, number];
+/** x, y, z, w, as three.js orders them. */
+export type Quaternion = readonly [number, number, number, number];
+
+/** Points of a leg: coxa axis, femur axis, knee, foot. */
+export const POINTS = 4;
+
+/** Why a leg does not do what is asked. */
+export interface LegTrouble {
+  /** A few words that fit beside the leg, such as "12 mm too far". */
+  short: string;
+  /** The whole explanation, with numbers. */
+  text: string;
+}
+
+export interface Frame {
+  /** Legs x 4 points x 3 coordinates [mm]. */
+  points: Float32Array;
+  position: Vec3;
+  rotation: Quaternion;
+  contacts: readonly boolean[];
+  /** Centre of mass [mm]; only its projection is shown. */
+  com: Vec3 | null;
+  /** Distance of the projected centre of mass from the support polygon's edge [mm], negative outside. */
+  margin: number | null;
+  trouble: readonly (LegTrouble | null)[];
+  /** Ground on foot: legs x 3 [N]. */
+  forces: Float32Array | null;
+  /** Legs x (coxa, femur, tibia) [N m]. */
+  torques: Float32Array | null;
+}
+
+/** What stays while the robot moves: its shape. */
+export interface Shape {
+  names: readonly string[];
+  /** Two letters a leg, such as LF. */
+  short: readonly string[];
+  /** Coxa axes in the body frame [mm]. */
+  mounts: readonly Vec3[];
+  /** Box of the body [mm], or null where the robot gives none. */
+  size: Vec3 | null;
+  footRadius: readonly number[];
+  /** Greatest length of a leg [mm]: sets how large things are drawn. */
+  reach: number;
+  /** Legs x (coxa, femur, tibia): what the servos can exert at most [N m]. */
+  stall: readonly (number | null)[];
+}
+
+/** Coordinates of one point of one leg. */
+export function pointOf(frame: Frame, leg: number, point: number): Vec3 {
+  const at = (leg * POINTS + point) * 3;
+  const { points } = frame;
+  return [points[at] ?? 0, points[at + 1] ?? 0, points[at + 2] ?? 0];
+}
+
+export function footOf(frame: Frame, leg: number): Vec3 {
+  return pointOf(frame, leg, POINTS - 1);
+}
+
+/** Quaternion of Rz(yaw) Ry(pitch) Rx(roll), angles in degrees. */
+export function quaternionOf(roll: number, pitch: number, yaw: number): Quaternion {
+  const half = Math.PI / 360;
+  const [sr, cr] = [Math.sin(roll * half), Math.cos(roll * half)];
+  const [sp, cp] = [Math.sin(pitch * half), Math.cos(pitch * half)];
+  const [sy, cy] = [Math.sin(yaw * half), Math.cos(yaw * half)];
+  return [
+    sr * cp * cy - cr * sp * sy,
+    cr * sp * cy + sr * cp * sy,
+    cr * cp * sy - sr * sp * cy,
+    cr * cp * cy + sr * sp * sy,
+  ];
+}
+
+/** A vector turned by a quaternion. */
+export function turn([x, y, z, w]: Quaternion, [vx, vy, vz]: Vec3): Vec3 {
+  const tx = 2 * (y * vz - z * vy);
+  const ty = 2 * (z * vx - x * vz);
+  const tz = 2 * (x * vy - y * vx);
+  return [vx + w * tx + y * tz - z * ty, vy + w * ty + z * tx - x * tz, vz + w * tz + x * ty - y * tx];
+}
+
+/** The shorter way from one rotation to another, at share t. */
+export function blendRotation(a: Quaternion, b: Quaternion, t: number): Quaternion {
+  const sign = a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3] < 0 ? -1 : 1;
+  const q = [0, 1, 2, 3].map((i) => (a[i] ?? 0) * (1 - t) + sign * t * (b[i] ?? 0));
+  const length = Math.hypot(...q) || 1;
+  return [(q[0] ?? 0) / length, (q[1] ?? 0) / length, (q[2] ?? 0) / length, (q[3] ?? 0) / length];
+}
+
+function blendNumbers(a: Float32Array, b: Float32Array, t: number): Float32Array {
+  return b.map((value, i) => (a[i] ?? value) * (1 - t) + value * t);
+}
+
+function blendVec(a: Vec3, b: Vec3, t: number): Vec3 {
+  return [a[0] + (b[0] - a[0]) * t, a[1] + (b[1] - a[1]) * t, a[2] + (b[2] - a[2]) * t];
+}
+
+/**
+ * The picture between two: positions and forces in between, everything that is either-or from the second.
+ * Between neighbouring samples the links' lengths change by less than a pixel.
+ */
+export function blend(a: Frame, b: Frame, t: number): Frame {
+  if (t >= 1 || a.points.length !== b.points.length) return b;
+  return {
+    ...b,
+    points: blendNumbers(a.points, b.points, t),
+    position: blendVec(a.position, b.position, t),
+    rotation: blendRotation(a.rotation, b.rotation, t),
+    com: a.com && b.com ? blendVec(a.com, b.com, t) : b.com,
+    margin: a.margin !== null && b.margin !== null ? a.margin + (b.margin - a.margin) * t : b.margin,
+    forces: a.forces && b.forces ? blendNumbers(a.forces, b.forces, t) : b.forces,
+    torques: a.torques && b.torques ? blendNumbers(a.torques, b.torques, t) : b.torques,
+  };
+}
+
+/** Greatest distance between the points of two pictures [mm]. */
+export function distance(a: Frame, b: Frame): number {
+  if (a.points.length !== b.points.length) return Infinity;
+  return a.points.reduce((most, value, i) => Math.max(most, Math.abs(value - (b.points[i] ?? 0))), 0);
+}

@@ -1,0 +1,140 @@
+import type { DriveFrame, LoadsMessage, PoseMessage, RobotMessage, WalkMessage } from "../protocol";
+import { quaternionOf, type Frame, type LegTrouble, type Vec3 } from "./frame";
+import { legPoints, rotationOf, triple } from "./kinematics";
+
+const WORDS: Record<string, string> = {
+  TOO_FAR: "too far",
+  TOO_NEAR: "too near",
+  COXA_LIMIT: "coxa at its limit",
+  FEMUR_LIMIT: "femur at its limit",
+  TIBIA_LIMIT: "tibia at its limit",
+  BELOW_GROUND: "below ground",
+};
+/** Codes of Reach, as the server numbers them in a walk. */
+const CODES = ["OK", "TOO_FAR", "TOO_NEAR", "COXA_LIMIT", "FEMUR_LIMIT", "TIBIA_LIMIT", "BELOW_GROUND"];
+
+export function contactsOf(text: string): boolean[] {
+  return Array.from(text, (mark) => mark === "1");
+}
+
+/** How the robot stands or rests. */
+export function frameOfPose(robot: RobotMessage, pose: PoseMessage): Frame {
+  const position = triple(pose.position_mm, 0);
+  const rotation = rotationOf(pose.rpy_deg);
+  return {
+    points: legPoints(robot, pose.angles_deg, position, rotation),
+    position,
+    rotation,
+    contacts: contactsOf(pose.contacts),
+    com: triple(pose.com_mm, 0),
+    margin: pose.margin_mm,
+    trouble: troubles(robot, pose),
+    forces: pose.forces_n ? new Float32Array(pose.forces_n) : null,
+    torques: pose.torques_nm ? new Float32Array(pose.torques_nm) : null,
+  };
+}
+
+function troubles(robot: RobotMessage, pose: PoseMessage): (LegTrouble | null)[] {
+  return robot.leg_names.map((_, leg) => {
+    const problem = pose.legs.find((one) => one.leg === leg);
+    if (problem) {
+      const miss = `${problem.miss_mm.toFixed(problem.miss_mm < 10 ? 1 : 0)} mm`;
+      return { short: `${WORDS[problem.reach] ?? problem.reach}: ${miss}`, text: problem.text };
+    }
+    const broken = pose.limits.find((one) => one.leg === leg);
+    if (!broken) return null;
+    const past = Math.max(broken.low_deg - broken.angle_deg, broken.angle_deg - broken.high_deg);
+    return { short: `${broken.joint} ${past.toFixed(1)}° past its limit`, text: broken.text };
+  });
+}
+
+/** A walk at a time [s], between its samples where it falls there; with loads also forces and torques. */
+export function frameOfWalk(
+  robot: RobotMessage,
+  walk: WalkMessage,
+  loads: LoadsMessage | null,
+  time: number,
+): Frame {
+  const at = Math.min(walk.count - 1, Math.max(0, time * walk.rate_hz));
+  const i = Math.floor(at);
+  const k = Math.min(walk.count - 1, i + 1);
+  const t = at - i;
+  const mix = (list: readonly number[], width: number) => between(list, width, i, k, t);
+  const position = triple(mix(walk.position_mm, 3), 0);
+  const rotation = quaternionOf(...triple(mix(walk.rpy_deg, 3), 0));
+  const legs = robot.leg_names.length;
+  const com = mix(walk.com_mm, 2);
+  const [m, n] = [walk.margin_mm[i] ?? null, walk.margin_mm[k] ?? null];
+  return {
+    points: legPoints(robot, mix(walk.angles_deg, legs * 3), position, rotation),
+    position,
+    rotation,
+    contacts: contactsOf(walk.contacts[i] ?? ""),
+    com: [com[0] ?? 0, com[1] ?? 0, position[2]],
+    margin: m !== null && n !== null ? m + (n - m) * t : m,
+    trouble: codeTroubles(walk.reach?.[i], legs),
+    forces: loads ? mix(loads.forces_n, legs * 3) : null,
+    torques: loads ? mix(loads.torques_nm, legs * 3) : null,
+  };
+}
+
+/** Row between two rows of a flat list, at share t. */
+function between(list: readonly number[], width: number, i: number, k: number, t: number): Float32Array {
+  const row = new Float32Array(width);
+  for (let n = 0; n < width; n++) {
+    const from = list[i * width + n] ?? 0;
+    row[n] = from + ((list[k * width + n] ?? 0) - from) * t;
+  }
+  return row;
+}
+
+function codeTroubles(codes: string | undefined, legs: number): (LegTrouble | null)[] {
+  return Array.from({ length: legs }, (_, leg) => {
+    const code = CODES[Number(codes?.[leg] ?? 0)] ?? "OK";
+    const words = WORDS[code];
+    return words ? { short: words, text: words } : null;
+  });
+}
+
+/** The live walker now. */
+export function frameOfDrive(robot: RobotMessage, drive: DriveFrame): Frame {
+  const position = triple(drive.position_mm, 0);
+  const rotation = rotationOf(drive.rpy_deg);
+  return {
+    points: legPoints(robot, drive.angles_deg, position, rotation),
+    position,
+    rotation,
+    contacts: contactsOf(drive.contacts),
+    com: [drive.com_mm[0] ?? 0, drive.com_mm[1] ?? 0, position[2]],
+    margin: drive.margin_mm,
+    trouble: robot.leg_names.map(() => null),
+    forces: null,
+    torques: null,
+  };
+}
+
+/** Where each foot goes over a walk: for each leg x, y, z in turn [mm]; at most `most` points each. */
+export function footTrails(robot: RobotMessage, walk: WalkMessage, most = 600): Float32Array[] {
+  const every = Math.max(1, Math.ceil(walk.count / most));
+  const samples = Array.from({ length: Math.ceil(walk.count / every) }, (_, n) => n * every);
+  const legs = robot.leg_names.length;
+  const trails = Array.from({ length: legs }, () => new Float32Array(samples.length * 3));
+  samples.forEach((sample, n) => {
+    const { points } = frameOfWalk(robot, walk, null, sample / walk.rate_hz);
+    trails.forEach((trail, leg) => trail.set(points.subarray(leg * 12 + 9, leg * 12 + 12), n * 3));
+  });
+  return trails;
+}
+
+/** A circle on the floor that holds all of a walk: its middle and its radius [mm]. */
+export function extentOf(walk: WalkMessage): { middle: Vec3; radius: number } {
+  const xs: number[] = [];
+  const ys: number[] = [];
+  for (let i = 0; i < walk.count; i++) {
+    const [x, y] = triple(walk.position_mm, i);
+    xs.push(x);
+    ys.push(y);
+  }
+  const [x0, x1, y0, y1] = [Math.min(...xs), Math.max(...xs), Math.min(...ys), Math.max(...ys)];
+  return { middle: [(x0 + x1) / 2, (y0 + y1) / 2, 0], radius: Math.hypot(x1 - x0, y1 - y0) / 2 };
+}

@@ -1,0 +1,89 @@
+import type { FileMessage, ServerMessage, StudioState } from "../protocol";
+import { readAddress, writeAddress } from "./address";
+import { showDriveFrame } from "./driving";
+import { saveBlob } from "./files";
+import { Link } from "./link";
+import type { ClientType, Draft } from "./outbox";
+import { received } from "./receive";
+import { notify, useStudio } from "./store";
+
+/** How long after a change the address bar takes it over [ms]: browsers allow about a hundred changes in half a minute. */
+const ADDRESS_DELAY = 600;
+
+const link = new Link({
+  status: (status) =>
+    useStudio.setState(status.kind === "open" ? { link: status } : { link: status, busy: {} }),
+  message: receive,
+  state: () => useStudio.getState().stateText ?? readAddress(window.location.href).state,
+});
+
+/** Connect, and follow links to other states that are opened in this page. */
+export function begin(): void {
+  link.open();
+  window.addEventListener("hashchange", () => {
+    const { state } = readAddress(window.location.href);
+    if (state && state !== useStudio.getState().stateText) ask({ type: "open", state });
+  });
+}
+
+/** Connect again at once. */
+export function retry(): void {
+  link.retry();
+}
+
+/** Send a message; its answers change the store. */
+export function ask(draft: Draft): void {
+  link.send(draft);
+  if (useStudio.getState().busy[draft.type] !== true && link.isBusy(draft.type)) {
+    useStudio.setState((studio) => ({ busy: { ...studio.busy, [draft.type]: true } }));
+  }
+}
+
+/** The parts of the state that are set by a message of their own name. */
+type Settable = "joints" | "body" | "walk" | "loads" | "source";
+
+/**
+ * Change a part of the state: shown at once, and sent. `commit` is false while a slider or a mouse still moves.
+ */
+export function change<K extends Settable>(part: K, values: Partial<StudioState[K]>, commit = true): void {
+  const { state } = useStudio.getState();
+  if (!state) return;
+  const next = { ...state[part], ...values };
+  useStudio.setState({ state: { ...state, [part]: next } });
+  ask({ type: part, [part]: next, commit } as unknown as Draft);
+}
+
+/** Go to a view, or look at it differently. */
+export function look(view: StudioState["view"] | null, picture: Partial<StudioState["picture"]> = {}): void {
+  const { state } = useStudio.getState();
+  if (!state) return;
+  const next = { ...state, view: view ?? state.view, picture: { ...state.picture, ...picture } };
+  useStudio.setState({ state: next });
+  ask({ type: "view", view: next.view, picture: next.picture });
+}
+
+function receive(message: ServerMessage, asked: ClientType | null): void {
+  if (message.type === "frame") {
+    showDriveFrame(message);
+    return;
+  }
+  if (message.type === "file") save(message);
+  if (message.type === "error" && asked === null) notify(message.text);
+  useStudio.setState((studio) => received(studio, message, asked));
+  if (message.type === "done" && message.state !== null) writeSoon();
+}
+
+let writing: number | undefined;
+
+function writeSoon(): void {
+  window.clearTimeout(writing);
+  writing = window.setTimeout(() => {
+    const href = writeAddress(window.location.href, useStudio.getState().stateText, true);
+    window.history.replaceState(null, "", href);
+  }, ADDRESS_DELAY);
+}
+
+function save(file: FileMessage): void {
+  saveBlob(file.name, new Blob([file.text], { type: file.mime }));
+  notify(`${file.name} saved`);
+}

@@ -1,0 +1,64 @@
+import { Icon } from "../controls/icons";
+import { fixed } from "../controls/numbers";
+import { copyText } from "../state/share";
+
+const JOINTS = ["coxa", "femur", "tibia"] as const;
+
+interface Props {
+  codes: readonly string[];
+  /** Legs x (coxa, femur, tibia) [deg]. */
+  angles: ArrayLike<number>;
+  open?: boolean;
+}
+
+/** The joint angles as a table to read and to copy. */
+export function AngleTable({ codes, angles, open }: Props) {
+  return (
+    <details open={open}>
+      <summary>Joint angles</summary>
+      <div className="inside">
+        <table data-testid="angles">
+          <caption className="hidden-text">Joint angles in degrees</caption>
+          <thead>
+            <tr>
+              <th scope="col">Leg</th>
+              {JOINTS.map((joint) => (
+                <th key={joint} scope="col">
+                  {joint} °
+                </th>
+              ))}
+            </tr>
+          </thead>
+          <tbody>
+            {codes.map((code, leg) => (
+              <tr key={code}>
+                <th scope="row">{code}</th>
+                {JOINTS.map((joint, i) => (
+                  <td key={joint}>{fixed(angles[leg * 3 + i] ?? 0, 2)}</td>
+                ))}
+              </tr>
+            ))}
+          </tbody>
+        </table>
+        <div className="row">
+          <button
+            type="button"
+            className="button small"
+            data-testid="copy-angles"
+            onClick={() => void copyText(angleText(codes, angles), "Angles copied")}
+          >
+            <Icon name="copy" /> Copy
+          </button>
+        </div>
+      </div>
+    </details>
+  );
+}
+
+/** The table with tabs between columns, as spreadsheets paste it. */
+export function angleText(codes: readonly string[], angles: ArrayLike<number>): string {
+  const rows = codes.map((code, leg) =>
+    [code, ...JOINTS.map((_, i) => fixed(angles[leg * 3 + i] ?? 0, 4))].join("\t"),
+  );
+  return [["leg", ...JOINTS.map((joint) => `${joint}_deg`)].join("\t"), ...rows].join("\n");
+}

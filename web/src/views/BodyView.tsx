@@ -1,0 +1,111 @@
+import { Failure } from "../controls/Failure";
+import { Icon } from "../controls/icons";
+import { Segments } from "../controls/Segments";
+import { Slider } from "../controls/Slider";
+import type { BodyState } from "../protocol";
+import { change } from "../state/session";
+import { useStudio } from "../state/store";
+import { AngleTable } from "./AngleTable";
+import { FeetInputs } from "./FeetInputs";
+import { Standing } from "./Standing";
+import { useInputs } from "./useInputs";
+import { ViewHead } from "./ViewHead";
+import { ZoneChoice } from "./ZoneChoice";
+
+type Key = "x_mm" | "y_mm" | "z_mm" | "roll_deg" | "pitch_deg" | "yaw_deg";
+
+const SLIDERS: readonly { key: Key; label: string; span: number; step: number; unit: string }[] = [
+  { key: "x_mm", label: "Forward", span: 120, step: 1, unit: "mm" },
+  { key: "y_mm", label: "Left", span: 120, step: 1, unit: "mm" },
+  { key: "z_mm", label: "Up", span: 120, step: 1, unit: "mm" },
+  { key: "roll_deg", label: "Roll (left side up)", span: 35, step: 0.5, unit: "°" },
+  { key: "pitch_deg", label: "Pitch (front down)", span: 35, step: 0.5, unit: "°" },
+  { key: "yaw_deg", label: "Yaw (turn left)", span: 50, step: 0.5, unit: "°" },
+];
+const HOME: Partial<BodyState> = {
+  x_mm: 0,
+  y_mm: 0,
+  z_mm: 0,
+  roll_deg: 0,
+  pitch_deg: 0,
+  yaw_deg: 0,
+  feet_mm: null,
+};
+
+/** Inverse kinematics: the body moves, the feet stay. */
+export function BodyView() {
+  const { robot, state } = useInputs();
+  const pose = useStudio((studio) => studio.poses.body);
+  const { body } = state;
+  const set = (values: Partial<BodyState>, commit = true) => change("body", values, commit);
+  return (
+    <div className="view">
+      <ViewHead title="Body">
+        Move and turn the body; the feet stay where they are. Body and feet can also be dragged in the
+        picture; hold Shift to drag upwards.
+      </ViewHead>
+      <Failure of={["body", "drag_foot"]} />
+      {pose && <Standing pose={pose} />}
+      {pose?.share != null && pose.share < 1 && (
+        <p className="hint" data-testid="share">
+          {Math.floor(pose.share * 100)} % of this way works.
+        </p>
+      )}
+      <fieldset>
+        <legend>Body over its feet</legend>
+        {SLIDERS.map(({ key, label, span, step, unit }) => (
+          <Slider
+            key={key}
+            label={label}
+            value={body[key]}
+            min={-span}
+            max={span}
+            typedMin={-1000}
+            typedMax={1000}
+            step={step}
+            unit={unit}
+            testId={`body-${key}`}
+            onChange={(value, commit) => set({ [key]: value }, commit)}
+          />
+        ))}
+        <div className="row">
+          <button type="button" className="button" data-testid="body-home" onClick={() => set(HOME)}>
+            <Icon name="reset" /> Back to rest
+          </button>
+        </div>
+      </fieldset>
+      <fieldset>
+        <legend>Stance</legend>
+        <Slider
+          label="Clearance"
+          value={body.clearance_mm ?? robot.clearance_mm}
+          min={0}
+          max={Math.max(200, Math.round(robot.clearance_mm * 2))}
+          typedMax={10_000}
+          step={1}
+          unit="mm"
+          testId="body-clearance"
+          auto={body.clearance_mm === null}
+          onAuto={() => set({ clearance_mm: null })}
+          onChange={(value, commit) => set({ clearance_mm: value }, commit)}
+        />
+        <div className="row">
+          <span>Knee</span>
+          <Segments
+            label="Knee"
+            testId="knee"
+            value={body.knee}
+            options={[
+              { value: "up", label: "up" },
+              { value: "down", label: "down" },
+            ]}
+            onChange={(knee) => set({ knee })}
+          />
+        </div>
+      </fieldset>
+      {pose && <FeetInputs pose={pose} />}
+      <ZoneChoice />
+      {pose && <AngleTable codes={robot.leg_codes} angles={pose.angles_deg} />}
+    </div>
+  );
+}

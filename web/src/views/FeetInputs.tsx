@@ -1,0 +1,73 @@
+import { useId } from "react";
+
+import { Icon } from "../controls/icons";
+import { NumberInput } from "../controls/NumberInput";
+import type { PoseMessage } from "../protocol";
+import { triple } from "../scene/kinematics";
+import { ask, change } from "../state/session";
+import { useInputs } from "./useInputs";
+
+const AXES = ["x", "y", "z"] as const;
+
+/** Where the feet stand, as numbers: what dragging does, by keyboard. */
+export function FeetInputs({ pose }: { pose: PoseMessage }) {
+  const { robot, state } = useInputs();
+  const id = useId();
+  const move = (leg: number, axis: number, value: number) => {
+    const at: [number, number, number] = [...triple(pose.feet_mm, leg)];
+    at[axis] = value;
+    ask({ type: "drag_foot", leg, position_mm: at, commit: true });
+  };
+  return (
+    <details>
+      <summary>Feet</summary>
+      <div className="inside">
+        <div className="scroll">
+          <table className="inputs">
+            <caption className="hidden-text">Where the feet should be, in mm</caption>
+            <thead>
+              <tr>
+                <th scope="col">Leg</th>
+                {AXES.map((axis) => (
+                  <th key={axis} scope="col">
+                    {axis} mm
+                  </th>
+                ))}
+              </tr>
+            </thead>
+            <tbody>
+              {robot.leg_codes.map((code, leg) => (
+                <tr key={code}>
+                  <th scope="row">{code}</th>
+                  {AXES.map((axis, i) => (
+                    <td key={axis}>
+                      <NumberInput
+                        id={`${id}${leg}${axis}`}
+                        label={`${robot.leg_names[leg] ?? ""} foot ${axis} in mm`}
+                        value={triple(pose.feet_mm, leg)[i] ?? 0}
+                        step={0.5}
+                        testId={`foot-${code}-${axis}`}
+                        onChange={(value) => move(leg, i, value)}
+                      />
+                    </td>
+                  ))}
+                </tr>
+              ))}
+            </tbody>
+          </table>
+        </div>
+        <div className="row">
+          <button
+            type="button"
+            className="button small"
+            data-testid="feet-home"
+            disabled={state.body.feet_mm === null}
+            onClick={() => change("body", { feet_mm: null })}
+          >
+            <Icon name="reset" /> Rest footholds
+          </button>
+        </div>
+      </div>
+    </details>
+  );
+}

@@ -1,0 +1,36 @@
+import { Message, Remarks } from "../controls/Message";
+import { Facts } from "../controls/Facts";
+import { withUnit } from "../controls/numbers";
+import type { PoseMessage } from "../protocol";
+import { contactsOf } from "../scene/frames";
+
+/** How the robot stands: the verdict in words, what is wrong, and the numbers. */
+export function Standing({ pose }: { pose: PoseMessage }) {
+  const wrong = [
+    ...pose.legs.map((leg) => leg.text),
+    ...pose.limits.map((limit) => limit.text),
+    ...pose.problems,
+  ];
+  const feet = contactsOf(pose.contacts).filter(Boolean).length;
+  const [x = 0, y = 0, z = 0] = pose.position_mm;
+  const [roll = 0, pitch = 0] = pose.rpy_deg;
+  return (
+    <>
+      <div aria-live="polite" className="field">
+        <Message kind={pose.stable ? "good" : "bad"} testId="standing">
+          <span style={{ whiteSpace: "pre-line" }}>{pose.text}</span>
+        </Message>
+        <Remarks kind="bad" items={wrong} testId="problems" />
+      </div>
+      <Facts
+        testId="standing-facts"
+        rows={[
+          ["Margin of stability", withUnit(pose.margin_mm, 1, "mm")],
+          ["Feet on the ground", feet],
+          ["Body at x, y, z", `${x.toFixed(1)}, ${y.toFixed(1)}, ${z.toFixed(1)} mm`],
+          ["Roll, pitch", `${roll.toFixed(1)}, ${pitch.toFixed(1)}°`],
+        ]}
+      />
+    </>
+  );
+}

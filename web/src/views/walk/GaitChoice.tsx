@@ -1,0 +1,76 @@
+import { Select } from "../../controls/Select";
+import { Slider } from "../../controls/Slider";
+import { change } from "../../state/session";
+import { useStudio } from "../../state/store";
+import { useInputs } from "../useInputs";
+
+/** The gait: the robot's own, a named one, or one of one's own. */
+export function GaitChoice() {
+  const { robot, state } = useInputs();
+  const walk = useStudio((studio) => studio.walk);
+  const { gait } = state.walk;
+  const own = gait !== null && typeof gait !== "string" ? gait : null;
+  const choose = (value: string) => {
+    if (value === "own") {
+      const legs = robot.leg_names.length;
+      change("walk", { gait: { duty: 0.75, offsets: robot.leg_names.map((_, leg) => leg / legs) } });
+    } else change("walk", { gait: value === "" ? null : value });
+  };
+  return (
+    <fieldset>
+      <Select
+        label="Gait"
+        testId="gait"
+        value={own ? "own" : typeof gait === "string" ? gait : ""}
+        options={[
+          { value: "", label: `the robot’s own (${robot.gait})` },
+          ...robot.gaits.map((name) => ({ value: name, label: name })),
+          { value: "own", label: "one of my own …" },
+        ]}
+        onChange={choose}
+      />
+      {own && (
+        <>
+          <Slider
+            label="Duty factor"
+            value={own.duty}
+            min={0.5}
+            max={0.95}
+            typedMin={0.01}
+            typedMax={0.99}
+            step={0.01}
+            unit=""
+            testId="duty"
+            onChange={(duty, commit) => change("walk", { gait: { ...own, duty } }, commit)}
+          />
+          {robot.leg_codes.map((code, leg) => (
+            <Slider
+              key={code}
+              compact
+              label={code}
+              name={`${robot.leg_names[leg] ?? ""}: touches down at`}
+              value={own.offsets[leg] ?? 0}
+              min={0}
+              max={1}
+              step={0.01}
+              unit=""
+              onChange={(offset, commit) =>
+                change(
+                  "walk",
+                  { gait: { ...own, offsets: own.offsets.map((old, i) => (i === leg ? offset : old)) } },
+                  commit,
+                )
+              }
+            />
+          ))}
+        </>
+      )}
+      {walk && (
+        <p className="hint" data-testid="gait-said">
+          {walk.gait}: each foot is down for {Math.round(walk.duty * 100)} % of the cycle of{" "}
+          {walk.cycle_time_s.toFixed(2)} s.
+        </p>
+      )}
+    </fieldset>
+  );
+}

@@ -1,0 +1,119 @@
+import { Slider } from "../../controls/Slider";
+import type { WalkMessage } from "../../protocol";
+import { change } from "../../state/session";
+import { useStudio } from "../../state/store";
+import { useInputs } from "../useInputs";
+
+type Key = "stroke_mm" | "speed_mm_s" | "clearance_mm" | "lift_mm" | "cycle_time_s";
+
+interface Row {
+  key: Key;
+  label: string;
+  taken: (walk: WalkMessage) => number;
+  max: number;
+  typedMax: number;
+  step: number;
+  unit: string;
+}
+
+const ROWS: readonly Row[] = [
+  {
+    key: "speed_mm_s",
+    label: "Speed",
+    taken: (walk) => walk.speed_mm_s,
+    max: 300,
+    typedMax: 5000,
+    step: 1,
+    unit: "mm/s",
+  },
+  {
+    key: "stroke_mm",
+    label: "Stroke",
+    taken: (walk) => walk.stroke_mm,
+    max: 200,
+    typedMax: 5000,
+    step: 1,
+    unit: "mm",
+  },
+  {
+    key: "lift_mm",
+    label: "Lift",
+    taken: (walk) => walk.lift_mm,
+    max: 100,
+    typedMax: 2000,
+    step: 1,
+    unit: "mm",
+  },
+  {
+    key: "clearance_mm",
+    label: "Clearance",
+    taken: (walk) => walk.clearance_mm,
+    max: 220,
+    typedMax: 5000,
+    step: 1,
+    unit: "mm",
+  },
+];
+
+/** How it steps. What is left to the plan shows what the plan took. */
+export function StepInputs() {
+  const { state } = useInputs();
+  const walk = useStudio((studio) => studio.walk);
+  return (
+    <fieldset>
+      <legend>Steps</legend>
+      {ROWS.map(({ key, label, taken, max, typedMax, step, unit }) => {
+        const value = state.walk[key];
+        return (
+          <Slider
+            key={key}
+            label={label}
+            value={value ?? (walk ? taken(walk) : 0)}
+            min={0}
+            max={max}
+            typedMax={typedMax}
+            step={step}
+            unit={unit}
+            testId={key}
+            auto={value === null}
+            onAuto={() => change("walk", { [key]: null })}
+            onChange={(next, commit) => change("walk", { [key]: next }, commit)}
+          />
+        );
+      })}
+      <details>
+        <summary>Tilt and stance</summary>
+        <div className="inside">
+          {(["roll_deg", "pitch_deg"] as const).map((key) => (
+            <Slider
+              key={key}
+              label={key === "roll_deg" ? "Roll while walking" : "Pitch while walking"}
+              value={state.walk[key]}
+              min={-20}
+              max={20}
+              typedMin={-60}
+              typedMax={60}
+              step={0.5}
+              unit="°"
+              testId={key}
+              onChange={(next, commit) => change("walk", { [key]: next }, commit)}
+            />
+          ))}
+          <Slider
+            label="Feet from coxa axes"
+            value={state.walk.foot_distance_mm ?? 0}
+            min={0}
+            max={400}
+            typedMax={5000}
+            step={1}
+            unit="mm"
+            testId="foot_distance_mm"
+            auto={state.walk.foot_distance_mm === null}
+            onAuto={() => change("walk", { foot_distance_mm: null })}
+            onChange={(next, commit) => change("walk", { foot_distance_mm: next }, commit)}
+          />
+        </div>
+      </details>
+    </fieldset>
+  );
+}

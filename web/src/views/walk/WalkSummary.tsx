@@ -1,0 +1,50 @@
+import { Facts } from "../../controls/Facts";
+import { Message, Remarks } from "../../controls/Message";
+import { withUnit } from "../../controls/numbers";
+import type { WalkMessage } from "../../protocol";
+
+/** What the plan says of the walk. */
+export function WalkSummary({ walk }: { walk: WalkMessage }) {
+  const { end, least_margin: margin } = walk;
+  return (
+    <>
+      <Message kind={walk.possible ? "good" : "bad"} testId="walk-verdict">
+        {walk.possible ? "Every foot reaches all of its way." : "This walk does not work."}
+      </Message>
+      <Remarks kind="warn" items={walk.problems} testId="walk-problems" />
+      <Facts
+        testId="walk-facts"
+        rows={[
+          ["Takes", withUnit(walk.duration_s, 2, "s")],
+          ["Steps", walk.steps],
+          ["Stroke", withUnit(walk.stroke_mm, 1, "mm")],
+          ["Longest stroke", withUnit(walk.longest_stroke_mm, 1, "mm")],
+          ["Speed", withUnit(walk.speed_mm_s, 1, "mm/s")],
+          ["Ends at x, y", `${end.x_mm.toFixed(1)}, ${end.y_mm.toFixed(1)} mm`],
+          ["Turned by", withUnit(end.turned_deg, 1, "°")],
+          ["Least margin", `${withUnit(margin.mm, 1, "mm")} at ${withUnit(margin.at_s, 2, "s")}`],
+          ["Nearest feet", `${withUnit(walk.nearest_feet.mm, 0, "mm")} (${walk.nearest_legs.join(", ")})`],
+          ...walk.joint_speed.map(
+            (speed) =>
+              [
+                `Fastest ${speed.joint}`,
+                `${withUnit(speed.deg_s, 0, "°/s")}${speed.share_of_no_load === null ? "" : ` (${Math.round(speed.share_of_no_load * 100)} % of no-load)`}`,
+              ] as const,
+          ),
+        ]}
+      />
+      {walk.assumed.length > 0 && (
+        <details>
+          <summary>What the plan assumed</summary>
+          <div className="inside">
+            <ul>
+              {walk.assumed.map((line) => (
+                <li key={line}>{line}</li>
+              ))}
+            </ul>
+          </div>
+        </details>
+      )}
+    </>
+  );
+}

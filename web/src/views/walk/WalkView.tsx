@@ -1,0 +1,75 @@
+import { Failure } from "../../controls/Failure";
+import { Icon } from "../../controls/icons";
+import { ask, change } from "../../state/session";
+import { useStudio } from "../../state/store";
+import { useInputs } from "../useInputs";
+import { ViewHead } from "../ViewHead";
+import { GaitChoice } from "./GaitChoice";
+import { PathInputs } from "./PathInputs";
+import { StepInputs } from "./StepInputs";
+import { WalkAngles } from "./WalkAngles";
+import { WalkSummary } from "./WalkSummary";
+
+/** Plan a walk, and see it walked. */
+export function WalkView() {
+  const { state } = useInputs();
+  const walk = useStudio((studio) => studio.walk);
+  const failure = useStudio((studio) => studio.failures.walk);
+  const busy = useStudio((studio) => studio.busy.walk === true);
+  const longest = failure?.longest_stroke_mm ?? null;
+  return (
+    <div className="view">
+      <ViewHead title="Walk">
+        Plan a walk: the whole of it is worked out, then it plays here without the server.
+      </ViewHead>
+      <Failure of={["walk", "view"]}>
+        <div className="row">
+          {longest !== null && (
+            <button
+              type="button"
+              className="button small"
+              onClick={() => change("walk", { stroke_mm: Math.floor(longest * 10) / 10 })}
+            >
+              Take {Math.floor(longest * 10) / 10} mm
+            </button>
+          )}
+          <button type="button" className="button small" onClick={() => change("walk", { strict: false })}>
+            Show it all the same
+          </button>
+        </div>
+      </Failure>
+      <GaitChoice />
+      <PathInputs />
+      <StepInputs />
+      <p className="busy" aria-live="polite">
+        {busy ? "Planning …" : " "}
+      </p>
+      {walk && <WalkSummary walk={walk} />}
+      <fieldset>
+        <legend>Take it away</legend>
+        <div className="row">
+          {(["csv", "html"] as const).map((what) => (
+            <button
+              key={what}
+              type="button"
+              className="button"
+              data-testid={`download-${what}`}
+              disabled={!walk}
+              onClick={() => ask({ type: "download", what })}
+            >
+              <Icon name="save" /> {what === "csv" ? "CSV of the walk" : "HTML that plays it"}
+            </button>
+          ))}
+        </div>
+      </fieldset>
+      {walk && <WalkAngles walk={walk} />}
+      {!state.walk.strict && (
+        <div className="row">
+          <button type="button" className="button small" onClick={() => change("walk", { strict: true })}>
+            Refuse walks that don’t work
+          </button>
+        </div>
+      )}
+    </div>
+  );
+}
