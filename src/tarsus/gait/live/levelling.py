@@ -1,0 +1,267 @@
+"""Holding the body level or along the slope, its centre of mass over the support.
+
+The walker's ground frame G has a vertical of its own. On ground that is steeper than the walker knows, or on feet that
+give way, it leans against gravity's. An attitude sensor tells how: with R the attitude that B was commanded to have in
+G, and u the upward direction in B that was measured, ``R u`` is gravity's upward direction in G. Slowly averaged, it is
+the one thing estimated here; the corrections follow from it in closed form (docs/ground.md).
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Literal, NamedTuple, TypeAlias
+
+from tarsus.errors import InputError, UnknownNameError
+from tarsus.gait.live.follower import Follower
+from tarsus.gait.live.senses import Vector
+from tarsus.gait.live.slope import GroundPlane
+
+__all__ = ["MODES", "Commanded", "Correction", "Levelling", "LevellingMode", "tilt_onto"]
+
+LevellingMode: TypeAlias = Literal["level", "follow"]
+MODES: tuple[LevellingMode, ...] = ("level", "follow")
+
+# Below this an estimate that fades away has gone: a lean of less than a hundred-thousandth of a degree.
+_NOTHING = 1e-7
+_STEEPEST = 0.95  # of a direction's part along the ground: what is steeper is no ground to stand on
+
+
+class Commanded(NamedTuple):
+    """Where the walker's wish has the body, before any correction.
+
+    Attributes
+    ----------
+    roll, pitch : float
+        Of B in G, of ``Rz(yaw) Ry(pitch) Rx(roll)`` [rad].
+    yaw : float
+        Of B in G [rad].
+    height : float
+        Of B's origin over the ground beneath it, along G's z [m].
+    """
+
+    roll: float = 0.0
+    pitch: float = 0.0
+    yaw: float = 0.0
+    height: float = 0.0
+
+
+class Correction(NamedTuple):
+    """What to add to the wish.
+
+    Attributes
+    ----------
+    x, y : float
+        Shift of B along the axes of G turned by the commanded yaw [m].
+    roll, pitch : float
+        To be added to the commanded ones [rad].
+    """
+
+    x: float = 0.0
+    y: float = 0.0
+    roll: float = 0.0
+    pitch: float = 0.0
+
+
+class Levelling:
+    """The body's correction on ground that is not level, tick by tick.
+
+    ``"level"`` keeps the attitude that is wished for against gravity, ``"follow"`` against the plane through the
+    stance feet; None goes back to no correction. In both, the centre of mass stays, seen along gravity, over the place
+    where it is on level ground. Without an attitude the corrections that need one fade to zero, and gravity is taken
+    to act along G's z.
+
+    Whatever comes in, corrections stay within their bounds, change no faster than their rates, and change smoothly.
+
+    Parameters
+    ----------
+    mode : "level", "follow" or None
+        What to do; may be changed at any time by setting the attribute of that name.
+    com : (x, y, z)
+        Centre of mass in B [m].
+    carried : float
+        How far the centre of mass goes with the body when it is shifted over feet that stay, as a share: less than
+        1, as the legs' masses lag behind.
+    gain : float
+        How fast the estimate follows the sensor [1/s]. Where sensor and servos together are late by T, stable while
+        ``gain T < 1``; a third of that settles without swinging.
+    max_tilt : float
+        Greatest correction of roll and pitch, together [rad].
+    max_shift : float
+        Greatest shift [m].
+    tilt_rate, shift_rate : float
+        Greatest speeds of both [rad/s, m/s].
+    frequency : float
+        How fast the corrections follow their goals [rad/s].
+
+    Attributes
+    ----------
+    correction : Correction
+        The last.
+    lean : (x, y)
+        Gravity's upward direction in G as estimated: its parts along G's x and y.
+
+    Raises
+    ------
+    UnknownNameError
+        If there is no such mode.
+    InputError
+        If a bound is not positive, or `com` not three finite numbers.
+    """
+
+    def __init__(
+        self,
+        mode: LevellingMode | None = None,
+        *,
+        com: Vector = (0.0, 0.0, 0.0),
+        carried: float = 1.0,
+        gain: float = 1.0,
+        max_tilt: float = math.radians(20.0),
+        max_shift: float = 0.04,
+        tilt_rate: float = 0.3,
+        shift_rate: float = 0.05,
+        frequency: float = 8.0,
+    ) -> None:
+        for name, bound in (
+            ("carried", carried),
+            ("gain", gain),
+            ("max_tilt", max_tilt),
+            ("max_shift", max_shift),
+            ("tilt_rate", tilt_rate),
+            ("shift_rate", shift_rate),
+            ("frequency", frequency),
+        ):
+            if not 0 < bound < math.inf:
+                raise InputError(f"{name} is {bound}; it must be a positive number")
+        if len(com) != 3 or not all(math.isfinite(part) for part in com):
+            raise InputError(f"com is {com}; it must be three finite numbers")
+        self.mode = mode
+        self._com = (float(com[0]), float(com[1]), float(com[2]))
+        self._carried, self._gain = carried, gain
+        self._tilt = Follower(max_tilt, rate=tilt_rate, frequency=frequency)
+        self._shift = Follower(max_shift, rate=shift_rate, frequency=frequency)
+        self.correction = Correction()
+        self.lean = (0.0, 0.0)
+
+    @property
+    def mode(self) -> LevellingMode | None:
+        """What to do: "level", "follow" or None."""
+        return self._mode
+
+    @mode.setter
+    def mode(self, mode: LevellingMode | None) -> None:
+        if mode not in (None, *MODES):
+            raise UnknownNameError.of("levelling mode", str(mode), MODES)
+        self._mode = mode
+
+    def step(
+        self, dt: float, plane: GroundPlane | None, attitude: tuple[float, float] | None, commanded: Commanded
+    ) -> Correction:
+        """Return the correction after a tick.
+
+        Parameters
+        ----------
+        dt : float
+            Length of the tick [s]; nothing moves unless it is finite and positive.
+        plane : GroundPlane or None
+            The plane through the stance feet in G; None for level ground.
+        attitude : (roll, pitch) or None
+            How B leans in the world, as measured and admitted [rad].
+        commanded : Commanded
+            Where the wish has the body; nothing moves unless it is finite.
+        """
+        if not (0.0 < dt < math.inf and math.isfinite(sum(commanded))):
+            return self.correction
+        cos, sin = math.cos(commanded.yaw), math.sin(commanded.yaw)
+        self._estimate(dt, attitude, commanded, cos, sin)
+        up = _direction(*_turned(*self.lean, cos, -sin))
+        tilt = shift = (0.0, 0.0)
+        if self._mode is not None:
+            slope = _slope(plane, cos, sin)
+            steep = math.sqrt(1.0 + slope[0] * slope[0] + slope[1] * slope[1])
+            normal = (-slope[0] / steep, -slope[1] / steep, 1.0 / steep)
+            tilt = tilt_onto(up if self._mode == "level" else normal, commanded)
+            shift = self._shift_over(up, slope, commanded)
+        roll, pitch = self._tilt.step(tilt, dt)
+        x, y = self._shift.step(shift, dt)
+        self.correction = Correction(x, y, roll, pitch)
+        return self.correction
+
+    def _estimate(
+        self, dt: float, attitude: tuple[float, float] | None, commanded: Commanded, cos: float, sin: float
+    ) -> None:
+        """Move the estimate of gravity's direction in G towards what is measured, or back to G's own vertical."""
+        x = y = 0.0
+        known = attitude is not None and math.isfinite(attitude[0] + attitude[1])
+        if known and attitude is not None:
+            roll, pitch = attitude
+            tilt = math.cos(pitch)
+            up = (-math.sin(pitch), tilt * math.sin(roll), tilt * math.cos(roll))
+            # The correction that is under way is in the sum: no wind-up, whatever bounds or slows it.
+            up = _rotated(up, commanded.roll + self.correction.roll, commanded.pitch + self.correction.pitch)
+            x, y = _turned(up[0], up[1], cos, sin)
+        share = -math.expm1(-self._gain * dt)
+        x, y = self.lean[0] + share * (x - self.lean[0]), self.lean[1] + share * (y - self.lean[1])
+        self.lean = (x, y) if known or abs(x) + abs(y) > _NOTHING else (0.0, 0.0)
+
+    def _shift_over(self, up: Vector, slope: tuple[float, float], commanded: Commanded) -> tuple[float, float]:
+        """Return the shift that brings the centre of mass, seen along gravity, over its place on level ground.
+
+        That place is on the ground under the centre of mass as it was wished for, seen along G's z.
+        """
+        wished = _rotated(self._com, commanded.roll, commanded.pitch)
+        tilted = _rotated(self._com, commanded.roll + self.correction.roll, commanded.pitch + self.correction.pitch)
+        height = commanded.height + tilted[2] - slope[0] * wished[0] - slope[1] * wished[1]
+        return (
+            (height * up[0] / up[2] + wished[0] - tilted[0]) / self._carried,
+            (height * up[1] / up[2] + wished[1] - tilted[1]) / self._carried,
+        )
+
+
+def tilt_onto(up: Vector, commanded: Commanded) -> tuple[float, float]:
+    """Return what to add to roll and pitch so that B stands to a direction as it was commanded to stand to z.
+
+    Parameters
+    ----------
+    up : (x, y, z)
+        The direction, of length 1, in axes with B's yaw and G's vertical.
+    commanded : Commanded
+        Roll and pitch against z.
+
+    Returns
+    -------
+    roll, pitch : float
+        [rad].
+    """
+    if up[0] == 0.0 == up[1]:
+        return 0.0, 0.0
+    level = max(math.cos(commanded.pitch), 1.0 - _STEEPEST)
+    sine = min(max(up[1] / level, -_STEEPEST), _STEEPEST)
+    ahead = math.atan2(math.sin(commanded.pitch), level * math.sqrt(1.0 - sine * sine))
+    return -math.asin(sine), math.atan2(up[0], up[2]) + ahead - commanded.pitch
+
+
+def _turned(x: float, y: float, cos: float, sin: float) -> tuple[float, float]:
+    return x * cos - y * sin, x * sin + y * cos
+
+
+def _rotated(v: Vector, roll: float, pitch: float) -> Vector:
+    """Return ``Ry(pitch) Rx(roll) v``."""
+    cos, sin = math.cos(roll), math.sin(roll)
+    y, z = v[1] * cos - v[2] * sin, v[1] * sin + v[2] * cos
+    cos, sin = math.cos(pitch), math.sin(pitch)
+    return v[0] * cos + z * sin, y, z * cos - v[0] * sin
+
+
+def _direction(x: float, y: float) -> Vector:
+    """Return the upward direction with these parts along the ground; the steepest allowed, where it is steeper."""
+    flat = math.hypot(x, y)
+    if flat > _STEEPEST:
+        x, y = x * _STEEPEST / flat, y * _STEEPEST / flat
+    return x, y, math.sqrt(1.0 - x * x - y * y)
+
+
+def _slope(plane: GroundPlane | None, cos: float, sin: float) -> tuple[float, float]:
+    """Return the plane's slope along the axes turned by the yaw; none, where the plane is no plane."""
+    if plane is None or not math.isfinite(plane.slope_x + plane.slope_y):
+        return 0.0, 0.0
+    return _turned(plane.slope_x, plane.slope_y, cos, -sin)
