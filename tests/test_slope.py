@@ -14,8 +14,9 @@ from tarsus import default_stance, inverse_kinematics, load_robot
 from tarsus.errors import InputError, UnknownNameError
 from tarsus.gait.live.carried import carried_share
 from tarsus.gait.live.follower import Follower
-from tarsus.gait.live.levelling import Commanded, Correction, Levelling, tilt_onto
+from tarsus.gait.live.levelling import Correction, Levelling
 from tarsus.gait.live.slope import FLAT, GroundPlane, ground_plane
+from tarsus.gait.live.tilt import Commanded, tilt_onto
 from tarsus.kinematics.mass import centre_of_mass
 from tarsus.kinematics.pose import Pose
 

@@ -9,40 +9,22 @@ the one thing estimated here; the corrections follow from it in closed form (doc
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Literal, NamedTuple, TypeAlias
 
 from tarsus.errors import InputError, UnknownNameError
 from tarsus.gait.live.follower import Follower
 from tarsus.gait.live.senses import Vector
 from tarsus.gait.live.slope import GroundPlane
+from tarsus.gait.live.tilt import Commanded, direction, rotated, slope_along, tilt_onto, turned
 
-__all__ = ["MODES", "Commanded", "Correction", "Levelling", "LevellingMode", "tilt_onto"]
+__all__ = ["MODES", "Correction", "Levelling", "LevellingMode"]
 
 LevellingMode: TypeAlias = Literal["level", "follow"]
 MODES: tuple[LevellingMode, ...] = ("level", "follow")
 
 # Below this an estimate that fades away has gone: a lean of less than a hundred-thousandth of a degree.
 _NOTHING = 1e-7
-_STEEPEST = 0.95  # of a direction's part along the ground: what is steeper is no ground to stand on
-
-
-class Commanded(NamedTuple):
-    """Where the walker's wish has the body, before any correction.
-
-    Attributes
-    ----------
-    roll, pitch : float
-        Of B in G, of ``Rz(yaw) Ry(pitch) Rx(roll)`` [rad].
-    yaw : float
-        Of B in G [rad].
-    height : float
-        Of B's origin over the ground beneath it, along G's z [m].
-    """
-
-    roll: float = 0.0
-    pitch: float = 0.0
-    yaw: float = 0.0
-    height: float = 0.0
 
 
 class Correction(NamedTuple):
@@ -112,7 +94,7 @@ class Levelling:
         self,
         mode: LevellingMode | None = None,
         *,
-        com: Vector = (0.0, 0.0, 0.0),
+        com: Sequence[float] = (0.0, 0.0, 0.0),
         carried: float = 1.0,
         gain: float = 1.0,
         max_tilt: float = math.radians(20.0),
@@ -173,10 +155,10 @@ class Levelling:
             return self.correction
         cos, sin = math.cos(commanded.yaw), math.sin(commanded.yaw)
         self._estimate(dt, attitude, commanded, cos, sin)
-        up = _direction(*_turned(*self.lean, cos, -sin))
+        up = direction(*turned(*self.lean, cos, -sin))
         tilt = shift = (0.0, 0.0)
         if self._mode is not None:
-            slope = _slope(plane, cos, sin)
+            slope = slope_along(plane, cos, sin)
             steep = math.sqrt(1.0 + slope[0] * slope[0] + slope[1] * slope[1])
             normal = (-slope[0] / steep, -slope[1] / steep, 1.0 / steep)
             tilt = tilt_onto(up if self._mode == "level" else normal, commanded)
@@ -197,8 +179,8 @@ class Levelling:
             tilt = math.cos(pitch)
             up = (-math.sin(pitch), tilt * math.sin(roll), tilt * math.cos(roll))
             # The correction that is under way is in the sum: no wind-up, whatever bounds or slows it.
-            up = _rotated(up, commanded.roll + self.correction.roll, commanded.pitch + self.correction.pitch)
-            x, y = _turned(up[0], up[1], cos, sin)
+            up = rotated(up, commanded.roll + self.correction.roll, commanded.pitch + self.correction.pitch)
+            x, y = turned(up[0], up[1], cos, sin)
         share = -math.expm1(-self._gain * dt)
         x, y = self.lean[0] + share * (x - self.lean[0]), self.lean[1] + share * (y - self.lean[1])
         self.lean = (x, y) if known or abs(x) + abs(y) > _NOTHING else (0.0, 0.0)
@@ -208,60 +190,10 @@ class Levelling:
 
         That place is on the ground under the centre of mass as it was wished for, seen along G's z.
         """
-        wished = _rotated(self._com, commanded.roll, commanded.pitch)
-        tilted = _rotated(self._com, commanded.roll + self.correction.roll, commanded.pitch + self.correction.pitch)
+        wished = rotated(self._com, commanded.roll, commanded.pitch)
+        tilted = rotated(self._com, commanded.roll + self.correction.roll, commanded.pitch + self.correction.pitch)
         height = commanded.height + tilted[2] - slope[0] * wished[0] - slope[1] * wished[1]
         return (
             (height * up[0] / up[2] + wished[0] - tilted[0]) / self._carried,
             (height * up[1] / up[2] + wished[1] - tilted[1]) / self._carried,
         )
-
-
-def tilt_onto(up: Vector, commanded: Commanded) -> tuple[float, float]:
-    """Return what to add to roll and pitch so that B stands to a direction as it was commanded to stand to z.
-
-    Parameters
-    ----------
-    up : (x, y, z)
-        The direction, of length 1, in axes with B's yaw and G's vertical.
-    commanded : Commanded
-        Roll and pitch against z.
-
-    Returns
-    -------
-    roll, pitch : float
-        [rad].
-    """
-    if up[0] == 0.0 == up[1]:
-        return 0.0, 0.0
-    level = max(math.cos(commanded.pitch), 1.0 - _STEEPEST)
-    sine = min(max(up[1] / level, -_STEEPEST), _STEEPEST)
-    ahead = math.atan2(math.sin(commanded.pitch), level * math.sqrt(1.0 - sine * sine))
-    return -math.asin(sine), math.atan2(up[0], up[2]) + ahead - commanded.pitch
-
-
-def _turned(x: float, y: float, cos: float, sin: float) -> tuple[float, float]:
-    return x * cos - y * sin, x * sin + y * cos
-
-
-def _rotated(v: Vector, roll: float, pitch: float) -> Vector:
-    """Return ``Ry(pitch) Rx(roll) v``."""
-    cos, sin = math.cos(roll), math.sin(roll)
-    y, z = v[1] * cos - v[2] * sin, v[1] * sin + v[2] * cos
-    cos, sin = math.cos(pitch), math.sin(pitch)
-    return v[0] * cos + z * sin, y, z * cos - v[0] * sin
-
-
-def _direction(x: float, y: float) -> Vector:
-    """Return the upward direction with these parts along the ground; the steepest allowed, where it is steeper."""
-    flat = math.hypot(x, y)
-    if flat > _STEEPEST:
-        x, y = x * _STEEPEST / flat, y * _STEEPEST / flat
-    return x, y, math.sqrt(1.0 - x * x - y * y)
-
-
-def _slope(plane: GroundPlane | None, cos: float, sin: float) -> tuple[float, float]:
-    """Return the plane's slope along the axes turned by the yaw; none, where the plane is no plane."""
-    if plane is None or not math.isfinite(plane.slope_x + plane.slope_y):
-        return 0.0, 0.0
-    return _turned(plane.slope_x, plane.slope_y, cos, -sin)

@@ -8,7 +8,8 @@ from tarsus.errors import InputError
 from tarsus.gait.live.foot_force import STANDARD_GRAVITY
 from tarsus.gait.live.reading import number
 from tarsus.gait.live.senses import Admitted, Senses
-from tarsus.gait.live.sieve_channels import Attitudes, Contacts, Range, Vectors
+from tarsus.gait.live.sieve_attitude import Attitudes
+from tarsus.gait.live.sieve_channels import Contacts, Range, Vectors
 from tarsus.kinematics.mass import total_mass
 from tarsus.robot.robot import Robot
 
