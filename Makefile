@@ -1,16 +1,19 @@
-# Two commands do everything: `make walk` and `make test`. Each creates the environment it needs.
+# Three commands do everything: `make studio`, `make walk`, `make test`. Each creates the environment it needs.
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 ROBOT ?= strider
 OUT ?= walk
 
-.PHONY: walk test lint types tests bench figures schema clean
+.PHONY: studio walk test lint types tests web web-check browser protocol bench figures schema clean
+
+studio: $(VENV)/.run web
+	$(BIN)/tarsus studio $(ROBOT)
 
 walk: $(VENV)/.run
 	$(BIN)/tarsus walk $(ROBOT) --out $(OUT)
 
-test: lint types tests
+test: lint types web-check tests
 
 lint: $(VENV)/.dev
 	$(BIN)/ruff check .
@@ -20,12 +23,29 @@ lint: $(VENV)/.dev
 types: $(VENV)/.dev
 	$(BIN)/mypy
 
-tests: $(VENV)/.dev
+tests: $(VENV)/.dev web browser
 	$(BIN)/python -m pytest -n auto --cov --cov-report=
 	$(BIN)/coverage report
 	$(BIN)/coverage report --fail-under=100 --include='src/tarsus/errors.py,src/tarsus/arrays.py,src/tarsus/blocks.py,src/tarsus/robot/*,src/tarsus/kinematics/*,src/tarsus/gait/*,src/tarsus/load/*,src/tarsus/load/handbook/*'
 
-bench: $(VENV)/.dev
+# The studio's pages; Node is the machine's, or is put into the environment.
+web: | $(VENV)/bin/python
+	$(BIN)/python hatch_build.py
+
+web-check: | $(VENV)/bin/python
+	$(BIN)/python hatch_build.py check size
+
+# The end-to-end tests drive a real Chromium.
+browser:
+	@command -v chromium >/dev/null || { \
+	  if [ "$$(id -u)" = 0 ] && command -v apt-get >/dev/null; then \
+	    apt-get update -qq && DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends chromium; \
+	  else echo "The tests of the studio need Chromium as the command chromium: install your system's package of that name."; exit 1; fi; }
+
+protocol: $(VENV)/.dev
+	$(BIN)/python -m tarsus.studio.messages.typescript web/src/protocol.ts
+
+bench: $(VENV)/.dev web
 	$(BIN)/python benchmarks/run.py
 
 figures: $(VENV)/.dev
@@ -36,7 +56,7 @@ schema: $(VENV)/.dev
 	$(BIN)/tarsus robots schema > src/tarsus/robot/robot.schema.json
 
 clean:
-	rm -rf $(VENV) .mypy_cache .ruff_cache .pytest_cache .hypothesis .coverage walk build dist benchmarks/build
+	rm -rf $(VENV) .mypy_cache .ruff_cache .pytest_cache .hypothesis .coverage walk build dist benchmarks/build web/node_modules src/tarsus/studio/web_dist
 
 # The environment for walking is small; the one for developing adds the checkers and the references of the tests.
 $(VENV)/bin/python:
@@ -44,7 +64,7 @@ $(VENV)/bin/python:
 	$(PYTHON) -m venv $(VENV)
 
 $(VENV)/.run: pyproject.toml constraints.txt | $(VENV)/bin/python
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[cli,plots]'
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[cli,plots,studio]'
 	@touch $@
 
 $(VENV)/.dev: pyproject.toml constraints.txt | $(VENV)/bin/python

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from tarsus import __version__
+from tarsus.errors import TarsusError
 from tarsus.gait.gait import GAITS
 from tarsus.robot.catalogue import list_servos
 from tarsus.robot.file import list_robots, robot_schema
@@ -116,9 +117,11 @@ class Session:
             return None
         try:
             return self._driver.step(dt)
-        except Exception as error:  # as above
-            driver, self._driver = self._driver, None
-            return error_message(error, id=driver.id)
+        except Exception as error:  # as above; a wish that is refused leaves the walker as it is
+            answer = error_message(error, id=self._driver.id)
+            if not isinstance(error, TarsusError):
+                self._driver = None
+            return answer
 
     def _done(self, id: int | None, *, tell: bool = False) -> Done:
         text = None

@@ -102,15 +102,29 @@ class Serving:
 
 def _listen(host: str, port: int) -> socket.socket:
     try:
-        found = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0]
-        return socket.create_server(found[4][:2], family=found[0])
+        family, kind, protocol, _, address = socket.getaddrinfo(
+            host, port, type=socket.SOCK_STREAM, proto=socket.IPPROTO_TCP
+        )[0]
+        # Only of a socket that says it is TCP does asyncio send small messages at once: else each waits 40 ms.
+        listener = socket.socket(family, kind, protocol)
     except OSError as error:
         raise InputError(_why(host, port, error)) from None
     except (OverflowError, UnicodeError):
         raise InputError(f"{host!r}, port {port}: there is no such address") from None
+    try:
+        if os.name == "posix":
+            listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        listener.bind(address)
+        listener.listen()
+    except OSError as error:
+        listener.close()
+        raise InputError(_why(host, port, error)) from None
+    return listener
 
 
 def _why(host: str, port: int, error: OSError) -> str:
+    if isinstance(error, socket.gaierror):
+        return f"can't listen at {host!r}: {error.strerror}"
     if error.errno == errno.EADDRINUSE:
         return f"port {port} at {host} is taken; choose another with --port, or --port 0 for any that is free"
     if error.errno in (errno.EACCES, errno.EPERM):
