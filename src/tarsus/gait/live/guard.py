@@ -163,9 +163,9 @@ class Guard:
             faults.append(command)
         else:
             faults += self._joints.within(command)
-            faults += self._look_at_feet(command, contacts, body)
             if step > 0 and self._state == "passing" and self._started:
                 faults += self._joints.too_rash(command, step)
+            faults += self._look_at_feet(command, contacts, body)
         readable = None if isinstance(command, Fault) else command
         if not self._started and faults:
             self._start_in_stance()
@@ -272,7 +272,7 @@ class Guard:
         self._joints.brake(step)
         if gap:
             self._joints.forget_step()
-        self._at_rest_for = self._at_rest_for + step if self._joints.at_rest else 0.0
+        self._at_rest_for = self._at_rest_for + step if self._joints.at_rest and not gap else 0.0
         if self._policy == "sit" and not self._seated and self._at_rest_for > self.bounds.sit_after:
             down, up = self._feet.down, self._feet.up
             self._state = "sitting"

@@ -51,7 +51,7 @@ class GuardBounds:
     margin : float
         Least stability margin [m]; minus infinity for no check.
     drag : float
-        How far two feet may move against each other while both are said to be down [m]; infinity for no check.
+        How much the distance between two feet may change while both are said to be down [m]; infinity for no check.
     ground : float
         How far a foot that is said to be down may be above or below the ground's plane [m]; infinity for no check.
     slope : float

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import deque
 from collections.abc import Mapping
 from types import MappingProxyType
@@ -77,8 +78,9 @@ class Intervention(NamedTuple):
         """Return it as a line of text, in mm and degrees."""
         unit, scale = KINDS[self.kind]
         where = " ".join(name for name in (self.leg, self.joint) if name)
-        number = f"{self.value * scale:.4g} {unit} (bound {self.bound * scale:.4g})"
-        return f"{self.kind}: {where + ' ' if where else ''}{number} at {self.time:.3f} s"
+        number = "" if math.isnan(self.value) else f" {self.value * scale:.4g} {unit}"
+        bound = "" if math.isnan(self.bound) else f" (bound {self.bound * scale:.4g})"
+        return f"{self.kind}:{' ' + where if where else ''}{number}{bound} at {self.time:.3f} s"
 
 
 class Guarded(NamedTuple):

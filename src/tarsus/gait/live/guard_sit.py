@@ -1,4 +1,4 @@
-"""Sitting down: the body is lowered straight onto its belly, every foot staying where it is over the ground."""
+"""Sitting down: the feet in the air are set down, then the body is lowered straight onto its belly."""
 
 from __future__ import annotations
 
@@ -55,14 +55,17 @@ class Sitting:
         up: tuple[float, float, float],
     ) -> None:
         self._robot, self._bounds, self._joints = robot, bounds, joints
-        self._shape = (robot.legs, 3)
         self._slow = bounds.recovery * bounds.speed
-        self._feet = self._points()[:, 3]
-        standing = self._feet[np.ones(robot.legs, bool) if down is None else np.array(down)]
         self._up = np.array(up)
-        self._ground = float((standing @ self._up).mean()) if standing.size else math.inf
         self._belly = float((_lowest_of_body(robot) @ self._up).min())
-        self._lowered = 0.0
+        # Where the feet are to be, and how high over the ground those are that are not on it.
+        self._feet = self._points()[:, 3]
+        heights = self._feet @ self._up
+        standing = heights if down is None else heights[np.array(down)]
+        self._ground = float(standing.mean()) if standing.size else math.inf
+        self._in_air = np.zeros(robot.legs)
+        if down is not None and standing.size:
+            self._in_air = np.where(down, 0.0, heights - self._ground)
         self._speed = 0.0
 
     def step(self, dt: float) -> bool:
@@ -74,33 +77,49 @@ class Sitting:
             The time step [s].
         """
         points = self._points()
-        remaining = self._height(points) - self._bounds.sit_height
+        highest = float(np.abs(self._in_air).max())
+        if highest > _ARRIVED:
+            if self._move(points, -self._in_air / highest, highest, dt):
+                self._in_air *= 1 - self._speed * dt / highest
+                return True
+            # A foot that can't be set down stays as high over the ground as it is.
+            self._in_air, self._speed = np.zeros_like(self._in_air), 0.0
+        if not self._move(points, np.ones(len(points)), self._height(points) - self._bounds.sit_height, dt):
+            return False
+        self._ground += self._speed * dt
+        return True
+
+    def _move(self, points: Floats, direction: Floats, remaining: float, dt: float) -> bool:
+        """Move the feet in B along up, by shares of a speed, if anything remains and the bounds permit."""
         if remaining <= _ARRIVED:
             return False
         most = self._bounds.sit_speed
         gain = most / _STARTING_TIME
-        speed = min(self._speed + gain * dt, most, math.sqrt(2 * gain * remaining), remaining / dt)
-        return any(self._lower(points[:, 3], share * speed, dt) for share in _SHARES)
+        fastest = min(self._speed + gain * dt, most, math.sqrt(2 * gain * remaining), remaining / dt)
+        for speed in (share * fastest for share in _SHARES):
+            feet = self._feet + (speed * dt * direction)[:, None] * self._up
+            if self._send(feet - points[:, 3], dt):
+                self._feet, self._speed = feet, speed
+                return True
+        return False
 
-    def _lower(self, feet: Floats, speed: float, dt: float) -> bool:
-        """Lower the body at a speed if the joints' bounds permit."""
-        lowered = self._lowered + speed * dt
-        miss = self._feet + lowered * self._up - feet
+    def _send(self, miss: Floats, dt: float) -> bool:
+        """Send the joints to where the feet are moved by `miss`, if the bounds permit."""
+        now = self._angles()
         try:
-            turn = np.linalg.solve(leg_jacobian(self._robot, self._angles()), miss[..., None])[..., 0]
+            turn = np.linalg.solve(leg_jacobian(self._robot, now), miss[..., None])[..., 0]
         except np.linalg.LinAlgError:
             return False
         if not (np.abs(turn) <= self._slow * dt).all():
             return False
-        angles: list[float] = (self._angles() + turn).ravel().tolist()
+        angles: list[float] = (now + turn).ravel().tolist()
         if self._joints.within(angles) or self._joints.too_rash(angles, dt):
             return False
         self._joints.send(angles, dt)
-        self._lowered, self._speed = lowered, speed
         return True
 
     def _angles(self) -> Floats:
-        return np.array(self._joints.angles).reshape(self._shape)
+        return np.array(self._joints.angles).reshape(self._robot.legs, 3)
 
     def _points(self) -> Floats:
         points: Floats = forward_kinematics(self._robot, self._angles())
@@ -109,7 +128,7 @@ class Sitting:
     def _height(self, points: Floats) -> float:
         """Return how high the lowest point of body and legs, but the feet, is over the ground."""
         lowest = min(self._belly, float((points[:, :3] @ self._up).min()))
-        return lowest - self._ground - self._lowered
+        return lowest - self._ground
 
 
 def _lowest_of_body(robot: Robot) -> Floats:
