@@ -138,6 +138,8 @@ def test_what_is_no_reading_is_refused_and_named(sense, value, reason):
     assert sieve.counts == {reason: 1}
     for other in GOOD.keys() - {sense}:
         assert getattr(found, other) is not None
+    # Good again, it is on trial.
+    assert getattr(admitted(sieve, **GOOD), sense) is None
 
 
 @pytest.mark.parametrize(

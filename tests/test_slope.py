@@ -171,6 +171,10 @@ def test_follower_comes_to_exactly_nothing_and_stays_for_ticks_that_are_none():
     for _ in range(1000):
         follower.step((0.0, 0.0), 0.01)
     assert follower.values == (0.0, 0.0)
+    far = Follower(0.5, rate=1.0, frequency=10.0)
+    for _ in range(400):
+        far.step((0.36, 0.48), 0.01)
+    assert far.values == pytest.approx((0.3, 0.4))
     # One tick of a week is as good as many.
     assert follower.step((0.6, 0.8), 1e6) == pytest.approx((0.6, 0.8), abs=1e-6)
 

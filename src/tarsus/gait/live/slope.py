@@ -14,7 +14,7 @@ from tarsus.kinematics.polygon import as_mask
 __all__ = ["FLAT", "GroundPlane", "ground_plane"]
 
 # Feet are as good as in a line where their spread across it is this share of their spread along it, squared: there
-# a millimetre's error in a foot's height would tilt the plane by degrees.
+# a millimetre's error in a foot's height would tilt the plane by degrees. Two feet, or one, always are.
 _NARROW = 0.05**2
 _FARTHEST = 1e9  # [m]; beyond, squares of squares would overflow
 
@@ -112,7 +112,7 @@ def _one(feet: list[list[float]], contacts: list[bool], previous: GroundPlane) -
         xx, xy, yy = xx + x * x, xy + x * y, yy + y * y
         xz, yz = xz + x * z, yz + y * z
     area = xx * yy - xy * xy
-    if count < 3 or area <= _NARROW * (xx + yy) ** 2:
+    if area <= _NARROW * (xx + yy) ** 2:
         return GroundPlane(mean_x, mean_y, mean_z, previous.slope_x, previous.slope_y)
     return GroundPlane(mean_x, mean_y, mean_z, (yy * xz - xy * yz) / area, (xx * yz - xy * xz) / area)
 
@@ -127,7 +127,7 @@ def _many(feet: np.ndarray[Any, Any], contacts: np.ndarray[Any, Any], previous: 
     x, y, z = np.moveaxis(np.where(contacts[..., None], feet - mean[..., None, :], 0.0), -1, 0)
     xx, xy, yy, xz, yz = ((a * b).sum(-1) for a, b in ((x, x), (x, y), (y, y), (x, z), (y, z)))
     area = xx * yy - xy * xy
-    plane = (count >= 3) & (area > _NARROW * (xx + yy) ** 2)
+    plane = area > _NARROW * (xx + yy) ** 2
     area = np.where(plane, area, 1.0)
     down = count > 0
     return GroundPlane(
