@@ -1,16 +1,149 @@
-"""One source document as a message."""
+"""One source document as a message: its equations with the live numbers in them, and its mistakes."""
 
 from __future__ import annotations
 
-from tarsus.studio.messages.plain import SourceMessage
-from tarsus.studio.messages.state import SourceChoice
-from tarsus.studio.standing import OnFootholds
+import math
+from collections.abc import Iterator
 
-__all__ = ["source_message"]
+import numpy as np
+
+from tarsus.studio.messages.plain import Equation, Erratum, MathNode, SourceMessage
+from tarsus.studio.messages.state import SourceChoice
+from tarsus.studio.sources.document import Document, Given, Line, Slip
+from tarsus.studio.sources.errata import Row, errata
+from tarsus.studio.sources.expression import Expression, Quantity, symbol_node
+from tarsus.studio.sources.live import Live
+from tarsus.studio.sources.torques import torque_equations, torque_slips
+from tarsus.studio.standing import OnFootholds
+from tarsus.studio.wire import or_null
+
+__all__ = ["DOCUMENTS", "source_message"]
+
+
+def _documents() -> dict[str, Document]:
+    from tarsus.studio.sources import doc000, doc001, doc002, doc003, doc004
+
+    return {module.DOCUMENT.number: module.DOCUMENT for module in (doc000, doc001, doc002, doc003, doc004)}
+
+
+DOCUMENTS = _documents()
+"""The five documents, by their numbers."""
+
+_SIDEWAYS = "this robot's femur axis lies {:.1f} mm beside its coxa axis, of which the document does not know"
+_OURS_DIFFERS = "Tarsus has {}: {}"
+_AGREES = 1e-6
 
 
 def source_message(standing: OnFootholds, choice: SourceChoice, *, id: int) -> SourceMessage:
-    """Return it."""
+    """Return a document with the numbers of a leg as it stands.
+
+    Parameters
+    ----------
+    standing : OnFootholds
+        How the robot stands.
+    choice : SourceChoice
+        Which document, which leg.
+    id : int
+        Of the message that is answered.
+    """
+    document, leg = DOCUMENTS[choice.number], Live.of(standing, choice.leg)
+    symbols: dict[str, Quantity] = {}
+    equations = [_equation(f"{index}.{line.symbol}", line, leg, symbols) for index, line in enumerate(document.lines)]
+    if choice.number == "004":
+        equations += torque_equations(leg.robot, leg.leg)
     return SourceMessage(
-        type="source", id=id, number=choice.number, title="", about="", leg=choice.leg, equations=[], errata=[]
+        type="source",
+        id=id,
+        number=document.number,
+        title=document.title,
+        about=" ".join((document.about, *_caveats(document, leg))),
+        leg=choice.leg,
+        equations=equations,
+        errata=list(_errata(document, leg, symbols)),
+    )
+
+
+def _caveats(document: Document, leg: Live) -> Iterator[str]:
+    beside = leg.offset[0] * 1000
+    if beside and not document.sideways:
+        yield f"Mind: {_SIDEWAYS.format(beside)}."
+
+
+def _equation(key: str, line: Line, leg: Live, symbols: dict[str, Quantity]) -> Equation:
+    """Work a line out, and keep what comes out for later lines."""
+    if isinstance(line, Given):
+        quantity = Quantity(float(line.number(leg)), line.unit)
+        formula = numbers = ours = note = None
+    else:
+        expression = Expression(line.formula)
+        quantity = Quantity(_within_a_turn(expression.value(symbols), line.unit), line.unit)
+        formula, numbers = expression.formula(), expression.numbers(symbols)
+        ours = line.ours or None
+        note = None if line.number is None else _difference(line.ours, quantity, float(line.number(leg)))
+    symbols[line.symbol] = quantity
+    return Equation(
+        key=key,
+        name=line.name,
+        symbol=symbol_node(line.symbol),
+        formula=formula,
+        numbers=numbers,
+        plain=_plain(line, quantity),
+        value=_shown(quantity),
+        unit=line.unit,
+        ours=ours,
+        printed_value=None,
+        note=note,
+    )
+
+
+def _within_a_turn(value: float, unit: str) -> float:
+    return math.remainder(value, 2 * math.pi) if unit == "deg" and math.isfinite(value) else value
+
+
+def _difference(name: str, quantity: Quantity, ours: float) -> str | None:
+    """Tell where the document does not give what Tarsus has: for a knee that is down, or an offset femur axis."""
+    apart = quantity.value - ours
+    if quantity.unit == "deg":
+        apart = math.remainder(apart, 2 * math.pi) if math.isfinite(apart) else apart
+    if abs(apart) < _AGREES:
+        return None
+    unit = "" if quantity.unit == "deg" else f" {quantity.unit}"
+    return _OURS_DIFFERS.format(name, Quantity(ours, quantity.unit).text + unit)
+
+
+def _shown(quantity: Quantity) -> float | None:
+    return or_null(quantity.shown, decimals=6)
+
+
+def _plain(line: Line, quantity: Quantity) -> str:
+    unit = "" if quantity.unit in ("deg", "") else f" {quantity.unit}"
+    value = f"{quantity.text}{unit}" if np.isfinite(quantity.value) else "no number"
+    formula = "" if isinstance(line, Given) else f" = {line.formula.replace(' ** 2', '²').replace(' * ', ' ')}"
+    return f"{line.symbol}{formula} = {value}"
+
+
+def _errata(document: Document, leg: Live, symbols: dict[str, Quantity]) -> Iterator[Erratum]:
+    torques = torque_slips(leg.robot, leg.leg) if document.number == "004" else {}
+    for row in errata():
+        if row.number == document.number:
+            slip = document.slips.get(row.test)
+            yield torques.get(row.test) or _erratum(row, slip, symbols)
+
+
+def _erratum(row: Row, slip: Slip | None, symbols: dict[str, Quantity]) -> Erratum:
+    formulas: list[MathNode | None] = [None, None]
+    values: list[float | None] = [None, None]
+    if slip is not None:
+        both = [Expression(slip.printed), Expression(slip.right)]
+        formulas = [expression.formula() for expression in both]
+        values = [_shown(Quantity(expression.value(symbols), slip.unit)) for expression in both]
+    return Erratum(
+        printed=row.printed,
+        right=row.right,
+        why=row.why,
+        printed_formula=formulas[0],
+        right_formula=formulas[1],
+        printed_value=values[0],
+        right_value=values[1],
+        unit="" if slip is None else slip.unit,
     )

@@ -1,0 +1,75 @@
+"""Source 003: inverse kinematics of a leg, and of the body."""
+
+from __future__ import annotations
+
+import math
+
+from tarsus.studio.sources.document import Document, Given, Slip, Step
+
+__all__ = ["DOCUMENT"]
+
+_TURNED = "cos(theta) * cos(beta) - sin(theta) * sin(alpha) * sin(beta)"
+
+DOCUMENT = Document(
+    number="003",
+    title="Modeling and Control of Robots – Project 2",
+    about="Team 21: E. Veluchami, K. R. Nagaraj, S. S. Kumar, S. P. Murugan, J. Suresh. A leg's angles, and the body "
+    "turned and moved over feet that stand still. Its y points up; femur and tibia angles count downwards.",
+    lines=(
+        Given("X", "foot from the coxa axis, outward", "mm", lambda leg: leg.foot[0]),
+        Given("Z", "foot from the coxa axis, to the left", "mm", lambda leg: leg.foot[1]),
+        Given("Y", "depth of the foot below the femur axis", "mm", lambda leg: leg.offset[1] - leg.foot[2]),
+        Given("coxa", "length of the coxa", "mm", lambda leg: leg.length("coxa")),
+        Given("femur", "length of the femur", "mm", lambda leg: leg.length("femur")),
+        Given("tibia", "length of the tibia", "mm", lambda leg: leg.length("tibia")),
+        Step("C_Angle", "coxa angle", "deg", "atan2(Z, X)", "coxa", lambda leg: leg.angles[0]),
+        Step("l", "foot from the coxa axis, seen from above", "mm", "sqrt(X ** 2 + Z ** 2)"),
+        Step("HF", "from the femur axis to the foot", "mm", "sqrt((l - coxa) ** 2 + Y ** 2)"),
+        Step("A1", "between HF and the vertical", "deg", "atan2(l - coxa, Y)"),
+        Step(
+            "A2",
+            "between HF and the femur",
+            "deg",
+            "acos((tibia ** 2 - femur ** 2 - HF ** 2) / (-2 * femur * HF))",
+        ),
+        Step("F_Angle", "femur angle, down", "deg", "deg(90) - (A1 + A2)", "−femur", lambda leg: -leg.angles[1]),
+        Step(
+            "B1",
+            "angle inside the knee",
+            "deg",
+            "acos((HF ** 2 - tibia ** 2 - femur ** 2) / (-2 * femur * tibia))",
+            "tibia + 180°",
+            lambda leg: leg.angles[2] + math.pi,
+        ),
+        Step(
+            "T_Angle",
+            "tibia angle, from the perpendicular of the femur",
+            "deg",
+            "deg(90) - B1",
+            "−90° − tibia",
+            lambda leg: -math.pi / 2 - leg.angles[2],
+        ),
+        Given("theta", "turn of the body about x", "deg", lambda leg: leg.rpy[0]),
+        Given("alpha", "turn of the body about z there, our y", "deg", lambda leg: leg.rpy[1]),
+        Given("beta", "turn of the body about y there, our z", "deg", lambda leg: leg.rpy[2]),
+        Step(
+            "R_22", "middle entry of the rotation", "", _TURNED, "cos(roll) cos(yaw) − …", lambda leg: _middle(*leg.rpy)
+        ),
+    ),
+    slips={
+        "test_003_erratum_the_femur_angle_wants_a_depth": Slip(
+            "deg(90) - (atan((l - coxa) / -Y) + A2)", "deg(90) - (atan((l - coxa) / Y) + A2)", "deg"
+        ),
+        "test_003_erratum_a_sign_in_the_rotation": Slip(
+            "cos(theta) * cos(beta) + sin(theta) * sin(alpha) * sin(beta)", _TURNED, ""
+        ),
+    },
+)
+
+
+def _middle(roll: float, pitch: float, yaw: float) -> float:
+    """Return the middle entry of roll times pitch times yaw, the yaw first."""
+    from tarsus.kinematics.pose import Pose
+
+    turned = Pose.from_rpy(roll=roll) @ Pose.from_rpy(pitch=pitch) @ Pose.from_rpy(yaw=yaw)
+    return float(turned.rotation[1, 1])

@@ -1,0 +1,41 @@
+"""Source 004: inverse kinematics of a robot with its coxa axes on a circle; its torques are `handbook`'s."""
+
+from __future__ import annotations
+
+from tarsus.studio.sources.document import Document, Given, Slip, Step
+from tarsus.studio.sources.live import Live
+
+__all__ = ["DOCUMENT"]
+
+DOCUMENT = Document(
+    number="004",
+    title="Torque calculations and Inverse Kinematics",
+    about="Author not given. A robot with its coxa axes on a circle, Tarsus' preset strider: the angles of a leg, and "
+    "the torques by a method for pencil and paper. What the joints really bear is in the view Loads.",
+    lines=(
+        Given("v_x", "foot from the coxa axis in the body frame, forward", "mm", lambda leg: _from_mount(leg)[0]),
+        Given("v_y", "foot from the coxa axis in the body frame, left", "mm", lambda leg: _from_mount(leg)[1]),
+        Given("v_z", "foot from the femur axis, up", "mm", lambda leg: leg.foot[2] - leg.offset[1]),
+        Given("psi", "direction of the leg", "deg", lambda leg: leg.yaw),
+        Given("L1", "length of the coxa", "mm", lambda leg: leg.length("coxa")),
+        Given("L2", "length of the femur", "mm", lambda leg: leg.length("femur")),
+        Given("L3", "length of the tibia", "mm", lambda leg: leg.length("tibia")),
+        Step("q1", "coxa angle", "deg", "atan2(v_y, v_x) - psi", "coxa", lambda leg: leg.angles[0]),
+        Step("rho", "reach from the femur axis", "mm", "hypot(v_x, v_y) - L1"),
+        Step("D", "from the femur axis to the foot", "mm", "sqrt(rho ** 2 + v_z ** 2)"),
+        Step("alpha", "between femur and D", "deg", "acos((L2 ** 2 + D ** 2 - L3 ** 2) / (2 * L2 * D))"),
+        Step("gamma", "between D and the horizontal", "deg", "atan2(v_z, rho)"),
+        Step("q2", "femur angle", "deg", "gamma + alpha", "femur", lambda leg: leg.angles[1]),
+        Step("beta", "angle inside the knee", "deg", "acos((L2 ** 2 + L3 ** 2 - D ** 2) / (2 * L2 * L3))"),
+        Step("q3", "bend of the knee", "deg", "deg(180) - beta", "−tibia", lambda leg: -leg.angles[2]),
+    ),
+    slips={
+        "test_004_erratum_q1_is_less_the_mounting_angle": Slip("atan2(v_y, v_x)", "atan2(v_y, v_x) - psi", "deg"),
+        "test_004_erratum_the_other_convention_does_not_close": Slip("-beta", "deg(180) - beta", "deg"),
+    },
+)
+
+
+def _from_mount(leg: Live) -> tuple[float, float]:
+    ahead, aside, _ = leg.foot_in_body - leg.mount
+    return float(ahead), float(aside)

@@ -1,0 +1,80 @@
+"""The errata of docs/sources.md, as data of the package: ``python -m tarsus.studio.sources.errata docs/sources.md``.
+
+The page is where they are written; ``errata.json`` beside this module is taken from it, and a test holds that it still
+says the same.
+"""
+
+from __future__ import annotations
+
+import html
+import json
+import re
+import sys
+from functools import cache
+from pathlib import Path
+from typing import NamedTuple
+
+__all__ = ["Row", "errata", "rows_of_page"]
+
+_JSON = Path(__file__).with_name("errata.json")
+_HEADER = ["as printed", "right", "why", "test"]
+
+
+class Row(NamedTuple):
+    """A row of a table of errata.
+
+    Attributes
+    ----------
+    number : str
+        The document's number.
+    printed, right, why : str
+        The row's texts.
+    test : str
+        Name of the test that holds it.
+    """
+
+    number: str
+    printed: str
+    right: str
+    why: str
+    test: str
+
+
+@cache
+def errata() -> tuple[Row, ...]:
+    """Return all errata, in the page's order."""
+    return tuple(Row(*row) for row in json.loads(_JSON.read_text(encoding="utf-8")))
+
+
+def rows_of_page(text: str) -> tuple[Row, ...]:
+    """Return the errata that a page's tables hold.
+
+    Parameters
+    ----------
+    text : str
+        The Markdown of docs/sources.md.
+    """
+    rows: list[Row] = []
+    number, inside = "", False
+    for line in text.splitlines():
+        found = re.match(r"## (\d{3}):", line)
+        number = found[1] if found else number
+        cells = [_plain(cell) for cell in line.strip("|").split("|")] if line.startswith("|") else []
+        if cells == _HEADER:
+            inside = True
+        elif not cells:
+            inside = False
+        elif inside and not set(cells[0]) <= {"-"}:
+            printed, right, why, test = cells
+            rows.append(Row(number, printed, right, why, test))
+    return tuple(rows)
+
+
+def _plain(cell: str) -> str:
+    """Return a cell's text without Markdown's marks."""
+    return html.unescape(re.sub(r"</?code>|`", "", cell.strip()))
+
+
+if __name__ == "__main__":
+    found_rows = rows_of_page(Path(sys.argv[1]).read_text(encoding="utf-8"))
+    _JSON.write_text(json.dumps(found_rows, ensure_ascii=False, indent=1) + "\n", encoding="utf-8")

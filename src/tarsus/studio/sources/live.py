@@ -1,0 +1,104 @@
+"""The numbers of one leg as it stands, in the words that the source documents share."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Self
+
+import numpy as np
+
+from tarsus.kinematics.body import coxa_frames
+from tarsus.kinematics.leg import forward_kinematics
+from tarsus.kinematics.stance import reachable_band
+from tarsus.robot.robot import Robot
+from tarsus.studio.standing import OnFootholds
+
+__all__ = ["Live"]
+
+Floats = np.ndarray[Any, np.dtype[np.float64]]
+
+
+@dataclass(frozen=True, eq=False)
+class Live:
+    """One leg of a robot that stands.
+
+    Attributes
+    ----------
+    robot : Robot
+        A single robot.
+    leg : int
+        Which leg.
+    angles : array, shape (3,)
+        Of coxa, femur and tibia [rad].
+    foot : array, shape (3,)
+        Where the foot is, in the leg's coxa frame C [m].
+    foot_in_body : array, shape (3,)
+        The same in B [m].
+    mount : array, shape (3,)
+        Where the coxa axis is, in B [m].
+    rpy : array, shape (3,)
+        Attitude of the body [rad].
+    clearance : float
+        Height of the body's origin before it was moved [m].
+    """
+
+    robot: Robot
+    leg: int
+    angles: Floats
+    foot: Floats
+    foot_in_body: Floats
+    mount: Floats
+    rpy: Floats
+    clearance: float
+
+    @classmethod
+    def of(cls, standing: OnFootholds, leg: int) -> Self:
+        """Return the numbers of a leg.
+
+        Parameters
+        ----------
+        standing : OnFootholds
+            How the robot stands.
+        leg : int
+            Which leg.
+        """
+        robot, angles = standing.solution.robot, np.asarray(standing.solution.angles)
+        feet = np.asarray(forward_kinematics(robot, angles))[:, 3]
+        in_legs = np.asarray(coxa_frames(robot).inverse() @ feet[:, None])[:, 0]
+        return cls(
+            robot=robot,
+            leg=leg,
+            angles=angles[leg],
+            foot=in_legs[leg],
+            foot_in_body=feet[leg],
+            mount=np.asarray(robot.mount_position)[leg],
+            rpy=np.asarray(standing.body.rpy),
+            clearance=float(standing.start.position[2]),
+        )
+
+    def length(self, link: str) -> float:
+        """Return the length of a link [m].
+
+        Parameters
+        ----------
+        link : str
+            ``"coxa"``, ``"femur"`` or ``"tibia"``.
+        """
+        return float(getattr(self.robot, link)[self.leg])
+
+    @property
+    def yaw(self) -> float:
+        """Direction in which the leg is mounted [rad]."""
+        return float(self.robot.mount_yaw[self.leg])
+
+    @property
+    def offset(self) -> tuple[float, float]:
+        """How far the femur axis lies beside and above the coxa axis [m]."""
+        side, up = self.robot.femur_axis_offset[self.leg]
+        return float(side), float(up)
+
+    @property
+    def band(self) -> tuple[float, float]:
+        """How near and how far the foot can stand straight out [m]; NaN where it can't."""
+        near, far = reachable_band(self.robot, np.asarray(-self.clearance))
+        return float(near[self.leg]), float(far[self.leg])

@@ -1,0 +1,114 @@
+"""Source 004's torques: the lines of `handbook`, for the robot that is shown."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+
+from tarsus.load.handbook.lines import Line
+from tarsus.load.handbook.method import handbook
+from tarsus.robot.robot import Robot
+from tarsus.studio.messages.plain import Equation, Erratum, MathNode
+from tarsus.studio.sources.errata import errata
+from tarsus.studio.sources.expression import Expression, symbol_node
+from tarsus.studio.wire import or_null
+
+__all__ = ["torque_equations", "torque_slips"]
+
+_LEAST_LEGS_DOWN = 3
+
+_SECTIONS: Mapping[str, str] = {
+    "given": "given",
+    "weight": "weight",
+    "swing": "a leg that swings freely",
+    "inertia": "inertia about the coxa axis",
+    "stance": "standing on three feet",
+    "walk": "walking on three feet",
+}
+
+# The line of the hand method that each mistake is in.
+_SLIPS: Mapping[str, str] = {
+    "test_004_erratum_femur_swing_torque_takes_the_coxas_arm": "swing.femur",
+    "test_004_erratum_coxa_inertia": "inertia.coxa",
+    "test_004_erratum_femur_inertia_takes_a_tenth_of_the_mass": "inertia.femur_at_coxa",
+    "test_004_erratum_total_inertia_follows": "inertia.leg",
+    "test_004_erratum_gravity_has_no_moment_about_a_vertical_axis": "swing.gravity",
+    "test_004_erratum_the_cubes_inertia_takes_a_length_unsquared": "walk.inertia",
+}
+
+
+def torque_equations(robot: Robot, leg: int) -> list[Equation]:
+    """Return the hand method's lines; none where the robot's masses are unknown.
+
+    Parameters
+    ----------
+    robot : Robot
+        A single robot.
+    leg : int
+        The leg that stands for all.
+    """
+    if not robot.has_masses:
+        return []
+    return [_equation(line) for line in handbook(robot, leg=leg, feet_down=_LEAST_LEGS_DOWN).lines]
+
+
+def _equation(line: Line) -> Equation:
+    section = _SECTIONS[line.key.partition(".")[0]]
+    formula = f" = {line.formula}" if line.formula else ""
+    return Equation(
+        key=line.key,
+        name=section,
+        symbol=_symbol(line.symbol),
+        formula=_node(line.formula),
+        numbers=_node(line.substitution),
+        plain=f"{line.symbol}{formula} = {line.value:.5g} {line.unit}",
+        value=or_null(line.value, decimals=9),
+        unit=line.unit,
+        ours=None,
+        printed_value=line.printed,
+        note=line.note or None,
+    )
+
+
+def torque_slips(robot: Robot, leg: int) -> dict[str, Erratum]:
+    """Return the mistakes in the hand method with this robot's numbers, by the names of their tests.
+
+    Parameters
+    ----------
+    robot : Robot
+        A single robot.
+    leg : int
+        The leg that stands for all.
+    """
+    if not robot.has_masses:
+        return {}
+    printed, right = (handbook(robot, leg=leg, corrected=corrected) for corrected in (False, True))
+    slips = {}
+    for row in errata():
+        if row.test in _SLIPS:
+            as_printed, as_it_is = printed.line(_SLIPS[row.test]), right.line(_SLIPS[row.test])
+            slips[row.test] = Erratum(
+                printed=row.printed,
+                right=row.right,
+                why=row.why,
+                printed_formula=_node(as_printed.formula),
+                right_formula=_node(as_it_is.formula),
+                printed_value=or_null(as_printed.value, decimals=9),
+                right_value=or_null(as_it_is.value, decimals=9),
+                unit=as_it_is.unit,
+            )
+    return slips
+
+
+def _symbol(text: str) -> MathNode:
+    factor, _, name = text.rpartition(" ")
+    node = symbol_node(name.replace(">", "_at_"))
+    return node if not factor else MathNode(tag="mrow", children=[symbol_node(factor), node])
+
+
+def _node(text: str) -> MathNode | None:
+    """Return a line of the hand method as MathML; its signs are those of print, not of arithmetic."""
+    if not text:
+        return None
+    arithmetic = text.replace("×", "*").replace("²", " ** 2").replace(">", "_at_").replace("Δθ", "Δ_θ")
+    return Expression(re.sub(r"\bk τ", "k * τ", arithmetic)).formula()
