@@ -59,7 +59,7 @@ def test_examples_run(example, tmp_path, monkeypatch):
     assert result.exit_code == 0, result.output
     assert result.stderr == ""
     words = shlex.split(example)
-    for option in ("--out", "--picture"):
+    for option in ("--out", "--picture", "--html"):
         if option in words:
             assert Path(words[words.index(option) + 1]).exists()
 

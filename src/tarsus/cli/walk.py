@@ -27,14 +27,18 @@ __all__ = ["walk"]
         "tarsus walk strider --twist 40,0,10 --duration 3",
         "tarsus walk strider --distance 200 --stroke 80 --speed 60 --tilt 0,5 --json",
         "tarsus walk strider --distance 200 --out walk --no-animation",
+        "tarsus walk strider --gait ripple --html walk.html",
     )
 )
 @robot_argument
 @walk_options
 @click.option("--out", type=click.Path(path_type=Path), metavar="DIR", help="Write angles (CSV) and pictures here.")
 @click.option("--no-animation", is_flag=True, help="Leave out the animation (of the first 20 s at most).")
+@click.option(
+    "--html", type=click.Path(path_type=Path), metavar="FILE", help="Write a page that plays the walk in 3D, offline."
+)
 @json_option
-def walk(robot: str, out: Path | None, no_animation: bool, as_json: bool, **asked: Any) -> int:
+def walk(robot: str, out: Path | None, no_animation: bool, html: Path | None, as_json: bool, **asked: Any) -> int:
     """Plan a walk and tell whether the robot can do it.
 
     Straight ahead unless --curve or --twist says otherwise. What is left out is chosen so that it works, and named.
@@ -51,6 +55,8 @@ def walk(robot: str, out: Path | None, no_animation: bool, as_json: bool, **aske
     if not as_json:
         show(walk_table(summary), verdict(summary))
     files = [] if out is None else _write(motion, out, animation=not no_animation, quiet=as_json)
+    if html is not None:
+        files.append(_write_page(motion, html))
     if as_json:
         print_json({**summary, "files": [str(file) for file in files]})
     else:
@@ -64,3 +70,15 @@ def _write(motion: Motion, out: Path, *, animation: bool, quiet: bool) -> list[P
 
     with progress_bar(wanted=not quiet) as progress:
         return write_walk(motion, out, animation=animation, progress=progress)
+
+
+def _write_page(motion: Motion, html: Path) -> Path:
+    from tarsus.errors import InputError
+    from tarsus.studio.player import player_data, player_page
+
+    page = player_page(player_data(motion))
+    try:
+        html.write_text(page, encoding="utf-8")
+    except OSError as error:
+        raise InputError(f"{html} can't be written: {error.strerror}") from None
+    return html

@@ -8,8 +8,6 @@ from typing import Any, TypeVar
 import numpy as np
 
 from tarsus.gait.motion import Motion
-from tarsus.gait.path import Path
-from tarsus.gait.setup import Setup
 from tarsus.kinematics.pose import Pose
 from tarsus.load.loads import Loads
 from tarsus.robot.robot import Robot
@@ -18,7 +16,7 @@ from tarsus.studio.messages.state import StudioState
 from tarsus.studio.poses import Resting, resting, standing
 from tarsus.studio.robots import robot_of
 from tarsus.studio.standing import OnFootholds
-from tarsus.studio.walks import path_of, plan, setup_of
+from tarsus.studio.walks import longest, plan
 
 __all__ = ["Desk"]
 
@@ -60,9 +58,12 @@ class Desk:
         robot = self.robot(state)
         return self._once("walk", (robot, state.walk), lambda: plan(robot, state.walk))
 
-    def setup(self, state: StudioState) -> tuple[Setup, Path]:
-        """Return what the walk is set up with, and where it goes."""
-        return setup_of(self.robot(state), state.walk), path_of(state.walk)
+    def longest(self, state: StudioState) -> float:
+        """Return the longest stroke that works along the walk's path [m]; it does not hang on the pace."""
+        robot = self.robot(state)
+        slow = {"stroke_mm": None, "speed_mm_s": None, "cycle_time_s": None, "rate_hz": 100.0, "strict": True}
+        options = state.walk.model_copy(update=slow)
+        return self._once("longest", (robot, options), lambda: longest(robot, options))
 
     def loads(self, state: StudioState) -> Loads:
         """Return what the walk asks of the joints."""

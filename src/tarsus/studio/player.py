@@ -4,16 +4,14 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from tarsus.errors import TarsusError
+from tarsus.errors import InputError, TarsusError
 from tarsus.gait.motion import Motion
-from tarsus.gait.path import Path as WalkPath
-from tarsus.gait.setup import Setup
 from tarsus.studio.bearing import loads_message, loads_of
 from tarsus.studio.messages.moving import LoadsMessage
 from tarsus.studio.messages.plain import PlayerData
 from tarsus.studio.messages.state import LoadOptions, RobotChoice
 from tarsus.studio.robots import robot_message
-from tarsus.studio.walks import walk_message
+from tarsus.studio.walks import MOST_SAMPLES, walk_message
 
 __all__ = ["BUILD_HINT", "WEB", "player_data", "player_page"]
 
@@ -25,33 +23,32 @@ BUILD_HINT = "the studio's pages are not built: run `make web` in the project's 
 _PLACE = "__MOTION__"
 
 
-def player_data(
-    motion: Motion,
-    setup: Setup,
-    path: WalkPath,
-    *,
-    choice: RobotChoice | None = None,
-    options: LoadOptions | None = None,
-) -> PlayerData:
+def player_data(motion: Motion, *, choice: RobotChoice | None = None, options: LoadOptions | None = None) -> PlayerData:
     """Return what the page of a walk holds.
 
     Parameters
     ----------
     motion : Motion
         The walk.
-    setup : Setup
-        What it was set up with.
-    path : Path
-        Where it goes.
     choice : RobotChoice, optional
         How the robot was chosen.
     options : LoadOptions, optional
         Payload and supply of the loads.
+
+    Raises
+    ------
+    InputError
+        If it has more moments than a page should hold.
     """
+    if len(motion.time) > MOST_SAMPLES:
+        raise InputError(
+            f"the walk has {len(motion.time)} moments; a page holds at most {MOST_SAMPLES}: ask for a lower rate or a "
+            "shorter walk"
+        )
     chosen = RobotChoice(preset=None) if choice is None else choice
     return PlayerData(
         robot=robot_message(motion.robot, chosen, id=0),
-        walk=walk_message(motion, setup, path, id=0),
+        walk=walk_message(motion, longest=None, id=0),
         loads=_loads(motion, LoadOptions() if options is None else options),
     )
 

@@ -107,7 +107,7 @@ class Views:
     def walk(self, state: StudioState, *, id: int) -> WalkMessage:
         """Return the walk."""
         motion = self.desk.walk(state)
-        message = walk_message(motion, *self.desk.setup(state), id=id)
+        message = walk_message(motion, longest=self.desk.longest(state), id=id)
         self._sent = motion
         return message
 
@@ -145,5 +145,5 @@ class Views:
         motion = self.desk.walk(state)
         if what == "csv":
             return text_file(file_name(robot, "walk", "csv"), walk_csv(motion), id=id)
-        data = player_data(motion, *self.desk.setup(state), choice=state.robot, options=state.loads)
+        data = player_data(motion, choice=state.robot, options=state.loads)
         return text_file(file_name(robot, "walk", "html"), player_page(data), id=id)

@@ -23,7 +23,7 @@ from tarsus.studio.messages.moving import JointSpeed, Moment, WalkEnd, WalkMessa
 from tarsus.studio.messages.state import Curve, OwnGait, Straight, WalkOptions
 from tarsus.studio.wire import degrees, millimetres, or_null, rows_of_flags
 
-__all__ = ["MOST_SAMPLES", "gait_of", "path_of", "plan", "setup_of", "walk_message"]
+__all__ = ["MOST_SAMPLES", "gait_of", "longest", "path_of", "plan", "walk_message"]
 
 MOST_SAMPLES = 10_000
 """Samples that a robot of six legs may have in a plan here; it is about 2 MB to send."""
@@ -103,21 +103,7 @@ def _metres(mm: float | None) -> float | None:
     return None if mm is None else mm / 1000
 
 
-def setup_of(robot: Robot, options: WalkOptions) -> Setup:
-    """Return what a walk is set up with besides its path and pace.
-
-    Parameters
-    ----------
-    robot : Robot
-        A single robot.
-    options : WalkOptions
-        What is asked for.
-
-    Raises
-    ------
-    TarsusError
-        If the robot can't stand or walk so.
-    """
+def _setup_of(robot: Robot, options: WalkOptions) -> Setup:
     return Setup.of(robot, gait_of(robot, options.gait), **_Options.of(options).heights)
 
 
@@ -138,7 +124,7 @@ def plan(robot: Robot, options: WalkOptions) -> Motion:
     TarsusError
         If it is not possible.
     """
-    asked, path, setup = _Options.of(options), path_of(options), setup_of(robot, options)
+    asked, path, setup = _Options.of(options), path_of(options), _setup_of(robot, options)
     pace = {n: None if v is None else require_number(n, v, zero=False) for n, v in asked.pace.items()}
     # The pace is chosen here, so that the number of samples is known before any is worked out.
     assumed = setup.assumed(asked.heights["clearance"], asked.heights["lift"])
@@ -168,17 +154,33 @@ def _refuse_long(robot: Robot, setup: Setup, path: Path, *, stroke: float, cycle
         )
 
 
-def walk_message(motion: Motion, setup: Setup, path: Path, *, id: int) -> WalkMessage:
+def longest(robot: Robot, options: WalkOptions) -> float:
+    """Return the longest stroke that works along the path that is asked for [m].
+
+    Parameters
+    ----------
+    robot : Robot
+        A single robot.
+    options : WalkOptions
+        What is asked for.
+
+    Raises
+    ------
+    TarsusError
+        If the robot can't stand or walk so.
+    """
+    return longest_stroke(_setup_of(robot, options), path_of(options).displacement)
+
+
+def walk_message(motion: Motion, *, longest: float | None, id: int) -> WalkMessage:
     """Return a motion with its summary.
 
     Parameters
     ----------
     motion : Motion
         The walk, its samples equally far apart.
-    setup : Setup
-        What it was set up with.
-    path : Path
-        Where it goes.
+    longest : float or None
+        The longest stroke that works along its path [m], where that is known.
     id : int
         Of the message that is answered.
     """
@@ -208,7 +210,7 @@ def walk_message(motion: Motion, setup: Setup, path: Path, *, id: int) -> WalkMe
         speed_mm_s=motion.speed * 1000,
         clearance_mm=motion.clearance * 1000,
         lift_mm=motion.lift * 1000,
-        longest_stroke_mm=longest_stroke(setup, path.displacement) * 1000,
+        longest_stroke_mm=None if longest is None else longest * 1000,
         end=WalkEnd(**{key: float(value) for key, value in summary["end"].items()}),
         joint_speed=[_joint_speed(joint, summary["joint_speed"][joint]) for joint in JOINTS],
         least_margin=_moment(summary["least_margin"]),
