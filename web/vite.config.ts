@@ -17,7 +17,7 @@ export default defineConfig({
     modulePreload: { polyfill: false },
   },
   server: {
-    proxy: { "/ws": { target: "ws://127.0.0.1:8000", ws: true }, "/health": "http://127.0.0.1:8000" },
+    proxy: { "/session": { target: "ws://127.0.0.1:8600", ws: true } },
   },
   test: { environment: "node", include: ["src/**/*.test.ts"] },
 });

@@ -2,7 +2,7 @@ import { useMemo, useState } from "react";
 
 import { legColours } from "../scene/palette";
 import type { CameraName } from "../scene/cameras";
-import { footTrails } from "../scene/frames";
+import { footTrails, lengthOf } from "../scene/frames";
 import { shapeOf } from "../scene/kinematics";
 import { SceneCanvas } from "../scene/SceneCanvas";
 import { look } from "../state/session";
@@ -12,7 +12,7 @@ import { PlayerBar } from "./PlayerBar";
 import { SceneExtras } from "./SceneExtras";
 import { StatusChips } from "./StatusChips";
 import { usePalette } from "./theme";
-import { lengthOf, useFraming, WALKING } from "./useFraming";
+import { useFraming, WALKING } from "./useFraming";
 import { useFloor } from "./useFloor";
 import { useShown } from "./useShown";
 
@@ -60,6 +60,7 @@ export function PicturePane({ view }: { view: View }) {
         trails={trails}
         forces={view === "loads"}
         torques={view === "loads"}
+        names={view !== "loads"}
         description={WORDS[view]}
         onFloor={onFloor}
         onRest={(eye, target) => look(null, { eye_mm: [...eye], target_mm: [...target] })}

@@ -1,10 +1,11 @@
 import { useEffect } from "react";
 
-import { frameOfPose, frameOfWalk } from "../scene/frames";
-import { stage } from "../scene/stage";
-import { advanced, usePlayback } from "../state/playback";
+import { frameOfPose } from "../scene/frames";
+import { prefersStillness, stage } from "../scene/stage";
+import { playWalk } from "../scene/walking";
+import { usePlayback } from "../state/playback";
 import { useStudio, type View } from "../state/store";
-import { lengthOf, WALKING } from "./useFraming";
+import { WALKING } from "./useFraming";
 
 /** Put on the stage what a view shows: a pose, or the walk at its time. Live frames come there by themselves. */
 export function useShown(view: View): void {
@@ -24,27 +25,20 @@ export function useShown(view: View): void {
   useEffect(() => {
     if (!robot || !walk || !walking || walk.angles_deg.length !== walk.count * robot.leg_names.length * 3)
       return;
-    const duration = lengthOf(walk);
-    const frameNow = () => frameOfWalk(robot, walk, loads, usePlayback.getState().time);
-    if (usePlayback.getState().time > duration) usePlayback.setState({ time: duration });
-    stage.show(frameNow(), false);
-    const stopWatching = usePlayback.subscribe((playback, before) => {
-      if (playback.playing && !before.playing) start();
-      else if (!playback.playing) stage.show(frameNow(), false);
-    });
-    let stop: (() => void) | null = null;
-    const start = () => {
-      stop = stage.play((dt) => {
-        const playback = usePlayback.getState();
-        if (!playback.playing) return null;
-        usePlayback.setState(advanced(playback, dt, duration));
-        return frameNow();
-      });
-    };
-    if (usePlayback.getState().playing) start();
-    return () => {
-      stopWatching();
-      stop?.();
-    };
+    return playWalk(robot, walk, loads);
   }, [robot, walk, loads, walking]);
+
+  useFirstWalk(walk !== null);
+}
+
+let begun = false;
+
+/** The first walk begins to play by itself, unless a link says at which moment it rests, or motion is unwelcome. */
+function useFirstWalk(there: boolean): void {
+  useEffect(() => {
+    if (!there || begun) return;
+    begun = true;
+    const time = useStudio.getState().state?.picture.time_s ?? 0;
+    usePlayback.setState({ time, playing: time === 0 && !prefersStillness() });
+  }, [there]);
 }

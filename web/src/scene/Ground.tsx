@@ -10,6 +10,7 @@ import { stage } from "./stage";
 const HALF = 3000;
 const COARSE = 100;
 const FINE = 50;
+const PIECE = 500;
 /** Labels stand this far apart [mm], and so many on either side. */
 const LABELS = 200;
 const SIDE = 4;
@@ -88,7 +89,11 @@ function gridLines(step: number, keep: (n: number) => boolean): BufferGeometry {
   for (let n = -HALF / step; n <= HALF / step; n++) {
     if (!keep(n)) continue;
     const at = n * step;
-    numbers.push(at, -HALF, 0, at, HALF, 0, -HALF, at, 0, HALF, at, 0);
+    // In pieces: some drivers drop a line whole whose one end lies behind the camera.
+    for (let from = -HALF; from < HALF; from += PIECE) {
+      const to = from + PIECE;
+      numbers.push(at, from, 0, at, to, 0, from, at, 0, to, at, 0);
+    }
   }
   const geometry = new BufferGeometry();
   geometry.setAttribute("position", new BufferAttribute(new Float32Array(numbers), 3));

@@ -1,6 +1,6 @@
 import { Canvas, type ThreeEvent } from "@react-three/fiber";
 import { PCFShadowMap } from "three";
-import type { KeyboardEvent, ReactNode } from "react";
+import { useRef, type KeyboardEvent, type ReactNode } from "react";
 
 import { Arrows } from "./Arrows";
 import { CameraRig, type View } from "./CameraRig";
@@ -9,6 +9,7 @@ import { Conductor } from "./Conductor";
 import type { Shape, Vec3 } from "./frame";
 import { Ground } from "./Ground";
 import { Lights } from "./Lights";
+import { NotePlaces } from "./NotePlaces";
 import { Notes } from "./Notes";
 import type { Palette } from "./palette";
 import { Robot } from "./Robot";
@@ -54,6 +55,7 @@ export function SceneCanvas(props: SceneProps) {
     names,
     onFloor,
   } = props;
+  const notes = useRef<HTMLDivElement>(null);
   const keys = (event: KeyboardEvent) => {
     if (steer(event.key)) event.preventDefault();
   };
@@ -100,7 +102,6 @@ export function SceneCanvas(props: SceneProps) {
         <Robot shape={shape} colours={colours} palette={palette} />
         {forces && <Arrows shape={shape} palette={palette} />}
         {torques && <TorqueBars shape={shape} palette={palette} />}
-        <Notes shape={shape} colours={colours} names={names ?? true} />
         {props.children}
         <CameraRig
           camera={camera}
@@ -109,7 +110,9 @@ export function SceneCanvas(props: SceneProps) {
           onRest={props.onRest ?? nothing}
           onTurned={props.onTurned ?? nothing}
         />
+        <NotePlaces layer={notes} />
       </Canvas>
+      <Notes layer={notes} shape={shape} colours={colours} names={names ?? true} />
     </div>
   );
 }

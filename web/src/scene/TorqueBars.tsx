@@ -30,7 +30,7 @@ export function TorqueBars({ shape, palette }: Props) {
 function Bar({ leg, joint, shape, palette }: Props & { leg: number; joint: number }) {
   const group = useRef<Group>(null);
   const bar = useRef<Mesh>(null);
-  const [width, height] = [shape.reach * 0.028, shape.reach * 0.2];
+  const [width, height] = [shape.reach * 0.032, shape.reach * 0.15];
   const stall = shape.stall[leg * 3 + joint] ?? null;
 
   useStage((frame) => {
@@ -39,7 +39,7 @@ function Bar({ leg, joint, shape, palette }: Props & { leg: number; joint: numbe
     group.current.visible = torque !== undefined && stall !== null;
     if (torque === undefined || stall === null) return;
     const [x, y, z] = pointOf(frame, leg, joint);
-    group.current.position.set(x, y, z + shape.reach * 0.17);
+    group.current.position.set(x, y, z + shape.reach * 0.13);
     const share = Math.min(1, Math.abs(torque) / stall);
     bar.current.scale.set(1, Math.max(share, 0.01) * height, 1);
     bar.current.position.set(0, (share * height - height) / 2, 0.3);

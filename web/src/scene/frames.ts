@@ -138,3 +138,8 @@ export function extentOf(walk: WalkMessage): { middle: Vec3; radius: number } {
   const [x0, x1, y0, y1] = [Math.min(...xs), Math.max(...xs), Math.min(...ys), Math.max(...ys)];
   return { middle: [(x0 + x1) / 2, (y0 + y1) / 2, 0], radius: Math.hypot(x1 - x0, y1 - y0) / 2 };
 }
+
+/** How long a walk plays [s]: from its first moment to its last. */
+export function lengthOf(walk: WalkMessage | null): number {
+  return walk ? (walk.count - 1) / walk.rate_hz : 0;
+}

@@ -1,10 +1,55 @@
+import { Failure } from "../../controls/Failure";
+import { Message, Remarks } from "../../controls/Message";
+import type { LoadsMessage } from "../../protocol";
+import { useStudio } from "../../state/store";
 import { ViewHead } from "../ViewHead";
+import { LoadFacts } from "./LoadFacts";
+import { LoadInputs } from "./LoadInputs";
+import { ServoChoice } from "./ServoChoice";
+import { TorqueGrid } from "./TorqueGrid";
+import { TorquePlots } from "./TorquePlots";
 
-/** To come. */
+/** What the walk asks of the joints, and whether the servos bear it. */
 export function LoadsView() {
+  const loads = useStudio((studio) => studio.loads);
+  const busy = useStudio((studio) => studio.busy.loads === true || studio.busy.view === true);
   return (
     <div className="view">
-      <ViewHead title="Loads">To come.</ViewHead>
+      <ViewHead title="Loads">
+        The torques of the walk, from the forces at its feet; arrows are what the ground does to each foot.
+      </ViewHead>
+      <Failure of={["loads", "view", "walk"]} />
+      {loads ? <Verdict loads={loads} /> : <p className="busy">{busy ? "Working the torques out …" : ""}</p>}
+      {loads && <TorqueGrid loads={loads} />}
+      {loads && <TorquePlots loads={loads} />}
+      <LoadInputs />
+      <ServoChoice />
+      {loads && <LoadFacts loads={loads} />}
     </div>
+  );
+}
+
+function Verdict({ loads }: { loads: LoadsMessage }) {
+  const kind =
+    loads.grade === "good"
+      ? "good"
+      : loads.grade === "marginal" || loads.grade === "unknown"
+        ? "warn"
+        : "bad";
+  return (
+    <>
+      <Message kind={kind} testId="loads-verdict">
+        <b>{loads.grade}</b>
+        <ul>
+          {loads.worst.map((line) => (
+            <li key={line}>{line}</li>
+          ))}
+        </ul>
+      </Message>
+      <Remarks kind="warn" items={loads.supply_warning === null ? [] : [loads.supply_warning]} />
+      {!loads.balanced && (
+        <Remarks kind="warn" items={["At some moments no upright forces hold the balance."]} />
+      )}
+    </>
   );
 }

@@ -1,10 +1,105 @@
-import { ViewHead } from "../ViewHead";
+import type { ReactNode } from "react";
 
-/** To come. */
+import { Failure } from "../../controls/Failure";
+import { Facts } from "../../controls/Facts";
+import { Remarks } from "../../controls/Message";
+import { withUnit } from "../../controls/numbers";
+import { Slider } from "../../controls/Slider";
+import { useInputs } from "../useInputs";
+import { ViewHead } from "../ViewHead";
+import { numberAt, withValue } from "./document";
+import { DocumentField } from "./DocumentField";
+import { BODY, LEG_MORE, LENGTHS, LIMITS, MASSES } from "./fields";
+import { GaitFields } from "./GaitFields";
+import { MountFields } from "./MountFields";
+import { RobotFiles } from "./RobotFiles";
+import { ServoFields } from "./ServoFields";
+import { setDocument } from "./setDocument";
+
+/** The robot itself: everything that its file says, to be read and changed. */
 export function RobotView() {
+  const { robot } = useInputs();
+  const { document } = robot;
   return (
     <div className="view">
-      <ViewHead title="Robot">To come.</ViewHead>
+      <ViewHead title="Robot">
+        All that the robot file says. Every change is checked and drawn at once; Ctrl+Z takes it back.
+      </ViewHead>
+      <RobotFiles />
+      <Failure of={["document", "toml", "robot"]} />
+      <Remarks kind="bad" items={robot.problems} testId="robot-problems" />
+      <Facts
+        testId="robot-facts"
+        rows={[
+          ["Name", robot.name],
+          ["Legs", robot.leg_names.length],
+          ["Mass in all", withUnit(robot.mass_kg, 3, "kg")],
+          ["Longest stroke", withUnit(robot.longest_stroke_mm, 1, "mm")],
+        ]}
+      />
+      <fieldset>
+        <legend>Legs</legend>
+        {LENGTHS.map(({ path, label, unit, step, min, max }) => (
+          <Slider
+            key={label}
+            label={label}
+            value={numberAt(document, path) ?? 0}
+            min={min ?? 0}
+            max={max}
+            typedMax={10_000}
+            step={step}
+            unit={unit}
+            testId={`robot-${label.toLowerCase()}`}
+            onChange={(value, commit) => setDocument(withValue(document, path, value), commit)}
+          />
+        ))}
+        {LEG_MORE.map((field) => (
+          <DocumentField key={field.label} field={field} />
+        ))}
+      </fieldset>
+      <Group title="Body">
+        {BODY.map((field) => (
+          <DocumentField key={field.label} field={field} />
+        ))}
+      </Group>
+      <Group title="Where the legs are mounted">
+        <MountFields />
+      </Group>
+      <Group title="Joint limits">
+        {LIMITS.flatMap(({ joint, low, high }) => [
+          <DocumentField key={`${joint} low`} field={low} />,
+          <DocumentField key={`${joint} high`} field={high} />,
+        ])}
+      </Group>
+      <Group title="Masses of the legs">
+        {MASSES.map((field) => (
+          <DocumentField key={field.label} field={field} />
+        ))}
+      </Group>
+      <Group title="Servos">
+        <ServoFields />
+      </Group>
+      <Group title="How it walks unless told otherwise">
+        <GaitFields />
+      </Group>
+      {robot.missing.length > 0 && (
+        <Group title="What the file does not say">
+          <ul>
+            {robot.missing.map((line) => (
+              <li key={line}>{line}</li>
+            ))}
+          </ul>
+        </Group>
+      )}
     </div>
+  );
+}
+
+function Group({ title, children }: { title: string; children: ReactNode }) {
+  return (
+    <details>
+      <summary>{title}</summary>
+      <div className="inside">{children}</div>
+    </details>
   );
 }

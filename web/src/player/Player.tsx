@@ -1,0 +1,99 @@
+import { useEffect, useMemo, useState } from "react";
+
+import { CameraBar } from "../app/CameraBar";
+import { PlayerBar } from "../app/PlayerBar";
+import { StatusChips } from "../app/StatusChips";
+import { toggleTheme, usePalette, useTheme } from "../app/theme";
+import { IconButton } from "../controls/IconButton";
+import { fixed } from "../controls/numbers";
+import type { PlayerData } from "../protocol";
+import type { CameraName } from "../scene/cameras";
+import { frameOfWalk, footTrails, lengthOf } from "../scene/frames";
+import { shapeOf } from "../scene/kinematics";
+import { legColours } from "../scene/palette";
+import { framing } from "../scene/framing";
+import { SceneCanvas } from "../scene/SceneCanvas";
+import { prefersStillness, stage } from "../scene/stage";
+import { playWalk } from "../scene/walking";
+import { usePlayback } from "../state/playback";
+
+/** A walk that plays by itself: the same picture as in the studio, and no server. */
+export function Player({ data }: { data: PlayerData }) {
+  const { robot, walk, loads } = data;
+  const theme = useTheme((state) => state.theme);
+  const palette = usePalette();
+  const [camera, setCamera] = useState<CameraName>("free");
+  const [again, setAgain] = useState(0);
+  const [forces, setForces] = useState(false);
+  const shape = useMemo(() => shapeOf(robot), [robot]);
+  const colours = useMemo(() => legColours(shape.mounts), [shape]);
+  const trails = useMemo(() => footTrails(robot, walk), [robot, walk]);
+  const view = useMemo(
+    () => framing(robot, camera === "follow" ? null : walk),
+    // Choosing the same camera again goes back to its place.
+    // eslint-disable-next-line react-hooks/exhaustive-deps
+    [robot, walk, camera === "follow", again],
+  );
+  useEffect(() => {
+    stage.show(frameOfWalk(robot, walk, loads, 0), false);
+    usePlayback.setState({ playing: !prefersStillness() });
+    return playWalk(robot, walk, loads);
+  }, [robot, walk, loads]);
+
+  return (
+    <div className="player-page">
+      <header>
+        <h1>{robot.name}</h1>
+        <p>
+          {walk.gait}, {fixed(walk.speed_mm_s, 0)} mm/s, stroke {fixed(walk.stroke_mm, 0)} mm,{" "}
+          {fixed(walk.duration_s, 1)} s
+        </p>
+        <span className="spring" />
+        {loads && (
+          <button
+            type="button"
+            className="button small"
+            aria-pressed={forces}
+            data-testid="forces"
+            onClick={() => setForces(!forces)}
+          >
+            Forces and torques
+          </button>
+        )}
+        <IconButton
+          icon={theme === "dark" ? "sun" : "moon"}
+          name={theme === "dark" ? "Light colours" : "Dark colours"}
+          testId="theme"
+          onClick={toggleTheme}
+        />
+      </header>
+      <main className="picture" aria-label="Picture">
+        <SceneCanvas
+          shape={shape}
+          colours={colours}
+          palette={palette}
+          camera={camera}
+          view={view}
+          trails={trails}
+          forces={forces}
+          torques={forces}
+          description="The robot walking."
+          onTurned={() => setCamera((name) => (name === "follow" ? name : "free"))}
+        />
+        <div className="over top">
+          <StatusChips />
+          <CameraBar
+            camera={camera}
+            onChoose={(name) => {
+              setAgain(again + 1);
+              setCamera(name);
+            }}
+          />
+        </div>
+        <div className="over bottom">
+          <PlayerBar duration={lengthOf(walk)} rate={walk.rate_hz} />
+        </div>
+      </main>
+    </div>
+  );
+}

@@ -1,0 +1,48 @@
+import { useFrame } from "@react-three/fiber";
+import { useMemo, type RefObject } from "react";
+import { Vector3 } from "three";
+
+import { footOf, pointOf, type Frame, type Vec3 } from "./frame";
+import { stage } from "./stage";
+
+/** How far over a knee its note stands [mm]. */
+const OVER = 34;
+
+/** Moves the notes to where their things are in the picture, in the frame in which these are drawn. */
+export function NotePlaces({ layer }: { layer: RefObject<HTMLDivElement | null> }) {
+  const at = useMemo(() => new Vector3(), []);
+  useFrame(({ camera, size }) => {
+    const notes = layer.current?.children;
+    const frame = stage.current;
+    if (!notes || !frame) return;
+    const legs = notes.length - 1;
+    for (let i = 0; i <= legs; i++) {
+      const note = notes[i] as HTMLElement;
+      at.set(...(i < legs ? anchorOf(frame, i) : marginPlace(frame))).project(camera);
+      const seen = at.z < 1 && at.z > -1;
+      note.style.visibility = seen ? "" : "hidden";
+      const [x, y] = [((at.x + 1) / 2) * size.width, ((1 - at.y) / 2) * size.height];
+      note.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px) translate(-50%, -50%)`;
+    }
+    writeMargin(notes[legs]?.firstElementChild, frame);
+  });
+  return null;
+}
+
+function anchorOf(frame: Frame, leg: number): Vec3 {
+  const [fx, fy] = footOf(frame, leg);
+  const [kx, ky, kz] = pointOf(frame, leg, 2);
+  return [kx * 0.6 + fx * 0.4, ky * 0.6 + fy * 0.4, kz + OVER];
+}
+
+function marginPlace(frame: Frame): Vec3 {
+  return frame.com ? [frame.com[0], frame.com[1], 2] : frame.position;
+}
+
+function writeMargin(note: Element | null | undefined, { com, margin }: Frame) {
+  if (!(note instanceof HTMLElement)) return;
+  note.hidden = com === null || margin === null;
+  if (margin === null) return;
+  note.textContent = margin < 0 ? `falls: ${margin.toFixed(0)} mm` : `${margin.toFixed(0)} mm`;
+  note.classList.toggle("bad", margin < 0);
+}

@@ -1,0 +1,20 @@
+import type { RobotMessage, WalkMessage } from "../protocol";
+import type { View } from "./CameraRig";
+import { extentOf } from "./frames";
+
+/** What the camera should see: the robot where it stands, or all of its walk. */
+export function framing(robot: RobotMessage, walk: WalkMessage | null): View {
+  const reach = reachOf(robot);
+  const extent = walk && extentOf(walk);
+  const [x, y] = extent?.middle ?? [0, 0];
+  return { target: [x, y, reach * 0.14], radius: reach + (extent?.radius ?? 0) * 0.7 };
+}
+
+/** How far from the body's middle the standing robot reaches, with some air about it [mm]. */
+export function reachOf(robot: RobotMessage): number {
+  const feet = robot.stance_mm ?? robot.mount_mm;
+  let far = 0;
+  for (let i = 0; i + 1 < feet.length; i += 3)
+    far = Math.max(far, Math.hypot(feet[i] ?? 0, feet[i + 1] ?? 0));
+  return Math.max(far, robot.clearance_mm) * 1.3;
+}

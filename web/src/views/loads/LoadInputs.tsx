@@ -1,0 +1,116 @@
+import { Check } from "../../controls/Check";
+import { Segments } from "../../controls/Segments";
+import { Slider } from "../../controls/Slider";
+import { change } from "../../state/session";
+import { useInputs } from "../useInputs";
+
+const AXES = [
+  ["Payload forward", 0],
+  ["Payload to the left", 1],
+  ["Payload up", 2],
+] as const;
+
+/** What is carried, and by what the servos are judged. */
+export function LoadInputs() {
+  const { state } = useInputs();
+  const { loads } = state;
+  return (
+    <fieldset>
+      <legend>Payload and safety</legend>
+      <Slider
+        label="Payload"
+        value={loads.payload_kg}
+        min={0}
+        max={5}
+        typedMax={1000}
+        step={0.05}
+        unit="kg"
+        testId="payload"
+        onChange={(payload_kg, commit) => change("loads", { payload_kg }, commit)}
+      />
+      <Slider
+        label="Safety factor"
+        value={loads.safety_factor}
+        min={1}
+        max={5}
+        typedMax={100}
+        step={0.1}
+        unit="×"
+        testId="safety-factor"
+        onChange={(safety_factor, commit) => change("loads", { safety_factor }, commit)}
+      />
+      <div className="row">
+        <span>Judge by</span>
+        <Segments
+          label="Judge by"
+          testId="rule"
+          value={loads.rule}
+          options={[
+            { value: "factor", label: "peak", hint: "The peak torque against the stall torque" },
+            {
+              value: "continuous",
+              label: "lasting load",
+              hint: "The lasting load against a fifth of the stall torque",
+            },
+          ]}
+          onChange={(rule) => change("loads", { rule })}
+        />
+      </div>
+      <Check
+        label="Count inertia"
+        testId="inertial"
+        checked={loads.inertial}
+        onChange={(inertial) => change("loads", { inertial })}
+      />
+      <details>
+        <summary>Where it is carried, supply, battery</summary>
+        <div className="inside">
+          {AXES.map(([label, axis]) => (
+            <Slider
+              key={label}
+              label={label}
+              value={loads.payload_at_mm[axis]}
+              min={-200}
+              max={200}
+              typedMin={-5000}
+              typedMax={5000}
+              step={5}
+              unit="mm"
+              onChange={(value, commit) => {
+                const at: [number, number, number] = [...loads.payload_at_mm];
+                at[axis] = value;
+                change("loads", { payload_at_mm: at }, commit);
+              }}
+            />
+          ))}
+          <Slider
+            label="Supply"
+            value={loads.supply_v ?? 0}
+            min={0}
+            max={16}
+            typedMax={100}
+            step={0.1}
+            unit="V"
+            testId="supply"
+            auto={loads.supply_v === null}
+            onAuto={() => change("loads", { supply_v: null })}
+            onChange={(supply_v, commit) => change("loads", { supply_v }, commit)}
+          />
+          <Slider
+            label="Battery"
+            value={loads.capacity_ah ?? 0}
+            min={0}
+            max={10}
+            typedMax={1000}
+            step={0.1}
+            unit="Ah"
+            testId="capacity"
+            auto={loads.capacity_ah === null}
+            onAuto={() => change("loads", { capacity_ah: null })}
+            onChange={(capacity_ah, commit) => change("loads", { capacity_ah }, commit)}
+          />
+        </div>
+      </details>
+    </fieldset>
+  );
+}

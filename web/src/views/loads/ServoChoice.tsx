@@ -1,0 +1,119 @@
+import { Failure } from "../../controls/Failure";
+import { Message, Remarks } from "../../controls/Message";
+import { withUnit } from "../../controls/numbers";
+import type { Candidate, ServosMessage } from "../../protocol";
+import { ask } from "../../state/session";
+import { useStudio } from "../../state/store";
+import { withServos } from "../robot/document";
+import { setDocument } from "../robot/setDocument";
+import { useInputs } from "../useInputs";
+
+/** Which servos would do: asked for, as it takes a second or two. */
+export function ServoChoice() {
+  const servos = useStudio((studio) => studio.servos);
+  const busy = useStudio((studio) => studio.busy.servos === true);
+  return (
+    <fieldset>
+      <legend>Servos</legend>
+      <div className="row">
+        <button
+          type="button"
+          className="button primary"
+          data-testid="size-servos"
+          disabled={busy}
+          onClick={() => ask({ type: "servos" })}
+        >
+          {busy ? "Trying every servo …" : "Which servos would do?"}
+        </button>
+      </div>
+      <Failure of={["servos"]} />
+      {servos && <Answer servos={servos} />}
+    </fieldset>
+  );
+}
+
+function Answer({ servos }: { servos: ServosMessage }) {
+  const all = [...servos.candidates, ...(servos.mixed ? [servos.mixed] : [])];
+  const leftOut = Object.entries(servos.left_out);
+  return (
+    <div className="field" data-testid="servo-answer">
+      <Message kind={servos.present_do ? "good" : "bad"}>
+        {servos.present_do ? "The present servos do." : "The present servos do not do."}
+      </Message>
+      {servos.payload_kg !== null && (
+        <p className="hint">
+          They carry {withUnit(servos.payload_kg, 2, "kg")}
+          {servos.payload_before_burning_kg !== null &&
+            `, and ${withUnit(servos.payload_before_burning_kg, 2, "kg")} before they burn`}
+          .
+        </p>
+      )}
+      {all.length > 0 ? (
+        <Candidates all={all} />
+      ) : (
+        <Remarks kind="warn" items={["No servo of the catalogue would do."]} />
+      )}
+      {servos.advice.length > 0 && (
+        <details>
+          <summary>What would take load off them</summary>
+          <div className="inside">
+            <ul>
+              {servos.advice.map((line) => (
+                <li key={line}>{line}</li>
+              ))}
+            </ul>
+          </div>
+        </details>
+      )}
+      {leftOut.length > 0 && (
+        <p className="hint">Not tried: {leftOut.map(([name, why]) => `${name} (${why})`).join(", ")}.</p>
+      )}
+    </div>
+  );
+}
+
+function Candidates({ all }: { all: readonly Candidate[] }) {
+  const { robot } = useInputs();
+  return (
+    <div className="scroll">
+      <table>
+        <caption className="hidden-text">Servos that would do, the lightest first</caption>
+        <thead>
+          <tr>
+            <th scope="col">Servo</th>
+            <th scope="col">factor</th>
+            <th scope="col">robot</th>
+            <th scope="col">
+              <span className="hidden-text">Fit</span>
+            </th>
+          </tr>
+        </thead>
+        <tbody>
+          {all.map((one) => (
+            <tr key={one.name}>
+              <td className="wrap">
+                {one.coxa === one.femur && one.femur === one.tibia ? one.coxa : mixedName(one)}
+              </td>
+              <td>{withUnit(one.factor, 2, "×")}</td>
+              <td>{withUnit(one.robot_mass_kg, 2, "kg")}</td>
+              <td>
+                <button
+                  type="button"
+                  className="button small"
+                  aria-label={`Fit ${one.name}`}
+                  onClick={() => setDocument(withServos(robot.document, one.coxa, one.femur, one.tibia))}
+                >
+                  Fit
+                </button>
+              </td>
+            </tr>
+          ))}
+        </tbody>
+      </table>
+    </div>
+  );
+}
+
+function mixedName({ coxa, femur, tibia }: Candidate): string {
+  return `coxa ${coxa}, femur ${femur}, tibia ${tibia}`;
+}

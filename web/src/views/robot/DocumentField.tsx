@@ -1,0 +1,50 @@
+import { useId } from "react";
+
+import { NumberInput } from "../../controls/NumberInput";
+import { useStudio } from "../../state/store";
+import { useInputs } from "../useInputs";
+import { numberAt, pathText, withoutKey, withValue } from "./document";
+import type { NumberField } from "./fields";
+import { setDocument } from "./setDocument";
+import { SourceMark } from "./SourceMark";
+
+/** One number of the robot file: with its unit, how sure it is, and what is wrong with it. */
+export function DocumentField({ field }: { field: NumberField }) {
+  const { robot } = useInputs();
+  const id = useId();
+  const problem = useProblem(field);
+  return (
+    <div className="doc-field">
+      <label htmlFor={id}>
+        {field.label} <SourceMark path={field.path} />
+      </label>
+      <span className="number">
+        <NumberInput
+          id={id}
+          value={numberAt(robot.document, field.path)}
+          step={field.step}
+          min={field.min}
+          placeholder="not given"
+          describedBy={problem ? `${id}p` : undefined}
+          testId={`doc-${pathText(field.path)}`}
+          onChange={(value) => setDocument(withValue(robot.document, field.path, value, field.list))}
+          onEmpty={() => setDocument(withoutKey(robot.document, field.path))}
+        />
+        <span className="unit">{field.unit}</span>
+      </span>
+      {problem && (
+        <p id={`${id}p`} className="field-problem">
+          ⚠ {problem}
+        </p>
+      )}
+    </div>
+  );
+}
+
+/** What the server found wrong with a field's key. */
+function useProblem({ path }: NumberField): string | null {
+  const problems = useStudio((studio) => studio.failures.document?.problems);
+  const text = pathText(path);
+  const problem = problems?.find(({ key }) => key !== null && (key === text || text.startsWith(`${key}[`)));
+  return problem?.text ?? null;
+}

@@ -1,0 +1,106 @@
+import { useEffect, useId, useRef, useState } from "react";
+
+import { Icon } from "../../controls/icons";
+import { ask } from "../../state/session";
+import { notify, useStudio } from "../../state/store";
+import { useInputs } from "../useInputs";
+import { withValue } from "./document";
+import { setDocument } from "./setDocument";
+
+/** Name, and the file itself: load by button or by dropping it anywhere on the page, save. */
+export function RobotFiles() {
+  const { robot } = useInputs();
+  const id = useId();
+  const input = useRef<HTMLInputElement>(null);
+  const over = useDrop();
+  return (
+    <div className={`drop${over ? " over" : ""}`}>
+      <div className="field">
+        <label htmlFor={id}>Name</label>
+        <input
+          id={id}
+          type="text"
+          data-testid="robot-name"
+          key={robot.document.name}
+          defaultValue={robot.document.name}
+          maxLength={200}
+          onBlur={(event) => {
+            const name = event.target.value.trim();
+            if (name && name !== robot.document.name) setDocument(withValue(robot.document, ["name"], name));
+          }}
+        />
+      </div>
+      <div className="row">
+        <button
+          type="button"
+          className="button"
+          data-testid="load-toml"
+          onClick={() => input.current?.click()}
+        >
+          Load a robot file …
+        </button>
+        <button
+          type="button"
+          className="button"
+          data-testid="save-toml"
+          onClick={() => ask({ type: "download", what: "toml" })}
+        >
+          <Icon name="save" /> Save it
+        </button>
+      </div>
+      <p className="hint">Or drop a .toml file anywhere on this page.</p>
+      <input
+        ref={input}
+        type="file"
+        accept=".toml,text/plain"
+        className="hidden-text"
+        tabIndex={-1}
+        aria-label="Robot file to load"
+        data-testid="toml-file"
+        onChange={(event) => {
+          const file = event.target.files?.[0];
+          event.target.value = "";
+          if (file) void load(file);
+        }}
+      />
+    </div>
+  );
+}
+
+/** Take files that are dropped on the page; returns whether one is held over it. */
+function useDrop(): boolean {
+  const [over, setOver] = useState(false);
+  useEffect(() => {
+    const hold = (event: DragEvent) => {
+      if (!event.dataTransfer?.types.includes("Files")) return;
+      event.preventDefault();
+      setOver(true);
+    };
+    const leave = (event: DragEvent) => event.relatedTarget === null && setOver(false);
+    const drop = (event: DragEvent) => {
+      setOver(false);
+      const file = event.dataTransfer?.files[0];
+      if (!file) return;
+      event.preventDefault();
+      void load(file);
+    };
+    window.addEventListener("dragover", hold);
+    window.addEventListener("dragleave", leave);
+    window.addEventListener("drop", drop);
+    return () => {
+      window.removeEventListener("dragover", hold);
+      window.removeEventListener("dragleave", leave);
+      window.removeEventListener("drop", drop);
+    };
+  }, []);
+  return over;
+}
+
+async function load(file: File): Promise<void> {
+  const most = Math.min(200_000, useStudio.getState().welcome?.bounds.message_bytes ?? 200_000);
+  if (file.size > most) {
+    notify(`${file.name} has ${file.size} bytes; a robot file may have ${most}`);
+    return;
+  }
+  ask({ type: "toml", text: await file.text(), commit: true });
+}

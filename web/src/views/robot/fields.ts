@@ -1,0 +1,105 @@
+import type { KeyPath } from "./document";
+
+/** A number of the robot file, as the form shows it. */
+export interface NumberField {
+  path: KeyPath;
+  label: string;
+  unit: string;
+  step: number;
+  min?: number;
+  /** What a list that is not in the file begins with. */
+  list?: readonly number[];
+}
+
+const JOINTS = ["coxa", "femur", "tibia"] as const;
+const AXES = ["forward", "left", "up"] as const;
+
+export const LENGTHS: readonly (NumberField & { max: number })[] = [
+  { path: ["leg", "coxa_mm"], label: "Coxa", unit: "mm", step: 1, min: 0, max: 150 },
+  { path: ["leg", "femur_mm"], label: "Femur", unit: "mm", step: 1, min: 1, max: 250 },
+  { path: ["leg", "tibia_mm"], label: "Tibia", unit: "mm", step: 1, min: 1, max: 350 },
+];
+
+export const LEG_MORE: readonly NumberField[] = [
+  {
+    path: ["leg", "femur_axis_offset_mm", 0],
+    label: "Femur axis sideways",
+    unit: "mm",
+    step: 1,
+    list: [0, 0],
+  },
+  { path: ["leg", "femur_axis_offset_mm", 1], label: "Femur axis up", unit: "mm", step: 1, list: [0, 0] },
+  { path: ["leg", "foot_radius_mm"], label: "Foot’s radius", unit: "mm", step: 0.5, min: 0 },
+];
+
+export const BODY: readonly NumberField[] = [
+  { path: ["body", "mass_kg"], label: "Mass", unit: "kg", step: 0.01, min: 0.000001 },
+  ...(["Length", "Width", "Height"] as const).map((label, i) => ({
+    path: ["body", "size_mm", i],
+    label,
+    unit: "mm",
+    step: 1,
+    min: 0.001,
+    list: [100, 100, 40],
+  })),
+  ...AXES.map((axis, i) => ({
+    path: ["body", "com_mm", i],
+    label: `Centre of mass ${axis}`,
+    unit: "mm",
+    step: 1,
+    list: [0, 0, 0],
+  })),
+];
+
+export const MASSES: readonly NumberField[] = JOINTS.flatMap((joint) => [
+  { path: ["leg", "mass_kg", joint], label: `Mass of the ${joint}`, unit: "kg", step: 0.005, min: 0 },
+  { path: ["leg", "com_mm", joint], label: `${title(joint)}: centre from its joint`, unit: "mm", step: 1 },
+]);
+
+export const LIMITS: readonly { joint: string; low: NumberField; high: NumberField }[] = JOINTS.map(
+  (joint) => {
+    const end = (i: number, word: string): NumberField => ({
+      path: ["leg", "limits_deg", joint, i],
+      label: `${title(joint)}, ${word}`,
+      unit: "°",
+      step: 1,
+      min: -180,
+      list: [-90, 90],
+    });
+    return { joint, low: end(0, "lowest"), high: end(1, "highest") };
+  },
+);
+
+export const GAIT: readonly NumberField[] = [
+  { path: ["gait", "clearance_mm"], label: "Clearance", unit: "mm", step: 1, min: 0.001 },
+  { path: ["gait", "lift_mm"], label: "Lift", unit: "mm", step: 1, min: 0.001 },
+];
+
+/** The fields of one leg's own entry. */
+export function mountFields(leg: number): readonly NumberField[] {
+  return [
+    ...AXES.map((axis, i) => ({
+      path: ["legs", leg, "position_mm", i],
+      label: `Coxa axis ${axis}`,
+      unit: "mm",
+      step: 1,
+      list: [0, 0, 0],
+    })),
+    { path: ["legs", leg, "yaw_deg"], label: "Points to (90 is left)", unit: "°", step: 1, min: -360 },
+  ];
+}
+
+/** What one leg may have otherwise than the others. */
+export function ownFields(leg: number): readonly NumberField[] {
+  return LENGTHS.map(({ path, label, unit, step, min }) => ({
+    path: ["legs", leg, ...path.slice(1)],
+    label: `${label} of its own`,
+    unit,
+    step,
+    min,
+  }));
+}
+
+function title(word: string): string {
+  return word.charAt(0).toUpperCase() + word.slice(1);
+}

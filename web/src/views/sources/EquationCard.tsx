@@ -1,0 +1,38 @@
+import { withUnit } from "../../controls/numbers";
+import type { Equation } from "../../protocol";
+import { Maths } from "./Maths";
+
+/** One line of a document: its formula, the numbers in it, what comes out, and what it is called here. */
+export function EquationCard({ equation }: { equation: Equation }) {
+  const { symbol, formula, numbers, value, unit, ours, note } = equation;
+  return (
+    <div className="equation" data-testid={`equation-${equation.key}`}>
+      <div className="equation-head">
+        <span>{equation.name}</span>
+        <output>{withUnit(value, digitsOf(unit), unit)}</output>
+      </div>
+      <div className="scroll maths">
+        <Maths node={row(symbol, formula)} block />
+        {numbers && <Maths node={row({ tag: "mrow", text: null, children: [] }, numbers)} block />}
+      </div>
+      {(ours ?? equation.printed_value ?? note) && (
+        <p className="hint">
+          {ours && <>Here: {ours}. </>}
+          {equation.printed_value && <>The document prints {equation.printed_value} for its own robot. </>}
+          {note}
+        </p>
+      )}
+    </div>
+  );
+}
+
+/** Symbol = formula. */
+function row(left: Equation["symbol"], right: Equation["formula"]): Equation["symbol"] {
+  if (!right) return left;
+  const equals = { tag: "mo", text: "=", children: [] } as const;
+  return { tag: "mrow", text: null, children: [left, { ...equals, children: [] }, right] };
+}
+
+function digitsOf(unit: string): number {
+  return unit === "mm" || unit === "deg" || unit === "°" ? 2 : 4;
+}
