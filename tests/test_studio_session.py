@@ -1,0 +1,541 @@
+"""Every message to a session, against the numbers of the Python API."""
+
+import json
+import math
+import tomllib
+
+import numpy as np
+import pytest
+
+from sample_studio import Asked, table
+from tarsus import (
+    Gait,
+    Payload,
+    Pose,
+    centre_of_mass,
+    default_clearance,
+    default_stance,
+    forward_kinematics,
+    inverse_kinematics,
+    joint_torques,
+    joint_verdicts,
+    list_robots,
+    list_servos,
+    load_robot,
+    loads,
+    max_stroke,
+    plan_walk,
+    resting_pose,
+    size_servos,
+    stability_margin,
+    straight_path,
+    support_polygon,
+    twist_path,
+)
+from tarsus.gait.path import curved_path
+from tarsus.report.walk_summary import walk_summary
+from tarsus.robot.file import robot_from_text
+from tarsus.studio.messages.state import RobotChoice, StudioState
+from tarsus.studio.session import Session
+from tarsus.studio.state_text import state_of
+
+MM, DEG = 0.006, 0.0006
+"""Half the last digit on the wire, and a little rounding."""
+
+STRIDER = load_robot("strider")
+
+
+@pytest.fixture
+def ask():
+    return Asked()
+
+
+def test_hello_tells_what_there_is():
+    answers = Asked().all("hello")
+    assert [answer["type"] for answer in answers] == ["welcome", "robot", "state", "walk", "done"]
+    welcome = answers[0]
+    assert welcome["robots"] == list(list_robots())
+    assert welcome["servos"] == list(list_servos())
+    assert "body" in welcome["robot_schema"]["properties"]
+    assert StudioState.model_validate_json(json.dumps(answers[2]["state"])) == StudioState()
+
+
+@pytest.mark.parametrize("name", list_robots())
+def test_the_robot_is_told_so_that_forward_kinematics_can_be_done_with_it(name):
+    asked = Asked()
+    told = asked("robot", "robot", preset=name)
+    robot = load_robot(name)
+    assert told["name"] == name == told["preset"]
+    assert told["document"] == robot.to_dict()
+    angles = np.random.default_rng(1).uniform(-1, 1, (robot.legs, 3))
+    assert by_the_formula(told, angles) == pytest.approx(forward_kinematics(robot, angles) * 1000, abs=0.03)
+    assert table(told["limits_deg"], 3, 2) == pytest.approx(np.degrees(robot.limits), abs=DEG)
+    height = default_clearance(robot)
+    assert told["clearance_mm"] == pytest.approx(height * 1000)
+    assert table(told["stance_mm"], 3)[:, :2] == pytest.approx(default_stance(robot, height)[:, :2] * 1000, abs=MM)
+    assert told["longest_stroke_mm"] == pytest.approx(max_stroke(robot, Gait.named(robot.gait.name)) * 1000)
+    assert [bool(servo) for servo in told["servos"]] == [servo is not None for row in robot.servos for servo in row]
+
+
+def by_the_formula(told, angles):
+    """The leg points as the message's description says that they follow."""
+    points = []
+    for leg in range(len(told["leg_names"])):
+        coxa, femur, tibia = angles[leg]
+        yaw = math.radians(told["mount_yaw_deg"][leg]) + coxa
+        out, left, up = (
+            np.array([math.cos(yaw), math.sin(yaw), 0]),
+            np.array([-math.sin(yaw), math.cos(yaw), 0]),
+            [0, 0, 1],
+        )
+        side, rise = table(told["femur_axis_offset_mm"], 2)[leg]
+        mount = table(told["mount_mm"], 3)[leg]
+        axis = mount + told["coxa_mm"][leg] * out + side * left + rise * np.array(up)
+        knee = axis + told["femur_mm"][leg] * (math.cos(femur) * out + math.sin(femur) * np.array(up))
+        bend = femur + tibia
+        foot = knee + told["tibia_mm"][leg] * (math.cos(bend) * out + math.sin(bend) * np.array(up))
+        points.append([mount, axis, knee, foot])
+    return np.array(points)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_joints_rest_as_resting_pose_says(ask, seed):
+    degrees = np.random.default_rng(seed).uniform((-70, -60, -150), (70, 90, 10), (6, 3))
+    pose = ask("joints", "pose", joints={"angles_deg": degrees.ravel().tolist()})
+    angles = np.radians(degrees)
+    rest = resting_pose(STRIDER, angles)
+    assert pose["position_mm"] == pytest.approx(rest.body.position * 1000, abs=MM)
+    assert pose["rpy_deg"] == pytest.approx(np.degrees(rest.body.rpy), abs=DEG)
+    assert pose["contacts"] == "".join(str(int(down)) for down in rest.contacts)
+    assert pose["points_down"] == "".join(str(int(down)) for down in rest.leg_points_down.ravel())
+    assert pose["corners_down"] == rest.corners_down.sum()
+    assert pose["margin_mm"] == pytest.approx(float(rest.margin) * 1000, abs=MM)
+    assert pose["stable"] == bool(rest.stable)
+    assert pose["text"] == rest.describe()
+    assert pose["com_mm"] == pytest.approx(rest.body @ centre_of_mass(STRIDER, angles) * 1000, abs=MM)
+    beyond = (degrees < np.degrees(STRIDER.limits[..., 0])) | (degrees > np.degrees(STRIDER.limits[..., 1]))
+    assert [(limit["leg"], limit["joint"]) for limit in pose["limits"]] == [
+        (leg, ("coxa", "femur", "tibia")[joint]) for leg, joint in np.argwhere(beyond)
+    ]
+    assert len(pose["problems"]) >= beyond.sum()
+
+
+def test_forces_and_torques_are_told_where_the_feet_alone_hold_the_robot(ask):
+    pose = ask("joints", "pose", joints={"angles_deg": [0, 30, -100] * 6})
+    angles = np.radians([[0, 30, -100]] * 6)
+    rest = resting_pose(STRIDER, angles)
+    torques, forces = joint_torques(STRIDER, angles, rest.body, rest.contacts)
+    assert pose["torques_nm"] == pytest.approx(torques.ravel(), abs=1e-4)
+    assert pose["forces_n"] == pytest.approx(forces.ravel(), abs=1e-4)
+    lying = ask("joints", "pose", joints={"angles_deg": [0, 90, 0] * 6})
+    assert lying["corners_down"] == 4
+    assert lying["forces_n"] is None
+    assert lying["torques_nm"] is None
+
+
+def test_angles_of_another_number_of_legs_are_refused(ask):
+    assert "6 legs have 18" in ask.error("joints", joints={"angles_deg": [0.0] * 17})["text"]
+
+
+BODY = {"x_mm": 12, "y_mm": -8, "z_mm": 5, "roll_deg": 4, "pitch_deg": -3, "yaw_deg": 6}
+
+
+def stance_in_ground(height):
+    return default_stance(STRIDER, height) + np.array([0, 0, height])
+
+
+def body_pose(body, height):
+    turn = np.radians([body.get(f"{axis}_deg", 0) for axis in ("roll", "pitch", "yaw")])
+    place = np.array([body.get(f"{axis}_mm", 0) for axis in "xyz"]) / 1000 + [0, 0, height]
+    return Pose.from_rpy(*turn, place)
+
+
+@pytest.mark.parametrize("clearance", [None, 130.0])
+def test_body_moves_over_still_feet(ask, clearance):
+    told = ask("body", "pose", body={**BODY, "clearance_mm": clearance})
+    height = default_clearance(STRIDER) if clearance is None else clearance / 1000
+    feet, body = stance_in_ground(height), body_pose(BODY, height)
+    solution = inverse_kinematics(STRIDER, feet, body)
+    assert table(told["angles_deg"], 3) == pytest.approx(np.degrees(solution.angles), abs=DEG)
+    assert table(told["feet_mm"], 3) == pytest.approx(feet * 1000, abs=MM)
+    assert told["contacts"] == "111111"
+    margin = stability_margin(STRIDER, solution.angles, body, np.ones(6, dtype=bool))
+    assert told["margin_mm"] == pytest.approx(margin * 1000, abs=MM)
+    polygon = support_polygon(feet, np.ones(6, dtype=bool)) * 1000
+    # Of two corners equally far back, rounding says which is the first.
+    apart = np.linalg.norm(table(told["support_mm"], 2)[:, None] - polygon, axis=-1)
+    assert len(told["support_mm"]) == polygon.size
+    assert apart.min(0).max() < 2 * MM
+    torques, forces = joint_torques(STRIDER, solution.angles, body, np.ones(6, dtype=bool))
+    assert told["torques_nm"] == pytest.approx(torques.ravel(), abs=1e-4)
+    assert table(told["forces_n"], 3)[:, 2].sum() == pytest.approx(forces[:, 2].sum(), abs=1e-3)
+    assert (told["legs"], told["problems"], told["share"]) == ([], [], 1.0)
+
+
+def test_a_leg_that_cannot_reach_says_why_and_by_how_much(ask):
+    told = ask("body", "pose", body={"pitch_deg": 25})
+    height = default_clearance(STRIDER)
+    solution = inverse_kinematics(STRIDER, stance_in_ground(height), body_pose({"pitch_deg": 25}, height))
+    failing = np.flatnonzero(solution.reach)
+    assert [leg["leg"] for leg in told["legs"]] == failing.tolist() != []
+    assert [leg["text"] for leg in told["legs"]] == solution.explain().splitlines()
+    assert table(told["angles_deg"], 3) == pytest.approx(np.degrees(solution.angles), abs=DEG)
+    for leg in told["legs"]:
+        assert f"{leg['miss_mm']:.1f} mm away" in leg["text"]
+        assert told["contacts"][leg["leg"]] == "0"
+    assert 0 < told["share"] < 1
+    there = {"pitch_deg": 25 * told["share"] - 1e-3}
+    assert ask("body", "pose", body=there)["legs"] == []
+
+
+def test_a_body_too_high_to_stand_is_refused(ask):
+    assert ask.error("body", body={"clearance_mm": 400})["kind"] == "unreachable"
+
+
+def test_a_foot_is_dragged_and_the_leg_follows(ask):
+    ask.all("view", view="body")
+    state, told, done = ask.all("drag_foot", leg=1, position_mm=[10, 240, 25])
+    assert state["state"]["body"]["feet_mm"][3:6] == [10, 240, 25]
+    height = default_clearance(STRIDER)
+    feet = stance_in_ground(height)
+    feet[1] = 0.010, 0.240, 0.025
+    solution = inverse_kinematics(STRIDER, feet, body_pose({}, height))
+    assert table(told["angles_deg"], 3) == pytest.approx(np.degrees(solution.angles), abs=DEG)
+    assert told["contacts"] == "101111"
+    assert done["undo"]
+    below = ask("drag_foot", "state", leg=1, position_mm=[10, 240, -50])
+    assert below["state"]["body"]["feet_mm"][5] == 0
+    assert "legs 0 to 5" in ask.error("drag_foot", leg=6, position_mm=[0, 0, 0])["text"]
+
+
+def test_a_foot_dragged_in_the_view_joints_turns_that_leg_alone(ask):
+    before = ask("view", "pose", view="joints")
+    goal = np.array([20.0, 230.0, 10.0])
+    state, told, _ = ask.all("drag_foot", leg=1, position_mm=goal.tolist())
+    assert state["state"]["joints"]["angles_deg"] == pytest.approx(told["angles_deg"], abs=1e-3)
+    was, now = table(before["angles_deg"], 3), table(told["angles_deg"], 3)
+    assert np.delete(now, 1, 0) == pytest.approx(np.delete(was, 1, 0), abs=DEG)
+    rest = resting_pose(STRIDER, np.radians(was))
+    foot = (rest.body @ forward_kinematics(STRIDER, np.radians(now)))[1, 3]
+    assert foot * 1000 == pytest.approx(goal, abs=0.01)
+
+
+WALKS = [
+    ({}, lambda r: plan_walk(r, Gait.named("tripod"), straight_path(0.5))),
+    (
+        {"gait": "wave", "clearance_mm": 120, "lift_mm": 25,
+         "path": {"way": "curve", "angle_deg": 60, "centre_mm": [0, 300]}},
+        lambda r: plan_walk(r, Gait.named("wave"), curved_path(math.radians(60), (0, 0.3)), clearance=0.12, lift=0.025),
+    ),
+    (
+        {"gait": "ripple", "rate_hz": 50,
+         "path": {"way": "twist", "velocity_mm_s": [30, 10], "turn_deg_s": 8, "duration_s": 3}},
+        lambda r: plan_walk(r, Gait.named("ripple"), twist_path(0.03, 0.01, math.radians(8), 3), rate=50),
+    ),
+    (
+        {"path": {"way": "straight", "distance_mm": 300, "heading_deg": 90}, "stroke_mm": 50, "cycle_time_s": 1.5,
+         "roll_deg": 2, "pitch_deg": 3, "foot_distance_mm": 30},
+        lambda r: plan_walk(
+            r, Gait.named("tripod"), straight_path(0.3, math.pi / 2), stroke=0.05, cycle_time=1.5,
+            body_tilt=np.radians([2, 3]), foot_distance=0.03,
+        ),
+    ),
+    (
+        {"gait": {"duty": 0.75, "offsets": [0, 0.5, 0, 0.5, 0, 0.5]}, "speed_mm_s": 20, "strict": False},
+        lambda r: plan_walk(r, Gait(duty=0.75, offsets=(0, 0.5) * 3), straight_path(0.5), speed=0.02, strict=False),
+    ),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("options", "plan"), WALKS)
+def test_a_walk_is_what_plan_walk_gives(ask, options, plan):
+    told, motion = ask("walk", "walk", walk=options), plan(STRIDER)
+    assert told["count"] == len(motion.time)
+    assert np.arange(told["count"]) / told["rate_hz"] == pytest.approx(motion.time)
+    assert table(told["angles_deg"], 6, 3) == pytest.approx(np.degrees(motion.angles), abs=DEG)
+    assert table(told["position_mm"], 3) == pytest.approx(motion.body.position * 1000, abs=MM)
+    rpy = motion.body.rpy
+    assert table(told["rpy_deg"], 3)[:, :2] == pytest.approx(np.degrees(rpy[:, :2]), abs=DEG)
+    turned = np.radians(table(told["rpy_deg"], 3)[:, 2]) - rpy[:, 2]
+    assert np.cos(turned) == pytest.approx(np.ones(len(turned)))
+    assert np.abs(np.diff(table(told["rpy_deg"], 3)[:, 2])).max() < 20
+    assert told["contacts"] == ["".join(str(int(down)) for down in row) for row in motion.contacts]
+    assert told["reach"] is None
+    assert told["margin_mm"] == pytest.approx(motion.margin * 1000, abs=MM)
+    com = (motion.body @ centre_of_mass(STRIDER, motion.angles)[:, None])[:, 0, :2]
+    assert table(told["com_mm"], 2) == pytest.approx(com * 1000, abs=MM)
+    summary = walk_summary(motion)
+    for key in ("gait", "duration_s", "cycle_time_s", "steps", "stroke_mm", "speed_mm_s", "clearance_mm", "lift_mm"):
+        assert told[key] == pytest.approx(summary[key])
+    for key in ("possible", "problems", "assumed"):
+        assert told[key] == summary[key]
+    assert told["end"] == pytest.approx(summary["end"])
+    assert told["least_margin"]["at_s"] == summary["least_margin"]["at_s"]
+    assert told["nearest_legs"] == summary["nearest_feet"]["legs"]
+    assert [joint["deg_s"] for joint in told["joint_speed"]] == pytest.approx(
+        [summary["joint_speed"][joint]["deg_s"] for joint in ("coxa", "femur", "tibia")]
+    )
+
+
+def test_a_walk_that_does_not_work_is_refused_with_what_would(ask):
+    error = ask.error("walk", walk={"stroke_mm": 400})
+    assert error["kind"] == "stroke"
+    longest = max_stroke(STRIDER, Gait.named("tripod")) * 1000
+    assert error["longest_stroke_mm"] == pytest.approx(longest)
+    assert ask("walk", "walk", walk={"stroke_mm": longest * 0.999})["longest_stroke_mm"] == pytest.approx(longest)
+    shown = ask("walk", "walk", walk={"stroke_mm": 400, "strict": False})
+    assert not shown["possible"]
+    assert any(set(row) != {"0"} for row in shown["reach"])
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        {"path": {"way": "straight", "distance_mm": 99_000, "heading_deg": 0}},
+        {"rate_hz": 1e5},
+        {"cycle_time_s": 1e4},
+        {"path": {"way": "curve", "angle_deg": 3600, "centre_mm": [0, 90_000]}, "stroke_mm": 1},
+    ],
+)
+def test_a_walk_of_too_many_samples_is_refused_with_the_number(ask, options):
+    error = ask.error("walk", walk=options)
+    assert error["kind"] == "input"
+    assert "at most 10000" in error["text"]
+
+
+@pytest.mark.parametrize("name", ["no-such-gait", "tripod "])
+def test_an_unknown_gait_is_named(ask, name):
+    error = ask.error("walk", walk={"gait": name})
+    assert error["kind"] == "unknown_name"
+    assert "tripod, tetrapod, ripple, wave" in error["text"]
+
+
+LOADS = {"payload_kg": 0.2, "payload_at_mm": [10, 0, 20], "supply_v": 6.8, "capacity_ah": 3, "safety_factor": 2}
+
+
+def test_loads_are_what_loads_gives(ask):
+    motion = plan_walk(STRIDER, Gait.named("tripod"), straight_path(0.5))
+    told = ask("loads", "loads", loads=LOADS)
+    found = loads(STRIDER, motion, payload=Payload(0.2, (0.01, 0, 0.02)), supply=6.8)
+    assert table(told["torques_nm"], 6, 3) == pytest.approx(found.torques, abs=1e-4)
+    assert table(told["forces_n"], 6, 3) == pytest.approx(found.forces, abs=1e-4)
+    verdicts = joint_verdicts(found, safety_factor=2)
+    assert [joint["text"] for joint in told["joints"]] == [verdict.text() for verdict in verdicts]
+    assert [joint["grade"] for joint in told["joints"]] == [verdict.class_name for verdict in verdicts]
+    assert [joint["peak_nm"] for joint in told["joints"]] == pytest.approx(found.peak.ravel())
+    assert told["weight_n"] == pytest.approx(found.weight)
+    assert told["cost_of_transport"] == pytest.approx(found.cost_of_transport)
+
+
+def test_loads_come_with_the_walk_where_the_client_does_not_have_it(ask):
+    ask.all("view", view="robot")
+    ask.all("robot", preset="phantomx")
+    assert ask.types("loads", loads={}) == ["walk", "loads", "done"]
+    assert ask.types("loads", loads={"payload_kg": 1}) == ["loads", "done"]
+    ask.all("view", view="loads")
+    assert ask.types("walk", walk={"gait": "ripple"}) == ["walk", "loads", "done"]
+
+
+def test_loads_of_a_robot_without_masses_tell_what_is_missing(ask):
+    ask.all("robot", preset="mithi")
+    assert ask.error("loads", loads={})["kind"] == "missing_data"
+    assert ask.types("view", view="loads") == ["walk", "error", "pose", "done"]
+
+
+@pytest.mark.parametrize("loading", [{"safety_factor": 0}, {"supply_v": 0}, {"capacity_ah": 0}])
+def test_loads_out_of_range_are_refused(ask, loading):
+    assert ask.error("loads", loads=loading)["kind"] == "input"
+
+
+def test_servos_are_those_of_size_servos(ask):
+    ask.all(
+        "walk",
+        walk={"gait": "wave", "clearance_mm": 130, "path": {"way": "straight", "distance_mm": 150, "heading_deg": 0}},
+    )
+    ask.all("loads", loads={"safety_factor": 2.5})
+    told = ask("servos", "servos")
+    motion = plan_walk(STRIDER, Gait.named("wave"), straight_path(0.15), clearance=0.13)
+    sizing = size_servos(STRIDER, loads(STRIDER, motion), safety_factor=2.5)
+    assert told["present_do"] == sizing.ok
+    assert [servo["name"] for servo in told["candidates"]] == [servo.name for servo in sizing.candidates] != []
+    assert told["mixed"]["factor"] == pytest.approx(sizing.mixed.factor)
+    assert told["payload_kg"] == pytest.approx(sizing.payload)
+
+
+def test_a_document_changes_the_robot_and_keeps_the_pose(ask):
+    ask.all("joints", joints={"angles_deg": [0, 30, -100] * 6})
+    document = STRIDER.to_dict()
+    document["leg"]["femur_mm"] = 110
+    robot, state, *_ = ask.all("document", document=document)
+    assert robot["femur_mm"] == [110.0] * 6
+    assert robot["preset"] is None
+    assert state["state"]["joints"]["angles_deg"] == [0, 30, -100] * 6
+    document["leg"]["femur_mm"] = 98
+    assert ask("document", "robot", document=document)["preset"] == "strider"
+
+
+def test_what_is_wrong_in_a_document_is_told_by_its_key(ask):
+    document = STRIDER.to_dict()
+    document["leg"]["femur_mm"] = -3
+    document["legs"][2]["yaw"] = 3
+    error = ask.error("document", document=document)
+    assert error["kind"] == "robot_file"
+    assert [problem["key"] for problem in error["problems"]] == ["leg.femur_mm", "legs[2].yaw"]
+    assert ask.error("document", document={})["problems"]
+    many = {**STRIDER.to_dict(), "legs": [{**STRIDER.to_dict()["legs"][0], "name": f"leg {i}"} for i in range(21)]}
+    assert ask.error("document", document=many)["kind"] in ("robot_file", "input")
+
+
+def test_toml_in_and_out(ask):
+    text = ask("download", "file", what="toml")
+    assert (text["name"], text["mime"]) == ("strider.toml", "application/toml")
+    assert robot_from_text(text["text"], where="it") == STRIDER
+    changed = text["text"].replace("tibia_mm = 181", "tibia_mm = 150")
+    assert ask("toml", "robot", text=changed)["tibia_mm"] == [150.0] * 6
+    assert tomllib.loads(ask("download", "file", what="toml")["text"])["leg"]["tibia_mm"] == 150
+    error = ask.error("toml", text="name = ")
+    assert "line 1" in error["text"]
+
+
+def test_a_robot_that_cannot_stand_is_shown_all_the_same(ask):
+    document = STRIDER.to_dict()
+    document["gait"]["clearance_mm"] = 500
+    answers = ask.all("document", document=document)
+    assert [answer["type"] for answer in answers] == ["robot", "state", "error", "pose", "done"]
+    assert answers[0]["stance_mm"] is None
+    assert answers[0]["problems"]
+    assert answers[2]["kind"] == "unreachable"
+    assert ask.types("view", view="joints") == ["pose", "done"]
+
+
+def test_a_preset_of_another_number_of_legs_begins_anew(ask):
+    document = STRIDER.to_dict()
+    document["legs"] = document["legs"][:5]
+    ask.all("joints", joints={"angles_deg": [0, 30, -100] * 6})
+    ask.all("drag_foot", leg=5, position_mm=[100, -200, 0])
+    ask.all("walk", walk={"gait": {"duty": 0.75, "offsets": [0, 0.5, 0, 0.5, 0, 0.5]}, "speed_mm_s": 20})
+    ask.all("source", source={"number": "001", "leg": 5})
+    state = ask("document", "state", document=document)["state"]
+    assert state["joints"]["angles_deg"] is None
+    assert state["body"]["feet_mm"] is None
+    assert state["walk"]["gait"] is None
+    assert state["source"]["leg"] == 0
+    assert ask("robot", "robot", preset="phantomx")["leg_codes"] == ["LF", "LM", "LR", "RR", "RM", "RF"]
+
+
+def test_presets_are_names_and_never_files(ask, tmp_path):
+    STRIDER.save(tmp_path / "mine.toml")
+    assert ask.error("robot", preset=str(tmp_path / "mine.toml"))["kind"] == "unknown_name"
+    assert "Did you mean 'phantomx'" in ask.error("robot", preset="phantom")["text"]
+
+
+@pytest.mark.parametrize(
+    ("view", "types"),
+    [
+        ("joints", ["pose"]),
+        ("body", ["pose"]),
+        ("drive", ["pose"]),
+        ("loads", ["walk", "loads"]),
+        ("robot", ["pose"]),
+        ("sources", ["pose", "source"]),
+    ],
+)
+def test_a_view_shows_what_it_is_for(ask, view, types):
+    picture = {"camera": "top", "eye_mm": [1, 2, 3], "target_mm": [0, 0, 0], "time_s": 1.5, "leg": 2}
+    answers = ask.all("view", view=view, picture=picture)
+    assert [answer["type"] for answer in answers] == [*types, "done"]
+    assert not answers[-1]["undo"]
+    held = state_of(answers[-1]["state"])
+    assert held.view == view
+    assert held.picture.eye_mm == (1, 2, 3)
+    assert ask.types("view", view=view) == ["done"]
+
+
+def test_undo_goes_from_commit_to_commit_and_back(ask):
+    ask.all("view", view="body")
+    for x in (5, 10, 15):
+        assert ask.all("body", body={"x_mm": x}, commit=False)[-1]["state"] is None
+    first = ask.all("body", body={"x_mm": 20})[-1]
+    assert state_of(first["state"]).body.x_mm == 20
+    ask.all("body", body={"x_mm": 40})
+    ask.all("robot", preset="phantomx")
+    answers = ask.all("undo")
+    assert [answer["type"] for answer in answers] == ["robot", "state", "pose", "done"]
+    assert answers[0]["name"] == "strider"
+    assert answers[1]["state"]["body"]["x_mm"] == 40
+    assert ask("undo", "state")["state"]["body"]["x_mm"] == 20
+    last = ask.all("undo")
+    assert last[1]["state"]["body"]["x_mm"] == 0
+    assert (last[-1]["undo"], last[-1]["redo"]) == (False, True)
+    assert "nothing to undo" in ask.error("undo")["text"]
+    assert ask("redo", "state")["state"]["body"]["x_mm"] == 20
+    ask.all("body", body={"x_mm": 7})
+    assert "nothing to redo" in ask.error("redo")["text"]
+
+
+def test_undo_takes_back_what_was_not_committed_yet(ask):
+    ask.all("view", view="body")
+    ask.all("body", body={"x_mm": 20})
+    ask.all("body", body={"x_mm": 30}, commit=False)
+    assert ask("undo", "state")["state"]["body"]["x_mm"] == 20
+    assert ask("redo", "state")["state"]["body"]["x_mm"] == 30
+
+
+def test_a_state_goes_on_in_another_session(ask):
+    ask.all("robot", preset="phantomx")
+    ask.all("view", view="body")
+    text = ask.all("body", body=BODY)[-1]["state"]
+    resumed = Asked()
+    answers = resumed.all("hello", state=text)
+    assert [answer["type"] for answer in answers] == ["welcome", "robot", "state", "pose", "done"]
+    assert resumed.session.state == ask.session.state
+    assert not answers[-1]["undo"]
+    opened = Asked()
+    answers = opened.all("open", state=text)
+    assert opened.session.state == ask.session.state
+    assert answers[-1]["undo"]
+    assert opened.error("open", state="1.nonsense")["kind"] == "input"
+
+
+def test_a_damaged_link_is_told_and_the_studio_opens_all_the_same():
+    answers = Asked().all("hello", state="1.%%%")
+    assert [answer["type"] for answer in answers] == ["welcome", "error", "robot", "state", "walk", "done"]
+
+
+def test_downloads_are_what_the_api_writes(ask, tmp_path):
+    motion = plan_walk(STRIDER, Gait.named("tripod"), straight_path(0.5))
+    motion.to_csv(tmp_path / "walk.csv")
+    file = ask("download", "file", what="csv")
+    assert (file["name"], file["mime"]) == ("strider-walk.csv", "text/csv")
+    assert file["text"].encode() == (tmp_path / "walk.csv").read_bytes()
+    ask.all("view", view="joints")
+    ask.all("joints", joints={"angles_deg": [1, 30, -100] * 6})
+    lines = ask("download", "file", what="angles")["text"].splitlines()
+    assert lines[0] == "leg,coxa_deg,femur_deg,tibia_deg"
+    assert lines[1] == "LF,1.000000,30.000000,-100.000000"
+    assert len(lines) == 7
+
+
+def test_a_robot_of_ones_own_is_there_from_the_start():
+    document = STRIDER.replace(name="mine").to_dict()
+    asked = Asked(Session(StudioState(robot=RobotChoice(preset=None, document=document))))
+    robot = asked("hello", "robot")
+    assert robot["name"] == "mine"
+    asked.all("robot", preset="mithi")
+    assert asked("undo", "robot")["name"] == "mine"
+
+
+def test_a_ping_is_answered(ask):
+    assert ask.types("ping") == ["done"]
+
+
+def test_what_nobody_thought_of_is_told_as_a_bug_and_the_session_goes_on(ask, monkeypatch, caplog):
+    def fails(*_given, **_more):
+        raise RuntimeError("nobody thought of this")
+
+    with monkeypatch.context() as patched:
+        patched.setattr("tarsus.studio.views.Views.walk", fails)
+        error = ask.error("walk", walk={"gait": "wave"})
+    assert error["kind"] == "internal"
+    assert "nobody thought of this" in caplog.text
+    assert ask("walk", "walk", walk={"gait": "wave"})["gait"] == "wave"
