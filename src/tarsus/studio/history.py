@@ -9,7 +9,7 @@ from tarsus.studio.messages.state import Picture, StudioState, View
 
 __all__ = ["History"]
 
-_MOST = 200
+_MOST = 100
 
 
 class History:

@@ -2,7 +2,8 @@
 
 Rays are cast from a point that the leg reaches around: on the ground from below the coxa axis, in the leg's plane from
 the femur axis. Along each, the widest band of reachable points is found by inverse kinematics, its ends by
-halving. So the outline is that of `inverse_kinematics`, joint limits, offsets, tilt and the ground included.
+halving. So the outline is that of `inverse_kinematics`, joint limits, offsets, tilt and the ground included; left out
+is what a leg reaches backwards over its coxa axis, as a walk never does.
 """
 
 from __future__ import annotations
@@ -13,9 +14,11 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
+from tarsus.gait.branch import branches
 from tarsus.kinematics.inverse import inverse_kinematics
 from tarsus.kinematics.leg import forward_kinematics
 from tarsus.kinematics.pose import Pose
+from tarsus.kinematics.reach import IKSolution
 from tarsus.robot.robot import Robot
 from tarsus.studio.messages.still import ZoneMessage
 from tarsus.studio.wire import millimetres, or_null
@@ -60,7 +63,8 @@ class _Plane:
 
     @property
     def distances(self) -> Floats:
-        return np.linspace(0.0, self.length, _ALONG)
+        # At the axis itself every direction is the same point, and none of them is told apart from the others.
+        return np.linspace(1e-3 * self.length, self.length, _ALONG)
 
 
 def ground_outline(robot: Robot, leg: int, body: Pose) -> Outline:
@@ -115,7 +119,7 @@ def _ground(robot: Robot, leg: int, body: Pose) -> _Plane:
         return np.stack([x, y, np.zeros_like(x)], axis=-1)
 
     def reached(feet: Floats) -> np.ndarray[Any, np.dtype[np.bool_]]:
-        return np.asarray(inverse_kinematics(alone, feet[..., None, :], body).ok)
+        return _reached(alone, inverse_kinematics(alone, feet[..., None, :], body))
 
     return _Plane(points, reached, _length(alone))
 
@@ -144,9 +148,7 @@ def plane_outline(robot: Robot, leg: int, coxa: float) -> Outline:
         return points
 
     def reached(feet: Floats) -> np.ndarray[Any, np.dtype[np.bool_]]:
-        solution = inverse_kinematics(alone, feet[..., None, :])
-        # Behind the coxa axis a foot may be reached with the plane turned away: that is another plane.
-        return np.asarray(solution.ok & (np.abs(np.asarray(solution.angles)[..., 0, 0] - coxa) < 1e-6))
+        return _reached(alone, inverse_kinematics(alone, feet[..., None, :]))
 
     return _cast(_Plane(points, reached, float(alone.femur[0] + alone.tibia[0])))
 
@@ -159,6 +161,12 @@ def _alone(robot: Robot, leg: int) -> Robot:
         for name in ("mount_position", "mount_yaw", "coxa", "femur", "tibia", "femur_axis_offset", "limits")
     }
     return Robot(name=robot.name, leg_names=robot.leg_names[own], **arrays)
+
+
+def _reached(alone: Robot, solution: IKSolution) -> np.ndarray[Any, np.dtype[np.bool_]]:
+    """Leave out feet behind the coxa axis: reached with the plane turned away, they are no place to step to."""
+    away = branches(alone, solution.angles)[..., 0, 0]
+    return np.asarray(solution.ok & ~away)
 
 
 def _length(alone: Robot) -> float:
@@ -206,10 +214,10 @@ def _bands(plane: _Plane, turns: Floats) -> tuple[Floats, Floats]:
     distances = plane.distances
     ok = plane.reached(plane.points(turns[:, None], distances))
     inside, outside = np.empty((2, len(turns))), np.empty((2, len(turns)))
-    step, last = distances[1], len(distances) - 1
+    step, last = distances[1] - distances[0], len(distances) - 1
     for ray in range(len(turns)):
         run = _widest_run(ok[ray]) or (0, 0)
-        inside[:, ray] = distances[run[0]], distances[run[1]]
+        inside[:, ray] = distances[run[0]] if run[0] else 0.0, distances[run[1]]
         outside[0, ray] = inside[0, ray] - (step if run[0] > 0 else 0.0)
         outside[1, ray] = inside[1, ray] + (step if run[1] < last else 0.0)
     for _ in range(_HALVINGS):
