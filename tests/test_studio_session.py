@@ -360,6 +360,8 @@ def test_servos_are_those_of_size_servos(ask):
     assert [servo["name"] for servo in told["candidates"]] == [servo.name for servo in sizing.candidates] != []
     assert told["mixed"]["factor"] == pytest.approx(sizing.mixed.factor)
     assert told["payload_kg"] == pytest.approx(sizing.payload)
+    ask.all("walk", walk={"rate_hz": 800})
+    assert "at most 3000" in ask.error("servos")["text"]
 
 
 def test_a_document_changes_the_robot_and_keeps_the_pose(ask):
@@ -382,8 +384,8 @@ def test_what_is_wrong_in_a_document_is_told_by_its_key(ask):
     assert error["kind"] == "robot_file"
     assert [problem["key"] for problem in error["problems"]] == ["leg.femur_mm", "legs[2].yaw"]
     assert ask.error("document", document={})["problems"]
-    many = {**STRIDER.to_dict(), "legs": [{**STRIDER.to_dict()["legs"][0], "name": f"leg {i}"} for i in range(21)]}
-    assert ask.error("document", document=many)["kind"] in ("robot_file", "input")
+    many = {**STRIDER.to_dict(), "legs": [{**STRIDER.to_dict()["legs"][0], "name": f"leg {i}"} for i in range(13)]}
+    assert "has 13 legs; the studio takes at most 12" in ask.error("document", document=many)["text"]
 
 
 def test_toml_in_and_out(ask):

@@ -15,9 +15,12 @@ from tarsus.load.verdict import joint_verdicts
 from tarsus.report.loads_summary import loads_summary, servos_summary
 from tarsus.studio.messages.moving import Candidate, JointLoad, LoadsMessage, ServosMessage
 from tarsus.studio.messages.state import LoadOptions
+from tarsus.studio.walks import fewer_for_more_legs
 from tarsus.studio.wire import or_null, plain
 
 __all__ = ["loads_message", "loads_of", "servos_message"]
+
+_MOST_SIZED = 3000
 
 
 def loads_of(motion: Motion, options: LoadOptions) -> Loads:
@@ -130,9 +133,15 @@ def servos_message(found: Loads, options: LoadOptions, *, id: int) -> ServosMess
 
     Raises
     ------
-    TarsusError
-        If there is no such factor or rule.
+    InputError
+        If the walk has too many samples, or the factor is 0.
     """
+    most = fewer_for_more_legs(_MOST_SIZED, found.robot)
+    if len(found.motion.time) > most:
+        raise InputError(
+            f"the walk has {len(found.motion.time)} samples; as every servo of the catalogue is tried, servos are "
+            f"chosen here for at most {most}: ask for a lower rate or a shorter walk"
+        )
     sizing = size_servos(found.robot, found, safety_factor=_factor(options), rule=options.rule)
     summary = servos_summary(sizing, found)
     mixed = summary["mixed"]

@@ -75,7 +75,9 @@ def player_page(data: PlayerData) -> str:
     try:
         page = (WEB / "player.html").read_text(encoding="utf-8")
     except OSError:
-        raise TarsusError(BUILD_HINT) from None
+        page = ""
+    if _PLACE not in page:
+        raise TarsusError(BUILD_HINT)
     # Inside a script element only "<" could end it; JSON may write it so.
     held = data.model_dump_json().replace("<", "\\u003c")
     return page.replace(_PLACE, held, 1)

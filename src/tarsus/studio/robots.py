@@ -31,7 +31,7 @@ __all__ = [
     "stance_of",
 ]
 
-MOST_LEGS = 20
+MOST_LEGS = 12
 """Robots with more legs are for the command line: a walk's cost grows with the square of the legs."""
 
 

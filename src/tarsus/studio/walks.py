@@ -23,7 +23,7 @@ from tarsus.studio.messages.moving import JointSpeed, Moment, WalkEnd, WalkMessa
 from tarsus.studio.messages.state import Curve, OwnGait, Straight, WalkOptions
 from tarsus.studio.wire import degrees, millimetres, or_null, rows_of_flags
 
-__all__ = ["MOST_SAMPLES", "gait_of", "longest", "path_of", "plan", "walk_message"]
+__all__ = ["MOST_SAMPLES", "fewer_for_more_legs", "gait_of", "longest", "path_of", "plan", "walk_message"]
 
 MOST_SAMPLES = 10_000
 """Samples that a robot of six legs may have in a plan here; it is about 2 MB to send."""
@@ -143,8 +143,21 @@ def plan(robot: Robot, options: WalkOptions) -> Motion:
     return replace(motion, assumed=tuple(assumed))
 
 
+def fewer_for_more_legs(samples: int, robot: Robot) -> int:
+    """Return how many samples of a robot cost what so many of a robot of six legs do.
+
+    Parameters
+    ----------
+    samples : int
+        Samples of a robot of six legs.
+    robot : Robot
+        A single robot.
+    """
+    return int(samples * min(1.0, (_USUAL_LEGS / robot.legs) ** 2))
+
+
 def _refuse_long(robot: Robot, setup: Setup, path: Path, *, stroke: float, cycle_time: float, rate: float) -> None:
-    most = int(MOST_SAMPLES * min(1.0, (_USUAL_LEGS / robot.legs) ** 2))
+    most = fewer_for_more_legs(MOST_SAMPLES, robot)
     travel = float(path.travel(setup.rest).max())
     seconds = (travel / stroke * setup.gait.duty + 2) * cycle_time
     if not seconds * rate <= most:

@@ -15,6 +15,7 @@ import uvicorn
 
 from tarsus.errors import InputError
 from tarsus.studio.server.app import studio_app
+from tarsus.studio.server.pages import Pages
 from tarsus.studio.server.settings import Settings
 
 __all__ = ["Serving"]
@@ -27,6 +28,8 @@ class Serving:
     ----------
     settings : Settings
         Where to listen; port 0 takes one that is free.
+    pages : Pages, optional
+        The front end; the one in the package where left out.
 
     Raises
     ------
@@ -34,12 +37,12 @@ class Serving:
         If the port is taken, or there is no such address here.
     """
 
-    def __init__(self, settings: Settings) -> None:
+    def __init__(self, settings: Settings, *, pages: Pages | None = None) -> None:
         self._socket = _listen(settings.host, settings.port)
         self.settings = dataclasses.replace(settings, port=self._socket.getsockname()[1])
         limits = settings.limits
         config = uvicorn.Config(
-            studio_app(self.settings),
+            studio_app(self.settings, pages=pages),
             ws="websockets-sansio",
             ws_max_size=limits.message_bytes,
             # On this machine compressing costs more than it saves.
