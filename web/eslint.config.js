@@ -6,7 +6,10 @@ import ts from "typescript-eslint";
 export default ts.config(
   { ignores: ["node_modules", "src/protocol.ts"] },
   js.configs.recommended,
-  { files: ["scripts/**"], languageOptions: { globals: { console: "readonly", process: "readonly" } } },
+  {
+    files: ["scripts/**"],
+    languageOptions: { globals: { console: "readonly", process: "readonly", URL: "readonly" } },
+  },
   {
     files: ["**/*.{ts,tsx}"],
     extends: [...ts.configs.strictTypeChecked, ...ts.configs.stylisticTypeChecked],

@@ -8,7 +8,7 @@ interface Props {
 /** Where the picture is seen from. Pressing the one that is on goes back to its place. */
 export function CameraBar({ camera, onChoose }: Props) {
   return (
-    <div className="segments" role="group" aria-label="Camera">
+    <div className="segments cameras" role="group" aria-label="Camera">
       {CAMERAS.map(({ name, label, hint }) => (
         <button
           key={name}

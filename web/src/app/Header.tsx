@@ -1,7 +1,7 @@
 import { IconButton } from "../controls/IconButton";
 import { Select } from "../controls/Select";
 import { savePng } from "../scene/png";
-import { ask } from "../state/session";
+import { ask, look } from "../state/session";
 import { copyLink } from "../state/share";
 import { useStudio } from "../state/store";
 import { toggleTheme, useTheme } from "./theme";
@@ -68,7 +68,13 @@ function RobotChoice() {
       testId="robot-choice"
       value={robot.preset ?? ""}
       options={[...own, ...options]}
-      onChange={(preset) => preset && ask({ type: "robot", preset })}
+      onChange={(preset) => preset && takePreset(preset)}
     />
   );
+}
+
+/** Another robot is of another size: the camera goes where it can be seen. */
+function takePreset(preset: string) {
+  ask({ type: "robot", preset });
+  look(null, { eye_mm: null, target_mm: null });
 }

@@ -1,7 +1,7 @@
 import { useMemo, useState } from "react";
 
 import { legColours } from "../scene/palette";
-import type { CameraName } from "../scene/cameras";
+import type { CameraName, Place } from "../scene/cameras";
 import { footTrails, lengthOf } from "../scene/frames";
 import { shapeOf } from "../scene/kinematics";
 import { SceneCanvas } from "../scene/SceneCanvas";
@@ -46,7 +46,7 @@ export function PicturePane({ view }: { view: View }) {
     [walking, robot, walk],
   );
   if (!shape || !picture) return <Waiting />;
-  const start =
+  const place =
     picture.eye_mm && picture.target_mm ? { eye: picture.eye_mm, target: picture.target_mm } : null;
   return (
     <>
@@ -56,45 +56,39 @@ export function PicturePane({ view }: { view: View }) {
         palette={palette}
         camera={camera}
         view={framing}
-        start={start}
+        place={place}
         trails={trails}
         forces={view === "loads"}
         torques={view === "loads"}
         names={view !== "loads"}
         description={WORDS[view]}
         onFloor={onFloor}
-        onRest={(eye, target) => look(null, { eye_mm: [...eye], target_mm: [...target] })}
-        onTurned={turnedByHand}
+        onRest={keepPlace}
       >
         <SceneExtras view={view} shape={shape} palette={palette} />
       </SceneCanvas>
-      <div className="over top">
-        <StatusChips />
-        <CameraBar
-          camera={camera}
-          onChoose={(name) => {
-            setAgain(again + 1);
-            look(null, { camera: name, eye_mm: null, target_mm: null });
-          }}
-        />
-      </div>
+      <StatusChips />
+      <CameraBar
+        camera={camera}
+        onChoose={(name) => {
+          setAgain(again + 1);
+          look(null, { camera: name, eye_mm: null, target_mm: null });
+        }}
+      />
       {walking && walk && (
-        <div className="over bottom">
-          <PlayerBar
-            duration={lengthOf(walk)}
-            rate={walk.rate_hz}
-            onRest={(time) => look(null, { time_s: time })}
-          />
-        </div>
+        <PlayerBar
+          duration={lengthOf(walk)}
+          rate={walk.rate_hz}
+          onRest={(time) => look(null, { time_s: time })}
+        />
       )}
     </>
   );
 }
 
-/** Seen from where the hand put it, a camera is free; one that follows goes on following. */
-function turnedByHand() {
-  const camera = useStudio.getState().state?.picture.camera;
-  if (camera !== "free" && camera !== "follow") look(null, { camera: "free" });
+/** Seen from where a hand put it, a camera is free; one that follows goes on following. */
+function keepPlace({ eye, target }: Place, turned: boolean) {
+  look(null, { eye_mm: [...eye], target_mm: [...target], ...(turned ? { camera: "free" } : {}) });
 }
 
 function Waiting() {

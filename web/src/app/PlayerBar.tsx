@@ -27,7 +27,7 @@ export function PlayerBar({ duration, rate, onRest }: Props) {
         scrub.current.value = String(time);
         scrub.current.setAttribute("aria-valuetext", `${text} of ${fixed(duration, 2)} s`);
       }
-      if (clock.current) clock.current.textContent = `${fixed(time, 2)} / ${fixed(duration, 2)} s`;
+      if (clock.current) clock.current.textContent = text;
     };
     show(usePlayback.getState());
     return usePlayback.subscribe(show);
@@ -64,7 +64,10 @@ export function PlayerBar({ duration, rate, onRest }: Props) {
         defaultValue={0}
         onInput={(event) => usePlayback.setState({ playing: false, time: event.currentTarget.valueAsNumber })}
       />
-      <output ref={clock} data-testid="clock" aria-live="off" />
+      <span className="clock">
+        <output ref={clock} data-testid="clock" aria-live="off" />
+        <span className="total"> of {fixed(duration, 2)} s</span>
+      </span>
       <select
         aria-label="Speed of the playback"
         data-testid="play-speed"

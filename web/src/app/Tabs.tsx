@@ -11,7 +11,7 @@ const STEPS: Record<string, number> = { ArrowDown: 1, ArrowRight: 1, ArrowUp: -1
 export function Tabs({ view }: { view: View }) {
   const list = useRef<HTMLDivElement>(null);
   const go = (to: View) => {
-    look(to);
+    openView(to);
     list.current?.querySelector<HTMLButtonElement>(`#tab-${to}`)?.focus();
   };
   const keys = (event: KeyboardEvent) => {
@@ -37,7 +37,7 @@ export function Tabs({ view }: { view: View }) {
           aria-controls="panel"
           tabIndex={tab.view === view ? 0 : -1}
           data-testid={`tab-${tab.view}`}
-          onClick={() => look(tab.view)}
+          onClick={() => openView(tab.view)}
           onKeyDown={keys}
         >
           <Icon name={tab.view} />
@@ -46,4 +46,9 @@ export function Tabs({ view }: { view: View }) {
       ))}
     </div>
   );
+}
+
+/** Who drives wants to see where to: the camera then goes with the robot. */
+function openView(view: View) {
+  look(view, view === "drive" ? { camera: "follow" } : {});
 }

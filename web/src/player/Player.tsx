@@ -7,7 +7,7 @@ import { toggleTheme, usePalette, useTheme } from "../app/theme";
 import { IconButton } from "../controls/IconButton";
 import { fixed } from "../controls/numbers";
 import type { PlayerData } from "../protocol";
-import type { CameraName } from "../scene/cameras";
+import type { CameraName, Place } from "../scene/cameras";
 import { frameOfWalk, footTrails, lengthOf } from "../scene/frames";
 import { shapeOf } from "../scene/kinematics";
 import { legColours } from "../scene/palette";
@@ -23,6 +23,7 @@ export function Player({ data }: { data: PlayerData }) {
   const theme = useTheme((state) => state.theme);
   const palette = usePalette();
   const [camera, setCamera] = useState<CameraName>("free");
+  const [place, setPlace] = useState<Place | null>(null);
   const [again, setAgain] = useState(0);
   const [forces, setForces] = useState(false);
   const shape = useMemo(() => shapeOf(robot), [robot]);
@@ -78,21 +79,24 @@ export function Player({ data }: { data: PlayerData }) {
           forces={forces}
           torques={forces}
           description="The robot walking."
-          onTurned={() => setCamera((name) => (name === "follow" ? name : "free"))}
+          place={place}
+          onRest={(rested, turned) => {
+            setPlace(rested);
+            if (turned) setCamera("free");
+          }}
         />
-        <div className="over top">
-          <StatusChips />
-          <CameraBar
-            camera={camera}
-            onChoose={(name) => {
-              setAgain(again + 1);
-              setCamera(name);
-            }}
-          />
-        </div>
-        <div className="over bottom">
-          <PlayerBar duration={lengthOf(walk)} rate={walk.rate_hz} />
-        </div>
+
+        <StatusChips />
+        <CameraBar
+          camera={camera}
+          onChoose={(name) => {
+            setAgain(again + 1);
+            setCamera(name);
+            setPlace(null);
+          }}
+        />
+
+        <PlayerBar duration={lengthOf(walk)} rate={walk.rate_hz} />
       </main>
     </div>
   );

@@ -4,13 +4,15 @@ import { useEffect, useRef } from "react";
 import { PerspectiveCamera, Spherical, Vector3 } from "three";
 import type { OrbitControls as Controls } from "three-stdlib";
 
-import { placeCamera, type CameraName } from "./cameras";
+import { isFrom, placeCamera, type CameraName, type Place } from "./cameras";
 import type { Vec3 } from "./frame";
 import { prefersStillness, stage } from "./stage";
-import { onSteer } from "./steer";
+import { onSteer, type Turn } from "./steer";
 
 /** Time a camera takes to fly to its place [s]. */
 const FLIGHT = 0.35;
+/** How far down one may look along the floor [rad from the upright]. */
+const LOWEST = Math.PI * 0.497;
 
 export interface View {
   target: Vec3;
@@ -19,60 +21,61 @@ export interface View {
 
 interface Props {
   camera: CameraName;
-  /** What should be seen; a new object makes the camera fly there. */
+  /** What should be seen; a new object makes the camera fly there, unless a hand has put it elsewhere. */
   view: View;
-  /** Where to begin instead, from a link. */
-  start: { eye: Vec3; target: Vec3 } | null;
-  onRest: (eye: Vec3, target: Vec3) => void;
-  onTurned: () => void;
+  /** Where a hand has put the camera. */
+  place: Place | null;
+  /** It has come to rest by hand; `turned` tells whether it still looks from where its name says. */
+  onRest: (place: Place, turned: boolean) => void;
 }
 
 /** The camera: flies to where its name says, follows the robot if asked, and turns by hand in between. */
-export function CameraRig({ camera, view, start, onRest, onTurned }: Props) {
+export function CameraRig({ camera, view, place, onRest }: Props) {
   const controls = useRef<Controls>(null);
   const eyeNow = useThree((state) => state.camera);
   const invalidate = useThree((state) => state.invalidate);
   const flight = useRef<{ eye: Vector3; target: Vector3; left: number } | null>(null);
   const seen = useRef<Vector3 | null>(null);
   const begun = useRef(false);
+  const [eyeKey, targetKey] = [place?.eye.join(), place?.target.join()];
 
   useEffect(() => {
     if (!(eyeNow instanceof PerspectiveCamera)) return;
-    const place =
-      begun.current || !start
-        ? placeCamera(camera, view.target, view.radius, eyeNow.fov, eyeNow.aspect)
-        : start;
+    const goal = place ?? placeCamera(camera, view.target, view.radius, eyeNow.fov, eyeNow.aspect);
+    const eye = new Vector3(...goal.eye);
     const still = !begun.current || prefersStillness();
     begun.current = true;
-    flight.current = {
-      eye: new Vector3(...place.eye),
-      target: new Vector3(...place.target),
-      left: still ? 0 : FLIGHT,
-    };
+    // A hand that has just put it here must not be led back by a rounded number.
+    if (place && eye.distanceTo(eyeNow.position) < 2) return;
+    flight.current = { eye, target: new Vector3(...goal.target), left: still ? 0 : FLIGHT };
     seen.current = null;
     invalidate();
-    // A link's place counts once, at the start.
     // eslint-disable-next-line react-hooks/exhaustive-deps
-  }, [camera, view, eyeNow, invalidate]);
+  }, [camera, view, eyeKey, targetKey, eyeNow, invalidate]);
+
+  const rest = () => {
+    const orbit = controls.current;
+    if (!orbit) return;
+    const now = { eye: rounded(eyeNow.position), target: rounded(orbit.target) };
+    onRest(now, !isFrom(camera, now));
+  };
+  const latestRest = useRef(rest);
+  useEffect(() => {
+    latestRest.current = rest;
+  });
 
   useEffect(
     () =>
-      onSteer(({ round, over, nearer }) => {
+      onSteer((turn) => {
         const orbit = controls.current;
         if (!orbit) return;
         flight.current = null;
-        const offset = eyeNow.position.clone().sub(orbit.target);
-        const angles = new Spherical().setFromCartesianCoords(offset.y, offset.z, offset.x);
-        angles.theta += round;
-        angles.phi = Math.min(Math.PI * 0.497, Math.max(0.001, angles.phi + over));
-        angles.radius *= nearer;
-        offset.setFromSpherical(angles);
-        eyeNow.position.set(offset.z, offset.x, offset.y).add(orbit.target);
+        turnBy(turn, eyeNow.position, orbit.target);
         orbit.update();
-        onTurned();
+        latestRest.current();
         invalidate();
       }),
-    [eyeNow, invalidate, onTurned],
+    [eyeNow, invalidate],
   );
 
   useFrame((_, dt) => {
@@ -99,33 +102,39 @@ export function CameraRig({ camera, view, start, onRest, onTurned }: Props) {
       enableDamping={false}
       minDistance={80}
       maxDistance={6000}
-      maxPolarAngle={Math.PI * 0.497}
-      onStart={() => {
-        flight.current = null;
-        onTurned();
-      }}
-      onEnd={() => {
-        const target = controls.current?.target;
-        if (target) onRest(eyeNow.position.toArray(), target.toArray());
-      }}
+      maxPolarAngle={LOWEST}
+      onStart={() => (flight.current = null)}
+      onEnd={rest}
     />
   );
+}
+
+/** Move the eye round what it looks at. */
+function turnBy({ round, over, nearer }: Turn, eye: Vector3, target: Vector3) {
+  const offset = eye.clone().sub(target);
+  // three's spherical angles have y up: z, x, y of ours.
+  const angles = new Spherical().setFromCartesianCoords(offset.y, offset.z, offset.x);
+  angles.theta += round;
+  angles.phi = Math.min(LOWEST, Math.max(0.001, angles.phi + over));
+  angles.radius *= nearer;
+  offset.setFromSpherical(angles);
+  eye.set(offset.z, offset.x, offset.y).add(target);
+}
+
+function rounded({ x, y, z }: Vector3): Vec3 {
+  return [Math.round(x), Math.round(y), Math.round(z)];
 }
 
 /** Move eye and target as the body moves over the floor. */
 function follow(orbit: Controls, eye: Vector3, seen: { current: Vector3 | null }) {
   const position = stage.current?.position;
   if (!position) return;
-  const before = seen.current;
-  seen.current = new Vector3(position[0], position[1], 0);
-  if (!before) {
-    const jump = new Vector3(position[0] - orbit.target.x, position[1] - orbit.target.y, 0);
-    eye.add(jump);
-    orbit.target.add(jump);
-  } else {
-    const moved = seen.current.clone().sub(before);
-    eye.add(moved);
-    orbit.target.add(moved);
-  }
+  const now = new Vector3(position[0], position[1], 0);
+  const before = seen.current ?? new Vector3(orbit.target.x, orbit.target.y, 0);
+  seen.current = now;
+  const moved = now.clone().sub(before);
+  if (moved.lengthSq() === 0) return;
+  eye.add(moved);
+  orbit.target.add(moved);
   orbit.update();
 }

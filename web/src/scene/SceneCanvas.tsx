@@ -4,9 +4,9 @@ import { useRef, type KeyboardEvent, type ReactNode } from "react";
 
 import { Arrows } from "./Arrows";
 import { CameraRig, type View } from "./CameraRig";
-import type { CameraName } from "./cameras";
+import type { CameraName, Place } from "./cameras";
 import { Conductor } from "./Conductor";
-import type { Shape, Vec3 } from "./frame";
+import type { Shape } from "./frame";
 import { Ground } from "./Ground";
 import { Lights } from "./Lights";
 import { NotePlaces } from "./NotePlaces";
@@ -24,15 +24,14 @@ export interface SceneProps {
   palette: Palette;
   camera: CameraName;
   view: View;
-  start?: { eye: Vec3; target: Vec3 } | null;
+  place?: Place | null;
   trails?: readonly ArrayLike<number>[];
   forces?: boolean;
   torques?: boolean;
   names?: boolean;
   /** Said to screen readers in place of the picture. */
   description: string;
-  onRest?: (eye: Vec3, target: Vec3) => void;
-  onTurned?: () => void;
+  onRest?: (place: Place, turned: boolean) => void;
   /** A click on the floor [mm]; left out where it means nothing. */
   onFloor?: (x: number, y: number) => void;
   children?: ReactNode;
@@ -48,7 +47,7 @@ export function SceneCanvas(props: SceneProps) {
     palette,
     camera,
     view,
-    start = null,
+    place = null,
     trails,
     forces,
     torques,
@@ -103,13 +102,7 @@ export function SceneCanvas(props: SceneProps) {
         {forces && <Arrows shape={shape} palette={palette} />}
         {torques && <TorqueBars shape={shape} palette={palette} />}
         {props.children}
-        <CameraRig
-          camera={camera}
-          view={view}
-          start={start}
-          onRest={props.onRest ?? nothing}
-          onTurned={props.onTurned ?? nothing}
-        />
+        <CameraRig camera={camera} view={view} place={place} onRest={props.onRest ?? nothing} />
         <NotePlaces layer={notes} />
       </Canvas>
       <Notes layer={notes} shape={shape} colours={colours} names={names ?? true} />

@@ -32,6 +32,21 @@ export function distanceFor(radius: number, fovDegrees: number, aspect: number):
   return radius / Math.sin(narrow);
 }
 
+/** Where a camera stands, and what it looks at [mm]. */
+export interface Place {
+  eye: Vec3;
+  target: Vec3;
+}
+
+/** Whether a place looks from where a camera's name says. The free one may look from anywhere. */
+export function isFrom(camera: CameraName, { eye, target }: Place): boolean {
+  if (camera === "free" || camera === "follow") return true;
+  const look = [eye[0] - target[0], eye[1] - target[1], eye[2] - target[2]] as const;
+  const wanted = directionOf(camera);
+  const dot = look[0] * wanted[0] + look[1] * wanted[1] + look[2] * wanted[2];
+  return dot > 0.999 * Math.hypot(...look) * Math.hypot(...wanted);
+}
+
 /** Where to stand and where to look for a camera. */
 export function placeCamera(
   camera: CameraName,
@@ -39,7 +54,7 @@ export function placeCamera(
   radius: number,
   fovDegrees: number,
   aspect: number,
-): { eye: Vec3; target: Vec3 } {
+): Place {
   const far = distanceFor(radius, fovDegrees, aspect);
   const [dx, dy, dz] = directionOf(camera);
   const length = Math.hypot(dx, dy, dz);

@@ -7,7 +7,7 @@ export function framing(robot: RobotMessage, walk: WalkMessage | null): View {
   const reach = reachOf(robot);
   const extent = walk && extentOf(walk);
   const [x, y] = extent?.middle ?? [0, 0];
-  return { target: [x, y, reach * 0.14], radius: reach + (extent?.radius ?? 0) * 0.7 };
+  return { target: [x, y, reach * 0.2], radius: reach + (extent?.radius ?? 0) * 0.7 };
 }
 
 /** How far from the body's middle the standing robot reaches, with some air about it [mm]. */

@@ -39,7 +39,7 @@ export class Outbox {
   pump(now: number): number | null {
     let wait: number | null = null;
     for (const [type, queue] of this.waiting) {
-      if (queue.length === 0 || this.isBusy(type)) continue;
+      if (queue.length === 0 || this.isUnderWay(type)) continue;
       const left = SPACING - (now - (this.sentAt.get(type) ?? -Infinity));
       if (left > 0) {
         wait = Math.min(wait ?? Infinity, left);
@@ -69,7 +69,12 @@ export class Outbox {
     return this.underWay.get(id) ?? null;
   }
 
+  /** Whether a message of a type is under way, or waits to be. */
   isBusy(type: ClientType): boolean {
+    return this.isUnderWay(type) || (this.waiting.get(type)?.length ?? 0) > 0;
+  }
+
+  private isUnderWay(type: ClientType): boolean {
     return [...this.underWay.values()].includes(type);
   }
 

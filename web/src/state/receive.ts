@@ -1,6 +1,6 @@
-import type { ServerMessage } from "../protocol";
+import type { ErrorMessage, ServerMessage } from "../protocol";
 import type { ClientType } from "./outbox";
-import type { Studio } from "./store";
+import type { Studio, View } from "./store";
 
 /** What a message of the server changes of what the page knows. */
 export function received(studio: Studio, message: ServerMessage, asked: ClientType | null): Partial<Studio> {
@@ -10,13 +10,14 @@ export function received(studio: Studio, message: ServerMessage, asked: ClientTy
     case "robot":
       return { robot: message };
     case "state":
-      return { state: message.state };
+      // What was refused before is of inputs that are no longer there.
+      return { state: message.state, failures: {} };
     case "pose":
       return { poses: { ...studio.poses, [message.view]: message } };
     case "walk":
-      return { walk: message, loads: null };
+      return { walk: message, loads: null, failures: { ...studio.failures, walk: undefined } };
     case "loads":
-      return { loads: message };
+      return { loads: message, failures: { ...studio.failures, loads: undefined } };
     case "servos":
       return { servos: message };
     case "zone":
@@ -24,13 +25,32 @@ export function received(studio: Studio, message: ServerMessage, asked: ClientTy
     case "source":
       return { source: message };
     case "error":
-      return asked ? { failures: { ...studio.failures, [asked]: message } } : {};
+      return refused(studio, message, asked);
     case "done":
       return finished(studio, message, asked);
     case "frame":
     case "file":
       return {};
   }
+}
+
+/** The question that a view's inputs ask. */
+const QUESTIONS: Partial<Record<View, ClientType>> = {
+  joints: "joints",
+  body: "body",
+  walk: "walk",
+  drive: "drive",
+  loads: "loads",
+  sources: "source",
+};
+
+/** A refusal belongs beside the inputs that it speaks of. */
+function refused(studio: Studio, error: ErrorMessage, asked: ClientType | null): Partial<Studio> {
+  // The robot or the view came, but what the view shows of it is not possible.
+  const ofView = asked === "view" || (error.id !== null && studio.robot?.id === error.id);
+  const view = studio.state?.view;
+  const about = ofView && view ? (QUESTIONS[view] ?? asked) : asked;
+  return about ? { failures: { ...studio.failures, [about]: error } } : {};
 }
 
 type Done = Extract<ServerMessage, { type: "done" }>;

@@ -1,8 +1,7 @@
 import { Icon } from "../controls/icons";
 import { fixed } from "../controls/numbers";
 import { copyText } from "../state/share";
-
-const JOINTS = ["coxa", "femur", "tibia"] as const;
+import { angleText, JOINTS } from "./angleText";
 
 interface Props {
   codes: readonly string[];
@@ -53,12 +52,4 @@ export function AngleTable({ codes, angles, open }: Props) {
       </div>
     </details>
   );
-}
-
-/** The table with tabs between columns, as spreadsheets paste it. */
-export function angleText(codes: readonly string[], angles: ArrayLike<number>): string {
-  const rows = codes.map((code, leg) =>
-    [code, ...JOINTS.map((_, i) => fixed(angles[leg * 3 + i] ?? 0, 4))].join("\t"),
-  );
-  return [["leg", ...JOINTS.map((joint) => `${joint}_deg`)].join("\t"), ...rows].join("\n");
 }

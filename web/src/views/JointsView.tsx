@@ -11,8 +11,7 @@ import { Standing } from "./Standing";
 import { useInputs } from "./useInputs";
 import { ViewHead } from "./ViewHead";
 import { ZoneChoice } from "./ZoneChoice";
-
-const JOINTS = ["coxa", "femur", "tibia"] as const;
+import { JOINTS } from "./angleText";
 
 /** Forward kinematics: eighteen angles in, how the robot rests out. */
 export function JointsView() {

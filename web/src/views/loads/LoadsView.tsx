@@ -18,7 +18,7 @@ export function LoadsView() {
       <ViewHead title="Loads">
         The torques of the walk, from the forces at its feet; arrows are what the ground does to each foot.
       </ViewHead>
-      <Failure of={["loads", "view", "walk"]} />
+      <Failure of={["walk", "loads"]} />
       {loads ? <Verdict loads={loads} /> : <p className="busy">{busy ? "Working the torques out …" : ""}</p>}
       {loads && <TorqueGrid loads={loads} />}
       {loads && <TorquePlots loads={loads} />}
@@ -41,8 +41,10 @@ function Verdict({ loads }: { loads: LoadsMessage }) {
       <Message kind={kind} testId="loads-verdict">
         <b>{loads.grade}</b>
         <ul>
-          {loads.worst.map((line) => (
-            <li key={line}>{line}</li>
+          {loads.worst.map((joint) => (
+            <li key={joint}>
+              {joint}: {textOf(loads, joint)}
+            </li>
           ))}
         </ul>
       </Message>
@@ -52,4 +54,9 @@ function Verdict({ loads }: { loads: LoadsMessage }) {
       )}
     </>
   );
+}
+
+/** What is said of a joint that is called such as "LM femur". */
+function textOf(loads: LoadsMessage, joint: string): string {
+  return loads.joints.find((one) => `${one.leg} ${one.joint}` === joint)?.text ?? "";
 }

@@ -4,8 +4,7 @@ import { fixed, withUnit } from "../../controls/numbers";
 import type { JointLoad, LoadsMessage } from "../../protocol";
 import { stage } from "../../scene/stage";
 import { useInputs } from "../useInputs";
-
-const JOINTS = ["coxa", "femur", "tibia"] as const;
+import { JOINTS } from "../angleText";
 
 /** A bar for each joint: its peak over the walk, and a mark at what it bears now, both against the stall torque. */
 export function TorqueGrid({ loads }: { loads: LoadsMessage }) {

@@ -11,8 +11,8 @@ import { legColours } from "../../scene/palette";
 import { usePlayback } from "../../state/playback";
 import { useStudio } from "../../state/store";
 import { useInputs } from "../useInputs";
+import { JOINTS } from "../angleText";
 
-const JOINTS = ["coxa", "femur", "tibia"] as const;
 type Joint = (typeof JOINTS)[number];
 
 /** Torques over the walk, one kind of joint at a time, with the servos' limits. A click goes to that moment. */

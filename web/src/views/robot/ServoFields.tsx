@@ -4,8 +4,7 @@ import { useStudio } from "../../state/store";
 import { useInputs } from "../useInputs";
 import { withServos } from "./document";
 import { setDocument } from "./setDocument";
-
-const JOINTS = ["coxa", "femur", "tibia"] as const;
+import { JOINTS } from "../angleText";
 
 /** The servo of each kind of joint, from the catalogue. */
 export function ServoFields() {

@@ -1,4 +1,5 @@
 import type { KeyPath } from "./document";
+import { JOINTS } from "../angleText";
 
 /** A number of the robot file, as the form shows it. */
 export interface NumberField {
@@ -11,7 +12,6 @@ export interface NumberField {
   list?: readonly number[];
 }
 
-const JOINTS = ["coxa", "femur", "tibia"] as const;
 const AXES = ["forward", "left", "up"] as const;
 
 export const LENGTHS: readonly (NumberField & { max: number })[] = [

@@ -1,5 +1,6 @@
 import { withUnit } from "../../controls/numbers";
 import type { Equation } from "../../protocol";
+import { digitsOf } from "./digits";
 import { Maths } from "./Maths";
 
 /** One line of a document: its formula, the numbers in it, what comes out, and what it is called here. */
@@ -31,8 +32,4 @@ function row(left: Equation["symbol"], right: Equation["formula"]): Equation["sy
   if (!right) return left;
   const equals = { tag: "mo", text: "=", children: [] } as const;
   return { tag: "mrow", text: null, children: [left, { ...equals, children: [] }, right] };
-}
-
-function digitsOf(unit: string): number {
-  return unit === "mm" || unit === "deg" || unit === "°" ? 2 : 4;
 }

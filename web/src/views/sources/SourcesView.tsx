@@ -5,8 +5,9 @@ import { change } from "../../state/session";
 import { useStudio } from "../../state/store";
 import { useInputs } from "../useInputs";
 import { ViewHead } from "../ViewHead";
-import { EquationCard } from "./EquationCard";
 import { ErratumCard } from "./ErratumCard";
+import { EquationCard } from "./EquationCard";
+import { Givens } from "./Givens";
 
 type DocumentNumber = StudioState["source"]["number"];
 
@@ -46,7 +47,7 @@ export function SourcesView() {
         }))}
         onChange={(value) => change("source", { leg: Number(value) })}
       />
-      <Failure of={["source", "view"]} />
+      <Failure of={["source"]} />
       {shown && <Document source={shown} />}
     </div>
   );
@@ -57,12 +58,15 @@ function Document({ source }: { source: SourceMessage }) {
     <article className="source" data-testid="source">
       <h3>{source.title}</h3>
       <p className="hint">{source.about}</p>
+      <Givens equations={source.equations.filter(({ formula }) => formula === null)} />
       <ol className="equations">
-        {source.equations.map((equation) => (
-          <li key={equation.key}>
-            <EquationCard equation={equation} />
-          </li>
-        ))}
+        {source.equations
+          .filter(({ formula }) => formula !== null)
+          .map((equation) => (
+            <li key={equation.key}>
+              <EquationCard equation={equation} />
+            </li>
+          ))}
       </ol>
       {source.errata.length > 0 && (
         <>

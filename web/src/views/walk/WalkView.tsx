@@ -22,7 +22,7 @@ export function WalkView() {
       <ViewHead title="Walk">
         Plan a walk: the whole of it is worked out, then it plays here without the server.
       </ViewHead>
-      <Failure of={["walk", "view"]}>
+      <Failure of={["walk"]}>
         <div className="row">
           {longest !== null && (
             <button

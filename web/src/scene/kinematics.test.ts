@@ -1,0 +1,104 @@
+import { describe, expect, it } from "vitest";
+
+import { aRobot } from "../testing/robot";
+import { footOf, quaternionOf, turn } from "./frame";
+import { frameOfWalk, footTrails } from "./frames";
+import { legPoints, pointsInBody } from "./kinematics";
+import { aWalk } from "../testing/walk";
+
+const robot = aRobot();
+const STRAIGHT = robot.leg_names.flatMap(() => [0, 0, 0]);
+
+describe("points of a leg", () => {
+  it("lie straight out and level with all angles zero", () => {
+    const [mount, axis, knee, foot] = pointsInBody(robot, STRAIGHT, 1);
+    expect(mount).toEqual([0, 86, 0]);
+    [68, 68 + 98, 68 + 98 + 181].forEach((far, i) => {
+      const point = [axis, knee, foot][i];
+      expect(point?.[0]).toBeCloseTo(0, 9);
+      expect(point?.[1]).toBeCloseTo(86 + far, 9);
+      expect(point?.[2]).toBeCloseTo(0, 9);
+    });
+  });
+
+  it("keep the links' lengths at any angles, wherever the body is", () => {
+    const angles = STRAIGHT.map((_, i) => ((i * 37) % 110) - 55);
+    const points = legPoints(robot, angles, [10, -20, 130], quaternionOf(12, -7, 33));
+    for (let leg = 0; leg < 6; leg++) {
+      [68, 98, 181].forEach((length, link) => {
+        const at = (leg * 4 + link) * 3;
+        const gap = [0, 1, 2].map((k) => (points[at + 3 + k] ?? 0) - (points[at + k] ?? 0));
+        expect(Math.hypot(...gap)).toBeCloseTo(length, 3);
+      });
+    }
+  });
+
+  it("turn the femur axis' offset with the coxa", () => {
+    const offset = { ...robot, femur_axis_offset_mm: robot.leg_names.flatMap(() => [5, 3]) };
+    const [, axis] = pointsInBody(offset, [90, 0, 0], 0);
+    // The leg points at 30 deg; turned by 90 it points at 120, and its left is at 210.
+    const at = (degrees: number) => [
+      Math.cos((degrees * Math.PI) / 180),
+      Math.sin((degrees * Math.PI) / 180),
+    ];
+    expect(axis[0]).toBeCloseTo(74.478 + 68 * (at(120)[0] ?? 0) + 5 * (at(210)[0] ?? 0), 6);
+    expect(axis[1]).toBeCloseTo(43 + 68 * (at(120)[1] ?? 0) + 5 * (at(210)[1] ?? 0), 6);
+    expect(axis[2]).toBeCloseTo(3, 9);
+  });
+
+  it("lift the foot where femur and tibia are positive", () => {
+    expect(pointsInBody(robot, [0, 30, 0], 0)[3][2]).toBeCloseTo(279 * Math.sin(Math.PI / 6), 6);
+    expect(pointsInBody(robot, [0, 0, 90], 0)[3][2]).toBeCloseTo(181, 6);
+  });
+});
+
+describe("rotations", () => {
+  it("are yaw after pitch after roll", () => {
+    const q = quaternionOf(90, 0, 90);
+    // Roll takes y to z; yaw takes x to y and leaves z.
+    const [x, y, z] = [turn(q, [1, 0, 0]), turn(q, [0, 1, 0]), turn(q, [0, 0, 1])];
+    [
+      [x, [0, 1, 0]],
+      [y, [0, 0, 1]],
+      [z, [1, 0, 0]],
+    ].forEach(([got, wanted]) => got?.forEach((value, i) => expect(value).toBeCloseTo(wanted?.[i] ?? 0, 9)));
+  });
+
+  it("sink the front for a positive pitch", () => {
+    expect(turn(quaternionOf(0, 10, 0), [1, 0, 0])[2]).toBeLessThan(0);
+  });
+});
+
+describe("a walk", () => {
+  const walk = aWalk();
+
+  it("is its samples at their times, and lies between them in between", () => {
+    expect(frameOfWalk(robot, walk, null, 0).position[0]).toBe(0);
+    expect(frameOfWalk(robot, walk, null, 0.1).position[0]).toBeCloseTo(10, 4);
+    expect(frameOfWalk(robot, walk, null, 0.125).position[0]).toBeCloseTo(12.5, 4);
+  });
+
+  it("stays at its ends before and after", () => {
+    expect(frameOfWalk(robot, walk, null, -1).position[0]).toBe(0);
+    expect(frameOfWalk(robot, walk, null, 99).position[0]).toBeCloseTo(20, 4);
+  });
+
+  it("says which leg can't, by the codes of its samples", () => {
+    const stuck = { ...walk, reach: ["000000", "010000", "000000"] };
+    expect(frameOfWalk(robot, stuck, null, 0.1).trouble.map((one) => one?.short ?? "")).toEqual([
+      "",
+      "too far",
+      "",
+      "",
+      "",
+      "",
+    ]);
+  });
+
+  it("leaves a trail where the feet were", () => {
+    const trails = footTrails(robot, walk);
+    const foot = footOf(frameOfWalk(robot, walk, null, 0.2), 3);
+    expect(trails).toHaveLength(6);
+    expect(Array.from(trails[3]?.slice(-3) ?? [])).toEqual([...foot]);
+  });
+});

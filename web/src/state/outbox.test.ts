@@ -1,0 +1,106 @@
+import { describe, expect, it } from "vitest";
+
+import type { ClientMessage } from "../protocol";
+import { Outbox, type Draft } from "./outbox";
+
+function anOutbox() {
+  const sent: ClientMessage[] = [];
+  const outbox = new Outbox((message) => sent.push(message) > 0);
+  return { sent, outbox };
+}
+
+const joints = (angle: number, commit = false): Draft => ({
+  type: "joints",
+  joints: { angles_deg: [angle] },
+  commit,
+});
+const angleOf = (message: ClientMessage | undefined) =>
+  message?.type === "joints" ? message.joints.angles_deg?.[0] : undefined;
+
+describe("outbox", () => {
+  it("has one message of a type under way, and sends the newest of those that waited", () => {
+    const { sent, outbox } = anOutbox();
+    outbox.put(joints(1));
+    outbox.pump(0);
+    [2, 3, 4].forEach((angle) => outbox.put(joints(angle)));
+    expect(outbox.pump(100)).toBeNull();
+    expect(sent.map(angleOf)).toEqual([1]);
+    outbox.settle(sent[0]?.id ?? -1);
+    outbox.pump(200);
+    expect(sent.map(angleOf)).toEqual([1, 4]);
+  });
+
+  it("keeps a step of undo when a newer message takes the place of its own", () => {
+    const { sent, outbox } = anOutbox();
+    outbox.put(joints(1));
+    outbox.pump(0);
+    outbox.put(joints(2, true));
+    outbox.put(joints(3, false));
+    outbox.settle(sent[0]?.id ?? -1);
+    outbox.pump(100);
+    expect(sent[1]).toMatchObject({ commit: true, joints: { angles_deg: [3] } });
+  });
+
+  it("spaces messages of a type, and says when to try again", () => {
+    const { sent, outbox } = anOutbox();
+    outbox.put(joints(1));
+    outbox.pump(0);
+    outbox.settle(sent[0]?.id ?? -1);
+    outbox.put(joints(2));
+    expect(outbox.pump(5)).toBe(10);
+    expect(sent).toHaveLength(1);
+    expect(outbox.pump(15)).toBeNull();
+    expect(sent).toHaveLength(2);
+  });
+
+  it("sends every undo, in turn", () => {
+    const { sent, outbox } = anOutbox();
+    [1, 2, 3].forEach(() => outbox.put({ type: "undo" }));
+    for (let i = 0; i < 3; i++) {
+      outbox.pump(i * 100);
+      expect(sent).toHaveLength(i + 1);
+      outbox.settle(sent[i]?.id ?? -1);
+    }
+  });
+
+  it("lets one type pass another", () => {
+    const { sent, outbox } = anOutbox();
+    outbox.put(joints(1));
+    outbox.put({ type: "zone", leg: 2 });
+    outbox.pump(0);
+    expect(sent.map(({ type }) => type)).toEqual(["joints", "zone"]);
+  });
+
+  it("gives every message an id of its own, also after the connection broke", () => {
+    const { sent, outbox } = anOutbox();
+    outbox.put(joints(1));
+    outbox.pump(0);
+    outbox.reset();
+    outbox.put(joints(2));
+    outbox.pump(0);
+    expect(new Set(sent.map(({ id }) => id)).size).toBe(2);
+  });
+
+  it("keeps what could not be sent", () => {
+    const sent: ClientMessage[] = [];
+    let open = false;
+    const outbox = new Outbox((message) => open && sent.push(message) > 0);
+    outbox.put(joints(1));
+    outbox.pump(0);
+    open = true;
+    outbox.pump(100);
+    expect(sent.map(angleOf)).toEqual([1]);
+  });
+
+  it("knows of which type an answer is, until it is settled", () => {
+    const { sent, outbox } = anOutbox();
+    outbox.put(joints(1));
+    expect(outbox.isBusy("joints")).toBe(true);
+    outbox.pump(0);
+    const id = sent[0]?.id ?? -1;
+    expect(outbox.typeOf(id)).toBe("joints");
+    expect(outbox.settle(id)).toBe("joints");
+    expect(outbox.typeOf(id)).toBeNull();
+    expect(outbox.isBusy("joints")).toBe(false);
+  });
+});

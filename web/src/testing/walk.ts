@@ -1,0 +1,38 @@
+import type { WalkMessage } from "../protocol";
+
+/** A walk for tests: three samples, 10 mm and 0.1 s apart, the legs straight out. */
+export function aWalk(): WalkMessage {
+  const samples = [0, 1, 2];
+  const moment = { mm: 0, at_s: 0 };
+  return {
+    id: 1,
+    type: "walk",
+    rate_hz: 10,
+    count: 3,
+    position_mm: samples.flatMap((i) => [10 * i, 0, 110]),
+    rpy_deg: samples.flatMap(() => [0, 0, 0]),
+    angles_deg: samples.flatMap((i) => Array.from({ length: 18 }, () => i)),
+    contacts: samples.map(() => "111111"),
+    reach: null,
+    margin_mm: samples.map(() => 50),
+    com_mm: samples.flatMap((i) => [10 * i, 0]),
+    gait: "tripod",
+    duty: 0.5,
+    duration_s: 0.2,
+    cycle_time_s: 1,
+    steps: 1,
+    stroke_mm: 20,
+    speed_mm_s: 100,
+    clearance_mm: 110,
+    lift_mm: 30,
+    longest_stroke_mm: 100,
+    end: { x_mm: 20, y_mm: 0, turned_deg: 0 },
+    joint_speed: [],
+    least_margin: moment,
+    nearest_feet: moment,
+    nearest_legs: [],
+    possible: true,
+    problems: [],
+    assumed: [],
+  };
+}

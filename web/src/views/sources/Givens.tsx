@@ -1,0 +1,35 @@
+import { withUnit } from "../../controls/numbers";
+import type { Equation } from "../../protocol";
+import { digitsOf } from "./digits";
+import { Maths } from "./Maths";
+
+/** What a document takes as given: symbol, what it is, and this robot's number. */
+export function Givens({ equations }: { equations: readonly Equation[] }) {
+  if (equations.length === 0) return null;
+  return (
+    <table className="givens">
+      <caption>Given</caption>
+      <thead className="hidden-text">
+        <tr>
+          <th scope="col">Symbol</th>
+          <th scope="col">What it is</th>
+          <th scope="col">Value</th>
+        </tr>
+      </thead>
+      <tbody>
+        {equations.map(({ key, symbol, name, ours, value, unit }) => (
+          <tr key={key} data-testid={`equation-${key}`}>
+            <td>
+              <Maths node={symbol} />
+            </td>
+            <td className="wrap">
+              {name}
+              {ours && <span className="hint"> – {ours}</span>}
+            </td>
+            <td>{withUnit(value, digitsOf(unit), unit)}</td>
+          </tr>
+        ))}
+      </tbody>
+    </table>
+  );
+}
