@@ -308,6 +308,14 @@ def test_the_margin_is_that_of_stability_margin(seed, masses):
         assert found.value == pytest.approx(stability_margin(robot, angles, body, contacts), abs=1e-12)
 
 
+@pytest.mark.parametrize("turned", [[[1, 0, 0], [0, 0, -1], [0, 1, 0]], [[0, 1, 0], [0, 0, 1], [1, 0, 0]]])
+def test_the_margin_of_a_body_on_its_side(turned):
+    robot = random_hexapod(np.random.default_rng(6))
+    body = Pose(np.array(turned, dtype=float))
+    (found,) = Guard(robot, bounds=only(robot, margin=1e6)).check(np.zeros((6, 3)), TICK, DOWN, body).interventions
+    assert found.value == pytest.approx(stability_margin(robot, np.zeros((6, 3)), body, DOWN), abs=1e-12)
+
+
 @given(st.integers(0, 2**32 - 1))
 def test_without_a_pose_the_plane_of_the_feet_is_level(seed):
     rng = np.random.default_rng(seed)
@@ -381,6 +389,14 @@ def test_a_hair_below_the_bound_passes(what):
         assert all(one.ok for one in told) == passes
 
 
+@pytest.mark.parametrize("contacts", [DOWN, np.arange(6) % 2 == 0])
+def test_a_hair_below_the_margin_passes(contacts):
+    robot = preset("strider")
+    margin = stability_margin(robot, standing(), Pose(), contacts)
+    assert Guard(robot, bounds=only(robot, margin=margin - 1e-9)).check(standing(), TICK, contacts).ok
+    assert not Guard(robot, bounds=only(robot, margin=margin + 1e-9)).check(standing(), TICK, contacts).ok
+
+
 def test_beyond_a_limit():
     guard = Guard(preset("strider"))
     beyond = standing().copy()
@@ -446,6 +462,16 @@ def test_nothing_drags_where_contacts_are_not_told():
     assert guard.check(feet_at(stance()), TICK, DOWN).ok
     assert guard.check(feet_at(moved), TICK).ok
     assert guard.check(feet_at(stance()), TICK, DOWN).ok
+
+
+def test_after_a_hold_the_feet_may_stand_elsewhere():
+    robot = preset("strider")
+    guard = Guard(robot)
+    assert guard.check(feet_at(stance()), TICK, DOWN).ok
+    assert guard.check(NAN, TICK, DOWN).state == "holding"
+    told = run(guard, feet_at(stance() + np.eye(6)[:, 4:5] * [0.005, 0, 0]), 30, contacts=DOWN)
+    assert told[-1].ok
+    assert dict(guard.counts) == {"finite": 1}
 
 
 @pytest.mark.parametrize("with_pose", [True, False])
@@ -561,6 +587,13 @@ def test_steps_too_short_wait_until_they_make_one():
     assert (told[2].angles == moving.angles).all()
     assert (told[3].angles > moving.angles).all()
     assert {kind for one in told for kind in kinds(one)} == {"finite", "time_step"}
+
+
+def test_time_in_steps_too_short_is_not_lost():
+    guard = Guard(preset("strider"), start=standing())
+    for _ in range(2):
+        guard.check(standing(), 3e-5)
+    assert guard.check(standing(), TICK).time == pytest.approx(TICK + 6e-5)
 
 
 def test_a_gap_is_a_watchdog():
@@ -680,6 +713,41 @@ def test_no_time_while_it_recovers_means_hold():
     assert guard.check(standing() + 0.05, 0.0).state == "holding"
 
 
+@pytest.mark.parametrize("seed", range(10))
+def test_it_catches_up_with_a_command_at_full_speed_that_stops_dead_at_a_limit(seed):
+    """Every bound is pressed at once: speed on the way, braking and the limit itself at its end."""
+    rng = np.random.default_rng(seed)
+    robot = ring(6, limits=np.stack([np.full((6, 3), -1.0), rng.uniform(0.5, 1.0, (6, 3))], axis=-1))
+    high = robot.limits[..., 1]
+    guard = Guard(robot, bounds=GuardBounds.of(robot, near=3.0), start=np.zeros((6, 3)))
+    told = [guard.check(NAN, TICK)]
+    reached = rng.uniform(0.0, 0.1, (6, 3))
+    for _ in range(60):
+        reached = np.minimum(reached + rng.uniform(0.03, 0.05, (6, 3)), high)
+        told.append(guard.check(reached, TICK))
+    assert {one.state for one in told[1:10]} == {"recovering"}
+    assert told[-1].ok
+    audit(guard.bounds, told)
+    speed = np.diff([one.angles for one in told], axis=0) / TICK
+    assert speed.max() == pytest.approx(UNKNOWN_SPEED)
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_rounding_brings_no_joint_beyond_a_limit(seed):
+    """Limits near zero, where the step to one is not exact, and one joint on a long way that keeps it recovering."""
+    rng = np.random.default_rng(seed)
+    limits = np.array([-1.0, 1.0]) * np.concatenate([rng.uniform(0, 2e-3, 17), [1.0]]).reshape(6, 3, 1)
+    robot = ring(6, limits=limits)
+    guard = Guard(robot, bounds=GuardBounds.of(robot, near=3.0, acceleration=1e4), start=np.zeros((6, 3)))
+    side = rng.choice([-1, 1], (60, 6, 3))
+    side[:, 5, 2] = 1
+    told = [guard.check(NAN, TICK)]
+    for towards in np.repeat(side, 4, axis=0)[:60]:
+        told.append(guard.check(limits[..., 1] * towards, rng.uniform(0.003, 0.02)))
+    assert {one.state for one in told[1:30]} == {"recovering"}
+    audit(guard.bounds, told)
+
+
 def test_an_intervention_that_lasts_counts_once():
     guard = Guard(preset("strider"), start=standing())
     run(guard, NAN, 10)
@@ -794,6 +862,13 @@ def test_it_sits_down_on_feet_that_stay_where_they_are(name, moment):
     assert lowering.max() < guard.bounds.sit_speed + 1e-3
 
 
+def test_no_joint_is_fast_while_it_sits_down():
+    guard, _, sitting = sit("strider", 0, sit_speed=2.0)
+    speed = np.abs(np.diff([one.angles for one in sitting], axis=0)) / TICK
+    assert (speed <= guard.bounds.recovery * guard.bounds.speed * (1 + 1e-9)).all()
+    assert speed.max() > 0.5
+
+
 def test_it_sits_down_straight_by_the_bodys_attitude():
     robot = preset("strider")
     body = Pose.from_rpy(0.05, -0.08, 0.3, (0, 0, 0.11))
@@ -876,6 +951,19 @@ def test_it_gets_up_again_when_the_command_is_near():
     assert told[-1].ok
     told += run(guard, NAN, 20)
     assert told[-1].state == "holding"
+    told += run(guard, NAN, 1000)
+    again = [one.state for one in told[200:]]
+    assert "sitting" in again
+    assert again[-1] == "holding"
+    told += run(guard, told[-1].angles, 30)
+    assert told[-1].ok
+    guard.reset()
+    told += [guard.check(NAN, TICK)]
+    guard.reset()
+    told += run(guard, standing(), 300)
+    assert told[-1].ok
+    told += run(guard, NAN, 200)
+    assert told[-1].state == "sitting"
     audit(guard.bounds, told)
 
 

@@ -235,7 +235,7 @@ class Guard:
 
     def _hold(self) -> None:
         self._state, self._sitting = "holding", None
-        self._released, self._at_rest_for = False, 0.0
+        self._released, self._seated, self._at_rest_for = False, False, 0.0
         self._feet.forget()
 
     def _may_recover(self, command: list[float], faults: list[Fault]) -> bool:
@@ -260,7 +260,6 @@ class Guard:
             self._joints.brake(step)
         elif self._joints.follow(self._before, command, step):
             self._state = "passing"
-            self._released = self._seated = False
             self._feet.passed()
 
     def _stay(self, step: float, *, gap: bool) -> None:
