@@ -1,14 +1,20 @@
 """Getting up, sitting down and folding: what holds at every moment, whatever the angles that the robot is found in."""
 
+import re
+
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import Phase, given, settings
 from hypothesis import strategies as st
 
 from gait_robots import PRESETS, preset
-from tarsus.errors import TarsusError
-from tarsus.gait.live.fold import belly_depth, folded_pose, legs_apart, rest_points
+from tarsus.errors import InputError, TarsusError, UnreachableError
+from tarsus.gait.live.fold import belly_depth, folded_pose, rest_points
 from tarsus.gait.live.rise import fold, sit_down, stand_up
+from tarsus.gait.live.rise_found import as_found
+from tarsus.gait.live.rise_height import push_up
+from tarsus.gait.live.rise_steps import stations
+from tarsus.gait.live.sequence_limits import JointPace
 from tarsus.gait.setup import default_lift
 from tarsus.kinematics.inverse import inverse_kinematics
 from tarsus.kinematics.leg import forward_kinematics
@@ -18,7 +24,7 @@ from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.rest import resting_pose
 from tarsus.kinematics.stability import stability_margin
 from tarsus.kinematics.stance import default_clearance, default_stance
-from tarsus.robot.robot import Robot
+from tarsus.robot.robot import stack_robots
 
 _DT = 0.004
 
@@ -89,3 +95,269 @@ def check(sequence, start, *, dt=_DT):
     np.testing.assert_allclose(end.body.position[:2], 0, atol=1e-12)
     np.testing.assert_allclose(end.body.rpy, 0, atol=1e-9)
     return times, moments
+
+
+@st.composite
+def found(draw):
+    """A preset, and joint angles anywhere within its limits and a little beyond."""
+    robot = preset(draw(st.sampled_from(PRESETS)))
+    low, high = robot.limits[..., 0] - 0.08, robot.limits[..., 1] + 0.08
+    shares = np.random.default_rng(draw(st.integers(0, 2**32 - 1))).uniform(size=low.shape)
+    return robot, low + shares * (high - low)
+
+
+REASONS = (
+    r"(leg [a-z]+ [a-z]+|front |middle |rear |held by [A-Z ]+|underside|no leg|tilted by).*\d",
+    r"(limits|finds no way|can stay down|straight|margin|in the ground|at most|reaches|too|beyond|works)",
+)
+"""A refusal names the leg or the feet, with a number, and says what stands in the way."""
+
+
+# Not shrunk: an example takes as long to shrink as all of them to try.
+@settings(max_examples=18, phases=[Phase.explicit, Phase.generate])
+@given(found(), st.floats(0.6, 1.4))
+def test_it_gets_up_from_any_angles_or_says_why_not(start, share):
+    robot, angles = start
+    clearance = max(default_clearance(robot) * share, belly_depth(robot))
+    try:
+        stance = stance_angles(robot, clearance)
+        sequence = stand_up(robot, angles, clearance=clearance)
+    except TarsusError as error:
+        for reason in REASONS:
+            assert re.search(reason, str(error)), str(error)
+        return
+    times, moments = check(sequence, angles)
+    np.testing.assert_array_equal(sequence.angles_end, stance)
+    assert moments[-1].contacts.all()
+    assert moments[-1].body.position[2] == pytest.approx(clearance, abs=1e-12)
+    as_it_rests(robot, sequence, times, moments)
+
+
+def as_it_rests(robot, sequence, times, moments):
+    """Held at some moments, the robot rests as the sequence says: an independent look, which knows of no sequence."""
+    for i in np.linspace(0, len(times) - 1, 12).astype(int):
+        moment, stage = moments[i], sequence.stage_at(times[i])[0]
+        if supports_margin(robot, moment, stage) < 1e-4:
+            continue  # on the edge, where rounding decides
+        rest = resting_pose(robot, moment.angles)
+        assert rest.body.position[2] == pytest.approx(moment.body.position[2], abs=2e-6)
+        np.testing.assert_allclose(rest.body.rotation[2], moment.body.rotation[2], atol=1e-4)
+        if not moment.belly:
+            lifted = (moment.body @ forward_kinematics(robot, moment.angles)[:, 3])[:, 2] > 1e-6
+            np.testing.assert_array_equal(rest.contacts[lifted], False)
+        down = rest.contacts | (rest.leg_points_down[:, :3].any() | rest.corners_down.any())
+        assert (down | ~moment.contacts | ~touches_to_the_bit(robot, moment)).all()
+
+
+def touches_to_the_bit(robot, moment):
+    """Whether each foot is nearer to the ground than a resting foot need be."""
+    return np.abs((moment.body @ forward_kinematics(robot, moment.angles)[:, 3])[:, 2]) < 1e-10
+
+
+def supports_margin(robot, moment, stage):
+    feet = (moment.body @ forward_kinematics(robot, moment.angles)[:, 3])[moment.contacts]
+    held = np.concatenate([feet, stage.props])[:, :2]
+    com = moment.body @ centre_of_mass(robot, moment.angles)
+    return float(hull_margin(held, np.ones(len(held), dtype=bool), com[:2]))
+
+
+def test_most_random_angles_are_got_up_from():
+    """So that the property above is not kept by refusing."""
+    rng = np.random.default_rng(4)
+    up = 0
+    for robot in map(preset, PRESETS):
+        for _ in range(2):
+            low, high = robot.limits[..., 0], robot.limits[..., 1]
+            try:
+                up += stand_up(robot, rng.uniform(low, high)).duration > 0
+            except TarsusError:
+                up += 0
+    assert up >= 12
+
+
+@pytest.mark.parametrize("name", PRESETS)
+def test_from_the_folded_pose_it_pushes_straight_up(name):
+    robot = preset(name)
+    sequence = stand_up(robot, folded_pose(robot))
+    times, moments = check(sequence, folded_pose(robot))
+    assert [stage.name for stage in sequence.stages] == ["put the feet down", "push up"]
+    heights = [m.body.position[2] for m in moments]
+    assert (np.diff(heights) >= -1e-12).all()
+    assert heights[0] == pytest.approx(belly_depth(robot))
+    assert all(abs(m.body.position[:2]).max() < 1e-12 for m in moments)
+    as_it_rests(robot, sequence, times, moments)
+
+
+@pytest.mark.parametrize("name", PRESETS)
+def test_it_sits_down_the_way_it_got_up(name):
+    robot = preset(name)
+    up = stand_up(robot, folded_pose(robot))
+    down = sit_down(robot, up.angles_end)
+    _, moments = check(down, up.angles_end)
+    np.testing.assert_allclose(down.angles_end, up.stages[-1].angles, atol=1e-9)
+    assert moments[-1].body.position[2] == pytest.approx(belly_depth(robot))
+    assert moments[-1].belly is False
+    assert resting_pose(robot, down.angles_end).body.position[2] == pytest.approx(belly_depth(robot), abs=1e-9)
+    np.testing.assert_array_equal(sit_down(robot).angles_end, down.angles_end)
+    folded = fold(robot, down.angles_end)
+    check(folded, down.angles_end)
+    np.testing.assert_array_equal(folded.angles_end, folded_pose(robot))
+    assert folded.at(folded.duration).belly
+
+
+@pytest.mark.parametrize("name", PRESETS)
+def test_too_high_for_one_foothold_it_changes_footholds_with_the_margin_kept(name):
+    robot = preset(name)
+    clearance = {"makeyourpet": 0.125, "strider": 0.2}.get(name, 0.17)
+    sequence = stand_up(robot, folded_pose(robot), clearance=clearance, margin=0.02)
+    check(sequence, folded_pose(robot))
+    names = [stage.name for stage in sequence.stages]
+    assert names.count("push up") == 2
+    lifts = [stage for stage in sequence.stages if stage.name.startswith("place")]
+    assert [stage.name for stage in lifts] == ["place LF LR RM", "place LM RR RF"]
+    for stage in lifts:
+        for share in np.linspace(0, 1, 9):
+            angles, body = stage.angles_at(np.array([share]))[0], stage.body_at(np.array([share]))[0]
+            assert stability_margin(robot, angles, body, stage.contacts) >= 0.02
+    down = sit_down(robot, sequence.angles_end)
+    check(down, sequence.angles_end)
+    assert down.stages[-1].name in ("let down", "lie down")
+    assert down.at(down.duration).body.position[2] == pytest.approx(belly_depth(robot), abs=1e-9)
+
+
+@pytest.mark.parametrize("name", PRESETS)
+def test_standing_already_it_keeps_its_feet_and_lifts_them_in_tripods(name):
+    robot = preset(name)
+    stance = stance_angles(robot)
+    assert stand_up(robot, stance).duration == 0
+    assert stand_up(robot, stance).at(0).stage == "hold"
+    rng = np.random.default_rng(1)
+    start = stance + np.deg2rad(rng.uniform(-2, 2, stance.shape))
+    sequence = stand_up(robot, start)
+    _, moments = check(sequence, start)
+    assert not any(moment.belly for moment in moments)
+    np.testing.assert_array_equal(sequence.angles_end, stance)
+
+
+def test_only_single_legs_are_lifted_where_a_tripod_would_not_hold():
+    """With the centre of mass far forward, no three feet hold it as safely as is asked for, five do."""
+    robot = preset("strider").replace(body_com=np.array([0.1, 0, 0]))
+    start = stance_angles(robot, 0.11)
+    names = {
+        margin: {s.name for s in stand_up(robot, start, clearance=0.2, margin=margin).stages if "place" in s.name}
+        for margin in (0.06, 0.074)
+    }
+    assert names[0.06] == {"place LF LR RM", "place LM RR RF"}
+    assert names[0.074] == {f"place {code}" for code in robot.leg_codes}
+    check(stand_up(robot, start, clearance=0.2, margin=0.074), start)
+    with pytest.raises(TarsusError, match=r"held by .*, the stability margin would be .* at least 300.0 mm"):
+        stand_up(robot, start, clearance=0.2, margin=0.3)
+
+
+def test_slower_joints_take_longer_and_limits_are_kept_by_each():
+    robot = preset("phantomx")
+    fast = stand_up(robot, folded_pose(robot))
+    slow = stand_up(robot, folded_pose(robot), joint_speed=0.5, joint_acceleration=[1.0, 2.0, 3.0])
+    check(slow, folded_pose(robot), dt=0.02)
+    assert slow.duration > 2 * fast.duration
+    np.testing.assert_array_equal(slow.pace.acceleration, np.tile([1.0, 2.0, 3.0], (6, 1)))
+    np.testing.assert_allclose(fast.pace.speed, 0.5 * 6.39)
+    np.testing.assert_allclose(fast.pace.acceleration, 0.5 * 6.39 / 0.05)
+
+
+def test_stages_take_no_longer_than_the_limits_ask():
+    """Some joint comes near to its greatest speed or acceleration in each."""
+    robot = preset("phantomx")
+    sequence = stand_up(robot, folded_pose(robot) + 0.1, joint_acceleration=1e3)
+    for stage in sequence.stages:
+        first, second = stage.table.first / stage.duration, stage.table.second / stage.duration**2
+        used = max((np.abs(first) / sequence.pace.speed).max(), (np.abs(second) / sequence.pace.acceleration).max())
+        assert 0.9 < used <= 1
+
+
+def test_joints_beyond_their_limits_come_in_first():
+    robot = preset("strider")
+    start = np.array(folded_pose(robot))
+    start[2] = robot.limits[2, :, 1] + np.deg2rad(4)
+    sequence = stand_up(robot, start)
+    check(sequence, start)
+
+
+def test_on_a_knee_it_lifts_that_leg_with_the_others_down():
+    robot = preset("strider")
+    start = np.array(stance_angles(robot, 0.08))
+    start[0] = np.deg2rad([0.0, -60.0, 0.0])
+    rest = resting_pose(robot, start)
+    assert rest.leg_points_down[0, 2] or rest.contacts[0]
+    sequence = stand_up(robot, start)
+    check(sequence, start)
+
+
+def test_a_robot_that_has_fallen_over_is_refused():
+    robot = preset("strider").replace(body_com=np.array([0.0, -0.5, 0.0]))
+    start = np.tile(np.deg2rad([0.0, 80.0, 0.0]), (6, 1))
+    with pytest.raises(TarsusError, match=r"tilted by \d+ deg; at most 60 deg can be made level: put it on its belly"):
+        stand_up(robot, start)
+
+
+def test_what_cannot_be_pushed_up_is_refused_with_what_would_work():
+    robot = preset("ch3r")
+    with pytest.raises(
+        UnreachableError,
+        match=r"pushing the body up to 180.0 mm: leg [a-z ]+ can't stand 111.1 mm from its coxa axis with the body's "
+        r"origin 180.0 mm up: 0.7 mm too far, it reaches from .* a clearance of 175.0 mm works",
+    ):
+        stand_up(robot, folded_pose(robot), clearance=0.18, lift=0.12)
+    straight = preset("freenove")
+    with pytest.raises(UnreachableError, match=r"origin 200.0 mm up, front left: it would be straight, or folded back"):
+        stand_up(straight, folded_pose(straight), clearance=0.2, lift=0.02)
+    strider = preset("strider")
+    with pytest.raises(
+        UnreachableError, match=r"at a clearance of 10.0 mm the body would be in the ground: .* 25.0 mm"
+    ):
+        stand_up(strider, folded_pose(strider), clearance=0.01)
+
+
+def test_heights_beyond_all_reach_are_named():
+    robot = preset("strider")
+    feet = default_stance(robot, 0.11)
+    with pytest.raises(UnreachableError, match=r"origin .* mm up: there it reaches the ground nowhere"):
+        stations(robot, 0.025, 0.5, feet, lift=0.03)
+
+
+def test_a_stance_of_other_angles_is_no_end_to_jump_to():
+    robot = preset("strider")
+    stance = stance_angles(robot)
+    draft = as_found(robot, stance, JointPace.of(robot))
+    with pytest.raises(UnreachableError, match=r"the stance is reached by other angles, 0\.[0-9]+ deg off"):
+        push_up(draft, np.array(default_stance(robot, lift=0.03)) + [0, 0, -0.0], stance - 1e-5, lift=0.03, least=0.01)
+
+
+def test_only_what_lies_on_its_belly_can_fold():
+    robot = preset("strider")
+    with pytest.raises(TarsusError, match=r"stands on 6 feet.* 85.0 mm higher .* sit_down"):
+        fold(robot, stance_angles(robot))
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"joint_speed": 0.0}, "joint_speed holds 0"),
+        ({"joint_speed": np.nan}, "joint_speed holds nan"),
+        (
+            {"joint_acceleration": np.ones((2, 3))},
+            r"(?s)joint_acceleration is .*; expected a number, or numbers of shape",
+        ),
+        ({"margin": -1.0}, "margin is -1"),
+        ({"lift": np.inf}, "lift is inf"),
+        ({"angles": np.zeros((2, 6, 3))}, "a single robot in a single pose"),
+        ({"angles": np.zeros((5, 3))}, "angles has shape"),
+        ({"angles": np.full((6, 3), np.nan)}, "angles"),
+        ({"robot": stack_robots([preset("strider"), preset("strider")])}, r"not a batch \(2,\) of designs"),
+    ],
+)
+def test_wrong_input_is_refused(changes, message):
+    arguments = {"robot": preset("strider"), "angles": np.zeros((6, 3)), **changes}
+    for plan in (stand_up, sit_down):
+        with pytest.raises(InputError, match=message):
+            plan(**arguments)

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from tarsus.arrays import Array
-from tarsus.errors import TarsusError, UnreachableError
+from tarsus.errors import InputError, TarsusError, UnreachableError
 from tarsus.gait.live.fold import belly_depth, folded_pose
 from tarsus.gait.live.rise_draft import Draft
 from tarsus.gait.live.rise_found import as_found, level
@@ -58,7 +58,8 @@ def stand_up(
         Of the walking stance that it ends in: ``default_stance(robot, clearance, lift=lift)`` [m]; the robot's own
         where left out. `lift` is also how high feet are lifted.
     margin : float
-        The least stability margin while feet are lifted to other footholds [m].
+        The least stability margin while feet are lifted to other footholds; of feet that are found bearing load, the
+        margin as found where that is less [m].
     joint_speed, joint_acceleration : array, optional
         What no joint exceeds [rad/s, rad/s^2]; see `JointPace.of`.
 
@@ -89,7 +90,7 @@ def stand_up(
     stance = inverse_kinematics(robot, feet).require().angles
 
     def rise(draft: Draft, goal: Goal) -> None:
-        level(draft, goal, feet)
+        level(draft, goal, feet, least=margin)
         if draft.belly:
             _fold(draft)
         push_up(draft, feet, stance, lift=lift, least=margin)
@@ -146,7 +147,7 @@ def sit_down(
     feet = footholds(robot, distances(robot, found.body.inverse() @ found.feet), found.height)
 
     def sit(draft: Draft, goal: Goal) -> None:
-        level(draft, goal, feet)
+        level(draft, goal, feet, least=margin)
         if not draft.belly:
             let_down(draft, lift=lift, least=margin)
 
@@ -224,6 +225,8 @@ def lying(
 
 
 def _heights(robot: Robot, lift: float | None, margin: float) -> tuple[float, float]:
+    if robot.batch_shape:
+        raise InputError(f"a single robot gets up and sits down, not a batch {robot.batch_shape} of designs")
     lift = default_lift(robot) if lift is None else require_number("lift", lift, zero=True)
     return lift, require_number("margin", margin, zero=True)
 

@@ -22,6 +22,8 @@ Floats = np.ndarray[Any, np.dtype[np.float64]]
 # What rounding may add to an angle beyond its limit, and to a depth in the ground [rad, m].
 _ANGLE = 1e-8
 _DEPTH = 1e-6
+# What rounding may make of an angle that inverse kinematics finds again [rad].
+_JUMP = 1e-6
 # Every so many of the shares of `GRID`, balance is looked at.
 _EVERY = 4
 
@@ -37,13 +39,17 @@ def check_reach(stage: Stage) -> None:
     """Refuse a stage in which a foot can't be where it is led."""
     lost = np.argwhere(np.isnan(stage.table.angles).any(-1))
     if not len(lost):
+        # At the ends of the range of angles, a leg may have started by a solution that is not that of its branch.
+        jump = np.abs(stage.table.angles[0] - stage.angles).max(-1)
+        lost = np.argwhere([jump > _JUMP])
+    if not len(lost):
         return
     moment, leg = (int(i) for i in lost[0])
     share = GRID[moment : moment + 1]
     body, feet = stage.body_at(share)[0], np.where(stage.by_foot[:, None], stage.feet_at(share)[0], stage.feet)
     solution = inverse_kinematics(stage.robot, feet, body)
     lines = [line for line in solution.explain().splitlines() if line.startswith(stage.robot.leg_names[leg] + ":")]
-    why = lines[0] if lines else f"{stage.robot.leg_names[leg]}: it would have to go over to another way to its foot"
+    why = lines[0] if lines else f"{stage.robot.leg_names[leg]}: it would be straight, or folded back on itself"
     raise UnreachableError(f"{stage.name}: with the body's origin {body.position[2] * 1000:.1f} mm up, {why}")
 
 
@@ -87,6 +93,8 @@ def check_margin(stage: Stage, supports: Floats, least: float) -> None:
     worst = float(margins.min())
     if worst < least - 1e-9:
         held = [stage.robot.leg_codes[leg] for leg in np.flatnonzero(stage.contacts)]
+        if not len(supports):
+            raise TarsusError(f"{stage.name}: no leg can hold the body: 0 of {stage.robot.legs} feet can stay down")
         raise TarsusError(
             f"{stage.name}: held by {' '.join(held) or 'no foot'}, the stability margin would be "
             f"{worst * 1000:.1f} mm; at least {least * 1000:.1f} mm is asked for"

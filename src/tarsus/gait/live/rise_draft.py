@@ -52,6 +52,9 @@ class Draft:
         Whether the body lies flat on the ground.
     props : array, shape (n, 3)
         Points in G, besides the feet, that bear load [m]: of the body, or knees.
+    margin : float
+        How safely it rested as it was found [m]: legs that were found bearing load are lifted with no less than that,
+        or with what is asked for where that is less.
     stages : list of Stage
         What led there.
     """
@@ -63,6 +66,7 @@ class Draft:
     contacts: Flags
     belly: bool
     props: Floats
+    margin: float
     stages: list[Stage] = field(default_factory=list)
 
     def copy(self) -> Self:

@@ -73,13 +73,22 @@ def as_found(robot: Robot, angles: Array, pace: JointPace) -> Draft:
     points = body @ forward_kinematics(robot, found)
     corners = (body @ rest_points(robot)) if robot.body_size is not None else np.zeros((0, 3))
     props = np.concatenate([points[:, :3][down[:, :3]], corners[corners[:, 2] < FLAT]])
-    draft = Draft(robot=robot, pace=pace, angles=found, body=body, contacts=down[:, 3].copy(), belly=False, props=props)
+    draft = Draft(
+        robot=robot,
+        pace=pace,
+        angles=found,
+        body=body,
+        contacts=down[:, 3].copy(),
+        belly=False,
+        props=props,
+        margin=float(rest.margin),
+    )
     if tilt < _LEVEL and abs(draft.height - belly_depth(robot)) < FLAT:
         draft.lie()
     return draft
 
 
-def level(draft: Draft, goal: Goal, stance: Floats) -> None:
+def level(draft: Draft, goal: Goal, stance: Floats, *, least: float) -> None:
     """Bring the body to a level pose, feet that bear load still.
 
     Parameters
@@ -90,6 +99,8 @@ def level(draft: Draft, goal: Goal, stance: Floats) -> None:
         Where the body goes.
     stance : array, shape (legs, 3)
         Footholds in B that are wanted in the end: others are chosen near to them [m].
+    least : float
+        The least stability margin while feet are lifted that bear load, or the margin as found where that is less [m].
 
     Raises
     ------
@@ -110,7 +121,7 @@ def level(draft: Draft, goal: Goal, stance: Floats) -> None:
         folded = np.where(free[:, None], folded_pose(draft.robot), draft.angles)
         draft.fly("draw in the free legs", free, folded, landed=False)
     else:
-        put_down(draft, goal, stance, free=free, lift_first=lift_first)
+        put_down(draft, goal, stance, free=free, lift_first=lift_first, least=min(least, draft.margin))
     held = _belly_points(draft) if goal.lying else np.zeros((0, 3))
     name = "lie down" if goal.lying else "level the body"
     draft.move_body(name, goal.body, pivot=goal.pivot, props=held, still=near)

@@ -27,7 +27,7 @@ _TURNS = np.deg2rad(np.linspace(-45, 45, 13))
 _CHOICES = 6
 
 
-def put_down(draft: Draft, goal: Goal, stance: Floats, *, free: Flags, lift_first: Flags) -> None:
+def put_down(draft: Draft, goal: Goal, stance: Floats, *, free: Flags, lift_first: Flags, least: float) -> None:
     """Put the free legs down where they can stay on the body's way; then those that can't stay where they are.
 
     Parameters
@@ -40,6 +40,8 @@ def put_down(draft: Draft, goal: Goal, stance: Floats, *, free: Flags, lift_firs
         Footholds in B that are wanted in the end [m].
     free, lift_first : array of bool, shape (legs,)
         The legs in the air, and those on the ground that must not stay as they are.
+    least : float
+        The least stability margin while one of the latter is lifted [m].
     """
     choices = _places(draft, goal, stance)
     folded = folded_pose(draft.robot)
@@ -49,29 +51,29 @@ def put_down(draft: Draft, goal: Goal, stance: Floats, *, free: Flags, lift_firs
             with contextlib.suppress(TarsusError):
                 _fly(draft, leg, folded[leg], "draw in", landed=False)
     left = np.flatnonzero(lift_first).tolist()
-    while (placed := next((leg for leg in left if _place(draft, leg, choices[leg])), None)) is not None:
+    while (placed := next((leg for leg in left if _place(draft, leg, choices[leg], least)), None)) is not None:
         left.remove(placed)
     for leg in left:
         # What can't be lifted by itself comes off the ground with the body, held by the others, or the body can't move.
         draft.let_go(leg)
 
 
-def _place(draft: Draft, leg: int, choices: Floats) -> bool:
+def _place(draft: Draft, leg: int, choices: Floats, least: float = 0.0) -> bool:
     """Put a foot down at the first of its footholds ``(n, 3)`` [rad] that it gets to; return whether there is one."""
     for angles in choices:
         with contextlib.suppress(TarsusError):
-            _fly(draft, leg, angles, "place", landed=True)
+            _fly(draft, leg, angles, "place", landed=True, least=least)
             return True
     return False
 
 
-def _fly(draft: Draft, leg: int, angles: Floats, what: str, *, landed: bool) -> None:
+def _fly(draft: Draft, leg: int, angles: Floats, what: str, *, landed: bool, least: float = 0.0) -> None:
     """Take one leg through the air to joint angles; where that can't be, leave the draft as it was."""
     trial = draft.copy()
     one = np.arange(draft.robot.legs) == leg
     trial.let_go(leg)
     target = np.where(one[:, None], angles, draft.angles)
-    trial.fly(f"{what} {draft.robot.leg_codes[leg]}", one, target, landed=landed)
+    trial.fly(f"{what} {draft.robot.leg_codes[leg]}", one, target, landed=landed, least=least)
     draft.take(trial)
 
 

@@ -29,6 +29,9 @@ GRID = np.linspace(0.0, 1.0, 257)
 """The shares of a stage's time at which it is looked at."""
 
 _TURN = 2 * np.pi
+# A leg that is led by its foot keeps this far from straight and from folded on itself, where its joints would have to
+# turn ever faster for the least motion of the foot [rad].
+_LEAST_BEND = 0.01
 # Turns by less than this are none [rad]: their axis is rounding.
 _NO_TURN = 1e-12
 
@@ -149,7 +152,8 @@ class Stage:
                 legs = (down == bent) & (behind == away)
                 with np.errstate(invalid="ignore"):
                     found = solve_triangle(np, g, x, y, z, knee=-1 if bent else 1, facing=-1 if away else 1)
-                ok = (found.far >= -1e-12) & (found.near >= -1e-12) & (found.beside >= -1e-12) & legs
+                bent_enough = _LEAST_BEND**2 * g.femur * g.tibia
+                ok = (found.far >= bent_enough) & (found.near >= bent_enough) & (found.beside >= 0) & legs
                 for joint in range(3):
                     solved[..., joint] = np.where(ok, found[joint], solved[..., joint])
         # Of all angles a whole turn apart, that which is nearest to where the stage starts.
