@@ -34,7 +34,8 @@ export function CameraRig({ camera, view, place, onRest }: Props) {
   const controls = useRef<Controls>(null);
   const eyeNow = useThree((state) => state.camera);
   const invalidate = useThree((state) => state.invalidate);
-  const flight = useRef<{ eye: Vector3; target: Vector3; left: number } | null>(null);
+  const flight = useRef<Flight | null>(null);
+  const grabbed = useRef<{ eye: Vector3; flight: Flight | null } | null>(null);
   const seen = useRef<Vector3 | null>(null);
   const begun = useRef(false);
   const [eyeKey, targetKey] = [place?.eye.join(), place?.target.join()];
@@ -47,7 +48,7 @@ export function CameraRig({ camera, view, place, onRest }: Props) {
     begun.current = true;
     // A hand that has just put it here must not be led back by a rounded number.
     if (place && eye.distanceTo(eyeNow.position) < 2) return;
-    flight.current = { eye, target: new Vector3(...goal.target), left: still ? 0 : FLIGHT };
+    flight.current = { eye, target: new Vector3(...goal.target), lasts: still ? 0 : FLIGHT, from: null };
     seen.current = null;
     invalidate();
     // eslint-disable-next-line react-hooks/exhaustive-deps
@@ -78,17 +79,12 @@ export function CameraRig({ camera, view, place, onRest }: Props) {
     [eyeNow, invalidate],
   );
 
-  useFrame((_, dt) => {
+  useFrame(() => {
     const orbit = controls.current;
     if (!orbit) return;
     if (flight.current) {
-      const { eye, target, left } = flight.current;
-      const step = Math.min(dt, 0.05);
-      const share = left <= step ? 1 : 1 - Math.pow(0.02, step / FLIGHT);
-      eyeNow.position.lerp(eye, share);
-      orbit.target.lerp(target, share);
+      if (fly(flight.current, eyeNow.position, orbit.target)) flight.current = null;
       orbit.update();
-      flight.current = share === 1 ? null : { eye, target, left: left - step };
       invalidate();
     } else if (camera === "follow") {
       follow(orbit, eyeNow.position, seen);
@@ -103,10 +99,38 @@ export function CameraRig({ camera, view, place, onRest }: Props) {
       minDistance={80}
       maxDistance={6000}
       maxPolarAngle={LOWEST}
-      onStart={() => (flight.current = null)}
-      onEnd={rest}
+      onStart={() => {
+        grabbed.current = { eye: eyeNow.position.clone(), flight: flight.current };
+        flight.current = null;
+      }}
+      onEnd={() => {
+        // A click that moves nothing must not end a flight.
+        if (grabbed.current?.eye.equals(eyeNow.position)) flight.current = grabbed.current.flight;
+        else rest();
+        invalidate();
+      }}
     />
   );
+}
+
+/** On the way to a place; `from` is filled in by the first frame, which may come late. */
+interface Flight {
+  eye: Vector3;
+  target: Vector3;
+  /** [s] */
+  lasts: number;
+  from: { eye: Vector3; target: Vector3; at: number } | null;
+}
+
+/** Go on with a flight by the clock, however slowly frames come; returns whether it has arrived. */
+function fly(flight: Flight, eye: Vector3, target: Vector3): boolean {
+  const now = performance.now() / 1000;
+  flight.from ??= { eye: eye.clone(), target: target.clone(), at: now };
+  const share = flight.lasts > 0 ? Math.min(1, (now - flight.from.at) / flight.lasts) : 1;
+  const eased = share * share * (3 - 2 * share);
+  eye.lerpVectors(flight.from.eye, flight.eye, eased);
+  target.lerpVectors(flight.from.target, flight.target, eased);
+  return share === 1;
 }
 
 /** Move the eye round what it looks at. */

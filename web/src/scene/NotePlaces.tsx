@@ -2,7 +2,7 @@ import { useFrame } from "@react-three/fiber";
 import { useMemo, type RefObject } from "react";
 import { Vector3 } from "three";
 
-import { footOf, pointOf, type Frame, type Vec3 } from "./frame";
+import { pointOf, type Frame, type Vec3 } from "./frame";
 import { stage } from "./stage";
 
 /** How far over a knee its note stands [mm]. */
@@ -30,9 +30,8 @@ export function NotePlaces({ layer }: { layer: RefObject<HTMLDivElement | null> 
 }
 
 function anchorOf(frame: Frame, leg: number): Vec3 {
-  const [fx, fy] = footOf(frame, leg);
-  const [kx, ky, kz] = pointOf(frame, leg, 2);
-  return [kx * 0.6 + fx * 0.4, ky * 0.6 + fy * 0.4, kz + OVER];
+  const [x, y, z] = pointOf(frame, leg, 2);
+  return [x, y, z + OVER];
 }
 
 function marginPlace(frame: Frame): Vec3 {
