@@ -384,7 +384,9 @@ def test_what_is_wrong_in_a_document_is_told_by_its_key(ask):
     assert error["kind"] == "robot_file"
     assert [problem["key"] for problem in error["problems"]] == ["leg.femur_mm", "legs[2].yaw"]
     assert ask.error("document", document={})["problems"]
-    many = {**STRIDER.to_dict(), "legs": [{**STRIDER.to_dict()["legs"][0], "name": f"leg {i}"} for i in range(13)]}
+    leg = document["legs"][0]
+    legs = [{**leg, "name": f"leg {i}", "position_mm": [20 * i, 80, 0]} for i in range(13)]
+    many = {**STRIDER.to_dict(), "legs": legs}
     assert "has 13 legs; the studio takes at most 12" in ask.error("document", document=many)["text"]
 
 

@@ -12,11 +12,13 @@ from tarsus.gait.gait import Gait
 from tarsus.gait.live.guard import Guard, GuardBounds
 from tarsus.gait.live.walker import Walker
 from tarsus.gait.live.wish import Wish
+from tarsus.kinematics.leg import forward_kinematics
 from tarsus.kinematics.mass import centre_of_mass
 from tarsus.kinematics.pose import Pose
 from tarsus.robot.robot import Robot
 from tarsus.studio.messages import client as ask
 from tarsus.studio.messages.moving import DriveFrame
+from tarsus.studio.statics import margin_of
 from tarsus.studio.wire import degrees, flags, millimetres, or_null, plain
 
 __all__ = ["Driver"]
@@ -95,7 +97,9 @@ class Driver:
 
     def _frame(self, angles: np.ndarray[Any, Any], body: Pose) -> DriveFrame:
         walker = self._walker
-        com = np.asarray(body @ np.asarray(centre_of_mass(self._robot, angles)))
+        points = forward_kinematics(self._robot, angles)
+        com = np.asarray(body @ np.asarray(centre_of_mass(self._robot, angles, points=points)))
+        margin = margin_of(np.asarray(body @ points[:, 3]), walker.contacts, com)
         vx, vy, wz = walker.twist
         return DriveFrame(
             type="frame",
@@ -107,7 +111,7 @@ class Driver:
             rpy_deg=degrees(body.rpy),
             angles_deg=degrees(angles),
             contacts=flags(walker.contacts),
-            margin_mm=or_null(walker.margin * 1000, decimals=2),
+            margin_mm=or_null(margin * 1000, decimals=2),
             com_mm=millimetres(com[:2]),
             twist=plain([vx * 1000, vy * 1000, math.degrees(wz)]),
             limited=list(walker.limited),

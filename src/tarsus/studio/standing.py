@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 
@@ -15,11 +15,11 @@ from tarsus.kinematics.polygon import support_polygon
 from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.reach import Reach
 from tarsus.kinematics.rest import CORNERS, Rest
-from tarsus.load.torque import joint_torques
 from tarsus.report.standing_summary import Standing, rest_summary
 from tarsus.robot.robot import JOINTS, Robot
 from tarsus.studio.messages.state import View
 from tarsus.studio.messages.still import BrokenLimit, LegProblem, PoseMessage
+from tarsus.studio.statics import torques_and_forces
 from tarsus.studio.wire import degrees, flags, millimetres, or_null, plain
 
 __all__ = ["OnFootholds", "broken_limits", "resting_message", "standing_message"]
@@ -43,25 +43,28 @@ class OnFootholds(Standing):
 
 @dataclass(frozen=True, eq=False)
 class _Placed:
-    """Joint angles at a place, and what is on the ground."""
+    """Joint angles at a place, what is on the ground, and what follows: leg points and centre of mass in G [m]."""
 
     robot: Robot
     angles: np.ndarray[Any, Any]
     body: Pose
     contacts: np.ndarray[Any, Any]
+    points: np.ndarray[Any, Any]
+    com: np.ndarray[Any, Any]
 
-    def points(self) -> np.ndarray[Any, Any]:
-        """Return the leg points in G ``(legs, 4, 3)``."""
-        return np.asarray(self.body @ forward_kinematics(self.robot, self.angles))
-
-    def com(self) -> list[float]:
-        return millimetres(self.body @ np.asarray(centre_of_mass(self.robot, self.angles)))
+    @classmethod
+    def of(cls, robot: Robot, angles: np.ndarray[Any, Any], body: Pose, contacts: np.ndarray[Any, Any]) -> Self:
+        """Place the robot."""
+        points = forward_kinematics(robot, angles)
+        com = np.asarray(body @ np.asarray(centre_of_mass(robot, angles, points=points)))
+        return cls(robot, angles, body, contacts, np.asarray(body @ points), com)
 
     def statics(self, *, balanced: bool) -> tuple[list[float] | None, list[float] | None]:
         """Return the forces on the feet and the joints' torques, where the feet alone hold the robot."""
         if not (balanced and self.robot.has_masses and self.contacts.sum() >= _LEAST_FEET):
             return None, None
-        torques, forces = joint_torques(self.robot, self.angles, self.body, self.contacts)
+        feet = self.points[:, 3]
+        torques, forces = torques_and_forces(self.robot, self.angles, self.body, self.contacts, feet=feet, com=self.com)
         return plain(forces), plain(torques)
 
 
@@ -82,8 +85,8 @@ def resting_message(robot: Robot, angles: np.ndarray[Any, Any], rest: Rest, *, i
         For which view.
     """
     down, corners = np.asarray(rest.leg_points_down), np.asarray(rest.corners_down)
-    placed = _Placed(robot, angles, rest.body, np.asarray(rest.contacts))
-    points, margin = placed.points(), float(rest.margin)
+    placed = _Placed.of(robot, angles, rest.body, np.asarray(rest.contacts))
+    points, margin = placed.points, float(rest.margin)
     on_feet = not (down[:, :3].any() or corners.any())
     forces, torques = placed.statics(balanced=on_feet and bool(rest.stable) and margin >= 0)
     touching = points[down]
@@ -104,7 +107,7 @@ def resting_message(robot: Robot, angles: np.ndarray[Any, Any], rest: Rest, *, i
         corners_down=int(corners.sum()),
         margin_mm=or_null(margin * 1000),
         stable=bool(rest.stable),
-        com_mm=placed.com(),
+        com_mm=millimetres(placed.com),
         support_mm=_polygon(touching),
         forces_n=forces,
         torques_nm=torques,
@@ -131,9 +134,9 @@ def standing_message(standing: OnFootholds, *, id: int, view: View) -> PoseMessa
     robot, solution = standing.solution.robot, standing.solution
     angles, feet, contacts = np.asarray(solution.angles), np.asarray(solution.feet), standing.contacts
     margin, problems = standing.margin, standing.problems
-    placed = _Placed(robot, angles, standing.body, contacts)
+    placed = _Placed.of(robot, angles, standing.body, contacts)
     forces, torques = placed.statics(balanced=margin >= 0)
-    reached = placed.points()
+    reached = placed.points
     down = np.zeros((robot.legs, 4), dtype=bool)
     down[:, 3] = contacts
     return PoseMessage(
@@ -149,7 +152,7 @@ def standing_message(standing: OnFootholds, *, id: int, view: View) -> PoseMessa
         corners_down=0,
         margin_mm=or_null(margin * 1000),
         stable=margin >= 0,
-        com_mm=placed.com(),
+        com_mm=millimetres(placed.com),
         support_mm=_polygon(reached[contacts, 3]),
         forces_n=forces,
         torques_nm=torques,

@@ -12,6 +12,7 @@ from starlette.websockets import WebSocketDisconnect
 
 from tarsus.studio.failure import malformed
 from tarsus.studio.messages import CLOSED
+from tarsus.studio.messages import client as ask
 from tarsus.studio.messages.plain import Done, ErrorMessage
 from tarsus.studio.reading import read
 from tarsus.studio.server.inbox import Inbox
@@ -26,6 +27,9 @@ if TYPE_CHECKING:
     from tarsus.studio.messages import ClientMessage
 
 __all__ = ["Visitor"]
+
+# What takes a millisecond or two: to hand it to a thread and back would cost as much again.
+_QUICK = (ask.Ping, ask.SetJoints, ask.Wish)
 
 # A frame after a long wait makes no longer a step than this [s]: the walker is not made to leap.
 _LONGEST_STEP = 0.05
@@ -139,8 +143,10 @@ class Visitor:
                 await self._called.wait()
 
     async def _answer(self, message: ClientMessage) -> None:
-        loop = asyncio.get_running_loop()
-        texts = await loop.run_in_executor(self._threads, self._answers, message)
+        if isinstance(message, _QUICK):
+            texts = self._answers(message)
+        else:
+            texts = await asyncio.get_running_loop().run_in_executor(self._threads, self._answers, message)
         await self._send_texts(texts)
 
     def _answers(self, message: ClientMessage) -> list[str]:
