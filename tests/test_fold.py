@@ -48,13 +48,21 @@ def test_feet_that_cannot_rise_to_the_belly_stay_as_little_below_it_as_they_can(
     assert (feet > highest - 0.02).all()
 
 
-def test_legs_that_would_touch_are_folded_as_clear_of_each_other_as_they_get():
-    """A dozen legs close to each other: of all ways to fold them, the first is not the clearest."""
-    wide = ring(12)
-    near = wide.replace(mount_position=0.3 * wide.mount_position)
-    thick = near.replace(foot_radius=np.full(12, 0.03))
-    assert legs_apart(wide, folded_pose(wide)) > 0.005
-    assert legs_apart(thick, folded_pose(thick)) >= legs_apart(near, folded_pose(near)) > 0
+def towards_each_other(**changes):
+    """A ring of six, two of whose legs point at each other so that drawn in as usual they would cross."""
+    robot = ring(6)
+    return robot.replace(mount_yaw=robot.mount_yaw + np.array([0, 1.1, -1.1, 0, 0, 0]), **changes)
+
+
+def test_legs_that_would_touch_are_folded_another_way():
+    robot = towards_each_other()
+    assert legs_apart(robot, folded_pose(ring(6))) < 0.001
+    assert legs_apart(robot, folded_pose(robot)) >= 0.005
+
+
+def test_legs_that_cannot_be_clear_of_each_other_are_as_clear_as_they_get():
+    thick = towards_each_other(foot_radius=np.full(6, 0.1))
+    assert 0.005 < legs_apart(thick, folded_pose(thick)) < 0.2
 
 
 def test_a_tibia_does_not_fold_into_the_box():
