@@ -384,8 +384,11 @@ def test_what_is_wrong_in_a_document_is_told_by_its_key(ask):
     assert error["kind"] == "robot_file"
     assert [problem["key"] for problem in error["problems"]] == ["leg.femur_mm", "legs[2].yaw"]
     assert ask.error("document", document={})["problems"]
-    leg = document["legs"][0]
-    legs = [{**leg, "name": f"leg {i}", "position_mm": [20 * i, 80, 0]} for i in range(13)]
+    turns = [math.radians((i + 0.5) * 360 / 13) for i in range(13)]
+    legs = [
+        {"name": f"leg {i}", "position_mm": [300 * math.cos(t), 300 * math.sin(t), 0], "yaw_deg": 0}
+        for i, t in enumerate(turns)
+    ]
     many = {**STRIDER.to_dict(), "legs": legs}
     assert "has 13 legs; the studio takes at most 12" in ask.error("document", document=many)["text"]
 
