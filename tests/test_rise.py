@@ -74,6 +74,11 @@ def check(sequence, start, *, dt=_DT):
                 feet = points[part, leg, 3]
                 assert np.abs(feet - feet[0]).max() < 1e-6
                 assert np.abs(feet[:, 2]).max() < 1e-6
+        # As it comes off, it goes up before it goes aside.
+        for off in changes[contacts[changes, leg]] + 1:
+            feet = points[off - 1 :, leg, 3]
+            low = feet[: int(np.argmax(feet[:, 2] > 1e-3))]
+            assert np.linalg.norm((low - feet[0])[:, :2], axis=-1).max(initial=0) < 2.5e-3
     assert points[..., 1:, 2].min() > -2e-6
     assert under.min() > -2e-6
 
@@ -108,7 +113,7 @@ def found(draw):
 
 REASONS = (
     r"(leg [a-z]+ [a-z]+|front |middle |rear |held by [A-Z ]+|underside|no leg|tilted by).*\d",
-    r"(limits|finds no way|can stay down|straight|margin|in the ground|at most|reaches|too|beyond|works)",
+    r"(limits|finds no way|can stay down|straight|dragged|margin|in the ground|at most|reaches|too|beyond|works)",
 )
 """A refusal names the leg or the feet, with a number, and says what stands in the way."""
 
@@ -334,6 +339,17 @@ def test_a_stance_of_other_angles_is_no_end_to_jump_to():
     draft = as_found(robot, stance, JointPace.of(robot))
     with pytest.raises(UnreachableError, match=r"the stance is reached by other angles, 0\.[0-9]+ deg off"):
         push_up(draft, default_stance(robot, lift=0.03), stance - 1e-5, lift=0.03, least=0.01)
+
+
+def test_a_foot_that_bears_nothing_is_not_dragged_along_either():
+    robot = preset("strider")
+    draft = as_found(robot, stance_angles(robot), JointPace.of(robot))
+    draft.let_go(0)
+    aside = Pose(draft.body.rotation, draft.body.position + [0.02, 0.0, 0.001])
+    with pytest.raises(UnreachableError, match=r"foot of leg front left would be dragged .* up 1.0 mm"):
+        draft.move_body("move", aside)
+    draft.move_body("move", Pose(draft.body.rotation, draft.body.position + [0.02, 0.0, 0.04]))
+    assert draft.feet[0, 2] == pytest.approx(0.04)
 
 
 def test_only_what_lies_on_its_belly_can_fold():

@@ -19,7 +19,7 @@ from tarsus.kinematics.pose import Pose
 from tarsus.robot.geometry import LegGeometry
 from tarsus.robot.robot import Robot
 
-__all__ = ["AirSpace"]
+__all__ = ["AirSpace", "lifts"]
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]
 
@@ -29,6 +29,11 @@ _LOOK = np.deg2rad(1.5)
 # How deep in the ground rounding may have a point, and how high above it the grid's points are [m].
 _ROUNDING = 1e-7
 _ABOVE = 0.002
+# Up to which height a foot is on the ground, and from which it is clear of it [m]; in between it goes up at least so
+# much for each length that it goes aside.
+_ON_GROUND = 1e-6
+_CLEAR = 0.003
+_STEEP = 0.5
 # How much longer a way seems with the foot behind the coxa axis, under the body.
 _BEHIND = 6.0
 # From how many of the nearest points of the grid a straight way to an end is tried.
@@ -59,11 +64,16 @@ class AirSpace:
         geometry = LegGeometry(*(values[leg] for values in robot.geometry))
         return cls(geometry, body.rotation[2], float(body.position[2]))
 
+    def points(self, angles: Floats) -> Floats:
+        """Return knee and foot in B, ``(..., 2, 3)`` [m]."""
+        parts = point_parts(np, self.geometry, angles[..., 0], angles[..., 1], angles[..., 2])
+        flat = np.stack(np.broadcast_arrays(*parts[6:]), axis=-1)
+        points: Floats = flat.reshape(*flat.shape[:-1], 2, 3)
+        return points
+
     def heights(self, angles: Floats) -> Floats:
         """Return the heights of knee and foot over the ground, ``(..., 2)`` [m]."""
-        parts = point_parts(np, self.geometry, angles[..., 0], angles[..., 1], angles[..., 2])
-        knee, foot = (sum(u * p for u, p in zip(self.up, parts[i : i + 3], strict=True)) for i in (6, 9))
-        heights: Floats = np.stack([knee, foot], axis=-1) + self.height
+        heights: Floats = self.points(angles) @ self.up + self.height
         return heights
 
     def lowest(self, angles: Floats) -> Floats:
@@ -72,10 +82,13 @@ class AirSpace:
         return lowest
 
     def is_free(self, start: Floats, end: Floats) -> bool:
-        """Return whether the joints can go straight from start to end ``(3,)``."""
+        """Return whether the joints can go straight from start to end ``(3,)``, a foot on the ground lifted steeply."""
         looks = 2 + int(np.abs(end - start).max() / _LOOK)
-        share = np.linspace(0.0, 1.0, looks)[:, None]
-        return bool((self.lowest(start + share * (end - start)) >= -_ROUNDING).all())
+        points = self.points(start + np.linspace(0.0, 1.0, looks)[:, None] * (end - start))
+        heights = points @ self.up + self.height
+        if heights.min() < -_ROUNDING:
+            return False
+        return lifts(points[:, 1], heights[:, 1]) and lifts(points[::-1, 1], heights[::-1, 1])
 
     def route(self, start: Floats, end: Floats) -> tuple[Floats, ...] | None:
         """Return the angles that the leg goes through, one straight way after the other; None where there is no way.
@@ -157,6 +170,25 @@ class AirSpace:
         """Return whether the straight way is free, and not under the body where the other is not."""
         straight = way[0] + np.linspace(0, 1, 16)[:, None] * (way[-1] - way[0])
         return self.is_free(way[0], way[-1]) and self._costs(straight).max() <= self._costs(np.array(way)).max()
+
+
+def lifts(foot: Floats, heights: Floats) -> bool:
+    """Return whether a foot that starts on the ground leaves it steeply: one that grazes it is dragged.
+
+    Parameters
+    ----------
+    foot : array, shape (n, 3)
+        Where it is, one moment after the other [m].
+    heights : array, shape (n,)
+        Its height over the ground [m].
+    """
+    if heights[0] > _ON_GROUND:
+        return True
+    low = heights < _CLEAR
+    low = low[: int(np.argmin(low)) or None]
+    gone2 = ((foot[: low.size] - foot[0]) ** 2).sum(-1)
+    up = heights[: low.size] - heights[0]
+    return bool((up >= _STEEP * np.sqrt(np.maximum(gone2 - up * up, 0.0)) - _ROUNDING).all())
 
 
 def _shortest(free: Any, costs: Floats, start: tuple[int, int], end: tuple[int, int]) -> list[tuple[int, int]] | None:

@@ -8,6 +8,7 @@ import numpy as np
 
 from tarsus.errors import TarsusError, UnreachableError
 from tarsus.gait.live.fold import rest_points
+from tarsus.gait.live.fold_route import lifts
 from tarsus.gait.live.sequence_stage import GRID, Stage
 from tarsus.kinematics.inverse import inverse_kinematics
 from tarsus.kinematics.leg import forward_kinematics
@@ -15,7 +16,7 @@ from tarsus.kinematics.mass import centre_of_mass
 from tarsus.kinematics.polygon import hull_margin
 from tarsus.robot.robot import JOINTS, Robot
 
-__all__ = ["check_ground", "check_limits", "check_margin", "check_reach", "excess"]
+__all__ = ["check_ground", "check_lift", "check_limits", "check_margin", "check_reach", "excess"]
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]
 
@@ -82,6 +83,17 @@ def check_ground(stage: Stage) -> None:
         depth, what, name = -float(under.min()), "underside of the body,", robot.name
     if depth > _DEPTH:
         raise UnreachableError(f"{stage.name}: the {what} {name} would be {depth * 1000:.1f} mm in the ground")
+
+
+def check_lift(stage: Stage) -> None:
+    """Refuse a stage in which a foot comes off the ground so slowly, with its body, that it is dragged."""
+    feet = (stage.body_at(GRID) @ forward_kinematics(stage.robot, stage.table.angles))[..., 3, :]
+    for leg in np.flatnonzero(~stage.contacts & ~stage.by_foot).tolist():
+        if not lifts(feet[:, leg], feet[:, leg, 2]):
+            raise UnreachableError(
+                f"{stage.name}: the foot of leg {stage.robot.leg_names[leg]} would be dragged over the ground: it goes "
+                f"up {1000 * float(np.ptp(feet[:, leg, 2])):.1f} mm, and aside before that"
+            )
 
 
 def check_margin(stage: Stage, supports: Floats, least: float) -> None:

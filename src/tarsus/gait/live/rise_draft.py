@@ -10,7 +10,7 @@ import numpy as np
 from tarsus.errors import UnreachableError
 from tarsus.gait.live.fold import rest_points
 from tarsus.gait.live.fold_route import AirSpace
-from tarsus.gait.live.rise_checks import check_ground, check_limits, check_margin, check_reach
+from tarsus.gait.live.rise_checks import check_ground, check_lift, check_limits, check_margin, check_reach
 from tarsus.gait.live.sequence import Sequence
 from tarsus.gait.live.sequence_limits import JointPace
 from tarsus.gait.live.sequence_stage import Stage
@@ -230,6 +230,7 @@ class Draft:
         check_reach(stage)
         check_limits(stage)
         check_ground(stage)
+        check_lift(stage)
         check_margin(stage, np.concatenate([stage.feet[stage.contacts], stage.props]), least)
         end = stage.table.angles[-1]
         moved = float(np.abs(stage.table.angles - self.angles).max()) > _STILL
