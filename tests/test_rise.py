@@ -345,10 +345,10 @@ def test_a_foot_that_bears_nothing_is_not_dragged_along_either():
     robot = preset("strider")
     draft = as_found(robot, stance_angles(robot), JointPace.of(robot))
     draft.let_go(0)
-    aside = Pose(draft.body.rotation, draft.body.position + [0.02, 0.0, 0.001])
+    aside = Pose(draft.body.rotation, draft.body.position + np.array([0.02, 0.0, 0.001]))
     with pytest.raises(UnreachableError, match=r"foot of leg front left would be dragged .* up 1.0 mm"):
         draft.move_body("move", aside)
-    draft.move_body("move", Pose(draft.body.rotation, draft.body.position + [0.02, 0.0, 0.04]))
+    draft.move_body("move", Pose(draft.body.rotation, draft.body.position + np.array([0.02, 0.0, 0.04])))
     assert draft.feet[0, 2] == pytest.approx(0.04)
 
 

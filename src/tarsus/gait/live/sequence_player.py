@@ -45,6 +45,8 @@ class SequencePlayer:
         self._time = 0.0
         self._pace = 1.0
         self._wanted = 1.0
+        # Worked out now, so that no tick has to wait for it when it comes to braking.
+        self._tables = {id(stage): stage.table for stage in sequence.stages}
 
     @property
     def time(self) -> float:
@@ -148,7 +150,7 @@ class SequencePlayer:
         wish = min(max(self._wanted - self._pace, -dt / _RAMP), dt / _RAMP)
         if not stage.duration:
             return wish
-        first, second = (_between(values, share) for values in stage.table[1:])
+        first, second = (_between(values, share) for values in self._tables[id(stage)][1:])
         speed = first / stage.duration
         bend = second / stage.duration**2 * self._pace**2
         most = _SHARE * sequence.pace.acceleration
