@@ -15,13 +15,15 @@ export function App() {
     <div className="app" data-view={view}>
       <Header />
       <Tabs view={view} />
-      <main className="picture" aria-label="Picture">
+      <section className="picture" aria-label="Picture">
         <PicturePane view={view} />
         <Banner />
+      </section>
+      <main className="panel" key={view}>
+        <div role="tabpanel" id="panel" aria-labelledby={`tab-${view}`}>
+          <ViewPanel view={view} />
+        </div>
       </main>
-      <div className="panel" role="tabpanel" id="panel" aria-labelledby={`tab-${view}`} key={view}>
-        <ViewPanel view={view} />
-      </div>
       <Toast />
     </div>
   );

@@ -25,26 +25,28 @@ export function Tabs({ view }: { view: View }) {
     go(tab.view);
   };
   return (
-    <div className="tabs" role="tablist" aria-label="Views" ref={list}>
-      {TABS.map((tab) => (
-        <button
-          key={tab.view}
-          id={`tab-${tab.view}`}
-          type="button"
-          role="tab"
-          className="tab"
-          aria-selected={tab.view === view}
-          aria-controls="panel"
-          tabIndex={tab.view === view ? 0 : -1}
-          data-testid={`tab-${tab.view}`}
-          onClick={() => openView(tab.view)}
-          onKeyDown={keys}
-        >
-          <Icon name={tab.view} />
-          {tab.label}
-        </button>
-      ))}
-    </div>
+    <nav className="tabs" aria-label="Views">
+      <div role="tablist" aria-label="Views" ref={list}>
+        {TABS.map((tab) => (
+          <button
+            key={tab.view}
+            id={`tab-${tab.view}`}
+            type="button"
+            role="tab"
+            className="tab"
+            aria-selected={tab.view === view}
+            aria-controls="panel"
+            tabIndex={tab.view === view ? 0 : -1}
+            data-testid={`tab-${tab.view}`}
+            onClick={() => openView(tab.view)}
+            onKeyDown={keys}
+          >
+            <Icon name={tab.view} />
+            {tab.label}
+          </button>
+        ))}
+      </div>
+    </nav>
   );
 }
 

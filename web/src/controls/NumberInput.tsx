@@ -9,6 +9,8 @@ interface Props {
   min?: number;
   max?: number;
   disabled?: boolean;
+  /** Show every digit: for what a file says, not for what a slider gave. */
+  exact?: boolean;
   placeholder?: string;
   /** Names what says more about it, for screen readers. */
   describedBy?: string;
@@ -21,11 +23,24 @@ interface Props {
 
 /** A number to type. What is typed is taken when it is a number, and put right when the field is left. */
 export function NumberInput(props: Props) {
-  const { id, value, step, min, max, disabled, placeholder, describedBy, label, testId, onChange, onEmpty } =
-    props;
+  const {
+    id,
+    value,
+    step,
+    min,
+    max,
+    disabled,
+    exact,
+    placeholder,
+    describedBy,
+    label,
+    testId,
+    onChange,
+    onEmpty,
+  } = props;
   const [draft, setDraft] = useState<string | null>(null);
   // One digit more than the step has: enough to see that a value lies between two steps.
-  const shown = value === null ? "" : String(Number(fixed(value, decimalsOf(step) + 1)));
+  const shown = value === null ? "" : String(Number(fixed(value, exact ? 6 : decimalsOf(step) + 1)));
 
   const type = (text: string) => {
     setDraft(text);

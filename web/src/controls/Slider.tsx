@@ -6,7 +6,8 @@ import { useCommit } from "./useCommit";
 
 interface Props {
   label: string;
-  value: number;
+  /** Null where it is left to the server, and not known. */
+  value: number | null;
   min: number;
   max: number;
   step: number;
@@ -50,9 +51,11 @@ export function Slider(props: Props) {
         step={step}
         disabled={disabled}
         aria-label={name}
-        aria-valuetext={`${fixed(value, digits)} ${unit}${auto ? ", automatic" : ""}`}
+        aria-valuetext={
+          value === null ? "automatic" : `${fixed(value, digits)} ${unit}${auto ? ", automatic" : ""}`
+        }
         aria-invalid={bad}
-        value={clamp(value, min, max)}
+        value={clamp(value ?? min, min, max)}
         onChange={(event) => onChange(event.target.valueAsNumber, false)}
       />
       <div className="number">
@@ -61,9 +64,9 @@ export function Slider(props: Props) {
             type="button"
             className="button auto"
             aria-pressed={auto}
-            aria-label={`${full}: automatic`}
+            aria-label={`auto: ${full}`}
             data-testid={testId && `${testId}-auto`}
-            onClick={() => (auto ? onChange(value, true) : onAuto())}
+            onClick={() => (auto ? onChange(value ?? min, true) : onAuto())}
           >
             auto
           </button>
@@ -75,6 +78,7 @@ export function Slider(props: Props) {
           min={props.typedMin ?? min}
           max={props.typedMax ?? max}
           disabled={disabled}
+          placeholder={auto ? "auto" : undefined}
           label={`${full} in ${unit || "numbers"}`}
           testId={testId && `${testId}-number`}
           onChange={(typed) => onChange(typed, true)}

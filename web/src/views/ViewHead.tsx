@@ -3,9 +3,9 @@ import type { ReactNode } from "react";
 /** Name of a view, and what it is for in one sentence. */
 export function ViewHead({ title, children }: { title: string; children: ReactNode }) {
   return (
-    <header>
+    <div className="view-head">
       <h2>{title}</h2>
       <p>{children}</p>
-    </header>
+    </div>
   );
 }

@@ -85,7 +85,7 @@ export function LoadInputs() {
           ))}
           <Slider
             label="Supply"
-            value={loads.supply_v ?? 0}
+            value={loads.supply_v}
             min={0}
             max={16}
             typedMax={100}
@@ -98,7 +98,7 @@ export function LoadInputs() {
           />
           <Slider
             label="Battery"
-            value={loads.capacity_ah ?? 0}
+            value={loads.capacity_ah}
             min={0}
             max={10}
             typedMax={1000}

@@ -22,6 +22,7 @@ export function DocumentField({ field }: { field: NumberField }) {
         <NumberInput
           id={id}
           value={numberAt(robot.document, field.path)}
+          exact
           step={field.step}
           min={field.min}
           placeholder="not given"

@@ -68,7 +68,7 @@ export function StepInputs() {
           <Slider
             key={key}
             label={label}
-            value={value ?? (walk ? taken(walk) : 0)}
+            value={value ?? (walk ? taken(walk) : null)}
             min={0}
             max={max}
             typedMax={typedMax}
@@ -101,7 +101,7 @@ export function StepInputs() {
           ))}
           <Slider
             label="Feet from coxa axes"
-            value={state.walk.foot_distance_mm ?? 0}
+            value={state.walk.foot_distance_mm}
             min={0}
             max={400}
             typedMax={5000}
