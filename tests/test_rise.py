@@ -142,11 +142,14 @@ def test_it_gets_up_from_any_angles_or_says_why_not(start, share):
 
 
 def as_it_rests(robot, sequence, times, moments):
-    """Held at some moments, the robot rests as the sequence says: an independent look, which knows of no sequence."""
+    """Held at some moments, the robot rests as the sequence says: an independent look, which knows of no sequence.
+
+    Let down level, that is: tilted, a robot often has more than one way to rest.
+    """
     for i in np.linspace(0, len(times) - 1, 12).astype(int):
         moment, stage = moments[i], sequence.stage_at(times[i])[0]
-        if supports_margin(robot, moment, stage) < 1e-4:
-            continue  # on the edge, where rounding decides
+        if moment.body.rotation[2, 2] < 1 - 1e-12 or supports_margin(robot, moment, stage) < 1e-4:
+            continue  # not level; or on the edge, where rounding decides
         rest = resting_pose(robot, moment.angles)
         assert rest.body.position[2] == pytest.approx(moment.body.position[2], abs=2e-6)
         np.testing.assert_allclose(rest.body.rotation[2], moment.body.rotation[2], atol=1e-4)
@@ -188,7 +191,7 @@ def test_from_the_folded_pose_it_pushes_straight_up(name):
     robot = preset(name)
     sequence = stand_up(robot, folded_pose(robot))
     times, moments = check(sequence, folded_pose(robot))
-    assert [stage.name for stage in sequence.stages] == ["put the feet down", "push up"]
+    assert list(dict.fromkeys(stage.name for stage in sequence.stages)) == ["put the feet down", "push up"]
     heights = [m.body.position[2] for m in moments]
     assert (np.diff(heights) >= -1e-12).all()
     assert heights[0] == pytest.approx(belly_depth(robot))
