@@ -21,6 +21,12 @@ interface Props {
   onEmpty?: () => void;
 }
 
+/** What is being typed. It stands while the value is what it was, or what was typed: undo, say, ends it. */
+interface Draft {
+  text: string;
+  stands: readonly (number | null)[];
+}
+
 /** A number to type. What is typed is taken when it is a number, and put right when the field is left. */
 export function NumberInput(props: Props) {
   const {
@@ -38,14 +44,14 @@ export function NumberInput(props: Props) {
     onChange,
     onEmpty,
   } = props;
-  const [draft, setDraft] = useState<string | null>(null);
+  const [draft, setDraft] = useState<Draft | null>(null);
   // One digit more than the step has: enough to see that a value lies between two steps.
   const shown = value === null ? "" : String(Number(fixed(value, exact ? 6 : decimalsOf(step) + 1)));
 
   const type = (text: string) => {
-    setDraft(text);
     const number = typedNumber(text);
     const inside = number !== null && number >= (min ?? -Infinity) && number <= (max ?? Infinity);
+    setDraft({ text, stands: [value, inside ? number : value] });
     if (inside && number !== value) onChange(number);
     if (text.trim() === "" && value !== null) onEmpty?.();
   };
@@ -62,7 +68,7 @@ export function NumberInput(props: Props) {
       placeholder={placeholder}
       aria-describedby={describedBy}
       aria-label={label}
-      value={draft ?? shown}
+      value={draft?.stands.includes(value) ? draft.text : shown}
       onChange={(event) => type(event.target.value)}
       onBlur={() => setDraft(null)}
     />

@@ -12,6 +12,7 @@ import { Lights } from "./Lights";
 import { NotePlaces } from "./NotePlaces";
 import { Notes } from "./Notes";
 import type { Palette } from "./palette";
+import { PictureGuard } from "./PictureGuard";
 import { Robot } from "./Robot";
 import { steer } from "./steer";
 import { Support } from "./Support";
@@ -41,6 +42,14 @@ const nothing = () => undefined;
 
 /** The picture: one canvas that all views share, and the player as well. */
 export function SceneCanvas(props: SceneProps) {
+  return (
+    <PictureGuard>
+      <Scene {...props} />
+    </PictureGuard>
+  );
+}
+
+function Scene(props: SceneProps) {
   const {
     shape,
     colours,
@@ -77,7 +86,6 @@ export function SceneCanvas(props: SceneProps) {
         dpr={[1, 2]}
         camera={{ fov: 32, near: 10, far: 20_000, up: [0, 0, 1], position: [-600, -500, 600] }}
         gl={{ antialias: true, preserveDrawingBuffer: true, powerPreference: "low-power" }}
-        fallback={<p>This browser can't draw in 3D (WebGL is off). All numbers are in the panel.</p>}
       >
         <color attach="background" args={[palette.background]} />
         <fog attach="fog" args={[palette.background, view.radius * 6 + 1200, view.radius * 10 + 3600]} />
