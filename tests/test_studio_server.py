@@ -240,6 +240,19 @@ def test_more_messages_than_allowed_are_refused_and_then_the_session_ends():
         assert code == CLOSED["RATE"][0]
 
 
+def test_so_many_messages_wait_and_no_more():
+    with served(limits=Limits(waiting=3)) as server, Visit(server) as visit:
+        busy = visit.send("servos")
+        for _ in range(10):
+            visit.send("undo")
+        answers = []
+        while not answers or answers[-1].get("id") != busy or answers[-1]["type"] != "done":
+            answers.append(visit.receive())
+        refused = [answer for answer in answers if answer.get("kind") == "limit"]
+        assert len(refused) >= 6
+        assert "3 messages are waiting" in refused[0]["text"]
+
+
 def test_so_many_sessions_and_no_more():
     with served(limits=Limits(sessions=2)) as server, Visit(server) as one, Visit(server):
         with Visit(server) as third:

@@ -44,6 +44,8 @@ MM, DEG = 0.006, 0.0006
 
 STRIDER = load_robot("strider")
 
+PICTURE = {"camera": "top", "eye_mm": [1, 2, 3], "target_mm": [0, 0, 0], "time_s": 1.5, "leg": 2}
+
 
 @pytest.fixture
 def ask():
@@ -448,8 +450,7 @@ def test_presets_are_names_and_never_files(ask, tmp_path):
     ],
 )
 def test_a_view_shows_what_it_is_for(ask, view, types):
-    picture = {"camera": "top", "eye_mm": [1, 2, 3], "target_mm": [0, 0, 0], "time_s": 1.5, "leg": 2}
-    answers = ask.all("view", view=view, picture=picture)
+    answers = ask.all("view", view=view, picture=PICTURE)
     assert [answer["type"] for answer in answers] == [*types, "done"]
     assert not answers[-1]["undo"]
     held = state_of(answers[-1]["state"])
@@ -530,6 +531,43 @@ def test_a_robot_of_ones_own_is_there_from_the_start():
     assert robot["name"] == "mine"
     asked.all("robot", preset="mithi")
     assert asked("undo", "robot")["name"] == "mine"
+
+
+def test_what_is_of_another_leg_is_left_out(ask):
+    document = STRIDER.to_dict()
+    document["legs"] = document["legs"][:5]
+    ask.all("view", view="body", picture={**PICTURE, "leg": 5})
+    assert ask("document", "state", document=document)["state"]["picture"]["leg"] is None
+
+
+def test_a_walk_without_loads_is_a_walk_all_the_same(ask):
+    ask.all("robot", preset="mithi")
+    ask.all("view", view="loads")
+    assert ask.types("walk", walk={"gait": "wave"}) == ["walk", "error", "done"]
+    assert ask.session.state.walk.gait == "wave"
+
+
+def test_in_the_view_sources_the_numbers_follow_the_body(ask):
+    ask.all("view", view="sources")
+    assert ask.types("body", body=BODY) == ["pose", "source", "done"]
+    assert "legs 0 to 5" in ask.error("source", source={"number": "000", "leg": 7})["text"]
+
+
+def test_a_page_of_the_walk_needs_the_built_front_end(ask, monkeypatch, tmp_path):
+    monkeypatch.setattr("tarsus.studio.player.WEB", tmp_path)
+    assert "make web" in ask.error("download", what="html")["text"]
+    (tmp_path / "player.html").write_text("<script>__MOTION__</script>", encoding="utf-8")
+    file = ask("download", "file", what="html")
+    assert (file["name"], file["mime"]) == ("strider-walk.html", "text/html")
+    assert json.loads(file["text"][8:-9])["robot"]["preset"] == "strider"
+
+
+def test_no_memory_for_it_is_no_bug(ask, monkeypatch):
+    def fails(*_given, **_more):
+        raise MemoryError
+
+    monkeypatch.setattr("tarsus.studio.views.Views.walk", fails)
+    assert ask.error("walk", walk={"gait": "wave"})["kind"] == "limit"
 
 
 def test_a_ping_is_answered(ask):

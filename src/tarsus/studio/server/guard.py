@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hmac
-from http.cookies import SimpleCookie
 from typing import TYPE_CHECKING
 from urllib.parse import parse_qs, urlsplit
 
@@ -130,13 +129,8 @@ def _query_token(scope: Scope) -> str | None:
 
 
 def _cookie_token(headers: dict[str, str], name: str) -> str | None:
-    cookies: SimpleCookie = SimpleCookie()
-    try:
-        cookies.load(headers.get("cookie", ""))
-    except Exception:  # a malformed cookie is none
-        return None
-    found = cookies.get(name)
-    return None if found is None else found.value
+    pairs = (pair.strip().partition("=") for pair in headers.get("cookie", "").split(";"))
+    return next((value for key, _, value in pairs if key == name), None)
 
 
 def _with_headers(send: Send) -> Send:

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import ipaddress
+import re
 import secrets
 from dataclasses import dataclass, field
 
+from tarsus.errors import InputError
 from tarsus.studio.messages.state import StudioState
 from tarsus.studio.messages.still import Bounds
 from tarsus.studio.walks import MOST_SAMPLES
@@ -75,6 +77,11 @@ class Settings:
         What a new session begins with.
     limits : Limits
         How much a visitor may use.
+
+    Raises
+    ------
+    InputError
+        If the token has characters that a link or a cookie can't hold as they are.
     """
 
     host: str = "127.0.0.1"
@@ -83,6 +90,10 @@ class Settings:
     token: str | None = None
     start: StudioState = field(default_factory=StudioState)
     limits: Limits = field(default_factory=Limits)
+
+    def __post_init__(self) -> None:
+        if self.token is not None and not re.fullmatch(r"[A-Za-z0-9._~-]{1,200}", self.token):
+            raise InputError("a token is 1 to 200 letters and digits, dots, dashes, underscores and tildes")
 
     @property
     def loopback(self) -> bool:
