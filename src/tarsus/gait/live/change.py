@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 
-from tarsus.errors import TarsusError
+from tarsus.errors import UnreachableError
 from tarsus.gait.gait import Gait
 from tarsus.gait.live.envelope import Envelope, capped, envelope, overhang
-from tarsus.gait.live.posture import LIFT, posture_row, stand_of
+from tarsus.gait.live.posture import LIFT, stand_of
 from tarsus.gait.live.support import support_sets
 from tarsus.gait.live.tempo import Tempo, tempo
 from tarsus.gait.live.workspace import Parts, joint_slack
@@ -21,9 +21,9 @@ __all__ = ["Change", "Manner", "work_out"]
 
 Floats = np.ndarray[Any, Any]
 
-_PARTS_OF_WAY = 16
-# Postures between the present one and the next for which the feet's polygons are worked out.
-_STANDS = (0.5, 0.0)
+_PARTS_OF_WAY, _HALVINGS, _LEAST_PART = 16, 6, 0.02
+# How far the rest footholds move at once at the most [m], and what is no change.
+_LONGEST_STEP, _SAME = 0.03, 1e-9
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -57,34 +57,48 @@ class Manner:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Change:
-    """What going over to a manner comes to.
+    """What going over to a manner comes to, or to a part of it.
+
+    First the feet step to new rest footholds, then the body moves over them.
 
     Attributes
     ----------
     manner : Manner
         What was asked for.
-    posture : array
-        The row to go to: all of what was asked for that works.
+    whole : bool
+        Whether this is all of it that works; if not, the rest comes with a further change.
+    posture : array, shape (7,)
+        The posture to go to.
+    rest : complex array, shape (legs,)
+        The rest footholds to step to, in the heading frame [m].
     tempo : Tempo
         How fast the legs step there.
-    way : Envelope
-        What is possible on the way there.
-    there : Envelope
-        What is possible there.
+    stepping, way, there : Envelope
+        What is possible while the feet step, while the body moves, and there.
     limited : tuple of str
         Why it isn't all that was asked for.
     """
 
     manner: Manner
+    whole: bool
     posture: Floats
+    rest: Floats
     tempo: Tempo
+    stepping: Envelope
     way: Envelope
     there: Envelope
     limited: tuple[str, ...]
 
 
 def work_out(
-    robot: Robot, manner: Manner, now: Floats | None, *, speed: Floats, acceleration: Floats, foot_distance: float
+    robot: Robot,
+    manner: Manner,
+    now: Floats | None,
+    rest: Floats | None,
+    *,
+    speed: Floats,
+    acceleration: Floats,
+    foot_distance: float,
 ) -> Parts[Change | str]:
     """Work out how to go over to a manner, in parts.
 
@@ -94,8 +108,10 @@ def work_out(
         A single robot.
     manner : Manner
         What is asked for.
-    now : array
-        The present posture's row; None to be there at once.
+    now : array, shape (7,), or None
+        The present posture; None to be there at once.
+    rest : complex array, shape (legs,), or None
+        The present rest footholds [m].
     speed, acceleration : array, shape (legs, 3)
         Greatest of each joint [rad/s], [rad/s^2].
     foot_distance : float
@@ -106,44 +122,93 @@ def work_out(
     Change or str
         The change; or why nothing of it works.
     """
-    try:
-        stance = default_stance(robot, manner.clearance, lift=manner.lift)
-    except TarsusError as error:
-        return str(error)
+    wished, wished_rest = yield from _wished(robot, manner, now)
+    now, rest = (wished, wished_rest) if now is None or rest is None else (now, rest)
+    share, leg = _largest_part(robot, (now, rest), (wished, wished_rest))
     yield
-    rest = _widened(robot, stance[:, 0] + 1j * stance[:, 1], manner.stance_width)
-    body = np.array(manner.body) + np.array([0, 0, manner.clearance, 0, 0, 0])
-    wished = posture_row(body, manner.lift, rest)
-    now = wished if now is None else now
-    share, reason = _largest_part(robot, now, wished)
+    share, whole = _one_change(robot, (now, rest), (wished, wished_rest), share)
     yield
-    posture = now + share * (wished - now)
-    limited = (reason,) if reason else ()
     sets = support_sets(manner.gait, manner.gone)
-    there = yield from envelope(robot, [stand_of(posture)], sets, foot_distance=foot_distance)
-    if not there.possible:
-        return f"{robot.leg_names[there.short]} could not stand and step there"
+    while share >= _LEAST_PART:
+        posture, rest_there = now + share * (wished - now), rest + share * (wished_rest - rest)
+        there = yield from envelope(robot, [stand_of(posture, rest_there)], sets, foot_distance=foot_distance)
+        if there.possible:
+            break
+        share, whole, leg = share / 2, False, there.short
+    else:
+        return f"{robot.leg_names[leg]} comes to the end of its reach"
     pace = yield from tempo(
         robot,
         manner.gait,
-        stand_of(posture),
+        stand_of(posture, rest_there),
         there,
         speed=speed,
         acceleration=acceleration,
         cycle_time=manner.cycle_time,
     )
-    if manner.cycle_time is not None and pace.cycle_time > manner.cycle_time:
-        limited += (
-            f"cycle_time {manner.cycle_time:.3g} s is too short for the joints to lift the feet "
-            f"{posture[LIFT] * 1000:.0f} mm: {pace.cycle_time:.3g} s is taken",
-        )
     there = capped(there, pace.stroke * overhang(manner.gait.duty))
-    way = there
-    for part in _STANDS if np.abs(posture - now).max() > 1e-9 else ():
-        between = stand_of(posture + part * (now - posture)) if part else stand_of(now)
-        here = yield from envelope(robot, [between], sets, foot_distance=foot_distance)
-        way = way.meet(here)
-    return Change(manner=manner, posture=posture, tempo=pace, way=way, there=there, limited=limited)
+    stepping = way = there
+    if np.abs(posture - now).max() > _SAME:
+        between = [stand_of(now + part * (posture - now), rest_there) for part in (0.5, 0.0)]
+        way = there.meet((yield from envelope(robot, between[:1], sets, foot_distance=foot_distance)))
+        stepping = yield from envelope(robot, between[1:], sets, foot_distance=foot_distance)
+        stepping = capped(stepping, pace.stroke * overhang(manner.gait.duty))
+        way = way.meet(stepping)
+    if not (way.possible and stepping.possible):
+        return f"{robot.leg_names[way.short]} could not stand and step on the way there"
+    return Change(
+        manner=manner,
+        whole=whole,
+        posture=posture,
+        rest=rest_there,
+        tempo=pace,
+        stepping=stepping,
+        way=way,
+        there=there,
+        limited=_limits(robot, manner, pace, share, whole=whole, leg=leg),
+    )
+
+
+def _limits(robot: Robot, manner: Manner, pace: Tempo, share: float, *, whole: bool, leg: int) -> tuple[str, ...]:
+    """Say what of a manner doesn't work."""
+    limited: tuple[str, ...] = ()
+    if whole and share < 1:
+        reason = f"body: {100 * share:.0f} % of the way, there {robot.leg_names[leg]} comes to the end of its reach"
+        limited += (reason,)
+    if manner.cycle_time is not None and pace.cycle_time > manner.cycle_time:
+        reason = (
+            f"cycle_time {manner.cycle_time:.3g} s is too short for the joints to lift the feet "
+            f"{manner.lift * 1000:.0f} mm and get on: {pace.cycle_time:.3g} s is taken"
+        )
+        limited += (reason,)
+    return limited
+
+
+def _wished(robot: Robot, manner: Manner, now: Floats | None) -> Parts[tuple[Floats, Floats]]:
+    """Return posture and rest footholds of a manner; where no leg's foothold is so high or low, of the nearest that is.
+
+    Raises
+    ------
+    UnreachableError
+        If there is none, and no present posture to start from.
+    """
+    wished = np.array([*manner.body, manner.lift])
+    tried = [1.0] if now is None else [1.0, *np.arange(7, 0, -1) / 8]
+    for share in tried:
+        clearance, lift = manner.clearance, manner.lift
+        if now is not None and share < 1:
+            was = float(now[2]) - manner.body[2]
+            clearance, lift = was + share * (clearance - was), float(now[LIFT]) + share * (lift - float(now[LIFT]))
+        try:
+            stance = default_stance(robot, clearance, lift=lift)
+        except UnreachableError:
+            if now is None:
+                raise
+            yield
+            continue
+        wished[2], wished[LIFT] = manner.body[2] + clearance, lift
+        return wished, _widened(robot, stance[:, 0] + 1j * stance[:, 1], manner.stance_width)
+    raise UnreachableError(f"no leg reaches the ground at clearance {manner.clearance * 1000:.1f} mm")
 
 
 def _widened(robot: Robot, rest: Floats, width: float) -> Floats:
@@ -153,20 +218,36 @@ def _widened(robot: Robot, rest: Floats, width: float) -> Floats:
     return wider
 
 
-def _largest_part(robot: Robot, now: Floats, wished: Floats) -> tuple[float, str]:
-    """Return how much of the way to a posture all legs reach their rest footholds, lifted or not, and what stops it."""
+Posed: TypeAlias = tuple[Floats, Floats]
+
+
+def _slack(robot: Robot, posture: Floats, rest: Floats) -> Floats:
+    """Return how much is left to each leg ``(legs,)`` at its rest foothold, on the ground and lifted."""
+    stand = stand_of(posture, rest)
+    height = np.array([[0.0], [stand.lift]]) + np.zeros(robot.legs)
+    solution = stand.solve(robot, rest.real + 0 * height, rest.imag + 0 * height, height)
+    return np.asarray(joint_slack(robot.geometry, solution).min(axis=0))
+
+
+def _largest_part(robot: Robot, now: Posed, wished: Posed) -> tuple[float, int]:
+    """Return how much of the way to a posture all legs reach their rest footholds, and which leg stops it there."""
     shares = np.arange(1, _PARTS_OF_WAY + 1) / _PARTS_OF_WAY
-    slack = []
-    for share in shares:
-        stand = stand_of(now + share * (wished - now))
-        height = np.array([[0.0], [stand.lift]]) + np.zeros(robot.legs)
-        x, y = stand.rest.real + 0 * height, stand.rest.imag + 0 * height
-        solution = stand.solve(robot, x, y, height)
-        slack.append(joint_slack(robot.geometry, solution).min(axis=0))
-    fails = (np.array(slack) < 0).any(axis=1)
+    slack = np.array([_slack(robot, *(a + s * (b - a) for a, b in zip(now, wished, strict=True))) for s in shares])
+    fails = (slack < 0).any(axis=1)
     if not fails.any():
-        return 1.0, ""
+        return 1.0, 0
     first = int(fails.argmax())
-    leg = int(np.argmin(slack[first]))
-    share = float(shares[first] - shares[0])
-    return share, f"body: {100 * share:.0f} % of the way there, {robot.leg_names[leg]} comes to the end of its reach"
+    return float(shares[first] - shares[0]), int(slack[first].argmin())
+
+
+def _one_change(robot: Robot, now: Posed, wished: Posed, share: float) -> tuple[float, bool]:
+    """Return how much of the way can be gone at once: as the body still is, the feet must reach their new places."""
+    (posture, rest), (_, wished_rest) = now, wished
+    part = share
+    for _ in range(_HALVINGS):
+        if np.abs(wished_rest - rest).max() * part <= _LONGEST_STEP:
+            slack = _slack(robot, posture, rest + part * (wished_rest - rest))
+            if (slack >= 0).all():
+                break
+        part /= 2
+    return part, part == share

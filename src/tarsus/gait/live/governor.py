@@ -89,8 +89,8 @@ def allowed_target(
     if there.max() <= _TOLERANCE:
         return wish
     if here.max() <= _TOLERANCE:
-        breaks = there > 0
-        share = (np.maximum(-here[breaks], 0.0) / (there[breaks] - here[breaks])).min()
+        breaks = there > _TOLERANCE
+        share = (np.maximum(-here[breaks], 0.0) / (there[breaks] - np.minimum(here[breaks], 0.0))).min()
         target: Floats = current + min(float(share), 1.0) * (wish - current)
         return target
     broken = here > 0

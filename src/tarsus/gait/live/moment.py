@@ -57,7 +57,7 @@ class Moment(NamedTuple):
     twist : Lag
         Its speed ``(3,)``: forward, left [m/s], turning [rad/s].
     posture : Lag
-        The body over the heading frame, and the feet's rest: see `tarsus.gait.live.posture`.
+        The body over the heading frame ``(7,)``: see `tarsus.gait.live.posture`.
     """
 
     clock: float
@@ -105,8 +105,8 @@ class Course(NamedTuple):
         How fast they follow [rad/s].
     steps : array of bool, shape (legs,)
         Which legs may lift.
-    rest, final_rest : complex array, shape (legs,)
-        Rest footholds in the heading frame, now and once the posture is what it is to be [m].
+    rest : complex array, shape (legs,)
+        Rest footholds in the heading frame [m].
     """
 
     gait: Gait
@@ -118,7 +118,6 @@ class Course(NamedTuple):
     posture_bandwidth: float
     steps: Floats
     rest: Floats
-    final_rest: Floats
 
 
 def turned(angle: Any) -> Any:
@@ -192,7 +191,7 @@ def final_rest(now: Moment, course: Course) -> Floats | None:
         return None
     w = course.bandwidth
     origin, yaw = carried(now.origin, now.yaw, (2 * now.twist.value + now.twist.rate / w) / w)
-    final: Floats = origin + cmath.exp(1j * yaw) * course.final_rest
+    final: Floats = origin + cmath.exp(1j * yaw) * course.rest
     return final
 
 

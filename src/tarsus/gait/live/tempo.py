@@ -20,8 +20,9 @@ Floats = np.ndarray[Any, Any]
 _DEFAULT_SPEED = 6.0
 _SPEED_UP = 0.05
 # Shares of the joints' speed and acceleration that steady walking may take: the rest is for changing one's mind.
-_SPEED_SHARE, _ACCELERATION_SHARE = 0.95, 0.8
+_SPEED_SHARE, _ACCELERATION_SHARE = 0.95, 0.7
 _SIZES = np.linspace(0.0, 1.0, 6)
+_LEAST_SIZE = 0.25
 _TWISTS = np.array(
     [(np.cos(a), np.sin(a), 0.0) for a in np.arange(8) * np.pi / 4]
     + [(0.0, 0.0, 1.0), (0.0, 0.0, -1.0)]
@@ -65,7 +66,8 @@ class Tempo(NamedTuple):
     stroke : float
         The longest stroke for which the joints are fast enough [m].
     least_cycle_time : float
-        The shortest cycle in which the joints can lift the feet at all [s].
+        The shortest cycle in which the joints can lift the feet and carry them on by a quarter of what the legs
+        allow [s].
     """
 
     cycle_time: float
@@ -106,7 +108,8 @@ def tempo(
         yield
     # (sizes, twists): the shortest cycle for each size of each stroke.
     stroke, shortest = np.concatenate(strokes), np.maximum.accumulate(np.concatenate(cycles, axis=1), axis=0)
-    least = float(shortest[0].max())
+    # The least in which the joints allow a good part of the stroke: in less, the robot would step on the spot.
+    least = float(np.array([np.interp(_LEAST_SIZE, _SIZES, column) for column in shortest.T]).max())
     if cycle_time is None:
         tried = least * np.geomspace(1.0, 4.0, 33)
         sizes = np.array([_sizes(shortest, t) for t in tried])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import cmath
+import dataclasses
 import math
 from collections.abc import Sequence
 from typing import Any
@@ -16,7 +17,7 @@ from tarsus.gait.live.envelope import Envelope, overhang
 from tarsus.gait.live.governor import allowed_target, excess
 from tarsus.gait.live.lag import Lag
 from tarsus.gait.live.moment import THERE, TIE, Course, Moment, final_rest, go_on
-from tarsus.gait.live.posture import LIFT, posture_row, rest_of, stand_of
+from tarsus.gait.live.posture import LIFT, stand_of
 from tarsus.gait.live.tempo import joint_limits
 from tarsus.gait.live.wish import Wish
 from tarsus.gait.live.workspace import Parts, all_parts
@@ -39,8 +40,13 @@ _BODY_SPEED, _BODY_TURN = 0.08, 0.5
 # Ticks longer than this are walked as if they took no longer [s]: a late tick must not become a jump.
 _LONGEST_TICK = 0.05
 # How fast the walker's own time may run down and up again [1/s].
-_TIME_CHANGE = 8.0
-_AT_POSTURE = 2e-4
+_TIME_CHANGE = 3.0
+_PATIENCE = 1.0
+# From which share of the joints' acceleration on the walker looks ahead, what share it then aims at, and how far [s].
+_STRAINED, _CALM, _AHEAD = 0.5, 0.75, 0.02
+_AT_POSTURE, _SAME = 2e-4, 1e-9
+# How often a tick is tried, ever slower, and what of the joints' speed and acceleration it may come to.
+_TRIES, _KEPT = 5, 0.98
 
 
 class Walker:
@@ -98,24 +104,35 @@ class Walker:
             stance_width=stance_width,
             cycle_time=cycle_time,
         )
-        change = all_parts(self._work_out(manner, None))
+        change = all_parts(self._work_out(manner, None, None))
         if isinstance(change, str):
             raise UnreachableError(f"the robot can't walk so: {change}")
         self._wanted = manner
         self._doing = change
         self._way: Envelope = change.there
+        self._bounds = change.there.bounds
+        self._landing_bounds = self._bounds
+        self._rest, self._posture = change.rest, change.posture
+        self._leg_rest = change.rest
+        self._old_step = np.zeros(self.robot.legs, dtype=bool)
+        self._stepping: Change | None = None
+        self._patience = 1.0
         self._job: Parts[Change | str] | None = None
         self._next: Change | None = None
         self._settling: tuple[Change, int] | None = None
         self._refusal: str = ""
+        self._refused: Manner | None = None
+        self._asked = manner
+        self._stepped = np.ones(self.robot.legs, dtype=bool)
         self._frequency = 1 / change.tempo.cycle_time
         self._rate = 1.0
+        self._strain = 0.0
         self._target = np.zeros(3)
         self._limited: tuple[str, ...] = ()
         self.time = 0.0
         self._last_dt = 0.01
         legs = self.robot.legs
-        rest = rest_of(change.posture)
+        rest = change.rest
         none, zero = np.zeros(legs), np.zeros(legs, dtype=complex)
         self._now = Moment(
             clock=0.0,
@@ -139,11 +156,12 @@ class Walker:
         self._joint_rate = np.zeros((legs, 3))
         self._free: dict[int, Any] = {}
 
-    def _work_out(self, manner: Manner, now: Floats | None) -> Parts[Change | str]:
+    def _work_out(self, manner: Manner, now: Floats | None, rest: Floats | None) -> Parts[Change | str]:
         return work_out(
             self.robot,
             manner,
             now,
+            rest,
             speed=self.joint_speed,
             acceleration=self.joint_acceleration,
             foot_distance=self._foot_distance,
@@ -175,10 +193,14 @@ class Walker:
         dt = min(float(dt), _LONGEST_TICK)
         self._take(wish)
         self._think()
+        # A change that the walk has no room for slows it down until it has.
+        waits = self._next is not None or (self._stepping is not None and bool(self._stepped.all()))
+        self._patience = self._patience * math.exp(-dt / _PATIENCE) if waits else 1.0
         self._aim(np.array(wish.twist))
+        was_down = self._now.down
         self._advance(dt)
         self.time += dt
-        self._finish()
+        self._finish(was_down)
         return self._angles
 
     # What was asked for.
@@ -205,50 +227,77 @@ class Walker:
 
     def _think(self) -> None:
         """Do one part of working out a change, and go over to it once the walk allows."""
-        if self._job is None and self._next is None and self._settling is None:
-            if self._wanted != self._doing.manner and self._wanted != self._refused_manner():
-                self._asked = self._wanted
-                self._job = self._work_out(self._wanted, self._now.posture.value)
-        elif self._job is not None:
+        if self._job is not None:
             try:
                 next(self._job)
             except StopIteration as done:
                 self._job = None
-                if isinstance(done.value, str):
-                    self._refusal = done.value
-                    self._refused = self._asked
-                else:
-                    self._next, self._refusal = done.value, ""
+                self._note(done.value)
+            except UnreachableError as error:
+                self._job = None
+                self._note(str(error))
+        elif self._next is None and self._settling is None and self._stepping is None:
+            asked = self._step_towards(self._wanted)
+            if asked not in (self._doing.manner, self._refused) and self._arrived():
+                self._asked = asked
+                self._job = self._work_out(asked, self._posture, self._rest)
         if self._next is not None:
             self._try_change(self._next)
+        elif self._stepping is not None:
+            self._try_body(self._stepping)
 
-    def _refused_manner(self) -> Manner | None:
-        return getattr(self, "_refused", None)
+    def _step_towards(self, wanted: Manner) -> Manner:
+        """Return what to change first: how the robot stands, then how it steps."""
+        doing = self._doing.manner
+        standing = dataclasses.replace(
+            wanted, gait=doing.gait, cycle_time=doing.cycle_time, gone=doing.gone
+        )
+        return wanted if standing in (doing, self._refused) else standing
+
+    def _note(self, found: Change | str) -> None:
+        if isinstance(found, str):
+            self._refusal, self._refused = found, self._asked
+        else:
+            self._next, self._refusal, self._refused = found, "", None
 
     def _try_change(self, change: Change) -> None:
         """Go over to a change as soon as the feet on the ground allow it."""
-        now, old, new = self._now, self._doing.manner.gait, change.manner.gait
-        frequency = 1 / change.tempo.cycle_time
+        old, new = self._doing.manner.gait, change.manner.gait
         if new.duty == old.duty and new.offsets == old.offsets:
-            begins, ends = self._stances(frequency)
-            if self._works(begins, ends, change.way.bounds, frequency):
+            twist = self._now.twist.value
+            stance_time = new.duty * change.tempo.cycle_time
+            share, _ = change.stepping.largest_share(twist, stance_time=stance_time, duty=new.duty)
+            begins, ends = self._stances(1 / change.tempo.cycle_time)
+            if share >= 1 and self._works(begins, ends, self._bounds, 1 / change.tempo.cycle_time):
                 self._adopt(change)
-            return
-        if not self._walking:
+        elif not self._walking:
             self._switch(change, 0)
-            return
-        # All feet come down, then the new order begins with one of the legs.
-        wait = self._until_down()
+        else:
+            self._try_gait(change)
+
+    def _try_gait(self, change: Change) -> None:
+        """Let all feet come down, if they may wait so long; then the new order begins with the leg that suits best."""
+        new, frequency = change.manner.gait, 1 / change.tempo.cycle_time
         offsets = np.asarray(new.offsets)
         delays = ((offsets - offsets[:, None]) % 1) / frequency
-        stance = new.duty / frequency
-        begins = np.zeros(delays.shape)
-        ends = wait + delays + (overhang(new.duty) - 0.5) * stance
-        over = self._excess(begins, ends, change.way.bounds, frequency).max(axis=(1, 2, 3, 4))
+        ends = self._until_down() + delays + (overhang(new.duty) - 0.5) * new.duty / frequency
+        bounds = np.minimum(self._bounds, change.there.bounds)
+        over = self._excess(np.zeros(delays.shape), ends, bounds, frequency).max(axis=(1, 2, 3, 4))
         first = int(over.argmin())
         if over[first] <= THERE:
             self._settling, self._next = (change, first), None
+            self._bounds = bounds
+            self._way = self._way.meet(change.there)
+
+    def _try_body(self, change: Change) -> None:
+        """Move the body once every foot has stepped to where it is to rest."""
+        begins, ends = self._stances(self._frequency)
+        slow = self._frequency <= 1 / change.tempo.cycle_time
+        if slow and self._stepped.all() and self._works(begins, ends, change.way.bounds, self._frequency):
+            self._bounds = np.minimum(self._bounds, change.way.bounds)
+            self._landing_bounds = self._bounds
             self._way = self._way.meet(change.way)
+            self._posture, self._stepping = change.posture, None
 
     def _until_down(self) -> float:
         now = self._now
@@ -264,8 +313,18 @@ class Walker:
         )
 
     def _adopt(self, change: Change) -> None:
-        self._way = self._way.meet(change.way)
-        self._doing, self._next = change, None
+        """Send the feet to where they are to rest; the body follows."""
+        self._way = self._way.meet(change.stepping)
+        self._landing_bounds = change.stepping.bounds
+        moved = np.abs(change.rest - self._rest) > _SAME
+        self._stepped = ~moved
+        # A foot in the air lands where it is bound for; its next step is the one that counts.
+        self._old_step = moved & ~self._now.down
+        self._leg_rest = np.where(self._old_step, self._leg_rest, change.rest)
+        self._bounds = np.where(moved[:, None], self._bounds, np.minimum(self._bounds, self._landing_bounds))
+        self._rest, self._stepping, self._next = change.rest, change, None
+        manner = change.manner if change.whole else self._doing.manner
+        self._doing = dataclasses.replace(change, manner=manner)
 
     def _switch(self, change: Change, first: int) -> None:
         """Begin the new order of steps; every foot is down."""
@@ -304,7 +363,9 @@ class Walker:
         """Set the target of the twist: as much of the wish as the legs allow, for good and right now."""
         frequency = min(self._frequency, 1 / self._doing.tempo.cycle_time)
         asked = [(self._doing, self._way)] + [
-            (change, change.way) for change in (self._next, self._settling and self._settling[0]) if change
+            (change, change.way.meet(change.stepping))
+            for change in (self._next, self._stepping, self._settling and self._settling[0])
+            if change
         ]
         share, leg = 1.0, -1
         if twist.any():
@@ -314,7 +375,7 @@ class Walker:
                 allowed, which = way.largest_share(twist, stance_time=duty / slowest, duty=duty)
                 if allowed < share:
                     share, leg = allowed, which
-        wish = twist * share
+        wish = self._limited_wish = twist * min(share, self._patience)
         self._limited = self._reasons(share, leg)
         if not self._walking:
             if not wish.any() and self._at_rest():
@@ -330,7 +391,7 @@ class Walker:
             wish,
             begins=begins,
             ends=ends,
-            bounds=self._way.bounds,
+            bounds=self._bounds,
             bandwidth=self._bandwidth(self._frequency),
         )
 
@@ -344,7 +405,7 @@ class Walker:
                 f"twist: {100 * share:.0f} % of it; {self.robot.leg_names[leg]} reaches no farther at "
                 f"{self._doing.tempo.cycle_time:.2f} s a cycle"
             )
-        if self._refusal and self._wanted == self._refused_manner():
+        if self._refusal:
             reasons.append(self._refusal)
         return tuple(reasons)
 
@@ -355,19 +416,17 @@ class Walker:
     # The next moment.
 
     def _course(self) -> Course:
-        posture = self._doing.posture
         steps = np.full(self.robot.legs, self._settling is None)
         return Course(
             gait=self._doing.manner.gait,
             offsets=self._offsets,
             frequency=self._frequency if self._walking else 0.0,
             twist=self._target,
-            posture=posture,
+            posture=self._posture,
             bandwidth=self._bandwidth(self._frequency),
             posture_bandwidth=self._posture_bandwidth(),
             steps=steps,
-            rest=rest_of(self._now.posture.value),
-            final_rest=rest_of(posture),
+            rest=self._leg_rest,
         )
 
     def _posture_bandwidth(self) -> float:
@@ -383,34 +442,44 @@ class Walker:
         """Go on by as much of the tick as the joints' speed and acceleration allow."""
         course = self._course()
         rate = min(1.0, self._rate + _TIME_CHANGE * dt)
+        if self._strain > _STRAINED:
+            rate = min(rate, self._rate_ahead(course))
         between = (dt + self._last_dt) / 2
-        for _ in range(4):
+        for _ in range(_TRIES):
+            tried = rate
             after = go_on(self._now, course, dt * rate)
             angles = self._solve(after)
             turned = (angles - self._angles) / dt
-            slower = self._slower(turned, rate, between)
-            if slower >= rate:
+            rate = self._slower(turned, rate, between)
+            if rate >= tried:
                 break
-            rate = slower
+        self._strain = float((np.abs(turned - self._joint_rate) / self.joint_acceleration).max()) / between
         self._now, self._angles, self._joint_rate = after, angles, turned
-        self._rate, self._last_dt = rate, dt
+        self._rate, self._last_dt = tried, dt
+
+    def _rate_ahead(self, course: Course) -> float:
+        """Return at which rate of time the joints keep within their acceleration on the next bit of the way."""
+        first = go_on(self._now, course, _AHEAD)
+        second = go_on(first, course, _AHEAD)
+        bend = np.abs(self._solve(second) - 2 * self._solve(first) + self._angles) / (_AHEAD * _AHEAD)
+        return math.sqrt(_CALM / max(float((bend / self.joint_acceleration).max()), _CALM))
 
     def _slower(self, turned: Floats, rate: float, dt: float) -> float:
         """Return at which rate of time the joints keep within speed and acceleration; `rate` where they do already."""
         change = turned - self._joint_rate
-        reach = self.joint_acceleration * dt
-        if (np.abs(turned) <= self.joint_speed).all() and (np.abs(change) <= reach).all():
+        fastest, reach = _KEPT * self.joint_speed, _KEPT * self.joint_acceleration * dt
+        if (np.abs(turned) <= fastest).all() and (np.abs(change) <= reach).all():
             return rate
         size = np.maximum(np.abs(turned), 1e-12)
         was = self._joint_rate * np.sign(turned)
-        highest = float((np.minimum(self.joint_speed, was + reach) / size).min())
+        highest = float((np.minimum(fastest, was + reach) / size).min())
         lowest = float(((was - reach) / size).max())
         share = highest if highest >= lowest else (max(highest, 0.0) + lowest) / 2
         return rate * min(max(share, 0.0) * 0.999, 1.0)
 
     def _solve(self, now: Moment) -> Floats:
         row = now.posture.value
-        stand = stand_of(row)
+        stand = stand_of(row, self._rest)
         seen = (now.foot - now.origin) * cmath.exp(-1j * now.yaw)
         height = now.height(stand.lift)
         solution = stand.solve(self.robot, seen.real, seen.imag, height)
@@ -423,18 +492,27 @@ class Walker:
         angles.setflags(write=False)
         return angles
 
-    def _finish(self) -> None:
+    def _finish(self, was_down: Floats) -> None:
         """See what has come to its end with this tick."""
         if self._settling is not None and self._now.down.all():
             self._switch(*self._settling)
         elif self._settling is None:
             goal = 1 / self._doing.tempo.cycle_time
+            if not (self._stepping is None and self._arrived()):
+                goal = min(goal, self._frequency)
             if self._frequency != goal:
                 step = self._last_dt * self._frequency * self._frequency / 2
                 change = min(max(goal - self._frequency, -step), step)
                 self._frequency = goal if abs(goal - self._frequency) <= step else self._frequency + change
-        if self._way is not self._doing.there and self._arrived():
+        landed = self._now.down & ~was_down
+        if landed.any():
+            self._leg_rest = np.where(landed, self._rest, self._leg_rest)
+            landed, self._old_step = landed & ~self._old_step, self._old_step & ~landed
+            self._stepped = self._stepped | landed
+            self._bounds = np.where(landed[:, None], self._landing_bounds, self._bounds)
+        if self._way is not self._doing.there and self._stepping is None and self._arrived():
             self._way = self._doing.there
+            self._bounds = self._landing_bounds = self._way.bounds
         if self._walking and self._now.down.all() and not self._target.any() and not self._now.twist.value.any():
             self._walking = not (self._at_rest() and self._settling is None)
 
@@ -470,7 +548,7 @@ class Walker:
     @property
     def body(self) -> Pose:
         """The body's pose in G."""
-        stand = stand_of(self._now.posture.value)
+        stand = stand_of(self._now.posture.value, self._rest)
         heading = Pose.from_rpy(0.0, 0.0, self._now.yaw, (self._now.origin.real, self._now.origin.imag, 0.0))
         return heading @ Pose(stand.rotation, stand.position)
 
