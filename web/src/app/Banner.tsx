@@ -17,6 +17,14 @@ export function Banner() {
           </button>
         </>
       )}
+      {link.kind === "asleep" && (
+        <>
+          <span>{link.text} What you have set is kept.</span>
+          <button type="button" className="button small" onClick={retry}>
+            Go on
+          </button>
+        </>
+      )}
       {link.kind === "connecting" && <span>Connecting …</span>}
     </div>
   );

@@ -65,7 +65,7 @@ export function PicturePane({ view }: { view: View }) {
         onFloor={onFloor}
         onRest={keepPlace}
       >
-        <SceneExtras view={view} shape={shape} palette={palette} />
+        <SceneExtras view={view} shape={shape} palette={palette} colours={colours} />
       </SceneCanvas>
       <StatusChips />
       <CameraBar

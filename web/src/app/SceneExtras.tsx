@@ -1,6 +1,7 @@
 import { Centre } from "../scene/Centre";
 import type { Shape } from "../scene/frame";
 import { Handles } from "../scene/Handles";
+import { LiveTrails } from "../scene/LiveTrails";
 import type { Palette } from "../scene/palette";
 import { Zone } from "../scene/Zone";
 import { useStudio, type View } from "../state/store";
@@ -10,10 +11,11 @@ interface Props {
   view: View;
   shape: Shape;
   palette: Palette;
+  colours: readonly string[];
 }
 
 /** What only some views have in the picture: handles, a leg's zone, a curve's centre. */
-export function SceneExtras({ view, shape, palette }: Props) {
+export function SceneExtras({ view, shape, palette, colours }: Props) {
   const leg = useStudio((studio) => studio.state?.picture.leg ?? null);
   const zone = useStudio((studio) => studio.zone);
   const path = useStudio((studio) => studio.state?.walk.path);
@@ -24,6 +26,7 @@ export function SceneExtras({ view, shape, palette }: Props) {
       {posing && zone?.leg === leg && (
         <Zone ground={zone.ground_mm} plane={zone.plane_mm} palette={palette} />
       )}
+      {view === "drive" && <LiveTrails colours={colours} />}
       {view === "walk" && path?.way === "curve" && <Centre at={path.centre_mm} palette={palette} />}
     </>
   );

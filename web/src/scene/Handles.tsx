@@ -43,6 +43,9 @@ function placeOf(frame: Frame, grip: Grip): Vec3 {
   return grip === "body" ? frame.position : footOf(frame, grip);
 }
 
+/** A finger needs so much more room than a mouse. */
+const FINGER = 1.8;
+
 interface HandleProps extends Omit<Props, "body"> {
   grip: Grip;
 }
@@ -53,7 +56,8 @@ function Handle({ grip, shape, palette, onDrag }: HandleProps) {
   const [hot, setHot] = useState(false);
   const controls = useThree((state) => state.controls) as { enabled: boolean } | null;
   const invalidate = useThree((state) => state.invalidate);
-  const radius = grip === "body" ? shape.reach * 0.12 : Math.max(shape.reach * 0.055, 16);
+  const coarse = window.matchMedia("(pointer: coarse)").matches ? FINGER : 1;
+  const radius = coarse * (grip === "body" ? shape.reach * 0.12 : Math.max(shape.reach * 0.055, 16));
 
   useStage((frame) => mesh.current?.position.set(...placeOf(frame, grip)));
 

@@ -6,6 +6,7 @@ import { Arrows } from "./Arrows";
 import { CameraRig, type View } from "./CameraRig";
 import type { CameraName, Place } from "./cameras";
 import { Conductor } from "./Conductor";
+import { Contacts } from "./Contacts";
 import type { Shape } from "./frame";
 import { Ground } from "./Ground";
 import { Lights } from "./Lights";
@@ -105,6 +106,7 @@ function Scene(props: SceneProps) {
           </mesh>
         )}
         <Support palette={palette} />
+        <Contacts shape={shape} palette={palette} />
         {trails && <Trails paths={trails} colours={colours} />}
         <Robot shape={shape} colours={colours} palette={palette} />
         {forces && <Arrows shape={shape} palette={palette} />}

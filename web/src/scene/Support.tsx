@@ -68,6 +68,7 @@ export function Support({ palette }: { palette: Palette }) {
 }
 
 function supportOf(frame: Frame): Point2[] {
+  if (frame.support) return frame.support.slice(0, MOST);
   const feet = frame.contacts.flatMap((down, leg): Point2[] => {
     const foot = footOf(frame, leg);
     return down ? [[foot[0], foot[1]]] : [];

@@ -21,6 +21,10 @@ export interface Frame {
   position: Vec3;
   rotation: Quaternion;
   contacts: readonly boolean[];
+  /** Whatever touches the ground besides feet: points of the legs [mm]. */
+  touching: readonly Vec3[];
+  /** Corners of the support polygon (x, y) [mm]; null: that of the feet that stand. */
+  support: readonly (readonly [number, number])[] | null;
   /** Centre of mass [mm]; only its projection is shown. */
   com: Vec3 | null;
   /** Distance of the projected centre of mass from the support polygon's edge [mm], negative outside. */

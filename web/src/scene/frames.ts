@@ -1,5 +1,5 @@
 import type { DriveFrame, LoadsMessage, PoseMessage, RobotMessage, WalkMessage } from "../protocol";
-import { quaternionOf, type Frame, type LegTrouble, type Vec3 } from "./frame";
+import { POINTS, quaternionOf, type Frame, type LegTrouble, type Vec3 } from "./frame";
 import { legPoints, rotationOf, triple } from "./kinematics";
 
 const WORDS: Record<string, string> = {
@@ -21,11 +21,20 @@ export function contactsOf(text: string): boolean[] {
 export function frameOfPose(robot: RobotMessage, pose: PoseMessage): Frame {
   const position = triple(pose.position_mm, 0);
   const rotation = rotationOf(pose.rpy_deg);
+  const points = legPoints(robot, pose.angles_deg, position, rotation);
   return {
-    points: legPoints(robot, pose.angles_deg, position, rotation),
+    points,
     position,
     rotation,
     contacts: contactsOf(pose.contacts),
+    // Every fourth point is a foot, and shown as one.
+    touching: contactsOf(pose.points_down).flatMap((down, i) =>
+      down && i % POINTS !== 3 ? [triple(points, i)] : [],
+    ),
+    support: Array.from({ length: pose.support_mm.length / 2 }, (_, i) => [
+      pose.support_mm[i * 2] ?? 0,
+      pose.support_mm[i * 2 + 1] ?? 0,
+    ]),
     com: triple(pose.com_mm, 0),
     margin: pose.margin_mm,
     trouble: troubles(robot, pose),
@@ -70,6 +79,8 @@ export function frameOfWalk(
     position,
     rotation,
     contacts: contactsOf(walk.contacts[i] ?? ""),
+    touching: [],
+    support: null,
     com: [com[0] ?? 0, com[1] ?? 0, position[2]],
     margin: m !== null && n !== null ? m + (n - m) * t : m,
     trouble: codeTroubles(walk.reach?.[i], legs),
@@ -105,6 +116,8 @@ export function frameOfDrive(robot: RobotMessage, drive: DriveFrame): Frame {
     position,
     rotation,
     contacts: contactsOf(drive.contacts),
+    touching: [],
+    support: null,
     com: [drive.com_mm[0] ?? 0, drive.com_mm[1] ?? 0, position[2]],
     margin: drive.margin_mm,
     trouble: robot.leg_names.map(() => null),

@@ -11,6 +11,8 @@ function aFrame(x: number): Frame {
     position: [x, 0, 0],
     rotation: quaternionOf(0, 0, x),
     contacts: [x > 5],
+    touching: [],
+    support: null,
     com: [x, 0, 0],
     margin: x,
     trouble: [null],

@@ -7,6 +7,8 @@ export type LinkStatus =
   | { kind: "connecting" }
   | { kind: "open" }
   | { kind: "lost"; text: string; attempt: number }
+  /** Ended as nobody was there; comes back when somebody is. */
+  | { kind: "asleep"; text: string }
   | { kind: "refused"; text: string };
 
 export interface LinkEvents {
@@ -23,7 +25,6 @@ const FINAL: Partial<Record<number, string>> = {
     "This page needs the token of the server's link: open it by the link that the server printed.",
 };
 const REASONS: Partial<Record<number, string>> = {
-  [CLOSED.IDLE]: "The session had ended, as nothing was said for long.",
   [CLOSED.RATE]: "The server was asked too much at once.",
   [CLOSED.FULL]: "The server has as many visitors as it takes.",
   [CLOSED.LARGE]: "The last message was too large for the server.",
@@ -53,10 +54,12 @@ export class Link {
     socket.onclose = (event) => this.closed(event.code);
   }
 
-  send(draft: Draft): void {
-    if (this.socket?.readyState !== WebSocket.OPEN) return;
+  /** Send a message, now or soon; returns whether there is a connection to send it by. */
+  send(draft: Draft): boolean {
+    if (this.socket?.readyState !== WebSocket.OPEN) return false;
     this.outbox.put(draft);
     this.pump();
+    return true;
   }
 
   isBusy(type: ClientType): boolean {
@@ -80,15 +83,21 @@ export class Link {
       this.events.status({ kind: "refused", text: final });
       return;
     }
+    if (code === CLOSED.IDLE) {
+      // To connect again by itself would keep a session that nobody uses.
+      this.events.status({ kind: "asleep", text: "The session has ended, as nothing was done for long." });
+      return;
+    }
     const text = REASONS[code] ?? "The connection to the server is broken.";
     this.events.status({ kind: "lost", text, attempt: this.attempt });
     this.timer = window.setTimeout(() => this.open(), backoff(this.attempt));
     this.attempt += 1;
   }
 
-  /** Try at once, as the visitor asked for it. */
+  /** Try at once, as the visitor is there and waits. */
   retry(): void {
     if (this.socket) return;
+    this.attempt = 0;
     this.open();
   }
 

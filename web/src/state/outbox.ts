@@ -8,8 +8,8 @@ export type DraftOf<T extends ClientType> = Extract<Draft, { type: T }>;
 
 /** Of these every one counts; of all others only the newest. */
 const EVERY: ReadonlySet<ClientType> = new Set(["undo", "redo", "download"]);
-/** These are sent at once, and waited for by nobody: their answers come as a stream, or not at all. */
-const STREAMS: ReadonlySet<ClientType> = new Set(["drive", "ping", "hello"]);
+/** These are waited for by nobody. */
+const ALONE: ReadonlySet<ClientType> = new Set(["ping", "hello"]);
 /** No type is sent more often than this [ms]: a screen shows no more. */
 const SPACING = 15;
 
@@ -51,7 +51,7 @@ export class Outbox {
       this.next += 1;
       queue.shift();
       this.sentAt.set(type, now);
-      if (!STREAMS.has(type)) this.underWay.set(id, type);
+      if (!ALONE.has(type)) this.underWay.set(id, type);
       if (queue.length > 0) wait ??= SPACING;
     }
     return wait;

@@ -20,6 +20,9 @@ const link = new Link({
 /** Connect, and follow links to other states that are opened in this page. */
 export function begin(): void {
   link.open();
+  for (const sign of ["pointerdown", "keydown"]) {
+    window.addEventListener(sign, () => useStudio.getState().link.kind === "asleep" && link.retry());
+  }
   window.addEventListener("hashchange", () => {
     const { state } = readAddress(window.location.href);
     if (state && state !== useStudio.getState().stateText) ask({ type: "open", state });
@@ -33,7 +36,11 @@ export function retry(): void {
 
 /** Send a message; its answers change the store. */
 export function ask(draft: Draft): void {
-  link.send(draft);
+  if (!link.send(draft)) {
+    if (isSettable(draft.type)) unsent.set(draft.type, draft);
+    else if (SAID.has(draft.type)) notify("Not connected: this can't be done now");
+    return;
+  }
   if (useStudio.getState().busy[draft.type] !== true && link.isBusy(draft.type)) {
     useStudio.setState((studio) => ({ busy: { ...studio.busy, [draft.type]: true } }));
   }
@@ -41,6 +48,37 @@ export function ask(draft: Draft): void {
 
 /** The parts of the state that are set by a message of their own name. */
 type Settable = "joints" | "body" | "walk" | "loads" | "source";
+const SETTABLE: ReadonlySet<string> = new Set<Settable>(["joints", "body", "walk", "loads", "source"]);
+
+function isSettable(type: ClientType): type is Settable {
+  return SETTABLE.has(type);
+}
+
+/** What was set while there was no connection: sent when the new session has said what it knows. */
+const unsent = new Map<Settable, Draft>();
+/** What a visitor asks for by hand, and must be told when it can't be. */
+const SAID: ReadonlySet<ClientType> = new Set([
+  "undo",
+  "redo",
+  "robot",
+  "document",
+  "toml",
+  "download",
+  "servos",
+]);
+
+function sendUnsent(): void {
+  for (const [part, draft] of unsent) {
+    const { state } = useStudio.getState();
+    if (state) useStudio.setState({ state: { ...state, ...pick(draft, part) } });
+    ask(draft);
+  }
+  unsent.clear();
+}
+
+function pick(draft: Draft, part: Settable): Partial<StudioState> {
+  return { [part]: (draft as unknown as StudioState)[part] };
+}
 
 /**
  * Change a part of the state: shown at once, and sent. `commit` is false while a slider or a mouse still moves.
@@ -70,7 +108,9 @@ function receive(message: ServerMessage, asked: ClientType | null): void {
   if (message.type === "file") save(message);
   if (message.type === "error" && asked === null) notify(message.text);
   useStudio.setState((studio) => received(studio, message, asked));
-  if (message.type === "done" && message.state !== null) writeSoon();
+  if (message.type !== "done") return;
+  if (unsent.size > 0) sendUnsent();
+  if (message.state !== null) writeSoon();
 }
 
 let writing: number | undefined;

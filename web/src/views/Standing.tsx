@@ -6,10 +6,13 @@ import { contactsOf } from "../scene/frames";
 
 /** How the robot stands: the verdict in words, what is wrong, and the numbers. */
 export function Standing({ pose }: { pose: PoseMessage }) {
+  // A leg that can\'t reach may be told twice: of the leg, and of the robot.
   const wrong = [
-    ...pose.legs.map((leg) => leg.text),
-    ...pose.limits.map((limit) => limit.text),
-    ...pose.problems,
+    ...new Set([
+      ...pose.legs.map((leg) => leg.text),
+      ...pose.limits.map((limit) => limit.text),
+      ...pose.problems,
+    ]),
   ];
   const feet = contactsOf(pose.contacts).filter(Boolean).length;
   const [x = 0, y = 0, z = 0] = pose.position_mm;

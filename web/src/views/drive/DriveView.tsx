@@ -10,20 +10,24 @@ import { useStudio } from "../../state/store";
 import { AngleTable } from "../AngleTable";
 import { useInputs } from "../useInputs";
 import { ViewHead } from "../ViewHead";
+import { BodyWish } from "./BodyWish";
 import { Stick } from "./Stick";
 import { useDriving, type Settings } from "./useDriving";
+
+const BEGIN: Settings = {
+  speed: 120,
+  turn: 25,
+  gait: null,
+  clearance: null,
+  lift: null,
+  body: [0, 0, 0, 0, 0, 0],
+};
 
 /** Drive the robot live. */
 export function DriveView() {
   const { robot } = useInputs();
   const drive = useStudio((studio) => studio.drive);
-  const [settings, setSettings] = useState<Settings>({
-    speed: 120,
-    turn: 25,
-    gait: null,
-    clearance: null,
-    lift: null,
-  });
+  const [settings, setSettings] = useState<Settings>(BEGIN);
   const sticks = useDriving(settings);
   const set = (values: Partial<Settings>) => setSettings((before) => ({ ...before, ...values }));
   return (
@@ -94,6 +98,7 @@ export function DriveView() {
           testId="drive-lift"
           onChange={(lift) => set({ lift })}
         />
+        <BodyWish body={settings.body} onChange={(body) => set({ body })} />
       </fieldset>
       {drive && (
         <>

@@ -15,6 +15,8 @@ export interface Settings {
   gait: string | null;
   clearance: number | null;
   lift: number | null;
+  /** x, y, z [mm], roll, pitch, yaw [deg] over the level body. */
+  body: readonly [number, number, number, number, number, number];
 }
 
 export interface Sticks {
@@ -27,6 +29,7 @@ export function useDriving(settings: Settings): Sticks {
   const held = useRef(new Set<string>());
   const sticks = useRef<Push>(STILL);
   const latest = useRef(settings);
+  const robot = useStudio((studio) => studio.robot?.id);
   const open = useStudio((studio) => studio.link.kind === "open");
 
   useEffect(() => {
@@ -34,12 +37,12 @@ export function useDriving(settings: Settings): Sticks {
     if (open) ask(wishOf(sumOf([keyPush(held.current), sticks.current]), settings));
   }, [settings, open]);
 
-  // After a broken connection the new session does not drive yet.
+  // Neither the session after a broken connection nor another robot drives yet.
   useEffect(() => {
     if (!open) return;
     ask({ type: "drive", on: true });
     return () => ask({ type: "drive", on: false });
-  }, [open]);
+  }, [open, robot]);
 
   useEffect(() => {
     const keys = held.current;
@@ -82,7 +85,7 @@ export function useDriving(settings: Settings): Sticks {
   };
 }
 
-function wishOf(push: Push, { speed, turn, gait, clearance, lift }: Settings) {
+function wishOf(push: Push, { speed, turn, gait, clearance, lift, body }: Settings) {
   return {
     type: "wish",
     velocity_mm_s: [push.forward * speed, push.left * speed] as [number, number],
@@ -90,5 +93,6 @@ function wishOf(push: Push, { speed, turn, gait, clearance, lift }: Settings) {
     gait,
     clearance_mm: clearance,
     lift_mm: lift,
+    body: [...body] as [number, number, number, number, number, number],
   } as const;
 }

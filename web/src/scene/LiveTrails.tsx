@@ -1,0 +1,64 @@
+import { useEffect, useMemo, useRef } from "react";
+
+import { footOf, type Frame } from "./frame";
+import { makeLine, setLine } from "./lines";
+import { useStage } from "./useStage";
+
+/** So many places of each foot are kept, this far apart [mm]. */
+const MOST = 240;
+const APART = 3;
+
+/** Where the feet have just been, while driving. */
+export function LiveTrails({ colours }: { colours: readonly string[] }) {
+  const lines = useMemo(
+    () => colours.map((colour) => makeLine({ colour, width: 2, opacity: 0.7 })),
+    [colours],
+  );
+  const trails = useRef<Float32Array[]>([]);
+  useEffect(
+    () => () => {
+      lines.forEach((line) => {
+        line.geometry.dispose();
+        line.material.dispose();
+      });
+      trails.current = [];
+    },
+    [lines],
+  );
+  useStage((frame) =>
+    lines.forEach((line, leg) => {
+      const trail = (trails.current[leg] ??= filledWith(frame, leg));
+      if (follow(trail, frame, leg)) setLine(line, trail);
+    }),
+  );
+  return (
+    <group>
+      {lines.map((line, leg) => (
+        <primitive key={leg} object={line} />
+      ))}
+    </group>
+  );
+}
+
+// Always as many points: so the line is written in place, and never made anew.
+function filledWith(frame: Frame, leg: number): Float32Array {
+  const foot = footOf(frame, leg);
+  return new Float32Array(MOST * 3).map((_, i) => foot[i % 3] ?? 0);
+}
+
+/** Add the foot's place where it has moved; returns whether it has. */
+function follow(trail: Float32Array, frame: Frame, leg: number): boolean {
+  const foot = footOf(frame, leg);
+  const end = trail.length - 3;
+  const gap = Math.hypot(
+    foot[0] - (trail[end] ?? 0),
+    foot[1] - (trail[end + 1] ?? 0),
+    foot[2] - (trail[end + 2] ?? 0),
+  );
+  if (gap < APART) return false;
+  // A leap is no step: the robot was put elsewhere.
+  if (gap > 40 * APART) trail.set(filledWith(frame, leg));
+  trail.copyWithin(0, 3);
+  trail.set(foot, end);
+  return true;
+}
