@@ -8,6 +8,7 @@ import type { CameraName, Place } from "./cameras";
 import { Conductor } from "./Conductor";
 import { Contacts } from "./Contacts";
 import type { Shape } from "./frame";
+import { Goals } from "./Goals";
 import { Ground } from "./Ground";
 import { Lights } from "./Lights";
 import { NotePlaces } from "./NotePlaces";
@@ -109,6 +110,7 @@ function Scene(props: SceneProps) {
         <Contacts shape={shape} palette={palette} />
         {trails && <Trails paths={trails} colours={colours} />}
         <Robot shape={shape} colours={colours} palette={palette} />
+        <Goals shape={shape} palette={palette} />
         {forces && <Arrows shape={shape} palette={palette} />}
         {torques && <TorqueBars shape={shape} palette={palette} />}
         {props.children}

@@ -13,6 +13,8 @@ export interface LegTrouble {
   short: string;
   /** The whole explanation, with numbers. */
   text: string;
+  /** Where the foot should be [mm], where it can't get there. */
+  goal: Vec3 | null;
 }
 
 export interface Frame {

@@ -48,12 +48,16 @@ function troubles(robot: RobotMessage, pose: PoseMessage): (LegTrouble | null)[]
     const problem = pose.legs.find((one) => one.leg === leg);
     if (problem) {
       const miss = `${problem.miss_mm.toFixed(problem.miss_mm < 10 ? 1 : 0)} mm`;
-      return { short: `${WORDS[problem.reach] ?? problem.reach}: ${miss}`, text: problem.text };
+      return {
+        short: `${WORDS[problem.reach] ?? problem.reach}: ${miss}`,
+        text: problem.text,
+        goal: triple(pose.feet_mm, leg),
+      };
     }
     const broken = pose.limits.find((one) => one.leg === leg);
     if (!broken) return null;
     const past = Math.max(broken.low_deg - broken.angle_deg, broken.angle_deg - broken.high_deg);
-    return { short: `${broken.joint} ${past.toFixed(1)}° past its limit`, text: broken.text };
+    return { short: `${broken.joint} ${past.toFixed(1)}° past its limit`, text: broken.text, goal: null };
   });
 }
 
@@ -103,7 +107,7 @@ function codeTroubles(codes: string | undefined, legs: number): (LegTrouble | nu
   return Array.from({ length: legs }, (_, leg) => {
     const code = CODES[Number(codes?.[leg] ?? 0)] ?? "OK";
     const words = WORDS[code];
-    return words ? { short: words, text: words } : null;
+    return words ? { short: words, text: words, goal: null } : null;
   });
 }
 

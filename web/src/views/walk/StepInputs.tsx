@@ -4,7 +4,7 @@ import { change } from "../../state/session";
 import { useStudio } from "../../state/store";
 import { useInputs } from "../useInputs";
 
-type Key = "stroke_mm" | "speed_mm_s" | "clearance_mm" | "lift_mm" | "cycle_time_s";
+type Key = "stroke_mm" | "speed_mm_s" | "clearance_mm" | "lift_mm";
 
 interface Row {
   key: Key;
@@ -82,7 +82,7 @@ export function StepInputs() {
         );
       })}
       <details>
-        <summary>Tilt and stance</summary>
+        <summary>Tilt, cycle, stance</summary>
         <div className="inside">
           {(["roll_deg", "pitch_deg"] as const).map((key) => (
             <Slider
@@ -99,6 +99,19 @@ export function StepInputs() {
               onChange={(next, commit) => change("walk", { [key]: next }, commit)}
             />
           ))}
+          <Slider
+            label="Cycle time"
+            value={state.walk.cycle_time_s ?? walk?.cycle_time_s ?? null}
+            min={0}
+            max={5}
+            typedMax={100}
+            step={0.05}
+            unit="s"
+            testId="cycle_time_s"
+            auto={state.walk.cycle_time_s === null}
+            onAuto={() => change("walk", { cycle_time_s: null })}
+            onChange={(next, commit) => change("walk", { cycle_time_s: next }, commit)}
+          />
           <Slider
             label="Feet from coxa axes"
             value={state.walk.foot_distance_mm}
