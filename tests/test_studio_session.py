@@ -395,6 +395,12 @@ def test_what_is_wrong_in_a_document_is_told_by_its_key(ask):
     assert "has 13 legs; the studio takes at most 12" in ask.error("document", document=many)["text"]
 
 
+def test_a_document_too_large_is_refused(ask):
+    sources = [{"of": ["gait"], "source": "x" * 1000, "confidence": "guess"}] * 70
+    error = ask.error("document", document={**STRIDER.to_dict(), "sources": sources})
+    assert "at most 65536" in error["text"]
+
+
 def test_toml_in_and_out(ask):
     text = ask("download", "file", what="toml")
     assert (text["name"], text["mime"]) == ("strider.toml", "application/toml")

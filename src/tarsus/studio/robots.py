@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from typing import Any
 
 import numpy as np
@@ -33,6 +34,9 @@ __all__ = [
 
 MOST_LEGS = 12
 """Robots with more legs are for the command line: a walk's cost grows with the square of the legs."""
+
+# Undo keeps a hundred of them for each visitor; a robot of twelve legs, each with keys of its own, takes a tenth.
+_LARGEST = 65_536
 
 
 def choice_of_preset(name: str) -> RobotChoice:
@@ -98,9 +102,12 @@ def robot_of(choice: RobotChoice) -> Robot:
     RobotFileError, UnknownNameError
         If there is no such robot, or something in its document is wrong.
     InputError
-        If it has too many legs, or neither name nor document is given.
+        If its document is too large, it has too many legs, or neither is given.
     """
     if choice.document is not None:
+        size = len(json.dumps(choice.document))
+        if size > _LARGEST:
+            raise InputError(f"the robot's document has {size} characters as JSON; the studio keeps at most {_LARGEST}")
         robot = Robot.from_dict(choice.document, where="the robot")
     elif choice.preset is not None:
         robot = load_robot(str(choice_of_preset(choice.preset).preset))
