@@ -60,7 +60,7 @@ function RobotChoice() {
   const robot = useStudio((studio) => studio.robot);
   if (!robots || !robot) return null;
   const options = robots.map((name) => ({ value: name, label: name }));
-  const own = robot.preset === null ? [{ value: "", label: `${robot.name} (changed)` }] : [];
+  const own = robot.preset === null ? [{ value: "", label: `${robot.name} (own)` }] : [];
   return (
     <Select
       label="Robot"

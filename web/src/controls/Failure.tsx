@@ -16,7 +16,7 @@ export function Failure({ of, children }: Props) {
   const shown = of.flatMap((type) => failures[type] ?? []);
   return shown.map((failure) => (
     <Message key={failure.type} kind="bad" alert testId="failure">
-      <p>{failure.text}</p>
+      <span className="lines">{failure.text}</span>
       {children}
     </Message>
   ));

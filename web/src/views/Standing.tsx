@@ -21,7 +21,7 @@ export function Standing({ pose }: { pose: PoseMessage }) {
     <>
       <div aria-live="polite" className="field">
         <Message kind={pose.stable ? "good" : "bad"} testId="standing">
-          <span style={{ whiteSpace: "pre-line" }}>{pose.text}</span>
+          <span className="lines">{pose.text}</span>
         </Message>
         <Remarks kind="bad" items={wrong} testId="problems" />
       </div>
