@@ -9,7 +9,7 @@ import numpy as np
 
 from tarsus.errors import UnreachableError
 from tarsus.gait.gait import Gait
-from tarsus.gait.live.envelope import Envelope, capped, envelope, overhang
+from tarsus.gait.live.envelope import Envelope, capped, envelope
 from tarsus.gait.live.posture import LIFT, stand_of
 from tarsus.gait.live.support import support_sets
 from tarsus.gait.live.tempo import Tempo, tempo
@@ -96,6 +96,7 @@ def work_out(
     now: Floats | None,
     rest: Floats | None,
     *,
+    stay: bool = False,
     speed: Floats,
     acceleration: Floats,
     foot_distance: float,
@@ -112,6 +113,8 @@ def work_out(
         The present posture; None to be there at once.
     rest : complex array, shape (legs,), or None
         The present rest footholds [m].
+    stay : bool
+        Whether the robot keeps its present posture, and changes only how it steps.
     speed, acceleration : array, shape (legs, 3)
         Greatest of each joint [rad/s], [rad/s^2].
     foot_distance : float
@@ -122,7 +125,10 @@ def work_out(
     Change or str
         The change; or why nothing of it works.
     """
-    wished, wished_rest = yield from _wished(robot, manner, now)
+    if stay and now is not None and rest is not None:
+        wished, wished_rest = now, rest
+    else:
+        wished, wished_rest = yield from _wished(robot, manner, now)
     now, rest = (wished, wished_rest) if now is None or rest is None else (now, rest)
     share, leg = _largest_part(robot, (now, rest), (wished, wished_rest))
     yield
@@ -146,13 +152,13 @@ def work_out(
         acceleration=acceleration,
         cycle_time=manner.cycle_time,
     )
-    there = capped(there, pace.stroke * overhang(manner.gait.duty))
+    there = capped(there, pace.stroke, pace.turning, duty=manner.gait.duty)
     stepping = way = there
     if np.abs(posture - now).max() > _SAME:
         between = [stand_of(now + part * (posture - now), rest_there) for part in (0.5, 0.0)]
         way = there.meet((yield from envelope(robot, between[:1], sets, foot_distance=foot_distance)))
         stepping = yield from envelope(robot, between[1:], sets, foot_distance=foot_distance)
-        stepping = capped(stepping, pace.stroke * overhang(manner.gait.duty))
+        stepping = capped(stepping, pace.stroke, pace.turning, duty=manner.gait.duty)
         way = way.meet(stepping)
     if not (way.possible and stepping.possible):
         return f"{robot.leg_names[way.short]} could not stand and step on the way there"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import functools
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -24,7 +25,7 @@ Floats = np.ndarray[Any, Any]
 # How far inside its support the centre of mass stays [m]: more than the legs shift it by being here or there.
 _LEAST_MARGIN = 0.004
 # What is left between the fastest steady walk and the polygons.
-_RESERVE = 0.97
+_RESERVE = 0.99
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,11 +40,15 @@ class Envelope:
         How far a foot may go from its rest foothold, either way across [m].
     rest : complex array, shape (legs,)
         Rest footholds of the last stand [m].
+    stroke, turning : float
+        The longest strokes, straight on and on the spot, for which the joints are fast enough [m].
     """
 
     bounds: Floats
     room: Floats
     rest: Floats
+    stroke: float = math.inf
+    turning: float = math.inf
 
     @property
     def possible(self) -> bool:
@@ -63,7 +68,13 @@ class Envelope:
         other : Envelope
             The other.
         """
-        return Envelope(np.minimum(self.bounds, other.bounds), np.minimum(self.room, other.room), self.rest)
+        return Envelope(
+            np.minimum(self.bounds, other.bounds),
+            np.minimum(self.room, other.room),
+            self.rest,
+            min(self.stroke, other.stroke),
+            min(self.turning, other.turning),
+        )
 
     def largest_share(self, twist: Floats, *, stance_time: float, duty: float) -> tuple[float, int]:
         """Return how much of a twist the robot can walk at for good, and which leg stops it.
@@ -88,7 +99,10 @@ class Envelope:
         across = np.abs((NORMALS[:8].conj() * past[:, None]).real)
         share = np.maximum(self.room, 0.0) / np.maximum(across, 1e-12)
         worst = int(share.argmin())
-        return float(share.flat[worst]), worst // 8
+        # What straight on and turning ask of the joints adds up.
+        straight = math.hypot(twist[0], twist[1]) * stance_time / self.stroke
+        turning = abs(float(twist[2])) * float(np.abs(self.rest).max()) * stance_time / self.turning
+        return min(float(share.flat[worst]), 1 / max(straight + turning, 1e-12)), worst // 8
 
 
 @functools.cache
@@ -107,17 +121,21 @@ def overhang(duty: float) -> float:
     return float((0.5 + ratio * share - (1 + ratio) * ground_share(share)).max())
 
 
-def capped(limits: Envelope, excursion: float) -> Envelope:
-    """Return the envelope with less room.
+def capped(limits: Envelope, stroke: float, turning: float, *, duty: float) -> Envelope:
+    """Return the envelope for joints that allow no longer strokes.
 
     Parameters
     ----------
     limits : Envelope
-        What it was.
-    excursion : float
-        How far a foot may go from its rest foothold at most [m].
+        What the legs' reach allows.
+    stroke, turning : float
+        The longest strokes straight on and on the spot [m].
+    duty : float
+        Duty factor.
     """
-    return dataclasses.replace(limits, room=np.minimum(limits.room, excursion))
+    at_rest = (NORMALS.conj() * limits.rest[:, None]).real
+    bounds = np.minimum(limits.bounds, at_rest + overhang(duty) * max(stroke, turning))
+    return dataclasses.replace(limits, bounds=bounds, stroke=stroke, turning=turning)
 
 
 def envelope(robot: Robot, stands: Sequence[Stand], sets: Floats, *, foot_distance: float) -> Parts[Envelope]:

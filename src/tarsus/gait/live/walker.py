@@ -120,8 +120,7 @@ class Walker:
         self._job: Parts[Change | str] | None = None
         self._next: Change | None = None
         self._settling: tuple[Change, int] | None = None
-        self._refusal: str = ""
-        self._refused: Manner | None = None
+        self._refusals: dict[Manner, str] = {}
         self._asked = manner
         self._stepped = np.ones(self.robot.legs, dtype=bool)
         self._frequency = 1 / change.tempo.cycle_time
@@ -156,12 +155,15 @@ class Walker:
         self._joint_rate = np.zeros((legs, 3))
         self._free: dict[int, Any] = {}
 
-    def _work_out(self, manner: Manner, now: Floats | None, rest: Floats | None) -> Parts[Change | str]:
+    def _work_out(
+        self, manner: Manner, now: Floats | None, rest: Floats | None, *, stay: bool = False
+    ) -> Parts[Change | str]:
         return work_out(
             self.robot,
             manner,
             now,
             rest,
+            stay=stay,
             speed=self.joint_speed,
             acceleration=self.joint_acceleration,
             foot_distance=self._foot_distance,
@@ -223,7 +225,8 @@ class Walker:
         )
         if asked.lift < 0 or (asked.cycle_time is not None and asked.cycle_time <= 0):
             raise InputError("the wish's lift must not be negative, its cycle_time must be greater than 0")
-        self._wanted = asked
+        if asked != self._wanted:
+            self._wanted, self._refusals = asked, {}
 
     def _think(self) -> None:
         """Do one part of working out a change, and go over to it once the walk allows."""
@@ -237,28 +240,28 @@ class Walker:
                 self._job = None
                 self._note(str(error))
         elif self._next is None and self._settling is None and self._stepping is None:
-            asked = self._step_towards(self._wanted)
-            if asked not in (self._doing.manner, self._refused) and self._arrived():
+            asked, stay = self._step_towards(self._wanted)
+            if asked not in (self._doing.manner, *self._refusals) and self._arrived():
                 self._asked = asked
-                self._job = self._work_out(asked, self._posture, self._rest)
+                self._job = self._work_out(asked, self._posture, self._rest, stay=stay)
         if self._next is not None:
             self._try_change(self._next)
         elif self._stepping is not None:
             self._try_body(self._stepping)
 
-    def _step_towards(self, wanted: Manner) -> Manner:
-        """Return what to change first: how the robot stands, then how it steps."""
+    def _step_towards(self, wanted: Manner) -> tuple[Manner, bool]:
+        """Return what to change first, how the robot stands or then how it steps; and whether it is the latter."""
         doing = self._doing.manner
-        standing = dataclasses.replace(
-            wanted, gait=doing.gait, cycle_time=doing.cycle_time, gone=doing.gone
-        )
-        return wanted if standing in (doing, self._refused) else standing
+        standing = dataclasses.replace(wanted, gait=doing.gait, cycle_time=doing.cycle_time, gone=doing.gone)
+        if standing not in (doing, *self._refusals):
+            return standing, False
+        return dataclasses.replace(doing, gait=wanted.gait, cycle_time=wanted.cycle_time, gone=wanted.gone), True
 
     def _note(self, found: Change | str) -> None:
         if isinstance(found, str):
-            self._refusal, self._refused = found, self._asked
+            self._refusals[self._asked] = found
         else:
-            self._next, self._refusal, self._refused = found, "", None
+            self._next = found
 
     def _try_change(self, change: Change) -> None:
         """Go over to a change as soon as the feet on the ground allow it."""
@@ -405,8 +408,7 @@ class Walker:
                 f"twist: {100 * share:.0f} % of it; {self.robot.leg_names[leg]} reaches no farther at "
                 f"{self._doing.tempo.cycle_time:.2f} s a cycle"
             )
-        if self._refusal:
-            reasons.append(self._refusal)
+        reasons += self._refusals.values()
         return tuple(reasons)
 
     def _at_rest(self) -> bool:
