@@ -1,5 +1,5 @@
 import { RoundedBox } from "@react-three/drei";
-import { useMemo, useRef } from "react";
+import { useEffect, useMemo, useRef } from "react";
 import { ExtrudeGeometry, Shape as Outline, type Group } from "three";
 
 import type { Palette } from "./palette";
@@ -21,6 +21,7 @@ export function BodyModel({ shape, thick, palette }: Props) {
     group.current?.quaternion.set(...frame.rotation);
   });
   const deck = useMemo(() => deckOf(shape.mounts, thick), [shape.mounts, thick]);
+  useEffect(() => () => deck?.dispose(), [deck]);
   const size = shape.size;
   const front = Math.max(size ? size[0] / 2 : 0, ...shape.mounts.map((mount) => mount[0]));
   const top = Math.max(size ? size[2] / 2 : 0, thick * 1.3);

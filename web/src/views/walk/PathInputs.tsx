@@ -20,7 +20,7 @@ export function PathInputs() {
           options={[
             { value: "straight", label: "Straight" },
             { value: "curve", label: "Round a centre" },
-            { value: "twist", label: "Steady" },
+            { value: "twist", label: "Steady twist" },
           ]}
           onChange={(way) => set(pathOf(way))}
         />

@@ -5,9 +5,11 @@ import { useStudio } from "../../state/store";
 import { useInputs } from "../useInputs";
 import { ViewHead } from "../ViewHead";
 import { GaitChoice } from "./GaitChoice";
+import { GaitDiagram } from "./GaitDiagram";
 import { PathInputs } from "./PathInputs";
 import { StepInputs } from "./StepInputs";
 import { WalkAngles } from "./WalkAngles";
+import { WalkPlots } from "./WalkPlots";
 import { WalkSummary } from "./WalkSummary";
 
 /** Plan a walk, and see it walked. */
@@ -45,6 +47,8 @@ export function WalkView() {
         {busy ? "Planning …" : " "}
       </p>
       {walk && <WalkSummary walk={walk} />}
+      {walk && <GaitDiagram walk={walk} />}
+      {walk && <WalkPlots walk={walk} />}
       <fieldset>
         <legend>Take it away</legend>
         <div className="row">
