@@ -1,0 +1,1 @@
+"""Driving: what the robot is told over time, and what came of it. So far without servos."""

@@ -1,0 +1,250 @@
+"""The commands of a scenario: what the robot may be told at a moment. Values in SI, each a class of its own."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cache
+from types import MappingProxyType
+from typing import ClassVar
+
+from tarsus.drive.quantities import UNITS, Quantity, quantity
+from tarsus.errors import InputError, UnknownNameError
+from tarsus.gait.gait import GAITS
+
+__all__ = [
+    "COMMANDS",
+    "GAIT_NAMES",
+    "LATEST",
+    "Clearance",
+    "Command",
+    "CycleTime",
+    "Fold",
+    "GaitChange",
+    "Ground",
+    "HandBack",
+    "Lift",
+    "MoveBody",
+    "MoveHand",
+    "PowerOff",
+    "Sit",
+    "StanceWidth",
+    "StandUp",
+    "Stop",
+    "Sway",
+    "Tilt",
+    "Walk",
+    "quantities",
+]
+
+GAIT_NAMES = (*GAITS, "amble")
+"""The gaits that a scenario may name; amble is another name for tetrapod."""
+
+LATEST = 3600.0
+"""The latest moment of a scenario [s]."""
+
+_WIDE, _FAST, _TURN = 1000, 10_000, 3600
+
+
+@dataclass(frozen=True)
+class Command:
+    """What the robot is told at a moment.
+
+    Attributes
+    ----------
+    at : float
+        When [s].
+    """
+
+    word: ClassVar[str] = ""
+    at: float
+
+    def __post_init__(self) -> None:
+        _require(f"{self.word}: at", self.at, 0.0, LATEST, "s", self.at)
+        for each in quantities(type(self)).values():
+            value = getattr(self, each.name)
+            _require(f"{self.word} at {self.at:g} s: {each.name}", value, each.low, each.high, each.shown, each.unit)
+        gait = getattr(self, "gait", GAIT_NAMES[0])
+        if gait not in GAIT_NAMES:
+            raise UnknownNameError.of("gait", str(gait), GAIT_NAMES)
+
+
+def _require(what: str, value: object, low: float, high: float, shown: str, unit: object) -> None:
+    """Refuse what is no finite number between the bounds of its unit."""
+    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+        raise InputError(f"{what} is {value!r}; it must be a finite number")
+    number = UNITS[unit].from_si(float(value)) if isinstance(unit, str) else value
+    if not low <= number <= high:
+        raise InputError(f"{what} is {float(number):g} {shown}; it must be from {low:g} to {high:g} {shown}")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Walk(Command):
+    """Walk: vx forward, vy to the left [m/s], turn counter-clockwise [rad/s]; until told otherwise."""
+
+    word: ClassVar[str] = "walk"
+    vx: float = quantity("mm_s", "forward", low=-_FAST, high=_FAST)
+    vy: float = quantity("mm_s", "to the left", low=-_FAST, high=_FAST)
+    turn: float = quantity("deg_s", "counter-clockwise", low=-_TURN, high=_TURN)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Stop(Command):
+    """Come to a stop, every foot at its rest foothold."""
+
+    word: ClassVar[str] = "stop"
+
+
+@dataclass(frozen=True, kw_only=True)
+class GaitChange(Command):
+    """Go over to another gait."""
+
+    word: ClassVar[str] = "gait"
+    gait: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class MoveBody(Command):
+    """Move [m] and turn [rad] the body over its feet, against standing level; all 0 is level again."""
+
+    word: ClassVar[str] = "body"
+    x: float = quantity("mm", "forward", low=-_WIDE, high=_WIDE)
+    y: float = quantity("mm", "to the left", low=-_WIDE, high=_WIDE)
+    z: float = quantity("mm", "up", low=-_WIDE, high=_WIDE)
+    roll: float = quantity("deg", "left side up", low=-90, high=90)
+    pitch: float = quantity("deg", "front down", low=-90, high=90)
+    yaw: float = quantity("deg", "front to the left", low=-90, high=90)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Clearance(Command):
+    """Carry the body's origin so high over the ground [m]."""
+
+    word: ClassVar[str] = "clearance"
+    clearance: float = quantity("mm", "height of the body's origin", low=0.001, high=_WIDE, needed=True)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Lift(Command):
+    """Lift swinging feet so high [m]."""
+
+    word: ClassVar[str] = "lift"
+    lift: float = quantity("mm", "of a swinging foot", low=0, high=_WIDE, needed=True)
+
+
+@dataclass(frozen=True, kw_only=True)
+class StanceWidth(Command):
+    """Set the feet so much farther out than usual [m]."""
+
+    word: ClassVar[str] = "stance_width"
+    stance_width: float = quantity("mm", "farther out", low=-_WIDE, high=_WIDE, needed=True)
+
+
+@dataclass(frozen=True, kw_only=True)
+class CycleTime(Command):
+    """Step with cycles of this duration [s]."""
+
+    word: ClassVar[str] = "cycle_time"
+    cycle_time: float = quantity("s", "of a cycle", low=0.01, high=60, needed=True)
+
+
+@dataclass(frozen=True, kw_only=True)
+class MoveHand(Command):
+    """Take a leg out of the gait, and move its foot to a point in the heading frame [m]."""
+
+    word: ClassVar[str] = "hand"
+    leg: str
+    x: float = quantity("mm", "forward", low=-_WIDE, high=_WIDE, needed=True)
+    y: float = quantity("mm", "to the left", low=-_WIDE, high=_WIDE, needed=True)
+    z: float = quantity("mm", "over the ground", low=-_WIDE, high=_WIDE, needed=True)
+
+
+@dataclass(frozen=True, kw_only=True)
+class HandBack(Command):
+    """Put a leg back into the gait."""
+
+    word: ClassVar[str] = "hand_back"
+    leg: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class Sway(Command):
+    """Move the body to and fro with the steps, by these amplitudes [m], [rad]; all 0 ends it."""
+
+    word: ClassVar[str] = "sway"
+    x: float = quantity("mm", "forward", low=-_WIDE, high=_WIDE)
+    y: float = quantity("mm", "to the left", low=-_WIDE, high=_WIDE)
+    z: float = quantity("mm", "up", low=-_WIDE, high=_WIDE)
+    roll: float = quantity("deg", "left side up", low=-90, high=90)
+    pitch: float = quantity("deg", "front down", low=-90, high=90)
+    yaw: float = quantity("deg", "front to the left", low=-90, high=90)
+
+
+@dataclass(frozen=True, kw_only=True)
+class StandUp(Command):
+    """Get up from where it lies."""
+
+    word: ClassVar[str] = "stand_up"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Sit(Command):
+    """Come to a stop, and go down until the belly rests on the ground."""
+
+    word: ClassVar[str] = "sit"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Fold(Command):
+    """Draw the legs in; the robot must sit."""
+
+    word: ClassVar[str] = "fold"
+
+
+@dataclass(frozen=True, kw_only=True)
+class PowerOff(Command):
+    """Release the joints, in the order in which least falls; the robot must sit."""
+
+    word: ClassVar[str] = "power_off"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Ground(Command):
+    """Feel the ground under a leg higher (early) or lower (late) than it is by so much [m]: a test of its senses."""
+
+    word: ClassVar[str] = "ground"
+    leg: str
+    height: float = quantity("mm", "over flat ground", low=-_WIDE, high=_WIDE, needed=True)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Tilt(Command):
+    """Feel the ground tilted by so much [rad]: a test of its senses."""
+
+    word: ClassVar[str] = "tilt"
+    roll: float = quantity("deg", "left side up", low=-90, high=90)
+    pitch: float = quantity("deg", "front down", low=-90, high=90)
+
+
+_KINDS: tuple[type[Command], ...] = (
+    *(StandUp, Walk, Stop, GaitChange, MoveBody, Clearance, Lift, StanceWidth, CycleTime, MoveHand, HandBack),
+    *(Sway, Ground, Tilt, Sit, Fold, PowerOff),
+)
+
+COMMANDS: Mapping[str, type[Command]] = MappingProxyType({kind.word: kind for kind in _KINDS})
+"""Every command by its word."""
+
+
+@cache
+def quantities(kind: type[Command]) -> Mapping[str, Quantity]:
+    """Return the quantities of a command by their names.
+
+    Parameters
+    ----------
+    kind : type
+        The command's class.
+    """
+    fields = ((field.name, field.metadata.get("quantity")) for field in dataclasses.fields(kind))
+    return MappingProxyType({name: Quantity(name=name, **about) for name, about in fields if about is not None})
