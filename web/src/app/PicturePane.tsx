@@ -2,7 +2,7 @@ import { useMemo, useState } from "react";
 
 import { legColours } from "../scene/palette";
 import type { CameraName, Place } from "../scene/cameras";
-import { footTrails, lengthOf } from "../scene/frames";
+import { footTrails, lengthOf } from "../scene/trails";
 import { shapeOf } from "../scene/kinematics";
 import { SceneCanvas } from "../scene/SceneCanvas";
 import { look } from "../state/session";

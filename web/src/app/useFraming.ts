@@ -1,7 +1,7 @@
 import { useMemo } from "react";
 
 import type { View as Framing } from "../scene/CameraRig";
-import { extentOf } from "../scene/frames";
+import { extentOf } from "../scene/trails";
 import { framing, reachOf } from "../scene/framing";
 import { useStudio, type View } from "../state/store";
 

@@ -1,18 +1,14 @@
 import { OrbitControls } from "@react-three/drei";
 import { useFrame, useThree } from "@react-three/fiber";
 import { useEffect, useRef } from "react";
-import { PerspectiveCamera, Spherical, Vector3 } from "three";
+import { PerspectiveCamera, Vector3 } from "three";
 import type { OrbitControls as Controls } from "three-stdlib";
 
 import { isFrom, placeCamera, type CameraName, type Place } from "./cameras";
 import type { Vec3 } from "./frame";
+import { FLIGHT, fly, type Flight } from "./flight";
 import { prefersStillness, stage } from "./stage";
-import { onSteer, type Turn } from "./steer";
-
-/** Time a camera takes to fly to its place [s]. */
-const FLIGHT = 0.35;
-/** How far down one may look along the floor [rad from the upright]. */
-const LOWEST = Math.PI * 0.497;
+import { onSteer, turnBy, LOWEST } from "./steer";
 
 export interface View {
   target: Vec3;
@@ -111,38 +107,6 @@ export function CameraRig({ camera, view, place, onRest }: Props) {
       }}
     />
   );
-}
-
-/** On the way to a place; `from` is filled in by the first frame, which may come late. */
-interface Flight {
-  eye: Vector3;
-  target: Vector3;
-  /** [s] */
-  lasts: number;
-  from: { eye: Vector3; target: Vector3; at: number } | null;
-}
-
-/** Go on with a flight by the clock, however slowly frames come; returns whether it has arrived. */
-function fly(flight: Flight, eye: Vector3, target: Vector3): boolean {
-  const now = performance.now() / 1000;
-  flight.from ??= { eye: eye.clone(), target: target.clone(), at: now };
-  const share = flight.lasts > 0 ? Math.min(1, (now - flight.from.at) / flight.lasts) : 1;
-  const eased = share * share * (3 - 2 * share);
-  eye.lerpVectors(flight.from.eye, flight.eye, eased);
-  target.lerpVectors(flight.from.target, flight.target, eased);
-  return share === 1;
-}
-
-/** Move the eye round what it looks at. */
-function turnBy({ round, over, nearer }: Turn, eye: Vector3, target: Vector3) {
-  const offset = eye.clone().sub(target);
-  // three's spherical angles have y up: z, x, y of ours.
-  const angles = new Spherical().setFromCartesianCoords(offset.y, offset.z, offset.x);
-  angles.theta += round;
-  angles.phi = Math.min(LOWEST, Math.max(0.001, angles.phi + over));
-  angles.radius *= nearer;
-  offset.setFromSpherical(angles);
-  eye.set(offset.z, offset.x, offset.y).add(target);
 }
 
 function rounded({ x, y, z }: Vector3): Vec3 {

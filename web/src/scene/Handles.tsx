@@ -1,5 +1,5 @@
 import { useThree, type ThreeEvent } from "@react-three/fiber";
-import { useRef, useState } from "react";
+import { useEffect, useRef, useState } from "react";
 import { Vector3, type Mesh, type Plane } from "three";
 
 import { dragPlane, meet } from "./dragging";
@@ -61,6 +61,12 @@ function Handle({ grip, shape, palette, onDrag }: HandleProps) {
 
   useStage((frame) => mesh.current?.position.set(...placeOf(frame, grip)));
 
+  useEffect(
+    () => () => {
+      document.body.style.cursor = "";
+    },
+    [],
+  );
   const heat = (on: boolean) => {
     setHot(on);
     document.body.style.cursor = on ? "grab" : "";

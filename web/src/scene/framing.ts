@@ -1,6 +1,6 @@
 import type { RobotMessage, WalkMessage } from "../protocol";
 import type { View } from "./CameraRig";
-import { extentOf } from "./frames";
+import { extentOf } from "./trails";
 
 /** What the camera should see: the robot where it stands, or all of its walk. */
 export function framing(robot: RobotMessage, walk: WalkMessage | null): View {

@@ -2,7 +2,8 @@ import { describe, expect, it } from "vitest";
 
 import { aRobot } from "../testing/robot";
 import { footOf, quaternionOf, turn } from "./frame";
-import { frameOfWalk, footTrails } from "./frames";
+import { frameOfWalk } from "./frames";
+import { footTrails } from "./trails";
 import { legPoints, pointsInBody } from "./kinematics";
 import { aWalk } from "../testing/walk";
 

@@ -1,3 +1,5 @@
+import { Spherical, type Vector3 } from "three";
+
 /** Turning the picture by keyboard: the camera rig takes these turns at its next frame. */
 export interface Turn {
   /** About the upright, and up or down [rad]; nearer by a factor. */
@@ -33,4 +35,19 @@ export function onSteer(take: (turn: Turn) => void): () => void {
   return () => {
     if (listener === take) listener = null;
   };
+}
+
+/** How far down one may look along the floor [rad from the upright]. */
+export const LOWEST = Math.PI * 0.497;
+
+/** Move the eye round what it looks at. */
+export function turnBy({ round, over, nearer }: Turn, eye: Vector3, target: Vector3) {
+  const offset = eye.clone().sub(target);
+  // three's spherical angles have y up: z, x, y of ours.
+  const angles = new Spherical().setFromCartesianCoords(offset.y, offset.z, offset.x);
+  angles.theta += round;
+  angles.phi = Math.min(LOWEST, Math.max(0.001, angles.phi + over));
+  angles.radius *= nearer;
+  offset.setFromSpherical(angles);
+  eye.set(offset.z, offset.x, offset.y).add(target);
 }

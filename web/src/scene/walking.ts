@@ -1,6 +1,7 @@
 import type { LoadsMessage, RobotMessage, WalkMessage } from "../protocol";
 import { advanced, usePlayback } from "../state/playback";
-import { frameOfWalk, lengthOf } from "./frames";
+import { frameOfWalk } from "./frames";
+import { lengthOf } from "./trails";
 import { stage } from "./stage";
 
 /** Let a walk be on the stage, at the time of the playback; returns how to end it. */

@@ -1,7 +1,7 @@
 import { useEffect, useMemo, useRef } from "react";
 
 import type { WalkMessage } from "../../protocol";
-import { lengthOf } from "../../scene/frames";
+import { lengthOf } from "../../scene/trails";
 import { triple } from "../../scene/kinematics";
 import { legColours } from "../../scene/palette";
 import { usePlayback } from "../../state/playback";

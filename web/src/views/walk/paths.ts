@@ -3,6 +3,12 @@ import type { WalkOptions } from "../../protocol";
 export type Path = WalkOptions["path"];
 export type Way = Path["way"];
 
+/** What the inputs of a kind of path take. */
+export interface PathProps<W extends Way> {
+  path: Extract<Path, { way: W }>;
+  set: (path: Path, commit?: boolean) => void;
+}
+
 /** A path to begin with, of each kind. */
 export function pathOf(way: Way): Path {
   switch (way) {

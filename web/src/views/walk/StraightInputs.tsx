@@ -1,0 +1,32 @@
+import { Slider } from "../../controls/Slider";
+import type { PathProps } from "./paths";
+
+/** How far, and which way. */
+export function StraightInputs({ path, set }: PathProps<"straight">) {
+  return (
+    <>
+      <Slider
+        label="Distance"
+        value={path.distance_mm}
+        min={50}
+        max={2000}
+        typedMin={0}
+        typedMax={20_000}
+        step={10}
+        unit="mm"
+        testId="distance"
+        onChange={(distance_mm, commit) => set({ ...path, distance_mm }, commit)}
+      />
+      <Slider
+        label="Direction (90 is left)"
+        value={path.heading_deg}
+        min={-180}
+        max={180}
+        step={5}
+        unit="°"
+        testId="heading"
+        onChange={(heading_deg, commit) => set({ ...path, heading_deg }, commit)}
+      />
+    </>
+  );
+}

@@ -1,0 +1,59 @@
+import { Slider } from "../../controls/Slider";
+import type { PathProps } from "./paths";
+
+/** How fast in each direction, and how long. */
+export function TwistInputs({ path, set }: PathProps<"twist">) {
+  const [vx, vy] = path.velocity_mm_s;
+  return (
+    <>
+      <Slider
+        label="Forward"
+        value={vx}
+        min={-200}
+        max={200}
+        typedMin={-2000}
+        typedMax={2000}
+        step={5}
+        unit="mm/s"
+        testId="twist-x"
+        onChange={(next, commit) => set({ ...path, velocity_mm_s: [next, vy] }, commit)}
+      />
+      <Slider
+        label="Left"
+        value={vy}
+        min={-200}
+        max={200}
+        typedMin={-2000}
+        typedMax={2000}
+        step={5}
+        unit="mm/s"
+        testId="twist-y"
+        onChange={(next, commit) => set({ ...path, velocity_mm_s: [vx, next] }, commit)}
+      />
+      <Slider
+        label="Turning left"
+        value={path.turn_deg_s}
+        min={-60}
+        max={60}
+        typedMin={-720}
+        typedMax={720}
+        step={1}
+        unit="°/s"
+        testId="twist-turn"
+        onChange={(turn_deg_s, commit) => set({ ...path, turn_deg_s }, commit)}
+      />
+      <Slider
+        label="For"
+        value={path.duration_s}
+        min={1}
+        max={30}
+        typedMin={0.1}
+        typedMax={300}
+        step={0.5}
+        unit="s"
+        testId="twist-duration"
+        onChange={(duration_s, commit) => set({ ...path, duration_s }, commit)}
+      />
+    </>
+  );
+}
