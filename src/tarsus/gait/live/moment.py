@@ -15,7 +15,7 @@ from tarsus.gait.gait import Gait
 from tarsus.gait.live.lag import Lag
 from tarsus.gait.swing import ground_share, height_share
 
-__all__ = ["FREEZE", "THERE", "TIE", "Course", "Moment", "carried", "final_rest", "go_on", "turned"]
+__all__ = ["FREEZE", "THERE", "TIE", "Course", "Moment", "carried", "final_rest", "go_on", "meet_ground", "turned"]
 
 Floats = np.ndarray[Any, Any]
 
@@ -50,6 +50,10 @@ class Moment(NamedTuple):
         First and second derivative of a swinging foot's way by its share [m].
     ground, start_height : array
         Height of the ground that each foot is on or bound for, and where its swing began [m].
+    met : array
+        Share of the swing at which the foot met ground that was not expected yet; infinite where it did not.
+    met_height, met_speed : array
+        Where that was [m], and how the height changed with the swing's share [m].
     origin : complex
         The heading frame's origin in G [m].
     yaw : float
@@ -70,6 +74,9 @@ class Moment(NamedTuple):
     bend: Floats
     ground: Floats
     start_height: Floats
+    met: Floats
+    met_height: Floats
+    met_speed: Floats
     origin: complex
     yaw: float
     twist: Lag
@@ -83,9 +90,24 @@ class Moment(NamedTuple):
         lift : float
             How high a swinging foot rises [m].
         """
-        up, along = height_share(self.share), ground_share(self.share)
-        swinging = self.start_height + (self.ground - self.start_height) * along + lift * up
+        along = ground_share(self.share)
+        swinging = self.start_height + (self.ground - self.start_height) * along + lift * height_share(self.share)
+        if np.isfinite(self.met).any():
+            swinging = np.where(np.isfinite(self.met), self._settling_height(), swinging)
         return np.where(self.down, self.ground, swinging)
+
+    def _settling_height(self) -> Floats:
+        """Return how a foot that has met the ground comes to rest on it: the quintic from there."""
+        since = np.where(np.isfinite(self.met), self.met, 0.0)
+        left = 1 - since
+        x = np.clip((self.share - since) / left, 0.0, 1.0)
+        slope = self.met_speed * left
+        rest = self.ground - self.met_height - slope
+        return np.asarray(
+            self.met_height
+            + slope * x
+            + x * x * x * ((10 * rest + 4 * slope) - x * ((15 * rest + 7 * slope) - x * (6 * rest + 3 * slope)))
+        )
 
 
 class Course(NamedTuple):
@@ -103,10 +125,12 @@ class Course(NamedTuple):
         What twist and posture follow.
     bandwidth, posture_bandwidth : float
         How fast they follow [rad/s].
-    steps : array of bool, shape (legs,)
-        Which legs may lift.
+    steps, lands : array of bool, shape (legs,)
+        Which legs may lift, and which put their feet down at the end of their swing.
     rest : complex array, shape (legs,)
         Rest footholds in the heading frame [m].
+    level : array, shape (legs,)
+        Height at which the ground is expected [m].
     """
 
     gait: Gait
@@ -117,7 +141,9 @@ class Course(NamedTuple):
     bandwidth: float
     posture_bandwidth: float
     steps: Floats
+    lands: Floats
     rest: Floats
+    level: Floats
 
 
 def turned(angle: Any) -> Any:
@@ -173,11 +199,11 @@ def go_on(now: Moment, course: Course, dt: float) -> Moment:
         return after
     share = np.where(up, np.minimum(since_lift / swing, 1.0), 0.0)
     target = after.target
-    free = up & (after.share <= FREEZE)
+    free = up & (after.share <= FREEZE) & np.isinf(after.met)
     if free.any():
         target = np.where(free, _foothold(after, course, share), target)
     after = _swing(after, share, target)
-    landed = up & (since_lift >= swing - TIE)
+    landed = up & course.lands & (since_lift >= swing - TIE)
     return _land(after, landed) if landed.any() else after
 
 
@@ -205,10 +231,8 @@ def _lift(now: Moment, course: Course, due: Floats, final: Floats | None) -> Mom
         number=now.number + missed,
         down=now.down & ~wanted,
         share=np.where(wanted, 0.0, now.share),
-        pace=np.where(wanted, 0.0, now.pace),
-        bend=np.where(wanted, 0.0, now.bend),
         start_height=np.where(wanted, now.ground, now.start_height),
-        ground=np.where(wanted, 0.0, now.ground),
+        ground=np.where(wanted, course.level, now.ground),
     )
 
 
@@ -259,4 +283,31 @@ def _land(now: Moment, landed: Floats) -> Moment:
         foot=np.where(landed, now.target, now.foot),
         pace=np.where(landed, 0.0, now.pace),
         bend=np.where(landed, 0.0, now.bend),
+        met=np.where(landed, np.inf, now.met),
+    )
+
+
+def meet_ground(now: Moment, met: Floats, lift: float) -> Moment:
+    """Return the moment in which feet have met the ground before they were to: they come to rest where they are.
+
+    Parameters
+    ----------
+    now : Moment
+        The moment.
+    met : array of bool, shape (legs,)
+        Which feet; in the air, and not met already.
+    lift : float
+        How high a swinging foot rises [m].
+    """
+    height = now.height(lift)
+    step = 1e-4
+    speed = (now._replace(share=np.minimum(now.share + step, 1.0)).height(lift) - height) / step
+    left = 1 - now.share
+    # What a foot still goes while it comes to rest, with its speed falling evenly.
+    return now._replace(
+        target=np.where(met, now.foot + now.pace * left / 3, now.target),
+        met=np.where(met, now.share, now.met),
+        met_height=np.where(met, height, now.met_height),
+        met_speed=np.where(met, speed, now.met_speed),
+        ground=np.where(met, height + speed * left / 3, now.ground),
     )

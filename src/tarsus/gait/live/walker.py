@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import cmath
-import dataclasses
 import math
 from collections.abc import Sequence
 from typing import Any
@@ -12,15 +11,25 @@ import numpy as np
 
 from tarsus.errors import InputError, UnreachableError
 from tarsus.gait.gait import Gait
+from tarsus.gait.live.admittance import Admittance
+from tarsus.gait.live.agenda import Agenda
 from tarsus.gait.live.change import Change, Manner, work_out
 from tarsus.gait.live.envelope import Envelope, overhang
+from tarsus.gait.live.feel import Feel, Felt
+from tarsus.gait.live.footing import Footing
 from tarsus.gait.live.governor import allowed_target, excess
+from tarsus.gait.live.hands import Hand, carry_hands, lift_hand, reachable_part
 from tarsus.gait.live.lag import Lag
-from tarsus.gait.live.moment import THERE, TIE, Course, Moment, final_rest, go_on
-from tarsus.gait.live.posture import LIFT, stand_of
+from tarsus.gait.live.levelling import LevellingMode
+from tarsus.gait.live.moment import THERE, TIE, Course, Moment, final_rest, go_on, meet_ground
+from tarsus.gait.live.own_time import OwnTime
+from tarsus.gait.live.posture import LIFT, stand_of, swayed
+from tarsus.gait.live.search import Search
+from tarsus.gait.live.senses import Senses
 from tarsus.gait.live.tempo import joint_limits
+from tarsus.gait.live.tilt import Commanded
 from tarsus.gait.live.wish import Wish
-from tarsus.gait.live.workspace import Parts, all_parts
+from tarsus.gait.live.workspace import Parts, Stand, all_parts
 from tarsus.gait.setup import Setup
 from tarsus.kinematics.inverse import inverse_kinematics
 from tarsus.kinematics.pose import Pose
@@ -39,14 +48,13 @@ _POSTURE_BANDWIDTH = 4.0
 _BODY_SPEED, _BODY_TURN = 0.08, 0.5
 # Ticks longer than this are walked as if they took no longer [s]: a late tick must not become a jump.
 _LONGEST_TICK = 0.05
-# How fast the walker's own time may run down and up again [1/s].
-_TIME_CHANGE = 3.0
+# In which time a change that waits for room slows the walk down by a factor of e [s].
 _PATIENCE = 1.0
-# From which share of the joints' acceleration on the walker looks ahead, what share it then aims at, and how far [s].
-_STRAINED, _CALM, _AHEAD = 0.5, 0.75, 0.02
-_AT_POSTURE, _SAME = 2e-4, 1e-9
-# How often a tick is tried, ever slower, and what of the joints' speed and acceleration it may come to.
-_TRIES, _KEPT = 5, 0.98
+# How near to its target a twist counts as steady [m/s, rad/s].
+_STEADY = 1e-4
+# How near the posture counts as reached [m, rad]; what share of the swing is over before ground may be met, and how
+# far below the expected ground feet look for it, in lifts.
+_AT_POSTURE, _DESCENDING, _DEPTH = 2e-4, 0.5, 0.6
 
 
 class Walker:
@@ -68,6 +76,10 @@ class Walker:
         Greatest of every joint [rad/s], [rad/s^2]; left out, each servo's no-load speed, reached in 0.05 s.
     foot_distance : float, optional
         Least distance between two feet [m]; two foot radii and 10 mm where left out.
+    levelling : "level", "follow" or None
+        Whether the body stays level on ground that is not, or follows its slope.
+    admittance : Admittance, optional
+        How the feet give way to the forces on them; left out, they don't.
 
     Raises
     ------
@@ -78,7 +90,7 @@ class Walker:
         If the robot can't stand and step so.
     """
 
-    def __init__(
+    def __init__(  # noqa: PLR0913 - all that a walk is set up with, all of it optional
         self,
         robot: Robot,
         gait: Gait | None = None,
@@ -90,12 +102,14 @@ class Walker:
         joint_speed: float | None = None,
         joint_acceleration: float | None = None,
         foot_distance: float | None = None,
+        levelling: LevellingMode | None = None,
+        admittance: Admittance | None = None,
     ) -> None:
         gait = Gait.named(robot.gait.name, legs=robot.legs) if gait is None else gait
         setup = Setup.of(robot, gait, clearance=clearance, lift=lift, body_tilt=(0.0, 0.0), foot_distance=foot_distance)
         self.robot = setup.robot
-        self._foot_distance = setup.foot_distance
         self.joint_speed, self.joint_acceleration = joint_limits(self.robot, joint_speed, joint_acceleration)
+        self._foot_distance = setup.foot_distance
         manner = Manner(
             gait=gait,
             body=(0.0,) * 6,
@@ -104,72 +118,61 @@ class Walker:
             stance_width=stance_width,
             cycle_time=cycle_time,
         )
-        change = all_parts(self._work_out(manner, None, None))
+        change = all_parts(self._work_out(manner, stay=False, at_once=True))
         if isinstance(change, str):
             raise UnreachableError(f"the robot can't walk so: {change}")
-        self._wanted = manner
-        self._doing = change
-        self._way: Envelope = change.there
-        self._bounds = change.there.bounds
-        self._landing_bounds = self._bounds
-        self._rest, self._posture = change.rest, change.posture
-        self._leg_rest = change.rest
-        self._old_step = np.zeros(self.robot.legs, dtype=bool)
-        self._stepping: Change | None = None
-        self._patience = 1.0
-        self._job: Parts[Change | str] | None = None
-        self._next: Change | None = None
-        self._settling: tuple[Change, int] | None = None
-        self._refusals: dict[Manner, str] = {}
-        self._asked = manner
-        self._stepped = np.ones(self.robot.legs, dtype=bool)
-        self._frequency = 1 / change.tempo.cycle_time
-        self._rate = 1.0
-        self._strain = 0.0
-        self._target = np.zeros(3)
-        self._limited: tuple[str, ...] = ()
-        self.time = 0.0
-        self._last_dt = 0.01
+        self._begin_standing(change)
+        self._levelling, self._admittance = levelling, admittance
+        self._feel: Feel | None = None
+        if levelling is not None or admittance is not None:
+            self._feel = self._feeling()
+
+    def _begin_standing(self, change: Change) -> None:
+        """Stand in the rest stance, the heading frame over G's origin."""
         legs = self.robot.legs
-        rest = change.rest
+        self._agenda, self._footing = Agenda(change), Footing(change)
+        self._stepping: Change | None = None
+        self._settling: tuple[Change, int] | None = None
+        self._posture = change.posture
+        self._frequency = 1 / change.tempo.cycle_time
+        self._target = np.zeros(3)
+        self._patience = 1.0
+        self._limited: tuple[str, ...] = ()
+        self._hands: dict[int, Hand] = {}
+        self._hand_limits: dict[int, str] = {}
+        self._searches: dict[int, Search] = {}
+        self._felt: Felt | None = None
+        self._walking = False
+        self.time = 0.0
+        self._set_gait(change.manner.gait)
         none, zero = np.zeros(legs), np.zeros(legs, dtype=complex)
         self._now = Moment(
             clock=0.0,
             number=none,
             down=np.ones(legs, dtype=bool),
             share=none,
-            foot=rest,
-            target=rest,
+            foot=change.rest,
+            target=change.rest,
             pace=zero,
             bend=zero,
             ground=none,
             start_height=none,
+            met=np.full(legs, np.inf),
+            met_height=none,
+            met_speed=none,
             origin=0j,
             yaw=0.0,
             twist=Lag.still(np.zeros(3)),
-            posture=Lag.still(change.posture),
+            posture=Lag.still(np.append(change.posture, np.zeros(6))),
         )
+        self._offset = none
+        self._own = OwnTime(self._solve(self._now), self.joint_speed, self.joint_acceleration)
+
+    def _set_gait(self, gait: Gait) -> None:
         self._offsets = np.asarray(gait.offsets)
-        self._walking = False
-        self._angles = self._solve(self._now)
-        self._joint_rate = np.zeros((legs, 3))
-        self._free: dict[int, Any] = {}
+        self._beats = len(set(gait.offsets))
 
-    def _work_out(
-        self, manner: Manner, now: Floats | None, rest: Floats | None, *, stay: bool = False
-    ) -> Parts[Change | str]:
-        return work_out(
-            self.robot,
-            manner,
-            now,
-            rest,
-            stay=stay,
-            speed=self.joint_speed,
-            acceleration=self.joint_acceleration,
-            foot_distance=self._foot_distance,
-        )
-
-    def step(self, wish: Wish | Sequence[float], dt: float) -> Floats:
+    def step(self, wish: Wish | Sequence[float], dt: float, *, senses: Senses | None = None) -> Floats:
         """Go on by one tick.
 
         Parameters
@@ -178,6 +181,8 @@ class Walker:
             What is asked for: a twist [m/s, m/s, rad/s] leaves everything else as it is.
         dt : float
             The time since the last tick [s]. Of a tick later than 0.05 s no more than that is walked.
+        senses : Senses, optional
+            What is measured. Implausible readings are refused and named in `limited`; the walk goes on without them.
 
         Returns
         -------
@@ -188,90 +193,94 @@ class Walker:
         ------
         InputError
             If the wish or the time is not finite, or out of its range. Nothing has changed then.
+        UnknownNameError
+            If there is no such gait. Nothing has changed then.
         """
         wish = wish if isinstance(wish, Wish) else Wish(twist=wish)
         if not 0 < dt < math.inf:
             raise InputError(f"dt is {dt} s; it must be greater than 0 and finite")
         dt = min(float(dt), _LONGEST_TICK)
-        self._take(wish)
-        self._think()
-        # A change that the walk has no room for slows it down until it has.
-        waits = self._next is not None or (self._stepping is not None and bool(self._stepped.all()))
-        self._patience = self._patience * math.exp(-dt / _PATIENCE) if waits else 1.0
+        gone = self._gone(wish)
+        self._agenda.ask(wish, gone, self._felt.correction if self._felt else (0.0,) * 6)
+        self._sense(senses, dt)
+        self._change(dt)
+        self._move_hands(wish, dt)
         self._aim(np.array(wish.twist))
-        was_down = self._now.down
         self._advance(dt)
         self.time += dt
-        self._finish(was_down)
-        return self._angles
+        return self.angles
 
-    # What was asked for.
+    # What is felt.
 
-    def _take(self, wish: Wish) -> None:
-        """Note what is asked for besides the twist; a change is worked out in the ticks that follow."""
-        m = self._wanted
-        gait = m.gait if wish.gait is None else wish.gait
-        if isinstance(gait, str):
-            gait = m.gait if gait == m.gait.name else Gait.named(gait, legs=self.robot.legs)
-        gait.require_legs(self.robot.legs)
-        asked = Manner(
-            gait=gait,
-            body=m.body if wish.body is None else tuple(wish.body),
-            clearance=m.clearance if wish.clearance is None else wish.clearance,
-            lift=m.lift if wish.lift is None else wish.lift,
-            stance_width=m.stance_width if wish.stance_width is None else wish.stance_width,
-            cycle_time=m.cycle_time if wish.cycle_time is None else wish.cycle_time,
-            gone=m.gone,
+    def _feeling(self) -> Feel:
+        return Feel(self.robot, self.angles, self.feet, levelling=self._levelling, admittance=self._admittance)
+
+    def _sense(self, senses: Senses | None, dt: float) -> None:
+        """Take in what is measured, and let feet come to rest that have met the ground early."""
+        if senses is None and self._feel is None:
+            return
+        self._feel = self._feel or self._feeling()
+        now, body = self._now, self._agenda.wanted.body
+        self._felt = self._feel.step(
+            senses,
+            dt,
+            feet=self.feet,
+            contacts=self.contacts,
+            commanded=Commanded(body[3], body[4], now.yaw + body[5], float(now.posture.value[2])),
+            angles=self.angles,
         )
-        if asked.lift < 0 or (asked.cycle_time is not None and asked.cycle_time <= 0):
-            raise InputError("the wish's lift must not be negative, its cycle_time must be greater than 0")
-        if asked != self._wanted:
-            self._wanted, self._refusals = asked, {}
+        if self._felt.contacts is not None:
+            touch = np.array([c is True for c in self._felt.contacts])
+            met = touch & ~now.down & (now.share > _DESCENDING) & (now.share < 1.0) & np.isinf(now.met)
+            if met.any():
+                self._now = meet_ground(now, met, float(now.posture.value[LIFT]))
 
-    def _think(self) -> None:
-        """Do one part of working out a change, and go over to it once the walk allows."""
-        if self._job is not None:
-            try:
-                next(self._job)
-            except StopIteration as done:
-                self._job = None
-                self._note(done.value)
-            except UnreachableError as error:
-                self._job = None
-                self._note(str(error))
-        elif self._next is None and self._settling is None and self._stepping is None:
-            asked, stay = self._step_towards(self._wanted)
-            if asked not in (self._doing.manner, *self._refusals) and self._arrived():
-                self._asked = asked
-                self._job = self._work_out(asked, self._posture, self._rest, stay=stay)
-        if self._next is not None:
-            self._try_change(self._next)
-        elif self._stepping is not None:
-            self._try_body(self._stepping)
+    def _touches(self, leg: int) -> bool:
+        """Return whether a foot at the end of its swing is on the ground, as far as is known."""
+        return self._felt is None or self._felt.contacts is None or self._felt.contacts[leg] is not False
 
-    def _step_towards(self, wanted: Manner) -> tuple[Manner, bool]:
-        """Return what to change first, how the robot stands or then how it steps; and whether it is the latter."""
-        doing = self._doing.manner
-        standing = dataclasses.replace(wanted, gait=doing.gait, cycle_time=doing.cycle_time, gone=doing.gone)
-        if standing not in (doing, *self._refusals):
-            return standing, False
-        return dataclasses.replace(doing, gait=wanted.gait, cycle_time=wanted.cycle_time, gone=wanted.gone), True
+    # Changes of how it stands and steps.
 
-    def _note(self, found: Change | str) -> None:
-        if isinstance(found, str):
-            self._refusals[self._asked] = found
-        else:
-            self._next = found
+    def _work_out(self, manner: Manner, stay: bool, *, at_once: bool = False) -> Parts[Change | str]:
+        return work_out(
+            self.robot,
+            manner,
+            None if at_once else self._posture,
+            None if at_once else self._footing.new_rest,
+            stay=stay,
+            speed=self.joint_speed,
+            acceleration=self.joint_acceleration,
+            foot_distance=self._foot_distance,
+        )
+
+    def _change(self, dt: float) -> None:
+        """Work on the next change, and go over to it once the walk allows."""
+        agenda, stepping = self._agenda, self._stepping
+        agenda.think(self._work_out, free=self._settling is None and stepping is None and self._arrived())
+        if agenda.ready is not None:
+            self._try_change(agenda.ready)
+        elif stepping is not None:
+            self._try_body(stepping)
+        # A change that the walk has no room for slows it down until it has.
+        waits = agenda.ready is not None or (self._stepping is not None and bool(self._footing.stepped.all()))
+        self._patience = self._patience * math.exp(-dt / _PATIENCE) if waits else 1.0
+
+    def _arrived(self) -> bool:
+        return bool(np.abs(self._now.posture.value[: LIFT + 1] - self._posture).max() < _AT_POSTURE)
 
     def _try_change(self, change: Change) -> None:
         """Go over to a change as soon as the feet on the ground allow it."""
-        old, new = self._doing.manner.gait, change.manner.gait
+        old, new, frequency = self.gait, change.manner.gait, 1 / change.tempo.cycle_time
+        leaving = list(set(change.manner.gone) - set(self._agenda.doing.manner.gone))
         if new.duty == old.duty and new.offsets == old.offsets:
-            twist = self._now.twist.value
-            stance_time = new.duty * change.tempo.cycle_time
-            share, _ = change.stepping.largest_share(twist, stance_time=stance_time, duty=new.duty)
-            begins, ends = self._stances(1 / change.tempo.cycle_time)
-            if share >= 1 and self._works(begins, ends, self._bounds, 1 / change.tempo.cycle_time):
+            share, _ = change.stepping.largest_share(
+                self._now.twist.value, stance_time=new.duty / frequency, duty=new.duty
+            )
+            begins, ends = self._stances(frequency)
+            bounds = self._footing.bounds
+            if leaving:
+                bounds = np.minimum(bounds, change.there.bounds)
+            if share >= 1 and self._now.down[leaving].all() and self._works(begins, ends, bounds, frequency):
                 self._adopt(change)
         elif not self._walking:
             self._switch(change, 0)
@@ -284,73 +293,89 @@ class Walker:
         offsets = np.asarray(new.offsets)
         delays = ((offsets - offsets[:, None]) % 1) / frequency
         ends = self._until_down() + delays + (overhang(new.duty) - 0.5) * new.duty / frequency
-        bounds = np.minimum(self._bounds, change.there.bounds)
+        bounds = np.minimum(self._footing.bounds, change.there.bounds)
         over = self._excess(np.zeros(delays.shape), ends, bounds, frequency).max(axis=(1, 2, 3, 4))
         first = int(over.argmin())
         if over[first] <= THERE:
-            self._settling, self._next = (change, first), None
-            self._bounds = bounds
-            self._way = self._way.meet(change.there)
+            self._settling, self._agenda.ready = (change, first), None
+            self._footing.tighten(change.there)
 
     def _try_body(self, change: Change) -> None:
         """Move the body once every foot has stepped to where it is to rest."""
+        gone = list(self._agenda.doing.manner.gone)
+        stepped = self._footing.stepped.copy()
+        stepped[gone] = True
         begins, ends = self._stances(self._frequency)
         slow = self._frequency <= 1 / change.tempo.cycle_time
-        if slow and self._stepped.all() and self._works(begins, ends, change.way.bounds, self._frequency):
-            self._bounds = np.minimum(self._bounds, change.way.bounds)
-            self._landing_bounds = self._bounds
-            self._way = self._way.meet(change.way)
+        if slow and stepped.all() and self._works(begins, ends, change.way.bounds, self._frequency):
+            self._footing.tighten(change.way)
             self._posture, self._stepping = change.posture, None
 
-    def _until_down(self) -> float:
-        now = self._now
-        left = np.where(now.down, 0.0, 1 - now.share).max()
-        return float(left * (1 - self._doing.manner.gait.duty) / self._frequency)
-
-    def _works(self, begins: Floats, ends: Floats, bounds: Floats, frequency: float) -> bool:
-        return bool(self._excess(begins, ends, bounds, frequency).max() <= THERE)
-
-    def _excess(self, begins: Floats, ends: Floats, bounds: Floats, frequency: float) -> Floats:
-        return excess(
-            self._now, self._target[None], begins=begins, ends=ends, bounds=bounds, bandwidth=self._bandwidth(frequency)
-        )
-
     def _adopt(self, change: Change) -> None:
-        """Send the feet to where they are to rest; the body follows."""
-        self._way = self._way.meet(change.stepping)
-        self._landing_bounds = change.stepping.bounds
-        moved = np.abs(change.rest - self._rest) > _SAME
-        self._stepped = ~moved
-        # A foot in the air lands where it is bound for; its next step is the one that counts.
-        self._old_step = moved & ~self._now.down
-        self._leg_rest = np.where(self._old_step, self._leg_rest, change.rest)
-        self._bounds = np.where(moved[:, None], self._bounds, np.minimum(self._bounds, self._landing_bounds))
-        self._rest, self._stepping, self._next = change.rest, change, None
-        manner = change.manner if change.whole else self._doing.manner
-        self._doing = dataclasses.replace(change, manner=manner)
+        """Send the feet to where they are to rest; the body follows. Legs that leave the gait become hands."""
+        self._footing.begin(change, self._now.down)
+        self._agenda.adopt(change)
+        self._stepping = change
+        gone = change.manner.gone
+        if gone:
+            self._footing.tighten(change.there)
+        self._hands = {leg: self._hands.get(leg) or lift_hand(self._now, leg) for leg in gone}
 
     def _switch(self, change: Change, first: int) -> None:
         """Begin the new order of steps; every foot is down."""
         self._adopt(change)
         self._settling = None
         self._frequency = 1 / change.tempo.cycle_time
-        self._offsets = np.asarray(change.manner.gait.offsets)
+        self._set_gait(change.manner.gait)
         self._begin(first)
 
     def _begin(self, first: int) -> None:
         """Set the clock to the moment when a leg lifts."""
-        duty = self._doing.manner.gait.duty
-        clock = float(self._offsets[first]) + duty
-        self._now = self._now._replace(clock=clock, number=np.ceil(clock - self._offsets - duty - TIE))
+        clock = float(self._offsets[first]) + self.gait.duty
+        self._now = self._now._replace(clock=clock, number=np.ceil(clock - self._offsets - self.gait.duty - TIE))
+
+    # Legs moved by hand.
+
+    def _gone(self, wish: Wish) -> tuple[int, ...]:
+        """Return which legs are to be out of the gait."""
+        gone = set(self._agenda.wanted.gone)
+        for leg, point in [*(wish.hands or {}).items(), *(wish.hand_speeds or {}).items()]:
+            if not (isinstance(leg, int) and 0 <= leg < self.robot.legs):
+                raise InputError(f"hand {leg!r}: the robot has the legs 0 to {self.robot.legs - 1}")
+            (gone.discard if point is None else gone.add)(leg)
+        return tuple(sorted(gone))
+
+    def _move_hands(self, wish: Wish, dt: float) -> None:
+        """Set where the hands go: as far towards what is asked for as their legs reach."""
+        for leg, hand in self._hands.items():
+            here = hand.place.value
+            point = (wish.hands or {}).get(leg)
+            if point is not None:
+                wished = np.array(point)
+            elif wish.hand_speeds and leg in wish.hand_speeds:
+                wished = hand.target + np.array(wish.hand_speeds[leg]) * dt
+            else:
+                continue
+            part = reachable_part(self.robot, self._stand(self._now), leg, here, wished)
+            self._hands[leg] = hand._replace(target=here + part * (wished - here))
+            self._hand_limits[leg] = (
+                f"hand: {100 * part:.0f} % of the way, there {self.robot.leg_names[leg]} comes to the end of its reach"
+                if part < 1
+                else ""
+            )
 
     # Where to.
 
     def _bandwidth(self, frequency: float) -> float:
-        return _LAGS_PER_STANCE * frequency / self._doing.manner.gait.duty
+        return _LAGS_PER_STANCE * frequency / self.gait.duty
+
+    def _until_down(self) -> float:
+        left = np.where(self._now.down, 0.0, 1 - self._now.share).max()
+        return float(left * (1 - self.gait.duty) / self._frequency)
 
     def _stances(self, frequency: float) -> tuple[Floats, Floats]:
         """Return from when until when each foot is where it stands, or where it is about to [s]."""
-        now, duty = self._now, self._doing.manner.gait.duty
+        now, duty = self._now, self.gait.duty
         over = (overhang(duty) - 0.5) * duty / frequency
         begins = np.where(now.down, 0.0, (1 - now.share) * (1 - duty) / frequency)
         if self._settling is not None:
@@ -362,30 +387,28 @@ class Walker:
         lift = (self._offsets + duty + now.number - now.clock) / frequency
         return begins, np.where(now.down, lift, begins + duty / frequency) + over
 
+    def _excess(self, begins: Floats, ends: Floats, bounds: Floats, frequency: float) -> Floats:
+        return excess(
+            self._now, self._target[None], begins=begins, ends=ends, bounds=bounds, bandwidth=self._bandwidth(frequency)
+        )
+
+    def _works(self, begins: Floats, ends: Floats, bounds: Floats, frequency: float) -> bool:
+        return bool(self._excess(begins, ends, bounds, frequency).max() <= THERE)
+
     def _aim(self, twist: Floats) -> None:
         """Set the target of the twist: as much of the wish as the legs allow, for good and right now."""
-        frequency = min(self._frequency, 1 / self._doing.tempo.cycle_time)
-        asked = [(self._doing, self._way)] + [
-            (change, change.way.meet(change.stepping))
-            for change in (self._next, self._stepping, self._settling and self._settling[0])
-            if change
-        ]
-        share, leg = 1.0, -1
-        if twist.any():
-            for change, way in asked:
-                slowest = min(frequency, 1 / change.tempo.cycle_time)
-                duty = change.manner.gait.duty
-                allowed, which = way.largest_share(twist, stance_time=duty / slowest, duty=duty)
-                if allowed < share:
-                    share, leg = allowed, which
-        wish = self._limited_wish = twist * min(share, self._patience)
+        share, leg = self._largest_share(twist) if twist.any() else (1.0, 0)
+        wish = twist * min(share, self._patience)
         self._limited = self._reasons(share, leg)
         if not self._walking:
             if not wish.any() and self._at_rest():
                 return
             self._begin(0)
             self._walking = True
-        if self._settled() and (wish == self._target).all():
+        # In steady walking nothing changes. Before that, feet may be put down where the target leaves them no room.
+        steady = np.abs(self._now.twist.value - wish).max() < _STEADY
+        settled = self._settling is None and self._frequency * self._agenda.doing.tempo.cycle_time == 1.0
+        if steady and settled and (wish == self._target).all():
             return
         begins, ends = self._stances(self._frequency)
         self._target = allowed_target(
@@ -394,140 +417,171 @@ class Walker:
             wish,
             begins=begins,
             ends=ends,
-            bounds=self._bounds,
+            bounds=self._footing.bounds,
             bandwidth=self._bandwidth(self._frequency),
         )
 
-    def _settled(self) -> bool:
-        return self._settling is None and self._frequency * self._doing.tempo.cycle_time == 1.0
+    def _largest_share(self, twist: Floats) -> tuple[float, int]:
+        """Return how much of a twist works for good in all that is gone over to, and which leg stops it."""
+        doing = self._agenda.doing
+        asked: list[tuple[Change, Envelope]] = [(doing, self._footing.way)]
+        for change in (self._agenda.ready, self._stepping, self._settling[0] if self._settling else None):
+            if change is not None:
+                asked.append((change, change.way.meet(change.stepping)))
+        frequency = min(self._frequency, 1 / doing.tempo.cycle_time)
+        share, leg = 1.0, 0
+        for change, way in asked:
+            duty = change.manner.gait.duty
+            stance_time = duty * max(1 / frequency, change.tempo.cycle_time)
+            allowed, which = way.largest_share(twist, stance_time=stance_time, duty=duty)
+            if allowed < share:
+                share, leg = allowed, which
+        return share, leg
 
     def _reasons(self, share: float, leg: int) -> tuple[str, ...]:
-        reasons = list(self._doing.limited)
+        reasons = [
+            *self._agenda.doing.limited,
+            *self._agenda.refusals.values(),
+            *filter(None, self._hand_limits.values()),
+        ]
         if share < 1:
-            reasons.append(
-                f"twist: {100 * share:.0f} % of it; {self.robot.leg_names[leg]} reaches no farther at "
-                f"{self._doing.tempo.cycle_time:.2f} s a cycle"
-            )
-        reasons += self._refusals.values()
+            cycle = self._agenda.doing.tempo.cycle_time
+            name = self.robot.leg_names[leg]
+            reasons.append(f"twist: {100 * share:.0f} % of it; {name} gets no farther at {cycle:.2f} s a cycle")
+        if self._felt is not None:
+            reasons += self._felt.refused
+        for found, search in self._searches.items():
+            if search.in_vain:
+                reasons.append(f"no ground under {self.robot.leg_names[found]}: the robot holds still")
         return tuple(reasons)
 
     def _at_rest(self) -> bool:
+        """Return whether every foot that steps is at its rest foothold."""
         rest = final_rest(self._now, self._course())
-        return rest is not None and bool(np.abs(self._now.foot - rest).max() <= THERE)
+        if rest is None:
+            return False
+        off = np.abs(self._now.foot - rest)
+        off[list(self._hands)] = 0.0
+        return bool(off.max() <= THERE)
 
     # The next moment.
 
     def _course(self) -> Course:
-        steps = np.full(self.robot.legs, self._settling is None)
+        now, legs = self._now, self.robot.legs
+        steps = np.full(legs, self._settling is None and not self._searches)
+        lands = np.ones(legs, dtype=bool)
+        for leg in self._hands:
+            steps[leg] = False
+        if self._felt is not None:
+            for leg in np.flatnonzero(~now.down).tolist():
+                lands[leg] = self._searches[leg].at_rest if leg in self._searches else self._touches(leg)
+        sway = self._agenda.doing.manner.sway if self._walking else (0.0,) * 6
         return Course(
-            gait=self._doing.manner.gait,
+            gait=self.gait,
             offsets=self._offsets,
             frequency=self._frequency if self._walking else 0.0,
             twist=self._target,
-            posture=self._posture,
+            posture=np.append(self._posture, sway),
             bandwidth=self._bandwidth(self._frequency),
             posture_bandwidth=self._posture_bandwidth(),
             steps=steps,
-            rest=self._leg_rest,
+            lands=lands,
+            rest=self._footing.rest,
+            level=np.zeros(legs),
         )
 
     def _posture_bandwidth(self) -> float:
-        way = np.abs(self._doing.posture - self._now.posture.value)
-        far = max(
-            float(way[:3].max()) / _BODY_SPEED,
-            float(way[3:6].max()) / _BODY_TURN,
-            float(way[LIFT:].max()) / _BODY_SPEED,
-        )
+        way = np.abs(self._posture - self._now.posture.value[: LIFT + 1])
+        shift, turn, lift = float(way[:3].max()), float(way[3:LIFT].max()), float(way[LIFT])
+        far = max(shift / _BODY_SPEED, turn / _BODY_TURN, lift / _BODY_SPEED)
         return min(_POSTURE_BANDWIDTH, math.e / max(far, 1e-9))
 
     def _advance(self, dt: float) -> None:
-        """Go on by as much of the tick as the joints' speed and acceleration allow."""
-        course = self._course()
-        rate = min(1.0, self._rate + _TIME_CHANGE * dt)
-        if self._strain > _STRAINED:
-            rate = min(rate, self._rate_ahead(course))
-        between = (dt + self._last_dt) / 2
-        for _ in range(_TRIES):
-            tried = rate
-            after = go_on(self._now, course, dt * rate)
-            angles = self._solve(after)
-            turned = (angles - self._angles) / dt
-            rate = self._slower(turned, rate, between)
-            if rate >= tried:
-                break
-        self._strain = float((np.abs(turned - self._joint_rate) / self.joint_acceleration).max()) / between
-        self._now, self._angles, self._joint_rate = after, angles, turned
-        self._rate, self._last_dt = tried, dt
+        """Go on by one tick, or less of it where the joints need longer."""
+        before, course, hands = self._now, self._course(), self._hands
+        self._search(dt)
+        if self._felt is not None:
+            self._offset = np.where(before.down, self._felt.offsets, 0.0)
+        swing_time = (1 - self.gait.duty) / self._frequency
 
-    def _rate_ahead(self, course: Course) -> float:
-        """Return at which rate of time the joints keep within their acceleration on the next bit of the way."""
-        first = go_on(self._now, course, _AHEAD)
-        second = go_on(first, course, _AHEAD)
-        bend = np.abs(self._solve(second) - 2 * self._solve(first) + self._angles) / (_AHEAD * _AHEAD)
-        return math.sqrt(_CALM / max(float((bend / self.joint_acceleration).max()), _CALM))
+        def move(time: float) -> Moment:
+            after = go_on(self._now, course, time)
+            return (
+                carry_hands(after, {leg: hand.step(time) for leg, hand in hands.items()}, swing_time)
+                if hands
+                else after
+            )
 
-    def _slower(self, turned: Floats, rate: float, dt: float) -> float:
-        """Return at which rate of time the joints keep within speed and acceleration; `rate` where they do already."""
-        change = turned - self._joint_rate
-        fastest, reach = _KEPT * self.joint_speed, _KEPT * self.joint_acceleration * dt
-        if (np.abs(turned) <= fastest).all() and (np.abs(change) <= reach).all():
-            return rate
-        size = np.maximum(np.abs(turned), 1e-12)
-        was = self._joint_rate * np.sign(turned)
-        highest = float((np.minimum(fastest, was + reach) / size).min())
-        lowest = float(((was - reach) / size).max())
-        share = highest if highest >= lowest else (max(highest, 0.0) + lowest) / 2
-        return rate * min(max(share, 0.0) * 0.999, 1.0)
+        self._now = self._own.advance(move, self._solve, dt, stop=bool(self._searches))
+        if hands:
+            self._hands = {leg: hand.step(dt * self._own.rate) for leg, hand in hands.items()}
+        self._finish(before, dt)
+
+    def _search(self, dt: float) -> None:
+        """Let feet that have come down where there is no ground look for it, in the world's time."""
+        now = self._now
+        over = ~now.down & (now.share >= 1.0)
+        if not self._searches and (self._felt is None or not over.any()):
+            return
+        ground = now.ground.copy()
+        for leg in np.flatnonzero(over).tolist():
+            if leg not in self._searches:
+                if self._touches(leg):
+                    continue
+                depth = _DEPTH * float(now.posture.value[LIFT])
+                self._searches[leg] = Search.begin(float(ground[leg]), depth)
+            self._searches[leg] = self._searches[leg].step(dt, ground=self._touches(leg))
+            ground[leg] = float(self._searches[leg].height.value[0])
+        self._now = now._replace(ground=ground, met=np.where(over, np.inf, now.met))
+
+    def _stand(self, now: Moment) -> Stand:
+        return stand_of(swayed(now.posture.value, now.clock, self._beats), self._footing.rest)
 
     def _solve(self, now: Moment) -> Floats:
-        row = now.posture.value
-        stand = stand_of(row, self._rest)
+        """Return the joint angles ``(legs, 3)`` of a moment."""
+        stand = self._stand(now)
         seen = (now.foot - now.origin) * cmath.exp(-1j * now.yaw)
-        height = now.height(stand.lift)
+        height = now.height(stand.lift) + self._offset
         solution = stand.solve(self.robot, seen.real, seen.imag, height)
         if all_within(self.robot.geometry, solution):
             angles = np.stack(solution[:3], axis=-1)
         else:
             feet = np.stack([seen.real, seen.imag, height], axis=-1)
-            found = inverse_kinematics(self.robot, (feet - stand.position) @ stand.rotation)
-            angles = np.array(found.angles)
+            angles = np.array(inverse_kinematics(self.robot, (feet - stand.position) @ stand.rotation).angles)
         angles.setflags(write=False)
         return angles
 
-    def _finish(self, was_down: Floats) -> None:
+    def _finish(self, before: Moment, dt: float) -> None:
         """See what has come to its end with this tick."""
-        if self._settling is not None and self._now.down.all():
+        now, doing = self._now, self._agenda.doing
+        landed = now.down & ~before.down
+        if landed.any():
+            self._footing.land(landed)
+            self._searches = {leg: search for leg, search in self._searches.items() if not landed[leg]}
+        arrived = self._settling is None and self._stepping is None and self._arrived()
+        if self._settling is not None and now.down.all():
             self._switch(*self._settling)
         elif self._settling is None:
-            goal = 1 / self._doing.tempo.cycle_time
-            if not (self._stepping is None and self._arrived()):
-                goal = min(goal, self._frequency)
-            if self._frequency != goal:
-                step = self._last_dt * self._frequency * self._frequency / 2
-                change = min(max(goal - self._frequency, -step), step)
-                self._frequency = goal if abs(goal - self._frequency) <= step else self._frequency + change
-        landed = self._now.down & ~was_down
-        if landed.any():
-            self._leg_rest = np.where(landed, self._rest, self._leg_rest)
-            landed, self._old_step = landed & ~self._old_step, self._old_step & ~landed
-            self._stepped = self._stepped | landed
-            self._bounds = np.where(landed[:, None], self._landing_bounds, self._bounds)
-        if self._way is not self._doing.there and self._stepping is None and self._arrived():
-            self._way = self._doing.there
-            self._bounds = self._landing_bounds = self._way.bounds
-        if self._walking and self._now.down.all() and not self._target.any() and not self._now.twist.value.any():
+            self._change_pace(dt, faster=arrived)
+        if arrived and self._footing.way is not doing.there:
+            self._footing.arrive(doing.there)
+        if self._walking and now.down.all() and not self._target.any() and not now.twist.value.any():
             self._walking = not (self._at_rest() and self._settling is None)
 
-    def _arrived(self) -> bool:
-        return (
-            bool(np.abs(self._now.posture.value - self._doing.posture).max() < _AT_POSTURE) and self._settling is None
-        )
+    def _change_pace(self, dt: float, *, faster: bool) -> None:
+        """Step a little faster or slower, until the cycle takes as long as it is to."""
+        goal, now = 1 / self._agenda.doing.tempo.cycle_time, self._frequency
+        goal = goal if faster else min(goal, now)
+        step = dt * now * now / 2
+        self._frequency = goal if abs(goal - now) <= step else now + math.copysign(step, goal - now)
 
     # What there is to see.
 
     @property
     def mode(self) -> str:
-        """``"standing"``, ``"walking"``, or ``"stopping"``: on the way to standing."""
+        """``"standing"``, ``"walking"``; ``"stopping"``, on the way to standing; ``"searching"`` for ground."""
+        if self._searches:
+            return "searching"
         if not self._walking:
             return "standing"
         return "walking" if self._target.any() else "stopping"
@@ -535,7 +589,7 @@ class Walker:
     @property
     def gait(self) -> Gait:
         """Order of the steps."""
-        return self._doing.manner.gait
+        return self._agenda.doing.manner.gait
 
     @property
     def cycle_time(self) -> float:
@@ -550,7 +604,7 @@ class Walker:
     @property
     def body(self) -> Pose:
         """The body's pose in G."""
-        stand = stand_of(self._now.posture.value, self._rest)
+        stand = self._stand(self._now)
         heading = Pose.from_rpy(0.0, 0.0, self._now.yaw, (self._now.origin.real, self._now.origin.imag, 0.0))
         return heading @ Pose(stand.rotation, stand.position)
 
@@ -558,23 +612,25 @@ class Walker:
     def feet(self) -> Floats:
         """The feet in G ``(legs, 3)`` [m]."""
         now = self._now
-        height = now.height(float(now.posture.value[LIFT]))
+        height = now.height(float(now.posture.value[LIFT])) + self._offset
         return np.stack([now.foot.real, now.foot.imag, height], axis=-1)
 
     @property
     def contacts(self) -> Floats:
         """Which feet are on the ground ``(legs,)``."""
-        return self._now.down.copy()
+        down = self._now.down.copy()
+        down[list(self._hands)] = False
+        return down
 
     @property
     def angles(self) -> Floats:
         """The joint angles ``(legs, 3)`` [rad]."""
-        return self._angles
+        return self._own.angles
 
     @property
     def twist(self) -> Floats:
         """The speed now: forward, left [m/s], turning [rad/s]."""
-        return self._now.twist.value * self._rate
+        return self._now.twist.value * self._own.rate
 
     @property
     def limited(self) -> tuple[str, ...]:
@@ -584,7 +640,7 @@ class Walker:
     @property
     def margin(self) -> float:
         """Static stability margin [m]."""
-        return float(stability_margin(self.robot, self._angles, self.body, self._now.down))
+        return float(stability_margin(self.robot, self.angles, self.body, self.contacts))
 
     def top_speed(self, direction: Sequence[float]) -> float:
         """Return the largest multiple of a twist that the robot can walk at for good.
@@ -594,8 +650,9 @@ class Walker:
         direction : (vx, vy, wz)
             The twist [m/s, m/s, rad/s].
         """
+        doing = self._agenda.doing
         duty = self.gait.duty
-        share, _ = self._doing.there.largest_share(
-            np.array(direction, dtype=float), stance_time=duty * self._doing.tempo.cycle_time, duty=duty
+        share, _ = doing.there.largest_share(
+            np.array(direction, dtype=float), stance_time=duty * doing.tempo.cycle_time, duty=duty
         )
         return share

@@ -39,6 +39,8 @@ class Wish:
         Amplitude of a rhythmic motion of the body with the steps [m], [rad].
     hands : mapping of leg to (x, y, z) or None, optional
         Legs that leave the gait, and where their feet go, in the heading frame [m]; None for a leg that comes back.
+    hand_speeds : mapping of leg to (x, y, z), optional
+        How fast the feet of such legs go from where they are instead, in the heading frame [m/s].
     """
 
     twist: Sequence[float] = (0.0, 0.0, 0.0)
@@ -50,6 +52,7 @@ class Wish:
     cycle_time: float | None = None
     sway: Sequence[float] | None = None
     hands: Mapping[int, Sequence[float] | None] | None = None
+    hand_speeds: Mapping[int, Sequence[float]] | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "twist", numbers("twist", self.twist, ("vx", "vy", "wz")))
@@ -59,6 +62,11 @@ class Wish:
         for name in ("clearance", "lift", "stance_width", "cycle_time"):
             if getattr(self, name) is not None:
                 object.__setattr__(self, name, numbers(name, (getattr(self, name),), (name,))[0])
+        for name in ("hands", "hand_speeds"):
+            given = getattr(self, name)
+            if given is not None:
+                checked = {leg: None if v is None else numbers(name, v, ("x", "y", "z")) for leg, v in given.items()}
+                object.__setattr__(self, name, checked)
 
 
 def numbers(name: str, values: Sequence[float], axes: Sequence[str]) -> tuple[float, ...]:

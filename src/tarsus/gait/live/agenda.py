@@ -1,0 +1,148 @@
+"""What the walker is asked for besides its twist, and what of it is being worked out."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable
+from typing import Any, TypeAlias
+
+import numpy as np
+
+from tarsus.errors import InputError, UnreachableError
+from tarsus.gait.gait import Gait
+from tarsus.gait.live.change import Change, Manner
+from tarsus.gait.live.wish import Wish
+from tarsus.gait.live.workspace import Parts
+
+__all__ = ["Agenda"]
+
+Floats = np.ndarray[Any, Any]
+WorkOut: TypeAlias = Callable[[Manner, bool], Parts[Change | str]]
+
+
+class Agenda:
+    """Holds the manner that is asked for, and gets there by changes, each worked out in parts.
+
+    Parameters
+    ----------
+    doing : Change
+        What the walker does to begin with.
+
+    Attributes
+    ----------
+    wanted : Manner
+        What is asked for.
+    doing : Change
+        What was gone over to last.
+    ready : Change or None
+        What is worked out, and waits for the walk to allow it.
+    refusals : dict of Manner to str
+        What doesn't work at all, and why.
+    """
+
+    def __init__(self, doing: Change) -> None:
+        self.doing = doing
+        self.wanted = doing.manner
+        self.ready: Change | None = None
+        self.refusals: dict[Manner, str] = {}
+        self._asked = doing.manner
+        self._job: Parts[Change | str] | None = None
+
+    def ask(self, wish: Wish, gone: tuple[int, ...], correction: tuple[float, ...]) -> None:
+        """Note what is asked for.
+
+        Parameters
+        ----------
+        wish : Wish
+            The wish; what is None in it stays.
+        gone : tuple of int
+            Legs that are to be hands.
+        correction : tuple of float
+            What the ground asks of the body.
+
+        Raises
+        ------
+        InputError
+            If a value is out of its range, or the gait for another number of legs.
+        UnknownNameError
+            If there is no such gait.
+        """
+        m = self.wanted
+        legs = m.gait.legs
+        gait = m.gait if wish.gait is None else wish.gait
+        if isinstance(gait, str):
+            gait = m.gait if gait == m.gait.name else Gait.named(gait, legs=legs)
+        if not isinstance(gait, Gait):
+            raise InputError(f"the wish's gait is {gait!r}; it must be a name or a Gait")
+        gait.require_legs(legs)
+        asked = Manner(
+            gait=gait,
+            body=m.body if wish.body is None else tuple(wish.body),
+            clearance=m.clearance if wish.clearance is None else wish.clearance,
+            lift=m.lift if wish.lift is None else wish.lift,
+            stance_width=m.stance_width if wish.stance_width is None else wish.stance_width,
+            cycle_time=m.cycle_time if wish.cycle_time is None else wish.cycle_time,
+            sway=m.sway if wish.sway is None else tuple(wish.sway),
+            correction=correction,
+            gone=gone,
+        )
+        if asked.lift < 0:
+            raise InputError(f"the wish's lift is {asked.lift} m; it must not be negative")
+        if asked.cycle_time is not None and asked.cycle_time <= 0:
+            raise InputError(f"the wish's cycle_time is {asked.cycle_time} s; it must be greater than 0")
+        if max(abs(asked.clearance), asked.lift, abs(asked.stance_width)) > _MOST:
+            raise InputError(f"clearance, lift and stance_width of a wish must be at most {_MOST:g} m")
+        if asked != self.wanted:
+            self.wanted, self.refusals = asked, {}
+
+    def think(self, work_out: WorkOut, *, free: bool) -> None:
+        """Do one part of working out the next change.
+
+        Parameters
+        ----------
+        work_out : callable
+            Gives the parts for a manner; its second argument is whether the posture stays.
+        free : bool
+            Whether the walker has done with the last change, so that a further one may begin.
+        """
+        if self._job is not None:
+            try:
+                next(self._job)
+            except StopIteration as done:
+                self._note(done.value)
+            except UnreachableError as error:
+                self._note(str(error))
+        elif free and self.ready is None:
+            asked, stay = self._next_manner()
+            if asked not in (self.doing.manner, *self.refusals):
+                self._asked, self._job = asked, work_out(asked, stay)
+
+    def adopt(self, change: Change) -> None:
+        """Note that a change has been gone over to.
+
+        Parameters
+        ----------
+        change : Change
+            The change.
+        """
+        manner = change.manner if change.whole else self.doing.manner
+        self.doing, self.ready = dataclasses.replace(change, manner=manner), None
+
+    def _note(self, found: Change | str) -> None:
+        self._job = None
+        if isinstance(found, str):
+            self.refusals[self._asked] = found
+        else:
+            self.ready = found
+
+    def _next_manner(self) -> tuple[Manner, bool]:
+        """Return what to change first, how the robot stands or then how it steps; and whether it is the latter."""
+        doing, wanted = self.doing.manner, self.wanted
+        standing = dataclasses.replace(wanted, gait=doing.gait, cycle_time=doing.cycle_time, gone=doing.gone)
+        if standing not in (doing, *self.refusals):
+            return standing, False
+        return dataclasses.replace(doing, gait=wanted.gait, cycle_time=wanted.cycle_time, gone=wanted.gone), True
+
+
+# No length of a robot's stance is greater [m].
+_MOST = 1e3

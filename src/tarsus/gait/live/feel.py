@@ -1,0 +1,132 @@
+"""What the walker makes of what it feels: the ground under each foot, how the body should lean, how feet give way."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from tarsus.gait.live.admittance import Admittance, AdmittanceFilter
+from tarsus.gait.live.carried import carried_share
+from tarsus.gait.live.foot_force import TorqueSense, balanced_forces
+from tarsus.gait.live.levelling import Levelling, LevellingMode
+from tarsus.gait.live.senses import Admitted, Senses
+from tarsus.gait.live.sieve import Sieve
+from tarsus.gait.live.slope import FLAT, ground_plane
+from tarsus.gait.live.tilt import Commanded
+from tarsus.kinematics.mass import centre_of_mass, total_mass
+from tarsus.robot.robot import Robot
+
+__all__ = ["Feel", "Felt"]
+
+Floats = np.ndarray[Any, Any]
+
+_GRAVITY = 9.80665
+# The body's correction is gone over to in steps of these sizes: x, y, z [m], roll, pitch, yaw [rad].
+_STEPS = np.array([0.004, 0.004, 0.003, 0.012, 0.012, 1.0])
+
+
+class Felt(NamedTuple):
+    """What is felt in a tick.
+
+    Attributes
+    ----------
+    contacts : tuple of (bool or None), or None
+        Which feet touch the ground; None where that is not known.
+    correction : tuple of float
+        x, y, z [m], roll, pitch, yaw [rad] to be added to the body's wish.
+    offsets : array, shape (legs,)
+        How far each foot gives way upwards [m].
+    refused : tuple of str
+        Readings that are not believed, and why.
+    """
+
+    contacts: tuple[bool | None, ...] | None
+    correction: tuple[float, ...]
+    offsets: Floats
+    refused: tuple[str, ...]
+
+
+class Feel:
+    """Goes from readings to what they mean for the walk, tick by tick.
+
+    Parameters
+    ----------
+    robot : Robot
+        A single robot.
+    angles, feet : array, shape (legs, 3)
+        Joint angles [rad] and feet in G [m] when it stands.
+    levelling : "level", "follow" or None
+        Whether the body stays level on a slope, follows it, or neither.
+    admittance : Admittance, optional
+        How feet give way to forces; left out, they don't.
+    """
+
+    def __init__(
+        self,
+        robot: Robot,
+        angles: Floats,
+        feet: Floats,
+        *,
+        levelling: LevellingMode | None,
+        admittance: Admittance | None,
+    ) -> None:
+        self._sieve = Sieve(robot)
+        self._plane = FLAT
+        com = centre_of_mass(robot, angles)
+        self.levelling = Levelling(levelling, com=tuple(com.tolist()), carried=carried_share(robot, feet))
+        self._filter = AdmittanceFilter(admittance, robot.legs) if admittance else None
+        self._torques = TorqueSense(robot) if admittance and robot.has_masses else None
+        self._weight = float(total_mass(robot)) * _GRAVITY if robot.has_masses else 0.0
+        self._correction = (0.0,) * 6
+        self._none = np.zeros(robot.legs)
+
+    def step(
+        self, senses: Senses | None, dt: float, *, feet: Floats, contacts: Floats, commanded: Commanded, angles: Floats
+    ) -> Felt:
+        """Take in one tick's readings.
+
+        Parameters
+        ----------
+        senses : Senses, optional
+            The readings.
+        dt : float
+            Time since the last tick [s].
+        feet : array, shape (legs, 3)
+            In G [m].
+        contacts : array of bool, shape (legs,)
+            Which feet the walker has put down.
+        commanded : Commanded
+            How the body is asked to stand.
+        angles : array, shape (legs, 3)
+            Joint angles [rad].
+        """
+        admitted = self._sieve.admit(senses, dt)
+        self._plane = ground_plane(feet, contacts, self._plane)
+        level = self.levelling.step(dt, self._plane, admitted.attitude, commanded)
+        x, y = feet[:, 0].mean(), feet[:, 1].mean()
+        found = np.array([level.x, level.y, float(self._plane.height(x, y)), level.roll, level.pitch, 0.0])
+        if (np.abs(found - self._correction) > _STEPS).any():
+            self._correction = tuple(found.tolist())
+        return Felt(
+            contacts=admitted.contacts,
+            correction=self._correction,
+            offsets=self._offsets(admitted, dt, feet=feet, contacts=contacts, angles=angles),
+            refused=admitted.refused,
+        )
+
+    def _offsets(self, admitted: Admitted, dt: float, *, feet: Floats, contacts: Floats, angles: Floats) -> Floats:
+        """Return how far each foot gives way."""
+        if self._filter is None:
+            return self._none
+        measured = admitted.forces
+        if measured is None and admitted.torques is not None and self._torques is not None:
+            measured = self._torques.forces(angles.tolist(), admitted.torques)
+        if measured is None or not self._weight:
+            return np.array(self._filter.step((None,) * len(feet), dt))
+        wanted = balanced_forces(feet.tolist(), contacts.tolist(), feet[:, :2].mean(axis=0).tolist(), self._weight)
+        errors = [
+            force[2] - float(want) if force is not None and down else None
+            for force, want, down in zip(measured, wanted, contacts.tolist(), strict=True)
+        ]
+        return np.array(self._filter.step(errors, dt))

@@ -1,0 +1,104 @@
+"""Where each foot may be at this moment, while the robot goes over from one stand to another."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from tarsus.gait.live.change import Change
+from tarsus.gait.live.envelope import Envelope
+
+__all__ = ["Footing"]
+
+Floats = np.ndarray[Any, Any]
+
+_SAME = 1e-9
+
+
+class Footing:
+    """The feet's polygons and rest footholds, leg by leg: each leg goes over to new ones with its own next step.
+
+    Parameters
+    ----------
+    change : Change
+        How the robot stands to begin with.
+
+    Attributes
+    ----------
+    bounds : array, shape (legs, 16)
+        Sides of the polygons in which the feet on the ground have to stay [m].
+    rest : complex array, shape (legs,)
+        Where each foot rests, or is to be put down, in the heading frame [m].
+    way : Envelope
+        What limits the twist.
+    stepped : array of bool, shape (legs,)
+        Which feet are where they are to rest now.
+    """
+
+    def __init__(self, change: Change) -> None:
+        self.way: Envelope = change.there
+        self.bounds: Floats = change.there.bounds
+        self.rest: Floats = change.rest
+        self.stepped = np.ones(len(self.rest), dtype=bool)
+        self._landing = self.bounds
+        self._new_rest = self.rest
+        self._old_step = ~self.stepped
+
+    @property
+    def new_rest(self) -> Floats:
+        """Where the feet rest once all have stepped ``(legs,)``, complex [m]."""
+        return self._new_rest
+
+    def begin(self, change: Change, down: Floats) -> None:
+        """Send the feet to new rest footholds.
+
+        Parameters
+        ----------
+        change : Change
+            What is gone over to.
+        down : array of bool, shape (legs,)
+            Which feet are on the ground.
+        """
+        self.way = self.way.meet(change.stepping)
+        moved = np.abs(change.rest - self._new_rest) > _SAME
+        self.stepped = ~moved
+        # A foot in the air lands where it is bound for; its next step is the one that counts.
+        self._old_step = moved & ~down
+        self.rest = np.where(self._old_step, self.rest, change.rest)
+        self._landing, self._new_rest = change.stepping.bounds, change.rest
+        self.bounds = np.where(moved[:, None], self.bounds, np.minimum(self.bounds, self._landing))
+
+    def land(self, landed: Floats) -> None:
+        """Note which feet have been put down in this tick.
+
+        Parameters
+        ----------
+        landed : array of bool, shape (legs,)
+            The feet.
+        """
+        self.rest = np.where(landed, self._new_rest, self.rest)
+        counts, self._old_step = landed & ~self._old_step, self._old_step & ~landed
+        self.stepped = self.stepped | counts
+        self.bounds = np.where(counts[:, None], self._landing, self.bounds)
+
+    def tighten(self, limits: Envelope) -> None:
+        """Keep within further limits too.
+
+        Parameters
+        ----------
+        limits : Envelope
+            The limits.
+        """
+        self.way = self.way.meet(limits)
+        self.bounds = self._landing = np.minimum(self.bounds, limits.bounds)
+
+    def arrive(self, limits: Envelope) -> None:
+        """Go over to the limits of the stand that has been reached.
+
+        Parameters
+        ----------
+        limits : Envelope
+            The limits.
+        """
+        self.way, self.bounds, self._landing = limits, limits.bounds, limits.bounds

@@ -1,0 +1,112 @@
+"""Legs that leave the gait and are moved by hand: each foot goes where it is told, as far as its leg reaches."""
+
+from __future__ import annotations
+
+import cmath
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from tarsus.gait.live.lag import Lag
+from tarsus.gait.live.moment import Moment
+from tarsus.gait.live.workspace import Stand, joint_slack
+from tarsus.robot.robot import Robot
+
+__all__ = ["Hand", "carry_hands", "lift_hand", "reachable_part"]
+
+Floats = np.ndarray[Any, Any]
+
+# How fast a foot follows what it is told [rad/s], and how fast it goes at the most [m/s].
+_BANDWIDTH, _SPEED = 5.0, 0.12
+_TRIED = np.arange(1, 17) / 16
+
+
+class Hand(NamedTuple):
+    """A foot that is moved by hand.
+
+    Attributes
+    ----------
+    place : Lag
+        Where it is in the heading frame ``(3,)`` [m].
+    target : array, shape (3,)
+        Where it goes [m].
+    """
+
+    place: Lag
+    target: Floats
+
+    def step(self, dt: float) -> Hand:
+        """Return the hand after a time.
+
+        Parameters
+        ----------
+        dt : float
+            The time [s].
+        """
+        way = float(np.abs(self.target - self.place.value).max())
+        bandwidth = min(_BANDWIDTH, math.e * _SPEED / max(way, 1e-9))
+        return self._replace(place=self.place.step(self.target, dt, bandwidth=bandwidth))
+
+
+def lift_hand(now: Moment, leg: int) -> Hand:
+    """Return a leg's foot as a hand, which begins where it stands.
+
+    Parameters
+    ----------
+    now : Moment
+        The moment.
+    leg : int
+        The leg; its foot is on the ground.
+    """
+    turn = cmath.exp(-1j * now.yaw)
+    seen = (complex(now.foot[leg]) - now.origin) * turn
+    vx, vy, wz = now.twist.value.tolist()
+    # On the ground, it goes past the body as fast as that walks.
+    past = -(complex(vx, vy) + 1j * wz * seen)
+    here = np.array([seen.real, seen.imag, float(now.ground[leg])])
+    return Hand(Lag(here, np.array([past.real, past.imag, 0.0])), here)
+
+
+def carry_hands(now: Moment, hands: dict[int, Hand], swing_time: float) -> Moment:
+    """Return the moment with the hands where they are.
+
+    Parameters
+    ----------
+    now : Moment
+        The moment.
+    hands : dict of leg to Hand
+        The hands.
+    swing_time : float
+        How long a swing takes [s].
+    """
+    foot, ground, pace = now.foot.copy(), now.ground.copy(), now.pace.copy()
+    turn = cmath.exp(1j * now.yaw)
+    vx, vy, wz = now.twist.value.tolist()
+    for leg, hand in hands.items():
+        x, y, z = hand.place.value.tolist()
+        dx, dy, _ = hand.place.rate.tolist()
+        seen = complex(x, y)
+        foot[leg], ground[leg] = now.origin + turn * seen, z
+        pace[leg] = turn * (complex(dx, dy) + complex(vx, vy) + 1j * wz * seen) * swing_time
+    return now._replace(foot=foot, target=foot, ground=ground, pace=pace)
+
+
+def reachable_part(robot: Robot, stand: Stand, leg: int, start: Floats, wished: Floats) -> float:
+    """Return how much of the straight way from one point to another a foot can go.
+
+    Parameters
+    ----------
+    robot : Robot
+        A single robot.
+    stand : Stand
+        The body.
+    leg : int
+        The leg.
+    start, wished : array, shape (3,)
+        In the heading frame [m].
+    """
+    points = start + _TRIED[:, None] * (wished - start)
+    x, y, z = (np.repeat(points[:, i : i + 1], robot.legs, axis=1) for i in range(3))
+    works = joint_slack(robot.geometry, stand.solve(robot, x, y, z))[:, leg] >= 0
+    return 1.0 if works.all() else float(_TRIED[int(np.argmin(works))] - _TRIED[0])

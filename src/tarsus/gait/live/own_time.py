@@ -1,0 +1,102 @@
+"""The walker's own time: it runs slower wherever the joints could not keep up."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any, TypeVar
+
+import numpy as np
+
+__all__ = ["OwnTime"]
+
+Floats = np.ndarray[Any, Any]
+_T = TypeVar("_T")
+
+# How fast its rate may fall and rise again [1/s]; and how fast it falls to a stop [1/s].
+_CHANGE, _STOP = 3.0, 10.0
+# How often a tick is tried, ever slower, and what of the joints' speed and acceleration it may come to.
+_TRIES, _KEPT = 5, 0.98
+# From which share of the joints' acceleration on to look ahead, what share to aim at then, and how far to look [s].
+_STRAINED, _CALM, _AHEAD = 0.5, 0.75, 0.02
+
+
+class OwnTime:
+    """Goes on by as much of each tick as the joints' speed and acceleration allow.
+
+    The feet's ways stay what they are; only how fast they are gone changes. So a foot that stands stays where it is,
+    and the order of the steps too.
+
+    Parameters
+    ----------
+    angles : array, shape (legs, 3)
+        Joint angles to begin with, at rest [rad].
+    speed, acceleration : array, shape (legs, 3)
+        Greatest of each joint [rad/s], [rad/s^2].
+
+    Attributes
+    ----------
+    angles : array, shape (legs, 3)
+        The joint angles [rad].
+    rate : float
+        How fast its own time runs, at most 1.
+    """
+
+    def __init__(self, angles: Floats, speed: Floats, acceleration: Floats) -> None:
+        self.angles = angles
+        self.rate = 1.0
+        self._speed, self._acceleration = speed, acceleration
+        self._joint_rate = np.zeros_like(angles)
+        self._last_dt = 0.01
+        self._strain = 0.0
+
+    def advance(self, move: Callable[[float], _T], solve: Callable[[_T], Floats], dt: float, *, stop: bool) -> _T:
+        """Return where the walk is after a tick.
+
+        Parameters
+        ----------
+        move : callable
+            From a time of its own [s] to where the walk is then.
+        solve : callable
+            From there to the joint angles ``(legs, 3)`` [rad].
+        dt : float
+            The tick [s].
+        stop : bool
+            Whether to come to a stop.
+        """
+        rate = max(self.rate - _STOP * dt, 0.0) if stop else min(1.0, self.rate + _CHANGE * dt)
+        if self._strain > _STRAINED:
+            rate = min(rate, self._calm_rate(move, solve))
+        between = (dt + self._last_dt) / 2
+        after = move(dt * rate)
+        angles = solve(after)
+        turned = (angles - self.angles) / dt
+        for _ in range(_TRIES):
+            slower = self._slower(turned, rate, between)
+            if slower >= rate:
+                break
+            rate = slower
+            after = move(dt * rate)
+            angles = solve(after)
+            turned = (angles - self.angles) / dt
+        self._strain = float((np.abs(turned - self._joint_rate) / self._acceleration).max()) / between
+        self.angles, self._joint_rate, self.rate, self._last_dt = angles, turned, rate, dt
+        return after
+
+    def _calm_rate(self, move: Callable[[float], _T], solve: Callable[[_T], Floats]) -> float:
+        """Return at which rate the joints keep well within their acceleration on the next bit of the way."""
+        first, second = solve(move(_AHEAD)), solve(move(2 * _AHEAD))
+        bend = np.abs(second - 2 * first + self.angles) / (_AHEAD * _AHEAD)
+        return math.sqrt(_CALM / max(float((bend / self._acceleration).max()), _CALM))
+
+    def _slower(self, turned: Floats, rate: float, dt: float) -> float:
+        """Return at which rate the joints keep within speed and acceleration; `rate` where they do already."""
+        speed, reach = _KEPT * self._speed, _KEPT * self._acceleration * dt
+        if (np.abs(turned) <= speed).all() and (np.abs(turned - self._joint_rate) <= reach).all():
+            return rate
+        size = np.maximum(np.abs(turned), 1e-12)
+        was = self._joint_rate * np.sign(turned)
+        highest = float((np.minimum(speed, was + reach) / size).min())
+        lowest = float(((was - reach) / size).max())
+        share = highest if highest >= lowest else (max(highest, 0.0) + lowest) / 2
+        return rate * min(max(share, 0.0) * 0.999, 1.0)
