@@ -12,6 +12,7 @@ except ImportError:  # the package without its extra: say which
     raise SystemExit("the command line needs click and rich: pip install 'tarsus[cli]'") from None
 
 from tarsus import __version__
+from tarsus.cli.drive import drive
 from tarsus.cli.group import TarsusGroup
 from tarsus.cli.loads import loads
 from tarsus.cli.pose import pose
@@ -47,5 +48,5 @@ def main() -> None:
     """
 
 
-for command in (studio, walk, pose, rest, loads, servos, robots):
+for command in (studio, walk, drive, pose, rest, loads, servos, robots):
     main.add_command(command)

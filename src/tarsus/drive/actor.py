@@ -1,35 +1,15 @@
-"""The robot as a scenario drives it: it lies, gets up, walks, sits down; one tick after the other, in one ground frame."""
+"""The robot as a scenario drives it: it lies, gets up, walks, sits down, all in one ground frame."""
 
 from __future__ import annotations
 
 import inspect
-from collections import deque
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from tarsus.drive.commands import (
-    Clearance,
-    Command,
-    CycleTime,
-    Fold,
-    GaitChange,
-    Ground,
-    HandBack,
-    Lift,
-    MoveBody,
-    MoveHand,
-    PowerOff,
-    Sit,
-    StanceWidth,
-    StandUp,
-    Stop,
-    Sway,
-    Tilt,
-    Walk,
-)
-from tarsus.drive.feeling import Feeling
+from tarsus.drive.commands import Command, PowerOff, Sit, StandUp
+from tarsus.drive.orders import Orders
 from tarsus.errors import TarsusError
 from tarsus.gait.gait import Gait
 from tarsus.gait.live.fold_power import power_off_order
@@ -37,12 +17,11 @@ from tarsus.gait.live.rise import fold, sit_down, stand_up
 from tarsus.gait.live.sequence import Instant, Sequence
 from tarsus.gait.live.sequence_player import SequencePlayer
 from tarsus.gait.live.walker import Walker
-from tarsus.gait.live.wish import BODY_AXES, Wish
 from tarsus.kinematics.leg import forward_kinematics
 from tarsus.kinematics.pose import Pose
 from tarsus.robot.robot import Robot
 
-__all__ = ["TAKES_SENSES", "Actor", "Frame", "leg_number"]
+__all__ = ["TAKES_SENSES", "Actor", "Frame"]
 
 Floats = np.ndarray[Any, Any]
 
@@ -72,23 +51,6 @@ class Frame(NamedTuple):
     gait: Gait
     cycle_time: float
     limited: tuple[str, ...]
-
-
-def leg_number(robot: Robot, name: str) -> int | None:
-    """Return the number of the leg of that name or short name; None where there is none.
-
-    Parameters
-    ----------
-    robot : Robot
-        A single robot.
-    name : str
-        In capitals or not.
-    """
-    for names in (robot.leg_codes, robot.leg_names):
-        lower = [each.lower() for each in names]
-        if name.lower() in lower:
-            return lower.index(name.lower())
-    return None
 
 
 class Actor:
@@ -125,17 +87,13 @@ class Actor:
     ) -> None:
         self.robot, self._tell = robot, tell
         self._first = {"clearance": clearance, "lift": lift}
-        self._asked: dict[str, Any] = {}
-        self._hands: dict[int, Any] = {}
-        self._feeling = Feeling(robot)
-        self._acts: deque[Command] = deque()
+        self.orders = Orders(robot)
         self._base = Pose.from_rpy(0.0, 0.0, 0.0, (0.0, 0.0, 0.0))
         self._gait, self._cycle_time = gait, 0.0
         self._player: SequencePlayer | None = None
         self._act: Command | None = None
         self._walker: Walker | None = self._new_walker()
         self._lies: Instant | None = None
-        self.twist = _STILL
         self._rate = 0.0
         if start != "standing":
             sequence = sit_down(robot, self._walker.angles)
@@ -147,35 +105,13 @@ class Actor:
     def _new_walker(self) -> Walker:
         return Walker(self.robot, self._gait, clearance=self._first["clearance"], lift=self._first["lift"])
 
-    # What it is told.
-
-    def take(self, command: Command) -> None:
-        """Take a command: it holds until another one of its kind."""
-        if isinstance(command, StandUp | Sit | Fold | PowerOff):
-            self._acts.append(command)
-        elif isinstance(command, Walk):
-            self.twist = (command.vx, command.vy, command.turn)
-        elif isinstance(command, Stop):
-            self.twist = _STILL
-        elif isinstance(command, MoveBody | Sway):
-            axes = tuple(float(getattr(command, axis)) for axis in BODY_AXES)
-            self._asked["body" if isinstance(command, MoveBody) else "sway"] = axes
-        elif isinstance(command, GaitChange | Clearance | Lift | StanceWidth | CycleTime):
-            self._asked[command.word] = getattr(command, command.word)
-        elif isinstance(command, MoveHand | HandBack):
-            leg = leg_number(self.robot, command.leg)
-            point = (command.x, command.y, command.z) if isinstance(command, MoveHand) else None
-            self._hands[0 if leg is None else leg] = point
-        elif isinstance(command, Ground | Tilt):
-            self._feeling.take(command, leg_number(self.robot, getattr(command, "leg", "")))
+    # A tick.
 
     @property
     def over(self) -> bool:
         """Whether nothing is going on that ends by itself: no act, no coming to a stop."""
-        stopping = self._walker is not None and self.twist == _STILL and not self._at_rest()
-        return not (self._acts or self._player or stopping)
-
-    # A tick.
+        stopping = self._walker is not None and self.orders.twist == _STILL and not self._at_rest()
+        return not (self.orders.acts or self._player or stopping)
 
     def step(self, dt: float) -> Frame:
         """Go on by one tick.
@@ -185,7 +121,7 @@ class Actor:
         dt : float
             The time since the last one [s].
         """
-        if self._player is None and self._acts:
+        if self._player is None and self.orders.acts:
             self._try_act()
         before = self.now.angles
         if self._player is not None:
@@ -199,16 +135,9 @@ class Actor:
         return self.now
 
     def _walk(self, walker: Walker, dt: float) -> None:
-        going_down = bool(self._acts)
-        wish = Wish(
-            twist=_STILL if going_down else self.twist,
-            hands=dict.fromkeys(self._hands) if going_down else dict(self._hands),
-            **self._asked,
-        )
-        more: dict[str, Any] = {}
-        if TAKES_SENSES and self._feeling.anything:
-            more["senses"] = self._feeling.senses(walker.feet, walker.body)
-        walker.step(wish, dt, **more)
+        senses = self.orders.feeling.senses(walker.feet, walker.body)
+        more = {"senses": senses} if TAKES_SENSES else {}
+        walker.step(self.orders.wish(), dt, **more)
         self._gait, self._cycle_time = walker.gait, walker.cycle_time
 
     def _at_rest(self) -> bool:
@@ -220,7 +149,7 @@ class Actor:
             return self._shown(self._player.now)
         walker = self._walker
         if walker is None:
-            assert self._lies is not None  # noqa: S101  # one of the three is always there
+            assert self._lies is not None  # one of the three is always there
             return self._shown(self._lies, doing="lying")
         return Frame(
             walker.angles,
@@ -255,7 +184,7 @@ class Actor:
 
     def _try_act(self) -> None:
         """Begin the next act as soon as the robot is at rest; one that can't be is refused with the reason."""
-        act = self._acts[0]
+        act = self.orders.acts[0]
         stands = self._walker is not None
         if stands and isinstance(act, StandUp):
             self._refuse("it stands already", act)
@@ -264,10 +193,10 @@ class Actor:
         elif not stands and isinstance(act, Sit):
             self._refuse("it sits already", act)
         elif self._at_rest():
-            self._begin(self._acts.popleft())
+            self._begin(self.orders.acts.popleft())
 
     def _refuse(self, why: str, act: Command) -> None:
-        self._acts.remove(act)
+        self.orders.acts.remove(act)
         self._tell("refused", f"{act.word}: {why}")
 
     def _begin(self, act: Command) -> None:
@@ -277,8 +206,7 @@ class Actor:
                 falls = power_off_order(self.robot, angles).falls
                 self._tell("power", "joints released: coxae, femurs, tibiae; " + ("; ".join(falls) or "nothing falls"))
                 return
-            plan = {Sit: sit_down, Fold: fold}.get(type(act))
-            sequence = stand_up(self.robot, angles, **self._first) if plan is None else plan(self.robot, angles)
+            sequence = self._plan(act, angles)
         except TarsusError as error:
             self._tell("refused", f"{act.word}: {error}")
             return
@@ -286,13 +214,18 @@ class Actor:
         self._base = _plane(self.now.body) @ _plane(start).inverse()
         self._player, self._act = SequencePlayer(sequence), act
 
+    def _plan(self, act: Command, angles: Floats) -> Sequence:
+        if isinstance(act, StandUp):
+            return stand_up(self.robot, angles, clearance=self._first["clearance"], lift=self._first["lift"])
+        return sit_down(self.robot, angles) if isinstance(act, Sit) else fold(self.robot, angles)
+
     def _end_act(self, sequence: Sequence) -> None:
         end = sequence.at(sequence.duration)
         self._player, self._lies = None, end
         if isinstance(self._act, StandUp):
             self._base = self._base @ _plane(end.body)
             self._walker, self._lies = self._new_walker(), None
-            self._hands = {leg: point for leg, point in self._hands.items() if point is not None}
+            self.orders.forget_hands_back()
         else:
             self._walker = None
         self._act = None

@@ -6,7 +6,6 @@ import dataclasses
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cache
 from types import MappingProxyType
 from typing import ClassVar
 
@@ -237,7 +236,6 @@ COMMANDS: Mapping[str, type[Command]] = MappingProxyType({kind.word: kind for ki
 """Every command by its word."""
 
 
-@cache
 def quantities(kind: type[Command]) -> Mapping[str, Quantity]:
     """Return the quantities of a command by their names.
 

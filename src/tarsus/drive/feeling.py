@@ -31,11 +31,6 @@ class Feeling:
         self._tilt = np.zeros(2)
         self._contacts = self._attitude = False
 
-    @property
-    def anything(self) -> bool:
-        """Whether any sense is there."""
-        return self._contacts or self._attitude
-
     def take(self, command: Ground | Tilt, leg: int | None) -> None:
         """Change the ground; from then on the sense that tells of it is there."""
         if isinstance(command, Tilt):
@@ -43,8 +38,8 @@ class Feeling:
         elif leg is not None:
             self._height[leg], self._contacts = command.height, True
 
-    def senses(self, feet: np.ndarray[Any, Any], body: Pose) -> Senses:
-        """Return what is felt.
+    def senses(self, feet: np.ndarray[Any, Any], body: Pose) -> Senses | None:
+        """Return what is felt; None where there is no sense at all.
 
         Parameters
         ----------
@@ -53,6 +48,8 @@ class Feeling:
         body : Pose
             The body's pose in G, as it would be on flat ground.
         """
+        if not (self._contacts or self._attitude):
+            return None
         contacts = feet[:, 2] <= self._height + _TOUCH if self._contacts else None
         attitude = tuple(np.asarray(body.rpy)[:2] + self._tilt) if self._attitude else None
         return Senses(contacts=contacts, attitude=attitude)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import re
 import tomllib
+from collections.abc import Callable
 from decimal import Decimal
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -116,7 +117,7 @@ def _wrong(where: str, problems: list[str]) -> InputError:
 
 
 # How each setting is written, and the way from its key to SI and back.
-_SETTINGS = {
+_SETTINGS: dict[str, tuple[str, Callable[[Any], Any], Callable[[Any], Any]]] = {
     "name": ("name", str, str),
     "robot": ("robot", str, str),
     "rate": ("rate_hz", float, to_decimal),
@@ -239,5 +240,7 @@ def write_scenario(scenario: Scenario, path: str | os.PathLike[str]) -> None:
 def _quoted(value: Any) -> Any:
     """Return a document with its keys as TOML wants them: legs may have names of several words."""
     if isinstance(value, dict):
-        return {key if re.fullmatch(r"[A-Za-z0-9_-]+", key) else toml_string(key): _quoted(v) for key, v in value.items()}
+        return {
+            key if re.fullmatch(r"[A-Za-z0-9_-]+", key) else toml_string(key): _quoted(v) for key, v in value.items()
+        }
     return [_quoted(item) for item in value] if isinstance(value, list) else value

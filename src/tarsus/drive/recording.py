@@ -91,9 +91,7 @@ class Recording:
         Margins and loads mean something for these.
         """
         edges = np.flatnonzero(np.diff(np.concatenate([[True], self.belly, [True]]).astype(int)))
-        return tuple(
-            self._part(int(first), int(end)) for first, end in edges.reshape(-1, 2) if end - first > 1
-        )
+        return tuple(self._part(int(first), int(end)) for first, end in edges.reshape(-1, 2) if end - first > 1)
 
     def _part(self, first: int, end: int) -> Motion:
         whole, rows = self.motion, slice(first, end)

@@ -8,14 +8,16 @@ from typing import Any
 
 import numpy as np
 
-from tarsus.drive.actor import TAKES_SENSES, Actor, Frame, leg_number
+from tarsus.drive.actor import TAKES_SENSES, Actor, Frame
 from tarsus.drive.commands import Command, GaitChange, Ground, Tilt
+from tarsus.drive.orders import leg_number
 from tarsus.drive.recording import Event, Recording
 from tarsus.drive.scenario import Scenario
 from tarsus.drive.wording import command_text
 from tarsus.errors import InputError, UnknownNameError
 from tarsus.gait.gait import Gait
-from tarsus.gait.live.guard import Guard
+from tarsus.gait.live.guard import Guard, GuardBounds
+from tarsus.gait.live.tempo import joint_limits
 from tarsus.gait.motion import Motion
 from tarsus.gait.setup import Setup
 from tarsus.gait.spacing import default_foot_distance
@@ -95,9 +97,12 @@ class _Run:
             gait=gait,
             clearance=scenario.clearance,
             lift=scenario.lift,
-            tell=lambda kind, text: self._tell(kind, text),
+            tell=self._tell,
         )
-        self._guard = Guard(robot, start=self._actor.now.angles) if guard else None
+        speed, acceleration = joint_limits(robot, None, None)
+        # Where a servo's speed is unknown, walker and guard have to assume the same.
+        bounds = GuardBounds.of(robot, speed=speed, acceleration=acceleration)
+        self._guard = Guard(robot, bounds=bounds, start=self._actor.now.angles) if guard else None
         self._states = ["passing"]
         self._frames = [self._actor.now]
         self._sent = [self._actor.now.angles]
@@ -127,7 +132,7 @@ class _Run:
 
     def _give(self, command: Command) -> None:
         self._tell("command", command_text(command))
-        self._actor.take(command)
+        self._actor.orders.take(command)
 
     def _tick(self) -> None:
         scenario, number = self._scenario, len(self._times)
@@ -140,7 +145,7 @@ class _Run:
         self._note(self._frames[-1], frame)
         self._frames.append(frame)
         self._times.append(time)
-        self._wishes.append(self._actor.twist)
+        self._wishes.append(self._actor.orders.twist)
 
     def _watched(self, frame: Frame, dt: float) -> np.ndarray[Any, Any]:
         """Return the angles that are sent."""
@@ -246,4 +251,3 @@ def _past(done: np.ndarray[Any, Any], rest: np.ndarray[Any, Any]) -> np.ndarray[
 def _locked(array: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
     array.setflags(write=False)
     return array
-

@@ -1,4 +1,4 @@
-"""A scenario: a robot, how it is found, and what it is told at which moment. A value; files and text are forms of it."""
+"""A scenario: a robot, how it is found, and what it is told at which moment."""
 
 from __future__ import annotations
 
@@ -97,7 +97,9 @@ class Scenario:
             )
         last = self.duration if self.duration is not None else max((c.at for c in self.commands), default=0.0)
         if last * self.rate > _MOST_TICKS:
-            raise InputError(f"{last:g} s at {self.rate:g} Hz are {last * self.rate:.3g} ticks, more than {_MOST_TICKS}")
+            raise InputError(
+                f"{last:g} s at {self.rate:g} Hz are {last * self.rate:.3g} ticks, more than {_MOST_TICKS}"
+            )
 
     @property
     def timeline(self) -> str:

@@ -10,13 +10,11 @@ from pydantic_core import PydanticCustomError, core_schema
 
 from tarsus.drive.commands import COMMANDS, GAIT_NAMES, LATEST, Command, MoveBody, Sway, Tilt, Walk
 from tarsus.drive.quantities import Quantity
+from tarsus.drive.scenario import STARTS
 from tarsus.drive.wording import takes
 from tarsus.robot.fields import Choice, Number, Numbers, Text, refuse
 
-__all__ = ["RATES", "SCALARS", "STARTS", "TABLES", "WORDS", "At", "ScenarioFile"]
-
-STARTS = ("standing", "sitting", "folded")
-"""How the robot may be found."""
+__all__ = ["RATES", "SCALARS", "TABLES", "WORDS", "At", "ScenarioFile"]
 
 RATES = (20.0, 1000.0)
 """The least and the greatest rate [1/s]."""

@@ -182,7 +182,9 @@ class _Reader:
         try:
             return str(json.loads(token.text))
         except ValueError:
-            raise _WrongError(f"{token.text} is no text: a backslash in it must stand before n, t, \\ or a quote") from None
+            raise _WrongError(
+                f"{token.text} is no text: a backslash in it must stand before n, t, \\ or a quote"
+            ) from None
 
     def _next_is(self, kind: str, text: str) -> bool:
         return bool(self._tokens) and self._tokens[-1] == (kind, text)

@@ -70,7 +70,9 @@ def command_from(kind: type[Command], at: Decimal, numbers: Mapping[str, Decimal
             raise ValueError("speed and heading say the same as vx and vy: give the ones or the others")
         # Of straight to the left, rounding leaves a little forward.
         parts = (math.cos(heading or 0.0), math.sin(heading or 0.0))
-        si |= {axis: speed * part if abs(part) > _ROUNDING else 0.0 for axis, part in zip(("vx", "vy"), parts, strict=True)}
+        si |= {
+            axis: speed * part if abs(part) > _ROUNDING else 0.0 for axis, part in zip(("vx", "vy"), parts, strict=True)
+        }
     return kind(float(at), **si, **names)
 
 

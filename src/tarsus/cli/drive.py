@@ -1,0 +1,153 @@
+"""`tarsus drive`: run a scenario, tell how it went, write what happened."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from tarsus.cli.folder import make_folder
+from tarsus.cli.output import print_json, progress_bar, show
+from tarsus.cli.values import examples, json_option, number_option
+
+if TYPE_CHECKING:
+    from rich.table import Table
+
+    from tarsus.drive.recording import Recording
+    from tarsus.load.loads import Loads
+
+__all__ = ["drive"]
+
+_DEFAULT_ROBOT = "strider"
+
+
+@click.command(
+    epilog=examples(
+        'tarsus drive --dry "at 0 s: walk 0.1 m/s; at 3 s: gait wave; at 6 s: stop"',
+        'tarsus drive --dry "at 0 s: walk 60 mm/s turn 10 deg/s" --robot phantomx --rate 50 --json',
+        'tarsus drive --dry "at 0 s: body pitch 5 deg; at 1 s: sit" --out driven --no-animation',
+    )
+)
+@click.argument("scenario", metavar="SCENARIO")
+@click.option("--dry", is_flag=True, help="Without servos: compute what would happen.")
+@click.option("--robot", metavar="ROBOT", help="Drive this one.  [default: the scenario's, else strider]")
+@click.option("--out", type=click.Path(path_type=Path), metavar="DIR", help="Write tables, motion and pictures here.")
+@click.option("--no-animation", is_flag=True, help="Leave out the animation (of the first 20 s at most).")
+@click.option("--no-guard", is_flag=True, help="Let everything through.")
+@number_option("--rate", "HZ", "Ticks per second.  [default: the scenario's, else 100]")
+@json_option
+def drive(
+    scenario: str,
+    dry: bool,
+    robot: str | None,
+    out: Path | None,
+    no_animation: bool,
+    no_guard: bool,
+    rate: float | None,
+    as_json: bool,
+) -> int:
+    """Drive a robot through a scenario: a timeline of commands.
+
+    SCENARIO is the path of a scenario file (TOML), or the timeline itself: commands such as "at 2 s: walk 0.1 m/s",
+    with semicolons between them. The exit code is 0 only if nothing was refused, the guard had nothing to do, and all
+    of the motion is possible.
+    """
+    from tarsus.drive.run import run
+    from tarsus.drive.summary import drive_summary
+
+    if not dry:
+        raise click.UsageError("real servos come later; --dry computes what they would do")
+    if out is not None:
+        make_folder(out)
+    told = _scenario(scenario, rate)
+    recording = run(told, robot=robot or told.robot or _DEFAULT_ROBOT, guard=not no_guard)
+    found = _loads(recording)
+    summary = {**drive_summary(recording), "loads": _load_numbers(found)}
+    if not as_json:
+        from tarsus.report.tables import verdict
+
+        show(_table(summary), verdict(summary))
+    files = [] if out is None else _write(recording, out, animation=not no_animation, quiet=as_json)
+    if as_json:
+        print_json({**summary, "files": [str(file) for file in files]})
+    for file in files if not as_json else ():
+        click.echo(f"wrote {file}")
+    return 0 if summary["possible"] else 1
+
+
+def _scenario(text: str, rate: float | None) -> Any:
+    """Return the scenario of a file, or of a timeline."""
+    import dataclasses
+
+    from tarsus.drive.scenario import Scenario
+
+    # What has a colon and a word before it is no file's name.
+    is_timeline = text.lstrip().startswith("at ") and not Path(text).is_file()
+    told = Scenario.from_text(text) if is_timeline else Scenario.load(text)
+    return told if rate is None else dataclasses.replace(told, rate=rate)
+
+
+def _loads(recording: Recording) -> Loads | None:
+    """Return the loads of the longest stretch in which the body is off the ground, where masses are known."""
+    from tarsus.load.loads import loads
+
+    if not recording.standing or not recording.robot.has_masses:
+        return None
+    longest = max(recording.standing, key=lambda part: part.duration)
+    return loads(recording.robot, longest) if len(longest.time) > 2 else None
+
+
+def _load_numbers(found: Loads | None) -> dict[str, Any] | None:
+    """Return each kind of joint's greatest torque, and its factor where the servo is known."""
+    if found is None:
+        return None
+    from tarsus.load.verdict import joint_verdicts
+    from tarsus.report.loads_summary import worst_of_each
+
+    return {
+        verdict.joint: {"leg": verdict.leg, "peak_nm": verdict.peak, "factor": verdict.factor}
+        for verdict in worst_of_each(joint_verdicts(found))
+    }
+
+
+def _write(recording: Recording, out: Path, *, animation: bool, quiet: bool) -> list[Path]:
+    from tarsus.cli.files import write_walk
+    from tarsus.report.style import save_figure
+    from tarsus.report.timeline import plot_timeline
+
+    log, motion, picture = out / "log.csv", out / "motion.npz", out / "timeline.png"
+    recording.to_csv(log)
+    recording.motion.save(motion)
+    save_figure(plot_timeline(recording), picture)
+    with progress_bar(wanted=not quiet) as progress:
+        return [log, motion, picture, *write_walk(recording.motion, out, animation=animation, progress=progress)]
+
+
+def _table(summary: dict[str, Any]) -> Table:
+    """Return the summary as a table of two columns."""
+    from rich.table import Table
+
+    end, margin = summary["end"], summary["least_margin"]
+    table = Table(box=None, show_header=False, pad_edge=False)
+    table.add_row("robot", summary["robot"])
+    if summary["scenario"]:
+        table.add_row("scenario", summary["scenario"])
+    table.add_row("duration", f"{summary['duration_s']:.2f} s at {summary['rate_hz']:g} ticks a second")
+    table.add_row("walked", f"{summary['walked_s']:.2f} s, {summary['way_mm']:.0f} mm, {summary['steps']} steps")
+    table.add_row("gaits", ", ".join(summary["gaits"]))
+    table.add_row("ends at", f"x {end['x_mm']:.1f} mm, y {end['y_mm']:.1f} mm, turned {end['turned_deg']:.1f} deg")
+    table.add_row("top speed", f"{summary['top_speed_mm_s']:.1f} mm/s, {summary['top_turn_deg_s']:.1f} deg/s")
+    table.add_row(
+        "least margin", "it never stood" if margin is None else f"{margin['mm']:.1f} mm at {margin['at_s']:.2f} s"
+    )
+    for joint, load in (summary["loads"] or {}).items():
+        factor = "" if load["factor"] != load["factor"] else f", a factor of {load['factor']:.2f}"
+        table.add_row(f"greatest {joint}", f"{load['peak_nm']:.3f} N m ({load['leg']}){factor}")
+    for limit in summary["limits"]:
+        table.add_row("limited", f"{limit['from_s']:.2f} to {limit['until_s']:.2f} s: {limit['text']}")
+    number = sum(summary["interventions"].values())
+    table.add_row("guard", f"{number} intervention{'s' * (number != 1)}" if summary["guard"] else "none")
+    for assumed in summary["assumed"]:
+        table.add_row("assumed", assumed)
+    return table

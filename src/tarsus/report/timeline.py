@@ -1,0 +1,218 @@
+"""The timeline of a scenario: what the robot was told and what it did, one panel under the other."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tarsus.drive.recording import Event, Recording
+from tarsus.report.gait_diagram import draw_stance
+from tarsus.report.style import INK, PALE, WARNING, new_figure, thinned, tidy_axes
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+__all__ = ["plot_timeline"]
+
+_DONE, _OTHER = "#0072B2", "#D55E00"
+_SHADE, _LIMITED = "#e9e9e9", "#f6d58a"
+# Width of the panels [inches], and of a character of their labels in it.
+_WIDTH, _LETTER = 9.6, 0.062
+_LONGEST = 44
+
+
+def plot_timeline(recording: Recording) -> Figure:
+    """Draw commands, steps, speed asked for and walked, the body, and the stability margin over time.
+
+    Parameters
+    ----------
+    recording : Recording
+        From `tarsus.drive.run.run`.
+
+    Returns
+    -------
+    Figure
+        To be saved by `tarsus.report.style.save_figure`, or shown in a notebook.
+
+    Raises
+    ------
+    TarsusError
+        If matplotlib is not installed.
+    """
+    motion = recording.motion
+    labels = _rows(recording)
+    told = 0.19 * (1 + max((row for _, row, _ in labels), default=0)) + 0.1
+    heights = [told, 0.24 * motion.robot.legs, 1.25, 1.0, 1.25, 1.15]
+    figure = new_figure(width=_WIDTH + 1, height=sum(heights) + 1.9)
+    axes = figure.subplots(len(heights), 1, sharex=True, height_ratios=heights)
+    for panel in axes:
+        panel.set_xlim(0, motion.duration)
+    _draw_commands(axes[0], labels)
+    tidy_axes(axes[1], y="leg")
+    draw_stance(axes[1], motion)
+    _draw_gaits(axes[1], recording)
+    tidy_axes(axes[2], y="speed\n(mm/s)")
+    _draw_speed(axes[2], recording)
+    tidy_axes(axes[3], y="turning\n(deg/s)")
+    _draw_wish(axes[3], recording, np.degrees(recording.wished[:, 2]), np.degrees(recording.done[:, 2]))
+    tidy_axes(axes[4], y="body height\n(mm)")
+    _draw_body(axes[4], recording)
+    tidy_axes(axes[5], x="time (s)", y="stability\nmargin (mm)")
+    _draw_margin(axes[5], recording)
+    for panel in axes[1:]:
+        _shade(panel, recording)
+        for event in _of(recording, "command"):
+            panel.axvline(event.time, color=PALE, linewidth=0.6, linestyle=":", zorder=0)
+    figure.align_ylabels(axes[1:])
+    figure.suptitle(_title(recording), x=0.01, ha="left", color=INK)
+    return figure
+
+
+def _title(recording: Recording) -> str:
+    name = recording.scenario.name
+    text = f"{recording.robot.name}: {name}" if name else recording.robot.name
+    number = sum(recording.interventions.values())
+    guard = f"{number} intervention{'s' * (number != 1)} of the guard" if recording.guard else "no guard"
+    return f"{text}. Grey: lying or getting up; yellow: less than wished for; {guard}"
+
+
+def _of(recording: Recording, *kinds: str) -> list[Event]:
+    return [event for event in recording.events if event.kind in kinds]
+
+
+def _rows(recording: Recording) -> list[tuple[Event, int, str]]:
+    """Return the labels, each with the first row in which it has room."""
+    scale = recording.motion.duration / _WIDTH
+    ends: list[float] = []
+    found = []
+    for event in _of(recording, "command", "refused", "power"):
+        text = event.text if len(event.text) <= _LONGEST else event.text[: _LONGEST - 3] + "..."
+        width = (len(text) + 2) * _LETTER * scale
+        start = _left(event.time, width, recording.motion.duration)
+        row = next((row for row, end in enumerate(ends) if end <= start), len(ends))
+        ends[row : row + 1] = [start + width]
+        found.append((event, row, text))
+    return found
+
+
+def _left(time: float, width: float, duration: float) -> float:
+    """Return where a label begins: at its moment, or before it where it would not fit."""
+    return time if time + width <= duration else max(time - width, 0.0)
+
+
+def _draw_commands(axes: Axes, labels: list[tuple[Event, int, str]]) -> None:
+    rows = 1 + max((row for _, row, _ in labels), default=0)
+    axes.set_ylim(rows - 0.4, -0.6)
+    axes.axis("off")
+    scale = float(axes.get_xlim()[1]) / _WIDTH
+    for event, row, text in labels:
+        colour = WARNING if event.kind == "refused" else INK
+        right = _left(event.time, (len(text) + 2) * _LETTER * scale, float(axes.get_xlim()[1])) < event.time
+        axes.plot([event.time] * 2, [row - 0.35, rows - 0.4], color=PALE, linewidth=0.6, linestyle=":")
+        axes.plot([event.time] * 2, [row - 0.35, row + 0.35], color=colour, linewidth=1.6)
+        axes.annotate(
+            text,
+            (event.time, row),
+            xytext=(-4 if right else 4, 0),
+            textcoords="offset points",
+            ha="right" if right else "left",
+            va="center",
+            fontsize=8,
+            color=colour,
+            annotation_clip=False,
+        )
+
+
+def _draw_gaits(axes: Axes, recording: Recording) -> None:
+    """Write each gait over the steps, from where it begins."""
+    time, gaits = recording.motion.time, np.array(recording.gaits)
+    changes = [0, *(1 + np.flatnonzero(gaits[1:] != gaits[:-1]))]
+    top = axes.get_ylim()[1]
+    for start in changes:
+        if start:
+            axes.axvline(float(time[start]), color=INK, linewidth=1.2)
+        axes.annotate(
+            str(gaits[start]),
+            (float(time[start]), top),
+            xytext=(3, 2),
+            textcoords="offset points",
+            fontsize=8,
+            color=INK,
+            annotation_clip=False,
+        )
+
+
+def _draw_speed(axes: Axes, recording: Recording) -> None:
+    wished, done = (np.hypot(*twist[:, :2].T) * 1000 for twist in (recording.wished, recording.done))
+    _draw_wish(axes, recording, wished, done)
+    for event in _of(recording, "limit"):
+        axes.axvspan(event.time, event.until, color=_LIMITED, alpha=0.6, linewidth=0, zorder=0)
+    # A wish far beyond what the robot can do would leave nothing to be seen of what it does.
+    high = max(float(done.max()) * 1.6, 10.0)
+    if wished.max() > high:
+        axes.set_ylim(-0.05 * high, high)
+        axes.annotate(
+            f"wished for: up to {wished.max():.0f}",
+            (1, 1),
+            xycoords="axes fraction",
+            xytext=(-4, -4),
+            textcoords="offset points",
+            ha="right",
+            va="top",
+            fontsize=8,
+            color=PALE,
+        )
+
+
+def _draw_wish(axes: Axes, recording: Recording, wished: Any, done: Any) -> None:
+    shown, time = thinned(recording.motion), recording.motion.time
+    axes.plot(time[shown], wished[shown], color=PALE, linewidth=1.3, linestyle=(0, (4, 2)), label="wished for")
+    axes.plot(time[shown], done[shown], color=_DONE, linewidth=1.6, label="done")
+    axes.legend(loc="upper left", fontsize=8, frameon=False, ncols=2, borderaxespad=0.1)
+    low, high = axes.get_ylim()
+    # Room for the legend.
+    axes.set_ylim(low, high + 0.25 * (high - low))
+
+
+def _draw_body(axes: Axes, recording: Recording) -> None:
+    motion, shown = recording.motion, thinned(recording.motion)
+    axes.plot(motion.time[shown], motion.body.position[shown, 2] * 1000, color=INK, linewidth=1.5, label="height")
+    beside = axes.twinx()
+    beside.spines["top"].set_visible(False)
+    roll, pitch, _ = np.degrees(motion.body.rpy).T
+    beside.plot(motion.time[shown], roll[shown], color=_DONE, linewidth=1.2, label="roll")
+    beside.plot(motion.time[shown], pitch[shown], color=_OTHER, linewidth=1.2, label="pitch")
+    most = max(float(np.abs([roll, pitch]).max()) * 1.4, 2.0)
+    beside.set_ylim(-most, most)
+    beside.set_ylabel("tilt (deg)", color=INK)
+    low, high = axes.get_ylim()
+    axes.set_ylim(low, high + 0.35 * (high - low))
+    lines = [*axes.get_lines(), *beside.get_lines()]
+    axes.legend(
+        lines, ["height", "roll", "pitch"], loc="upper left", fontsize=8, frameon=False, ncols=3, borderaxespad=0.1
+    )
+
+
+def _draw_margin(axes: Axes, recording: Recording) -> None:
+    motion, shown = recording.motion, thinned(recording.motion)
+    usable = np.isfinite(motion.margin) & ~recording.belly
+    margin = np.where(usable, motion.margin, np.nan) * 1000
+    axes.plot(motion.time[shown], margin[shown], color=INK, linewidth=1.2)
+    axes.axhline(0, color=WARNING, linewidth=1.1, linestyle=(0, (6, 3)))
+    for event in _of(recording, "guard"):
+        axes.axvline(event.time, color=WARNING, linewidth=1.4)
+    if usable.any():
+        high = max(float(np.nanmax(margin)), 5.0)
+        axes.set_ylim(min(-0.1 * high, float(np.nanmin(margin)) * 1.1), 1.1 * high)
+
+
+def _shade(axes: Axes, recording: Recording) -> None:
+    """Shade when the robot lies, gets up or goes down."""
+    upright = {"standing", "walking", "stopping"}
+    lying: np.ndarray[Any, Any] = np.array([False, *(each not in upright for each in recording.doing), False])
+    edges = np.flatnonzero(np.diff(lying.astype(int))).reshape(-1, 2)
+    time = recording.motion.time
+    for start, end in edges:
+        axes.axvspan(float(time[start]), float(time[min(end, len(time) - 1)]), color=_SHADE, linewidth=0, zorder=0)
