@@ -115,6 +115,21 @@ class Feel:
             refused=admitted.refused,
         )
 
+    def level(self, targets: Floats) -> Floats:
+        """Return how high the ground is taken to be at places.
+
+        Parameters
+        ----------
+        targets : complex array, shape (legs,)
+            The places in G [m].
+
+        Returns
+        -------
+        array, shape (legs,)
+            Heights [m].
+        """
+        return np.asarray(self._plane.height(targets.real, targets.imag))
+
     def _offsets(self, admitted: Admitted, dt: float, *, feet: Floats, contacts: Floats, angles: Floats) -> Floats:
         """Return how far each foot gives way."""
         if self._filter is None:

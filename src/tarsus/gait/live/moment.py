@@ -25,6 +25,8 @@ FREEZE = 0.6
 TIE = 1e-9
 """What counts as the same moment [cycles]."""
 
+# Within which share of the swing a foot that has met the ground comes to rest on it.
+_GIVE = 0.1
 # Below this speed [m/s] of the feet past the body, a robot told to stand is taken to be stopping: it steps to rest.
 _CREEPING = 0.01
 # A foot this near to its rest foothold is there [m]; a speed this low is none [m/s].
@@ -99,7 +101,7 @@ class Moment(NamedTuple):
     def _settling_height(self) -> Floats:
         """Return how a foot that has met the ground comes to rest on it: the quintic from there."""
         since = np.where(np.isfinite(self.met), self.met, 0.0)
-        left = 1 - since
+        left = np.minimum(1 - since, _GIVE)
         x = np.clip((self.share - since) / left, 0.0, 1.0)
         slope = self.met_speed * left
         rest = self.ground - self.met_height - slope
@@ -303,11 +305,12 @@ def meet_ground(now: Moment, met: Floats, lift: float) -> Moment:
     step = 1e-4
     speed = (now._replace(share=np.minimum(now.share + step, 1.0)).height(lift) - height) / step
     left = 1 - now.share
+    give = np.minimum(left, _GIVE)
     # What a foot still goes while it comes to rest, with its speed falling evenly.
     return now._replace(
         target=np.where(met, now.foot + now.pace * left / 3, now.target),
         met=np.where(met, now.share, now.met),
         met_height=np.where(met, height, now.met_height),
         met_speed=np.where(met, speed, now.met_speed),
-        ground=np.where(met, height + speed * left / 3, now.ground),
+        ground=np.where(met, height + speed * give / 3, now.ground),
     )

@@ -26,6 +26,7 @@ from tarsus.gait.live.own_time import OwnTime
 from tarsus.gait.live.posture import LIFT, stand_of, swayed
 from tarsus.gait.live.search import Search
 from tarsus.gait.live.senses import Senses
+from tarsus.gait.live.support import support_sets
 from tarsus.gait.live.tempo import joint_limits
 from tarsus.gait.live.tilt import Commanded
 from tarsus.gait.live.wish import Wish
@@ -50,6 +51,8 @@ _BODY_SPEED, _BODY_TURN = 0.08, 0.5
 _LONGEST_TICK = 0.05
 # In which time a change that waits for room slows the walk down by a factor of e [s].
 _PATIENCE = 1.0
+# How far inside their support the feet left must hold the robot when a leg is taken out of the gait [m].
+_LEAST_MARGIN = 0.01
 # How near to its target a twist counts as steady [m/s, rad/s].
 _STEADY = 1e-4
 # How near the posture counts as reached [m, rad]; what share of the swing is over before ground may be met, and how
@@ -242,6 +245,19 @@ class Walker:
     # Changes of how it stands and steps.
 
     def _work_out(self, manner: Manner, stay: bool, *, at_once: bool = False) -> Parts[Change | str]:
+        if manner.gone:
+            yield
+            sets = support_sets(manner.gait, manner.gone)
+            margin = float(stability_margin(self.robot, self.angles, self.body, sets).min())
+            if margin < _LEAST_MARGIN:
+                names = " and ".join(self.robot.leg_names[leg] for leg in manner.gone)
+                return (
+                    f"hand: without {names} the {manner.gait.name} would stand {1000 * margin:.0f} mm inside its "
+                    f"support; {1000 * _LEAST_MARGIN:.0f} mm is the least. A gait with more feet down may do"
+                )
+        return (yield from self._posed(manner, stay, at_once=at_once))
+
+    def _posed(self, manner: Manner, stay: bool, *, at_once: bool) -> Parts[Change | str]:
         return work_out(
             self.robot,
             manner,
@@ -340,7 +356,7 @@ class Walker:
         """Return which legs are to be out of the gait."""
         gone = set(self._agenda.wanted.gone)
         for leg, point in [*(wish.hands or {}).items(), *(wish.hand_speeds or {}).items()]:
-            if not (isinstance(leg, int) and 0 <= leg < self.robot.legs):
+            if leg not in range(self.robot.legs):
                 raise InputError(f"hand {leg!r}: the robot has the legs 0 to {self.robot.legs - 1}")
             (gone.discard if point is None else gone.add)(leg)
         return tuple(sorted(gone))
@@ -487,7 +503,7 @@ class Walker:
             steps=steps,
             lands=lands,
             rest=self._footing.rest,
-            level=np.zeros(legs),
+            level=np.zeros(legs) if self._feel is None else self._feel.level(now.foot),
         )
 
     def _posture_bandwidth(self) -> float:
