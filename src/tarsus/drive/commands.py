@@ -12,6 +12,7 @@ from typing import ClassVar
 from tarsus.drive.quantities import UNITS, Quantity, quantity
 from tarsus.errors import InputError, UnknownNameError
 from tarsus.gait.gait import GAITS
+from tarsus.robot.units import to_decimal
 
 __all__ = [
     "COMMANDS",
@@ -61,21 +62,22 @@ class Command:
     at: float
 
     def __post_init__(self) -> None:
-        _require(f"{self.word}: at", self.at, 0.0, LATEST, "s", self.at)
+        _require(f"{self.word}: at", self.at, 0.0, LATEST, "s")
         for each in quantities(type(self)).values():
             value = getattr(self, each.name)
-            _require(f"{self.word} at {self.at:g} s: {each.name}", value, each.low, each.high, each.shown, each.unit)
+            _require(f"{self.word} at {self.at:g} s: {each.name}", value, each.low, each.high, each.unit)
         gait = getattr(self, "gait", GAIT_NAMES[0])
         if gait not in GAIT_NAMES:
             raise UnknownNameError.of("gait", str(gait), GAIT_NAMES)
 
 
-def _require(what: str, value: object, low: float, high: float, shown: str, unit: object) -> None:
+def _require(what: str, value: object, low: float, high: float, unit: str) -> None:
     """Refuse what is no finite number between the bounds of its unit."""
     if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
         raise InputError(f"{what} is {value!r}; it must be a finite number")
-    number = UNITS[unit].from_si(float(value)) if isinstance(unit, str) else value
-    if not low <= number <= high:
+    number = UNITS[unit].from_si(float(value))
+    if not to_decimal(low) <= number <= to_decimal(high):
+        shown = UNITS[unit].shown
         raise InputError(f"{what} is {float(number):g} {shown}; it must be from {low:g} to {high:g} {shown}")
 
 

@@ -1,0 +1,278 @@
+"""Scenarios as values, files and text: every form says the same, and what is wrong is told with its place."""
+
+import dataclasses
+from decimal import Decimal
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tarsus.drive.commands import COMMANDS, GAIT_NAMES, Clearance, GaitChange, MoveHand, Walk, quantities
+from tarsus.drive.quantities import UNITS
+from tarsus.drive.scenario import STARTS, Scenario
+from tarsus.errors import InputError, TarsusError, UnknownNameError
+
+# Names that need quotes, and escapes, are names too.
+LEGS = st.one_of(st.sampled_from(["RF", "front left", "L1", '"', "a;b#c\n", "Bein-ü"]), st.text(min_size=1, max_size=8))
+MOMENTS = st.one_of(st.sampled_from([0.0, 0.5, 2.0]), st.floats(0, 900))
+
+
+@st.composite
+def commands(draw):
+    """Any command with any values within their bounds."""
+    kind = COMMANDS[draw(st.sampled_from(sorted(COMMANDS)))]
+    values = {}
+    for name, each in quantities(kind).items():
+        low, high = (UNITS[each.unit].to_si(Decimal(str(bound))) for bound in (each.low, each.high))
+        # The bounds hold for the number in the file's unit: a last digit within them.
+        values[name] = draw(st.floats(low * (1 - 1e-12), high * (1 - 1e-12)).filter(lambda v, low=low: v >= low))
+    for name, names in (("leg", LEGS), ("gait", st.sampled_from(GAIT_NAMES))):
+        if name in {field.name for field in dataclasses.fields(kind)}:
+            values[name] = draw(names)
+    return kind(draw(MOMENTS), **values)
+
+
+@st.composite
+def scenarios(draw):
+    """Any scenario."""
+    rate = draw(st.floats(40, 1000))
+    return Scenario(
+        tuple(draw(st.lists(commands(), max_size=6))),
+        name=draw(st.text(max_size=10)),
+        robot=draw(st.text(max_size=10)),
+        rate=rate,
+        jitter=draw(st.floats(0, 0.9)) / rate,
+        seed=draw(st.integers(0, 2**53)),
+        start=draw(st.sampled_from(STARTS)),
+        duration=draw(st.none() | st.floats(0.1, 100)),
+        gait=draw(st.sampled_from(["", *GAIT_NAMES])),
+        clearance=draw(st.none() | st.floats(0.001, 0.9)),
+        lift=draw(st.none() | st.floats(0, 0.9)),
+    )
+
+
+@given(scenario=scenarios())
+def test_every_scenario_comes_back_from_its_document_to_the_bit(scenario):
+    assert Scenario.from_dict(scenario.to_dict()) == scenario
+
+
+@given(scenario=scenarios())
+def test_every_scenario_comes_back_from_its_file_to_the_bit(scenario, tmp_path_factory):
+    path = tmp_path_factory.getbasetemp() / "scenario.toml"
+    scenario.save(path)
+    assert Scenario.load(path) == scenario
+
+
+@given(scenario=scenarios())
+def test_the_timeline_says_the_same_as_the_commands(scenario):
+    assert Scenario.from_text(scenario.timeline).commands == scenario.commands
+    document = {**scenario.to_dict(), "timeline": scenario.timeline}
+    document.pop("at", None)
+    assert Scenario.from_dict(document) == scenario
+
+
+def test_text_and_tables_of_the_same_commands_are_the_same():
+    text = Scenario.from_text(
+        """
+        at 500 ms: stand_up                 # a remark
+        at 2.0 s: walk 0.1 m/s; gait wave
+        at 5s: walk speed 10cm/s heading 90 deg turn -5 deg/s; body z -1 cm pitch 5 deg
+        clearance 90 mm; lift 0.03 m; stance_width 5 mm; cycle_time 900 ms; sway z 2 mm
+        at 6 s: hand RF x 250 mm y -.12e3 mm z +60. mm; ground "front left" 10 mm; tilt roll 3 deg
+        at 7 s: hand_back RF; stop; body; sit; fold; power_off
+        """
+    )
+    tables = Scenario.from_dict(
+        {
+            "at": [
+                {"time_s": 0.5, "do": "stand_up"},
+                {"time_s": 2, "walk": {"vx_mm_s": 100}},
+                {"time_s": 2, "gait": "wave"},
+                {"time_s": 5, "walk": {"vy_mm_s": 100, "turn_deg_s": -5}},
+                {"time_s": 5, "body": {"z_mm": -10, "pitch_deg": 5}},
+                {"time_s": 5, "clearance_mm": 90},
+                {"time_s": 5, "lift_mm": 30},
+                {"time_s": 5, "stance_width_mm": 5},
+                {"time_s": 5, "cycle_time_s": 0.9},
+                {"time_s": 5, "sway": {"z_mm": 2}},
+                {"time_s": 6, "hands_mm": {"RF": [250, -120, 60]}},
+                {"time_s": 6, "ground_mm": {"front left": 10}},
+                {"time_s": 6, "tilt": {"roll_deg": 3}},
+                {"time_s": 7, "hands_mm": {"RF": "back"}},
+                {"time_s": 7, "do": "stop"},
+                {"time_s": 7, "body": {}},
+                {"time_s": 7, "do": "sit"},
+                {"time_s": 7, "do": "fold"},
+                {"time_s": 7, "do": "power_off"},
+            ]
+        }
+    )
+    assert text == tables
+    assert {type(command) for command in text.commands} == set(COMMANDS.values())
+
+
+def test_tables_hold_several_commands_of_a_moment():
+    several = Scenario.from_dict({"at": [{"time_s": 1, "gait": "wave", "walk": {"speed_mm_s": 50}, "lift_mm": 20}]})
+    assert several == Scenario.from_text("at 1 s: gait wave; walk 50 mm/s; lift 20 mm")
+
+
+def test_timeline_and_tables_of_one_document_are_put_in_the_order_of_their_times():
+    both = Scenario.from_dict({"timeline": "at 0 s: stop; at 9 s: stop", "at": [{"time_s": 3, "gait": "wave"}]})
+    assert [command.at for command in both.commands] == [0, 3, 9]
+
+
+def test_straight_to_the_left_is_not_a_little_forward():
+    (walk,) = Scenario.from_text("at 0 s: walk 60 mm/s heading 90 deg").commands
+    assert (walk.vx, walk.vy) == (0.0, 0.06)
+
+
+@pytest.mark.parametrize(
+    ("text", "wanted"),
+    [
+        ("walk 1 m/s", "line 1 of the timeline: the first command must say when"),
+        ("at 2: stop", "line 1 of the timeline: at 2 has no unit; it must have s or ms"),
+        ("at 2 mm: stop", "at 2 has the unit 'mm'; it must have s or ms"),
+        ("at -1 s: stop", "at = -1 s: must be from 0 to 3600 s"),
+        ("at: stop", "at needs a number with its unit, s or ms, not ':'"),
+        ("at 1 s stop", "after the time there must be a colon"),
+        ("at 1 s:", "a command is missing; there are: stand_up, walk"),
+        ("\n\nat 1 s: wlak", "line 3 of the timeline: no command is called 'wlak'. Did you mean 'walk'? There are: "),
+        ("at 1 s: walk 5", "speed 5 has no unit; it must have mm/s or cm/s or m/s"),
+        ("at 1 s: walk 5 deg", "speed 5 has the unit 'deg'; it must have mm/s"),
+        ("at 1 s: walk 1e9 m/s", "speed = 1e9 m/s: must be from -10000 to 10000 mm/s"),
+        ("at 1 s: walk vx", "vx needs a number with its unit"),
+        ("at 1 s: walk vx 5 mm/s vx 6 mm/s", "vx is given twice"),
+        ("at 1 s: walk vx 5 mm/s speed 6 mm/s", "speed and heading say the same as vx and vy"),
+        ("at 1 s: walk heading 6 deg", "heading needs speed"),
+        ("at 1 s: walk trun 6 deg/s", "no number of walk is called 'trun'. Did you mean 'turn'?"),
+        ("at 1 s: body 5 mm", "5 stands alone; say which number it is: x, y, z, roll, pitch, yaw"),
+        ("at 1 s: stop 5 mm", "5 stands alone; stop takes no numbers"),
+        ("at 1 s: stop now", "'now' is too much: stop takes no numbers"),
+        ("at 1 s: gait", "a gait is missing; there are: tripod"),
+        ("at 1 s: gait wavy", "no gait is called 'wavy'. Did you mean 'wave'?"),
+        ("at 1 s: lift", "lift needs lift (mm)"),
+        ("at 1 s: hand", "hand needs a leg, such as RF"),
+        ("at 1 s: hand RF x 5 mm", "hand needs y (mm), z (mm)"),
+        ('at 1 s: hand_back "R\\F"', "is no text: a backslash"),
+        ("at 1 s: walk §", "no number of walk is called '§'"),
+    ],
+)
+def test_what_is_wrong_with_a_timeline_is_told_with_its_line(text, wanted):
+    for read in (Scenario.from_text, lambda timeline: Scenario.from_dict({"timeline": timeline})):
+        with pytest.raises(InputError) as refused:
+            read(text)
+        assert wanted in str(refused.value)
+
+
+def test_all_problems_of_a_timeline_are_told_and_long_ones_are_shortened():
+    with pytest.raises(InputError, match="2 problems") as refused:
+        Scenario.from_text("at 1 s: " + "x" * 500 + "\nat 2 s: stop\nat 3 s: hop")
+    assert "..." in str(refused.value)
+    assert "line 3" in str(refused.value)
+
+
+@pytest.mark.parametrize(
+    ("document", "wanted"),
+    [
+        ({"rate_hz": 5}, "rate_hz = 5: must be from 20 to 1000 Hz"),
+        ({"rat_hz": 50}, "rat_hz: unknown key; did you mean 'rate_hz'?"),
+        ({"qqq": 50}, "qqq: unknown key; known here: name, robot"),
+        ({"walk": {}}, "walk: unknown key; it belongs into a table [[at]]"),
+        ({"timeline": 4}, "timeline = 4: must be text in quotes"),
+        ({"at": {}}, "at: must be a list of tables, each under [[at]]"),
+        ({"at": [4]}, "at[0] = 4: must be a table of keys"),
+        ({"at": [{"gait": "wave"}]}, "at[0].time_s: missing: when, in seconds"),
+        ({"at": [{"time_s": 3}]}, "at[0]: no command; there are: do, gait, walk"),
+        ({"at": [{"time_s": 3, "do": "sitt"}]}, 'at[0].do = "sitt": must be one of stand_up'),
+        ({"at": [{"time_s": 3, "walk": {"vx_mm": 3}}]}, "at[0].walk.vx_mm: unknown key; did you mean 'vx_mm_s'?"),
+        ({"at": [{"time_s": 3, "wlak": {}}]}, "at[0].wlak: unknown key; did you mean 'walk'?"),
+        ({"at": [{"time_s": 3, "body": 4}]}, "at[0].body = 4: must be a table of keys"),
+        ({"at": [{"time_s": 3, "walk": {"heading_deg": 4}}]}, "at[0]: heading needs speed"),
+        ({"at": [{"time_s": 3, "hands_mm": {"RF": [1, 2]}}]}, "RF: must be a list of 3 numbers"),
+        ({"at": [{"time_s": 3, "ground_mm": {"RF": "back"}}]}, "RF: must be a number from -1000 to 1000 mm"),
+        ({"at": [{"time_s": 3, "ground_mm": 5}]}, "at[0].ground_mm = 5: must be a table of legs"),
+    ],
+)
+def test_what_is_wrong_with_a_document_is_told_with_its_key(document, wanted):
+    with pytest.raises(InputError) as refused:
+        Scenario.from_dict(document)
+    assert wanted in str(refused.value)
+
+
+def test_problems_of_a_file_are_told_with_the_line_of_their_table(tmp_path):
+    path = tmp_path / "wrong.toml"
+    path.write_text(
+        "name = 'x'\n\n[[at]]\ntime_s = 1\ndo = 'stop'\n\n[[at]]\ntime_s = 2\nlift_mm = -1\n", encoding="utf-8"
+    )
+    with pytest.raises(InputError, match=r"at\[1\].lift_mm \(in the table of line 7\) = -1: must be from 0 to 1000 mm"):
+        Scenario.load(path)
+    path.write_text("\n[[at]]\ntime_s = 2\n", encoding="utf-8")
+    with pytest.raises(InputError, match=r"at\[0\] \(line 2\): no command"):
+        Scenario.load(path)
+
+
+@pytest.mark.parametrize(
+    ("content", "wanted"),
+    [
+        (b"at = 5 5", "this is not TOML"),
+        (b"\xff\xfe", "byte 0 is not UTF-8"),
+        (b"#" * (2**20 + 1), "larger than 1 MiB"),
+    ],
+)
+def test_files_that_are_none_are_refused(content, wanted, tmp_path):
+    path = tmp_path / "bad.toml"
+    path.write_bytes(content)
+    with pytest.raises(InputError, match=wanted):
+        Scenario.load(path)
+
+
+def test_files_that_can_not_be_read_or_written_are_told(tmp_path):
+    with pytest.raises(InputError, match="can't be read: No such file"):
+        Scenario.load(tmp_path / "none.toml")
+    with pytest.raises(InputError, match="can't be read: this is no path"):
+        Scenario.load("\0")
+    with pytest.raises(InputError, match="can't be written"):
+        Scenario().save(tmp_path)
+    with pytest.raises(InputError, match="can't be written: this is no path"):
+        Scenario().save("\0")
+
+
+@pytest.mark.parametrize(
+    ("changes", "wanted"),
+    [
+        ({"commands": (3,)}, "are Walk, Stop and the like, not 3"),
+        ({"start": "stading"}, "no start is called 'stading'. Did you mean 'standing'?"),
+        ({"gait": "wavy"}, "Did you mean 'wave'?"),
+        ({"rate": 5.0}, "rate is 5 Hz; it must be from 20 to 1000 Hz"),
+        ({"clearance": float("nan")}, "clearance is nan m"),
+        ({"duration": 0.0}, "duration is 0 s"),
+        ({"jitter": 0.02}, "it must be less than a tick, 0.01 s"),
+        ({"rate": 25.0, "jitter": 0.02}, "a tick takes up to 0.06 s; at most 0.05 s works"),
+        ({"rate": 1000.0, "duration": 2000.0}, "2e[+]06 ticks, more than 1000000"),
+    ],
+)
+def test_scenarios_that_can_not_be_are_refused(changes, wanted):
+    with pytest.raises(TarsusError, match=wanted.replace("?", ".")):
+        Scenario(**changes)
+
+
+@pytest.mark.parametrize(
+    ("make", "wanted"),
+    [
+        (lambda: Walk(-1.0), "walk: at is -1 s; it must be from 0 to 3600 s"),
+        (lambda: Walk(0.0, vx=float("nan")), "vx is nan; it must be a finite number"),
+        (lambda: Walk(0.0, vx="fast"), "vx is 'fast'; it must be a finite number"),
+        (lambda: Walk(0.0, vx=True), "vx is True; it must be a finite number"),
+        (lambda: Clearance(1.0, clearance=-0.1), "clearance is -100 mm; it must be from 0.001 to 1000 mm"),
+        (lambda: MoveHand(1.0, leg="RF", x=2.0, y=0.0, z=0.0), "hand at 1 s: x is 2000 mm"),
+    ],
+)
+def test_commands_out_of_their_bounds_are_refused(make, wanted):
+    with pytest.raises(InputError) as refused:
+        make()
+    assert wanted in str(refused.value)
+
+
+def test_unknown_gaits_are_refused_with_the_nearest():
+    with pytest.raises(UnknownNameError, match="Did you mean 'ripple'"):
+        GaitChange(0.0, gait="riple")
