@@ -51,6 +51,7 @@ _BODY_SPEED, _BODY_TURN = 0.08, 0.5
 _LONGEST_TICK = 0.05
 # In which time a change that waits for room slows the walk down by a factor of e [s].
 _PATIENCE = 1.0
+_NO_SWAY = (0.0,) * 6
 # How far inside their support the feet left must hold the robot when a leg is taken out of the gait [m].
 _LEAST_MARGIN = 0.01
 # How near to its target a twist counts as steady [m/s, rad/s].
@@ -141,6 +142,8 @@ class Walker:
         self._target = np.zeros(3)
         self._patience = 1.0
         self._limited: tuple[str, ...] = ()
+        self._share_of: tuple[Any, ...] = ()
+        self._share = (1.0, 0)
         self._hands: dict[int, Hand] = {}
         self._hand_limits: dict[int, str] = {}
         self._searches: dict[int, Search] = {}
@@ -148,6 +151,7 @@ class Walker:
         self._walking = False
         self.time = 0.0
         self._set_gait(change.manner.gait)
+        self._all, self._flat = np.ones(legs, dtype=bool), np.zeros(legs)
         none, zero = np.zeros(legs), np.zeros(legs, dtype=complex)
         self._now = Moment(
             clock=0.0,
@@ -413,7 +417,7 @@ class Walker:
 
     def _aim(self, twist: Floats) -> None:
         """Set the target of the twist: as much of the wish as the legs allow, for good and right now."""
-        share, leg = self._largest_share(twist) if twist.any() else (1.0, 0)
+        share, leg = self._largest_share(twist)
         wish = twist * min(share, self._patience)
         self._limited = self._reasons(share, leg)
         if not self._walking:
@@ -439,12 +443,15 @@ class Walker:
 
     def _largest_share(self, twist: Floats) -> tuple[float, int]:
         """Return how much of a twist works for good in all that is gone over to, and which leg stops it."""
-        doing = self._agenda.doing
+        doing, settling = self._agenda.doing, self._settling[0] if self._settling else None
+        frequency = min(self._frequency, 1 / doing.tempo.cycle_time)
+        key = (twist.tobytes(), frequency, self._footing.way, self._agenda.ready, self._stepping, settling)
+        if key == self._share_of:
+            return self._share
         asked: list[tuple[Change, Envelope]] = [(doing, self._footing.way)]
-        for change in (self._agenda.ready, self._stepping, self._settling[0] if self._settling else None):
+        for change in (self._agenda.ready, self._stepping, settling):
             if change is not None:
                 asked.append((change, change.way.meet(change.stepping)))
-        frequency = min(self._frequency, 1 / doing.tempo.cycle_time)
         share, leg = 1.0, 0
         for change, way in asked:
             duty = change.manner.gait.duty
@@ -452,6 +459,7 @@ class Walker:
             allowed, which = way.largest_share(twist, stance_time=stance_time, duty=duty)
             if allowed < share:
                 share, leg = allowed, which
+        self._share_of, self._share = key, (share, leg)
         return share, leg
 
     def _reasons(self, share: float, leg: int) -> tuple[str, ...]:
@@ -483,31 +491,38 @@ class Walker:
     # The next moment.
 
     def _course(self) -> Course:
-        now, legs = self._now, self.robot.legs
-        steps = np.full(legs, self._settling is None and not self._searches)
-        lands = np.ones(legs, dtype=bool)
+        now = self._now
+        steps, lands = self._all, self._all
+        if self._settling is not None or self._searches:
+            steps = ~steps
+        if self._hands:
+            steps = steps.copy()
+        if self._felt is not None:
+            lands = lands.copy()
         for leg in self._hands:
             steps[leg] = False
         if self._felt is not None:
             for leg in np.flatnonzero(~now.down).tolist():
                 lands[leg] = self._searches[leg].at_rest if leg in self._searches else self._touches(leg)
-        sway = self._agenda.doing.manner.sway if self._walking else (0.0,) * 6
+        sway = self._agenda.doing.manner.sway if self._walking else _NO_SWAY
         return Course(
             gait=self.gait,
             offsets=self._offsets,
             frequency=self._frequency if self._walking else 0.0,
             twist=self._target,
-            posture=np.append(self._posture, sway),
+            posture=np.array([*self._posture.tolist(), *sway]),
             bandwidth=self._bandwidth(self._frequency),
             posture_bandwidth=self._posture_bandwidth(),
             steps=steps,
             lands=lands,
             rest=self._footing.rest,
-            level=np.zeros(legs) if self._feel is None else self._feel.level(now.foot),
+            level=self._flat if self._feel is None else self._feel.level(now.foot),
         )
 
     def _posture_bandwidth(self) -> float:
         way = np.abs(self._posture - self._now.posture.value[: LIFT + 1])
+        if way.max() < _AT_POSTURE:
+            return _POSTURE_BANDWIDTH
         shift, turn, lift = float(way[:3].max()), float(way[3:LIFT].max()), float(way[LIFT])
         far = max(shift / _BODY_SPEED, turn / _BODY_TURN, lift / _BODY_SPEED)
         return min(_POSTURE_BANDWIDTH, math.e / max(far, 1e-9))
