@@ -11,18 +11,18 @@ from typing import Any
 
 import numpy as np
 
-from tarsus.gait.gait import Gait
+from tarsus.gait.live.polygon import NORMALS, polygon_ends
 from tarsus.gait.live.support import safe_share
-from tarsus.gait.live.workspace import NORMALS, Parts, Stand, workspace
+from tarsus.gait.live.workspace import Parts, Stand, workspace
 from tarsus.gait.swing import ground_share
-from tarsus.kinematics.mass import centre_of_mass
+from tarsus.kinematics.mass import centre_of_mass, total_mass
 from tarsus.robot.robot import Robot
 
 __all__ = ["Envelope", "capped", "envelope", "overhang"]
 
 Floats = np.ndarray[Any, Any]
 
-# How far inside its support the centre of mass stays [m]: more than the legs shift it by being here or there.
+# How far inside its support the centre of mass stays [m].
 _LEAST_MARGIN = 0.004
 # What is left between the fastest steady walk and the polygons.
 _RESERVE = 0.99
@@ -135,10 +135,14 @@ def capped(limits: Envelope, stroke: float, turning: float, *, duty: float) -> E
     """
     at_rest = (NORMALS.conj() * limits.rest[:, None]).real
     bounds = np.minimum(limits.bounds, at_rest + overhang(duty) * max(stroke, turning))
+    # Legs that don't step are bounded by nothing here.
+    bounds = np.where(np.isinf(limits.bounds), np.inf, bounds)
     return dataclasses.replace(limits, bounds=bounds, stroke=stroke, turning=turning)
 
 
-def envelope(robot: Robot, stands: Sequence[Stand], sets: Floats, *, foot_distance: float) -> Parts[Envelope]:
+def envelope(
+    robot: Robot, stands: Sequence[Stand], sets: Floats, *, foot_distance: float, gone: tuple[int, ...] = ()
+) -> Parts[Envelope]:
     """Work out what is possible in all of some stands, in parts.
 
     Parameters
@@ -151,6 +155,8 @@ def envelope(robot: Robot, stands: Sequence[Stand], sets: Floats, *, foot_distan
         Feet that are down together.
     foot_distance : float
         Least distance between two feet [m].
+    gone : tuple of int
+        Legs that don't step: where they are is not bounded here, but may shift the centre of mass.
     """
     bounds = np.full((robot.legs, len(NORMALS)), np.inf)
     room = np.full(bounds.shape, np.inf)
@@ -158,7 +164,9 @@ def envelope(robot: Robot, stands: Sequence[Stand], sets: Floats, *, foot_distan
         sides = yield from workspace(robot, stand, foot_distance=foot_distance)
         at_rest = (NORMALS.conj() * stand.rest[:, None]).real
         yield
-        share = safe_share(sets, sides, stand.rest, _centre(robot, stand), margin=_LEAST_MARGIN)
+        centre, shift = _centre_of_mass(robot, stand, sides, gone)
+        yield
+        share = safe_share(sets, sides, stand.rest, centre, margin=_margin(robot, gone), shift=shift)
         free = sides - at_rest
         free = np.where(free > 0, free * share, free)
         # Where a centre of mass stands outside, no step is safe.
@@ -166,13 +174,27 @@ def envelope(robot: Robot, stands: Sequence[Stand], sets: Floats, *, foot_distan
         bounds, room = np.minimum(bounds, at_rest + free), np.minimum(room, free)
         yield
     half = len(NORMALS) // 2
+    bounds[list(gone)], room[list(gone)] = np.inf, np.inf
     return Envelope(bounds, np.minimum(room[:, :half], room[:, half:]), stands[-1].rest)
 
 
-def _centre(robot: Robot, stand: Stand) -> complex:
-    """Return the projected centre of mass with the feet at rest [m]."""
-    zero = np.zeros(robot.legs)
-    solution = stand.solve(robot, stand.rest.real, stand.rest.imag, zero)
-    com = centre_of_mass(robot, np.stack(solution[:3], axis=-1))
-    x, y, _ = stand.rotation @ com + stand.position
-    return complex(x, y)
+def _margin(robot: Robot, gone: tuple[int, ...]) -> float:
+    """Return how far inside its support the centre of mass is to be: farther where legs hang about anywhere."""
+    if not gone or not robot.has_masses:
+        return _LEAST_MARGIN
+    away = np.asarray(robot.coxa + robot.femur + robot.tibia) * np.asarray(robot.link_mass).sum(-1) / 2
+    return _LEAST_MARGIN + float(away[list(gone)].sum() / total_mass(robot))
+
+
+def _centre_of_mass(robot: Robot, stand: Stand, sides: Floats, gone: tuple[int, ...]) -> tuple[complex, Floats]:
+    """Return the projected centre of mass with the feet at rest, and its shift by each leg at each corner [m]."""
+    corners = polygon_ends(sides, stand.rest)[1]
+    # One leg at a corner, the others at rest; the last row, all at rest.
+    out = np.where(np.eye(robot.legs, dtype=bool)[:, None], corners[..., None], 0.0).reshape(-1, robot.legs)
+    feet = stand.rest + np.concatenate([out, np.zeros((1, robot.legs))])
+    solution = stand.solve(robot, feet.real, feet.imag, np.zeros(feet.shape))
+    com = centre_of_mass(robot, np.stack(solution[:3], axis=-1)) @ stand.rotation.T + stand.position
+    centre = com[..., 0] + 1j * com[..., 1]
+    shift = (centre[:-1] - centre[-1]).reshape(corners.shape)
+    shift[list(gone)] = 0.0
+    return complex(centre[-1]), shift

@@ -3,8 +3,9 @@
 Points of the ground plane are complex numbers here, x + iy in the heading frame: turning is a product.
 
 From the rest foothold, rays in all directions end where the leg can't follow: out of its reach or its limits, near to
-straight or folded (where a joint would have to turn fast for a slow foot), or past the middle of the way to the next
-foot. Each end lies on a line across the boundary there; what is on the inner side of all lines is the polygon.
+straight or folded (where a joint would have to turn fast for a slow foot), with its knee in the ground, or past the
+middle of the way to the next foot. Each end lies on a line across the boundary there; what is on the inner side of all
+lines is the polygon. Where its edge still runs out of what the leg can do, between the rays, sides are drawn in.
 """
 
 from __future__ import annotations
@@ -14,11 +15,14 @@ from typing import Any, NamedTuple, TypeAlias, TypeVar
 
 import numpy as np
 
+from tarsus.gait.live.polygon import NORMALS, polygon_ends
+from tarsus.kinematics.ground import BodyPlace, surely_above
+from tarsus.kinematics.leg import point_parts
 from tarsus.kinematics.triangle import Triangle, solve_triangle, to_leg_frame
 from tarsus.robot.geometry import LegGeometry
 from tarsus.robot.robot import Robot
 
-__all__ = ["NORMALS", "Parts", "Stand", "all_parts", "joint_slack", "polygon_radii", "workspace"]
+__all__ = ["NORMALS", "Parts", "Stand", "all_parts", "joint_slack", "workspace"]
 
 Floats = np.ndarray[Any, Any]
 
@@ -43,11 +47,13 @@ def all_parts(work: Parts[_T]) -> _T:
             return result
 
 
-_RAYS, _SIDES, _RINGS, _FINE = 24, 16, 8, 5
+_RAYS, _SIDES, _RINGS, _FINE = 24, len(NORMALS), 8, 5
 _DIRECTIONS = np.exp(2j * np.pi * np.arange(_RAYS) / _RAYS)
-NORMALS: Floats = np.exp(2j * np.pi * np.arange(_SIDES) / _SIDES)
-"""Outward normals of the polygons' sides ``(16,)``, the second half opposite to the first."""
-NORMALS.setflags(write=False)
+# How often the sides are drawn in at the most, which points of each are looked at, and which parts of the way to them.
+_TRIMS = 6
+_ALONG = np.array([0.25, 0.5, 0.75, 1.0])[:, None]
+_WAY_OUT = np.array([0.2, 0.4, 0.6, 0.75, 0.85, 0.925, 1.0])[:, None, None]
+_SAME = 1e-9
 
 # How much of the way each side is a foot may be at half the lift and at the whole, shares of the ring's radius.
 _HEIGHTS = (0.0, 0.5, 1.0)
@@ -115,7 +121,7 @@ def joint_slack(geometry: LegGeometry, solution: Triangle) -> Floats:
     slack = np.minimum(slack, np.minimum(bend, np.pi - bend) - _LEAST_BEND)
     for across in (s.far, s.near, s.beside):
         slack = np.minimum(slack, across / g.farthest2)
-    return slack
+    return np.asarray(slack)
 
 
 def workspace(robot: Robot, stand: Stand, *, foot_distance: float) -> Parts[Floats]:
@@ -138,23 +144,43 @@ def workspace(robot: Robot, stand: Stand, *, foot_distance: float) -> Parts[Floa
     """
     step = float((robot.geometry.femur + robot.geometry.tibia).max()) / _RINGS
     rays = np.arange(_RINGS + 1)[:, None, None] * step
-    coarse = _first_zero(rays, (yield from _slack(robot, stand, rays)), share=0.0)
+    coarse = _first_zero(rays, (yield from _slack(robot, stand, rays * _DIRECTIONS[:, None])), share=0.0)
     # Between the last ring that works and the first that fails, once more.
     rays = coarse + np.arange(_FINE + 1)[:, None, None] * (step / _FINE)
-    reach = _first_zero(rays, (yield from _slack(robot, stand, rays)), share=1.0) - _KEEP
-    return _sides(stand.rest, np.minimum(reach, _halfway(stand.rest, foot_distance)))
+    reach = _first_zero(rays, (yield from _slack(robot, stand, rays * _DIRECTIONS[:, None])), share=1.0) - _KEEP
+    bounds = _sides(stand.rest, np.minimum(reach, _halfway(stand.rest, _DIRECTIONS[:, None], foot_distance)))
+    for _ in range(_TRIMS):
+        edge = _edge(bounds, stand.rest)
+        part = _halfway(stand.rest, edge, foot_distance)
+        if ((yield from _slack(robot, stand, edge)) < 0).any():
+            slack = yield from _slack(robot, stand, _WAY_OUT * edge)
+            part = np.minimum(part, _first_zero(_WAY_OUT, slack, share=1.0))
+        if (part >= 1 - _SAME).all():
+            break
+        bounds = _drawn_in(bounds, stand.rest, edge, part)
+    return bounds
 
 
-def _slack(robot: Robot, stand: Stand, radii: Floats) -> Parts[Floats]:
-    """Return the least slack at all heights at distances along the rays, ``(rings, rays, legs)``."""
-    slack = np.full((len(radii), _RAYS, robot.legs), np.inf)
+def _slack(robot: Robot, stand: Stand, out: Floats) -> Parts[Floats]:
+    """Return the least slack at all heights at places seen from the rest footholds, ``(..., legs)``."""
+    slack = np.full(out.shape, np.inf)
     for height, share in zip(_HEIGHTS, _NARROWER, strict=True):
-        points = stand.rest + share * radii * _DIRECTIONS[:, None]
+        points = stand.rest + share * out
         solution = stand.solve(robot, points.real, points.imag, np.full(points.shape, height * stand.lift))
         slack = np.minimum(slack, joint_slack(robot.geometry, solution))
+        slack = np.minimum(slack, _above_ground(robot.geometry, stand, solution))
         slack = np.minimum(slack, _FASTER - _turning(robot.geometry, solution) / _turning_at_rest(robot, stand))
         yield
     return slack
+
+
+def _above_ground(g: LegGeometry, stand: Stand, s: Triangle) -> Floats:
+    """Return how high each leg's femur axis or knee is, whichever is lower ``(..., legs)`` [m]."""
+    body = BodyPlace(tuple(map(tuple, stand.rotation)), tuple(stand.position))
+    if surely_above(g, s.femur, body):
+        return np.asarray(np.inf)
+    parts = point_parts(np, g, s.coxa, s.femur, s.tibia)
+    return np.asarray(np.minimum(body.height(*parts[3:6]), body.height(*parts[6:9])))
 
 
 def _turning_at_rest(robot: Robot, stand: Stand) -> Floats:
@@ -185,11 +211,11 @@ def _first_zero(radii: Floats, slack: Floats, *, share: float) -> Floats:
     return np.asarray(np.where(before < 0, -_KEEP, start + (end - start) * share * np.clip(part, 0, 1)))
 
 
-def _halfway(rest: Floats, foot_distance: float) -> Floats:
-    """Return how far a foot may go along each ray ``(rays, legs)`` before it is on its neighbour's half of the way."""
+def _halfway(rest: Floats, out: Floats, foot_distance: float) -> Floats:
+    """Return by how much `out` ``(n, legs)`` may be stretched, until a foot is on its neighbour's half of the way."""
     way = rest[None, :] - rest[:, None]
     length = np.abs(way) + np.where(np.eye(len(rest), dtype=bool), 1e9, 0.0)
-    along = (_DIRECTIONS.conj()[:, None, None] * (way / length)).real
+    along = (out.conj()[..., None] * (way / length)).real
     room = np.maximum((length - foot_distance) / 2, 0.0)
     return np.asarray(np.where(along > 1e-6, room / np.maximum(along, 1e-6), np.inf).min(axis=-1))
 
@@ -208,26 +234,18 @@ def _sides(rest: Floats, reach: Floats) -> Floats:
     bounds = np.full((len(rest), _SIDES), reach.max())
     legs = np.broadcast_to(np.arange(len(rest)), side.shape)
     np.minimum.at(bounds, (legs, side), (NORMALS[side].conj() * ends).real)
-    return bounds + (NORMALS.conj() * rest[:, None]).real
+    return np.asarray(bounds + (NORMALS.conj() * rest[:, None]).real)
 
 
-def polygon_radii(bounds: Floats, rest: Floats, directions: Floats) -> Floats:
-    """Return how far the polygons reach from a point inside along directions.
+def _edge(bounds: Floats, rest: Floats) -> Floats:
+    """Return points of the polygons' edges ``(4 * 16, legs)``, seen from the rest footholds, side by side."""
+    start, end = (ends.T[:, None] for ends in polygon_ends(bounds, rest))
+    return np.asarray(start + _ALONG * (end - start)).reshape(-1, len(rest))
 
-    Parameters
-    ----------
-    bounds : array, shape (legs, 16)
-        Of `workspace` [m].
-    rest : complex array, shape (legs,)
-        The points [m].
-    directions : complex array, shape (n,)
-        Unit directions.
 
-    Returns
-    -------
-    array, shape (legs, n)
-        Distances [m].
-    """
-    room = np.maximum(bounds - (NORMALS.conj() * rest[:, None]).real, 0.0)
-    along = (NORMALS.conj()[:, None] * directions).real
-    return np.asarray(np.where(along > 1e-9, room[:, :, None] / np.maximum(along, 1e-9), np.inf).min(axis=1))
+def _drawn_in(bounds: Floats, rest: Floats, edge: Floats, part: Floats) -> Floats:
+    """Return the sides drawn in to a part of the way out to points of `_edge`, ``(4 * 16, legs)``."""
+    normals = np.repeat(NORMALS, len(_ALONG))[:, None]
+    inner = (normals.conj() * (rest + np.clip(part, 0.0, 1.0) * edge)).real
+    inner = np.where(part < 1, inner, np.inf).reshape(_SIDES, len(_ALONG), -1).min(axis=1)
+    return np.asarray(np.minimum(bounds, inner.T))
