@@ -36,8 +36,8 @@ class Envelope:
     ----------
     bounds : array, shape (legs, 16)
         Sides of the feet's polygons, from the heading frame's origin along `NORMALS` [m].
-    room : array, shape (legs, 8)
-        How far a foot may go from its rest foothold, either way across [m].
+    room : array, shape (legs, 16)
+        How far a foot may go from its rest foothold along `NORMALS` [m]; negative where it can't even be there.
     rest : complex array, shape (legs,)
         Rest footholds of the last stand [m].
     stroke, turning : float
@@ -95,14 +95,33 @@ class Envelope:
         leg : int
             The leg that allows no more.
         """
-        past = (twist[0] + 1j * twist[1] + 1j * twist[2] * self.rest) * (overhang(duty) * stance_time / _RESERVE)
-        across = np.abs((NORMALS[:8].conj() * past[:, None]).real)
-        share = np.maximum(self.room, 0.0) / np.maximum(across, 1e-12)
+        # Of a wish without measure, as much as can be reckoned with.
+        scale = max(1.0, float(np.abs(twist).max()))
+        forward, left, turn = (np.asarray(twist) / scale).tolist()
+        ahead = overhang(duty) * stance_time / _RESERVE
+        # An arc to either side of the rest foothold: to the second order along and across the way, and less than that
+        # in truth, as sin x < x and 1 - cos x < x^2 / 2.
+        way = (complex(forward, left) + 1j * turn * self.rest) * ahead
+        along = np.abs((NORMALS.conj() * way[:, None]).real)
+        across = np.maximum((NORMALS.conj() * (0.5j * turn * ahead * way)[:, None]).real, 0.0)
+        room = np.maximum(self.room, 0.0)
+        share = _positive_root(across, along, room)
         worst = int(share.argmin())
         # What straight on and turning ask of the joints adds up.
-        straight = math.hypot(twist[0], twist[1]) * stance_time / self.stroke
-        turning = abs(float(twist[2])) * float(np.abs(self.rest).max()) * stance_time / self.turning
-        return min(float(share.flat[worst]), 1 / max(straight + turning, 1e-12)), worst // 8
+        straight = math.hypot(forward, left) * stance_time / self.stroke
+        turning = abs(turn) * float(np.abs(self.rest).max()) * stance_time / self.turning
+        fastest = 1 / max(straight + turning, _LEAST)
+        return min(float(share.flat[worst]), fastest) / scale, worst // len(NORMALS)
+
+
+# What may be divided by.
+_LEAST = 1e-12
+
+
+def _positive_root(a: Floats, b: Floats, c: Floats) -> Floats:
+    """Return where ``a x^2 + b x = c``, of numbers that are not negative; very far out where both are 0."""
+    bounded = np.minimum(c, 1e3)
+    return np.asarray(2 * bounded / np.maximum(b + np.sqrt(b * b + 4 * a * bounded), _LEAST))
 
 
 @functools.cache
@@ -173,9 +192,8 @@ def envelope(
         free = free if share > 0 else np.minimum(free, -1e-3)
         bounds, room = np.minimum(bounds, at_rest + free), np.minimum(room, free)
         yield
-    half = len(NORMALS) // 2
     bounds[list(gone)], room[list(gone)] = np.inf, np.inf
-    return Envelope(bounds, np.minimum(room[:, :half], room[:, half:]), stands[-1].rest)
+    return Envelope(bounds, room, stands[-1].rest)
 
 
 def _margin(robot: Robot, gone: tuple[int, ...]) -> float:
