@@ -1,3 +1,5 @@
+import { useEffect } from "react";
+
 import { useStudio } from "../state/store";
 import { ViewPanel } from "../views/ViewPanel";
 import { Banner } from "./Banner";
@@ -10,7 +12,11 @@ import { useShortcuts } from "./useShortcuts";
 /** The page. */
 export function App() {
   const view = useStudio((studio) => studio.state?.view ?? "walk");
+  const name = useStudio((studio) => studio.robot?.name);
   useShortcuts();
+  useEffect(() => {
+    document.title = name ? `${name} – Tarsus Studio` : "Tarsus Studio";
+  }, [name]);
   return (
     <div className="app" data-view={view}>
       <Header />

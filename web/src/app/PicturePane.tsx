@@ -5,6 +5,7 @@ import type { CameraName, Place } from "../scene/cameras";
 import { footTrails, lengthOf } from "../scene/trails";
 import { shapeOf } from "../scene/kinematics";
 import { SceneCanvas } from "../scene/SceneCanvas";
+import { useOptions } from "../state/options";
 import { look } from "../state/session";
 import { useStudio, type View } from "../state/store";
 import { CameraBar } from "./CameraBar";
@@ -41,6 +42,8 @@ export function PicturePane({ view }: { view: View }) {
   const shape = useMemo(() => (robot ? shapeOf(robot) : null), [robot]);
   const colours = useMemo(() => (shape ? legColours(shape.mounts) : []), [shape]);
   const walking = WALKING.has(view);
+  const forces = useOptions((options) => options.forces);
+  const loaded = view === "loads" || (forces && (view === "joints" || view === "body"));
   const trails = useMemo(
     () => (walking && robot && walk ? footTrails(robot, walk) : undefined),
     [walking, robot, walk],
@@ -58,9 +61,9 @@ export function PicturePane({ view }: { view: View }) {
         view={framing}
         place={place}
         trails={trails}
-        forces={view === "loads"}
-        torques={view === "loads"}
-        names={view !== "loads"}
+        forces={loaded}
+        torques={loaded}
+        names={!loaded}
         description={WORDS[view]}
         onFloor={onFloor}
         onRest={keepPlace}

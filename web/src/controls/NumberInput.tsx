@@ -1,6 +1,7 @@
 import { useState } from "react";
 
 import { decimalsOf, fixed, typedNumber } from "./numbers";
+import { useCommit } from "./useCommit";
 
 interface Props {
   id: string;
@@ -16,7 +17,8 @@ interface Props {
   describedBy?: string;
   label?: string;
   testId?: string;
-  onChange: (value: number) => void;
+  /** `commit` is false while it is being typed, and true when the field is left or Enter is pressed. */
+  onChange: (value: number, commit: boolean) => void;
   /** The field was emptied; left out where it must not be empty. */
   onEmpty?: () => void;
 }
@@ -48,15 +50,21 @@ export function NumberInput(props: Props) {
   // One digit more than the step has: enough to see that a value lies between two steps.
   const shown = value === null ? "" : String(Number(fixed(value, exact ? 6 : decimalsOf(step) + 1)));
 
+  const isInside = (number: number) => number >= (min ?? -Infinity) && number <= (max ?? Infinity);
+  const standing = draft?.stands.includes(value) ?? false;
+  // What was typed for another robot, say, is not meant for this one.
+  const input = useCommit((number) => standing && isInside(number) && onChange(number, true));
+
   const type = (text: string) => {
     const number = typedNumber(text);
-    const inside = number !== null && number >= (min ?? -Infinity) && number <= (max ?? Infinity);
+    const inside = number !== null && isInside(number);
     setDraft({ text, stands: [value, inside ? number : value] });
-    if (inside && number !== value) onChange(number);
+    if (inside && number !== value) onChange(number, false);
     if (text.trim() === "" && value !== null) onEmpty?.();
   };
   return (
     <input
+      ref={input}
       id={id}
       data-testid={testId}
       type="number"
@@ -68,7 +76,7 @@ export function NumberInput(props: Props) {
       placeholder={placeholder}
       aria-describedby={describedBy}
       aria-label={label}
-      value={draft?.stands.includes(value) ? draft.text : shown}
+      value={draft && standing ? draft.text : shown}
       onChange={(event) => type(event.target.value)}
       onBlur={() => setDraft(null)}
     />

@@ -81,7 +81,7 @@ export function Slider(props: Props) {
           placeholder={auto ? "auto" : undefined}
           label={`${full} in ${unit || "numbers"}`}
           testId={testId && `${testId}-number`}
-          onChange={(typed) => onChange(typed, true)}
+          onChange={onChange}
         />
         <span className="unit" aria-hidden="true">
           {unit}

@@ -66,6 +66,10 @@ export class Link {
     return this.outbox.isBusy(type);
   }
 
+  isNewer(type: ClientType, id: number): boolean {
+    return this.outbox.isNewer(type, id);
+  }
+
   private receive(message: ServerMessage): void {
     this.attempt = 0;
     const id = message.id;

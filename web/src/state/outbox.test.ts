@@ -92,6 +92,19 @@ describe("outbox", () => {
     expect(sent.map(angleOf)).toEqual([1]);
   });
 
+  it("knows what was sent after a message", () => {
+    const { sent, outbox } = anOutbox();
+    outbox.put({ type: "undo" });
+    outbox.pump(0);
+    const undo = sent[0]?.id ?? -1;
+    expect(outbox.isNewer("joints", undo)).toBe(false);
+    outbox.put(joints(1));
+    expect(outbox.isNewer("joints", undo)).toBe(true);
+    outbox.pump(100);
+    expect(outbox.isNewer("joints", undo)).toBe(true);
+    expect(outbox.isNewer("undo", sent[1]?.id ?? -1)).toBe(false);
+  });
+
   it("knows of which type an answer is, until it is settled", () => {
     const { sent, outbox } = anOutbox();
     outbox.put(joints(1));

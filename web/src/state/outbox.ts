@@ -74,6 +74,12 @@ export class Outbox {
     return this.isUnderWay(type) || (this.waiting.get(type)?.length ?? 0) > 0;
   }
 
+  /** Whether a message of a type was sent after the one with an id, or waits to be. */
+  isNewer(type: ClientType, id: number): boolean {
+    const later = [...this.underWay].some(([sent, of]) => of === type && sent > id);
+    return later || (this.waiting.get(type)?.length ?? 0) > 0;
+  }
+
   private isUnderWay(type: ClientType): boolean {
     return [...this.underWay.values()].includes(type);
   }

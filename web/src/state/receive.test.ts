@@ -41,6 +41,17 @@ describe("what the page knows", () => {
     expect(after(refused, [done(3), "walk"]).failures.walk).toBeUndefined();
   });
 
+  it("does not lead the visitor back to a view that was left since", () => {
+    const here = { view: "body", walk: { lift_mm: 1 } } as Studio["state"];
+    const told = { type: "state", id: 4, state: { view: "robot", walk: { lift_mm: 2 } } } as ServerMessage;
+    const studio = { ...EMPTY, state: here };
+    expect(received(studio, told, "document", (type) => type === "view").state).toMatchObject({
+      view: "body",
+      walk: { lift_mm: 2 },
+    });
+    expect(received(studio, told, "document").state?.view).toBe("robot");
+  });
+
   it("puts what a view can't show beside that view's inputs", () => {
     const state = { view: "walk" } as Studio["state"];
     const opened = after({ ...EMPTY, state }, [error(1), "view"], [done(1), "view"], [done(2), "view"]);

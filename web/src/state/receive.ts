@@ -1,9 +1,18 @@
-import type { ErrorMessage, ServerMessage } from "../protocol";
+import type { ErrorMessage, ServerMessage, StudioState } from "../protocol";
 import type { ClientType } from "./outbox";
 import type { Studio, View } from "./store";
 
-/** What a message of the server changes of what the page knows. */
-export function received(studio: Studio, message: ServerMessage, asked: ClientType | null): Partial<Studio> {
+/**
+ * What a message of the server changes of what the page knows.
+ *
+ * `isNewer` tells of which types the visitor has sent something after the question that is answered here.
+ */
+export function received(
+  studio: Studio,
+  message: ServerMessage,
+  asked: ClientType | null,
+  isNewer: (type: ClientType) => boolean = () => false,
+): Partial<Studio> {
   switch (message.type) {
     case "welcome":
       return { welcome: message };
@@ -11,7 +20,7 @@ export function received(studio: Studio, message: ServerMessage, asked: ClientTy
       return { robot: message };
     case "state":
       // What was refused before is of inputs that are no longer there.
-      return { state: message.state, failures: {} };
+      return { state: keepingNewer(message.state, studio.state, isNewer), failures: {} };
     case "pose":
       return { poses: { ...studio.poses, [message.view]: message } };
     case "walk":
@@ -32,6 +41,20 @@ export function received(studio: Studio, message: ServerMessage, asked: ClientTy
     case "file":
       return {};
   }
+}
+
+/** The server's state, but for what the visitor has changed since it was asked. */
+function keepingNewer(
+  told: StudioState,
+  here: StudioState | null,
+  isNewer: (type: ClientType) => boolean,
+): StudioState {
+  if (!here) return told;
+  const kept: Partial<StudioState> = isNewer("view") ? { view: here.view, picture: here.picture } : {};
+  for (const part of ["joints", "body", "walk", "loads", "source"] as const) {
+    if (isNewer(part)) Object.assign(kept, { [part]: here[part] });
+  }
+  return { ...told, ...kept };
 }
 
 /** The question that a view's inputs ask. */

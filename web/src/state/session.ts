@@ -107,7 +107,10 @@ function receive(message: ServerMessage, asked: ClientType | null): void {
   }
   if (message.type === "file") save(message);
   if (message.type === "error" && asked === null) notify(message.text);
-  useStudio.setState((studio) => received(studio, message, asked));
+  const { id } = message;
+  useStudio.setState((studio) =>
+    received(studio, message, asked, (type) => id !== null && link.isNewer(type, id)),
+  );
   if (message.type !== "done") return;
   if (unsent.size > 0) sendUnsent();
   if (message.state !== null) writeSoon();

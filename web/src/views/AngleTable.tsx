@@ -8,13 +8,15 @@ interface Props {
   /** Legs x (coxa, femur, tibia) [deg]. */
   angles: ArrayLike<number>;
   open?: boolean;
+  /** Of which moment [s]. */
+  at?: number;
 }
 
 /** The joint angles as a table to read and to copy. */
-export function AngleTable({ codes, angles, open }: Props) {
+export function AngleTable({ codes, angles, open, at }: Props) {
   return (
     <details open={open}>
-      <summary>Joint angles</summary>
+      <summary>{at === undefined ? "Joint angles" : `Joint angles at ${fixed(at, 2)} s`}</summary>
       <div className="inside">
         <table data-testid="angles">
           <caption className="hidden-text">Joint angles in degrees</caption>

@@ -13,10 +13,10 @@ const AXES = ["x", "y", "z"] as const;
 export function FeetInputs({ pose }: { pose: PoseMessage }) {
   const { robot, state } = useInputs();
   const id = useId();
-  const move = (leg: number, axis: number, value: number) => {
+  const move = (leg: number, axis: number, value: number, commit: boolean) => {
     const at: [number, number, number] = [...triple(pose.feet_mm, leg)];
     at[axis] = value;
-    ask({ type: "drag_foot", leg, position_mm: at, commit: true });
+    ask({ type: "drag_foot", leg, position_mm: at, commit });
   };
   return (
     <details>
@@ -47,7 +47,7 @@ export function FeetInputs({ pose }: { pose: PoseMessage }) {
                         value={triple(pose.feet_mm, leg)[i] ?? 0}
                         step={0.5}
                         testId={`foot-${code}-${axis}`}
-                        onChange={(value) => move(leg, i, value)}
+                        onChange={(value, commit) => move(leg, i, value, commit)}
                       />
                     </td>
                   ))}

@@ -1,8 +1,10 @@
+import { Check } from "../controls/Check";
 import { Message, Remarks } from "../controls/Message";
 import { Facts } from "../controls/Facts";
 import { withUnit } from "../controls/numbers";
 import type { PoseMessage } from "../protocol";
 import { contactsOf } from "../scene/frames";
+import { useOptions } from "../state/options";
 
 /** How the robot stands: the verdict in words, what is wrong, and the numbers. */
 export function Standing({ pose }: { pose: PoseMessage }) {
@@ -14,6 +16,7 @@ export function Standing({ pose }: { pose: PoseMessage }) {
       ...pose.problems,
     ]),
   ];
+  const forces = useOptions((options) => options.forces);
   const feet = contactsOf(pose.contacts).filter(Boolean).length;
   const [x = 0, y = 0, z = 0] = pose.position_mm;
   const [roll = 0, pitch = 0] = pose.rpy_deg;
@@ -25,6 +28,14 @@ export function Standing({ pose }: { pose: PoseMessage }) {
         </Message>
         <Remarks kind="bad" items={wrong} testId="problems" />
       </div>
+      {pose.forces_n && (
+        <Check
+          label="Show forces and torques"
+          testId="show-forces"
+          checked={forces}
+          onChange={(checked) => useOptions.setState({ forces: checked })}
+        />
+      )}
       <Facts
         testId="standing-facts"
         rows={[

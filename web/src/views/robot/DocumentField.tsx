@@ -28,7 +28,9 @@ export function DocumentField({ field }: { field: NumberField }) {
           placeholder="not given"
           describedBy={problem ? `${id}p` : undefined}
           testId={`doc-${pathText(field.path)}`}
-          onChange={(value) => setDocument(withValue(robot.document, field.path, value, field.list))}
+          onChange={(value, commit) =>
+            setDocument(withValue(robot.document, field.path, value, field.list), commit)
+          }
           onEmpty={() => setDocument(withoutKey(robot.document, field.path))}
         />
         <span className="unit">{field.unit}</span>

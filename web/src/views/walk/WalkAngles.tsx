@@ -16,14 +16,10 @@ export function WalkAngles({ walk }: { walk: WalkMessage }) {
   }, [walk]);
   const width = robot.leg_names.length * 3;
   return (
-    <>
-      <AngleTable
-        codes={robot.leg_codes}
-        angles={walk.angles_deg.slice(sample * width, (sample + 1) * width)}
-      />
-      <p className="hint" data-testid="angles-at">
-        Angles at {(sample / walk.rate_hz).toFixed(2)} s.
-      </p>
-    </>
+    <AngleTable
+      codes={robot.leg_codes}
+      angles={walk.angles_deg.slice(sample * width, (sample + 1) * width)}
+      at={sample / walk.rate_hz}
+    />
   );
 }
