@@ -47,6 +47,8 @@ class Agenda:
         self.refusals: dict[Manner, str] = {}
         self._asked = doing.manner
         self._job: Parts[Change | str] | None = None
+        # What there is nothing left to do for.
+        self._done: Manner | None = None
 
     def ask(self, wish: Wish, gone: tuple[int, ...], correction: tuple[float, ...]) -> None:
         """Note what is asked for.
@@ -112,10 +114,12 @@ class Agenda:
                 self._note(done.value)
             except UnreachableError as error:
                 self._note(str(error))
-        elif free and self.ready is None:
+        elif free and self.ready is None and self.wanted is not self._done:
             asked, stay = self._next_manner()
             if asked not in (self.doing.manner, *self.refusals):
                 self._asked, self._job = asked, work_out(asked, stay)
+            else:
+                self._done = self.wanted
 
     def adopt(self, change: Change) -> None:
         """Note that a change has been gone over to.
@@ -127,6 +131,8 @@ class Agenda:
         """
         manner = change.manner if change.whole else self.doing.manner
         self.doing, self.ready = dataclasses.replace(change, manner=manner), None
+        # What didn't work may work now.
+        self.refusals, self._done = {}, None
 
     def _note(self, found: Change | str) -> None:
         self._job = None

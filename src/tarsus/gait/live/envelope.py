@@ -200,7 +200,7 @@ def _margin(robot: Robot, gone: tuple[int, ...]) -> float:
     """Return how far inside its support the centre of mass is to be: farther where legs hang about anywhere."""
     if not gone or not robot.has_masses:
         return _LEAST_MARGIN
-    away = np.asarray(robot.coxa + robot.femur + robot.tibia) * np.asarray(robot.link_mass).sum(-1) / 2
+    away = np.asarray(robot.coxa + robot.femur + robot.tibia) * np.asarray(robot.link_mass).sum(-1) / 4
     return _LEAST_MARGIN + float(away[list(gone)].sum() / total_mass(robot))
 
 

@@ -115,6 +115,16 @@ class Feel:
             refused=admitted.refused,
         )
 
+    def leaning(self, roll: float, pitch: float) -> None:
+        """Take note of how much of the correction has been carried out.
+
+        Parameters
+        ----------
+        roll, pitch : float
+            How the body leans against the wish [rad].
+        """
+        self.levelling.correction = self.levelling.correction._replace(roll=roll, pitch=pitch)
+
     def level(self, targets: Floats) -> Floats:
         """Return how high the ground is taken to be at places.
 

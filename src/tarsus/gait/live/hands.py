@@ -11,15 +11,19 @@ import numpy as np
 from tarsus.gait.live.lag import Lag
 from tarsus.gait.live.moment import Moment
 from tarsus.gait.live.workspace import Stand, joint_slack
+from tarsus.kinematics.polygon import hull_margin
 from tarsus.robot.robot import Robot
 
-__all__ = ["Hand", "carry_hands", "lift_hand", "reachable_part"]
+__all__ = ["Hand", "best_lean", "carry_hands", "lift_hand", "reachable_part"]
 
 Floats = np.ndarray[Any, Any]
 
 # How fast a foot follows what it is told [rad/s], and how fast it goes at the most [m/s].
 _BANDWIDTH, _SPEED = 5.0, 0.12
 _TRIED = np.arange(1, 17) / 16
+# Shifts of the body that are tried when legs leave the gait [m].
+_STEPS = np.arange(-4, 5) * 0.01
+_LEANS = (_STEPS[:, None] + 1j * _STEPS).ravel()
 
 
 class Hand(NamedTuple):
@@ -90,6 +94,30 @@ def carry_hands(now: Moment, hands: dict[int, Hand], swing_time: float) -> Momen
         foot[leg], ground[leg] = now.origin + turn * seen, z
         pace[leg] = turn * (complex(dx, dy) + complex(vx, vy) + 1j * wz * seen) * swing_time
     return now._replace(foot=foot, target=foot, ground=ground, pace=pace)
+
+
+def best_lean(rest: Floats, centre: complex, sets: Floats) -> complex:
+    """Return where to shift the centre of mass so that it is as far inside every support as can be.
+
+    Parameters
+    ----------
+    rest : complex array, shape (legs,)
+        The feet [m].
+    centre : complex
+        The projected centre of mass [m].
+    sets : array of bool, shape (n, legs)
+        Feet that are down together.
+
+    Returns
+    -------
+    complex
+        The shift, among those of whole steps in the least that does; 0 where none is better [m].
+    """
+    feet = np.stack([rest.real, rest.imag], axis=-1)
+    away = np.array([[(centre + shift).real, (centre + shift).imag] for shift in _LEANS])
+    margins = hull_margin(feet, sets, away[:, None, :]).min(axis=-1)
+    # A shift costs reach: of two that are about as good, the smaller.
+    return complex(_LEANS[int(np.argmax(margins - np.abs(_LEANS) / 4))])
 
 
 def reachable_part(robot: Robot, stand: Stand, leg: int, start: Floats, wished: Floats) -> float:

@@ -133,6 +133,8 @@ class Course(NamedTuple):
         Rest footholds in the heading frame [m].
     level : array, shape (legs,)
         Height at which the ground is expected [m].
+    holds : bool
+        Whether all feet that are down wait, and lift later than they were to.
     """
 
     gait: Gait
@@ -146,6 +148,7 @@ class Course(NamedTuple):
     lands: Floats
     rest: Floats
     level: Floats
+    holds: bool = False
 
 
 def turned(angle: Any) -> Any:
@@ -191,7 +194,7 @@ def go_on(now: Moment, course: Course, dt: float) -> Moment:
     after = now._replace(clock=clock, origin=origin, yaw=yaw, twist=twist, posture=posture)
     duty, swing = course.gait.duty, 1 - course.gait.duty
     since_lift = clock - (course.offsets + duty + now.number)
-    due = now.down & (since_lift > TIE)
+    due = now.down & (since_lift > TIE) & (not course.holds)
     if not due.any() and now.down.all():
         return after
     if due.any():
@@ -254,26 +257,22 @@ def _foothold(now: Moment, course: Course, share: Floats) -> Floats:
 
 def _swing(now: Moment, share: Floats, target: Floats) -> Moment:
     """Move the swinging feet on: the quintic from here to the target, there at rest."""
-    left = 1 - now.share
-    x = np.where(left > 0, (share - now.share) / np.where(left > 0, left, 1.0), 1.0)
-    speed, half_bend = now.pace * left, now.bend * (left * left / 2)
-    gap = target - (now.foot + speed + half_bend)
-    missing, bent = -(speed + 2 * half_bend), -2 * half_bend
-    a3 = 10 * gap - 4 * missing + bent / 2
-    a4 = -15 * gap + 7 * missing - bent
-    a5 = 6 * gap - 3 * missing + bent / 2
-    foot = now.foot + x * (speed + x * (half_bend + x * (a3 + x * (a4 + x * a5))))
-    pace = speed + x * (2 * half_bend + x * (3 * a3 + x * (4 * a4 + x * 5 * a5)))
-    bend = 2 * half_bend + x * (6 * a3 + x * (12 * a4 + x * 20 * a5))
-    safe = np.where(left > 0, left, 1.0)
-    up = ~now.down
-    return now._replace(
-        share=share,
-        target=target,
-        foot=np.where(up, foot, now.foot),
-        pace=np.where(up, pace / safe, now.pace),
-        bend=np.where(up, bend / (safe * safe), now.bend),
-    )
+    foot, pace, bend = now.foot.copy(), now.pace.copy(), now.bend.copy()
+    for leg in np.flatnonzero(~now.down).tolist():
+        left = 1.0 - float(now.share[leg])
+        if left <= 0:
+            foot[leg], pace[leg], bend[leg] = target[leg], 0.0, 0.0
+            continue
+        x = (float(share[leg]) - float(now.share[leg])) / left
+        here, speed, half = complex(foot[leg]), complex(pace[leg]) * left, complex(bend[leg]) * (left * left / 2)
+        gap, missing, bent = complex(target[leg]) - (here + speed + half), -(speed + 2 * half), -2 * half
+        a3 = 10 * gap - 4 * missing + bent / 2
+        a4 = -15 * gap + 7 * missing - bent
+        a5 = 6 * gap - 3 * missing + bent / 2
+        foot[leg] = here + x * (speed + x * (half + x * (a3 + x * (a4 + x * a5))))
+        pace[leg] = (speed + x * (2 * half + x * (3 * a3 + x * (4 * a4 + x * 5 * a5)))) / left
+        bend[leg] = (2 * half + x * (6 * a3 + x * (12 * a4 + x * 20 * a5))) / (left * left)
+    return now._replace(share=share, target=target, foot=foot, pace=pace, bend=bend)
 
 
 def _land(now: Moment, landed: Floats) -> Moment:

@@ -13,7 +13,7 @@ __all__ = ["safe_share", "support_sets"]
 
 Floats = np.ndarray[Any, Any]
 
-_SHARES = np.linspace(1.0, 0.1, 10)
+_SHARES = np.array([*np.linspace(1.0, 0.1, 10), 0.06, 0.03])
 
 
 def support_sets(gait: Gait, gone: tuple[int, ...] = ()) -> Floats:

@@ -18,12 +18,13 @@ from tarsus.gait.live.envelope import Envelope, overhang
 from tarsus.gait.live.feel import Feel, Felt
 from tarsus.gait.live.footing import Footing
 from tarsus.gait.live.governor import allowed_target, excess
-from tarsus.gait.live.hands import Hand, carry_hands, lift_hand, reachable_part
+from tarsus.gait.live.hands import Hand, best_lean, carry_hands, lift_hand, reachable_part
 from tarsus.gait.live.lag import Lag
 from tarsus.gait.live.levelling import LevellingMode
 from tarsus.gait.live.moment import THERE, TIE, Course, Moment, final_rest, go_on, meet_ground
 from tarsus.gait.live.own_time import OwnTime
 from tarsus.gait.live.posture import LIFT, stand_of, swayed
+from tarsus.gait.live.quick import QuickLegs
 from tarsus.gait.live.search import Search
 from tarsus.gait.live.senses import Senses
 from tarsus.gait.live.support import support_sets
@@ -33,9 +34,9 @@ from tarsus.gait.live.wish import Wish
 from tarsus.gait.live.workspace import Parts, Stand, all_parts
 from tarsus.gait.setup import Setup
 from tarsus.kinematics.inverse import inverse_kinematics
+from tarsus.kinematics.mass import centre_of_mass
 from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.stability import stability_margin
-from tarsus.kinematics.verdict import all_within
 from tarsus.robot.robot import Robot
 
 __all__ = ["Walker"]
@@ -114,6 +115,7 @@ class Walker:
         self.robot = setup.robot
         self.joint_speed, self.joint_acceleration = joint_limits(self.robot, joint_speed, joint_acceleration)
         self._foot_distance = setup.foot_distance
+        self._quick = QuickLegs(self.robot)
         manner = Manner(
             gait=gait,
             body=(0.0,) * 6,
@@ -146,6 +148,8 @@ class Walker:
         self._share = (1.0, 0)
         self._hands: dict[int, Hand] = {}
         self._hand_limits: dict[int, str] = {}
+        self._leaning_for: tuple[int, ...] = ()
+        self._lean = 0j
         self._searches: dict[int, Search] = {}
         self._felt: Felt | None = None
         self._walking = False
@@ -208,7 +212,7 @@ class Walker:
             raise InputError(f"dt is {dt} s; it must be greater than 0 and finite")
         dt = min(float(dt), _LONGEST_TICK)
         gone = self._gone(wish)
-        self._agenda.ask(wish, gone, self._felt.correction if self._felt else (0.0,) * 6)
+        self._agenda.ask(wish, gone, self._correction(gone))
         self._sense(senses, dt)
         self._change(dt)
         self._move_hands(wish, dt)
@@ -216,6 +220,18 @@ class Walker:
         self._advance(dt)
         self.time += dt
         return self.angles
+
+    def _correction(self, gone: tuple[int, ...]) -> tuple[float, ...]:
+        """Return what the ground, and legs that don't bear, ask of the body."""
+        felt = self._felt.correction if self._felt else _NO_SWAY
+        if not gone:
+            return felt
+        if gone != self._leaning_for:
+            com = centre_of_mass(self.robot, self.angles)
+            rest = self._footing.new_rest
+            sets = support_sets(self._agenda.wanted.gait, gone)
+            self._leaning_for, self._lean = gone, best_lean(rest, complex(com[0], com[1]), sets)
+        return (felt[0] + self._lean.real, felt[1] + self._lean.imag, *felt[2:])
 
     # What is felt.
 
@@ -228,6 +244,8 @@ class Walker:
             return
         self._feel = self._feel or self._feeling()
         now, body = self._now, self._agenda.wanted.body
+        lean = now.posture.value[3:5] - np.array(body[3:5])
+        self._feel.leaning(float(lean[0]), float(lean[1]))
         self._felt = self._feel.step(
             senses,
             dt,
@@ -490,20 +508,19 @@ class Walker:
 
     # The next moment.
 
-    def _course(self) -> Course:
+    def _course(self, dt: float = 0.0) -> Course:
         now = self._now
-        steps, lands = self._all, self._all
-        if self._settling is not None or self._searches:
-            steps = ~steps
+        steps, lands, holds = self._all, self._all, self._settling is not None or bool(self._searches)
         if self._hands:
             steps = steps.copy()
+            steps[list(self._hands)] = False
         if self._felt is not None:
             lands = lands.copy()
-        for leg in self._hands:
-            steps[leg] = False
-        if self._felt is not None:
             for leg in np.flatnonzero(~now.down).tolist():
                 lands[leg] = self._searches[leg].at_rest if leg in self._searches else self._touches(leg)
+            # Where a foot that is about to land finds no ground, none may lift in its stead.
+            soon = now.share + dt * self._frequency / (1 - self.gait.duty) >= 1.0 - TIE
+            holds = holds or bool((~now.down & ~lands & soon).any())
         sway = self._agenda.doing.manner.sway if self._walking else _NO_SWAY
         return Course(
             gait=self.gait,
@@ -517,6 +534,7 @@ class Walker:
             lands=lands,
             rest=self._footing.rest,
             level=self._flat if self._feel is None else self._feel.level(now.foot),
+            holds=holds,
         )
 
     def _posture_bandwidth(self) -> float:
@@ -529,7 +547,7 @@ class Walker:
 
     def _advance(self, dt: float) -> None:
         """Go on by one tick, or less of it where the joints need longer."""
-        before, course, hands = self._now, self._course(), self._hands
+        before, course, hands = self._now, self._course(dt), self._hands
         self._search(dt)
         if self._felt is not None:
             self._offset = np.where(before.down, self._felt.offsets, 0.0)
@@ -571,14 +589,15 @@ class Walker:
     def _solve(self, now: Moment) -> Floats:
         """Return the joint angles ``(legs, 3)`` of a moment."""
         stand = self._stand(now)
-        seen = (now.foot - now.origin) * cmath.exp(-1j * now.yaw)
-        height = now.height(stand.lift) + self._offset
-        solution = stand.solve(self.robot, seen.real, seen.imag, height)
-        if all_within(self.robot.geometry, solution):
-            angles = np.stack(solution[:3], axis=-1)
+        seen = ((now.foot - now.origin) * cmath.exp(-1j * now.yaw)).tolist()
+        height = (now.height(stand.lift) + self._offset).tolist()
+        feet = [(p.real, p.imag, z) for p, z in zip(seen, height, strict=True)]
+        found = self._quick.angles(feet, stand.rotation.tolist(), stand.position.tolist())
+        if found is None:
+            in_body = (np.array(feet) - stand.position) @ stand.rotation
+            angles = np.array(inverse_kinematics(self.robot, in_body).angles)
         else:
-            feet = np.stack([seen.real, seen.imag, height], axis=-1)
-            angles = np.array(inverse_kinematics(self.robot, (feet - stand.position) @ stand.rotation).angles)
+            angles = np.array(found)
         angles.setflags(write=False)
         return angles
 

@@ -1,0 +1,55 @@
+"""The inverse kinematics in plain numbers against the one with arrays."""
+
+import numpy as np
+import pytest
+
+from tarsus import Pose, default_stance, inverse_kinematics, list_robots, load_robot
+from tarsus.gait.live.quick import QuickLegs
+
+
+@pytest.mark.parametrize("name", list_robots())
+def test_it_agrees_with_the_arrays(name):
+    robot = load_robot(name)
+    quick, rng = QuickLegs(robot), np.random.default_rng(1)
+    stance = default_stance(robot)
+    solved = refused = 0
+    for _ in range(300):
+        feet = stance + rng.normal(size=stance.shape) * 0.04
+        body = Pose.from_rpy(*rng.normal(size=3) * 0.1, rng.normal(size=3) * 0.02)
+        feet_up = feet + [0, 0, 1.0]
+        expected = inverse_kinematics(robot, body.inverse() @ feet)
+        found = quick.angles(feet_up.tolist(), body.rotation.tolist(), (body.position + [0, 0, 1.0]).tolist())
+        if found is not None:
+            solved += 1
+            assert expected.ok.all()
+            np.testing.assert_allclose(found, expected.angles, atol=1e-9)
+        else:
+            refused += 1
+            # It leaves to the arrays whatever isn't plainly within reach and limits.
+            plain = np.isclose(expected.angles, robot.limits[..., 0]) | np.isclose(
+                expected.angles, robot.limits[..., 1]
+            )
+            assert not expected.ok.all() or plain.any() or not _plain(robot, body, feet)
+    assert solved > 20
+    assert refused > 20
+
+
+def _plain(robot, body, feet):
+    """Whether every foot is in front of its coxa axis: turned away, legs reach others."""
+    seen = body.inverse() @ feet
+    out = (seen - robot.mount_position)[:, :2]
+    heading = np.stack([np.cos(robot.mount_yaw), np.sin(robot.mount_yaw)], -1)
+    return bool(((out * heading).sum(-1) > 0).all())
+
+
+def test_a_foot_beside_the_legs_plane_is_refused():
+    robot = load_robot("strider").replace(femur_axis_offset=np.tile([0.05, 0.0], (6, 1)))
+    axis = np.asarray(robot.mount_position) + [0.01, 0, -0.1]
+    assert QuickLegs(robot).angles(axis.tolist(), np.eye(3).tolist(), (0.0, 0.0, 0.0)) is None
+
+
+def test_folded_and_far_feet_are_refused():
+    robot = load_robot("strider")
+    feet = default_stance(robot)
+    for scale in (3.0, 0.4):
+        assert QuickLegs(robot).angles((feet * scale).tolist(), np.eye(3).tolist(), (0.0, 0.0, 0.0)) is None

@@ -1,0 +1,137 @@
+"""The live walker on ground that is not where it was expected, and with what its sensors say."""
+
+import numpy as np
+import pytest
+
+from tarsus import Gait, forward_kinematics, load_robot
+from tarsus.gait.live.admittance import Admittance
+from tarsus.gait.live.senses import Senses
+from tarsus.gait.live.walker import Walker
+from tarsus.gait.live.wish import Wish
+
+DT = 0.01
+
+
+class World:
+    """Ground of any shape that tells which feet touch it."""
+
+    def __init__(self, height, **setup):
+        self.height = height
+        self.walker = Walker(load_robot("strider"), Gait.named("tripod"), **setup)
+        self.angles, self.rate = self.walker.angles, 0.0
+        self.worst_speed = self.worst_acceleration = 0.0
+        self.least_down = 6
+        self.modes = set()
+
+    def touching(self):
+        return [bool(foot[2] <= self.height(foot) + 1e-4) for foot in self.walker.feet]
+
+    def walk(self, wish, seconds, **senses):
+        for _ in range(round(seconds / DT)):
+            given = {"contacts": self.touching(), **senses}
+            angles = self.walker.step(wish, DT, senses=Senses(**given))
+            rate = (angles - self.angles) / DT
+            self.worst_speed = max(self.worst_speed, (abs(rate) / self.walker.joint_speed).max())
+            change = abs(rate - self.rate) / DT / self.walker.joint_acceleration
+            self.worst_acceleration = max(self.worst_acceleration, change.max())
+            self.angles, self.rate = angles, rate
+            self.modes.add(self.walker.mode)
+            self.least_down = min(self.least_down, self.walker.contacts.sum())
+        return self
+
+
+def test_flat_ground_changes_nothing():
+    world = World(lambda _: 0.0)
+    blind = Walker(load_robot("strider"), Gait.named("tripod"))
+    for _ in range(300):
+        world.walk((0.1, 0, 0.1), DT, attitude=(0.0, 0.0))
+        np.testing.assert_allclose(world.walker.angles, blind.step((0.1, 0, 0.1), DT), atol=2e-4)
+
+
+def test_feet_stop_on_a_step_up():
+    world = World(lambda foot: 0.010 if foot[0] > 0.3 else 0.0).walk((0.1, 0, 0), 7).walk((0, 0, 0), 3)
+    on_it = world.walker.feet[:, 0] > 0.32
+    assert on_it.any()
+    # A foot is stopped within 3 mm, and later steps start from where the ground was found.
+    assert (abs(world.walker.feet[on_it, 2] - 0.010) < 0.003).all()
+    assert world.worst_speed <= 1.001
+    assert world.worst_acceleration <= 1.001
+
+
+def test_feet_look_for_ground_below():
+    world = World(lambda foot: -0.010 if foot[0] > 0.3 else 0.0).walk((0.1, 0, 0), 7)
+    assert "searching" in world.modes
+    lower = world.walker.contacts & (world.walker.feet[:, 0] > 0.32)
+    assert lower.any()
+    assert (abs(world.walker.feet[lower, 2] + 0.010) < 0.004).all()
+    assert world.least_down >= 3
+    assert world.worst_speed <= 1.001
+    assert world.worst_acceleration <= 1.001
+
+
+def test_without_ground_the_robot_holds_still_and_says_so():
+    world = World(lambda foot: -0.5 if foot[0] > 0.4 else 0.0).walk((0.1, 0, 0), 8)
+    assert world.walker.mode == "searching"
+    assert any("no ground under" in reason for reason in world.walker.limited)
+    before = world.walker.angles
+    world.walk((0.1, 0, 0), 0.5)
+    np.testing.assert_allclose(world.walker.angles, before, atol=1e-3)
+    # Blind again, it takes the ground to be where the foot is.
+    for _ in range(200):
+        world.walker.step((0.0, 0, 0), DT)
+    assert world.walker.mode != "searching"
+
+
+def test_garbage_is_refused_and_named():
+    walker = Walker(load_robot("strider"), Gait.named("tripod"))
+    blind = Walker(load_robot("strider"), Gait.named("tripod"))
+    garbage = Senses(contacts="yes", attitude=(np.nan, 9.0), forces=[1e30] * 6, torques=None, age=0.0)
+    for _ in range(200):
+        np.testing.assert_array_equal(walker.step((0.1, 0, 0), DT, senses=garbage), blind.step((0.1, 0, 0), DT))
+    assert any("attitude" in reason for reason in walker.limited)
+    assert any("contacts" in reason for reason in walker.limited)
+
+
+@pytest.mark.parametrize("axis", [0, 1])
+def test_the_body_levels_itself(axis):
+    tilt = [0.0, 0.0]
+    tilt[axis] = 0.12
+    world = World(lambda _: 0.0, levelling="level")
+    for _ in range(1200):
+        # The world leans under the robot: what the body is tilted by in G adds to it.
+        stand = world.walker._stand(world.walker._now)
+        pitch, roll = np.arcsin(-stand.rotation[2, 0]), np.arctan2(stand.rotation[2, 1], stand.rotation[2, 2])
+        world.walk((0, 0, 0), DT, attitude=(roll + tilt[0], pitch + tilt[1]))
+    measured = (roll + tilt[0], pitch + tilt[1])
+    assert abs(measured[axis]) < 0.03
+    assert world.worst_acceleration <= 1.001
+    assert world.walker.margin > 0.05
+
+
+def test_loaded_feet_give_way():
+    soft = Admittance(mass=1.0, damping=60.0, stiffness=400.0)
+    world = World(lambda _: 0.0, admittance=soft)
+    weight = 3.066 * 9.80665
+    even = [weight / 6] * 6
+    world.walk((0, 0, 0), 1, forces=[(0, 0, f) for f in even])
+    level = world.walker.feet[:, 2].copy()
+    even[0] += 4.0
+    world.walk((0, 0, 0), 2, forces=[(0, 0, f) for f in even])
+    risen = world.walker.feet[:, 2] - level
+    assert risen[0] > 0.003
+    assert risen[0] == pytest.approx(risen.max())
+    feet = world.walker.body @ forward_kinematics(world.walker.robot, world.walker.angles)[:, 3]
+    np.testing.assert_allclose(feet, world.walker.feet, atol=1e-9)
+    # From torques alone, as well; and without either, feet come back.
+    world.walk((0, 0, 0), 0.2, torques=np.zeros((6, 3)))
+    world.walk((0, 0, 0), 3)
+    np.testing.assert_allclose(world.walker.feet[:, 2], 0.0, atol=2e-3)
+
+
+def test_without_masses_nothing_is_known_of_forces():
+    walker = Walker(
+        load_robot("mithi"), Gait.named("tripod"), admittance=Admittance(mass=1.0, damping=60.0, stiffness=400.0)
+    )
+    for _ in range(20):
+        walker.step(Wish(), DT, senses=Senses(forces=[5.0] * 6))
+    np.testing.assert_allclose(walker.feet[:, 2], 0.0, atol=1e-12)

@@ -1,0 +1,100 @@
+"""Legs of the live walker that are taken out of the gait, moved by hand, and put back."""
+
+import numpy as np
+import pytest
+
+from tarsus import Gait, load_robot
+from tarsus.errors import InputError
+from tarsus.gait.live.walker import Walker
+from tarsus.gait.live.wish import Wish
+
+DT = 0.01
+
+
+def walk(walker, wish, seconds):
+    """Walk, and return the worst joint speed, acceleration and margin."""
+    angles, rate, worst = walker.angles, None, [0.0, 0.0, 1.0]
+    for _ in range(round(seconds / DT)):
+        after = walker.step(wish, DT)
+        now = (after - angles) / DT
+        worst[0] = max(worst[0], (abs(now) / walker.joint_speed).max())
+        if rate is not None:
+            worst[1] = max(worst[1], (abs(now - rate) / DT / walker.joint_acceleration).max())
+        worst[2] = min(worst[2], walker.margin)
+        angles, rate = after, now
+    assert worst[0] <= 1.001
+    assert worst[1] <= 1.001
+    assert worst[2] > 0
+
+
+def in_heading_frame(walker, leg):
+    x, y, yaw = walker.place
+    off = walker.feet[leg] - [x, y, 0]
+    return np.array([np.cos(yaw) * off[0] + np.sin(yaw) * off[1], np.cos(yaw) * off[1] - np.sin(yaw) * off[0], off[2]])
+
+
+def test_a_leg_goes_where_it_is_told_while_the_others_walk():
+    walker = Walker(load_robot("strider"), Gait.named("wave"))
+    point = (0.25, 0.2, 0.08)
+    walk(walker, Wish(twist=(0.03, 0, 0.05)), 3)
+    walk(walker, Wish(twist=(0.03, 0, 0.05), hands={0: point}), 14)
+    np.testing.assert_allclose(in_heading_frame(walker, 0), point, atol=1e-3)
+    assert not walker.contacts[0]
+    assert walker.twist[0] > 0.003
+    # By speed, from there.
+    walk(walker, Wish(twist=(0, 0, 0), hand_speeds={0: (0, -0.05, 0)}), 1)
+    walk(walker, Wish(), 2)
+    np.testing.assert_allclose(in_heading_frame(walker, 0), (0.25, 0.15, 0.08), atol=2e-3)
+    # And back: it steps to its rest foothold, and bears load again.
+    walk(walker, Wish(hands={0: None}), 20)
+    assert walker.contacts.all()
+    assert walker.mode == "standing"
+    fresh = Walker(walker.robot, Gait.named("wave"))
+    np.testing.assert_allclose(in_heading_frame(walker, 0), in_heading_frame(fresh, 0), atol=1e-5)
+
+
+def test_two_legs_at_once():
+    walker = Walker(load_robot("strider"), Gait.named("wave"))
+    walk(walker, Wish(hands={1: (0.0, 0.3, 0.1), 4: (0.0, -0.3, 0.1)}), 8)
+    assert walker.contacts.sum() == 4 or walker.limited
+    assert walker.contacts.sum() >= 3
+
+
+def test_a_leg_that_bears_the_robot_is_refused_with_the_margin():
+    walker = Walker(load_robot("strider"), Gait.named("tripod"))
+    walk(walker, Wish(twist=(0.05, 0, 0), hands={0: (0.25, 0.2, 0.08)}), 8)
+    (reason,) = (text for text in walker.limited if "hand" in text)
+    assert "front left" in reason
+    assert "mm" in reason
+    assert walker.gait.name == "tripod"
+    assert walker.twist[0] > 0.03
+
+
+def test_out_of_reach_it_goes_as_far_as_it_reaches():
+    walker = Walker(load_robot("strider"), Gait.named("wave"))
+    walk(walker, Wish(hands={0: (0.25, 0.2, 0.08)}), 8)
+    walk(walker, Wish(hands={0: (0.9, 0.7, 0.08)}), 3)
+    assert any("front left comes to the end of its reach" in reason for reason in walker.limited)
+    reached = in_heading_frame(walker, 0)
+    assert np.hypot(*reached[:2]) > 0.33
+
+
+@pytest.mark.parametrize("leg", [6, -1, "front left", 1.5])
+def test_there_is_no_such_leg(leg):
+    walker = Walker(load_robot("strider"), Gait.named("wave"))
+    with pytest.raises(InputError, match="hand"):
+        walker.step(Wish(hands={leg: (0.2, 0.2, 0.1)}), DT)
+
+
+def test_sway_moves_the_body_with_the_steps_and_fades():
+    walker = Walker(load_robot("strider"), Gait.named("tripod"))
+    wish = Wish(twist=(0.05, 0, 0), sway=(0.004, 0.01, 0.005, 0.03, 0.02, 0.02))
+    walk(walker, wish, 4)
+    heights = []
+    for _ in range(round(walker.cycle_time / DT)):
+        walker.step(wish, DT)
+        heights.append(walker.body.position[2])
+    assert np.ptp(heights) == pytest.approx(0.010, abs=0.002)
+    walk(walker, Wish(), 6)
+    assert walker.mode == "standing"
+    np.testing.assert_allclose(walker.body.position[2], 0.110, atol=5e-4)
