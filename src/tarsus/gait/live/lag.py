@@ -3,8 +3,8 @@
 ``value'' = w^2 (target - value) - 2 w value'``, of bandwidth `w`. Its impulse response ``w^2 t exp(-w t)`` is
 nowhere negative and has the integral 1: the value is at any time a weighted mean of the targets so far, so that it
 stays in every convex set that these lie in, and never overshoots. Between targets on opposite ends of a range of
-half-width `V` its rate stays below ``2 V w / e`` and its rate's rate below ``4 V w^2``. The step is the exact
-solution for a constant target, whatever its length.
+half-width `V` its rate stays within ``2 V w / e``, and the rate's rate within ``2 (1 + exp(-2)) V w^2``. The step is
+the exact solution for a constant target, whatever its length.
 """
 
 from __future__ import annotations

@@ -100,7 +100,7 @@ def tempo(
         allow shorter strokes only, in a longer one the legs no longer ones.
     """
     strokes, cycles = [], []
-    for twists in np.array_split(_TWISTS, 3):
+    for twists in np.array_split(_TWISTS, 5):
         largest = np.array([_largest(limits, twist, gait.duty) for twist in twists])
         rest = limits.rest
         strokes.append(np.abs(largest[:, :1] + 1j * largest[:, 1:2] + 1j * largest[:, 2:] * rest).max(-1))

@@ -55,7 +55,7 @@ class Wish:
     hand_speeds: Mapping[int, Sequence[float]] | None = None
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "twist", numbers("twist", self.twist, ("vx", "vy", "wz")))
+        object.__setattr__(self, "twist", numbers("twist", self.twist, ("vx", "vy", "wz"), most=math.inf))
         for name in ("body", "sway"):
             if getattr(self, name) is not None:
                 object.__setattr__(self, name, numbers(name, getattr(self, name), BODY_AXES))
@@ -63,13 +63,17 @@ class Wish:
             if getattr(self, name) is not None:
                 object.__setattr__(self, name, numbers(name, (getattr(self, name),), (name,))[0])
         for name in ("hands", "hand_speeds"):
-            given = getattr(self, name)
-            if given is not None:
-                checked = {leg: None if v is None else numbers(name, v, ("x", "y", "z")) for leg, v in given.items()}
-                object.__setattr__(self, name, checked)
+            if getattr(self, name) is not None:
+                object.__setattr__(self, name, _by_leg(name, getattr(self, name)))
 
 
-def numbers(name: str, values: Sequence[float], axes: Sequence[str]) -> tuple[float, ...]:
+def _by_leg(name: str, given: Any) -> dict[int, tuple[float, ...] | None]:
+    if not isinstance(given, Mapping):
+        raise InputError(f"the wish's {name} is {given!r}; it must be a mapping of legs to x, y, z")
+    return {leg: None if v is None else numbers(name, v, ("x", "y", "z")) for leg, v in given.items()}
+
+
+def numbers(name: str, values: Sequence[float], axes: Sequence[str], *, most: float = 1e3) -> tuple[float, ...]:
     """Return so many finite numbers.
 
     Parameters
@@ -80,21 +84,33 @@ def numbers(name: str, values: Sequence[float], axes: Sequence[str]) -> tuple[fl
         The numbers.
     axes : sequence of str
         What each is called.
+    most : float
+        What none is greater than, whatever its sign: no length of a robot [m], no time of a step [s] is greater than
+        1000, and the squares of what is may overflow.
 
     Raises
     ------
     InputError
         If they are something else.
     """
+    single = len(axes) == 1
     try:
-        found = tuple(float(value) for value in values)
-    except (TypeError, ValueError):
-        raise InputError(
-            f"the wish's {name} is {values!r}; it must be {len(axes)} numbers: {', '.join(axes)}"
-        ) from None
+        found = tuple(_number(value) for value in values)
+    except (TypeError, ValueError, OverflowError):
+        needed = "a number" if single else f"{len(axes)} numbers: {', '.join(axes)}"
+        raise InputError(f"the wish's {name} is {values[0] if single else values!r}; it must be {needed}") from None
     if len(found) != len(axes):
         raise InputError(f"the wish's {name} has {len(found)} numbers; it must have {len(axes)}: {', '.join(axes)}")
     for axis, value in zip(axes, found, strict=True):
+        what = f"{name} is {value}" if axis == name else f"{name} has {axis} = {value}"
         if not math.isfinite(value):
-            raise InputError(f"the wish's {name} has {axis} = {value}; it must be finite")
+            raise InputError(f"the wish's {what}; it must be finite")
+        if abs(value) > most:
+            raise InputError(f"the wish's {what}; it must be between {-most:g} and {most:g}")
     return found
+
+
+def _number(value: Any) -> float:
+    if isinstance(value, str):
+        raise TypeError
+    return float(value)

@@ -51,9 +51,10 @@ _RAYS, _SIDES, _RINGS, _FINE = 24, len(NORMALS), 8, 5
 _DIRECTIONS = np.exp(2j * np.pi * np.arange(_RAYS) / _RAYS)
 # How often the sides are drawn in at the most, which points of each are looked at, and which parts of the way to them.
 _TRIMS = 6
-_ALONG = np.array([0.25, 0.5, 0.75, 1.0])[:, None]
-_WAY_OUT = np.array([0.2, 0.4, 0.6, 0.75, 0.85, 0.925, 1.0])[:, None, None]
-_SAME = 1e-9
+_ALONG = np.array([1, 2, 3])[:, None] / 3
+_WAY_OUT = np.array([0.3, 0.6, 0.8, 0.92, 1.0])[:, None, None]
+# What is drawn in more than it need be, so that the next corners are within.
+_EXTRA, _SAME = 0.01, 1e-9
 
 # How much of the way each side is a foot may be at half the lift and at the whole, shares of the ring's radius.
 _HEIGHTS = (0.0, 0.5, 1.0)
@@ -154,7 +155,7 @@ def workspace(robot: Robot, stand: Stand, *, foot_distance: float) -> Parts[Floa
         part = _halfway(stand.rest, edge, foot_distance)
         if ((yield from _slack(robot, stand, edge)) < 0).any():
             slack = yield from _slack(robot, stand, _WAY_OUT * edge)
-            part = np.minimum(part, _first_zero(_WAY_OUT, slack, share=1.0))
+            part = np.minimum(part, _first_zero(_WAY_OUT, slack, share=1.0) - np.where(slack[-1] < 0, _EXTRA, 0.0))
         if (part >= 1 - _SAME).all():
             break
         bounds = _drawn_in(bounds, stand.rest, edge, part)
@@ -168,9 +169,11 @@ def _slack(robot: Robot, stand: Stand, out: Floats) -> Parts[Floats]:
         points = stand.rest + share * out
         solution = stand.solve(robot, points.real, points.imag, np.full(points.shape, height * stand.lift))
         slack = np.minimum(slack, joint_slack(robot.geometry, solution))
-        slack = np.minimum(slack, _above_ground(robot.geometry, stand, solution))
+        slack = np.minimum(slack, _above_ground(robot.geometry, stand, solution) - _KEEP)
         slack = np.minimum(slack, _FASTER - _turning(robot.geometry, solution) / _turning_at_rest(robot, stand))
-        yield
+        if out.ndim > 2:
+            yield
+    yield
     return slack
 
 
@@ -238,13 +241,13 @@ def _sides(rest: Floats, reach: Floats) -> Floats:
 
 
 def _edge(bounds: Floats, rest: Floats) -> Floats:
-    """Return points of the polygons' edges ``(4 * 16, legs)``, seen from the rest footholds, side by side."""
+    """Return points of the polygons' edges ``(3 * 16, legs)``, seen from the rest footholds, side by side."""
     start, end = (ends.T[:, None] for ends in polygon_ends(bounds, rest))
     return np.asarray(start + _ALONG * (end - start)).reshape(-1, len(rest))
 
 
 def _drawn_in(bounds: Floats, rest: Floats, edge: Floats, part: Floats) -> Floats:
-    """Return the sides drawn in to a part of the way out to points of `_edge`, ``(4 * 16, legs)``."""
+    """Return the sides drawn in to a part of the way out to points of `_edge`, ``(3 * 16, legs)``."""
     normals = np.repeat(NORMALS, len(_ALONG))[:, None]
     inner = (normals.conj() * (rest + np.clip(part, 0.0, 1.0) * edge)).real
     inner = np.where(part < 1, inner, np.inf).reshape(_SIDES, len(_ALONG), -1).min(axis=1)
