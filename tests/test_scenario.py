@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from tarsus.drive.commands import COMMANDS, GAIT_NAMES, Clearance, GaitChange, MoveHand, Walk, quantities
 from tarsus.drive.quantities import UNITS
-from tarsus.drive.scenario import STARTS, Scenario
+from tarsus.drive.scenario import LEVELLINGS, STARTS, Scenario
 from tarsus.errors import InputError, TarsusError, UnknownNameError
 
 # Names that need quotes, and escapes, are names too.
@@ -46,6 +46,7 @@ def scenarios(draw):
         start=draw(st.sampled_from(STARTS)),
         duration=draw(st.none() | st.floats(0.1, 100)),
         gait=draw(st.sampled_from(["", *GAIT_NAMES])),
+        levelling=draw(st.sampled_from(["", *LEVELLINGS])),
         clearance=draw(st.none() | st.floats(0.001, 0.9)),
         lift=draw(st.none() | st.floats(0, 0.9)),
     )

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import inspect
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
@@ -13,6 +12,7 @@ from tarsus.drive.orders import Orders
 from tarsus.errors import TarsusError
 from tarsus.gait.gait import Gait
 from tarsus.gait.live.fold_power import power_off_order
+from tarsus.gait.live.levelling import LevellingMode
 from tarsus.gait.live.rise import fold, sit_down, stand_up
 from tarsus.gait.live.sequence import Instant, Sequence
 from tarsus.gait.live.sequence_player import SequencePlayer
@@ -21,12 +21,9 @@ from tarsus.kinematics.leg import forward_kinematics
 from tarsus.kinematics.pose import Pose
 from tarsus.robot.robot import Robot
 
-__all__ = ["TAKES_SENSES", "Actor", "Frame"]
+__all__ = ["Actor", "Frame"]
 
 Floats = np.ndarray[Any, Any]
-
-TAKES_SENSES = "senses" in inspect.signature(Walker.step).parameters
-"""Whether the walker can be told what the robot feels."""
 
 # A robot whose joints are slower than this is at rest [rad/s].
 _AT_REST = 1e-3
@@ -37,7 +34,7 @@ class Frame(NamedTuple):
     """What the robot does at a moment.
 
     Joint angles ``(legs, 3)`` [rad], the body's pose and the feet ``(legs, 3)`` in G [m], which feet are on the ground,
-    whether the belly is, what it is doing, its twist [m/s, m/s, rad/s], the gait, the cycle's duration [s], and why the
+    whether the belly is, whether it stands or walks and is not getting up or going down, what it is doing, its twist [m/s, m/s, rad/s], the gait, the cycle's duration [s], and why the
     wish is not met in full.
     """
 
@@ -46,6 +43,7 @@ class Frame(NamedTuple):
     feet: Floats
     contacts: Floats
     belly: bool
+    upright: bool
     doing: str
     twist: tuple[float, float, float]
     gait: Gait
@@ -66,6 +64,8 @@ class Actor:
         The gait it starts with.
     clearance, lift : float, optional
         Of the stance that it starts in or gets up to [m].
+    levelling : {"level", "follow"}, optional
+        What it does on ground that is not level.
     tell : callable
         Told what happens: what kind of thing, and in words.
 
@@ -83,10 +83,12 @@ class Actor:
         gait: Gait,
         clearance: float | None,
         lift: float | None,
+        levelling: LevellingMode | None,
         tell: Callable[[str, str], None],
     ) -> None:
         self.robot, self._tell = robot, tell
         self._first = {"clearance": clearance, "lift": lift}
+        self._levelling = levelling
         self.orders = Orders(robot)
         self._base = Pose.from_rpy(0.0, 0.0, 0.0, (0.0, 0.0, 0.0))
         self._gait, self._cycle_time = gait, 0.0
@@ -103,7 +105,18 @@ class Actor:
         self.now = self._frame()
 
     def _new_walker(self) -> Walker:
-        return Walker(self.robot, self._gait, clearance=self._first["clearance"], lift=self._first["lift"])
+        return Walker(
+            self.robot,
+            self._gait,
+            clearance=self._first["clearance"],
+            lift=self._first["lift"],
+            levelling=self._levelling,
+        )
+
+    @property
+    def acting(self) -> bool:
+        """Whether it is getting up, going down or folding."""
+        return self._player is not None
 
     # A tick.
 
@@ -135,9 +148,7 @@ class Actor:
         return self.now
 
     def _walk(self, walker: Walker, dt: float) -> None:
-        senses = self.orders.feeling.senses(walker.feet, walker.body)
-        more = {"senses": senses} if TAKES_SENSES else {}
-        walker.step(self.orders.wish(), dt, **more)
+        walker.step(self.orders.wish(), dt, senses=self.orders.feeling.senses(walker.feet, walker.body))
         self._gait, self._cycle_time = walker.gait, walker.cycle_time
 
     def _at_rest(self) -> bool:
@@ -150,13 +161,14 @@ class Actor:
         walker = self._walker
         if walker is None:
             assert self._lies is not None  # one of the three is always there
-            return self._shown(self._lies, doing="lying")
+            return self._shown(self._lies._replace(belly=True, stage="lying"))
         return Frame(
             walker.angles,
             self._base @ walker.body,
             np.asarray(self._base @ walker.feet),
             walker.contacts,
             belly=False,
+            upright=True,
             doing=walker.mode,
             twist=(float(walker.twist[0]), float(walker.twist[1]), float(walker.twist[2])),
             gait=walker.gait,
@@ -164,7 +176,7 @@ class Actor:
             limited=walker.limited,
         )
 
-    def _shown(self, instant: Instant, doing: str = "") -> Frame:
+    def _shown(self, instant: Instant) -> Frame:
         body = self._base @ instant.body
         feet = np.asarray(body @ forward_kinematics(self.robot, instant.angles)[..., 3, :])
         return Frame(
@@ -173,7 +185,8 @@ class Actor:
             feet,
             instant.contacts,
             belly=instant.belly,
-            doing=doing or instant.stage,
+            upright=False,
+            doing=instant.stage,
             twist=_STILL,
             gait=self._gait,
             cycle_time=self._cycle_time,

@@ -128,6 +128,7 @@ _SETTINGS: dict[str, tuple[str, Callable[[Any], Any], Callable[[Any], Any]]] = {
     "gait": ("gait", str, str),
     "clearance": ("clearance_mm", from_milli, to_milli),
     "lift": ("lift_mm", from_milli, to_milli),
+    "levelling": ("levelling", str, str),
 }
 
 

@@ -60,8 +60,10 @@ class Recording:
         Twist that was asked for, and that was walked: forward, left [m/s], turning [rad/s].
     belly : array of bool, shape (n,)
         Whether its body rests on the ground.
+    upright : array of bool, shape (n,)
+        Whether it stands or walks, and is not lying, getting up or going down.
     doing : tuple of str
-        ``"standing"``, ``"walking"``, ``"stopping"``, ``"lying"``, or the stage of getting up or lying down.
+        The walker's mode, such as ``"walking"``; ``"lying"``; or the stage of getting up or lying down.
     gaits : tuple of str
         Name of the gait.
     guard : tuple of str
@@ -78,6 +80,7 @@ class Recording:
     wished: Floats
     done: Floats
     belly: Floats
+    upright: Floats
     doing: tuple[str, ...]
     gaits: tuple[str, ...]
     guard: tuple[str, ...]

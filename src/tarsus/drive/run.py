@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from tarsus.drive.actor import TAKES_SENSES, Actor, Frame
-from tarsus.drive.commands import Command, GaitChange, Ground, Tilt
+from tarsus.drive.actor import Actor, Frame
+from tarsus.drive.commands import Command, GaitChange
 from tarsus.drive.orders import leg_number
 from tarsus.drive.recording import Event, Recording
 from tarsus.drive.scenario import Scenario
@@ -77,8 +77,6 @@ def _check(scenario: Scenario, robot: Robot) -> None:
                 Gait.named(command.gait, legs=robot.legs)
             except InputError as error:
                 raise InputError(f"{at}: {error}") from None
-        if isinstance(command, Ground | Tilt) and not TAKES_SENSES:
-            raise InputError(f"{at}: {command.word}: the walker has no senses yet")
 
 
 class _Run:
@@ -91,12 +89,14 @@ class _Run:
         self._events: list[Event] = []
         self._limits: dict[str, int] = {}
         gait = Gait.named(scenario.gait or robot.gait.name, legs=robot.legs)
+        levelling: Any = scenario.levelling or None
         self._actor = Actor(
             robot,
             start=scenario.start,
             gait=gait,
             clearance=scenario.clearance,
             lift=scenario.lift,
+            levelling=levelling,
             tell=self._tell,
         )
         speed, acceleration = joint_limits(robot, None, None)
@@ -164,7 +164,7 @@ class _Run:
         """Note what is new with this tick."""
         if frame.gait.name != before.gait.name:
             self._tell("gait", f"{frame.gait.name} from here on")
-        if frame.doing != before.doing and frame.doing not in _MODES:
+        if frame.doing != before.doing and self._actor.acting:
             self._tell("stage", frame.doing)
         present: dict[str, int] = {}
         for reason in frame.limited:
@@ -187,6 +187,7 @@ class _Run:
             wished=_locked(np.array(self._wishes)),
             done=_locked(done),
             belly=_locked(np.array([frame.belly for frame in frames])),
+            upright=_locked(np.array([frame.upright for frame in frames])),
             doing=tuple(frame.doing for frame in frames),
             gaits=tuple(frame.gait.name for frame in frames),
             guard=() if self._guard is None else tuple(self._states),
@@ -237,9 +238,6 @@ class _Run:
             foot_distance=0.0 if lies else default_foot_distance(robot),
             assumed=tuple(setup.assumed(self._scenario.clearance, self._scenario.lift)),
         )
-
-
-_MODES = ("standing", "walking", "stopping", "lying")
 
 
 def _past(done: np.ndarray[Any, Any], rest: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:

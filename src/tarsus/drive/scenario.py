@@ -12,10 +12,13 @@ from tarsus.drive.commands import GAIT_NAMES, LATEST, Command
 from tarsus.drive.wording import command_text, time_text
 from tarsus.errors import InputError, UnknownNameError
 
-__all__ = ["LONGEST_TICK", "STARTS", "Scenario"]
+__all__ = ["LEVELLINGS", "LONGEST_TICK", "STARTS", "Scenario"]
 
 STARTS = ("standing", "sitting", "folded")
 """How the robot may be found."""
+
+LEVELLINGS = ("level", "follow")
+"""What the body may do on ground that is not level."""
 
 LONGEST_TICK = 0.05
 """The longest tick [s]: of a longer one the walker walks no more than this."""
@@ -49,6 +52,8 @@ class Scenario:
         The gait it starts with; the robot's own where empty.
     clearance, lift : float, optional
         Of the stance it starts in or gets up to [m]; the robot's own where left out.
+    levelling : {"", "level", "follow"}
+        On ground that it feels is not level: nothing, or the body stays level, or follows the slope.
 
     Raises
     ------
@@ -69,6 +74,7 @@ class Scenario:
     gait: str = ""
     clearance: float | None = None
     lift: float | None = None
+    levelling: str = ""
 
     def __post_init__(self) -> None:
         commands: Iterable[object] = self.commands
@@ -78,8 +84,9 @@ class Scenario:
         object.__setattr__(self, "commands", tuple(sorted(self.commands, key=lambda command: command.at)))
         if self.start not in STARTS:
             raise UnknownNameError.of("start", str(self.start), STARTS)
-        if self.gait and self.gait not in GAIT_NAMES:
-            raise UnknownNameError.of("gait", str(self.gait), GAIT_NAMES)
+        for kind, known in (("gait", GAIT_NAMES), ("levelling", LEVELLINGS)):
+            if getattr(self, kind) not in ("", *known):
+                raise UnknownNameError.of(kind, str(getattr(self, kind)), known)
         self._check_numbers()
 
     def _check_numbers(self) -> None:

@@ -10,7 +10,7 @@ from pydantic_core import PydanticCustomError, core_schema
 
 from tarsus.drive.commands import COMMANDS, GAIT_NAMES, LATEST, Command, MoveBody, Sway, Tilt, Walk
 from tarsus.drive.quantities import Quantity
-from tarsus.drive.scenario import STARTS
+from tarsus.drive.scenario import LEVELLINGS, STARTS
 from tarsus.drive.wording import takes
 from tarsus.robot.fields import Choice, Number, Numbers, Text, refuse
 
@@ -119,6 +119,9 @@ class ScenarioFile(Table):
     )
     lift_mm: Annotated[Decimal, Number(0, 1000, "mm")] | None = Field(
         default=None, description="Lift of swinging feet at the start [mm]."
+    )
+    levelling: Annotated[str, Choice(LEVELLINGS)] | None = Field(
+        default=None, description="Whether the body stays level on ground that is not, or follows it."
     )
     timeline: Annotated[str, _Lines()] | None = Field(default=None, description="Commands as text.")
     at: list[At] = Field(default=[], description="Commands as tables.")  # type: ignore[valid-type]

@@ -22,7 +22,7 @@ def drive_summary(recording: Recording) -> dict[str, Any]:
         From `tarsus.drive.run.run`.
     """
     motion, scenario = recording.motion, recording.scenario
-    walking = np.array([doing in ("walking", "stopping") for doing in recording.doing])
+    walking = recording.upright & np.array([doing != "standing" for doing in recording.doing])
     steps = np.diff(motion.time)
     path = np.linalg.norm(np.diff(motion.body.position[:, :2], axis=0), axis=1)
     moved = walking[1:]

@@ -210,8 +210,7 @@ def _draw_margin(axes: Axes, recording: Recording) -> None:
 
 def _shade(axes: Axes, recording: Recording) -> None:
     """Shade when the robot lies, gets up or goes down."""
-    upright = {"standing", "walking", "stopping"}
-    lying: np.ndarray[Any, Any] = np.array([False, *(each not in upright for each in recording.doing), False])
+    lying: np.ndarray[Any, Any] = np.concatenate([[False], ~recording.upright, [False]])
     edges = np.flatnonzero(np.diff(lying.astype(int))).reshape(-1, 2)
     time = recording.motion.time
     for start, end in edges:

@@ -1,0 +1,110 @@
+"""`tarsus drive`: what it says is what `run` says; what is wrong with a scenario is told with its place."""
+
+import csv
+import json
+
+import pytest
+
+from sample_commands import run, run_json
+from tarsus.drive.run import run as run_scenario
+from tarsus.drive.scenario import Scenario
+from tarsus.drive.summary import drive_summary
+from tarsus.gait.motion import Motion
+
+TIMELINE = "at 0 s: walk 60 mm/s; at 1 s: gait wave; at 2 s: stop"
+
+
+def test_the_numbers_are_those_of_the_same_scenario_in_python():
+    code, document = run_json("drive", "--dry", TIMELINE, "--robot", "phantomx", "--rate", "50")
+    assert code == 0
+    recording = run_scenario(Scenario.from_text(TIMELINE, rate=50.0), robot="phantomx")
+    wanted = json.loads(json.dumps(drive_summary(recording), default=float))
+    assert document.pop("files") == []
+    bears = document.pop("loads")
+    assert document.keys() == wanted.keys()
+    for key in ("duration_s", "way_mm", "top_speed_mm_s", "walked_s", "steps"):
+        assert document[key] == pytest.approx(wanted[key], abs=1e-6)
+    assert document["gaits"] == ["tripod", "wave"]
+    assert set(bears) == {"coxa", "femur", "tibia"}
+    assert bears["femur"]["peak_nm"] > 0.1
+
+
+def test_it_prints_a_table_and_the_verdict():
+    result = run("drive", "--dry", TIMELINE)
+    assert result.exit_code == 0
+    assert result.stdout.strip().endswith("possible")
+    for words in ("strider", "0 interventions", "top speed", "greatest femur", "tripod, wave"):
+        assert words in result.stdout
+
+
+def test_out_gets_tables_motion_and_pictures(tmp_path):
+    path = tmp_path / "short.toml"
+    scenario = Scenario.from_text("at 0 s: walk 30 mm/s", duration=0.6, rate=50.0, robot="mithi", name="short")
+    scenario.save(path)
+    out = tmp_path / "deep" / "driven"
+    code, document = run_json("drive", "--dry", path, "--out", out)
+    assert code == 0
+    assert document["scenario"] == "short"
+    assert document["loads"] is None
+    names = ["log.csv", "motion.npz", "timeline.png", "walk.csv", "angles.png", "footpaths.png", "gait.png", "walk.gif"]
+    assert document["files"] == [str(out / name) for name in names]
+    assert all((out / name).stat().st_size > 500 for name in names)
+    recording = run_scenario(scenario)
+    assert (Motion.load(out / "motion.npz").angles == recording.motion.angles).all()
+    with open(out / "log.csv", encoding="utf-8") as file:
+        assert len(list(csv.reader(file))) == 1 + len(recording.motion.time)
+
+
+def test_files_are_named_after_they_are_written(tmp_path):
+    result = run("drive", "--dry", "at 0 s: stop", "--rate", "20", "--out", tmp_path, "--no-animation", "--no-guard")
+    assert result.exit_code == 0
+    assert f"wrote {tmp_path / 'timeline.png'}" in result.stdout
+    assert not (tmp_path / "walk.gif").exists()
+
+
+def test_without_dry_it_says_that_servos_come_later():
+    result = run("drive", TIMELINE)
+    assert result.exit_code == 2
+    assert "real servos come later; --dry" in result.stderr
+
+
+def test_a_refused_command_is_told_and_is_exit_code_1():
+    result = run("drive", "--dry", "at 0 s: fold")
+    assert result.exit_code == 1
+    assert "not possible" in result.stdout
+    assert "fold: it stands; let it sit first" in result.stdout
+
+
+def test_limits_are_told():
+    result = run("drive", "--dry", "at 0 s: walk 5 m/s")
+    assert result.exit_code == 0
+    assert "limited" in result.stdout
+    assert "twist: " in result.stdout
+
+
+def test_a_robot_that_never_stands_has_no_margin_and_no_loads(tmp_path):
+    path = tmp_path / "lies.toml"
+    Scenario(start="folded", duration=0.3).save(path)
+    result = run("drive", "--dry", path)
+    assert result.exit_code == 0
+    assert "it never stood" in result.stdout
+    assert "greatest" not in result.stdout
+
+
+@pytest.mark.parametrize(
+    ("scenario", "options", "wanted"),
+    [
+        ("at 0 s: wlak 1 m/s", (), "no command is called 'wlak'. Did you mean 'walk'?"),
+        ("nothing.toml", (), "nothing.toml can't be read"),
+        ("at 0 s: stop", ("--rate", "5"), "rate is 5 Hz; it must be from 20 to 1000 Hz"),
+        ("at 0 s: stop", ("--rate", "nan"), "is not a number"),
+        ("at 0 s: hand XX x 1 mm y 1 mm z 1 mm", (), "no leg is called 'XX'"),
+    ],
+)
+def test_what_is_asked_wrongly_is_told(scenario, options, wanted):
+    result = run("drive", "--dry", scenario, *options)
+    assert result.exit_code == 2
+    assert wanted in result.stderr
+    code, document = run_json("drive", "--dry", scenario, *options)
+    assert code == 2
+    assert wanted in document["error"]

@@ -1,0 +1,327 @@
+"""Running scenarios: what comes out is what walker, sequences and guard make of it, tick by tick."""
+
+import csv
+import dataclasses
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import tarsus.drive.run as running
+from tarsus.drive.commands import COMMANDS, Ground, Tilt
+from tarsus.drive.feeling import Feeling
+from tarsus.drive.recording import Recording
+from tarsus.drive.run import run
+from tarsus.drive.scenario import Scenario
+from tarsus.drive.summary import drive_summary
+from tarsus.errors import InputError, UnknownNameError
+from tarsus.gait.gait import Gait
+from tarsus.gait.live.guard import Guarded
+from tarsus.gait.live.walker import Walker
+from tarsus.gait.live.wish import Wish
+from tarsus.gait.motion import Motion
+from tarsus.kinematics.leg import forward_kinematics
+from tarsus.kinematics.pose import Pose
+from tarsus.load.loads import loads
+from tarsus.report.style import save_figure
+from tarsus.report.timeline import plot_timeline
+from tarsus.robot.file import list_robots, load_robot
+
+EXAMPLES = sorted((Path(__file__).parents[1] / "examples").glob("*.toml"))
+SCENARIOS = [path for path in EXAMPLES if "timeline" in path.read_text() or "[[at]]" in path.read_text()]
+
+EVERY_COMMAND = Scenario.from_text(
+    """
+    at 0.2 s: stand_up
+    at 2.5 s: walk 40 mm/s; gait wave; ground RF 0 mm
+    at 4 s: sway z 3 mm roll 1 deg; cycle_time 1.5 s; tilt pitch 0.3 deg
+    at 5 s: body pitch 2 deg z 3 mm; lift 15 mm; stance_width 3 mm; clearance 85 mm
+    at 7 s: walk vx 20 mm/s turn 5 deg/s
+    at 9 s: stop; body; sway; hand LM x 0 mm y 200 mm z 40 mm
+    at 10 s: hand_back LM
+    at 11 s: sit; fold; power_off
+    """,
+    start="folded",
+)
+
+
+def test_the_scenario_has_every_command():
+    assert {type(command) for command in EVERY_COMMAND.commands} == set(COMMANDS.values())
+
+
+@pytest.mark.parametrize("name", list_robots())
+def test_every_command_runs_clean_through_the_guard_on_every_robot(name):
+    found = run(EVERY_COMMAND, robot=name)
+    assert found.problems == ()
+    assert found.ok
+    assert not found.interventions
+    assert set(found.guard) == {"passing"}
+    assert found.belly[0]
+    assert found.belly[-1]
+    assert found.doing[-1] == "lying"
+    assert [event.kind for event in found.events].count("command") == len(EVERY_COMMAND.commands)
+    assert {"stand_up", "sit", "fold"} <= {event.text for event in found.events}
+    (standing,) = found.standing
+    assert (standing.margin >= 0).all()
+    # The feet are where the angles and the body take them, and go from each place to the next without a jump.
+    motion = found.motion
+    reached = motion.body @ forward_kinematics(found.robot, motion.angles)[..., 3, :]
+    assert np.abs(reached - motion.feet).max() < 1e-9
+    speed = np.linalg.norm(np.diff(motion.feet, axis=0), axis=-1) / np.diff(motion.time)[:, None]
+    assert speed.max() < 3
+    slips = np.linalg.norm(np.diff(motion.feet, axis=0), axis=-1) * (motion.contacts[1:] & motion.contacts[:-1])
+    assert slips[found.upright[1:] & found.upright[:-1]].max() < 1e-6
+    # Where sitting down takes over, the ground is where the lowest three feet are; what they felt is 0.1 mm off at most.
+    assert slips.max() < 1e-4
+
+
+def test_it_is_what_the_walker_gives():
+    text = "at 0 s: walk vx 50 mm/s turn 5 deg/s; lift 20 mm; at 1 s: gait ripple; body z 5 mm; at 2.5 s: stop"
+    found = run(Scenario.from_text(text, duration=4.0, rate=50.0), robot="strider")
+    walker = Walker(load_robot("strider"), Gait.named("tripod", legs=6))
+    sticky = {"lift": 0.02}
+    twist = (0.05, 0.0, math.radians(5))
+    for tick in range(1, 201):
+        before = (tick - 1) / 50
+        if before == 1:
+            sticky |= {"gait": "ripple", "body": (0.0, 0.0, 0.005, 0.0, 0.0, 0.0)}
+        if before == 2.5:
+            twist = (0.0, 0.0, 0.0)
+        angles = walker.step(Wish(twist=twist, **sticky), tick / 50 - before)
+        assert (found.motion.angles[tick] == angles).all()
+        assert (found.motion.feet[tick] == walker.feet).all()
+        assert (found.motion.contacts[tick] == walker.contacts).all()
+        assert (found.done[tick] == walker.twist).all()
+        assert found.wished[tick] == pytest.approx(twist)
+        assert found.gaits[tick] == walker.gait.name
+    assert len(found.motion.time) == 201
+
+
+def test_the_same_scenario_gives_the_same_to_the_bit_and_a_seed_is_used():
+    scenario = Scenario.from_text("at 0 s: walk 50 mm/s", duration=2.0, jitter=0.004, seed=7, robot="phantomx")
+    one, two = run(scenario), run(scenario)
+    other = run(dataclasses.replace(scenario, seed=8))
+    assert one.motion.angles.tobytes() == two.motion.angles.tobytes()
+    assert one.motion.time.tobytes() == two.motion.time.tobytes()
+    assert one.events == two.events
+    assert (one.motion.time[:50] != other.motion.time[:50]).any()
+    assert np.ptp(np.diff(one.motion.time)) > 0.001
+    assert np.diff(one.motion.time).max() <= 0.014
+
+
+def test_commands_are_given_at_the_first_tick_at_or_after_their_time():
+    found = run(Scenario.from_text("at 0.1 s: walk 10 mm/s; at 0.255 s: stop", duration=0.5), robot="strider")
+    asked = found.motion.time[1:][found.wished[1:, 0] > 0]
+    assert asked[0] == pytest.approx(0.11)
+    assert asked[-1] == pytest.approx(0.26)
+    assert [event.time for event in found.events] == pytest.approx([0.1, 0.26])
+
+
+def test_without_a_duration_it_ends_when_what_was_begun_is_over():
+    walking = run(Scenario.from_text("at 1 s: walk 20 mm/s"), robot="strider")
+    assert walking.motion.duration == pytest.approx(3.0)
+    stopped = run(Scenario.from_text("at 0 s: walk 20 mm/s; at 2 s: stop"), robot="strider")
+    assert stopped.doing[-1] == "standing"
+    assert run(Scenario(), robot="strider").motion.duration == pytest.approx(2.0)
+
+
+def test_what_can_not_be_now_is_refused_and_said():
+    text = "at 0 s: stand_up; fold; power_off; sit; sit; power_off; at 5 s: stand_up"
+    found = run(Scenario.from_text(text), robot="strider")
+    assert [event.text for event in found.events if event.kind == "refused"] == [
+        "stand_up: it stands already",
+        "fold: it stands; let it sit first",
+        "power_off: it stands; let it sit first",
+        "sit: it sits already",
+    ]
+    assert [event.text[:15] for event in found.events if event.kind == "power"] == ["joints released"]
+    assert not found.ok
+    assert found.doing[-1] == "standing"
+    assert "at 0.01 s stand_up: it stands already" in found.problems
+
+
+def test_a_robot_that_can_not_get_up_says_why(monkeypatch):
+    def refuse(*_args, **_more):
+        raise InputError("no way up")
+
+    monkeypatch.setattr("tarsus.drive.actor.stand_up", refuse)
+    found = run(Scenario.from_text("at 0 s: stand_up", start="sitting"), robot="strider")
+    assert found.problems == ("at 0.01 s stand_up: no way up",)
+    assert found.standing == ()
+    assert drive_summary(found)["least_margin"] is None
+
+
+def test_it_gets_up_where_it_has_sat_down():
+    text = "at 0 s: walk vx 60 mm/s turn 20 deg/s; at 3 s: sit; walk 30 mm/s; at 6 s: stand_up; at 9 s: stop"
+    found = run(Scenario.from_text(text), robot="strider")
+    assert found.ok
+    assert len(found.standing) == 2
+    motion = found.motion
+    assert np.linalg.norm(np.diff(motion.body.position, axis=0), axis=1).max() < 0.01
+    sat = motion.body.position[found.belly][:, :2]
+    assert np.linalg.norm(sat[0]) > 0.05
+    assert np.ptp(sat, axis=0).max() < 1e-6
+    second = found.standing[1].body.position[:, :2]
+    assert np.linalg.norm(second[0] - sat[-1]) < 1e-6
+    assert np.linalg.norm(second[-1] - second[0]) > 0.02
+    assert found.standing[1].time[0] == 0
+
+
+def test_limits_are_told_once_with_their_time():
+    found = run(Scenario.from_text("at 0.5 s: walk 3 m/s; at 2 s: walk 10 mm/s", duration=3.0), robot="strider")
+    (limit,) = (event for event in found.events if event.kind == "limit")
+    assert limit.text.startswith("twist: ")
+    assert limit.time == pytest.approx(0.51, abs=0.011)
+    assert limit.until == pytest.approx(2.0, abs=0.011)
+    assert found.ok
+
+
+class Rejecting:
+    """A guard that lets nothing through for a while, and sends zeros instead."""
+
+    def __init__(self, robot, **_more):
+        self.robot, self.ticks, self.counts, self.log = robot, 0, {}, []
+
+    def check(self, angles, dt, contacts, body):
+        self.ticks += 1
+        held = 30 <= self.ticks < 60
+        if self.ticks == 30:
+            self.counts = {"speed": 1}
+            self.log = [type("Found", (), {"text": lambda self: "speed: too fast"})()]
+        sent = np.zeros_like(angles) if held else angles
+        return Guarded(sent, not held, "holding" if held else "passing", 0.0, ())
+
+
+def test_while_the_guard_holds_the_walker_waits_and_what_is_sent_is_recorded(monkeypatch):
+    monkeypatch.setattr(running, "Guard", Rejecting)
+    found = run(Scenario.from_text("at 0 s: walk 60 mm/s", duration=1.5), robot="strider")
+    assert found.interventions == {"speed": 1}
+    assert [event.text for event in found.events if event.kind == "guard"] == ["speed: too fast"]
+    assert "the guard stepped in 1 x: speed" in found.problems
+    assert not found.motion.angles[30:60].any()
+    assert np.array(found.guard)[30:60].tolist() == ["holding"] * 30
+    assert (found.motion.body.position[31:61] == found.motion.body.position[30]).all()
+    reached = found.motion.body @ forward_kinematics(found.robot, found.motion.angles)[..., 3, :]
+    assert np.abs(reached - found.motion.feet).max() < 1e-9
+    free = run(found.scenario, robot="strider", guard=False)
+    assert free.guard == ()
+    assert (free.motion.angles[:30] == found.motion.angles[:30]).all()
+    # The guard here held 30 ticks; from then on all is as without it, but later by these.
+    later = found.motion.angles[61:130]
+    assert np.abs(free.motion.angles[31:100] - later).max() < 1e-9
+
+
+@pytest.mark.parametrize(
+    ("text", "robot", "error", "wanted"),
+    [
+        ("at 3 s: hand XY x 1 mm y 1 mm z 1 mm", "strider", UnknownNameError, "at 3 s: no leg is called 'XY'"),
+        ("at 1 s: stop", None, InputError, "the scenario names no robot"),
+    ],
+)
+def test_what_a_robot_can_not_be_told_is_refused_before_the_start(text, robot, error, wanted):
+    with pytest.raises(error, match=wanted):
+        run(Scenario.from_text(text), robot=robot)
+
+
+def test_a_gait_for_six_legs_is_refused_for_four():
+    document = load_robot("strider").to_dict()
+    document["legs"] = [document["legs"][leg] for leg in (0, 2, 3, 5)]
+    four = type(load_robot("strider")).from_dict(document)
+    with pytest.raises(InputError, match=r"at 2 s: .*4 legs"):
+        run(Scenario.from_text("at 2 s: gait ripple", gait="wave"), robot=four)
+
+
+def test_loads_of_what_stood():
+    found = run(
+        Scenario.from_text("at 0 s: stand_up; at 2 s: walk 50 mm/s; at 4 s: sit", start="sitting"), robot="strider"
+    )
+    (standing,) = found.standing
+    bears = loads(found.robot, standing)
+    assert bears.balanced
+    assert 0.3 < bears.peak[:, 1].max() < 4
+
+
+def test_a_motion_of_it_is_saved_and_comes_back(tmp_path):
+    found = run(Scenario.from_text("at 0 s: walk 50 mm/s", duration=1.0), robot="strider")
+    found.motion.save(tmp_path / "motion.npz")
+    back = Motion.load(tmp_path / "motion.npz")
+    assert (back.angles == found.motion.angles).all()
+    assert found.motion.speed == pytest.approx(np.linalg.norm(found.done[:, :2], axis=1).max())
+    assert found.standing == (found.motion,)
+
+
+def test_the_log_is_a_table_of_every_tick(tmp_path):
+    found = run(
+        Scenario.from_text("at 0.5 s: walk vx 50 mm/s turn 5 deg/s", duration=1.0), robot="strider", guard=False
+    )
+    found.to_csv(tmp_path / "log.csv")
+    with open(tmp_path / "log.csv", encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    assert len(rows) == len(found.motion.time)
+    assert float(rows[-1]["wished_vx_mm_s"]) == 50
+    assert float(rows[-1]["done_turn_deg_s"]) == pytest.approx(math.degrees(found.done[-1, 2]), abs=1e-6)
+    assert (rows[-1]["doing"], rows[-1]["gait"], rows[-1]["guard"]) == ("walking", "tripod", "")
+    with pytest.raises(InputError, match="can't be written"):
+        found.to_csv(tmp_path)
+
+
+def test_what_is_felt_is_ground_under_each_leg_and_tilt():
+    feeling = Feeling(load_robot("strider"))
+    feet = np.zeros((6, 3))
+    assert feeling.senses(feet, Pose()) is None
+    feeling.take(Ground(0.0, leg="RF", height=0.005), 5)
+    feet[:, 2] = [0.0, 0.001, 0.0, 0.0, 0.006, 0.004]
+    felt = feeling.senses(feet, Pose())
+    assert felt.contacts.tolist() == [True, False, True, True, False, True]
+    assert felt.attitude is None
+    feeling.take(Tilt(0.0, roll=0.1), None)
+    felt = feeling.senses(feet, Pose.from_rpy(0.01, -0.02, 1.0, (0.0, 0.0, 0.0)))
+    assert felt.attitude == pytest.approx((0.11, -0.02))
+
+
+@pytest.mark.parametrize("path", SCENARIOS, ids=lambda path: path.stem)
+def test_the_examples_run(path):
+    scenario = Scenario.load(path)
+    found = run(scenario)
+    assert found.ok, found.problems
+    assert not found.interventions
+    assert all(event.kind != "refused" for event in found.events)
+
+
+def test_there_are_examples():
+    assert {path.stem for path in SCENARIOS} >= {"stroll", "gaits", "tilt", "whole-day"}
+
+
+def test_the_timeline_shows_every_command_and_phase(tmp_path):
+    text = "at 0 s: power_off; stand_up; at 2 s: walk 5 m/s; gait wave; "
+    text += "at 3 s: hand LM x 0.123456 mm y 200.123456 mm z 40.456 mm"
+    found = run(Scenario.from_text(text, start="sitting", duration=4.0, name="a try"), robot="strider")
+    figure = plot_timeline(found)
+    words = {text.get_text() for axes in figure.axes for text in axes.texts}
+    assert {"stand_up", "gait wave", "tripod"} <= words
+    assert any(word.startswith("hand LM x 0.12") and word.endswith("...") for word in words)
+    assert any(word.startswith("wished for: up to 5000") for word in words)
+    assert "strider: a try" in figure.get_suptitle()
+    save_figure(figure, tmp_path / "timeline.png")
+    assert (tmp_path / "timeline.png").stat().st_size > 10_000
+
+
+def test_the_timeline_of_a_robot_that_never_stands_and_of_one_without_a_guard():
+    lying = run(Scenario.from_text("at 0 s: sit", start="sitting", duration=0.5), robot="strider", guard=False)
+    assert isinstance(lying, Recording)
+    assert "no guard" in plot_timeline(lying).get_suptitle()
+
+
+def test_the_summary_is_of_the_motion():
+    found = run(Scenario.from_text("at 0.5 s: walk 50 mm/s; at 3 s: walk turn 10 deg/s; at 5 s: stop"), robot="strider")
+    summary = drive_summary(found)
+    motion = found.motion
+    assert summary["top_speed_mm_s"] == pytest.approx(50, rel=0.01)
+    assert summary["top_turn_deg_s"] == pytest.approx(10, rel=0.01)
+    assert summary["end"]["x_mm"] == pytest.approx(motion.body.position[-1, 0] * 1000)
+    assert summary["way_mm"] == pytest.approx(summary["end"]["x_mm"], rel=0.05)
+    assert summary["least_margin"]["mm"] == pytest.approx(motion.margin.min() * 1000)
+    assert 4 < summary["walked_s"] < motion.duration - 0.4
+    assert summary["possible"]
+    assert [command["text"] for command in summary["commands"]] == ["walk vx 50 mm/s", "walk turn 10 deg/s", "stop"]
