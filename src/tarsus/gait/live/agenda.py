@@ -107,14 +107,18 @@ class Agenda:
         free : bool
             Whether the walker has done with the last change, so that a further one may begin.
         """
-        if self._job is not None:
+        for _ in range(_PARTS):
+            if self._job is None:
+                break
             try:
                 next(self._job)
             except StopIteration as done:
                 self._note(done.value)
             except UnreachableError as error:
                 self._note(str(error))
-        elif free and self.ready is None and self.wanted is not self._done:
+        else:
+            return
+        if free and self._job is None and self.ready is None and self.wanted is not self._done:
             asked, stay = self._next_manner()
             if asked not in (self.doing.manner, *self.refusals):
                 self._asked, self._job = asked, work_out(asked, stay)
@@ -142,13 +146,19 @@ class Agenda:
             self.ready = found
 
     def _next_manner(self) -> tuple[Manner, bool]:
-        """Return what to change first, how the robot stands or then how it steps; and whether it is the latter."""
+        """Return what to change first, how the robot steps or how it stands; and whether its posture stays."""
         doing, wanted = self.doing.manner, self.wanted
+        stepping = dataclasses.replace(doing, gait=wanted.gait, cycle_time=wanted.cycle_time, gone=wanted.gone)
         standing = dataclasses.replace(wanted, gait=doing.gait, cycle_time=doing.cycle_time, gone=doing.gone)
-        if standing not in (doing, *self.refusals):
-            return standing, False
-        return dataclasses.replace(doing, gait=wanted.gait, cycle_time=wanted.cycle_time, gone=wanted.gone), True
+        # Before a leg leaves the gait, the body leans over the others.
+        leaves = bool(set(wanted.gone) - set(doing.gone))
+        for manner, stay in ((standing, False), (stepping, True)) if leaves else ((stepping, True), (standing, False)):
+            if manner not in (doing, *self.refusals):
+                return manner, stay
+        return doing, True
 
 
 # No length of a robot's stance is greater [m].
 _MOST = 1e3
+# How many parts of working a change out are done in one tick.
+_PARTS = 2

@@ -42,6 +42,10 @@ class Manner:
         How much farther out than usual the feet rest [m].
     cycle_time : float or None
         Duration of a cycle [s]; None for the one that gets the robot farthest.
+    sway : tuple of float
+        Amplitudes of the body's sway, as `body`.
+    correction : tuple of float
+        What is added to `body`, for the ground's sake.
     gone : tuple of int
         Legs that don't step.
     """
@@ -52,7 +56,14 @@ class Manner:
     lift: float
     stance_width: float
     cycle_time: float | None
+    sway: tuple[float, ...] = (0.0,) * 6
+    correction: tuple[float, ...] = (0.0,) * 6
     gone: tuple[int, ...] = ()
+
+    @property
+    def stance(self) -> tuple[float, ...]:
+        """How the body is to stand, for the ground's sake too."""
+        return tuple(a + b for a, b in zip(self.body, self.correction, strict=True))
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -137,12 +148,13 @@ def work_out(
     sets = support_sets(manner.gait, manner.gone)
     while share >= _LEAST_PART:
         posture, rest_there = now + share * (wished - now), rest + share * (wished_rest - rest)
-        there = yield from envelope(robot, [stand_of(posture, rest_there)], sets, foot_distance=foot_distance)
+        stands = [stand_of(row, rest_there) for row in _swaying(posture, manner.sway)]
+        there = yield from envelope(robot, stands, sets, foot_distance=foot_distance, gone=manner.gone)
         if there.possible:
             break
         share, whole, leg = share / 2, False, there.short
     else:
-        return f"{robot.leg_names[leg]} comes to the end of its reach"
+        return f"body: {robot.leg_names[leg]} comes to the end of its reach"
     pace = yield from tempo(
         robot,
         manner.gait,
@@ -156,12 +168,12 @@ def work_out(
     stepping = way = there
     if np.abs(posture - now).max() > _SAME:
         between = [stand_of(now + part * (posture - now), rest_there) for part in (0.5, 0.0)]
-        way = there.meet((yield from envelope(robot, between[:1], sets, foot_distance=foot_distance)))
-        stepping = yield from envelope(robot, between[1:], sets, foot_distance=foot_distance)
+        way = there.meet((yield from envelope(robot, between[:1], sets, foot_distance=foot_distance, gone=manner.gone)))
+        stepping = yield from envelope(robot, between[1:], sets, foot_distance=foot_distance, gone=manner.gone)
         stepping = capped(stepping, pace.stroke, pace.turning, duty=manner.gait.duty)
         way = way.meet(stepping)
     if not (way.possible and stepping.possible):
-        return f"{robot.leg_names[way.short]} could not stand and step on the way there"
+        return f"body: {robot.leg_names[way.short]} could not stand and step on the way there"
     return Change(
         manner=manner,
         whole=whole,
@@ -179,7 +191,7 @@ def _limits(robot: Robot, manner: Manner, pace: Tempo, share: float, *, whole: b
     """Say what of a manner doesn't work."""
     limited: tuple[str, ...] = ()
     if whole and share < 1:
-        reason = f"body: {100 * share:.0f} % of the way, there {robot.leg_names[leg]} comes to the end of its reach"
+        reason = f"body: it goes no farther that way, {robot.leg_names[leg]} comes to the end of its reach"
         limited += (reason,)
     if manner.cycle_time is not None and pace.cycle_time > manner.cycle_time:
         reason = (
@@ -198,12 +210,12 @@ def _wished(robot: Robot, manner: Manner, now: Floats | None) -> Parts[tuple[Flo
     UnreachableError
         If there is none, and no present posture to start from.
     """
-    wished = np.array([*manner.body, manner.lift])
+    wished = np.array([*manner.stance, manner.lift])
     tried = [1.0] if now is None else [1.0, *np.arange(7, 0, -1) / 8]
     for share in tried:
         clearance, lift = manner.clearance, manner.lift
         if now is not None and share < 1:
-            was = float(now[2]) - manner.body[2]
+            was = float(now[2]) - manner.stance[2]
             clearance, lift = was + share * (clearance - was), float(now[LIFT]) + share * (lift - float(now[LIFT]))
         try:
             stance = default_stance(robot, clearance, lift=lift)
@@ -212,9 +224,17 @@ def _wished(robot: Robot, manner: Manner, now: Floats | None) -> Parts[tuple[Flo
                 raise
             yield
             continue
-        wished[2], wished[LIFT] = manner.body[2] + clearance, lift
+        wished[2], wished[LIFT] = manner.stance[2] + clearance, lift
         return wished, _widened(robot, stance[:, 0] + 1j * stance[:, 1], manner.stance_width)
     raise UnreachableError(f"no leg reaches the ground at clearance {manner.clearance * 1000:.1f} mm")
+
+
+def _swaying(posture: Floats, sway: tuple[float, ...]) -> list[Floats]:
+    """Return the postures at the ends of a sway, and the one in the middle last."""
+    if not any(sway):
+        return [posture]
+    off = np.append(np.array(sway), 0.0)
+    return [posture + off, posture - off, posture]
 
 
 def _widened(robot: Robot, rest: Floats, width: float) -> Floats:

@@ -17,7 +17,7 @@ __all__ = ["Tempo", "joint_limits", "tempo"]
 Floats = np.ndarray[Any, Any]
 
 # What a joint turns at where its servo's speed isn't known [rad/s], and in what time it comes to that speed [s].
-_DEFAULT_SPEED = 6.0
+_DEFAULT_SPEED = 5.0
 _SPEED_UP = 0.05
 # Shares of the joints' speed and acceleration that steady walking may take: the rest is for changing one's mind.
 _SPEED_SHARE, _ACCELERATION_SHARE = 0.97, 0.8
@@ -38,7 +38,7 @@ def joint_limits(robot: Robot, speed: float | None, acceleration: float | None) 
     robot : Robot
         A single robot.
     speed : float, optional
-        For all joints [rad/s]; left out, the no-load speed of each one's servo, 6 rad/s where that is unknown.
+        For all joints [rad/s]; left out, the no-load speed of each one's servo, 5 rad/s where that is unknown.
     acceleration : float, optional
         For all joints [rad/s^2]; left out, what reaches the speed in 0.05 s.
 

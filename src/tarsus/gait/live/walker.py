@@ -32,7 +32,7 @@ from tarsus.gait.live.tempo import joint_limits
 from tarsus.gait.live.tilt import Commanded
 from tarsus.gait.live.wish import Wish
 from tarsus.gait.live.workspace import Parts, Stand, all_parts
-from tarsus.gait.setup import Setup
+from tarsus.gait.setup import Setup, require_number
 from tarsus.kinematics.inverse import inverse_kinematics
 from tarsus.kinematics.mass import centre_of_mass
 from tarsus.kinematics.pose import Pose
@@ -111,6 +111,15 @@ class Walker:
         admittance: Admittance | None = None,
     ) -> None:
         gait = Gait.named(robot.gait.name, legs=robot.legs) if gait is None else gait
+        if not math.isfinite(stance_width):
+            raise InputError(f"stance_width is {stance_width} m; it must be a finite number")
+        for name, value in (
+            ("cycle_time", cycle_time),
+            ("joint_speed", joint_speed),
+            ("joint_acceleration", joint_acceleration),
+        ):
+            if value is not None:
+                require_number(name, value, zero=False)
         setup = Setup.of(robot, gait, clearance=clearance, lift=lift, body_tilt=(0.0, 0.0), foot_distance=foot_distance)
         self.robot = setup.robot
         self.joint_speed, self.joint_acceleration = joint_limits(self.robot, joint_speed, joint_acceleration)
@@ -143,7 +152,7 @@ class Walker:
         self._frequency = 1 / change.tempo.cycle_time
         self._target = np.zeros(3)
         self._patience = 1.0
-        self._limited: tuple[str, ...] = ()
+        self._limited: tuple[str, ...] = change.limited
         self._share_of: tuple[Any, ...] = ()
         self._share = (1.0, 0)
         self._hands: dict[int, Hand] = {}
