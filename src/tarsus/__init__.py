@@ -28,6 +28,16 @@ if TYPE_CHECKING:
     )
     from tarsus.gait.cycle import cycle_feet
     from tarsus.gait.gait import GAITS, Gait
+    from tarsus.gait.live.admittance import Admittance
+    from tarsus.gait.live.fold import folded_pose
+    from tarsus.gait.live.fold_power import power_off_order
+    from tarsus.gait.live.guard import Guard, GuardBounds, Guarded, Intervention
+    from tarsus.gait.live.rise import fold, sit_down, stand_up
+    from tarsus.gait.live.senses import Senses
+    from tarsus.gait.live.sequence import Sequence
+    from tarsus.gait.live.sequence_player import SequencePlayer
+    from tarsus.gait.live.walker import Walker
+    from tarsus.gait.live.wish import Wish
     from tarsus.gait.motion import Motion
     from tarsus.gait.path import Path, curved_path, straight_path, twist_path
     from tarsus.gait.plan import plan_walk
@@ -75,6 +85,16 @@ _HOMES = {
     ),
     "tarsus.gait.cycle": ("cycle_feet",),
     "tarsus.gait.gait": ("GAITS", "Gait"),
+    "tarsus.gait.live.admittance": ("Admittance",),
+    "tarsus.gait.live.fold": ("folded_pose",),
+    "tarsus.gait.live.fold_power": ("power_off_order",),
+    "tarsus.gait.live.guard": ("Guard", "GuardBounds", "Guarded", "Intervention"),
+    "tarsus.gait.live.rise": ("fold", "sit_down", "stand_up"),
+    "tarsus.gait.live.senses": ("Senses",),
+    "tarsus.gait.live.sequence": ("Sequence",),
+    "tarsus.gait.live.sequence_player": ("SequencePlayer",),
+    "tarsus.gait.live.walker": ("Walker",),
+    "tarsus.gait.live.wish": ("Wish",),
     "tarsus.gait.motion": ("Motion",),
     "tarsus.gait.path": ("Path", "curved_path", "straight_path", "twist_path"),
     "tarsus.gait.plan": ("plan_walk",),
@@ -116,13 +136,18 @@ _HOME_OF = {name: module for module, names in _HOMES.items() for name in names}
 __all__ = [
     "GAITS",
     "JOINTS",
+    "Admittance",
     "CollisionError",
     "ContactForces",
     "CycleTorques",
     "Gait",
     "GaitDefaults",
+    "Guard",
+    "GuardBounds",
+    "Guarded",
     "IKSolution",
     "InputError",
+    "Intervention",
     "JointVerdict",
     "Loads",
     "MissingDataError",
@@ -135,6 +160,9 @@ __all__ = [
     "Rest",
     "Robot",
     "RobotFileError",
+    "Senses",
+    "Sequence",
+    "SequencePlayer",
     "Servo",
     "ServoSizing",
     "Source",
@@ -143,6 +171,8 @@ __all__ = [
     "TarsusError",
     "UnknownNameError",
     "UnreachableError",
+    "Walker",
+    "Wish",
     "__version__",
     "animate",
     "centre_of_mass",
@@ -155,6 +185,8 @@ __all__ = [
     "cycle_torques",
     "default_clearance",
     "default_stance",
+    "fold",
+    "folded_pose",
     "forward_kinematics",
     "handbook",
     "inverse_kinematics",
@@ -173,13 +205,16 @@ __all__ = [
     "plot_footpaths",
     "plot_gait",
     "plot_robot",
+    "power_off_order",
     "reachable_band",
     "reachable_share",
     "resting_pose",
     "robot_schema",
+    "sit_down",
     "size_servos",
     "stability_margin",
     "stack_robots",
+    "stand_up",
     "straight_path",
     "supply",
     "support_polygon",

@@ -118,7 +118,7 @@ class Agenda:
                 self._note(str(error))
         else:
             return
-        if free and self._job is None and self.ready is None and self.wanted is not self._done:
+        if free and self.ready is None and self.wanted is not self._done:
             asked, stay = self._next_manner()
             if asked not in (self.doing.manner, *self.refusals):
                 self._asked, self._job = asked, work_out(asked, stay)
