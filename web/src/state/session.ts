@@ -6,13 +6,30 @@ import { Link } from "./link";
 import type { ClientType, Draft } from "./outbox";
 import { received } from "./receive";
 import { notify, useStudio } from "./store";
+import { Unkept, withPart, type Settable } from "./unkept";
 
 /** How long after a change the address bar takes it over [ms]: browsers allow about a hundred changes in half a minute. */
 const ADDRESS_DELAY = 600;
 
+const unkept = new Unkept();
+/** Whether the session that is open has said what it knows. */
+let greeted = false;
+/** What a visitor asks for by hand, and must be told when it can't be. */
+const SAID: ReadonlySet<ClientType> = new Set([
+  "undo",
+  "redo",
+  "robot",
+  "document",
+  "toml",
+  "download",
+  "servos",
+]);
+
 const link = new Link({
-  status: (status) =>
-    useStudio.setState(status.kind === "open" ? { link: status } : { link: status, busy: {} }),
+  status: (status) => {
+    if (status.kind !== "open") greeted = false;
+    useStudio.setState(status.kind === "open" ? { link: status } : { link: status, busy: {} });
+  },
   message: receive,
   state: () => useStudio.getState().stateText ?? readAddress(window.location.href).state,
 });
@@ -36,9 +53,9 @@ export function retry(): void {
 
 /** Send a message; its answers change the store. */
 export function ask(draft: Draft): void {
+  unkept.add(draft);
   if (!link.send(draft)) {
-    if (isSettable(draft.type)) unsent.set(draft.type, draft);
-    else if (SAID.has(draft.type)) notify("Not connected: this can't be done now");
+    if (SAID.has(draft.type)) notify("Not connected: this can't be done now");
     return;
   }
   if (useStudio.getState().busy[draft.type] !== true && link.isBusy(draft.type)) {
@@ -46,38 +63,11 @@ export function ask(draft: Draft): void {
   }
 }
 
-/** The parts of the state that are set by a message of their own name. */
-type Settable = "joints" | "body" | "walk" | "loads" | "source";
-const SETTABLE: ReadonlySet<string> = new Set<Settable>(["joints", "body", "walk", "loads", "source"]);
-
-function isSettable(type: ClientType): type is Settable {
-  return SETTABLE.has(type);
-}
-
-/** What was set while there was no connection: sent when the new session has said what it knows. */
-const unsent = new Map<Settable, Draft>();
-/** What a visitor asks for by hand, and must be told when it can't be. */
-const SAID: ReadonlySet<ClientType> = new Set([
-  "undo",
-  "redo",
-  "robot",
-  "document",
-  "toml",
-  "download",
-  "servos",
-]);
-
-function sendUnsent(): void {
-  for (const [part, draft] of unsent) {
-    const { state } = useStudio.getState();
-    if (state) useStudio.setState({ state: { ...state, ...pick(draft, part) } });
+function sendUnkept(): void {
+  for (const draft of unkept.take()) {
+    useStudio.setState(({ state }) => ({ state: state && withPart(state, draft) }));
     ask(draft);
   }
-  unsent.clear();
-}
-
-function pick(draft: Draft, part: Settable): Partial<StudioState> {
-  return { [part]: (draft as unknown as StudioState)[part] };
 }
 
 /**
@@ -111,9 +101,14 @@ function receive(message: ServerMessage, asked: ClientType | null): void {
   useStudio.setState((studio) =>
     received(studio, message, asked, (type) => id !== null && link.isNewer(type, id)),
   );
+  // Only a session that was open all the time knows what was set in it.
+  if (message.type === "state" && greeted) unkept.forget();
   if (message.type !== "done") return;
-  if (unsent.size > 0) sendUnsent();
-  if (message.state !== null) writeSoon();
+  if (!greeted) sendUnkept();
+  greeted = true;
+  if (message.state === null) return;
+  if (asked && id !== null && !link.isNewer(asked, id)) unkept.kept(asked);
+  writeSoon();
 }
 
 let writing: number | undefined;
