@@ -8,12 +8,15 @@ from typing import Any
 import numpy as np
 
 import tarsus
+from tarsus.drive.run import run
+from tarsus.drive.scenario import Scenario
 from tarsus.report.angles import plot_angles
 from tarsus.report.animation import animate
 from tarsus.report.footpaths import plot_footpaths
 from tarsus.report.gait_diagram import plot_gait
 from tarsus.report.skeleton import plot_robot
 from tarsus.report.style import save_figure
+from tarsus.report.timeline import plot_timeline
 
 FIGURES = Path(__file__).parent / "figures"
 
@@ -39,6 +42,8 @@ def main() -> None:
         robot = tarsus.load_robot(name)
         angles, body = standing(robot)
         save_figure(plot_robot(robot, angles, body=body), FIGURES / f"robot-{name}.png")
+    day = Scenario.load(FIGURES.parents[1] / "examples" / "whole-day.toml")
+    save_figure(plot_timeline(run(day)), FIGURES / "timeline.png")
     limp = np.radians(np.tile([0.0, 20.0, -60.0], (6, 1)))
     limp[:3] = np.radians([0.0, -30.0, -30.0])
     rest = tarsus.resting_pose(strider, limp)

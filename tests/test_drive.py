@@ -72,7 +72,7 @@ def test_every_command_runs_clean_through_the_guard_on_every_robot(name):
     assert speed.max() < 3
     slips = np.linalg.norm(np.diff(motion.feet, axis=0), axis=-1) * (motion.contacts[1:] & motion.contacts[:-1])
     assert slips[found.upright[1:] & found.upright[:-1]].max() < 1e-6
-    # Where sitting down takes over, the ground is where the lowest three feet are; what they felt is 0.1 mm off at most.
+    # Where sitting down takes over, the ground is where the lowest three feet are; what was felt is 0.1 mm off at most.
     assert slips.max() < 1e-4
 
 

@@ -34,8 +34,8 @@ class Frame(NamedTuple):
     """What the robot does at a moment.
 
     Joint angles ``(legs, 3)`` [rad], the body's pose and the feet ``(legs, 3)`` in G [m], which feet are on the ground,
-    whether the belly is, whether it stands or walks and is not getting up or going down, what it is doing, its twist [m/s, m/s, rad/s], the gait, the cycle's duration [s], and why the
-    wish is not met in full.
+    whether the belly is, whether it stands or walks (and is not lying, getting up or going down), what it is doing, its
+    twist [m/s, m/s, rad/s], the gait, the cycle's duration [s], and why the wish is not met in full.
     """
 
     angles: Floats
