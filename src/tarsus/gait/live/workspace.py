@@ -155,10 +155,11 @@ def workspace(robot: Robot, stand: Stand, *, foot_distance: float) -> Parts[Floa
         part = _halfway(stand.rest, edge, foot_distance)
         if ((yield from _slack(robot, stand, edge)) < 0).any():
             slack = yield from _slack(robot, stand, _WAY_OUT * edge)
-            part = np.minimum(part, _first_zero(_WAY_OUT, slack, share=1.0) - np.where(slack[-1] < 0, _EXTRA, 0.0))
-        if (part >= 1 - _SAME).all():
+            part = np.minimum(part, _first_zero(_WAY_OUT, slack, share=1.0))
+        short = part < 1 - _SAME
+        if not short.any():
             break
-        bounds = _drawn_in(bounds, stand.rest, edge, part)
+        bounds = _drawn_in(bounds, stand.rest, edge, np.where(short, part - _EXTRA, np.inf))
     return bounds
 
 
@@ -247,8 +248,8 @@ def _edge(bounds: Floats, rest: Floats) -> Floats:
 
 
 def _drawn_in(bounds: Floats, rest: Floats, edge: Floats, part: Floats) -> Floats:
-    """Return the sides drawn in to a part of the way out to points of `_edge`, ``(3 * 16, legs)``."""
+    """Return the sides drawn in to a part of the way out to points of `_edge`; not where that is infinite."""
     normals = np.repeat(NORMALS, len(_ALONG))[:, None]
     inner = (normals.conj() * (rest + np.clip(part, 0.0, 1.0) * edge)).real
-    inner = np.where(part < 1, inner, np.inf).reshape(_SIDES, len(_ALONG), -1).min(axis=1)
+    inner = np.where(np.isfinite(part), inner, np.inf).reshape(_SIDES, len(_ALONG), -1).min(axis=1)
     return np.asarray(np.minimum(bounds, inner.T))

@@ -1,0 +1,247 @@
+"""What the feet and their supports allow: every support holds, steady walks at the largest share work."""
+
+import itertools
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.spatial import ConvexHull
+
+from gait_robots import PRESETS, ring
+from sample_stands import POSTURES, envelope_of, feet_at, pose_of, setup_of, standing
+from tarsus.gait.cycle import cycle_feet
+from tarsus.gait.gait import GAITS, Gait
+from tarsus.gait.live.envelope import Envelope, capped, envelope, overhang
+from tarsus.gait.live.polygon import NORMALS, polygon_ends, polygon_room
+from tarsus.gait.live.support import safe_share, support_sets
+from tarsus.gait.live.workspace import all_parts
+from tarsus.gait.stroke import max_stroke
+from tarsus.kinematics.inverse import inverse_kinematics
+from tarsus.kinematics.stability import stability_margin
+
+TWISTS = [(1, 0, 0), (0, -1, 0), (0.7, 0.7, 0), (0, 0, 1), (0, 0, -1), (0.5, 0, 2), (0.3, -0.3, -3), (0.1, 0, 3)]
+
+
+def steady(name, gait, twist):
+    """The feet of a steady cycle at the largest share of a twist ``(241, legs, 3)``, contacts and its stroke."""
+    setup, limits = setup_of(name, gait), envelope_of(name, gait)
+    share, _ = limits.largest_share(np.array(twist, dtype=float), stance_time=1.0, duty=setup.gait.duty)
+    done = share * np.array(twist)
+    feet, down = cycle_feet(setup.gait, setup.rest, done, lift=np.asarray(setup.lift), phases=np.linspace(0, 1, 241))
+    return feet, down, float(np.abs(done[0] + 1j * done[1] + 1j * done[2] * limits.rest).max())
+
+
+# Supports.
+
+
+@pytest.mark.parametrize("name", GAITS)
+def test_support_sets_are_the_least_of_those_seen_in_a_cycle(name):
+    gait = Gait.named(name)
+    seen = {tuple(row) for row in gait.phase((np.arange(3600) + 0.5) / 3600)[2].tolist()}
+    sets = {tuple(row) for row in support_sets(gait).tolist()}
+    assert sets <= seen
+    for row in seen:
+        assert any(all(a or not b for a, b in zip(row, least, strict=True)) for least in sets)
+    for one, other in itertools.permutations(sets, 2):
+        assert any(b and not a for a, b in zip(one, other, strict=True))
+
+
+def test_legs_that_are_gone_bear_nothing():
+    sets = support_sets(Gait.named("wave"), (1,))
+    assert not sets[:, 1].any()
+    assert {row.sum() for row in sets} == {4}
+
+
+@pytest.mark.parametrize(("name", "body"), list(itertools.product(PRESETS, POSTURES)))
+def test_no_support_tips_over_wherever_in_their_polygons_the_feet_are(name, body):
+    for gait in ("tripod", "wave"):
+        setup, limits = setup_of(name, gait), envelope_of(name, gait, body)
+        stand, rng = standing(setup, body), np.random.default_rng(2)
+        corners = stand.rest[:, None] + polygon_ends(limits.bounds, stand.rest)[1]
+        points = np.take_along_axis(corners[None], rng.integers(0, 16, (400, 6, 1)), axis=-1)[..., 0]
+        angles = np.stack(stand.solve(setup.robot, points.real, points.imag, np.zeros(points.shape))[:3], axis=-1)
+        for down in support_sets(setup.gait):
+            margin = stability_margin(setup.robot, angles, pose_of(stand), np.broadcast_to(down, (400, 6)))
+            assert margin.min() >= 0.002
+
+
+def test_the_safe_share_is_the_largest_step_that_works():
+    rest = 0.2 * np.exp(1j * np.pi / 6 * np.array([1, 3, 5, 7, 9, 11]))
+    bounds = 0.12 + (NORMALS.conj() * rest[:, None]).real
+    sets = support_sets(Gait.named("tripod"))
+    share = safe_share(sets, bounds, rest, 0j, margin=0.0)
+    corners = polygon_ends(bounds, rest)[1]
+
+    def least(part):
+        """The least distance of the origin inside any triangle of corners, by brute force."""
+        found = math.inf
+        for row in sets:
+            legs = np.flatnonzero(row)
+            for i, j in zip(legs, np.roll(legs, -1), strict=True):
+                one = rest[i] + part * corners[i][:, None]
+                way = rest[j] + part * corners[j] - one
+                found = min(found, float(((1j * way).conj() * -one).real.min()))
+        return found
+
+    assert 0.1 < share < 1
+    assert least(share) >= 0
+    assert least(share + 0.1) < 0
+
+
+def test_legs_that_shift_the_centre_of_mass_leave_less_share():
+    rest = 0.2 * np.exp(1j * np.pi / 6 * np.array([1, 3, 5, 7, 9, 11]))
+    bounds = 0.05 + (NORMALS.conj() * rest[:, None]).real
+    sets = support_sets(Gait.named("tripod"))
+    shift = 0.6 * polygon_ends(bounds, rest)[1]
+    assert safe_share(sets, bounds, rest, 0j, margin=0.0) == 1.0
+    assert 0 < safe_share(sets, bounds, rest, 0j, margin=0.0, shift=shift) < 1.0
+
+
+def test_what_tips_over_at_rest_has_no_safe_share():
+    rest = 0.2 * np.exp(1j * np.pi / 6 * np.array([1, 3, 5, 7, 9, 11]))
+    bounds = 0.05 + (NORMALS.conj() * rest[:, None]).real
+    assert safe_share(support_sets(Gait.named("tripod")), bounds, rest, 0.15 + 0j, margin=0.0) == 0.0
+
+
+@pytest.mark.parametrize("size", [0.05, 0.0])
+def test_two_feet_support_nothing_not_even_where_they_have_no_room(size):
+    rest = 0.2 * np.exp(1j * np.pi / 6 * np.array([1, 3, 5, 7, 9, 11]))
+    bounds = size + (NORMALS.conj() * rest[:, None]).real
+    sets = np.array([[True, False, False, True, False, False]])
+    assert safe_share(sets, bounds, rest, 0j, margin=0.0) == 0.0
+
+
+# The largest share.
+
+
+@pytest.mark.parametrize(("name", "gait"), list(itertools.product(PRESETS, GAITS)))
+def test_steady_walks_at_the_largest_share_reach_their_feet_and_stand_safely(name, gait):
+    setup, limits = setup_of(name, gait), envelope_of(name, gait)
+    stand = standing(setup)
+    for twist in TWISTS:
+        feet, down, _ = steady(name, gait, twist)
+        found = inverse_kinematics(setup.robot, feet, pose_of(stand))
+        assert found.ok.all(), found.explain()
+        margin = stability_margin(setup.robot, found.angles, pose_of(stand), down)
+        assert margin.min() >= 0
+        on_ground = (feet[..., 0] + 1j * feet[..., 1])[..., None] * NORMALS.conj()
+        assert (on_ground.real - limits.bounds)[down].max() <= 0
+
+
+def test_the_largest_share_is_most_of_the_longest_stroke():
+    # Measured on strider: 0.75 to 0.83 of it straight on, sideways and turning; 0.58 in the worst curve.
+    setup = setup_of("strider")
+    for twist in TWISTS:
+        _, _, stroke = steady("strider", "tripod", twist)
+        longest = max_stroke(setup.robot, setup.gait, twist)
+        pure = twist[2] == 0 or not any(twist[:2])
+        assert (0.7 if pure else 0.55) * longest <= stroke <= longest
+
+
+@given(st.tuples(st.floats(-1, 1), st.floats(-1, 1), st.floats(-5, 5)), st.floats(0.1, 10))
+def test_a_multiple_of_a_twist_has_that_much_less_share(twist, factor):
+    limits = envelope_of("phantomx")
+    if max(map(abs, twist)) < 1e-3:
+        twist = (0.1, 0.0, 0.0)
+    share, _ = limits.largest_share(np.array(twist), stance_time=0.5, duty=0.5)
+    other, _ = limits.largest_share(factor * np.array(twist), stance_time=0.5, duty=0.5)
+    assert other * factor == pytest.approx(share, rel=1e-9)
+
+
+def test_a_twist_beyond_all_measure_is_cut_too():
+    limits = envelope_of("strider")
+    share, _ = limits.largest_share(np.array([1e300, -1e300, 1e308]), stance_time=0.5, duty=0.5)
+    small, _ = limits.largest_share(np.array([1e-8, -1e-8, 1.0]), stance_time=0.5, duty=0.5)
+    assert share * 1e308 == pytest.approx(small, rel=1e-9)
+
+
+def test_no_twist_at_all_is_never_too_much():
+    assert envelope_of("strider").largest_share(np.zeros(3), stance_time=1.0, duty=0.5)[0] > 1e6
+
+
+def test_the_leg_with_the_least_room_is_the_one_that_stops_it():
+    limits = envelope_of("strider")
+    narrow = limits.room.copy()
+    narrow[4] *= 0.3
+    found = Envelope(limits.bounds, narrow, limits.rest)
+    share, leg = found.largest_share(np.array([0.1, 0.02, 0.0]), stance_time=1.0, duty=0.5)
+    assert leg == 4
+    assert found.short == 4
+    assert share < limits.largest_share(np.array([0.1, 0.02, 0.0]), stance_time=1.0, duty=0.5)[0]
+
+
+def test_joints_that_allow_so_long_a_stroke_allow_their_share_of_straight_and_turning_together():
+    limits = capped(envelope_of("strider"), 0.02, 0.01, duty=0.5)
+    outermost = np.abs(limits.rest).max()
+    for forward, turn in ((0.1, 0.0), (0.0, 0.4), (0.06, 0.3)):
+        share, _ = limits.largest_share(np.array([forward, 0.0, turn]), stance_time=0.5, duty=0.5)
+        assert share * 0.5 * (forward / 0.02 + turn * outermost / 0.01) == pytest.approx(1)
+
+
+# Overhang, capping, meeting.
+
+
+@pytest.mark.parametrize("duty", [0.3, 0.5, 2 / 3, 5 / 6])
+def test_the_overhang_is_how_far_behind_a_foot_is_seen_in_a_steady_cycle(duty):
+    gait = Gait(duty, (0.0,))
+    feet, _ = cycle_feet(gait, np.zeros((1, 3)), (1.0, 0.0, 0.0), lift=0.02, phases=np.linspace(0, 1, 20001))
+    farthest = np.abs(feet[..., 0]).max()
+    assert 0 <= farthest - overhang(duty) < 2e-4
+    assert overhang(duty) > 0.5
+
+
+def test_capping_keeps_each_foot_within_the_longest_stroke_of_its_rest_foothold():
+    limits = envelope_of("strider")
+    less = capped(limits, 0.02, 0.03, duty=0.5)
+    room = polygon_room(less.bounds, less.rest)
+    np.testing.assert_allclose(room, np.minimum(polygon_room(limits.bounds, limits.rest), overhang(0.5) * 0.03))
+    assert (less.stroke, less.turning) == (0.02, 0.03)
+    np.testing.assert_array_equal(less.room, limits.room)
+
+
+def test_capping_leaves_legs_unbounded_that_do_not_step():
+    setup = setup_of("strider", "wave")
+    sets = support_sets(setup.gait, (2,))
+    found = all_parts(envelope(setup.robot, [standing(setup)], sets, foot_distance=setup.foot_distance, gone=(2,)))
+    less = capped(found, 0.02, 0.02, duty=setup.gait.duty)
+    assert np.isinf(less.bounds[2]).all()
+    assert np.isfinite(np.delete(less.bounds, 2, axis=0)).all()
+
+
+def test_what_is_possible_in_both_is_in_each():
+    one, other = envelope_of("strider"), capped(envelope_of("strider", body=POSTURES[1]), 0.05, 0.04, duty=0.5)
+    both = one.meet(other)
+    for limits in (one, other):
+        assert (both.bounds <= limits.bounds).all()
+        assert (both.room <= limits.room).all()
+    assert (both.stroke, both.turning) == (0.05, 0.04)
+    stands = [standing(setup_of("strider"), POSTURES[i]) for i in (0, 1)]
+    sets = support_sets(Gait.named("tripod"))
+    at_once = all_parts(
+        envelope(setup_of("strider").robot, stands, sets, foot_distance=setup_of("strider").foot_distance)
+    )
+    np.testing.assert_array_equal(at_once.bounds, one.meet(envelope_of("strider", body=POSTURES[1])).bounds)
+
+
+def test_a_body_that_stands_outside_its_support_has_no_room():
+    # Four legs in a wave: on three feet the middle of the body is on an edge.
+    setup = setup_of(ring(4), "wave")
+    found = all_parts(
+        envelope(setup.robot, [standing(setup)], support_sets(setup.gait), foot_distance=setup.foot_distance)
+    )
+    assert not found.possible
+    assert (found.room < 0).all()
+    assert found.largest_share(np.array([0.1, 0, 0]), stance_time=1.0, duty=0.75)[0] == 0
+
+
+def test_polygons_that_shrink_for_support_stay_convex_and_hold_their_rest_footholds():
+    limits = envelope_of("freenove")
+    for leg, ends in enumerate(polygon_ends(limits.bounds, limits.rest)[1]):
+        corners = ends[ends != 0]
+        hull = ConvexHull(np.stack([corners.real, corners.imag], axis=-1))
+        assert len(hull.vertices) == len(corners)
+        assert (hull.equations[:, 2] < 0).all(), leg
+    assert limits.possible
+    assert feet_at(limits.rest).shape == (6, 3)

@@ -1,0 +1,176 @@
+"""Where each foot may be: what is promised of the polygons, by the public kinematics and by brute force."""
+
+import itertools
+
+import numpy as np
+import pytest
+from scipy.spatial import HalfspaceIntersection
+
+from gait_robots import PRESETS, ring
+from sample_stands import POSTURES, feet_at, polygons, pose_of, setup_of, standing
+from tarsus.gait.live.polygon import NORMALS, polygon_ends, polygon_radii, polygon_room
+from tarsus.gait.live.workspace import all_parts, joint_slack, workspace
+from tarsus.kinematics.inverse import inverse_kinematics
+
+every_stand = pytest.mark.parametrize(("name", "body"), list(itertools.product(PRESETS, POSTURES)))
+
+
+def corners_of(bounds, inside):
+    """Corners of each polygon by Qhull's half planes."""
+    planes = np.stack([NORMALS.real, NORMALS.imag], axis=-1)
+    found = []
+    for sides, point in zip(bounds, inside, strict=True):
+        crossing = HalfspaceIntersection(np.column_stack([planes, -sides]), np.array([point.real, point.imag]))
+        found.append(crossing.intersections @ [1, 1j])
+    return found
+
+
+def random_points(rng, corners, count):
+    """Points of the triangles between any three corners: most near the edge ``(count, legs)``."""
+    weights = rng.dirichlet(np.full(3, 0.3), size=(count, len(corners)))
+    picked = np.stack([own[rng.integers(0, len(own), (count, 3))] for own in corners], axis=1)
+    return (weights * picked).sum(axis=-1)
+
+
+@every_stand
+def test_every_foot_is_reached_wherever_in_its_polygon_it_is(name, body):
+    setup, bounds = setup_of(name), polygons(name, body)
+    stand = standing(setup, body)
+    points = random_points(np.random.default_rng(7), corners_of(bounds, stand.rest), 1500)
+    assert (polygon_room(bounds, stand.rest) > 0).all()
+    # On the ground anywhere; at half the lift and the whole, in a part of the polygon.
+    for height, part in ((0.0, 1.0), (0.5, 0.9), (1.0, 0.4)):
+        feet = feet_at(stand.rest + part * (points - stand.rest), height * stand.lift)
+        found = inverse_kinematics(setup.robot, feet, pose_of(stand))
+        assert found.ok.all(), found.explain()
+
+
+@every_stand
+def test_feet_in_neighbouring_polygons_keep_their_distance(name, body):
+    setup = setup_of(name)
+    corners = corners_of(polygons(name, body), standing(setup, body).rest)
+    for one, other in itertools.combinations(corners, 2):
+        # The nearest points of two convex sets that don't meet: a corner of one and an edge of the other.
+        for points, edges in ((one, other), (other, one)):
+            hull = edges[np.argsort(np.angle(edges - edges.mean()))]
+            start, way = hull, np.roll(hull, -1) - hull
+            along = ((points[:, None] - start) * way.conj()).real / np.maximum(np.abs(way) ** 2, 1e-30)
+            nearest = start + np.clip(along, 0, 1) * way
+            assert np.abs(points[:, None] - nearest).min() >= setup.foot_distance - 1e-9
+
+
+@pytest.mark.parametrize("name", PRESETS)
+def test_straight_in_and_out_a_foot_may_go_a_good_part_of_as_far_as_it_could(name):
+    setup, bounds = setup_of(name), polygons(name)
+    stand = standing(setup)
+    mount = setup.robot.geometry.mount_x + 1j * setup.robot.geometry.mount_y
+    out = np.exp(1j * np.angle(stand.rest - mount))
+    tried = np.linspace(0, 0.4, 401)[:, None]
+    for leg, sign in itertools.product(range(6), (1, -1)):
+        found = inverse_kinematics(setup.robot, feet_at(stand.rest + sign * tried * out), pose_of(stand))
+        reached = tried[np.argmin(found.reach == 0, axis=0)[leg], 0]
+        allowed = polygon_radii(bounds, stand.rest, sign * out[leg : leg + 1])[leg, 0]
+        # Inwards the leg folds, and its joints turn ever faster for the same speed of the foot.
+        assert (0.75 if sign > 0 else 0.25) * reached <= allowed <= reached
+
+
+def test_ends_of_the_sides_are_the_corners_that_qhull_finds():
+    rng = np.random.default_rng(3)
+    inside = rng.normal(size=20) + 1j * rng.normal(size=20)
+    bounds = rng.uniform(0.02, 0.1, (20, 16)) + (NORMALS.conj() * inside[:, None]).real
+    starts, ends = polygon_ends(bounds, inside)
+    for leg, expected in enumerate(corners_of(bounds, inside)):
+        for found in (starts[leg], ends[leg]):
+            found = found[found != 0] + inside[leg]
+            away = np.abs(found[:, None] - expected)
+            assert away.min(axis=0).max() < 1e-9
+            assert away.min(axis=1).max() < 1e-9
+
+
+def test_radii_end_on_the_nearest_side():
+    bounds, inside = polygons("strider"), standing(setup_of("strider")).rest
+    directions = np.exp(1j * np.linspace(0, 7, 50))
+    edge = inside[:, None] + polygon_radii(bounds, inside, directions) * directions
+    over = (edge[..., None] * NORMALS.conj()).real - bounds[:, None]
+    np.testing.assert_allclose(over.max(axis=-1), 0, atol=1e-12)
+
+
+def test_the_inside_of_a_point_outside_is_negative_room():
+    bounds = np.full((1, 16), 0.1)
+    np.testing.assert_allclose(polygon_room(bounds, np.array([0.3 + 0j])).min(), -0.2)
+    assert polygon_radii(bounds, np.array([0.3 + 0j]), NORMALS).min() == 0
+
+
+def test_a_foot_out_of_reach_at_rest_has_a_side_short_of_it():
+    setup = setup_of("strider")
+    stand = standing(setup)
+    away = stand._replace(rest=stand.rest * np.array([1, 1, 2.5, 1, 1, 1]))
+    bounds = all_parts(workspace(setup.robot, away, foot_distance=setup.foot_distance))
+    room = polygon_room(bounds, away.rest).min(axis=-1)
+    assert room[2] < 0
+    assert (np.delete(room, 2) > 0).all()
+
+
+def test_feet_nearer_to_each_other_than_allowed_may_not_move_towards_each_other():
+    setup = setup_of("strider")
+    stand = standing(setup)
+    between = np.abs(stand.rest[0] - stand.rest[1])
+    bounds = all_parts(workspace(setup.robot, stand, foot_distance=2 * between))
+    way = (stand.rest[1] - stand.rest[0]) / between
+    towards = polygon_radii(bounds, stand.rest, np.array([way, -way]))
+    assert towards[0, 0] < 1e-9
+    assert towards[1, 1] < 1e-9
+
+
+def test_knees_stay_out_of_the_ground():
+    setup = setup_of("mithi")
+    stand = standing(setup, POSTURES[2])
+    bounds = polygons("mithi", POSTURES[2])
+    points = random_points(np.random.default_rng(1), corners_of(bounds, stand.rest), 500)
+    angles = np.stack(stand.solve(setup.robot, points.real, points.imag, np.zeros(points.shape))[:3], axis=-1)
+    knees = knee_heights(setup.robot, angles, stand)
+    assert knees.min() > 0
+    # Without looking at them, they would be.
+    level = stand.position[2]
+    assert level < 0.11
+
+
+def knee_heights(robot, angles, stand):
+    from tarsus.kinematics.leg import forward_kinematics
+
+    return (pose_of(stand) @ forward_kinematics(robot, angles)[..., 2, :])[..., 2]
+
+
+@pytest.mark.parametrize("name", ["strider", "phantomx"])
+def test_slack_is_negative_wherever_inverse_kinematics_says_no(name):
+    setup = setup_of(name)
+    stand, rng = standing(setup), np.random.default_rng(5)
+    points = stand.rest + rng.uniform(-0.3, 0.3, (4000, 6)) + 1j * rng.uniform(-0.3, 0.3, (4000, 6))
+    slack = joint_slack(
+        setup.robot.geometry, stand.solve(setup.robot, points.real, points.imag, np.zeros(points.shape))
+    )
+    found = inverse_kinematics(setup.robot, (feet_at(points) - stand.position) @ stand.rotation)
+    refused = found.reach != 0
+    assert refused.any()
+    assert (slack[refused] < 0).all()
+    # Positive slack keeps 0.01 rad from every limit.
+    low, high = setup.robot.limits[..., 0], setup.robot.limits[..., 1]
+    inside = np.minimum(found.angles - low, high - found.angles).min(axis=-1)
+    assert (inside[slack >= 0] >= 0.01 - 1e-9).all()
+
+
+def test_the_work_is_done_in_parts():
+    setup = setup_of("strider")
+    assert sum(1 for _ in workspace(setup.robot, standing(setup), foot_distance=0.02)) >= 6
+
+
+def test_robots_of_any_number_of_legs_have_polygons():
+    for legs in (4, 5, 8):
+        setup = setup_of(ring(legs), "wave")
+        stand = standing(setup)
+        bounds = all_parts(workspace(setup.robot, stand, foot_distance=setup.foot_distance))
+        assert bounds.shape == (legs, 16)
+        room = polygon_room(bounds, stand.rest)
+        assert (room > 0).all()
+        # As like as the ring's legs are.
+        np.testing.assert_allclose(room.sum(axis=-1), room.sum() / legs, rtol=0.1)
