@@ -1,7 +1,10 @@
 """Scenarios as values, files and text: every form says the same, and what is wrong is told with its place."""
 
 import dataclasses
+import re
+import tomllib
 from decimal import Decimal
+from pathlib import Path
 
 import pytest
 from hypothesis import given
@@ -277,3 +280,17 @@ def test_commands_out_of_their_bounds_are_refused(make, wanted):
 def test_unknown_gaits_are_refused_with_the_nearest():
     with pytest.raises(UnknownNameError, match="Did you mean 'ripple'"):
         GaitChange(0.0, gait="riple")
+
+
+PAGE = (Path(__file__).parents[1] / "docs" / "scenarios.md").read_text(encoding="utf-8")
+ROWS = re.findall(r"^\| `(.+?)` \| `(.+?)` \|", PAGE.partition("## Commands")[2], re.MULTILINE)
+
+
+@pytest.mark.parametrize(("text", "table"), ROWS)
+def test_the_page_shows_two_forms_of_the_same_command(text, table):
+    told = Scenario.from_text(f"at 1 s: {text}")
+    assert told == Scenario.from_dict(tomllib.loads(f"[[at]]\ntime_s = 1\n{table}"))
+
+
+def test_the_page_shows_every_command():
+    assert {text.split()[0] for text, _ in ROWS} == set(COMMANDS)
