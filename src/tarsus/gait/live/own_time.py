@@ -13,8 +13,8 @@ __all__ = ["OwnTime"]
 Floats = np.ndarray[Any, Any]
 _T = TypeVar("_T")
 
-# How fast its rate may fall and rise again [1/s]; and how fast it falls to a stop [1/s].
-_CHANGE, _STOP = 3.0, 10.0
+# How fast its rate may rise, how fast it falls on rough ways, and how fast to a stop [1/s].
+_CHANGE, _CALMING, _STOP = 3.0, 5.0, 10.0
 # How often a tick is tried, ever slower, and what of the joints' speed and acceleration it may come to.
 _TRIES, _KEPT = 5, 0.98
 # From which share of the joints' acceleration on to look ahead, what share to aim at then, and how far to look [s].
@@ -66,7 +66,7 @@ class OwnTime:
         """
         rate = max(self.rate - _STOP * dt, 0.0) if stop else min(1.0, self.rate + _CHANGE * dt)
         if self._strain > _STRAINED:
-            rate = min(rate, self._calm_rate(move, solve))
+            rate = min(rate, max(self._calm_rate(move, solve), self.rate - _CALMING * dt))
         between = (dt + self._last_dt) / 2
         after = move(dt * rate)
         angles = solve(after)
