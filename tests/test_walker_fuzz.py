@@ -1,0 +1,149 @@
+"""Whatever is asked of the live walker, and whenever: what must hold holds. An hour and a half of walking in all."""
+
+import math
+
+import numpy as np
+import pytest
+from gait_robots import PRESETS, preset, ring
+from hypothesis import settings
+from hypothesis import strategies as st
+from hypothesis.stateful import RuleBasedStateMachine, initialize, rule
+from walker_machine import GAITS, LONGEST_TICK, Trace, drive
+
+from tarsus.gait.gait import Gait
+from tarsus.gait.live.admittance import Admittance
+from tarsus.gait.live.senses import Senses
+from tarsus.gait.live.walker import Walker
+from tarsus.gait.live.wish import Wish
+
+SECONDS = 50.0
+
+
+@pytest.mark.parametrize("seed", range(64))
+def test_any_stream_of_wishes_keeps_the_invariants(seed):
+    name, gait = PRESETS[seed % len(PRESETS)], GAITS[seed // len(PRESETS) % len(GAITS)]
+    drive(Walker(preset(name), Gait.named(gait)), seed, SECONDS).assert_sound()
+
+
+@pytest.mark.parametrize("seed", range(100, 116))
+def test_sensors_garbage_makes_no_difference_to_that(seed):
+    walker = Walker(preset(PRESETS[seed % len(PRESETS)]), levelling="level", admittance=Admittance())
+    drive(walker, seed, SECONDS, sensing=True).assert_sound()
+
+
+@pytest.mark.parametrize("seed", range(200, 208))
+def test_nor_do_ticks_of_a_millisecond(seed):
+    walker = Walker(preset(PRESETS[seed % len(PRESETS)]))
+    trace, rng = Trace(walker), np.random.default_rng(seed)
+    for twist in rng.normal(size=(6, 3)) * [0.3, 0.3, 1.0]:
+        trace.step(Wish(twist=twist, gait=str(rng.choice(GAITS))), 0.001)
+        for _ in range(400):
+            trace.step(twist, float(rng.uniform(0.001, 0.004)))
+    trace.assert_sound()
+
+
+numbers = st.floats(-1, 1, allow_subnormal=False)
+triples, sextuples = st.tuples(*[numbers] * 3), st.tuples(*[numbers] * 6)
+anything = st.one_of(
+    st.none(),
+    st.floats(),
+    st.text(max_size=2),
+    st.booleans(),
+    st.lists(st.floats() | st.booleans() | st.none(), max_size=7),
+    st.lists(st.lists(st.floats(), max_size=4), max_size=7),
+)
+
+
+class AnyWishes(RuleBasedStateMachine):
+    """A walker, and everything that can be asked of it in any order."""
+
+    @initialize(
+        name=st.sampled_from([*PRESETS, "ring"]), gait=st.sampled_from(GAITS), cycle_time=st.none() | st.floats(0.2, 3)
+    )
+    def begin(self, name, gait, cycle_time):
+        robot = ring(6) if name == "ring" else preset(name)
+        self.trace = Trace(Walker(robot, Gait.named(gait), cycle_time=cycle_time))
+        self.clearance, self.lift = self.trace.walker.body.position[2], robot.gait.lift
+        self.twist, self.dt, self.senses = (0.0, 0.0, 0.0), 0.03, {}
+
+    def ask(self, **changes):
+        self.trace.step(Wish(twist=self.twist, **changes), self.dt, **self.senses)
+
+    @rule(twist=triples, size=st.sampled_from([0.05, 0.2, 1.0, 1e3]))
+    def walk(self, twist, size):
+        self.twist = tuple(size * v * weight for v, weight in zip(twist, (1, 1, 3), strict=True))
+        self.ask()
+
+    @rule(gait=st.sampled_from(GAITS))
+    def change_gait(self, gait):
+        self.ask(gait=gait)
+
+    @rule(body=sextuples, size=st.sampled_from([0.3, 1.0, 30.0]))
+    def move_body(self, body, size):
+        self.ask(body=tuple(size * v * w for v, w in zip(body, (0.03, 0.03, 0.03, 0.2, 0.2, 0.2), strict=True)))
+
+    @rule(share=st.floats(0.1, 3))
+    def change_clearance(self, share):
+        self.ask(clearance=share * self.clearance)
+
+    @rule(share=st.floats(0, 3))
+    def change_lift(self, share):
+        self.ask(lift=share * self.lift)
+
+    @rule(width=st.floats(-0.1, 0.1))
+    def change_width(self, width):
+        self.ask(stance_width=width)
+
+    @rule(cycle_time=st.floats(0.1, 5))
+    def change_pace(self, cycle_time):
+        self.ask(cycle_time=cycle_time)
+
+    @rule(sway=sextuples)
+    def sway(self, sway):
+        self.ask(sway=tuple(0.02 * v for v in sway))
+
+    @rule(leg=st.integers(0, 5), point=triples)
+    def take_leg(self, leg, point):
+        self.ask(hands={leg: tuple(self.trace.walker.feet[leg] + 0.1 * np.array(point))})
+
+    @rule(leg=st.integers(0, 5), speed=triples)
+    def move_leg(self, leg, speed):
+        self.ask(hand_speeds={leg: tuple(0.1 * v for v in speed)})
+
+    @rule()
+    def give_legs_back(self):
+        self.ask(hands=dict.fromkeys(range(6)))
+
+    @rule(dt=st.floats(0.001, LONGEST_TICK))
+    def change_tick(self, dt):
+        self.dt = dt
+
+    @rule(contacts=anything, attitude=anything, forces=anything, torques=anything)
+    def feel_garbage(self, contacts, attitude, forces, torques):
+        # Contacts that could be true would be believed, and this ground is known to be flat.
+        contacts = contacts if contacts is None or math.nan in _flat(contacts) else "garbage"
+        readings = Senses(contacts=contacts, attitude=attitude, forces=forces, torques=torques)
+        self.senses = {"senses": readings}
+        self.ask()
+
+    @rule()
+    def feel_nothing(self):
+        self.senses = {}
+        self.ask()
+
+    @rule(ticks=st.sampled_from([1, 10, 40, 120, 240]))
+    def go_on(self, ticks):
+        for _ in range(ticks):
+            self.trace.step(self.twist, self.dt, **self.senses)
+
+    def teardown(self):
+        if hasattr(self, "trace"):
+            self.trace.assert_sound()
+
+
+def _flat(values):
+    return values if isinstance(values, list) else [values]
+
+
+class TestAnyWishes(AnyWishes.TestCase):
+    settings = settings(max_examples=40, stateful_step_count=40)

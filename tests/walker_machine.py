@@ -1,0 +1,231 @@
+"""Drives live walkers, and finds out afterwards what they broke of what must hold whatever is asked of them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+
+from tarsus.gait.live.senses import Senses
+from tarsus.gait.live.walker import Walker
+from tarsus.gait.live.wish import Wish
+from tarsus.kinematics.leg import forward_kinematics
+from tarsus.kinematics.pose import Pose
+from tarsus.kinematics.stability import stability_margin
+
+ROUNDING = 1.001
+STILL = 1e-6
+GAITS = ("tripod", "tetrapod", "ripple", "wave")
+LONGEST_TICK = 0.05
+
+
+class Trace:
+    """What a walker did, tick by tick; the first row is where it stood.
+
+    Everything is judged by the joint angles, the body's pose and the contacts alone: where the feet are comes from
+    forward kinematics.
+    """
+
+    def __init__(self, walker: Walker) -> None:
+        self.walker = walker
+        self._rows: list[tuple[Any, ...]] = []
+        self.wishes: list[tuple[Any, float]] = []
+        self._record(walker.angles, LONGEST_TICK)
+
+    def step(self, wish: Any, dt: float, **senses: Any) -> None:
+        """Go on by one tick, and note what came of it."""
+        self.wishes.append((wish, dt))
+        self._record(self.walker.step(wish, dt, **senses), dt)
+
+    def run(self, wish: Any, duration: float, dt: float = 0.025) -> Trace:
+        """Go on with one wish for a while; what it asks for besides the twist, only once."""
+        for i in range(max(1, round(duration / dt))):
+            self.step(wish if i == 0 or not isinstance(wish, Wish) else wish.twist, dt)
+        return self
+
+    def _record(self, angles: np.ndarray, dt: float) -> None:
+        body = self.walker.body
+        self._rows.append((dt, angles, body.rotation, body.position, self.walker.contacts))
+
+    def column(self, which: int) -> np.ndarray:
+        return np.array([row[which] for row in self._rows])
+
+    @property
+    def dt(self) -> np.ndarray:
+        return self.column(0)
+
+    @property
+    def angles(self) -> np.ndarray:
+        return self.column(1)
+
+    @property
+    def body(self) -> Pose:
+        return Pose(self.column(2), self.column(3))
+
+    @property
+    def contacts(self) -> np.ndarray:
+        return self.column(4)
+
+    @property
+    def feet(self) -> np.ndarray:
+        """The feet in G ``(n, legs, 3)`` [m]."""
+        return self.body @ forward_kinematics(self.walker.robot, self.angles)[..., 3, :]
+
+    def margins(self) -> np.ndarray:
+        return np.asarray(stability_margin(self.walker.robot, self.angles, self.body, self.contacts))
+
+    def joint_shares(self) -> tuple[np.ndarray, np.ndarray]:
+        """Speed and acceleration of every joint by divided differences, over the greatest; ``(n - 1, legs, 3)``."""
+        dt, angles = self.dt, self.angles
+        speed = np.diff(angles, axis=0) / dt[1:, None, None]
+        change = np.diff(speed, axis=0, prepend=np.zeros_like(speed[:1]))
+        between = (dt[1:] + np.concatenate([dt[1:2], dt[1:-1]])) / 2
+        fastest, hardest = self.walker.joint_speed, self.walker.joint_acceleration
+        return np.abs(speed) / fastest, np.abs(change / between[:, None, None]) / hardest
+
+    def slip(self) -> np.ndarray:
+        """How far every foot that is down is from where it came down ``(n, legs)`` [m]."""
+        feet, down = self.feet, self.contacts
+        begins = down & ~np.concatenate([np.zeros_like(down[:1]), down[:-1]])
+        since = np.maximum.accumulate(np.where(begins, np.arange(len(down))[:, None], 0), axis=0)
+        moved = np.abs(feet - np.take_along_axis(feet, since[..., None], axis=0)).max(-1)
+        return np.asarray(np.where(down, moved, 0.0))
+
+    def broken(self, *, flat: bool = True) -> list[str]:
+        """Return what of the invariants is broken, where first and how much.
+
+        On ground that is not flat, or not known to be, margins and heights are not looked at.
+        """
+        angles, limits = self.angles, self.walker.robot.limits
+        if not np.isfinite(angles).all():
+            return ["angles that are not finite"]
+        speed, acceleration = self.joint_shares()
+        beyond = np.maximum(limits[..., 0] - angles, angles - limits[..., 1])
+        down = self.contacts.sum(-1)
+        found = [
+            *_over("beyond a joint's limit [rad]", beyond, 1e-9),
+            *_over("joint speed over the greatest", speed, ROUNDING),
+            *_over("joint acceleration over the greatest", acceleration, ROUNDING),
+            *_over("feet missing of three that are down", 3 - down, 0),
+            *_over("slip of a foot that is down [m]", self.slip(), STILL),
+        ]
+        if flat:
+            height = self.feet[..., 2]
+            found += [
+                *_over("centre of mass outside the support [m]", -self.margins(), 0.0),
+                *_over("height of a foot that is down [m]", np.where(self.contacts, np.abs(height), 0.0), STILL),
+                *_over("depth of a foot under the ground [m]", -height, STILL),
+            ]
+        return found
+
+    def assert_sound(self, *, flat: bool = True) -> None:
+        found = self.broken(flat=flat)
+        assert not found, f"{self.walker.robot.name}: " + "; ".join(found)
+
+
+def _over(what: str, values: np.ndarray, bound: float) -> Iterable[str]:
+    rows = values.reshape(len(values), -1).max(-1)
+    bad = np.flatnonzero(~(rows <= bound))
+    if bad.size:
+        yield f"{what}: {bad.size} times, first at tick {bad[0]}, at most {rows[bad].max():.6g} (bound {bound:g})"
+
+
+class Stream:
+    """Random wishes, for as long as one likes: each lasts for a while, and changes one thing at a time or several.
+
+    The seed settles everything: robot apart, the same stream always asks for the same.
+    """
+
+    def __init__(self, seed: int, walker: Walker) -> None:
+        self._rng = np.random.default_rng(seed)
+        self._clearance, self._lift = walker.robot.gait.clearance, walker.robot.gait.lift
+        self._feet = walker.feet
+        self._twist = np.zeros(3)
+        # Some streams tick evenly, most don't.
+        self._even = float(self._rng.choice([0.0, 0.0, 0.05, 0.02]))
+        self._kinds = (
+            *[self._turn] * 6,
+            *[self._gait, self._body] * 2,
+            self._height,
+            self._stance,
+            self._pace,
+            self._sway,
+            self._hand,
+            self._hand_speed,
+        )
+
+    def dt(self) -> float:
+        """The next tick's length [s]: 26 ms in the mean."""
+        return self._even or float(self._rng.choice([self._rng.uniform(0.001, 0.05), 0.04, 0.01]))
+
+    def lasts(self) -> float:
+        """For how long the next wish stays [s]."""
+        return float(self._rng.choice([0.05, 0.3, 1.0, 3.0, 10.0]))
+
+    def wish(self) -> Wish:
+        """The next wish."""
+        changes: dict[str, Any] = {}
+        for kind in self._rng.choice(len(self._kinds), size=self._rng.choice([1, 1, 1, 3])):
+            changes |= self._kinds[kind]()
+        return Wish(twist=tuple(self._twist), **changes)
+
+    def senses(self) -> Senses:
+        """Readings that no sensor could give, mixed with some that one could on flat ground."""
+        rng = self._rng
+        garbage = (None, math.nan, math.inf, "broken", [], [math.nan] * 6, np.full((6, 3), np.nan), [[1e9] * 3] * 6)
+        return Senses(
+            contacts=garbage[rng.integers(len(garbage))],
+            attitude=(None, (math.nan, 0.0), (9.0, 0.0), "level", (0.0, 0.0))[rng.integers(5)],
+            forces=garbage[rng.integers(len(garbage))],
+            torques=garbage[rng.integers(len(garbage))],
+            age=(0.0, 0.0, math.nan, -1.0, 1e9, None)[rng.integers(6)],
+        )
+
+    def _turn(self) -> dict[str, Any]:
+        size = self._rng.choice([0, 0.05, 0.2, 1.0, 10.0])
+        axes = self._rng.choice([[1, 1, 3], [1, 0, 0], [0, 1, 0], [0, 0, 3]])
+        self._twist = self._rng.normal(size=3) * size * axes
+        return {}
+
+    def _gait(self) -> dict[str, Any]:
+        return {"gait": str(self._rng.choice(GAITS))}
+
+    def _body(self) -> dict[str, Any]:
+        size = self._rng.choice([0, 1, 3])
+        return {"body": tuple(size * self._rng.normal(size=6) * [0.02, 0.02, 0.02, 0.1, 0.1, 0.1])}
+
+    def _height(self) -> dict[str, Any]:
+        return {"clearance": self._clearance * self._rng.uniform(0.5, 1.5)}
+
+    def _stance(self) -> dict[str, Any]:
+        return {"lift": self._lift * self._rng.uniform(0, 1.8), "stance_width": self._rng.uniform(-0.03, 0.03)}
+
+    def _pace(self) -> dict[str, Any]:
+        return {"cycle_time": self._rng.choice([0.3, 0.5, 1, 2, 4])}
+
+    def _sway(self) -> dict[str, Any]:
+        size = self._rng.choice([0, 1])
+        return {"sway": tuple(size * self._rng.uniform(0, 1, size=6) * [0.01, 0.01, 0.01, 0.05, 0.05, 0.05])}
+
+    def _hand(self) -> dict[str, Any]:
+        leg = int(self._rng.integers(6))
+        point = self._feet[leg] + self._rng.normal(size=3) * 0.05 + [0, 0, 0.05]
+        back = dict.fromkeys(range(6))
+        return {"hands": back | {leg: tuple(point)} if self._rng.random() < 0.6 else back}
+
+    def _hand_speed(self) -> dict[str, Any]:
+        return {"hand_speeds": {int(self._rng.integers(6)): tuple(self._rng.normal(size=3) * 0.05)}}
+
+
+def drive(walker: Walker, seed: int, duration: float, *, sensing: bool = False) -> Trace:
+    """Drive a walker with a stream of wishes, and of sensors' garbage where it is `sensing`."""
+    stream, trace = Stream(seed, walker), Trace(walker)
+    while walker.time < duration:
+        asked: Any = stream.wish()
+        until, twist = min(walker.time + stream.lasts(), duration), asked.twist
+        while asked is not twist or walker.time < until:
+            trace.step(asked, stream.dt(), **({"senses": stream.senses()} if sensing else {}))
+            asked = twist
+    return trace
