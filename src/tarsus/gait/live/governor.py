@@ -9,6 +9,8 @@ something that works.
 from __future__ import annotations
 
 import cmath
+import functools
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -23,6 +25,9 @@ Floats = np.ndarray[Any, Any]
 
 # What rounding may add to a distance [m]: no bound is broken by so little.
 _TOLERANCE = 1e-9
+# How many targets are tried at the most; how near to one that fails is near enough, over the target's size; and what
+# is no step [m/s], [rad/s].
+_TRIES, _NEAR, _NO_STEP = 4, 0.02, 1e-12
 _SHARES = np.array([0.0, 0.5, 1.0])[:, None]
 
 
@@ -83,18 +88,46 @@ def allowed_target(
     array, shape (3,)
         The target. Where not even the current one works, as much less of it as does.
     """
-    tried = np.stack([current, wish, np.zeros(3)])
-    over = excess(now, tried, begins=begins, ends=ends, bounds=bounds, bandwidth=bandwidth)
-    here, there, still = over.reshape(3, -1)
+    bounded = functools.partial(excess, now, begins=begins, ends=ends, bounds=bounds, bandwidth=bandwidth)
+    nothing = np.zeros(3)
+    here, there, still = bounded(np.stack([current, wish, nothing])).reshape(3, -1)
     if there.max() <= _TOLERANCE:
         return wish
     if here.max() <= _TOLERANCE:
-        breaks = there > _TOLERANCE
-        share = (np.maximum(-here[breaks], 0.0) / (there[breaks] - np.minimum(here[breaks], 0.0))).min()
-        target: Floats = current + min(float(share), 1.0) * (wish - current)
-        return target
+        return _as_far_as_works(bounded, (current, here), (wish, there))
+    if still.max() <= _TOLERANCE:
+        return _as_far_as_works(bounded, (nothing, still), (current, here))
+    # Nothing keeps every foot within bounds: what takes it least beyond.
+    if here.max() <= still.max():
+        return current
     broken = here > 0
     gain = here[broken] - still[broken]
     needed = np.where(gain > 0, here[broken] / np.where(gain > 0, gain, 1.0), 1.0).max()
     slower: Floats = current * (1 - min(float(needed), 1.0))
     return slower
+
+
+def _as_far_as_works(
+    bounded: Callable[[Floats], Floats], works: tuple[Floats, Floats], fails: tuple[Floats, Floats]
+) -> Floats:
+    """Return the farthest target that works, from one that does to one that doesn't, each with its excess.
+
+    Where nothing turns, the excess is linear in the target, and the first that is tried is the farthest that works.
+    """
+    for _ in range(_TRIES):
+        (start, room), (end, over) = works, fails
+        breaks = over > _TOLERANCE
+        inside = np.maximum(-room[breaks], 0.0)
+        share = float((inside / (over[breaks] + inside)).min())
+        if share * np.abs(end - start).max() <= _NO_STEP:
+            break
+        target = start + share * (end - start)
+        found = bounded(target[None]).reshape(-1)
+        if found.max() > _TOLERANCE:
+            # Half the room is reckoned with from now on, or turning takes it out of bounds again (the Illinois method).
+            works, fails = (start, room / 2), (target, found)
+        elif (1 - share) * np.abs(end - start).max() <= _NEAR * np.abs(target).max():
+            return target
+        else:
+            works = target, found
+    return works[0]

@@ -1,0 +1,65 @@
+"""Moments of a live walk, standing or in the middle of it."""
+
+import numpy as np
+
+from sample_stands import envelope_of, posture_of, setup_of
+from tarsus.gait.live.lag import Lag
+from tarsus.gait.live.moment import Course, Moment
+
+EARTH, FACING = 0.3 - 0.2j, 0.7
+
+
+def moment_of(setup, rest, **changes):
+    legs = len(rest)
+    none, there = np.zeros(legs), EARTH + np.exp(1j * FACING) * rest
+    values = {
+        "clock": 0.0,
+        "number": none,
+        "down": np.ones(legs, dtype=bool),
+        "share": none,
+        "foot": there,
+        "target": there,
+        "pace": 0j * none,
+        "bend": 0j * none,
+        "ground": none,
+        "start_height": none,
+        "met": none + np.inf,
+        "met_height": none,
+        "met_speed": none,
+        "origin": EARTH,
+        "yaw": FACING,
+        "twist": Lag.still(np.zeros(3)),
+        "posture": Lag.still(posture_of(setup)),
+    }
+    return Moment(**{**values, **changes})
+
+
+def course_of(setup, rest, twist, **changes):
+    values = {
+        "gait": setup.gait,
+        "offsets": np.asarray(setup.gait.offsets),
+        "frequency": 1.0,
+        "twist": np.asarray(twist, dtype=float),
+        "posture": posture_of(setup),
+        "bandwidth": 4 / setup.gait.duty,
+        "posture_bandwidth": 4.0,
+        "steps": np.ones(len(rest), dtype=bool),
+        "lands": np.ones(len(rest), dtype=bool),
+        "rest": rest,
+        "level": np.zeros(len(rest)),
+    }
+    return Course(**{**values, **changes})
+
+
+def begun(setup, rest):
+    """Standing, the clock at the moment when leg 0 lifts."""
+    offsets, duty = np.asarray(setup.gait.offsets), setup.gait.duty
+    clock = float(offsets[0]) + duty
+    return moment_of(setup, rest, clock=clock, number=np.ceil(clock - offsets - duty - 1e-9))
+
+
+def rest_of(name):
+    return envelope_of(name).rest
+
+
+__all__ = ["EARTH", "FACING", "begun", "course_of", "moment_of", "rest_of", "setup_of"]
