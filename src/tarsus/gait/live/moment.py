@@ -63,7 +63,9 @@ class Moment(NamedTuple):
     twist : Lag
         Its speed ``(3,)``: forward, left [m/s], turning [rad/s].
     posture : Lag
-        The body over the heading frame ``(7,)``: see `tarsus.gait.live.posture`.
+        The body over the heading frame: see `tarsus.gait.live.posture`.
+    late : array
+        How much later than it was to each foot was lifted [cycles]; its swing is shorter by that.
     """
 
     clock: float
@@ -83,6 +85,7 @@ class Moment(NamedTuple):
     yaw: float
     twist: Lag
     posture: Lag
+    late: Any = 0.0
 
     def height(self, lift: float) -> Floats:
         """Return the feet's heights in G [m].
@@ -198,15 +201,17 @@ def go_on(now: Moment, course: Course, dt: float) -> Moment:
     if not due.any() and now.down.all():
         return after
     if due.any():
-        after = _lift(after, course, due, final_rest(after, course) if stopping else None)
+        # Feet that were held back go a shorter swing; what the clock has gone in this tick is not late.
+        late = np.where(due, np.maximum(since_lift - course.frequency * dt, 0.0), after.late)
+        after = _lift(after._replace(late=late), course, due, final_rest(after, course) if stopping else None)
     up = ~after.down
     if not up.any():
         return after
-    share = np.where(up, np.minimum(since_lift / swing, 1.0), 0.0)
+    share = np.where(up, np.clip((since_lift - after.late) / (swing - after.late), 0.0, 1.0), 0.0)
     target = after.target
     free = up & (after.share <= FREEZE) & np.isinf(after.met)
     if free.any():
-        target = np.where(free, _foothold(after, course, share), target)
+        target = np.where(free, _foothold(after, course, swing - since_lift), target)
     after = _swing(after, share, target)
     landed = up & course.lands & (since_lift >= swing - TIE)
     return _land(after, landed) if landed.any() else after
@@ -241,12 +246,15 @@ def _lift(now: Moment, course: Course, due: Floats, final: Floats | None) -> Mom
     )
 
 
-def _foothold(now: Moment, course: Course, share: Floats) -> Floats:
-    """Return where feet should land: where the body has their rest footholds in the middle of the stance."""
+def _foothold(now: Moment, course: Course, left: Floats) -> Floats:
+    """Return where feet should land: where the body has their rest footholds in the middle of the stance.
+
+    `left` is how long it is until then [cycles], negative where the foot should be down already.
+    """
     if not course.twist.any() and (final := final_rest(now, course)) is not None:
         return final
     duty = course.gait.duty
-    ahead = ((1 - share) * (1 - duty) + duty / 2) / course.frequency
+    ahead = (left + duty / 2) / course.frequency
     w = course.bandwidth
     slowing = (1 - np.exp(-w * ahead) * (1 + w * ahead)) / (w * w)
     (x, y, angle), (ax, ay, turn) = now.twist.value.tolist(), now.twist.rate.tolist()

@@ -1,0 +1,21 @@
+"""Scenarios in which feet once came down, or lifted, faster than the joints can: each was found by driving."""
+
+import pytest
+
+from tarsus.drive.run import run
+from tarsus.drive.scenario import Scenario
+
+FOUND = (
+    "at 0 s: walk 40 mm/s; ground RF -3 mm",
+    "at 0 s: walk 40 mm/s; ground RF 3 mm",
+    "at 0 s: walk 40 mm/s; gait wave; ground RF 3 mm; "
+    "at 3 s: tilt roll 1 deg; stance_width 3 mm; lift 15 mm; clearance 85 mm; at 6 s: stop",
+)
+
+
+@pytest.mark.parametrize("timeline", FOUND)
+@pytest.mark.parametrize("levelling", ["level", "follow"])
+def test_the_guard_has_nothing_to_do(timeline, levelling):
+    recording = run(Scenario.from_text(timeline, duration=8.0, levelling=levelling), robot="strider")
+    assert recording.ok, recording.problems
+    assert not recording.interventions
