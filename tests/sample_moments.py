@@ -23,6 +23,7 @@ def moment_of(setup, rest, **changes):
         "bend": 0j * none,
         "ground": none,
         "start_height": none,
+        "late": none,
         "met": none + np.inf,
         "met_height": none,
         "met_speed": none,
@@ -31,7 +32,7 @@ def moment_of(setup, rest, **changes):
         "twist": Lag.still(np.zeros(3)),
         "posture": Lag.still(posture_of(setup)),
     }
-    return Moment(**{**values, **changes})
+    return Moment(**{name: {**values, **changes}[name] for name in Moment._fields})
 
 
 def course_of(setup, rest, twist, **changes):
@@ -44,11 +45,12 @@ def course_of(setup, rest, twist, **changes):
         "bandwidth": 4 / setup.gait.duty,
         "posture_bandwidth": 4.0,
         "steps": np.ones(len(rest), dtype=bool),
+        "holds": False,
         "lands": np.ones(len(rest), dtype=bool),
         "rest": rest,
         "level": np.zeros(len(rest)),
     }
-    return Course(**{**values, **changes})
+    return Course(**{name: {**values, **changes}[name] for name in Course._fields})
 
 
 def begun(setup, rest):

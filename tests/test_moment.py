@@ -1,0 +1,221 @@
+"""How a moment of the walk goes on: against the steady cycle, half steps, and what a swing promises."""
+
+import itertools
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.linalg import expm
+
+from gait_robots import PRESETS
+from sample_moments import EARTH, FACING, begun, course_of, moment_of, rest_of
+from sample_stands import setup_of
+from tarsus.gait.cycle import cycle_feet
+from tarsus.gait.gait import GAITS
+from tarsus.gait.live.lag import Lag
+from tarsus.gait.live.moment import FREEZE, THERE, carried, final_rest, go_on, turned
+from tarsus.kinematics.pose import Pose
+
+TWISTS = [(0.08, 0.0, 0.0), (0.0, -0.06, 0.0), (0.05, 0.02, 0.3), (0.0, 0.0, -0.5)]
+every_walk = pytest.mark.parametrize(
+    ("name", "gait"), [(n, "tripod") for n in PRESETS] + [("strider", g) for g in GAITS]
+)
+
+
+def walked(now, course, seconds, dt):
+    for _ in range(round(seconds / dt)):
+        now = go_on(now, course, dt)
+    return now
+
+
+def seen(now, lift):
+    feet = (now.foot - now.origin) * np.exp(-1j * now.yaw)
+    return np.stack([feet.real, feet.imag, now.height(lift)], axis=-1)
+
+
+@every_walk
+def test_a_constant_twist_comes_to_the_steady_cycle(name, gait):
+    setup = setup_of(name, gait)
+    rest = rest_of(name)
+    for twist in TWISTS[-2:] if name != "strider" else TWISTS:
+        course = course_of(setup, rest, twist)
+        now = walked(begun(setup, rest), course, 9.0, 0.03)
+        for _ in range(12):
+            now = go_on(now, course, 0.093)
+            stride = np.array(twist) * setup.gait.duty
+            phase = np.array([now.clock])
+            expected, down = cycle_feet(setup.gait, setup.rest, stride, lift=np.asarray(setup.lift), phases=phase)
+            np.testing.assert_allclose(seen(now, setup.lift), expected[0], atol=1e-9)
+            np.testing.assert_array_equal(now.down, down[0])
+
+
+@pytest.mark.parametrize("twist", TWISTS)
+def test_a_step_is_two_half_steps_where_nothing_begins_or_ends(twist):
+    setup, rest = setup_of("strider", "ripple"), rest_of("strider")
+    course = course_of(setup, rest, twist)
+    now, compared = walked(begun(setup, rest), course, 6.0, 0.01), 0
+    for _ in range(100):
+        whole, halves = go_on(now, course, 0.01), walked(now, course, 0.01, 0.005)
+        if (whole.down == now.down).all():
+            compared += 1
+            for one, other in zip(whole[:13], halves[:13], strict=True):
+                np.testing.assert_allclose(one, other, atol=1e-9)
+            np.testing.assert_allclose(whole.origin, halves.origin, atol=1e-9)
+        now = whole
+    assert compared > 80
+
+
+def test_the_body_goes_where_its_twist_takes_it_half_step_by_half_step():
+    setup, rest = setup_of("strider"), rest_of("strider")
+    course = course_of(setup, rest, (0.1, 0.05, 0.0))
+    now = begun(setup, rest)
+    whole, halves = go_on(now, course, 0.02), walked(now, course, 0.02, 0.01)
+    assert whole.origin == pytest.approx(halves.origin, abs=1e-14)
+    np.testing.assert_allclose(whole.twist.value, halves.twist.value, atol=1e-14)
+    np.testing.assert_allclose(whole.posture.value, halves.posture.value, atol=1e-14)
+
+
+@settings(max_examples=15)
+@given(st.integers(0, 10**6), st.floats(0.003, 0.05))
+def test_a_swing_lands_exactly_on_its_target_and_gently(seed, dt):
+    rng = np.random.default_rng(seed)
+    setup, rest = setup_of("strider"), rest_of("strider")
+    now = begun(setup, rest)
+    landings = 0
+    for tick in range(round(1.5 / dt)):
+        if tick % 7 == 0:
+            course = course_of(setup, rest, rng.uniform(-1, 1, 3) * [0.1, 0.1, 0.4])
+        after = go_on(now, course, dt)
+        landed = after.down & ~now.down
+        landings += landed.sum()
+        np.testing.assert_array_equal(after.foot[landed], after.target[landed])
+        assert not after.pace[landed].any()
+        assert not after.bend[landed].any()
+        np.testing.assert_array_equal(after.height(setup.lift)[after.down], 0.0)
+        # Standing feet stand, and what is bound for somewhere late in its swing stays bound for it.
+        still = now.down & after.down
+        np.testing.assert_array_equal(after.foot[still], now.foot[still])
+        late = ~now.down & (now.share > FREEZE)
+        np.testing.assert_array_equal(after.target[late], now.target[late])
+        assert np.isfinite(after.foot).all()
+        now = after
+    assert landings >= 6
+
+
+def test_a_foot_comes_down_ever_slower():
+    setup, rest = setup_of("strider"), rest_of("strider")
+    course = course_of(setup, rest, (0.1, 0.0, 0.2))
+    now = walked(begun(setup, rest), course, 2.0, 0.01)
+    fine, speeds = 1e-4, []
+    while not (~now.down & (now.share > 0.98)).any():
+        now = go_on(now, course, fine * 10)
+    leg = int(np.flatnonzero(~now.down)[0])
+    while not now.down[leg]:
+        after = go_on(now, course, fine)
+        speeds.append(abs(after.foot[leg] - now.foot[leg]) / fine)
+        now = after
+    assert all(later <= earlier + 1e-9 for earlier, later in itertools.pairwise(speeds))
+    assert speeds[-1] < 1e-3
+
+
+def test_ticks_longer_than_a_swing_land_the_foot_where_shorter_ones_do():
+    setup, rest = setup_of("strider", "wave"), rest_of("strider")
+    course = course_of(setup, rest, (0.04, 0.0, 0.0), frequency=4.0)
+    now = walked(begun(setup, rest), course, 6.0, 0.005)
+    swing = (1 - setup.gait.duty) / 4.0
+    at_once, slowly = go_on(now, course, 1.2 * swing), walked(now, course, 1.2 * swing, 0.02 * swing)
+    both = at_once.down & slowly.down & (at_once.number == slowly.number)
+    assert both.any()
+    np.testing.assert_allclose(at_once.foot[both], slowly.foot[both], atol=1e-9)
+
+
+def arrays_of(value):
+    if isinstance(value, np.ndarray):
+        return [value]
+    return [a for part in value for a in arrays_of(part)] if isinstance(value, tuple) else []
+
+
+@pytest.mark.parametrize("twist", [(0.1, 0.0, 0.3), (0.0, 0.0, 0.0)])
+def test_the_given_moment_is_not_changed(twist):
+    setup, rest = setup_of("strider"), rest_of("strider")
+    now = walked(begun(setup, rest), course_of(setup, rest, (0.1, 0.0, 0.3)), 0.7, 0.01)
+    course = course_of(setup, rest, twist)
+    for _ in range(150):
+        for array in arrays_of(now) + [a for a in course if isinstance(a, np.ndarray)]:
+            array.setflags(write=False)
+        before = [array.copy() for array in arrays_of(now)]
+        after = go_on(now, course, 0.01)
+        for old, new in zip(before, arrays_of(now), strict=True):
+            np.testing.assert_array_equal(old, new)
+        now = after
+
+
+@pytest.mark.parametrize("gait", GAITS)
+def test_stopping_ends_at_rest_with_every_foot_at_its_rest_foothold(gait):
+    setup, rest = setup_of("strider", gait), rest_of("strider")
+    now = walked(begun(setup, rest), course_of(setup, rest, (0.05, 0.02, 0.2)), 3.13, 0.01)
+    stop = course_of(setup, rest, (0.0, 0.0, 0.0))
+    assert final_rest(now, stop) is None
+    now = walked(now, stop, 8.0, 0.01)
+    assert now.down.all()
+    assert not now.twist.value.any()
+    expected = now.origin + np.exp(1j * now.yaw) * rest
+    assert np.abs(now.foot - expected).max() <= THERE
+    np.testing.assert_allclose(final_rest(now, stop), expected)
+    # And there it stays: no foot is lifted that is there already.
+    later = walked(now, stop, 2.0, 0.01)
+    np.testing.assert_array_equal(later.foot, now.foot)
+    assert later.down.all()
+
+
+def test_legs_that_may_not_lift_miss_their_steps_and_go_on_in_order():
+    setup, rest = setup_of("strider"), rest_of("strider")
+    begin = begun(setup, rest)
+    stays = np.array([True, False, True, True, True, True])
+    now = walked(begin, course_of(setup, rest, (0.02, 0.0, 0.0), steps=stays), 2.25, 0.01)
+    assert now.foot[1] == begin.foot[1]
+    assert now.number[1] > begin.number[1]
+    assert abs(now.foot[3] - begin.foot[3]) > 0.01
+    again = walked(now, course_of(setup, rest, (0.02, 0.0, 0.0)), 2.0, 0.01)
+    assert abs(again.foot[1] - begin.foot[1]) > 0.01
+
+
+def test_a_robot_whose_clock_stands_moves_its_body_only():
+    setup, rest = setup_of("strider"), rest_of("strider")
+    now = moment_of(setup, rest)
+    posture = now.posture.value + 0.01
+    after = go_on(now, course_of(setup, rest, (0, 0, 0), frequency=0.0, posture=posture), 0.1)
+    assert after.clock == now.clock
+    np.testing.assert_array_equal(after.foot, now.foot)
+    expected = now.posture.step(posture, 0.1, bandwidth=4.0)
+    np.testing.assert_allclose(after.posture.value, expected.value)
+
+
+@given(st.floats(-3, 3), st.floats(-1, 1), st.floats(-1, 1), st.floats(-4, 4))
+def test_a_travel_is_the_exponential_of_its_displacement(yaw, x, y, angle):
+    origin, facing = carried(0.4 - 0.1j, yaw, np.array([x, y, angle]))
+    start = Pose.from_rpy(0, 0, yaw, (0.4, -0.1, 0.0))
+    here = np.eye(3)
+    here[:2, :2], here[:2, 2] = start.rotation[:2, :2], start.position[:2]
+    there = here @ expm(np.array([[0, -angle, x], [angle, 0, y], [0, 0, 0]]))
+    assert origin == pytest.approx(complex(*there[:2, 2]), abs=1e-12)
+    assert facing == yaw + angle
+
+
+def test_how_a_way_bends_is_the_same_for_numbers_and_arrays():
+    angles = np.array([0.0, 1e-9, 1e-7, 1e-5, 0.3, -2.0, np.pi, 2 * np.pi])
+    direct = np.array([turned(float(a)) for a in angles])
+    np.testing.assert_allclose(turned(angles), direct, atol=1e-15)
+    np.testing.assert_allclose(direct[4:], (np.exp(1j * angles[4:]) - 1) / (1j * angles[4:]), atol=1e-15)
+
+
+def test_final_rest_is_where_the_lag_leaves_the_body():
+    setup, rest = setup_of("strider"), rest_of("strider")
+    now = moment_of(setup, rest, twist=Lag(np.array([0.005, -0.003, 0.008]), np.array([0.02, 0.01, -0.03])))
+    stop = course_of(setup, rest, (0, 0, 0), frequency=0.0)
+    expected = final_rest(now, stop)
+    end = walked(now, stop, 6.0, 0.05)
+    np.testing.assert_allclose(end.origin + np.exp(1j * end.yaw) * rest, expected, atol=1e-5)
+    assert now.origin == EARTH
+    assert now.yaw == FACING
