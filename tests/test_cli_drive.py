@@ -6,7 +6,7 @@ import json
 import pytest
 
 from sample_commands import run, run_json
-from tarsus.drive.run import run as run_scenario
+from tarsus.drive.run import run_scenario
 from tarsus.drive.scenario import Scenario
 from tarsus.drive.summary import drive_summary
 from tarsus.gait.motion import Motion

@@ -12,7 +12,7 @@ import tarsus.drive.run as running
 from tarsus.drive.commands import COMMANDS, Ground, Tilt
 from tarsus.drive.feeling import Feeling
 from tarsus.drive.recording import Recording
-from tarsus.drive.run import run
+from tarsus.drive.run import run_scenario
 from tarsus.drive.scenario import Scenario
 from tarsus.drive.summary import drive_summary
 from tarsus.errors import InputError, UnknownNameError
@@ -52,7 +52,7 @@ def test_the_scenario_has_every_command():
 
 @pytest.mark.parametrize("name", list_robots())
 def test_every_command_runs_clean_through_the_guard_on_every_robot(name):
-    found = run(EVERY_COMMAND, robot=name)
+    found = run_scenario(EVERY_COMMAND, robot=name)
     assert found.problems == ()
     assert found.ok
     assert not found.interventions
@@ -78,7 +78,7 @@ def test_every_command_runs_clean_through_the_guard_on_every_robot(name):
 
 def test_it_is_what_the_walker_gives():
     text = "at 0 s: walk vx 50 mm/s turn 5 deg/s; lift 20 mm; at 1 s: gait ripple; body z 5 mm; at 2.5 s: stop"
-    found = run(Scenario.from_text(text, duration=4.0, rate=50.0), robot="strider")
+    found = run_scenario(Scenario.from_text(text, duration=4.0, rate=50.0), robot="strider")
     walker = Walker(load_robot("strider"), Gait.named("tripod", legs=6))
     sticky = {"lift": 0.02}
     twist = (0.05, 0.0, math.radians(5))
@@ -100,8 +100,8 @@ def test_it_is_what_the_walker_gives():
 
 def test_the_same_scenario_gives_the_same_to_the_bit_and_a_seed_is_used():
     scenario = Scenario.from_text("at 0 s: walk 50 mm/s", duration=2.0, jitter=0.004, seed=7, robot="phantomx")
-    one, two = run(scenario), run(scenario)
-    other = run(dataclasses.replace(scenario, seed=8))
+    one, two = run_scenario(scenario), run_scenario(scenario)
+    other = run_scenario(dataclasses.replace(scenario, seed=8))
     assert one.motion.angles.tobytes() == two.motion.angles.tobytes()
     assert one.motion.time.tobytes() == two.motion.time.tobytes()
     assert one.events == two.events
@@ -111,7 +111,7 @@ def test_the_same_scenario_gives_the_same_to_the_bit_and_a_seed_is_used():
 
 
 def test_commands_are_given_at_the_first_tick_at_or_after_their_time():
-    found = run(Scenario.from_text("at 0.1 s: walk 10 mm/s; at 0.255 s: stop", duration=0.5), robot="strider")
+    found = run_scenario(Scenario.from_text("at 0.1 s: walk 10 mm/s; at 0.255 s: stop", duration=0.5), robot="strider")
     asked = found.motion.time[1:][found.wished[1:, 0] > 0]
     assert asked[0] == pytest.approx(0.11)
     assert asked[-1] == pytest.approx(0.26)
@@ -119,16 +119,16 @@ def test_commands_are_given_at_the_first_tick_at_or_after_their_time():
 
 
 def test_without_a_duration_it_ends_when_what_was_begun_is_over():
-    walking = run(Scenario.from_text("at 1 s: walk 20 mm/s"), robot="strider")
+    walking = run_scenario(Scenario.from_text("at 1 s: walk 20 mm/s"), robot="strider")
     assert walking.motion.duration == pytest.approx(3.0)
-    stopped = run(Scenario.from_text("at 0 s: walk 20 mm/s; at 2 s: stop"), robot="strider")
+    stopped = run_scenario(Scenario.from_text("at 0 s: walk 20 mm/s; at 2 s: stop"), robot="strider")
     assert stopped.doing[-1] == "standing"
-    assert run(Scenario(), robot="strider").motion.duration == pytest.approx(2.0)
+    assert run_scenario(Scenario(), robot="strider").motion.duration == pytest.approx(2.0)
 
 
 def test_what_can_not_be_now_is_refused_and_said():
     text = "at 0 s: stand_up; fold; power_off; sit; sit; power_off; at 5 s: stand_up"
-    found = run(Scenario.from_text(text), robot="strider")
+    found = run_scenario(Scenario.from_text(text), robot="strider")
     assert [event.text for event in found.events if event.kind == "refused"] == [
         "stand_up: it stands already",
         "fold: it stands; let it sit first",
@@ -146,7 +146,7 @@ def test_a_robot_that_can_not_get_up_says_why(monkeypatch):
         raise InputError("no way up")
 
     monkeypatch.setattr("tarsus.drive.actor.stand_up", refuse)
-    found = run(Scenario.from_text("at 0 s: stand_up", start="sitting"), robot="strider")
+    found = run_scenario(Scenario.from_text("at 0 s: stand_up", start="sitting"), robot="strider")
     assert found.problems == ("at 0.01 s stand_up: no way up",)
     assert found.standing == ()
     assert drive_summary(found)["least_margin"] is None
@@ -154,7 +154,7 @@ def test_a_robot_that_can_not_get_up_says_why(monkeypatch):
 
 def test_it_gets_up_where_it_has_sat_down():
     text = "at 0 s: walk vx 60 mm/s turn 20 deg/s; at 3 s: sit; walk 30 mm/s; at 6 s: stand_up; at 9 s: stop"
-    found = run(Scenario.from_text(text), robot="strider")
+    found = run_scenario(Scenario.from_text(text), robot="strider")
     assert found.ok
     assert len(found.standing) == 2
     motion = found.motion
@@ -169,7 +169,9 @@ def test_it_gets_up_where_it_has_sat_down():
 
 
 def test_limits_are_told_once_with_their_time():
-    found = run(Scenario.from_text("at 0.5 s: walk 3 m/s; at 2 s: walk 10 mm/s", duration=3.0), robot="strider")
+    found = run_scenario(
+        Scenario.from_text("at 0.5 s: walk 3 m/s; at 2 s: walk 10 mm/s", duration=3.0), robot="strider"
+    )
     (limit,) = (event for event in found.events if event.kind == "limit")
     assert limit.text.startswith("twist: ")
     assert limit.time == pytest.approx(0.51, abs=0.011)
@@ -195,7 +197,7 @@ class Rejecting:
 
 def test_while_the_guard_holds_the_walker_waits_and_what_is_sent_is_recorded(monkeypatch):
     monkeypatch.setattr(running, "Guard", Rejecting)
-    found = run(Scenario.from_text("at 0 s: walk 60 mm/s", duration=1.5), robot="strider")
+    found = run_scenario(Scenario.from_text("at 0 s: walk 60 mm/s", duration=1.5), robot="strider")
     assert found.interventions == {"speed": 1}
     assert [event.text for event in found.events if event.kind == "guard"] == ["speed: too fast"]
     assert "the guard stepped in 1 x: speed" in found.problems
@@ -204,7 +206,7 @@ def test_while_the_guard_holds_the_walker_waits_and_what_is_sent_is_recorded(mon
     assert (found.motion.body.position[31:61] == found.motion.body.position[30]).all()
     reached = found.motion.body @ forward_kinematics(found.robot, found.motion.angles)[..., 3, :]
     assert np.abs(reached - found.motion.feet).max() < 1e-9
-    free = run(found.scenario, robot="strider", guard=False)
+    free = run_scenario(found.scenario, robot="strider", guard=False)
     assert free.guard == ()
     assert (free.motion.angles[:30] == found.motion.angles[:30]).all()
     # The guard here held 30 ticks; from then on all is as without it, but later by these.
@@ -221,7 +223,7 @@ def test_while_the_guard_holds_the_walker_waits_and_what_is_sent_is_recorded(mon
 )
 def test_what_a_robot_can_not_be_told_is_refused_before_the_start(text, robot, error, wanted):
     with pytest.raises(error, match=wanted):
-        run(Scenario.from_text(text), robot=robot)
+        run_scenario(Scenario.from_text(text), robot=robot)
 
 
 def test_a_gait_for_six_legs_is_refused_for_four():
@@ -229,11 +231,11 @@ def test_a_gait_for_six_legs_is_refused_for_four():
     document["legs"] = [document["legs"][leg] for leg in (0, 2, 3, 5)]
     four = type(load_robot("strider")).from_dict(document)
     with pytest.raises(InputError, match=r"at 2 s: .*4 legs"):
-        run(Scenario.from_text("at 2 s: gait ripple", gait="wave"), robot=four)
+        run_scenario(Scenario.from_text("at 2 s: gait ripple", gait="wave"), robot=four)
 
 
 def test_loads_of_what_stood():
-    found = run(
+    found = run_scenario(
         Scenario.from_text("at 0 s: stand_up; at 2 s: walk 50 mm/s; at 4 s: sit", start="sitting"), robot="strider"
     )
     (standing,) = found.standing
@@ -243,7 +245,7 @@ def test_loads_of_what_stood():
 
 
 def test_a_motion_of_it_is_saved_and_comes_back(tmp_path):
-    found = run(Scenario.from_text("at 0 s: walk 50 mm/s", duration=1.0), robot="strider")
+    found = run_scenario(Scenario.from_text("at 0 s: walk 50 mm/s", duration=1.0), robot="strider")
     found.motion.save(tmp_path / "motion.npz")
     back = Motion.load(tmp_path / "motion.npz")
     assert (back.angles == found.motion.angles).all()
@@ -252,7 +254,7 @@ def test_a_motion_of_it_is_saved_and_comes_back(tmp_path):
 
 
 def test_the_log_is_a_table_of_every_tick(tmp_path):
-    found = run(
+    found = run_scenario(
         Scenario.from_text("at 0.5 s: walk vx 50 mm/s turn 5 deg/s", duration=1.0), robot="strider", guard=False
     )
     found.to_csv(tmp_path / "log.csv")
@@ -283,7 +285,7 @@ def test_what_is_felt_is_ground_under_each_leg_and_tilt():
 @pytest.mark.parametrize("path", SCENARIOS, ids=lambda path: path.stem)
 def test_the_examples_run(path):
     scenario = Scenario.load(path)
-    found = run(scenario)
+    found = run_scenario(scenario)
     assert found.ok, found.problems
     assert not found.interventions
     assert all(event.kind != "refused" for event in found.events)
@@ -296,7 +298,7 @@ def test_there_are_examples():
 def test_the_timeline_shows_every_command_and_phase(tmp_path):
     text = "at 0 s: power_off; stand_up; at 2 s: walk 5 m/s; gait wave; "
     text += "at 3 s: hand LM x 0.123456 mm y 200.123456 mm z 40.456 mm"
-    found = run(Scenario.from_text(text, start="sitting", duration=4.0, name="a try"), robot="strider")
+    found = run_scenario(Scenario.from_text(text, start="sitting", duration=4.0, name="a try"), robot="strider")
     figure = plot_timeline(found)
     words = {text.get_text() for axes in figure.axes for text in axes.texts}
     assert {"stand_up", "gait wave", "tripod"} <= words
@@ -308,13 +310,15 @@ def test_the_timeline_shows_every_command_and_phase(tmp_path):
 
 
 def test_the_timeline_of_a_robot_that_never_stands_and_of_one_without_a_guard():
-    lying = run(Scenario.from_text("at 0 s: sit", start="sitting", duration=0.5), robot="strider", guard=False)
+    lying = run_scenario(Scenario.from_text("at 0 s: sit", start="sitting", duration=0.5), robot="strider", guard=False)
     assert isinstance(lying, Recording)
     assert "no guard" in plot_timeline(lying).get_suptitle()
 
 
 def test_the_summary_is_of_the_motion():
-    found = run(Scenario.from_text("at 0.5 s: walk 50 mm/s; at 3 s: walk turn 10 deg/s; at 5 s: stop"), robot="strider")
+    found = run_scenario(
+        Scenario.from_text("at 0.5 s: walk 50 mm/s; at 3 s: walk turn 10 deg/s; at 5 s: stop"), robot="strider"
+    )
     summary = drive_summary(found)
     motion = found.motion
     assert summary["top_speed_mm_s"] == pytest.approx(50, rel=0.01)

@@ -2,7 +2,7 @@
 
 import pytest
 
-from tarsus.drive.run import run
+from tarsus.drive.run import run_scenario
 from tarsus.drive.scenario import Scenario
 
 FOUND = (
@@ -16,6 +16,6 @@ FOUND = (
 @pytest.mark.parametrize("timeline", FOUND)
 @pytest.mark.parametrize("levelling", ["level", "follow"])
 def test_the_guard_has_nothing_to_do(timeline, levelling):
-    recording = run(Scenario.from_text(timeline, duration=8.0, levelling=levelling), robot="strider")
+    recording = run_scenario(Scenario.from_text(timeline, duration=8.0, levelling=levelling), robot="strider")
     assert recording.ok, recording.problems
     assert not recording.interventions

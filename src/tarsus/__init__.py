@@ -16,6 +16,9 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from tarsus.drive.recording import Recording
+    from tarsus.drive.run import run_scenario
+    from tarsus.drive.scenario import Scenario
     from tarsus.errors import (
         CollisionError,
         InputError,
@@ -69,6 +72,7 @@ if TYPE_CHECKING:
     from tarsus.report.footpaths import plot_footpaths
     from tarsus.report.gait_diagram import plot_gait
     from tarsus.report.skeleton import plot_robot
+    from tarsus.report.timeline import plot_timeline
     from tarsus.robot.catalogue import list_servos, load_servo
     from tarsus.robot.file import list_robots, load_robot, robot_schema
     from tarsus.robot.robot import JOINTS, GaitDefaults, Robot, Source, stack_robots
@@ -79,6 +83,9 @@ __version__ = "0.1.0"
 # Where each public name lives. It is imported when first asked for: `import tarsus` and `tarsus --help` do not wait
 # for NumPy. A test holds this table, the imports above and `__all__` against each other.
 _HOMES = {
+    "tarsus.drive.recording": ("Recording",),
+    "tarsus.drive.run": ("run_scenario",),
+    "tarsus.drive.scenario": ("Scenario",),
     "tarsus.errors": (
         *("CollisionError", "InputError", "MissingDataError", "RobotFileError", "StrokeError", "TarsusError"),
         *("UnknownNameError", "UnreachableError"),
@@ -126,6 +133,7 @@ _HOMES = {
     "tarsus.report.footpaths": ("plot_footpaths",),
     "tarsus.report.gait_diagram": ("plot_gait",),
     "tarsus.report.skeleton": ("plot_robot",),
+    "tarsus.report.timeline": ("plot_timeline",),
     "tarsus.robot.catalogue": ("list_servos", "load_servo"),
     "tarsus.robot.file": ("list_robots", "load_robot", "robot_schema"),
     "tarsus.robot.robot": ("JOINTS", "GaitDefaults", "Robot", "Source", "stack_robots"),
@@ -157,9 +165,11 @@ __all__ = [
     "Payload",
     "Pose",
     "Reach",
+    "Recording",
     "Rest",
     "Robot",
     "RobotFileError",
+    "Scenario",
     "Senses",
     "Sequence",
     "SequencePlayer",
@@ -205,11 +215,13 @@ __all__ = [
     "plot_footpaths",
     "plot_gait",
     "plot_robot",
+    "plot_timeline",
     "power_off_order",
     "reachable_band",
     "reachable_share",
     "resting_pose",
     "robot_schema",
+    "run_scenario",
     "sit_down",
     "size_servos",
     "stability_margin",

@@ -53,7 +53,7 @@ def drive(
     with semicolons between them. The exit code is 0 only if nothing was refused, the guard had nothing to do, and all
     of the motion is possible.
     """
-    from tarsus.drive.run import run
+    from tarsus.drive.run import run_scenario
     from tarsus.drive.summary import drive_summary
 
     if not dry:
@@ -61,7 +61,7 @@ def drive(
     if out is not None:
         make_folder(out)
     told = _scenario(scenario, rate)
-    recording = run(told, robot=robot or told.robot or _DEFAULT_ROBOT, guard=not no_guard)
+    recording = run_scenario(told, robot=robot or told.robot or _DEFAULT_ROBOT, guard=not no_guard)
     found = _loads(recording)
     summary = {**drive_summary(recording), "loads": _load_numbers(found)}
     if not as_json:

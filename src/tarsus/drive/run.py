@@ -26,7 +26,7 @@ from tarsus.kinematics.pose import Pose
 from tarsus.robot.file import load_robot
 from tarsus.robot.robot import Robot
 
-__all__ = ["run"]
+__all__ = ["run_scenario"]
 
 # How long a scenario without a duration goes on after its last command [s], and for how long what that command began
 # may last.
@@ -35,7 +35,7 @@ _AFTER, _PATIENCE = 2.0, 120.0
 _AT = 1e-9
 
 
-def run(scenario: Scenario, *, robot: Robot | str | None = None, guard: bool = True) -> Recording:
+def run_scenario(scenario: Scenario, *, robot: Robot | str | None = None, guard: bool = True) -> Recording:
     """Run a scenario through the walker and a guard, and record what happens.
 
     Commands are given at the first tick at or after their time. Where the guard does not let angles through, the
