@@ -143,18 +143,19 @@ def work_out(
     now, rest = (wished, wished_rest) if now is None or rest is None else (now, rest)
     share, leg = _largest_part(robot, (now, rest), (wished, wished_rest))
     yield
+    if share == 0:
+        return f"body: {robot.leg_names[leg]} comes to the end of its reach"
     share, whole = _one_change(robot, (now, rest), (wished, wished_rest), share)
     yield
     sets = support_sets(manner.gait, manner.gone)
-    while share >= _LEAST_PART:
-        posture, rest_there = now + share * (wished - now), rest + share * (wished_rest - rest)
-        stands = [stand_of(row, rest_there) for row in _swaying(posture, manner.sway)]
-        there = yield from envelope(robot, stands, sets, foot_distance=foot_distance, gone=manner.gone)
-        if there.possible:
-            break
+    posture, rest_there = now + share * (wished - now), rest + share * (wished_rest - rest)
+    there = yield from _envelope_of(robot, manner, posture, rest_there, sets, foot_distance)
+    while not there.possible:
         share, whole, leg = share / 2, False, there.short
-    else:
-        return f"body: {robot.leg_names[leg]} comes to the end of its reach"
+        if share < _LEAST_PART:
+            return f"body: {robot.leg_names[leg]} comes to the end of its reach"
+        posture, rest_there = now + share * (wished - now), rest + share * (wished_rest - rest)
+        there = yield from _envelope_of(robot, manner, posture, rest_there, sets, foot_distance)
     pace = yield from tempo(
         robot,
         manner.gait,
@@ -185,6 +186,14 @@ def work_out(
         there=there,
         limited=_limits(robot, manner, pace, share, whole=whole, leg=leg),
     )
+
+
+def _envelope_of(
+    robot: Robot, manner: Manner, posture: Floats, rest: Floats, sets: Floats, foot_distance: float
+) -> Parts[Envelope]:
+    """Work out what is possible in a posture, with its sway."""
+    stands = [stand_of(row, rest) for row in _swaying(posture, manner.sway)]
+    return (yield from envelope(robot, stands, sets, foot_distance=foot_distance, gone=manner.gone))
 
 
 def _limits(robot: Robot, manner: Manner, pace: Tempo, share: float, *, whole: bool, leg: int) -> tuple[str, ...]:
