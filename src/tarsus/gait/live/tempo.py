@@ -23,10 +23,9 @@ _SPEED_UP = 0.05
 _SPEED_SHARE, _ACCELERATION_SHARE = 0.97, 0.8
 _SIZES = np.linspace(0.0, 1.0, 6)
 _LEAST_SIZE, _UNHURRIED = 0.25, 1.15
-_TWISTS = np.array(
-    [(np.cos(a), np.sin(a), 0.0) for a in np.arange(8) * np.pi / 4] + [(0.0, 0.0, 1.0), (0.0, 0.0, -1.0)]
-)
+# Half of all headings, and one way round: the other way, a steady cycle is the same one backwards.
 _STRAIGHT = 8
+_TWISTS = np.array([(np.cos(a), np.sin(a), 0.0) for a in np.arange(_STRAIGHT) * np.pi / _STRAIGHT] + [(0.0, 0.0, 1.0)])
 _MOMENTS = 33
 
 
@@ -113,18 +112,27 @@ def tempo(
     if cycle_time is None:
         tried = least * np.geomspace(1.0, 4.0, 33)
         straight = np.array([_sizes(shortest, t) for t in tried])[:, :_STRAIGHT]
-        # Forwards and backwards, as robots mostly walk.
-        far = np.minimum(straight * stroke[:_STRAIGHT], _cap(straight, stroke[:_STRAIGHT])[:, None])[:, ::4].mean(-1)
+        # Straight on, as robots mostly walk.
+        far = np.minimum(
+            straight[:, 0] * stroke[0], _cap(straight, tried[:, None] / shortest[-1, :_STRAIGHT], stroke[:_STRAIGHT])
+        )
         cycle_time = float(tried[int((far / tried).argmax())])
     cycle_time = max(cycle_time, least)
     sizes = _sizes(shortest, cycle_time)
-    caps = (float(_cap(sizes[part], stroke[part])) for part in (slice(_STRAIGHT), slice(_STRAIGHT, None)))
-    return Tempo(cycle_time, *caps, least)
+    spare = cycle_time / shortest[-1]
+    straight_on, on_the_spot = (
+        float(_cap(sizes[part], spare[part], stroke[part])) for part in (slice(_STRAIGHT), slice(_STRAIGHT, None))
+    )
+    return Tempo(cycle_time, straight_on, on_the_spot, least)
 
 
-def _cap(sizes: Floats, stroke: Floats) -> Floats:
-    """Return the stroke ``(...)`` that works in every direction in which the joints, not the legs, set the bound."""
-    return np.asarray(np.where(sizes < 1, sizes * stroke, np.inf).min(-1))
+def _cap(sizes: Floats, spare: Floats, stroke: Floats) -> Floats:
+    """Return the stroke ``(...)`` that works in every direction in which the joints, not the legs, set the bound.
+
+    Where they do in none, they allow so many times the legs' strokes as their cycles are shorter.
+    """
+    bound = np.where(sizes < 1, sizes * stroke, np.inf).min(-1)
+    return np.asarray(np.where(np.isfinite(bound), bound, (np.maximum(spare, 1.0) * stroke).max(-1)))
 
 
 def _sizes(shortest: Floats, cycle_time: float) -> Floats:
@@ -136,8 +144,10 @@ def _sizes(shortest: Floats, cycle_time: float) -> Floats:
 def _cycle_times(robot: Robot, gait: Gait, stand: Stand, twists: Floats, speed: Floats, acceleration: Floats) -> Floats:
     """Return the shortest cycle ``(...)`` for what the body moves in one stance, ``(..., 3)``."""
     rest = np.stack([stand.rest.real, stand.rest.imag, 0 * stand.rest.real], axis=-1)
-    # Every leg goes the same way through its own cycle: a swing, and a little of the stance on either side.
-    phases = np.linspace(gait.duty - 0.02, 1.02, _MOMENTS)
+    # Every leg goes the same way through its own cycle: a swing, and a little of the stance on either side. Where the
+    # stance is the shorter part, the foot is fastest in it.
+    begin = gait.duty - 0.02 if gait.duty >= 0.5 else -0.02
+    phases = np.linspace(begin, 1.02, round(_MOMENTS * (1.02 - begin) / (1.04 - gait.duty)))
     together = Gait(gait.duty, (0.0,) * gait.legs)
     feet, _ = cycle_feet(together, rest, twists, lift=np.asarray(stand.lift), phases=phases)
     angles = np.stack(stand.solve(robot, feet[..., 0], feet[..., 1], feet[..., 2])[:3], axis=-1)

@@ -1,0 +1,158 @@
+"""How fast the legs may step, against finite differences of dense steady cycles."""
+
+import itertools
+
+import numpy as np
+import pytest
+
+from gait_robots import PRESETS, preset, ring
+from sample_stands import envelope_of, setup_of, standing, tempo_of
+from tarsus.gait.cycle import cycle_feet
+from tarsus.gait.gait import GAITS, Gait
+from tarsus.gait.live.envelope import capped, envelope
+from tarsus.gait.live.support import support_sets
+from tarsus.gait.live.tempo import joint_limits, tempo
+from tarsus.gait.live.workspace import all_parts
+
+HEADINGS = [(np.cos(a), np.sin(a), 0.0) for a in np.arange(7) * 2 * np.pi / 7 + 0.2]
+TWISTS = [
+    (1.0, 0.0, 0.0),
+    (0.0, 1.0, 0.0),
+    *HEADINGS,
+    (0.0, 0.0, 1.0),
+    (0.0, 0.0, -1.0),
+    (1.0, 0.0, 5.0),
+    (0.5, 0.5, -4.0),
+]
+
+
+def strain(setup, limits, twist, cycle_time):
+    """The greatest joint speed and acceleration over their limits in a steady cycle at the largest share of a twist."""
+    share, _ = limits.largest_share(np.array(twist), stance_time=1.0, duty=setup.gait.duty)
+    phases, step = np.linspace(0, 1, 1201, retstep=True)
+    feet, _ = cycle_feet(setup.gait, setup.rest, share * np.array(twist), lift=np.asarray(setup.lift), phases=phases)
+    stand = standing(setup)
+    angles = np.stack(stand.solve(setup.robot, feet[..., 0], feet[..., 1], feet[..., 2])[:3], axis=-1)
+    rate = np.diff(angles, axis=0) / (step * cycle_time)
+    change = np.diff(rate, axis=0) / (step * cycle_time)
+    speed, acceleration = joint_limits(setup.robot, None, None)
+    return (np.abs(rate) / speed).max(), (np.abs(change) / acceleration).max()
+
+
+def limits_of(name, gait, found):
+    return capped(envelope_of(name, gait), found.stroke, found.turning, duty=Gait.named(gait).duty)
+
+
+@pytest.mark.parametrize(("name", "gait"), list(itertools.product(PRESETS, ["tripod", "ripple", "wave"])))
+def test_steady_walks_keep_within_the_joints_speed_and_acceleration(name, gait):
+    found = tempo_of(name, gait)
+    setup, limits = setup_of(name, gait), limits_of(name, gait, found)
+    strains = np.array([strain(setup, limits, twist, found.cycle_time) for twist in TWISTS])
+    assert strains.max() <= 1
+    # A cycle shorter by an eighth would be too short for the same strokes.
+    assert max(max(strain(setup, limits, twist, found.cycle_time / 1.14)) for twist in TWISTS) > 1
+
+
+@pytest.mark.parametrize("name", PRESETS)
+def test_in_a_given_cycle_time_the_strokes_are_as_long_as_the_joints_allow(name):
+    found = tempo_of(name, "tripod", 1.5 * tempo_of(name).least_cycle_time)
+    assert found.cycle_time == pytest.approx(1.5 * found.least_cycle_time)
+    limits = limits_of(name, "tripod", found)
+    strains = [max(strain(setup_of(name), limits, twist, found.cycle_time)) for twist in TWISTS]
+    assert max(strains) <= 1
+
+
+@pytest.mark.parametrize("name", ["strider", "phantomx"])
+def test_a_cycle_too_short_to_lift_the_feet_is_made_longer(name):
+    asked = tempo_of(name, "tripod", 0.05)
+    assert asked.cycle_time == asked.least_cycle_time
+    limits = limits_of(name, "tripod", asked)
+    assert max(strain(setup_of(name), limits, (1.0, 0.0, 0.0), asked.cycle_time)) <= 1
+    # There it still gets on: by a quarter of what the legs allow.
+    assert min(asked.stroke, asked.turning) > 0.01
+
+
+def test_a_long_cycle_allows_all_that_the_legs_do():
+    found = tempo_of("strider", "tripod", 30.0)
+    assert found.cycle_time == 30.0
+    for twist in TWISTS[:-2]:
+        legs, _ = envelope_of("strider").largest_share(np.array(twist), stance_time=1.0, duty=0.5)
+        joints, _ = limits_of("strider", "tripod", found).largest_share(np.array(twist), stance_time=1.0, duty=0.5)
+        assert joints == pytest.approx(legs)
+
+
+def test_left_out_the_cycle_time_is_the_one_that_gets_the_robot_farthest():
+    setup, free = setup_of("phantomx"), tempo_of("phantomx")
+
+    def speed(cycle_time):
+        found = tempo_of("phantomx", "tripod", cycle_time)
+        limits = limits_of("phantomx", "tripod", found)
+        forward = np.array([1.0, 0.0, 0.0])
+        return limits.largest_share(forward, stance_time=setup.gait.duty * found.cycle_time, duty=0.5)[0]
+
+    best = speed(free.cycle_time)
+    assert best >= 0.99 * max(speed(part * free.cycle_time) for part in (0.8, 0.9, 1.1, 1.3, 1.8))
+
+
+def test_where_the_stance_is_the_shorter_part_its_speed_counts():
+    # Eight legs, five in the air in turn: a foot on the ground goes faster than one that swings.
+    robot = ring(8)
+    gait = Gait(3 / 8, tuple((3 * leg % 8) / 8 for leg in range(8)))
+    setup = setup_of(robot, gait)
+    # Support isn't what this is about: all eight at once.
+    limits = all_parts(envelope(robot, [standing(setup)], np.ones((1, 8), dtype=bool), foot_distance=0.01))
+    speed, acceleration = joint_limits(robot, None, None)
+    found = all_parts(tempo(robot, gait, standing(setup), limits, speed=speed, acceleration=acceleration))
+    less = capped(limits, found.stroke, found.turning, duty=gait.duty)
+    strains = [strain(setup, less, twist, found.cycle_time)[0] for twist in TWISTS[:-2]]
+    assert 0.8 < max(strains) <= 1
+
+
+def test_slower_joints_step_slower():
+    setup = setup_of("strider")
+    speed, acceleration = joint_limits(setup.robot, None, None)
+
+    def found(part):
+        return all_parts(
+            tempo(
+                setup.robot,
+                setup.gait,
+                standing(setup),
+                envelope_of("strider"),
+                speed=part * speed,
+                acceleration=part * part * acceleration,
+            )
+        )
+
+    # Half the speed, a quarter of the acceleration: the same walk in slow motion.
+    assert found(0.5).cycle_time == pytest.approx(2 * found(1).cycle_time, rel=1e-9)
+    assert found(0.5).stroke == pytest.approx(found(1).stroke, rel=1e-9)
+
+
+def test_joint_limits_are_the_servos_no_load_speed():
+    robot = preset("phantomx")
+    speed, acceleration = joint_limits(robot, None, None)
+    assert speed.shape == acceleration.shape == (6, 3)
+    assert speed[0, 0] == robot.servos[0][0].no_load_speed
+    np.testing.assert_allclose(acceleration, speed / 0.05)
+
+
+def test_joint_limits_without_servos_and_as_asked_for():
+    bare = ring(6)
+    np.testing.assert_array_equal(joint_limits(bare, None, None)[0], 5.0)
+    speed, acceleration = joint_limits(bare, 3.0, None)
+    np.testing.assert_array_equal(speed, 3.0)
+    np.testing.assert_allclose(acceleration, 60.0)
+    speed, acceleration = joint_limits(bare, None, 7.0)
+    np.testing.assert_array_equal(speed, 5.0)
+    np.testing.assert_array_equal(acceleration, 7.0)
+
+
+@pytest.mark.parametrize("gait", GAITS)
+def test_the_work_is_done_in_parts(gait):
+    setup = setup_of("strider", gait)
+    speed, acceleration = joint_limits(setup.robot, None, None)
+    assert support_sets(setup.gait).any()
+    limits = envelope_of("strider", gait)
+    work = tempo(setup.robot, setup.gait, standing(setup), limits, speed=speed, acceleration=acceleration)
+    assert sum(1 for _ in work) >= 5
