@@ -8,8 +8,10 @@ from tarsus.drive.scenario import Scenario
 FOUND = (
     "at 0 s: walk 40 mm/s; ground RF -3 mm",
     "at 0 s: walk 40 mm/s; ground RF 3 mm",
-    "at 0 s: walk 40 mm/s; gait wave; ground RF 3 mm; "
-    "at 3 s: tilt roll 1 deg; stance_width 3 mm; lift 15 mm; clearance 85 mm; at 6 s: stop",
+    (
+        "at 0 s: walk 40 mm/s; gait wave; ground RF 3 mm; "
+        "at 3 s: tilt roll 1 deg; stance_width 3 mm; lift 15 mm; clearance 85 mm; at 6 s: stop"
+    ),
 )
 
 

@@ -6,6 +6,8 @@ import pytest
 from tarsus import Pose, default_stance, inverse_kinematics, list_robots, load_robot
 from tarsus.gait.live.quick import QuickLegs
 
+UP = np.array([0, 0, 1.0])
+
 
 @pytest.mark.parametrize("name", list_robots())
 def test_it_agrees_with_the_arrays(name):
@@ -16,9 +18,9 @@ def test_it_agrees_with_the_arrays(name):
     for _ in range(300):
         feet = stance + rng.normal(size=stance.shape) * 0.04
         body = Pose.from_rpy(*rng.normal(size=3) * 0.1, rng.normal(size=3) * 0.02)
-        feet_up = feet + [0, 0, 1.0]
+        feet_up = feet + UP
         expected = inverse_kinematics(robot, body.inverse() @ feet)
-        found = quick.angles(feet_up.tolist(), body.rotation.tolist(), (body.position + [0, 0, 1.0]).tolist())
+        found = quick.angles(feet_up.tolist(), body.rotation.tolist(), (body.position + UP).tolist())
         if found is not None:
             solved += 1
             assert expected.ok.all()
@@ -44,7 +46,7 @@ def _plain(robot, body, feet):
 
 def test_a_foot_beside_the_legs_plane_is_refused():
     robot = load_robot("strider").replace(femur_axis_offset=np.tile([0.05, 0.0], (6, 1)))
-    axis = np.asarray(robot.mount_position) + [0.01, 0, -0.1]
+    axis = np.asarray(robot.mount_position) + np.array([0.01, 0, -0.1])
     assert QuickLegs(robot).angles(axis.tolist(), np.eye(3).tolist(), (0.0, 0.0, 0.0)) is None
 
 
