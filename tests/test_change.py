@@ -1,0 +1,225 @@
+"""Working out how to go over to another posture, order of steps or pace: what works of it, and what is said."""
+
+import dataclasses
+import functools
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from gait_robots import PRESETS
+from sample_stands import feet_at, pose_of, posture_of, setup_of
+from tarsus.errors import UnreachableError
+from tarsus.gait.gait import GAITS, Gait
+from tarsus.gait.live.change import Change, Manner, work_out
+from tarsus.gait.live.posture import LIFT, rotation_of, stand_of
+from tarsus.gait.live.tempo import joint_limits
+from tarsus.gait.live.workspace import all_parts
+from tarsus.kinematics.inverse import inverse_kinematics
+from tarsus.kinematics.pose import Pose
+from tarsus.kinematics.stance import default_stance
+
+
+def manner_of(setup, **changes):
+    values = {
+        "gait": setup.gait,
+        "body": (0.0,) * 6,
+        "clearance": setup.clearance,
+        "lift": setup.lift,
+        "stance_width": 0.0,
+        "cycle_time": None,
+    }
+    return Manner(**{**values, **changes})
+
+
+def worked_out(setup, manner, now=None, rest=None, **options):
+    speed, acceleration = joint_limits(setup.robot, None, None)
+    distance = {"speed": speed, "acceleration": acceleration, "foot_distance": setup.foot_distance}
+    return all_parts(work_out(setup.robot, manner, now, rest, **distance, **options))
+
+
+@functools.cache
+def start(name, gait="tripod"):
+    setup = setup_of(name, gait)
+    return worked_out(setup, manner_of(setup))
+
+
+def from_start(name, **changes):
+    setup, first = setup_of(name), start(name)
+    return worked_out(setup, manner_of(setup, **changes), first.posture, first.rest)
+
+
+def reached(setup, posture, rest):
+    """Whether all feet are reached at their rest footholds, on the ground and lifted."""
+    stand = stand_of(posture, rest)
+    feet = np.stack([feet_at(rest), feet_at(rest, posture[LIFT])])
+    return bool(inverse_kinematics(setup.robot, feet, pose_of(stand)).ok.all())
+
+
+@pytest.mark.parametrize("name", PRESETS)
+def test_every_preset_stands_and_walks_in_every_gait_as_it_is(name):
+    for gait in GAITS:
+        setup, found = setup_of(name, gait), start(name, gait)
+        assert isinstance(found, Change)
+        assert found.whole
+        assert found.limited == ()
+        np.testing.assert_allclose(found.posture, posture_of(setup))
+        stance = default_stance(setup.robot, setup.clearance, lift=setup.lift)
+        np.testing.assert_allclose(found.rest, stance[:, 0] + 1j * stance[:, 1])
+        assert found.there is found.way is found.stepping
+        assert found.there.possible
+        assert min(found.there.stroke, found.there.turning) > 0
+
+
+@pytest.mark.parametrize("name", PRESETS)
+def test_small_changes_work_whole_and_on_all_the_way(name):
+    found = from_start(name, body=(0.002, -0.002, 0.003, 0.01, -0.01, 0.01))
+    assert isinstance(found, Change)
+    assert found.whole
+    assert found.limited == ()
+    setup, first = setup_of(name), start(name)
+    np.testing.assert_allclose(found.posture[:2], (0.002, -0.002))
+    assert found.posture[2] == pytest.approx(setup.clearance + 0.003)
+    for part in np.linspace(0, 1, 5):
+        assert reached(setup, first.posture + part * (found.posture - first.posture), found.rest)
+    for limits in (found.there, found.way, found.stepping):
+        assert limits.possible
+    assert (found.way.bounds <= np.minimum(found.there.bounds, found.stepping.bounds)).all()
+
+
+@pytest.mark.parametrize("name", ["strider", "phantomx", "phoenix"])
+@pytest.mark.parametrize("axis", range(6))
+def test_of_too_far_a_move_the_largest_part_is_gone_step_by_step(name, axis):
+    setup, first = setup_of(name), start(name)
+    body = tuple((0.3 if axis < 3 else 1.2) * (i == axis) for i in range(6))
+    posture, rest, said = first.posture, first.rest, None
+    for _ in range(24):
+        found = worked_out(setup, manner_of(setup, body=body), posture, rest)
+        if isinstance(found, str):
+            said = found
+            break
+        assert reached(setup, found.posture, found.rest)
+        gone = (found.posture - posture)[axis]
+        assert gone >= 0
+        posture, rest = found.posture, found.rest
+        if found.whole:
+            said = " ".join(found.limited)
+            break
+    assert said is not None
+    assert any(leg in said for leg in setup.robot.leg_names)
+    # Some of the way, not all of it.
+    assert 0.01 < posture[axis] - first.posture[axis] < body[axis]
+
+
+def test_feet_are_not_moved_far_at_once():
+    found = from_start("strider", stance_width=0.05)
+    assert isinstance(found, Change)
+    assert not found.whole
+    assert 0 < np.abs(found.rest - start("strider").rest).max() <= 0.03 + 1e-12
+    # As the body still is, the feet reach their new places.
+    assert reached(setup_of("strider"), start("strider").posture, found.rest)
+
+
+def test_a_wider_stance_puts_each_foot_farther_from_its_coxa_axis():
+    setup = setup_of("strider")
+    found = from_start("strider", stance_width=0.02)
+    mount = setup.robot.geometry.mount_x + 1j * setup.robot.geometry.mount_y
+    np.testing.assert_allclose(np.abs(found.rest - mount), np.abs(start("strider").rest - mount) + 0.02)
+
+
+def test_a_height_from_which_no_leg_reaches_is_gone_towards_as_far_as_one_does():
+    setup, first = setup_of("strider"), start("strider")
+    found = from_start("strider", clearance=0.5)
+    assert isinstance(found, Change)
+    assert setup.clearance < found.posture[2] < 0.5
+    assert reached(setup, found.posture, found.rest)
+    with pytest.raises(UnreachableError):
+        worked_out(setup, manner_of(setup, clearance=0.5))
+    with pytest.raises(UnreachableError, match="no leg reaches the ground at clearance 500000"):
+        worked_out(setup, manner_of(setup, clearance=500.0), first.posture, first.rest)
+
+
+def test_a_short_cycle_is_made_longer_and_that_is_said():
+    found = from_start("strider", cycle_time=0.1)
+    assert found.tempo.cycle_time > 0.1
+    assert any("cycle_time 0.1 s is too short" in reason for reason in found.limited)
+    assert any(f"{found.tempo.cycle_time:.3g} s is taken" in reason for reason in found.limited)
+
+
+def test_another_order_of_steps_leaves_the_robot_standing_as_it_is():
+    setup, first = setup_of("strider"), start("strider")
+    moved = first.posture + np.array([0.01, 0, 0, 0, 0, 0.05, 0])
+    manner = manner_of(setup, gait=Gait.named("wave"))
+    found = worked_out(setup, manner, moved, first.rest, stay=True)
+    np.testing.assert_array_equal(found.posture, moved)
+    np.testing.assert_array_equal(found.rest, first.rest)
+    assert found.manner is manner
+    assert found.there is found.way
+
+
+def test_legs_that_are_gone_bound_nothing():
+    setup, first = setup_of("strider"), start("strider")
+    # The body leans already to the side that has three legs left.
+    lean = (0.0, -0.06, 0.0, 0.0, 0.0, 0.0)
+    manner = manner_of(setup, gait=Gait.named("wave"), gone=(1,), correction=lean)
+    found = worked_out(setup, manner, posture_of(setup, lean), first.rest)
+    assert isinstance(found, Change)
+    assert np.isinf(found.there.bounds[1]).all()
+    assert np.isfinite(np.delete(found.there.bounds, 1, axis=0)).all()
+
+
+def test_a_robot_that_would_tip_over_is_refused():
+    setup, first = setup_of("strider"), start("strider")
+    # Two legs in the air at a time, and two more that don't step.
+    manner = manner_of(setup, gait=Gait.named("ripple"), gone=(0, 1))
+    found = worked_out(setup, manner, first.posture, first.rest)
+    assert isinstance(found, str)
+    assert any(leg in found for leg in setup.robot.leg_names)
+
+
+def test_from_a_posture_out_of_reach_nothing_works():
+    setup, first = setup_of("strider"), start("strider")
+    away = first.posture + np.array([0, 0, 0.3, 0, 0, 0, 0])
+    manner = manner_of(setup, body=(0, 0, 0.4, 0, 0, 0))
+    found = worked_out(setup, manner, away, first.rest)
+    assert isinstance(found, str)
+    assert "comes to the end of its reach" in found
+
+
+def test_a_body_that_sways_has_less_room():
+    still, swaying = start("strider"), from_start("strider", sway=(0.0, 0.02, 0.0, 0.05, 0.0, 0.0))
+    assert swaying.there.possible
+    assert (swaying.there.bounds <= still.there.bounds + 1e-9).mean() > 0.8
+    assert swaying.there.room.sum() < still.there.room.sum()
+
+
+def test_a_correction_for_the_ground_is_added_to_the_body():
+    setup = setup_of("strider")
+    manner = manner_of(setup, body=(0.01,) * 6, correction=(0.0, 0.01, 0.02, 0.0, 0.1, 0.0))
+    assert manner.stance == pytest.approx((0.01, 0.02, 0.03, 0.01, 0.11, 0.01))
+    assert dataclasses.replace(manner, correction=(0.0,) * 6).stance == manner.body
+
+
+@settings(max_examples=12)
+@given(st.tuples(*[st.floats(-0.1, 0.1)] * 3, *[st.floats(-0.5, 0.5)] * 3), st.floats(0.02, 0.3), st.floats(0, 0.1))
+def test_whatever_is_wished_for_what_comes_of_it_is_reached(body, clearance, lift):
+    setup = setup_of("phantomx")
+    try:
+        found = from_start("phantomx", body=body, clearance=clearance, lift=lift)
+    except UnreachableError:
+        return
+    if isinstance(found, str):
+        assert any(leg in found for leg in setup.robot.leg_names)
+        return
+    assert reached(setup, found.posture, found.rest)
+    assert reached(setup, start("phantomx").posture, found.rest)
+
+
+@given(st.floats(-3, 3), st.floats(-1.5, 1.5), st.floats(-3, 3))
+def test_the_rotation_of_a_posture_is_that_of_a_pose(roll, pitch, yaw):
+    expected = Pose.from_rpy(roll, pitch, yaw, (0, 0, 0)).rotation
+    np.testing.assert_allclose(rotation_of(roll, pitch, yaw), expected, atol=1e-15)
+    stand = stand_of(np.array([0.1, 0.2, 0.3, roll, pitch, yaw, 0.04]), np.zeros(6, dtype=complex))
+    np.testing.assert_allclose(stand.rotation, expected, atol=1e-15)
+    assert (*stand.position, stand.lift) == (0.1, 0.2, 0.3, 0.04)
