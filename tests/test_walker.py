@@ -2,18 +2,20 @@
 
 import functools
 import hashlib
+import importlib
 import itertools
 import math
 import os
+import re
 import subprocess
 import sys
 import tracemalloc
+from pathlib import Path
 
 import numpy as np
 import pytest
-from gait_robots import PRESETS, preset, ring
-from walker_machine import GAITS, Trace, drive
 
+from gait_robots import PRESETS, preset, ring
 from tarsus.errors import InputError, UnknownNameError, UnreachableError
 from tarsus.gait.gait import Gait
 from tarsus.gait.live.guard import Guard
@@ -23,6 +25,7 @@ from tarsus.gait.path import twist_path
 from tarsus.gait.plan import plan_walk
 from tarsus.kinematics.inverse import inverse_kinematics
 from tarsus.kinematics.pose import Pose
+from walker_machine import GAITS, Trace, drive
 
 DIRECTIONS = {"forward": (1, 0, 0), "left": (0, 1, 0), "turning": (0, 0, 1), "all": (-0.6, 0.4, 1.5)}
 STOP = (0.0, 0.0, 0.0)
@@ -103,8 +106,8 @@ def test_so_it_does_after_a_change_on_the_move():
     for _ in range(400):
         w.step(Wish(twist=(0.05, 0, 0), gait="wave", clearance=0.12, lift=0.025), 0.04)
     assert w.gait.name == "wave"
-    for _ in range(400):
-        w.step((0.03, 0.01, 0.05), 0.05)
+    # It starts afresh, so that its lifts fall on samples.
+    stopped(Trace(w))
     assert_planned(w, np.array((0.03, 0.01, 0.05)), clearance=0.12, lift=0.025)
 
 
@@ -312,7 +315,6 @@ def test_a_foot_in_the_air_goes_where_the_new_wish_needs_it():
 
 def test_height_lift_width_and_pace_change_on_the_move():
     w = walker("strider")
-    rest = heading_feet(w)
     trace = Trace(w).run((0.08, 0, 0), 2)
     wish = Wish(twist=(0.08, 0, 0), clearance=0.14, lift=0.045, stance_width=0.01, cycle_time=1.5)
     trace.run(wish, 20)
@@ -361,7 +363,7 @@ def test_the_body_goes_as_far_as_all_legs_reach_and_says_which_one_stops_it(name
     feet = w.feet * [1, 1, 0] + np.array([0.0, w.robot.gait.lift])[:, None, None] * [0, 0, 1]
     assert inverse_kinematics(w.robot, feet, w.body).ok.all()
     row += body / 15
-    beyond = Pose.from_rpy(*row[3:], row[:3] + (0, 0, level))
+    beyond = Pose.from_rpy(*row[3:], row[:3] + np.array((0, 0, level)))
     assert inverse_kinematics(w.robot, feet, beyond).reach[:, leg].any()
 
 
@@ -512,8 +514,15 @@ def test_an_unknown_gait_is_refused_with_those_that_there_are():
 
 @pytest.mark.parametrize(
     "given",
-    [{"clearance": NAN}, {"lift": -0.1}, {"cycle_time": 0.0}, {"stance_width": INF}, {"joint_speed": 0.0}]
-    + [{"joint_acceleration": NAN}, {"foot_distance": -1.0}],
+    [
+        {"clearance": NAN},
+        {"lift": -0.1},
+        {"cycle_time": 0.0},
+        {"stance_width": INF},
+        {"joint_speed": 0.0},
+        {"joint_acceleration": NAN},
+        {"foot_distance": -1.0},
+    ],
     ids=repr,
 )
 def test_a_walker_of_nonsense_is_refused(given):
@@ -560,3 +569,40 @@ def test_slow_joints_make_a_slow_walk():
     assert slow.cycle_time > 2 * quick.cycle_time
     assert slow.top_speed((1, 0, 0)) < 0.5 * quick.top_speed((1, 0, 0))
     Trace(slow).run((1, 0, 1), 10, 0.05).assert_sound()
+
+
+# The page about it.
+
+ROOT = Path(__file__).parents[1]
+PAGE = (ROOT / "docs" / "walking-live.md").read_text(encoding="utf-8")
+
+
+def benchmark():
+    """`benchmarks/walker.py`, which writes the table of top speeds."""
+    sys.path.insert(0, str(ROOT / "benchmarks"))
+    try:
+        return importlib.import_module("walker")
+    finally:
+        sys.path.pop(0)
+
+
+def test_the_pages_example_runs(capsys):
+    (example,) = re.findall(r"```python\n(.*?)```", PAGE, flags=re.DOTALL)
+    exec(example, {})
+    (shown,) = re.findall(r"```text\n(.*?)```", PAGE, flags=re.DOTALL)
+    assert capsys.readouterr().out == shown
+
+
+@pytest.mark.parametrize(("name", "gait"), [("strider", "tripod"), ("phantomx", "tripod"), ("ch3r", "wave")])
+def test_the_pages_top_speeds_are_those_reached(name, gait):
+    (shown,) = re.findall(rf"^\| {name} \| {gait} \|(.*)\|$", PAGE, flags=re.MULTILINE)
+    cells = [float(cell) for cell in shown.split("|")]
+    reached = [benchmark().top_speed(preset(name), gait, direction) for direction in benchmark().DIRECTIONS]
+    np.testing.assert_allclose(cells, [walker(name, gait).cycle_time, *reached], atol=0.0051)
+
+
+def test_the_page_shows_every_preset_and_gait_and_every_wish():
+    rows = re.findall(r"^\| ([\w-]+) \| (\w+) \| [\d. |]+$", PAGE, flags=re.MULTILINE)
+    assert rows == list(itertools.product(PRESETS, GAITS))
+    for name in Wish.__dataclass_fields__:
+        assert f"`{name}`" in PAGE

@@ -140,7 +140,7 @@ class Stream:
 
     def __init__(self, seed: int, walker: Walker) -> None:
         self._rng = np.random.default_rng(seed)
-        self._clearance, self._lift = walker.robot.gait.clearance, walker.robot.gait.lift
+        self._clearance, self._lift = walker.robot.gait.clearance or 0.1, walker.robot.gait.lift or 0.03
         self._feet = walker.feet
         self._twist = np.zeros(3)
         # Some streams tick evenly, most don't.

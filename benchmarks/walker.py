@@ -1,0 +1,173 @@
+"""Rows on the live walker: a tick while the wishes change, the guard's check, planning to stand up; top speeds."""
+
+from __future__ import annotations
+
+import gc
+import math
+import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+# Before NumPy is loaded: this one chooses the number of threads.
+from measure import Row, medians  # isort: split
+
+import numpy as np
+
+from tarsus import GAITS, Gait, Robot, list_robots, load_robot
+from tarsus.gait.live.fold import folded_pose
+from tarsus.gait.live.guard import Guard
+from tarsus.gait.live.rise import stand_up
+from tarsus.gait.live.walker import Walker
+from tarsus.gait.live.wish import Wish
+
+__all__ = ["speed_table", "top_speed", "walker_rows"]
+
+TICKS = 100_000
+DT = 0.02
+NEW_WISH = 50
+"""A new twist so many ticks after the last; every fifth time, how to walk changes too."""
+
+MEDIAN, WORST = 150e-6, 1e-3
+DIRECTIONS = {"forward": (1.0, 0.0, 0.0), "sideways": (0.0, 1.0, 0.0), "turning": (0.0, 0.0, 1.0)}
+PAGE = Path(__file__).parent.parent / "docs" / "walking-live.md"
+BEGIN, END = "<!-- top speeds -->", "<!-- end -->"
+FAR = 10.0
+"""More than any robot can do [m/s], [rad/s]."""
+
+
+def walker_rows(robot: Robot) -> Iterator[Row]:
+    """One robot that is walked live."""
+    yield from tick_rows(robot)
+    yield from guard_rows(robot)
+    yield from rise_rows(robot)
+
+
+@contextmanager
+def control_loop() -> Iterator[None]:
+    """Keep the garbage collector out, as a control loop does: what exists is frozen, and nothing is looked for."""
+    gc.collect()
+    gc.freeze()
+    gc.disable()
+    try:
+        yield
+    finally:
+        gc.enable()
+        gc.unfreeze()
+
+
+def wishes(rng: np.random.Generator, walker: Walker) -> Iterator[Wish]:
+    """Yield wishes that change everything in turn."""
+    clearance, lift = float(walker.body.position[2]), walker.robot.gait.lift or 0.03
+    changes: tuple[Callable[[], dict[str, Any]], ...] = (
+        lambda: {"gait": str(rng.choice(list(GAITS)))},
+        lambda: {"body": tuple(rng.uniform(-1, 1, 6) * (0.02, 0.02, 0.02, 0.1, 0.1, 0.1))},
+        lambda: {"clearance": clearance * rng.uniform(0.9, 1.1), "lift": lift * rng.uniform(0.5, 1.2)},
+        lambda: {"cycle_time": float(rng.uniform(1, 2)), "stance_width": float(rng.uniform(-0.01, 0.01))},
+    )
+    number = 0
+    while True:
+        twist = tuple(rng.uniform(-1, 1, 3) * (0.3, 0.3, 1.0))
+        yield Wish(twist=twist, **(changes[number // 5 % len(changes)]() if number % 5 == 0 else {}))
+        number += 1
+
+
+def ticks(robot: Robot, count: int) -> np.ndarray[Any, Any]:
+    """Return how long each of so many ticks takes [s], on the processor's clock."""
+    walker = Walker(robot, Gait.named("tripod"))
+    asked = wishes(np.random.default_rng(4), walker)
+    times, wish = np.empty(count), next(asked)
+    with control_loop():
+        for tick in range(count):
+            if tick % NEW_WISH == NEW_WISH - 1:
+                wish = next(asked)
+            start = time.thread_time_ns()
+            walker.step(wish, DT)
+            times[tick] = (time.thread_time_ns() - start) * 1e-9
+    return times
+
+
+def tick_rows(robot: Robot) -> Iterator[Row]:
+    """Every tick of a walk in which the wishes change."""
+    times = ticks(robot, TICKS)
+    what = f"a tick of the live walker, {TICKS:,} of them, a new wish every {NEW_WISH}"
+    median, worst = float(np.median(times)), float(times.max())
+    yield Row(
+        what=f"{what}: median",
+        measured=f"{median * 1e6:.0f} us",
+        compared=f"99.9 %: {np.quantile(times, 0.999) * 1e6:.0f} us",
+        target=f"<= {MEDIAN * 1e6:.0f} us",
+        met=median <= MEDIAN,
+    )
+    yield Row(
+        what="the same: worst",
+        measured=f"{worst * 1e6:.0f} us",
+        compared=f"{int((times > WORST).sum())} over {WORST * 1e3:.0f} ms",
+        target=f"<= {WORST * 1e6:.0f} us",
+        met=worst <= WORST,
+    )
+
+
+def guard_rows(robot: Robot) -> Iterator[Row]:
+    """The guard's check of a tick, with contacts and the body."""
+    walker = Walker(robot, Gait.named("tripod"))
+    seen = [(walker.step((0.1, 0.0, 0.2), DT), walker.contacts, walker.body) for _ in range(500)]
+    guard = Guard(robot)
+    for angles, contacts, body in seen:
+        guard.check(angles, DT, contacts, body)
+    angles, contacts, body = seen[-1]
+    seconds = medians({"check": lambda: guard.check(angles, DT, contacts, body)}, loops=300)["check"]
+    yield Row(what="the guard's check of a tick", measured=f"{seconds * 1e6:.0f} us")
+
+
+def rise_rows(robot: Robot) -> Iterator[Row]:
+    """Planning to stand up from the folded pose."""
+    angles = folded_pose(robot)
+    seconds = medians({"rise": lambda: stand_up(robot, angles)}, rounds=5)["rise"]
+    yield Row(what="planning to stand up from the folded pose", measured=f"{seconds * 1e3:.0f} ms")
+
+
+def top_speed(robot: Robot, gait: str, direction: str) -> float:
+    """Return the speed that a robot reaches when more is asked of it [m/s], [rad/s]."""
+    walker = Walker(robot, Gait.named(gait))
+    twist = [FAR * speed for speed in DIRECTIONS[direction]]
+    cycles = math.ceil(3 * walker.cycle_time / DT)
+    for _ in range(cycles):
+        walker.step(twist, 2 * DT)
+    before, begun = walker.place, walker.time
+    for _ in range(math.ceil(walker.cycle_time / DT / 2)):
+        walker.step(twist, 2 * DT)
+    x, y, turned = np.subtract(walker.place, before) / (walker.time - begun)
+    return float(turned if direction == "turning" else math.hypot(x, y))
+
+
+def speed_table() -> str:
+    """Return the top speeds of every preset and gait, as the page on live walking shows them."""
+    lines = [
+        "| robot | gait | cycle (s) | forward (m/s) | sideways (m/s) | turning (rad/s) |",
+        "|---|---|---|---|---|---|",
+    ]
+    for name in list_robots():
+        robot = load_robot(name)
+        for gait in GAITS:
+            cycle = Walker(robot, Gait.named(gait)).cycle_time
+            reached = " | ".join(f"{top_speed(robot, gait, direction):.3f}" for direction in DIRECTIONS)
+            lines.append(f"| {name} | {gait} | {cycle:.2f} | {reached} |")
+    return "\n".join(lines)
+
+
+def write_speeds() -> None:
+    """Write the table of top speeds to the page on live walking."""
+    text = PAGE.read_text(encoding="utf-8")
+    begin, end = text.index(BEGIN) + len(BEGIN), text.index(END)
+    PAGE.write_text(f"{text[:begin]}\n{speed_table()}\n{text[end:]}", encoding="utf-8")
+
+
+if __name__ == "__main__":
+    if "--write" in sys.argv[1:]:
+        write_speeds()
+    else:
+        for row in walker_rows(load_robot("strider")):
+            print(row.what, "|", row.measured, "|", row.compared, "|", row.target, "|", row.verdict)
