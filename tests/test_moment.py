@@ -14,7 +14,8 @@ from sample_stands import setup_of
 from tarsus.gait.cycle import cycle_feet
 from tarsus.gait.gait import GAITS
 from tarsus.gait.live.lag import Lag
-from tarsus.gait.live.moment import FREEZE, THERE, carried, final_rest, go_on, turned
+from tarsus.gait.live.moment import FREEZE, THERE, carried, final_rest, go_on, meet_ground, turned
+from tarsus.gait.live.posture import swayed
 from tarsus.kinematics.pose import Pose
 
 TWISTS = [(0.08, 0.0, 0.0), (0.0, -0.06, 0.0), (0.05, 0.02, 0.3), (0.0, 0.0, -0.5)]
@@ -219,3 +220,47 @@ def test_final_rest_is_where_the_lag_leaves_the_body():
     np.testing.assert_allclose(end.origin + np.exp(1j * end.yaw) * rest, expected, atol=1e-5)
     assert now.origin == EARTH
     assert now.yaw == FACING
+
+
+@pytest.mark.parametrize("share", [0.3, 0.65, 0.95])
+def test_a_foot_that_meets_the_ground_comes_to_rest_on_it_without_a_jump(share):
+    setup, rest = setup_of("strider"), rest_of("strider")
+    course = course_of(setup, rest, (0.1, 0.0, 0.0))
+    now = walked(begun(setup, rest), course, 2.0, 0.01)
+    while not (~now.down & (now.share > share)).any():
+        now = go_on(now, course, 0.002)
+    met = ~now.down
+    found = meet_ground(now, met, setup.lift)
+    np.testing.assert_allclose(found.height(setup.lift), now.height(setup.lift), atol=1e-12)
+    np.testing.assert_array_equal(found.foot, now.foot)
+    heights = []
+    while (~found.down & met).any():
+        heights.append(found.height(setup.lift)[met])
+        found = go_on(found, course, 0.001)
+    heights.append(found.height(setup.lift)[met])
+    np.testing.assert_allclose(heights[-1], found.ground[met], atol=1e-12)
+    speeds = np.diff(heights, axis=0)
+    # As fast as before at first, and ever more slowly.
+    unmet = go_on(now, course, 0.001).height(setup.lift) - now.height(setup.lift)
+    np.testing.assert_allclose(speeds[0], unmet[met], atol=1e-4)
+    assert np.abs(np.diff(speeds, axis=0)).max() < 2e-4
+
+
+def test_a_foot_that_does_not_land_waits_over_its_target():
+    setup, rest = setup_of("strider"), rest_of("strider")
+    course = course_of(setup, rest, (0.05, 0.0, 0.0), lands=np.zeros(6, dtype=bool))
+    now = walked(begun(setup, rest), course, 0.7, 0.01)
+    waiting = ~now.down & (now.share >= 1)
+    assert waiting.any()
+    later = go_on(now, course, 0.01)
+    np.testing.assert_array_equal(later.foot[waiting], now.foot[waiting])
+    assert not later.down[waiting].any()
+
+
+def test_a_sway_is_within_its_amplitudes_and_takes_each_of_them():
+    amplitude = np.array([0.01, 0.02, 0.0, 0.05, 0.06, 0.0])
+    row = np.array([0.0, 0.0, 0.1, 0.0, 0.0, 0.0, 0.03, *amplitude])
+    seen = np.array([swayed(row, clock, 2) for clock in np.linspace(0, 1, 401)]) - row[:7]
+    np.testing.assert_allclose(np.abs(seen[:, :6]).max(axis=0), amplitude, atol=1e-9)
+    assert not seen[:, 6].any()
+    np.testing.assert_array_equal(swayed(np.array([*row[:7], *np.zeros(6)]), 0.3, 2), row[:7])
