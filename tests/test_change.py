@@ -223,3 +223,21 @@ def test_the_rotation_of_a_posture_is_that_of_a_pose(roll, pitch, yaw):
     stand = stand_of(np.array([0.1, 0.2, 0.3, roll, pitch, yaw, 0.04]), np.zeros(6, dtype=complex))
     np.testing.assert_allclose(stand.rotation, expected, atol=1e-15)
     assert (*stand.position, stand.lift) == (0.1, 0.2, 0.3, 0.04)
+
+
+def test_a_step_that_could_not_be_taken_on_the_way_is_refused():
+    setup, first = setup_of("strider"), start("strider")
+    # Where the body is to go the robot may lift what it has left; where it is now, it would tip over.
+    lean = (0.0, -0.06, 0.0, 0.0, 0.0, 0.0)
+    manner = manner_of(setup, gait=Gait.named("wave"), gone=(1,), correction=lean)
+    found = worked_out(setup, manner, first.posture, first.rest)
+    assert isinstance(found, str)
+    assert "could not stand and step on the way there" in found
+
+
+def test_of_rest_footholds_far_out_of_reach_a_first_step_is_taken():
+    setup, first = setup_of("strider"), start("strider")
+    found = worked_out(setup, manner_of(setup, stance_width=0.8), first.posture, first.rest)
+    assert isinstance(found, Change)
+    assert not found.whole
+    assert 0 < np.abs(found.rest - first.rest).max() <= 0.03 + 1e-12
