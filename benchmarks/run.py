@@ -32,6 +32,7 @@ from tarsus import (
     plan_walk,
     straight_path,
 )
+from walker import walker_rows
 
 FloatArray: TypeAlias = np.ndarray[Any, np.dtype[np.float64]]
 
@@ -249,7 +250,7 @@ def start_rows() -> Iterator[Row]:
 def rows(robot: Robot, c_loop: CLoop | None) -> Iterator[Row]:
     """Measure everything."""
     yield from inverse_rows(robot, c_loop)
-    for group in (single_rows, memory_rows, forward_rows, design_rows, walk_rows, load_rows):
+    for group in (single_rows, memory_rows, forward_rows, design_rows, walk_rows, load_rows, walker_rows):
         yield from group(robot)
     yield from start_rows()
     yield from studio_rows()

@@ -46,13 +46,13 @@ def heading_feet(w):
     return (w.feet[:, 0] + 1j * w.feet[:, 1] - (x + 1j * y)) * np.exp(-1j * yaw)
 
 
-def stopped(trace, patience=8.0):
+def stopped(trace, tick=0.025):
     """Wish to stand until the robot does."""
     w = trace.walker
-    until = w.time + patience * w.cycle_time
+    until = w.time + 8 * w.cycle_time
     while w.mode != "standing":
         assert w.time < until, f"still {w.mode}"
-        trace.step(STOP, 0.025)
+        trace.step(STOP, tick)
     return trace
 
 
@@ -176,11 +176,10 @@ def test_it_starts_again_from_where_it_stopped():
 @pytest.mark.parametrize("gait", GAITS)
 @pytest.mark.parametrize("name", PRESETS)
 def test_at_full_speed_from_standing_and_back(name, gait):
-    for direction in itertools.product((-1, 0, 1), (0,), (-4, 0, 4)):
-        if any(direction):
-            w = walker(name, gait)
-            trace = Trace(w).run(10 * np.array(direction), 3 * w.cycle_time, 0.05)
-            stopped(trace).assert_sound()
+    for direction in ((1, 0, 0), (-1, 0, -4), (0, 1, 0), (0, 0, 4)):
+        w = walker(name, gait)
+        trace = Trace(w).run(10 * np.array(direction), 3 * w.cycle_time, 0.05)
+        stopped(trace, tick=0.05).assert_sound()
 
 
 # The twist.
@@ -439,27 +438,27 @@ def test_the_same_stream_gives_the_same_angles_to_the_bit():
     assert digest(6) != digest(5)
 
 
-def test_memory_does_not_grow_over_an_hour():
+def test_memory_does_not_grow():
+    """One number kept a tick would show, and a kilobyte kept for each change of how it walks."""
     w = walker("strider")
     wishes = [Wish(twist=(0.1, 0, 0.2), gait=gait, body=(0, 0, z, 0, 0, 0)) for gait in GAITS for z in (0.0, 0.01)]
 
-    def minutes(count):
-        """Let the robot walk for so long; each minute, a wish that changes how."""
-        for minute in range(count):
-            wish = wishes[minute % len(wishes)]
-            for _ in range(1200):
+    def walk(times):
+        """Walk for half a minute with each of the wishes."""
+        for wish in wishes * times:
+            for _ in range(600):
                 w.step(wish, 0.05)
 
-    minutes(4)
+    walk(1)
     tracemalloc.start()
     try:
-        minutes(1)
+        walk(1)
         first = tracemalloc.get_traced_memory()[0]
-        minutes(4)
+        walk(1)
         grown = tracemalloc.get_traced_memory()[0] - first
     finally:
         tracemalloc.stop()
-    assert grown < 50_000
+    assert grown < 8_000
 
 
 # What is no wish.

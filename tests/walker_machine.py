@@ -138,27 +138,25 @@ class Stream:
     The seed settles everything: robot apart, the same stream always asks for the same.
     """
 
-    def __init__(self, seed: int, walker: Walker) -> None:
+    def __init__(self, seed: int, walker: Walker, *, legs_as_hands: bool = False) -> None:
         self._rng = np.random.default_rng(seed)
         self._clearance, self._lift = walker.robot.gait.clearance or 0.1, walker.robot.gait.lift or 0.03
         self._feet = walker.feet
         self._twist = np.zeros(3)
         # Some streams tick evenly, most don't.
-        self._even = float(self._rng.choice([0.0, 0.0, 0.05, 0.02]))
+        self._even = float(self._rng.choice([0.0, 0.0, 0.05, 0.03]))
         self._kinds = (
             *[self._turn] * 6,
             *[self._gait, self._body] * 2,
             self._height,
             self._stance,
             self._pace,
-            self._sway,
-            self._hand,
-            self._hand_speed,
+            *([self._sway, self._hand, self._hand_speed] if legs_as_hands else []),
         )
 
     def dt(self) -> float:
-        """The next tick's length [s]: 26 ms in the mean."""
-        return self._even or float(self._rng.choice([self._rng.uniform(0.001, 0.05), 0.04, 0.01]))
+        """The next tick's length [s]: 36 ms in the mean."""
+        return self._even or float(self._rng.choice([self._rng.uniform(0.001, 0.05), 0.045, 0.03]))
 
     def lasts(self) -> float:
         """For how long the next wish stays [s]."""
@@ -219,9 +217,9 @@ class Stream:
         return {"hand_speeds": {int(self._rng.integers(6)): tuple(self._rng.normal(size=3) * 0.05)}}
 
 
-def drive(walker: Walker, seed: int, duration: float, *, sensing: bool = False) -> Trace:
+def drive(walker: Walker, seed: int, duration: float, *, sensing: bool = False, legs_as_hands: bool = False) -> Trace:
     """Drive a walker with a stream of wishes, and of sensors' garbage where it is `sensing`."""
-    stream, trace = Stream(seed, walker), Trace(walker)
+    stream, trace = Stream(seed, walker, legs_as_hands=legs_as_hands), Trace(walker)
     while walker.time < duration:
         asked: Any = stream.wish()
         until, twist = min(walker.time + stream.lasts(), duration), asked.twist
