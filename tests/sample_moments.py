@@ -32,7 +32,7 @@ def moment_of(setup, rest, **changes):
         "twist": Lag.still(np.zeros(3)),
         "posture": Lag.still(posture_of(setup)),
     }
-    return Moment(**{name: {**values, **changes}[name] for name in Moment._fields})
+    return Moment(**{**values, **changes})
 
 
 def course_of(setup, rest, twist, **changes):
@@ -50,7 +50,7 @@ def course_of(setup, rest, twist, **changes):
         "rest": rest,
         "level": np.zeros(len(rest)),
     }
-    return Course(**{name: {**values, **changes}[name] for name in Course._fields})
+    return Course(**{**values, **changes})
 
 
 def begun(setup, rest):

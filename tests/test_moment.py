@@ -260,7 +260,7 @@ def test_a_foot_that_does_not_land_waits_over_its_target():
 def test_a_sway_is_within_its_amplitudes_and_takes_each_of_them():
     amplitude = np.array([0.01, 0.02, 0.0, 0.05, 0.06, 0.0])
     row = np.array([0.0, 0.0, 0.1, 0.0, 0.0, 0.0, 0.03, *amplitude])
-    seen = np.array([swayed(row, clock, 2) for clock in np.linspace(0, 1, 401)]) - row[:7]
+    seen = np.array([swayed(row, clock, 2 * clock) for clock in np.linspace(0, 1, 401)]) - row[:7]
     np.testing.assert_allclose(np.abs(seen[:, :6]).max(axis=0), amplitude, atol=1e-9)
     assert not seen[:, 6].any()
-    np.testing.assert_array_equal(swayed(np.array([*row[:7], *np.zeros(6)]), 0.3, 2), row[:7])
+    np.testing.assert_array_equal(swayed(np.array([*row[:7], *np.zeros(6)]), 0.3, 0.6), row[:7])

@@ -150,9 +150,14 @@ class Agenda:
         doing, wanted = self.doing.manner, self.wanted
         stepping = dataclasses.replace(doing, gait=wanted.gait, cycle_time=wanted.cycle_time, gone=wanted.gone)
         standing = dataclasses.replace(wanted, gait=doing.gait, cycle_time=doing.cycle_time, gone=doing.gone)
-        # Before a leg leaves the gait, the body leans over the others.
-        leaves = bool(set(wanted.gone) - set(doing.gone))
-        for manner, stay in ((standing, False), (stepping, True)) if leaves else ((stepping, True), (standing, False)):
+        order = [(stepping, True), (standing, False)]
+        if doing.gone:
+            # Where the feet of these legs are may be out of reach from another posture.
+            order = order[:1]
+        elif wanted.gone:
+            # Before a leg leaves the gait, the body leans over the others.
+            order.reverse()
+        for manner, stay in order:
             if manner not in (doing, *self.refusals):
                 return manner, stay
         return doing, True
@@ -161,4 +166,4 @@ class Agenda:
 # No length of a robot's stance is greater [m].
 _MOST = 1e3
 # How many parts of working a change out are done in one tick.
-_PARTS = 2
+_PARTS = 1

@@ -21,6 +21,7 @@ __all__ = ["Change", "Manner", "work_out"]
 
 Floats = np.ndarray[Any, Any]
 
+_WITH_BEATS = np.array([1, 0, 1, 0, 1, 0])
 _PARTS_OF_WAY, _HALVINGS, _LEAST_PART = 16, 6, 0.02
 # How far the rest footholds move at once at the most [m], and what is no change.
 _LONGEST_STEP, _SAME = 0.03, 1e-9
@@ -141,7 +142,7 @@ def work_out(
     else:
         wished, wished_rest = yield from _wished(robot, manner, now)
     now, rest = (wished, wished_rest) if now is None or rest is None else (now, rest)
-    share, leg = _largest_part(robot, (now, rest), (wished, wished_rest))
+    share, leg = yield from _largest_part(robot, (now, rest), (wished, wished_rest))
     yield
     if share == 0:
         return f"body: {robot.leg_names[leg]} comes to the end of its reach"
@@ -242,8 +243,9 @@ def _swaying(posture: Floats, sway: tuple[float, ...]) -> list[Floats]:
     """Return the postures at the ends of a sway, and the one in the middle last."""
     if not any(sway):
         return [posture]
-    off = np.append(np.array(sway), 0.0)
-    return [posture + off, posture - off, posture]
+    # Half of the axes go with the beats, half with the cycles: they meet in any order.
+    often, once = (np.append(np.array(sway) * part, 0.0) for part in (_WITH_BEATS, 1 - _WITH_BEATS))
+    return [*(posture + a * often + b * once for a in (1, -1) for b in (1, -1)), posture]
 
 
 def _widened(robot: Robot, rest: Floats, width: float) -> Floats:
@@ -264,15 +266,18 @@ def _slack(robot: Robot, posture: Floats, rest: Floats) -> Floats:
     return np.asarray(joint_slack(robot.geometry, solution).min(axis=0))
 
 
-def _largest_part(robot: Robot, now: Posed, wished: Posed) -> tuple[float, int]:
+def _largest_part(robot: Robot, now: Posed, wished: Posed) -> Parts[tuple[float, int]]:
     """Return how much of the way to a posture all legs reach their rest footholds, and which leg stops it there."""
-    shares = np.arange(1, _PARTS_OF_WAY + 1) / _PARTS_OF_WAY
-    slack = np.array([_slack(robot, *(a + s * (b - a) for a, b in zip(now, wished, strict=True))) for s in shares])
-    fails = (slack < 0).any(axis=1)
-    if not fails.any():
-        return 1.0, 0
-    first = int(fails.argmax())
-    return float(shares[first] - shares[0]), int(slack[first].argmin())
+    reached = 0.0
+    for count in range(1, _PARTS_OF_WAY + 1):
+        share = count / _PARTS_OF_WAY
+        slack = _slack(robot, *(a + share * (b - a) for a, b in zip(now, wished, strict=True)))
+        if (slack < 0).any():
+            return reached, int(slack.argmin())
+        reached = share
+        if count % 4 == 0:
+            yield
+    return 1.0, 0
 
 
 def _one_change(robot: Robot, now: Posed, wished: Posed, share: float) -> tuple[float, bool]:

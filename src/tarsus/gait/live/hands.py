@@ -52,6 +52,10 @@ class Hand(NamedTuple):
         bandwidth = min(_BANDWIDTH, math.e * _SPEED / max(way, 1e-9))
         return self._replace(place=self.place.step(self.target, dt, bandwidth=bandwidth))
 
+    def stopped(self) -> Hand:
+        """Return the hand, on its way to rest near where it is."""
+        return self._replace(target=self.place.value + 2 * self.place.rate / _BANDWIDTH)
+
 
 def lift_hand(now: Moment, leg: int) -> Hand:
     """Return a leg's foot as a hand, which begins where it stands.
@@ -73,7 +77,7 @@ def lift_hand(now: Moment, leg: int) -> Hand:
 
 
 def carry_hands(now: Moment, hands: dict[int, Hand], swing_time: float) -> Moment:
-    """Return the moment with the hands where they are.
+    """Return the moment with the hands where they are; one that has been lifted to step is none any more.
 
     Parameters
     ----------
@@ -88,12 +92,15 @@ def carry_hands(now: Moment, hands: dict[int, Hand], swing_time: float) -> Momen
     turn = cmath.exp(1j * now.yaw)
     vx, vy, wz = now.twist.value.tolist()
     for leg, hand in hands.items():
+        if not now.down[leg]:
+            continue
         x, y, z = hand.place.value.tolist()
         dx, dy, _ = hand.place.rate.tolist()
         seen = complex(x, y)
         foot[leg], ground[leg] = now.origin + turn * seen, z
         pace[leg] = turn * (complex(dx, dy) + complex(vx, vy) + 1j * wz * seen) * swing_time
-    return now._replace(foot=foot, target=foot, ground=ground, pace=pace)
+    target = np.where(now.down, foot, now.target)
+    return now._replace(foot=foot, target=target, ground=ground, pace=pace)
 
 
 def best_lean(rest: Floats, centre: complex, sets: Floats) -> complex:

@@ -25,6 +25,8 @@ FREEZE = 0.6
 TIE = 1e-9
 """What counts as the same moment [cycles]."""
 
+# Of how much of its swing a foot that was held back may be deprived at most.
+_LATEST = 0.5
 # Within which share of the swing a foot that has met the ground comes to rest on it.
 _GIVE = 0.1
 # Below this speed [m/s] of the feet past the body, a robot told to stand is taken to be stopping: it steps to rest.
@@ -66,6 +68,8 @@ class Moment(NamedTuple):
         The body over the heading frame: see `tarsus.gait.live.posture`.
     late : array
         How much later than it was to each foot was lifted [cycles]; its swing is shorter by that.
+    cycles, beats : float
+        How many cycles and how many beats of the gait have been walked: what the body sways by.
     """
 
     clock: float
@@ -86,6 +90,8 @@ class Moment(NamedTuple):
     twist: Lag
     posture: Lag
     late: Any = 0.0
+    cycles: float = 0.0
+    beats: float = 0.0
 
     def height(self, lift: float) -> Floats:
         """Return the feet's heights in G [m].
@@ -138,6 +144,8 @@ class Course(NamedTuple):
         Height at which the ground is expected [m].
     holds : bool
         Whether all feet that are down wait, and lift later than they were to.
+    beats : int
+        How often in a cycle feet are lifted.
     """
 
     gait: Gait
@@ -152,6 +160,7 @@ class Course(NamedTuple):
     rest: Floats
     level: Floats
     holds: bool = False
+    beats: int = 2
 
 
 def turned(angle: Any) -> Any:
@@ -194,7 +203,16 @@ def go_on(now: Moment, course: Course, dt: float) -> Moment:
         twist = Lag.still(np.zeros(3))
     posture = now.posture.step(course.posture, dt, bandwidth=course.posture_bandwidth)
     clock = now.clock + course.frequency * dt
-    after = now._replace(clock=clock, origin=origin, yaw=yaw, twist=twist, posture=posture)
+    gone = course.frequency * dt
+    after = now._replace(
+        clock=clock,
+        origin=origin,
+        yaw=yaw,
+        twist=twist,
+        posture=posture,
+        cycles=now.cycles + gone,
+        beats=now.beats + course.beats * gone,
+    )
     duty, swing = course.gait.duty, 1 - course.gait.duty
     since_lift = clock - (course.offsets + duty + now.number)
     due = now.down & (since_lift > TIE) & (not course.holds)
@@ -202,7 +220,7 @@ def go_on(now: Moment, course: Course, dt: float) -> Moment:
         return after
     if due.any():
         # Feet that were held back go a shorter swing; what the clock has gone in this tick is not late.
-        late = np.where(due, np.maximum(since_lift - course.frequency * dt, 0.0), after.late)
+        late = np.where(due, np.clip(since_lift - course.frequency * dt, 0.0, _LATEST * swing), after.late)
         after = _lift(after._replace(late=late), course, due, final_rest(after, course) if stopping else None)
     up = ~after.down
     if not up.any():

@@ -13,12 +13,15 @@ import numpy as np
 
 from tarsus.gait.live.workspace import Stand
 
-__all__ = ["LIFT", "rotation_of", "stand_of", "swayed"]
+__all__ = ["LIFT", "calm_sway", "rotation_of", "stand_of", "swayed"]
 
 Floats = np.ndarray[Any, Any]
 
 LIFT = 6
 """Where the lift stands in the row."""
+
+# How fast a sway may change the speed of the feet past the body [m/s^2], and how far from it they are [m].
+_SWAY_BEND, _ARM = 1.5, 0.3
 
 
 def rotation_of(roll: float, pitch: float, yaw: float) -> Floats:
@@ -48,7 +51,7 @@ def stand_of(row: Floats, rest: Floats) -> Stand:
     return Stand(rest, rotation_of(roll, pitch, yaw), row[:3], lift)
 
 
-def swayed(row: Floats, clock: float, beats: int) -> Floats:
+def swayed(row: Floats, cycles: float, beats: float) -> Floats:
     """Return the posture ``(7,)`` at a moment of the sway.
 
     With every beat, when other feet take over, the body goes once forward and up and pitches; with every cycle, once
@@ -58,15 +61,32 @@ def swayed(row: Floats, clock: float, beats: int) -> Floats:
     ----------
     row : array, shape (13,)
         The posture.
-    clock : float
-        Time in cycles.
-    beats : int
-        How often in a cycle feet are lifted.
+    cycles, beats : float
+        How many of each have been walked.
     """
     amplitude = row[LIFT + 1 :]
     if not amplitude.any():
         return row[: LIFT + 1]
-    once, often = math.sin(2 * math.pi * clock), math.sin(2 * math.pi * beats * clock)
+    once, often = math.sin(2 * math.pi * cycles), math.sin(2 * math.pi * beats)
     now: Floats = row[: LIFT + 1].copy()
     now[:LIFT] += amplitude * np.array([often, once, often, once, often, once])
     return now
+
+
+def calm_sway(sway: Floats, frequency: float, beats: int) -> float:
+    """Return how much of a sway is slow enough for the joints to follow beside walking.
+
+    Parameters
+    ----------
+    sway : array, shape (6,)
+        Amplitudes: x, y, z [m], roll, pitch, yaw [rad].
+    frequency : float
+        Cycles a second [1/s].
+    beats : int
+        How often in a cycle feet are lifted.
+    """
+    once = (2 * math.pi * frequency) ** 2
+    rates = np.array([beats**2, 1, beats**2, 1, beats**2, 1]) * once
+    arms = np.array([1.0, 1.0, 1.0, _ARM, _ARM, _ARM])
+    bend = float((np.abs(sway) * rates * arms).sum())
+    return min(1.0, _SWAY_BEND / max(bend, 1e-12))

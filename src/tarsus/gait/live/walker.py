@@ -23,19 +23,19 @@ from tarsus.gait.live.lag import Lag
 from tarsus.gait.live.levelling import LevellingMode
 from tarsus.gait.live.moment import THERE, TIE, Course, Moment, final_rest, go_on, meet_ground
 from tarsus.gait.live.own_time import OwnTime
-from tarsus.gait.live.posture import LIFT, stand_of, swayed
+from tarsus.gait.live.posture import LIFT, calm_sway
 from tarsus.gait.live.quick import QuickLegs
 from tarsus.gait.live.search import Search
 from tarsus.gait.live.senses import Senses
 from tarsus.gait.live.support import support_sets
 from tarsus.gait.live.tempo import joint_limits
 from tarsus.gait.live.tilt import Commanded
+from tarsus.gait.live.walker_view import WalkerView
 from tarsus.gait.live.wish import Wish
-from tarsus.gait.live.workspace import Parts, Stand, all_parts
+from tarsus.gait.live.workspace import Parts, all_parts
 from tarsus.gait.setup import Setup, require_number
 from tarsus.kinematics.inverse import inverse_kinematics
 from tarsus.kinematics.mass import centre_of_mass
-from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.stability import stability_margin
 from tarsus.robot.robot import Robot
 
@@ -62,7 +62,7 @@ _STEADY = 1e-4
 _AT_POSTURE, _DESCENDING, _DEPTH = 2e-4, 0.5, 0.6
 
 
-class Walker:
+class Walker(WalkerView):
     """Walks a robot live: each tick takes a wish and gives the next joint angles.
 
     Parameters
@@ -324,7 +324,7 @@ class Walker:
                 self._now.twist.value, stance_time=new.duty / frequency, duty=new.duty
             )
             begins, ends = self._stances(frequency)
-            bounds = self._footing.bounds
+            bounds = self._bounds()
             if leaving:
                 bounds = np.minimum(bounds, change.there.bounds)
             if share >= 1 and self._now.down[leaving].all() and self._works(begins, ends, bounds, frequency):
@@ -340,7 +340,7 @@ class Walker:
         offsets = np.asarray(new.offsets)
         delays = ((offsets - offsets[:, None]) % 1) / frequency
         ends = self._until_down() + delays + (overhang(new.duty) - 0.5) * new.duty / frequency
-        bounds = np.minimum(self._footing.bounds, change.there.bounds)
+        bounds = np.minimum(self._bounds(), change.there.bounds)
         over = self._excess(np.zeros(delays.shape), ends, bounds, frequency).max(axis=(1, 2, 3, 4))
         first = int(over.argmin())
         if over[first] <= THERE:
@@ -354,7 +354,8 @@ class Walker:
         stepped[gone] = True
         begins, ends = self._stances(self._frequency)
         slow = self._frequency <= 1 / change.tempo.cycle_time
-        if slow and stepped.all() and self._works(begins, ends, change.way.bounds, self._frequency):
+        bounds = self._free_hands(change.way.bounds)
+        if slow and stepped.all() and self._works(begins, ends, bounds, self._frequency):
             self._footing.tighten(change.way)
             self._posture, self._stepping = change.posture, None
 
@@ -366,7 +367,11 @@ class Walker:
         gone = change.manner.gone
         if gone:
             self._footing.tighten(change.there)
-        self._hands = {leg: self._hands.get(leg) or lift_hand(self._now, leg) for leg in gone}
+        # A leg that comes back stays in the air until its next step.
+        self._hands = {leg: hand.stopped() for leg, hand in self._hands.items() if leg not in gone} | {
+            leg: self._hands.get(leg) or lift_hand(self._now, leg) for leg in gone
+        }
+        self._hand_limits = {}
 
     def _switch(self, change: Change, first: int) -> None:
         """Begin the new order of steps; every foot is down."""
@@ -403,6 +408,7 @@ class Walker:
                 wished = hand.target + np.array(wish.hand_speeds[leg]) * dt
             else:
                 continue
+            wished[2] = max(wished[2], 0.0)
             part = reachable_part(self.robot, self._stand(self._now), leg, here, wished)
             self._hands[leg] = hand._replace(target=here + part * (wished - here))
             self._hand_limits[leg] = (
@@ -439,6 +445,17 @@ class Walker:
             self._now, self._target[None], begins=begins, ends=ends, bounds=bounds, bandwidth=self._bandwidth(frequency)
         )
 
+    def _bounds(self) -> Floats:
+        return self._free_hands(self._footing.bounds)
+
+    def _free_hands(self, bounds: Floats) -> Floats:
+        """Return the polygons without those of the hands, whose legs bound them by themselves."""
+        if not self._hands:
+            return bounds
+        free = bounds.copy()
+        free[list(self._hands)] = np.inf
+        return free
+
     def _works(self, begins: Floats, ends: Floats, bounds: Floats, frequency: float) -> bool:
         return bool(self._excess(begins, ends, bounds, frequency).max() <= THERE)
 
@@ -464,7 +481,7 @@ class Walker:
             wish,
             begins=begins,
             ends=ends,
-            bounds=self._footing.bounds,
+            bounds=self._bounds(),
             bandwidth=self._bandwidth(self._frequency),
         )
 
@@ -499,6 +516,12 @@ class Walker:
             cycle = self._agenda.doing.tempo.cycle_time
             name = self.robot.leg_names[leg]
             reasons.append(f"twist: {100 * share:.0f} % of it; {name} gets no farther at {cycle:.2f} s a cycle")
+        sway = self._agenda.doing.manner.sway
+        calm = calm_sway(np.array(sway), self._frequency, self._beats) if any(sway) else 1.0
+        if calm < 1:
+            reasons.append(
+                f"sway: {100 * calm:.0f} % of it; the joints allow no more at {self.cycle_time:.2f} s a cycle"
+            )
         if self._felt is not None:
             reasons += self._felt.refused
         for found, search in self._searches.items():
@@ -512,7 +535,7 @@ class Walker:
         if rest is None:
             return False
         off = np.abs(self._now.foot - rest)
-        off[list(self._hands)] = 0.0
+        off[list(self._agenda.doing.manner.gone)] = 0.0
         return bool(off.max() <= THERE)
 
     # The next moment.
@@ -522,15 +545,18 @@ class Walker:
         steps, lands, holds = self._all, self._all, self._settling is not None or bool(self._searches)
         if self._hands:
             steps = steps.copy()
-            steps[list(self._hands)] = False
+            steps[list(self._agenda.doing.manner.gone)] = False
         if self._felt is not None:
             lands = lands.copy()
             for leg in np.flatnonzero(~now.down).tolist():
                 lands[leg] = self._searches[leg].at_rest if leg in self._searches else self._touches(leg)
             # Where a foot that is about to land finds no ground, none may lift in its stead.
-            soon = now.share + dt * self._frequency / (1 - self.gait.duty) >= 1.0 - TIE
+            soon = now.share + dt * self._frequency / (1 - self.gait.duty - now.late) >= 1.0 - TIE
             holds = holds or bool((~now.down & ~lands & soon).any())
-        sway = self._agenda.doing.manner.sway if self._walking else _NO_SWAY
+        sway = _NO_SWAY
+        if self._walking and any(self._agenda.doing.manner.sway):
+            wished = np.array(self._agenda.doing.manner.sway)
+            sway = tuple((wished * calm_sway(wished, self._frequency, self._beats)).tolist())
         return Course(
             gait=self.gait,
             offsets=self._offsets,
@@ -544,6 +570,7 @@ class Walker:
             rest=self._footing.rest,
             level=self._flat if self._feel is None else self._feel.level(now.foot),
             holds=holds,
+            beats=self._beats,
         )
 
     def _posture_bandwidth(self) -> float:
@@ -572,7 +599,8 @@ class Walker:
 
         self._now = self._own.advance(move, self._solve, dt, stop=bool(self._searches))
         if hands:
-            self._hands = {leg: hand.step(dt * self._own.rate) for leg, hand in hands.items()}
+            rate = self._own.rate
+            self._hands = {leg: hand.step(dt * rate) for leg, hand in hands.items() if self._now.down[leg]}
         self._finish(before, dt)
 
     def _search(self, dt: float) -> None:
@@ -591,9 +619,6 @@ class Walker:
             self._searches[leg] = self._searches[leg].step(dt, ground=self._touches(leg))
             ground[leg] = float(self._searches[leg].height.value[0])
         self._now = now._replace(ground=ground, met=np.where(over, np.inf, now.met))
-
-    def _stand(self, now: Moment) -> Stand:
-        return stand_of(swayed(now.posture.value, now.clock, self._beats), self._footing.rest)
 
     def _solve(self, now: Moment) -> Floats:
         """Return the joint angles ``(legs, 3)`` of a moment."""
@@ -633,85 +658,3 @@ class Walker:
         goal = goal if faster else min(goal, now)
         step = dt * now * now / 2
         self._frequency = goal if abs(goal - now) <= step else now + math.copysign(step, goal - now)
-
-    # What there is to see.
-
-    @property
-    def mode(self) -> str:
-        """``"standing"``, ``"walking"``; ``"stopping"``, on the way to standing; ``"searching"`` for ground."""
-        if self._searches:
-            return "searching"
-        if not self._walking:
-            return "standing"
-        return "walking" if self._target.any() else "stopping"
-
-    @property
-    def gait(self) -> Gait:
-        """Order of the steps."""
-        return self._agenda.doing.manner.gait
-
-    @property
-    def cycle_time(self) -> float:
-        """Duration of a cycle [s]."""
-        return 1 / self._frequency
-
-    @property
-    def place(self) -> tuple[float, float, float]:
-        """Where the heading frame is in G: x, y [m], yaw [rad]."""
-        return self._now.origin.real, self._now.origin.imag, self._now.yaw
-
-    @property
-    def body(self) -> Pose:
-        """The body's pose in G."""
-        stand = self._stand(self._now)
-        heading = Pose.from_rpy(0.0, 0.0, self._now.yaw, (self._now.origin.real, self._now.origin.imag, 0.0))
-        return heading @ Pose(stand.rotation, stand.position)
-
-    @property
-    def feet(self) -> Floats:
-        """The feet in G ``(legs, 3)`` [m]."""
-        now = self._now
-        height = now.height(float(now.posture.value[LIFT])) + self._offset
-        return np.stack([now.foot.real, now.foot.imag, height], axis=-1)
-
-    @property
-    def contacts(self) -> Floats:
-        """Which feet are on the ground ``(legs,)``."""
-        down = self._now.down.copy()
-        down[list(self._hands)] = False
-        return down
-
-    @property
-    def angles(self) -> Floats:
-        """The joint angles ``(legs, 3)`` [rad]."""
-        return self._own.angles
-
-    @property
-    def twist(self) -> Floats:
-        """The speed now: forward, left [m/s], turning [rad/s]."""
-        return self._now.twist.value * self._own.rate
-
-    @property
-    def limited(self) -> tuple[str, ...]:
-        """Why the wish is not met in full."""
-        return self._limited
-
-    @property
-    def margin(self) -> float:
-        """Static stability margin [m]."""
-        return float(stability_margin(self.robot, self.angles, self.body, self.contacts))
-
-    def top_speed(self, direction: Sequence[float]) -> float:
-        """Return the largest multiple of a twist that the robot can walk at for good.
-
-        Parameters
-        ----------
-        direction : (vx, vy, wz)
-            The twist [m/s, m/s, rad/s].
-        """
-        doing = self._agenda.doing
-        duty = self.gait.duty
-        share, _ = doing.there.largest_share(
-            np.array(direction, dtype=float), stance_time=duty * doing.tempo.cycle_time, duty=duty
-        )
-        return share

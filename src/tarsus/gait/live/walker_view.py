@@ -1,0 +1,135 @@
+"""What there is to see of a live walker."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from tarsus.gait.gait import Gait
+from tarsus.gait.live.agenda import Agenda
+from tarsus.gait.live.footing import Footing
+from tarsus.gait.live.hands import Hand
+from tarsus.gait.live.moment import Moment
+from tarsus.gait.live.own_time import OwnTime
+from tarsus.gait.live.posture import LIFT, stand_of, swayed
+from tarsus.gait.live.search import Search
+from tarsus.gait.live.workspace import Stand
+from tarsus.kinematics.pose import Pose
+from tarsus.kinematics.stability import stability_margin
+from tarsus.robot.robot import Robot
+
+__all__ = ["WalkerView"]
+
+Floats = np.ndarray[Any, Any]
+
+
+class WalkerView:
+    """The state of a walker, as others may read it.
+
+    Attributes
+    ----------
+    robot : Robot
+        Who walks.
+    time : float
+        How long it has been walked [s].
+    """
+
+    robot: Robot
+    time: float
+    _now: Moment
+    _own: OwnTime
+    _agenda: Agenda
+    _footing: Footing
+    _target: Floats
+    _offset: Floats
+    _frequency: float
+    _walking: bool
+    _beats: int
+    _hands: dict[int, Hand]
+    _searches: dict[int, Search]
+    _limited: tuple[str, ...]
+
+    def _stand(self, now: Moment) -> Stand:
+        return stand_of(swayed(now.posture.value, now.cycles, now.beats), self._footing.rest)
+
+    @property
+    def mode(self) -> str:
+        """``"standing"``, ``"walking"``; ``"stopping"``, on the way to standing; ``"searching"`` for ground."""
+        if self._searches:
+            return "searching"
+        if not self._walking:
+            return "standing"
+        return "walking" if self._target.any() else "stopping"
+
+    @property
+    def gait(self) -> Gait:
+        """Order of the steps."""
+        return self._agenda.doing.manner.gait
+
+    @property
+    def cycle_time(self) -> float:
+        """Duration of a cycle [s]."""
+        return 1 / self._frequency
+
+    @property
+    def place(self) -> tuple[float, float, float]:
+        """Where the heading frame is in G: x, y [m], yaw [rad]."""
+        return self._now.origin.real, self._now.origin.imag, self._now.yaw
+
+    @property
+    def body(self) -> Pose:
+        """The body's pose in G."""
+        stand = self._stand(self._now)
+        heading = Pose.from_rpy(0.0, 0.0, self._now.yaw, (self._now.origin.real, self._now.origin.imag, 0.0))
+        return heading @ Pose(stand.rotation, stand.position)
+
+    @property
+    def feet(self) -> Floats:
+        """The feet in G ``(legs, 3)`` [m]."""
+        now = self._now
+        height = now.height(float(now.posture.value[LIFT])) + self._offset
+        return np.stack([now.foot.real, now.foot.imag, height], axis=-1)
+
+    @property
+    def contacts(self) -> Floats:
+        """Which feet are on the ground ``(legs,)``."""
+        down = self._now.down.copy()
+        down[list(self._hands)] = False
+        return down
+
+    @property
+    def angles(self) -> Floats:
+        """The joint angles ``(legs, 3)`` [rad]."""
+        return self._own.angles
+
+    @property
+    def twist(self) -> Floats:
+        """The speed now: forward, left [m/s], turning [rad/s]."""
+        return self._now.twist.value * self._own.rate
+
+    @property
+    def limited(self) -> tuple[str, ...]:
+        """Why the wish is not met in full."""
+        return self._limited
+
+    @property
+    def margin(self) -> float:
+        """Static stability margin [m]."""
+        return float(stability_margin(self.robot, self.angles, self.body, self.contacts))
+
+    def top_speed(self, direction: Sequence[float]) -> float:
+        """Return the largest multiple of a twist that the robot can walk at for good.
+
+        Parameters
+        ----------
+        direction : (vx, vy, wz)
+            The twist [m/s, m/s, rad/s].
+        """
+        doing = self._agenda.doing
+        duty = self.gait.duty
+        share, _ = doing.there.largest_share(
+            np.array(direction, dtype=float), stance_time=duty * doing.tempo.cycle_time, duty=duty
+        )
+        return share
