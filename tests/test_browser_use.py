@@ -1,0 +1,234 @@
+"""The page in use: by keyboard, by touch, driving, with others, over broken connections, and by screen readers."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+from playwright.sync_api import expect
+
+import tarsus
+from browser import PHONE, VIEWS, number, numbers
+from tarsus.studio.messages.state import JointsState, Picture, StudioState
+from tarsus.studio.server.serve import Serving
+from tarsus.studio.server.settings import Settings
+
+pytest_plugins = "browser_fixtures"
+
+STRIDER = tarsus.load_robot("strider")
+FEET = STRIDER.leg_codes
+AXE = Path(__file__).parents[1] / "web" / "node_modules" / "axe-core" / "axe.min.js"
+
+
+def focused(visitor):
+    """What a keyboard user is at: the test id, or the name."""
+    return visitor.page.evaluate(
+        "(at => at.dataset.testid || at.getAttribute('aria-label') || at.textContent)(document.activeElement)"
+    )
+
+
+def shown_angles(visitor):
+    return np.array([[float(cell) for cell in row[1:]] for row in visitor.table("angles")])
+
+
+def test_all_is_reached_by_keyboard_alone(visitor):
+    visitor.open(StudioState(view="joints"))
+    reached = []
+    while "joint-LF-tibia" not in reached:
+        visitor.page.keyboard.press("Tab")
+        reached.append(focused(visitor))
+        assert len(reached) < 40
+    expected = ["robot-choice", "copy-link", "save-png", "theme", "tab-joints", "scene", "camera-free", "camera-front"]
+    assert [name for name in reached if name in expected] == expected
+    assert reached[-5:] == [f"joint-LF-{part}" for part in ("coxa", "coxa-number", "femur", "femur-number", "tibia")]
+
+    before = tarsus.inverse_kinematics(STRIDER, tarsus.default_stance(STRIDER)).angles
+    femur, tibia = np.degrees(np.asarray(before)[0, 1:])
+    for _ in range(8):
+        visitor.page.keyboard.press("ArrowUp")
+    visitor.page.keyboard.press("Shift+Tab")
+    visitor.page.keyboard.press("Shift+Tab")
+    visitor.page.keyboard.press("ArrowRight")
+    # A slider moves in steps of half a degree from its lowest value.
+    expect(visitor.at("joint-LF-femur")).to_be_focused()
+    tibia_now = float(visitor.at("joint-LF-tibia").input_value())
+    femur_now = float(visitor.at("joint-LF-femur").input_value())
+    assert tibia_now == pytest.approx(tibia + 4, abs=0.5)
+    assert femur_now == pytest.approx(femur + 0.5, abs=0.5)
+    angles = np.array(before)
+    angles[0, 1:] = np.radians([femur_now, tibia_now])
+    rest = tarsus.resting_pose(STRIDER, angles)
+    expect(visitor.at("standing-facts")).to_contain_text(f"Margin of stability{rest.margin * 1000:.1f} mm")
+
+    visitor.at("tab-joints").focus()
+    visitor.page.keyboard.press("ArrowDown")
+    expect(visitor.at("tab-body")).to_be_focused()
+    expect(visitor.page.get_by_role("heading", name="Body", exact=True)).to_be_visible()
+
+
+def test_it_is_driven_by_keys_and_stops_on_its_feet(visitor):
+    visitor.open(StudioState(view="drive"))
+    expect(visitor.at("drive-facts")).to_contain_text("Forward0 mm/s")
+    stance = np.degrees(tarsus.Walker(STRIDER).angles)
+    assert shown_angles(visitor) == pytest.approx(stance, abs=0.02)
+    visitor.page.locator("main h2").click()
+    visitor.page.keyboard.down("w")
+    expect(visitor.at("drive-facts")).to_contain_text(re.compile(r"At x, y([6-9]\d|\d{3,}), "))
+    facts = visitor.facts("drive-facts")
+    assert 0 < number(facts["Forward"]) <= 120
+    assert facts["It is"] == "walking"
+    visitor.page.keyboard.up("w")
+    expect(visitor.at("drive-facts")).to_contain_text("It isstanding")
+    expect(visitor.at("drive-facts")).to_contain_text("Forward0 mm/s")
+    assert shown_angles(visitor) == pytest.approx(stance, abs=0.02)
+    facts = visitor.facts("drive-facts")
+    assert facts["The guard stepped in"] == "0"
+    x, y = numbers(facts["At x, y"])
+    assert x > 60
+    assert abs(y) <= 1
+
+
+def test_a_phone_is_enough(arrive):
+    visitor = arrive(viewport=PHONE, has_touch=True, is_mobile=True, device_scale_factor=1)
+    visitor.open()
+    width = "document.documentElement.scrollWidth"
+    for view in VIEWS:
+        visitor.at(f"tab-{view}").tap()
+        expect(visitor.page.locator(".app")).to_have_attribute("data-view", view)
+        visitor.unfold()
+        assert visitor.page.evaluate(width) == PHONE["width"], view
+        small = visitor.page.evaluate(
+            """[...document.querySelectorAll('button, select, input[type=number]')]
+                 .map(one => [one.getBoundingClientRect(), one.dataset.testid || one.textContent])
+                 .filter(([box]) => box.width > 0 && Math.min(box.width, box.height) < 24).map(([, name]) => name)"""
+        )
+        assert small == [], view
+
+    visitor.at("tab-body").tap()
+    slider = visitor.at("body-pitch_deg")
+    slider.scroll_into_view_if_needed()
+    box = slider.bounding_box()
+    visitor.page.touchscreen.tap(box["x"] + 0.75 * box["width"], box["y"] + box["height"] / 2)
+    pitch = float(slider.input_value())
+    assert pitch > 5
+    expect(visitor.at("standing-facts")).to_contain_text(f"0.0, {pitch:.1f}°")
+
+    visitor.at("tab-drive").tap()
+    visitor.at("drive-facts").wait_for()
+    push(visitor, "stick-walk", 0.0, -0.9)
+    expect(visitor.at("drive-facts")).to_contain_text("It iswalking")
+    release(visitor)
+    expect(visitor.at("drive-facts")).to_contain_text("It isstanding")
+
+
+def push(visitor, name, x, y):
+    """Hold a finger on a stick, off its middle by so much of its radius."""
+    stick = visitor.at(name)
+    stick.scroll_into_view_if_needed()
+    box = stick.bounding_box()
+    centre = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+    finger = visitor.page.context.new_cdp_session(visitor.page)
+    for kind, dx, dy in (("touchStart", 0, 0), ("touchMove", x, y)):
+        point = {"x": centre[0] + dx * box["width"] / 2, "y": centre[1] + dy * box["height"] / 2}
+        finger.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": [point]})
+    visitor.finger = finger
+
+
+def release(visitor):
+    visitor.finger.send("Input.dispatchTouchEvent", {"type": "touchEnd", "touchPoints": []})
+
+
+def test_a_foot_is_dragged_in_the_picture_and_the_leg_follows(visitor):
+    visitor.open(StudioState(view="body", picture=Picture(camera="top")))
+    visitor.unfold()
+    before = feet_of(visitor)
+    label = visitor.page.locator(".note", has_text="LM").bounding_box()
+    grab(visitor, label["x"] + label["width"] / 2, label["y"] + label["height"] / 2)
+    visitor.page.mouse.up()
+    expect(visitor.at("undo")).to_be_enabled()
+    after = feet_of(visitor)
+    moved = np.linalg.norm(after - before, axis=1)
+    assert moved[1] > 5
+    assert np.delete(moved, 1) == pytest.approx(0, abs=1e-9)
+    # The picture's floor is the ground: a foot on it stays on it.
+    assert after[1, 2] == pytest.approx(0, abs=0.06)
+    body = tarsus.Pose(position=np.array([0, 0, tarsus.default_clearance(STRIDER)]))
+    angles = tarsus.inverse_kinematics(STRIDER, after / 1000, body).angles
+    assert shown_angles(visitor) == pytest.approx(np.degrees(angles), abs=0.1)
+
+
+def feet_of(visitor):
+    return np.array([[float(visitor.at(f"foot-{leg}-{axis}").input_value()) for axis in "xyz"] for leg in FEET])
+
+
+def grab(visitor, x, y):
+    """Look for something to grab around a point of the picture, and move it by a few pixels."""
+    mouse, steps = visitor.page.mouse, range(-56, 57, 8)
+    for dx, dy in sorted(((dx, dy) for dx in steps for dy in steps), key=lambda at: at[0] ** 2 + at[1] ** 2):
+        mouse.move(x + dx, y + dy)
+        if visitor.page.evaluate("document.body.style.cursor") == "grab":
+            mouse.down()
+            mouse.move(x + dx + 10, y + dy + 5)
+            mouse.move(x + dx + 20, y + dy + 10)
+            return
+    pytest.fail("there is nothing to grab")
+
+
+def test_two_visitors_dont_disturb_each_other(arrive):
+    one, other = arrive().open(StudioState(view="joints")), arrive().open(StudioState(view="joints"))
+    expect(other.at("standing-facts")).to_be_visible()
+    before = other.facts("standing-facts")
+    one.at("robot-choice").select_option("phantomx")
+    one.type("joint-LF-femur", 50)
+    expect(one.at("standing-facts")).not_to_contain_text(before["Margin of stability"])
+    other.page.wait_for_timeout(300)
+    assert other.facts("standing-facts") == before
+    assert other.at("robot-choice").input_value() == "strider"
+
+
+def test_after_a_restart_of_the_server_it_goes_on_with_its_state(arrive):
+    settings = Settings()
+    with Serving(settings) as first:
+        visitor = arrive(at=first).open(StudioState(view="joints"))
+        port = first.settings.port
+        visitor.type("joint-RM-femur", 33)
+        expect(visitor.at("undo")).to_be_enabled()
+        before = visitor.facts("standing-facts")
+    expect(visitor.at("banner")).to_contain_text("kept")
+    # What is set meanwhile is not lost either.
+    visitor.type("joint-RM-coxa", 9)
+    with Serving(Settings(port=port)):
+        expect(visitor.at("banner")).to_have_count(0)
+        expect(visitor.at("joint-RM-femur-number")).to_have_value("33")
+        expect(visitor.at("joint-RM-coxa-number")).to_have_value("9")
+        visitor.type("joint-RM-coxa", 0)
+        expect(visitor.at("standing-facts")).to_contain_text(before["Margin of stability"])
+        assert visitor.facts("standing-facts") == before
+        # That nobody answered is all that there was to complain of.
+        assert all("ERR_CONNECTION_REFUSED" in text for text in visitor.complaints)
+        visitor.complaints.clear()
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_axe_finds_nothing_serious_in_any_view(arrive, scheme):
+    visitor = arrive(color_scheme=scheme, bypass_csp=True)
+    # A pose with something wrong, so that warnings are looked at as well.
+    visitor.open(StudioState(joints=JointsState(angles_deg=(0, 105, -100) + (0, 45, -127) * 5)))
+    expect(visitor.page.locator("html")).to_have_attribute("data-theme", scheme)
+    visitor.page.add_script_tag(path=AXE)
+    for view in VIEWS:
+        visitor.view(view)
+        visitor.page.wait_for_load_state("networkidle")
+        ready = {"walk": "walk-facts", "drive": "drive-facts", "loads": "torques", "robot": "robot-facts"}
+        visitor.at({**ready, "sources": "source"}.get(view, "standing-facts")).wait_for()
+        visitor.unfold()
+        found = visitor.page.evaluate("axe.run(document, { resultTypes: ['violations'] })")
+        assert len(found["passes"]) > 15
+        wrong = [
+            (one["id"], [node["html"][:120] for node in one["nodes"]])
+            for one in found["violations"]
+            if one["impact"] in ("serious", "critical")
+        ]
+        assert wrong == [], view

@@ -1,0 +1,234 @@
+"""Every view in a real browser shows what the Python functions give for the same input."""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+import pytest
+from playwright.sync_api import expect
+
+import tarsus
+from browser import number, numbers
+from tarsus.load.handbook.method import handbook
+from tarsus.studio.messages.state import BodyState, RobotChoice, SourceChoice, StudioState
+
+pytest_plugins = "browser_fixtures"
+
+STRIDER = tarsus.load_robot("strider")
+
+
+def footholds(robot):
+    """Where the feet stand in G, and how high the body is over them."""
+    height = tarsus.default_clearance(robot)
+    return np.asarray(tarsus.default_stance(robot)) + np.array([0.0, 0.0, height]), height
+
+
+FEET, HEIGHT = footholds(STRIDER)
+
+
+def body_at(dx=0.0, dy=0.0, dz=0.0, *, roll=0.0, pitch=0.0, yaw=0.0):
+    return tarsus.Pose.from_rpy(*np.radians([roll, pitch, yaw]), (dx / 1000, dy / 1000, HEIGHT + dz / 1000))
+
+
+def total_mass(robot):
+    return float(robot.body_mass + np.sum(robot.link_mass))
+
+
+def shown_angles(visitor):
+    return np.array([[float(cell) for cell in row[1:]] for row in visitor.table("angles")])
+
+
+def test_joints_show_how_the_robot_rests(visitor):
+    visitor.open(StudioState(view="joints"))
+    visitor.unfold()
+    angles = np.degrees(tarsus.inverse_kinematics(STRIDER, FEET, body_at()).angles)
+    assert shown_angles(visitor) == pytest.approx(angles, abs=0.006)
+
+    for joint, angle in {"LF-femur": 60.0, "LF-tibia": -20.0, "RM-femur": 10.0}.items():
+        visitor.type(f"joint-{joint}", angle)
+    angles[0, 1:], angles[4, 1] = (60, -20), 10
+    rest = tarsus.resting_pose(STRIDER, np.radians(angles))
+    expect(visitor.at("standing")).to_contain_text(rest.describe().split(";")[0])
+    facts = visitor.facts("standing-facts")
+    assert number(facts["Margin of stability"]) == pytest.approx(rest.margin * 1000, abs=0.06)
+    assert int(facts["Feet on the ground"]) == rest.contacts.sum()
+    assert numbers(facts["Roll, pitch"]) == pytest.approx(np.degrees(rest.body.rpy[:2]), abs=0.06)
+    assert shown_angles(visitor) == pytest.approx(angles, abs=0.006)
+    said = [visitor.page.locator("fieldset .badge").nth(leg).inner_text() for leg in range(6)]
+    assert [text == "on the ground" for text in said] == rest.contacts.tolist()
+
+
+def test_a_joint_beyond_its_limit_is_told_by_how_much(visitor):
+    visitor.open(StudioState(view="joints"))
+    highest = np.degrees(STRIDER.limits[0, 1, 1])
+    visitor.type("joint-LF-femur", highest + 12)
+    expect(visitor.at("problems")).to_contain_text(f"its highest angle is {highest:.1f}: 12.0 deg too far")
+    expect(visitor.at("joint-LF-femur")).to_have_attribute("aria-invalid", "true")
+
+
+def test_the_body_moves_over_its_feet(visitor):
+    visitor.open(StudioState(view="body"))
+    visitor.unfold()
+    asked = {"x_mm": 12.0, "z_mm": -9.0, "roll_deg": 4.0, "yaw_deg": -7.0}
+    for name, value in asked.items():
+        visitor.type(f"body-{name}", value)
+    body = body_at(12, 0, -9, roll=4, yaw=-7)
+    angles = tarsus.inverse_kinematics(STRIDER, FEET, body).require().angles
+    margin = tarsus.stability_margin(STRIDER, angles, body, np.ones(6, bool)) * 1000
+    expect(visitor.at("standing")).to_contain_text(f"stands on 6 feet: LF, LM, LR, RR, RM, RF; margin {margin:.1f} mm")
+    assert number(visitor.facts("standing-facts")["Margin of stability"]) == pytest.approx(margin, abs=0.06)
+    assert shown_angles(visitor) == pytest.approx(np.degrees(angles), abs=0.006)
+
+
+def test_a_leg_that_cant_reach_says_why_and_by_how_much(visitor):
+    visitor.open(StudioState(view="body", body=BodyState(y_mm=-110.0, z_mm=-60.0)))
+    solution = tarsus.inverse_kinematics(STRIDER, FEET, body_at(0, -110, -60))
+    failing = np.flatnonzero(np.asarray(solution.reach))
+    assert 0 < len(failing) < 6
+    problems = visitor.at("problems")
+    for line in solution.explain().splitlines():
+        expect(problems).to_contain_text(line.strip())
+    assert re.search(r"\d mm", problems.inner_text())
+    expect(visitor.at("chip-trouble")).to_contain_text(f"{len(failing)} legs can’t")
+    assert "%" in visitor.at("share").inner_text()
+
+
+def test_a_leg_that_cant_reach_is_put_right_by_going_back(visitor):
+    visitor.open(StudioState(view="body", body=BodyState(z_mm=190.0)))
+    expect(visitor.at("problems")).to_be_visible()
+    visitor.at("body-home").click()
+    expect(visitor.at("problems")).to_have_count(0)
+    expect(visitor.at("standing")).to_contain_text("stands on 6 feet")
+
+
+def test_a_walk_is_planned_as_asked(visitor):
+    visitor.open(StudioState(view="walk"))
+    visitor.at("gait").select_option("ripple")
+    visitor.type("distance", 420)
+    visitor.type("heading", 35)
+    path = tarsus.straight_path(0.42, np.radians(35))
+    motion = tarsus.plan_walk(STRIDER, tarsus.Gait.named("ripple"), path)
+    x, y = motion.body.position[-1, :2] * 1000
+    expect(visitor.at("walk-facts")).to_contain_text(f"Ends at x, y{x:.1f}, {y:.1f} mm")
+    facts = visitor.facts("walk-facts")
+    least = motion.margin.min() * 1000
+    assert number(facts["Takes"]) == pytest.approx(motion.duration, abs=0.006)
+    assert int(facts["Steps"]) == motion.steps
+    assert number(facts["Stroke"]) == pytest.approx(motion.stroke * 1000, abs=0.06)
+    assert number(facts["Speed"]) == pytest.approx(motion.speed * 1000, abs=0.06)
+    assert number(facts["Least margin"]) == pytest.approx(least, abs=0.06)
+    longest = tarsus.max_stroke(STRIDER, tarsus.Gait.named("ripple"), np.radians(35)) * 1000
+    assert number(facts["Longest stroke"]) == pytest.approx(longest, abs=0.06)
+    expect(visitor.at("walk-verdict")).to_contain_text("Every foot reaches")
+
+
+def test_a_stroke_that_is_too_long_is_refused_with_the_longest_that_works(visitor):
+    visitor.open(StudioState(view="walk"))
+    visitor.type("stroke_mm", 500)
+    expect(visitor.at("failure")).to_contain_text("stroke")
+    with pytest.raises(tarsus.TarsusError) as refused:
+        tarsus.plan_walk(STRIDER, tarsus.Gait.named("tripod"), tarsus.straight_path(0.5), stroke=0.5)
+    assert str(refused.value) in visitor.at("failure").inner_text()
+    visitor.page.get_by_role("button", name=re.compile(r"Take [\d.]+ mm")).click()
+    expect(visitor.at("failure")).to_have_count(0)
+    expect(visitor.at("walk-verdict")).to_contain_text("Every foot reaches")
+
+
+def test_the_moment_of_a_walk_is_stepped_through_and_scrubbed(visitor):
+    visitor.open(StudioState(view="walk"))
+    visitor.unfold()
+    motion = tarsus.plan_walk(STRIDER, tarsus.Gait.named("tripod"), tarsus.straight_path(0.5))
+    visitor.at("scrub").fill("1.2")
+    for _ in range(3):
+        visitor.at("step-forward").click()
+    expect(visitor.at("clock")).to_have_text("1.23 s")
+    expect(visitor.page.get_by_text("Joint angles at 1.23 s")).to_be_visible()
+    assert shown_angles(visitor) == pytest.approx(np.degrees(motion.angles[123]), abs=0.006)
+    visitor.at("play").click()
+    expect(visitor.at("clock")).not_to_have_text("1.23 s")
+    visitor.at("play").click()
+
+
+def test_loads_are_those_of_the_walk(visitor):
+    visitor.open(StudioState(view="loads"))
+    visitor.type("payload", 0.5)
+    motion = tarsus.plan_walk(STRIDER, tarsus.Gait.named("tripod"), tarsus.straight_path(0.5))
+    found = tarsus.loads(STRIDER, motion, payload=0.5)
+    weight = (total_mass(STRIDER) + 0.5) * 9.80665
+    expect(visitor.at("load-facts")).to_contain_text(f"Weight{weight:.1f} N")
+    peaks = np.array([[number(cell) for cell in row[1:]] for row in visitor.table("torques")])
+    assert peaks == pytest.approx(np.abs(found.torques).max(0), abs=0.006)
+    assert number(visitor.facts("load-facts")["Energy of the walk"]) == pytest.approx(found.energy, abs=0.06)
+
+    visitor.at("size-servos").click()
+    sizing = tarsus.size_servos(STRIDER, found, safety_factor=3.0)
+    answer = visitor.at("servo-answer")
+    expect(answer).to_contain_text("The present servos do" + ("." if sizing.ok else " not do."))
+    assert sizing.mixed is not None
+    mixed = ", ".join(f"{joint} {servo.name}" for joint, servo in sizing.mixed.servos.items())
+    expected = [one.servos["coxa"].name for one in sizing.candidates] + [mixed]
+    assert answer.locator("td.wrap").all_inner_texts() == expected
+
+
+def test_a_field_of_the_robot_changes_the_robot(visitor):
+    visitor.open(StudioState(view="robot"))
+    visitor.unfold()
+    visitor.type("robot-tibia", 200)
+    expect(visitor.at("doc-body.mass_kg")).to_have_value(f"{STRIDER.to_dict()['body']['mass_kg']:g}")
+    visitor.at("doc-body.mass_kg").fill("2.5")
+    visitor.at("doc-body.mass_kg").press("Enter")
+    document = STRIDER.to_dict()
+    document["leg"]["tibia_mm"], document["body"]["mass_kg"] = 200, 2.5
+    robot = tarsus.Robot.from_dict(document)
+    expect(visitor.at("robot-facts")).to_contain_text(f"Mass in all{total_mass(robot):.3f} kg")
+    longest = tarsus.max_stroke(robot, tarsus.Gait.named(robot.gait.name), 0.0) * 1000
+    assert number(visitor.facts("robot-facts")["Longest stroke"]) == pytest.approx(longest, abs=0.06)
+    visitor.view("body")
+    visitor.unfold()
+    feet, height = footholds(robot)
+    angles = tarsus.inverse_kinematics(robot, feet, tarsus.Pose(position=np.array([0, 0, height]))).angles
+    expect(visitor.at("angles")).to_contain_text(f"{np.degrees(angles[0, 2]):.2f}")
+    assert shown_angles(visitor) == pytest.approx(np.degrees(angles), abs=0.006)
+
+
+def test_a_field_that_cant_be_says_so_where_it_stands(visitor):
+    visitor.open(StudioState(view="robot"))
+    visitor.unfold()
+    field = visitor.at("doc-leg.limits_deg.femur[0]")
+    field.fill("120")
+    field.press("Enter")
+    expect(visitor.at("failure")).to_contain_text("limits_deg")
+    expect(visitor.page.locator(".field-problem").first).to_be_visible()
+    visitor.view("joints")
+    lowest = np.degrees(STRIDER.limits[0, 1, 0])
+    expect(visitor.at("joint-LF-femur")).to_have_attribute("min", f"{lowest:g}")
+
+
+@pytest.mark.parametrize("number_of", ["000", "004"])
+def test_the_sources_equations_give_the_legs_angles(visitor, number_of):
+    body = BodyState(x_mm=10.0, pitch_deg=5.0)
+    state = StudioState(view="sources", source=SourceChoice(number=number_of, leg=3), body=body)
+    visitor.open(state.model_copy(update={"robot": RobotChoice(preset="phantomx")}))
+    robot = tarsus.load_robot("phantomx")
+    feet, height = footholds(robot)
+    pose = tarsus.Pose.from_rpy(0, np.radians(5), 0, (0.01, 0, height))
+    coxa, femur, tibia = np.degrees(tarsus.inverse_kinematics(robot, feet, pose).require().angles[3])
+    keys = {
+        "000": {"6.theta_C": coxa, "10.theta_F": femur, "11.theta_gamma": tibia + 180},
+        "004": {"12.q2": femur, "14.q3": -tibia},
+    }
+    visitor.at("source").wait_for()
+    for key, ours in keys[number_of].items():
+        told = visitor.at(f"equation-{key}").locator("output").first.inner_text()
+        assert number(told) == pytest.approx(ours, abs=0.006), key
+
+
+def test_the_torques_of_source_004_are_the_handbooks(visitor):
+    visitor.open(StudioState(view="sources", source=SourceChoice(number="004", leg=0)))
+    visitor.at("source").wait_for()
+    lines = [line for line in handbook(STRIDER).lines if line.key.startswith("stance.") and line.formula]
+    assert len(lines) >= 2
+    for line in lines:
+        told = visitor.at(f"equation-{line.key}").locator("output").first.inner_text()
+        assert number(told) == pytest.approx(line.value, abs=1e-4), line.key
