@@ -7,6 +7,8 @@ import { stage } from "./stage";
 
 /** How far over a knee its note stands [mm]. */
 const OVER = 34;
+/** How near to the picture's edge a note may come [px]. */
+const EDGE = 4;
 
 /** Moves the notes to where their things are in the picture, in the frame in which these are drawn. */
 export function NotePlaces({ layer }: { layer: RefObject<HTMLDivElement | null> }) {
@@ -22,11 +24,18 @@ export function NotePlaces({ layer }: { layer: RefObject<HTMLDivElement | null> 
       const seen = at.z < 1 && at.z > -1;
       note.style.visibility = seen ? "" : "hidden";
       const [x, y] = [((at.x + 1) / 2) * size.width, ((1 - at.y) / 2) * size.height];
-      note.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px) translate(-50%, -50%)`;
+      note.style.transform = `translate(${across(x, size.width)}, ${y.toFixed(1)}px) translateY(-50%)`;
     }
     writeMargin(notes[legs]?.firstElementChild, frame);
   });
   return null;
+}
+
+/** Centred on its thing; at the picture's edge as far inside as it takes to be read whole. */
+function across(x: number, width: number): string {
+  const left = `${x.toFixed(1)}px - 50%`;
+  if (x < 0 || x > width) return `calc(${left})`;
+  return `clamp(${EDGE}px, ${left}, ${width - EDGE}px - 100%)`;
 }
 
 function anchorOf(frame: Frame, leg: number): Vec3 {
