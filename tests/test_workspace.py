@@ -80,8 +80,8 @@ def test_ends_of_the_sides_are_the_corners_that_qhull_finds():
     bounds = rng.uniform(0.02, 0.1, (20, 16)) + (NORMALS.conj() * inside[:, None]).real
     starts, ends = polygon_ends(bounds, inside)
     for leg, expected in enumerate(corners_of(bounds, inside)):
-        for found in (starts[leg], ends[leg]):
-            found = found[found != 0] + inside[leg]
+        for reached in (starts[leg], ends[leg]):
+            found = reached[reached != 0] + inside[leg]
             away = np.abs(found[:, None] - expected)
             assert away.min(axis=0).max() < 1e-9
             assert away.min(axis=1).max() < 1e-9
