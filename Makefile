@@ -48,8 +48,9 @@ protocol: $(VENV)/.dev
 bench: $(VENV)/.dev web
 	$(BIN)/python benchmarks/run.py
 
-figures: $(VENV)/.dev
+figures: $(VENV)/.dev web browser
 	$(BIN)/python docs/make_figures.py
+	$(BIN)/python docs/make_screenshots.py
 	$(BIN)/python docs/refresh.py
 
 schema: $(VENV)/.dev

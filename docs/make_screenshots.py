@@ -1,0 +1,79 @@
+"""Take the pictures of the studio's views anew, at a desk and on a phone: `make figures`."""
+
+from __future__ import annotations
+
+import io
+import shutil
+from pathlib import Path
+
+from PIL import Image
+from playwright.sync_api import Browser, Page, ViewportSize, sync_playwright
+
+from tarsus.studio.messages.state import BodyState, Curve, JointsState, Picture, SourceChoice, StudioState, WalkOptions
+from tarsus.studio.server.serve import Serving
+from tarsus.studio.server.settings import Settings
+from tarsus.studio.state_text import text_of
+
+FIGURES = Path(__file__).parent / "figures"
+SIZES = {"desktop": ViewportSize(width=1280, height=800), "phone": ViewportSize(width=390, height=844)}
+FLAGS = ("--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist", "--no-sandbox")
+
+_UP, _DOWN = (0.0, 85.0, -100.0), (0.0, 45.0, -127.0)
+_LIFTED = _UP + _DOWN * 3 + (10.0, 70.0, -127.0) + _DOWN
+_CURVE = WalkOptions(gait="ripple", path=Curve(way="curve", angle_deg=70.0, centre_mm=(0.0, 500.0)))
+STATES = (
+    StudioState(view="joints", joints=JointsState(angles_deg=_LIFTED)),
+    StudioState(view="body", body=BodyState(x_mm=15.0, y_mm=-110.0, z_mm=-35.0, roll_deg=-6.0), picture=Picture(leg=1)),
+    StudioState(view="walk", walk=_CURVE, picture=Picture(time_s=2.6)),
+    StudioState(view="drive", picture=Picture(camera="follow")),
+    StudioState(view="loads", picture=Picture(time_s=1.4)),
+    StudioState(view="robot"),
+    StudioState(view="sources", source=SourceChoice(number="000", leg=1), body=BodyState(x_mm=20.0, yaw_deg=8.0)),
+)
+READY = {"walk": "walk-facts", "drive": "drive-facts", "loads": "torques", "robot": "robot-facts", "sources": "source"}
+
+
+def drive(page: Page) -> None:
+    """Walk a curve, and stop."""
+    page.locator("main h2").click()
+    for key in "wq":
+        page.keyboard.down(key)
+    page.wait_for_timeout(3500)
+
+
+def take(browser: Browser, url: str, state: StudioState, name: str) -> Path:
+    """Take a view's picture at one size."""
+    phone = name == "phone"
+    context = browser.new_context(
+        viewport=SIZES[name], reduced_motion="reduce", color_scheme="light", has_touch=phone, is_mobile=phone
+    )
+    page = context.new_page()
+    page.goto(f"{url}#s={text_of(state)}")
+    page.get_by_test_id(READY.get(state.view, "standing-facts")).wait_for()
+    if state.view == "drive":
+        drive(page)
+    page.wait_for_timeout(1500)
+    picture = Image.open(io.BytesIO(page.screenshot())).convert("RGB")
+    context.close()
+    path = FIGURES / f"studio-{state.view}-{name}.png"
+    # Few colours are enough for a page, and make a small file.
+    picture.quantize(256, method=Image.Quantize.MAXCOVERAGE, kmeans=4, dither=Image.Dither.NONE).save(
+        path, optimize=True
+    )
+    return path
+
+
+def main() -> None:
+    """Take all of them."""
+    chromium = shutil.which("chromium")
+    with Serving(Settings()) as server, sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=chromium, args=list(FLAGS))
+        for state in STATES:
+            for name in SIZES:
+                path = take(browser, server.url, state, name)
+                print(f"{path.name}: {path.stat().st_size // 1000} kB")
+        browser.close()
+
+
+if __name__ == "__main__":
+    main()
