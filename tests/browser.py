@@ -20,7 +20,7 @@ PHONE = {"width": 390, "height": 844}
 DESK = {"width": 900, "height": 560}
 FLAGS = ("--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist", "--no-sandbox")
 # Cores are shared with other tests: a page may be slow, and is still right.
-PATIENCE = 12_000
+PATIENCE = 30_000
 
 expect.set_options(timeout=PATIENCE)
 
