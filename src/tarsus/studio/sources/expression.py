@@ -84,7 +84,9 @@ class Quantity:
     @property
     def text(self) -> str:
         """The number in print: five digits, degrees with their sign."""
-        number = np.format_float_positional(self.shown, precision=5, fractional=False, trim="-").replace("-", "−")
+        # What rounding leaves of a zero is a zero.
+        shown = self.shown if abs(self.shown) > 1e-12 else 0.0
+        number = np.format_float_positional(shown, precision=5, fractional=False, trim="-").replace("-", "−")
         return f"{number}°" if self.unit == "deg" else number
 
 
