@@ -151,7 +151,10 @@ class Agenda:
         stepping = dataclasses.replace(doing, gait=wanted.gait, cycle_time=wanted.cycle_time, gone=wanted.gone)
         standing = dataclasses.replace(wanted, gait=doing.gait, cycle_time=doing.cycle_time, gone=doing.gone)
         order = [(stepping, True), (standing, False)]
-        if doing.gone:
+        if set(doing.gone) - set(wanted.gone):
+            # Legs that are out come back in the order of steps that they left.
+            order = [(dataclasses.replace(doing, gone=wanted.gone), True)]
+        elif doing.gone:
             # Where the feet of these legs are may be out of reach from another posture.
             order = order[:1]
         elif wanted.gone:

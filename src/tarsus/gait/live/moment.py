@@ -32,7 +32,7 @@ _GIVE = 0.1
 # Below this speed [m/s] of the feet past the body, a robot told to stand is taken to be stopping: it steps to rest.
 _CREEPING = 0.01
 # A foot this near to its rest foothold is there [m]; a speed this low is none [m/s].
-THERE, _NO_SPEED = 1e-6, 1e-9
+THERE, _NO_SPEED = 1e-6, 3e-7
 
 
 class Moment(NamedTuple):

@@ -157,6 +157,7 @@ class Walker(WalkerView):
         self._share = (1.0, 0)
         self._hands: dict[int, Hand] = {}
         self._hand_limits: dict[int, str] = {}
+        self._points: dict[int, Sequence[float]] = {}
         self._leaning_for: tuple[int, ...] = ()
         self._lean = 0j
         self._searches: dict[int, Search] = {}
@@ -303,7 +304,8 @@ class Walker(WalkerView):
     def _change(self, dt: float) -> None:
         """Work on the next change, and go over to it once the walk allows."""
         agenda, stepping = self._agenda, self._stepping
-        agenda.think(self._work_out, free=self._settling is None and stepping is None and self._arrived())
+        idle = self._settling is None and stepping is None and not self._returning()
+        agenda.think(self._work_out, free=idle and self._arrived())
         if agenda.ready is not None:
             self._try_change(agenda.ready)
         elif stepping is not None:
@@ -311,6 +313,10 @@ class Walker(WalkerView):
         # A change that the walk has no room for slows it down until it has.
         waits = agenda.ready is not None or (self._stepping is not None and bool(self._footing.stepped.all()))
         self._patience = self._patience * math.exp(-dt / _PATIENCE) if waits else 1.0
+
+    def _returning(self) -> bool:
+        """Return whether a leg is on its way back to the gait, still in the air."""
+        return len(self._hands) > len(self._agenda.doing.manner.gone)
 
     def _arrived(self) -> bool:
         return bool(np.abs(self._now.posture.value[: LIFT + 1] - self._posture).max() < _AT_POSTURE)
@@ -642,7 +648,8 @@ class Walker(WalkerView):
         if landed.any():
             self._footing.land(landed)
             self._searches = {leg: search for leg, search in self._searches.items() if not landed[leg]}
-        arrived = self._settling is None and self._stepping is None and self._arrived()
+        idle = self._settling is None and self._stepping is None and not self._returning()
+        arrived = idle and self._arrived()
         if self._settling is not None and now.down.all():
             self._switch(*self._settling)
         elif self._settling is None:
