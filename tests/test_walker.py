@@ -19,11 +19,13 @@ from gait_robots import PRESETS, preset, ring
 from tarsus.errors import InputError, UnknownNameError, UnreachableError
 from tarsus.gait.gait import Gait
 from tarsus.gait.live.guard import Guard
+from tarsus.gait.live.senses import Senses
 from tarsus.gait.live.walker import Walker
 from tarsus.gait.live.wish import Wish
 from tarsus.gait.path import twist_path
 from tarsus.gait.plan import plan_walk
 from tarsus.kinematics.inverse import inverse_kinematics
+from tarsus.kinematics.leg import forward_kinematics
 from tarsus.kinematics.pose import Pose
 from walker_machine import GAITS, Trace, drive
 
@@ -397,6 +399,94 @@ def test_what_cannot_be_is_refused_by_name_and_walking_goes_on():
     assert w.limited == ()
 
 
+# Legs as hands, a body that sways, ground that is felt.
+
+
+def hand_of(trace, leg):
+    """Where a foot is in the heading frame ``(n, 3)``, by forward kinematics."""
+    body = trace.body
+    seen = body.inverse() @ trace.feet
+    level = Pose.from_rpy(*(body.rpy * [1, 1, 0]).T, body.position * [0, 0, 1])
+    return (level @ seen)[:, leg]
+
+
+def test_a_leg_leaves_the_gait_goes_where_it_is_told_and_comes_back():
+    w = walker("strider", "wave")
+    point = w.feet[0] + [0.03, 0.02, 0.06]
+    trace = Trace(w).run((0.006, 0, 0.01), 3)
+    trace.run(Wish(twist=(0.006, 0, 0.01), hands={0: point}), 12)
+    assert w.limited == ()
+    np.testing.assert_allclose(hand_of(trace, 0)[-1], point, atol=1e-4)
+    assert not w.contacts[0]
+    np.testing.assert_allclose(w.twist, (0.006, 0, 0.01), atol=1e-4)
+    trace.run(Wish(twist=(0.006, 0, 0.01), hands={0: None}), 12)
+    before = len(trace.contacts)
+    trace.run((0.006, 0, 0.01), 2 * w.cycle_time)
+    assert trace.contacts[before:, 0].mean() == pytest.approx(w.gait.duty, abs=0.03)
+    stopped(trace).assert_sound()
+    assert w.contacts.all()
+
+
+def test_a_hand_goes_as_fast_as_it_is_told():
+    w = walker("strider", "wave")
+    trace = Trace(w).run(Wish(hands={5: w.feet[5] + [0, 0, 0.03]}), 10)
+    start = hand_of(trace, 5)[-1]
+    for _ in range(100):
+        trace.step(Wish(hand_speeds={5: (0.01, 0, 0.02)}), 0.02)
+    trace.run(STOP, 2).assert_sound()
+    np.testing.assert_allclose(hand_of(trace, 5)[-1] - start, (0.02, 0, 0.04), atol=1e-3)
+
+
+def test_a_hand_goes_no_farther_than_its_leg_and_says_so():
+    w = walker("strider", "wave")
+    trace = Trace(w).run(Wish(hands={0: (0.6, 0.3, 0.1)}), 12)
+    (reason,) = w.limited
+    assert reason.startswith("hand: ")
+    assert "front left" in reason
+    trace.run(Wish(hands={0: None}), 12).assert_sound()
+    assert w.limited == ()
+
+
+def test_a_leg_that_the_gait_cannot_do_without_stays_and_the_margin_is_said():
+    w = walker("strider", "tripod")
+    trace = Trace(w).run(Wish(twist=(0.05, 0, 0), hands={0: w.feet[0] + [0, 0, 0.05]}), 10)
+    trace.assert_sound()
+    (reason,) = w.limited
+    assert re.match(r"hand: without front left the tripod would stand -?\d+ mm inside its support", reason)
+    assert trace.contacts[-60:, 0].any()
+
+
+def test_the_body_sways_with_the_steps_and_is_still_when_it_stands():
+    w = walker("strider", "wave")
+    level = w.body.position[2]
+    trace = Trace(w).run(Wish(sway=(0, 0, 0.01, 0, 0, 0)), 2)
+    assert (trace.body.position[:, 2] == level).all()
+    trace.run((0.03, 0, 0), 4 * w.cycle_time)
+    before = len(trace.contacts)
+    trace.run((0.03, 0, 0), 2 * w.cycle_time)
+    swayed = trace.body.position[before:, 2] - level
+    assert 0.005 < swayed.max() <= 0.0101
+    assert swayed.mean() == pytest.approx(0, abs=1e-3)
+    stopped(trace).assert_sound()
+    trace.run(STOP, 3)
+    assert w.body.position[2] == pytest.approx(level, abs=1e-4)
+
+
+@pytest.mark.parametrize("step", [0.008, -0.008])
+def test_feet_meet_ground_that_is_higher_or_lower(step):
+    """A step across the way, felt by contacts alone: feet stop on it, or look for it."""
+    w = walker("strider", "wave", levelling="level")
+    trace = Trace(w)
+    for _ in range(1200):
+        feet = trace.walker.body @ forward_kinematics(w.robot, w.angles)[..., 3, :]
+        ground = np.where(feet[:, 0] > 0.3, step, 0.0)
+        trace.step((0.05, 0, 0), 0.025, senses=Senses(contacts=feet[:, 2] <= ground + 1e-3))
+    trace.assert_sound(flat=False)
+    assert w.place[0] > 0.6
+    feet, down = trace.feet[-1], trace.contacts[-1]
+    np.testing.assert_allclose(feet[down & (feet[:, 0] > 0.3), 2], step, atol=2.5e-3)
+
+
 # Time.
 
 
@@ -485,6 +575,11 @@ BAD_WISHES = {
     "width": {"stance_width": -INF},
     "cycle time": {"cycle_time": 0.0},
     "negative cycle time": {"cycle_time": -1.0},
+    "a leg too many": {"hands": {6: (0, 0, 0)}},
+    "a hand that is nowhere": {"hands": {0: (NAN, 0, 0)}},
+    "hands without legs": {"hands": [(0, 0, 0)]},
+    "a hand's speed in words": {"hand_speeds": {0: "slow"}},
+    "sway": {"sway": (INF,) * 6},
     "gait for four": {"gait": Gait(duty=0.75, offsets=(0, 0.25, 0.5, 0.75))},
 }
 

@@ -40,9 +40,9 @@ class Trace:
         self._record(self.walker.step(wish, dt, **senses), dt)
 
     def run(self, wish: Any, duration: float, dt: float = 0.025) -> Trace:
-        """Go on with one wish for a while; what it asks for besides the twist, only once."""
-        for i in range(max(1, round(duration / dt))):
-            self.step(wish if i == 0 or not isinstance(wish, Wish) else wish.twist, dt)
+        """Go on with one wish for a while."""
+        for _ in range(max(1, round(duration / dt))):
+            self.step(wish, dt)
         return self
 
     def _record(self, angles: np.ndarray, dt: float) -> None:
