@@ -12,7 +12,7 @@ from click.testing import CliRunner
 from tarsus.cli import main as tarsus
 
 ROOT = Path(__file__).parents[1]
-PAGES = (ROOT / "README.md", ROOT / "docs" / "commands.md")
+PAGES = (ROOT / "README.md", *(ROOT / "docs" / name for name in ("commands.md", "walking-live.md")))
 
 
 def refreshed(text: str) -> str:
