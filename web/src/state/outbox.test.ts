@@ -63,6 +63,49 @@ describe("outbox", () => {
     }
   });
 
+  it("lets undo overtake nothing that was decided before, and nothing overtake undo", () => {
+    const { sent, outbox } = anOutbox();
+    outbox.put(joints(1));
+    outbox.pump(0);
+    outbox.put(joints(2, true));
+    outbox.pump(1);
+    expect(sent).toHaveLength(1);
+    outbox.put({ type: "undo" });
+    outbox.pump(2);
+    expect(sent.map(({ type }) => type)).toEqual(["joints", "joints", "undo"]);
+    expect(sent[1]).toMatchObject({ commit: true });
+    outbox.put({ type: "undo" });
+    outbox.pump(3);
+    expect(outbox.isBusy("undo")).toBe(true);
+    outbox.put({ type: "body", body: {} as never, commit: false });
+    outbox.pump(4);
+    expect(sent.slice(3).map(({ type }) => type)).toEqual(["undo", "body"]);
+  });
+
+  it("keeps the order of what was decided when it could not be sent", () => {
+    const sent: ClientMessage[] = [];
+    let open = false;
+    const outbox = new Outbox((message) => open && sent.push(message) > 0);
+    outbox.put(joints(1, true));
+    outbox.put({ type: "undo" });
+    outbox.pump(0);
+    expect(outbox.isNewer("joints", 0)).toBe(true);
+    open = true;
+    outbox.pump(100);
+    expect(sent.map(({ type }) => type)).toEqual(["joints", "undo"]);
+  });
+
+  it("lets moves of one slider wait while another's go", () => {
+    const { sent, outbox } = anOutbox();
+    outbox.put(joints(1));
+    outbox.pump(0);
+    outbox.put(joints(2));
+    outbox.put({ type: "body", body: {} as never, commit: false });
+    outbox.put({ type: "zone", leg: 2 });
+    outbox.pump(1);
+    expect(sent.map(({ type }) => type)).toEqual(["joints", "body", "zone"]);
+  });
+
   it("lets one type pass another", () => {
     const { sent, outbox } = anOutbox();
     outbox.put(joints(1));
