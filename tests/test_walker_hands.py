@@ -53,6 +53,15 @@ def test_a_leg_goes_where_it_is_told_while_the_others_walk():
     np.testing.assert_allclose(in_heading_frame(walker, 0), in_heading_frame(fresh, 0), atol=1e-5)
 
 
+def test_a_point_holds_until_there_is_another():
+    walker = Walker(load_robot("strider"), Gait.named("wave"))
+    walk(walker, Wish(hands={0: (0.25, 0.2, 0.08)}), 14)
+    # Said once; what follows only walks.
+    walk(walker, Wish(hands={0: (0.2, 0.22, 0.1)}), DT)
+    walk(walker, Wish(twist=(0.01, 0, 0)), 4)
+    np.testing.assert_allclose(in_heading_frame(walker, 0), (0.2, 0.22, 0.1), atol=1e-3)
+
+
 def test_two_legs_at_once():
     walker = Walker(load_robot("strider"), Gait.named("wave"))
     walk(walker, Wish(hands={1: (0.0, 0.3, 0.1), 4: (0.0, -0.3, 0.1)}), 8)

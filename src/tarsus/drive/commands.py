@@ -107,16 +107,22 @@ class GaitChange(Command):
 
 
 @dataclass(frozen=True, kw_only=True)
-class MoveBody(Command):
-    """Move [m] and turn [rad] the body over its feet, against standing level; all 0 is level again."""
+class _SixWays(Command):
+    """The six ways in which a body can be moved [m] and turned [rad]."""
 
-    word: ClassVar[str] = "body"
     x: float = quantity("mm", "forward", low=-_WIDE, high=_WIDE)
     y: float = quantity("mm", "to the left", low=-_WIDE, high=_WIDE)
     z: float = quantity("mm", "up", low=-_WIDE, high=_WIDE)
     roll: float = quantity("deg", "left side up", low=-90, high=90)
     pitch: float = quantity("deg", "front down", low=-90, high=90)
     yaw: float = quantity("deg", "front to the left", low=-90, high=90)
+
+
+@dataclass(frozen=True, kw_only=True)
+class MoveBody(_SixWays):
+    """Move [m] and turn [rad] the body over its feet, against standing level; all 0 is level again."""
+
+    word: ClassVar[str] = "body"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -171,16 +177,10 @@ class HandBack(Command):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Sway(Command):
+class Sway(_SixWays):
     """Move the body to and fro with the steps, by these amplitudes [m], [rad]; all 0 ends it."""
 
     word: ClassVar[str] = "sway"
-    x: float = quantity("mm", "forward", low=-_WIDE, high=_WIDE)
-    y: float = quantity("mm", "to the left", low=-_WIDE, high=_WIDE)
-    z: float = quantity("mm", "up", low=-_WIDE, high=_WIDE)
-    roll: float = quantity("deg", "left side up", low=-90, high=90)
-    pitch: float = quantity("deg", "front down", low=-90, high=90)
-    yaw: float = quantity("deg", "front to the left", low=-90, high=90)
 
 
 @dataclass(frozen=True, kw_only=True)

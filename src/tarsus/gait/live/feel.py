@@ -8,7 +8,7 @@ import numpy as np
 
 from tarsus.gait.live.admittance import Admittance, AdmittanceFilter
 from tarsus.gait.live.carried import carried_share
-from tarsus.gait.live.foot_force import TorqueSense, balanced_forces
+from tarsus.gait.live.foot_force import STANDARD_GRAVITY, TorqueSense, balanced_forces
 from tarsus.gait.live.levelling import Levelling, LevellingMode
 from tarsus.gait.live.senses import Admitted, Senses
 from tarsus.gait.live.sieve import Sieve
@@ -21,7 +21,6 @@ __all__ = ["Feel", "Felt"]
 
 Floats = np.ndarray[Any, Any]
 
-_GRAVITY = 9.80665
 # The body's correction is gone over to in steps of these sizes: x, y, z [m], roll, pitch, yaw [rad].
 _STEPS = np.array([0.004, 0.004, 0.003, 0.012, 0.012, 1.0])
 
@@ -77,7 +76,7 @@ class Feel:
         self.levelling = Levelling(levelling, com=tuple(com.tolist()), carried=carried_share(robot, feet))
         self._filter = AdmittanceFilter(admittance, robot.legs) if admittance else None
         self._torques = TorqueSense(robot) if admittance and robot.has_masses else None
-        self._weight = float(total_mass(robot)) * _GRAVITY if robot.has_masses else 0.0
+        self._weight = float(total_mass(robot)) * STANDARD_GRAVITY if robot.has_masses else 0.0
         self._correction = (0.0,) * 6
         self._none = np.zeros(robot.legs)
 

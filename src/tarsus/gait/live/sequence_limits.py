@@ -9,6 +9,7 @@ import numpy as np
 
 from tarsus.arrays import Array
 from tarsus.errors import InputError
+from tarsus.gait.live.guard_bounds import STOPPING_TIME
 from tarsus.gait.live.tempo import joint_limits
 from tarsus.robot.robot import Robot
 
@@ -18,9 +19,6 @@ Floats = np.ndarray[Any, np.dtype[np.float64]]
 
 SERVO_SHARE = 0.5
 """What share of a servo's no-load speed its joint uses unless told otherwise."""
-
-# The time in which a joint comes up to its speed unless told otherwise [s].
-_RAMP = 0.05
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,7 +60,7 @@ class JointPace:
             joint_speed = SERVO_SHARE * joint_limits(robot, None, None)[0]
         speed = _positive("joint_speed", joint_speed, shape)
         if joint_acceleration is None:
-            joint_acceleration = speed / _RAMP
+            joint_acceleration = speed / STOPPING_TIME
         return cls(speed, _positive("joint_acceleration", joint_acceleration, shape))
 
 

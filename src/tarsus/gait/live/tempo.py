@@ -9,6 +9,7 @@ import numpy as np
 from tarsus.gait.cycle import cycle_feet
 from tarsus.gait.gait import Gait
 from tarsus.gait.live.envelope import Envelope
+from tarsus.gait.live.guard_bounds import STOPPING_TIME, UNKNOWN_SPEED
 from tarsus.gait.live.workspace import Parts, Stand
 from tarsus.robot.robot import Robot
 
@@ -16,9 +17,6 @@ __all__ = ["Tempo", "joint_limits", "tempo"]
 
 Floats = np.ndarray[Any, Any]
 
-# What a joint turns at where its servo's speed isn't known [rad/s], and in what time it comes to that speed [s].
-_DEFAULT_SPEED = 5.0
-_SPEED_UP = 0.05
 # Shares of the joints' speed and acceleration that steady walking may take: the rest is for changing one's mind.
 _SPEED_SHARE, _ACCELERATION_SHARE = 0.97, 0.8
 _SIZES = np.linspace(0.0, 1.0, 6)
@@ -47,11 +45,11 @@ def joint_limits(robot: Robot, speed: float | None, acceleration: float | None) 
         [rad/s], [rad/s^2].
     """
     known = [
-        [servo.no_load_speed if servo and servo.no_load_speed else _DEFAULT_SPEED for servo in row]
+        [servo.no_load_speed if servo and servo.no_load_speed else UNKNOWN_SPEED for servo in row]
         for row in robot.servos
     ]
     speeds = np.array(known) if speed is None else np.full((robot.legs, 3), float(speed))
-    return speeds, speeds / _SPEED_UP if acceleration is None else np.full((robot.legs, 3), float(acceleration))
+    return speeds, speeds / STOPPING_TIME if acceleration is None else np.full((robot.legs, 3), float(acceleration))
 
 
 class Tempo(NamedTuple):

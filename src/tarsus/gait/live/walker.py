@@ -304,8 +304,7 @@ class Walker(WalkerView):
     def _change(self, dt: float) -> None:
         """Work on the next change, and go over to it once the walk allows."""
         agenda, stepping = self._agenda, self._stepping
-        idle = self._settling is None and stepping is None and not self._returning()
-        agenda.think(self._work_out, free=idle and self._arrived())
+        agenda.think(self._work_out, free=self._arrived())
         if agenda.ready is not None:
             self._try_change(agenda.ready)
         elif stepping is not None:
@@ -314,12 +313,13 @@ class Walker(WalkerView):
         waits = agenda.ready is not None or (self._stepping is not None and bool(self._footing.stepped.all()))
         self._patience = self._patience * math.exp(-dt / _PATIENCE) if waits else 1.0
 
-    def _returning(self) -> bool:
-        """Return whether a leg is on its way back to the gait, still in the air."""
-        return len(self._hands) > len(self._agenda.doing.manner.gone)
-
     def _arrived(self) -> bool:
-        return bool(np.abs(self._now.posture.value[: LIFT + 1] - self._posture).max() < _AT_POSTURE)
+        """Return whether the last change is over: posture reached, and every leg that came back on the ground."""
+        if self._settling is not None or self._stepping is not None:
+            return False
+        returning = len(self._hands) > len(self._agenda.doing.manner.gone)
+        off = np.abs(self._now.posture.value[: LIFT + 1] - self._posture).max()
+        return not returning and bool(off < _AT_POSTURE)
 
     def _try_change(self, change: Change) -> None:
         """Go over to a change as soon as the feet on the ground allow it."""
@@ -405,13 +405,17 @@ class Walker(WalkerView):
 
     def _move_hands(self, wish: Wish, dt: float) -> None:
         """Set where the hands go: as far towards what is asked for as their legs reach."""
-        for leg, hand in self._hands.items():
+        speeds = wish.hand_speeds or {}
+        # A point holds until there is another; a speed, as long as it is given.
+        asked = {**self._points, **(wish.hands or {})}
+        self._points = {leg: point for leg, point in asked.items() if point is not None and leg not in speeds}
+        for leg in self._agenda.doing.manner.gone:
+            hand = self._hands[leg]
             here = hand.place.value
-            point = (wish.hands or {}).get(leg)
-            if point is not None:
-                wished = np.array(point)
-            elif wish.hand_speeds and leg in wish.hand_speeds:
-                wished = hand.target + np.array(wish.hand_speeds[leg]) * dt
+            if leg in speeds:
+                wished = hand.target + np.array(speeds[leg]) * dt
+            elif leg in self._points:
+                wished = np.array(self._points[leg])
             else:
                 continue
             wished[2] = max(wished[2], 0.0)
@@ -648,8 +652,7 @@ class Walker(WalkerView):
         if landed.any():
             self._footing.land(landed)
             self._searches = {leg: search for leg, search in self._searches.items() if not landed[leg]}
-        idle = self._settling is None and self._stepping is None and not self._returning()
-        arrived = idle and self._arrived()
+        arrived = self._arrived()
         if self._settling is not None and now.down.all():
             self._switch(*self._settling)
         elif self._settling is None:
