@@ -38,7 +38,6 @@ def moment_of(setup, rest, **changes):
 def course_of(setup, rest, twist, **changes):
     values = {
         "gait": setup.gait,
-        "offsets": np.asarray(setup.gait.offsets),
         "frequency": 1.0,
         "twist": np.asarray(twist, dtype=float),
         "posture": posture_of(setup),

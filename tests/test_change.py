@@ -13,7 +13,7 @@ from sample_stands import feet_at, pose_of, posture_of, setup_of
 from tarsus.errors import UnreachableError
 from tarsus.gait.gait import GAITS, Gait
 from tarsus.gait.live.change import Change, Manner, work_out
-from tarsus.gait.live.posture import LIFT, rotation_of, stand_of
+from tarsus.gait.live.posture import LIFT, rotation_rows, stand_of
 from tarsus.gait.live.tempo import joint_limits
 from tarsus.gait.live.workspace import all_parts
 from tarsus.kinematics.inverse import inverse_kinematics
@@ -219,7 +219,7 @@ def test_whatever_is_wished_for_what_comes_of_it_is_reached(body, clearance, lif
 @given(st.floats(-3, 3), st.floats(-1.5, 1.5), st.floats(-3, 3))
 def test_the_rotation_of_a_posture_is_that_of_a_pose(roll, pitch, yaw):
     expected = Pose.from_rpy(roll, pitch, yaw, (0, 0, 0)).rotation
-    np.testing.assert_allclose(rotation_of(roll, pitch, yaw), expected, atol=1e-15)
+    np.testing.assert_allclose(rotation_rows(roll, pitch, yaw), expected, atol=1e-15)
     stand = stand_of(np.array([0.1, 0.2, 0.3, roll, pitch, yaw, 0.04]), np.zeros(6, dtype=complex))
     np.testing.assert_allclose(stand.rotation, expected, atol=1e-15)
     assert (*stand.position, stand.lift) == (0.1, 0.2, 0.3, 0.04)

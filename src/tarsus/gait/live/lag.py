@@ -63,6 +63,30 @@ class Lag(NamedTuple):
         moved = gap + slope * dt
         return Lag(target + moved * decay, (slope - bandwidth * moved) * decay)
 
+    def go(self, target: np.ndarray[Any, Any], dt: float, *, bandwidth: float) -> tuple[Lag, list[float]]:
+        """Return the lag after a time with a constant target, and its travel; for a few numbers, in plain ones.
+
+        Parameters
+        ----------
+        target : array, shape (n,)
+            What it follows.
+        dt : float
+            The time [s].
+        bandwidth : float
+            How fast it follows [rad/s].
+        """
+        w, decay = bandwidth, math.exp(-bandwidth * dt)
+        values, rates, travels = [], [], []
+        for goal, value, rate in zip(target.tolist(), self.value.tolist(), self.rate.tolist(), strict=True):
+            gap = value - goal
+            slope = rate + w * gap
+            moved = gap + slope * dt
+            values.append(goal + moved * decay)
+            rates.append((slope - w * moved) * decay)
+            # The differential equation, integrated.
+            travels.append(goal * dt - (rates[-1] - rate + 2 * w * (values[-1] - value)) / (w * w))
+        return Lag(np.array(values), np.array(rates)), travels
+
     def travel(self, target: np.ndarray[Any, Any], time: float, *, bandwidth: float) -> np.ndarray[Any, Any]:
         """Return the value's integral over a time from now, with a constant target.
 

@@ -7,13 +7,13 @@ from __future__ import annotations
 
 import cmath
 import math
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from tarsus.gait.gait import Gait
 from tarsus.gait.live.lag import Lag
-from tarsus.gait.swing import ground_share, height_share
 
 __all__ = ["FREEZE", "THERE", "TIE", "Course", "Moment", "carried", "final_rest", "go_on", "meet_ground", "turned"]
 
@@ -33,6 +33,8 @@ _GIVE = 0.1
 _CREEPING = 0.01
 # A foot this near to its rest foothold is there [m]; a speed this low is none [m/s].
 THERE, _NO_SPEED = 1e-6, 3e-7
+# A posture this near to its target, and as slow, is there [m, m/s, rad, rad/s].
+_NO_WAY = 1e-11
 
 
 class Moment(NamedTuple):
@@ -89,7 +91,7 @@ class Moment(NamedTuple):
     yaw: float
     twist: Lag
     posture: Lag
-    late: Any = 0.0
+    late: Floats
     cycles: float = 0.0
     beats: float = 0.0
 
@@ -101,24 +103,26 @@ class Moment(NamedTuple):
         lift : float
             How high a swinging foot rises [m].
         """
-        along = ground_share(self.share)
-        swinging = self.start_height + (self.ground - self.start_height) * along + lift * height_share(self.share)
-        if np.isfinite(self.met).any():
-            swinging = np.where(np.isfinite(self.met), self._settling_height(), swinging)
-        return np.where(self.down, self.ground, swinging)
+        heights = self.ground.tolist()
+        for leg in np.flatnonzero(~self.down).tolist():
+            heights[leg] = self._height(leg, lift)
+        return np.array(heights)
 
-    def _settling_height(self) -> Floats:
-        """Return how a foot that has met the ground comes to rest on it: the quintic from there."""
-        since = np.where(np.isfinite(self.met), self.met, 0.0)
-        left = np.minimum(1 - since, _GIVE)
-        x = np.clip((self.share - since) / left, 0.0, 1.0)
-        slope = self.met_speed * left
-        rest = self.ground - self.met_height - slope
-        return np.asarray(
-            self.met_height
-            + slope * x
-            + x * x * x * ((10 * rest + 4 * slope) - x * ((15 * rest + 7 * slope) - x * (6 * rest + 3 * slope)))
-        )
+    def _height(self, leg: int, lift: float) -> float:
+        """Return the height of a foot in the air."""
+        share, ground, met = float(self.share[leg]), float(self.ground[leg]), float(self.met[leg])
+        if met == math.inf:
+            start = float(self.start_height[leg])
+            rise = 4 * share * (1 - share)
+            along = share * share * share * (10 - share * (15 - 6 * share))
+            return start + (ground - start) * along + lift * (rise * rise * rise)
+        # A foot that has met the ground comes to rest on it: the quintic from there.
+        left = min(1 - met, _GIVE)
+        x = min(max((share - met) / left, 0.0), 1.0)
+        start, slope = float(self.met_height[leg]), float(self.met_speed[leg]) * left
+        rest = ground - start - slope
+        bend = (10 * rest + 4 * slope) - x * ((15 * rest + 7 * slope) - x * (6 * rest + 3 * slope))
+        return start + slope * x + x * x * x * bend
 
 
 class Course(NamedTuple):
@@ -128,8 +132,6 @@ class Course(NamedTuple):
     ----------
     gait : Gait
         Order of the steps.
-    offsets : array, shape (legs,)
-        The gait's.
     frequency : float
         Cycles a second [1/s].
     twist, posture : array
@@ -149,7 +151,6 @@ class Course(NamedTuple):
     """
 
     gait: Gait
-    offsets: Floats
     frequency: float
     twist: Floats
     posture: Floats
@@ -178,9 +179,9 @@ def turned(angle: Any) -> Any:
     return np.exp(1j * half) * np.sinc(half / np.pi)
 
 
-def carried(origin: complex, yaw: float, travel: Floats) -> tuple[complex, float]:
-    """Return where the heading frame is after a travel ``(3,)``, the exponential of its displacement."""
-    x, y, angle = travel.tolist()
+def carried(origin: complex, yaw: float, travel: Sequence[float]) -> tuple[complex, float]:
+    """Return where the heading frame is after a travel (x, y, angle), the exponential of its displacement."""
+    x, y, angle = travel
     return origin + cmath.exp(1j * yaw) * complex(x, y) * turned(angle), yaw + angle
 
 
@@ -196,62 +197,58 @@ def go_on(now: Moment, course: Course, dt: float) -> Moment:
     dt : float
         The time [s].
     """
-    twist = now.twist.step(course.twist, dt, bandwidth=course.bandwidth)
-    origin, yaw = carried(now.origin, now.yaw, now.twist.travel(course.twist, dt, bandwidth=course.bandwidth))
-    stopping = not course.twist.any()
-    if stopping and np.abs(twist.value).max() < _NO_SPEED:
+    twist, travel = now.twist.go(course.twist, dt, bandwidth=course.bandwidth)
+    origin, yaw = carried(now.origin, now.yaw, travel)
+    stopping = not any(course.twist.tolist())
+    if stopping and max(map(abs, twist.value.tolist())) < _NO_SPEED:
         twist = Lag.still(np.zeros(3))
-    posture = now.posture.step(course.posture, dt, bandwidth=course.posture_bandwidth)
-    clock = now.clock + course.frequency * dt
     gone = course.frequency * dt
+    clock = now.clock + gone
     after = now._replace(
         clock=clock,
         origin=origin,
         yaw=yaw,
         twist=twist,
-        posture=posture,
+        posture=_settled(now.posture, course.posture, dt, course.posture_bandwidth),
         cycles=now.cycles + gone,
         beats=now.beats + course.beats * gone,
     )
-    duty, swing = course.gait.duty, 1 - course.gait.duty
-    since_lift = clock - (course.offsets + duty + now.number)
-    due = now.down & (since_lift > TIE) & (not course.holds)
-    if not due.any() and now.down.all():
-        return after
-    if due.any():
-        # Feet that were held back go a shorter swing; what the clock has gone in this tick is not late.
-        late = np.where(due, np.clip(since_lift - course.frequency * dt, 0.0, _LATEST * swing), after.late)
-        after = _lift(after._replace(late=late), course, due, final_rest(after, course) if stopping else None)
-    up = ~after.down
-    if not up.any():
-        return after
-    share = np.where(up, np.clip((since_lift - after.late) / (swing - after.late), 0.0, 1.0), 0.0)
-    target = after.target
-    free = up & (after.share <= FREEZE) & np.isinf(after.met)
-    if free.any():
-        target = np.where(free, _foothold(after, course, swing - since_lift), target)
-    after = _swing(after, share, target)
-    landed = up & course.lands & (since_lift >= swing - TIE)
-    return _land(after, landed) if landed.any() else after
+    duty = course.gait.duty
+    since_lift = [clock - (o + duty + n) for o, n in zip(course.gait.offsets, now.number.tolist(), strict=True)]
+    down = now.down.tolist()
+    due = [on and since > TIE and not course.holds for on, since in zip(down, since_lift, strict=True)]
+    if any(due):
+        after = _lift(after, course, np.array(due), np.array(since_lift) - gone, stopping=stopping)
+        down = after.down.tolist()
+    return after if all(down) else _swing(after, course, down, since_lift, stopping=stopping)
 
 
-def _creeping(now: Moment) -> bool:
-    return bool(np.abs(now.twist.value).max() < _CREEPING)
+def _settled(posture: Lag, target: Floats, dt: float, bandwidth: float) -> Lag:
+    """Return the posture after a time; once it is there, it is the same one from then on."""
+    if posture.value is target:
+        return posture
+    after = posture.step(target, dt, bandwidth=bandwidth)
+    off = max(float(np.abs(after.value - target).max()), float(np.abs(after.rate).max()))
+    return after if off > _NO_WAY else Lag.still(target)
 
 
 def final_rest(now: Moment, course: Course) -> Floats | None:
     """Return where the feet rest once the robot stands, where it is about to; None while it is still fast."""
-    if not _creeping(now):
+    if max(map(abs, now.twist.value.tolist())) >= _CREEPING:
         return None
     w = course.bandwidth
-    origin, yaw = carried(now.origin, now.yaw, (2 * now.twist.value + now.twist.rate / w) / w)
+    origin, yaw = carried(now.origin, now.yaw, ((2 * now.twist.value + now.twist.rate / w) / w).tolist())
     final: Floats = origin + cmath.exp(1j * yaw) * course.rest
     return final
 
 
-def _lift(now: Moment, course: Course, due: Floats, final: Floats | None) -> Moment:
-    """Lift the feet whose time has come; those that may not, or needn't, miss this step."""
+def _lift(now: Moment, course: Course, due: Floats, late: Floats, *, stopping: bool) -> Moment:
+    """Lift the feet whose time has come; those that may not, or needn't, miss this step.
+
+    `late` is how long ago their time was [cycles]: what the clock has gone in this tick doesn't count.
+    """
     wanted = due & course.steps
+    final = final_rest(now, course) if stopping else None
     if final is not None:
         wanted = wanted & (np.abs(now.foot - final) > THERE)
     missed = due & ~wanted
@@ -261,57 +258,90 @@ def _lift(now: Moment, course: Course, due: Floats, final: Floats | None) -> Mom
         share=np.where(wanted, 0.0, now.share),
         start_height=np.where(wanted, now.ground, now.start_height),
         ground=np.where(wanted, course.level, now.ground),
+        # Feet that were held back go a shorter swing.
+        late=np.where(due, np.clip(late, 0.0, _LATEST * (1 - course.gait.duty)), now.late),
     )
 
 
-def _foothold(now: Moment, course: Course, left: Floats) -> Floats:
-    """Return where feet should land: where the body has their rest footholds in the middle of the stance.
+class _Landing(NamedTuple):
+    """Where feet should land: where the body has their rest footholds in the middle of the stance."""
 
-    `left` is how long it is until then [cycles], negative where the foot should be down already.
-    """
-    if not course.twist.any() and (final := final_rest(now, course)) is not None:
-        return final
+    origin: complex
+    turn: complex
+    value: list[float]
+    rate: list[float]
+    bandwidth: float
+
+    @classmethod
+    def of(cls, now: Moment, course: Course) -> _Landing:
+        turn = cmath.exp(1j * now.yaw)
+        return cls(now.origin, turn, now.twist.value.tolist(), now.twist.rate.tolist(), course.bandwidth)
+
+    def foothold(self, rest: complex, ahead: float) -> complex:
+        """Return the foothold for a middle of the stance that is so far ahead [s]."""
+        w = self.bandwidth
+        slowing = (1 - math.exp(-w * ahead) * (1 + w * ahead)) / (w * w)
+        (x, y, angle), (ax, ay, turn) = self.value, self.rate
+        way, angle = complex(x * ahead + ax * slowing, y * ahead + ay * slowing), angle * ahead + turn * slowing
+        return complex(self.origin + self.turn * (way * turned(angle) + cmath.exp(1j * angle) * rest))
+
+
+def _swing(now: Moment, course: Course, down: list[bool], since_lift: list[float], *, stopping: bool) -> Moment:
+    """Move the swinging feet on, and put those down that have come to the end of their swing."""
     duty = course.gait.duty
-    ahead = (left + duty / 2) / course.frequency
-    w = course.bandwidth
-    slowing = (1 - np.exp(-w * ahead) * (1 + w * ahead)) / (w * w)
-    (x, y, angle), (ax, ay, turn) = now.twist.value.tolist(), now.twist.rate.tolist()
-    way, angles = complex(x, y) * ahead + complex(ax, ay) * slowing, angle * ahead + turn * slowing
-    place: Floats = now.origin + cmath.exp(1j * now.yaw) * (way * turned(angles) + np.exp(1j * angles) * course.rest)
-    return place
-
-
-def _swing(now: Moment, share: Floats, target: Floats) -> Moment:
-    """Move the swinging feet on: the quintic from here to the target, there at rest."""
-    foot, pace, bend = now.foot.copy(), now.pace.copy(), now.bend.copy()
-    for leg in np.flatnonzero(~now.down).tolist():
-        left = 1.0 - float(now.share[leg])
-        if left <= 0:
-            foot[leg], pace[leg], bend[leg] = target[leg], 0.0, 0.0
-            continue
-        x = (float(share[leg]) - float(now.share[leg])) / left
-        here, speed, half = complex(foot[leg]), complex(pace[leg]) * left, complex(bend[leg]) * (left * left / 2)
-        gap, missing, bent = complex(target[leg]) - (here + speed + half), -(speed + 2 * half), -2 * half
-        a3 = 10 * gap - 4 * missing + bent / 2
-        a4 = -15 * gap + 7 * missing - bent
-        a5 = 6 * gap - 3 * missing + bent / 2
-        foot[leg] = here + x * (speed + x * (half + x * (a3 + x * (a4 + x * a5))))
-        pace[leg] = (speed + x * (2 * half + x * (3 * a3 + x * (4 * a4 + x * 5 * a5)))) / left
-        bend[leg] = (2 * half + x * (6 * a3 + x * (12 * a4 + x * 20 * a5))) / (left * left)
-    return now._replace(share=share, target=target, foot=foot, pace=pace, bend=bend)
-
-
-def _land(now: Moment, landed: Floats) -> Moment:
-    """Put feet down that have come to the end of their swing."""
-    return now._replace(
-        number=now.number + landed,
-        down=now.down | landed,
-        share=np.where(landed, 0.0, now.share),
-        foot=np.where(landed, now.target, now.foot),
-        pace=np.where(landed, 0.0, now.pace),
-        bend=np.where(landed, 0.0, now.bend),
-        met=np.where(landed, np.inf, now.met),
+    swing = 1 - duty
+    landing = _Landing.of(now, course)
+    final = final_rest(now, course) if stopping else None
+    share, foot, target = now.share.tolist(), now.foot.tolist(), now.target.tolist()
+    pace, bend = now.pace.tolist(), now.bend.tolist()
+    lands, landed = course.lands.tolist(), []
+    for leg in [leg for leg, on in enumerate(down) if not on]:
+        late, since = float(now.late[leg]), since_lift[leg]
+        part = min(max((since - late) / (swing - late), 0.0), 1.0)
+        if share[leg] <= FREEZE and now.met[leg] == math.inf:
+            ahead = (swing - since + duty / 2) / course.frequency
+            target[leg] = landing.foothold(complex(course.rest[leg]), ahead) if final is None else complex(final[leg])
+        way = (foot[leg], pace[leg], bend[leg])
+        foot[leg], pace[leg], bend[leg] = _quintic(way, target[leg], share[leg], part)
+        share[leg] = part
+        if lands[leg] and since >= swing - TIE:
+            landed.append(leg)
+            share[leg], foot[leg], pace[leg], bend[leg] = 0.0, target[leg], 0j, 0j
+    after = now._replace(
+        share=np.array(share), foot=np.array(foot), target=np.array(target), pace=np.array(pace), bend=np.array(bend)
     )
+    return _land(after, landed) if landed else after
+
+
+def _quintic(
+    way: tuple[complex, complex, complex], target: complex, share: float, part: float
+) -> tuple[complex, complex, complex]:
+    """Go on from a share of the swing to another, on the quintic that ends at the target at rest.
+
+    `way` is where the foot is, and the first and second derivative of its way by the share.
+    """
+    left = 1.0 - share
+    if left <= 0:
+        return target, 0j, 0j
+    x = (part - share) / left
+    here, speed, half = way[0], way[1] * left, way[2] * (left * left / 2)
+    gap, missing, bent = target - (here + speed + half), -(speed + 2 * half), -2 * half
+    a3 = 10 * gap - 4 * missing + bent / 2
+    a4 = -15 * gap + 7 * missing - bent
+    a5 = 6 * gap - 3 * missing + bent / 2
+    return (
+        here + x * (speed + x * (half + x * (a3 + x * (a4 + x * a5)))),
+        (speed + x * (2 * half + x * (3 * a3 + x * (4 * a4 + x * 5 * a5)))) / left,
+        (2 * half + x * (6 * a3 + x * (12 * a4 + x * 20 * a5))) / (left * left),
+    )
+
+
+def _land(now: Moment, landed: list[int]) -> Moment:
+    """Put feet down that are where they are to land."""
+    number, down, met = now.number.copy(), now.down.copy(), now.met.copy()
+    number[landed] += 1
+    down[landed], met[landed] = True, np.inf
+    return now._replace(number=number, down=down, met=met)
 
 
 def meet_ground(now: Moment, met: Floats, lift: float) -> Moment:

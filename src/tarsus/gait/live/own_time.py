@@ -45,7 +45,7 @@ class OwnTime:
     def __init__(self, angles: Floats, speed: Floats, acceleration: Floats) -> None:
         self.angles = angles
         self.rate = 1.0
-        self._speed, self._acceleration = speed, acceleration
+        self._kept_speed, self._acceleration = _KEPT * speed, acceleration
         self._joint_rate = np.zeros_like(angles)
         self._last_dt = 0.01
         self._strain = 0.0
@@ -91,7 +91,7 @@ class OwnTime:
 
     def _slower(self, turned: Floats, rate: float, dt: float) -> float:
         """Return at which rate the joints keep within speed and acceleration; `rate` where they do already."""
-        speed, reach = _KEPT * self._speed, _KEPT * self._acceleration * dt
+        speed, reach = self._kept_speed, (_KEPT * dt) * self._acceleration
         if (np.abs(turned) <= speed).all() and (np.abs(turned - self._joint_rate) <= reach).all():
             return rate
         size = np.maximum(np.abs(turned), 1e-12)

@@ -7,15 +7,16 @@ feet [m]; then the amplitudes of the body's sway, x, y, z [m], roll, pitch, yaw 
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 
 from tarsus.gait.live.workspace import Stand
 
-__all__ = ["LIFT", "calm_sway", "rotation_of", "stand_of", "swayed"]
+__all__ = ["LIFT", "Rows", "calm_sway", "rotation_rows", "stand_of", "swayed"]
 
 Floats = np.ndarray[Any, Any]
+Rows: TypeAlias = tuple[tuple[float, ...], ...]
 
 LIFT = 6
 """Where the lift stands in the row."""
@@ -24,16 +25,14 @@ LIFT = 6
 _SWAY_BEND, _ARM = 1.5, 0.3
 
 
-def rotation_of(roll: float, pitch: float, yaw: float) -> Floats:
-    """Return ``Rz(yaw) Ry(pitch) Rx(roll)``."""
+def rotation_rows(roll: float, pitch: float, yaw: float) -> Rows:
+    """Return the rows of ``Rz(yaw) Ry(pitch) Rx(roll)``."""
     a, b, c = math.cos(yaw), math.cos(pitch), math.cos(roll)
     d, e, f = math.sin(yaw), math.sin(pitch), math.sin(roll)
-    return np.array(
-        [
-            [a * b, a * e * f - d * c, a * e * c + d * f],
-            [d * b, d * e * f + a * c, d * e * c - a * f],
-            [-e, b * f, b * c],
-        ]
+    return (
+        (a * b, a * e * f - d * c, a * e * c + d * f),
+        (d * b, d * e * f + a * c, d * e * c - a * f),
+        (-e, b * f, b * c),
     )
 
 
@@ -48,7 +47,7 @@ def stand_of(row: Floats, rest: Floats) -> Stand:
         Rest footholds in the heading frame [m].
     """
     _, _, _, roll, pitch, yaw, lift = row[: LIFT + 1].tolist()
-    return Stand(rest, rotation_of(roll, pitch, yaw), row[:3], lift)
+    return Stand(rest, np.array(rotation_rows(roll, pitch, yaw)), row[:3], lift)
 
 
 def swayed(row: Floats, cycles: float, beats: float) -> Floats:

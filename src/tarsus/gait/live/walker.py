@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import cmath
 import math
 from collections.abc import Sequence
 from typing import Any
@@ -24,9 +23,9 @@ from tarsus.gait.live.levelling import LevellingMode
 from tarsus.gait.live.moment import THERE, TIE, Course, Moment, final_rest, go_on, meet_ground
 from tarsus.gait.live.own_time import OwnTime
 from tarsus.gait.live.posture import LIFT, calm_sway
-from tarsus.gait.live.quick import QuickLegs
 from tarsus.gait.live.search import Search
 from tarsus.gait.live.senses import Senses
+from tarsus.gait.live.solver import Solver
 from tarsus.gait.live.support import support_sets
 from tarsus.gait.live.tempo import joint_limits
 from tarsus.gait.live.tilt import Commanded
@@ -34,7 +33,6 @@ from tarsus.gait.live.walker_view import WalkerView
 from tarsus.gait.live.wish import Wish
 from tarsus.gait.live.workspace import Parts, all_parts
 from tarsus.gait.setup import Setup, require_number
-from tarsus.kinematics.inverse import inverse_kinematics
 from tarsus.kinematics.mass import centre_of_mass
 from tarsus.kinematics.stability import stability_margin
 from tarsus.robot.robot import Robot
@@ -53,6 +51,7 @@ _LONGEST_TICK = 0.05
 # In which time a change that waits for room slows the walk down by a factor of e [s].
 _PATIENCE = 1.0
 _NO_SWAY = (0.0,) * 6
+_THERE = [0.0] * (LIFT + 1)
 # How far inside their support the feet left must hold the robot when a leg is taken out of the gait [m].
 _LEAST_MARGIN = 0.01
 # How near to its target a twist counts as steady [m/s, rad/s].
@@ -124,7 +123,7 @@ class Walker(WalkerView):
         self.robot = setup.robot
         self.joint_speed, self.joint_acceleration = joint_limits(self.robot, joint_speed, joint_acceleration)
         self._foot_distance = setup.foot_distance
-        self._quick = QuickLegs(self.robot)
+        self._solver = Solver(self.robot)
         manner = Manner(
             gait=gait,
             body=(0.0,) * 6,
@@ -149,6 +148,7 @@ class Walker(WalkerView):
         self._stepping: Change | None = None
         self._settling: tuple[Change, int] | None = None
         self._posture = change.posture
+        self._goal = np.append(change.posture, _NO_SWAY)
         self._frequency = 1 / change.tempo.cycle_time
         self._target = np.zeros(3)
         self._patience = 1.0
@@ -158,6 +158,7 @@ class Walker(WalkerView):
         self._hands: dict[int, Hand] = {}
         self._hand_limits: dict[int, str] = {}
         self._points: dict[int, Sequence[float]] = {}
+        self._asked: Wish | None = None
         self._leaning_for: tuple[int, ...] = ()
         self._lean = 0j
         self._searches: dict[int, Search] = {}
@@ -165,7 +166,7 @@ class Walker(WalkerView):
         self._walking = False
         self.time = 0.0
         self._set_gait(change.manner.gait)
-        self._all, self._flat = np.ones(legs, dtype=bool), np.zeros(legs)
+        self._all, self._none, self._flat = np.ones(legs, dtype=bool), np.zeros(legs, dtype=bool), np.zeros(legs)
         none, zero = np.zeros(legs), np.zeros(legs, dtype=complex)
         self._now = Moment(
             clock=0.0,
@@ -184,7 +185,8 @@ class Walker(WalkerView):
             origin=0j,
             yaw=0.0,
             twist=Lag.still(np.zeros(3)),
-            posture=Lag.still(np.append(change.posture, np.zeros(6))),
+            posture=Lag.still(self._goal),
+            late=none,
         )
         self._offset = none
         self._own = OwnTime(self._solve(self._now), self.joint_speed, self.joint_acceleration)
@@ -221,15 +223,23 @@ class Walker(WalkerView):
         if not 0 < dt < math.inf:
             raise InputError(f"dt is {dt} s; it must be greater than 0 and finite")
         dt = min(float(dt), _LONGEST_TICK)
-        gone = self._gone(wish)
-        self._agenda.ask(wish, gone, self._correction(gone))
+        self._ask(wish)
         self._sense(senses, dt)
         self._change(dt)
         self._move_hands(wish, dt)
-        self._aim(np.array(wish.twist))
+        self._aim(wish.twist)
         self._advance(dt)
         self.time += dt
         return self.angles
+
+    def _ask(self, wish: Wish) -> None:
+        """Note what is asked for besides the twist, where it isn't what was asked for before."""
+        wanted, gone = self._agenda.wanted, self._gone(wish)
+        correction = self._correction(gone)
+        known = wish.only_twist or wish is self._asked
+        if not known or gone != wanted.gone or correction != wanted.correction:
+            self._agenda.ask(wish, gone, correction)
+            self._asked = wish
 
     def _correction(self, gone: tuple[int, ...]) -> tuple[float, ...]:
         """Return what the ground, and legs that don't bear, ask of the body."""
@@ -318,8 +328,14 @@ class Walker(WalkerView):
         if self._settling is not None or self._stepping is not None:
             return False
         returning = len(self._hands) > len(self._agenda.doing.manner.gone)
-        off = np.abs(self._now.posture.value[: LIFT + 1] - self._posture).max()
-        return not returning and bool(off < _AT_POSTURE)
+        return not returning and max(self._way_left()) < _AT_POSTURE
+
+    def _way_left(self) -> list[float]:
+        """Return how far the posture is from where it is to go, each of its numbers."""
+        if self._now.posture.value is self._goal:
+            return _THERE
+        goal, value = self._goal[: LIFT + 1].tolist(), self._now.posture.value[: LIFT + 1].tolist()
+        return [abs(a - b) for a, b in zip(goal, value, strict=True)]
 
     def _try_change(self, change: Change) -> None:
         """Go over to a change as soon as the feet on the ground allow it."""
@@ -364,6 +380,7 @@ class Walker(WalkerView):
         if slow and stepped.all() and self._works(begins, ends, bounds, self._frequency):
             self._footing.tighten(change.way)
             self._posture, self._stepping = change.posture, None
+            self._goal = np.append(change.posture, self._goal[LIFT + 1 :])
 
     def _adopt(self, change: Change) -> None:
         """Send the feet to where they are to rest; the body follows. Legs that leave the gait become hands."""
@@ -396,6 +413,8 @@ class Walker(WalkerView):
 
     def _gone(self, wish: Wish) -> tuple[int, ...]:
         """Return which legs are to be out of the gait."""
+        if not (wish.hands or wish.hand_speeds):
+            return self._agenda.wanted.gone
         gone = set(self._agenda.wanted.gone)
         for leg, point in [*(wish.hands or {}).items(), *(wish.hand_speeds or {}).items()]:
             if leg not in range(self.robot.legs):
@@ -405,6 +424,8 @@ class Walker(WalkerView):
 
     def _move_hands(self, wish: Wish, dt: float) -> None:
         """Set where the hands go: as far towards what is asked for as their legs reach."""
+        if not (self._points or wish.hands or wish.hand_speeds):
+            return
         speeds = wish.hand_speeds or {}
         # A point holds until there is another; a speed, as long as it is given.
         asked = {**self._points, **(wish.hands or {})}
@@ -439,16 +460,23 @@ class Walker(WalkerView):
     def _stances(self, frequency: float) -> tuple[Floats, Floats]:
         """Return from when until when each foot is where it stands, or where it is about to [s]."""
         now, duty = self._now, self.gait.duty
-        over = (overhang(duty) - 0.5) * duty / frequency
-        begins = np.where(now.down, 0.0, (1 - now.share) * (1 - duty) / frequency)
         if self._settling is not None:
             change, first = self._settling
             new = change.manner.gait
             offsets = np.asarray(new.offsets)
             delay = ((offsets - offsets[first]) % 1 + (overhang(new.duty) - 0.5) * new.duty) * change.tempo.cycle_time
+            begins = np.where(now.down, 0.0, (1 - now.share) * (1 - duty) / frequency)
             return begins, self._until_down() + delay
-        lift = (self._offsets + duty + now.number - now.clock) / frequency
-        return begins, np.where(now.down, lift, begins + duty / frequency) + over
+        over = (overhang(duty) - 0.5) * duty / frequency
+        starts: list[float] = []
+        stops: list[float] = []
+        for down, share, number, offset in zip(
+            now.down.tolist(), now.share.tolist(), now.number.tolist(), self.gait.offsets, strict=True
+        ):
+            starts.append(0.0 if down else (1 - share) * (1 - duty) / frequency)
+            lift = (offset + duty + number - now.clock) / frequency
+            stops.append((lift if down else starts[-1] + duty / frequency) + over)
+        return np.array(starts), np.array(stops)
 
     def _excess(self, begins: Floats, ends: Floats, bounds: Floats, frequency: float) -> Floats:
         return excess(
@@ -469,37 +497,42 @@ class Walker(WalkerView):
     def _works(self, begins: Floats, ends: Floats, bounds: Floats, frequency: float) -> bool:
         return bool(self._excess(begins, ends, bounds, frequency).max() <= THERE)
 
-    def _aim(self, twist: Floats) -> None:
+    def _aim(self, twist: Sequence[float]) -> None:
         """Set the target of the twist: as much of the wish as the legs allow, for good and right now."""
-        share, leg = self._largest_share(twist)
-        wish = twist * min(share, self._patience)
+        share, leg = self._largest_share(tuple(twist))
         self._limited = self._reasons(share, leg)
+        part = min(share, self._patience)
+        wish = [part * speed for speed in twist]
         if not self._walking:
-            if not wish.any() and self._at_rest():
+            if not any(wish) and self._at_rest():
                 return
             self._begin(0)
             self._walking = True
         # In steady walking nothing changes. Before that, feet may be put down where the target leaves them no room.
-        steady = np.abs(self._now.twist.value - wish).max() < _STEADY
-        settled = self._settling is None and self._frequency * self._agenda.doing.tempo.cycle_time == 1.0
-        if steady and settled and (wish == self._target).all():
+        if wish == self._target.tolist() and self._steady(wish):
             return
         begins, ends = self._stances(self._frequency)
         self._target = allowed_target(
             self._now,
             self._target,
-            wish,
+            np.array(wish),
             begins=begins,
             ends=ends,
             bounds=self._bounds(),
             bandwidth=self._bandwidth(self._frequency),
         )
 
-    def _largest_share(self, twist: Floats) -> tuple[float, int]:
+    def _steady(self, twist: Sequence[float]) -> bool:
+        """Return whether the robot walks at a twist, and at its pace."""
+        settled = self._settling is None and self._frequency * self._agenda.doing.tempo.cycle_time == 1.0
+        value = self._now.twist.value.tolist()
+        return settled and max(abs(a - b) for a, b in zip(value, twist, strict=True)) < _STEADY
+
+    def _largest_share(self, twist: tuple[float, ...]) -> tuple[float, int]:
         """Return how much of a twist works for good in all that is gone over to, and which leg stops it."""
         doing, settling = self._agenda.doing, self._settling[0] if self._settling else None
         frequency = min(self._frequency, 1 / doing.tempo.cycle_time)
-        key = (twist.tobytes(), frequency, self._footing.way, self._agenda.ready, self._stepping, settling)
+        key = (twist, frequency, self._footing.way, self._agenda.ready, self._stepping, settling)
         if key == self._share_of:
             return self._share
         asked: list[tuple[Change, Envelope]] = [(doing, self._footing.way)]
@@ -510,7 +543,7 @@ class Walker(WalkerView):
         for change, way in asked:
             duty = change.manner.gait.duty
             stance_time = duty * max(1 / frequency, change.tempo.cycle_time)
-            allowed, which = way.largest_share(twist, stance_time=stance_time, duty=duty)
+            allowed, which = way.largest_share(np.array(twist), stance_time=stance_time, duty=duty)
             if allowed < share:
                 share, leg = allowed, which
         self._share_of, self._share = key, (share, leg)
@@ -563,16 +596,11 @@ class Walker(WalkerView):
             # Where a foot that is about to land finds no ground, none may lift in its stead.
             soon = now.share + dt * self._frequency / (1 - self.gait.duty - now.late) >= 1.0 - TIE
             holds = holds or bool((~now.down & ~lands & soon).any())
-        sway = _NO_SWAY
-        if self._walking and any(self._agenda.doing.manner.sway):
-            wished = np.array(self._agenda.doing.manner.sway)
-            sway = tuple((wished * calm_sway(wished, self._frequency, self._beats)).tolist())
         return Course(
             gait=self.gait,
-            offsets=self._offsets,
             frequency=self._frequency if self._walking else 0.0,
             twist=self._target,
-            posture=np.array([*self._posture.tolist(), *sway]),
+            posture=self._goal,
             bandwidth=self._bandwidth(self._frequency),
             posture_bandwidth=self._posture_bandwidth(),
             steps=steps,
@@ -584,15 +612,26 @@ class Walker(WalkerView):
         )
 
     def _posture_bandwidth(self) -> float:
-        way = np.abs(self._posture - self._now.posture.value[: LIFT + 1])
-        if way.max() < _AT_POSTURE:
+        left = self._way_left()
+        if max(left) < _AT_POSTURE:
             return _POSTURE_BANDWIDTH
-        shift, turn, lift = float(way[:3].max()), float(way[3:LIFT].max()), float(way[LIFT])
+        shift, turn, lift = max(left[:3]), max(left[3:LIFT]), left[LIFT]
         far = max(shift / _BODY_SPEED, turn / _BODY_TURN, lift / _BODY_SPEED)
         return min(_POSTURE_BANDWIDTH, math.e / max(far, 1e-9))
 
+    def _swaying(self) -> None:
+        """Set by how much the body is to sway now."""
+        wished = self._agenda.doing.manner.sway
+        sway = np.array(wished if self._walking else _NO_SWAY)
+        if sway.any():
+            sway *= calm_sway(sway, self._frequency, self._beats)
+        if (self._goal[LIFT + 1 :] != sway).any():
+            self._goal = np.append(self._posture, sway)
+
     def _advance(self, dt: float) -> None:
         """Go on by one tick, or less of it where the joints need longer."""
+        if any(self._agenda.doing.manner.sway) or self._goal[LIFT + 1 :].any():
+            self._swaying()
         before, course, hands = self._now, self._course(dt), self._hands
         self._search(dt)
         if self._felt is not None:
@@ -631,24 +670,12 @@ class Walker(WalkerView):
         self._now = now._replace(ground=ground, met=np.where(over, np.inf, now.met))
 
     def _solve(self, now: Moment) -> Floats:
-        """Return the joint angles ``(legs, 3)`` of a moment."""
-        stand = self._stand(now)
-        seen = ((now.foot - now.origin) * cmath.exp(-1j * now.yaw)).tolist()
-        height = (now.height(stand.lift) + self._offset).tolist()
-        feet = [(p.real, p.imag, z) for p, z in zip(seen, height, strict=True)]
-        found = self._quick.angles(feet, stand.rotation.tolist(), stand.position.tolist())
-        if found is None:
-            in_body = (np.array(feet) - stand.position) @ stand.rotation
-            angles = np.array(inverse_kinematics(self.robot, in_body).angles)
-        else:
-            angles = np.array(found)
-        angles.setflags(write=False)
-        return angles
+        return self._solver.angles(now, self._offset)
 
     def _finish(self, before: Moment, dt: float) -> None:
         """See what has come to its end with this tick."""
         now, doing = self._now, self._agenda.doing
-        landed = now.down & ~before.down
+        landed = now.down & ~before.down if now.down is not before.down else self._none
         if landed.any():
             self._footing.land(landed)
             self._searches = {leg: search for leg, search in self._searches.items() if not landed[leg]}
@@ -659,7 +686,8 @@ class Walker(WalkerView):
             self._change_pace(dt, faster=arrived)
         if arrived and self._footing.way is not doing.there:
             self._footing.arrive(doing.there)
-        if self._walking and now.down.all() and not self._target.any() and not now.twist.value.any():
+        moves = any(self._target.tolist()) or any(now.twist.value.tolist())
+        if self._walking and not moves and now.down.all():
             self._walking = not (self._at_rest() and self._settling is None)
 
     def _change_pace(self, dt: float, *, faster: bool) -> None:

@@ -66,6 +66,15 @@ class Wish:
             if getattr(self, name) is not None:
                 object.__setattr__(self, name, _by_leg(name, getattr(self, name)))
 
+    @property
+    def only_twist(self) -> bool:
+        """Whether all but the twist stays as it is."""
+        others = (self.body, self.gait, self.clearance, self.lift, self.stance_width, self.cycle_time, self.sway)
+        return others == _NOTHING and self.hands is None and self.hand_speeds is None
+
+
+_NOTHING = (None,) * 7
+
 
 def _by_leg(name: str, given: Any) -> dict[int, tuple[float, ...] | None]:
     if not isinstance(given, Mapping):
