@@ -103,6 +103,15 @@ def test_so_it_does_with_another_height_lift_and_pace(direction):
     assert_planned(w, top(w, direction, 0.8), **given)
 
 
+def test_a_cycle_time_goes_back_to_the_one_that_gets_farthest():
+    w = walker("strider")
+    best = w.cycle_time
+    for wish, expected in ((Wish(cycle_time=2.0), 2.0), (Wish(cycle_time="auto"), best)):
+        for _ in range(400):
+            w.step(wish, 0.02)
+        assert w.cycle_time == pytest.approx(expected, rel=1e-9)
+
+
 def test_so_it_does_after_a_change_on_the_move():
     w = walker("strider", "tripod")
     for _ in range(400):

@@ -83,7 +83,7 @@ class Agenda:
             clearance=m.clearance if wish.clearance is None else wish.clearance,
             lift=m.lift if wish.lift is None else wish.lift,
             stance_width=m.stance_width if wish.stance_width is None else wish.stance_width,
-            cycle_time=m.cycle_time if wish.cycle_time is None else wish.cycle_time,
+            cycle_time=_cycle_time(m.cycle_time, wish.cycle_time),
             sway=m.sway if wish.sway is None else tuple(wish.sway),
             correction=correction,
             gone=gone,
@@ -164,6 +164,13 @@ class Agenda:
             if manner not in (doing, *self.refusals):
                 return manner, stay
         return doing, True
+
+
+def _cycle_time(before: float | None, wished: float | str | None) -> float | None:
+    """Return the duration of a cycle that is asked for; None for the one that gets the robot farthest."""
+    if wished is None:
+        return before
+    return None if isinstance(wished, str) else wished
 
 
 # No length of a robot's stance is greater [m].

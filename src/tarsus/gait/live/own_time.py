@@ -45,7 +45,7 @@ class OwnTime:
     def __init__(self, angles: Floats, speed: Floats, acceleration: Floats) -> None:
         self.angles = angles
         self.rate = 1.0
-        self._kept_speed, self._acceleration = _KEPT * speed, acceleration
+        self._speed, self._acceleration = speed, acceleration
         self._joint_rate = np.zeros_like(angles)
         self._last_dt = 0.01
         self._strain = 0.0
@@ -70,18 +70,24 @@ class OwnTime:
         between = (dt + self._last_dt) / 2
         after = move(dt * rate)
         angles = solve(after)
-        turned = (angles - self.angles) / dt
+        turned, strain, works = self._taken(angles, dt, between)
         for _ in range(_TRIES):
-            slower = self._slower(turned, rate, between)
-            if slower >= rate:
+            if works or (slower := self._slower(turned, rate, between)) >= rate:
                 break
             rate = slower
             after = move(dt * rate)
             angles = solve(after)
-            turned = (angles - self.angles) / dt
-        self._strain = float((np.abs(turned - self._joint_rate) / self._acceleration).max()) / between
+            turned, strain, works = self._taken(angles, dt, between)
+        self._strain = strain
         self.angles, self._joint_rate, self.rate, self._last_dt = angles, turned, rate, dt
         return after
+
+    def _taken(self, angles: Floats, dt: float, between: float) -> tuple[Floats, float, bool]:
+        """Return the joints' speed, what share of their acceleration they take, and whether both are kept."""
+        turned = (angles - self.angles) / dt
+        strain = float((np.abs(turned - self._joint_rate) / self._acceleration).max()) / between
+        works = strain <= _KEPT and float((np.abs(turned) / self._speed).max()) <= _KEPT
+        return turned, strain, works
 
     def _calm_rate(self, move: Callable[[float], _T], solve: Callable[[_T], Floats]) -> float:
         """Return at which rate the joints keep well within their acceleration on the next bit of the way."""
@@ -90,10 +96,8 @@ class OwnTime:
         return math.sqrt(_CALM / max(float((bend / self._acceleration).max()), _CALM))
 
     def _slower(self, turned: Floats, rate: float, dt: float) -> float:
-        """Return at which rate the joints keep within speed and acceleration; `rate` where they do already."""
-        speed, reach = self._kept_speed, (_KEPT * dt) * self._acceleration
-        if (np.abs(turned) <= speed).all() and (np.abs(turned - self._joint_rate) <= reach).all():
-            return rate
+        """Return at which rate the joints keep within speed and acceleration, or come nearest to that."""
+        speed, reach = _KEPT * self._speed, _KEPT * self._acceleration * dt
         size = np.maximum(np.abs(turned), 1e-12)
         was = self._joint_rate * np.sign(turned)
         highest = float((np.minimum(speed, was + reach) / size).min())

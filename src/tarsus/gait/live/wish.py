@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal
 
 from tarsus.errors import InputError
 
@@ -33,8 +33,8 @@ class Wish:
         How high a swinging foot rises [m].
     stance_width : float, optional
         How much farther out than usual the feet rest, away from each coxa axis [m].
-    cycle_time : float, optional
-        Duration of a cycle [s].
+    cycle_time : float or "auto", optional
+        Duration of a cycle [s]; "auto" for the one that gets the robot farthest.
     sway : (x, y, z, roll, pitch, yaw), optional
         Amplitude of a rhythmic motion of the body with the steps [m], [rad].
     hands : mapping of leg to (x, y, z) or None, optional
@@ -49,7 +49,7 @@ class Wish:
     clearance: float | None = None
     lift: float | None = None
     stance_width: float | None = None
-    cycle_time: float | None = None
+    cycle_time: float | Literal["auto"] | None = None
     sway: Sequence[float] | None = None
     hands: Mapping[int, Sequence[float] | None] | None = None
     hand_speeds: Mapping[int, Sequence[float]] | None = None
@@ -60,7 +60,7 @@ class Wish:
             if getattr(self, name) is not None:
                 object.__setattr__(self, name, numbers(name, getattr(self, name), BODY_AXES))
         for name in ("clearance", "lift", "stance_width", "cycle_time"):
-            if getattr(self, name) is not None:
+            if getattr(self, name) is not None and (name, getattr(self, name)) != _AUTO:
                 object.__setattr__(self, name, numbers(name, (getattr(self, name),), (name,))[0])
         for name in ("hands", "hand_speeds"):
             if getattr(self, name) is not None:
@@ -74,6 +74,7 @@ class Wish:
 
 
 _NOTHING = (None,) * 7
+_AUTO = ("cycle_time", "auto")
 
 
 def _by_leg(name: str, given: Any) -> dict[int, tuple[float, ...] | None]:
