@@ -14,7 +14,7 @@ from tarsus.kinematics.verdict import ANGLE_TOLERANCE
 from tarsus.robot.geometry import LegGeometry
 from tarsus.robot.robot import Robot
 
-__all__ = ["default_clearance", "default_stance", "reachable_band"]
+__all__ = ["default_clearance", "default_stance", "reachable_band", "stance_or_nan"]
 
 
 def default_clearance(robot: Robot) -> Array:
@@ -67,13 +67,14 @@ def reachable_band(robot: Robot, height: Array) -> tuple[Array, Array]:
     z = as_floats(xp, height, name="height")
     require_finite("height", z)
     z = z[..., None] - (g.mount_z + g.up)
-    ends = xp.sort(stack_last(xp, tuple(_band_ends(xp, g, z))), axis=-1)
-    zero = xp.zeros_like(ends[..., 0])
+    ends = xp.sort(xp.stack(_band_ends(xp, g, z)), axis=0)
+    lows, highs = ends[:-1, ...], ends[1:, ...]
+    between_open = _in_limits(xp, g, (lows + highs) / 2, z)
+    zero = xp.zeros_like(z)
     start, best_start, best_end = zero, zero, zero
     was_open = zero > 1
-    for i in range(ends.shape[-1] - 1):
-        low, high = ends[..., i], ends[..., i + 1]
-        is_open = _in_limits(xp, g, (low + high) / 2, z)
+    for i in range(lows.shape[0]):
+        low, high, is_open = lows[i, ...], highs[i, ...], between_open[i, ...]
         start = xp.where(is_open & ~was_open, low, start)
         wider = is_open & (high - start > best_end - best_start)
         best_start, best_end = xp.where(wider, start, best_start), xp.where(wider, high, best_end)
@@ -140,15 +141,43 @@ def default_stance(robot: Robot, clearance: Array | None = None, *, lift: Array 
         If a leg reaches the ground nowhere at that clearance; the message says which clearances work.
     """
     height = default_clearance(robot) if clearance is None else clearance
+    feet = stance_or_nan(robot, height, lift=lift)
+    xp = namespace(feet)
+    missing = xp.isnan(feet[..., 0])
+    if not is_traced(feet) and bool(xp.any(missing)):
+        raise UnreachableError(_why_no_stance(robot, np.asarray(height), np.asarray(lift), np.asarray(missing)))
+    return feet
+
+
+def stance_or_nan(robot: Robot, clearance: Array, *, lift: Array = 0.0) -> Array:
+    """Return what `default_stance` does, NaN where it raises that a leg reaches the ground nowhere.
+
+    Parameters
+    ----------
+    robot : Robot
+        The robot, or a batch of designs.
+    clearance : array, shape (...)
+        Height of the body's origin over the ground [m].
+    lift : array, shape (...)
+        How far above the ground a foot must be able to rise [m].
+
+    Returns
+    -------
+    array, shape (..., legs, 3)
+        Footholds in B [m]; x and y of a leg that has none are NaN.
+
+    Raises
+    ------
+    InputError
+        If the clearance or the lift is not a finite number.
+    """
     g = robot.geometry
-    xp = namespace(height, lift, *g)
+    xp = namespace(clearance, lift, *g)
     g = g.to(xp)
-    z, rise = -as_floats(xp, height, name="clearance"), as_floats(xp, lift, name="lift")
+    z, rise = -as_floats(xp, clearance, name="clearance"), as_floats(xp, lift, name="lift")
     require_finite("clearance", -z)
     require_finite("lift", rise)
     middle = _middle(xp, robot, z, rise)
-    if not is_traced(middle) and bool(xp.any(xp.isnan(middle))):
-        raise UnreachableError(_why_no_stance(robot, -np.asarray(z), np.asarray(rise), np.asarray(middle)))
     zero = xp.zeros_like(middle)
     coxa = xp.minimum(xp.maximum(zero, g.coxa_lower), g.coxa_upper)
     out_x, out_y = middle * xp.cos(coxa) - g.side * xp.sin(coxa), middle * xp.sin(coxa) + g.side * xp.cos(coxa)
@@ -159,18 +188,20 @@ def default_stance(robot: Robot, clearance: Array | None = None, *, lift: Array 
 
 def _middle(xp: Namespace, robot: Robot, height: Array, lift: Array) -> Array:
     """Return the middle of what each foot reaches on the ground and lifted; NaN where there is nothing."""
-    nearest, farthest = reachable_band(robot, height)
-    nearest_lifted, farthest_lifted = reachable_band(robot, height + lift)
-    nearest, farthest = xp.maximum(nearest, nearest_lifted), xp.minimum(farthest, farthest_lifted)
+    height, lift = height + xp.zeros_like(lift), lift + xp.zeros_like(height)
+    # The two heights come before the axes of a batch of designs.
+    shape = (1,) * (len(robot.batch_shape) - height.ndim) + height.shape
+    low, high = reachable_band(robot, xp.stack([xp.reshape(z, shape) for z in (height, height + lift)]))
+    nearest, farthest = xp.maximum(low[0, ...], low[1, ...]), xp.minimum(high[0, ...], high[1, ...])
     return xp.where(nearest <= farthest, (nearest + farthest) / 2, xp.full_like(nearest, xp.nan))
 
 
 def _why_no_stance(
-    robot: Robot, clearance: np.ndarray[Any, Any], lift: np.ndarray[Any, Any], middle: np.ndarray[Any, Any]
+    robot: Robot, clearance: np.ndarray[Any, Any], lift: np.ndarray[Any, Any], missing: np.ndarray[Any, Any]
 ) -> str:
     """Say which leg has no foothold, and at which clearances all legs of that design have one."""
-    *batch, leg = (int(i) for i in np.argwhere(np.isnan(middle))[0])
-    where, whole = tuple(batch), middle.shape[:-1]
+    *batch, leg = (int(i) for i in np.argwhere(missing)[0])
+    where, whole = tuple(batch), missing.shape[:-1]
     wanted, rise = (float(np.broadcast_to(values, whole)[where]) * 1000 for values in (clearance, lift))
     lifted = f" and can be lifted {rise:.1f} mm" if rise else ""
     text = (

@@ -98,22 +98,50 @@ class Envelope:
         # Of a wish without measure, as much as can be reckoned with.
         scale = max(1.0, float(np.abs(twist).max()))
         forward, left, turn = (np.asarray(twist) / scale).tolist()
-        ahead = overhang(duty) * stance_time / _RESERVE
-        # An arc to either side of the rest foothold: to the second order along and across the way, and less than that
-        # in truth, as sin x < x and 1 - cos x < x^2 / 2.
-        way = (complex(forward, left) + 1j * turn * self.rest) * ahead
-        along = np.abs((NORMALS.conj() * way[:, None]).real)
-        across = np.maximum((NORMALS.conj() * (0.5j * turn * ahead * way)[:, None]).real, 0.0)
-        room = np.maximum(self.room, 0.0)
-        share = _positive_root(across, along, room)
+        share = self._share_by_side(complex(forward, left), turn, overhang(duty) * stance_time / _RESERVE)
         worst = int(share.argmin())
-        # What straight on and turning ask of the joints adds up.
-        straight = math.hypot(forward, left) * stance_time / self.stroke
-        turning = abs(turn) * float(np.abs(self.rest).max()) * stance_time / self.turning
-        fastest = 1 / max(straight + turning, _LEAST)
+        straight, turning = math.hypot(forward, left), abs(turn)
+        fastest = 1 / max(self._strain(straight, turning, stance_time), _LEAST)
         return min(float(share.flat[worst]), fastest) / scale, worst // len(NORMALS)
 
+    def largest_shares(self, twists: Floats, *, stance_time: float, duty: float) -> Floats:
+        """Return how much of each of some twists the robot can walk at for good, as `largest_share`.
 
+        Parameters
+        ----------
+        twists : array, shape (n, 3)
+            Forward [m/s], left [m/s], turning [rad/s]; none is beyond all measure.
+        stance_time : float
+            How long a foot stays on the ground [s].
+        duty : float
+            Duty factor.
+
+        Returns
+        -------
+        array, shape (n,)
+            Shares from 0 up.
+        """
+        straight, turn = twists[:, :1] + 1j * twists[:, 1:2], twists[:, 2:]
+        share = self._share_by_side(straight, turn, overhang(duty) * stance_time / _RESERVE).min(axis=(-2, -1))
+        strain = self._strain(np.abs(straight), np.abs(turn), stance_time)[:, 0]
+        return np.asarray(np.minimum(share, 1 / np.maximum(strain, _LEAST)))
+
+    def _share_by_side(self, straight: Floats | complex, turn: Floats | float, ahead: float) -> Floats:
+        """Return how much of a twist each side allows ``(..., legs, 16)``, so many seconds ahead and back."""
+        # An arc to either side of the rest foothold: to the second order along and across the way, and less than that
+        # in truth, as sin x < x and 1 - cos x < x^2 / 2.
+        way = (straight + 1j * turn * self.rest) * ahead
+        along = np.abs((_TOWARDS * way[..., None]).real)
+        across = np.maximum((_TOWARDS * (0.5j * turn * ahead * way)[..., None]).real, 0.0)
+        return _positive_root(across, along, np.maximum(self.room, 0.0))
+
+    def _strain(self, straight: Any, turning: Any, stance_time: float) -> Any:
+        """Return how much of the joints' speed is taken: what straight on and turning ask of them adds up."""
+        outermost = float(np.abs(self.rest).max())
+        return straight * stance_time / self.stroke + turning * outermost * stance_time / self.turning
+
+
+_TOWARDS = NORMALS.conj()
 # What may be divided by.
 _LEAST = 1e-12
 

@@ -20,6 +20,9 @@ NORMALS.setflags(write=False)
 
 _COSINE, _SINE = ((NORMALS.conj()[:, None] * NORMALS).view(float).reshape(_SIDES, _SIDES, 2)[..., i] for i in (0, 1))
 _SINE = np.where(np.abs(_SINE) < 1e-9, 0.0, _SINE)
+_DIVISOR = np.where(_SINE == 0, 1.0, _SINE)
+# Which sides cut a side off at its clockwise end, which at the other.
+_BEFORE, _AFTER = np.where(_SINE < 0, 0.0, -np.inf), np.where(_SINE > 0, 0.0, np.inf)
 # What a corner may seem to be beyond another side from rounding [m].
 _ROUNDING = 1e-12
 
@@ -82,8 +85,7 @@ def polygon_ends(bounds: Floats, inside: Floats) -> tuple[Floats, Floats]:
     """
     room = np.maximum(polygon_room(bounds, inside), 0.0)
     # Along the line of side k, from the foot of the perpendicular: where the line of side j cuts it off.
-    cut = (room[:, None, :] - room[:, :, None] * _COSINE) / np.where(_SINE == 0, 1.0, _SINE)
-    start = np.where(_SINE < 0, cut, -np.inf).max(axis=-1)
-    end = np.where(_SINE > 0, cut, np.inf).min(axis=-1)
+    cut = (room[:, None, :] - room[:, :, None] * _COSINE) / _DIVISOR
+    start, end = (cut + _BEFORE).max(axis=-1), (cut + _AFTER).min(axis=-1)
     touches = start <= end + _ROUNDING
     return np.where(touches, (room + 1j * start) * NORMALS, 0.0), np.where(touches, (room + 1j * end) * NORMALS, 0.0)

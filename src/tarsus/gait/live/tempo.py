@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -10,7 +11,8 @@ from tarsus.gait.cycle import cycle_feet
 from tarsus.gait.gait import Gait
 from tarsus.gait.live.envelope import Envelope
 from tarsus.gait.live.guard_bounds import STOPPING_TIME, UNKNOWN_SPEED
-from tarsus.gait.live.workspace import Parts, Stand
+from tarsus.gait.live.stand import Stand
+from tarsus.gait.live.workspace import Parts
 from tarsus.robot.robot import Robot
 
 __all__ = ["Tempo", "joint_limits", "tempo"]
@@ -25,6 +27,11 @@ _LEAST_SIZE, _UNHURRIED = 0.25, 1.15
 _STRAIGHT = 8
 _TWISTS = np.array([(np.cos(a), np.sin(a), 0.0) for a in np.arange(_STRAIGHT) * np.pi / _STRAIGHT] + [(0.0, 0.0, 1.0)])
 _MOMENTS = 33
+# Cycles that are tried for the one that gets farthest, in least ones.
+_TRIED = np.geomspace(1.0, 4.0, 33)
+_ORIGIN_AND_ONE = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]])
+# How many feet at how many moments are worked out in one part.
+_PART = 3200
 
 
 def joint_limits(robot: Robot, speed: float | None, acceleration: float | None) -> tuple[Floats, Floats]:
@@ -96,20 +103,24 @@ def tempo(
         Wished duration of a cycle [s]; left out, that which gets the robot farthest: in a shorter one the joints
         allow shorter strokes only, in a longer one the legs no longer ones.
     """
-    strokes, cycles = [], []
-    for twists in np.array_split(_TWISTS, 5):
-        largest = np.array([_largest(limits, twist, gait.duty) for twist in twists])
-        rest = limits.rest
-        strokes.append(np.abs(largest[:, :1] + 1j * largest[:, 1:2] + 1j * largest[:, 2:] * rest).max(-1))
-        cycles.append(_cycle_times(robot, gait, stand, _SIZES[:, None, None] * largest, speed, acceleration))
+    # What the body moves in one stance, as far as the legs allow, and in parts of that; not at all, first of all.
+    farthest = limits.largest_shares(_TWISTS, stance_time=1.0, duty=gait.duty)[:, None] * _TWISTS
+    stroke = np.abs(farthest[:, :1] + 1j * farthest[:, 1:2] + 1j * farthest[:, 2:] * limits.rest).max(-1)
+    moves = np.concatenate([np.zeros((1, 3)), (_SIZES[1:, None, None] * farthest).reshape(-1, 3)])
+    cycle = _Cycle(robot, gait, stand, speed, acceleration)
+    times = []
+    for part in np.array_split(moves, math.ceil(len(moves) * cycle.size / _PART)):
+        times.append(cycle.shortest_times(part))
         yield
     # (sizes, twists): the shortest cycle for each size of each stroke.
-    stroke, shortest = np.concatenate(strokes), np.maximum.accumulate(np.concatenate(cycles, axis=1), axis=0)
+    shortest = np.empty((len(_SIZES), len(_TWISTS)))
+    shortest[0], shortest[1:] = times[0][0], np.concatenate(times)[1:].reshape(len(_SIZES) - 1, -1)
+    shortest = np.maximum.accumulate(shortest, axis=0)
     # The least in which the joints allow a good part of the stroke: in less, the robot would step on the spot.
     least = _UNHURRIED * float(np.array([np.interp(_LEAST_SIZE, _SIZES, column) for column in shortest.T]).max())
     if cycle_time is None:
-        tried = least * np.geomspace(1.0, 4.0, 33)
-        straight = np.array([_sizes(shortest, t) for t in tried])[:, :_STRAIGHT]
+        tried = least * _TRIED
+        straight = _sizes(shortest[:, :_STRAIGHT], tried)
         # Straight on, as robots mostly walk.
         far = np.minimum(
             straight[:, 0] * stroke[0], _cap(straight, tried[:, None] / shortest[-1, :_STRAIGHT], stroke[:_STRAIGHT])
@@ -133,29 +144,37 @@ def _cap(sizes: Floats, spare: Floats, stroke: Floats) -> Floats:
     return np.asarray(np.where(np.isfinite(bound), bound, (np.maximum(spare, 1.0) * stroke).max(-1)))
 
 
-def _sizes(shortest: Floats, cycle_time: float) -> Floats:
-    """Return for each twist which share of the longest stroke a cycle time allows."""
-    sizes = [np.interp(cycle_time, column, _SIZES) for column in shortest.T]
-    return np.asarray(sizes)
+def _sizes(shortest: Floats, cycle_times: Floats | float) -> Floats:
+    """Return for each twist, last axis, which share of the longest stroke cycle times allow."""
+    return np.stack([np.interp(cycle_times, column, _SIZES) for column in shortest.T], axis=-1)
 
 
-def _cycle_times(robot: Robot, gait: Gait, stand: Stand, twists: Floats, speed: Floats, acceleration: Floats) -> Floats:
-    """Return the shortest cycle ``(...)`` for what the body moves in one stance, ``(..., 3)``."""
-    rest = np.stack([stand.rest.real, stand.rest.imag, 0 * stand.rest.real], axis=-1)
-    # Every leg goes the same way through its own cycle: a swing, and a little of the stance on either side. Where the
-    # stance is the shorter part, the foot is fastest in it.
-    begin = gait.duty - 0.02 if gait.duty >= 0.5 else -0.02
-    phases = np.linspace(begin, 1.02, round(_MOMENTS * (1.02 - begin) / (1.04 - gait.duty)))
-    together = Gait(gait.duty, (0.0,) * gait.legs)
-    feet, _ = cycle_feet(together, rest, twists, lift=np.asarray(stand.lift), phases=phases)
-    angles = np.stack(stand.solve(robot, feet[..., 0], feet[..., 1], feet[..., 2])[:3], axis=-1)
-    rate = np.diff(angles, axis=-3) / (phases[1] - phases[0])
-    change = np.diff(rate, axis=-3) / (phases[1] - phases[0])
-    by_speed = np.abs(rate).max(axis=-3) / (_SPEED_SHARE * speed)
-    by_acceleration = np.sqrt(np.abs(change).max(axis=-3) / (_ACCELERATION_SHARE * acceleration))
-    return np.asarray(np.maximum(by_speed, by_acceleration).max(axis=(-2, -1)))
+class _Cycle:
+    """A steady cycle of a robot that stands in some way, and what it asks of the joints."""
 
+    def __init__(self, robot: Robot, gait: Gait, stand: Stand, speed: Floats, acceleration: Floats) -> None:
+        self._robot, self._stand = robot, stand
+        self._speed, self._acceleration = _SPEED_SHARE * speed.T[:, None], _ACCELERATION_SHARE * acceleration.T[:, None]
+        # Every leg goes the same way through its own cycle: a swing, and a little of the stance on either side. Where
+        # the stance is the shorter part, the foot is fastest in it.
+        begin = gait.duty - 0.02 if gait.duty >= 0.5 else -0.02
+        self._phases = np.linspace(begin, 1.02, round(_MOMENTS * (1.02 - begin) / (1.04 - gait.duty)))
+        self._gait = Gait(gait.duty, (0.0,))
+        self.size = len(self._phases) * robot.legs
 
-def _largest(limits: Envelope, twist: Floats, duty: float) -> Floats:
-    share, _ = limits.largest_share(twist, stance_time=1.0, duty=duty)
-    return np.asarray(share * twist)
+    def shortest_times(self, moves: Floats) -> Floats:
+        """Return the shortest cycle ``(n,)`` for what the body moves in one stance ``(n, 3)``."""
+        lift = np.asarray(self._stand.lift)
+        # Where a foot is, is linear in its rest foothold as a complex number: what becomes of 0 and of 1 tells it all.
+        feet, _ = cycle_feet(self._gait, _ORIGIN_AND_ONE, moves, lift=lift, phases=self._phases)
+        seen = (feet[..., 0] + 1j * feet[..., 1]).swapaxes(0, 1)
+        places = seen[..., :1] + (seen[..., 1:] - seen[..., :1]) * self._stand.rest
+        heights = feet[0, :, :1, 2:]
+        # (moments, joints, moves, legs)
+        angles = np.stack(self._stand.solve(self._robot, places.real, places.imag, heights)[:3], axis=1)
+        step = self._phases[1] - self._phases[0]
+        rate = np.diff(angles, axis=0) / step
+        change = np.diff(rate, axis=0) / step
+        by_speed = np.abs(rate).max(axis=0) / self._speed
+        by_acceleration = np.sqrt(np.abs(change).max(axis=0) / self._acceleration)
+        return np.asarray(np.maximum(by_speed, by_acceleration).max(axis=(0, 2)))
