@@ -11,19 +11,17 @@ from typing import Any
 
 import numpy as np
 
-from tarsus.gait.live.polygon import NORMALS, polygon_ends
-from tarsus.gait.live.support import safe_share
-from tarsus.gait.live.workspace import Parts, Stand, workspace
+from tarsus.gait.live.balance import Balance
+from tarsus.gait.live.polygon import NORMALS
+from tarsus.gait.live.stand import Stand
+from tarsus.gait.live.workspace import Parts, workspace
 from tarsus.gait.swing import ground_share
-from tarsus.kinematics.mass import centre_of_mass, total_mass
 from tarsus.robot.robot import Robot
 
 __all__ = ["Envelope", "capped", "envelope", "overhang"]
 
 Floats = np.ndarray[Any, Any]
 
-# How far inside its support the centre of mass stays [m].
-_LEAST_MARGIN = 0.004
 # What is left between the fastest steady walk and the polygons.
 _RESERVE = 0.99
 
@@ -40,6 +38,8 @@ class Envelope:
         How far a foot may go from its rest foothold along `NORMALS` [m]; negative where it can't even be there.
     rest : complex array, shape (legs,)
         Rest footholds of the last stand [m].
+    balanced : bool
+        Whether the centre of mass stays over the feet that bear, while they are at their rest footholds.
     stroke, turning : float
         The longest strokes, straight on and on the spot, for which the joints are fast enough [m].
     """
@@ -47,6 +47,7 @@ class Envelope:
     bounds: Floats
     room: Floats
     rest: Floats
+    balanced: bool = True
     stroke: float = math.inf
     turning: float = math.inf
 
@@ -72,6 +73,7 @@ class Envelope:
             np.minimum(self.bounds, other.bounds),
             np.minimum(self.room, other.room),
             self.rest,
+            self.balanced and other.balanced,
             min(self.stroke, other.stroke),
             min(self.turning, other.turning),
         )
@@ -180,7 +182,7 @@ def capped(limits: Envelope, stroke: float, turning: float, *, duty: float) -> E
     duty : float
         Duty factor.
     """
-    at_rest = (NORMALS.conj() * limits.rest[:, None]).real
+    at_rest = (_TOWARDS * limits.rest[:, None]).real
     bounds = np.minimum(limits.bounds, at_rest + overhang(duty) * max(stroke, turning))
     # Legs that don't step are bounded by nothing here.
     bounds = np.where(np.isinf(limits.bounds), np.inf, bounds)
@@ -207,40 +209,18 @@ def envelope(
     """
     bounds = np.full((robot.legs, len(NORMALS)), np.inf)
     room = np.full(bounds.shape, np.inf)
+    balance, balanced = Balance(robot, sets, gone), True
     for stand in stands:
         sides = yield from workspace(robot, stand, foot_distance=foot_distance)
-        at_rest = (NORMALS.conj() * stand.rest[:, None]).real
         yield
-        centre, shift = _centre_of_mass(robot, stand, sides, gone)
-        yield
-        share = safe_share(sets, sides, stand.rest, centre, margin=_margin(robot, gone), shift=shift)
+        share = balance.safe_share(stand, sides)
+        at_rest = (_TOWARDS * stand.rest[:, None]).real
         free = sides - at_rest
         free = np.where(free > 0, free * share, free)
         # Where a centre of mass stands outside, no step is safe.
         free = free if share > 0 else np.minimum(free, -1e-3)
+        balanced = balanced and share > 0
         bounds, room = np.minimum(bounds, at_rest + free), np.minimum(room, free)
         yield
     bounds[list(gone)], room[list(gone)] = np.inf, np.inf
-    return Envelope(bounds, room, stands[-1].rest)
-
-
-def _margin(robot: Robot, gone: tuple[int, ...]) -> float:
-    """Return how far inside its support the centre of mass is to be: farther where legs hang about anywhere."""
-    if not gone or not robot.has_masses:
-        return _LEAST_MARGIN
-    away = np.asarray(robot.coxa + robot.femur + robot.tibia) * np.asarray(robot.link_mass).sum(-1) / 4
-    return _LEAST_MARGIN + float(away[list(gone)].sum() / total_mass(robot))
-
-
-def _centre_of_mass(robot: Robot, stand: Stand, sides: Floats, gone: tuple[int, ...]) -> tuple[complex, Floats]:
-    """Return the projected centre of mass with the feet at rest, and its shift by each leg at each corner [m]."""
-    corners = polygon_ends(sides, stand.rest)[1]
-    # One leg at a corner, the others at rest; the last row, all at rest.
-    out = np.where(np.eye(robot.legs, dtype=bool)[:, None], corners[..., None], 0.0).reshape(-1, robot.legs)
-    feet = stand.rest + np.concatenate([out, np.zeros((1, robot.legs))])
-    solution = stand.solve(robot, feet.real, feet.imag, np.zeros(feet.shape))
-    com = centre_of_mass(robot, np.stack(solution[:3], axis=-1)) @ stand.rotation.T + stand.position
-    centre = com[..., 0] + 1j * com[..., 1]
-    shift = (centre[:-1] - centre[-1]).reshape(corners.shape)
-    shift[list(gone)] = 0.0
-    return complex(centre[-1]), shift
+    return Envelope(bounds, room, stands[-1].rest, balanced)

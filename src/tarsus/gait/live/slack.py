@@ -28,6 +28,9 @@ _HEIGHTS = np.array([0.0, 0.5, 1.0])[:, None]
 _NARROWER = np.array([1.0, 0.9, 0.4])[:, None, None]
 # A joint may turn this much faster for the same speed of the foot than it does at the rest foothold.
 _FASTER = 4.0
+_NOWHERE = np.zeros(len(_HEIGHTS), dtype=bool)
+# How many places of feet are looked at at once.
+_BLOCK = 2600
 
 
 class StandSlack:
@@ -68,13 +71,27 @@ class StandSlack:
             How far the nearest bound is: [rad], of lengths over the reach, of the knee's height [m].
         """
         flat = out.reshape(-1, out.shape[-1])
-        solution = self._solve(flat.real, flat.imag)
+        # Larger arrays than these cost more than their share of time.
+        blocks = math.ceil(len(flat) * self._g.coxa.size * len(_HEIGHTS) / _BLOCK)
+        parts = np.array_split(flat, blocks)
+        found = [self._at(part, _NOWHERE) for part in parts]
+        # At each height, knees count for all places or for none: what is worked out at once makes no difference.
+        low = np.any([own for _, own in found], axis=0)
+        slack = [
+            slack if (own == low).all() else self._at(part, low)[0]
+            for part, (slack, own) in zip(parts, found, strict=True)
+        ]
+        return np.concatenate(slack).reshape(*out.shape[:-1], -1)
+
+    def _at(self, out: Floats, low: Floats) -> tuple[Floats, Floats]:
+        """Return the least slack ``(n, legs)``, and at which heights knees count, be it elsewhere or here."""
+        solution = self._solve(out.real, out.imag)
         slack = joint_slack(self._g, solution)
-        low = solution.femur.min(axis=(1, 2)) <= self._lowest_femur
+        low = low | (solution.femur.min(axis=(1, 2)) <= self._lowest_femur)
         if low.any():
-            slack[low] = np.minimum(slack[low], self._above_ground(solution)[low] - KEEP)
+            slack[low] = np.minimum(slack[low], self._above_ground(solution, low) - KEEP)
         slack = np.minimum(slack, _FASTER - self._turning(solution) / self._turning_at_rest)
-        return np.asarray(slack.min(axis=0).reshape(*out.shape[:-1], -1))
+        return np.asarray(slack.min(axis=0)), low
 
     def _solve(self, x: Floats, y: Floats) -> Triangle:
         """Return the joint angles ``(heights, n, legs)`` at places seen from the rest footholds ``(n, legs)``."""
@@ -93,13 +110,14 @@ class StandSlack:
         in_plane = np.sqrt(g.farthest2 + g.tibia * g.tibia - s.far) / across
         return np.asarray(np.maximum(in_plane, 1 / np.sqrt(np.maximum(s.beside, 1e-18))))
 
-    def _above_ground(self, s: Triangle) -> Floats:
-        """Return how high each leg's femur axis or knee is, whichever is lower [m]."""
+    def _above_ground(self, s: Triangle, heights: Floats) -> Floats:
+        """Return how high each leg's femur axis or knee is, whichever is lower, at some of the heights [m]."""
         g, (up_x, up_y, up_z) = self._g, self._up
-        cos, sin = np.cos(s.coxa), np.sin(s.coxa)
+        coxa, femur = s.coxa[heights], s.femur[heights]
+        cos, sin = np.cos(coxa), np.sin(coxa)
         outward = up_x * cos + up_y * sin
         axis = self._axis_height + g.coxa * outward + g.side * (up_y * cos - up_x * sin)
-        knee = g.femur * (np.cos(s.femur) * outward + np.sin(s.femur) * up_z)
+        knee = g.femur * (np.cos(femur) * outward + np.sin(femur) * up_z)
         return np.asarray(axis + np.minimum(knee, 0.0))
 
 

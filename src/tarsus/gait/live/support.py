@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import functools
+from bisect import bisect_left
 from typing import Any
 
 import numpy as np
@@ -14,6 +16,7 @@ __all__ = ["safe_share", "support_sets"]
 Floats = np.ndarray[Any, Any]
 
 _SHARES = np.array([*np.linspace(1.0, 0.1, 10), 0.06, 0.03])
+_LIKELY = 3
 
 
 def support_sets(gait: Gait, gone: tuple[int, ...] = ()) -> Floats:
@@ -31,12 +34,19 @@ def support_sets(gait: Gait, gone: tuple[int, ...] = ()) -> Floats:
     array of bool, shape (n, legs)
         Sets of which none holds another: where these support the robot, all do.
     """
+    return _support_sets(gait, tuple(gone))
+
+
+@functools.lru_cache(maxsize=64)
+def _support_sets(gait: Gait, gone: tuple[int, ...]) -> Floats:
     after = np.asarray(gait.offsets) + gait.duty + 1e-6
     down = gait.phase(after)[2]
     down[:, list(gone)] = False
     sets = np.unique(down, axis=0)
     holds = (sets[:, None] >= sets[None]).all(-1) & ~np.eye(len(sets), dtype=bool)
-    return np.asarray(sets[~holds.any(1)])
+    sets = np.asarray(sets[~holds.any(1)])
+    sets.setflags(write=False)
+    return sets
 
 
 def safe_share(
@@ -64,16 +74,22 @@ def safe_share(
     float
         A share of the polygons' size; 0 where the robot tips over even with its feet at rest.
     """
-    edges = {edge for row in sets for edge in _edges(np.flatnonzero(row))}
-    if _NO_EDGE in edges:
+    pairs = _edges_of(np.asarray(sets).tobytes(), sets.shape[1])
+    if pairs is None:
         return 0.0
-    pairs = np.array(sorted(edges)).T
     away, (_, corners) = rest - centre, polygon_ends(bounds, rest)
     shift = np.zeros(corners.shape, dtype=complex) if shift is None else shift
-    for share in _SHARES:
-        if _least_margin(pairs, away[:, None] + share * corners, share * shift) >= margin:
-            return float(share)
-    return 0.0
+
+    def works(index: int) -> bool:
+        share = _SHARES[index]
+        return _least_margin(pairs, away[:, None] + share * corners, share * shift) >= margin
+
+    # Most robots stand safely enough for one of the first; the less of a polygon, the safer.
+    for index in range(_LIKELY):
+        if works(index):
+            return float(_SHARES[index])
+    index = bisect_left(range(len(_SHARES)), True, lo=_LIKELY, key=works)
+    return float(_SHARES[index]) if index < len(_SHARES) else 0.0
 
 
 def _least_margin(pairs: Floats, feet: Floats, shift: Floats) -> float:
@@ -86,20 +102,26 @@ def _least_margin(pairs: Floats, feet: Floats, shift: Floats) -> float:
     first, second = pairs
     start, end = feet[first][:, :, None], feet[second][:, None, :]
     along = end - start
-    inward = 1j * along / np.maximum(np.abs(along), 1e-12)
+    # Times i, and of length 1.
+    inward = along * (1j / np.maximum(np.abs(along), 1e-12))
     moved = shift[first][:, :, None] + shift[second][:, None, :]
     # The other legs, down or in the air, shift the centre as far towards the edge as they can.
-    side = np.round(np.angle(inward) * len(NORMALS) / (2 * np.pi)).astype(int) % len(NORMALS)
     least = (NORMALS.conj()[:, None, None] * shift).real.min(axis=-1)
-    others = least.sum(axis=-1)[side] - least[side, first[:, None, None]] - least[side, second[:, None, None]]
+    others = (least.sum(axis=-1)[:, None] - least[:, first] - least[:, second]).T
+    side = np.rint(np.arctan2(inward.imag, inward.real) * (len(NORMALS) / (2 * np.pi))).astype(int)
+    # The sides before the first, from the end.
+    others = others[np.arange(len(first))[:, None, None], side]
     return float(((inward.conj() * (moved - start)).real + others).min())
 
 
-_NO_EDGE = (-1, -1)
-
-
-def _edges(legs: Floats) -> list[tuple[int, int]]:
-    """Return each foot that is down with the next of them round the ring; fewer than three support nothing."""
-    if len(legs) < 3:
-        return [_NO_EDGE]
-    return list(zip(legs.tolist(), np.roll(legs, -1).tolist(), strict=True))
+@functools.lru_cache(maxsize=64)
+def _edges_of(sets: bytes, legs: int) -> Floats | None:
+    """Return the edges ``(2, n)`` of all sets of feet, given as their bytes; None where one supports nothing."""
+    edges: set[tuple[int, int]] = set()
+    for row in np.frombuffer(sets, dtype=bool).reshape(-1, legs):
+        down = np.flatnonzero(row).tolist()
+        if len(down) < 3:
+            return None
+        # Each foot that is down with the next of them round the ring.
+        edges.update(zip(down, down[1:] + down[:1], strict=True))
+    return np.array(sorted(edges)).T

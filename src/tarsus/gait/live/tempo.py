@@ -7,12 +7,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from tarsus.gait.cycle import cycle_feet
 from tarsus.gait.gait import Gait
 from tarsus.gait.live.envelope import Envelope
 from tarsus.gait.live.guard_bounds import STOPPING_TIME, UNKNOWN_SPEED
 from tarsus.gait.live.stand import Stand
 from tarsus.gait.live.workspace import Parts
+from tarsus.gait.swing import ground_share, height_share
 from tarsus.robot.robot import Robot
 
 __all__ = ["Tempo", "joint_limits", "tempo"]
@@ -29,9 +29,8 @@ _TWISTS = np.array([(np.cos(a), np.sin(a), 0.0) for a in np.arange(_STRAIGHT) * 
 _MOMENTS = 33
 # Cycles that are tried for the one that gets farthest, in least ones.
 _TRIED = np.geomspace(1.0, 4.0, 33)
-_ORIGIN_AND_ONE = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]])
-# How many feet at how many moments are worked out in one part.
-_PART = 3200
+# How many feet at how many moments are worked out at once: larger arrays cost more than their share of time.
+_BLOCK = 2400
 
 
 def joint_limits(robot: Robot, speed: float | None, acceleration: float | None) -> tuple[Floats, Floats]:
@@ -107,11 +106,13 @@ def tempo(
     farthest = limits.largest_shares(_TWISTS, stance_time=1.0, duty=gait.duty)[:, None] * _TWISTS
     stroke = np.abs(farthest[:, :1] + 1j * farthest[:, 1:2] + 1j * farthest[:, 2:] * limits.rest).max(-1)
     moves = np.concatenate([np.zeros((1, 3)), (_SIZES[1:, None, None] * farthest).reshape(-1, 3)])
-    cycle = _Cycle(robot, gait, stand, speed, acceleration)
+    cycle = _Cycle(gait, moves, stand.lift)
+    block = max(_BLOCK // (robot.legs * len(cycle.shift)), 1)
     times = []
-    for part in np.array_split(moves, math.ceil(len(moves) * cycle.size / _PART)):
-        times.append(cycle.shortest_times(part))
-        yield
+    for first in range(0, len(moves), block):
+        times.append(cycle.shortest_times(robot, stand, slice(first, first + block), speed, acceleration))
+        if len(times) % 2 == 0:
+            yield
     # (sizes, twists): the shortest cycle for each size of each stroke.
     shortest = np.empty((len(_SIZES), len(_TWISTS)))
     shortest[0], shortest[1:] = times[0][0], np.concatenate(times)[1:].reshape(len(_SIZES) - 1, -1)
@@ -150,31 +151,55 @@ def _sizes(shortest: Floats, cycle_times: Floats | float) -> Floats:
 
 
 class _Cycle:
-    """A steady cycle of a robot that stands in some way, and what it asks of the joints."""
+    """Steady cycles of a robot that stands in some way, and what they ask of the joints.
 
-    def __init__(self, robot: Robot, gait: Gait, stand: Stand, speed: Floats, acceleration: Floats) -> None:
-        self._robot, self._stand = robot, stand
-        self._speed, self._acceleration = _SPEED_SHARE * speed.T[:, None], _ACCELERATION_SHARE * acceleration.T[:, None]
-        # Every leg goes the same way through its own cycle: a swing, and a little of the stance on either side. Where
-        # the stance is the shorter part, the foot is fastest in it.
+    Every leg goes the same way through its own cycle: a swing, and a little of the stance on either side. Where the
+    stance is the shorter part, the foot is fastest in it.
+
+    Parameters
+    ----------
+    gait : Gait
+        How long a foot is on the ground.
+    moves : array, shape (n, 3)
+        What the body moves in one stance: forward [m], left [m], yaw [rad].
+    lift : float
+        Lift of the swinging foot [m].
+    """
+
+    def __init__(self, gait: Gait, moves: Floats, lift: float) -> None:
         begin = gait.duty - 0.02 if gait.duty >= 0.5 else -0.02
-        self._phases = np.linspace(begin, 1.02, round(_MOMENTS * (1.02 - begin) / (1.04 - gait.duty)))
-        self._gait = Gait(gait.duty, (0.0,))
-        self.size = len(self._phases) * robot.legs
+        phases = np.linspace(begin, 1.02, round(_MOMENTS * (1.02 - begin) / (1.04 - gait.duty)))
+        self._step = phases[1] - phases[0]
+        _, phase, contacts = Gait(gait.duty, (0.0,)).phase(phases)
+        share = np.where(contacts, 0.0, (phase - gait.duty) / (1 - gait.duty))
+        self._height = lift * height_share(share)
+        # What `cycle_feet` works out, with (moments, moves): a foot's place is linear in its rest foothold, if both
+        # are complex numbers.
+        along = ground_share(share)
+        there, turned_there = _moved(moves, 1 / gait.duty)
+        since_middle = phase / gait.duty - 0.5
+        here, turned = _moved(moves, since_middle)
+        self.factor = (1 + along * (turned_there - 1)) / turned
+        self.shift = (along * there - here) / turned
 
-    def shortest_times(self, moves: Floats) -> Floats:
-        """Return the shortest cycle ``(n,)`` for what the body moves in one stance ``(n, 3)``."""
-        lift = np.asarray(self._stand.lift)
-        # Where a foot is, is linear in its rest foothold as a complex number: what becomes of 0 and of 1 tells it all.
-        feet, _ = cycle_feet(self._gait, _ORIGIN_AND_ONE, moves, lift=lift, phases=self._phases)
-        seen = (feet[..., 0] + 1j * feet[..., 1]).swapaxes(0, 1)
-        places = seen[..., :1] + (seen[..., 1:] - seen[..., :1]) * self._stand.rest
-        heights = feet[0, :, :1, 2:]
-        # (moments, joints, moves, legs)
-        angles = np.stack(self._stand.solve(self._robot, places.real, places.imag, heights)[:3], axis=1)
-        step = self._phases[1] - self._phases[0]
-        rate = np.diff(angles, axis=0) / step
-        change = np.diff(rate, axis=0) / step
-        by_speed = np.abs(rate).max(axis=0) / self._speed
-        by_acceleration = np.sqrt(np.abs(change).max(axis=0) / self._acceleration)
+    def shortest_times(self, robot: Robot, stand: Stand, part: slice, speed: Floats, acceleration: Floats) -> Floats:
+        """Return the shortest cycle ``(n,)`` for a part of the moves."""
+        # (moments, moves, legs), and the joints between the first two.
+        places = self.shift[:, part, None] + self.factor[:, part, None] * stand.rest
+        solution = stand.solve(robot, places.real, places.imag, self._height[..., None])
+        angles = np.stack(solution[:3], axis=1)
+        rate = np.diff(angles, axis=0) / self._step
+        change = np.diff(rate, axis=0) / self._step
+        by_speed = np.abs(rate).max(axis=0) / (_SPEED_SHARE * speed.T[:, None])
+        by_acceleration = np.sqrt(np.abs(change).max(axis=0) / (_ACCELERATION_SHARE * acceleration.T[:, None]))
         return np.asarray(np.maximum(by_speed, by_acceleration).max(axis=(0, 2)))
+
+
+def _moved(moves: Floats, share: Floats | float) -> tuple[Floats, Floats]:
+    """Return where the body is after a share of its moves, and by which factor it has turned, as complex numbers."""
+    half = np.asarray(moves[:, 2] * share / 2)
+    turned = np.exp(1j * half)
+    # sin(x) / x; where the sine is of no use, x is so small that it is 1 to rounding.
+    tiny = np.abs(half) < 1e-8
+    chord = np.where(tiny, 1.0, turned.imag / np.where(tiny, 1.0, half))
+    return (moves[:, 0] + 1j * moves[:, 1]) * (share * chord) * turned, turned * turned
