@@ -47,6 +47,7 @@ def course_of(setup, rest, twist, **changes):
         "holds": False,
         "lands": np.ones(len(rest), dtype=bool),
         "rest": rest,
+        "room": np.full((len(rest), 16), np.inf),
         "level": np.zeros(len(rest)),
     }
     return Course(**{**values, **changes})

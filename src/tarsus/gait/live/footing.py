@@ -8,6 +8,7 @@ import numpy as np
 
 from tarsus.gait.live.change import Change
 from tarsus.gait.live.envelope import Envelope
+from tarsus.gait.live.polygon import NORMALS
 
 __all__ = ["Footing"]
 
@@ -34,6 +35,8 @@ class Footing:
         What limits the twist.
     stepped : array of bool, shape (legs,)
         Which feet are where they are to rest now.
+    room : array, shape (legs, 16)
+        How far from its rest foothold each foot may be put down next, along each side's normal [m].
     """
 
     def __init__(self, change: Change) -> None:
@@ -44,11 +47,30 @@ class Footing:
         self._landing = self.bounds
         self._new_rest = self.rest
         self._old_step = ~self.stepped
+        self._make_room()
+
+    def _make_room(self) -> None:
+        landing = np.where(self._old_step[:, None], self.bounds, self._landing)
+        self.room: Floats = np.maximum(landing - (NORMALS.conj() * self.rest[:, None]).real, 0.0)
 
     @property
     def new_rest(self) -> Floats:
         """Where the feet rest once all have stepped ``(legs,)``, complex [m]."""
         return self._new_rest
+
+    def begun(self, change: Change) -> Floats:
+        """Return the sides ``(legs, 16)`` with which feet would begin to step to new rest footholds [m].
+
+        Parameters
+        ----------
+        change : Change
+            What would be gone over to.
+        """
+        moved = self._moved(change)
+        return np.where(moved[:, None], self.bounds, np.minimum(self.bounds, change.stepping.bounds))
+
+    def _moved(self, change: Change) -> Floats:
+        return np.asarray(np.abs(change.rest - self._new_rest) > _SAME)
 
     def begin(self, change: Change, down: Floats) -> None:
         """Send the feet to new rest footholds.
@@ -61,13 +83,14 @@ class Footing:
             Which feet are on the ground.
         """
         self.way = self.way.meet(change.stepping)
-        moved = np.abs(change.rest - self._new_rest) > _SAME
+        moved = self._moved(change)
+        self.bounds = self.begun(change)
         self.stepped = ~moved
         # A foot in the air lands where it is bound for; its next step is the one that counts.
         self._old_step = moved & ~down
         self.rest = np.where(self._old_step, self.rest, change.rest)
         self._landing, self._new_rest = change.stepping.bounds, change.rest
-        self.bounds = np.where(moved[:, None], self.bounds, np.minimum(self.bounds, self._landing))
+        self._make_room()
 
     def land(self, landed: Floats) -> None:
         """Note which feet have been put down in this tick.
@@ -81,6 +104,7 @@ class Footing:
         counts, self._old_step = landed & ~self._old_step, self._old_step & ~landed
         self.stepped = self.stepped | counts
         self.bounds = np.where(counts[:, None], self._landing, self.bounds)
+        self._make_room()
 
     def tighten(self, limits: Envelope) -> None:
         """Keep within further limits too.
@@ -92,6 +116,7 @@ class Footing:
         """
         self.way = self.way.meet(limits)
         self.bounds = self._landing = np.minimum(self.bounds, limits.bounds)
+        self._make_room()
 
     def arrive(self, limits: Envelope) -> None:
         """Go over to the limits of the stand that has been reached.
@@ -102,3 +127,4 @@ class Footing:
             The limits.
         """
         self.way, self.bounds, self._landing = limits, limits.bounds, limits.bounds
+        self._make_room()

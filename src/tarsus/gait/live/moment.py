@@ -14,6 +14,7 @@ import numpy as np
 
 from tarsus.gait.gait import Gait
 from tarsus.gait.live.lag import Lag
+from tarsus.gait.live.polygon import NORMALS
 
 __all__ = ["FREEZE", "THERE", "TIE", "Course", "Moment", "carried", "final_rest", "go_on", "meet_ground", "turned"]
 
@@ -33,6 +34,9 @@ _GIVE = 0.1
 _CREEPING = 0.01
 # A foot this near to its rest foothold is there [m]; a speed this low is none [m/s].
 THERE, _NO_SPEED = 1e-6, 3e-7
+_SIDES = NORMALS.conj()
+# What a share of 1 may be missed by from rounding.
+_ROUNDING = 1e-9
 # A posture this near to its target, and as slow, is there [m, m/s, rad, rad/s].
 _NO_WAY = 1e-11
 
@@ -142,6 +146,8 @@ class Course(NamedTuple):
         Which legs may lift, and which put their feet down at the end of their swing.
     rest : complex array, shape (legs,)
         Rest footholds in the heading frame [m].
+    room : array, shape (legs, 16)
+        How far from these the feet may be put down, along each of `NORMALS` [m].
     level : array, shape (legs,)
         Height at which the ground is expected [m].
     holds : bool
@@ -159,6 +165,7 @@ class Course(NamedTuple):
     steps: Floats
     lands: Floats
     rest: Floats
+    room: Floats
     level: Floats
     holds: bool = False
     beats: int = 2
@@ -277,19 +284,32 @@ class _Landing(NamedTuple):
         turn = cmath.exp(1j * now.yaw)
         return cls(now.origin, turn, now.twist.value.tolist(), now.twist.rate.tolist(), course.bandwidth)
 
-    def foothold(self, rest: complex, ahead: float) -> complex:
-        """Return the foothold for a middle of the stance that is so far ahead [s]."""
+    def foothold(self, rest: complex, room: Floats, until: float, middle: float) -> complex:
+        """Return the foothold for a touchdown and a middle of the stance that are so far ahead [s]."""
+        way, facing = self._body(middle)
+        place = way + facing * rest
+        # Where the body turns or slows down, that may be farther out than the foot may be put down.
+        way, facing = self._body(until)
+        out = (place - way) * facing.conjugate() - rest
+        along = (_SIDES * out).real
+        share = float((room / np.maximum(along, 1e-12)).min())
+        if share < 1 - _ROUNDING:
+            place = way + facing * (rest + share * out)
+        return self.origin + self.turn * place
+
+    def _body(self, ahead: float) -> tuple[complex, complex]:
+        """Return where the body will be, and where it will face, seen from where it is."""
         w = self.bandwidth
         slowing = (1 - math.exp(-w * ahead) * (1 + w * ahead)) / (w * w)
         (x, y, angle), (ax, ay, turn) = self.value, self.rate
-        way, angle = complex(x * ahead + ax * slowing, y * ahead + ay * slowing), angle * ahead + turn * slowing
-        return complex(self.origin + self.turn * (way * turned(angle) + cmath.exp(1j * angle) * rest))
+        angle = angle * ahead + turn * slowing
+        return complex(x * ahead + ax * slowing, y * ahead + ay * slowing) * turned(angle), cmath.exp(1j * angle)
 
 
 def _swing(now: Moment, course: Course, down: list[bool], since_lift: list[float], *, stopping: bool) -> Moment:
     """Move the swinging feet on, and put those down that have come to the end of their swing."""
     duty = course.gait.duty
-    swing = 1 - duty
+    swing, stance = 1 - duty, duty / course.frequency
     landing = _Landing.of(now, course)
     final = final_rest(now, course) if stopping else None
     share, foot, target = now.share.tolist(), now.foot.tolist(), now.target.tolist()
@@ -299,8 +319,12 @@ def _swing(now: Moment, course: Course, down: list[bool], since_lift: list[float
         late, since = float(now.late[leg]), since_lift[leg]
         part = min(max((since - late) / (swing - late), 0.0), 1.0)
         if share[leg] <= FREEZE and now.met[leg] == math.inf:
-            ahead = (swing - since + duty / 2) / course.frequency
-            target[leg] = landing.foothold(complex(course.rest[leg]), ahead) if final is None else complex(final[leg])
+            until = (swing - since) / course.frequency
+            target[leg] = (
+                landing.foothold(complex(course.rest[leg]), course.room[leg], until, until + stance / 2)
+                if final is None
+                else complex(final[leg])
+            )
         way = (foot[leg], pace[leg], bend[leg])
         foot[leg], pace[leg], bend[leg] = _quintic(way, target[leg], share[leg], part)
         share[leg] = part

@@ -3,18 +3,23 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from tarsus.gait.live.lag import Lag
+from tarsus.gait.live.moment import Moment
+from tarsus.gait.live.posture import LIFT
 
-__all__ = ["Search"]
+__all__ = ["Search", "Searches"]
 
 Floats = np.ndarray[Any, Any]
 
 # How fast a foot goes down [m/s], how fast it stops once it has found ground [rad/s], and when it is at rest [m/s].
 _SPEED, _STOPPING, _RESTING = 0.05, 40.0, 1e-3
+# How far below the expected ground feet look for it, in lifts.
+_DEPTH = 0.6
 
 
 class Search(NamedTuple):
@@ -76,3 +81,63 @@ class Search(NamedTuple):
     def in_vain(self) -> bool:
         """Whether the foot is as low as it goes, without ground."""
         return self.found is None and float(self.height.value[0]) - self.lowest < 1e-3
+
+
+class Searches:
+    """All feet that look for ground, by their legs."""
+
+    def __init__(self) -> None:
+        self._feet: dict[int, Search] = {}
+
+    def __bool__(self) -> bool:
+        return bool(self._feet)
+
+    @property
+    def in_vain(self) -> list[int]:
+        """The legs under which there is no ground."""
+        return [leg for leg, search in self._feet.items() if search.in_vain]
+
+    def stands(self, leg: int, *, touches: bool) -> bool:
+        """Return whether a foot at the end of its swing may stand where it is: on ground, if it had to look for it.
+
+        Parameters
+        ----------
+        leg : int
+            The leg.
+        touches : bool
+            Whether it touches ground.
+        """
+        return self._feet[leg].at_rest if leg in self._feet else touches
+
+    def step(self, now: Moment, dt: float, *, touches: Callable[[int], bool]) -> Moment:
+        """Let feet that have come down where there is no ground look for it, in the world's time.
+
+        Parameters
+        ----------
+        now : Moment
+            The moment.
+        dt : float
+            The time [s].
+        touches : callable
+            Whether the foot of a leg touches ground.
+        """
+        over = ~now.down & (now.share >= 1.0)
+        ground = now.ground.copy()
+        for leg in np.flatnonzero(over).tolist():
+            if leg not in self._feet:
+                if touches(leg):
+                    continue
+                self._feet[leg] = Search.begin(float(ground[leg]), _DEPTH * float(now.posture.value[LIFT]))
+            self._feet[leg] = self._feet[leg].step(dt, ground=touches(leg))
+            ground[leg] = float(self._feet[leg].height.value[0])
+        return now._replace(ground=ground, met=np.where(over, np.inf, now.met))
+
+    def land(self, landed: Floats) -> None:
+        """Note which feet have been put down.
+
+        Parameters
+        ----------
+        landed : array of bool, shape (legs,)
+            The feet.
+        """
+        self._feet = {leg: search for leg, search in self._feet.items() if not landed[leg]}

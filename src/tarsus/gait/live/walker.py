@@ -12,20 +12,23 @@ from tarsus.errors import InputError, UnreachableError
 from tarsus.gait.gait import Gait
 from tarsus.gait.live.admittance import Admittance
 from tarsus.gait.live.agenda import Agenda
+from tarsus.gait.live.carriage import Carriage
 from tarsus.gait.live.change import Change, Manner, work_out
-from tarsus.gait.live.envelope import Envelope, overhang
+from tarsus.gait.live.envelope import Envelope
 from tarsus.gait.live.feel import Feel, Felt
 from tarsus.gait.live.footing import Footing
 from tarsus.gait.live.governor import allowed_target, excess
-from tarsus.gait.live.hands import Hand, best_lean, carry_hands, lift_hand, reachable_part
+from tarsus.gait.live.hands import best_lean, reachable_part
 from tarsus.gait.live.lag import Lag
 from tarsus.gait.live.levelling import LevellingMode
+from tarsus.gait.live.manipulation import Manipulation, legs_out
 from tarsus.gait.live.moment import THERE, TIE, Course, Moment, final_rest, go_on, meet_ground
 from tarsus.gait.live.own_time import OwnTime
 from tarsus.gait.live.posture import LIFT, calm_sway
-from tarsus.gait.live.search import Search
+from tarsus.gait.live.search import Searches
 from tarsus.gait.live.senses import Senses
 from tarsus.gait.live.solver import Solver
+from tarsus.gait.live.stances import lift_delays, stances, until_down
 from tarsus.gait.live.support import support_sets
 from tarsus.gait.live.tempo import joint_limits
 from tarsus.gait.live.tilt import Commanded
@@ -43,22 +46,17 @@ Floats = np.ndarray[Any, Any]
 
 # The twist follows its target within about a stance: faster, and feet that are down would be left behind.
 _LAGS_PER_STANCE = 4.0
-# The same for the posture [rad/s], and how fast it may move the body at the most [m/s], turn it [rad/s].
-_POSTURE_BANDWIDTH = 4.0
-_BODY_SPEED, _BODY_TURN = 0.08, 0.5
 # Ticks longer than this are walked as if they took no longer [s]: a late tick must not become a jump.
 _LONGEST_TICK = 0.05
 # In which time a change that waits for room slows the walk down by a factor of e [s].
 _PATIENCE = 1.0
 _NO_SWAY = (0.0,) * 6
-_THERE = [0.0] * (LIFT + 1)
 # How far inside their support the feet left must hold the robot when a leg is taken out of the gait [m].
 _LEAST_MARGIN = 0.01
 # How near to its target a twist counts as steady [m/s, rad/s].
 _STEADY = 1e-4
-# How near the posture counts as reached [m, rad]; what share of the swing is over before ground may be met, and how
-# far below the expected ground feet look for it, in lifts.
-_AT_POSTURE, _DESCENDING, _DEPTH = 2e-4, 0.5, 0.6
+# What share of the swing is over before ground may be met.
+_DESCENDING = 0.5
 
 
 class Walker(WalkerView):
@@ -147,21 +145,18 @@ class Walker(WalkerView):
         self._agenda, self._footing = Agenda(change), Footing(change)
         self._stepping: Change | None = None
         self._settling: tuple[Change, int] | None = None
-        self._posture = change.posture
-        self._goal = np.append(change.posture, _NO_SWAY)
+        self._carriage = Carriage(change.posture)
         self._frequency = 1 / change.tempo.cycle_time
         self._target = np.zeros(3)
         self._patience = 1.0
         self._limited: tuple[str, ...] = change.limited
         self._share_of: tuple[Any, ...] = ()
         self._share = (1.0, 0)
-        self._hands: dict[int, Hand] = {}
-        self._hand_limits: dict[int, str] = {}
-        self._points: dict[int, Sequence[float]] = {}
+        self._hands = Manipulation(self.robot.leg_names)
         self._asked: Wish | None = None
         self._leaning_for: tuple[int, ...] = ()
         self._lean = 0j
-        self._searches: dict[int, Search] = {}
+        self._searches = Searches()
         self._felt: Felt | None = None
         self._walking = False
         self.time = 0.0
@@ -185,7 +180,7 @@ class Walker(WalkerView):
             origin=0j,
             yaw=0.0,
             twist=Lag.still(np.zeros(3)),
-            posture=Lag.still(self._goal),
+            posture=Lag.still(self._carriage.goal),
             late=none,
         )
         self._offset = none
@@ -226,7 +221,7 @@ class Walker(WalkerView):
         self._ask(wish)
         self._sense(senses, dt)
         self._change(dt)
-        self._move_hands(wish, dt)
+        self._hands.tell(wish, dt, self._reachable)
         self._aim(wish.twist)
         self._advance(dt)
         self.time += dt
@@ -234,7 +229,8 @@ class Walker(WalkerView):
 
     def _ask(self, wish: Wish) -> None:
         """Note what is asked for besides the twist, where it isn't what was asked for before."""
-        wanted, gone = self._agenda.wanted, self._gone(wish)
+        wanted = self._agenda.wanted
+        gone = legs_out(wish, wanted.gone, self.robot.legs)
         correction = self._correction(gone)
         known = wish.only_twist or wish is self._asked
         if not known or gone != wanted.gone or correction != wanted.correction:
@@ -303,7 +299,7 @@ class Walker(WalkerView):
         return work_out(
             self.robot,
             manner,
-            None if at_once else self._posture,
+            None if at_once else self._carriage.posture,
             None if at_once else self._footing.new_rest,
             stay=stay,
             speed=self.joint_speed,
@@ -327,43 +323,41 @@ class Walker(WalkerView):
         """Return whether the last change is over: posture reached, and every leg that came back on the ground."""
         if self._settling is not None or self._stepping is not None:
             return False
-        returning = len(self._hands) > len(self._agenda.doing.manner.gone)
-        return not returning and max(self._way_left()) < _AT_POSTURE
-
-    def _way_left(self) -> list[float]:
-        """Return how far the posture is from where it is to go, each of its numbers."""
-        if self._now.posture.value is self._goal:
-            return _THERE
-        goal, value = self._goal[: LIFT + 1].tolist(), self._now.posture.value[: LIFT + 1].tolist()
-        return [abs(a - b) for a, b in zip(goal, value, strict=True)]
+        return not self._hands.returning and self._carriage.reached(self._now.posture.value)
 
     def _try_change(self, change: Change) -> None:
         """Go over to a change as soon as the feet on the ground allow it."""
-        old, new, frequency = self.gait, change.manner.gait, 1 / change.tempo.cycle_time
+        old, new = self.gait, change.manner.gait
+        # It steps faster only once the change is over.
+        frequency = min(self._frequency, 1 / change.tempo.cycle_time)
         leaving = list(set(change.manner.gone) - set(self._agenda.doing.manner.gone))
+        share, _ = change.stepping.largest_share(
+            self._now.twist.value, stance_time=new.duty / frequency, duty=new.duty
+        )
         if new.duty == old.duty and new.offsets == old.offsets:
-            share, _ = change.stepping.largest_share(
-                self._now.twist.value, stance_time=new.duty / frequency, duty=new.duty
-            )
             begins, ends = self._stances(frequency)
-            bounds = self._bounds()
+            bounds = self._hands.without(self._footing.begun(change))
             if leaving:
                 bounds = np.minimum(bounds, change.there.bounds)
-            if share >= 1 and self._now.down[leaving].all() and self._works(begins, ends, bounds, frequency):
+            if (
+                share >= 1
+                and self._now.down[leaving].all()
+                and self._works(begins, ends, bounds, _bandwidth(new, frequency))
+            ):
                 self._adopt(change)
         elif not self._walking:
             self._switch(change, 0)
-        else:
+        elif share >= 1:
             self._try_gait(change)
 
     def _try_gait(self, change: Change) -> None:
         """Let all feet come down, if they may wait so long; then the new order begins with the leg that suits best."""
-        new, frequency = change.manner.gait, 1 / change.tempo.cycle_time
-        offsets = np.asarray(new.offsets)
-        delays = ((offsets - offsets[:, None]) % 1) / frequency
-        ends = self._until_down() + delays + (overhang(new.duty) - 0.5) * new.duty / frequency
-        bounds = np.minimum(self._bounds(), change.there.bounds)
-        over = self._excess(np.zeros(delays.shape), ends, bounds, frequency).max(axis=(1, 2, 3, 4))
+        frequency = 1 / change.tempo.cycle_time
+        delays = lift_delays(change.manner.gait, change.tempo.cycle_time)
+        ends = until_down(self._now, self.gait, self._frequency).max() + delays
+        bounds = np.minimum(self._hands.without(self._footing.begun(change)), change.there.bounds)
+        bandwidth = _bandwidth(change.manner.gait, frequency)
+        over = self._excess(np.zeros(delays.shape), ends, bounds, bandwidth).max(axis=(1, 2, 3, 4))
         first = int(over.argmin())
         if over[first] <= THERE:
             self._settling, self._agenda.ready = (change, first), None
@@ -376,11 +370,11 @@ class Walker(WalkerView):
         stepped[gone] = True
         begins, ends = self._stances(self._frequency)
         slow = self._frequency <= 1 / change.tempo.cycle_time
-        bounds = self._free_hands(change.way.bounds)
-        if slow and stepped.all() and self._works(begins, ends, bounds, self._frequency):
+        bounds = self._hands.without(change.way.bounds)
+        if slow and stepped.all() and self._works(begins, ends, bounds, self._bandwidth()):
             self._footing.tighten(change.way)
-            self._posture, self._stepping = change.posture, None
-            self._goal = np.append(change.posture, self._goal[LIFT + 1 :])
+            self._carriage.go_to(change.posture)
+            self._stepping = None
 
     def _adopt(self, change: Change) -> None:
         """Send the feet to where they are to rest; the body follows. Legs that leave the gait become hands."""
@@ -390,11 +384,7 @@ class Walker(WalkerView):
         gone = change.manner.gone
         if gone:
             self._footing.tighten(change.there)
-        # A leg that comes back stays in the air until its next step.
-        self._hands = {leg: hand.stopped() for leg, hand in self._hands.items() if leg not in gone} | {
-            leg: self._hands.get(leg) or lift_hand(self._now, leg) for leg in gone
-        }
-        self._hand_limits = {}
+        self._hands.take(gone, self._now)
 
     def _switch(self, change: Change, first: int) -> None:
         """Begin the new order of steps; every foot is down."""
@@ -409,93 +399,34 @@ class Walker(WalkerView):
         clock = float(self._offsets[first]) + self.gait.duty
         self._now = self._now._replace(clock=clock, number=np.ceil(clock - self._offsets - self.gait.duty - TIE))
 
-    # Legs moved by hand.
-
-    def _gone(self, wish: Wish) -> tuple[int, ...]:
-        """Return which legs are to be out of the gait."""
-        if not (wish.hands or wish.hand_speeds):
-            return self._agenda.wanted.gone
-        gone = set(self._agenda.wanted.gone)
-        for leg, point in [*(wish.hands or {}).items(), *(wish.hand_speeds or {}).items()]:
-            if leg not in range(self.robot.legs):
-                raise InputError(f"hand {leg!r}: the robot has the legs 0 to {self.robot.legs - 1}")
-            (gone.discard if point is None else gone.add)(leg)
-        return tuple(sorted(gone))
-
-    def _move_hands(self, wish: Wish, dt: float) -> None:
-        """Set where the hands go: as far towards what is asked for as their legs reach."""
-        if not (self._points or wish.hands or wish.hand_speeds):
-            return
-        speeds = wish.hand_speeds or {}
-        # A point holds until there is another; a speed, as long as it is given.
-        asked = {**self._points, **(wish.hands or {})}
-        self._points = {leg: point for leg, point in asked.items() if point is not None and leg not in speeds}
-        for leg in self._agenda.doing.manner.gone:
-            hand = self._hands[leg]
-            here = hand.place.value
-            if leg in speeds:
-                wished = hand.target + np.array(speeds[leg]) * dt
-            elif leg in self._points:
-                wished = np.array(self._points[leg])
-            else:
-                continue
-            wished[2] = max(wished[2], 0.0)
-            part = reachable_part(self.robot, self._stand(self._now), leg, here, wished)
-            self._hands[leg] = hand._replace(target=here + part * (wished - here))
-            self._hand_limits[leg] = (
-                f"hand: {100 * part:.0f} % of the way, there {self.robot.leg_names[leg]} comes to the end of its reach"
-                if part < 1
-                else ""
-            )
+    def _reachable(self, leg: int, start: Floats, wished: Floats) -> float:
+        return reachable_part(self.robot, self._stand(self._now), leg, start, wished)
 
     # Where to.
 
-    def _bandwidth(self, frequency: float) -> float:
-        return _LAGS_PER_STANCE * frequency / self.gait.duty
-
-    def _until_down(self) -> float:
-        left = np.where(self._now.down, 0.0, 1 - self._now.share).max()
-        return float(left * (1 - self.gait.duty) / self._frequency)
+    def _bandwidth(self) -> float:
+        """Return how fast the twist follows its target; as in the order of steps to come from when it is decided."""
+        if self._settling is None:
+            return _bandwidth(self.gait, self._frequency)
+        change, _ = self._settling
+        return _bandwidth(change.manner.gait, 1 / change.tempo.cycle_time)
 
     def _stances(self, frequency: float) -> tuple[Floats, Floats]:
         """Return from when until when each foot is where it stands, or where it is about to [s]."""
-        now, duty = self._now, self.gait.duty
-        if self._settling is not None:
-            change, first = self._settling
-            new = change.manner.gait
-            offsets = np.asarray(new.offsets)
-            delay = ((offsets - offsets[first]) % 1 + (overhang(new.duty) - 0.5) * new.duty) * change.tempo.cycle_time
-            begins = np.where(now.down, 0.0, (1 - now.share) * (1 - duty) / frequency)
-            return begins, self._until_down() + delay
-        over = (overhang(duty) - 0.5) * duty / frequency
-        starts: list[float] = []
-        stops: list[float] = []
-        for down, share, number, offset in zip(
-            now.down.tolist(), now.share.tolist(), now.number.tolist(), self.gait.offsets, strict=True
-        ):
-            starts.append(0.0 if down else (1 - share) * (1 - duty) / frequency)
-            lift = (offset + duty + number - now.clock) / frequency
-            stops.append((lift if down else starts[-1] + duty / frequency) + over)
-        return np.array(starts), np.array(stops)
+        if self._settling is None:
+            return stances(self._now, self.gait, frequency)
+        change, first = self._settling
+        begins = until_down(self._now, self.gait, self._frequency)
+        return begins, begins.max() + lift_delays(change.manner.gait, change.tempo.cycle_time)[first]
 
-    def _excess(self, begins: Floats, ends: Floats, bounds: Floats, frequency: float) -> Floats:
-        return excess(
-            self._now, self._target[None], begins=begins, ends=ends, bounds=bounds, bandwidth=self._bandwidth(frequency)
-        )
+    def _excess(self, begins: Floats, ends: Floats, bounds: Floats, bandwidth: float) -> Floats:
+        return excess(self._now, self._target[None], begins=begins, ends=ends, bounds=bounds, bandwidth=bandwidth)
 
     def _bounds(self) -> Floats:
-        return self._free_hands(self._footing.bounds)
+        return self._hands.without(self._footing.bounds)
 
-    def _free_hands(self, bounds: Floats) -> Floats:
-        """Return the polygons without those of the hands, whose legs bound them by themselves."""
-        if not self._hands:
-            return bounds
-        free = bounds.copy()
-        free[list(self._hands)] = np.inf
-        return free
-
-    def _works(self, begins: Floats, ends: Floats, bounds: Floats, frequency: float) -> bool:
-        return bool(self._excess(begins, ends, bounds, frequency).max() <= THERE)
+    def _works(self, begins: Floats, ends: Floats, bounds: Floats, bandwidth: float) -> bool:
+        return bool(self._excess(begins, ends, bounds, bandwidth).max() <= THERE)
 
     def _aim(self, twist: Sequence[float]) -> None:
         """Set the target of the twist: as much of the wish as the legs allow, for good and right now."""
@@ -519,7 +450,7 @@ class Walker(WalkerView):
             begins=begins,
             ends=ends,
             bounds=self._bounds(),
-            bandwidth=self._bandwidth(self._frequency),
+            bandwidth=self._bandwidth(),
         )
 
     def _steady(self, twist: Sequence[float]) -> bool:
@@ -553,7 +484,7 @@ class Walker(WalkerView):
         reasons = [
             *self._agenda.doing.limited,
             *self._agenda.refusals.values(),
-            *filter(None, self._hand_limits.values()),
+            *self._hands.limited,
         ]
         if share < 1:
             cycle = self._agenda.doing.tempo.cycle_time
@@ -567,9 +498,8 @@ class Walker(WalkerView):
             )
         if self._felt is not None:
             reasons += self._felt.refused
-        for found, search in self._searches.items():
-            if search.in_vain:
-                reasons.append(f"no ground under {self.robot.leg_names[found]}: the robot holds still")
+        for missing in self._searches.in_vain:
+            reasons.append(f"no ground under {self.robot.leg_names[missing]}: the robot holds still")
         return tuple(reasons)
 
     def _at_rest(self) -> bool:
@@ -592,7 +522,7 @@ class Walker(WalkerView):
         if self._felt is not None:
             lands = lands.copy()
             for leg in np.flatnonzero(~now.down).tolist():
-                lands[leg] = self._searches[leg].at_rest if leg in self._searches else self._touches(leg)
+                lands[leg] = self._searches.stands(leg, touches=self._touches(leg))
             # Where a foot that is about to land finds no ground, none may lift in its stead.
             soon = now.share + dt * self._frequency / (1 - self.gait.duty - now.late) >= 1.0 - TIE
             holds = holds or bool((~now.down & ~lands & soon).any())
@@ -600,74 +530,34 @@ class Walker(WalkerView):
             gait=self.gait,
             frequency=self._frequency if self._walking else 0.0,
             twist=self._target,
-            posture=self._goal,
-            bandwidth=self._bandwidth(self._frequency),
-            posture_bandwidth=self._posture_bandwidth(),
+            posture=self._carriage.goal,
+            bandwidth=self._bandwidth(),
+            posture_bandwidth=self._carriage.bandwidth(now.posture.value),
             steps=steps,
             lands=lands,
             rest=self._footing.rest,
+            room=self._footing.room,
             level=self._flat if self._feel is None else self._feel.level(now.foot),
             holds=holds,
             beats=self._beats,
         )
 
-    def _posture_bandwidth(self) -> float:
-        left = self._way_left()
-        if max(left) < _AT_POSTURE:
-            return _POSTURE_BANDWIDTH
-        shift, turn, lift = max(left[:3]), max(left[3:LIFT]), left[LIFT]
-        far = max(shift / _BODY_SPEED, turn / _BODY_TURN, lift / _BODY_SPEED)
-        return min(_POSTURE_BANDWIDTH, math.e / max(far, 1e-9))
-
-    def _swaying(self) -> None:
-        """Set by how much the body is to sway now."""
-        wished = self._agenda.doing.manner.sway
-        sway = np.array(wished if self._walking else _NO_SWAY)
-        if sway.any():
-            sway *= calm_sway(sway, self._frequency, self._beats)
-        if (self._goal[LIFT + 1 :] != sway).any():
-            self._goal = np.append(self._posture, sway)
-
     def _advance(self, dt: float) -> None:
         """Go on by one tick, or less of it where the joints need longer."""
-        if any(self._agenda.doing.manner.sway) or self._goal[LIFT + 1 :].any():
-            self._swaying()
-        before, course, hands = self._now, self._course(dt), self._hands
-        self._search(dt)
+        sway = self._agenda.doing.manner.sway if self._walking else _NO_SWAY
+        self._carriage.sway(sway, frequency=self._frequency, beats=self._beats)
+        before, course = self._now, self._course(dt)
         if self._felt is not None:
+            self._now = self._searches.step(before, dt, touches=self._touches)
             self._offset = np.where(before.down, self._felt.offsets, 0.0)
         swing_time = (1 - self.gait.duty) / self._frequency
 
         def move(time: float) -> Moment:
-            after = go_on(self._now, course, time)
-            return (
-                carry_hands(after, {leg: hand.step(time) for leg, hand in hands.items()}, swing_time)
-                if hands
-                else after
-            )
+            return self._hands.carry(go_on(self._now, course, time), time, swing_time=swing_time)
 
         self._now = self._own.advance(move, self._solve, dt, stop=bool(self._searches))
-        if hands:
-            rate = self._own.rate
-            self._hands = {leg: hand.step(dt * rate) for leg, hand in hands.items() if self._now.down[leg]}
+        self._hands.step(dt * self._own.rate, self._now.down)
         self._finish(before, dt)
-
-    def _search(self, dt: float) -> None:
-        """Let feet that have come down where there is no ground look for it, in the world's time."""
-        now = self._now
-        over = ~now.down & (now.share >= 1.0)
-        if not self._searches and (self._felt is None or not over.any()):
-            return
-        ground = now.ground.copy()
-        for leg in np.flatnonzero(over).tolist():
-            if leg not in self._searches:
-                if self._touches(leg):
-                    continue
-                depth = _DEPTH * float(now.posture.value[LIFT])
-                self._searches[leg] = Search.begin(float(ground[leg]), depth)
-            self._searches[leg] = self._searches[leg].step(dt, ground=self._touches(leg))
-            ground[leg] = float(self._searches[leg].height.value[0])
-        self._now = now._replace(ground=ground, met=np.where(over, np.inf, now.met))
 
     def _solve(self, now: Moment) -> Floats:
         return self._solver.angles(now, self._offset)
@@ -678,7 +568,7 @@ class Walker(WalkerView):
         landed = now.down & ~before.down if now.down is not before.down else self._none
         if landed.any():
             self._footing.land(landed)
-            self._searches = {leg: search for leg, search in self._searches.items() if not landed[leg]}
+            self._searches.land(landed)
         arrived = self._arrived()
         if self._settling is not None and now.down.all():
             self._switch(*self._settling)
@@ -696,3 +586,8 @@ class Walker(WalkerView):
         goal = goal if faster else min(goal, now)
         step = dt * now * now / 2
         self._frequency = goal if abs(goal - now) <= step else now + math.copysign(step, goal - now)
+
+
+def _bandwidth(gait: Gait, frequency: float) -> float:
+    """Return how fast the twist may follow its target [rad/s]."""
+    return _LAGS_PER_STANCE * frequency / gait.duty

@@ -10,11 +10,11 @@ import numpy as np
 from tarsus.gait.gait import Gait
 from tarsus.gait.live.agenda import Agenda
 from tarsus.gait.live.footing import Footing
-from tarsus.gait.live.hands import Hand
+from tarsus.gait.live.manipulation import Manipulation
 from tarsus.gait.live.moment import Moment
 from tarsus.gait.live.own_time import OwnTime
 from tarsus.gait.live.posture import LIFT, stand_of, swayed
-from tarsus.gait.live.search import Search
+from tarsus.gait.live.search import Searches
 from tarsus.gait.live.workspace import Stand
 from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.stability import stability_margin
@@ -47,8 +47,8 @@ class WalkerView:
     _frequency: float
     _walking: bool
     _beats: int
-    _hands: dict[int, Hand]
-    _searches: dict[int, Search]
+    _hands: Manipulation
+    _searches: Searches
     _limited: tuple[str, ...]
 
     def _stand(self, now: Moment) -> Stand:
@@ -96,7 +96,7 @@ class WalkerView:
     def contacts(self) -> Floats:
         """Which feet are on the ground ``(legs,)``."""
         down = self._now.down.copy()
-        down[list(self._hands)] = False
+        down[self._hands.legs] = False
         return down
 
     @property

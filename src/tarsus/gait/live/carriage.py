@@ -1,0 +1,104 @@
+"""How the body is to be carried: where its posture goes, how fast, and by how much it sways there."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from tarsus.gait.live.posture import LIFT, calm_sway
+
+__all__ = ["Carriage"]
+
+Floats = np.ndarray[Any, Any]
+
+# How fast the posture follows [rad/s], and how fast it may move the body at the most [m/s], turn it [rad/s].
+_BANDWIDTH = 4.0
+_BODY_SPEED, _BODY_TURN = 0.08, 0.5
+# How near the posture counts as reached [m, rad].
+_REACHED = 2e-4
+_NOWHERE = [0.0] * (LIFT + 1)
+
+
+class Carriage:
+    """The posture to go to, and the sway.
+
+    Parameters
+    ----------
+    posture : array, shape (7,)
+        The posture to begin with.
+
+    Attributes
+    ----------
+    posture : array, shape (7,)
+        The posture to go to.
+    goal : array, shape (13,)
+        The same with the sway's amplitudes; the same array for as long as it stays the same.
+    """
+
+    def __init__(self, posture: Floats) -> None:
+        self.posture = posture
+        self.goal = np.append(posture, np.zeros(LIFT))
+
+    def go_to(self, posture: Floats) -> None:
+        """Go to another posture.
+
+        Parameters
+        ----------
+        posture : array, shape (7,)
+            The posture.
+        """
+        self.posture = posture
+        self.goal = np.append(posture, self.goal[LIFT + 1 :])
+
+    def sway(self, wished: tuple[float, ...], *, frequency: float, beats: int) -> None:
+        """Sway as much as is wished for and slow enough.
+
+        Parameters
+        ----------
+        wished : tuple of float
+            Amplitudes: x, y, z [m], roll, pitch, yaw [rad].
+        frequency : float
+            Cycles a second [1/s].
+        beats : int
+            How often in a cycle feet are lifted.
+        """
+        if not any(wished) and not any(self.goal[LIFT + 1 :].tolist()):
+            return
+        amplitude = np.array(wished)
+        if amplitude.any():
+            amplitude *= calm_sway(amplitude, frequency, beats)
+        if (self.goal[LIFT + 1 :] != amplitude).any():
+            self.goal = np.append(self.posture, amplitude)
+
+    def reached(self, value: Floats) -> bool:
+        """Return whether a posture is the one to go to.
+
+        Parameters
+        ----------
+        value : array, shape (13,)
+            The posture now.
+        """
+        return max(self._left(value)) < _REACHED
+
+    def bandwidth(self, value: Floats) -> float:
+        """Return how fast the posture is to follow, for the body to be no faster than it may [rad/s].
+
+        Parameters
+        ----------
+        value : array, shape (13,)
+            The posture now.
+        """
+        left = self._left(value)
+        if max(left) < _REACHED:
+            return _BANDWIDTH
+        far = max(max(left[:3]) / _BODY_SPEED, max(left[3:LIFT]) / _BODY_TURN, left[LIFT] / _BODY_SPEED)
+        return min(_BANDWIDTH, math.e / max(far, 1e-9))
+
+    def _left(self, value: Floats) -> list[float]:
+        """Return how far there is to go, each of the posture's numbers."""
+        if value is self.goal:
+            return _NOWHERE
+        posture, now = self.posture.tolist(), value[: LIFT + 1].tolist()
+        return [abs(a - b) for a, b in zip(posture, now, strict=True)]
