@@ -8,10 +8,9 @@ import pytest
 from gait_robots import PRESETS, preset, ring
 from sample_stands import envelope_of, setup_of, standing, tempo_of
 from tarsus.gait.cycle import cycle_feet
-from tarsus.gait.gait import GAITS, Gait
+from tarsus.gait.gait import Gait
 from tarsus.gait.live.envelope import capped, envelope
-from tarsus.gait.live.support import support_sets
-from tarsus.gait.live.tempo import joint_limits, tempo
+from tarsus.gait.live.tempo import Cycle, joint_limits, tempo
 from tarsus.gait.live.workspace import all_parts
 
 HEADINGS = [(np.cos(a), np.sin(a), 0.0) for a in np.arange(7) * 2 * np.pi / 7 + 0.2]
@@ -148,11 +147,23 @@ def test_joint_limits_without_servos_and_as_asked_for():
     np.testing.assert_array_equal(acceleration, 7.0)
 
 
-@pytest.mark.parametrize("gait", GAITS)
-def test_the_work_is_done_in_parts(gait):
-    setup = setup_of("strider", gait)
+@pytest.mark.parametrize("legs", [4, 6, 8])
+def test_the_more_legs_the_more_parts_the_work_is_done_in(legs):
+    setup = setup_of(ring(legs), "wave")
     speed, acceleration = joint_limits(setup.robot, None, None)
-    assert support_sets(setup.gait).any()
-    limits = envelope_of("strider", gait)
+    limits = all_parts(envelope(setup.robot, [standing(setup)], np.ones((1, legs), dtype=bool), foot_distance=0.01))
     work = tempo(setup.robot, setup.gait, standing(setup), limits, speed=speed, acceleration=acceleration)
-    assert sum(1 for _ in work) >= 3
+    assert sum(1 for _ in work) >= legs // 3
+
+
+@pytest.mark.parametrize(("duty", "lift"), [(0.5, 0.03), (5 / 6, 0.1), (3 / 8, 0.0)])
+def test_the_cycle_in_complex_numbers_is_that_of_the_plan(duty, lift):
+    moves = np.array([(0.1, 0.0, 0.0), (0.0, 0.0, 0.5), (-0.03, 0.07, -0.4), (0.0, 0.0, 0.0), (0.02, 0.01, 1e-9)])
+    rest = np.array([0.2 + 0.1j, -0.1 + 0.25j, 0.0 - 0.3j])
+    cycle = Cycle(Gait(duty, (0.0,) * 3), moves, lift)
+    points = np.stack([rest.real, rest.imag, 0 * rest.real], axis=-1)
+    together = Gait(duty, (0.0,) * 3)
+    feet, _ = cycle_feet(together, points, moves, lift=np.asarray(lift), phases=cycle.phases)
+    found = cycle.shift[..., None] + cycle.factor[..., None] * rest
+    np.testing.assert_allclose(found, (feet[..., 0] + 1j * feet[..., 1]).swapaxes(0, 1), atol=1e-15)
+    np.testing.assert_allclose(np.broadcast_to(cycle.height, feet.shape[1:3]), feet[0, ..., 2], atol=1e-15)

@@ -8,7 +8,7 @@ import numpy as np
 
 from tarsus.gait.live.polygon import polygon_ends
 from tarsus.gait.live.stand import Stand
-from tarsus.gait.live.support import safe_share
+from tarsus.gait.live.support import margin_at_rest, safe_share
 from tarsus.kinematics.leg import forward_kinematics
 from tarsus.kinematics.mass import point_masses, total_mass
 from tarsus.robot.robot import Robot
@@ -34,11 +34,16 @@ class Balance:
         Feet that are down together.
     gone : tuple of int
         Legs that don't step: wherever they hang about, they shift the centre of mass.
+
+    Attributes
+    ----------
+    least_margin : float
+        How far inside its support the centre of mass stays [m].
     """
 
     def __init__(self, robot: Robot, sets: Floats, gone: tuple[int, ...] = ()) -> None:
         self._robot, self._sets, self._gone = robot, sets, list(gone)
-        self._margin = _LEAST_MARGIN
+        self.least_margin = _LEAST_MARGIN
         # Shares of the whole that the legs' points and the body's centre weigh.
         self._weights, self._body = np.zeros((robot.legs, 4)), np.asarray(robot.body_com)
         if robot.has_masses:
@@ -46,9 +51,9 @@ class Balance:
             self._weights = point_masses(np, robot) / total
             self._body = self._body * (robot.body_mass / total)
             reach = np.asarray(robot.coxa + robot.femur + robot.tibia) * np.asarray(robot.link_mass).sum(-1) / 4
-            self._margin += float(reach[self._gone].sum() / total)
+            self.least_margin += float(reach[self._gone].sum() / total)
 
-    def safe_share(self, stand: Stand, sides: Floats) -> float:
+    def safe_share(self, stand: Stand, sides: Floats, centre: complex, shift: Floats) -> float:
         """Return by how much the feet's polygons must shrink towards the rest footholds, so that nothing tips over.
 
         Parameters
@@ -57,14 +62,15 @@ class Balance:
             The body and the rest footholds.
         sides : array, shape (legs, 16)
             The polygons' sides [m].
+        centre, shift
+            From `centre_of_mass`.
 
         Returns
         -------
         float
             A share of the polygons' size; 0 where the robot tips over even with its feet at rest.
         """
-        centre, shift = self.centre_of_mass(stand, sides)
-        return safe_share(self._sets, sides, stand.rest, centre, margin=self._margin, shift=shift)
+        return safe_share(self._sets, sides, stand.rest, centre, margin=self.least_margin, shift=shift)
 
     def centre_of_mass(self, stand: Stand, sides: Floats) -> tuple[complex, Floats]:
         """Return the projected centre of mass with the feet at rest, and its shift by each leg at each corner.
@@ -85,14 +91,27 @@ class Balance:
         """
         # Every foot at rest first, then at one of its corners after the other.
         corners = polygon_ends(sides, stand.rest)[1]
-        feet = stand.rest + np.concatenate([np.zeros((1, len(corners))), corners.T])
+        moments, centre = self._moments(stand, np.concatenate([np.zeros((1, len(corners))), corners.T]))
+        shift = (moments[1:] - moments[0]).T
+        shift[self._gone] = 0.0
+        return centre, shift
+
+    def margin_at_rest(self, stand: Stand) -> float:
+        """Return how far inside its supports the centre of mass is with the feet at rest [m].
+
+        Parameters
+        ----------
+        stand : Stand
+            The body and the rest footholds.
+        """
+        return margin_at_rest(self._sets, stand.rest, self._moments(stand, np.zeros((1, len(stand.rest))))[1])
+
+    def _moments(self, stand: Stand, out: Floats) -> tuple[Floats, complex]:
+        """Return what each leg adds to the centre of mass ``(n, legs)``, and where that is in the first row [m]."""
+        feet = stand.rest + out
         solution = stand.solve(self._robot, feet.real, feet.imag, np.zeros((1, 1)))
         points = forward_kinematics(self._robot, np.stack(solution[:3], axis=-1))
-        # (corners, legs): what each leg adds to the centre of mass.
         moments = (points * self._weights[..., None]).sum(axis=-2) @ stand.rotation.T
         moments = moments[..., 0] + 1j * moments[..., 1]
         body = stand.rotation @ self._body + stand.position
-        centre = moments[0].sum() + complex(body[0], body[1])
-        shift = (moments[1:] - moments[0]).T
-        shift[self._gone] = 0.0
-        return complex(centre), shift
+        return moments, complex(moments[0].sum() + complex(body[0], body[1]))

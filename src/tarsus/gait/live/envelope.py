@@ -212,8 +212,9 @@ def envelope(
     balance, balanced = Balance(robot, sets, gone), True
     for stand in stands:
         sides = yield from workspace(robot, stand, foot_distance=foot_distance)
+        centre, shift = balance.centre_of_mass(stand, sides)
         yield
-        share = balance.safe_share(stand, sides)
+        share = balance.safe_share(stand, sides, centre, shift)
         at_rest = (_TOWARDS * stand.rest[:, None]).real
         free = sides - at_rest
         free = np.where(free > 0, free * share, free)

@@ -42,9 +42,11 @@ class StandSlack:
         A single robot.
     stand : Stand
         The body and the rest footholds.
+    knees : bool
+        Whether the ground is in the way of femur axes and knees.
     """
 
-    def __init__(self, robot: Robot, stand: Stand) -> None:
+    def __init__(self, robot: Robot, stand: Stand, *, knees: bool = True) -> None:
         self._g = g = robot.geometry
         self._sideways = bool(g.side.any())
         p, rest = stand.position, stand.rest
@@ -54,7 +56,7 @@ class StandSlack:
         self._along_x, self._along_y, self._up = (_in_legs(g, *stand.rotation[i].tolist()) for i in range(3))
         self._tilted = bool(stand.rotation[:2, 2].any())
         self._axis_height = _axis_height(g, stand)
-        self._lowest_femur = _lowest_femur(g, stand)
+        self._lowest_femur = _lowest_femur(g, stand) if knees else -math.inf
         self._turning_at_rest = self._turning(self._solve(np.zeros((1, len(rest))), np.zeros((1, len(rest)))))[0, 0]
 
     def __call__(self, out: Floats) -> Floats:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import math
 from bisect import bisect_left
 from typing import Any
 
@@ -11,7 +12,7 @@ import numpy as np
 from tarsus.gait.gait import Gait
 from tarsus.gait.live.polygon import NORMALS, polygon_ends
 
-__all__ = ["safe_share", "support_sets"]
+__all__ = ["margin_at_rest", "safe_share", "support_sets"]
 
 Floats = np.ndarray[Any, Any]
 
@@ -90,6 +91,27 @@ def safe_share(
             return float(_SHARES[index])
     index = bisect_left(range(len(_SHARES)), True, lo=_LIKELY, key=works)
     return float(_SHARES[index]) if index < len(_SHARES) else 0.0
+
+
+def margin_at_rest(sets: Floats, rest: Floats, centre: complex) -> float:
+    """Return how far inside every support a centre of mass is, with the feet at rest.
+
+    Parameters
+    ----------
+    sets : array of bool, shape (n, legs)
+        Feet that are down together.
+    rest : complex array, shape (legs,)
+        Rest footholds [m].
+    centre : complex
+        The projected centre of mass [m].
+
+    Returns
+    -------
+    float
+        Negative outside; minus infinity where fewer than three feet are down [m].
+    """
+    pairs = _edges_of(np.asarray(sets).tobytes(), sets.shape[1])
+    return -math.inf if pairs is None else _least_margin(pairs, (rest - centre)[:, None], np.zeros((len(rest), 1)))
 
 
 def _least_margin(pairs: Floats, feet: Floats, shift: Floats) -> float:

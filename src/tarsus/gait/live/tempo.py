@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -15,7 +14,7 @@ from tarsus.gait.live.workspace import Parts
 from tarsus.gait.swing import ground_share, height_share
 from tarsus.robot.robot import Robot
 
-__all__ = ["Tempo", "joint_limits", "tempo"]
+__all__ = ["Cycle", "Tempo", "joint_limits", "tempo"]
 
 Floats = np.ndarray[Any, Any]
 
@@ -106,12 +105,13 @@ def tempo(
     farthest = limits.largest_shares(_TWISTS, stance_time=1.0, duty=gait.duty)[:, None] * _TWISTS
     stroke = np.abs(farthest[:, :1] + 1j * farthest[:, 1:2] + 1j * farthest[:, 2:] * limits.rest).max(-1)
     moves = np.concatenate([np.zeros((1, 3)), (_SIZES[1:, None, None] * farthest).reshape(-1, 3)])
-    cycle = _Cycle(gait, moves, stand.lift)
+    cycle = Cycle(gait, moves, stand.lift)
     block = max(_BLOCK // (robot.legs * len(cycle.shift)), 1)
     times = []
     for first in range(0, len(moves), block):
         times.append(cycle.shortest_times(robot, stand, slice(first, first + block), speed, acceleration))
-        if len(times) % 2 == 0:
+        # The first comes after some other work, and the last before some.
+        if len(times) % 2:
             yield
     # (sizes, twists): the shortest cycle for each size of each stroke.
     shortest = np.empty((len(_SIZES), len(_TWISTS)))
@@ -150,7 +150,7 @@ def _sizes(shortest: Floats, cycle_times: Floats | float) -> Floats:
     return np.stack([np.interp(cycle_times, column, _SIZES) for column in shortest.T], axis=-1)
 
 
-class _Cycle:
+class Cycle:
     """Steady cycles of a robot that stands in some way, and what they ask of the joints.
 
     Every leg goes the same way through its own cycle: a swing, and a little of the stance on either side. Where the
@@ -164,15 +164,23 @@ class _Cycle:
         What the body moves in one stance: forward [m], left [m], yaw [rad].
     lift : float
         Lift of the swinging foot [m].
+
+    Attributes
+    ----------
+    phases : array, shape (m,)
+        Moments of the cycle, in cycles.
+    height : array, shape (m, 1)
+        Of the foot [m].
+    factor, shift : complex array, shape (m, n)
+        Where a foot is in the heading frame: its rest foothold times the one, and the other [m].
     """
 
     def __init__(self, gait: Gait, moves: Floats, lift: float) -> None:
         begin = gait.duty - 0.02 if gait.duty >= 0.5 else -0.02
-        phases = np.linspace(begin, 1.02, round(_MOMENTS * (1.02 - begin) / (1.04 - gait.duty)))
-        self._step = phases[1] - phases[0]
-        _, phase, contacts = Gait(gait.duty, (0.0,)).phase(phases)
+        self.phases = np.linspace(begin, 1.02, round(_MOMENTS * (1.02 - begin) / (1.04 - gait.duty)))
+        _, phase, contacts = Gait(gait.duty, (0.0,)).phase(self.phases)
         share = np.where(contacts, 0.0, (phase - gait.duty) / (1 - gait.duty))
-        self._height = lift * height_share(share)
+        self.height = lift * height_share(share)
         # What `cycle_feet` works out, with (moments, moves): a foot's place is linear in its rest foothold, if both
         # are complex numbers.
         along = ground_share(share)
@@ -183,13 +191,31 @@ class _Cycle:
         self.shift = (along * there - here) / turned
 
     def shortest_times(self, robot: Robot, stand: Stand, part: slice, speed: Floats, acceleration: Floats) -> Floats:
-        """Return the shortest cycle ``(n,)`` for a part of the moves."""
+        """Return the shortest cycle for each of a part of the moves.
+
+        Parameters
+        ----------
+        robot : Robot
+            A single robot.
+        stand : Stand
+            How it stands.
+        part : slice
+            Which of the moves.
+        speed, acceleration : array, shape (legs, 3)
+            Greatest of each joint [rad/s], [rad/s^2].
+
+        Returns
+        -------
+        array, shape (n,)
+            Durations [s].
+        """
         # (moments, moves, legs), and the joints between the first two.
         places = self.shift[:, part, None] + self.factor[:, part, None] * stand.rest
-        solution = stand.solve(robot, places.real, places.imag, self._height[..., None])
+        solution = stand.solve(robot, places.real, places.imag, self.height[..., None])
         angles = np.stack(solution[:3], axis=1)
-        rate = np.diff(angles, axis=0) / self._step
-        change = np.diff(rate, axis=0) / self._step
+        step = self.phases[1] - self.phases[0]
+        rate = np.diff(angles, axis=0) / step
+        change = np.diff(rate, axis=0) / step
         by_speed = np.abs(rate).max(axis=0) / (_SPEED_SHARE * speed.T[:, None])
         by_acceleration = np.sqrt(np.abs(change).max(axis=0) / (_ACCELERATION_SHARE * acceleration.T[:, None]))
         return np.asarray(np.maximum(by_speed, by_acceleration).max(axis=(0, 2)))

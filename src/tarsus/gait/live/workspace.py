@@ -20,7 +20,7 @@ from tarsus.gait.live.slack import KEEP, StandSlack
 from tarsus.gait.live.stand import Stand, joint_slack
 from tarsus.robot.robot import Robot
 
-__all__ = ["NORMALS", "Parts", "Stand", "all_parts", "joint_slack", "workspace"]
+__all__ = ["NORMALS", "Parts", "Stand", "all_parts", "joint_slack", "room_at_rest", "workspace"]
 
 Floats = np.ndarray[Any, Any]
 
@@ -46,6 +46,8 @@ def all_parts(work: Parts[_T]) -> _T:
 
 
 _RAYS, _SIDES, _RINGS, _FINE = 24, len(NORMALS), 8, 5
+# How many rings, and how many places on the edge, are looked at in one part.
+_INNER, _PLACES = 5, 600
 _DIRECTIONS = np.exp(2j * np.pi * np.arange(_RAYS) / _RAYS)
 # How often the sides are drawn in at the most, which points of each are looked at, and which parts of the way to them.
 _TRIMS = 6
@@ -56,7 +58,7 @@ _EXTRA, _SAME = 0.01, 1e-9
 
 
 def workspace(robot: Robot, stand: Stand, *, foot_distance: float) -> Parts[Floats]:
-    """Work out the sides of each foot's polygon in one stand, in parts of less than a millisecond.
+    """Work out the sides of each foot's polygon in one stand, in parts of like cost.
 
     Parameters
     ----------
@@ -73,29 +75,66 @@ def workspace(robot: Robot, stand: Stand, *, foot_distance: float) -> Parts[Floa
         How far out each side is along `NORMALS`, from the heading frame's origin [m]. Where a foot can't even be
         at its rest foothold, a side lies short of it.
     """
-    slack = StandSlack(robot, stand)
-    step = float((robot.geometry.femur + robot.geometry.tibia).max()) / _RINGS
-    rays = np.arange(_RINGS + 1)[:, None, None] * step
-    coarse = _first_zero(rays, slack(rays * _DIRECTIONS[:, None]), share=0.0)
+    slack, halfway = StandSlack(robot, stand), _Halfway(stand.rest, foot_distance)
+    rays = np.arange(_RINGS + 1)[:, None, None] * _ring(robot)
+    inner = slack(rays[:_INNER] * _DIRECTIONS[:, None])
+    yield
+    outer = slack(rays[_INNER:] * _DIRECTIONS[:, None])
+    coarse = _first_zero(rays, np.concatenate([inner, outer]), share=0.0)
     yield
     # Between the last ring that works and the first that fails, once more.
-    rays = coarse + np.arange(_FINE + 1)[:, None, None] * (step / _FINE)
+    rays = coarse + np.arange(_FINE + 1)[:, None, None] * (_ring(robot) / _FINE)
     reach = _first_zero(rays, slack(rays * _DIRECTIONS[:, None]), share=1.0) - KEEP
-    halfway = _Halfway(stand.rest, foot_distance)
     bounds = _sides(stand.rest, np.minimum(reach, halfway(_DIRECTIONS[:, None])))
     yield
+    looked, places = 0, len(_ALONG) * _SIDES * robot.legs
     for _ in range(_TRIMS):
         edge = _edge(bounds, stand.rest)
         part = halfway(edge)
+        looked += places
         if (slack(edge) < 0).any():
             yield
             part = np.minimum(part, _first_zero(_WAY_OUT, slack(_WAY_OUT * edge), share=1.0))
+            looked = _PLACES
         short = part < 1 - _SAME
         if not short.any():
             break
         bounds = _drawn_in(bounds, stand.rest, edge, np.where(short, part - _EXTRA, np.inf))
+        if looked + places > _PLACES:
+            yield
+            looked = 0
+    if looked + places > _PLACES:
         yield
     return bounds
+
+
+def room_at_rest(robot: Robot, stand: Stand, *, knees: bool = True) -> Floats:
+    """Return how far a foot may go from its rest foothold at least, until its leg can't follow, or a little way.
+
+    Parameters
+    ----------
+    robot : Robot
+        A single robot.
+    stand : Stand
+        The body and the rest footholds.
+    knees : bool
+        Whether the ground is in the way of femur axes and knees.
+
+    Returns
+    -------
+    array, shape (legs,)
+        Where it is negative, a side of the `workspace` lies short of the rest foothold [m].
+    """
+    rays = np.arange(2)[:, None, None] * (_ring(robot) / _FINE)
+    out = np.concatenate([[0j], rays[1, 0] * _DIRECTIONS])[:, None]
+    slack = StandSlack(robot, stand, knees=knees)(out)
+    ends = np.stack([np.broadcast_to(slack[0], slack[1:].shape), slack[1:]])
+    return np.asarray(_first_zero(rays, ends, share=1.0).min(axis=0)) - KEEP
+
+
+def _ring(robot: Robot) -> float:
+    """Return how far the rings are from each other at which rays are looked at [m]."""
+    return float((robot.geometry.femur + robot.geometry.tibia).max()) / _RINGS
 
 
 def _first_zero(radii: Floats, slack: Floats, *, share: float) -> Floats:
