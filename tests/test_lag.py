@@ -32,6 +32,16 @@ def test_a_step_and_its_travel_are_the_exponential_of_the_linear_system(value, r
     assert travel[0] == pytest.approx(integral, abs=1e-10 * scale)
 
 
+@given(small, small, small, st.floats(1e-3, 1), bandwidths)
+def test_to_go_is_to_step_and_to_travel(value, rate, target, dt, w):
+    start, goal = Lag(np.array([value, 0.3]), np.array([rate, 0.0])), np.array([target, -0.2])
+    after, travel = start.go(goal, dt, bandwidth=w)
+    expected = start.step(goal, dt, bandwidth=w)
+    np.testing.assert_allclose(after.value, expected.value, atol=1e-13)
+    np.testing.assert_allclose(after.rate, expected.rate, atol=1e-12 * (1 + w))
+    np.testing.assert_allclose(travel, start.travel(goal, dt, bandwidth=w), atol=1e-13 * (1 + 1 / w))
+
+
 def test_the_step_solves_its_differential_equation():
     w, target, start = 5.0, 0.7, [-0.3, 2.0]
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 import numpy as np
@@ -94,7 +93,8 @@ class Carriage:
         if max(left) < _REACHED:
             return _BANDWIDTH
         far = max(max(left[:3]) / _BODY_SPEED, max(left[3:LIFT]) / _BODY_TURN, left[LIFT] / _BODY_SPEED)
-        return min(_BANDWIDTH, math.e / max(far, 1e-9))
+        # A lag whose bandwidth is 2 v over the way that is left comes to the speed v, and goes on at it.
+        return min(_BANDWIDTH, 2 / max(far, 1e-9))
 
     def _left(self, value: Floats) -> list[float]:
         """Return how far there is to go, each of the posture's numbers."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import cmath
-import math
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -49,7 +48,8 @@ class Hand(NamedTuple):
             The time [s].
         """
         way = float(np.abs(self.target - self.place.value).max())
-        bandwidth = min(_BANDWIDTH, math.e * _SPEED / max(way, 1e-9))
+        # A lag whose bandwidth is 2 v over the way that is left comes to the speed v, and goes on at it.
+        bandwidth = min(_BANDWIDTH, 2 * _SPEED / max(way, 1e-9))
         return self._replace(place=self.place.step(self.target, dt, bandwidth=bandwidth))
 
     def stopped(self) -> Hand:

@@ -1,0 +1,53 @@
+"""How the body is carried: where its posture goes, how fast, and its sway."""
+
+import math
+
+import numpy as np
+import pytest
+
+from tarsus.gait.live.carriage import Carriage
+from tarsus.gait.live.lag import Lag
+from tarsus.gait.live.posture import calm_sway
+
+LEVEL = np.array([0.0, 0.0, 0.1, 0.0, 0.0, 0.0, 0.03])
+SWAY = (0.0, 0.01, 0.0, 0.02, 0.0, 0.0)
+
+
+def test_there_it_is_at_once_and_nothing_is_left_to_go():
+    carriage = Carriage(LEVEL)
+    assert carriage.reached(carriage.goal)
+    assert carriage.reached(carriage.goal + 1e-4)
+    assert not carriage.reached(carriage.goal + 3e-4)
+
+
+@pytest.mark.parametrize(
+    ("axis", "way", "fastest"), [(0, 0.05, 0.08), (2, -0.03, 0.08), (4, 0.4, 0.5), (5, -1.0, 0.5), (6, 0.06, 0.08)]
+)
+def test_the_body_is_no_faster_than_it_may(axis, way, fastest):
+    carriage = Carriage(LEVEL)
+    there = LEVEL.copy()
+    there[axis] += way
+    carriage.go_to(there)
+    posture, speeds = Lag.still(np.append(LEVEL, np.zeros(6))), []
+    for _ in range(3000):
+        after = posture.step(carriage.goal, 0.002, bandwidth=carriage.bandwidth(posture.value))
+        speeds.append(abs(after.value[axis] - posture.value[axis]) / 0.002)
+        posture = after
+    assert carriage.reached(posture.value)
+    assert 0.3 * min(fastest, 4 * abs(way) / math.e) < max(speeds) <= fastest
+
+
+def test_a_sway_is_no_more_than_is_slow_enough_and_ends():
+    carriage = Carriage(LEVEL)
+    carriage.sway(SWAY, frequency=2.0, beats=2)
+    calm = calm_sway(np.array(SWAY), 2.0, 2)
+    assert 0 < calm < 1
+    np.testing.assert_allclose(carriage.goal, [*LEVEL, *(calm * np.array(SWAY))])
+    same = carriage.goal
+    carriage.sway(SWAY, frequency=2.0, beats=2)
+    assert carriage.goal is same
+    # On the way to another posture it sways on.
+    carriage.go_to(LEVEL + 0.01)
+    np.testing.assert_allclose(carriage.goal, [*(LEVEL + 0.01), *(calm * np.array(SWAY))])
+    carriage.sway((0.0,) * 6, frequency=2.0, beats=2)
+    np.testing.assert_array_equal(carriage.goal, [*(LEVEL + 0.01), *np.zeros(6)])
