@@ -76,14 +76,14 @@ class StandSlack:
         # Larger arrays than these cost more than their share of time.
         blocks = math.ceil(len(flat) * self._g.coxa.size * len(_HEIGHTS) / _BLOCK)
         parts = np.array_split(flat, blocks)
-        found = [self._at(part, _NOWHERE) for part in parts]
-        # At each height, knees count for all places or for none: what is worked out at once makes no difference.
-        low = np.any([own for _, own in found], axis=0)
-        slack = [
-            slack if (own == low).all() else self._at(part, low)[0]
-            for part, (slack, own) in zip(parts, found, strict=True)
-        ]
-        return np.concatenate(slack).reshape(*out.shape[:-1], -1)
+        # At each height, knees count for all places or for none: what is worked out at once makes no difference. They
+        # are lowest far out, at the end.
+        low, found = _NOWHERE, []
+        for part in reversed(parts):
+            slack, low = self._at(part, low)
+            found.append((part, slack, low))
+        all_slack = [slack if (at == low).all() else self._at(part, low)[0] for part, slack, at in reversed(found)]
+        return np.concatenate(all_slack).reshape(*out.shape[:-1], -1)
 
     def _at(self, out: Floats, low: Floats) -> tuple[Floats, Floats]:
         """Return the least slack ``(n, legs)``, and at which heights knees count, be it elsewhere or here."""
@@ -115,8 +115,10 @@ class StandSlack:
     def _above_ground(self, s: Triangle, heights: Floats) -> Floats:
         """Return how high each leg's femur axis or knee is, whichever is lower, at some of the heights [m]."""
         g, (up_x, up_y, up_z) = self._g, self._up
-        coxa, femur = s.coxa[heights], s.femur[heights]
-        cos, sin = np.cos(coxa), np.sin(coxa)
+        femur = s.femur[heights]
+        if not self._tilted:
+            return np.asarray(self._axis_height + np.minimum(g.femur * np.sin(femur) * up_z, 0.0))
+        cos, sin = np.cos(s.coxa[heights]), np.sin(s.coxa[heights])
         outward = up_x * cos + up_y * sin
         axis = self._axis_height + g.coxa * outward + g.side * (up_y * cos - up_x * sin)
         knee = g.femur * (np.cos(femur) * outward + np.sin(femur) * up_z)

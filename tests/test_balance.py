@@ -1,0 +1,69 @@
+"""Where the centre of mass is while the feet are about their polygons, and by how much these must shrink for it."""
+
+import numpy as np
+import pytest
+
+from gait_robots import PRESETS, ring
+from sample_stands import POSTURES, polygons, setup_of, standing
+from tarsus.gait.gait import GAITS
+from tarsus.gait.live.balance import Balance
+from tarsus.gait.live.polygon import NORMALS, polygon_ends
+from tarsus.gait.live.support import margin_at_rest, safe_share, support_sets
+from tarsus.kinematics.mass import centre_of_mass
+
+
+@pytest.mark.parametrize("body", POSTURES)
+@pytest.mark.parametrize("name", PRESETS)
+def test_each_legs_own_shift_adds_up_to_that_of_the_whole_robot(name, body):
+    setup, stand, sides = setup_of(name), standing(setup_of(name), body), polygons(name, body)
+    centre, shift = Balance(setup.robot, support_sets(setup.gait)).centre_of_mass(stand, sides)
+    corners = polygon_ends(sides, stand.rest)[1]
+    picked = np.random.default_rng(4).integers(0, 16, (50, 6))
+    feet = stand.rest + corners[np.arange(6), picked]
+    angles = np.stack(stand.solve(setup.robot, feet.real, feet.imag, np.zeros(feet.shape))[:3], axis=-1)
+    whole = centre_of_mass(setup.robot, angles) @ stand.rotation.T + stand.position
+    found = centre + shift[np.arange(6), picked].sum(axis=-1)
+    np.testing.assert_allclose(found, whole[:, 0] + 1j * whole[:, 1], atol=1e-12)
+
+
+def test_without_masses_nothing_shifts_the_bodys_own_centre():
+    setup = setup_of(ring(6, link_mass=None, body_mass=None))
+    stand = standing(setup, POSTURES[1])
+    bounds = 0.05 + (NORMALS.conj() * stand.rest[:, None]).real
+    centre, shift = Balance(setup.robot, support_sets(setup.gait)).centre_of_mass(stand, bounds)
+    body = stand.rotation @ setup.robot.body_com + stand.position
+    assert centre == pytest.approx(complex(body[0], body[1]))
+    assert not shift.any()
+
+
+def test_legs_that_hang_about_anywhere_take_a_wider_margin_and_shift_nothing():
+    setup, stand, sides = setup_of("strider"), standing(setup_of("strider")), polygons("strider")
+    sets = support_sets(setup_of("strider", "wave").gait, (1, 4))
+    usual, wider = Balance(setup.robot, sets), Balance(setup.robot, sets, (1, 4))
+    assert wider.least_margin > usual.least_margin + 0.01
+    shift = wider.centre_of_mass(stand, sides)[1]
+    assert not shift[[1, 4]].any()
+    assert shift[[0, 2, 3, 5]].any(axis=-1).all()
+
+
+@pytest.mark.parametrize("gait", GAITS)
+def test_the_safe_share_is_the_first_of_all_that_works(gait):
+    rest = 0.2 * np.exp(1j * np.pi / 6 * np.array([1, 3, 5, 7, 9, 11]))
+    sets = support_sets(setup_of("strider", gait).gait)
+    found = {safe_share(sets, size + (NORMALS.conj() * rest[:, None]).real, rest, 0j, margin=0.0) for size in _SIZES}
+    # Smaller polygons never need to shrink more, and every share comes up.
+    shares = [safe_share(sets, size + (NORMALS.conj() * rest[:, None]).real, rest, 0j, margin=0.0) for size in _SIZES]
+    assert shares == sorted(shares, reverse=True)
+    assert len(found) > 8
+    for size, share in zip(_SIZES, shares, strict=True):
+        if share:
+            bounds = share * size + (NORMALS.conj() * rest[:, None]).real
+            assert safe_share(sets, bounds, rest, 0j, margin=0.0) == 1.0
+
+
+_SIZES = np.geomspace(0.01, 4.0, 60)
+
+
+def test_with_fewer_than_three_feet_there_is_no_margin():
+    rest = 0.2 * np.exp(1j * np.pi / 6 * np.array([1, 3, 5, 7, 9, 11]))
+    assert margin_at_rest(np.array([[True, False, False, True, False, False]]), rest, 0j) == -np.inf
