@@ -10,10 +10,24 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tarsus.drive.commands import COMMANDS, GAIT_NAMES, Clearance, GaitChange, MoveHand, Walk, quantities
+from tarsus.drive.commands import (
+    COMMANDS,
+    GAIT_NAMES,
+    Clearance,
+    CycleTime,
+    Force,
+    GaitChange,
+    HandSpeed,
+    Lift,
+    MoveHand,
+    Walk,
+    quantities,
+)
 from tarsus.drive.quantities import UNITS
 from tarsus.drive.scenario import LEVELLINGS, STARTS, Scenario
+from tarsus.drive.settings import ADMITTANCE
 from tarsus.errors import InputError, TarsusError, UnknownNameError
+from tarsus.gait.live.admittance import Admittance
 
 # Names that need quotes, and escapes, are names too.
 LEGS = st.one_of(st.sampled_from(["RF", "front left", "L1", '"', "a;b#c\n", "Bein-ü"]), st.text(min_size=1, max_size=8))
@@ -28,11 +42,22 @@ def commands(draw):
     for name, each in quantities(kind).items():
         low, high = (UNITS[each.unit].to_si(Decimal(str(bound))) for bound in (each.low, each.high))
         # The bounds hold for the number in the file's unit: a last digit within them.
-        values[name] = draw(st.floats(low * (1 - 1e-12), high * (1 - 1e-12)).filter(lambda v, low=low: v >= low))
+        number = st.floats(low * (1 - 1e-12), high * (1 - 1e-12)).filter(lambda v, low=low: v >= low)
+        values[name] = draw(st.one_of(number, st.sampled_from(each.words)) if each.words else number)
     for name, names in (("leg", LEGS), ("gait", st.sampled_from(GAIT_NAMES))):
         if name in {field.name for field in dataclasses.fields(kind)}:
             values[name] = draw(names)
     return kind(draw(MOMENTS), **values)
+
+
+@st.composite
+def admittances(draw):
+    """Any way of giving way within its bounds."""
+    values = {}
+    for each in ADMITTANCE:
+        low, high = (UNITS[each.unit].to_si(Decimal(str(bound))) for bound in (each.low, each.high))
+        values[each.name] = draw(st.floats(low * (1 + 1e-12), high * (1 - 1e-12)))
+    return Admittance(**values)
 
 
 @st.composite
@@ -52,6 +77,7 @@ def scenarios(draw):
         levelling=draw(st.sampled_from(["", *LEVELLINGS])),
         clearance=draw(st.none() | st.floats(0.001, 0.9)),
         lift=draw(st.none() | st.floats(0, 0.9)),
+        admittance=draw(st.none() | admittances()),
     )
 
 
@@ -83,6 +109,7 @@ def test_text_and_tables_of_the_same_commands_are_the_same():
         at 5s: walk speed 10cm/s heading 90 deg turn -5 deg/s; body z -1 cm pitch 5 deg
         clearance 90 mm; lift 0.03 m; stance_width 5 mm; cycle_time 900 ms; sway z 2 mm
         at 6 s: hand RF x 250 mm y -.12e3 mm z +60. mm; ground "front left" 10 mm; tilt roll 3 deg
+        hand_speed RF vx 2 cm/s vz -10 mm/s; force RF -2.5 N; cycle_time auto
         at 7 s: hand_back RF; stop; body; sit; fold; power_off
         """
     )
@@ -102,6 +129,9 @@ def test_text_and_tables_of_the_same_commands_are_the_same():
                 {"time_s": 6, "hands_mm": {"RF": [250, -120, 60]}},
                 {"time_s": 6, "ground_mm": {"front left": 10}},
                 {"time_s": 6, "tilt": {"roll_deg": 3}},
+                {"time_s": 6, "hand_speeds_mm_s": {"RF": [20, 0, -10]}},
+                {"time_s": 6, "force_n": {"RF": -2.5}},
+                {"time_s": 6, "cycle_time_s": "auto"},
                 {"time_s": 7, "hands_mm": {"RF": "back"}},
                 {"time_s": 7, "do": "stop"},
                 {"time_s": 7, "body": {}},
@@ -158,6 +188,18 @@ def test_straight_to_the_left_is_not_a_little_forward():
         ("at 1 s: hand", "hand needs a leg, such as RF"),
         ("at 1 s: hand RF x 5 mm", "hand needs y (mm), z (mm)"),
         ('at 1 s: hand_back "R\\F"', "is no text: a backslash"),
+        ("at 1 s: cycle_time", "cycle_time needs cycle_time (s, or auto)"),
+        ("at 1 s: cycle_time aut", "cycle_time needs a number with its unit, s or ms, or auto, not 'aut'"),
+        ("at 1 s: cycle_time auto 2 s", "cycle_time is given twice"),
+        ("at 1 s: cycle_time 99 s", "cycle_time = 99 s: must be from 0.01 to 60 s"),
+        ("at 1 s: lift auto", "lift needs a number with its unit, mm or cm or m, not 'auto'"),
+        ("at 1 s: hand_speed 5 mm/s", "hand_speed needs a leg, such as RF"),
+        ("at 1 s: hand_speed RF 5 mm/s", "5 stands alone; say which number it is: vx, vy, vz"),
+        ("at 1 s: hand_speed RF vz 2 m/s", "vz = 2 m/s: must be from -1000 to 1000 mm/s"),
+        ("at 1 s: force 5 N", "force needs a leg, such as RF"),
+        ("at 1 s: force RF", "force needs force (N)"),
+        ("at 1 s: force RF 5 mm", "force 5 has the unit 'mm'; it must have N"),
+        ("at 1 s: force RF 1001 N", "force = 1001 N: must be from -1000 to 1000 N"),
         ("at 1 s: walk §", "no number of walk is called '§'"),
     ],
 )
@@ -194,6 +236,23 @@ def test_all_problems_of_a_timeline_are_told_and_long_ones_are_shortened():
         ({"at": [{"time_s": 3, "walk": {"heading_deg": 4}}]}, "at[0]: heading needs speed"),
         ({"at": [{"time_s": 3, "hands_mm": {"RF": [1, 2]}}]}, "RF: must be a list of 3 numbers"),
         ({"at": [{"time_s": 3, "ground_mm": {"RF": "back"}}]}, "RF: must be a number from -1000 to 1000 mm"),
+        (
+            {"at": [{"time_s": 3, "hands_mm": {"RF": "bak"}}]},
+            'RF: must be a list of 3 numbers from -1000 to 1000 mm, or "back"',
+        ),
+        ({"at": [{"time_s": 3, "hand_speeds_mm_s": {"RF": "back"}}]}, "RF: must be a list of 3 numbers from -1000 to"),
+        ({"at": [{"time_s": 3, "hand_speeds_mm_s": {"RF": [0, 0, 2e3]}}]}, "RF: the third number must be from -1000"),
+        ({"at": [{"time_s": 3, "force_n": {"RF": 2e3}}]}, "at[0].force_n: RF: must be from -1000 to 1000 N"),
+        ({"at": [{"time_s": 3, "force_n": {"RF": [1, 2, 3]}}]}, "RF: must be a number from -1000 to 1000 N"),
+        (
+            {"at": [{"time_s": 3, "cycle_time_s": "aut"}]},
+            'cycle_time_s = "aut": must be a number from 0.01 to 60 s, or "auto"',
+        ),
+        ({"at": [{"time_s": 3, "cycle_time_s": 0}]}, 'cycle_time_s = 0: must be from 0.01 to 60 s, or "auto"'),
+        ({"admittance": 5}, "admittance = 5: must be a table of keys"),
+        ({"admittance": {"mass_kg": 0}}, "admittance.mass_kg = 0: must be from 0.1 to 1000 kg"),
+        ({"admittance": {"mass_kg": 1}}, "admittance.damping_ns_m: missing: its virtual damper [N s/m]"),
+        ({"admittance": {"stifness_n_m": 1}}, "admittance.stifness_n_m: unknown key; did you mean 'stiffness_n_m'?"),
         ({"at": [{"time_s": 3, "ground_mm": 5}]}, "at[0].ground_mm = 5: must be a table of legs"),
     ],
 )
@@ -247,6 +306,11 @@ def test_files_that_can_not_be_read_or_written_are_told(tmp_path):
         ({"commands": (3,)}, "are Walk, Stop and the like, not 3"),
         ({"start": "stading"}, "no start is called 'stading'. Did you mean 'standing'?"),
         ({"gait": "wavy"}, "Did you mean 'wave'?"),
+        ({"admittance": 400.0}, "admittance is an Admittance or None, not 400.0"),
+        (
+            {"admittance": Admittance(mass=0.01, damping=1.0, stiffness=1.0)},
+            "admittance: mass is 0.01 kg; it must be from 0.1 to 1000 kg",
+        ),
         ({"rate": 5.0}, "rate is 5 Hz; it must be from 20 to 1000 Hz"),
         ({"clearance": float("nan")}, "clearance is nan m"),
         ({"duration": 0.0}, "duration is 0 s"),
@@ -268,6 +332,10 @@ def test_scenarios_that_can_not_be_are_refused(changes, wanted):
         (lambda: Walk(0.0, vx="fast"), "vx is 'fast'; it must be a finite number"),
         (lambda: Walk(0.0, vx=True), "vx is True; it must be a finite number"),
         (lambda: Clearance(1.0, clearance=-0.1), "clearance is -100 mm; it must be from 0.001 to 1000 mm"),
+        (lambda: CycleTime(1.0, cycle_time="aut"), "cycle_time is 'aut'; it must be a finite number, or 'auto'"),
+        (lambda: Lift(1.0, lift="auto"), "lift is 'auto'; it must be a finite number"),
+        (lambda: HandSpeed(1.0, leg="RF", vz=2.0), "hand_speed at 1 s: vz is 2000 mm/s; it must be from -1000 to 1000"),
+        (lambda: Force(1.0, leg="RF", force=2e3), "force at 1 s: force is 2000 N; it must be from -1000 to 1000 N"),
         (lambda: MoveHand(1.0, leg="RF", x=2.0, y=0.0, z=0.0), "hand at 1 s: x is 2000 mm"),
     ],
 )
@@ -280,6 +348,13 @@ def test_commands_out_of_their_bounds_are_refused(make, wanted):
 def test_unknown_gaits_are_refused_with_the_nearest():
     with pytest.raises(UnknownNameError, match="Did you mean 'ripple'"):
         GaitChange(0.0, gait="riple")
+
+
+def test_a_page_of_settings_makes_feet_give_way():
+    (example,) = re.findall(r"```toml\n(name = \"a soft foot\".+?)```", PAGE, re.DOTALL)
+    soft = Scenario.from_dict(tomllib.loads(example))
+    assert soft.admittance == Admittance(mass=1.0, damping=60.0, stiffness=400.0, travel=0.01)
+    assert soft.to_dict()["admittance"] == {"mass_kg": 1, "damping_ns_m": 60, "stiffness_n_m": 400, "travel_mm": 10}
 
 
 PAGE = (Path(__file__).parents[1] / "docs" / "scenarios.md").read_text(encoding="utf-8")

@@ -11,6 +11,7 @@ from tarsus.drive.commands import Command, PowerOff, Sit, StandUp
 from tarsus.drive.orders import Orders
 from tarsus.errors import TarsusError
 from tarsus.gait.gait import Gait
+from tarsus.gait.live.admittance import Admittance
 from tarsus.gait.live.fold_power import power_off_order
 from tarsus.gait.live.levelling import LevellingMode
 from tarsus.gait.live.rise import fold, sit_down, stand_up
@@ -66,6 +67,8 @@ class Actor:
         Of the stance that it starts in or gets up to [m].
     levelling : {"level", "follow"}, optional
         What it does on ground that is not level.
+    admittance : Admittance, optional
+        How its feet give way to the forces on them.
     tell : callable
         Told what happens: what kind of thing, and in words.
 
@@ -84,11 +87,12 @@ class Actor:
         clearance: float | None,
         lift: float | None,
         levelling: LevellingMode | None,
+        admittance: Admittance | None,
         tell: Callable[[str, str], None],
     ) -> None:
         self.robot, self._tell = robot, tell
         self._first = {"clearance": clearance, "lift": lift}
-        self._levelling = levelling
+        self._levelling, self._admittance = levelling, admittance
         self.orders = Orders(robot)
         self._base = Pose.from_rpy(0.0, 0.0, 0.0, (0.0, 0.0, 0.0))
         self._gait, self._cycle_time = gait, 0.0
@@ -111,6 +115,7 @@ class Actor:
             clearance=self._first["clearance"],
             lift=self._first["lift"],
             levelling=self._levelling,
+            admittance=self._admittance,
         )
 
     @property
@@ -148,7 +153,8 @@ class Actor:
         return self.now
 
     def _walk(self, walker: Walker, dt: float) -> None:
-        walker.step(self.orders.wish(), dt, senses=self.orders.feeling.senses(walker.feet, walker.body))
+        senses = self.orders.feeling.senses(walker.feet, walker.body, walker.contacts)
+        walker.step(self.orders.wish(), dt, senses=senses)
         self._gait, self._cycle_time = walker.gait, walker.cycle_time
 
     def _at_rest(self) -> bool:

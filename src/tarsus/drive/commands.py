@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import dataclasses
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
-from typing import ClassVar
+from typing import ClassVar, Literal
 
-from tarsus.drive.quantities import UNITS, Quantity, quantity
-from tarsus.errors import InputError, UnknownNameError
+from tarsus.drive.quantities import Quantity, quantity, require_quantity
+from tarsus.errors import UnknownNameError
 from tarsus.gait.gait import GAITS
-from tarsus.robot.units import to_decimal
 
 __all__ = [
     "COMMANDS",
@@ -22,9 +20,11 @@ __all__ = [
     "Command",
     "CycleTime",
     "Fold",
+    "Force",
     "GaitChange",
     "Ground",
     "HandBack",
+    "HandSpeed",
     "Lift",
     "MoveBody",
     "MoveHand",
@@ -46,6 +46,7 @@ LATEST = 3600.0
 """The latest moment of a scenario [s]."""
 
 _WIDE, _FAST, _TURN = 1000, 10_000, 3600
+_AT = Quantity("at", "s", 0, LATEST, "when", needed=True)
 
 
 @dataclass(frozen=True)
@@ -62,23 +63,13 @@ class Command:
     at: float
 
     def __post_init__(self) -> None:
-        _require(f"{self.word}: at", self.at, 0.0, LATEST, "s")
+        require_quantity(f"{self.word}: at", self.at, _AT)
         for each in quantities(type(self)).values():
             value = getattr(self, each.name)
-            _require(f"{self.word} at {self.at:g} s: {each.name}", value, each.low, each.high, each.unit)
+            require_quantity(f"{self.word} at {self.at:g} s: {each.name}", value, each)
         gait = getattr(self, "gait", GAIT_NAMES[0])
         if gait not in GAIT_NAMES:
             raise UnknownNameError.of("gait", str(gait), GAIT_NAMES)
-
-
-def _require(what: str, value: object, low: float, high: float, unit: str) -> None:
-    """Refuse what is no finite number between the bounds of its unit."""
-    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
-        raise InputError(f"{what} is {value!r}; it must be a finite number")
-    number = UNITS[unit].from_si(float(value))
-    if not to_decimal(low) <= number <= to_decimal(high):
-        shown = UNITS[unit].shown
-        raise InputError(f"{what} is {float(number):g} {shown}; it must be from {low:g} to {high:g} {shown}")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -151,10 +142,10 @@ class StanceWidth(Command):
 
 @dataclass(frozen=True, kw_only=True)
 class CycleTime(Command):
-    """Step with cycles of this duration [s]."""
+    """Step with cycles of this duration [s]; "auto" for the one that gets the robot farthest."""
 
     word: ClassVar[str] = "cycle_time"
-    cycle_time: float = quantity("s", "of a cycle", low=0.01, high=60, needed=True)
+    cycle_time: float | Literal["auto"] = quantity("s", "of a cycle", low=0.01, high=60, needed=True, words=("auto",))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -166,6 +157,17 @@ class MoveHand(Command):
     x: float = quantity("mm", "forward", low=-_WIDE, high=_WIDE, needed=True)
     y: float = quantity("mm", "to the left", low=-_WIDE, high=_WIDE, needed=True)
     z: float = quantity("mm", "over the ground", low=-_WIDE, high=_WIDE, needed=True)
+
+
+@dataclass(frozen=True, kw_only=True)
+class HandSpeed(Command):
+    """Take a leg out of the gait, and move its foot at a speed in the heading frame [m/s]; all 0 holds it there."""
+
+    word: ClassVar[str] = "hand_speed"
+    leg: str
+    vx: float = quantity("mm_s", "forward", low=-_WIDE, high=_WIDE)
+    vy: float = quantity("mm_s", "to the left", low=-_WIDE, high=_WIDE)
+    vz: float = quantity("mm_s", "up", low=-_WIDE, high=_WIDE)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -229,9 +231,31 @@ class Tilt(Command):
     pitch: float = quantity("deg", "front down", low=-90, high=90)
 
 
+@dataclass(frozen=True, kw_only=True)
+class Force(Command):
+    """Feel the ground push a foot up so much more than its share of the weight [N]: a test of its senses."""
+
+    word: ClassVar[str] = "force"
+    leg: str
+    force: float = quantity("n", "more than its share", low=-_WIDE, high=_WIDE, needed=True)
+
+
 _KINDS: tuple[type[Command], ...] = (
-    *(StandUp, Walk, Stop, GaitChange, MoveBody, Clearance, Lift, StanceWidth, CycleTime, MoveHand, HandBack),
-    *(Sway, Ground, Tilt, Sit, Fold, PowerOff),
+    *(
+        StandUp,
+        Walk,
+        Stop,
+        GaitChange,
+        MoveBody,
+        Clearance,
+        Lift,
+        StanceWidth,
+        CycleTime,
+        MoveHand,
+        HandSpeed,
+        HandBack,
+    ),
+    *(Sway, Ground, Tilt, Force, Sit, Fold, PowerOff),
 )
 
 COMMANDS: Mapping[str, type[Command]] = MappingProxyType({kind.word: kind for kind in _KINDS})

@@ -5,15 +5,16 @@ from __future__ import annotations
 import os
 import re
 import tomllib
-from collections.abc import Callable
 from decimal import Decimal
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from tarsus.drive.commands import Command, GaitChange, Ground, HandBack, MoveHand, quantities
+from tarsus.drive.by_leg import commands_of_legs, entry_of_leg
+from tarsus.drive.commands import Command, GaitChange, quantities
+from tarsus.drive.settings import SETTINGS, settings_of
 from tarsus.drive.wording import command_from, numbers_of, takes
 from tarsus.errors import InputError
-from tarsus.robot.units import from_milli, to_decimal, to_milli
+from tarsus.robot.units import to_decimal
 from tarsus.robot.writer import toml_string, toml_text
 
 if TYPE_CHECKING:
@@ -87,7 +88,7 @@ def scenario_of(document: dict[str, Any], *, where: str, lines: list[int] | None
         problems += wrong
     if problems:
         raise _wrong(where, problems)
-    return {"commands": tuple(commands), **_settings(file)}
+    return {"commands": tuple(commands), **settings_of(file)}
 
 
 def commands_of_text(timeline: str) -> tuple[Command, ...]:
@@ -116,27 +117,6 @@ def _wrong(where: str, problems: list[str]) -> InputError:
     return InputError(f"{where}: {len(problems)} problem{'s' * (len(problems) != 1)}{lines}")
 
 
-# How each setting is written, and the way from its key to SI and back.
-_SETTINGS: dict[str, tuple[str, Callable[[Any], Any], Callable[[Any], Any]]] = {
-    "name": ("name", str, str),
-    "robot": ("robot", str, str),
-    "rate": ("rate_hz", float, to_decimal),
-    "jitter": ("jitter_ms", from_milli, to_milli),
-    "seed": ("seed", int, Decimal),
-    "start": ("start", str, str),
-    "duration": ("duration_s", float, to_decimal),
-    "gait": ("gait", str, str),
-    "clearance": ("clearance_mm", from_milli, to_milli),
-    "lift": ("lift_mm", from_milli, to_milli),
-    "levelling": ("levelling", str, str),
-}
-
-
-def _settings(file: Any) -> dict[str, Any]:
-    given = {name: (getattr(file, key), read) for name, (key, read, _) in _SETTINGS.items()}
-    return {name: read(value) for name, (value, read) in given.items() if value is not None}
-
-
 def _commands_of(table: Any) -> list[Command]:
     """Return the commands of one ``[[at]]``."""
     from tarsus.drive.schema import SCALARS, TABLES
@@ -153,21 +133,9 @@ def _commands_of(table: Any) -> list[Command]:
         for name, each in quantities(kind).items():
             value = getattr(table, each.key)
             found += [] if value is None else [command_from(kind, at, {name: value})]
-    found += _of_legs(table, at) + _of_word(table, at)
+    found += [*commands_of_legs(table, at), *_of_word(table, at)]
     if not found:
         raise ValueError("no command; there are: do, gait, walk, body, sway, tilt, clearance_mm, lift_mm, ...")
-    return found
-
-
-def _of_legs(table: Any, at: Decimal) -> list[Command]:
-    found: list[Command] = []
-    for leg, point in (table.hands_mm or {}).items():
-        if point == "back":
-            found.append(command_from(HandBack, at, {}, leg=leg))
-        else:
-            found.append(command_from(MoveHand, at, dict(zip("xyz", point, strict=True)), leg=leg))
-    for leg, height in (table.ground_mm or {}).items():
-        found.append(command_from(Ground, at, {"height": height}, leg=leg))
     return found
 
 
@@ -181,10 +149,10 @@ def _document(scenario: Scenario) -> dict[str, Any]:
     """Return the keys of the scenario's file, every number a decimal; what is at its default is left out."""
     default = type(scenario)()
     document: dict[str, Any] = {}
-    for name, (key, _, write) in _SETTINGS.items():
+    for name, setting in SETTINGS.items():
         value = getattr(scenario, name)
         if value != getattr(default, name):
-            document[key] = write(value)
+            document[setting.key] = setting.write(value)
     if scenario.commands:
         document["at"] = [{"time_s": to_decimal(each.at), **_entry(each)} for each in scenario.commands]
     return document
@@ -194,16 +162,12 @@ def _entry(command: Command) -> dict[str, Any]:
     """Return a command's key and value."""
     from tarsus.drive.schema import SCALARS, TABLES
 
-    numbers = numbers_of(command)
-    if isinstance(command, MoveHand):
-        return {"hands_mm": {command.leg: [numbers[axis] for axis in "xyz"]}}
-    if isinstance(command, HandBack):
-        return {"hands_mm": {command.leg: "back"}}
-    if isinstance(command, Ground):
-        return {"ground_mm": {command.leg: numbers["height"]}}
+    of_leg = entry_of_leg(command)
+    if of_leg is not None:
+        return of_leg
     if isinstance(command, GaitChange):
         return {"gait": command.gait}
-    keyed = {quantities(type(command))[name].key: number for name, number in numbers.items()}
+    keyed = {quantities(type(command))[name].key: number for name, number in numbers_of(command).items()}
     if type(command) in TABLES:
         return {command.word: keyed}
     return keyed if type(command) in SCALARS else {"do": command.word}

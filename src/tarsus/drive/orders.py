@@ -10,8 +10,10 @@ from tarsus.drive.commands import (
     Command,
     CycleTime,
     Fold,
+    Force,
     GaitChange,
     Ground,
+    HandSpeed,
     Lift,
     MoveBody,
     MoveHand,
@@ -62,7 +64,8 @@ class Orders:
     def __init__(self, robot: Robot) -> None:
         self._robot = robot
         self._asked: dict[str, Any] = {}
-        self._hands: dict[int, tuple[float, float, float] | None] = {}
+        # Legs that are moved by hand, each to a point or at a speed; None for one that comes back.
+        self._hands: dict[int, MoveHand | HandSpeed | None] = {}
         self.twist = _STILL
         self.acts: deque[Command] = deque()
         self.feeling = Feeling(robot)
@@ -83,20 +86,22 @@ class Orders:
 
     def _take_for_leg(self, command: Command) -> None:
         leg = leg_number(self._robot, getattr(command, "leg", ""))
-        if isinstance(command, Ground | Tilt):
+        if isinstance(command, Ground | Tilt | Force):
             self.feeling.take(command, leg)
         elif leg is not None:
-            self._hands[leg] = (command.x, command.y, command.z) if isinstance(command, MoveHand) else None
+            self._hands[leg] = command if isinstance(command, MoveHand | HandSpeed) else None
 
     def wish(self) -> Wish:
         """Return what the walker is asked for: to stand with all its feet down where an act is to come."""
-        going_down = bool(self.acts)
-        return Wish(
-            twist=_STILL if going_down else self.twist,
-            hands=(dict.fromkeys(self._hands) if going_down else dict(self._hands)) or None,
-            **self._asked,
-        )
+        if self.acts:
+            return Wish(twist=_STILL, hands=dict.fromkeys(self._hands) or None, **self._asked)
+        told = self._hands.items()
+        speeds = {leg: (hand.vx, hand.vy, hand.vz) for leg, hand in told if isinstance(hand, HandSpeed)}
+        points = {
+            leg: (hand.x, hand.y, hand.z) if hand else None for leg, hand in told if not isinstance(hand, HandSpeed)
+        }
+        return Wish(twist=self.twist, hands=points or None, hand_speeds=speeds or None, **self._asked)
 
     def forget_hands_back(self) -> None:
         """Forget the legs that are back in the gait: a robot that has got up has them all there."""
-        self._hands = {leg: point for leg, point in self._hands.items() if point is not None}
+        self._hands = {leg: hand for leg, hand in self._hands.items() if hand is not None}

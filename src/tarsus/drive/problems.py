@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from types import MappingProxyType
 from typing import Any
 
 from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails
 
-from tarsus.drive.schema import TABLES, At, ScenarioFile
+from tarsus.drive.schema import TABLES, At, GivingWay, ScenarioFile
 from tarsus.errors import nearest_name
 from tarsus.robot.fields import REFUSED
 from tarsus.robot.problems import key_of, show
 
 __all__ = ["problems_of"]
+
+_MISSING: Mapping[int | str, str] = MappingProxyType({"time_s": "when, in seconds"})
 
 
 def problems_of(error: ValidationError, lines: list[int]) -> list[str]:
@@ -46,7 +50,7 @@ def _words(found: ErrorDetails) -> str:
     if found["type"] == REFUSED:
         return found["msg"]
     if found["type"] == "missing":
-        return "missing: when, in seconds"
+        return f"missing: {_MISSING.get(location[-1]) or _model(location).model_fields[str(location[-1])].description}"
     if found["type"] == "extra_forbidden":
         return f"unknown key; {_suggest(location)}"
     if found["type"] == "list_type":
@@ -59,6 +63,8 @@ def _model(location: tuple[int | str, ...]) -> type[BaseModel]:
     inside = [part for part in location[:-1] if isinstance(part, str)]
     if not inside:
         return ScenarioFile
+    if inside[-1] == "admittance":
+        return GivingWay
     models: dict[str, Any] = {kind.word: At.model_fields[kind.word].annotation for kind in TABLES}
     for argument in getattr(models.get(inside[-1]), "__args__", ()):
         if isinstance(argument, type) and issubclass(argument, BaseModel):

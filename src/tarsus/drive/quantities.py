@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 from collections.abc import Callable, Mapping
 from decimal import Decimal
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
+from tarsus.errors import InputError
 from tarsus.robot.units import degrees, from_milli, radians, to_decimal, to_milli
 
-__all__ = ["UNITS", "Quantity", "Unit", "quantity"]
+__all__ = ["UNITS", "Quantity", "Unit", "quantity", "require_quantity"]
 
 
 class Unit(NamedTuple):
@@ -41,6 +43,10 @@ UNITS: Mapping[str, Unit] = MappingProxyType(
         "deg": Unit("deg", {"deg": Decimal(1)}, radians, degrees),
         "deg_s": Unit("deg/s", {"deg/s": Decimal(1)}, radians, degrees),
         "s": Unit("s", {"s": Decimal(1), "ms": Decimal("0.001")}, float, to_decimal),
+        "n": Unit("N", {"N": Decimal(1)}, float, to_decimal),
+        "kg": Unit("kg", {"kg": Decimal(1)}, float, to_decimal),
+        "ns_m": Unit("N s/m", {"N s/m": Decimal(1)}, float, to_decimal),
+        "n_m": Unit("N/m", {"N/m": Decimal(1)}, float, to_decimal),
     }
 )
 """The units that keys of a scenario end in."""
@@ -62,6 +68,8 @@ class Quantity:
         What it is.
     needed : bool
         Whether it must be given; else it is 0 where left out.
+    words : tuple of str
+        What may stand in its place, in every form.
     """
 
     name: str
@@ -70,6 +78,7 @@ class Quantity:
     high: float
     text: str
     needed: bool = False
+    words: tuple[str, ...] = ()
 
     @property
     def key(self) -> str:
@@ -82,7 +91,9 @@ class Quantity:
         return UNITS[self.unit].shown
 
 
-def quantity(unit: str, text: str, *, low: float, high: float, needed: bool = False) -> Any:
+def quantity(
+    unit: str, text: str, *, low: float, high: float, needed: bool = False, words: tuple[str, ...] = ()
+) -> Any:
     """Return the dataclass field of a quantity; its value is in SI.
 
     Parameters
@@ -95,8 +106,39 @@ def quantity(unit: str, text: str, *, low: float, high: float, needed: bool = Fa
         Its bounds, in that unit.
     needed : bool
         Whether it must be given; else it is 0 where left out.
+    words : tuple of str
+        What may stand in its place.
     """
-    metadata = {"quantity": {"unit": unit, "text": text, "low": low, "high": high, "needed": needed}}
+    about = {"unit": unit, "text": text, "low": low, "high": high, "needed": needed, "words": words}
+    metadata = {"quantity": about}
     if needed:
         return dataclasses.field(metadata=metadata)
     return dataclasses.field(default=0.0, metadata=metadata)
+
+
+def require_quantity(what: str, value: object, wanted: Quantity) -> None:
+    """Refuse what is neither a finite number between the bounds of a quantity nor one of its words.
+
+    Parameters
+    ----------
+    what : str
+        What it is, for the message.
+    value : object
+        The value, in SI.
+    wanted : Quantity
+        The quantity.
+
+    Raises
+    ------
+    InputError
+        If it is something else.
+    """
+    if isinstance(value, str) and value in wanted.words:
+        return
+    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+        more = "".join(f", or {word!r}" for word in wanted.words)
+        raise InputError(f"{what} is {value!r}; it must be a finite number{more}")
+    number = UNITS[wanted.unit].from_si(float(value))
+    low, high, shown = wanted.low, wanted.high, wanted.shown
+    if not to_decimal(low) <= number <= to_decimal(high):
+        raise InputError(f"{what} is {float(number):g} {shown}; it must be from {low:g} to {high:g} {shown}")

@@ -58,6 +58,8 @@ class Recording:
         the stroke and the speed are those of its fastest walking; `clearance` and `lift` those it started with.
     wished, done : array, shape (n, 3)
         Twist that was asked for, and that was walked: forward, left [m/s], turning [rad/s].
+    cycle_times : array, shape (n,)
+        Duration of a cycle of steps; what it was last where it does not walk [s].
     belly : array of bool, shape (n,)
         Whether its body rests on the ground.
     upright : array of bool, shape (n,)
@@ -79,6 +81,7 @@ class Recording:
     motion: Motion
     wished: Floats
     done: Floats
+    cycle_times: Floats
     belly: Floats
     upright: Floats
     doing: tuple[str, ...]
@@ -145,8 +148,8 @@ class Recording:
             If it can't be written.
         """
         scale = np.array([1e3, 1e3, 180 / np.pi])
-        numbers = [self.motion.time[:, None], self.wished * scale, self.done * scale, self.motion.margin[:, None] * 1e3]
-        rows = np.hstack(numbers).tolist()
+        twists = [self.motion.time[:, None], self.wished * scale, self.done * scale]
+        rows = np.hstack([*twists, self.cycle_times[:, None], self.motion.margin[:, None] * 1e3]).tolist()
         guard = self.guard or ("",) * len(rows)
         try:
             with open(path, "w", newline="", encoding="utf-8") as file:
@@ -161,5 +164,5 @@ class Recording:
 _COLUMNS = (
     "time_s",
     *(f"{what}_{axis}" for what in ("wished", "done") for axis in ("vx_mm_s", "vy_mm_s", "turn_deg_s")),
-    *("margin_mm", "gait", "doing", "guard"),
+    *("cycle_time_s", "margin_mm", "gait", "doing", "guard"),
 )

@@ -9,12 +9,12 @@ from typing import Any
 import numpy as np
 
 from tarsus.drive.actor import Actor, Frame
-from tarsus.drive.commands import Command, GaitChange
-from tarsus.drive.orders import leg_number
+from tarsus.drive.commands import Command
+from tarsus.drive.drivable import require_drivable
 from tarsus.drive.recording import Event, Recording
 from tarsus.drive.scenario import Scenario
 from tarsus.drive.wording import command_text
-from tarsus.errors import InputError, UnknownNameError
+from tarsus.errors import InputError
 from tarsus.gait.gait import Gait
 from tarsus.gait.live.guard import Guard, GuardBounds
 from tarsus.gait.live.tempo import joint_limits
@@ -53,7 +53,7 @@ def run_scenario(scenario: Scenario, *, robot: Robot | str | None = None, guard:
     Raises
     ------
     InputError
-        If no robot is named, or a command names a gait that it can't walk.
+        If no robot is named, a command names a gait that it can't walk, or a force is to be felt that nothing follows.
     UnknownNameError
         If a command names a leg that it has not.
     UnreachableError
@@ -65,25 +65,11 @@ def run_scenario(scenario: Scenario, *, robot: Robot | str | None = None, guard:
     return _Run(scenario, chosen if isinstance(chosen, Robot) else load_robot(chosen), guard=guard).recording()
 
 
-def _check(scenario: Scenario, robot: Robot) -> None:
-    """Refuse commands that this robot can't be told."""
-    for command in scenario.commands:
-        at = f"at {command.at:g} s"
-        leg = getattr(command, "leg", None)
-        if leg is not None and leg_number(robot, leg) is None:
-            raise UnknownNameError(f"{at}: {UnknownNameError.of('leg', leg, robot.leg_codes)}")
-        if isinstance(command, GaitChange):
-            try:
-                Gait.named(command.gait, legs=robot.legs)
-            except InputError as error:
-                raise InputError(f"{at}: {error}") from None
-
-
 class _Run:
     """A scenario on its way."""
 
     def __init__(self, scenario: Scenario, robot: Robot, *, guard: bool) -> None:
-        _check(scenario, robot)
+        require_drivable(scenario, robot)
         self._scenario, self._robot = scenario, robot
         self._time = 0.0
         self._events: list[Event] = []
@@ -97,6 +83,7 @@ class _Run:
             clearance=scenario.clearance,
             lift=scenario.lift,
             levelling=levelling,
+            admittance=scenario.admittance,
             tell=self._tell,
         )
         speed, acceleration = joint_limits(robot, None, None)
@@ -186,6 +173,7 @@ class _Run:
             motion=self._motion(done),
             wished=_locked(np.array(self._wishes)),
             done=_locked(done),
+            cycle_times=_locked(np.array([frame.cycle_time for frame in frames])),
             belly=_locked(np.array([frame.belly for frame in frames])),
             upright=_locked(np.array([frame.upright for frame in frames])),
             doing=tuple(frame.doing for frame in frames),

@@ -9,8 +9,11 @@ from dataclasses import dataclass
 from typing import Any, Self
 
 from tarsus.drive.commands import GAIT_NAMES, LATEST, Command
+from tarsus.drive.quantities import require_quantity
+from tarsus.drive.settings import ADMITTANCE
 from tarsus.drive.wording import command_text, time_text
 from tarsus.errors import InputError, UnknownNameError
+from tarsus.gait.live.admittance import Admittance
 
 __all__ = ["LEVELLINGS", "LONGEST_TICK", "STARTS", "Scenario"]
 
@@ -54,6 +57,8 @@ class Scenario:
         Of the stance it starts in or gets up to [m]; the robot's own where left out.
     levelling : {"", "level", "follow"}
         On ground that it feels is not level: nothing, or the body stays level, or follows the slope.
+    admittance : Admittance, optional
+        How feet give way to the forces on them; left out, they don't.
 
     Raises
     ------
@@ -75,6 +80,7 @@ class Scenario:
     clearance: float | None = None
     lift: float | None = None
     levelling: str = ""
+    admittance: Admittance | None = None
 
     def __post_init__(self) -> None:
         commands: Iterable[object] = self.commands
@@ -88,6 +94,16 @@ class Scenario:
             if getattr(self, kind) not in ("", *known):
                 raise UnknownNameError.of(kind, str(getattr(self, kind)), known)
         self._check_numbers()
+        self._check_admittance()
+
+    def _check_admittance(self) -> None:
+        admittance: object = self.admittance
+        if admittance is None:
+            return
+        if not isinstance(admittance, Admittance):
+            raise InputError(f"a scenario's admittance is an Admittance or None, not {admittance!r}")
+        for each in ADMITTANCE:
+            require_quantity(f"a scenario's admittance: {each.name}", getattr(admittance, each.name), each)
 
     def _check_numbers(self) -> None:
         for name, low, high, unit in _BOUNDS:

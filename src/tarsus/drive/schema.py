@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from decimal import Decimal
 from typing import Annotated, Any, cast
 
 from pydantic import BaseModel, ConfigDict, Field, create_model
 from pydantic_core import PydanticCustomError, core_schema
 
-from tarsus.drive.commands import COMMANDS, GAIT_NAMES, LATEST, Command, MoveBody, Sway, Tilt, Walk
+from tarsus.drive.by_leg import LEG_TABLES, LegTable
+from tarsus.drive.commands import COMMANDS, GAIT_NAMES, LATEST, Command, MoveBody, Sway, Tilt, Walk, quantities
 from tarsus.drive.quantities import Quantity
 from tarsus.drive.scenario import LEVELLINGS, STARTS
-from tarsus.drive.wording import takes
+from tarsus.drive.settings import ADMITTANCE
+from tarsus.drive.wording import Value, takes
 from tarsus.robot.fields import Choice, Number, Numbers, Text, refuse
 
-__all__ = ["RATES", "SCALARS", "TABLES", "WORDS", "At", "ScenarioFile"]
+__all__ = ["RATES", "SCALARS", "TABLES", "WORDS", "At", "GivingWay", "ScenarioFile"]
 
 RATES = (20.0, 1000.0)
 """The least and the greatest rate [1/s]."""
@@ -28,9 +31,6 @@ SCALARS = tuple(COMMANDS[word] for word in ("clearance", "lift", "stance_width",
 WORDS = ("stand_up", "stop", "sit", "fold", "power_off")
 """Commands that take nothing, under ``do``."""
 
-_HAND = Numbers(3, Number(-1000, 1000, "mm"))
-_HEIGHT = Number(-1000, 1000, "mm")
-
 
 class Table(BaseModel):
     """Any table of the file: a key that it does not know is refused."""
@@ -38,9 +38,30 @@ class Table(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
 
 
-def _number(each: Quantity) -> Any:
-    field = Field(default=None, description=f"{each.text} [{each.shown}]")
-    return Annotated[Decimal | None, Number(each.low, each.high, each.shown)], field
+class _OrWord:
+    """A value, or one of some words in its place."""
+
+    def __init__(self, each: Number | Numbers, words: Collection[str]) -> None:
+        self._each, self._words = each, words
+
+    def check(self, value: object) -> Any:
+        """Return the value, or the word; refuse what is neither."""
+        if isinstance(value, str) and value in self._words:
+            return value
+        try:
+            return self._each.check(value)
+        except PydanticCustomError as error:
+            more = "".join(f', or "{word}"' for word in self._words)
+            raise refuse(f"{error.message()}{more}") from None
+
+    def __get_pydantic_core_schema__(self, source: object, handler: object) -> Any:
+        return core_schema.no_info_plain_validator_function(self.check)
+
+
+def _number(each: Quantity, *, needed: bool = False) -> Any:
+    field = Field(default=... if needed else None, description=f"{each.text} [{each.shown}]")
+    number = Number(each.low, each.high, each.shown)
+    return Annotated[Value | None, _OrWord(number, each.words) if each.words else number], field
 
 
 def _table(kind: type[Command]) -> type[Table]:
@@ -50,10 +71,12 @@ def _table(kind: type[Command]) -> type[Table]:
 
 
 class _ByLeg:
-    """A table of legs: a value for each, checked by `each`."""
+    """A table of legs: for each what one of `LEG_TABLES` says."""
 
-    def __init__(self, each: Number | Numbers, *, back: bool) -> None:
-        self._each, self._back = each, back
+    def __init__(self, table: LegTable) -> None:
+        numbers = [Number(each.low, each.high, each.shown) for each in quantities(table.kind).values()]
+        one = numbers[0] if len(numbers) == 1 else Numbers(len(numbers), numbers[0])
+        self._each = _OrWord(one, table.words)
 
     def check(self, value: object) -> dict[str, Any]:
         """Return the table; refuse what is none."""
@@ -62,13 +85,10 @@ class _ByLeg:
         return {str(leg): self._one(str(leg), item) for leg, item in value.items()}
 
     def _one(self, leg: str, value: object) -> Any:
-        if self._back and value == "back":
-            return "back"
         try:
             return self._each.check(value)
         except PydanticCustomError as error:
-            more = ', or "back"' if self._back else ""
-            raise refuse(f"{leg}: {error.message()}{more}") from None
+            raise refuse(f"{leg}: {error.message()}") from None
 
     def __get_pydantic_core_schema__(self, source: object, handler: object) -> Any:
         return core_schema.no_info_plain_validator_function(self.check)
@@ -93,12 +113,17 @@ _AT: dict[str, Any] = {
     "gait": (Annotated[str | None, Choice(GAIT_NAMES)], Field(default=None, description="Another gait.")),
     **{kind.word: (_table(kind) | None, None) for kind in TABLES},
     **{each.key: _number(each) for kind in SCALARS for each in takes(kind).values()},
-    "hands_mm": (Annotated[dict[str, Any] | None, _ByLeg(_HAND, back=True)], None),
-    "ground_mm": (Annotated[dict[str, Any] | None, _ByLeg(_HEIGHT, back=False)], None),
+    **{table.key: (Annotated[dict[str, Any] | None, _ByLeg(table)], None) for table in LEG_TABLES},
 }
 
 At = cast("type[Table]", create_model("At", __base__=Table, __doc__="What is told at a moment.", **_AT))
 """One ``[[at]]``: a moment and the commands that are given then."""
+
+
+_GIVING_WAY: dict[str, Any] = {each.key: _number(each, needed=each.needed) for each in ADMITTANCE}
+
+GivingWay = cast("type[Table]", create_model("GivingWay", __base__=Table, __doc__="How feet give way.", **_GIVING_WAY))
+"""How feet give way to the forces on them."""
 
 
 class ScenarioFile(Table):
@@ -122,6 +147,9 @@ class ScenarioFile(Table):
     )
     levelling: Annotated[str, Choice(LEVELLINGS)] | None = Field(
         default=None, description="Whether the body stays level on ground that is not, or follows it."
+    )
+    admittance: GivingWay | None = Field(  # type: ignore[valid-type]
+        default=None, description="How feet give way to the forces on them; without it they don't."
     )
     timeline: Annotated[str, _Lines()] | None = Field(default=None, description="Commands as text.")
     at: list[At] = Field(default=[], description="Commands as tables.")  # type: ignore[valid-type]

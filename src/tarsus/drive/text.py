@@ -3,7 +3,7 @@
 A statement a line, or several with semicolons between them; what follows a ``#`` is a remark::
 
     statement = [ "at" number unit ":" ] command
-    command   = word [ leg or gait ] { [ name ] number unit }
+    command   = word [ leg or gait ] { [ name ] ( number unit | "auto" ) }
 
 Without ``at`` a command comes at the time of the one before.
 """
@@ -20,7 +20,7 @@ from pydantic_core import PydanticCustomError
 
 from tarsus.drive.commands import COMMANDS, GAIT_NAMES, LATEST, Command, GaitChange, quantities
 from tarsus.drive.quantities import UNITS, Quantity
-from tarsus.drive.wording import command_from, takes
+from tarsus.drive.wording import Value, command_from, takes
 from tarsus.errors import nearest_name
 from tarsus.robot.fields import Number
 
@@ -117,19 +117,23 @@ class _Reader:
         except ValueError as error:
             raise _WrongError(str(error)) from None
 
-    def _numbers(self, kind: type[Command]) -> dict[str, Decimal]:
+    def _numbers(self, kind: type[Command]) -> dict[str, Value]:
         known = takes(kind)
-        numbers: dict[str, Decimal] = {}
+        numbers: dict[str, Value] = {}
         while self._tokens:
-            if self._tokens[-1].kind == "number":
+            token = self._tokens[-1]
+            if token.kind == "number" or (len(known) == 1 and token.text not in known):
                 name = self._bare(kind)
             elif not known:
-                raise _WrongError(f"{self._tokens[-1].text!r} is too much: {kind.word} takes no numbers")
+                raise _WrongError(f"{token.text!r} is too much: {kind.word} takes no numbers")
             else:
                 name = self._known(f"number of {kind.word}", tuple(known))
             if name in numbers:
                 raise _WrongError(f"{name} is given twice")
-            numbers[name] = self._quantity(known[name])
+            if self._tokens and self._tokens[-1].text in known[name].words:
+                numbers[name] = self._tokens.pop().text
+            else:
+                numbers[name] = self._quantity(known[name])
         return numbers
 
     def _bare(self, kind: type[Command]) -> str:
@@ -146,7 +150,8 @@ class _Reader:
         units = " or ".join(others)
         if not self._tokens or self._tokens[-1].kind != "number":
             got = f", not {self._tokens[-1].text!r}" if self._tokens else ""
-            raise _WrongError(f"{wanted.name} needs a number with its unit, {units}{got}")
+            more = "".join(f", or {word}" for word in wanted.words)
+            raise _WrongError(f"{wanted.name} needs a number with its unit, {units}{more}{got}")
         text = self._tokens.pop().text
         if not self._tokens or self._tokens[-1].text not in others:
             got = f"has the unit {self._tokens[-1].text!r}" if self._unit_follows() else "has no unit"

@@ -8,16 +8,19 @@ import re
 from collections.abc import Mapping
 from decimal import Decimal
 from types import MappingProxyType
-from typing import Any
+from typing import Any, TypeAlias
 
 from tarsus.drive.commands import Command, Walk, quantities
 from tarsus.drive.quantities import UNITS, Quantity
 from tarsus.robot.writer import toml_number
 
-__all__ = ["WORD", "command_from", "command_text", "numbers_of", "takes", "time_text"]
+__all__ = ["WORD", "Value", "command_from", "command_text", "numbers_of", "takes", "time_text"]
 
 WORD = re.compile(r"[^\W\d][\w/-]*")
 """What needs no quotes in text."""
+
+Value: TypeAlias = Decimal | str
+"""A number in the unit of files, or a word in its place."""
 
 _ROUNDING = 1e-15
 
@@ -37,7 +40,7 @@ def takes(kind: type[Command]) -> Mapping[str, Quantity]:
     return MappingProxyType({**more, **quantities(kind)})
 
 
-def command_from(kind: type[Command], at: Decimal, numbers: Mapping[str, Decimal], **names: str) -> Command:
+def command_from(kind: type[Command], at: Decimal, numbers: Mapping[str, Value], **names: str) -> Command:
     """Return a command from its numbers in the units of files.
 
     Parameters
@@ -46,8 +49,8 @@ def command_from(kind: type[Command], at: Decimal, numbers: Mapping[str, Decimal
         The command's class.
     at : Decimal
         When [s].
-    numbers : mapping of str to Decimal
-        By name; within their bounds.
+    numbers : mapping of str to (Decimal or str)
+        By name; within their bounds, or words in their place.
     **names : str
         Leg or gait.
 
@@ -57,10 +60,10 @@ def command_from(kind: type[Command], at: Decimal, numbers: Mapping[str, Decimal
         If a number is missing, or two say the same.
     """
     known = takes(kind)
-    missing = [f"{name} ({known[name].shown})" for name in known if known[name].needed and name not in numbers]
+    missing = [_named(each) for name, each in known.items() if each.needed and name not in numbers]
     if missing:
         raise ValueError(f"{kind.word} needs {', '.join(missing)}")
-    si: dict[str, Any] = {name: UNITS[known[name].unit].to_si(number) for name, number in numbers.items()}
+    si: dict[str, Any] = {name: _to_si(known[name], value) for name, value in numbers.items()}
     heading = si.pop("heading", None)
     speed = si.pop("speed", None)
     if heading is not None and speed is None:
@@ -76,16 +79,30 @@ def command_from(kind: type[Command], at: Decimal, numbers: Mapping[str, Decimal
     return kind(float(at), **si, **names)
 
 
-def numbers_of(command: Command) -> dict[str, Decimal]:
-    """Return a command's numbers in the units of files, those left out that may be and are 0.
+def _named(each: Quantity) -> str:
+    return f"{each.name} ({', or '.join((each.shown, *each.words))})"
+
+
+def _to_si(each: Quantity, value: Value) -> float | str:
+    return value if isinstance(value, str) else UNITS[each.unit].to_si(value)
+
+
+def numbers_of(command: Command, *, zeros: bool = False) -> dict[str, Value]:
+    """Return a command's numbers in the units of files, or the words in their place.
 
     Parameters
     ----------
     command : Command
         The command.
+    zeros : bool
+        Whether those are given that may be left out and are 0.
     """
     rows = {name: (each, getattr(command, name)) for name, each in quantities(type(command)).items()}
-    return {name: UNITS[each.unit].from_si(value) for name, (each, value) in rows.items() if each.needed or value}
+    return {
+        name: value if isinstance(value, str) else UNITS[each.unit].from_si(value)
+        for name, (each, value) in rows.items()
+        if zeros or each.needed or value
+    }
 
 
 def time_text(at: float) -> str:
@@ -110,5 +127,5 @@ def command_text(command: Command) -> str:
     for name, number in numbers.items():
         if len(known) > 1:
             words.append(name)
-        words += [toml_number(number), known[name].shown]
+        words += [number] if isinstance(number, str) else [toml_number(number), known[name].shown]
     return " ".join(words)
