@@ -99,6 +99,7 @@ def work_out(
     """
     present = Posed(now, rest) if now is not None and rest is not None else None
     wished = present if present is not None and stay else wished_posed(robot, manner, now)
+    sets = support_sets(manner.gait, manner.gone)
     yield
     here, share, why = present or wished, 1.0, ""
     if here is not wished:
@@ -109,7 +110,6 @@ def work_out(
     works, share = share, first_step(robot, here, wished, share)
     if np.abs(wished.rest - here.rest).max() > _SAME:
         yield
-    sets = support_sets(manner.gait, manner.gone)
     there = yield from _envelope_of(robot, manner, here.towards(wished, share), sets, foot_distance)
     if not (there.possible or there.balanced or here is wished):
         works = share = yield from balanced_part(Balance(robot, sets, manner.gone), here, wished, share)
