@@ -122,6 +122,7 @@ def work_out(
         share /= 2
         if share < _LEAST_PART or here is wished:
             return f"body: {why}"
+        yield
         there = yield from _envelope_of(robot, manner, here.towards(wished, share), sets, foot_distance)
     goal = here.towards(wished, share)
     pace = yield from tempo(
