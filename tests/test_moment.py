@@ -13,9 +13,11 @@ from sample_moments import EARTH, FACING, begun, course_of, moment_of, rest_of
 from sample_stands import setup_of
 from tarsus.gait.cycle import cycle_feet
 from tarsus.gait.gait import GAITS
+from tarsus.gait.live.foothold import final_rest
 from tarsus.gait.live.lag import Lag
-from tarsus.gait.live.moment import FREEZE, THERE, carried, final_rest, go_on, meet_ground, turned
+from tarsus.gait.live.moment import THERE, carried, turned
 from tarsus.gait.live.posture import swayed
+from tarsus.gait.live.stepping import FREEZE, go_on, meet_ground
 from tarsus.kinematics.pose import Pose
 
 TWISTS = [(0.08, 0.0, 0.0), (0.0, -0.06, 0.0), (0.05, 0.02, 0.3), (0.0, 0.0, -0.5)]

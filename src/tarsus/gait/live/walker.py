@@ -16,19 +16,21 @@ from tarsus.gait.live.carriage import Carriage
 from tarsus.gait.live.change import Change, Manner, work_out
 from tarsus.gait.live.envelope import Envelope
 from tarsus.gait.live.feel import Feel, Felt
+from tarsus.gait.live.foothold import final_rest
 from tarsus.gait.live.footing import Footing
 from tarsus.gait.live.governor import allowed_target, excess
 from tarsus.gait.live.hands import best_lean, reachable_part
 from tarsus.gait.live.lag import Lag
 from tarsus.gait.live.levelling import LevellingMode
 from tarsus.gait.live.manipulation import Manipulation, legs_out
-from tarsus.gait.live.moment import THERE, TIE, Course, Moment, final_rest, go_on, meet_ground
+from tarsus.gait.live.moment import THERE, TIE, Course, Moment
 from tarsus.gait.live.own_time import OwnTime
 from tarsus.gait.live.posture import LIFT, calm_sway
 from tarsus.gait.live.search import Searches
 from tarsus.gait.live.senses import Senses
 from tarsus.gait.live.solver import Solver
 from tarsus.gait.live.stances import lift_delays, stances, until_down
+from tarsus.gait.live.stepping import go_on, meet_ground
 from tarsus.gait.live.support import support_sets
 from tarsus.gait.live.tempo import joint_limits
 from tarsus.gait.live.tilt import Commanded
@@ -331,9 +333,7 @@ class Walker(WalkerView):
         # It steps faster only once the change is over.
         frequency = min(self._frequency, 1 / change.tempo.cycle_time)
         leaving = list(set(change.manner.gone) - set(self._agenda.doing.manner.gone))
-        share, _ = change.stepping.largest_share(
-            self._now.twist.value, stance_time=new.duty / frequency, duty=new.duty
-        )
+        share, _ = change.stepping.largest_share(self._now.twist.value, stance_time=new.duty / frequency, duty=new.duty)
         if new.duty == old.duty and new.offsets == old.offsets:
             begins, ends = self._stances(frequency)
             bounds = self._hands.without(self._footing.begun(change))

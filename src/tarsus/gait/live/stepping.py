@@ -1,0 +1,181 @@
+"""How the walk goes on from one moment to another: a function of the moment, without memory."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from tarsus.gait.live.foothold import Landing, final_rest
+from tarsus.gait.live.lag import Lag
+from tarsus.gait.live.moment import GIVE, THERE, TIE, Course, Moment, carried
+
+__all__ = ["FREEZE", "go_on", "meet_ground"]
+
+Floats = np.ndarray[Any, Any]
+
+FREEZE = 0.6
+"""Share of the swing after which the foot's target stays: what is left is enough to come to it gently."""
+
+# Of how much of its swing a foot that was held back may be deprived at most.
+_LATEST = 0.5
+# A speed this low is none [m/s]; a posture this near to its target, and as slow, is there [m, m/s, rad, rad/s].
+_NO_SPEED, _NO_WAY = 3e-7, 1e-11
+
+
+def go_on(now: Moment, course: Course, dt: float) -> Moment:
+    """Return the moment after a time.
+
+    Parameters
+    ----------
+    now : Moment
+        The moment.
+    course : Course
+        What the robot is doing.
+    dt : float
+        The time [s].
+    """
+    twist, travel = now.twist.go(course.twist, dt, bandwidth=course.bandwidth)
+    origin, yaw = carried(now.origin, now.yaw, travel)
+    stopping = not any(course.twist.tolist())
+    if stopping and max(map(abs, twist.value.tolist())) < _NO_SPEED:
+        twist = Lag.still(np.zeros(3))
+    gone = course.frequency * dt
+    clock = now.clock + gone
+    after = now._replace(
+        clock=clock,
+        origin=origin,
+        yaw=yaw,
+        twist=twist,
+        posture=_settled(now.posture, course.posture, dt, course.posture_bandwidth),
+        cycles=now.cycles + gone,
+        beats=now.beats + course.beats * gone,
+    )
+    duty = course.gait.duty
+    since_lift = [clock - (o + duty + n) for o, n in zip(course.gait.offsets, now.number.tolist(), strict=True)]
+    down = now.down.tolist()
+    due = [on and since > TIE and not course.holds for on, since in zip(down, since_lift, strict=True)]
+    if any(due):
+        after = _lift(after, course, np.array(due), np.array(since_lift) - gone, stopping=stopping)
+        down = after.down.tolist()
+    return after if all(down) else _swing(after, course, down, since_lift, stopping=stopping)
+
+
+def _settled(posture: Lag, target: Floats, dt: float, bandwidth: float) -> Lag:
+    """Return the posture after a time; once it is there, it is the same one from then on."""
+    if posture.value is target:
+        return posture
+    after = posture.step(target, dt, bandwidth=bandwidth)
+    off = max(float(np.abs(after.value - target).max()), float(np.abs(after.rate).max()))
+    return after if off > _NO_WAY else Lag.still(target)
+
+
+def _lift(now: Moment, course: Course, due: Floats, late: Floats, *, stopping: bool) -> Moment:
+    """Lift the feet whose time has come; those that may not, or needn't, miss this step.
+
+    `late` is how long ago their time was [cycles]: what the clock has gone in this tick doesn't count.
+    """
+    wanted = due & course.steps
+    final = final_rest(now, course) if stopping else None
+    if final is not None:
+        wanted = wanted & (np.abs(now.foot - final) > THERE)
+    missed = due & ~wanted
+    return now._replace(
+        number=now.number + missed,
+        down=now.down & ~wanted,
+        share=np.where(wanted, 0.0, now.share),
+        start_height=np.where(wanted, now.ground, now.start_height),
+        ground=np.where(wanted, course.level, now.ground),
+        # Feet that were held back go a shorter swing.
+        late=np.where(due, np.clip(late, 0.0, _LATEST * (1 - course.gait.duty)), now.late),
+    )
+
+
+def _swing(now: Moment, course: Course, down: list[bool], since_lift: list[float], *, stopping: bool) -> Moment:
+    """Move the swinging feet on, and put those down that have come to the end of their swing."""
+    duty = course.gait.duty
+    swing, stance = 1 - duty, duty / course.frequency
+    landing = Landing.of(now, course)
+    final = final_rest(now, course) if stopping else None
+    share, foot, target = now.share.tolist(), now.foot.tolist(), now.target.tolist()
+    pace, bend = now.pace.tolist(), now.bend.tolist()
+    lands, landed = course.lands.tolist(), []
+    for leg in [leg for leg, on in enumerate(down) if not on]:
+        late, since = float(now.late[leg]), since_lift[leg]
+        part = min(max((since - late) / (swing - late), 0.0), 1.0)
+        if share[leg] <= FREEZE and now.met[leg] == math.inf:
+            until = (swing - since) / course.frequency
+            target[leg] = (
+                landing.foothold(complex(course.rest[leg]), course.room[leg], until, until + stance / 2)
+                if final is None
+                else complex(final[leg])
+            )
+        way = (foot[leg], pace[leg], bend[leg])
+        foot[leg], pace[leg], bend[leg] = _quintic(way, target[leg], share[leg], part)
+        share[leg] = part
+        if lands[leg] and since >= swing - TIE:
+            landed.append(leg)
+            share[leg], foot[leg], pace[leg], bend[leg] = 0.0, target[leg], 0j, 0j
+    after = now._replace(
+        share=np.array(share), foot=np.array(foot), target=np.array(target), pace=np.array(pace), bend=np.array(bend)
+    )
+    return _land(after, landed) if landed else after
+
+
+def _quintic(
+    way: tuple[complex, complex, complex], target: complex, share: float, part: float
+) -> tuple[complex, complex, complex]:
+    """Go on from a share of the swing to another, on the quintic that ends at the target at rest.
+
+    `way` is where the foot is, and the first and second derivative of its way by the share.
+    """
+    left = 1.0 - share
+    if left <= 0:
+        return target, 0j, 0j
+    x = (part - share) / left
+    here, speed, half = way[0], way[1] * left, way[2] * (left * left / 2)
+    gap, missing, bent = target - (here + speed + half), -(speed + 2 * half), -2 * half
+    a3 = 10 * gap - 4 * missing + bent / 2
+    a4 = -15 * gap + 7 * missing - bent
+    a5 = 6 * gap - 3 * missing + bent / 2
+    return (
+        here + x * (speed + x * (half + x * (a3 + x * (a4 + x * a5)))),
+        (speed + x * (2 * half + x * (3 * a3 + x * (4 * a4 + x * 5 * a5)))) / left,
+        (2 * half + x * (6 * a3 + x * (12 * a4 + x * 20 * a5))) / (left * left),
+    )
+
+
+def _land(now: Moment, landed: list[int]) -> Moment:
+    """Put feet down that are where they are to land."""
+    number, down, met = now.number.copy(), now.down.copy(), now.met.copy()
+    number[landed] += 1
+    down[landed], met[landed] = True, np.inf
+    return now._replace(number=number, down=down, met=met)
+
+
+def meet_ground(now: Moment, met: Floats, lift: float) -> Moment:
+    """Return the moment in which feet have met the ground before they were to: they come to rest where they are.
+
+    Parameters
+    ----------
+    now : Moment
+        The moment.
+    met : array of bool, shape (legs,)
+        Which feet; in the air, and not met already.
+    lift : float
+        How high a swinging foot rises [m].
+    """
+    height = now.height(lift)
+    step = 1e-4
+    speed = (now._replace(share=np.minimum(now.share + step, 1.0)).height(lift) - height) / step
+    left = 1 - now.share
+    give = np.minimum(left, GIVE)
+    # What a foot still goes while it comes to rest, with its speed falling evenly.
+    return now._replace(
+        target=np.where(met, now.foot + now.pace * left / 3, now.target),
+        met=np.where(met, now.share, now.met),
+        met_height=np.where(met, height, now.met_height),
+        met_speed=np.where(met, speed, now.met_speed),
+        ground=np.where(met, height + speed * give / 3, now.ground),
+    )
