@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import tarsus.drive.run as running
-from tarsus.drive.commands import COMMANDS, Ground, Tilt
+from tarsus.drive.commands import COMMANDS, Force, Ground, Tilt
 from tarsus.drive.feeling import Feeling
 from tarsus.drive.recording import Recording
 from tarsus.drive.run import run_scenario
@@ -17,11 +17,13 @@ from tarsus.drive.scenario import Scenario
 from tarsus.drive.summary import drive_summary
 from tarsus.errors import InputError, UnknownNameError
 from tarsus.gait.gait import Gait
+from tarsus.gait.live.admittance import Admittance
 from tarsus.gait.live.guard import Guarded
 from tarsus.gait.live.walker import Walker
 from tarsus.gait.live.wish import Wish
 from tarsus.gait.motion import Motion
 from tarsus.kinematics.leg import forward_kinematics
+from tarsus.kinematics.mass import total_mass
 from tarsus.kinematics.pose import Pose
 from tarsus.load.loads import loads
 from tarsus.report.style import save_figure
@@ -31,23 +33,29 @@ from tarsus.robot.file import list_robots, load_robot
 EXAMPLES = sorted((Path(__file__).parents[1] / "examples").glob("*.toml"))
 SCENARIOS = [path for path in EXAMPLES if "timeline" in path.read_text() or "[[at]]" in path.read_text()]
 
+SOFT = Admittance(mass=1.0, damping=60.0, stiffness=400.0, travel=0.008)
 EVERY_COMMAND = Scenario.from_text(
     """
     at 0.2 s: stand_up
     at 2.5 s: walk 40 mm/s; gait wave; ground RF 0 mm
     at 4 s: sway z 3 mm roll 1 deg; cycle_time 1.5 s; tilt pitch 0.3 deg
     at 5 s: body pitch 2 deg z 3 mm; lift 15 mm; stance_width 3 mm; clearance 85 mm
-    at 7 s: walk vx 20 mm/s turn 5 deg/s
+    at 7 s: walk vx 20 mm/s turn 5 deg/s; cycle_time auto
     at 9 s: stop; body; sway; hand LM x 0 mm y 200 mm z 40 mm
-    at 10 s: hand_back LM
+    at 10 s: hand_speed LM vy -20 mm/s vz 10 mm/s
+    at 10.5 s: hand_back LM
     at 11 s: sit; fold; power_off
     """,
     start="folded",
+    admittance=SOFT,
+)
+PUSHED = Scenario.from_text(
+    "at 0.5 s: force RF 2 N; at 1.5 s: force RF -1 N; force LM 1 N; at 2.5 s: sit", admittance=SOFT
 )
 
 
-def test_the_scenario_has_every_command():
-    assert {type(command) for command in EVERY_COMMAND.commands} == set(COMMANDS.values())
+def test_the_scenarios_have_every_command():
+    assert {type(command) for command in (*EVERY_COMMAND.commands, *PUSHED.commands)} == set(COMMANDS.values())
 
 
 @pytest.mark.parametrize("name", list_robots())
@@ -74,6 +82,92 @@ def test_every_command_runs_clean_through_the_guard_on_every_robot(name):
     assert slips[found.upright[1:] & found.upright[:-1]].max() < 1e-6
     # Where sitting down takes over, the ground is where the lowest three feet are; what was felt is 0.1 mm off at most.
     assert slips.max() < 1e-4
+
+
+@pytest.mark.parametrize("name", [name for name in list_robots() if load_robot(name).has_masses])
+def test_feet_of_every_robot_give_way_clean_through_the_guard(name):
+    found = run_scenario(PUSHED, robot=name)
+    assert found.ok, found.problems
+    assert not found.interventions
+    assert all(event.kind in ("command", "stage") for event in found.events)
+
+
+def test_a_foot_gives_way_by_the_force_over_its_stiffness():
+    text = "at 0 s: force RF 2 N; force LM -1 N; at 3 s: force RF 0 N; force LM 1e3 N; "
+    text += "at 6 s: force LM 0 N; force RF 3.5 N"
+    found = run_scenario(Scenario.from_text(text, duration=9.0, admittance=SOFT), robot="strider", guard=False)
+    heights = found.motion.feet[..., 2]
+    right, left = load_robot("strider").leg_codes.index("RF"), load_robot("strider").leg_codes.index("LM")
+    others = np.delete(heights, (right, left), axis=1)
+    assert heights[300, [right, left]] == pytest.approx([2.0 / 400, -1.0 / 400], abs=1e-6)
+    # What no robot could feel is not believed.
+    assert heights[600, [right, left]] == pytest.approx(0.0, abs=1e-6)
+    assert [event.text for event in found.events if event.kind == "limit"] == [
+        "forces of LM: beyond 4 times the weight, or pulling down",
+        "forces of LM: on trial",
+    ]
+    # More than leads to the end of its travel is cut off.
+    assert heights[900, [right, left]] == pytest.approx([SOFT.travel, 0.0], abs=1e-6)
+    # Critically damped or slower, no foot goes beyond where it goes, and it goes there all the time.
+    assert (np.diff(heights[1:300, right]) > 0).all()
+    assert (np.diff(heights[1:300, left]) < 0).all()
+    assert (others == 0).all()
+    # The angles put the feet where they have gone.
+    reached = found.motion.body @ forward_kinematics(found.robot, found.motion.angles)[..., 3, :]
+    assert np.abs(reached - found.motion.feet).max() < 1e-9
+
+
+@pytest.mark.parametrize("speed", [(0.02, 0.0, 0.0), (0.0, -0.01, 0.015), (-0.01, 0.02, -0.01)])
+def test_a_hand_moves_at_its_speed_until_another_command(speed):
+    vx, vy, vz = (f"{name} {1000 * value:g} mm/s" for name, value in zip(("vx", "vy", "vz"), speed, strict=True))
+    text = (
+        "at 0 s: gait wave; hand RF x 250 mm y -200 mm z 60 mm; "
+        f"at 8 s: hand_speed RF {vx} {vy} {vz}; at 10.5 s: hand_speed RF; at 14 s: hand_back RF"
+    )
+    found = run_scenario(Scenario.from_text(text), robot="strider")
+    assert found.ok
+    foot, time = found.motion.feet[:, found.robot.leg_codes.index("RF")], found.motion.time
+    # It stands, so that the heading frame is the ground's.
+    before, after = (foot[np.searchsorted(time, at)] for at in (8.0, 13.9))
+    assert before == pytest.approx([0.25, -0.2, 0.06], abs=1e-6)
+    assert after - before == pytest.approx(2.5 * np.array(speed), abs=1e-6)
+    midway = slice(*np.searchsorted(time, (9.8, 10.4)))
+    assert np.diff(foot[midway], axis=0) / 0.01 == pytest.approx(np.tile(speed, (59, 1)), abs=2e-4)
+    assert found.motion.contacts[-1].all()
+
+
+def test_a_hand_at_a_speed_goes_on_to_the_end_of_its_reach_and_a_point_ends_it():
+    text = (
+        "at 0 s: gait wave; hand RF x 250 mm y -200 mm z 60 mm; at 7 s: hand_speed RF vx 50 mm/s; "
+        "at 11 s: hand RF x 250 mm y -200 mm z 50 mm"
+    )
+    found = run_scenario(Scenario.from_text(text, duration=15.0), robot="strider")
+    # At the edge it comes and goes from tick to tick, and is told once.
+    (limit,) = (event for event in found.events if event.kind == "limit")
+    assert "front right comes to the end of its reach" in limit.text
+    assert limit.time == pytest.approx(8.3, abs=0.5)
+    assert limit.until == pytest.approx(11.0, abs=0.02)
+    foot = found.motion.feet[:, found.robot.leg_codes.index("RF")]
+    assert foot[1090, 0] > 0.3
+    assert foot[-1] == pytest.approx([0.25, -0.2, 0.05], abs=1e-6)
+
+
+def test_a_hand_at_a_speed_is_put_down_where_the_robot_sits_down():
+    text = "at 0 s: gait wave; hand_speed RF vz 20 mm/s; at 5 s: sit; at 6 s: hand_back RF"
+    found = run_scenario(Scenario.from_text(text, duration=10.0), robot="strider")
+    assert found.ok, found.problems
+    assert not found.motion.contacts[found.motion.time < 5.0].all()
+    assert found.doing[-1] == "lying"
+
+
+def test_the_cycle_time_goes_back_to_auto():
+    text = "at 0 s: walk 30 mm/s; at 1 s: cycle_time 1.6 s; at 5 s: cycle_time auto; at 10 s: stop"
+    found = run_scenario(Scenario.from_text(text), robot="strider")
+    before, own, after = (found.cycle_times[np.searchsorted(found.motion.time, at)] for at in (0.9, 4.9, 9.9))
+    assert own == pytest.approx(1.6)
+    assert after == before
+    assert before < 1.5
+    assert found.ok
 
 
 def test_it_is_what_the_walker_gives():
@@ -218,12 +312,21 @@ def test_while_the_guard_holds_the_walker_waits_and_what_is_sent_is_recorded(mon
     ("text", "robot", "error", "wanted"),
     [
         ("at 3 s: hand XY x 1 mm y 1 mm z 1 mm", "strider", UnknownNameError, "at 3 s: no leg is called 'XY'"),
+        ("at 3 s: hand_speed XY", "strider", UnknownNameError, "at 3 s: no leg is called 'XY'"),
+        ("at 3 s: force XY 1 N", "strider", UnknownNameError, "at 3 s: no leg is called 'XY'"),
+        ("at 3 s: force RF 2 N", "strider", InputError, "at 3 s: force RF 2 N: no foot gives way; set how it does in"),
         ("at 1 s: stop", None, InputError, "the scenario names no robot"),
     ],
 )
 def test_what_a_robot_can_not_be_told_is_refused_before_the_start(text, robot, error, wanted):
     with pytest.raises(error, match=wanted):
         run_scenario(Scenario.from_text(text), robot=robot)
+
+
+def test_without_masses_no_force_is_felt():
+    (name, *_) = (name for name in list_robots() if not load_robot(name).has_masses)
+    with pytest.raises(InputError, match=f"at 0.5 s: force RF 2 N: {name} has no masses"):
+        run_scenario(PUSHED, robot=name)
 
 
 def test_a_gait_for_six_legs_is_refused_for_four():
@@ -263,23 +366,38 @@ def test_the_log_is_a_table_of_every_tick(tmp_path):
     assert len(rows) == len(found.motion.time)
     assert float(rows[-1]["wished_vx_mm_s"]) == 50
     assert float(rows[-1]["done_turn_deg_s"]) == pytest.approx(math.degrees(found.done[-1, 2]), abs=1e-6)
+    assert float(rows[-1]["cycle_time_s"]) == pytest.approx(found.motion.cycle_time, abs=1e-6)
     assert (rows[-1]["doing"], rows[-1]["gait"], rows[-1]["guard"]) == ("walking", "tripod", "")
     with pytest.raises(InputError, match="can't be written"):
         found.to_csv(tmp_path)
 
 
 def test_what_is_felt_is_ground_under_each_leg_and_tilt():
-    feeling = Feeling(load_robot("strider"))
+    feeling, down = Feeling(load_robot("strider")), np.ones(6, dtype=bool)
     feet = np.zeros((6, 3))
-    assert feeling.senses(feet, Pose()) is None
+    assert feeling.senses(feet, Pose(), down) is None
     feeling.take(Ground(0.0, leg="RF", height=0.005), 5)
     feet[:, 2] = [0.0, 0.001, 0.0, 0.0, 0.006, 0.004]
-    felt = feeling.senses(feet, Pose())
+    felt = feeling.senses(feet, Pose(), down)
     assert felt.contacts.tolist() == [True, False, True, True, False, True]
     assert felt.attitude is None
+    assert felt.forces is None
     feeling.take(Tilt(0.0, roll=0.1), None)
-    felt = feeling.senses(feet, Pose.from_rpy(0.01, -0.02, 1.0, (0.0, 0.0, 0.0)))
+    felt = feeling.senses(feet, Pose.from_rpy(0.01, -0.02, 1.0, (0.0, 0.0, 0.0)), down)
     assert felt.attitude == pytest.approx((0.11, -0.02))
+
+
+def test_forces_are_the_weight_and_what_pushes_more():
+    robot = load_robot("strider")
+    feeling, walker = Feeling(robot), Walker(robot)
+    weight = float(total_mass(robot)) * 9.80665
+    feeling.take(Force(0.0, leg="RF", force=-2.0), 5)
+    standing = feeling.senses(walker.feet, walker.body, walker.contacts)
+    assert standing.contacts is None
+    assert standing.forces == pytest.approx([weight / 6] * 5 + [weight / 6 - 2])
+    tripod = feeling.senses(walker.feet, walker.body, np.array([True, False] * 3))
+    assert tripod.forces.sum() == pytest.approx(weight)
+    assert (tripod.forces[1::2] == 0).all()
 
 
 @pytest.mark.parametrize("path", SCENARIOS, ids=lambda path: path.stem)

@@ -31,6 +31,8 @@ __all__ = ["run_scenario"]
 # How long a scenario without a duration goes on after its last command [s], and for how long what that command began
 # may last.
 _AFTER, _PATIENCE = 2.0, 120.0
+# How long a limit may be absent and is still the same one [s].
+_GAP = 0.1
 # What is this near to a moment is at it [s].
 _AT = 1e-9
 
@@ -161,7 +163,9 @@ class _Run:
                 self._tell("limit", reason)
             present[kind] = self._limits.get(kind, len(self._events) - 1)
             self._events[present[kind]] = self._events[present[kind]]._replace(until=self._time)
-        self._limits = present
+        # What comes and goes from tick to tick is one stretch.
+        lately = {kind: n for kind, n in self._limits.items() if self._events[n].until > self._time - _GAP}
+        self._limits = {**lately, **present}
 
     def _recorded(self) -> Recording:
         frames = self._frames
