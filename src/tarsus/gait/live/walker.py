@@ -455,7 +455,7 @@ class Walker(WalkerView):
 
     def _steady(self, twist: Sequence[float]) -> bool:
         """Return whether the robot walks at a twist, and at its pace."""
-        settled = self._settling is None and self._frequency * self._agenda.doing.tempo.cycle_time == 1.0
+        settled = self._settling is None and self._frequency == 1 / self._agenda.doing.tempo.cycle_time
         value = self._now.twist.value.tolist()
         return settled and max(abs(a - b) for a, b in zip(value, twist, strict=True)) < _STEADY
 
