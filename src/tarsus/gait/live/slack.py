@@ -44,11 +44,6 @@ class StandSlack:
         The body and the rest footholds.
     knees : bool
         Whether the ground is in the way of femur axes and knees.
-
-    Attributes
-    ----------
-    high : bool
-        Whether the body is so high that no knee ever comes near the ground, which is less to work out.
     """
 
     def __init__(self, robot: Robot, stand: Stand, *, knees: bool = True) -> None:
@@ -62,7 +57,6 @@ class StandSlack:
         self._tilted = bool(stand.rotation[:2, 2].any())
         self._axis_height = _axis_height(g, stand)
         self._lowest_femur = _lowest_femur(g, stand) if knees else -math.inf
-        self.high = self._lowest_femur == -math.inf
         self._turning_at_rest = self._turning(self._solve(np.zeros((1, len(rest))), np.zeros((1, len(rest)))))[0, 0]
 
     def __call__(self, out: Floats) -> Floats:

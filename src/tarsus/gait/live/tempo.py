@@ -29,7 +29,7 @@ _MOMENTS = 33
 # Cycles that are tried for the one that gets farthest, in least ones.
 _TRIED = np.geomspace(1.0, 4.0, 33)
 # How many feet at how many moments are worked out at once: larger arrays cost more than their share of time.
-_BLOCK = 2400
+_BLOCK = 1900
 
 
 def joint_limits(robot: Robot, speed: float | None, acceleration: float | None) -> tuple[Floats, Floats]:
@@ -111,7 +111,7 @@ def tempo(
     for first in range(0, len(moves), block):
         times.append(cycle.shortest_times(robot, stand, slice(first, first + block), speed, acceleration))
         # The first comes after some other work, and the last before some.
-        if len(times) % 2:
+        if len(times) % 3 == 1:
             yield
     # (sizes, twists): the shortest cycle for each size of each stroke.
     shortest = np.empty((len(_SIZES), len(_TWISTS)))

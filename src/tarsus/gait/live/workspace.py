@@ -87,8 +87,7 @@ def workspace(robot: Robot, stand: Stand, *, foot_distance: float) -> Parts[Floa
     reach = _first_zero(rays, slack(rays * _DIRECTIONS[:, None]), share=1.0) - KEEP
     bounds = _sides(stand.rest, np.minimum(reach, halfway(_DIRECTIONS[:, None])))
     yield
-    # Knees that count are nearly as much work again.
-    looked, places = 0, len(_ALONG) * _SIDES * robot.legs * (1 if slack.high else 2)
+    looked, places = 0, len(_ALONG) * _SIDES * robot.legs
     for _ in range(_TRIMS):
         edge = _edge(bounds, stand.rest)
         part = halfway(edge)
