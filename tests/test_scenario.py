@@ -10,19 +10,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tarsus.drive.commands import (
-    COMMANDS,
-    GAIT_NAMES,
-    Clearance,
-    CycleTime,
-    Force,
-    GaitChange,
-    HandSpeed,
-    Lift,
-    MoveHand,
-    Walk,
-    quantities,
-)
+from tarsus.drive.command import GAIT_NAMES, quantities
+from tarsus.drive.commands import COMMANDS, Clearance, CycleTime, Force, GaitChange, HandSpeed, Lift, MoveHand, Walk
 from tarsus.drive.quantities import UNITS
 from tarsus.drive.scenario import LEVELLINGS, STARTS, Scenario
 from tarsus.drive.settings import ADMITTANCE

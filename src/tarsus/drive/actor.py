@@ -7,7 +7,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from tarsus.drive.commands import Command, PowerOff, Sit, StandUp
+from tarsus.drive.command import Command
+from tarsus.drive.commands import PowerOff, Sit, StandUp
 from tarsus.drive.orders import Orders
 from tarsus.errors import TarsusError
 from tarsus.gait.gait import Gait

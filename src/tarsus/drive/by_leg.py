@@ -7,7 +7,8 @@ from decimal import Decimal
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
-from tarsus.drive.commands import Command, Force, Ground, HandBack, HandSpeed, MoveHand, quantities
+from tarsus.drive.command import Command, quantities
+from tarsus.drive.commands import Force, Ground, HandBack, HandSpeed, MoveHand
 from tarsus.drive.wording import command_from, numbers_of
 
 __all__ = ["LEG_TABLES", "LegTable", "commands_of_legs", "entry_of_leg"]

@@ -2,22 +2,17 @@
 
 from __future__ import annotations
 
-import dataclasses
 from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 from typing import ClassVar, Literal
 
-from tarsus.drive.quantities import Quantity, quantity, require_quantity
-from tarsus.errors import UnknownNameError
-from tarsus.gait.gait import GAITS
+from tarsus.drive.command import Command
+from tarsus.drive.quantities import quantity
 
 __all__ = [
     "COMMANDS",
-    "GAIT_NAMES",
-    "LATEST",
     "Clearance",
-    "Command",
     "CycleTime",
     "Fold",
     "Force",
@@ -36,40 +31,9 @@ __all__ = [
     "Sway",
     "Tilt",
     "Walk",
-    "quantities",
 ]
 
-GAIT_NAMES = (*GAITS, "amble")
-"""The gaits that a scenario may name; amble is another name for tetrapod."""
-
-LATEST = 3600.0
-"""The latest moment of a scenario [s]."""
-
 _WIDE, _FAST, _TURN = 1000, 10_000, 3600
-_AT = Quantity("at", "s", 0, LATEST, "when", needed=True)
-
-
-@dataclass(frozen=True)
-class Command:
-    """What the robot is told at a moment.
-
-    Attributes
-    ----------
-    at : float
-        When [s].
-    """
-
-    word: ClassVar[str] = ""
-    at: float
-
-    def __post_init__(self) -> None:
-        require_quantity(f"{self.word}: at", self.at, _AT)
-        for each in quantities(type(self)).values():
-            value = getattr(self, each.name)
-            require_quantity(f"{self.word} at {self.at:g} s: {each.name}", value, each)
-        gait = getattr(self, "gait", GAIT_NAMES[0])
-        if gait not in GAIT_NAMES:
-            raise UnknownNameError.of("gait", str(gait), GAIT_NAMES)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -260,15 +224,3 @@ _KINDS: tuple[type[Command], ...] = (
 
 COMMANDS: Mapping[str, type[Command]] = MappingProxyType({kind.word: kind for kind in _KINDS})
 """Every command by its word."""
-
-
-def quantities(kind: type[Command]) -> Mapping[str, Quantity]:
-    """Return the quantities of a command by their names.
-
-    Parameters
-    ----------
-    kind : type
-        The command's class.
-    """
-    fields = ((field.name, field.metadata.get("quantity")) for field in dataclasses.fields(kind))
-    return MappingProxyType({name: Quantity(name=name, **about) for name, about in fields if about is not None})

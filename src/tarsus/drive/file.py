@@ -10,7 +10,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tarsus.drive.by_leg import commands_of_legs, entry_of_leg
-from tarsus.drive.commands import Command, GaitChange, quantities
+from tarsus.drive.command import Command, quantities
+from tarsus.drive.commands import COMMANDS, GaitChange
 from tarsus.drive.settings import SETTINGS, settings_of
 from tarsus.drive.wording import command_from, numbers_of, takes
 from tarsus.errors import InputError
@@ -140,8 +141,6 @@ def _commands_of(table: Any) -> list[Command]:
 
 
 def _of_word(table: Any, at: Decimal) -> list[Command]:
-    from tarsus.drive.commands import COMMANDS
-
     return [] if table.do is None else [command_from(COMMANDS[table.do], at, {})]
 
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections import deque
 from typing import Any
 
+from tarsus.drive.command import Command
 from tarsus.drive.commands import (
     Clearance,
-    Command,
     CycleTime,
     Fold,
     Force,

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from tarsus.drive.actor import Actor, Frame
-from tarsus.drive.commands import Command
+from tarsus.drive.command import Command
 from tarsus.drive.drivable import require_drivable
 from tarsus.drive.recording import Event, Recording
 from tarsus.drive.scenario import Scenario

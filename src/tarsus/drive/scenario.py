@@ -8,7 +8,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any, Self
 
-from tarsus.drive.commands import GAIT_NAMES, LATEST, Command
+from tarsus.drive.command import GAIT_NAMES, LATEST, Command
 from tarsus.drive.quantities import require_quantity
 from tarsus.drive.settings import ADMITTANCE
 from tarsus.drive.wording import command_text, time_text

@@ -10,7 +10,8 @@ from pydantic import BaseModel, ConfigDict, Field, create_model
 from pydantic_core import PydanticCustomError, core_schema
 
 from tarsus.drive.by_leg import LEG_TABLES, LegTable
-from tarsus.drive.commands import COMMANDS, GAIT_NAMES, LATEST, Command, MoveBody, Sway, Tilt, Walk, quantities
+from tarsus.drive.command import GAIT_NAMES, LATEST, Command, quantities
+from tarsus.drive.commands import COMMANDS, MoveBody, Sway, Tilt, Walk
 from tarsus.drive.quantities import Quantity
 from tarsus.drive.scenario import LEVELLINGS, STARTS
 from tarsus.drive.settings import ADMITTANCE

@@ -18,7 +18,8 @@ from typing import NamedTuple
 
 from pydantic_core import PydanticCustomError
 
-from tarsus.drive.commands import COMMANDS, GAIT_NAMES, LATEST, Command, GaitChange, quantities
+from tarsus.drive.command import GAIT_NAMES, LATEST, Command, quantities
+from tarsus.drive.commands import COMMANDS, GaitChange
 from tarsus.drive.quantities import UNITS, Quantity
 from tarsus.drive.wording import Value, command_from, takes
 from tarsus.errors import nearest_name

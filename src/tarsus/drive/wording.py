@@ -10,7 +10,8 @@ from decimal import Decimal
 from types import MappingProxyType
 from typing import Any, TypeAlias
 
-from tarsus.drive.commands import Command, Walk, quantities
+from tarsus.drive.command import Command, quantities
+from tarsus.drive.commands import Walk
 from tarsus.drive.quantities import UNITS, Quantity
 from tarsus.robot.writer import toml_number
 
