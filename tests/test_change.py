@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from gait_robots import PRESETS
+from gait_robots import PRESETS, ring
 from sample_stands import feet_at, pose_of, posture_of, setup_of
 from tarsus.errors import UnreachableError
 from tarsus.gait.gait import GAITS, Gait
@@ -175,6 +175,35 @@ def test_a_robot_that_would_tip_over_is_refused():
     manner = manner_of(setup, gait=Gait.named("ripple"), gone=(0, 1))
     found = worked_out(setup, manner, first.posture, first.rest)
     assert found == "body: the robot would tip over"
+
+
+def test_a_wish_that_the_balance_bounds_is_gone_as_far_as_it_lets_and_that_is_said():
+    setup, first = setup_of("mithi"), start("mithi")
+    forward = manner_of(setup, body=(0.3, 0.0, 0.0, 0.0, 0.0, 0.0))
+    found = worked_out(setup, forward, first.posture, first.rest)
+    assert found.whole
+    assert found.limited == ("body: it goes no farther that way, the robot would tip over",)
+    assert found.there.balanced
+    # A little farther it would: from there, nothing of the wish works.
+    beyond = found.posture + np.array([0.01, 0, 0, 0, 0, 0, 0])
+    assert worked_out(setup, forward, beyond, first.rest) == "body: the robot would tip over"
+
+
+def test_a_robot_that_cannot_stand_and_step_at_all_is_refused_at_once():
+    setup = setup_of(ring(4), "wave")
+    # On three of four feet the middle of the body is on an edge.
+    assert worked_out(setup, manner_of(setup)) == "body: the robot would tip over"
+    low = setup_of("strider")
+    assert "comes to the end of its reach" in worked_out(low, manner_of(low, stance_width=0.3))
+
+
+def test_of_a_wish_whose_sway_goes_too_far_a_part_is_gone_or_the_sway_is_blamed():
+    found = from_start("phantomx", body=(0.03, 0.0, 0.0, 0.0, 0.0, 0.0), sway=(0.0, 0.03, 0.0, 0.0, 0.0, 0.0))
+    assert isinstance(found, Change)
+    assert 0 < found.posture[0] <= 0.03
+    found = from_start("phantomx", sway=(0.0, 0.0, 0.2, 0.0, 0.0, 0.0))
+    assert found.startswith("body: ")
+    assert found.endswith("comes to the end of its reach as the body sways")
 
 
 def test_from_a_posture_out_of_reach_nothing_works():

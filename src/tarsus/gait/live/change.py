@@ -118,7 +118,7 @@ def work_out(
             return f"body: {why}"
         there = yield from _envelope_of(robot, manner, here.towards(wished, share), sets, foot_distance)
     while not there.possible:
-        why = what_stops(robot, here.towards(wished, share).stand) if there.balanced else _TIPS_OVER
+        why = _why_not(robot, manner, here.towards(wished, share), there)
         share /= 2
         if share < _LEAST_PART or here is wished:
             return f"body: {why}"
@@ -164,6 +164,15 @@ def _envelope_of(robot: Robot, manner: Manner, posed: Posed, sets: Floats, foot_
     """Work out what is possible in a posture, with its sway."""
     stands = [Posed(row, posed.rest).stand for row in swaying(posed.posture, manner.sway)]
     return (yield from envelope(robot, stands, sets, foot_distance=foot_distance, gone=manner.gone))
+
+
+def _why_not(robot: Robot, manner: Manner, posed: Posed, there: Envelope) -> str:
+    """Say why a robot can't stand and step in a posture."""
+    if not there.balanced:
+        return _TIPS_OVER
+    if any(manner.sway):
+        return f"{robot.leg_names[there.short]} comes to the end of its reach as the body sways"
+    return what_stops(robot, posed.stand)
 
 
 def _limits(manner: Manner, pace: Tempo, why: str) -> tuple[str, ...]:
