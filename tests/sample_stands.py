@@ -7,10 +7,11 @@ import numpy as np
 from gait_robots import preset
 from tarsus.gait.gait import Gait
 from tarsus.gait.live.envelope import envelope
+from tarsus.gait.live.parts import all_parts
 from tarsus.gait.live.posture import stand_of
 from tarsus.gait.live.support import support_sets
 from tarsus.gait.live.tempo import joint_limits, tempo
-from tarsus.gait.live.workspace import all_parts, workspace
+from tarsus.gait.live.workspace import workspace
 from tarsus.gait.setup import Setup
 from tarsus.kinematics.pose import Pose
 

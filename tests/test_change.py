@@ -12,10 +12,11 @@ from gait_robots import PRESETS, ring
 from sample_stands import feet_at, pose_of, posture_of, setup_of
 from tarsus.errors import UnreachableError
 from tarsus.gait.gait import GAITS, Gait
-from tarsus.gait.live.change import Change, Manner, work_out
+from tarsus.gait.live.change import Change, work_out
+from tarsus.gait.live.manner import Manner
+from tarsus.gait.live.parts import all_parts
 from tarsus.gait.live.posture import LIFT, rotation_rows, stand_of
 from tarsus.gait.live.tempo import joint_limits
-from tarsus.gait.live.workspace import all_parts
 from tarsus.kinematics.inverse import inverse_kinematics
 from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.stance import default_stance

@@ -92,6 +92,15 @@ def test_feet_of_every_robot_give_way_clean_through_the_guard(name):
     assert all(event.kind in ("command", "stage") for event in found.events)
 
 
+def test_feet_that_give_way_walk_on_without_a_jump():
+    text = "at 0 s: walk 80 mm/s; force RF 2 N; force LM -2 N; at 4 s: stop"
+    found = run_scenario(Scenario.from_text(text, duration=8.0, admittance=SOFT), robot="strider")
+    assert found.ok, found.events
+    # The ground stays where it is, however feet give way on it.
+    assert np.abs(found.motion.feet[..., 2])[found.motion.contacts].max() < 0.008
+    assert found.motion.body.position[:, 2] == pytest.approx(found.motion.body.position[0, 2], abs=2e-3)
+
+
 def test_a_foot_gives_way_by_the_force_over_its_stiffness():
     text = "at 0 s: force RF 2 N; force LM -1 N; at 3 s: force RF 0 N; force LM 1e3 N; "
     text += "at 6 s: force LM 0 N; force RF 3.5 N"
@@ -425,6 +434,18 @@ def test_the_timeline_shows_every_command_and_phase(tmp_path):
     assert "strider: a try" in figure.get_suptitle()
     save_figure(figure, tmp_path / "timeline.png")
     assert (tmp_path / "timeline.png").stat().st_size > 10_000
+
+
+def test_the_timeline_shows_how_high_bearing_feet_are_where_they_may_give_way():
+    found = run_scenario(Scenario.load(next(path for path in SCENARIOS if path.stem == "soft-foot")))
+    figure = plot_timeline(found)
+    (panel,) = (axes for axes in figure.axes if axes.get_ylabel().startswith("bearing feet"))
+    highest = max(
+        np.nanmax(line.get_ydata()) for line in panel.lines if line.get_label() in found.motion.robot.leg_codes
+    )
+    bearing = found.motion.contacts & found.upright[:, None]
+    assert highest == pytest.approx(1000 * found.motion.feet[..., 2][bearing].max(), abs=0.2)
+    assert highest > 1
 
 
 def test_the_timeline_of_a_robot_that_never_stands_and_of_one_without_a_guard():

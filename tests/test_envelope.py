@@ -14,9 +14,9 @@ from sample_stands import POSTURES, envelope_of, feet_at, pose_of, setup_of, sta
 from tarsus.gait.cycle import cycle_feet
 from tarsus.gait.gait import GAITS, Gait
 from tarsus.gait.live.envelope import Envelope, capped, envelope, overhang
+from tarsus.gait.live.parts import all_parts
 from tarsus.gait.live.polygon import NORMALS, polygon_ends, polygon_room
 from tarsus.gait.live.support import safe_share, support_sets
-from tarsus.gait.live.workspace import all_parts
 from tarsus.gait.stroke import max_stroke
 from tarsus.kinematics.inverse import inverse_kinematics
 from tarsus.kinematics.stability import stability_margin

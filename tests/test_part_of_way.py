@@ -8,8 +8,10 @@ from sample_stands import feet_at, pose_of, posture_of, setup_of
 from tarsus.gait.gait import Gait
 from tarsus.gait.live.balance import Balance
 from tarsus.gait.live.part_of_way import Posed, balanced_part, first_step, largest_part, what_stops
+from tarsus.gait.live.parts import all_parts
+from tarsus.gait.live.polygon import NORMALS
 from tarsus.gait.live.support import support_sets
-from tarsus.gait.live.workspace import NORMALS, all_parts, room_at_rest, workspace
+from tarsus.gait.live.workspace import room_at_rest, workspace
 from tarsus.kinematics.inverse import inverse_kinematics
 from tarsus.kinematics.stability import stability_margin
 

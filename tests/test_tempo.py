@@ -10,8 +10,8 @@ from sample_stands import envelope_of, setup_of, standing, tempo_of
 from tarsus.gait.cycle import cycle_feet
 from tarsus.gait.gait import Gait
 from tarsus.gait.live.envelope import capped, envelope
+from tarsus.gait.live.parts import all_parts
 from tarsus.gait.live.tempo import Cycle, joint_limits, tempo
-from tarsus.gait.live.workspace import all_parts
 
 HEADINGS = [(np.cos(a), np.sin(a), 0.0) for a in np.arange(7) * 2 * np.pi / 7 + 0.2]
 TWISTS = [

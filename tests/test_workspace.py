@@ -8,8 +8,10 @@ from scipy.spatial import HalfspaceIntersection
 
 from gait_robots import PRESETS, ring
 from sample_stands import POSTURES, feet_at, polygons, pose_of, setup_of, standing
+from tarsus.gait.live.parts import all_parts
 from tarsus.gait.live.polygon import NORMALS, polygon_ends, polygon_radii, polygon_room
-from tarsus.gait.live.workspace import all_parts, joint_slack, workspace
+from tarsus.gait.live.stand import joint_slack
+from tarsus.gait.live.workspace import workspace
 from tarsus.kinematics.inverse import inverse_kinematics
 
 every_stand = pytest.mark.parametrize(("name", "body"), list(itertools.product(PRESETS, POSTURES)))

@@ -8,7 +8,7 @@ import numpy as np
 
 from tarsus.drive.recording import Event, Recording
 from tarsus.report.gait_diagram import draw_stance
-from tarsus.report.style import INK, PALE, WARNING, new_figure, thinned, tidy_axes
+from tarsus.report.style import INK, PALE, WARNING, leg_colours, new_figure, thinned, tidy_axes
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -25,6 +25,8 @@ _LONGEST = 44
 
 def plot_timeline(recording: Recording) -> Figure:
     """Draw commands, steps, speed asked for and walked, the body, and the stability margin over time.
+
+    Where feet may give way, also how high those that bear are.
 
     Parameters
     ----------
@@ -44,7 +46,8 @@ def plot_timeline(recording: Recording) -> Figure:
     motion = recording.motion
     labels = _rows(recording)
     told = 0.19 * (1 + max((row for _, row, _ in labels), default=0)) + 0.1
-    heights = [told, 0.24 * motion.robot.legs, 1.25, 1.0, 1.25, 1.15]
+    gives_way = recording.scenario.admittance is not None
+    heights = [told, 0.24 * motion.robot.legs, 1.25, 1.0, 1.25, *([1.15] if gives_way else []), 1.15]
     figure = new_figure(width=_WIDTH + 1, height=sum(heights) + 1.9)
     axes = figure.subplots(len(heights), 1, sharex=True, height_ratios=heights)
     for panel in axes:
@@ -59,8 +62,11 @@ def plot_timeline(recording: Recording) -> Figure:
     _draw_wish(axes[3], recording, np.degrees(recording.wished[:, 2]), np.degrees(recording.done[:, 2]))
     tidy_axes(axes[4], y="body height\n(mm)")
     _draw_body(axes[4], recording)
-    tidy_axes(axes[5], x="time (s)", y="stability\nmargin (mm)")
-    _draw_margin(axes[5], recording)
+    if gives_way:
+        tidy_axes(axes[5], y="bearing feet\n(mm)")
+        _draw_feet(axes[5], recording)
+    tidy_axes(axes[-1], x="time (s)", y="stability\nmargin (mm)")
+    _draw_margin(axes[-1], recording)
     for panel in axes[1:]:
         _shade(panel, recording)
         for event in _of(recording, "command"):
@@ -193,6 +199,18 @@ def _draw_body(axes: Axes, recording: Recording) -> None:
     axes.legend(
         lines, ["height", "roll", "pitch"], loc="upper left", fontsize=8, frameon=False, ncols=3, borderaxespad=0.1
     )
+
+
+def _draw_feet(axes: Axes, recording: Recording) -> None:
+    """Draw how high each foot that bears is over the ground that the robot started on."""
+    motion, shown = recording.motion, thinned(recording.motion)
+    bears, colours = motion.contacts & recording.upright[:, None], leg_colours(motion.robot)
+    height = np.where(bears, motion.feet[..., 2] * 1000, np.nan)
+    for leg, code in enumerate(motion.robot.leg_codes):
+        axes.plot(motion.time[shown], height[shown, leg], color=colours[leg], linewidth=1.3, label=code)
+    most = max(float(np.nanmax(np.abs(height), initial=0.0)) * 1.2, 2.0)
+    axes.set_ylim(-most, 1.4 * most)
+    axes.legend(loc="upper left", fontsize=8, frameon=False, ncols=motion.robot.legs, borderaxespad=0.1)
 
 
 def _draw_margin(axes: Axes, recording: Recording) -> None:

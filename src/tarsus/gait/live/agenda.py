@@ -10,9 +10,10 @@ import numpy as np
 
 from tarsus.errors import InputError, UnreachableError
 from tarsus.gait.gait import Gait
-from tarsus.gait.live.change import Change, Manner
+from tarsus.gait.live.change import Change
+from tarsus.gait.live.manner import Manner
+from tarsus.gait.live.parts import Parts
 from tarsus.gait.live.wish import Wish
-from tarsus.gait.live.workspace import Parts
 
 __all__ = ["Agenda"]
 

@@ -11,13 +11,13 @@ from tarsus.gait.live.balance import Balance
 from tarsus.gait.live.envelope import Envelope, capped, envelope
 from tarsus.gait.live.manner import Manner
 from tarsus.gait.live.part_of_way import Posed, balanced_part, first_step, largest_part, what_stops
+from tarsus.gait.live.parts import Parts
 from tarsus.gait.live.support import support_sets
 from tarsus.gait.live.tempo import Tempo, tempo
 from tarsus.gait.live.wished import swaying, wished_posed
-from tarsus.gait.live.workspace import Parts
 from tarsus.robot.robot import Robot
 
-__all__ = ["Change", "Manner", "work_out"]
+__all__ = ["Change", "work_out"]
 
 Floats = np.ndarray[Any, Any]
 

@@ -12,9 +12,10 @@ from typing import Any
 import numpy as np
 
 from tarsus.gait.live.balance import Balance
+from tarsus.gait.live.parts import Parts
 from tarsus.gait.live.polygon import NORMALS
 from tarsus.gait.live.stand import Stand
-from tarsus.gait.live.workspace import Parts, workspace
+from tarsus.gait.live.workspace import workspace
 from tarsus.gait.swing import ground_share
 from tarsus.robot.robot import Robot
 

@@ -101,7 +101,9 @@ class Feel:
             Joint angles [rad].
         """
         admitted = self._sieve.admit(senses, dt)
-        self._plane = ground_plane(feet, contacts, self._plane)
+        # Where the ground is, not where feet are that have given way.
+        stood = feet if self._filter is None else feet - np.outer(self._filter.offsets, (0.0, 0.0, 1.0))
+        self._plane = ground_plane(stood, contacts, self._plane)
         level = self.levelling.step(dt, self._plane, admitted.attitude, commanded)
         x, y = feet[:, 0].mean(), feet[:, 1].mean()
         found = np.array([level.x, level.y, float(self._plane.height(x, y)), level.roll, level.pitch, 0.0])

@@ -15,7 +15,7 @@ import numpy as np
 
 from tarsus.gait.live.lag import travel_factors
 from tarsus.gait.live.moment import Moment
-from tarsus.gait.live.workspace import NORMALS
+from tarsus.gait.live.polygon import NORMALS
 
 __all__ = ["allowed_target", "excess"]
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from tarsus.gait.live.lag import Lag
 from tarsus.gait.live.moment import Moment
-from tarsus.gait.live.workspace import Stand, joint_slack
+from tarsus.gait.live.stand import Stand, joint_slack
 from tarsus.kinematics.polygon import hull_margin
 from tarsus.robot.robot import Robot
 

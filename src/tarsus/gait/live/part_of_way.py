@@ -8,9 +8,10 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from tarsus.gait.live.balance import Balance
+from tarsus.gait.live.parts import Parts
 from tarsus.gait.live.posture import LIFT, rotation_rows, stand_of
 from tarsus.gait.live.stand import Stand, joint_slack
-from tarsus.gait.live.workspace import Parts, room_at_rest
+from tarsus.gait.live.workspace import room_at_rest
 from tarsus.robot.robot import Robot
 
 __all__ = ["Posed", "balanced_part", "first_step", "largest_part", "what_stops"]
@@ -89,8 +90,10 @@ def largest_part(robot: Robot, now: Posed, wished: Posed) -> Parts[tuple[float, 
     def works(share: float) -> bool:
         return bool((room_at_rest(robot, now.towards(wished, share).stand) >= 0).all())
 
-    if not fails.any() and works(1.0):
-        return 1.0, ""
+    if not fails.any():
+        if works(1.0):
+            return 1.0, ""
+        yield
     share, end = yield from _bracketed(works, end)
     yield
     return share, what_stops(robot, now.towards(wished, end).stand)
@@ -102,6 +105,7 @@ def _bracketed(works: Callable[[float], bool], end: float) -> Parts[tuple[float,
     while begin > 0 and not works(begin):
         begin, end = max(0.0, 2 * begin - end), begin
         yield
+    yield
     for count in range(_HALVINGS):
         middle = (begin + end) / 2
         begin, end = (middle, end) if works(middle) else (begin, middle)

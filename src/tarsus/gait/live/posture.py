@@ -11,7 +11,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from tarsus.gait.live.workspace import Stand
+from tarsus.gait.live.stand import Stand
 
 __all__ = ["LIFT", "Rows", "calm_sway", "rotation_rows", "stand_of", "swayed"]
 

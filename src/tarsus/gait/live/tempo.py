@@ -9,8 +9,8 @@ import numpy as np
 from tarsus.gait.gait import Gait
 from tarsus.gait.live.envelope import Envelope
 from tarsus.gait.live.guard_bounds import STOPPING_TIME, UNKNOWN_SPEED
+from tarsus.gait.live.parts import Parts
 from tarsus.gait.live.stand import Stand
-from tarsus.gait.live.workspace import Parts
 from tarsus.gait.swing import ground_share, height_share
 from tarsus.robot.robot import Robot
 

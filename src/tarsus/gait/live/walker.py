@@ -13,7 +13,7 @@ from tarsus.gait.gait import Gait
 from tarsus.gait.live.admittance import Admittance
 from tarsus.gait.live.agenda import Agenda
 from tarsus.gait.live.carriage import Carriage
-from tarsus.gait.live.change import Change, Manner, work_out
+from tarsus.gait.live.change import Change, work_out
 from tarsus.gait.live.envelope import Envelope
 from tarsus.gait.live.feel import Feel, Felt
 from tarsus.gait.live.foothold import final_rest
@@ -23,8 +23,10 @@ from tarsus.gait.live.hands import best_lean, reachable_part
 from tarsus.gait.live.lag import Lag
 from tarsus.gait.live.levelling import LevellingMode
 from tarsus.gait.live.manipulation import Manipulation, legs_out
+from tarsus.gait.live.manner import Manner
 from tarsus.gait.live.moment import THERE, TIE, Course, Moment
 from tarsus.gait.live.own_time import OwnTime
+from tarsus.gait.live.parts import Parts, all_parts
 from tarsus.gait.live.posture import LIFT, calm_sway
 from tarsus.gait.live.search import Searches
 from tarsus.gait.live.senses import Senses
@@ -36,7 +38,6 @@ from tarsus.gait.live.tempo import joint_limits
 from tarsus.gait.live.tilt import Commanded
 from tarsus.gait.live.walker_view import WalkerView
 from tarsus.gait.live.wish import Wish
-from tarsus.gait.live.workspace import Parts, all_parts
 from tarsus.gait.setup import Setup, require_number
 from tarsus.kinematics.mass import centre_of_mass
 from tarsus.kinematics.stability import stability_margin
@@ -549,7 +550,7 @@ class Walker(WalkerView):
         before, course = self._now, self._course(dt)
         if self._felt is not None:
             self._now = self._searches.step(before, dt, touches=self._touches)
-            self._offset = np.where(before.down, self._felt.offsets, 0.0)
+            self._offset = self._felt.offsets
         swing_time = (1 - self.gait.duty) / self._frequency
 
         def move(time: float) -> Moment:

@@ -15,7 +15,7 @@ from tarsus.gait.live.moment import Moment
 from tarsus.gait.live.own_time import OwnTime
 from tarsus.gait.live.posture import LIFT, stand_of, swayed
 from tarsus.gait.live.search import Searches
-from tarsus.gait.live.workspace import Stand
+from tarsus.gait.live.stand import Stand
 from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.stability import stability_margin
 from tarsus.robot.robot import Robot

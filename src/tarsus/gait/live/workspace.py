@@ -10,40 +10,19 @@ lines is the polygon. Where its edge still runs out of what the leg can do, betw
 
 from __future__ import annotations
 
-from collections.abc import Generator
-from typing import Any, TypeAlias, TypeVar
+from typing import Any
 
 import numpy as np
 
+from tarsus.gait.live.parts import Parts
 from tarsus.gait.live.polygon import NORMALS, polygon_ends
 from tarsus.gait.live.slack import KEEP, StandSlack
-from tarsus.gait.live.stand import Stand, joint_slack
+from tarsus.gait.live.stand import Stand
 from tarsus.robot.robot import Robot
 
-__all__ = ["NORMALS", "Parts", "Stand", "all_parts", "joint_slack", "room_at_rest", "workspace"]
+__all__ = ["room_at_rest", "workspace"]
 
 Floats = np.ndarray[Any, Any]
-
-_T = TypeVar("_T")
-Parts: TypeAlias = Generator[None, None, _T]
-"""A piece of work in parts: what a control loop can't wait for at once, it does one part of a tick."""
-
-
-def all_parts(work: Parts[_T]) -> _T:
-    """Do a piece of work at once.
-
-    Parameters
-    ----------
-    work : generator
-        The parts.
-    """
-    while True:
-        try:
-            next(work)
-        except StopIteration as done:
-            result: _T = done.value
-            return result
-
 
 _RAYS, _SIDES, _RINGS, _FINE = 24, len(NORMALS), 8, 5
 # How many rings, and how many places on the edge, are looked at in one part.
