@@ -3,36 +3,15 @@
 import numpy as np
 
 from sample_stands import envelope_of, posture_of, setup_of
-from tarsus.gait.live.lag import Lag
 from tarsus.gait.live.moment import Course, Moment
 
 EARTH, FACING = 0.3 - 0.2j, 0.7
 
 
 def moment_of(setup, rest, **changes):
-    legs = len(rest)
-    none, there = np.zeros(legs), EARTH + np.exp(1j * FACING) * rest
-    values = {
-        "clock": 0.0,
-        "number": none,
-        "down": np.ones(legs, dtype=bool),
-        "share": none,
-        "foot": there,
-        "target": there,
-        "pace": 0j * none,
-        "bend": 0j * none,
-        "ground": none,
-        "start_height": none,
-        "late": none,
-        "met": none + np.inf,
-        "met_height": none,
-        "met_speed": none,
-        "origin": EARTH,
-        "yaw": FACING,
-        "twist": Lag.still(np.zeros(3)),
-        "posture": Lag.still(posture_of(setup)),
-    }
-    return Moment(**{**values, **changes})
+    there = EARTH + np.exp(1j * FACING) * rest
+    now = Moment.standing(there, posture_of(setup))
+    return now._replace(**{"origin": EARTH, "yaw": FACING, **changes})
 
 
 def course_of(setup, rest, twist, **changes):

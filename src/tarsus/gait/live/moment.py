@@ -87,6 +87,39 @@ class Moment(NamedTuple):
     cycles: float = 0.0
     beats: float = 0.0
 
+    @classmethod
+    def standing(cls, rest: Floats, posture: Floats) -> Moment:
+        """Return a robot that stands with its feet at rest, its heading frame at G's.
+
+        Parameters
+        ----------
+        rest : complex array, shape (legs,)
+            The rest footholds [m].
+        posture : array, shape (13,)
+            The body: see `tarsus.gait.live.posture`.
+        """
+        none, zero = np.zeros(len(rest)), np.zeros(len(rest), dtype=complex)
+        return cls(
+            clock=0.0,
+            number=none,
+            down=np.ones(len(rest), dtype=bool),
+            share=none,
+            foot=rest,
+            target=rest,
+            pace=zero,
+            bend=zero,
+            ground=none,
+            start_height=none,
+            met=np.full(len(rest), np.inf),
+            met_height=none,
+            met_speed=none,
+            origin=0j,
+            yaw=0.0,
+            twist=Lag.still(np.zeros(3)),
+            posture=Lag.still(posture),
+            late=none,
+        )
+
     def height(self, lift: float) -> Floats:
         """Return the feet's heights in G [m].
 

@@ -20,7 +20,6 @@ from tarsus.gait.live.foothold import final_rest
 from tarsus.gait.live.footing import Footing
 from tarsus.gait.live.governor import allowed_target, excess
 from tarsus.gait.live.hands import best_lean, reachable_part
-from tarsus.gait.live.lag import Lag
 from tarsus.gait.live.levelling import LevellingMode
 from tarsus.gait.live.manipulation import Manipulation, legs_out
 from tarsus.gait.live.manner import Manner
@@ -165,28 +164,8 @@ class Walker(WalkerView):
         self.time = 0.0
         self._set_gait(change.manner.gait)
         self._all, self._none, self._flat = np.ones(legs, dtype=bool), np.zeros(legs, dtype=bool), np.zeros(legs)
-        none, zero = np.zeros(legs), np.zeros(legs, dtype=complex)
-        self._now = Moment(
-            clock=0.0,
-            number=none,
-            down=np.ones(legs, dtype=bool),
-            share=none,
-            foot=change.rest,
-            target=change.rest,
-            pace=zero,
-            bend=zero,
-            ground=none,
-            start_height=none,
-            met=np.full(legs, np.inf),
-            met_height=none,
-            met_speed=none,
-            origin=0j,
-            yaw=0.0,
-            twist=Lag.still(np.zeros(3)),
-            posture=Lag.still(self._carriage.goal),
-            late=none,
-        )
-        self._offset = none
+        self._now = Moment.standing(change.rest, self._carriage.goal)
+        self._offset = self._flat
         self._own = OwnTime(self._solve(self._now), self.joint_speed, self.joint_acceleration)
 
     def _set_gait(self, gait: Gait) -> None:
