@@ -145,9 +145,12 @@ def test_a_foot_is_dragged_in_the_picture_and_the_leg_follows(visitor):
     visitor.unfold()
     before = feet_of(visitor)
     label = visitor.page.locator(".note", has_text="LM").bounding_box()
+    address = visitor.page.url
     grab(visitor, label["x"] + label["width"] / 2, label["y"] + label["height"] / 2)
     visitor.page.mouse.up()
     expect(visitor.at("undo")).to_be_enabled()
+    # The address takes over what is committed: the last of the drag, that is, has come.
+    expect(visitor.page).not_to_have_url(address)
     after = feet_of(visitor)
     moved = np.linalg.norm(after - before, axis=1)
     assert moved[1] > 5

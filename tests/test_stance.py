@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from robots import plain_hexapod, random_robot, robots, seeds
 from tarsus.errors import InputError, UnreachableError
 from tarsus.kinematics.inverse import inverse_kinematics
-from tarsus.kinematics.stance import default_clearance, default_stance, reachable_band
+from tarsus.kinematics.stance import default_clearance, default_stance, reachable_band, stance_or_nan
 from tarsus.robot.robot import GaitDefaults, stack_robots
 
 STEPS = 4001
@@ -202,6 +202,26 @@ def test_a_batch_is_its_loop():
     for i, design in enumerate(designs):
         for j, height in enumerate(heights):
             assert np.array_equal(found[:, i, j], np.array(reachable_band(design, height)), equal_nan=True)
+
+
+@pytest.mark.parametrize("part", ["coxa", "femur", "tibia", "mount_position", "limits", "femur_axis_offset"])
+def test_a_batch_in_one_part_alone_is_its_loop(part):
+    robot = random_robot(np.random.default_rng(3))
+    shares = np.linspace(0.98, 1.02, 5)
+    values = np.asarray(getattr(robot, part))
+    batch = robot.replace(**{part: np.stack([share * values for share in shares])})
+    designs = [robot.replace(**{part: share * values}) for share in shares]
+    height = -float(np.asarray(robot.tibia).max()) / 2
+    found = np.array(reachable_band(batch, height))
+    expected = np.stack([np.array(reachable_band(design, height)) for design in designs], axis=1)
+    assert np.array_equal(found, expected, equal_nan=True)
+    assert np.isfinite(found).any()
+    clearance = np.full(5, -height)
+    for lift in (0.0, np.linspace(0, 0.01, 5)):
+        feet = stance_or_nan(batch, clearance, lift=lift)
+        rises = np.broadcast_to(lift, 5)
+        loop = [stance_or_nan(design, -height, lift=rise) for design, rise in zip(designs, rises, strict=True)]
+        assert np.array_equal(feet, np.stack(loop), equal_nan=True)
 
 
 @pytest.mark.parametrize("xp", [jnp, array_api_strict])

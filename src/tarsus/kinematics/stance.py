@@ -67,10 +67,10 @@ def reachable_band(robot: Robot, height: Array) -> tuple[Array, Array]:
     z = as_floats(xp, height, name="height")
     require_finite("height", z)
     z = z[..., None] - (g.mount_z + g.up)
-    ends = xp.sort(xp.stack(_band_ends(xp, g, z)), axis=0)
+    ends = xp.sort(xp.stack(xp.broadcast_arrays(*_band_ends(xp, g, z))), axis=0)
     lows, highs = ends[:-1, ...], ends[1:, ...]
     between_open = _in_limits(xp, g, (lows + highs) / 2, z)
-    zero = xp.zeros_like(z)
+    zero = xp.zeros_like(ends[0, ...])
     start, best_start, best_end = zero, zero, zero
     was_open = zero > 1
     for i in range(lows.shape[0]):
