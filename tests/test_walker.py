@@ -589,6 +589,7 @@ BAD_WISHES = {
     "hands without legs": {"hands": [(0, 0, 0)]},
     "a hand's speed in words": {"hand_speeds": {0: "slow"}},
     "sway": {"sway": (INF,) * 6},
+    "gait by number": {"gait": 3},
     "gait for four": {"gait": Gait(duty=0.75, offsets=(0, 0.25, 0.5, 0.75))},
 }
 
@@ -606,6 +607,11 @@ def test_what_is_no_wish_is_refused_and_changes_nothing(bad):
         w.step(Wish(**bad), 0.02) if isinstance(bad, dict) else w.step(*bad)
     trace.run((0, 0.1, 0), 1)
     assert (trace.angles == undisturbed()).all()
+
+
+def test_a_robot_that_could_not_step_as_it_stands_is_refused_with_the_reason():
+    with pytest.raises(UnreachableError, match=r"can't walk so: body: the knee of front left comes to the ground"):
+        walker("strider", clearance=-0.05)
 
 
 def test_an_unknown_gait_is_refused_with_those_that_there_are():

@@ -110,3 +110,14 @@ def test_sway_moves_the_body_with_the_steps_and_fades():
     walk(walker, Wish(sway=(0.0,) * 6), 8)
     assert walker.mode == "standing"
     np.testing.assert_allclose(walker.body.position[2], 0.110, atol=5e-4)
+
+
+def test_a_sway_that_the_joints_do_not_allow_is_cut_and_that_is_said():
+    walker = Walker(load_robot("strider"), Gait.named("tripod"))
+    walk(walker, Wish(twist=(0.05, 0, 0), sway=(0, 0, 0.014, 0, 0, 0)), 3)
+    (reason,) = (reason for reason in walker.limited if reason.startswith("sway"))
+    share = float(reason.split()[1]) / 100
+    assert 0 < share < 1
+    # As much sway less is not cut.
+    walk(walker, Wish(twist=(0.05, 0, 0), sway=(0, 0, 0.014 * (share - 0.01), 0, 0, 0)), 3)
+    assert not any(reason.startswith("sway") for reason in walker.limited)

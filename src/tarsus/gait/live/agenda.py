@@ -93,8 +93,6 @@ class Agenda:
             raise InputError(f"the wish's lift is {asked.lift} m; it must not be negative")
         if asked.cycle_time is not None and asked.cycle_time <= 0:
             raise InputError(f"the wish's cycle_time is {asked.cycle_time} s; it must be greater than 0")
-        if max(abs(asked.clearance), asked.lift, abs(asked.stance_width)) > _MOST:
-            raise InputError(f"clearance, lift and stance_width of a wish must be at most {_MOST:g} m")
         if asked != self.wanted:
             self.wanted, self.refusals = asked, {}
 
@@ -108,17 +106,15 @@ class Agenda:
         free : bool
             Whether the walker has done with the last change, so that a further one may begin.
         """
-        for _ in range(_PARTS):
-            if self._job is None:
-                break
+        if self._job is not None:
             try:
                 next(self._job)
             except StopIteration as done:
                 self._note(done.value)
             except UnreachableError as error:
                 self._note(str(error))
-        else:
-            return
+            else:
+                return
         if free and self.ready is None and self.wanted is not self._done:
             asked, stay = self._next_manner()
             if asked not in (self.doing.manner, *self.refusals):
@@ -172,9 +168,3 @@ def _cycle_time(before: float | None, wished: float | str | None) -> float | Non
     if wished is None:
         return before
     return None if isinstance(wished, str) else wished
-
-
-# No length of a robot's stance is greater [m].
-_MOST = 1e3
-# How many parts of working a change out are done in one tick.
-_PARTS = 1

@@ -1,0 +1,65 @@
+"""The walker's own time: slower wherever the joints could not keep up, along the same way."""
+
+import numpy as np
+import pytest
+
+from tarsus.gait.live.own_time import OwnTime
+
+SPEED, ACCELERATION = np.full((1, 3), 5.0), np.full((1, 3), 100.0)
+
+
+def driven(way, ticks, dt):
+    """Go along a way; return the own times and the joints' speed and acceleration over the greatest."""
+    own = OwnTime(way(0.0), SPEED, ACCELERATION)
+    time, times, angles = 0.0, [0.0], [own.angles]
+    for _ in range(ticks):
+        time = own.advance(lambda step, time=time: time + step, way, dt, stop=False)
+        times.append(time)
+        angles.append(own.angles)
+        np.testing.assert_array_equal(own.angles, way(time))
+    rate = np.diff(angles, axis=0, prepend=[angles[0]]) / dt
+    change = np.diff(rate, axis=0) / dt
+    return np.array(times), np.abs(rate).max() / 5.0, np.abs(change).max() / 100.0
+
+
+@pytest.mark.parametrize("dt", [0.001, 0.01, 0.03])
+def test_where_joints_keep_up_it_is_the_worlds(dt):
+    times, speed, change = driven(lambda t: np.array([[1.0, 0.5, -0.7]]) * np.sin(2 * t) ** 2, 300, dt)
+    assert times == pytest.approx(dt * np.arange(301))
+    assert speed < 1
+    assert change < 1
+
+
+@pytest.mark.parametrize("dt", [0.002, 0.01, 0.02])
+@pytest.mark.parametrize("fast", [5.5, 6.5, 8.0])
+def test_where_they_do_not_it_is_slower_and_they_do(fast, dt):
+    times, speed, change = driven(lambda t: np.array([[1.0, 0.5, -0.7]]) * np.sin(fast * t) ** 2, 1000, dt)
+    assert (np.diff(times) >= 0).all()
+    assert times[-1] < 1000 * dt
+    assert times[-1] > 0.2 * 1000 * dt
+    assert speed <= 1
+    assert change <= 1.001
+
+
+def test_told_to_stop_it_comes_to_rest():
+    own = OwnTime(np.zeros((1, 3)), SPEED, ACCELERATION)
+    time, rates = 0.0, []
+    for _ in range(20):
+        time = own.advance(lambda step, time=time: time + step, lambda t: np.full((1, 3), t), 0.01, stop=True)
+        rates.append(own.rate)
+    assert rates == pytest.approx(np.maximum(1 - 0.1 * np.arange(1, 21), 0))
+    assert time == pytest.approx(0.01 * sum(rates))
+
+
+def test_on_a_way_that_no_joint_could_go_it_goes_on_all_the_same():
+    own = OwnTime(np.zeros((1, 3)), SPEED, ACCELERATION)
+    tried = []
+
+    def jumping(time):
+        tried.append(time)
+        return np.full((1, 3), (-1.0) ** len(tried))
+
+    own.advance(lambda step: step, jumping, 0.01, stop=False)
+    # Six times in all, never for longer than before.
+    assert len(tried) == 6
+    assert (np.diff(tried) <= 0).all()
