@@ -573,6 +573,7 @@ BAD = {
     "back in time": ((0, 0, 0), -0.01),
     "NaN time": ((0, 0, 0), NAN),
     "infinite time": ((0, 0, 0), INF),
+    "time in words": ((0, 0, 0), "soon"),
 }
 BAD_WISHES = {
     "body": {"body": (0, 0, NAN, 0, 0, 0)},
@@ -589,6 +590,9 @@ BAD_WISHES = {
     "hands without legs": {"hands": [(0, 0, 0)]},
     "a hand's speed in words": {"hand_speeds": {0: "slow"}},
     "sway": {"sway": (INF,) * 6},
+    "a leg that is no whole number": {"hands": {1.0: (0, 0, 0)}},
+    "a hand's speed that is none": {"hand_speeds": {1: None}},
+    "cycle times": {"cycle_time": np.array([1.0, 2.0])},
     "gait by number": {"gait": 3},
     "gait for four": {"gait": Gait(duty=0.75, offsets=(0, 0.25, 0.5, 0.75))},
 }
@@ -612,6 +616,12 @@ def test_what_is_no_wish_is_refused_and_changes_nothing(bad):
 def test_a_robot_that_could_not_step_as_it_stands_is_refused_with_the_reason():
     with pytest.raises(UnreachableError, match=r"can't walk so: body: the knee of front left comes to the ground"):
         walker("strider", clearance=-0.05)
+
+
+@pytest.mark.parametrize("direction", [(0, 0, 0), (NAN, 0, 0), (1, 0), "ahead"])
+def test_a_top_speed_is_of_a_direction(direction):
+    with pytest.raises(InputError, match="direction"):
+        walker("strider").top_speed(direction)
 
 
 def test_an_unknown_gait_is_refused_with_those_that_there_are():

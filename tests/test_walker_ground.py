@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from tarsus import Gait, forward_kinematics, load_robot
+from tarsus import Gait, forward_kinematics, list_robots, load_robot
 from tarsus.gait.live.admittance import Admittance
 from tarsus.gait.live.senses import Senses
 from tarsus.gait.live.walker import Walker
@@ -135,3 +135,21 @@ def test_without_masses_nothing_is_known_of_forces():
     for _ in range(20):
         walker.step(Wish(), DT, senses=Senses(forces=[5.0] * 6))
     np.testing.assert_allclose(walker.feet[:, 2], 0.0, atol=1e-12)
+
+
+@pytest.mark.parametrize("name", list_robots())
+def test_feet_that_meet_steps_early_keep_every_joint_within_its_acceleration(name):
+    walker = Walker(load_robot(name), Gait.named("tripod"))
+    twist, dt = 0.8 * walker.top_speed((1, 0, 0)) * np.array([1, 0, 0]), 0.01
+    worst = highest = 0.0
+    angles, rate = walker.angles, np.zeros_like(walker.angles)
+    for _ in range(1000):
+        height = 0.006 * ((walker.feet[:, 0] // 0.1) % 2)
+        after = walker.step(twist, dt, senses=Senses(contacts=tuple(walker.feet[:, 2] <= height + 1e-4)))
+        now = (after - angles) / dt
+        worst = max(worst, float((np.abs(now - rate) / dt / walker.joint_acceleration).max()))
+        angles, rate = after, now
+        highest = max(highest, walker.feet[walker.contacts, 2].max())
+    assert worst <= 1.001
+    # On top of the steps, but for what they sink in while they stop.
+    assert 0.001 < highest <= 0.0061

@@ -7,6 +7,7 @@ from tarsus import Gait, load_robot
 from tarsus.errors import InputError
 from tarsus.gait.live.walker import Walker
 from tarsus.gait.live.wish import Wish
+from walker_machine import Trace
 
 DT = 0.01
 
@@ -113,7 +114,7 @@ def test_sway_moves_the_body_with_the_steps_and_fades():
 
 
 def test_a_sway_that_the_joints_do_not_allow_is_cut_and_that_is_said():
-    walker = Walker(load_robot("strider"), Gait.named("tripod"))
+    walker = Walker(load_robot("strider"), Gait.named("tripod"), cycle_time=1.0)
     walk(walker, Wish(twist=(0.05, 0, 0), sway=(0, 0, 0.014, 0, 0, 0)), 3)
     (reason,) = (reason for reason in walker.limited if reason.startswith("sway"))
     share = float(reason.split()[1]) / 100
@@ -121,3 +122,40 @@ def test_a_sway_that_the_joints_do_not_allow_is_cut_and_that_is_said():
     # As much sway less is not cut.
     walk(walker, Wish(twist=(0.05, 0, 0), sway=(0, 0, 0.014 * (share - 0.01), 0, 0, 0)), 3)
     assert not any(reason.startswith("sway") for reason in walker.limited)
+
+
+@pytest.mark.parametrize("name", ["freenove", "strider", "phoenix"])
+def test_a_hand_comes_to_the_edge_of_its_reach_wherever_the_body_sways(name):
+    walker = Walker(load_robot(name), Gait.named("wave"), cycle_time=6.0)
+    trace, twist = Trace(walker), (0.005, 0, 0)
+    trace.run(Wish(twist=twist, sway=(0, 0.015, 0.01, 0.06, 0.05, 0.08)), 3, 0.02)
+    out = walker.feet[1] * [1, 1, 0] / np.hypot(*walker.feet[1, :2])
+    trace.run(Wish(twist=twist, hand_speeds={1: 0.05 * out + [0, 0, 0.01]}), 9, 0.02)
+    trace.run(Wish(twist=twist), 8, 0.02).assert_sound()
+
+
+@pytest.mark.parametrize("name", ["phantomx-mk2", "mithi"])
+def test_a_sway_stops_and_changes_its_pace_without_a_jump(name):
+    walker = Walker(load_robot(name), Gait.named("tripod"))
+    trace, twist = Trace(walker), 0.5 * walker.top_speed((1, 0, 0)) * np.array([1, 0, 0])
+    trace.run(Wish(twist=twist, sway=(0, 0.005, 0.005, 0.03, 0, 0)), 2.5, 0.002)
+    trace.run(Wish(), 2.5, 0.002)
+    trace.run(Wish(twist=0.5 * twist), 1.5, 0.002)
+    trace.run(Wish(twist=0.5 * twist, gait="wave"), 4, 0.002).assert_sound()
+
+
+@pytest.mark.parametrize("name", ["mithi", "strider"])
+def test_one_hand_is_swapped_for_another(name):
+    walker = Walker(load_robot(name), Gait.named("wave"))
+    walk(walker, Wish(twist=(0.005, 0, 0), hands={0: (0.2, 0.15, 0.06)}), 14)
+    assert not walker.contacts[0]
+    walk(walker, Wish(twist=(0.005, 0, 0), hands={0: None, 5: (0.2, -0.15, 0.06)}), 30)
+    walk(walker, Wish(), 12)
+    assert walker.contacts.tolist() == [True] * 5 + [False]
+
+
+def test_what_is_no_longer_asked_for_is_refused_no_more():
+    walker = Walker(load_robot("strider"))
+    walker.step(Wish(sway=(0, 0, 0.2, 0, 0, 0)), DT)
+    walk(walker, Wish(sway=(0,) * 6), 5)
+    assert walker.limited == ()

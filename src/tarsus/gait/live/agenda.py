@@ -138,7 +138,9 @@ class Agenda:
     def _note(self, found: Change | str) -> None:
         self._job = None
         if isinstance(found, str):
-            self.refusals[self._asked] = found
+            # What is no longer asked for by now is refused nothing.
+            if self._asked == self._next_manner()[0]:
+                self.refusals[self._asked] = found
         else:
             self.ready = found
 
@@ -150,7 +152,9 @@ class Agenda:
         order = [(stepping, True), (standing, False)]
         if set(doing.gone) - set(wanted.gone):
             # Legs that are out come back in the order of steps that they left.
-            order = [(dataclasses.replace(doing, gone=wanted.gone), True)]
+            # Only once they are down may others leave it.
+            staying = tuple(leg for leg in doing.gone if leg in wanted.gone)
+            order = [(dataclasses.replace(doing, gone=staying), True)]
         elif doing.gone:
             # Where the feet of these legs are may be out of reach from another posture.
             order = order[:1]

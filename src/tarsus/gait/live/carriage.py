@@ -15,8 +15,8 @@ Floats = np.ndarray[Any, Any]
 # How fast the posture follows [rad/s], and how fast it may move the body at the most [m/s], turn it [rad/s].
 _BANDWIDTH = 4.0
 _BODY_SPEED, _BODY_TURN = 0.08, 0.5
-# How near the posture counts as reached [m, rad].
-_REACHED = 2e-4
+# How near the posture counts as reached, and how near its sway [m, rad].
+_REACHED, _SWAYS = 2e-4, 1e-3
 _NOWHERE = [0.0] * (LIFT + 1)
 
 
@@ -72,14 +72,17 @@ class Carriage:
             self.goal = np.append(self.posture, amplitude)
 
     def reached(self, value: Floats) -> bool:
-        """Return whether a posture is the one to go to.
+        """Return whether a posture is the one to go to, and sways as it is to.
 
         Parameters
         ----------
         value : array, shape (13,)
             The posture now.
         """
-        return max(self._left(value)) < _REACHED
+        if value is self.goal:
+            return True
+        off: list[float] = np.abs(value - self.goal).tolist()
+        return max(off[: LIFT + 1]) < _REACHED and max(off[LIFT + 1 :]) < _SWAYS
 
     def bandwidth(self, value: Floats) -> float:
         """Return how fast the posture is to follow, for the body to be no faster than it may [rad/s].

@@ -138,9 +138,9 @@ def work_out(
     there = capped(there, pace.stroke, pace.turning, duty=manner.gait.duty)
     stepping = way = there
     if np.abs(goal.posture - here.posture).max() > _SAME:
-        between = [Posed(here.towards(goal, part).posture, goal.rest).stand for part in (0.5, 0.0)]
-        way = there.meet((yield from envelope(robot, between[:1], sets, foot_distance=foot_distance, gone=manner.gone)))
-        stepping = yield from envelope(robot, between[1:], sets, foot_distance=foot_distance, gone=manner.gone)
+        between = [Posed(here.towards(goal, part).posture, goal.rest) for part in (0.5, 0.0)]
+        way = there.meet((yield from _envelope_of(robot, manner, between[0], sets, foot_distance)))
+        stepping = yield from _envelope_of(robot, manner, between[1], sets, foot_distance)
         stepping = capped(stepping, pace.stroke, pace.turning, duty=manner.gait.duty)
         way = way.meet(stepping)
     if not way.possible:

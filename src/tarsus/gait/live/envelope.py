@@ -13,7 +13,7 @@ import numpy as np
 
 from tarsus.gait.live.balance import Balance
 from tarsus.gait.live.parts import Parts
-from tarsus.gait.live.polygon import NORMALS
+from tarsus.gait.live.polygon import NORMALS, TOWARDS
 from tarsus.gait.live.stand import Stand
 from tarsus.gait.live.workspace import workspace
 from tarsus.gait.swing import ground_share
@@ -134,8 +134,8 @@ class Envelope:
         # An arc to either side of the rest foothold: to the second order along and across the way, and less than that
         # in truth, as sin x < x and 1 - cos x < x^2 / 2.
         way = (straight + 1j * turn * self.rest) * ahead
-        along = np.abs((_TOWARDS * way[..., None]).real)
-        across = np.maximum((_TOWARDS * (0.5j * turn * ahead * way)[..., None]).real, 0.0)
+        along = np.abs((TOWARDS * way[..., None]).real)
+        across = np.maximum((TOWARDS * (0.5j * turn * ahead * way)[..., None]).real, 0.0)
         return _positive_root(across, along, np.maximum(self.room, 0.0))
 
     def _strain(self, straight: Any, turning: Any, stance_time: float) -> Any:
@@ -144,7 +144,6 @@ class Envelope:
         return straight * stance_time / self.stroke + turning * outermost * stance_time / self.turning
 
 
-_TOWARDS = NORMALS.conj()
 # What may be divided by.
 _LEAST = 1e-12
 
@@ -183,7 +182,7 @@ def capped(limits: Envelope, stroke: float, turning: float, *, duty: float) -> E
     duty : float
         Duty factor.
     """
-    at_rest = (_TOWARDS * limits.rest[:, None]).real
+    at_rest = (TOWARDS * limits.rest[:, None]).real
     bounds = np.minimum(limits.bounds, at_rest + overhang(duty) * max(stroke, turning))
     # Legs that don't step are bounded by nothing here.
     bounds = np.where(np.isinf(limits.bounds), np.inf, bounds)
@@ -216,7 +215,7 @@ def envelope(
         centre, shift = balance.centre_of_mass(stand, sides)
         yield
         share = balance.safe_share(stand, sides, centre, shift)
-        at_rest = (_TOWARDS * stand.rest[:, None]).real
+        at_rest = (TOWARDS * stand.rest[:, None]).real
         free = sides - at_rest
         free = np.where(free > 0, free * share, free)
         # Where a centre of mass stands outside, no step is safe.

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from tarsus.gait.live.moment import Course, Moment, carried, turned
-from tarsus.gait.live.polygon import NORMALS
+from tarsus.gait.live.polygon import TOWARDS
 
 __all__ = ["Landing", "final_rest"]
 
@@ -17,7 +17,6 @@ Floats = np.ndarray[Any, Any]
 
 # Below this speed [m/s] of the feet past the body, a robot told to stand is taken to be stopping: it steps to rest.
 _CREEPING = 0.01
-_SIDES = NORMALS.conj()
 # What a share of 1 may be missed by from rounding.
 _ROUNDING = 1e-9
 
@@ -82,7 +81,7 @@ class Landing(NamedTuple):
         # Where the body turns or slows down, that may be farther out than the foot may be put down.
         way, facing = self._body(until)
         out = (place - way) * facing.conjugate() - rest
-        along = (_SIDES * out).real
+        along = (TOWARDS * out).real
         share = float((room / np.maximum(along, 1e-12)).min())
         if share < 1 - _ROUNDING:
             place = way + facing * (rest + share * out)

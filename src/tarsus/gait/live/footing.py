@@ -8,7 +8,7 @@ import numpy as np
 
 from tarsus.gait.live.change import Change
 from tarsus.gait.live.envelope import Envelope
-from tarsus.gait.live.polygon import NORMALS
+from tarsus.gait.live.polygon import TOWARDS
 
 __all__ = ["Footing"]
 
@@ -51,7 +51,7 @@ class Footing:
 
     def _make_room(self) -> None:
         landing = np.where(self._old_step[:, None], self.bounds, self._landing)
-        self.room: Floats = np.maximum(landing - (NORMALS.conj() * self.rest[:, None]).real, 0.0)
+        self.room: Floats = np.maximum(landing - (TOWARDS * self.rest[:, None]).real, 0.0)
 
     @property
     def new_rest(self) -> Floats:

@@ -25,7 +25,7 @@ TIE = 1e-9
 THERE = 1e-6
 """A foot this near to its rest foothold is there [m]."""
 
-GIVE = 0.1
+GIVE = 0.125
 """Within which share of the swing a foot that has met the ground comes to rest on it."""
 
 
@@ -60,6 +60,8 @@ class Moment(NamedTuple):
         Its speed ``(3,)``: forward, left [m/s], turning [rad/s].
     posture : Lag
         The body over the heading frame: see `tarsus.gait.live.posture`.
+    rhythm : Lag
+        How fast `cycles` and `beats` grow ``(2,)`` [1/s].
     late : array
         How much later than it was to each foot was lifted [cycles]; its swing is shorter by that.
     cycles, beats : float
@@ -84,6 +86,7 @@ class Moment(NamedTuple):
     twist: Lag
     posture: Lag
     late: Floats
+    rhythm: Lag
     cycles: float = 0.0
     beats: float = 0.0
 
@@ -118,6 +121,7 @@ class Moment(NamedTuple):
             twist=Lag.still(np.zeros(3)),
             posture=Lag.still(posture),
             late=none,
+            rhythm=Lag.still(np.zeros(2)),
         )
 
     def height(self, lift: float) -> Floats:

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-__all__ = ["NORMALS", "polygon_ends", "polygon_radii", "polygon_room"]
+__all__ = ["NORMALS", "TOWARDS", "polygon_ends", "polygon_radii", "polygon_room"]
 
 Floats = np.ndarray[Any, Any]
 
@@ -18,7 +18,11 @@ NORMALS: Floats = np.exp(2j * np.pi * np.arange(_SIDES) / _SIDES)
 """Outward normals of the polygons' sides ``(16,)``, the second half opposite to the first."""
 NORMALS.setflags(write=False)
 
-_COSINE, _SINE = ((NORMALS.conj()[:, None] * NORMALS).view(float).reshape(_SIDES, _SIDES, 2)[..., i] for i in (0, 1))
+TOWARDS: Floats = NORMALS.conj()
+"""What a point is multiplied by for the real part to be how far out it is along each normal."""
+TOWARDS.setflags(write=False)
+
+_COSINE, _SINE = ((TOWARDS[:, None] * NORMALS).view(float).reshape(_SIDES, _SIDES, 2)[..., i] for i in (0, 1))
 _SINE = np.where(np.abs(_SINE) < 1e-9, 0.0, _SINE)
 _DIVISOR = np.where(_SINE == 0, 1.0, _SINE)
 # Which sides cut a side off at its clockwise end, which at the other.

@@ -53,8 +53,8 @@ def stand_of(row: Floats, rest: Floats) -> Stand:
 def swayed(row: Floats, cycles: float, beats: float) -> Floats:
     """Return the posture ``(7,)`` at a moment of the sway.
 
-    With every beat, when other feet take over, the body goes once forward and up and pitches; with every cycle, once
-    sideways, rolls and yaws.
+    With every beat, as often as feet are lifted, the body goes once forward and up and pitches; with every cycle, once
+    sideways, rolls and yaws. At which moment of a step is left open.
 
     Parameters
     ----------

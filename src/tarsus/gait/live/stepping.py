@@ -42,6 +42,8 @@ def go_on(now: Moment, course: Course, dt: float) -> Moment:
     if stopping and max(map(abs, twist.value.tolist())) < _NO_SPEED:
         twist = Lag.still(np.zeros(3))
     gone = course.frequency * dt
+    pace = course.frequency * np.array([1.0, course.beats])
+    rhythm, (cycles, beats) = now.rhythm.go(pace, dt, bandwidth=course.bandwidth)
     clock = now.clock + gone
     after = now._replace(
         clock=clock,
@@ -49,8 +51,9 @@ def go_on(now: Moment, course: Course, dt: float) -> Moment:
         yaw=yaw,
         twist=twist,
         posture=_settled(now.posture, course.posture, dt, course.posture_bandwidth),
-        cycles=now.cycles + gone,
-        beats=now.beats + course.beats * gone,
+        rhythm=rhythm,
+        cycles=now.cycles + cycles,
+        beats=now.beats + beats,
     )
     duty = course.gait.duty
     since_lift = [clock - (o + duty + n) for o, n in zip(course.gait.offsets, now.number.tolist(), strict=True)]

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from tarsus.gait.gait import Gait
-from tarsus.gait.live.polygon import NORMALS, polygon_ends
+from tarsus.gait.live.polygon import NORMALS, TOWARDS, polygon_ends
 
 __all__ = ["margin_at_rest", "safe_share", "support_sets"]
 
@@ -128,7 +128,7 @@ def _least_margin(pairs: Floats, feet: Floats, shift: Floats) -> float:
     inward = along * (1j / np.maximum(np.abs(along), 1e-12))
     moved = shift[first][:, :, None] + shift[second][:, None, :]
     # The other legs, down or in the air, shift the centre as far towards the edge as they can.
-    least = (NORMALS.conj()[:, None, None] * shift).real.min(axis=-1)
+    least = (TOWARDS[:, None, None] * shift).real.min(axis=-1)
     others = (least.sum(axis=-1)[:, None] - least[:, first] - least[:, second]).T
     side = np.rint(np.arctan2(inward.imag, inward.real) * (len(NORMALS) / (2 * np.pi))).astype(int)
     # The sides before the first, from the end.

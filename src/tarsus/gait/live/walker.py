@@ -26,7 +26,7 @@ from tarsus.gait.live.manner import Manner
 from tarsus.gait.live.moment import THERE, TIE, Course, Moment
 from tarsus.gait.live.own_time import OwnTime
 from tarsus.gait.live.parts import Parts, all_parts
-from tarsus.gait.live.posture import LIFT, calm_sway
+from tarsus.gait.live.posture import LIFT, calm_sway, stand_of
 from tarsus.gait.live.search import Searches
 from tarsus.gait.live.senses import Senses
 from tarsus.gait.live.solver import Solver
@@ -37,6 +37,7 @@ from tarsus.gait.live.tempo import joint_limits
 from tarsus.gait.live.tilt import Commanded
 from tarsus.gait.live.walker_view import WalkerView
 from tarsus.gait.live.wish import Wish
+from tarsus.gait.live.wished import swaying
 from tarsus.gait.setup import Setup, require_number
 from tarsus.kinematics.mass import centre_of_mass
 from tarsus.kinematics.stability import stability_margin
@@ -52,11 +53,11 @@ _LAGS_PER_STANCE = 4.0
 _LONGEST_TICK = 0.05
 # In which time a change that waits for room slows the walk down by a factor of e [s].
 _PATIENCE = 1.0
-_NO_SWAY = (0.0,) * 6
+_NO_MOTION = (0.0,) * 6
 # How far inside their support the feet left must hold the robot when a leg is taken out of the gait [m].
 _LEAST_MARGIN = 0.01
 # How near to its target a twist counts as steady [m/s, rad/s].
-_STEADY = 1e-4
+_STEADY = 1e-3
 # What share of the swing is over before ground may be met.
 _DESCENDING = 0.5
 
@@ -197,8 +198,7 @@ class Walker(WalkerView):
             If there is no such gait. Nothing has changed then.
         """
         wish = wish if isinstance(wish, Wish) else Wish(twist=wish)
-        if not 0 < dt < math.inf:
-            raise InputError(f"dt is {dt} s; it must be greater than 0 and finite")
+        require_number("dt", dt, zero=False)
         dt = min(float(dt), _LONGEST_TICK)
         self._ask(wish)
         self._sense(senses, dt)
@@ -221,7 +221,7 @@ class Walker(WalkerView):
 
     def _correction(self, gone: tuple[int, ...]) -> tuple[float, ...]:
         """Return what the ground, and legs that don't bear, ask of the body."""
-        felt = self._felt.correction if self._felt else _NO_SWAY
+        felt = self._felt.correction if self._felt else _NO_MOTION
         if not gone:
             return felt
         if gone != self._leaning_for:
@@ -380,7 +380,10 @@ class Walker(WalkerView):
         self._now = self._now._replace(clock=clock, number=np.ceil(clock - self._offsets - self.gait.duty - TIE))
 
     def _reachable(self, leg: int, start: Floats, wished: Floats) -> float:
-        return reachable_part(self.robot, self._stand(self._now), leg, start, wished)
+        # Wherever the body sways.
+        rows = swaying(self._now.posture.value[: LIFT + 1], self._agenda.doing.manner.sway)
+        stands = (stand_of(row, self._footing.rest) for row in rows)
+        return min(reachable_part(self.robot, stand, leg, start, wished) for stand in stands)
 
     # Where to.
 
@@ -437,7 +440,7 @@ class Walker(WalkerView):
         """Return whether the robot walks at a twist, and at its pace."""
         settled = self._settling is None and self._frequency == 1 / self._agenda.doing.tempo.cycle_time
         value = self._now.twist.value.tolist()
-        return settled and max(abs(a - b) for a, b in zip(value, twist, strict=True)) < _STEADY
+        return settled and max(abs(a - b) for a, b in zip(value, twist, strict=True)) <= _STEADY * max(map(abs, twist))
 
     def _largest_share(self, twist: tuple[float, ...]) -> tuple[float, int]:
         """Return how much of a twist works for good in all that is gone over to, and which leg stops it."""
@@ -449,7 +452,7 @@ class Walker(WalkerView):
         asked: list[tuple[Change, Envelope]] = [(doing, self._footing.way)]
         for change in (self._agenda.ready, self._stepping, settling):
             if change is not None:
-                asked.append((change, change.way.meet(change.stepping)))
+                asked.append((change, change.way))
         share, leg = 1.0, 0
         for change, way in asked:
             duty = change.manner.gait.duty
@@ -485,8 +488,7 @@ class Walker(WalkerView):
     def _at_rest(self) -> bool:
         """Return whether every foot that steps is at its rest foothold."""
         rest = final_rest(self._now, self._course())
-        if rest is None:
-            return False
+        assert rest is not None  # nobody asks while it is fast
         off = np.abs(self._now.foot - rest)
         off[list(self._agenda.doing.manner.gone)] = 0.0
         return bool(off.max() <= THERE)
@@ -524,7 +526,7 @@ class Walker(WalkerView):
 
     def _advance(self, dt: float) -> None:
         """Go on by one tick, or less of it where the joints need longer."""
-        sway = self._agenda.doing.manner.sway if self._walking else _NO_SWAY
+        sway = self._agenda.doing.manner.sway if self._walking else _NO_MOTION
         self._carriage.sway(sway, frequency=self._frequency, beats=self._beats)
         before, course = self._now, self._course(dt)
         if self._felt is not None:

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from tarsus.errors import InputError
 from tarsus.gait.gait import Gait
 from tarsus.gait.live.agenda import Agenda
 from tarsus.gait.live.footing import Footing
@@ -126,10 +127,19 @@ class WalkerView:
         ----------
         direction : (vx, vy, wz)
             The twist [m/s, m/s, rad/s].
+
+        Raises
+        ------
+        InputError
+            If it is not three finite numbers, or all are 0.
         """
+        try:
+            way = np.array([float(speed) for speed in direction])
+        except (TypeError, ValueError):
+            way = np.zeros(0)
+        if way.shape != (3,) or not np.isfinite(way).all() or not way.any():
+            raise InputError(f"direction is {direction!r}; it must be three finite numbers, not all 0: vx, vy, wz")
         doing = self._agenda.doing
         duty = self.gait.duty
-        share, _ = doing.there.largest_share(
-            np.array(direction, dtype=float), stance_time=duty * doing.tempo.cycle_time, duty=duty
-        )
+        share, _ = doing.there.largest_share(way, stance_time=duty * doing.tempo.cycle_time, duty=duty)
         return share

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import operator
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
@@ -60,11 +61,13 @@ class Wish:
             if getattr(self, name) is not None:
                 object.__setattr__(self, name, numbers(name, getattr(self, name), BODY_AXES))
         for name in ("clearance", "lift", "stance_width", "cycle_time"):
-            if getattr(self, name) is not None and (name, getattr(self, name)) != _AUTO:
-                object.__setattr__(self, name, numbers(name, (getattr(self, name),), (name,))[0])
+            value = getattr(self, name)
+            auto = name == "cycle_time" and isinstance(value, str) and value == "auto"
+            if value is not None and not auto:
+                object.__setattr__(self, name, numbers(name, (value,), (name,))[0])
         for name in ("hands", "hand_speeds"):
             if getattr(self, name) is not None:
-                object.__setattr__(self, name, _by_leg(name, getattr(self, name)))
+                object.__setattr__(self, name, _by_leg(name, getattr(self, name), back=name == "hands"))
 
     @property
     def only_twist(self) -> bool:
@@ -74,13 +77,20 @@ class Wish:
 
 
 _NOTHING = (None,) * 7
-_AUTO = ("cycle_time", "auto")
 
 
-def _by_leg(name: str, given: Any) -> dict[int, tuple[float, ...] | None]:
+def _by_leg(name: str, given: Any, *, back: bool) -> dict[int, tuple[float, ...] | None]:
+    """Return what is given for each leg; with `back`, it may be None."""
     if not isinstance(given, Mapping):
         raise InputError(f"the wish's {name} is {given!r}; it must be a mapping of legs to x, y, z")
-    return {leg: None if v is None else numbers(name, v, ("x", "y", "z")) for leg, v in given.items()}
+    found: dict[int, tuple[float, ...] | None] = {}
+    for leg, value in given.items():
+        try:
+            number = operator.index(leg)
+        except TypeError:
+            raise InputError(f"the wish's {name} names the leg {leg!r}; it must be a whole number") from None
+        found[number] = None if value is None and back else numbers(f"{name}[{number}]", value, ("x", "y", "z"))
+    return found
 
 
 def numbers(name: str, values: Sequence[float], axes: Sequence[str], *, most: float = 1e3) -> tuple[float, ...]:

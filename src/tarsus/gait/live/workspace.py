@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from tarsus.gait.live.parts import Parts
-from tarsus.gait.live.polygon import NORMALS, polygon_ends
+from tarsus.gait.live.polygon import NORMALS, TOWARDS, polygon_ends
 from tarsus.gait.live.slack import KEEP, StandSlack
 from tarsus.gait.live.stand import Stand
 from tarsus.robot.robot import Robot
@@ -156,8 +156,8 @@ def _sides(rest: Floats, reach: Floats) -> Floats:
     side = np.round(np.angle(normal) * _SIDES / (2 * np.pi)).astype(int) % _SIDES
     bounds = np.full((len(rest), _SIDES), reach.max())
     legs = np.broadcast_to(np.arange(len(rest)), side.shape)
-    np.minimum.at(bounds, (legs, side), (NORMALS[side].conj() * ends).real)
-    return np.asarray(bounds + (NORMALS.conj() * rest[:, None]).real)
+    np.minimum.at(bounds, (legs, side), (TOWARDS[side] * ends).real)
+    return np.asarray(bounds + (TOWARDS * rest[:, None]).real)
 
 
 def _edge(bounds: Floats, rest: Floats) -> Floats:
