@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import cmath
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from tarsus.gait.live.lag import Lag
 from tarsus.gait.live.moment import Moment
+from tarsus.gait.live.posture import LIFT, rotation_rows
 from tarsus.gait.live.stand import Stand, joint_slack
 from tarsus.kinematics.polygon import hull_margin
 from tarsus.robot.robot import Robot
@@ -127,21 +129,23 @@ def best_lean(rest: Floats, centre: complex, sets: Floats) -> complex:
     return complex(_LEANS[int(np.argmax(margins - np.abs(_LEANS) / 4))])
 
 
-def reachable_part(robot: Robot, stand: Stand, leg: int, start: Floats, wished: Floats) -> float:
-    """Return how much of the straight way from one point to another a foot can go.
+def reachable_part(robot: Robot, postures: Sequence[Floats], leg: int, start: Floats, wished: Floats) -> float:
+    """Return how much of the straight way from one point to another a foot can go, in whichever of some postures.
 
     Parameters
     ----------
     robot : Robot
         A single robot.
-    stand : Stand
-        The body.
+    postures : sequence of array, shape (7,)
+        How the body may stand: see `tarsus.gait.live.posture`.
     leg : int
         The leg.
     start, wished : array, shape (3,)
         In the heading frame [m].
     """
-    points = start + _TRIED[:, None] * (wished - start)
-    x, y, z = (np.repeat(points[:, i : i + 1], robot.legs, axis=1) for i in range(3))
-    works = joint_slack(robot.geometry, stand.solve(robot, x, y, z))[:, leg] >= 0
+    rows = np.array(postures)
+    rotation = np.array([rotation_rows(*row) for row in rows[:, 3:LIFT].tolist()])[:, None, None]
+    stand = Stand(np.zeros(robot.legs, dtype=complex), rotation, rows[:, :3].T[..., None, None], 0.0)
+    points = (start + _TRIED[:, None] * (wished - start)).T[..., None] + np.zeros(robot.legs)
+    works = (joint_slack(robot.geometry, stand.solve(robot, *points))[..., leg] >= 0).all(axis=0)
     return 1.0 if works.all() else float(_TRIED[int(np.argmin(works))] - _TRIED[0])

@@ -26,7 +26,7 @@ from tarsus.gait.live.manner import Manner
 from tarsus.gait.live.moment import THERE, TIE, Course, Moment
 from tarsus.gait.live.own_time import OwnTime
 from tarsus.gait.live.parts import Parts, all_parts
-from tarsus.gait.live.posture import LIFT, calm_sway, stand_of
+from tarsus.gait.live.posture import LIFT, calm_sway
 from tarsus.gait.live.search import Searches
 from tarsus.gait.live.senses import Senses
 from tarsus.gait.live.solver import Solver
@@ -381,9 +381,8 @@ class Walker(WalkerView):
 
     def _reachable(self, leg: int, start: Floats, wished: Floats) -> float:
         # Wherever the body sways.
-        rows = swaying(self._now.posture.value[: LIFT + 1], self._agenda.doing.manner.sway)
-        stands = (stand_of(row, self._footing.rest) for row in rows)
-        return min(reachable_part(self.robot, stand, leg, start, wished) for stand in stands)
+        postures = swaying(self._now.posture.value[: LIFT + 1], self._agenda.doing.manner.sway)
+        return reachable_part(self.robot, postures, leg, start, wished)
 
     # Where to.
 
