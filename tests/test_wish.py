@@ -57,9 +57,9 @@ def test_legs_as_hands_are_taken_out_and_put_back():
         ({"lift": (1, 2)}, r"the wish's lift is \(1, 2\); it must be a number"),
         ({"cycle_time": float("nan")}, "the wish's cycle_time is nan; it must be finite"),
         ({"stance_width": -1e4}, "the wish's stance_width is -10000.0; it must be between -1000 and 1000"),
-        ({"hands": {1: (0, 0)}}, "the wish's hands has 2 numbers; it must have 3: x, y, z"),
+        ({"hands": {1: (0, 0)}}, r"the wish's hands\[1\] has 2 numbers; it must have 3: x, y, z"),
         ({"hands": [1, 2]}, r"the wish's hands is \[1, 2\]; it must be a mapping of legs to x, y, z"),
-        ({"hand_speeds": {1: (0, 0, 1e4)}}, "the wish's hand_speeds has z = 10000.0; it must be between"),
+        ({"hand_speeds": {1: (0, 0, 1e4)}}, r"the wish's hand_speeds\[1\] has z = 10000.0; it must be between"),
     ],
 )
 def test_anything_else_is_refused_with_its_name(given_as, message):
