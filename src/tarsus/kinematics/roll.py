@@ -146,9 +146,10 @@ def _balance(xp: Namespace, stance: _Stance, touch: float) -> _Balance:
     toward_x = xp.where(on_edge, side * edge_x, -near_x / apart)
     toward_y = xp.where(on_edge, side * edge_y, -near_y / apart)
 
-    fall_x, fall_y = _fall(xp, pairs, across, touch)
     balanced = gap <= touch
-    toward_x, toward_y = xp.where(balanced, fall_x, toward_x), xp.where(balanced, fall_y, toward_y)
+    if bool(xp.any(balanced)):
+        fall_x, fall_y = _fall(xp, pairs, across, touch)
+        toward_x, toward_y = xp.where(balanced, fall_x, toward_x), xp.where(balanced, fall_y, toward_y)
     return _Balance(margin, (margin >= -touch) & (width > touch), near_x, near_y, toward_x, toward_y)
 
 
@@ -172,6 +173,9 @@ def _contact_pairs(xp: Namespace, stance: _Stance) -> Pairs:
 
 
 def _pick(xp: Namespace, values: Array, which: Array) -> Array:
+    # Of a single body, a tenth of the time.
+    if which.shape == (1,):
+        return values[int(which[0]), ...]
     return xp.take_along_axis(values, which[None, ...], axis=0)[0, ...]
 
 
