@@ -26,7 +26,7 @@ from tarsus.gait.live.wish import Wish
 __all__ = ["speed_table", "top_speed", "walker_rows"]
 
 TICKS = 100_000
-RUNS = 3
+RUNS = 5
 """The same ticks so often, the same to the bit: what a tick takes each time is its own, what it takes once isn't."""
 DT = 0.02
 NEW_WISH = 50
@@ -95,20 +95,23 @@ def tick_rows(robot: Robot) -> Iterator[Row]:
     """Every tick of a walk in which the wishes change."""
     runs = np.array([ticks(robot, TICKS) for _ in range(RUNS)])
     times = runs.min(axis=0)
-    what = f"a tick of the live walker, {TICKS:,} of them, a new wish every {NEW_WISH}"
-    median, worst = float(np.median(runs)), float(times.max())
+    what = (
+        f"a tick of the live walker, {TICKS:,} of them, a new wish every {NEW_WISH}, each from the best of {RUNS} runs"
+    )
+    median, worst = float(np.median(times)), float(times.max())
+    single = ", ".join(f"{np.median(run) * 1e6:.0f}" for run in runs)
     yield Row(
-        what=f"{what}: median of {RUNS} runs",
+        what=f"{what}: median",
         measured=f"{median * 1e6:.0f} us",
-        compared=f"99.9 %: {np.quantile(runs, 0.999) * 1e6:.0f} us",
+        compared=f"in single runs {single} us",
         target=f"<= {MEDIAN * 1e6:.0f} us",
         met=median <= MEDIAN,
     )
     over = ", ".join(str(int((run > WORST).sum())) for run in runs)
     yield Row(
-        what=f"the worst of these ticks, each as fast as in the best of {RUNS} runs",
+        what="the same: worst",
         measured=f"{worst * 1e6:.0f} us",
-        compared=f"over {WORST * 1e3:.0f} ms in single runs: {over}",
+        compared=f"over {WORST * 1e3:.0f} ms in single runs: {over}; 99.9 %: {np.quantile(times, 0.999) * 1e6:.0f} us",
         target=f"<= {WORST * 1e6:.0f} us",
         met=worst <= WORST,
     )
