@@ -79,7 +79,9 @@ class Envelope:
             min(self.turning, other.turning),
         )
 
-    def largest_share(self, twist: Floats, *, stance_time: float, duty: float) -> tuple[float, int]:
+    def largest_share(
+        self, twist: Floats, *, stance_time: float, duty: float, hold: float = 0.0
+    ) -> tuple[float, int]:
         """Return how much of a twist the robot can walk at for good, and which leg stops it.
 
         Parameters
@@ -90,6 +92,8 @@ class Envelope:
             How long a foot stays on the ground [s].
         duty : float
             Duty factor.
+        hold : float
+            How much longer than that it may have to wait there [s].
 
         Returns
         -------
@@ -101,7 +105,7 @@ class Envelope:
         # Of a wish without measure, as much as can be reckoned with.
         scale = max(1.0, float(np.abs(twist).max()))
         forward, left, turn = (np.asarray(twist) / scale).tolist()
-        share = self._share_by_side(complex(forward, left), turn, overhang(duty) * stance_time / _RESERVE)
+        share = self._share_by_side(complex(forward, left), turn, (overhang(duty) * stance_time + hold) / _RESERVE)
         worst = int(share.argmin())
         straight, turning = math.hypot(forward, left), abs(turn)
         fastest = 1 / max(self._strain(straight, turning, stance_time), _LEAST)
@@ -141,7 +145,8 @@ class Envelope:
     def _strain(self, straight: Any, turning: Any, stance_time: float) -> Any:
         """Return how much of the joints' speed is taken: what straight on and turning ask of them adds up."""
         outermost = float(np.abs(self.rest).max())
-        return straight * stance_time / self.stroke + turning * outermost * stance_time / self.turning
+        by_stroke, by_turning = (stance_time / max(longest, _LEAST) for longest in (self.stroke, self.turning))
+        return straight * by_stroke + turning * outermost * by_turning
 
 
 # What may be divided by.

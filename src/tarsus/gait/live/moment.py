@@ -15,7 +15,7 @@ import numpy as np
 from tarsus.gait.gait import Gait
 from tarsus.gait.live.lag import Lag
 
-__all__ = ["GIVE", "THERE", "TIE", "Course", "Moment", "carried", "turned"]
+__all__ = ["GIVE", "THERE", "TIE", "Course", "Moment", "carried", "stopped_part", "turned"]
 
 Floats = np.ndarray[Any, Any]
 
@@ -26,7 +26,7 @@ THERE = 1e-6
 """A foot this near to its rest foothold is there [m]."""
 
 GIVE = 0.125
-"""Within which share of the swing a foot that has met the ground comes to rest on it."""
+"""Within which share of the swing a foot that has met the ground comes to rest on it at the earliest."""
 
 
 class Moment(NamedTuple):
@@ -50,6 +50,8 @@ class Moment(NamedTuple):
         Height of the ground that each foot is on or bound for, and where its swing began [m].
     met : array
         Share of the swing at which the foot met ground that was not expected yet; infinite where it did not.
+    give : array
+        Within which share of the swing it comes to rest on that.
     met_height, met_speed : array
         Where that was [m], and how the height changed with the swing's share [m].
     origin : complex
@@ -79,6 +81,7 @@ class Moment(NamedTuple):
     ground: Floats
     start_height: Floats
     met: Floats
+    give: Floats
     met_height: Floats
     met_speed: Floats
     origin: complex
@@ -114,6 +117,7 @@ class Moment(NamedTuple):
             ground=none,
             start_height=none,
             met=np.full(len(rest), np.inf),
+            give=np.full(len(rest), GIVE),
             met_height=none,
             met_speed=none,
             origin=0j,
@@ -145,13 +149,10 @@ class Moment(NamedTuple):
             rise = 4 * share * (1 - share)
             along = share * share * share * (10 - share * (15 - 6 * share))
             return start + (ground - start) * along + lift * (rise * rise * rise)
-        # A foot that has met the ground comes to rest on it: the quintic from there.
-        left = min(1 - met, GIVE)
-        x = min(max((share - met) / left, 0.0), 1.0)
-        start, slope = float(self.met_height[leg]), float(self.met_speed[leg]) * left
-        rest = ground - start - slope
-        bend = (10 * rest + 4 * slope) - x * ((15 * rest + 7 * slope) - x * (6 * rest + 3 * slope))
-        return start + slope * x + x * x * x * bend
+        # A foot that has met the ground comes to rest on it.
+        left = min(1 - met, float(self.give[leg]))
+        part = min(max((share - met) / left, 0.0), 1.0)
+        return float(self.met_height[leg]) + float(self.met_speed[leg]) * left * stopped_part(part)
 
 
 class Course(NamedTuple):
@@ -215,3 +216,16 @@ def carried(origin: complex, yaw: float, travel: Sequence[float]) -> tuple[compl
     """Return where the heading frame is after a travel (x, y, angle), the exponential of its displacement."""
     x, y, angle = travel
     return origin + cmath.exp(1j * yaw) * complex(x, y) * turned(angle), yaw + angle
+
+
+def stopped_part(part: Any) -> Any:
+    """Return what of ``speed time`` a motion has gone that stops within a time: a third of it at the end.
+
+    The quintic that begins with the speed, unbent, and ends at rest.
+
+    Parameters
+    ----------
+    part : float or array
+        What part of the time has passed.
+    """
+    return part + part * part * part * (part * (3 - part) - 8 / 3)

@@ -8,13 +8,16 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-__all__ = ["OwnTime"]
+__all__ = ["STOPPING", "OwnTime"]
 
 Floats = np.ndarray[Any, Any]
 _T = TypeVar("_T")
 
 # How fast its rate may rise, how fast it falls on rough ways, and how fast to a stop [1/s].
 _CHANGE, _CALMING, _STOP = 3.0, 5.0, 10.0
+STOPPING = 0.5 / _STOP
+"""How far its own time goes until it has come to a stop [s]."""
+
 # How often a tick is tried, ever slower, and what of the joints' speed and acceleration it may come to.
 _TRIES, _KEPT = 5, 0.98
 # From which share of the joints' acceleration on to look ahead, what share to aim at then, and how far to look [s].

@@ -15,7 +15,7 @@ __all__ = ["lift_delays", "stances", "until_down"]
 Floats = np.ndarray[Any, Any]
 
 
-def stances(now: Moment, gait: Gait, frequency: float) -> tuple[Floats, Floats]:
+def stances(now: Moment, gait: Gait, frequency: float, hold: float) -> tuple[Floats, Floats]:
     """Return from when until when each foot is where it stands, or where it is about to, ``(legs,)`` each [s].
 
     Parameters
@@ -26,9 +26,11 @@ def stances(now: Moment, gait: Gait, frequency: float) -> tuple[Floats, Floats]:
         Order of the steps.
     frequency : float
         Cycles a second [1/s].
+    hold : float
+        How long feet may have to wait for others that look for ground [s].
     """
     duty = gait.duty
-    over = (overhang(duty) - 0.5) * duty / frequency
+    over = (overhang(duty) - 0.5) * duty / frequency + hold
     begins: list[float] = []
     ends: list[float] = []
     for down, share, number, offset in zip(
@@ -36,7 +38,8 @@ def stances(now: Moment, gait: Gait, frequency: float) -> tuple[Floats, Floats]:
     ):
         begins.append(0.0 if down else (1 - share) * (1 - duty) / frequency)
         lift = (offset + duty + number - now.clock) / frequency
-        ends.append((lift if down else begins[-1] + duty / frequency) + over)
+        # Where it waits already, its time to lift is past.
+        ends.append((max(lift, 0.0) if down else begins[-1] + duty / frequency) + over)
     return np.array(begins), np.array(ends)
 
 

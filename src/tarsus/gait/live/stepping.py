@@ -9,9 +9,9 @@ import numpy as np
 
 from tarsus.gait.live.foothold import Landing, final_rest
 from tarsus.gait.live.lag import Lag
-from tarsus.gait.live.moment import GIVE, THERE, TIE, Course, Moment, carried
+from tarsus.gait.live.moment import THERE, TIE, Course, Moment, carried
 
-__all__ = ["FREEZE", "go_on", "meet_ground"]
+__all__ = ["FREEZE", "go_on", "quintic"]
 
 Floats = np.ndarray[Any, Any]
 
@@ -115,7 +115,10 @@ def _swing(now: Moment, course: Course, down: list[bool], since_lift: list[float
                 else complex(final[leg])
             )
         way = (foot[leg], pace[leg], bend[leg])
-        foot[leg], pace[leg], bend[leg] = _quintic(way, target[leg], share[leg], part)
+        left = 1.0 - share[leg]
+        foot[leg], pace[leg], bend[leg] = (
+            quintic(way, target[leg], left, (part - share[leg]) / left) if left > 0 else (target[leg], 0j, 0j)
+        )
         share[leg] = part
         if lands[leg] and since >= swing - TIE:
             landed.append(leg)
@@ -126,17 +129,20 @@ def _swing(now: Moment, course: Course, down: list[bool], since_lift: list[float
     return _land(after, landed) if landed else after
 
 
-def _quintic(
-    way: tuple[complex, complex, complex], target: complex, share: float, part: float
-) -> tuple[complex, complex, complex]:
-    """Go on from a share of the swing to another, on the quintic that ends at the target at rest.
+def quintic(way: tuple[Any, Any, Any], target: Any, left: Any, x: Any) -> tuple[Any, Any, Any]:
+    """Go a part of the rest of the swing, on the quintic that ends at the target at rest.
 
-    `way` is where the foot is, and the first and second derivative of its way by the share.
+    Parameters
+    ----------
+    way : tuple of (complex or array)
+        Where the foot is [m], and the first and second derivative of its way by the share of the swing.
+    target : complex or array
+        Where it goes [m].
+    left : float or array
+        What share of the swing is left, above 0.
+    x : float or array
+        What part of that to go.
     """
-    left = 1.0 - share
-    if left <= 0:
-        return target, 0j, 0j
-    x = (part - share) / left
     here, speed, half = way[0], way[1] * left, way[2] * (left * left / 2)
     gap, missing, bent = target - (here + speed + half), -(speed + 2 * half), -2 * half
     a3 = 10 * gap - 4 * missing + bent / 2
@@ -155,30 +161,3 @@ def _land(now: Moment, landed: list[int]) -> Moment:
     number[landed] += 1
     down[landed], met[landed] = True, np.inf
     return now._replace(number=number, down=down, met=met)
-
-
-def meet_ground(now: Moment, met: Floats, lift: float) -> Moment:
-    """Return the moment in which feet have met the ground before they were to: they come to rest where they are.
-
-    Parameters
-    ----------
-    now : Moment
-        The moment.
-    met : array of bool, shape (legs,)
-        Which feet; in the air, and not met already.
-    lift : float
-        How high a swinging foot rises [m].
-    """
-    height = now.height(lift)
-    step = 1e-4
-    speed = (now._replace(share=np.minimum(now.share + step, 1.0)).height(lift) - height) / step
-    left = 1 - now.share
-    give = np.minimum(left, GIVE)
-    # What a foot still goes while it comes to rest, with its speed falling evenly.
-    return now._replace(
-        target=np.where(met, now.foot + now.pace * left / 3, now.target),
-        met=np.where(met, now.share, now.met),
-        met_height=np.where(met, height, now.met_height),
-        met_speed=np.where(met, speed, now.met_speed),
-        ground=np.where(met, height + speed * give / 3, now.ground),
-    )

@@ -24,17 +24,18 @@ from tarsus.gait.live.levelling import LevellingMode
 from tarsus.gait.live.manipulation import Manipulation, legs_out
 from tarsus.gait.live.manner import Manner
 from tarsus.gait.live.moment import THERE, TIE, Course, Moment
-from tarsus.gait.live.own_time import OwnTime
+from tarsus.gait.live.own_time import STOPPING, OwnTime
 from tarsus.gait.live.parts import Parts, all_parts
 from tarsus.gait.live.posture import LIFT, calm_sway
 from tarsus.gait.live.search import Searches
 from tarsus.gait.live.senses import Senses
 from tarsus.gait.live.solver import Solver
 from tarsus.gait.live.stances import lift_delays, stances, until_down
-from tarsus.gait.live.stepping import go_on, meet_ground
+from tarsus.gait.live.stepping import go_on
 from tarsus.gait.live.support import support_sets
 from tarsus.gait.live.tempo import joint_limits
 from tarsus.gait.live.tilt import Commanded
+from tarsus.gait.live.touchdown import gentle_give, meet_ground
 from tarsus.gait.live.walker_view import WalkerView
 from tarsus.gait.live.wish import Wish
 from tarsus.gait.live.wished import swaying
@@ -161,6 +162,7 @@ class Walker(WalkerView):
         self._lean = 0j
         self._searches = Searches()
         self._felt: Felt | None = None
+        self._hold = 0.0
         self._walking = False
         self.time = 0.0
         self._set_gait(change.manner.gait)
@@ -253,10 +255,25 @@ class Walker(WalkerView):
             angles=self.angles,
         )
         if self._felt.contacts is not None:
+            # A foot that finds no ground is noticed a tick later, and the walk takes a while to stop.
+            self._hold = max(self._hold, STOPPING + dt)
             touch = np.array([c is True for c in self._felt.contacts])
             met = touch & ~now.down & (now.share > _DESCENDING) & (now.share < 1.0) & np.isinf(now.met)
             if met.any():
-                self._now = meet_ground(now, met, float(now.posture.value[LIFT]))
+                self._meet_ground(met)
+
+    def _meet_ground(self, met: Floats) -> None:
+        """Let feet come to rest that have met the ground before they were to."""
+        now = self._now
+        give = gentle_give(
+            self.robot,
+            now,
+            met,
+            acceleration=self.joint_acceleration,
+            swing_rate=self._frequency / (1 - self.gait.duty - now.late),
+            offset=self._offset,
+        )
+        self._now = meet_ground(now, met, float(now.posture.value[LIFT]), give)
 
     def _touches(self, leg: int) -> bool:
         """Return whether a foot at the end of its swing is on the ground, as far as is known."""
@@ -313,7 +330,9 @@ class Walker(WalkerView):
         # It steps faster only once the change is over.
         frequency = min(self._frequency, 1 / change.tempo.cycle_time)
         leaving = list(set(change.manner.gone) - set(self._agenda.doing.manner.gone))
-        share, _ = change.stepping.largest_share(self._now.twist.value, stance_time=new.duty / frequency, duty=new.duty)
+        share, _ = change.stepping.largest_share(
+            self._now.twist.value, stance_time=new.duty / frequency, duty=new.duty, hold=self._hold
+        )
         if new.duty == old.duty and new.offsets == old.offsets:
             begins, ends = self._stances(frequency)
             bounds = self._hands.without(self._footing.begun(change))
@@ -334,7 +353,7 @@ class Walker(WalkerView):
         """Let all feet come down, if they may wait so long; then the new order begins with the leg that suits best."""
         frequency = 1 / change.tempo.cycle_time
         delays = lift_delays(change.manner.gait, change.tempo.cycle_time)
-        ends = until_down(self._now, self.gait, self._frequency).max() + delays
+        ends = until_down(self._now, self.gait, self._frequency).max() + delays + self._hold
         bounds = np.minimum(self._hands.without(self._footing.begun(change)), change.there.bounds)
         bandwidth = _bandwidth(change.manner.gait, frequency)
         over = self._excess(np.zeros(delays.shape), ends, bounds, bandwidth).max(axis=(1, 2, 3, 4))
@@ -396,10 +415,10 @@ class Walker(WalkerView):
     def _stances(self, frequency: float) -> tuple[Floats, Floats]:
         """Return from when until when each foot is where it stands, or where it is about to [s]."""
         if self._settling is None:
-            return stances(self._now, self.gait, frequency)
+            return stances(self._now, self.gait, frequency, self._hold)
         change, first = self._settling
         begins = until_down(self._now, self.gait, self._frequency)
-        return begins, begins.max() + lift_delays(change.manner.gait, change.tempo.cycle_time)[first]
+        return begins, begins.max() + lift_delays(change.manner.gait, change.tempo.cycle_time)[first] + self._hold
 
     def _excess(self, begins: Floats, ends: Floats, bounds: Floats, bandwidth: float) -> Floats:
         return excess(self._now, self._target[None], begins=begins, ends=ends, bounds=bounds, bandwidth=bandwidth)
@@ -445,7 +464,7 @@ class Walker(WalkerView):
         """Return how much of a twist works for good in all that is gone over to, and which leg stops it."""
         doing, settling = self._agenda.doing, self._settling[0] if self._settling else None
         frequency = min(self._frequency, 1 / doing.tempo.cycle_time)
-        key = (twist, frequency, self._footing.way, self._agenda.ready, self._stepping, settling)
+        key = (twist, frequency, self._hold, self._footing.way, self._agenda.ready, self._stepping, settling)
         if key == self._share_of:
             return self._share
         asked: list[tuple[Change, Envelope]] = [(doing, self._footing.way)]
@@ -456,7 +475,9 @@ class Walker(WalkerView):
         for change, way in asked:
             duty = change.manner.gait.duty
             stance_time = duty * max(1 / frequency, change.tempo.cycle_time)
-            allowed, which = way.largest_share(np.array(twist), stance_time=stance_time, duty=duty)
+            allowed, which = way.largest_share(
+                np.array(twist), stance_time=stance_time, duty=duty, hold=self._hold
+            )
             if allowed < share:
                 share, leg = allowed, which
         self._share_of, self._share = key, (share, leg)

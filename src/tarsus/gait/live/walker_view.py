@@ -48,6 +48,7 @@ class WalkerView:
     _frequency: float
     _walking: bool
     _beats: int
+    _hold: float
     _hands: Manipulation
     _searches: Searches
     _limited: tuple[str, ...]
@@ -141,5 +142,6 @@ class WalkerView:
             raise InputError(f"direction is {direction!r}; it must be three finite numbers, not all 0: vx, vy, wz")
         doing = self._agenda.doing
         duty = self.gait.duty
-        share, _ = doing.there.largest_share(way, stance_time=duty * doing.tempo.cycle_time, duty=duty)
+        stance_time = duty * doing.tempo.cycle_time
+        share, _ = doing.there.largest_share(way, stance_time=stance_time, duty=duty, hold=self._hold)
         return share
