@@ -13,6 +13,7 @@ from tarsus.gait.gait import Gait
 from tarsus.gait.live.change import Change
 from tarsus.gait.live.manner import Manner
 from tarsus.gait.live.parts import Parts
+from tarsus.gait.live.stand import Terrain
 from tarsus.gait.live.wish import Wish
 
 __all__ = ["Agenda"]
@@ -51,7 +52,7 @@ class Agenda:
         # What there is nothing left to do for.
         self._done: Manner | None = None
 
-    def ask(self, wish: Wish, gone: tuple[int, ...], correction: tuple[float, ...]) -> None:
+    def ask(self, wish: Wish, gone: tuple[int, ...], correction: tuple[float, ...], terrain: Terrain) -> None:
         """Note what is asked for.
 
         Parameters
@@ -62,6 +63,8 @@ class Agenda:
             Legs that are to be hands.
         correction : tuple of float
             What the ground asks of the body.
+        terrain : Terrain
+            How the ground lies.
 
         Raises
         ------
@@ -88,6 +91,7 @@ class Agenda:
             sway=m.sway if wish.sway is None else tuple(wish.sway),
             correction=correction,
             gone=gone,
+            terrain=terrain,
         )
         if asked.lift < 0:
             raise InputError(f"the wish's lift is {asked.lift} m; it must not be negative")

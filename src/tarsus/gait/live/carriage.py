@@ -8,13 +8,16 @@ import numpy as np
 
 from tarsus.gait.live.posture import LIFT, calm_sway
 
-__all__ = ["Carriage"]
+__all__ = ["RISING", "Carriage", "rising"]
 
 Floats = np.ndarray[Any, Any]
 
 # How fast the posture follows [rad/s], and how fast it may move the body at the most [m/s], turn it [rad/s].
 _BANDWIDTH = 4.0
 _BODY_SPEED, _BODY_TURN = 0.08, 0.5
+RISING = 4.0
+"""How fast the heading frame follows the ground's height [rad/s]."""
+
 # How near the posture counts as reached, and how near its sway [m, rad].
 _REACHED, _SWAYS = 2e-4, 1e-3
 _NOWHERE = [0.0] * (LIFT + 1)
@@ -105,3 +108,14 @@ class Carriage:
             return _NOWHERE
         posture, now = self.posture.tolist(), value[: LIFT + 1].tolist()
         return [abs(a - b) for a, b in zip(posture, now, strict=True)]
+
+
+def rising(gap: float) -> float:
+    """Return how fast the heading frame is to follow the ground, for the body to be no faster than it may [rad/s].
+
+    Parameters
+    ----------
+    gap : float
+        How much higher the ground is [m].
+    """
+    return min(RISING, 2 * _BODY_SPEED / max(abs(gap), 1e-9))

@@ -97,7 +97,7 @@ def work_out(
     Change or str
         The change; or why nothing of it works.
     """
-    present = Posed(now, rest) if now is not None and rest is not None else None
+    present = Posed(now, rest, manner.terrain) if now is not None and rest is not None else None
     wished = present if present is not None and stay else wished_posed(robot, manner, now)
     sets = support_sets(manner.gait, manner.gone)
     yield
@@ -138,7 +138,7 @@ def work_out(
     there = capped(there, pace.stroke, pace.turning, duty=manner.gait.duty)
     stepping = way = there
     if np.abs(goal.posture - here.posture).max() > _SAME:
-        between = [Posed(here.towards(goal, part).posture, goal.rest) for part in (0.5, 0.0)]
+        between = [goal._replace(posture=here.towards(goal, part).posture) for part in (0.5, 0.0)]
         way = there.meet((yield from _envelope_of(robot, manner, between[0], sets, foot_distance)))
         stepping = yield from _envelope_of(robot, manner, between[1], sets, foot_distance)
         stepping = capped(stepping, pace.stroke, pace.turning, duty=manner.gait.duty)
@@ -162,7 +162,7 @@ def work_out(
 
 def _envelope_of(robot: Robot, manner: Manner, posed: Posed, sets: Floats, foot_distance: float) -> Parts[Envelope]:
     """Work out what is possible in a posture, with its sway."""
-    stands = [Posed(row, posed.rest).stand for row in swaying(posed.posture, manner.sway)]
+    stands = [posed._replace(posture=row).stand for row in swaying(posed.posture, manner.sway)]
     return (yield from envelope(robot, stands, sets, foot_distance=foot_distance, gone=manner.gone))
 
 

@@ -79,9 +79,7 @@ class Envelope:
             min(self.turning, other.turning),
         )
 
-    def largest_share(
-        self, twist: Floats, *, stance_time: float, duty: float, hold: float = 0.0
-    ) -> tuple[float, int]:
+    def largest_share(self, twist: Floats, *, stance_time: float, duty: float, hold: float = 0.0) -> tuple[float, int]:
         """Return how much of a twist the robot can walk at for good, and which leg stops it.
 
         Parameters

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -9,11 +10,11 @@ import numpy as np
 from tarsus.gait.live.admittance import Admittance, AdmittanceFilter
 from tarsus.gait.live.carried import carried_share
 from tarsus.gait.live.foot_force import STANDARD_GRAVITY, TorqueSense, balanced_forces
-from tarsus.gait.live.levelling import Levelling, LevellingMode
+from tarsus.gait.live.levelling import Correction, Levelling, LevellingMode
 from tarsus.gait.live.senses import Admitted, Senses
 from tarsus.gait.live.sieve import Sieve
-from tarsus.gait.live.slope import FLAT, ground_plane
-from tarsus.gait.live.tilt import Commanded
+from tarsus.gait.live.slope import FLAT, GroundPlane, ground_plane
+from tarsus.gait.live.tilt import Commanded, slope_along, turned
 from tarsus.kinematics.mass import centre_of_mass, total_mass
 from tarsus.robot.robot import Robot
 
@@ -21,8 +22,9 @@ __all__ = ["Feel", "Felt"]
 
 Floats = np.ndarray[Any, Any]
 
-# The body's correction is gone over to in steps of these sizes: x, y, z [m], roll, pitch, yaw [rad].
-_STEPS = np.array([0.004, 0.004, 0.003, 0.012, 0.012, 1.0])
+# The body's correction and the ground's slope are gone over to in steps of these sizes: x, y [m], roll, pitch [rad],
+# slope along x and y.
+_STEPS = np.array([0.004, 0.004, 0.012, 0.012, 0.015, 0.015])
 
 
 class Felt(NamedTuple):
@@ -34,6 +36,8 @@ class Felt(NamedTuple):
         Which feet touch the ground; None where that is not known.
     correction : tuple of float
         x, y, z [m], roll, pitch, yaw [rad] to be added to the body's wish.
+    slope : complex
+        How much the ground rises along x and y of the heading frame [m/m].
     offsets : array, shape (legs,)
         How far each foot gives way upwards [m].
     refused : tuple of str
@@ -42,6 +46,7 @@ class Felt(NamedTuple):
 
     contacts: tuple[bool | None, ...] | None
     correction: tuple[float, ...]
+    slope: complex
     offsets: Floats
     refused: tuple[str, ...]
 
@@ -59,6 +64,13 @@ class Feel:
         Whether the body stays level on a slope, follows it, or neither.
     admittance : Admittance, optional
         How feet give way to forces; left out, they don't.
+
+    Attributes
+    ----------
+    plane : GroundPlane
+        The ground, as the feet that stand tell.
+    levelling : Levelling
+        What holds the body.
     """
 
     def __init__(
@@ -71,17 +83,26 @@ class Feel:
         admittance: Admittance | None,
     ) -> None:
         self._sieve = Sieve(robot)
-        self._plane = FLAT
+        self.plane: GroundPlane = FLAT
         com = centre_of_mass(robot, angles)
         self.levelling = Levelling(levelling, com=tuple(com.tolist()), carried=carried_share(robot, feet))
         self._filter = AdmittanceFilter(admittance, robot.legs) if admittance else None
         self._torques = TorqueSense(robot) if admittance and robot.has_masses else None
         self._weight = float(total_mass(robot)) * STANDARD_GRAVITY if robot.has_masses else 0.0
-        self._correction = (0.0,) * 6
+        self._correction, self._slope, self._found = (0.0,) * 6, 0j, np.zeros(len(_STEPS))
         self._none = np.zeros(robot.legs)
 
     def step(
-        self, senses: Senses | None, dt: float, *, feet: Floats, contacts: Floats, commanded: Commanded, angles: Floats
+        self,
+        senses: Senses | None,
+        dt: float,
+        *,
+        feet: Floats,
+        offsets: Floats,
+        contacts: Floats,
+        yaw: float,
+        commanded: Commanded,
+        angles: Floats,
     ) -> Felt:
         """Take in one tick's readings.
 
@@ -93,8 +114,12 @@ class Feel:
             Time since the last tick [s].
         feet : array, shape (legs, 3)
             In G [m].
+        offsets : array, shape (legs,)
+            How far each has given way upwards [m].
         contacts : array of bool, shape (legs,)
             Which feet the walker has put down.
+        yaw : float
+            Where the heading frame faces [rad].
         commanded : Commanded
             How the body is asked to stand.
         angles : array, shape (legs, 3)
@@ -102,16 +127,13 @@ class Feel:
         """
         admitted = self._sieve.admit(senses, dt)
         # Where the ground is, not where feet are that have given way.
-        stood = feet if self._filter is None else feet - np.outer(self._filter.offsets, (0.0, 0.0, 1.0))
-        self._plane = ground_plane(stood, contacts, self._plane)
-        level = self.levelling.step(dt, self._plane, admitted.attitude, commanded)
-        x, y = feet[:, 0].mean(), feet[:, 1].mean()
-        found = np.array([level.x, level.y, float(self._plane.height(x, y)), level.roll, level.pitch, 0.0])
-        if (np.abs(found - self._correction) > _STEPS).any():
-            self._correction = tuple(found.tolist())
+        stood = feet - np.outer(offsets, (0.0, 0.0, 1.0))
+        self.plane = ground_plane(stood, contacts, self.plane)
+        self._correct(self.levelling.step(dt, self.plane, admitted.attitude, commanded), yaw, commanded.yaw)
         return Felt(
             contacts=admitted.contacts,
             correction=self._correction,
+            slope=self._slope,
             offsets=self._offsets(admitted, dt, feet=feet, contacts=contacts, angles=angles),
             refused=admitted.refused,
         )
@@ -126,20 +148,16 @@ class Feel:
         """
         self.levelling.correction = self.levelling.correction._replace(roll=roll, pitch=pitch)
 
-    def level(self, targets: Floats) -> Floats:
-        """Return how high the ground is taken to be at places.
-
-        Parameters
-        ----------
-        targets : complex array, shape (legs,)
-            The places in G [m].
-
-        Returns
-        -------
-        array, shape (legs,)
-            Heights [m].
-        """
-        return np.asarray(self._plane.height(targets.real, targets.imag))
+    def _correct(self, level: Correction, yaw: float, body_yaw: float) -> None:
+        """Go over to what the ground asks of the body by now, where that is a step from what it asked before."""
+        cos, sin = math.cos(body_yaw - yaw), math.sin(body_yaw - yaw)
+        x, y = turned(level.x, level.y, cos, sin)
+        rise_x, rise_y = slope_along(self.plane, math.cos(yaw), math.sin(yaw))
+        found = np.array([x, y, level.roll, level.pitch, rise_x, rise_y])
+        if (np.abs(found - self._found) > _STEPS).any():
+            # As high over the ground beneath it as it was before it was shifted.
+            self._correction = (x, y, rise_x * x + rise_y * y, level.roll, level.pitch, 0.0)
+            self._slope, self._found = complex(rise_x, rise_y), found
 
     def _offsets(self, admitted: Admitted, dt: float, *, feet: Floats, contacts: Floats, angles: Floats) -> Floats:
         """Return how far each foot gives way."""

@@ -74,7 +74,7 @@ def lift_hand(now: Moment, leg: int) -> Hand:
     vx, vy, wz = now.twist.value.tolist()
     # On the ground, it goes past the body as fast as that walks.
     past = -(complex(vx, vy) + 1j * wz * seen)
-    here = np.array([seen.real, seen.imag, float(now.ground[leg])])
+    here = np.array([seen.real, seen.imag, float(now.ground[leg] - now.elevation.value[0])])
     return Hand(Lag(here, np.array([past.real, past.imag, 0.0])), here)
 
 
@@ -99,7 +99,7 @@ def carry_hands(now: Moment, hands: dict[int, Hand], swing_time: float) -> Momen
         x, y, z = hand.place.value.tolist()
         dx, dy, _ = hand.place.rate.tolist()
         seen = complex(x, y)
-        foot[leg], ground[leg] = now.origin + turn * seen, z
+        foot[leg], ground[leg] = now.origin + turn * seen, z + float(now.elevation.value[0])
         pace[leg] = turn * (complex(dx, dy) + complex(vx, vy) + 1j * wz * seen) * swing_time
     target = np.where(now.down, foot, now.target)
     return now._replace(foot=foot, target=target, ground=ground, pace=pace)

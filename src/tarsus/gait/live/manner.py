@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from tarsus.gait.gait import Gait
+from tarsus.gait.live.stand import LEVEL, Terrain
 
 __all__ = ["Manner"]
 
@@ -31,6 +32,8 @@ class Manner:
         What is added to `body`, for the ground's sake.
     gone : tuple of int
         Legs that don't step.
+    terrain : Terrain
+        How the ground lies.
     """
 
     gait: Gait
@@ -42,6 +45,7 @@ class Manner:
     sway: tuple[float, ...] = (0.0,) * 6
     correction: tuple[float, ...] = (0.0,) * 6
     gone: tuple[int, ...] = ()
+    terrain: Terrain = LEVEL
 
     @property
     def stance(self) -> tuple[float, ...]:

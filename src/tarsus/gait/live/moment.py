@@ -14,8 +14,9 @@ import numpy as np
 
 from tarsus.gait.gait import Gait
 from tarsus.gait.live.lag import Lag
+from tarsus.gait.live.slope import FLAT, GroundPlane
 
-__all__ = ["GIVE", "THERE", "TIE", "Course", "Moment", "carried", "stopped_part", "turned"]
+__all__ = ["GIVE", "SEA_LEVEL", "THERE", "TIE", "Course", "Moment", "carried", "stopped_part", "turned"]
 
 Floats = np.ndarray[Any, Any]
 
@@ -24,6 +25,9 @@ TIE = 1e-9
 
 THERE = 1e-6
 """A foot this near to its rest foothold is there [m]."""
+
+SEA_LEVEL = np.zeros(1)
+"""Where the heading frame is as long as nothing is felt of the ground [m]."""
 
 GIVE = 0.125
 """Within which share of the swing a foot that has met the ground comes to rest on it at the earliest."""
@@ -58,12 +62,16 @@ class Moment(NamedTuple):
         The heading frame's origin in G [m].
     yaw : float
         Where it faces [rad].
+    elevation : Lag
+        How high it is over G's origin ``(1,)`` [m].
     twist : Lag
         Its speed ``(3,)``: forward, left [m/s], turning [rad/s].
     posture : Lag
         The body over the heading frame: see `tarsus.gait.live.posture`.
     rhythm : Lag
         How fast `cycles` and `beats` grow ``(2,)`` [1/s].
+    give_way : Lag
+        How far each foot on the ground has given way upwards ``(legs,)`` [m].
     late : array
         How much later than it was to each foot was lifted [cycles]; its swing is shorter by that.
     cycles, beats : float
@@ -90,6 +98,8 @@ class Moment(NamedTuple):
     posture: Lag
     late: Floats
     rhythm: Lag
+    elevation: Lag
+    give_way: Lag
     cycles: float = 0.0
     beats: float = 0.0
 
@@ -126,6 +136,8 @@ class Moment(NamedTuple):
             posture=Lag.still(posture),
             late=none,
             rhythm=Lag.still(np.zeros(2)),
+            elevation=Lag.still(SEA_LEVEL),
+            give_way=Lag.still(none),
         )
 
     def height(self, lift: float) -> Floats:
@@ -152,7 +164,8 @@ class Moment(NamedTuple):
         # A foot that has met the ground comes to rest on it.
         left = min(1 - met, float(self.give[leg]))
         part = min(max((share - met) / left, 0.0), 1.0)
-        return float(self.met_height[leg]) + float(self.met_speed[leg]) * left * stopped_part(part)
+        gone: float = stopped_part(part)
+        return float(self.met_height[leg]) + float(self.met_speed[leg]) * left * gone
 
 
 class Course(NamedTuple):
@@ -174,12 +187,20 @@ class Course(NamedTuple):
         Rest footholds in the heading frame [m].
     room : array, shape (legs, 16)
         How far from these the feet may be put down, along each of `NORMALS` [m].
-    level : array, shape (legs,)
-        Height at which the ground is expected [m].
+    give_way : array, shape (legs,)
+        How far each foot is to give way [m].
     holds : bool
         Whether all feet that are down wait, and lift later than they were to.
     beats : int
         How often in a cycle feet are lifted.
+    ground : GroundPlane
+        Where the ground is expected.
+    lowest : array, shape (legs,)
+        How low each foot may be put down at the lowest [m].
+    elevation : array, shape (1,)
+        How high the heading frame is to be [m].
+    elevation_bandwidth : float
+        How fast it follows that [rad/s].
     """
 
     gait: Gait
@@ -192,9 +213,13 @@ class Course(NamedTuple):
     lands: Floats
     rest: Floats
     room: Floats
-    level: Floats
+    give_way: Floats
     holds: bool = False
     beats: int = 2
+    ground: GroundPlane = FLAT
+    lowest: Floats | float = -math.inf
+    elevation: Floats = SEA_LEVEL
+    elevation_bandwidth: float = 4.0
 
 
 def turned(angle: Any) -> Any:

@@ -10,7 +10,7 @@ import numpy as np
 from tarsus.gait.live.balance import Balance
 from tarsus.gait.live.parts import Parts
 from tarsus.gait.live.posture import LIFT, rotation_rows, stand_of
-from tarsus.gait.live.stand import Stand, joint_slack
+from tarsus.gait.live.stand import LEVEL, Stand, Terrain, joint_slack
 from tarsus.gait.live.workspace import room_at_rest
 from tarsus.robot.robot import Robot
 
@@ -40,10 +40,13 @@ class Posed(NamedTuple):
         The posture.
     rest : complex array, shape (legs,)
         The rest footholds in the heading frame [m].
+    terrain : Terrain
+        How the ground lies.
     """
 
     posture: Floats
     rest: Floats
+    terrain: Terrain = LEVEL
 
     def towards(self, other: Posed, share: float) -> Posed:
         """Return what is a share of the way to another.
@@ -55,14 +58,15 @@ class Posed(NamedTuple):
         share : float
             0 for here, 1 for there.
         """
-        return Posed(
-            self.posture + share * (other.posture - self.posture), self.rest + share * (other.rest - self.rest)
+        return self._replace(
+            posture=self.posture + share * (other.posture - self.posture),
+            rest=self.rest + share * (other.rest - self.rest),
         )
 
     @property
     def stand(self) -> Stand:
         """The body and the feet at rest."""
-        return stand_of(self.posture, self.rest)
+        return stand_of(self.posture, self.rest, self.terrain)
 
 
 def largest_part(robot: Robot, now: Posed, wished: Posed) -> Parts[tuple[float, str]]:
@@ -150,25 +154,27 @@ def first_step(robot: Robot, now: Posed, wished: Posed, share: float) -> float:
     moved = np.abs(wished.rest - now.rest).max()
     if moved < _SAME:
         return share
-    slack = reach_slack(robot, [Posed(now.posture, now.towards(wished, part).rest) for part in parts.tolist()])
+    slack = reach_slack(robot, [now._replace(rest=now.towards(wished, part).rest) for part in parts.tolist()])
     works = (moved * parts <= _LONGEST_STEP) & (slack >= 0).all(axis=-1)
     return float(parts[works.argmax()] if works.any() else parts[-1])
 
 
 def reach_slack(robot: Robot, posed: list[Posed]) -> Floats:
-    """Return how much is left to each leg ``(n, legs)`` at its rest foothold, on the ground and lifted.
+    """Return how much is left to each leg ``(n, legs)`` at its rest foothold, on the ground, as low as may be, lifted.
 
     Parameters
     ----------
     robot : Robot
         A single robot.
     posed : list of Posed
-        Postures and footholds.
+        Postures and footholds, on the same terrain.
     """
     rows, rest = np.array([p.posture for p in posed]), np.array([p.rest for p in posed])
     rotation = np.array([rotation_rows(*row) for row in rows[:, 3:LIFT].tolist()])
-    stand = Stand(rest, rotation[:, None], rows[:, :3].T[..., None], 0.0)
-    height = np.stack([np.zeros((len(rows), 1)), rows[:, LIFT:]])
+    (slope, depth), position, lift = posed[0].terrain, rows[:, :3].T[..., None], rows[:, LIFT:]
+    above = position[2] - slope.real * position[0] - slope.imag * position[1]
+    stand = Stand(rest, rotation[:, None], np.stack([position[0], position[1], above]), 0.0, slope)
+    height = np.stack([-depth * lift, 0 * lift, lift][0 if depth else 1 :])
     return np.asarray(joint_slack(robot.geometry, stand.solve(robot, rest.real, rest.imag, height)).min(axis=0))
 
 

@@ -11,7 +11,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from tarsus.gait.live.stand import Stand
+from tarsus.gait.live.stand import LEVEL, Stand, Terrain
 
 __all__ = ["LIFT", "Rows", "calm_sway", "rotation_rows", "stand_of", "swayed"]
 
@@ -36,7 +36,7 @@ def rotation_rows(roll: float, pitch: float, yaw: float) -> Rows:
     )
 
 
-def stand_of(row: Floats, rest: Floats) -> Stand:
+def stand_of(row: Floats, rest: Floats, terrain: Terrain = LEVEL) -> Stand:
     """Return the body and the feet at rest.
 
     Parameters
@@ -45,9 +45,14 @@ def stand_of(row: Floats, rest: Floats) -> Stand:
         The posture; a sway is not looked at.
     rest : complex array, shape (legs,)
         Rest footholds in the heading frame [m].
+    terrain : Terrain
+        How the ground lies.
     """
-    _, _, _, roll, pitch, yaw, lift = row[: LIFT + 1].tolist()
-    return Stand(rest, np.array(rotation_rows(roll, pitch, yaw)), row[:3], lift)
+    x, y, z, roll, pitch, yaw, lift = row[: LIFT + 1].tolist()
+    slope, position = terrain.slope, row[:3]
+    if slope:
+        position = np.array([x, y, z - slope.real * x - slope.imag * y])
+    return Stand(rest, np.array(rotation_rows(roll, pitch, yaw)), position, lift, slope, terrain.depth * lift)
 
 
 def swayed(row: Floats, cycles: float, beats: float) -> Floats:

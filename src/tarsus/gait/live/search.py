@@ -10,7 +10,6 @@ import numpy as np
 
 from tarsus.gait.live.lag import Lag
 from tarsus.gait.live.moment import Moment
-from tarsus.gait.live.posture import LIFT
 
 __all__ = ["Search", "Searches"]
 
@@ -18,8 +17,6 @@ Floats = np.ndarray[Any, Any]
 
 # How fast a foot goes down [m/s], how fast it stops once it has found ground [rad/s], and when it is at rest [m/s].
 _SPEED, _STOPPING, _RESTING = 0.05, 40.0, 1e-3
-# How far below the expected ground feet look for it, in lifts.
-_DEPTH = 0.6
 
 
 class Search(NamedTuple):
@@ -43,17 +40,19 @@ class Search(NamedTuple):
     found: float | None = None
 
     @classmethod
-    def begin(cls, height: float, depth: float) -> Search:
+    def begin(cls, height: float, lowest: float) -> Search:
         """Return the search of a foot that is at rest.
 
         Parameters
         ----------
         height : float
             Where it is [m].
-        depth : float
-            How much farther down it goes at most [m].
+        lowest : float
+            How low it goes at most; no lower, if it is as low already [m].
         """
-        return cls(Lag.still(np.array([height])), height - depth, min(math.e * _SPEED / max(depth, 1e-6), _STOPPING))
+        lowest = min(lowest, height)
+        bandwidth = min(math.e * _SPEED / max(height - lowest, 1e-6), _STOPPING)
+        return cls(Lag.still(np.array([height])), lowest, bandwidth)
 
     def step(self, dt: float, *, ground: bool) -> Search:
         """Return the search after a time.
@@ -109,7 +108,7 @@ class Searches:
         """
         return self._feet[leg].at_rest if leg in self._feet else touches
 
-    def step(self, now: Moment, dt: float, *, touches: Callable[[int], bool]) -> Moment:
+    def step(self, now: Moment, dt: float, *, touches: Callable[[int], bool], lowest: Callable[[int], float]) -> Moment:
         """Let feet that have come down where there is no ground look for it, in the world's time.
 
         Parameters
@@ -120,6 +119,8 @@ class Searches:
             The time [s].
         touches : callable
             Whether the foot of a leg touches ground.
+        lowest : callable
+            How low the foot of a leg may go [m].
         """
         over = ~now.down & (now.share >= 1.0)
         ground = now.ground.copy()
@@ -127,7 +128,7 @@ class Searches:
             if leg not in self._feet:
                 if touches(leg):
                     continue
-                self._feet[leg] = Search.begin(float(ground[leg]), _DEPTH * float(now.posture.value[LIFT]))
+                self._feet[leg] = Search.begin(float(ground[leg]), lowest(leg))
             self._feet[leg] = self._feet[leg].step(dt, ground=touches(leg))
             ground[leg] = float(self._feet[leg].height.value[0])
         return now._replace(ground=ground, met=np.where(over, np.inf, now.met))

@@ -24,11 +24,9 @@ KEEP = 0.0015
 """What feet keep from where their leg fails, and knees from the ground [m]."""
 
 # How much of the way each side is a foot may be at half the lift and at the whole, shares of the way on the ground.
-_HEIGHTS = np.array([0.0, 0.5, 1.0])[:, None]
-_NARROWER = np.array([1.0, 0.9, 0.4])[:, None, None]
+_LIFTS = ((0.0, 1.0), (0.5, 0.9), (1.0, 0.4))
 # A joint may turn this much faster for the same speed of the foot than it does at the rest foothold.
 _FASTER = 4.0
-_NOWHERE = np.zeros(len(_HEIGHTS), dtype=bool)
 # How many places of feet are looked at at once.
 _BLOCK = 2600
 
@@ -50,13 +48,22 @@ class StandSlack:
         self._g = g = robot.geometry
         self._sideways = bool(g.side.any())
         p, rest = stand.position, stand.rest
-        at_rest = stand.turned_into_body(rest.real - p[0], rest.imag - p[1], _HEIGHTS * stand.lift - p[2])
+        lifts = [(part * stand.lift, narrower) for part, narrower in _LIFTS]
+        # Where ground may be lower than it is expected, all of the polygon must do for feet there too.
+        heights = [*lifts, (-stand.depth, 1.0)] if stand.depth else lifts
+        height, self._narrower = (np.array(column)[:, None, None] for column in zip(*heights, strict=True))
+        at_rest = stand.turned_into_body(rest.real - p[0], rest.imag - p[1], height[:, 0] - p[2])
         self._at_rest = [part[:, None] for part in to_leg_frame(g, *at_rest)]
-        # What a step along x, y or z of the heading frame is in the legs' frames.
-        self._along_x, self._along_y, self._up = (_in_legs(g, *stand.rotation[i].tolist()) for i in range(3))
-        self._tilted = bool(stand.rotation[:2, 2].any())
-        self._axis_height = _axis_height(g, stand)
-        self._lowest_femur = _lowest_femur(g, stand) if knees else -math.inf
+        # What a step over the ground along x or y of the heading frame is in the legs' frames, and what up is.
+        slope, r = stand.slope, stand.rotation
+        rows = (r[0] + slope.real * r[2], r[1] + slope.imag * r[2]) if slope else (r[0], r[1])
+        self._along_x, self._along_y = (_in_legs(g, *row.tolist()) for row in rows)
+        up, above = _over_ground(stand)
+        self._up = _in_legs(g, *up.tolist())
+        self._rising, self._tilted = bool(rows[0][2] or rows[1][2]), bool(up[:2].any())
+        self._axis_height = up[0] * g.mount_x + up[1] * g.mount_y + up[2] * (g.mount_z + g.up) + above
+        self._lowest_femur = _lowest_femur(g, up, above) if knees else -math.inf
+        self._nowhere = np.zeros(len(heights), dtype=bool)
         self._turning_at_rest = self._turning(self._solve(np.zeros((1, len(rest))), np.zeros((1, len(rest)))))[0, 0]
 
     def __call__(self, out: Floats) -> Floats:
@@ -74,11 +81,11 @@ class StandSlack:
         """
         flat = out.reshape(-1, out.shape[-1])
         # Larger arrays than these cost more than their share of time.
-        blocks = math.ceil(len(flat) * self._g.coxa.size * len(_HEIGHTS) / _BLOCK)
+        blocks = math.ceil(len(flat) * self._g.coxa.size * len(self._nowhere) / _BLOCK)
         parts = np.array_split(flat, blocks)
         # At each height, knees count for all places or for none: what is worked out at once makes no difference. They
         # are lowest far out, at the end.
-        low, found = _NOWHERE, []
+        low, found = self._nowhere, []
         for part in reversed(parts):
             slack, low = self._at(part, low)
             found.append((part, slack, low))
@@ -98,8 +105,9 @@ class StandSlack:
     def _solve(self, x: Floats, y: Floats) -> Triangle:
         """Return the joint angles ``(heights, n, legs)`` at places seen from the rest footholds ``(n, legs)``."""
         rest, (xx, xy, xz), (yx, yy, yz) = self._at_rest, self._along_x, self._along_y
-        in_x, in_y = rest[0] + _NARROWER * (xx * x + yx * y), rest[1] + _NARROWER * (xy * x + yy * y)
-        in_z = rest[2] + _NARROWER * (xz * x + yz * y) if self._tilted else rest[2]
+        narrower = self._narrower
+        in_x, in_y = rest[0] + narrower * (xx * x + yx * y), rest[1] + narrower * (xy * x + yy * y)
+        in_z = rest[2] + narrower * (xz * x + yz * y) if self._rising else rest[2]
         return solve_triangle(np, self._g, in_x, in_y, in_z, knee=1, sideways=self._sideways)
 
     def _turning(self, s: Triangle) -> Floats:
@@ -130,19 +138,23 @@ def _in_legs(g: LegGeometry, x: float, y: float, z: float) -> tuple[Floats, Floa
     return g.cos_yaw * x + g.sin_yaw * y, g.cos_yaw * y - g.sin_yaw * x, z
 
 
-def _axis_height(g: LegGeometry, stand: Stand) -> Floats:
-    """Return how high each coxa axis is where the femur axis meets its height [m]."""
-    x, y, z = stand.rotation[2]
-    return np.asarray(x * g.mount_x + y * g.mount_y + z * (g.mount_z + g.up) + stand.position[2])
+def _over_ground(stand: Stand) -> tuple[Floats, float]:
+    """Return the ground's normal in B, and how far B's origin is from the ground [m]."""
+    up, above = stand.rotation[2], float(stand.position[2])
+    if not stand.slope:
+        return up, above
+    normal = up - stand.slope.real * stand.rotation[0] - stand.slope.imag * stand.rotation[1]
+    size = float(np.linalg.norm(normal))
+    return normal / size, above / size
 
 
-def _lowest_femur(g: LegGeometry, stand: Stand) -> float:
+def _lowest_femur(g: LegGeometry, up: Floats, above: float) -> float:
     """Return down to which femur angle surely no femur axis or knee of a stand is below the ground [rad].
 
     The bound of `surely_above`, the other way round.
     """
-    x, y, z = stand.rotation[2].tolist()
-    left = stand.position[2] - math.hypot(x, y) * g.knee_span
+    x, y, z = up.tolist()
+    left = above - math.hypot(x, y) * g.knee_span
     if z < 0 or left.min() <= 0:
         return math.inf
     drop = float(((left - g.axis_depth) / g.femur).min())

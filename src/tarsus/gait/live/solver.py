@@ -35,19 +35,17 @@ class Solver:
         self._posture: Lag | None = None
         self._body: tuple[Rows, list[float], float] = (((),), [], 0.0)
 
-    def angles(self, now: Moment, offset: Floats) -> Floats:
+    def angles(self, now: Moment) -> Floats:
         """Return the joint angles ``(legs, 3)`` of a moment [rad].
 
         Parameters
         ----------
         now : Moment
             The moment.
-        offset : array, shape (legs,)
-            How much higher than that the feet are [m].
         """
         rotation, position, lift = self._body_at(now)
         turn, origin = cmath.exp(-1j * now.yaw), now.origin
-        heights = (now.height(lift) + offset).tolist()
+        heights = (now.height(lift) + now.give_way.value - now.elevation.value).tolist()
         feet = []
         for foot, height in zip(now.foot.tolist(), heights, strict=True):
             seen = (foot - origin) * turn

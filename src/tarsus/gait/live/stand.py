@@ -13,7 +13,7 @@ from tarsus.kinematics.triangle import Triangle, solve_triangle, to_leg_frame
 from tarsus.robot.geometry import LegGeometry
 from tarsus.robot.robot import Robot
 
-__all__ = ["Stand", "joint_slack"]
+__all__ = ["LEVEL", "Stand", "Terrain", "joint_slack"]
 
 Floats = np.ndarray[Any, Any]
 
@@ -22,8 +22,27 @@ _LIMIT_MARGIN = 0.01
 _LEAST_BEND = 0.2
 
 
+class Terrain(NamedTuple):
+    """How the ground lies under a robot, as far as is known.
+
+    Attributes
+    ----------
+    slope : complex
+        How much it rises along x and y of the heading frame [m/m].
+    depth : float
+        How far below that feet may have to stand, in lifts.
+    """
+
+    slope: complex = 0j
+    depth: float = 0.0
+
+
+LEVEL = Terrain()
+"""Ground that is flat, level and where it is expected."""
+
+
 class Stand(NamedTuple):
-    """A body over the ground and its feet at rest, seen from the heading frame.
+    """A body over the ground and its feet at rest, seen from the heading frame; heights are those over the ground.
 
     Attributes
     ----------
@@ -35,12 +54,18 @@ class Stand(NamedTuple):
         Of the body's origin [m].
     lift : float
         How high a swinging foot rises [m].
+    slope : complex
+        How much the ground rises along x and y [m/m].
+    depth : float
+        How far below the ground feet may have to stand [m].
     """
 
     rest: Floats
     rotation: Floats
     position: Floats
     lift: float
+    slope: complex = 0j
+    depth: float = 0.0
 
     def solve(self, robot: Robot, x: Floats, y: Floats, z: Floats) -> Triangle:
         """Return the joint angles for feet in the heading frame, each ``(..., legs)`` [m].
@@ -62,9 +87,11 @@ class Stand(NamedTuple):
         Parameters
         ----------
         x, y, z : array, shape (...)
-            The vectors [m].
+            The vectors; z is how much more they rise than the ground does [m].
         """
         r = self.rotation
+        if self.slope:
+            z = z + self.slope.real * x + self.slope.imag * y
         in_x, in_y, in_z = (x * r[..., 0, i] + y * r[..., 1, i] + z * r[..., 2, i] for i in range(3))
         return in_x, in_y, in_z
 

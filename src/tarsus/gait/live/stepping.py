@@ -10,6 +10,7 @@ import numpy as np
 from tarsus.gait.live.foothold import Landing, final_rest
 from tarsus.gait.live.lag import Lag
 from tarsus.gait.live.moment import THERE, TIE, Course, Moment, carried
+from tarsus.gait.live.slope import FLAT
 
 __all__ = ["FREEZE", "go_on", "quintic"]
 
@@ -20,6 +21,8 @@ FREEZE = 0.6
 
 # Of how much of its swing a foot that was held back may be deprived at most.
 _LATEST = 0.5
+# How fast feet give way [rad/s].
+_GIVING = 20.0
 # A speed this low is none [m/s]; a posture this near to its target, and as slow, is there [m, m/s, rad, rad/s].
 _NO_SPEED, _NO_WAY = 3e-7, 1e-11
 
@@ -52,6 +55,8 @@ def go_on(now: Moment, course: Course, dt: float) -> Moment:
         twist=twist,
         posture=_settled(now.posture, course.posture, dt, course.posture_bandwidth),
         rhythm=rhythm,
+        elevation=_settled(now.elevation, course.elevation, dt, course.elevation_bandwidth),
+        give_way=_settled(now.give_way, course.give_way, dt, _GIVING),
         cycles=now.cycles + cycles,
         beats=now.beats + beats,
     )
@@ -65,11 +70,11 @@ def go_on(now: Moment, course: Course, dt: float) -> Moment:
     return after if all(down) else _swing(after, course, down, since_lift, stopping=stopping)
 
 
-def _settled(posture: Lag, target: Floats, dt: float, bandwidth: float) -> Lag:
-    """Return the posture after a time; once it is there, it is the same one from then on."""
-    if posture.value is target:
-        return posture
-    after = posture.step(target, dt, bandwidth=bandwidth)
+def _settled(lag: Lag, target: Floats, dt: float, bandwidth: float) -> Lag:
+    """Return a lag after a time; once it is at its target, it is the same one from then on."""
+    if lag.value is target:
+        return lag
+    after = lag.step(target, dt, bandwidth=bandwidth)
     off = max(float(np.abs(after.value - target).max()), float(np.abs(after.rate).max()))
     return after if off > _NO_WAY else Lag.still(target)
 
@@ -89,7 +94,7 @@ def _lift(now: Moment, course: Course, due: Floats, late: Floats, *, stopping: b
         down=now.down & ~wanted,
         share=np.where(wanted, 0.0, now.share),
         start_height=np.where(wanted, now.ground, now.start_height),
-        ground=np.where(wanted, course.level, now.ground),
+        ground=np.where(wanted, course.ground.height(now.foot.real, now.foot.imag), now.ground),
         # Feet that were held back go a shorter swing.
         late=np.where(due, np.clip(late, 0.0, _LATEST * (1 - course.gait.duty)), now.late),
     )
@@ -104,29 +109,47 @@ def _swing(now: Moment, course: Course, down: list[bool], since_lift: list[float
     share, foot, target = now.share.tolist(), now.foot.tolist(), now.target.tolist()
     pace, bend = now.pace.tolist(), now.bend.tolist()
     lands, landed = course.lands.tolist(), []
+    flat, ground = course.ground is FLAT, now.ground
     for leg in [leg for leg, on in enumerate(down) if not on]:
         late, since = float(now.late[leg]), since_lift[leg]
         part = min(max((since - late) / (swing - late), 0.0), 1.0)
         if share[leg] <= FREEZE and now.met[leg] == math.inf:
             until = (swing - since) / course.frequency
+            before = target[leg]
             target[leg] = (
                 landing.foothold(complex(course.rest[leg]), course.room[leg], until, until + stance / 2)
                 if final is None
                 else complex(final[leg])
             )
+            if not flat:
+                ground = _on_ground(ground, leg, target[leg] - before, course)
         way = (foot[leg], pace[leg], bend[leg])
-        left = 1.0 - share[leg]
+        # A foot that has met the ground stops on it.
+        left = min(float(now.met[leg] + now.give[leg]), 1.0) - share[leg]
         foot[leg], pace[leg], bend[leg] = (
-            quintic(way, target[leg], left, (part - share[leg]) / left) if left > 0 else (target[leg], 0j, 0j)
+            quintic(way, target[leg], left, min((part - share[leg]) / left, 1.0)) if left > 0 else (target[leg], 0j, 0j)
         )
         share[leg] = part
         if lands[leg] and since >= swing - TIE:
             landed.append(leg)
             share[leg], foot[leg], pace[leg], bend[leg] = 0.0, target[leg], 0j, 0j
     after = now._replace(
-        share=np.array(share), foot=np.array(foot), target=np.array(target), pace=np.array(pace), bend=np.array(bend)
+        share=np.array(share),
+        foot=np.array(foot),
+        target=np.array(target),
+        pace=np.array(pace),
+        bend=np.array(bend),
+        ground=ground,
     )
     return _land(after, landed) if landed else after
+
+
+def _on_ground(ground: Floats, leg: int, moved: complex, course: Course) -> Floats:
+    """Return the heights at which feet are to land, where one of them is to land elsewhere by now."""
+    rise = course.ground.slope_x * moved.real + course.ground.slope_y * moved.imag
+    changed = ground.copy()
+    changed[leg] = max(ground[leg] + rise, np.broadcast_to(course.lowest, ground.shape)[leg])
+    return changed
 
 
 def quintic(way: tuple[Any, Any, Any], target: Any, left: Any, x: Any) -> tuple[Any, Any, Any]:

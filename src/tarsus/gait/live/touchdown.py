@@ -23,9 +23,7 @@ _TAKEN = 0.8
 _MOMENTS = 9
 
 
-def gentle_give(
-    robot: Robot, now: Moment, met: Floats, *, acceleration: Floats, swing_rate: Floats, offset: Floats
-) -> Floats:
+def gentle_give(robot: Robot, now: Moment, met: Floats, *, acceleration: Floats, swing_rate: Floats) -> Floats:
     """Return within which share of the swing each foot stops that has met the ground: the least the joints allow.
 
     Parameters
@@ -40,20 +38,16 @@ def gentle_give(
         Greatest of each joint [rad/s^2].
     swing_rate : array, shape (legs,)
         What share of its swing each foot goes in a second [1/s].
-    offset : array, shape (legs,)
-        How far each foot gives way upwards [m].
     """
     posture = swayed(now.posture.value, now.cycles, now.beats)
     stand, lift = stand_of(posture, now.foot), float(posture[LIFT])
-    left = np.maximum(1 - now.share, 1e-9)
-    give = np.minimum(_LONGER[:, None] * GIVE, left)
+    give = np.minimum(_LONGER[:, None] * GIVE, np.maximum(1 - now.share, 1e-9))
     # (tried, moments, legs)
-    part = np.linspace(0.0, 1.0, _MOMENTS)[:, None]
-    gone = part * give[:, None]
-    time = gone / swing_rate
+    give, part = give[:, None], np.linspace(0.0, 1.0, _MOMENTS)[:, None]
+    time = part * give / swing_rate
     height, speed = _height_and_speed(now, lift)
-    z = height + offset + speed * give[:, None] * stopped_part(part)
-    foot, _, _ = quintic((now.foot, now.pace, now.bend), _target(now), left, gone / left)
+    z = height + now.give_way.value - now.elevation.value + speed * give * stopped_part(part)
+    foot, _, _ = quintic((now.foot, now.pace, now.bend), _target(now, give), give, part)
     forward, left_on, turning = now.twist.value.tolist()
     gone_on = complex(forward, left_on) * time * turned(turning * time)
     seen = ((foot - now.origin) * np.exp(-1j * now.yaw) - gone_on) * np.exp(-1j * turning * time)
@@ -63,7 +57,7 @@ def gentle_give(
     bend = np.abs(np.diff(angles, 2, axis=1) / (step * step) / acceleration).max(axis=(1, 3))
     first = (bend <= _TAKEN).argmax(axis=0)
     best = np.where((bend <= _TAKEN).any(axis=0), first, bend.argmin(axis=0))
-    return np.where(met, np.take_along_axis(give, best[None], axis=0)[0], now.give)
+    return np.where(met, np.take_along_axis(give[:, 0], best[None], axis=0)[0], now.give)
 
 
 def meet_ground(now: Moment, met: Floats, lift: float, give: Floats) -> Moment:
@@ -82,7 +76,7 @@ def meet_ground(now: Moment, met: Floats, lift: float, give: Floats) -> Moment:
     """
     height, speed = _height_and_speed(now, lift)
     return now._replace(
-        target=np.where(met, _target(now), now.target),
+        target=np.where(met, _target(now, give), now.target),
         met=np.where(met, now.share, now.met),
         give=np.where(met, give, now.give),
         met_height=np.where(met, height, now.met_height),
@@ -91,9 +85,9 @@ def meet_ground(now: Moment, met: Floats, lift: float, give: Floats) -> Moment:
     )
 
 
-def _target(now: Moment) -> Floats:
-    """Return where feet would come to rest whose speed falls evenly until the end of their swing."""
-    return np.asarray(now.foot + now.pace * (1 - now.share) / 3)
+def _target(now: Moment, give: Floats) -> Floats:
+    """Return where feet come to rest that stop within a share of their swing."""
+    return np.asarray(now.foot + now.pace * give * stopped_part(1.0))
 
 
 def _height_and_speed(now: Moment, lift: float) -> tuple[Floats, Floats]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import cmath
 import math
 from collections.abc import Sequence
 from typing import Any
@@ -12,8 +13,9 @@ from tarsus.errors import InputError, UnreachableError
 from tarsus.gait.gait import Gait
 from tarsus.gait.live.admittance import Admittance
 from tarsus.gait.live.agenda import Agenda
-from tarsus.gait.live.carriage import Carriage
+from tarsus.gait.live.carriage import RISING, Carriage, rising
 from tarsus.gait.live.change import Change, work_out
+from tarsus.gait.live.depth import DEPTH, lowest_in_reach, lowest_planned
 from tarsus.gait.live.envelope import Envelope
 from tarsus.gait.live.feel import Feel, Felt
 from tarsus.gait.live.foothold import final_rest
@@ -23,7 +25,7 @@ from tarsus.gait.live.hands import best_lean, reachable_part
 from tarsus.gait.live.levelling import LevellingMode
 from tarsus.gait.live.manipulation import Manipulation, legs_out
 from tarsus.gait.live.manner import Manner
-from tarsus.gait.live.moment import THERE, TIE, Course, Moment
+from tarsus.gait.live.moment import SEA_LEVEL, THERE, TIE, Course, Moment
 from tarsus.gait.live.own_time import STOPPING, OwnTime
 from tarsus.gait.live.parts import Parts, all_parts
 from tarsus.gait.live.posture import LIFT, calm_sway
@@ -31,6 +33,7 @@ from tarsus.gait.live.search import Searches
 from tarsus.gait.live.senses import Senses
 from tarsus.gait.live.solver import Solver
 from tarsus.gait.live.stances import lift_delays, stances, until_down
+from tarsus.gait.live.stand import Terrain
 from tarsus.gait.live.stepping import go_on
 from tarsus.gait.live.support import support_sets
 from tarsus.gait.live.tempo import joint_limits
@@ -163,12 +166,12 @@ class Walker(WalkerView):
         self._searches = Searches()
         self._felt: Felt | None = None
         self._hold = 0.0
+        self._elevation = SEA_LEVEL
         self._walking = False
         self.time = 0.0
         self._set_gait(change.manner.gait)
         self._all, self._none, self._flat = np.ones(legs, dtype=bool), np.zeros(legs, dtype=bool), np.zeros(legs)
         self._now = Moment.standing(change.rest, self._carriage.goal)
-        self._offset = self._flat
         self._own = OwnTime(self._solve(self._now), self.joint_speed, self.joint_acceleration)
 
     def _set_gait(self, gait: Gait) -> None:
@@ -215,10 +218,10 @@ class Walker(WalkerView):
         """Note what is asked for besides the twist, where it isn't what was asked for before."""
         wanted = self._agenda.wanted
         gone = legs_out(wish, wanted.gone, self.robot.legs)
-        correction = self._correction(gone)
+        correction, terrain = self._correction(gone), self._terrain()
         known = wish.only_twist or wish is self._asked
-        if not known or gone != wanted.gone or correction != wanted.correction:
-            self._agenda.ask(wish, gone, correction)
+        if not known or (gone, correction, terrain) != (wanted.gone, wanted.correction, wanted.terrain):
+            self._agenda.ask(wish, gone, correction, terrain)
             self._asked = wish
 
     def _correction(self, gone: tuple[int, ...]) -> tuple[float, ...]:
@@ -233,6 +236,12 @@ class Walker(WalkerView):
             self._leaning_for, self._lean = gone, best_lean(rest, complex(com[0], com[1]), sets)
         return (felt[0] + self._lean.real, felt[1] + self._lean.imag, *felt[2:])
 
+    def _terrain(self) -> Terrain:
+        """Return how the ground lies, as far as it is felt."""
+        if self._felt is None:
+            return self._agenda.wanted.terrain
+        return Terrain(self._felt.slope, DEPTH if self._hold or self._admittance else 0.0)
+
     # What is felt.
 
     def _feeling(self) -> Feel:
@@ -244,16 +253,22 @@ class Walker(WalkerView):
             return
         self._feel = self._feel or self._feeling()
         now, body = self._now, self._agenda.wanted.body
+        height = float(now.posture.value[2]) - self._agenda.doing.manner.correction[2]
         lean = now.posture.value[3:5] - np.array(body[3:5])
         self._feel.leaning(float(lean[0]), float(lean[1]))
         self._felt = self._feel.step(
             senses,
             dt,
             feet=self.feet,
+            offsets=now.give_way.value,
             contacts=self.contacts,
-            commanded=Commanded(body[3], body[4], now.yaw + body[5], float(now.posture.value[2])),
+            yaw=now.yaw,
+            commanded=Commanded(body[3], body[4], now.yaw + body[5], height),
             angles=self.angles,
         )
+        # A lag is late by 2 over its bandwidth: where the robot will be by then.
+        ahead = now.origin + cmath.exp(1j * now.yaw) * complex(*now.twist.value[:2].tolist()) * (2 / RISING)
+        self._elevation = np.array([self._feel.plane.height(ahead.real, ahead.imag)])
         if self._felt.contacts is not None:
             # A foot that finds no ground is noticed a tick later, and the walk takes a while to stop.
             self._hold = max(self._hold, STOPPING + dt)
@@ -271,7 +286,6 @@ class Walker(WalkerView):
             met,
             acceleration=self.joint_acceleration,
             swing_rate=self._frequency / (1 - self.gait.duty - now.late),
-            offset=self._offset,
         )
         self._now = meet_ground(now, met, float(now.posture.value[LIFT]), give)
 
@@ -475,9 +489,7 @@ class Walker(WalkerView):
         for change, way in asked:
             duty = change.manner.gait.duty
             stance_time = duty * max(1 / frequency, change.tempo.cycle_time)
-            allowed, which = way.largest_share(
-                np.array(twist), stance_time=stance_time, duty=duty, hold=self._hold
-            )
+            allowed, which = way.largest_share(np.array(twist), stance_time=stance_time, duty=duty, hold=self._hold)
             if allowed < share:
                 share, leg = allowed, which
         self._share_of, self._share = key, (share, leg)
@@ -539,10 +551,29 @@ class Walker(WalkerView):
             lands=lands,
             rest=self._footing.rest,
             room=self._footing.room,
-            level=self._flat if self._feel is None else self._feel.level(now.foot),
             holds=holds,
             beats=self._beats,
+            **self._ground(),
         )
+
+    def _ground(self) -> dict[str, Any]:
+        """Return what a course knows of the ground."""
+        if self._feel is None or self._felt is None:
+            return {"give_way": self._flat}
+        lowest = lowest_planned(self._now, self._agenda.doing.manner.terrain)
+        return {
+            "give_way": np.maximum(self._felt.offsets, np.minimum(lowest - self._now.ground, 0.0)),
+            "ground": self._feel.plane,
+            "lowest": lowest,
+            "elevation": self._elevation,
+            "elevation_bandwidth": rising(float(self._elevation[0] - self._now.elevation.value[0])),
+        }
+
+    def _lowest(self, leg: int) -> float:
+        """Return how low a foot may look for ground [m]."""
+        now, terrain = self._now, self._agenda.doing.manner.terrain
+        reached = lowest_in_reach(self.robot, now, leg, self.gait.duty / self._frequency + self._hold)
+        return min(float(lowest_planned(now, terrain)[leg]), reached) if terrain.depth else reached
 
     def _advance(self, dt: float) -> None:
         """Go on by one tick, or less of it where the joints need longer."""
@@ -550,8 +581,7 @@ class Walker(WalkerView):
         self._carriage.sway(sway, frequency=self._frequency, beats=self._beats)
         before, course = self._now, self._course(dt)
         if self._felt is not None:
-            self._now = self._searches.step(before, dt, touches=self._touches)
-            self._offset = self._felt.offsets
+            self._now = self._searches.step(before, dt, touches=self._touches, lowest=self._lowest)
         swing_time = (1 - self.gait.duty) / self._frequency
 
         def move(time: float) -> Moment:
@@ -562,7 +592,7 @@ class Walker(WalkerView):
         self._finish(before, dt)
 
     def _solve(self, now: Moment) -> Floats:
-        return self._solver.angles(now, self._offset)
+        return self._solver.angles(now)
 
     def _finish(self, before: Moment, dt: float) -> None:
         """See what has come to its end with this tick."""

@@ -44,7 +44,6 @@ class WalkerView:
     _agenda: Agenda
     _footing: Footing
     _target: Floats
-    _offset: Floats
     _frequency: float
     _walking: bool
     _beats: int
@@ -83,15 +82,15 @@ class WalkerView:
     @property
     def body(self) -> Pose:
         """The body's pose in G."""
-        stand = self._stand(self._now)
-        heading = Pose.from_rpy(0.0, 0.0, self._now.yaw, (self._now.origin.real, self._now.origin.imag, 0.0))
+        now, stand = self._now, self._stand(self._now)
+        heading = Pose.from_rpy(0.0, 0.0, now.yaw, (now.origin.real, now.origin.imag, float(now.elevation.value[0])))
         return heading @ Pose(stand.rotation, stand.position)
 
     @property
     def feet(self) -> Floats:
         """The feet in G ``(legs, 3)`` [m]."""
         now = self._now
-        height = now.height(float(now.posture.value[LIFT])) + self._offset
+        height = now.height(float(now.posture.value[LIFT])) + now.give_way.value
         return np.stack([now.foot.real, now.foot.imag, height], axis=-1)
 
     @property

@@ -42,7 +42,8 @@ def wished_posed(robot: Robot, manner: Manner, now: Floats | None) -> Posed:
     clearance, lift, stance = _footholds(robot, manner, now)
     posture = np.array([*manner.stance, lift])
     posture[2] += clearance
-    return Posed(posture, _widened(robot, stance[:, 0] + 1j * stance[:, 1], manner.stance_width))
+    rest = _widened(robot, stance[:, 0] + 1j * stance[:, 1], manner.stance_width)
+    return Posed(posture, rest, manner.terrain)
 
 
 def _footholds(robot: Robot, manner: Manner, now: Floats | None) -> tuple[float, float, Floats]:
