@@ -24,7 +24,7 @@ _MOMENTS = 9
 
 
 def gentle_give(robot: Robot, now: Moment, met: Floats, *, acceleration: Floats, swing_rate: Floats) -> Floats:
-    """Return within which share of the swing each foot stops that has met the ground: the least the joints allow.
+    """Return within which share of the swing each foot can stop that has met the ground: the least the joints allow.
 
     Parameters
     ----------
@@ -38,6 +38,11 @@ def gentle_give(robot: Robot, now: Moment, met: Floats, *, acceleration: Floats,
         Greatest of each joint [rad/s^2].
     swing_rate : array, shape (legs,)
         What share of its swing each foot goes in a second [1/s].
+
+    Returns
+    -------
+    array, shape (legs,)
+        Shares; 0 for feet that are too fast to stop before the end of their swing, where they come to rest anyway.
     """
     posture = swayed(now.posture.value, now.cycles, now.beats)
     stand, lift = stand_of(posture, now.foot), float(posture[LIFT])
@@ -55,9 +60,9 @@ def gentle_give(robot: Robot, now: Moment, met: Floats, *, acceleration: Floats,
     angles = np.stack([s.coxa, s.femur, s.tibia], axis=-1)
     step = np.diff(time[:, :2], axis=1)[..., None]
     bend = np.abs(np.diff(angles, 2, axis=1) / (step * step) / acceleration).max(axis=(1, 3))
-    first = (bend <= _TAKEN).argmax(axis=0)
-    best = np.where((bend <= _TAKEN).any(axis=0), first, bend.argmin(axis=0))
-    return np.where(met, np.take_along_axis(give[:, 0], best[None], axis=0)[0], now.give)
+    works = (bend <= _TAKEN) & met
+    first = np.take_along_axis(give[:, 0], works.argmax(axis=0)[None], axis=0)[0]
+    return np.where(works.any(axis=0), first, 0.0)
 
 
 def meet_ground(now: Moment, met: Floats, lift: float, give: Floats) -> Moment:

@@ -287,7 +287,7 @@ class Walker(WalkerView):
             acceleration=self.joint_acceleration,
             swing_rate=self._frequency / (1 - self.gait.duty - now.late),
         )
-        self._now = meet_ground(now, met, float(now.posture.value[LIFT]), give)
+        self._now = meet_ground(now, give > 0, float(now.posture.value[LIFT]), give)
 
     def _touches(self, leg: int) -> bool:
         """Return whether a foot at the end of its swing is on the ground, as far as is known."""
