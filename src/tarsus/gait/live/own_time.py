@@ -53,7 +53,15 @@ class OwnTime:
         self._last_dt = 0.01
         self._strain = 0.0
 
-    def advance(self, move: Callable[[float], _T], solve: Callable[[_T], Floats], dt: float, *, stop: bool) -> _T:
+    def advance(
+        self,
+        move: Callable[[float], _T],
+        solve: Callable[[_T], Floats],
+        dt: float,
+        *,
+        stop: bool,
+        fastest: float = 1.0,
+    ) -> _T:
         """Return where the walk is after a tick.
 
         Parameters
@@ -66,10 +74,13 @@ class OwnTime:
             The tick [s].
         stop : bool
             Whether to come to a stop.
+        fastest : float
+            At which rate it is to run at most; it slows down to that as on rough ways.
         """
         rate = max(self.rate - _STOP * dt, 0.0) if stop else min(1.0, self.rate + _CHANGE * dt)
         if self._strain > _STRAINED:
-            rate = min(rate, max(self._calm_rate(move, solve), self.rate - _CALMING * dt))
+            fastest = min(fastest, self._calm_rate(move, solve))
+        rate = min(rate, max(fastest, self.rate - _CALMING * dt))
         between = (dt + self._last_dt) / 2
         after = move(dt * rate)
         angles = solve(after)

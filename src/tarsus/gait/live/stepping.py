@@ -89,12 +89,18 @@ def _lift(now: Moment, course: Course, due: Floats, late: Floats, *, stopping: b
     if final is not None:
         wanted = wanted & (np.abs(now.foot - final) > THERE)
     missed = due & ~wanted
+    start, given = now.ground, now.give_way
+    if given.value.any():
+        # What a foot has given way is part of its swing.
+        start = start + given.value
+        given = given._replace(value=np.where(wanted, 0.0, given.value))
     return now._replace(
         number=now.number + missed,
         down=now.down & ~wanted,
         share=np.where(wanted, 0.0, now.share),
-        start_height=np.where(wanted, now.ground, now.start_height),
+        start_height=np.where(wanted, start, now.start_height),
         ground=np.where(wanted, course.ground.height(now.foot.real, now.foot.imag), now.ground),
+        give_way=given,
         # Feet that were held back go a shorter swing.
         late=np.where(due, np.clip(late, 0.0, _LATEST * (1 - course.gait.duty)), now.late),
     )
@@ -122,7 +128,7 @@ def _swing(now: Moment, course: Course, down: list[bool], since_lift: list[float
                 else complex(final[leg])
             )
             if not flat:
-                ground = _on_ground(ground, leg, target[leg] - before, course)
+                ground = _on_ground(ground, leg, target[leg] - before, course, just_lifted=share[leg] == 0)
         way = (foot[leg], pace[leg], bend[leg])
         # A foot that has met the ground stops on it.
         left = min(float(now.met[leg] + now.give[leg]), 1.0) - share[leg]
@@ -144,11 +150,12 @@ def _swing(now: Moment, course: Course, down: list[bool], since_lift: list[float
     return _land(after, landed) if landed else after
 
 
-def _on_ground(ground: Floats, leg: int, moved: complex, course: Course) -> Floats:
+def _on_ground(ground: Floats, leg: int, moved: complex, course: Course, *, just_lifted: bool) -> Floats:
     """Return the heights at which feet are to land, where one of them is to land elsewhere by now."""
-    rise = course.ground.slope_x * moved.real + course.ground.slope_y * moved.imag
     changed = ground.copy()
-    changed[leg] = max(ground[leg] + rise, np.broadcast_to(course.lowest, ground.shape)[leg])
+    changed[leg] += course.ground.slope_x * moved.real + course.ground.slope_y * moved.imag
+    if just_lifted:
+        changed[leg] = max(changed[leg], np.broadcast_to(course.lowest, ground.shape)[leg])
     return changed
 
 

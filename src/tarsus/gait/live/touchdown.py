@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -11,7 +12,7 @@ from tarsus.gait.live.posture import LIFT, stand_of, swayed
 from tarsus.gait.live.stepping import quintic
 from tarsus.robot.robot import Robot
 
-__all__ = ["gentle_give", "meet_ground"]
+__all__ = ["gentle_give", "meet_ground", "unhurried"]
 
 Floats = np.ndarray[Any, Any]
 
@@ -19,6 +20,9 @@ Floats = np.ndarray[Any, Any]
 # take: the rest is for the body, whose own time speeds up or slows down meanwhile.
 _LONGER = np.array([1.0, 1.4, 2.0, 2.8, 4.0])
 _TAKEN = 0.8
+# How much harder it is for the joints to swing to other ground, per lift that it is higher or lower; and how much harder
+# than planned a swing may be.
+_BY_RISE, _HARDER = 0.5, 1.1
 # At how many moments of a stop the joints are looked at.
 _MOMENTS = 9
 
@@ -88,6 +92,22 @@ def meet_ground(now: Moment, met: Floats, lift: float, give: Floats) -> Moment:
         met_speed=np.where(met, speed, now.met_speed),
         ground=np.where(met, height + speed * give * stopped_part(1.0), now.ground),
     )
+
+
+def unhurried(now: Moment, swing: float) -> float:
+    """Return how fast the walk's own time may run for swings that are shorter than planned, or end higher or lower.
+
+    Parameters
+    ----------
+    now : Moment
+        The moment.
+    swing : float
+        How long a swing is planned to take [cycles].
+    """
+    lift = max(float(now.posture.value[LIFT]), 1e-3)
+    rise = np.abs(now.ground - now.start_height) / lift
+    harder = np.where(now.down, 1.0, (1 + _BY_RISE * rise) * (swing / (swing - now.late)) ** 2)
+    return math.sqrt(_HARDER / max(float(harder.max()), _HARDER))
 
 
 def _target(now: Moment, give: Floats) -> Floats:

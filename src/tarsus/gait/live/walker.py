@@ -38,7 +38,7 @@ from tarsus.gait.live.stepping import go_on
 from tarsus.gait.live.support import support_sets
 from tarsus.gait.live.tempo import joint_limits
 from tarsus.gait.live.tilt import Commanded
-from tarsus.gait.live.touchdown import gentle_give, meet_ground
+from tarsus.gait.live.touchdown import gentle_give, meet_ground, unhurried
 from tarsus.gait.live.walker_view import WalkerView
 from tarsus.gait.live.wish import Wish
 from tarsus.gait.live.wished import swaying
@@ -560,13 +560,14 @@ class Walker(WalkerView):
         """Return what a course knows of the ground."""
         if self._feel is None or self._felt is None:
             return {"give_way": self._flat}
-        lowest = lowest_planned(self._now, self._agenda.doing.manner.terrain)
+        now, lowest = self._now, lowest_planned(self._now, self._agenda.doing.manner.terrain)
         return {
-            "give_way": np.maximum(self._felt.offsets, np.minimum(lowest - self._now.ground, 0.0)),
+            # Feet in the air have nothing to give way to.
+            "give_way": np.maximum(self._felt.offsets, np.minimum(lowest - now.ground, 0.0)) * now.down,
             "ground": self._feel.plane,
             "lowest": lowest,
             "elevation": self._elevation,
-            "elevation_bandwidth": rising(float(self._elevation[0] - self._now.elevation.value[0])),
+            "elevation_bandwidth": rising(float(self._elevation[0] - now.elevation.value[0])),
         }
 
     def _lowest(self, leg: int) -> float:
@@ -587,7 +588,8 @@ class Walker(WalkerView):
         def move(time: float) -> Moment:
             return self._hands.carry(go_on(self._now, course, time), time, swing_time=swing_time)
 
-        self._now = self._own.advance(move, self._solve, dt, stop=bool(self._searches))
+        fastest = 1.0 if self._felt is None else unhurried(self._now, 1 - self.gait.duty)
+        self._now = self._own.advance(move, self._solve, dt, stop=bool(self._searches), fastest=fastest)
         self._hands.step(dt * self._own.rate, self._now.down)
         self._finish(before, dt)
 
