@@ -27,7 +27,7 @@ def course_of(setup, rest, twist, **changes):
         "lands": np.ones(len(rest), dtype=bool),
         "rest": rest,
         "room": np.full((len(rest), 16), np.inf),
-        "level": np.zeros(len(rest)),
+        "give_way": np.zeros(len(rest)),
     }
     return Course(**{**values, **changes})
 

@@ -15,9 +15,11 @@ from tarsus.gait.cycle import cycle_feet
 from tarsus.gait.gait import GAITS
 from tarsus.gait.live.foothold import final_rest
 from tarsus.gait.live.lag import Lag
-from tarsus.gait.live.moment import THERE, carried, turned
+from tarsus.gait.live.moment import GIVE, THERE, carried, turned
 from tarsus.gait.live.posture import swayed
-from tarsus.gait.live.stepping import FREEZE, go_on, meet_ground
+from tarsus.gait.live.slope import GroundPlane
+from tarsus.gait.live.stepping import FREEZE, go_on
+from tarsus.gait.live.touchdown import meet_ground
 from tarsus.kinematics.pose import Pose
 
 TWISTS = [(0.08, 0.0, 0.0), (0.0, -0.06, 0.0), (0.05, 0.02, 0.3), (0.0, 0.0, -0.5)]
@@ -232,7 +234,9 @@ def test_a_foot_that_meets_the_ground_comes_to_rest_on_it_without_a_jump(share):
     while not (~now.down & (now.share > share)).any():
         now = go_on(now, course, 0.002)
     met = ~now.down
-    found = meet_ground(now, met, setup.lift)
+    rate = 1 / (1 - setup.gait.duty)
+    found = meet_ground(setup.robot, now, met, acceleration=np.full((6, 3), 1e4), swing_rate=np.full(6, rate))
+    assert (found.give[met] <= GIVE).all()
     np.testing.assert_allclose(found.height(setup.lift), now.height(setup.lift), atol=1e-12)
     np.testing.assert_array_equal(found.foot, now.foot)
     heights = []
@@ -266,3 +270,54 @@ def test_a_sway_is_within_its_amplitudes_and_takes_each_of_them():
     np.testing.assert_allclose(np.abs(seen[:, :6]).max(axis=0), amplitude, atol=1e-9)
     assert not seen[:, 6].any()
     np.testing.assert_array_equal(swayed(np.array([*row[:7], *np.zeros(6)]), 0.3, 0.6), row[:7])
+
+
+def test_a_foot_is_put_down_on_the_slope_where_it_lands():
+    setup, rest = setup_of("strider"), rest_of("strider")
+    hill = GroundPlane(z=0.02, slope_x=0.15, slope_y=-0.1)
+    course = course_of(setup, rest, (0.08, 0.02, 0.2), ground=hill, lowest=np.full(len(rest), -1.0))
+    now = begun(setup, rest)
+    up = set()
+    for _ in range(800):
+        after = go_on(now, course, 0.005)
+        # Wherever it is bound for by now, the ground there is where it will land.
+        off = after.ground - hill.height(after.target.real, after.target.imag)
+        assert np.abs(off[~after.down]).max(initial=0.0) < 1e-12
+        up |= set(np.flatnonzero(now.down & ~after.down).tolist())
+        now = after
+    assert up == set(range(6))
+    np.testing.assert_allclose(now.height(setup.lift)[now.down], hill.height(now.foot.real, now.foot.imag)[now.down])
+
+
+def test_no_foot_is_put_down_lower_than_it_may_be():
+    setup, rest = setup_of("strider"), rest_of("strider")
+    course = course_of(setup, rest, (0.0, 0.0, 0.0), frequency=1.0, ground=GroundPlane(z=-0.05))
+    course = course._replace(lowest=np.full(len(rest), -0.01), twist=np.array([0.05, 0.0, 0.0]))
+    now = walked(begun(setup, rest), course, 3.0, 0.01)
+    np.testing.assert_allclose(now.ground[now.down], -0.01)
+
+
+def test_what_a_foot_has_given_way_is_part_of_its_swing():
+    setup, rest = setup_of("strider"), rest_of("strider")
+    given = np.linspace(-0.004, 0.006, len(rest))
+    now = begun(setup, rest)
+    now = now._replace(give_way=Lag(given, np.zeros(len(rest))))
+    course = course_of(setup, rest, (0.05, 0.0, 0.0), give_way=given)
+    after = go_on(now, course, 1e-6)
+    assert not after.down.all()
+    before, later = (m.height(setup.lift) + m.give_way.value for m in (now, after))
+    np.testing.assert_allclose(later, before, atol=1e-9)
+    assert not after.give_way.value[~after.down].any()
+
+
+def test_the_heading_frame_rides_over_the_ground():
+    setup, rest = setup_of("strider"), rest_of("strider")
+    high = np.array([0.05])
+    course = course_of(setup, rest, (0.0, 0.0, 0.0), frequency=0.0, elevation=high)
+    now = moment_of(setup, rest)
+    heights = []
+    for _ in range(400):
+        now = go_on(now, course, 0.02)
+        heights.append(float(now.elevation.value[0]))
+    assert (np.diff(heights) >= 0).all()
+    assert now.elevation.value is high

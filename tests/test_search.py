@@ -16,19 +16,25 @@ def landing():
     return moment_of(setup_of("strider"), rest_of("strider"), down=~UP, share=np.where(UP, 1.0, 0.0))
 
 
+def lowest(leg):
+    return -0.6 * LIFT
+
+
 def run(searches, now, ground, seconds=3.0):
     """Let feet go down to a ground that is so high; return the moments."""
     moments = [now]
     for _ in range(round(seconds / DT)):
         now = moments[-1]
-        moments.append(searches.step(now, DT, touches=lambda leg, now=now: bool(now.ground[leg] <= ground)))
+        moments.append(
+            searches.step(now, DT, touches=lambda leg, now=now: bool(now.ground[leg] <= ground), lowest=lowest)
+        )
     return moments
 
 
 def test_a_foot_that_touches_ground_just_then_needs_no_search():
     searches = Searches()
     now = landing()
-    assert searches.step(now, DT, touches=lambda leg: True).ground == pytest.approx(0)
+    assert searches.step(now, DT, touches=lambda leg: True, lowest=lowest).ground == pytest.approx(0)
     assert not searches
     assert searches.stands(2, touches=True)
     assert not searches.stands(2, touches=False)

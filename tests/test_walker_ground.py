@@ -41,8 +41,8 @@ class World:
 
 
 def test_flat_ground_changes_nothing():
-    world = World(lambda _: 0.0)
-    blind = Walker(load_robot("strider"), Gait.named("tripod"))
+    world = World(lambda _: 0.0, cycle_time=1.0)
+    blind = Walker(load_robot("strider"), Gait.named("tripod"), cycle_time=1.0)
     for _ in range(300):
         world.walk((0.1, 0, 0.1), DT, attitude=(0.0, 0.0))
         np.testing.assert_allclose(world.walker.angles, blind.step((0.1, 0, 0.1), DT), atol=2e-4)

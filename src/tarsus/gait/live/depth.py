@@ -67,5 +67,5 @@ def lowest_in_reach(robot: Robot, now: Moment, leg: int, stance_time: float) -> 
     places = np.stack([here, there])[:, None]
     above = (heights - float(now.elevation.value[0]))[:, None]
     solution = stand_of(now.posture.value, now.foot).solve(robot, places.real, places.imag, above)
-    works = (joint_slack(robot.geometry, solution)[..., leg] >= 0).all(axis=0)
-    return float(heights[0] if not works[0] else heights[works.argmin() - 1] if not works.all() else heights[-1])
+    fails = (joint_slack(robot.geometry, solution)[..., leg].min(axis=0) < 0).tolist()
+    return float(heights[max(fails.index(True) - 1, 0) if True in fails else -1])

@@ -16,7 +16,7 @@ from tarsus.gait.gait import Gait
 from tarsus.gait.live.lag import Lag
 from tarsus.gait.live.slope import FLAT, GroundPlane
 
-__all__ = ["GIVE", "SEA_LEVEL", "THERE", "TIE", "Course", "Moment", "carried", "stopped_part", "turned"]
+__all__ = ["GIVE", "SEA_LEVEL", "THERE", "TIE", "Course", "Moment", "carried", "stopped_part", "sunk_part", "turned"]
 
 Floats = np.ndarray[Any, Any]
 
@@ -29,7 +29,7 @@ THERE = 1e-6
 SEA_LEVEL = np.zeros(1)
 """Where the heading frame is as long as nothing is felt of the ground [m]."""
 
-GIVE = 0.125
+GIVE = 0.0625
 """Within which share of the swing a foot that has met the ground comes to rest on it at the earliest."""
 
 
@@ -164,8 +164,9 @@ class Moment(NamedTuple):
         # A foot that has met the ground comes to rest on it.
         left = min(1 - met, float(self.give[leg]))
         part = min(max((share - met) / left, 0.0), 1.0)
-        gone: float = stopped_part(part)
-        return float(self.met_height[leg]) + float(self.met_speed[leg]) * left * gone
+        start, speed = float(self.met_height[leg]), float(self.met_speed[leg]) * left
+        height: float = start + speed * stopped_part(part) + (ground - start - speed / 3) * sunk_part(part)
+        return height
 
 
 class Course(NamedTuple):
@@ -246,11 +247,23 @@ def carried(origin: complex, yaw: float, travel: Sequence[float]) -> tuple[compl
 def stopped_part(part: Any) -> Any:
     """Return what of ``speed time`` a motion has gone that stops within a time: a third of it at the end.
 
-    The quintic that begins with the speed, unbent, and ends at rest.
+    The speed falls with the square of the time that is left: never below 0, and without a jolt at the end.
 
     Parameters
     ----------
     part : float or array
         What part of the time has passed.
     """
-    return part + part * part * part * (part * (3 - part) - 8 / 3)
+    left = 1 - part
+    return (1 - left * left * left) / 3
+
+
+def sunk_part(part: Any) -> Any:
+    """Return what of a way has been gone by the quintic that begins and ends at rest.
+
+    Parameters
+    ----------
+    part : float or array
+        What part of the time has passed.
+    """
+    return part * part * part * (10 - part * (15 - 6 * part))

@@ -38,7 +38,7 @@ from tarsus.gait.live.stepping import go_on
 from tarsus.gait.live.support import support_sets
 from tarsus.gait.live.tempo import joint_limits
 from tarsus.gait.live.tilt import Commanded
-from tarsus.gait.live.touchdown import gentle_give, meet_ground, unhurried
+from tarsus.gait.live.touchdown import meet_ground, unhurried
 from tarsus.gait.live.walker_view import WalkerView
 from tarsus.gait.live.wish import Wish
 from tarsus.gait.live.wished import swaying
@@ -279,15 +279,13 @@ class Walker(WalkerView):
 
     def _meet_ground(self, met: Floats) -> None:
         """Let feet come to rest that have met the ground before they were to."""
-        now = self._now
-        give = gentle_give(
+        self._now = meet_ground(
             self.robot,
-            now,
+            self._now,
             met,
             acceleration=self.joint_acceleration,
-            swing_rate=self._frequency / (1 - self.gait.duty - now.late),
+            swing_rate=self._frequency / (1 - self.gait.duty - self._now.late),
         )
-        self._now = meet_ground(now, give > 0, float(now.posture.value[LIFT]), give)
 
     def _touches(self, leg: int) -> bool:
         """Return whether a foot at the end of its swing is on the ground, as far as is known."""

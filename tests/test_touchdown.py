@@ -1,0 +1,94 @@
+"""Feet that meet ground early: that they stop as soon as their joints can, and no sooner."""
+
+import numpy as np
+import pytest
+
+from gait_robots import PRESETS
+from sample_moments import begun, course_of, rest_of, setup_of
+from tarsus.gait.live.lag import Lag
+from tarsus.gait.live.moment import GIVE
+from tarsus.gait.live.solver import Solver
+from tarsus.gait.live.stepping import go_on
+from tarsus.gait.live.tempo import joint_limits
+from tarsus.gait.live.touchdown import meet_ground, unhurried
+
+DT = 5e-4
+
+
+def falling(name, share, frequency):
+    """In the middle of a walk, some feet in the last part of their swing."""
+    setup, rest = setup_of(name), rest_of(name)
+    course = course_of(setup, rest, (0.05, 0.02, 0.1), frequency=frequency)
+    now = begun(setup, rest)
+    for _ in range(20_000):
+        now = go_on(now, course, DT)
+        if now.clock > 1.5 and (~now.down & (now.share > share)).any():
+            return setup, course, now
+    raise AssertionError("no foot came so far")
+
+
+def met(setup, course, now):
+    """The moment in which all feet in the air have met the ground, and which of them can stop."""
+    _, acceleration = joint_limits(setup.robot, None, None)
+    rate = course.frequency / (1 - setup.gait.duty - now.late)
+    after = meet_ground(setup.robot, now, ~now.down, acceleration=acceleration, swing_rate=rate)
+    stops = np.isfinite(after.met)
+    assert not stops[now.down].any()
+    return after, stops
+
+
+@pytest.mark.parametrize("share", [0.55, 0.75, 0.9])
+@pytest.mark.parametrize("name", PRESETS)
+def test_feet_stop_within_what_their_joints_can_do(name, share):
+    setup, course, now = falling(name, share, 0.8)
+    after, stops = met(setup, course, now)
+    assert stops.any()
+    _, acceleration = joint_limits(setup.robot, None, None)
+    solver = Solver(setup.robot)
+    before = go_on(now, course, -DT)
+    angles, heights = [solver.angles(before), solver.angles(after)], [after.height(setup.lift)]
+    while not after.down[stops].all():
+        after = go_on(after, course, DT)
+        angles.append(solver.angles(after))
+        heights.append(after.height(setup.lift))
+    rate = np.diff(angles, axis=0) / DT
+    # Nothing jumps as it is met.
+    assert np.abs(rate[1] - rate[0])[stops].max() < 0.1
+    bend = np.abs(np.diff(rate[1:], axis=0)) / DT / acceleration
+    assert bend[:-1][:, stops].max() <= 1.0
+    assert (np.diff(np.array(heights), axis=0)[:, stops] <= 1e-12).all()
+    np.testing.assert_allclose(heights[-1][stops], after.ground[stops], atol=1e-12)
+    # No foot sinks lower than it was bound for anyway.
+    assert (after.ground[stops] >= now.ground[stops] - 1e-9).all()
+
+
+def test_slow_feet_stop_at_once_fast_ones_take_longer_and_the_fastest_land_as_planned():
+    gives, sunk = [], []
+    for frequency in (0.3, 0.8, 1.2, 3.0):
+        setup, course, now = falling("strider", 0.75, frequency)
+        after, stops = met(setup, course, now)
+        gives.append(after.give[stops].max(initial=0.0))
+        sunk.append((now.height(setup.lift) - after.ground)[~now.down].max())
+    assert gives[0] == pytest.approx(GIVE)
+    assert gives == [*sorted(gives[:3]), 0.0]
+    assert gives[2] > GIVE
+    assert (np.diff(sunk) > -1e-4).all()
+    assert sunk[2] > 1.2 * sunk[0]
+
+
+def test_harder_swings_take_longer():
+    setup, rest = setup_of("strider"), rest_of("strider")
+    swing = 1 - setup.gait.duty
+    now = begun(setup, rest)
+    assert unhurried(now, swing) == 1
+    up = now._replace(down=np.arange(6) > 0)
+    assert unhurried(up, swing) == 1
+    late = up._replace(late=np.full(6, swing / 2))
+    lower = up._replace(ground=np.full(6, -setup.lift))
+    assert unhurried(late, swing) == pytest.approx((1.1 / 4) ** 0.5)
+    assert unhurried(lower, swing) == pytest.approx((1.1 / 1.5) ** 0.5)
+    # Of feet on the ground neither says anything.
+    assert unhurried(late._replace(down=np.ones(6, dtype=bool)), swing) == 1
+    # Without a lift there still is one.
+    flat = up._replace(posture=Lag.still(np.zeros(13)))
+    assert unhurried(flat, swing) == 1

@@ -1,0 +1,135 @@
+"""The live walker on hills and rough ground, which it knows by its feet alone."""
+
+import numpy as np
+import pytest
+
+from gait_robots import PRESETS, preset
+from tarsus.gait.gait import Gait
+from tarsus.gait.live.admittance import Admittance
+from tarsus.gait.live.polygon import NORMALS
+from tarsus.gait.live.senses import Senses
+from tarsus.gait.live.walker import Walker
+from tarsus.gait.live.wish import Wish
+from walker_machine import GAITS, Trace
+
+GIVING = Admittance(mass=1.0, damping=60.0, stiffness=400.0, travel=0.01)
+TOUCH = 1e-4
+
+
+def touching(walker, ground):
+    return tuple(walker.feet[:, 2] <= ground + TOUCH)
+
+
+def leaning(walker):
+    rotation = walker.body.rotation
+    return float(np.arctan2(rotation[2, 1], rotation[2, 2])), float(np.arcsin(-rotation[2, 0]))
+
+
+def climb(walker, slope, seconds, *, along=0, dt=0.02):
+    """Walk onto a slope that begins in front of the feet, at half the speed that there is on level ground."""
+    trace, way = Trace(walker), np.eye(3)[along]
+    twist = 0.5 * walker.top_speed(way) * way
+
+    def hill(x):
+        return slope * np.maximum(x - 0.35, 0.0)
+
+    for _ in range(round(seconds / dt)):
+        senses = Senses(contacts=touching(walker, hill(walker.feet[:, along])), attitude=leaning(walker))
+        trace.step(tuple(twist), dt, senses=senses)
+    trace.assert_sound(flat=False)
+    return trace, hill
+
+
+@pytest.mark.parametrize("along", [0, 1])
+@pytest.mark.parametrize("levelling", [None, "level", "follow"])
+@pytest.mark.parametrize("slope", [0.1, -0.1])
+def test_it_walks_up_and_down_hills_as_high_over_the_ground_as_before(slope, levelling, along):
+    walker = Walker(preset("strider"), Gait.named("tripod"), levelling=levelling)
+    clearance = walker.body.position[2]
+    trace, hill = climb(walker, slope, 25, along=along)
+    gone = walker.body.position[along]
+    assert gone > 2.5
+    assert walker.body.position[2] - hill(gone) == pytest.approx(clearance, abs=0.012)
+    down = trace.contacts[-1]
+    np.testing.assert_allclose(trace.feet[-1][down, 2], hill(trace.feet[-1][down, along]), atol=0.003)
+    tilt = leaning(walker)
+    lean = {0: -np.arctan(slope), 1: np.arctan(slope)}[along] if levelling == "follow" else 0.0
+    assert tilt[1 - along] == pytest.approx(lean, abs=0.02)
+    assert tilt[along] == pytest.approx(0.0, abs=0.02)
+
+
+@pytest.mark.parametrize("name", PRESETS)
+def test_every_robot_climbs_where_it_follows_the_slope(name):
+    walker = Walker(preset(name), Gait.named("tripod"), levelling="follow")
+    clearance = walker.body.position[2]
+    climb(walker, 0.08, 25)
+    assert walker.place[0] > 0.35
+    assert walker.body.position[2] > clearance
+
+
+def beyond(walker):
+    """How far the foot on the ground that is farthest out is beyond its polygon [m]."""
+    now, bounds = walker._now, walker._footing.bounds
+    seen = (now.foot - now.origin) * np.exp(-1j * now.yaw)
+    return ((seen[:, None] * NORMALS.conj()).real - bounds)[now.down].max()
+
+
+def rough(name, seed, *, seconds=20.0):
+    """Ground under each foot 4 mm higher or lower anew every half second, random attitudes and forces, and wishes."""
+    rng = np.random.default_rng(seed)
+    giving = GIVING if rng.random() < 0.5 else None
+    levelling = (None, "level", "follow")[seed % 3]
+    walker = Walker(preset(name), Gait.named(GAITS[seed % 4]), levelling=levelling, admittance=giving)
+    trace, dt, out = Trace(walker), float(rng.choice([0.01, 0.02, 0.05])), -np.inf
+    for tick in range(round(seconds / dt)):
+        if tick % max(1, round(0.5 / dt)) == 0:
+            way = rng.normal(size=3) * (1, 1, 3)
+            twist = tuple(walker.top_speed(way) * way * rng.choice([0, 0.5, 1, 1, 2]))
+            ground, attitude = rng.normal(size=6) * 0.004, tuple(rng.normal(size=2) * 0.03)
+            forces = [(0.0, 0.0, force) for force in 10 + rng.normal(size=6) * 3]
+            wish = Wish(twist=twist, gait=str(rng.choice(GAITS)) if rng.random() < 0.1 else None)
+        senses = Senses(contacts=touching(walker, ground), attitude=attitude, forces=forces)
+        trace.step(wish, dt, senses=senses)
+        wish = twist
+        out = max(out, beyond(walker))
+    broken = [what for what in trace.broken(flat=False) if giving is None or "slip" not in what]
+    assert not broken, f"{name}: " + "; ".join(broken)
+    return out
+
+
+# Before feet stopped as gently as their joints can, stood on slopes and waited within their polygons, every other of
+# these broke something: 2.2 times the acceleration of a joint, feet 6 mm beyond their polygons.
+@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("name", PRESETS)
+def test_ground_that_changes_all_the_time_keeps_the_invariants(name, seed):
+    # A foot that is stopped by the ground stands where it is stopped.
+    assert rough(name, 100 * PRESETS.index(name) + seed) < 0.005
+
+
+def test_feet_that_wait_for_others_to_find_ground_stay_within_their_polygons():
+    walker = Walker(preset("strider"), Gait.named("tripod"))
+    for _ in range(100):
+        walker.step((0.0, 0.0, 0.0), 0.02, senses=Senses(contacts=(True,) * 6))
+    twist = (walker.top_speed((1, 0, 0)), 0.0, 0.0)
+    trace, modes = Trace(walker), set()
+    for tick in range(1000):
+        # All ground is a centimetre lower every other second.
+        ground = -0.01 * (tick // 100 % 2)
+        trace.step(twist, 0.02, senses=Senses(contacts=touching(walker, ground)))
+        modes.add(walker.mode)
+        assert beyond(walker) < 1e-6
+    trace.assert_sound(flat=False)
+    assert "searching" in modes
+
+
+def test_ground_out_of_reach_is_not_looked_for():
+    """Without room below, the robot says so; a foot that finds no ground goes no lower than its leg reaches."""
+    walker = Walker(preset("strider"), Gait.named("tripod"))
+    for _ in range(600):
+        walker.step(Wish(clearance=0.2), 0.02)
+    trace = Trace(walker)
+    for _ in range(300):
+        trace.step((0.05, 0.0, 0.0), 0.02, senses=Senses(contacts=touching(walker, np.full(6, -0.1))))
+    trace.assert_sound(flat=False)
+    assert walker.mode == "searching"
+    assert any("no ground under" in reason for reason in walker.limited)
