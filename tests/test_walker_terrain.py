@@ -133,3 +133,47 @@ def test_ground_out_of_reach_is_not_looked_for():
     trace.assert_sound(flat=False)
     assert walker.mode == "searching"
     assert any("no ground under" in reason for reason in walker.limited)
+
+
+def at_an_edge(name, gait):
+    """Walk until a foot hangs over a drop."""
+    walker = Walker(preset(name), Gait.named(gait))
+    trace, speed = Trace(walker), 0.5 * walker.top_speed((1, 0, 0))
+    tick_over_the_drop(trace, (speed, 0.0, 0.0), 900)
+    assert walker.mode == "searching"
+    assert any("no ground under" in reason for reason in walker.limited)
+    return trace, speed
+
+
+def tick_over_the_drop(trace, wish, ticks):
+    for _ in range(ticks):
+        ground = np.where(trace.walker.feet[:, 0] > 0.35, -0.5, 0.0)
+        trace.step(wish, 0.02, senses=Senses(contacts=touching(trace.walker, ground)))
+
+
+@pytest.mark.parametrize("gait", GAITS)
+@pytest.mark.parametrize("name", ["strider", "phantomx"])
+def test_a_foot_over_a_drop_is_drawn_back_when_the_robot_is_told_to_go_back(name, gait):
+    trace, speed = at_an_edge(name, gait)
+    walker, x = trace.walker, trace.walker.place[0]
+    hung = walker.angles
+    tick_over_the_drop(trace, (speed, 0.0, 0.0), 200)
+    np.testing.assert_allclose(walker.angles, hung, atol=1e-6)
+    tick_over_the_drop(trace, (-speed, 0.0, 0.0), 900)
+    assert walker.place[0] < x - 0.1
+    tick_over_the_drop(trace, (0.0, 0.0, 0.0), 900)
+    assert walker.mode == "standing"
+    assert walker.contacts.all()
+    trace.assert_sound(flat=False)
+    assert trace.margins().min() > 0
+
+
+def test_the_same_stop_draws_a_foot_back_only_once():
+    trace, _ = at_an_edge("strider", "tripod")
+    tick_over_the_drop(trace, (0.0, 0.0, 0.0), 300)
+    # Under its rest foothold there is no ground either.
+    assert trace.walker.mode == "searching"
+    hung = trace.walker.angles
+    tick_over_the_drop(trace, (0.0, 0.0, 0.0), 300)
+    np.testing.assert_allclose(trace.walker.angles, hung, atol=1e-6)
+    trace.assert_sound(flat=False)

@@ -96,6 +96,15 @@ class Searches:
         """The legs under which there is no ground."""
         return [leg for leg, search in self._feet.items() if search.in_vain]
 
+    @property
+    def all_in_vain(self) -> bool:
+        """Whether there is no ground under any foot that looks for it."""
+        return bool(self._feet) and all(search.in_vain for search in self._feet.values())
+
+    def give_up(self) -> None:
+        """Look for ground no more."""
+        self._feet = {}
+
     def stands(self, leg: int, *, touches: bool) -> bool:
         """Return whether a foot at the end of its swing may stand where it is: on ground, if it had to look for it.
 

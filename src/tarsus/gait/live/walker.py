@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import cmath
+import dataclasses
 import math
 from collections.abc import Sequence
 from typing import Any
@@ -22,6 +23,7 @@ from tarsus.gait.live.foothold import final_rest
 from tarsus.gait.live.footing import Footing
 from tarsus.gait.live.governor import allowed_target, excess
 from tarsus.gait.live.hands import best_lean, reachable_part
+from tarsus.gait.live.lag import Lag
 from tarsus.gait.live.levelling import LevellingMode
 from tarsus.gait.live.manipulation import Manipulation, legs_out
 from tarsus.gait.live.manner import Manner
@@ -29,11 +31,12 @@ from tarsus.gait.live.moment import SEA_LEVEL, THERE, TIE, Course, Moment
 from tarsus.gait.live.own_time import STOPPING, OwnTime
 from tarsus.gait.live.parts import Parts, all_parts
 from tarsus.gait.live.posture import LIFT, calm_sway
+from tarsus.gait.live.retreat import Retreat, swung_again
 from tarsus.gait.live.search import Searches
 from tarsus.gait.live.senses import Senses
 from tarsus.gait.live.solver import Solver
 from tarsus.gait.live.stances import lift_delays, stances, until_down
-from tarsus.gait.live.stand import Terrain
+from tarsus.gait.live.stand import LEVEL, Terrain
 from tarsus.gait.live.stepping import go_on
 from tarsus.gait.live.support import support_sets
 from tarsus.gait.live.tempo import joint_limits
@@ -164,6 +167,7 @@ class Walker(WalkerView):
         self._leaning_for: tuple[int, ...] = ()
         self._lean = 0j
         self._searches = Searches()
+        self._retreat = Retreat()
         self._felt: Felt | None = None
         self._hold = 0.0
         self._elevation = SEA_LEVEL
@@ -208,6 +212,7 @@ class Walker(WalkerView):
         self._ask(wish)
         self._sense(senses, dt)
         self._change(dt)
+        self._draw_back(wish)
         self._hands.tell(wish, dt, self._reachable)
         self._aim(wish.twist)
         self._advance(dt)
@@ -290,6 +295,22 @@ class Walker(WalkerView):
     def _touches(self, leg: int) -> bool:
         """Return whether a foot at the end of its swing is on the ground, as far as is known."""
         return self._felt is None or self._felt.contacts is None or self._felt.contacts[leg] is not False
+
+    def _draw_back(self, wish: Wish) -> None:
+        """Let feet that hang over a hole swing once more as soon as something else is asked for."""
+        now, legs = self._now, self._searches.in_vain
+        if not self._searches.all_in_vain:
+            return
+        wanted = dataclasses.replace(self._agenda.wanted, correction=_NO_MOTION, terrain=LEVEL)
+        if self._retreat.consider((tuple(wish.twist), wanted), now.origin):
+            # It stands still, whatever it was about to do.
+            self._target, now = np.zeros(3), now._replace(twist=Lag.still(np.zeros(3)))
+        if self._retreat.under_way and np.delete(now.down, legs).all():
+            assert self._feel is not None  # or nobody would look for ground
+            now = swung_again(now, legs, self.gait, self._feel.plane)
+            self._searches.give_up()
+            self._retreat.begun(legs)
+        self._now = now
 
     # Changes of how it stands and steps.
 
@@ -445,6 +466,8 @@ class Walker(WalkerView):
         """Set the target of the twist: as much of the wish as the legs allow, for good and right now."""
         share, leg = self._largest_share(tuple(twist))
         self._limited = self._reasons(share, leg)
+        if self._retreat.under_way:
+            return
         part = min(share, self._patience)
         wish = [part * speed for speed in twist]
         if not self._walking:
@@ -587,7 +610,9 @@ class Walker(WalkerView):
             return self._hands.carry(go_on(self._now, course, time), time, swing_time=swing_time)
 
         fastest = 1.0 if self._felt is None else unhurried(self._now, 1 - self.gait.duty)
-        self._now = self._own.advance(move, self._solve, dt, stop=bool(self._searches), fastest=fastest)
+        self._now = self._own.advance(
+            move, self._solve, dt, stop=bool(self._searches) and not self._retreat.under_way, fastest=fastest
+        )
         self._hands.step(dt * self._own.rate, self._now.down)
         self._finish(before, dt)
 
@@ -601,6 +626,8 @@ class Walker(WalkerView):
         if landed.any():
             self._footing.land(landed)
             self._searches.land(landed)
+            if not self._searches:
+                self._retreat.landed(landed)
         arrived = self._arrived()
         if self._settling is not None and now.down.all():
             self._switch(*self._settling)

@@ -1,0 +1,109 @@
+"""Feet that hang over a hole: once something else is asked for, they are drawn back and put down elsewhere."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from tarsus.gait.gait import Gait
+from tarsus.gait.live.moment import Moment
+from tarsus.gait.live.slope import GroundPlane
+
+__all__ = ["Retreat", "swung_again"]
+
+Floats = np.ndarray[Any, Any]
+
+# What the robot must have moved for another try to make sense [m].
+_ELSEWHERE = 1e-3
+# Of how much of its swing a foot may be deprived at most.
+_LATEST = 0.5
+
+
+class Retreat:
+    """What is to be done about feet over a hole: they hang there until something else is asked for.
+
+    Attributes
+    ----------
+    under_way : bool
+        Whether they are to be drawn back as soon as all others are down.
+    """
+
+    def __init__(self) -> None:
+        self.under_way = False
+        self._led_here: Any = None
+        self._tried: tuple[Any, complex] | None = None
+        self._legs: set[int] = set()
+
+    def consider(self, asked: Any, place: complex) -> bool:
+        """Return whether feet that have just been found to hang over a hole are to be drawn back.
+
+        Parameters
+        ----------
+        asked : object
+            What is asked for: what it was when they got there is not tried again, anything else once, and more often
+            as long as the robot gets on by it.
+        place : complex
+            Where the robot is [m].
+        """
+        if self._led_here is None:
+            self._led_here = asked
+        if self.under_way or asked == self._led_here:
+            return False
+        if self._tried is not None and self._tried[0] == asked and abs(place - self._tried[1]) < _ELSEWHERE:
+            return False
+        self.under_way, self._tried = True, (asked, place)
+        return True
+
+    def begun(self, legs: Sequence[int]) -> None:
+        """Note that feet swing once more.
+
+        Parameters
+        ----------
+        legs : sequence of int
+            Their legs.
+        """
+        self.under_way, self._legs = False, set(legs)
+
+    def landed(self, landed: Floats) -> None:
+        """Note which feet have been put down in this tick; once it is those over the hole, that is over.
+
+        Parameters
+        ----------
+        landed : array of bool, shape (legs,)
+            The feet.
+        """
+        self._legs -= set(np.flatnonzero(landed).tolist())
+        if not self._legs:
+            self.under_way, self._led_here, self._tried = False, None, None
+
+
+def swung_again(now: Moment, legs: Sequence[int], gait: Gait, ground: GroundPlane) -> Moment:
+    """Return the moment in which feet that have come to the end of their swing begin it once more, where they are.
+
+    The clock goes back to when they were lifted: all others wait for their turn once more.
+
+    Parameters
+    ----------
+    now : Moment
+        The moment; every other foot is down.
+    legs : sequence of int
+        The legs whose feet are at the end of their swing, at rest.
+    gait : Gait
+        Order of the steps.
+    ground : GroundPlane
+        Where the ground is expected.
+    """
+    again = np.zeros(len(now.down), dtype=bool)
+    again[list(legs)] = True
+    since = now.clock - (np.asarray(gait.offsets) + gait.duty + now.number)
+    back = float(since[again].min())
+    return now._replace(
+        clock=now.clock - back,
+        share=np.where(again, 0.0, now.share),
+        late=np.where(again, np.clip(since - back, 0.0, _LATEST * (1 - gait.duty)), now.late),
+        start_height=np.where(again, now.ground, now.start_height),
+        ground=np.where(again, ground.height(now.foot.real, now.foot.imag), now.ground),
+        met=np.where(again, np.inf, now.met),
+    )

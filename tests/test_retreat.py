@@ -1,0 +1,61 @@
+"""Feet over a hole: when they are drawn back, and how they swing once more."""
+
+import numpy as np
+
+from sample_moments import course_of, moment_of, rest_of, setup_of
+from tarsus.gait.live.retreat import Retreat, swung_again
+from tarsus.gait.live.slope import GroundPlane
+from tarsus.gait.live.stepping import go_on
+
+DOWN = np.ones(6, dtype=bool)
+
+
+def test_what_led_there_is_not_tried_again_and_anything_else_once():
+    retreat = Retreat()
+    assert not retreat.consider("on", 0j)
+    assert not retreat.consider("on", 0j)
+    assert retreat.consider("back", 0j)
+    assert retreat.under_way
+    # Once it is under way, that is that.
+    assert not retreat.consider("left", 0j)
+    retreat.begun([2])
+    assert not retreat.under_way
+    assert not retreat.consider("back", 0j)
+    assert retreat.consider("left", 0j)
+    retreat.begun([2])
+    # Where the robot gets on, another try makes sense.
+    assert retreat.consider("left", 0.01j)
+    retreat.begun([2, 3])
+    retreat.landed(np.arange(6) == 1)
+    retreat.landed(np.arange(6) == 2)
+    assert not retreat.consider("left", 0.01j)
+    # All feet are down: what is asked for by then leads there, should it happen again.
+    retreat.landed(np.arange(6) == 3)
+    assert not retreat.consider("back", 0.01j)
+    assert retreat.consider("on", 0.01j)
+
+
+def test_a_foot_swings_once_more_from_where_it_hangs_to_another_foothold():
+    setup, rest = setup_of("strider"), rest_of("strider")
+    gait, hole = setup.gait, np.arange(6) == 2
+    swing = 1 - gait.duty
+    clock = gait.offsets[2] + 1.0 + 0.01
+    number = np.ceil(clock - np.asarray(gait.offsets) - gait.duty - 1e-9)
+    number[2] = 0
+    now = moment_of(setup, rest, clock=clock, number=number, down=~hole, share=np.where(hole, 1.0, 0.0))
+    now = now._replace(ground=np.where(hole, -0.02, 0.0))
+    again = swung_again(now, [2], gait, GroundPlane(z=0.005))
+    np.testing.assert_array_equal(again.foot, now.foot)
+    np.testing.assert_allclose(again.height(setup.lift)[2], -0.02)
+    # All others wait for as long as that takes.
+    since = again.clock - (np.asarray(gait.offsets) + gait.duty + again.number)
+    np.testing.assert_allclose(since[2], 0, atol=1e-12)
+    assert (since[~hole] <= -swing + 1e-9).all()
+    course = course_of(setup, rest, (-0.05, 0.0, 0.0), frequency=1.0)
+    landed = again
+    while not landed.down[2]:
+        landed = go_on(landed, course, 0.005)
+        assert landed.down[~hole].all()
+    assert np.abs(landed.foot[2] - now.foot[2]) > 0.01
+    np.testing.assert_allclose(landed.ground[2], 0.005)
+    assert landed.number[2] == now.number[2] + 1
