@@ -23,7 +23,6 @@ def test_planned_is_a_depth_below_the_slope_under_each_foot():
     seen = (now.foot - EARTH) * np.exp(-1j * FACING)
     expected = 0.2 + 0.1 * seen.real - 0.05 * seen.imag - DEPTH * setup.lift
     np.testing.assert_allclose(lowest_planned(now, Terrain(slope, DEPTH)), expected)
-    # Where nothing was planned, it is a depth below what is expected.
     np.testing.assert_allclose(lowest_planned(now, LEVEL), 0.2 - DEPTH * setup.lift)
 
 

@@ -177,3 +177,18 @@ def test_the_same_stop_draws_a_foot_back_only_once():
     tick_over_the_drop(trace, (0.0, 0.0, 0.0), 300)
     np.testing.assert_allclose(trace.walker.angles, hung, atol=1e-6)
     trace.assert_sound(flat=False)
+
+
+@pytest.mark.parametrize("levelling", [None, "level"])
+@pytest.mark.parametrize("feeling", [False, True])
+def test_a_leg_that_was_a_hand_is_put_down_on_the_ground(levelling, feeling):
+    walker = Walker(preset("strider"), Gait.named("wave"), levelling=levelling)
+    trace, twist = Trace(walker), (0.006, 0.0, 0.01)
+    point = tuple(walker.feet[0] + [0.03, 0.02, 0.06])
+    for tick in range(1000):
+        wish = {100: Wish(twist=twist, hands={0: point}), 500: Wish(twist=twist, hands={0: None})}.get(tick, twist)
+        trace.step(wish, 0.025, senses=Senses(contacts=touching(walker, 0.0)) if feeling else None)
+        assert tick != 499 or walker.feet[0, 2] == pytest.approx(0.06, abs=1e-3)
+    assert not walker._hands
+    trace.assert_sound(flat=False)
+    assert np.abs(trace.feet[-1, :, 2][trace.contacts[-1]]).max() < 1e-4

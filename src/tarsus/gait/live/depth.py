@@ -31,11 +31,9 @@ def lowest_planned(now: Moment, terrain: Terrain) -> Floats:
     now : Moment
         The moment.
     terrain : Terrain
-        How the ground was thought to lie; where it has no depth, no polygon says anything.
+        How the ground was thought to lie.
     """
     deep = DEPTH * float(now.posture.value[LIFT])
-    if not terrain.depth:
-        return now.ground - deep
     seen = (now.target - now.origin) * cmath.exp(-1j * now.yaw)
     return np.asarray(now.elevation.value + (terrain.slope.conjugate() * seen).real - deep)
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import cmath
 import dataclasses
 import math
 from collections.abc import Sequence
@@ -14,11 +13,9 @@ from tarsus.errors import InputError, UnreachableError
 from tarsus.gait.gait import Gait
 from tarsus.gait.live.admittance import Admittance
 from tarsus.gait.live.agenda import Agenda
-from tarsus.gait.live.carriage import RISING, Carriage, rising
+from tarsus.gait.live.carriage import Carriage
 from tarsus.gait.live.change import Change, work_out
-from tarsus.gait.live.depth import DEPTH, lowest_in_reach, lowest_planned
 from tarsus.gait.live.envelope import Envelope
-from tarsus.gait.live.feel import Feel, Felt
 from tarsus.gait.live.foothold import final_rest
 from tarsus.gait.live.footing import Footing
 from tarsus.gait.live.governor import allowed_target, excess
@@ -27,21 +24,20 @@ from tarsus.gait.live.lag import Lag
 from tarsus.gait.live.levelling import LevellingMode
 from tarsus.gait.live.manipulation import Manipulation, legs_out
 from tarsus.gait.live.manner import Manner
-from tarsus.gait.live.moment import SEA_LEVEL, THERE, TIE, Course, Moment
-from tarsus.gait.live.own_time import STOPPING, OwnTime
+from tarsus.gait.live.moment import THERE, TIE, Course, Moment
+from tarsus.gait.live.own_time import OwnTime
 from tarsus.gait.live.parts import Parts, all_parts
 from tarsus.gait.live.posture import LIFT, calm_sway
-from tarsus.gait.live.retreat import Retreat, swung_again
-from tarsus.gait.live.search import Searches
 from tarsus.gait.live.senses import Senses
 from tarsus.gait.live.solver import Solver
 from tarsus.gait.live.stances import lift_delays, stances, until_down
-from tarsus.gait.live.stand import LEVEL, Terrain
+from tarsus.gait.live.stand import LEVEL
 from tarsus.gait.live.stepping import go_on
 from tarsus.gait.live.support import support_sets
 from tarsus.gait.live.tempo import joint_limits
 from tarsus.gait.live.tilt import Commanded
 from tarsus.gait.live.touchdown import meet_ground, unhurried
+from tarsus.gait.live.underfoot import Underfoot
 from tarsus.gait.live.walker_view import WalkerView
 from tarsus.gait.live.wish import Wish
 from tarsus.gait.live.wished import swaying
@@ -144,10 +140,7 @@ class Walker(WalkerView):
         if isinstance(change, str):
             raise UnreachableError(f"the robot can't walk so: {change}")
         self._begin_standing(change)
-        self._levelling, self._admittance = levelling, admittance
-        self._feel: Feel | None = None
-        if levelling is not None or admittance is not None:
-            self._feel = self._feeling()
+        self._underfoot = Underfoot(self.robot, self.angles, self.feet, levelling=levelling, admittance=admittance)
 
     def _begin_standing(self, change: Change) -> None:
         """Stand in the rest stance, the heading frame over G's origin."""
@@ -166,15 +159,10 @@ class Walker(WalkerView):
         self._asked: Wish | None = None
         self._leaning_for: tuple[int, ...] = ()
         self._lean = 0j
-        self._searches = Searches()
-        self._retreat = Retreat()
-        self._felt: Felt | None = None
-        self._hold = 0.0
-        self._elevation = SEA_LEVEL
         self._walking = False
         self.time = 0.0
         self._set_gait(change.manner.gait)
-        self._all, self._none, self._flat = np.ones(legs, dtype=bool), np.zeros(legs, dtype=bool), np.zeros(legs)
+        self._all, self._none = np.ones(legs, dtype=bool), np.zeros(legs, dtype=bool)
         self._now = Moment.standing(change.rest, self._carriage.goal)
         self._own = OwnTime(self._solve(self._now), self.joint_speed, self.joint_acceleration)
 
@@ -223,7 +211,7 @@ class Walker(WalkerView):
         """Note what is asked for besides the twist, where it isn't what was asked for before."""
         wanted = self._agenda.wanted
         gone = legs_out(wish, wanted.gone, self.robot.legs)
-        correction, terrain = self._correction(gone), self._terrain()
+        correction, terrain = self._correction(gone), self._underfoot.terrain
         known = wish.only_twist or wish is self._asked
         if not known or (gone, correction, terrain) != (wanted.gone, wanted.correction, wanted.terrain):
             self._agenda.ask(wish, gone, correction, terrain)
@@ -231,7 +219,7 @@ class Walker(WalkerView):
 
     def _correction(self, gone: tuple[int, ...]) -> tuple[float, ...]:
         """Return what the ground, and legs that don't bear, ask of the body."""
-        felt = self._felt.correction if self._felt else _NO_MOTION
+        felt = self._underfoot.felt.correction if self._underfoot.felt else _NO_MOTION
         if not gone:
             return felt
         if gone != self._leaning_for:
@@ -241,76 +229,35 @@ class Walker(WalkerView):
             self._leaning_for, self._lean = gone, best_lean(rest, complex(com[0], com[1]), sets)
         return (felt[0] + self._lean.real, felt[1] + self._lean.imag, *felt[2:])
 
-    def _terrain(self) -> Terrain:
-        """Return how the ground lies, as far as it is felt."""
-        if self._felt is None:
-            return self._agenda.wanted.terrain
-        return Terrain(self._felt.slope, DEPTH if self._hold or self._admittance else 0.0)
-
-    # What is felt.
-
-    def _feeling(self) -> Feel:
-        return Feel(self.robot, self.angles, self.feet, levelling=self._levelling, admittance=self._admittance)
-
     def _sense(self, senses: Senses | None, dt: float) -> None:
         """Take in what is measured, and let feet come to rest that have met the ground early."""
-        if senses is None and self._feel is None:
+        if senses is None and self._underfoot.numb:
             return
-        self._feel = self._feel or self._feeling()
         now, body = self._now, self._agenda.wanted.body
         height = float(now.posture.value[2]) - self._agenda.doing.manner.correction[2]
-        lean = now.posture.value[3:5] - np.array(body[3:5])
-        self._feel.leaning(float(lean[0]), float(lean[1]))
-        self._felt = self._feel.step(
+        self._underfoot.sense(
             senses,
             dt,
+            now,
             feet=self.feet,
-            offsets=now.give_way.value,
             contacts=self.contacts,
-            yaw=now.yaw,
-            commanded=Commanded(body[3], body[4], now.yaw + body[5], height),
             angles=self.angles,
+            commanded=Commanded(body[3], body[4], now.yaw + body[5], height),
         )
-        # A lag is late by 2 over its bandwidth: where the robot will be by then.
-        ahead = now.origin + cmath.exp(1j * now.yaw) * complex(*now.twist.value[:2].tolist()) * (2 / RISING)
-        self._elevation = np.array([self._feel.plane.height(ahead.real, ahead.imag)])
-        if self._felt.contacts is not None:
-            # A foot that finds no ground is noticed a tick later, and the walk takes a while to stop.
-            self._hold = max(self._hold, STOPPING + dt)
-            touch = np.array([c is True for c in self._felt.contacts])
-            met = touch & ~now.down & (now.share > _DESCENDING) & (now.share < 1.0) & np.isinf(now.met)
-            if met.any():
-                self._meet_ground(met)
-
-    def _meet_ground(self, met: Floats) -> None:
-        """Let feet come to rest that have met the ground before they were to."""
-        self._now = meet_ground(
-            self.robot,
-            self._now,
-            met,
-            acceleration=self.joint_acceleration,
-            swing_rate=self._frequency / (1 - self.gait.duty - self._now.late),
-        )
-
-    def _touches(self, leg: int) -> bool:
-        """Return whether a foot at the end of its swing is on the ground, as far as is known."""
-        return self._felt is None or self._felt.contacts is None or self._felt.contacts[leg] is not False
+        met = self._underfoot.met(now)
+        if met.any():
+            swing_rate = self._frequency / (1 - self.gait.duty - now.late)
+            self._now = meet_ground(self.robot, now, met, acceleration=self.joint_acceleration, swing_rate=swing_rate)
 
     def _draw_back(self, wish: Wish) -> None:
         """Let feet that hang over a hole swing once more as soon as something else is asked for."""
-        now, legs = self._now, self._searches.in_vain
-        if not self._searches.all_in_vain:
+        if not self._underfoot.searches.all_in_vain:
             return
         wanted = dataclasses.replace(self._agenda.wanted, correction=_NO_MOTION, terrain=LEVEL)
-        if self._retreat.consider((tuple(wish.twist), wanted), now.origin):
+        again = self._underfoot.draw_back(self._now, (tuple(wish.twist), wanted), self.gait)
+        if again is not None:
             # It stands still, whatever it was about to do.
-            self._target, now = np.zeros(3), now._replace(twist=Lag.still(np.zeros(3)))
-        if self._retreat.under_way and np.delete(now.down, legs).all():
-            assert self._feel is not None  # or nobody would look for ground
-            now = swung_again(now, legs, self.gait, self._feel.plane)
-            self._searches.give_up()
-            self._retreat.begun(legs)
-        self._now = now
+            self._target, self._now = np.zeros(3), again._replace(twist=Lag.still(np.zeros(3)))
 
     # Changes of how it stands and steps.
 
@@ -364,7 +311,7 @@ class Walker(WalkerView):
         frequency = min(self._frequency, 1 / change.tempo.cycle_time)
         leaving = list(set(change.manner.gone) - set(self._agenda.doing.manner.gone))
         share, _ = change.stepping.largest_share(
-            self._now.twist.value, stance_time=new.duty / frequency, duty=new.duty, hold=self._hold
+            self._now.twist.value, stance_time=new.duty / frequency, duty=new.duty, hold=self._underfoot.hold
         )
         if new.duty == old.duty and new.offsets == old.offsets:
             begins, ends = self._stances(frequency)
@@ -386,7 +333,7 @@ class Walker(WalkerView):
         """Let all feet come down, if they may wait so long; then the new order begins with the leg that suits best."""
         frequency = 1 / change.tempo.cycle_time
         delays = lift_delays(change.manner.gait, change.tempo.cycle_time)
-        ends = until_down(self._now, self.gait, self._frequency).max() + delays + self._hold
+        ends = until_down(self._now, self.gait, self._frequency).max() + delays + self._underfoot.hold
         bounds = np.minimum(self._hands.without(self._footing.begun(change)), change.there.bounds)
         bandwidth = _bandwidth(change.manner.gait, frequency)
         over = self._excess(np.zeros(delays.shape), ends, bounds, bandwidth).max(axis=(1, 2, 3, 4))
@@ -448,10 +395,11 @@ class Walker(WalkerView):
     def _stances(self, frequency: float) -> tuple[Floats, Floats]:
         """Return from when until when each foot is where it stands, or where it is about to [s]."""
         if self._settling is None:
-            return stances(self._now, self.gait, frequency, self._hold)
+            return stances(self._now, self.gait, frequency, self._underfoot.hold)
         change, first = self._settling
         begins = until_down(self._now, self.gait, self._frequency)
-        return begins, begins.max() + lift_delays(change.manner.gait, change.tempo.cycle_time)[first] + self._hold
+        delays = lift_delays(change.manner.gait, change.tempo.cycle_time)[first]
+        return begins, begins.max() + delays + self._underfoot.hold
 
     def _excess(self, begins: Floats, ends: Floats, bounds: Floats, bandwidth: float) -> Floats:
         return excess(self._now, self._target[None], begins=begins, ends=ends, bounds=bounds, bandwidth=bandwidth)
@@ -466,7 +414,7 @@ class Walker(WalkerView):
         """Set the target of the twist: as much of the wish as the legs allow, for good and right now."""
         share, leg = self._largest_share(tuple(twist))
         self._limited = self._reasons(share, leg)
-        if self._retreat.under_way:
+        if self._underfoot.retreats:
             return
         part = min(share, self._patience)
         wish = [part * speed for speed in twist]
@@ -498,8 +446,9 @@ class Walker(WalkerView):
     def _largest_share(self, twist: tuple[float, ...]) -> tuple[float, int]:
         """Return how much of a twist works for good in all that is gone over to, and which leg stops it."""
         doing, settling = self._agenda.doing, self._settling[0] if self._settling else None
+        hold = self._underfoot.hold
         frequency = min(self._frequency, 1 / doing.tempo.cycle_time)
-        key = (twist, frequency, self._hold, self._footing.way, self._agenda.ready, self._stepping, settling)
+        key = (twist, frequency, hold, self._footing.way, self._agenda.ready, self._stepping, settling)
         if key == self._share_of:
             return self._share
         asked: list[tuple[Change, Envelope]] = [(doing, self._footing.way)]
@@ -510,7 +459,7 @@ class Walker(WalkerView):
         for change, way in asked:
             duty = change.manner.gait.duty
             stance_time = duty * max(1 / frequency, change.tempo.cycle_time)
-            allowed, which = way.largest_share(np.array(twist), stance_time=stance_time, duty=duty, hold=self._hold)
+            allowed, which = way.largest_share(np.array(twist), stance_time=stance_time, duty=duty, hold=hold)
             if allowed < share:
                 share, leg = allowed, which
         self._share_of, self._share = key, (share, leg)
@@ -532,9 +481,9 @@ class Walker(WalkerView):
             reasons.append(
                 f"sway: {100 * calm:.0f} % of it; the joints allow no more at {self.cycle_time:.2f} s a cycle"
             )
-        if self._felt is not None:
-            reasons += self._felt.refused
-        for missing in self._searches.in_vain:
+        if self._underfoot.felt is not None:
+            reasons += self._underfoot.felt.refused
+        for missing in self._underfoot.searches.in_vain:
             reasons.append(f"no ground under {self.robot.leg_names[missing]}: the robot holds still")
         return tuple(reasons)
 
@@ -550,17 +499,14 @@ class Walker(WalkerView):
 
     def _course(self, dt: float = 0.0) -> Course:
         now = self._now
-        steps, lands, holds = self._all, self._all, self._settling is not None or bool(self._searches)
+        steps, lands, holds = self._all, self._all, self._settling is not None
         if self._hands:
             steps = steps.copy()
             steps[list(self._agenda.doing.manner.gone)] = False
-        if self._felt is not None:
-            lands = lands.copy()
-            for leg in np.flatnonzero(~now.down).tolist():
-                lands[leg] = self._searches.stands(leg, touches=self._touches(leg))
-            # Where a foot that is about to land finds no ground, none may lift in its stead.
+        if self._underfoot.felt is not None:
             soon = now.share + dt * self._frequency / (1 - self.gait.duty - now.late) >= 1.0 - TIE
-            holds = holds or bool((~now.down & ~lands & soon).any())
+            lands, waits = self._underfoot.lands(now, soon)
+            holds = holds or waits
         return Course(
             gait=self.gait,
             frequency=self._frequency if self._walking else 0.0,
@@ -574,45 +520,27 @@ class Walker(WalkerView):
             room=self._footing.room,
             holds=holds,
             beats=self._beats,
-            **self._ground(),
+            **self._underfoot.course(now, self._agenda.doing.manner.terrain),
         )
-
-    def _ground(self) -> dict[str, Any]:
-        """Return what a course knows of the ground."""
-        if self._feel is None or self._felt is None:
-            return {"give_way": self._flat}
-        now, lowest = self._now, lowest_planned(self._now, self._agenda.doing.manner.terrain)
-        return {
-            # Feet in the air have nothing to give way to.
-            "give_way": np.maximum(self._felt.offsets, np.minimum(lowest - now.ground, 0.0)) * now.down,
-            "ground": self._feel.plane,
-            "lowest": lowest,
-            "elevation": self._elevation,
-            "elevation_bandwidth": rising(float(self._elevation[0] - now.elevation.value[0])),
-        }
-
-    def _lowest(self, leg: int) -> float:
-        """Return how low a foot may look for ground [m]."""
-        now, terrain = self._now, self._agenda.doing.manner.terrain
-        reached = lowest_in_reach(self.robot, now, leg, self.gait.duty / self._frequency + self._hold)
-        return min(float(lowest_planned(now, terrain)[leg]), reached) if terrain.depth else reached
 
     def _advance(self, dt: float) -> None:
         """Go on by one tick, or less of it where the joints need longer."""
         sway = self._agenda.doing.manner.sway if self._walking else _NO_MOTION
         self._carriage.sway(sway, frequency=self._frequency, beats=self._beats)
-        before, course = self._now, self._course(dt)
-        if self._felt is not None:
-            self._now = self._searches.step(before, dt, touches=self._touches, lowest=self._lowest)
+        before, course, underfoot = self._now, self._course(dt), self._underfoot
+        self._now = underfoot.search(
+            before,
+            dt,
+            terrain=self._agenda.doing.manner.terrain,
+            stance_time=self.gait.duty / self._frequency,
+        )
         swing_time = (1 - self.gait.duty) / self._frequency
 
         def move(time: float) -> Moment:
             return self._hands.carry(go_on(self._now, course, time), time, swing_time=swing_time)
 
-        fastest = 1.0 if self._felt is None else unhurried(self._now, 1 - self.gait.duty)
-        self._now = self._own.advance(
-            move, self._solve, dt, stop=bool(self._searches) and not self._retreat.under_way, fastest=fastest
-        )
+        fastest = 1.0 if underfoot.felt is None else unhurried(self._now, 1 - self.gait.duty)
+        self._now = self._own.advance(move, self._solve, dt, stop=underfoot.stops, fastest=fastest)
         self._hands.step(dt * self._own.rate, self._now.down)
         self._finish(before, dt)
 
@@ -625,9 +553,7 @@ class Walker(WalkerView):
         landed = now.down & ~before.down if now.down is not before.down else self._none
         if landed.any():
             self._footing.land(landed)
-            self._searches.land(landed)
-            if not self._searches:
-                self._retreat.landed(landed)
+            self._underfoot.land(landed)
         arrived = self._arrived()
         if self._settling is not None and now.down.all():
             self._switch(*self._settling)

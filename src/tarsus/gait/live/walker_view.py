@@ -15,8 +15,8 @@ from tarsus.gait.live.manipulation import Manipulation
 from tarsus.gait.live.moment import Moment
 from tarsus.gait.live.own_time import OwnTime
 from tarsus.gait.live.posture import LIFT, stand_of, swayed
-from tarsus.gait.live.search import Searches
 from tarsus.gait.live.stand import Stand
+from tarsus.gait.live.underfoot import Underfoot
 from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.stability import stability_margin
 from tarsus.robot.robot import Robot
@@ -47,9 +47,8 @@ class WalkerView:
     _frequency: float
     _walking: bool
     _beats: int
-    _hold: float
     _hands: Manipulation
-    _searches: Searches
+    _underfoot: Underfoot
     _limited: tuple[str, ...]
 
     def _stand(self, now: Moment) -> Stand:
@@ -58,7 +57,7 @@ class WalkerView:
     @property
     def mode(self) -> str:
         """``"standing"``, ``"walking"``; ``"stopping"``, on the way to standing; ``"searching"`` for ground."""
-        if self._searches:
+        if self._underfoot.searches:
             return "searching"
         if not self._walking:
             return "standing"
@@ -142,5 +141,5 @@ class WalkerView:
         doing = self._agenda.doing
         duty = self.gait.duty
         stance_time = duty * doing.tempo.cycle_time
-        share, _ = doing.there.largest_share(way, stance_time=stance_time, duty=duty, hold=self._hold)
+        share, _ = doing.there.largest_share(way, stance_time=stance_time, duty=duty, hold=self._underfoot.hold)
         return share

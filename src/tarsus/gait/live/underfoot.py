@@ -1,0 +1,253 @@
+"""What is under the feet: what the walker feels of the ground, and what it has its feet do about that."""
+
+from __future__ import annotations
+
+import cmath
+from typing import Any
+
+import numpy as np
+
+from tarsus.gait.gait import Gait
+from tarsus.gait.live.admittance import Admittance
+from tarsus.gait.live.carriage import RISING, rising
+from tarsus.gait.live.depth import DEPTH, lowest_in_reach, lowest_planned
+from tarsus.gait.live.feel import Feel, Felt
+from tarsus.gait.live.levelling import LevellingMode
+from tarsus.gait.live.moment import SEA_LEVEL, Moment
+from tarsus.gait.live.own_time import STOPPING
+from tarsus.gait.live.retreat import Retreat, swung_again
+from tarsus.gait.live.search import Searches
+from tarsus.gait.live.senses import Senses
+from tarsus.gait.live.stand import LEVEL, Terrain
+from tarsus.gait.live.tilt import Commanded
+from tarsus.robot.robot import Robot
+
+__all__ = ["Underfoot"]
+
+Floats = np.ndarray[Any, Any]
+
+# What share of the swing is over before ground may be met.
+_DESCENDING = 0.5
+
+
+class Underfoot:
+    """What a walker knows of the ground under its feet, and the feet that look for it.
+
+    Parameters
+    ----------
+    robot : Robot
+        A single robot.
+    angles, feet : array, shape (legs, 3)
+        Joint angles [rad] and feet in G [m] when it stands.
+    levelling : "level", "follow" or None
+        Whether the body stays level on ground that is not, or follows its slope.
+    admittance : Admittance, optional
+        How the feet give way to the forces on them; left out, they don't.
+
+    Attributes
+    ----------
+    numb : bool
+        Whether there has been nothing to feel with, nor anything to do about it.
+    felt : Felt or None
+        What was felt last; None as long as it is numb.
+    hold : float
+        How long feet may have to wait for others that look for ground [s].
+    searches : Searches
+        The feet that do.
+    """
+
+    def __init__(
+        self,
+        robot: Robot,
+        angles: Floats,
+        feet: Floats,
+        *,
+        levelling: LevellingMode | None,
+        admittance: Admittance | None,
+    ) -> None:
+        self.felt: Felt | None = None
+        self.hold = 0.0
+        self.searches = Searches()
+        self.numb = levelling is None and admittance is None
+        self._robot, self._gives_way = robot, admittance is not None
+        self._feel = Feel(robot, angles, feet, levelling=levelling, admittance=admittance)
+        self._retreat = Retreat()
+        self._elevation, self._still = SEA_LEVEL, np.zeros(robot.legs)
+
+    @property
+    def terrain(self) -> Terrain:
+        """How the ground lies, as far as it is felt."""
+        if self.felt is None:
+            return LEVEL
+        return Terrain(self.felt.slope, DEPTH if self.hold or self._gives_way else 0.0)
+
+    @property
+    def stops(self) -> bool:
+        """Whether the robot is to stand still, as feet look for ground."""
+        return bool(self.searches) and not self.retreats
+
+    @property
+    def retreats(self) -> bool:
+        """Whether a foot over a hole is to be drawn back once all others are down."""
+        return self._retreat.under_way
+
+    def sense(
+        self,
+        senses: Senses | None,
+        dt: float,
+        now: Moment,
+        *,
+        feet: Floats,
+        contacts: Floats,
+        angles: Floats,
+        commanded: Commanded,
+    ) -> None:
+        """Take in what is measured.
+
+        Parameters
+        ----------
+        senses : Senses, optional
+            The readings.
+        dt : float
+            Time since the last tick [s].
+        now : Moment
+            The moment.
+        feet, angles : array, shape (legs, 3)
+            The feet in G [m], the joints [rad].
+        contacts : array of bool, shape (legs,)
+            Which feet the walker has put down.
+        commanded : Commanded
+            How the body is asked to stand.
+        """
+        self.numb = False
+        lean = now.posture.value[3:5] - (commanded.roll, commanded.pitch)
+        self._feel.leaning(float(lean[0]), float(lean[1]))
+        self.felt = self._feel.step(
+            senses,
+            dt,
+            feet=feet,
+            offsets=now.give_way.value,
+            contacts=contacts,
+            yaw=now.yaw,
+            commanded=commanded,
+            angles=angles,
+        )
+        # A lag is late by 2 over its bandwidth: where the robot will be by then.
+        forward, left, _ = now.twist.value.tolist()
+        ahead = now.origin + cmath.exp(1j * now.yaw) * complex(forward, left) * (2 / RISING)
+        self._elevation = np.array([self._feel.plane.height(ahead.real, ahead.imag)])
+        if self.felt.contacts is not None:
+            # A foot that finds no ground is noticed a tick later, and the walk takes a while to stop.
+            self.hold = max(self.hold, STOPPING + dt)
+
+    def met(self, now: Moment) -> Floats:
+        """Return which feet have come to ground that they were not expected to meet yet ``(legs,)``.
+
+        Parameters
+        ----------
+        now : Moment
+            The moment.
+        """
+        if self.felt is None or self.felt.contacts is None:
+            return np.zeros_like(now.down)
+        touch = np.array([contact is True for contact in self.felt.contacts])
+        return np.asarray(touch & ~now.down & (now.share > _DESCENDING) & (now.share < 1.0) & np.isinf(now.met))
+
+    def _touches(self, leg: int) -> bool:
+        """Return whether a foot at the end of its swing is on the ground, as far as is known."""
+        return self.felt is None or self.felt.contacts is None or self.felt.contacts[leg] is not False
+
+    def lands(self, now: Moment, soon: Floats) -> tuple[Floats, bool]:
+        """Return which feet may be put down at the end of their swing, and whether none may be lifted meanwhile.
+
+        Parameters
+        ----------
+        now : Moment
+            The moment.
+        soon : array of bool, shape (legs,)
+            Whose swing ends with this tick.
+        """
+        lands = np.ones_like(now.down)
+        for leg in np.flatnonzero(~now.down).tolist():
+            lands[leg] = self.searches.stands(leg, touches=self._touches(leg))
+        # Where a foot that is about to land finds no ground, none may lift in its stead.
+        return lands, bool(self.searches) or bool((~now.down & ~lands & soon).any())
+
+    def course(self, now: Moment, terrain: Terrain) -> dict[str, Any]:
+        """Return what a `Course` knows of the ground.
+
+        Parameters
+        ----------
+        now : Moment
+            The moment.
+        terrain : Terrain
+            How the ground was thought to lie when the polygons were worked out.
+        """
+        if self.felt is None:
+            return {"give_way": self._still}
+        lowest = lowest_planned(now, terrain)
+        return {
+            # Feet in the air have nothing to give way to.
+            "give_way": np.maximum(self.felt.offsets, np.minimum(lowest - now.ground, 0.0)) * now.down,
+            "ground": self._feel.plane,
+            "lowest": lowest,
+            "elevation": self._elevation,
+            "elevation_bandwidth": rising(float(self._elevation[0] - now.elevation.value[0])),
+        }
+
+    def search(self, now: Moment, dt: float, *, terrain: Terrain, stance_time: float) -> Moment:
+        """Let feet that have come down where there is no ground look for it, in the world's time.
+
+        Parameters
+        ----------
+        now : Moment
+            The moment.
+        dt : float
+            The time [s].
+        terrain : Terrain
+            How the ground was thought to lie when the polygons were worked out.
+        stance_time : float
+            How long feet are to stand [s].
+        """
+
+        def lowest(leg: int) -> float:
+            reached = lowest_in_reach(self._robot, now, leg, stance_time + self.hold)
+            return min(float(lowest_planned(now, terrain)[leg]), reached) if terrain.depth else reached
+
+        return self.searches.step(now, dt, touches=self._touches, lowest=lowest) if self.felt else now
+
+    def land(self, landed: Floats) -> None:
+        """Note which feet have been put down in this tick.
+
+        Parameters
+        ----------
+        landed : array of bool, shape (legs,)
+            The feet.
+        """
+        self.searches.land(landed)
+        if not self.searches:
+            self._retreat.landed(landed)
+
+    def draw_back(self, now: Moment, asked: Any, gait: Gait) -> Moment | None:
+        """Let feet that hang over a hole swing once more as soon as something else is asked for.
+
+        Parameters
+        ----------
+        now : Moment
+            The moment.
+        asked : object
+            What is asked for.
+        gait : Gait
+            Order of the steps.
+
+        Returns
+        -------
+        Moment or None
+            The moment after that; None where nothing comes of it.
+        """
+        legs, begins = self.searches.in_vain, self._retreat.consider(asked, now.origin)
+        if self._retreat.under_way and np.delete(now.down, legs).all():
+            self.searches.give_up()
+            self._retreat.begun(legs)
+            return swung_again(now, legs, gait, self._feel.plane)
+        return now if begins else None
