@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 import tarsus
+from draw_hill import plot_hill
 from tarsus.drive.run import run_scenario
 from tarsus.drive.scenario import Scenario
 from tarsus.report.angles import plot_angles
@@ -44,6 +45,7 @@ def main() -> None:
         save_figure(plot_robot(robot, angles, body=body), FIGURES / f"robot-{name}.png")
     day = Scenario.load(FIGURES.parents[1] / "examples" / "whole-day.toml")
     save_figure(plot_timeline(run_scenario(day)), FIGURES / "timeline.png")
+    save_figure(plot_hill(), FIGURES / "hill.png")
     limp = np.radians(np.tile([0.0, 20.0, -60.0], (6, 1)))
     limp[:3] = np.radians([0.0, -30.0, -30.0])
     rest = tarsus.resting_pose(strider, limp)
