@@ -79,6 +79,9 @@ class Visitor:
     def unfold(self) -> None:
         """Open all that is folded in the panel, one inside the other too."""
         self.page.evaluate("document.querySelectorAll('main details').forEach(one => one.open = true)")
+        # What lies open is laid out with the next frame, and what follows from that shows in the one after.
+        for _ in range(2):
+            self.page.evaluate("new Promise(done => requestAnimationFrame(() => setTimeout(done)))")
 
     def facts(self, name: str) -> dict[str, str]:
         """Read a list of names and values."""

@@ -1,4 +1,5 @@
 import { withUnit } from "../../controls/numbers";
+import { Scroll } from "../../controls/Scroll";
 import type { Equation } from "../../protocol";
 import { digitsOf } from "./digits";
 import { Maths } from "./Maths";
@@ -12,10 +13,10 @@ export function EquationCard({ equation }: { equation: Equation }) {
         <span>{equation.name}</span>
         <output>{withUnit(value, digitsOf(unit), unit)}</output>
       </div>
-      <div className="scroll maths">
+      <Scroll label={`${equation.name}: formula`} className="maths">
         <Maths node={row(symbol, formula)} block />
         {numbers && <Maths node={row({ tag: "mrow", text: null, children: [] }, numbers)} block />}
-      </div>
+      </Scroll>
       {(ours ?? equation.printed_value ?? note) && (
         <p className="hint">
           {ours && <>Here: {ours}. </>}
