@@ -7,32 +7,32 @@ from tarsus.gait.live.retreat import Retreat, swung_again
 from tarsus.gait.live.slope import GroundPlane
 from tarsus.gait.live.stepping import go_on
 
-DOWN = np.ones(6, dtype=bool)
+ON, BACK, LEFT = (((x, y, 0.0), "so") for x, y in ((0.1, 0.0), (-0.05, 0.0), (0.0, 0.1)))
 
 
 def test_what_led_there_is_not_tried_again_and_anything_else_once():
     retreat = Retreat()
-    assert not retreat.consider("on", 0j)
-    assert not retreat.consider("on", 0j)
-    assert retreat.consider("back", 0j)
+    assert not retreat.consider(ON, 0j)
+    assert not retreat.consider(ON, 0j)
+    assert retreat.consider(BACK, 0j)
     assert retreat.under_way
     # Once it is under way, that is that.
-    assert not retreat.consider("left", 0j)
+    assert not retreat.consider(LEFT, 0j)
     retreat.begun([2])
     assert not retreat.under_way
-    assert not retreat.consider("back", 0j)
-    assert retreat.consider("left", 0j)
+    assert not retreat.consider(BACK, 0j)
+    assert retreat.consider(LEFT, 0j)
     retreat.begun([2])
     # Where the robot gets on, another try makes sense.
-    assert retreat.consider("left", 0.01j)
+    assert retreat.consider(LEFT, 0.01j)
     retreat.begun([2, 3])
     retreat.landed(np.arange(6) == 1)
     retreat.landed(np.arange(6) == 2)
-    assert not retreat.consider("left", 0.01j)
+    assert not retreat.consider(LEFT, 0.01j)
     # All feet are down: what is asked for by then leads there, should it happen again.
     retreat.landed(np.arange(6) == 3)
-    assert not retreat.consider("back", 0.01j)
-    assert retreat.consider("on", 0.01j)
+    assert not retreat.consider(BACK, 0.01j)
+    assert retreat.consider(ON, 0.01j)
 
 
 def test_a_foot_swings_once_more_from_where_it_hangs_to_another_foothold():
@@ -59,3 +59,14 @@ def test_a_foot_swings_once_more_from_where_it_hangs_to_another_foothold():
     assert np.abs(landed.foot[2] - now.foot[2]) > 0.01
     np.testing.assert_allclose(landed.ground[2], 0.005)
     assert landed.number[2] == now.number[2] + 1
+
+
+def test_a_hand_that_trembles_asks_for_the_same():
+    retreat = Retreat()
+    assert not retreat.consider(ON, 0j)
+    assert not retreat.consider(((0.105, 0.01, 0.01), "so"), 0j)
+    assert retreat.consider(((0.1, 0.0, 0.0), "otherwise"), 0j)
+    still = Retreat()
+    assert not still.consider(((0.0, 0.0, 0.0), "so"), 0j)
+    assert not still.consider(((5e-4, 0.0, 0.0), "so"), 0j)
+    assert still.consider(((5e-3, 0.0, 0.0), "so"), 0j)

@@ -12,6 +12,7 @@ from tarsus.gait.live.envelope import Envelope, capped, envelope
 from tarsus.gait.live.manner import Manner
 from tarsus.gait.live.part_of_way import Posed, balanced_part, first_step, largest_part, what_stops
 from tarsus.gait.live.parts import Parts
+from tarsus.gait.live.stand import Terrain
 from tarsus.gait.live.support import support_sets
 from tarsus.gait.live.tempo import Tempo, tempo
 from tarsus.gait.live.wished import swaying, wished_posed
@@ -49,6 +50,8 @@ class Change:
         What is possible while the feet step, while the body moves, and there.
     limited : tuple of str
         Why it isn't all that was asked for.
+    terrain : Terrain
+        How the ground was taken to lie.
     """
 
     manner: Manner
@@ -60,6 +63,7 @@ class Change:
     way: Envelope
     there: Envelope
     limited: tuple[str, ...]
+    terrain: Terrain
 
 
 def work_out(
@@ -157,6 +161,7 @@ def work_out(
         way=way,
         there=there,
         limited=_limits(manner, pace, why if whole else ""),
+        terrain=goal.terrain,
     )
 
 

@@ -24,7 +24,7 @@ _HEIGHTS = 13
 
 
 def lowest_planned(now: Moment, terrain: Terrain) -> Floats:
-    """Return how low each foot may be put down ``(legs,)`` [m]: as low as its polygon has been worked out for.
+    """Return how low each foot may be put down ``(legs,)`` [m]: so far below the ground as it was taken to lie.
 
     Parameters
     ----------

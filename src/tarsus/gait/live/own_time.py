@@ -86,9 +86,11 @@ class OwnTime:
         angles = solve(after)
         turned, strain, works = self._taken(angles, dt, between)
         for _ in range(_TRIES):
-            if works or (slower := self._slower(turned, rate, between)) >= rate:
+            # Where it was to run slower, that may be too sudden.
+            other = rate if works else self._other(turned, rate, between)
+            if other == rate:
                 break
-            rate = slower
+            rate = other
             after = move(dt * rate)
             angles = solve(after)
             turned, strain, works = self._taken(angles, dt, between)
@@ -109,12 +111,15 @@ class OwnTime:
         bend = np.abs(second - 2 * first + self.angles) / (_AHEAD * _AHEAD)
         return math.sqrt(_CALM / max(float((bend / self._acceleration).max()), _CALM))
 
-    def _slower(self, turned: Floats, rate: float, dt: float) -> float:
+    def _other(self, turned: Floats, rate: float, dt: float) -> float:
         """Return at which rate the joints keep within speed and acceleration, or come nearest to that."""
+        if rate == 0:  # too sudden a stop
+            return self.rate / 2
         speed, reach = _KEPT * self._speed, _KEPT * self._acceleration * dt
         size = np.maximum(np.abs(turned), 1e-12)
         was = self._joint_rate * np.sign(turned)
         highest = float((np.minimum(speed, was + reach) / size).min())
         lowest = float(((was - reach) / size).max())
-        share = highest if highest >= lowest else (max(highest, 0.0) + lowest) / 2
-        return rate * min(max(share, 0.0) * 0.999, 1.0)
+        if highest < lowest:
+            return min(rate * 0.999 * (max(highest, 0.0) + lowest) / 2, max(rate, self.rate))
+        return rate * 0.999 * max(highest, 0.0) if highest < 1 else min(rate * 1.001 * lowest, max(rate, self.rate))

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -11,14 +12,20 @@ from tarsus.gait.gait import Gait
 from tarsus.gait.live.moment import Moment
 from tarsus.gait.live.slope import GroundPlane
 
-__all__ = ["Retreat", "swung_again"]
+__all__ = ["Asked", "Retreat", "swung_again"]
 
 Floats = np.ndarray[Any, Any]
 
 # What the robot must have moved for another try to make sense [m].
-_ELSEWHERE = 1e-3
+_ELSEWHERE = 1e-5
+# Twists are the same that differ by less, over their size; and by how much they may anyway [m/s, rad/s].
+_ALIKE, _NOTHING = 0.2, 1e-3
 # Of how much of its swing a foot may be deprived at most.
 _LATEST = 0.5
+
+
+Asked: TypeAlias = tuple[Sequence[float], Any]
+"""A twist [m/s, m/s, rad/s], and all else that is asked for."""
 
 
 class Retreat:
@@ -32,16 +39,16 @@ class Retreat:
 
     def __init__(self) -> None:
         self.under_way = False
-        self._led_here: Any = None
-        self._tried: tuple[Any, complex] | None = None
+        self._led_here: Asked | None = None
+        self._tried: tuple[Asked, complex] | None = None
         self._legs: set[int] = set()
 
-    def consider(self, asked: Any, place: complex) -> bool:
+    def consider(self, asked: Asked, place: complex) -> bool:
         """Return whether feet that have just been found to hang over a hole are to be drawn back.
 
         Parameters
         ----------
-        asked : object
+        asked : (twist, manner)
             What is asked for: what it was when they got there is not tried again, anything else once, and more often
             as long as the robot gets on by it.
         place : complex
@@ -49,9 +56,9 @@ class Retreat:
         """
         if self._led_here is None:
             self._led_here = asked
-        if self.under_way or asked == self._led_here:
+        if self.under_way or _alike(asked, self._led_here):
             return False
-        if self._tried is not None and self._tried[0] == asked and abs(place - self._tried[1]) < _ELSEWHERE:
+        if self._tried is not None and _alike(asked, self._tried[0]) and abs(place - self._tried[1]) < _ELSEWHERE:
             return False
         self.under_way, self._tried = True, (asked, place)
         return True
@@ -77,6 +84,12 @@ class Retreat:
         self._legs -= set(np.flatnonzero(landed).tolist())
         if not self._legs:
             self.under_way, self._led_here, self._tried = False, None, None
+
+
+def _alike(asked: Asked, other: Asked) -> bool:
+    """Return whether the same is asked for, but for a hand that trembles."""
+    bound = max(_ALIKE * math.hypot(*other[0]), _NOTHING)
+    return asked[1] == other[1] and math.dist(asked[0], other[0]) < bound
 
 
 def swung_again(now: Moment, legs: Sequence[int], gait: Gait, ground: GroundPlane) -> Moment:

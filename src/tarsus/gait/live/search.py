@@ -15,8 +15,9 @@ __all__ = ["Search", "Searches"]
 
 Floats = np.ndarray[Any, Any]
 
-# How fast a foot goes down [m/s], how fast it stops once it has found ground [rad/s], and when it is at rest [m/s].
-_SPEED, _STOPPING, _RESTING = 0.05, 40.0, 1e-3
+# How fast a foot goes down [m/s], how fast it stops once it has found ground [rad/s], and when it is at rest [m/s];
+# and what the joints' acceleration must be for that [rad/s^2].
+_SPEED, _STOPPING, _RESTING, _BRISK = 0.05, 40.0, 1e-3, 60.0
 
 
 class Search(NamedTuple):
@@ -28,8 +29,8 @@ class Search(NamedTuple):
         Where it is ``(1,)`` [m].
     lowest : float
         How low it goes at most [m].
-    bandwidth : float
-        How fast it goes there [rad/s].
+    bandwidth, stopping : float
+        How fast it goes there, and how fast it stops [rad/s].
     found : float or None
         Where it comes to rest, once there is ground [m].
     """
@@ -37,10 +38,11 @@ class Search(NamedTuple):
     height: Lag
     lowest: float
     bandwidth: float
+    stopping: float
     found: float | None = None
 
     @classmethod
-    def begin(cls, height: float, lowest: float) -> Search:
+    def begin(cls, height: float, lowest: float, pace: float) -> Search:
         """Return the search of a foot that is at rest.
 
         Parameters
@@ -49,10 +51,12 @@ class Search(NamedTuple):
             Where it is [m].
         lowest : float
             How low it goes at most; no lower, if it is as low already [m].
+        pace : float
+            How fast it goes and stops, of what it does at its fastest.
         """
-        lowest = min(lowest, height)
-        bandwidth = min(math.e * _SPEED / max(height - lowest, 1e-6), _STOPPING)
-        return cls(Lag.still(np.array([height])), lowest, bandwidth)
+        lowest, stopping = min(lowest, height), pace * _STOPPING
+        bandwidth = min(math.e * pace * _SPEED / max(height - lowest, 1e-6), stopping)
+        return cls(Lag.still(np.array([height])), lowest, bandwidth, stopping)
 
     def step(self, dt: float, *, ground: bool) -> Search:
         """Return the search after a time.
@@ -66,8 +70,8 @@ class Search(NamedTuple):
         """
         found = self.found
         if ground and found is None:
-            found = float(self.height.value[0] + 2 * self.height.rate[0] / _STOPPING)
-        target, bandwidth = (self.lowest, self.bandwidth) if found is None else (found, _STOPPING)
+            found = float(self.height.value[0] + 2 * self.height.rate[0] / self.stopping)
+        target, bandwidth = (self.lowest, self.bandwidth) if found is None else (found, self.stopping)
         height = self.height.step(np.array([target]), dt, bandwidth=bandwidth)
         return self._replace(height=height, found=found)
 
@@ -83,10 +87,18 @@ class Search(NamedTuple):
 
 
 class Searches:
-    """All feet that look for ground, by their legs."""
+    """All feet that look for ground, by their legs.
 
-    def __init__(self) -> None:
+    Parameters
+    ----------
+    acceleration : array, shape (legs, 3)
+        Greatest of each joint [rad/s^2]: where it is low, feet go more slowly.
+    """
+
+    def __init__(self, acceleration: Floats) -> None:
         self._feet: dict[int, Search] = {}
+        # The foot's acceleration goes with the square of its pace.
+        self._pace = min(1.0, math.sqrt(float(acceleration.min()) / _BRISK))
 
     def __bool__(self) -> bool:
         return bool(self._feet)
@@ -137,7 +149,7 @@ class Searches:
             if leg not in self._feet:
                 if touches(leg):
                     continue
-                self._feet[leg] = Search.begin(float(ground[leg]), lowest(leg))
+                self._feet[leg] = Search.begin(float(ground[leg]), lowest(leg), self._pace)
             self._feet[leg] = self._feet[leg].step(dt, ground=touches(leg))
             ground[leg] = float(self._feet[leg].height.value[0])
         return now._replace(ground=ground, met=np.where(over, np.inf, now.met))

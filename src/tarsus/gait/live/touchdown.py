@@ -108,5 +108,6 @@ def unhurried(now: Moment, swing: float) -> float:
     """
     lift = max(float(now.posture.value[LIFT]), 1e-3)
     rise = np.abs(now.ground - now.start_height) / lift
-    harder = np.where(now.down, 1.0, (1 + _BY_RISE * rise) * (swing / (swing - now.late)) ** 2)
+    shorter = swing / (swing - np.where(now.down, 0.0, now.late))
+    harder = np.where(now.down, 1.0, (1 + _BY_RISE * rise) * shorter**2)
     return math.sqrt(_HARDER / max(float(harder.max()), _HARDER))

@@ -15,7 +15,8 @@ from tarsus.gait.live.feel import Feel, Felt
 from tarsus.gait.live.levelling import LevellingMode
 from tarsus.gait.live.moment import SEA_LEVEL, Moment
 from tarsus.gait.live.own_time import STOPPING
-from tarsus.gait.live.retreat import Retreat, swung_again
+from tarsus.gait.live.posture import LIFT
+from tarsus.gait.live.retreat import Asked, Retreat, swung_again
 from tarsus.gait.live.search import Searches
 from tarsus.gait.live.senses import Senses
 from tarsus.gait.live.stand import LEVEL, Terrain
@@ -26,8 +27,10 @@ __all__ = ["Underfoot"]
 
 Floats = np.ndarray[Any, Any]
 
-# What share of the swing is over before ground may be met.
-_DESCENDING = 0.5
+# What share of the swing is over before ground may be met, and how much higher that is than it was expected [m].
+_DESCENDING, _EARLY = 0.5, 1e-3
+# How long a foot is taken to touch or not to touch as it was last felt to [s].
+_LASTS = 0.5
 
 
 class Underfoot:
@@ -39,6 +42,8 @@ class Underfoot:
         A single robot.
     angles, feet : array, shape (legs, 3)
         Joint angles [rad] and feet in G [m] when it stands.
+    acceleration : array, shape (legs, 3)
+        Greatest of each joint [rad/s^2].
     levelling : "level", "follow" or None
         Whether the body stays level on ground that is not, or follows its slope.
     admittance : Admittance, optional
@@ -62,16 +67,19 @@ class Underfoot:
         angles: Floats,
         feet: Floats,
         *,
+        acceleration: Floats,
         levelling: LevellingMode | None,
         admittance: Admittance | None,
     ) -> None:
         self.felt: Felt | None = None
         self.hold = 0.0
-        self.searches = Searches()
+        self.searches = Searches(acceleration)
         self.numb = levelling is None and admittance is None
         self._robot, self._gives_way = robot, admittance is not None
         self._feel = Feel(robot, angles, feet, levelling=levelling, admittance=admittance)
         self._retreat = Retreat()
+        self._touching: list[bool | None] = [None] * robot.legs
+        self._since = [0.0] * robot.legs
         self._elevation, self._still = SEA_LEVEL, np.zeros(robot.legs)
 
     @property
@@ -136,9 +144,17 @@ class Underfoot:
         forward, left, _ = now.twist.value.tolist()
         ahead = now.origin + cmath.exp(1j * now.yaw) * complex(forward, left) * (2 / RISING)
         self._elevation = np.array([self._feel.plane.height(ahead.real, ahead.imag)])
+        self._remember(self.felt.contacts, dt)
         if self.felt.contacts is not None:
             # A foot that finds no ground is noticed a tick later, and the walk takes a while to stop.
             self.hold = max(self.hold, STOPPING + dt)
+
+    def _remember(self, contacts: tuple[bool | None, ...] | None, dt: float) -> None:
+        """Note which feet touch; where that is not known, they do as they did, for a while."""
+        for leg, contact in enumerate(contacts or (None,) * len(self._since)):
+            self._since[leg] = 0.0 if contact is not None else self._since[leg] + dt
+            if contact is not None or self._since[leg] > _LASTS:
+                self._touching[leg] = contact
 
     def met(self, now: Moment) -> Floats:
         """Return which feet have come to ground that they were not expected to meet yet ``(legs,)``.
@@ -151,11 +167,15 @@ class Underfoot:
         if self.felt is None or self.felt.contacts is None:
             return np.zeros_like(now.down)
         touch = np.array([contact is True for contact in self.felt.contacts])
-        return np.asarray(touch & ~now.down & (now.share > _DESCENDING) & (now.share < 1.0) & np.isinf(now.met))
+        falls = ~now.down & (now.share > _DESCENDING) & (now.share < 1.0) & np.isinf(now.met)
+        if not (touch & falls).any():
+            return np.zeros_like(falls)
+        high = now.height(float(now.posture.value[LIFT])) > now.ground + _EARLY
+        return np.asarray(touch & falls & high)
 
     def _touches(self, leg: int) -> bool:
         """Return whether a foot at the end of its swing is on the ground, as far as is known."""
-        return self.felt is None or self.felt.contacts is None or self.felt.contacts[leg] is not False
+        return self._touching[leg] is not False
 
     def lands(self, now: Moment, soon: Floats) -> tuple[Floats, bool]:
         """Return which feet may be put down at the end of their swing, and whether none may be lifted meanwhile.
@@ -228,14 +248,14 @@ class Underfoot:
         if not self.searches:
             self._retreat.landed(landed)
 
-    def draw_back(self, now: Moment, asked: Any, gait: Gait) -> Moment | None:
+    def draw_back(self, now: Moment, asked: Asked, gait: Gait) -> Moment | None:
         """Let feet that hang over a hole swing once more as soon as something else is asked for.
 
         Parameters
         ----------
         now : Moment
             The moment.
-        asked : object
+        asked : (twist, manner)
             What is asked for.
         gait : Gait
             Order of the steps.

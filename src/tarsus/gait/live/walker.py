@@ -140,7 +140,14 @@ class Walker(WalkerView):
         if isinstance(change, str):
             raise UnreachableError(f"the robot can't walk so: {change}")
         self._begin_standing(change)
-        self._underfoot = Underfoot(self.robot, self.angles, self.feet, levelling=levelling, admittance=admittance)
+        self._underfoot = Underfoot(
+            self.robot,
+            self.angles,
+            self.feet,
+            acceleration=self.joint_acceleration,
+            levelling=levelling,
+            admittance=admittance,
+        )
 
     def _begin_standing(self, change: Change) -> None:
         """Stand in the rest stance, the heading frame over G's origin."""
@@ -246,12 +253,13 @@ class Walker(WalkerView):
         )
         met = self._underfoot.met(now)
         if met.any():
-            swing_rate = self._frequency / (1 - self.gait.duty - now.late)
+            swing_rate = self._frequency / (1 - self.gait.duty - np.where(now.down, 0.0, now.late))
             self._now = meet_ground(self.robot, now, met, acceleration=self.joint_acceleration, swing_rate=swing_rate)
 
     def _draw_back(self, wish: Wish) -> None:
         """Let feet that hang over a hole swing once more as soon as something else is asked for."""
-        if not self._underfoot.searches.all_in_vain:
+        standing = self._own.rate == 0 or self._underfoot.retreats
+        if not (standing and self._underfoot.searches.all_in_vain):
             return
         wanted = dataclasses.replace(self._agenda.wanted, correction=_NO_MOTION, terrain=LEVEL)
         again = self._underfoot.draw_back(self._now, (tuple(wish.twist), wanted), self.gait)
@@ -504,7 +512,8 @@ class Walker(WalkerView):
             steps = steps.copy()
             steps[list(self._agenda.doing.manner.gone)] = False
         if self._underfoot.felt is not None:
-            soon = now.share + dt * self._frequency / (1 - self.gait.duty - now.late) >= 1.0 - TIE
+            swing = 1 - self.gait.duty - np.where(now.down, 0.0, now.late)
+            soon = now.share + dt * self._frequency / swing >= 1.0 - TIE
             lands, waits = self._underfoot.lands(now, soon)
             holds = holds or waits
         return Course(
@@ -520,7 +529,7 @@ class Walker(WalkerView):
             room=self._footing.room,
             holds=holds,
             beats=self._beats,
-            **self._underfoot.course(now, self._agenda.doing.manner.terrain),
+            **self._underfoot.course(now, self._agenda.doing.terrain),
         )
 
     def _advance(self, dt: float) -> None:
@@ -531,7 +540,7 @@ class Walker(WalkerView):
         self._now = underfoot.search(
             before,
             dt,
-            terrain=self._agenda.doing.manner.terrain,
+            terrain=self._agenda.doing.terrain,
             stance_time=self.gait.duty / self._frequency,
         )
         swing_time = (1 - self.gait.duty) / self._frequency
