@@ -3,8 +3,9 @@
 import numpy as np
 
 from sample_moments import course_of, moment_of, rest_of, setup_of
-from tarsus.gait.live.retreat import Retreat, swung_again
+from tarsus.gait.live.retreat import Retreat, Steepness, swung_again
 from tarsus.gait.live.slope import GroundPlane
+from tarsus.gait.live.stand import LEVEL, Terrain
 from tarsus.gait.live.stepping import go_on
 
 ON, BACK, LEFT = (((x, y, 0.0), "so") for x, y in ((0.1, 0.0), (-0.05, 0.0), (0.0, 0.1)))
@@ -70,3 +71,20 @@ def test_a_hand_that_trembles_asks_for_the_same():
     assert not still.consider(((0.0, 0.0, 0.0), "so"), 0j)
     assert not still.consider(((5e-4, 0.0, 0.0), "so"), 0j)
     assert still.consider(((5e-3, 0.0, 0.0), "so"), 0j)
+
+
+def test_too_steep_a_slope_is_left_the_way_that_did_not_lead_there():
+    steep, known = Steepness(), Terrain(0.1 + 0j, 0.6)
+    assert not steep.forbids((0.1, 0.0, 0.0), known)
+    # Who stands was led there by nothing.
+    steep.refused(known, (0.0, 0.0, 0.0))
+    assert not steep.forbids((0.1, 0.0, 0.0), known)
+    steep.refused(known, (0.05, 0.01, 0.1))
+    steep.refused(known, (-0.05, 0.0, 0.0))
+    assert steep.forbids((0.1, 0.0, 0.0), known)
+    assert steep.forbids((0.0, 0.0, 0.5), known)
+    assert not steep.forbids((-0.1, 0.0, 0.0), known)
+    assert not steep.forbids((0.0, 0.0, 0.0), known)
+    # As soon as it stands on other ground, that is over.
+    assert not steep.forbids((0.1, 0.0, 0.0), LEVEL)
+    assert not steep.forbids((0.1, 0.0, 0.0), known)

@@ -192,3 +192,68 @@ def test_a_leg_that_was_a_hand_is_put_down_on_the_ground(levelling, feeling):
     assert not walker._hands
     trace.assert_sound(flat=False)
     assert np.abs(trace.feet[-1, :, 2][trace.contacts[-1]]).max() < 1e-4
+
+
+def test_where_it_gets_too_steep_the_robot_stops_says_so_and_can_turn_back():
+    walker = Walker(preset("makeyourpet"), Gait.named("tripod"))
+    speed = 0.7 * walker.top_speed((1, 0, 0))
+    trace = Trace(walker)
+
+    def hill(x):
+        return 0.4 * np.maximum(x - 0.3, 0.0)
+
+    said = set()
+    for tick in range(1600):
+        twist = (speed if tick < 1000 else -speed, 0.0, 0.0)
+        trace.step(twist, 0.02, senses=Senses(contacts=touching(walker, hill(walker.feet[:, 0]))))
+        said |= {reason for reason in walker.limited if "too steep" in reason} if tick < 1000 else set()
+        if tick == 999:
+            x = walker.place[0]
+    assert said
+    assert walker.place[0] < x - 0.1
+    trace.assert_sound(flat=False)
+
+
+@pytest.mark.parametrize("height", [0.015, 0.03])
+@pytest.mark.parametrize("name", PRESETS)
+def test_stairs(name, height):
+    walker = Walker(preset(name), Gait.named("tripod"))
+    trace, speed = Trace(walker), 0.7 * walker.top_speed((1, 0, 0))
+    for tick in range(700):
+        stairs = height * np.floor(np.maximum(walker.feet[:, 0] - 0.1, 0) / 0.25)
+        turning = 0.1 * np.sin(tick / 100)
+        trace.step((speed, 0.0, turning), 0.02, senses=Senses(contacts=touching(walker, stairs)))
+    trace.assert_sound(flat=False)
+
+
+@pytest.mark.parametrize("name", ["strider", "mithi", "phantomx"])
+@pytest.mark.parametrize("acceleration", [5.0, 20.0])
+def test_slow_joints_look_for_ground_as_slowly_as_they_can(name, acceleration):
+    walker = Walker(preset(name), Gait.named("tripod"), joint_acceleration=acceleration, joint_speed=3.0)
+    trace, speed, modes = Trace(walker), walker.top_speed((1, 0, 0)), set()
+    for _ in range(1200):
+        ground = np.where((walker.feet[:, 0] * 7).astype(int) % 2 == 1, -0.01, 0.0)
+        trace.step((speed, 0.0, 0.0), 0.02, senses=Senses(contacts=touching(walker, ground)))
+        modes.add(walker.mode)
+    assert "searching" in modes
+    trace.assert_sound(flat=False)
+
+
+def test_readings_that_are_lost_for_a_moment_put_no_foot_down_over_a_drop():
+    trace, speed = at_an_edge("strider", "tripod")
+    hangs = int(np.flatnonzero(~trace.walker.contacts)[0])
+    for lost in (Senses(contacts=None), None, Senses(contacts=(None,) * 6)):
+        for _ in range(20):
+            trace.step((speed, 0.0, 0.0), 0.02, senses=lost)
+            assert not trace.walker.contacts[hangs]
+        tick_over_the_drop(trace, (speed, 0.0, 0.0), 20)
+        assert not trace.walker.contacts[hangs]
+
+
+def test_ground_where_it_was_expected_is_not_early():
+    """Without a lift, feet touch the ground all the way: they still go all of it."""
+    walker, blind = (Walker(preset("strider"), Gait.named("tripod"), lift=0.0, cycle_time=1.5) for _ in range(2))
+    for _ in range(400):
+        walker.step((0.05, 0.0, 0.1), 0.02, senses=Senses(contacts=touching(walker, 0.0)))
+        blind.step((0.05, 0.0, 0.1), 0.02)
+    np.testing.assert_allclose(walker.place, blind.place, atol=5e-3)

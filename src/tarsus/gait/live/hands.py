@@ -75,7 +75,7 @@ def lift_hand(now: Moment, leg: int) -> Hand:
     # On the ground, it goes past the body as fast as that walks.
     past = -(complex(vx, vy) + 1j * wz * seen)
     here = np.array([seen.real, seen.imag, float(now.ground[leg] - now.elevation.value[0])])
-    return Hand(Lag(here, np.array([past.real, past.imag, 0.0])), here)
+    return Hand(Lag(here, np.array([past.real, past.imag, -float(now.elevation.rate[0])])), here)
 
 
 def carry_hands(now: Moment, hands: dict[int, Hand], swing_time: float) -> Moment:

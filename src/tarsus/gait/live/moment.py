@@ -52,6 +52,8 @@ class Moment(NamedTuple):
         First and second derivative of a swinging foot's way by its share [m].
     ground, start_height : array
         Height of the ground that each foot is on or bound for, and where its swing began [m].
+    lift_part : array
+        How much of the lift its swing takes.
     met : array
         Share of the swing at which the foot met ground that was not expected yet; infinite where it did not.
     give : array
@@ -88,6 +90,7 @@ class Moment(NamedTuple):
     bend: Floats
     ground: Floats
     start_height: Floats
+    lift_part: Floats
     met: Floats
     give: Floats
     met_height: Floats
@@ -126,6 +129,7 @@ class Moment(NamedTuple):
             bend=zero,
             ground=none,
             start_height=none,
+            lift_part=np.ones(len(rest)),
             met=np.full(len(rest), np.inf),
             give=np.full(len(rest), GIVE),
             met_height=none,
@@ -160,7 +164,7 @@ class Moment(NamedTuple):
             start = float(self.start_height[leg])
             rise = 4 * share * (1 - share)
             along = share * share * share * (10 - share * (15 - 6 * share))
-            return start + (ground - start) * along + lift * (rise * rise * rise)
+            return start + (ground - start) * along + lift * float(self.lift_part[leg]) * (rise * rise * rise)
         # A foot that has met the ground comes to rest on it.
         left = min(1 - met, float(self.give[leg]))
         part = min(max((share - met) / left, 0.0), 1.0)
@@ -196,8 +200,8 @@ class Course(NamedTuple):
         How often in a cycle feet are lifted.
     ground : GroundPlane
         Where the ground is expected.
-    lowest : array, shape (legs,)
-        How low each foot may be put down at the lowest [m].
+    lowest, highest : array, shape (legs,)
+        How low each foot may be put down at the lowest, and from how high it may be lifted by all of the lift [m].
     elevation : array, shape (1,)
         How high the heading frame is to be [m].
     elevation_bandwidth : float
@@ -219,6 +223,7 @@ class Course(NamedTuple):
     beats: int = 2
     ground: GroundPlane = FLAT
     lowest: Floats | float = -math.inf
+    highest: Floats | float = math.inf
     elevation: Floats = SEA_LEVEL
     elevation_bandwidth: float = 4.0
 

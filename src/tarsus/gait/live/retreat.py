@@ -1,4 +1,4 @@
-"""Feet that hang over a hole: once something else is asked for, they are drawn back and put down elsewhere."""
+"""Ground that leads nowhere: holes, from which feet are drawn back when something else is asked for; steep slopes."""
 
 from __future__ import annotations
 
@@ -11,8 +11,9 @@ import numpy as np
 from tarsus.gait.gait import Gait
 from tarsus.gait.live.moment import Moment
 from tarsus.gait.live.slope import GroundPlane
+from tarsus.gait.live.stand import LEVEL, Terrain
 
-__all__ = ["Asked", "Retreat", "swung_again"]
+__all__ = ["Asked", "Retreat", "Steepness", "swung_again"]
 
 Floats = np.ndarray[Any, Any]
 
@@ -20,8 +21,47 @@ Floats = np.ndarray[Any, Any]
 _ELSEWHERE = 1e-5
 # Twists are the same that differ by less, over their size; and by how much they may anyway [m/s, rad/s].
 _ALIKE, _NOTHING = 0.2, 1e-3
+# What turning counts beside going, for feet that are some 0.2 m from the middle.
+_LIKE_STEPS = (1.0, 1.0, 0.04)
 # Of how much of its swing a foot may be deprived at most.
 _LATEST = 0.5
+
+
+class Steepness:
+    """Whether the ground has got too steep to go on: it is no more walked the way that led there."""
+
+    def __init__(self) -> None:
+        self._led_here: Sequence[float] | None = None
+        self._known = LEVEL
+
+    def refused(self, known: Terrain, twist: Sequence[float]) -> None:
+        """Note that the robot can't stand on the ground as it is felt to lie by now.
+
+        Parameters
+        ----------
+        known : Terrain
+            How it was taken to lie when the robot last could.
+        twist : (vx, vy, wz)
+            How the robot moves [m/s, m/s, rad/s].
+        """
+        if self._led_here is None and any(abs(speed) > _NOTHING for speed in twist):
+            self._led_here, self._known = twist, known
+
+    def forbids(self, twist: Sequence[float], known: Terrain) -> bool:
+        """Return whether a twist leads on to where the robot can't stand.
+
+        Parameters
+        ----------
+        twist : (vx, vy, wz)
+            The twist [m/s, m/s, rad/s].
+        known : Terrain
+            How the ground is taken to lie: once that is something else, it can stand there.
+        """
+        if known != self._known:
+            self._led_here = None
+        if self._led_here is None:
+            return False
+        return sum(a * b * c for a, b, c in zip(twist, self._led_here, _LIKE_STEPS, strict=True)) > 0
 
 
 Asked: TypeAlias = tuple[Sequence[float], Any]

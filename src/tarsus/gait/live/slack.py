@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from tarsus.gait.live.stand import Stand, joint_slack
+from tarsus.gait.live.stand import HIGHER, Stand, joint_slack
 from tarsus.kinematics.triangle import Triangle, solve_triangle, to_leg_frame
 from tarsus.robot.geometry import LegGeometry
 from tarsus.robot.robot import Robot
@@ -25,8 +25,6 @@ KEEP = 0.0015
 
 # How much of the way each side is a foot may be at half the lift and at the whole, shares of the way on the ground.
 _LIFTS = ((0.0, 1.0), (0.5, 0.9), (1.0, 0.4))
-# How much higher than it is expected the ground may be, over how much lower.
-_HIGHER = 0.5
 # A joint may turn this much faster for the same speed of the foot than it does at the rest foothold.
 _FASTER = 4.0
 # How many places of feet are looked at at once.
@@ -53,7 +51,7 @@ class StandSlack:
         lifts = [(part * stand.lift, narrower) for part, narrower in _LIFTS]
         # Where ground may be lower than it is expected, all of the polygon must do for feet there too; where it may be
         # higher, feet are lifted from there.
-        uneven = [(stand.lift + _HIGHER * stand.depth, lifts[-1][1]), (-stand.depth, 1.0)]
+        uneven = [(stand.lift + HIGHER * stand.depth, lifts[-1][1]), (-stand.depth, 1.0)]
         heights = [*lifts[:-1], *uneven] if stand.depth else lifts
         height, self._narrower = (np.array(column)[:, None, None] for column in zip(*heights, strict=True))
         at_rest = stand.turned_into_body(rest.real - p[0], rest.imag - p[1], height[:, 0] - p[2])

@@ -13,7 +13,7 @@ from tarsus.kinematics.triangle import Triangle, solve_triangle, to_leg_frame
 from tarsus.robot.geometry import LegGeometry
 from tarsus.robot.robot import Robot
 
-__all__ = ["LEVEL", "Stand", "Terrain", "joint_slack"]
+__all__ = ["HIGHER", "LEVEL", "Stand", "Terrain", "joint_slack"]
 
 Floats = np.ndarray[Any, Any]
 
@@ -36,6 +36,9 @@ class Terrain(NamedTuple):
     slope: complex = 0j
     depth: float = 0.0
 
+
+HIGHER = 0.5
+"""How much higher than it is expected the ground may be, over how much lower."""
 
 LEVEL = Terrain()
 """Ground that is flat, level and where it is expected."""

@@ -10,6 +10,7 @@ import numpy as np
 from tarsus.gait.live.foothold import Landing, final_rest
 from tarsus.gait.live.lag import Lag
 from tarsus.gait.live.moment import THERE, TIE, Course, Moment, carried
+from tarsus.gait.live.posture import LIFT
 from tarsus.gait.live.slope import FLAT
 
 __all__ = ["FREEZE", "go_on", "quintic"]
@@ -23,6 +24,8 @@ FREEZE = 0.6
 _LATEST = 0.5
 # How fast feet give way [rad/s].
 _GIVING = 20.0
+# How much of the lift a foot takes at the least.
+_LEAST_LIFT = 0.3
 # A speed this low is none [m/s]; a posture this near to its target, and as slow, is there [m, m/s, rad, rad/s].
 _NO_SPEED, _NO_WAY = 3e-7, 1e-11
 
@@ -94,16 +97,24 @@ def _lift(now: Moment, course: Course, due: Floats, late: Floats, *, stopping: b
         # What a foot has given way is part of its swing.
         start = start + given.value
         given = given._replace(value=np.where(wanted, 0.0, given.value))
+    ground = course.ground.height(now.foot.real, now.foot.imag)
     return now._replace(
         number=now.number + missed,
         down=now.down & ~wanted,
         share=np.where(wanted, 0.0, now.share),
         start_height=np.where(wanted, start, now.start_height),
-        ground=np.where(wanted, course.ground.height(now.foot.real, now.foot.imag), now.ground),
+        ground=np.where(wanted, ground, now.ground),
+        lift_part=np.where(wanted, _lift_part(now, course, np.maximum(start, ground)), now.lift_part),
         give_way=given,
         # Feet that were held back go a shorter swing.
         late=np.where(due, np.clip(late, 0.0, _LATEST * (1 - course.gait.duty)), now.late),
     )
+
+
+def _lift_part(now: Moment, course: Course, height: Floats) -> Floats:
+    """Return how much of the lift feet take that are lifted from a height, so as to get no higher than they should."""
+    over = np.maximum(height - course.highest, 0.0)
+    return np.asarray(np.maximum(1 - over / max(float(now.posture.value[LIFT]), 1e-6), _LEAST_LIFT))
 
 
 def _swing(now: Moment, course: Course, down: list[bool], since_lift: list[float], *, stopping: bool) -> Moment:

@@ -19,7 +19,7 @@ from tarsus.gait.live.posture import LIFT
 from tarsus.gait.live.retreat import Asked, Retreat, swung_again
 from tarsus.gait.live.search import Searches
 from tarsus.gait.live.senses import Senses
-from tarsus.gait.live.stand import LEVEL, Terrain
+from tarsus.gait.live.stand import HIGHER, LEVEL, Terrain
 from tarsus.gait.live.tilt import Commanded
 from tarsus.robot.robot import Robot
 
@@ -211,6 +211,7 @@ class Underfoot:
             "give_way": np.maximum(self.felt.offsets, np.minimum(lowest - now.ground, 0.0)) * now.down,
             "ground": self._feel.plane,
             "lowest": lowest,
+            "highest": lowest + (1 + HIGHER) * DEPTH * float(now.posture.value[LIFT]),
             "elevation": self._elevation,
             "elevation_bandwidth": rising(float(self._elevation[0] - now.elevation.value[0])),
         }

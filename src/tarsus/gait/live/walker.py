@@ -28,6 +28,7 @@ from tarsus.gait.live.moment import THERE, TIE, Course, Moment
 from tarsus.gait.live.own_time import OwnTime
 from tarsus.gait.live.parts import Parts, all_parts
 from tarsus.gait.live.posture import LIFT, calm_sway
+from tarsus.gait.live.retreat import Steepness
 from tarsus.gait.live.senses import Senses
 from tarsus.gait.live.solver import Solver
 from tarsus.gait.live.stances import lift_delays, stances, until_down
@@ -61,8 +62,6 @@ _NO_MOTION = (0.0,) * 6
 _LEAST_MARGIN = 0.01
 # How near to its target a twist counts as steady [m/s, rad/s].
 _STEADY = 1e-3
-# What share of the swing is over before ground may be met.
-_DESCENDING = 0.5
 
 
 class Walker(WalkerView):
@@ -164,6 +163,7 @@ class Walker(WalkerView):
         self._share = (1.0, 0)
         self._hands = Manipulation(self.robot.leg_names)
         self._asked: Wish | None = None
+        self._steepness = Steepness()
         self._leaning_for: tuple[int, ...] = ()
         self._lean = 0j
         self._walking = False
@@ -425,6 +425,9 @@ class Walker(WalkerView):
         if self._underfoot.retreats:
             return
         part = min(share, self._patience)
+        if self._too_steep(twist):
+            part = 0.0
+            self._limited += ("twist: the ground gets too steep that way for the robot as it stands",)
         wish = [part * speed for speed in twist]
         if not self._walking:
             if not any(wish) and self._at_rest():
@@ -444,6 +447,13 @@ class Walker(WalkerView):
             bounds=self._bounds(),
             bandwidth=self._bandwidth(),
         )
+
+    def _too_steep(self, twist: Sequence[float]) -> bool:
+        """Return whether a twist leads on to ground that the robot was refused to stand on."""
+        agenda, known = self._agenda, self._agenda.doing.terrain
+        if any(manner.terrain != known for manner in agenda.refusals):
+            self._steepness.refused(known, self._now.twist.value.tolist())
+        return self._steepness.forbids(twist, known)
 
     def _steady(self, twist: Sequence[float]) -> bool:
         """Return whether the robot walks at a twist, and at its pace."""
