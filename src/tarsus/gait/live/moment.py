@@ -152,10 +152,21 @@ class Moment(NamedTuple):
         lift : float
             How high a swinging foot rises [m].
         """
-        heights = self.ground.tolist()
-        for leg in np.flatnonzero(~self.down).tolist():
-            heights[leg] = self._height(leg, lift)
-        return np.array(heights)
+        return np.array(self.heights(lift))
+
+    def heights(self, lift: float) -> list[float]:
+        """Return the same in plain numbers.
+
+        Parameters
+        ----------
+        lift : float
+            How high a swinging foot rises [m].
+        """
+        heights: list[float] = self.ground.tolist()
+        for leg, down in enumerate(self.down.tolist()):
+            if not down:
+                heights[leg] = self._height(leg, lift)
+        return heights
 
     def _height(self, leg: int, lift: float) -> float:
         """Return the height of a foot in the air."""

@@ -34,6 +34,9 @@ class Steepness:
         self._led_here: Sequence[float] | None = None
         self._known = LEVEL
 
+    def __bool__(self) -> bool:
+        return self._led_here is not None
+
     def refused(self, known: Terrain, twist: Sequence[float]) -> None:
         """Note that the robot can't stand on the ground as it is felt to lie by now.
 

@@ -45,11 +45,11 @@ class Solver:
         """
         rotation, position, lift = self._body_at(now)
         turn, origin = cmath.exp(-1j * now.yaw), now.origin
-        heights = (now.height(lift) + now.give_way.value - now.elevation.value).tolist()
+        elevation = float(now.elevation.value[0])
         feet = []
-        for foot, height in zip(now.foot.tolist(), heights, strict=True):
+        for foot, height, given in zip(now.foot.tolist(), now.heights(lift), now.give_way.value.tolist(), strict=True):
             seen = (foot - origin) * turn
-            feet.append((seen.real, seen.imag, height))
+            feet.append((seen.real, seen.imag, height + given - elevation))
         found = self._quick.angles(feet, rotation, position)
         if found is None:
             in_body = (np.array(feet) - position) @ np.array(rotation)

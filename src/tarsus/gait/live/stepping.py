@@ -127,10 +127,11 @@ def _swing(now: Moment, course: Course, down: list[bool], since_lift: list[float
     pace, bend = now.pace.tolist(), now.bend.tolist()
     lands, landed = course.lands.tolist(), []
     flat, ground = course.ground is FLAT, now.ground
+    met, give, lateness = now.met.tolist(), now.give.tolist(), now.late.tolist()
     for leg in [leg for leg, on in enumerate(down) if not on]:
-        late, since = float(now.late[leg]), since_lift[leg]
+        late, since = lateness[leg], since_lift[leg]
         part = min(max((since - late) / (swing - late), 0.0), 1.0)
-        if share[leg] <= FREEZE and now.met[leg] == math.inf:
+        if share[leg] <= FREEZE and met[leg] == math.inf:
             until = (swing - since) / course.frequency
             before = target[leg]
             target[leg] = (
@@ -142,7 +143,7 @@ def _swing(now: Moment, course: Course, down: list[bool], since_lift: list[float
                 ground = _on_ground(ground, leg, target[leg] - before, course, just_lifted=share[leg] == 0)
         way = (foot[leg], pace[leg], bend[leg])
         # A foot that has met the ground stops on it.
-        left = min(float(now.met[leg] + now.give[leg]), 1.0) - share[leg]
+        left = min(met[leg] + give[leg], 1.0) - share[leg]
         foot[leg], pace[leg], bend[leg] = (
             quintic(way, target[leg], left, min((part - share[leg]) / left, 1.0)) if left > 0 else (target[leg], 0j, 0j)
         )

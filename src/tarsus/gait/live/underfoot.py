@@ -80,7 +80,7 @@ class Underfoot:
         self._retreat = Retreat()
         self._touching: list[bool | None] = [None] * robot.legs
         self._since = [0.0] * robot.legs
-        self._elevation, self._still = SEA_LEVEL, np.zeros(robot.legs)
+        self._elevation = SEA_LEVEL
 
     @property
     def terrain(self) -> Terrain:
@@ -203,8 +203,7 @@ class Underfoot:
         terrain : Terrain
             How the ground was thought to lie when the polygons were worked out.
         """
-        if self.felt is None:
-            return {"give_way": self._still}
+        assert self.felt is not None  # or there is nothing to know
         lowest = lowest_planned(now, terrain)
         return {
             # Feet in the air have nothing to give way to.

@@ -170,6 +170,7 @@ class Walker(WalkerView):
         self.time = 0.0
         self._set_gait(change.manner.gait)
         self._all, self._none = np.ones(legs, dtype=bool), np.zeros(legs, dtype=bool)
+        self._blind = {"give_way": np.zeros(legs)}
         self._now = Moment.standing(change.rest, self._carriage.goal)
         self._own = OwnTime(self._solve(self._now), self.joint_speed, self.joint_acceleration)
 
@@ -207,7 +208,8 @@ class Walker(WalkerView):
         self._ask(wish)
         self._sense(senses, dt)
         self._change(dt)
-        self._draw_back(wish)
+        if self._underfoot.searches:
+            self._draw_back(wish)
         self._hands.tell(wish, dt, self._reachable)
         self._aim(wish.twist)
         self._advance(dt)
@@ -425,7 +427,7 @@ class Walker(WalkerView):
         if self._underfoot.retreats:
             return
         part = min(share, self._patience)
-        if self._too_steep(twist):
+        if (self._agenda.refusals or self._steepness) and self._too_steep(twist):
             part = 0.0
             self._limited += ("twist: the ground gets too steep that way for the robot as it stands",)
         wish = [part * speed for speed in twist]
@@ -521,7 +523,8 @@ class Walker(WalkerView):
         if self._hands:
             steps = steps.copy()
             steps[list(self._agenda.doing.manner.gone)] = False
-        if self._underfoot.felt is not None:
+        felt = self._underfoot.felt is not None
+        if felt:
             swing = 1 - self.gait.duty - np.where(now.down, 0.0, now.late)
             soon = now.share + dt * self._frequency / swing >= 1.0 - TIE
             lands, waits = self._underfoot.lands(now, soon)
@@ -539,7 +542,7 @@ class Walker(WalkerView):
             room=self._footing.room,
             holds=holds,
             beats=self._beats,
-            **self._underfoot.course(now, self._agenda.doing.terrain),
+            **(self._underfoot.course(now, self._agenda.doing.terrain) if felt else self._blind),
         )
 
     def _advance(self, dt: float) -> None:
