@@ -74,6 +74,17 @@ class Carriage:
         if (self.goal[LIFT + 1 :] != amplitude).any():
             self.goal = np.append(self.posture, amplitude)
 
+    def sways(self, value: Floats) -> bool:
+        """Return whether a posture sways, or is to.
+
+        Parameters
+        ----------
+        value : array, shape (13,)
+            The posture now.
+        """
+        swaying = any(self.goal[LIFT + 1 :].tolist())
+        return swaying or (value is not self.goal and any(value[LIFT + 1 :].tolist()))
+
     def reached(self, value: Floats) -> bool:
         """Return whether a posture is the one to go to, and sways as it is to.
 

@@ -209,6 +209,8 @@ class Course(NamedTuple):
         Whether all feet that are down wait, and lift later than they were to.
     beats : int
         How often in a cycle feet are lifted.
+    sways : bool
+        Whether the body sways with them, and the sway's rhythm has to go on.
     ground : GroundPlane
         Where the ground is expected.
     lowest, highest : array, shape (legs,)
@@ -232,6 +234,7 @@ class Course(NamedTuple):
     give_way: Floats
     holds: bool = False
     beats: int = 2
+    sways: bool = True
     ground: GroundPlane = FLAT
     lowest: Floats | float = -math.inf
     highest: Floats | float = math.inf

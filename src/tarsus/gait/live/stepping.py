@@ -48,8 +48,10 @@ def go_on(now: Moment, course: Course, dt: float) -> Moment:
     if stopping and max(map(abs, twist.value.tolist())) < _NO_SPEED:
         twist = Lag.still(np.zeros(3))
     gone = course.frequency * dt
-    pace = course.frequency * np.array([1.0, course.beats])
-    rhythm, (cycles, beats) = now.rhythm.go(pace, dt, bandwidth=course.bandwidth)
+    rhythm, cycles, beats = now.rhythm, 0.0, 0.0
+    if course.sways:
+        pace = course.frequency * np.array([1.0, course.beats])
+        rhythm, (cycles, beats) = now.rhythm.go(pace, dt, bandwidth=course.bandwidth)
     clock = now.clock + gone
     after = now._replace(
         clock=clock,

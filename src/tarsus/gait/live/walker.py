@@ -158,7 +158,8 @@ class Walker(WalkerView):
         self._frequency = 1 / change.tempo.cycle_time
         self._target = np.zeros(3)
         self._patience = 1.0
-        self._limited: tuple[str, ...] = change.limited
+        self._short: tuple[float, int] = (1.0, 0)
+        self._steep = False
         self._share_of: tuple[Any, ...] = ()
         self._share = (1.0, 0)
         self._hands = Manipulation(self.robot.leg_names)
@@ -423,13 +424,11 @@ class Walker(WalkerView):
     def _aim(self, twist: Sequence[float]) -> None:
         """Set the target of the twist: as much of the wish as the legs allow, for good and right now."""
         share, leg = self._largest_share(tuple(twist))
-        self._limited = self._reasons(share, leg)
+        self._short = share, leg
+        self._steep = bool(self._agenda.refusals or self._steepness) and self._too_steep(twist)
         if self._underfoot.retreats:
             return
-        part = min(share, self._patience)
-        if (self._agenda.refusals or self._steepness) and self._too_steep(twist):
-            part = 0.0
-            self._limited += ("twist: the ground gets too steep that way for the robot as it stands",)
+        part = 0.0 if self._steep else min(share, self._patience)
         wish = [part * speed for speed in twist]
         if not self._walking:
             if not any(wish) and self._at_rest():
@@ -485,7 +484,10 @@ class Walker(WalkerView):
         self._share_of, self._share = key, (share, leg)
         return share, leg
 
-    def _reasons(self, share: float, leg: int) -> tuple[str, ...]:
+    @property
+    def limited(self) -> tuple[str, ...]:
+        """Why the wish is not met in full."""
+        share, leg = self._short
         reasons = [
             *self._agenda.doing.limited,
             *self._agenda.refusals.values(),
@@ -495,6 +497,8 @@ class Walker(WalkerView):
             cycle = self._agenda.doing.tempo.cycle_time
             name = self.robot.leg_names[leg]
             reasons.append(f"twist: {100 * share:.0f} % of it; {name} gets no farther at {cycle:.2f} s a cycle")
+        if self._steep:
+            reasons.append("twist: the ground gets too steep that way for the robot as it stands")
         sway = self._agenda.doing.manner.sway
         calm = calm_sway(np.array(sway), self._frequency, self._beats) if any(sway) else 1.0
         if calm < 1:
@@ -542,6 +546,7 @@ class Walker(WalkerView):
             room=self._footing.room,
             holds=holds,
             beats=self._beats,
+            sways=self._carriage.sways(now.posture.value),
             **(self._underfoot.course(now, self._agenda.doing.terrain) if felt else self._blind),
         )
 

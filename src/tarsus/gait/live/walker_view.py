@@ -49,7 +49,6 @@ class WalkerView:
     _beats: int
     _hands: Manipulation
     _underfoot: Underfoot
-    _limited: tuple[str, ...]
 
     def _stand(self, now: Moment) -> Stand:
         return stand_of(swayed(now.posture.value, now.cycles, now.beats), self._footing.rest)
@@ -108,11 +107,6 @@ class WalkerView:
     def twist(self) -> Floats:
         """The speed now: forward, left [m/s], turning [rad/s]."""
         return self._now.twist.value * self._own.rate
-
-    @property
-    def limited(self) -> tuple[str, ...]:
-        """Why the wish is not met in full."""
-        return self._limited
 
     @property
     def margin(self) -> float:
