@@ -245,3 +245,12 @@ def test_polygons_that_shrink_for_support_stay_convex_and_hold_their_rest_footho
         assert (hull.equations[:, 2] < 0).all(), leg
     assert limits.possible
     assert feet_at(limits.rest).shape == (6, 3)
+
+
+def test_without_any_stroke_nothing_of_a_twist_works():
+    """Where a polygon has no room at all, the joints allow no stroke either."""
+    stuck = capped(envelope_of("strider"), 0.0, 0.0, duty=0.5)
+    for twist in ((0.1, 0.0, 0.0), (0.0, 0.0, 0.3)):
+        share, _ = stuck.largest_share(np.array(twist), stance_time=0.5, duty=0.5)
+        assert share == pytest.approx(0.0, abs=1e-9)
+    assert stuck.largest_share(np.zeros(3), stance_time=0.5, duty=0.5)[0] > 1
