@@ -78,17 +78,18 @@ def test_slow_feet_stop_at_once_fast_ones_take_longer_and_the_fastest_land_as_pl
 
 def test_harder_swings_take_longer():
     setup, rest = setup_of("strider"), rest_of("strider")
-    swing = 1 - setup.gait.duty
+    duty = setup.gait.duty
+    swing = 1 - duty
     now = begun(setup, rest)
-    assert unhurried(now, swing) == 1
+    assert unhurried(now, duty) == 1
     up = now._replace(down=np.arange(6) > 0)
-    assert unhurried(up, swing) == 1
+    assert unhurried(up, duty) == 1
     late = up._replace(late=np.full(6, swing / 2))
     lower = up._replace(ground=np.full(6, -setup.lift))
-    assert unhurried(late, swing) == pytest.approx((1.1 / 4) ** 0.5)
-    assert unhurried(lower, swing) == pytest.approx((1.1 / 1.5) ** 0.5)
+    assert unhurried(late, duty) == pytest.approx((1.1 / 4) ** 0.5)
+    assert unhurried(lower, duty) == pytest.approx((1.1 / 1.5) ** 0.5)
     # Of feet on the ground neither says anything.
-    assert unhurried(late._replace(down=np.ones(6, dtype=bool)), swing) == 1
+    assert unhurried(late._replace(down=np.ones(6, dtype=bool)), duty) == 1
     # Without a lift there still is one.
     flat = up._replace(posture=Lag.still(np.zeros(13)))
-    assert unhurried(flat, swing) == 1
+    assert unhurried(flat, duty) == 1

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from tarsus import Gait, Walker, Wish, list_robots, load_robot
-from tarsus.gait.live.polygon import NORMALS
+from walker_machine import beyond
 
 GAITS = ("tripod", "ripple", "wave", "tetrapod")
 DT = 0.02
@@ -16,13 +16,6 @@ def asked(walker, rng):
     twist = walker.top_speed(way) * way * rng.choice([0, 0, 0.5, 1, 1, 2])
     body = rng.uniform(-1, 1, 6) * (0.02, 0.02, 0.02, 0.1, 0.1, 0.1) if rng.random() < 0.3 else None
     return Wish(twist=twist, gait=str(rng.choice(GAITS)), body=body)
-
-
-def beyond(walker):
-    """How far the foot on the ground that is farthest out is beyond its polygon [m]."""
-    now, bounds = walker._now, walker._footing.bounds
-    seen = (now.foot - now.origin) * np.exp(-1j * now.yaw)
-    return ((seen[:, None] * NORMALS.conj()).real - bounds)[now.down].max()
 
 
 # In each of these feet were 4 to 24 mm beyond: changes let in that they had no room for, and steps too long.

@@ -6,11 +6,10 @@ import pytest
 from gait_robots import PRESETS, preset
 from tarsus.gait.gait import Gait
 from tarsus.gait.live.admittance import Admittance
-from tarsus.gait.live.polygon import NORMALS
 from tarsus.gait.live.senses import Senses
 from tarsus.gait.live.walker import Walker
 from tarsus.gait.live.wish import Wish
-from walker_machine import GAITS, Trace
+from walker_machine import GAITS, Trace, beyond
 
 GIVING = Admittance(mass=1.0, damping=60.0, stiffness=400.0, travel=0.01)
 TOUCH = 1e-4
@@ -65,13 +64,6 @@ def test_every_robot_climbs_where_it_follows_the_slope(name):
     climb(walker, 0.08, 25)
     assert walker.place[0] > 0.35
     assert walker.body.position[2] > clearance
-
-
-def beyond(walker):
-    """How far the foot on the ground that is farthest out is beyond its polygon [m]."""
-    now, bounds = walker._now, walker._footing.bounds
-    seen = (now.foot - now.origin) * np.exp(-1j * now.yaw)
-    return ((seen[:, None] * NORMALS.conj()).real - bounds)[now.down].max()
 
 
 def rough(name, seed, *, seconds=20.0):

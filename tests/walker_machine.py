@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from tarsus.gait.live.polygon import NORMALS
 from tarsus.gait.live.senses import Senses
 from tarsus.gait.live.walker import Walker
 from tarsus.gait.live.wish import Wish
@@ -123,6 +124,13 @@ class Trace:
     def assert_sound(self, *, flat: bool = True) -> None:
         found = self.broken(flat=flat)
         assert not found, f"{self.walker.robot.name}: " + "; ".join(found)
+
+
+def beyond(walker: Walker) -> float:
+    """How far the foot on the ground that is farthest out is beyond its polygon [m]."""
+    now, bounds = walker._now, walker._footing.bounds
+    seen = (now.foot - now.origin) * np.exp(-1j * now.yaw)
+    return float(((seen[:, None] * NORMALS.conj()).real - bounds)[now.down].max())
 
 
 def _over(what: str, values: np.ndarray, bound: float) -> Iterable[str]:

@@ -15,7 +15,7 @@ Floats = np.ndarray[Any, Any]
 # How fast the posture follows [rad/s], and how fast it may move the body at the most [m/s], turn it [rad/s].
 _BANDWIDTH = 4.0
 _BODY_SPEED, _BODY_TURN = 0.08, 0.5
-RISING = 4.0
+RISING = _BANDWIDTH
 """How fast the heading frame follows the ground's height [rad/s]."""
 
 # How near the posture counts as reached, and how near its sway [m, rad].
@@ -110,8 +110,7 @@ class Carriage:
         if max(left) < _REACHED:
             return _BANDWIDTH
         far = max(max(left[:3]) / _BODY_SPEED, max(left[3:LIFT]) / _BODY_TURN, left[LIFT] / _BODY_SPEED)
-        # A lag whose bandwidth is 2 v over the way that is left comes to the speed v, and goes on at it.
-        return min(_BANDWIDTH, 2 / max(far, 1e-9))
+        return _no_faster(far)
 
     def _left(self, value: Floats) -> list[float]:
         """Return how far there is to go, each of the posture's numbers."""
@@ -129,4 +128,10 @@ def rising(gap: float) -> float:
     gap : float
         How much higher the ground is [m].
     """
-    return min(RISING, 2 * _BODY_SPEED / max(abs(gap), 1e-9))
+    return _no_faster(abs(gap) / _BODY_SPEED)
+
+
+def _no_faster(time: float) -> float:
+    """Return how fast to follow what is so long away at the greatest speed [rad/s]."""
+    # A lag whose bandwidth is 2 v over the way that is left comes to the speed v, and goes on at it.
+    return min(_BANDWIDTH, 2 / max(time, 1e-9))

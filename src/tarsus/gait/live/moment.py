@@ -15,8 +15,9 @@ import numpy as np
 from tarsus.gait.gait import Gait
 from tarsus.gait.live.lag import Lag
 from tarsus.gait.live.slope import FLAT, GroundPlane
+from tarsus.gait.swing import ground_share, height_share
 
-__all__ = ["GIVE", "SEA_LEVEL", "THERE", "TIE", "Course", "Moment", "carried", "stopped_part", "sunk_part", "turned"]
+__all__ = ["GIVE", "SEA_LEVEL", "THERE", "TIE", "Course", "Moment", "carried", "stopped_part", "turned"]
 
 Floats = np.ndarray[Any, Any]
 
@@ -144,6 +145,16 @@ class Moment(NamedTuple):
             give_way=Lag.still(none),
         )
 
+    def swings(self, duty: float) -> Floats:
+        """Return how long each foot swings ``(legs,)``, those on the ground for as long as is planned [cycles].
+
+        Parameters
+        ----------
+        duty : float
+            Duty factor.
+        """
+        return np.asarray(1 - duty - np.where(self.down, 0.0, self.late))
+
     def height(self, lift: float) -> Floats:
         """Return the feet's heights in G [m].
 
@@ -173,14 +184,13 @@ class Moment(NamedTuple):
         share, ground, met = float(self.share[leg]), float(self.ground[leg]), float(self.met[leg])
         if met == math.inf:
             start = float(self.start_height[leg])
-            rise = 4 * share * (1 - share)
-            along = share * share * share * (10 - share * (15 - 6 * share))
-            return start + (ground - start) * along + lift * float(self.lift_part[leg]) * (rise * rise * rise)
+            lift *= float(self.lift_part[leg])
+            return float(start + (ground - start) * ground_share(share) + lift * height_share(share))
         # A foot that has met the ground comes to rest on it.
         left = min(1 - met, float(self.give[leg]))
         part = min(max((share - met) / left, 0.0), 1.0)
         start, speed = float(self.met_height[leg]), float(self.met_speed[leg]) * left
-        height: float = start + speed * stopped_part(part) + (ground - start - speed / 3) * sunk_part(part)
+        height: float = start + speed * stopped_part(part) + (ground - start - speed / 3) * ground_share(part)
         return height
 
 
@@ -275,14 +285,3 @@ def stopped_part(part: Any) -> Any:
     """
     left = 1 - part
     return (1 - left * left * left) / 3
-
-
-def sunk_part(part: Any) -> Any:
-    """Return what of a way has been gone by the quintic that begins and ends at rest.
-
-    Parameters
-    ----------
-    part : float or array
-        What part of the time has passed.
-    """
-    return part * part * part * (10 - part * (15 - 6 * part))

@@ -18,7 +18,7 @@ _CHANGE, _CALMING, _STOP = 3.0, 5.0, 10.0
 STOPPING = 0.5 / _STOP
 """How far its own time goes until it has come to a stop [s]."""
 
-# How often a tick is tried, ever slower, and what of the joints' speed and acceleration it may come to.
+# How often a tick is tried, at another rate each time, and what of the joints' speed and acceleration it may come to.
 _TRIES, _KEPT = 5, 0.98
 # From which share of the joints' acceleration on to look ahead, what share to aim at then, and how far to look [s].
 _STRAINED, _CALM, _AHEAD = 0.5, 0.75, 0.02

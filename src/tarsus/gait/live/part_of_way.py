@@ -10,7 +10,7 @@ import numpy as np
 from tarsus.gait.live.balance import Balance
 from tarsus.gait.live.parts import Parts
 from tarsus.gait.live.posture import LIFT, rotation_rows, stand_of
-from tarsus.gait.live.stand import LEVEL, Stand, Terrain, joint_slack
+from tarsus.gait.live.stand import LEVEL, Stand, Terrain, joint_slack, rise
 from tarsus.gait.live.workspace import room_at_rest
 from tarsus.robot.robot import Robot
 
@@ -172,7 +172,7 @@ def reach_slack(robot: Robot, posed: list[Posed]) -> Floats:
     rows, rest = np.array([p.posture for p in posed]), np.array([p.rest for p in posed])
     rotation = np.array([rotation_rows(*row) for row in rows[:, 3:LIFT].tolist()])
     (slope, depth), position, lift = posed[0].terrain, rows[:, :3].T[..., None], rows[:, LIFT:]
-    above = position[2] - slope.real * position[0] - slope.imag * position[1]
+    above = position[2] - rise(slope, position[0], position[1])
     stand = Stand(rest, rotation[:, None], np.stack([position[0], position[1], above]), 0.0, slope)
     height = np.stack([-depth * lift, 0 * lift, lift][0 if depth else 1 :])
     return np.asarray(joint_slack(robot.geometry, stand.solve(robot, rest.real, rest.imag, height)).min(axis=0))

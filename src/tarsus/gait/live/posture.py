@@ -11,7 +11,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from tarsus.gait.live.stand import LEVEL, Stand, Terrain
+from tarsus.gait.live.stand import LEVEL, Stand, Terrain, rise
 
 __all__ = ["LIFT", "Rows", "calm_sway", "rotation_rows", "stand_of", "swayed"]
 
@@ -51,7 +51,7 @@ def stand_of(row: Floats, rest: Floats, terrain: Terrain = LEVEL) -> Stand:
     x, y, z, roll, pitch, yaw, lift = row[: LIFT + 1].tolist()
     slope, position = terrain.slope, row[:3]
     if slope:
-        position = np.array([x, y, z - slope.real * x - slope.imag * y])
+        position = np.array([x, y, z - rise(slope, x, y)])
     return Stand(rest, np.array(rotation_rows(roll, pitch, yaw)), position, lift, slope, terrain.depth * lift)
 
 

@@ -12,6 +12,7 @@ from tarsus.gait.gait import Gait
 from tarsus.gait.live.moment import Moment
 from tarsus.gait.live.slope import GroundPlane
 from tarsus.gait.live.stand import LEVEL, Terrain
+from tarsus.gait.live.stepping import LATEST
 
 __all__ = ["Asked", "Retreat", "Steepness", "swung_again"]
 
@@ -23,8 +24,6 @@ _ELSEWHERE = 1e-5
 _ALIKE, _NOTHING = 0.2, 1e-3
 # What turning counts beside going, for feet that are some 0.2 m from the middle.
 _LIKE_STEPS = (1.0, 1.0, 0.04)
-# Of how much of its swing a foot may be deprived at most.
-_LATEST = 0.5
 
 
 class Steepness:
@@ -158,7 +157,7 @@ def swung_again(now: Moment, legs: Sequence[int], gait: Gait, ground: GroundPlan
     return now._replace(
         clock=now.clock - back,
         share=np.where(again, 0.0, now.share),
-        late=np.where(again, np.clip(since - back, 0.0, _LATEST * (1 - gait.duty)), now.late),
+        late=np.where(again, np.clip(since - back, 0.0, LATEST * (1 - gait.duty)), now.late),
         start_height=np.where(again, now.ground, now.start_height),
         ground=np.where(again, ground.height(now.foot.real, now.foot.imag), now.ground),
         met=np.where(again, np.inf, now.met),

@@ -13,7 +13,7 @@ from tarsus.kinematics.triangle import Triangle, solve_triangle, to_leg_frame
 from tarsus.robot.geometry import LegGeometry
 from tarsus.robot.robot import Robot
 
-__all__ = ["HIGHER", "LEVEL", "Stand", "Terrain", "joint_slack"]
+__all__ = ["HIGHER", "LEVEL", "Stand", "Terrain", "joint_slack", "rise"]
 
 Floats = np.ndarray[Any, Any]
 
@@ -94,9 +94,22 @@ class Stand(NamedTuple):
         """
         r = self.rotation
         if self.slope:
-            z = z + self.slope.real * x + self.slope.imag * y
+            z = z + rise(self.slope, x, y)
         in_x, in_y, in_z = (x * r[..., 0, i] + y * r[..., 1, i] + z * r[..., 2, i] for i in range(3))
         return in_x, in_y, in_z
+
+
+def rise(slope: complex, x: Any, y: Any) -> Any:
+    """Return how much the ground rises on the way to places [m].
+
+    Parameters
+    ----------
+    slope : complex
+        How much it rises along x and y [m/m].
+    x, y : float or array
+        The places [m].
+    """
+    return slope.real * x + slope.imag * y
 
 
 def joint_slack(geometry: LegGeometry, solution: Triangle) -> Floats:

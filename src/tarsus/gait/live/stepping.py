@@ -13,15 +13,16 @@ from tarsus.gait.live.moment import THERE, TIE, Course, Moment, carried
 from tarsus.gait.live.posture import LIFT
 from tarsus.gait.live.slope import FLAT
 
-__all__ = ["FREEZE", "go_on", "quintic"]
+__all__ = ["FREEZE", "LATEST", "go_on", "quintic"]
 
 Floats = np.ndarray[Any, Any]
 
 FREEZE = 0.6
 """Share of the swing after which the foot's target stays: what is left is enough to come to it gently."""
 
-# Of how much of its swing a foot that was held back may be deprived at most.
-_LATEST = 0.5
+LATEST = 0.5
+"""Of how much of its swing a foot that was held back may be deprived at most."""
+
 # How fast feet give way [rad/s].
 _GIVING = 20.0
 # How much of the lift a foot takes at the least.
@@ -109,7 +110,7 @@ def _lift(now: Moment, course: Course, due: Floats, late: Floats, *, stopping: b
         lift_part=np.where(wanted, _lift_part(now, course, np.maximum(start, ground)), now.lift_part),
         give_way=given,
         # Feet that were held back go a shorter swing.
-        late=np.where(due, np.clip(late, 0.0, _LATEST * (1 - course.gait.duty)), now.late),
+        late=np.where(due, np.clip(late, 0.0, LATEST * (1 - course.gait.duty)), now.late),
     )
 
 

@@ -7,9 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from tarsus.gait.live.moment import GIVE, Moment, stopped_part, sunk_part, turned
+from tarsus.gait.live.moment import GIVE, Moment, stopped_part, turned
 from tarsus.gait.live.posture import LIFT, stand_of, swayed
 from tarsus.gait.live.stepping import quintic
+from tarsus.gait.swing import ground_share
 from tarsus.robot.robot import Robot
 
 __all__ = ["meet_ground", "unhurried"]
@@ -83,7 +84,7 @@ def _bend(
     time = part * give / swing_rate
     foot, _, _ = quintic((now.foot, now.pace, now.bend), now.foot + now.pace * give / 3, give, part)
     over = now.give_way.value - now.elevation.value
-    z = height + over + speed * give * stopped_part(part) + sinks[:, None] * sunk_part(part)
+    z = height + over + speed * give * stopped_part(part) + sinks[:, None] * ground_share(part)
     forward, left, turning = now.twist.value.tolist()
     gone = complex(forward, left) * time * turned(turning * time)
     seen = ((foot - now.origin) * np.exp(-1j * now.yaw) - gone) * np.exp(-1j * turning * time)
@@ -96,18 +97,17 @@ def _bend(
     return np.asarray(np.maximum(*bends))
 
 
-def unhurried(now: Moment, swing: float) -> float:
+def unhurried(now: Moment, duty: float) -> float:
     """Return how fast the walk's own time may run for swings that are shorter than planned, or end higher or lower.
 
     Parameters
     ----------
     now : Moment
         The moment.
-    swing : float
-        How long a swing is planned to take [cycles].
+    duty : float
+        Duty factor.
     """
     lift = max(float(now.posture.value[LIFT]), 1e-3)
     rise = np.abs(now.ground - now.start_height) / lift
-    shorter = swing / (swing - np.where(now.down, 0.0, now.late))
-    harder = np.where(now.down, 1.0, (1 + _BY_RISE * rise) * shorter**2)
+    harder = np.where(now.down, 1.0, (1 + _BY_RISE * rise) * ((1 - duty) / now.swings(duty)) ** 2)
     return math.sqrt(_HARDER / max(float(harder.max()), _HARDER))

@@ -158,7 +158,6 @@ class Walker(WalkerView):
         self._frequency = 1 / change.tempo.cycle_time
         self._target = np.zeros(3)
         self._patience = 1.0
-        self._short: tuple[float, int] = (1.0, 0)
         self._steep = False
         self._share_of: tuple[Any, ...] = ()
         self._share = (1.0, 0)
@@ -173,7 +172,7 @@ class Walker(WalkerView):
         self._all, self._none = np.ones(legs, dtype=bool), np.zeros(legs, dtype=bool)
         self._blind = {"give_way": np.zeros(legs)}
         self._now = Moment.standing(change.rest, self._carriage.goal)
-        self._own = OwnTime(self._solve(self._now), self.joint_speed, self.joint_acceleration)
+        self._own = OwnTime(self._solver.angles(self._now), self.joint_speed, self.joint_acceleration)
 
     def _set_gait(self, gait: Gait) -> None:
         self._offsets = np.asarray(gait.offsets)
@@ -256,7 +255,7 @@ class Walker(WalkerView):
         )
         met = self._underfoot.met(now)
         if met.any():
-            swing_rate = self._frequency / (1 - self.gait.duty - np.where(now.down, 0.0, now.late))
+            swing_rate = self._frequency / now.swings(self.gait.duty)
             self._now = meet_ground(self.robot, now, met, acceleration=self.joint_acceleration, swing_rate=swing_rate)
 
     def _draw_back(self, wish: Wish) -> None:
@@ -423,8 +422,7 @@ class Walker(WalkerView):
 
     def _aim(self, twist: Sequence[float]) -> None:
         """Set the target of the twist: as much of the wish as the legs allow, for good and right now."""
-        share, leg = self._largest_share(tuple(twist))
-        self._short = share, leg
+        share, _ = self._largest_share(tuple(twist))
         self._steep = bool(self._agenda.refusals or self._steepness) and self._too_steep(twist)
         if self._underfoot.retreats:
             return
@@ -487,7 +485,7 @@ class Walker(WalkerView):
     @property
     def limited(self) -> tuple[str, ...]:
         """Why the wish is not met in full."""
-        share, leg = self._short
+        share, leg = self._share
         reasons = [
             *self._agenda.doing.limited,
             *self._agenda.refusals.values(),
@@ -529,8 +527,7 @@ class Walker(WalkerView):
             steps[list(self._agenda.doing.manner.gone)] = False
         felt = self._underfoot.felt is not None
         if felt:
-            swing = 1 - self.gait.duty - np.where(now.down, 0.0, now.late)
-            soon = now.share + dt * self._frequency / swing >= 1.0 - TIE
+            soon = now.share + dt * self._frequency / now.swings(self.gait.duty) >= 1.0 - TIE
             lands, waits = self._underfoot.lands(now, soon)
             holds = holds or waits
         return Course(
@@ -566,13 +563,10 @@ class Walker(WalkerView):
         def move(time: float) -> Moment:
             return self._hands.carry(go_on(self._now, course, time), time, swing_time=swing_time)
 
-        fastest = 1.0 if underfoot.felt is None else unhurried(self._now, 1 - self.gait.duty)
-        self._now = self._own.advance(move, self._solve, dt, stop=underfoot.stops, fastest=fastest)
+        fastest = 1.0 if underfoot.felt is None else unhurried(self._now, self.gait.duty)
+        self._now = self._own.advance(move, self._solver.angles, dt, stop=underfoot.stops, fastest=fastest)
         self._hands.step(dt * self._own.rate, self._now.down)
         self._finish(before, dt)
-
-    def _solve(self, now: Moment) -> Floats:
-        return self._solver.angles(now)
 
     def _finish(self, before: Moment, dt: float) -> None:
         """See what has come to its end with this tick."""
