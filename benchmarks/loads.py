@@ -17,14 +17,14 @@ from tarsus import (
     Pose,
     Robot,
     cycle_feet,
-    default_clearance,
+    default_body_height,
     default_stance,
     inverse_kinematics,
     plan_walk,
     straight_path,
 )
 from tarsus.load.designs import cycle_torques
-from tarsus.load.loads import loads
+from tarsus.load.loads import joint_loads
 from tarsus.load.torque import joint_torques
 
 __all__ = ["load_rows"]
@@ -61,7 +61,7 @@ def walk_rows(robot: Robot) -> Iterator[Row]:
 
 def worked_out(robot: Robot, walk: Any, *, inertial: bool) -> object:
     """Return the peaks, so that nothing is left for later."""
-    return loads(robot, walk, inertial=inertial).peak
+    return joint_loads(robot, walk, inertial=inertial).peak
 
 
 def designs_of(robot: Robot) -> Robot:
@@ -70,28 +70,30 @@ def designs_of(robot: Robot) -> Robot:
     return robot.replace(**{name: getattr(robot, name) * scale[i] for i, name in enumerate(("coxa", "femur", "tibia"))})
 
 
-def by_steps(robot: Robot, gait: Gait, lift: float) -> object:
+def by_steps(robot: Robot, gait: Gait, swing_height: float) -> object:
     """Return one design's torques by the functions for any pose: what a loop would call without `cycle_torques`."""
-    clearance = default_clearance(robot)
-    rest = default_stance(robot, clearance, lift=lift)
+    body_height = default_body_height(robot)
+    rest = default_stance(robot, body_height, swing_height=swing_height)
     moments = np.arange(PHASES) / PHASES
-    feet, contacts = cycle_feet(gait, rest, (STROKE, 0.0, 0.0), lift=np.asarray(lift), phases=moments)
-    body = Pose(position=(0, 0, clearance))
-    angles = inverse_kinematics(robot, feet + np.array([0, 0, clearance]), body).angles
+    feet, contacts = cycle_feet(gait, rest, (STROKE, 0.0, 0.0), swing_height=np.asarray(swing_height), phases=moments)
+    body = Pose(position=(0, 0, body_height))
+    angles = inverse_kinematics(robot, feet + np.array([0, 0, body_height]), body).angles
     return joint_torques(robot, angles, body, contacts)
 
 
 def cycle_rows(robot: Robot) -> Iterator[Row]:
     """A tripod cycle of many designs in one call, against Python loops over single designs."""
-    gait, lift, together = Gait.named("tripod"), 0.03, designs_of(robot)
+    gait, swing_height, together = Gait.named("tripod"), 0.03, designs_of(robot)
     singles = [together.item((i,)) for i in range(LOOPED)]
     for single in singles:
         _ = single.geometry  # worked out once for a design, whoever asks
     times = medians(
         {
-            "batch": lambda: cycle_torques(together, gait, stroke=STROKE, lift=lift, phases=PHASES),
-            "alone": lambda: [cycle_torques(one, gait, stroke=STROKE, lift=lift, phases=PHASES) for one in singles],
-            "steps": lambda: [by_steps(one, gait, lift) for one in singles],
+            "batch": lambda: cycle_torques(together, gait, stroke=STROKE, swing_height=swing_height, phases=PHASES),
+            "alone": lambda: [
+                cycle_torques(one, gait, stroke=STROKE, swing_height=swing_height, phases=PHASES) for one in singles
+            ],
+            "steps": lambda: [by_steps(one, gait, swing_height) for one in singles],
         },
         rounds=7,
     )
@@ -106,10 +108,10 @@ def cycle_rows(robot: Robot) -> Iterator[Row]:
             met=ratio >= TIMES_A_LOOP,
         )
     if importlib.util.find_spec("jax") is not None:
-        yield jitted_row(robot, together, gait, lift, each["batch"])
+        yield jitted_row(robot, together, gait, swing_height, each["batch"])
 
 
-def jitted_row(robot: Robot, together: Robot, gait: Gait, lift: float, numpy_time: float) -> Row:
+def jitted_row(robot: Robot, together: Robot, gait: Gait, swing_height: float, numpy_time: float) -> Row:
     """The same through `jax.jit` on the same core."""
     import jax
 
@@ -117,7 +119,7 @@ def jitted_row(robot: Robot, together: Robot, gait: Gait, lift: float, numpy_tim
 
     def torques(coxa: Any, femur: Any, tibia: Any) -> Any:
         design = robot.replace(coxa=coxa, femur=femur, tibia=tibia)
-        return cycle_torques(design, gait, stroke=STROKE, lift=lift, phases=PHASES).torques
+        return cycle_torques(design, gait, stroke=STROKE, swing_height=swing_height, phases=PHASES).torques
 
     compiled = jax.jit(torques)
     arrays = [jax.numpy.asarray(getattr(together, name)) for name in ("coxa", "femur", "tibia")]

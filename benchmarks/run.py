@@ -56,7 +56,7 @@ TABLE = Path(__file__).parent.parent / "docs" / "benchmarks.md"
 def footholds(robot: Robot, rng: np.random.Generator) -> FloatArray:
     """Return feet in B about a stance, all of them within reach with the body tilted by 5 degrees about each axis."""
     spread = rng.uniform((-0.02, -0.02, 0.0), (0.02, 0.02, 0.01), (ROBOTS, robot.legs, 3))
-    return np.asarray(default_stance(robot, CLEARANCE, lift=0.05) + spread)
+    return np.asarray(default_stance(robot, CLEARANCE, swing_height=0.05) + spread)
 
 
 def tilted(degrees: float, rng: np.random.Generator) -> Pose:

@@ -1,4 +1,4 @@
-"""Rows on the live walker: a tick while the wishes change, the guard's check, planning to stand up; top speeds."""
+"""Rows on the live walker: a tick while the commands change, the guard's check, planning to stand up; top speeds."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ from measure import Row, medians  # isort: split
 import numpy as np
 
 from tarsus import GAITS, Gait, Robot, list_robots, load_robot
-from tarsus.gait.live.fold import folded_pose
-from tarsus.gait.live.guard import Guard
-from tarsus.gait.live.rise import stand_up
-from tarsus.gait.live.senses import Senses
-from tarsus.gait.live.walker import Walker
-from tarsus.gait.live.wish import Wish
+from tarsus.control.command import Command
+from tarsus.control.readings import SensorReadings
+from tarsus.control.safety.guard import Guard
+from tarsus.control.startup.folded_pose import folded_pose
+from tarsus.control.startup.planner import stand_up
+from tarsus.control.walk_controller import WalkController
 
 __all__ = ["speed_table", "top_speed", "walker_rows"]
 
@@ -64,39 +64,42 @@ def control_loop() -> Iterator[None]:
         gc.unfreeze()
 
 
-def wishes(rng: np.random.Generator, walker: Walker) -> Iterator[Wish]:
-    """Yield wishes that change everything in turn."""
-    clearance, lift = float(walker.body.position[2]), walker.robot.gait.lift or 0.03
+def commands(rng: np.random.Generator, controller: WalkController) -> Iterator[Command]:
+    """Yield commands that change everything in turn."""
+    body_height, swing_height = float(controller.body.position[2]), controller.robot.gait.swing_height or 0.03
     changes: tuple[Callable[[], dict[str, Any]], ...] = (
         lambda: {"gait": str(rng.choice(list(GAITS)))},
         lambda: {"body": tuple(rng.uniform(-1, 1, 6) * (0.02, 0.02, 0.02, 0.1, 0.1, 0.1))},
-        lambda: {"clearance": clearance * rng.uniform(0.9, 1.1), "lift": lift * rng.uniform(0.5, 1.2)},
+        lambda: {
+            "body_height": body_height * rng.uniform(0.9, 1.1),
+            "swing_height": swing_height * rng.uniform(0.5, 1.2),
+        },
         lambda: {"cycle_time": float(rng.uniform(1, 2)), "stance_width": float(rng.uniform(-0.01, 0.01))},
     )
     number = 0
     while True:
         twist = tuple(rng.uniform(-1, 1, 3) * (0.3, 0.3, 1.0))
-        yield Wish(twist=twist, **(changes[number // 5 % len(changes)]() if number % 5 == 0 else {}))
+        yield Command(twist=twist, **(changes[number // 5 % len(changes)]() if number % 5 == 0 else {}))
         number += 1
 
 
 def ticks(robot: Robot, count: int) -> np.ndarray[Any, Any]:
     """Return how long each of so many ticks takes [s], on the processor's clock."""
-    walker = Walker(robot, Gait.named("tripod"))
-    asked = wishes(np.random.default_rng(4), walker)
-    times, wish = np.empty(count), next(asked)
+    controller = WalkController(robot, Gait.named("tripod"))
+    asked = commands(np.random.default_rng(4), controller)
+    times, command = np.empty(count), next(asked)
     with control_loop():
         for tick in range(count):
             if tick % NEW_WISH == NEW_WISH - 1:
-                wish = next(asked)
+                command = next(asked)
             start = time.thread_time_ns()
-            walker.step(wish, DT)
+            controller.step(command, DT)
             times[tick] = (time.thread_time_ns() - start) * 1e-9
     return times
 
 
 def tick_rows(robot: Robot) -> Iterator[Row]:
-    """Every tick of a walk in which the wishes change."""
+    """Every tick of a walk in which the commands change."""
     runs = np.array([ticks(robot, TICKS) for _ in range(RUNS)])
     times = runs.min(axis=0)
     what = (
@@ -123,16 +126,16 @@ def tick_rows(robot: Robot) -> Iterator[Row]:
 
 def rough_rows(robot: Robot) -> Iterator[Row]:
     """Every tick of a walk over rough ground, which the feet feel, the body held level."""
-    rng, walker = np.random.default_rng(4), Walker(robot, Gait.named("tripod"), levelling="level")
-    times, wish, ground = np.empty(ROUGH_TICKS), (0.0, 0.0, 0.0), np.zeros(robot.legs)
+    rng, controller = np.random.default_rng(4), WalkController(robot, Gait.named("tripod"), levelling="level")
+    times, command, ground = np.empty(ROUGH_TICKS), (0.0, 0.0, 0.0), np.zeros(robot.legs)
     with control_loop():
         for tick in range(ROUGH_TICKS):
             if tick % NEW_WISH == 0:
                 forward, left, turning = (rng.uniform(-1, 1, 3) * (0.3, 0.3, 1.0)).tolist()
-                wish, ground = (forward, left, turning), rng.normal(size=robot.legs) * ROUGH
-            senses = Senses(contacts=felt(walker, ground), attitude=(0.0, 0.0))
+                command, ground = (forward, left, turning), rng.normal(size=robot.legs) * ROUGH
+            readings = SensorReadings(contacts=estimate(controller, ground), attitude=(0.0, 0.0))
             start = time.thread_time_ns()
-            walker.step(wish, DT, senses=senses)
+            controller.step(command, DT, readings=readings)
             times[tick] = (time.thread_time_ns() - start) * 1e-9
     yield Row(
         what=f"a tick on ground {ROUGH * 1e3:.0f} mm rough, felt, {ROUGH_TICKS:,} of them: median",
@@ -141,15 +144,15 @@ def rough_rows(robot: Robot) -> Iterator[Row]:
     )
 
 
-def felt(walker: Walker, ground: Any) -> tuple[bool, ...]:
+def estimate(controller: WalkController, ground: Any) -> tuple[bool, ...]:
     """Return which feet touch a ground that is so high under each [m]."""
-    return tuple((walker.feet[:, 2] <= ground + TOUCH).tolist())
+    return tuple((controller.feet[:, 2] <= ground + TOUCH).tolist())
 
 
 def guard_rows(robot: Robot) -> Iterator[Row]:
     """The guard's check of a tick, with contacts and the body."""
-    walker = Walker(robot, Gait.named("tripod"))
-    seen = [(walker.step((0.1, 0.0, 0.2), DT), walker.contacts, walker.body) for _ in range(500)]
+    controller = WalkController(robot, Gait.named("tripod"))
+    seen = [(controller.step((0.1, 0.0, 0.2), DT), controller.contacts, controller.body) for _ in range(500)]
     guard = Guard(robot)
     for angles, contacts, body in seen:
         guard.check(angles, DT, contacts, body)
@@ -167,17 +170,17 @@ def rise_rows(robot: Robot) -> Iterator[Row]:
 
 def top_speed(robot: Robot, gait: str, direction: str, *, feeling: bool = False) -> float:
     """Return the speed that a robot reaches when more is asked of it [m/s], [rad/s]; on level ground, felt or not."""
-    walker = Walker(robot, Gait.named(gait))
+    controller = WalkController(robot, Gait.named(gait))
     twist = [FAR * speed for speed in DIRECTIONS[direction]]
 
     def walk(ticks: int) -> None:
         for _ in range(ticks):
-            walker.step(twist, DT, senses=Senses(contacts=felt(walker, 0.0)) if feeling else None)
+            controller.step(twist, DT, readings=SensorReadings(contacts=estimate(controller, 0.0)) if feeling else None)
 
-    walk(math.ceil(6 * walker.cycle_time / DT))
-    before, begun = walker.place, walker.time
-    walk(math.ceil(walker.cycle_time / DT))
-    x, y, turned = np.subtract(walker.place, before) / (walker.time - begun)
+    walk(math.ceil(6 * controller.cycle_time / DT))
+    before, begun = controller.place, controller.time
+    walk(math.ceil(controller.cycle_time / DT))
+    x, y, turned = np.subtract(controller.place, before) / (controller.time - begun)
     return float(turned if direction == "turning" else math.hypot(x, y))
 
 
@@ -190,7 +193,7 @@ def speed_table() -> str:
     for name in list_robots():
         robot = load_robot(name)
         for gait in GAITS:
-            cycle = Walker(robot, Gait.named(gait)).cycle_time
+            cycle = WalkController(robot, Gait.named(gait)).cycle_time
             reached = " | ".join(f"{top_speed(robot, gait, direction):.3f}" for direction in DIRECTIONS)
             feeling = top_speed(robot, gait, "forward", feeling=True)
             lines.append(f"| {name} | {gait} | {cycle:.2f} | {reached} | {feeling:.3f} |")

@@ -25,13 +25,13 @@ def hill(x: Any) -> Any:
 
 def walked(robot: tarsus.Robot, levelling: Any) -> list[Any]:
     """Return heading, feet, contacts and body at each tick."""
-    walker, seen = tarsus.Walker(robot, tarsus.Gait.named("tripod"), levelling=levelling), []
-    while walker.place[0] < CORNERS[-1] + 0.5 and walker.time < 60:
-        rotation = walker.body.rotation
+    controller, seen = tarsus.WalkController(robot, tarsus.Gait.named("tripod"), levelling=levelling), []
+    while controller.place[0] < CORNERS[-1] + 0.5 and controller.time < 60:
+        rotation = controller.body.rotation
         attitude = (float(np.arctan2(rotation[2, 1], rotation[2, 2])), float(np.arcsin(-rotation[2, 0])))
-        contacts = tuple((walker.feet[:, 2] <= hill(walker.feet[:, 0]) + TOUCH).tolist())
-        walker.step((0.12, 0.0, 0.0), DT, senses=tarsus.Senses(contacts=contacts, attitude=attitude))
-        seen.append((walker.feet, walker.contacts, walker.body))
+        contacts = tuple((controller.feet[:, 2] <= hill(controller.feet[:, 0]) + TOUCH).tolist())
+        controller.step((0.12, 0.0, 0.0), DT, readings=tarsus.SensorReadings(contacts=contacts, attitude=attitude))
+        seen.append((controller.feet, controller.contacts, controller.body))
     return seen
 
 

@@ -9,8 +9,6 @@ import numpy as np
 
 import tarsus
 from draw_hill import plot_hill
-from tarsus.drive.run import run_scenario
-from tarsus.drive.scenario import Scenario
 from tarsus.report.angles import plot_angles
 from tarsus.report.animation import animate
 from tarsus.report.footpaths import plot_footpaths
@@ -18,14 +16,16 @@ from tarsus.report.gait_diagram import plot_gait
 from tarsus.report.skeleton import plot_robot
 from tarsus.report.style import save_figure
 from tarsus.report.timeline import plot_timeline
+from tarsus.scenario.runner import run_scenario
+from tarsus.scenario.scenario import Scenario
 
 FIGURES = Path(__file__).parent / "figures"
 
 
 def standing(robot: tarsus.Robot) -> tuple[Any, tarsus.Pose]:
-    clearance = tarsus.default_clearance(robot)
-    feet = tarsus.default_stance(robot) + np.array([0, 0, clearance])
-    body = tarsus.Pose(position=np.array([0, 0, clearance]))
+    body_height = tarsus.default_body_height(robot)
+    feet = tarsus.default_stance(robot) + np.array([0, 0, body_height])
+    body = tarsus.Pose(position=np.array([0, 0, body_height]))
     return tarsus.inverse_kinematics(robot, feet, body).require().angles, body
 
 

@@ -6,7 +6,7 @@ from pathlib import Path
 from tarsus.gait.gait import Gait
 from tarsus.gait.path import straight_path
 from tarsus.gait.plan import plan_walk
-from tarsus.load.loads import loads
+from tarsus.load.loads import joint_loads
 from tarsus.robot.file import load_robot
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
@@ -28,4 +28,4 @@ def sample_motion(name="strider", gait="tripod", **more):
 @cache
 def sample_loads(name="strider", gait="tripod", **conditions):
     motion = sample_motion(name, gait)
-    return loads(motion.robot, motion, **conditions)
+    return joint_loads(motion.robot, motion, **conditions)

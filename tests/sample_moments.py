@@ -3,14 +3,14 @@
 import numpy as np
 
 from sample_stands import envelope_of, posture_of, setup_of
-from tarsus.gait.live.moment import Course, Moment
+from tarsus.control.walk.state import GaitState, StepInputs
 
 EARTH, FACING = 0.3 - 0.2j, 0.7
 
 
 def moment_of(setup, rest, **changes):
     there = EARTH + np.exp(1j * FACING) * rest
-    now = Moment.standing(there, posture_of(setup))
+    now = GaitState.standing(there, posture_of(setup))
     return now._replace(**{"origin": EARTH, "yaw": FACING, **changes})
 
 
@@ -20,7 +20,7 @@ def course_of(setup, rest, twist, **changes):
         "frequency": 1.0,
         "twist": np.asarray(twist, dtype=float),
         "posture": posture_of(setup),
-        "bandwidth": 4 / setup.gait.duty,
+        "bandwidth": 4 / setup.gait.duty_factor,
         "posture_bandwidth": 4.0,
         "steps": np.ones(len(rest), dtype=bool),
         "holds": False,
@@ -29,14 +29,14 @@ def course_of(setup, rest, twist, **changes):
         "room": np.full((len(rest), 16), np.inf),
         "give_way": np.zeros(len(rest)),
     }
-    return Course(**{**values, **changes})
+    return StepInputs(**{**values, **changes})
 
 
 def begun(setup, rest):
     """Standing, the clock at the moment when leg 0 lifts."""
-    offsets, duty = np.asarray(setup.gait.offsets), setup.gait.duty
-    clock = float(offsets[0]) + duty
-    return moment_of(setup, rest, clock=clock, number=np.ceil(clock - offsets - duty - 1e-9))
+    offsets, duty_factor = np.asarray(setup.gait.offsets), setup.gait.duty_factor
+    clock = float(offsets[0]) + duty_factor
+    return moment_of(setup, rest, clock=clock, number=np.ceil(clock - offsets - duty_factor - 1e-9))
 
 
 def rest_of(name):

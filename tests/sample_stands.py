@@ -5,15 +5,16 @@ import functools
 import numpy as np
 
 from gait_robots import preset
+from tarsus.control.incremental import complete
+from tarsus.control.workspace.cycle_time import cycle_timing
+from tarsus.control.workspace.foot_workspace import foot_workspace
+from tarsus.control.workspace.stability import support_sets
+from tarsus.control.workspace.stance_geometry import stance_geometry_of
+from tarsus.control.workspace.velocity_limits import velocity_limits
 from tarsus.gait.gait import Gait
-from tarsus.gait.live.envelope import envelope
-from tarsus.gait.live.parts import all_parts
-from tarsus.gait.live.posture import stand_of
-from tarsus.gait.live.support import support_sets
-from tarsus.gait.live.tempo import joint_limits, tempo
-from tarsus.gait.live.workspace import workspace
 from tarsus.gait.setup import Setup
 from tarsus.kinematics.pose import Pose
+from tarsus.robot.joint_limits import joint_limits
 
 # Level; moved and turned in every way; leaning forwards and back.
 POSTURES = (
@@ -27,15 +28,15 @@ POSTURES = (
 def setup_of(robot, gait="tripod"):
     robot = preset(robot) if isinstance(robot, str) else robot
     gait = Gait.named(gait, legs=robot.legs) if isinstance(gait, str) else gait
-    return Setup.of(robot, gait, clearance=None, lift=None, body_tilt=(0.0, 0.0), foot_distance=None)
+    return Setup.of(robot, gait, body_height=None, swing_height=None, body_tilt=(0.0, 0.0), foot_distance=None)
 
 
 def posture_of(setup, body=POSTURES[0]):
-    return np.array([*body[:2], body[2] + setup.clearance, *body[3:], setup.lift])
+    return np.array([*body[:2], body[2] + setup.body_height, *body[3:], setup.swing_height])
 
 
 def standing(setup, body=POSTURES[0]):
-    return stand_of(posture_of(setup, body), setup.rest[:, 0] + 1j * setup.rest[:, 1])
+    return stance_geometry_of(posture_of(setup, body), setup.rest[:, 0] + 1j * setup.rest[:, 1])
 
 
 def pose_of(stand):
@@ -49,22 +50,22 @@ def feet_at(points, height=0.0):
 @functools.cache
 def polygons(name, body=POSTURES[0]):
     setup = setup_of(name)
-    return all_parts(workspace(setup.robot, standing(setup, body), foot_distance=setup.foot_distance))
+    return complete(foot_workspace(setup.robot, standing(setup, body), foot_distance=setup.foot_distance))
 
 
 @functools.cache
 def envelope_of(name, gait="tripod", body=POSTURES[0]):
     setup = setup_of(name, gait)
     sets = support_sets(setup.gait)
-    return all_parts(envelope(setup.robot, [standing(setup, body)], sets, foot_distance=setup.foot_distance))
+    return complete(velocity_limits(setup.robot, [standing(setup, body)], sets, foot_distance=setup.foot_distance))
 
 
 @functools.cache
 def tempo_of(name, gait="tripod", cycle_time=None):
     setup = setup_of(name, gait)
     speed, acceleration = joint_limits(setup.robot, None, None)
-    return all_parts(
-        tempo(
+    return complete(
+        cycle_timing(
             setup.robot,
             setup.gait,
             standing(setup),

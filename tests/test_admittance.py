@@ -10,9 +10,9 @@ from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 
 from sample_robots import hexapod, random_hexapod, standing
+from tarsus.control.pose.admittance import Admittance, AdmittanceFilter
+from tarsus.control.sensing.foot_force import FootForceEstimator, balanced_forces, foot_forces_from_torques
 from tarsus.errors import InputError
-from tarsus.gait.live.admittance import Admittance, AdmittanceFilter
-from tarsus.gait.live.foot_force import TorqueSense, balanced_forces, foot_forces_from_torques
 from tarsus.kinematics.leg import forward_kinematics, leg_jacobian
 from tarsus.kinematics.pose import Pose
 from tarsus.load.contact import contact_forces
@@ -186,7 +186,7 @@ def test_singular_legs_and_unknown_torques_are_none():
     angles[4, 1:] = [2.0, math.pi - math.acos(reach) - 2.0]
     assert abs(np.linalg.norm((forward_kinematics(robot, angles)[4, 3] - robot.mount_position[4])[:2])) < 1e-12
     assert foot_forces_from_torques(robot, angles, torques)[4] is None
-    some = TorqueSense(robot).forces(angles.tolist(), [None, *torques.tolist()[1:]])
+    some = FootForceEstimator(robot).forces(angles.tolist(), [None, *torques.tolist()[1:]])
     assert some[0] is some[1] is None
     assert some[5] is not None
 
@@ -208,7 +208,7 @@ def test_wrong_torques_are_refused():
     with pytest.raises(InputError, match=r"torques\[0, 0\] is nan"):
         foot_forces_from_torques(robot, angles, np.full((6, 3), np.nan))
     with pytest.raises(InputError, match="batch of designs"):
-        TorqueSense(stack_robots([robot, robot]))
+        FootForceEstimator(stack_robots([robot, robot]))
 
 
 @given(st.integers(0, 2**32 - 1), st.integers(3, 6))

@@ -5,10 +5,9 @@ import pytest
 
 from gait_robots import PRESETS, ring
 from sample_stands import POSTURES, polygons, setup_of, standing
+from tarsus.control.workspace.polygon import NORMALS, polygon_ends
+from tarsus.control.workspace.stability import StabilityCheck, margin_at_rest, safe_share, support_sets
 from tarsus.gait.gait import GAITS
-from tarsus.gait.live.balance import Balance
-from tarsus.gait.live.polygon import NORMALS, polygon_ends
-from tarsus.gait.live.support import margin_at_rest, safe_share, support_sets
 from tarsus.kinematics.mass import centre_of_mass
 
 
@@ -16,7 +15,7 @@ from tarsus.kinematics.mass import centre_of_mass
 @pytest.mark.parametrize("name", PRESETS)
 def test_each_legs_own_shift_adds_up_to_that_of_the_whole_robot(name, body):
     setup, stand, sides = setup_of(name), standing(setup_of(name), body), polygons(name, body)
-    centre, shift = Balance(setup.robot, support_sets(setup.gait)).centre_of_mass(stand, sides)
+    centre, shift = StabilityCheck(setup.robot, support_sets(setup.gait)).centre_of_mass(stand, sides)
     corners = polygon_ends(sides, stand.rest)[1]
     picked = np.random.default_rng(4).integers(0, 16, (50, 6))
     feet = stand.rest + corners[np.arange(6), picked]
@@ -30,7 +29,7 @@ def test_without_masses_nothing_shifts_the_bodys_own_centre():
     setup = setup_of(ring(6, link_mass=None, body_mass=None))
     stand = standing(setup, POSTURES[1])
     bounds = 0.05 + (NORMALS.conj() * stand.rest[:, None]).real
-    centre, shift = Balance(setup.robot, support_sets(setup.gait)).centre_of_mass(stand, bounds)
+    centre, shift = StabilityCheck(setup.robot, support_sets(setup.gait)).centre_of_mass(stand, bounds)
     body = stand.rotation @ setup.robot.body_com + stand.position
     assert centre == pytest.approx(complex(body[0], body[1]))
     assert not shift.any()
@@ -39,7 +38,7 @@ def test_without_masses_nothing_shifts_the_bodys_own_centre():
 def test_legs_that_hang_about_anywhere_take_a_wider_margin_and_shift_nothing():
     setup, stand, sides = setup_of("strider"), standing(setup_of("strider")), polygons("strider")
     sets = support_sets(setup_of("strider", "wave").gait, (1, 4))
-    usual, wider = Balance(setup.robot, sets), Balance(setup.robot, sets, (1, 4))
+    usual, wider = StabilityCheck(setup.robot, sets), StabilityCheck(setup.robot, sets, (1, 4))
     assert wider.least_margin > usual.least_margin + 0.01
     shift = wider.centre_of_mass(stand, sides)[1]
     assert not shift[[1, 4]].any()

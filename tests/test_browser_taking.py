@@ -38,7 +38,7 @@ def test_the_angles_are_copied_as_a_spreadsheet_pastes_them(visitor):
     visitor.at("copy-angles").click()
     expect(visitor.at("toast")).to_contain_text("copied")
     head, *rows = [line.split("\t") for line in clipboard(visitor).splitlines()]
-    height = tarsus.default_clearance(STRIDER)
+    height = tarsus.default_body_height(STRIDER)
     feet = np.asarray(tarsus.default_stance(STRIDER)) + np.array([0, 0, height])
     body = tarsus.Pose.from_rpy(0, np.radians(6), 0, (0, 0, height))
     angles = np.degrees(tarsus.inverse_kinematics(STRIDER, feet, body).require().angles)

@@ -71,7 +71,7 @@ def test_all_is_reached_by_keyboard_alone(visitor):
 def test_it_is_driven_by_keys_and_stops_on_its_feet(visitor):
     visitor.open(StudioState(view="drive"))
     expect(visitor.at("drive-facts")).to_contain_text("Forward0 mm/s")
-    stance = np.degrees(tarsus.Walker(STRIDER).angles)
+    stance = np.degrees(tarsus.WalkController(STRIDER).angles)
     assert shown_angles(visitor) == pytest.approx(stance, abs=0.02)
     visitor.page.locator("main h2").click()
     visitor.page.keyboard.down("w")
@@ -157,7 +157,7 @@ def test_a_foot_is_dragged_in_the_picture_and_the_leg_follows(visitor):
     assert np.delete(moved, 1) == pytest.approx(0, abs=1e-9)
     # The picture's floor is the ground: a foot on it stays on it.
     assert after[1, 2] == pytest.approx(0, abs=0.06)
-    body = tarsus.Pose(position=np.array([0, 0, tarsus.default_clearance(STRIDER)]))
+    body = tarsus.Pose(position=np.array([0, 0, tarsus.default_body_height(STRIDER)]))
     angles = tarsus.inverse_kinematics(STRIDER, after / 1000, body).angles
     assert shown_angles(visitor) == pytest.approx(np.degrees(angles), abs=0.1)
 

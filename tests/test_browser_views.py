@@ -20,7 +20,7 @@ STRIDER = tarsus.load_robot("strider")
 
 def footholds(robot):
     """Where the feet stand in G, and how high the body is over them."""
-    height = tarsus.default_clearance(robot)
+    height = tarsus.default_body_height(robot)
     return np.asarray(tarsus.default_stance(robot)) + np.array([0.0, 0.0, height]), height
 
 
@@ -149,7 +149,7 @@ def test_loads_are_those_of_the_walk(visitor):
     visitor.open(StudioState(view="loads"))
     visitor.type("payload", 0.5)
     motion = tarsus.plan_walk(STRIDER, tarsus.Gait.named("tripod"), tarsus.straight_path(0.5))
-    found = tarsus.loads(STRIDER, motion, payload=0.5)
+    found = tarsus.joint_loads(STRIDER, motion, payload=0.5)
     weight = (total_mass(STRIDER) + 0.5) * 9.80665
     expect(visitor.at("load-facts")).to_contain_text(f"Weight{weight:.1f} N")
     peaks = np.array([[number(cell) for cell in row[1:]] for row in visitor.table("torques")])

@@ -5,16 +5,16 @@ import math
 import numpy as np
 import pytest
 
-from tarsus.gait.live.carriage import Carriage
-from tarsus.gait.live.lag import Lag
-from tarsus.gait.live.posture import calm_sway
+from tarsus.control.filters import CriticallyDamped
+from tarsus.control.pose.pose_controller import PoseController
+from tarsus.control.workspace.stance_geometry import sway_fraction
 
 LEVEL = np.array([0.0, 0.0, 0.1, 0.0, 0.0, 0.0, 0.03])
 SWAY = (0.0, 0.01, 0.0, 0.02, 0.0, 0.0)
 
 
 def test_there_it_is_at_once_and_nothing_is_left_to_go():
-    carriage = Carriage(LEVEL)
+    carriage = PoseController(LEVEL)
     assert carriage.reached(carriage.goal)
     assert carriage.reached(carriage.goal + 1e-4)
     assert not carriage.reached(carriage.goal + 3e-4)
@@ -24,11 +24,11 @@ def test_there_it_is_at_once_and_nothing_is_left_to_go():
     ("axis", "way", "fastest"), [(0, 0.05, 0.08), (2, -0.03, 0.08), (4, 0.4, 0.5), (5, -1.0, 0.5), (6, 0.06, 0.08)]
 )
 def test_the_body_is_no_faster_than_it_may(axis, way, fastest):
-    carriage = Carriage(LEVEL)
+    carriage = PoseController(LEVEL)
     there = LEVEL.copy()
     there[axis] += way
     carriage.go_to(there)
-    posture, speeds = Lag.still(np.append(LEVEL, np.zeros(6))), []
+    posture, speeds = CriticallyDamped.still(np.append(LEVEL, np.zeros(6))), []
     for _ in range(3000):
         after = posture.step(carriage.goal, 0.002, bandwidth=carriage.bandwidth(posture.value))
         speeds.append(abs(after.value[axis] - posture.value[axis]) / 0.002)
@@ -38,9 +38,9 @@ def test_the_body_is_no_faster_than_it_may(axis, way, fastest):
 
 
 def test_a_sway_is_no_more_than_is_slow_enough_and_ends():
-    carriage = Carriage(LEVEL)
+    carriage = PoseController(LEVEL)
     carriage.sway(SWAY, frequency=2.0, beats=2)
-    calm = calm_sway(np.array(SWAY), 2.0, 2)
+    calm = sway_fraction(np.array(SWAY), 2.0, 2)
     assert 0 < calm < 1
     np.testing.assert_allclose(carriage.goal, [*LEVEL, *(calm * np.array(SWAY))])
     same = carriage.goal

@@ -10,34 +10,34 @@ from hypothesis import strategies as st
 
 from gait_robots import PRESETS, ring
 from sample_stands import feet_at, pose_of, posture_of, setup_of
+from tarsus.control.incremental import complete
+from tarsus.control.transition.parameters import WalkParameters
+from tarsus.control.transition.planner import StanceTransition, plan_transition
+from tarsus.control.workspace.stance_geometry import SWING_HEIGHT, rotation_rows, stance_geometry_of
 from tarsus.errors import UnreachableError
 from tarsus.gait.gait import GAITS, Gait
-from tarsus.gait.live.change import Change, work_out
-from tarsus.gait.live.manner import Manner
-from tarsus.gait.live.parts import all_parts
-from tarsus.gait.live.posture import LIFT, rotation_rows, stand_of
-from tarsus.gait.live.tempo import joint_limits
 from tarsus.kinematics.inverse import inverse_kinematics
 from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.stance import default_stance
+from tarsus.robot.joint_limits import joint_limits
 
 
 def manner_of(setup, **changes):
     values = {
         "gait": setup.gait,
         "body": (0.0,) * 6,
-        "clearance": setup.clearance,
-        "lift": setup.lift,
+        "body_height": setup.body_height,
+        "swing_height": setup.swing_height,
         "stance_width": 0.0,
         "cycle_time": None,
     }
-    return Manner(**{**values, **changes})
+    return WalkParameters(**{**values, **changes})
 
 
-def worked_out(setup, manner, now=None, rest=None, **options):
+def worked_out(setup, parameters, now=None, rest=None, **options):
     speed, acceleration = joint_limits(setup.robot, None, None)
     distance = {"speed": speed, "acceleration": acceleration, "foot_distance": setup.foot_distance}
-    return all_parts(work_out(setup.robot, manner, now, rest, **distance, **options))
+    return complete(plan_transition(setup.robot, parameters, now, rest, **distance, **options))
 
 
 @functools.cache
@@ -53,8 +53,8 @@ def from_start(name, **changes):
 
 def reached(setup, posture, rest):
     """Whether all feet are reached at their rest footholds, on the ground and lifted."""
-    stand = stand_of(posture, rest)
-    feet = np.stack([feet_at(rest), feet_at(rest, posture[LIFT])])
+    stand = stance_geometry_of(posture, rest)
+    feet = np.stack([feet_at(rest), feet_at(rest, posture[SWING_HEIGHT])])
     return bool(inverse_kinematics(setup.robot, feet, pose_of(stand)).ok.all())
 
 
@@ -62,11 +62,11 @@ def reached(setup, posture, rest):
 def test_every_preset_stands_and_walks_in_every_gait_as_it_is(name):
     for gait in GAITS:
         setup, found = setup_of(name, gait), start(name, gait)
-        assert isinstance(found, Change)
+        assert isinstance(found, StanceTransition)
         assert found.whole
         assert found.limited == ()
         np.testing.assert_allclose(found.posture, posture_of(setup))
-        stance = default_stance(setup.robot, setup.clearance, lift=setup.lift)
+        stance = default_stance(setup.robot, setup.body_height, swing_height=setup.swing_height)
         np.testing.assert_allclose(found.rest, stance[:, 0] + 1j * stance[:, 1])
         assert found.there is found.way is found.stepping
         assert found.there.possible
@@ -76,12 +76,12 @@ def test_every_preset_stands_and_walks_in_every_gait_as_it_is(name):
 @pytest.mark.parametrize("name", PRESETS)
 def test_small_changes_work_whole_and_on_all_the_way(name):
     found = from_start(name, body=(0.002, -0.002, 0.003, 0.01, -0.01, 0.01))
-    assert isinstance(found, Change)
+    assert isinstance(found, StanceTransition)
     assert found.whole
     assert found.limited == ()
     setup, first = setup_of(name), start(name)
     np.testing.assert_allclose(found.posture[:2], (0.002, -0.002))
-    assert found.posture[2] == pytest.approx(setup.clearance + 0.003)
+    assert found.posture[2] == pytest.approx(setup.body_height + 0.003)
     for part in np.linspace(0, 1, 5):
         assert reached(setup, first.posture + part * (found.posture - first.posture), found.rest)
     for limits in (found.there, found.way, found.stepping):
@@ -101,8 +101,8 @@ def test_of_too_far_a_move_the_largest_part_is_gone_step_by_step(name, axis):
             said = found
             break
         assert reached(setup, found.posture, found.rest)
-        gone = (found.posture - posture)[axis]
-        assert gone >= 0
+        excluded = (found.posture - posture)[axis]
+        assert excluded >= 0
         posture, rest = found.posture, found.rest
         if found.whole:
             said = " ".join(found.limited)
@@ -115,7 +115,7 @@ def test_of_too_far_a_move_the_largest_part_is_gone_step_by_step(name, axis):
 
 def test_feet_are_not_moved_far_at_once():
     found = from_start("strider", stance_width=0.05)
-    assert isinstance(found, Change)
+    assert isinstance(found, StanceTransition)
     assert not found.whole
     assert 0 < np.abs(found.rest - start("strider").rest).max() <= 0.03 + 1e-12
     # As the body still is, the feet reach their new places.
@@ -131,31 +131,31 @@ def test_a_wider_stance_puts_each_foot_farther_from_its_coxa_axis():
 
 def test_a_height_from_which_no_leg_reaches_is_gone_towards_as_far_as_one_does():
     setup, first = setup_of("strider"), start("strider")
-    found = from_start("strider", clearance=0.5)
-    assert isinstance(found, Change)
-    assert setup.clearance < found.posture[2] < 0.5
+    found = from_start("strider", body_height=0.5)
+    assert isinstance(found, StanceTransition)
+    assert setup.body_height < found.posture[2] < 0.5
     assert reached(setup, found.posture, found.rest)
     with pytest.raises(UnreachableError):
-        worked_out(setup, manner_of(setup, clearance=0.5))
-    with pytest.raises(UnreachableError, match="no leg reaches the ground at clearance 500000"):
-        worked_out(setup, manner_of(setup, clearance=500.0), first.posture, first.rest)
+        worked_out(setup, manner_of(setup, body_height=0.5))
+    with pytest.raises(UnreachableError, match="no leg reaches the ground at body height 500000"):
+        worked_out(setup, manner_of(setup, body_height=500.0), first.posture, first.rest)
 
 
 def test_a_short_cycle_is_made_longer_and_that_is_said():
     found = from_start("strider", cycle_time=0.1)
-    assert found.tempo.cycle_time > 0.1
+    assert found.cycle_timing.cycle_time > 0.1
     assert any("cycle_time 0.1 s is too short" in reason for reason in found.limited)
-    assert any(f"{found.tempo.cycle_time:.3g} s is taken" in reason for reason in found.limited)
+    assert any(f"{found.cycle_timing.cycle_time:.3g} s is taken" in reason for reason in found.limited)
 
 
 def test_another_order_of_steps_leaves_the_robot_standing_as_it_is():
     setup, first = setup_of("strider"), start("strider")
     moved = first.posture + np.array([0.01, 0, 0, 0, 0, 0.05, 0])
-    manner = manner_of(setup, gait=Gait.named("wave"))
-    found = worked_out(setup, manner, moved, first.rest, stay=True)
+    parameters = manner_of(setup, gait=Gait.named("wave"))
+    found = worked_out(setup, parameters, moved, first.rest, stay=True)
     np.testing.assert_array_equal(found.posture, moved)
     np.testing.assert_array_equal(found.rest, first.rest)
-    assert found.manner is manner
+    assert found.parameters is parameters
     assert found.there is found.way
 
 
@@ -163,9 +163,9 @@ def test_legs_that_are_gone_bound_nothing():
     setup, first = setup_of("strider"), start("strider")
     # The body leans already to the side that has three legs left.
     lean = (0.0, -0.06, 0.0, 0.0, 0.0, 0.0)
-    manner = manner_of(setup, gait=Gait.named("wave"), gone=(1,), correction=lean)
-    found = worked_out(setup, manner, posture_of(setup, lean), first.rest)
-    assert isinstance(found, Change)
+    parameters = manner_of(setup, gait=Gait.named("wave"), excluded=(1,), correction=lean)
+    found = worked_out(setup, parameters, posture_of(setup, lean), first.rest)
+    assert isinstance(found, StanceTransition)
     assert np.isinf(found.there.bounds[1]).all()
     assert np.isfinite(np.delete(found.there.bounds, 1, axis=0)).all()
 
@@ -173,8 +173,8 @@ def test_legs_that_are_gone_bound_nothing():
 def test_a_robot_that_would_tip_over_is_refused():
     setup, first = setup_of("strider"), start("strider")
     # Two legs in the air at a time, and two more that don't step.
-    manner = manner_of(setup, gait=Gait.named("ripple"), gone=(0, 1))
-    found = worked_out(setup, manner, first.posture, first.rest)
+    parameters = manner_of(setup, gait=Gait.named("ripple"), excluded=(0, 1))
+    found = worked_out(setup, parameters, first.posture, first.rest)
     assert found == "body: the robot would tip over"
 
 
@@ -185,7 +185,7 @@ def test_a_wish_that_the_balance_bounds_is_gone_as_far_as_it_lets_and_that_is_sa
     assert found.whole
     assert found.limited == ("body: it goes no farther that way, the robot would tip over",)
     assert found.there.balanced
-    # A little farther it would: from there, nothing of the wish works.
+    # A little farther it would: from there, nothing of the command works.
     beyond = found.posture + np.array([0.01, 0, 0, 0, 0, 0, 0])
     assert worked_out(setup, forward, beyond, first.rest) == "body: the robot would tip over"
 
@@ -200,7 +200,7 @@ def test_a_robot_that_cannot_stand_and_step_at_all_is_refused_at_once():
 
 def test_of_a_wish_whose_sway_goes_too_far_a_part_is_gone_or_the_sway_is_blamed():
     found = from_start("phantomx", body=(0.03, 0.0, 0.0, 0.0, 0.0, 0.0), sway=(0.0, 0.03, 0.0, 0.0, 0.0, 0.0))
-    assert isinstance(found, Change)
+    assert isinstance(found, StanceTransition)
     assert 0 < found.posture[0] <= 0.03
     found = from_start("phantomx", sway=(0.0, 0.0, 0.2, 0.0, 0.0, 0.0))
     assert found.startswith("body: ")
@@ -210,8 +210,8 @@ def test_of_a_wish_whose_sway_goes_too_far_a_part_is_gone_or_the_sway_is_blamed(
 def test_from_a_posture_out_of_reach_nothing_works():
     setup, first = setup_of("strider"), start("strider")
     away = first.posture + np.array([0, 0, 0.3, 0, 0, 0, 0])
-    manner = manner_of(setup, body=(0, 0, 0.4, 0, 0, 0))
-    found = worked_out(setup, manner, away, first.rest)
+    parameters = manner_of(setup, body=(0, 0, 0.4, 0, 0, 0))
+    found = worked_out(setup, parameters, away, first.rest)
     assert isinstance(found, str)
     assert "comes to the end of its reach" in found
 
@@ -225,17 +225,17 @@ def test_a_body_that_sways_has_less_room():
 
 def test_a_correction_for_the_ground_is_added_to_the_body():
     setup = setup_of("strider")
-    manner = manner_of(setup, body=(0.01,) * 6, correction=(0.0, 0.01, 0.02, 0.0, 0.1, 0.0))
-    assert manner.stance == pytest.approx((0.01, 0.02, 0.03, 0.01, 0.11, 0.01))
-    assert dataclasses.replace(manner, correction=(0.0,) * 6).stance == manner.body
+    parameters = manner_of(setup, body=(0.01,) * 6, correction=(0.0, 0.01, 0.02, 0.0, 0.1, 0.0))
+    assert parameters.stance == pytest.approx((0.01, 0.02, 0.03, 0.01, 0.11, 0.01))
+    assert dataclasses.replace(parameters, correction=(0.0,) * 6).stance == parameters.body
 
 
 @settings(max_examples=12)
 @given(st.tuples(*[st.floats(-0.1, 0.1)] * 3, *[st.floats(-0.5, 0.5)] * 3), st.floats(0.02, 0.3), st.floats(0, 0.1))
-def test_whatever_is_wished_for_what_comes_of_it_is_reached(body, clearance, lift):
+def test_whatever_is_wished_for_what_comes_of_it_is_reached(body, body_height, swing_height):
     setup = setup_of("phantomx")
     try:
-        found = from_start("phantomx", body=body, clearance=clearance, lift=lift)
+        found = from_start("phantomx", body=body, body_height=body_height, swing_height=swing_height)
     except UnreachableError:
         return
     if isinstance(found, str):
@@ -249,23 +249,23 @@ def test_whatever_is_wished_for_what_comes_of_it_is_reached(body, clearance, lif
 def test_the_rotation_of_a_posture_is_that_of_a_pose(roll, pitch, yaw):
     expected = Pose.from_rpy(roll, pitch, yaw, (0, 0, 0)).rotation
     np.testing.assert_allclose(rotation_rows(roll, pitch, yaw), expected, atol=1e-15)
-    stand = stand_of(np.array([0.1, 0.2, 0.3, roll, pitch, yaw, 0.04]), np.zeros(6, dtype=complex))
+    stand = stance_geometry_of(np.array([0.1, 0.2, 0.3, roll, pitch, yaw, 0.04]), np.zeros(6, dtype=complex))
     np.testing.assert_allclose(stand.rotation, expected, atol=1e-15)
-    assert (*stand.position, stand.lift) == (0.1, 0.2, 0.3, 0.04)
+    assert (*stand.position, stand.swing_height) == (0.1, 0.2, 0.3, 0.04)
 
 
 def test_a_step_that_could_not_be_taken_on_the_way_is_refused():
     setup, first = setup_of("strider"), start("strider")
     # Where the body is to go the robot may lift what it has left; where it is now, it would tip over.
     lean = (0.0, -0.06, 0.0, 0.0, 0.0, 0.0)
-    manner = manner_of(setup, gait=Gait.named("wave"), gone=(1,), correction=lean)
-    found = worked_out(setup, manner, first.posture, first.rest)
+    parameters = manner_of(setup, gait=Gait.named("wave"), excluded=(1,), correction=lean)
+    found = worked_out(setup, parameters, first.posture, first.rest)
     assert found == "body: on the way there the robot would tip over"
 
 
 def test_of_rest_footholds_far_out_of_reach_a_first_step_is_taken():
     setup, first = setup_of("strider"), start("strider")
     found = worked_out(setup, manner_of(setup, stance_width=0.8), first.posture, first.rest)
-    assert isinstance(found, Change)
+    assert isinstance(found, StanceTransition)
     assert not found.whole
     assert 0 < np.abs(found.rest - first.rest).max() <= 0.03 + 1e-12

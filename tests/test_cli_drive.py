@@ -6,10 +6,10 @@ import json
 import pytest
 
 from sample_commands import run, run_json
-from tarsus.drive.run import run_scenario
-from tarsus.drive.scenario import Scenario
-from tarsus.drive.summary import drive_summary
 from tarsus.gait.motion import Motion
+from tarsus.scenario.runner import run_scenario
+from tarsus.scenario.scenario import Scenario
+from tarsus.scenario.summary import drive_summary
 
 TIMELINE = "at 0 s: walk 60 mm/s; at 1 s: gait wave; at 2 s: stop"
 
@@ -98,7 +98,7 @@ def test_a_robot_that_never_stands_has_no_margin_and_no_loads(tmp_path):
         ("nothing.toml", (), "nothing.toml can't be read"),
         ("at 0 s: stop", ("--rate", "5"), "rate is 5 Hz; it must be from 20 to 1000 Hz"),
         ("at 0 s: stop", ("--rate", "nan"), "is not a number"),
-        ("at 0 s: hand XX x 1 mm y 1 mm z 1 mm", (), "no leg is called 'XX'"),
+        ("at 0 s: foot_target XX x 1 mm y 1 mm z 1 mm", (), "no leg is called 'XX'"),
     ],
 )
 def test_what_is_asked_wrongly_is_told(scenario, options, wanted):

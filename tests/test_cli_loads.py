@@ -11,7 +11,7 @@ from sample_loads import EXAMPLES
 from tarsus.gait.gait import Gait
 from tarsus.gait.path import straight_path
 from tarsus.gait.plan import plan_walk
-from tarsus.load.loads import loads
+from tarsus.load.loads import joint_loads
 from tarsus.load.sizing import size_servos
 from tarsus.report.loads_summary import servos_summary
 from tarsus.robot.file import load_robot
@@ -35,7 +35,7 @@ def short_walk(name="strider", gait="tripod"):
 def test_the_numbers_are_those_of_the_functions(options, conditions):
     code, document = run_json("loads", "strider", *SHORT, *options.split())
     motion = short_walk()
-    found = loads(motion.robot, motion, **conditions)
+    found = joint_loads(motion.robot, motion, **conditions)
     assert code == (0 if found.factor.min() >= 1.5 else 1)
     assert document["carried"] is (code == 0)
     for row, peak, rms, factor in zip(
@@ -65,7 +65,7 @@ def test_the_exit_code_is_the_verdict_and_the_femur_is_named(name, code, said):
 
 
 def test_a_good_robot_is_called_good():
-    result = run("loads", "strider", *SHORT, "--gait", "wave", "--clearance", "140")
+    result = run("loads", "strider", *SHORT, "--gait", "wave", "--body-height", "140")
     assert result.exit_code == 0
     assert result.stdout.splitlines()[-1].startswith("good: ")
 
@@ -125,7 +125,7 @@ def test_files_are_written_and_the_table_is_the_torques(tmp_path):
     with (tmp_path / "loads.csv").open(encoding="utf-8") as stream:
         rows = list(csv.DictReader(stream))
     motion = short_walk()
-    found = loads(motion.robot, motion)
+    found = joint_loads(motion.robot, motion)
     assert len(rows) == len(motion.time)
     np.testing.assert_allclose([float(row["RM_femur_nm"]) for row in rows], found.torques[:, 4, 1], atol=1e-6)
     np.testing.assert_allclose([float(row["LF_fz_n"]) for row in rows], found.forces[:, 0, 2], atol=1e-6)
@@ -145,7 +145,7 @@ def test_a_file_that_can_not_be_written_is_told(tmp_path, name):
 def test_servos_say_what_size_servos_says():
     code, document = run_json("servos", "strider", *SHORT, "--factor", "1.5", "--payload", "0.1")
     motion = short_walk()
-    found = loads(motion.robot, motion, payload=0.1)
+    found = joint_loads(motion.robot, motion, payload=0.1)
     expected = servos_summary(size_servos(motion.robot, found, safety_factor=1.5), found)
     assert code == 0
     assert document["candidates"]
@@ -176,7 +176,7 @@ def test_servos_that_do_not_do_are_told_with_what_would():
 
 def test_the_rule_for_lasting_loads():
     code, document = run_json(
-        "servos", "strider", *SHORT, "--rule", "continuous", "--gait", "wave", "--clearance", "140"
+        "servos", "strider", *SHORT, "--rule", "continuous", "--gait", "wave", "--body-height", "140"
     )
     assert document["rule"] == "continuous"
     assert document["present_do"] is (code == 0)

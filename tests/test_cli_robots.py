@@ -96,7 +96,7 @@ def test_all_that_is_wrong_in_a_file_is_told(tmp_path):
 
 def test_a_robot_that_can_not_walk_is_told(tmp_path):
     file = tmp_path / "mine.toml"
-    file.write_text(template_text("mine").replace("clearance_mm = 80", "clearance_mm = 900"), encoding="utf-8")
+    file.write_text(template_text("mine").replace("body_height_mm = 80", "body_height_mm = 900"), encoding="utf-8")
     result = run("robots", "check", file)
     assert result.exit_code == 1
     assert "nowhere reaches the ground" in result.stdout

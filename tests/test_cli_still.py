@@ -20,8 +20,8 @@ STRIDER = load_robot("strider")
 EIGHTEEN = ["0", "40", "-100"] * 6
 
 
-def posed(roll=0.0, pitch=0.0, yaw=0.0, by=(0.0, 0.0, 0.0), clearance=110.0, knee="up"):
-    height = clearance / 1000
+def posed(roll=0.0, pitch=0.0, yaw=0.0, by=(0.0, 0.0, 0.0), body_height=110.0, knee="up"):
+    height = body_height / 1000
     feet = default_stance(STRIDER, height) + np.array([0, 0, height])
     place = np.array([0, 0, height]) + np.array(by) / 1000
     body = Pose.from_rpy(*np.radians([roll, pitch, yaw]), position=place)
@@ -34,7 +34,7 @@ def posed(roll=0.0, pitch=0.0, yaw=0.0, by=(0.0, 0.0, 0.0), clearance=110.0, kne
         ("", {}),
         ("--pitch 12 --z 20", {"pitch": 12, "by": (0, 0, 20)}),
         ("--x -30 --y 10 --yaw -8", {"yaw": -8, "by": (-30, 10, 0)}),
-        ("--roll 5 --clearance 130", {"roll": 5, "clearance": 130}),
+        ("--roll 5 --body-height 130", {"roll": 5, "body_height": 130}),
         ("--roll=-5 --pitch=-3.5", {"roll": -5, "pitch": -3.5}),
         ("--pitch 26", {"pitch": 26}),
         ("--z 300", {"by": (0, 0, 300)}),
@@ -94,7 +94,7 @@ def test_no_leg_has_no_margin_in_json():
         ("--pitch nan", 2, "'nan' is not a number"),
         ("--z 1e300", 2, "is not a number between"),
         ("--knee sideways", 2, "'sideways' is not one of"),
-        ("--clearance 900", 1, "nowhere reaches the ground"),
+        ("--body-height 900", 1, "nowhere reaches the ground"),
         ("--picture /dev/null/pose.png", 2, "can't be written"),
         ("--picture pose.nonsense", 2, "can't be written"),
     ],

@@ -33,10 +33,17 @@ def expected(motion):
         ("--curve -30 --gait amble", "tetrapod", curved_path(math.radians(-30)), {}),
         ("--twist 40,-10,5 --duration 2", "tripod", twist_path(0.04, -0.01, math.radians(5), 2.0), {}),
         (
-            "--distance 100 --stroke 60 --cycle 2 --clearance 120 --lift 25 --foot-distance 30 --rate 20",
+            "--distance 100 --stroke 60 --cycle 2 --body-height 120 --swing-height 25 --foot-distance 30 --rate 20",
             "tripod",
             straight_path(0.1),
-            {"stroke": 0.06, "cycle_time": 2.0, "clearance": 0.12, "lift": 0.025, "foot_distance": 0.03, "rate": 20},
+            {
+                "stroke": 0.06,
+                "cycle_time": 2.0,
+                "body_height": 0.12,
+                "swing_height": 0.025,
+                "foot_distance": 0.03,
+                "rate": 20,
+            },
         ),
         ("--distance 100 --tilt -3,5", "tripod", straight_path(0.1), {"body_tilt": np.radians([-3, 5])}),
         ("--distance 100 --speed 40", "tripod", straight_path(0.1), {"speed": 0.04}),
@@ -162,7 +169,7 @@ def test_feet_too_near_are_refused():
         ("--tilt 95,0", "tilt"),
         ("--rate 0", "rate"),
         ("--cycle -1", "cycle"),
-        ("--lift -1", "lift"),
+        ("--swing-height -1", "swing_height"),
         ("--stroke 100 --speed 100 --cycle 9", "contradict"),
         ("--out /dev/null/walk", "nothing can be written there"),
         ("--out /proc", "nothing can be written there"),
@@ -182,10 +189,10 @@ def test_what_is_asked_for_wrongly_is_told_in_a_sentence(options, said):
 @pytest.mark.parametrize(
     ("options", "said"),
     [
-        ("--clearance 900", "nowhere reaches the ground"),
+        ("--body-height 900", "nowhere reaches the ground"),
         ("--tilt 60,0", "can't step"),
-        ("--lift 400", "lifted"),
-        ("--clearance -500", "nowhere reaches the ground"),
+        ("--swing-height 400", "lifted"),
+        ("--body-height -500", "nowhere reaches the ground"),
     ],
 )
 def test_what_no_leg_can_do_is_not_possible(options, said):

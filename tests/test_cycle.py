@@ -22,10 +22,10 @@ TWISTS = [(0.06, 0.0, 0.0), (0.0, -0.05, 0.0), (0.03, 0.02, 0.2), (0.0, 0.0, 0.3
 
 def rest_of(name="strider"):
     robot = preset(name)
-    return default_stance(robot, lift=robot.gait.lift) * [1, 1, 0]
+    return default_stance(robot, swing_height=robot.gait.swing_height) * [1, 1, 0]
 
 
-def reference(gait, rest, twist, lift, phase):
+def reference(gait, rest, twist, swing_height, phase):
     """One leg after the other, with matrices of the plane and the definition of the foothold."""
     x, y, yaw = twist
     se2 = np.array([[0, -yaw, x], [yaw, 0, y], [0, 0, 0]])
@@ -34,12 +34,12 @@ def reference(gait, rest, twist, lift, phase):
         own = (phase - offset) % 1.0
         point = np.array([rest[leg, 0], rest[leg, 1], 1.0])
         # The body is at the origin now; the middle of its stance was so many stance times ago.
-        middle = expm(-(own / gait.duty - 0.5) * se2) @ point
-        following = expm((1 / gait.duty - (own / gait.duty - 0.5)) * se2) @ point
-        share = max(0.0, (own - gait.duty) / (1 - gait.duty))
+        middle = expm(-(own / gait.duty_factor - 0.5) * se2) @ point
+        following = expm((1 / gait.duty_factor - (own / gait.duty_factor - 0.5)) * se2) @ point
+        share = max(0.0, (own - gait.duty_factor) / (1 - gait.duty_factor))
         place = middle + (following - middle) * share**3 * (10 - 15 * share + 6 * share**2)
-        feet.append([*place[:2], lift * 64 * share**3 * (1 - share) ** 3])
-        down.append(own < gait.duty)
+        feet.append([*place[:2], swing_height * 64 * share**3 * (1 - share) ** 3])
+        down.append(own < gait.duty_factor)
     return np.array(feet), np.array(down)
 
 
@@ -48,7 +48,7 @@ def reference(gait, rest, twist, lift, phase):
 def test_the_cycle_is_what_the_definition_gives_leg_by_leg(name, twist):
     gait, rest = Gait.named(name), rest_of()
     phases = (np.arange(8) + 0.41) / 8
-    feet, contacts = cycle_feet(gait, rest, twist, lift=0.03, phases=phases)
+    feet, contacts = cycle_feet(gait, rest, twist, swing_height=0.03, phases=phases)
     for i, phase in enumerate(phases):
         expected, down = reference(gait, rest, twist, 0.03, phase)
         np.testing.assert_allclose(feet[i], expected, atol=1e-14)
@@ -59,8 +59,8 @@ def test_the_cycle_is_what_the_definition_gives_leg_by_leg(name, twist):
 def test_stances_are_straight_or_arcs_symmetric_about_rest(name, x, y, yaw):
     gait, rest = Gait.named(name), rest_of()
     for leg, offset in enumerate(gait.offsets):
-        ends = np.array([offset, offset + gait.duty / 2, offset + gait.duty])
-        feet, contacts = cycle_feet(gait, rest, (x, y, yaw), lift=0.02, phases=ends)
+        ends = np.array([offset, offset + gait.duty_factor / 2, offset + gait.duty_factor])
+        feet, contacts = cycle_feet(gait, rest, (x, y, yaw), swing_height=0.02, phases=ends)
         assert contacts[:, leg].all()
         touchdown, middle, lift_off = feet[:, leg]
         np.testing.assert_allclose(middle, rest[leg], atol=1e-12)
@@ -73,7 +73,7 @@ def test_stances_are_straight_or_arcs_symmetric_about_rest(name, x, y, yaw):
 
 def test_a_straight_stroke_goes_from_half_a_stroke_ahead_to_half_a_stroke_behind():
     gait, rest = Gait.named("tripod"), rest_of()
-    feet, _ = cycle_feet(gait, rest, (0.08, 0.0, 0.0), lift=0.02, phases=np.array([0.0, 0.25, 0.5]))
+    feet, _ = cycle_feet(gait, rest, (0.08, 0.0, 0.0), swing_height=0.02, phases=np.array([0.0, 0.25, 0.5]))
     np.testing.assert_allclose(feet[:, 0] - rest[0], [[0.04, 0, 0], [0, 0, 0], [-0.04, 0, 0]], atol=1e-15)
 
 
@@ -85,12 +85,14 @@ def test_a_curve_s_stances_are_arcs_about_its_centre_all_by_the_angle_of_source_
     radius = np.hypot(*(rest[:, :2] - centre).T)
     turn = stroke / radius.max()
     phases = np.linspace(0, 1, 400, endpoint=False)
-    feet, contacts = cycle_feet(gait, rest, twist, lift=0.02, phases=phases)
+    feet, contacts = cycle_feet(gait, rest, twist, swing_height=0.02, phases=phases)
     for leg in range(6):
         track = feet[contacts[:, leg], leg, :2] - centre
         np.testing.assert_allclose(np.hypot(*track.T), radius[leg], rtol=1e-12)
         angle = np.angle((track[:, 0] + 1j * track[:, 1]) / complex(*(rest[leg, :2] - centre)))
-        ends, _ = cycle_feet(gait, rest, twist, lift=0.02, phases=gait.offsets[leg] + np.array([0, gait.duty]))
+        ends, _ = cycle_feet(
+            gait, rest, twist, swing_height=0.02, phases=gait.offsets[leg] + np.array([0, gait.duty_factor])
+        )
         first, last = (complex(*(end[leg, :2] - centre)) / complex(*(rest[leg, :2] - centre)) for end in ends)
         assert np.angle(first) == pytest.approx(turn / 2, abs=1e-12)
         assert np.angle(last) == pytest.approx(-turn / 2, abs=1e-12)
@@ -98,22 +100,22 @@ def test_a_curve_s_stances_are_arcs_about_its_centre_all_by_the_angle_of_source_
 
 
 @pytest.mark.parametrize("twist", TWISTS)
-@pytest.mark.parametrize("duty", [0.3, 0.5, 0.8, 0.95])
-def test_the_cycle_closes_and_has_no_step_in_it(twist, duty):
-    gait = Gait(duty, tuple(np.arange(6) / 6.3))
+@pytest.mark.parametrize("duty_factor", [0.3, 0.5, 0.8, 0.95])
+def test_the_cycle_closes_and_has_no_step_in_it(twist, duty_factor):
+    gait = Gait(duty_factor, tuple(np.arange(6) / 6.3))
     rest = rest_of()
-    first, _ = cycle_feet(gait, rest, twist, lift=0.03, phases=np.array([0.137]))
-    again, _ = cycle_feet(gait, rest, twist, lift=0.03, phases=np.array([5.137]))
+    first, _ = cycle_feet(gait, rest, twist, swing_height=0.03, phases=np.array([0.137]))
+    again, _ = cycle_feet(gait, rest, twist, swing_height=0.03, phases=np.array([5.137]))
     np.testing.assert_allclose(again, first, atol=1e-12)
     moments = 4000
-    feet, _ = cycle_feet(gait, rest, twist, lift=0.03, phases=np.arange(moments + 1) / moments)
+    feet, _ = cycle_feet(gait, rest, twist, swing_height=0.03, phases=np.arange(moments + 1) / moments)
     # The swing's fastest share of the way is 15/8 a swing time; lift and body add less than as much again.
-    fastest = 4 * (0.12 / duty + 0.03) / (1 - duty)
+    fastest = 4 * (0.12 / duty_factor + 0.03) / (1 - duty_factor)
     assert np.linalg.norm(np.diff(feet, axis=0), axis=-1).max() < fastest / moments
 
 
 def test_swinging_feet_reach_the_lift_and_none_goes_below_the_ground():
-    feet, contacts = cycle_feet(Gait.named("ripple"), rest_of(), (0.06, 0, 0), lift=0.03, phases=PHASES)
+    feet, contacts = cycle_feet(Gait.named("ripple"), rest_of(), (0.06, 0, 0), swing_height=0.03, phases=PHASES)
     assert feet[..., 2].min() == 0
     assert (feet[..., 2][contacts] == 0).all()
     np.testing.assert_allclose(feet[..., 2].max(0), 0.03, rtol=2e-3)
@@ -123,25 +125,29 @@ def test_a_batch_is_its_loop():
     gait = Gait.named("ripple")
     rests = np.stack([rest_of(name) for name in PRESETS])[:, None]
     twists = np.array(TWISTS)
-    lifts = np.linspace(0.01, 0.05, len(twists))
-    feet, contacts = cycle_feet(gait, rests, twists, lift=lifts, phases=PHASES[:31])
+    swing_heights = np.linspace(0.01, 0.05, len(twists))
+    feet, contacts = cycle_feet(gait, rests, twists, swing_height=swing_heights, phases=PHASES[:31])
     assert feet.shape == (len(PRESETS), len(twists), 31, 6, 3)
     assert contacts.shape == (31, 6)
     for i in range(len(PRESETS)):
         for j in range(len(twists)):
-            one, down = cycle_feet(gait, rests[i, 0], twists[j], lift=lifts[j], phases=PHASES[:31])
+            one, down = cycle_feet(gait, rests[i, 0], twists[j], swing_height=swing_heights[j], phases=PHASES[:31])
             np.testing.assert_allclose(feet[i, j], one, atol=1e-14, rtol=0)
             np.testing.assert_array_equal(contacts, down)
 
 
 @pytest.mark.parametrize("library", [jnp, array_api_strict], ids=["jax", "strict"])
-@pytest.mark.parametrize("given", ["rest", "twist", "lift", "phases"])
+@pytest.mark.parametrize("given", ["rest", "twist", "swing_height", "phases"])
 def test_whichever_argument_is_of_another_library_the_result_is_the_same(library, given):
     gait = Gait.named("tetrapod")
-    args = {"rest": rest_of(), "twist": np.array(TWISTS), "lift": np.asarray(0.02), "phases": PHASES}
-    expected, down = cycle_feet(gait, args["rest"], args["twist"], lift=args["lift"], phases=args["phases"])
+    args = {"rest": rest_of(), "twist": np.array(TWISTS), "swing_height": np.asarray(0.02), "phases": PHASES}
+    expected, down = cycle_feet(
+        gait, args["rest"], args["twist"], swing_height=args["swing_height"], phases=args["phases"]
+    )
     args[given] = library.asarray(args[given])
-    feet, contacts = cycle_feet(gait, args["rest"], args["twist"], lift=args["lift"], phases=args["phases"])
+    feet, contacts = cycle_feet(
+        gait, args["rest"], args["twist"], swing_height=args["swing_height"], phases=args["phases"]
+    )
     assert not isinstance(feet, np.ndarray)
     np.testing.assert_allclose(np.asarray(feet), expected, atol=1e-14, rtol=0)
     np.testing.assert_array_equal(np.asarray(contacts), down)
@@ -153,7 +159,7 @@ def test_feet_are_differentiable_in_the_stroke_under_jit():
 
     @jax.jit
     def feet(stroke):
-        return cycle_feet(gait, rest, stroke * direction, lift=0.03, phases=PHASES[:40])[0]
+        return cycle_feet(gait, rest, stroke * direction, swing_height=0.03, phases=PHASES[:40])[0]
 
     step = 1e-6
     difference = (np.asarray(feet(0.06 + step)) - np.asarray(feet(0.06 - step))) / (2 * step)
@@ -171,13 +177,13 @@ def test_feet_are_differentiable_in_the_stroke_under_jit():
     st.floats(-0.6, 0.6),
     st.integers(0, 2**32 - 1),
 )
-def test_seen_from_a_tilted_body_the_ground_is_source_001_s_plane(x, y, yaw, clearance, roll, pitch, seed):
+def test_seen_from_a_tilted_body_the_ground_is_source_001_s_plane(x, y, yaw, body_height, roll, pitch, seed):
     """``z = -G + x tan(..) + y tan(..)``, corrected: slopes by the right-hand rule, G measured along the body's z."""
-    body = tilted_body(np.array([x, y, yaw]), clearance=np.asarray(clearance), body_tilt=(roll, pitch))
+    body = tilted_body(np.array([x, y, yaw]), body_height=np.asarray(body_height), body_tilt=(roll, pitch))
     ground = np.random.default_rng(seed).uniform(-2, 2, (6, 3)) * [1, 1, 0]
     seen = body.inverse() @ ground
-    along_z = clearance / (math.cos(pitch) * math.cos(roll))
+    along_z = body_height / (math.cos(pitch) * math.cos(roll))
     plane = -along_z + seen[:, 0] * math.tan(pitch) / math.cos(roll) - seen[:, 1] * math.tan(roll)
     np.testing.assert_allclose(seen[:, 2], plane, atol=1e-12)
     np.testing.assert_allclose(body.rpy, [roll, pitch, math.remainder(yaw, math.tau)], atol=1e-12)
-    np.testing.assert_array_equal(body.position, [x, y, clearance])
+    np.testing.assert_array_equal(body.position, [x, y, body_height])

@@ -17,7 +17,7 @@ from tarsus.gait.cycle import cycle_feet
 from tarsus.gait.gait import GAITS, Gait
 from tarsus.kinematics.inverse import inverse_kinematics
 from tarsus.kinematics.pose import Pose
-from tarsus.kinematics.stance import default_clearance, default_stance
+from tarsus.kinematics.stance import default_body_height, default_stance
 from tarsus.load import designs
 from tarsus.load.contact import contact_forces
 from tarsus.load.design_block import share_weight
@@ -30,17 +30,17 @@ TRIPOD = Gait.named("tripod")
 PARTS = ("angles", "torques", "forces")
 
 
-def step_by_step(robot, gait, *, stroke, heading=0.0, clearance, lift, phases, payload=0.0):
+def step_by_step(robot, gait, *, stroke, heading=0.0, body_height, swing_height, phases, payload=0.0):
     """One design's cycle by the functions for any pose."""
     feet, contacts = cycle_feet(
         gait,
-        default_stance(robot, clearance, lift=lift),
+        default_stance(robot, body_height, swing_height=swing_height),
         np.array([stroke * math.cos(heading), stroke * math.sin(heading), 0.0]),
-        lift=np.asarray(lift),
+        swing_height=np.asarray(swing_height),
         phases=np.arange(phases) / phases,
     )
-    body = Pose(position=(0, 0, clearance))
-    solution = inverse_kinematics(robot, feet + np.array([0, 0, clearance]), body)
+    body = Pose(position=(0, 0, body_height))
+    solution = inverse_kinematics(robot, feet + np.array([0, 0, body_height]), body)
     torques, forces = joint_torques(robot, solution.angles, body, contacts, payload)
     margin = contact_forces(robot, solution.angles, body, contacts, payload=payload).margin
     return solution, torques, forces, margin
@@ -74,7 +74,13 @@ def test_a_preset_walks_as_with_the_functions_for_any_pose(name, gait):
     robot = robot_of(name)
     if not robot.has_masses:
         robot = robot.replace(body_mass=1.0, link_mass=np.full((6, 3), 0.05))
-    options = {"stroke": 0.03, "heading": 0.4, "clearance": default_clearance(robot), "lift": 0.02, "phases": 12}
+    options = {
+        "stroke": 0.03,
+        "heading": 0.4,
+        "body_height": default_body_height(robot),
+        "swing_height": 0.02,
+        "phases": 12,
+    }
     found = cycle_torques(robot, Gait.named(gait), payload=Payload(0.4, (0.03, -0.01, 0.05)), **options)
     expected = step_by_step(robot, Gait.named(gait), payload=Payload(0.4, (0.03, -0.01, 0.05)), **options)
     assert_same(found, (), expected)
@@ -87,11 +93,19 @@ def test_a_preset_walks_as_with_the_functions_for_any_pose(name, gait):
 def test_a_batch_is_a_loop(seed, gait, heading):
     rng = np.random.default_rng(seed)
     together = sized(3, rng)
-    stroke, clearance = rng.uniform(0.01, 0.09, 3), rng.uniform(0.08, 0.13, 3)
+    stroke, body_height = rng.uniform(0.01, 0.09, 3), rng.uniform(0.08, 0.13, 3)
     gait = Gait.named(gait)
-    found = cycle_torques(together, gait, stroke=stroke, heading=heading, clearance=clearance, lift=0.02, phases=9)
+    found = cycle_torques(
+        together, gait, stroke=stroke, heading=heading, body_height=body_height, swing_height=0.02, phases=9
+    )
     for i in range(3):
-        options = {"stroke": stroke[i], "clearance": clearance[i], "lift": 0.02, "phases": 9, "heading": heading}
+        options = {
+            "stroke": stroke[i],
+            "body_height": body_height[i],
+            "swing_height": 0.02,
+            "phases": 9,
+            "heading": heading,
+        }
         assert_same(found, (i,), step_by_step(together.item((i,)), gait, **options))
 
 
@@ -101,8 +115,8 @@ def test_offset_axes_and_legs_that_all_differ(seed):
     robot = random_robot(rng, legs=6, limits="full").replace(
         body_mass=1.5, link_mass=rng.uniform(0, 0.2, (6, 3)), body_com=rng.uniform(-0.05, 0.05, 3)
     )
-    clearance = default_clearance(robot)
-    options = {"stroke": 0.02, "clearance": clearance, "lift": 0.0, "phases": 8}
+    body_height = default_body_height(robot)
+    options = {"stroke": 0.02, "body_height": body_height, "swing_height": 0.0, "phases": 8}
     assert_same(cycle_torques(robot, TRIPOD, **options), (), step_by_step(robot, TRIPOD, **options))
 
 
@@ -110,19 +124,19 @@ def test_strokes_out_of_reach_are_solved_as_near_as_legs_get_and_told():
     rng = np.random.default_rng(3)
     together = sized(40, rng)
     stroke = np.where(np.arange(40) % 3 == 0, 0.45, 0.05)
-    found = cycle_torques(together, TRIPOD, stroke=stroke, clearance=0.1, lift=0.02, phases=8)
+    found = cycle_torques(together, TRIPOD, stroke=stroke, body_height=0.1, swing_height=0.02, phases=8)
     assert (found.reach != 0).any((1, 2))[stroke > 0.4].all()
     assert not found.ok[stroke > 0.4].any()
     assert found.ok[stroke < 0.4].any()
     for i in range(0, 40, 4):
-        options = {"stroke": stroke[i], "clearance": 0.1, "lift": 0.02, "phases": 8}
+        options = {"stroke": stroke[i], "body_height": 0.1, "swing_height": 0.02, "phases": 8}
         assert_same(found, (i,), step_by_step(together.item((i,)), TRIPOD, **options))
 
 
 def test_knees_below_the_ground_are_told():
     robot = hexapod(limits=np.broadcast_to(np.deg2rad([[-60, 60], [-90, 90], [-170, 170]]), (6, 3, 2)))
     low = robot.replace(mount_position=robot.mount_position * 1.0)
-    options = {"stroke": 0.02, "clearance": -0.02, "lift": 0.0, "phases": 4}
+    options = {"stroke": 0.02, "body_height": -0.02, "swing_height": 0.0, "phases": 4}
     found = cycle_torques(low, TRIPOD, **options)
     expected = step_by_step(low, TRIPOD, **options)
     assert (np.asarray(expected[0].reach) == 6).any()
@@ -132,9 +146,9 @@ def test_knees_below_the_ground_are_told():
 def test_a_foot_on_an_axis_is_solved_all_the_same():
     """A coxa of no length and a foot that swings through the coxa axis, where no direction can be told from it."""
     robot = hexapod(coxa=np.zeros(6), femur=np.full(6, 0.1), tibia=np.full(6, 0.1), link_com=np.zeros((6, 3)))
-    rest = default_stance(robot, 0.1, lift=0.0)
+    rest = default_stance(robot, 0.1, swing_height=0.0)
     out = float(np.linalg.norm((rest - robot.mount_position)[1, :2]))
-    options = {"stroke": 2 * out, "heading": math.pi / 2, "clearance": 0.1, "lift": 0.0, "phases": 4}
+    options = {"stroke": 2 * out, "heading": math.pi / 2, "body_height": 0.1, "swing_height": 0.0, "phases": 4}
     found = cycle_torques(robot, TRIPOD, **options)
     assert np.isfinite(found.torques).all()
     assert_same(found, (), step_by_step(robot, TRIPOD, **options))
@@ -150,30 +164,30 @@ def test_batches_of_several_axes_and_broadcast_arguments():
         link_mass=together.link_mass[:, None],
     )
     strokes = np.array([0.02, 0.05, 0.4])
-    found = cycle_torques(grid, TRIPOD, stroke=strokes, clearance=0.1, lift=0.02, phases=6)
+    found = cycle_torques(grid, TRIPOD, stroke=strokes, body_height=0.1, swing_height=0.02, phases=6)
     assert found.torques.shape == (4, 3, 6, 6, 3)
     assert found.reach.shape == (4, 3, 6, 6)
     assert found.balanced.shape == (4, 3, 6)
     assert found.peak.shape == (4, 3, 3)
     for i, j in ((0, 0), (3, 1), (2, 2)):
-        options = {"stroke": strokes[j], "clearance": 0.1, "lift": 0.02, "phases": 6}
+        options = {"stroke": strokes[j], "body_height": 0.1, "swing_height": 0.02, "phases": 6}
         assert_same(found, (i, j), step_by_step(together.item((i,)), TRIPOD, **options))
-    alone = cycle_torques(hexapod(), TRIPOD, stroke=strokes, clearance=0.1, lift=0.02, phases=6)
+    alone = cycle_torques(hexapod(), TRIPOD, stroke=strokes, body_height=0.1, swing_height=0.02, phases=6)
     assert alone.torques.shape == (3, 6, 6, 3)
 
 
 def test_blocks_make_no_difference(monkeypatch):
     together = sized(11, np.random.default_rng(6))
-    whole = cycle_torques(together, TRIPOD, stroke=0.05, clearance=0.1, lift=0.02, phases=5)
+    whole = cycle_torques(together, TRIPOD, stroke=0.05, body_height=0.1, swing_height=0.02, phases=5)
     monkeypatch.setattr(designs, "_BLOCK", 100)
-    cut = cycle_torques(together, TRIPOD, stroke=0.05, clearance=0.1, lift=0.02, phases=5)
+    cut = cycle_torques(together, TRIPOD, stroke=0.05, body_height=0.1, swing_height=0.02, phases=5)
     for part in (*PARTS, "reach", "balanced"):
         np.testing.assert_array_equal(getattr(cut, part), getattr(whole, part))
 
 
 def test_a_robot_that_tips_is_told():
     back = hexapod(body_com=np.array([-0.7, 0.0, 0.0]))
-    options = {"stroke": 0.05, "clearance": 0.11, "lift": 0.02, "phases": 8}
+    options = {"stroke": 0.05, "body_height": 0.11, "swing_height": 0.02, "phases": 8}
     found = cycle_torques(back, TRIPOD, **options)
     assert not found.ok
     assert not found.balanced.all()
@@ -196,7 +210,9 @@ def test_jax_gives_the_same_where_feet_are_out_of_reach_and_robots_tip():
     together = sized(3, np.random.default_rng(7)).replace(body_com=np.array([[0, 0, 0], [0, 0, 0], [-0.7, 0, 0]]))
 
     def cycle(stroke):
-        found = cycle_torques(together, TRIPOD, stroke=stroke, clearance=0.1, lift=0.02, phases=4, payload=0.2)
+        found = cycle_torques(
+            together, TRIPOD, stroke=stroke, body_height=0.1, swing_height=0.02, phases=4, payload=0.2
+        )
         return [getattr(found, part) for part in (*PARTS, "reach", "balanced", "peak", "ok")]
 
     stroke = np.array([0.05, 0.4, 0.05])
@@ -212,7 +228,7 @@ def test_the_gradient_is_that_of_differences():
 
     def peak(scale):
         longer = robot.replace(femur=robot.femur * scale)
-        return cycle_torques(longer, TRIPOD, stroke=0.05, clearance=0.1, lift=0.02, phases=4).peak[1]
+        return cycle_torques(longer, TRIPOD, stroke=0.05, body_height=0.1, swing_height=0.02, phases=4).peak[1]
 
     value, slope = jax.jit(jax.value_and_grad(peak))(1.0)
     assert float(value) == pytest.approx(float(peak(1.0)))
@@ -237,10 +253,10 @@ def test_many_designs_are_stacked_robots():
         ({"phases": math.nan}, "phases is nan"),
         ({"heading": math.inf}, "heading is inf"),
         ({"stroke": math.nan}, "stroke is nan"),
-        ({"lift": math.inf}, "lift is inf"),
-        ({"stroke": np.zeros(2), "clearance": np.full(3, 0.1)}, "don't fit together"),
+        ({"swing_height": math.inf}, "swing_height is inf"),
+        ({"stroke": np.zeros(2), "body_height": np.full(3, 0.1)}, "don't fit together"),
         ({"gait": Gait.named("wave", legs=8)}, "is for 8 legs"),
-        ({"gait": Gait(duty=0.4, offsets=(0.0, 0.5) * 3)}, "no foot is on the ground at 0.4"),
+        ({"gait": Gait(duty_factor=0.4, offsets=(0.0, 0.5) * 3)}, "no foot is on the ground at 0.4"),
         ({"payload": -1.0}, "payload"),
     ],
 )
@@ -254,4 +270,4 @@ def test_what_is_missing_or_out_of_reach_is_told():
     with pytest.raises(MissingDataError, match="mass_kg"):
         cycle_torques(robot_of("strider").replace(body_mass=None), TRIPOD, stroke=0.05)
     with pytest.raises(UnreachableError, match="nowhere reaches the ground"):
-        cycle_torques(robot_of("strider"), TRIPOD, stroke=0.05, clearance=2.0)
+        cycle_torques(robot_of("strider"), TRIPOD, stroke=0.05, body_height=2.0)

@@ -8,27 +8,27 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-import tarsus.drive.run as running
-from tarsus.drive.commands import COMMANDS, Force, Ground, Tilt
-from tarsus.drive.feeling import Feeling
-from tarsus.drive.recording import Recording
-from tarsus.drive.run import run_scenario
-from tarsus.drive.scenario import Scenario
-from tarsus.drive.summary import drive_summary
+import tarsus.scenario.runner as running
+from tarsus.control.command import Command
+from tarsus.control.pose.admittance import Admittance
+from tarsus.control.safety.guard import GuardOutput
+from tarsus.control.walk_controller import WalkController
 from tarsus.errors import InputError, UnknownNameError
 from tarsus.gait.gait import Gait
-from tarsus.gait.live.admittance import Admittance
-from tarsus.gait.live.guard import Guarded
-from tarsus.gait.live.walker import Walker
-from tarsus.gait.live.wish import Wish
 from tarsus.gait.motion import Motion
 from tarsus.kinematics.leg import forward_kinematics
 from tarsus.kinematics.mass import total_mass
 from tarsus.kinematics.pose import Pose
-from tarsus.load.loads import loads
+from tarsus.load.loads import joint_loads
 from tarsus.report.style import save_figure
 from tarsus.report.timeline import plot_timeline
 from tarsus.robot.file import list_robots, load_robot
+from tarsus.scenario.commands import COMMANDS, Force, Ground, Tilt
+from tarsus.scenario.environment import Environment
+from tarsus.scenario.recording import Recording
+from tarsus.scenario.runner import run_scenario
+from tarsus.scenario.scenario import Scenario
+from tarsus.scenario.summary import drive_summary
 
 EXAMPLES = sorted((Path(__file__).parents[1] / "examples").glob("*.toml"))
 SCENARIOS = [path for path in EXAMPLES if "timeline" in path.read_text() or "[[at]]" in path.read_text()]
@@ -39,11 +39,11 @@ EVERY_COMMAND = Scenario.from_text(
     at 0.2 s: stand_up
     at 2.5 s: walk 40 mm/s; gait wave; ground RF 0 mm
     at 4 s: sway z 3 mm roll 1 deg; cycle_time 1.5 s; tilt pitch 0.3 deg
-    at 5 s: body pitch 2 deg z 3 mm; lift 15 mm; stance_width 3 mm; clearance 85 mm
+    at 5 s: body pitch 2 deg z 3 mm; swing_height 15 mm; stance_width 3 mm; body_height 85 mm
     at 7 s: walk vx 20 mm/s turn 5 deg/s; cycle_time auto
-    at 9 s: stop; body; sway; hand LM x 0 mm y 200 mm z 40 mm
-    at 10 s: hand_speed LM vy -20 mm/s vz 10 mm/s
-    at 10.5 s: hand_back LM
+    at 9 s: stop; body; sway; foot_target LM x 0 mm y 200 mm z 40 mm
+    at 10 s: foot_velocity LM vy -20 mm/s vz 10 mm/s
+    at 10.5 s: foot_release LM
     at 11 s: sit; fold; power_off
     """,
     start="folded",
@@ -130,8 +130,8 @@ def test_a_foot_gives_way_by_the_force_over_its_stiffness():
 def test_a_hand_moves_at_its_speed_until_another_command(speed):
     vx, vy, vz = (f"{name} {1000 * value:g} mm/s" for name, value in zip(("vx", "vy", "vz"), speed, strict=True))
     text = (
-        "at 0 s: gait wave; hand RF x 250 mm y -200 mm z 60 mm; "
-        f"at 8 s: hand_speed RF {vx} {vy} {vz}; at 10.5 s: hand_speed RF; at 14 s: hand_back RF"
+        "at 0 s: gait wave; foot_target RF x 250 mm y -200 mm z 60 mm; "
+        f"at 8 s: foot_velocity RF {vx} {vy} {vz}; at 10.5 s: foot_velocity RF; at 14 s: foot_release RF"
     )
     found = run_scenario(Scenario.from_text(text), robot="strider")
     assert found.ok
@@ -147,8 +147,8 @@ def test_a_hand_moves_at_its_speed_until_another_command(speed):
 
 def test_a_hand_at_a_speed_goes_on_to_the_end_of_its_reach_and_a_point_ends_it():
     text = (
-        "at 0 s: gait wave; hand RF x 250 mm y -200 mm z 60 mm; at 7 s: hand_speed RF vx 50 mm/s; "
-        "at 11 s: hand RF x 250 mm y -200 mm z 50 mm"
+        "at 0 s: gait wave; foot_target RF x 250 mm y -200 mm z 60 mm; at 7 s: foot_velocity RF vx 50 mm/s; "
+        "at 11 s: foot_target RF x 250 mm y -200 mm z 50 mm"
     )
     found = run_scenario(Scenario.from_text(text, duration=15.0), robot="strider")
     # At the edge it comes and goes from tick to tick, and is told once.
@@ -162,7 +162,7 @@ def test_a_hand_at_a_speed_goes_on_to_the_end_of_its_reach_and_a_point_ends_it()
 
 
 def test_a_hand_at_a_speed_is_put_down_where_the_robot_sits_down():
-    text = "at 0 s: gait wave; hand_speed RF vz 20 mm/s; at 5 s: sit; at 6 s: hand_back RF"
+    text = "at 0 s: gait wave; foot_velocity RF vz 20 mm/s; at 5 s: sit; at 6 s: foot_release RF"
     found = run_scenario(Scenario.from_text(text, duration=10.0), robot="strider")
     assert found.ok, found.problems
     assert not found.motion.contacts[found.motion.time < 5.0].all()
@@ -180,10 +180,10 @@ def test_the_cycle_time_goes_back_to_auto():
 
 
 def test_it_is_what_the_walker_gives():
-    text = "at 0 s: walk vx 50 mm/s turn 5 deg/s; lift 20 mm; at 1 s: gait ripple; body z 5 mm; at 2.5 s: stop"
+    text = "at 0 s: walk vx 50 mm/s turn 5 deg/s; swing_height 20 mm; at 1 s: gait ripple; body z 5 mm; at 2.5 s: stop"
     found = run_scenario(Scenario.from_text(text, duration=4.0, rate=50.0), robot="strider")
-    walker = Walker(load_robot("strider"), Gait.named("tripod", legs=6))
-    sticky = {"lift": 0.02}
+    controller = WalkController(load_robot("strider"), Gait.named("tripod", legs=6))
+    sticky = {"swing_height": 0.02}
     twist = (0.05, 0.0, math.radians(5))
     for tick in range(1, 201):
         before = (tick - 1) / 50
@@ -191,13 +191,13 @@ def test_it_is_what_the_walker_gives():
             sticky |= {"gait": "ripple", "body": (0.0, 0.0, 0.005, 0.0, 0.0, 0.0)}
         if before == 2.5:
             twist = (0.0, 0.0, 0.0)
-        angles = walker.step(Wish(twist=twist, **sticky), tick / 50 - before)
+        angles = controller.step(Command(twist=twist, **sticky), tick / 50 - before)
         assert (found.motion.angles[tick] == angles).all()
-        assert (found.motion.feet[tick] == walker.feet).all()
-        assert (found.motion.contacts[tick] == walker.contacts).all()
-        assert (found.done[tick] == walker.twist).all()
+        assert (found.motion.feet[tick] == controller.feet).all()
+        assert (found.motion.contacts[tick] == controller.contacts).all()
+        assert (found.done[tick] == controller.twist).all()
         assert found.wished[tick] == pytest.approx(twist)
-        assert found.gaits[tick] == walker.gait.name
+        assert found.gaits[tick] == controller.gait.name
     assert len(found.motion.time) == 201
 
 
@@ -295,7 +295,7 @@ class Rejecting:
             self.counts = {"speed": 1}
             self.log = [type("Found", (), {"text": lambda self: "speed: too fast"})()]
         sent = np.zeros_like(angles) if held else angles
-        return Guarded(sent, not held, "holding" if held else "passing", 0.0, ())
+        return GuardOutput(sent, not held, "holding" if held else "passing", 0.0, ())
 
 
 def test_while_the_guard_holds_the_walker_waits_and_what_is_sent_is_recorded(monkeypatch):
@@ -321,7 +321,7 @@ def test_while_the_guard_holds_the_walker_waits_and_what_is_sent_is_recorded(mon
     ("text", "robot", "error", "wanted"),
     [
         ("at 3 s: hand XY x 1 mm y 1 mm z 1 mm", "strider", UnknownNameError, "at 3 s: no leg is called 'XY'"),
-        ("at 3 s: hand_speed XY", "strider", UnknownNameError, "at 3 s: no leg is called 'XY'"),
+        ("at 3 s: foot_velocity XY", "strider", UnknownNameError, "at 3 s: no leg is called 'XY'"),
         ("at 3 s: force XY 1 N", "strider", UnknownNameError, "at 3 s: no leg is called 'XY'"),
         ("at 3 s: force RF 2 N", "strider", InputError, "at 3 s: force RF 2 N: no foot gives way; set how it does in"),
         ("at 1 s: stop", None, InputError, "the scenario names no robot"),
@@ -351,7 +351,7 @@ def test_loads_of_what_stood():
         Scenario.from_text("at 0 s: stand_up; at 2 s: walk 50 mm/s; at 4 s: sit", start="sitting"), robot="strider"
     )
     (standing,) = found.standing
-    bears = loads(found.robot, standing)
+    bears = joint_loads(found.robot, standing)
     assert bears.balanced
     assert 0.3 < bears.peak[:, 1].max() < 4
 
@@ -382,29 +382,29 @@ def test_the_log_is_a_table_of_every_tick(tmp_path):
 
 
 def test_what_is_felt_is_ground_under_each_leg_and_tilt():
-    feeling, down = Feeling(load_robot("strider")), np.ones(6, dtype=bool)
+    feeling, down = Environment(load_robot("strider")), np.ones(6, dtype=bool)
     feet = np.zeros((6, 3))
-    assert feeling.senses(feet, Pose(), down) is None
+    assert feeling.readings(feet, Pose(), down) is None
     feeling.take(Ground(0.0, leg="RF", height=0.005), 5)
     feet[:, 2] = [0.0, 0.001, 0.0, 0.0, 0.006, 0.004]
-    felt = feeling.senses(feet, Pose(), down)
+    felt = feeling.readings(feet, Pose(), down)
     assert felt.contacts.tolist() == [True, False, True, True, False, True]
     assert felt.attitude is None
     assert felt.forces is None
     feeling.take(Tilt(0.0, roll=0.1), None)
-    felt = feeling.senses(feet, Pose.from_rpy(0.01, -0.02, 1.0, (0.0, 0.0, 0.0)), down)
+    felt = feeling.readings(feet, Pose.from_rpy(0.01, -0.02, 1.0, (0.0, 0.0, 0.0)), down)
     assert felt.attitude == pytest.approx((0.11, -0.02))
 
 
 def test_forces_are_the_weight_and_what_pushes_more():
     robot = load_robot("strider")
-    feeling, walker = Feeling(robot), Walker(robot)
+    feeling, controller = Environment(robot), WalkController(robot)
     weight = float(total_mass(robot)) * 9.80665
     feeling.take(Force(0.0, leg="RF", force=-2.0), 5)
-    standing = feeling.senses(walker.feet, walker.body, walker.contacts)
+    standing = feeling.readings(controller.feet, controller.body, controller.contacts)
     assert standing.contacts is None
     assert standing.forces == pytest.approx([weight / 6] * 5 + [weight / 6 - 2])
-    tripod = feeling.senses(walker.feet, walker.body, np.array([True, False] * 3))
+    tripod = feeling.readings(controller.feet, controller.body, np.array([True, False] * 3))
     assert tripod.forces.sum() == pytest.approx(weight)
     assert (tripod.forces[1::2] == 0).all()
 
@@ -424,12 +424,12 @@ def test_there_are_examples():
 
 def test_the_timeline_shows_every_command_and_phase(tmp_path):
     text = "at 0 s: power_off; stand_up; at 2 s: walk 5 m/s; gait wave; "
-    text += "at 3 s: hand LM x 0.123456 mm y 200.123456 mm z 40.456 mm"
+    text += "at 3 s: foot_target LM x 0.123456 mm y 200.123456 mm z 40.456 mm"
     found = run_scenario(Scenario.from_text(text, start="sitting", duration=4.0, name="a try"), robot="strider")
     figure = plot_timeline(found)
     words = {text.get_text() for axes in figure.axes for text in axes.texts}
     assert {"stand_up", "gait wave", "tripod"} <= words
-    assert any(word.startswith("hand LM x 0.12") and word.endswith("...") for word in words)
+    assert any(word.startswith("foot_target LM x 0.12") and word.endswith("...") for word in words)
     assert any(word.startswith("wished for: up to 5000") for word in words)
     assert "strider: a try" in figure.get_suptitle()
     save_figure(figure, tmp_path / "timeline.png")

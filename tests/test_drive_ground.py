@@ -2,15 +2,15 @@
 
 import pytest
 
-from tarsus.drive.run import run_scenario
-from tarsus.drive.scenario import Scenario
+from tarsus.scenario.runner import run_scenario
+from tarsus.scenario.scenario import Scenario
 
 FOUND = (
     "at 0 s: walk 40 mm/s; ground RF -3 mm",
     "at 0 s: walk 40 mm/s; ground RF 3 mm",
     (
         "at 0 s: walk 40 mm/s; gait wave; ground RF 3 mm; "
-        "at 3 s: tilt roll 1 deg; stance_width 3 mm; lift 15 mm; clearance 85 mm; at 6 s: stop"
+        "at 3 s: tilt roll 1 deg; stance_width 3 mm; swing_height 15 mm; body_height 85 mm; at 6 s: stop"
     ),
 )
 

@@ -11,12 +11,17 @@ from scipy.spatial import ConvexHull
 
 from gait_robots import PRESETS, ring
 from sample_stands import POSTURES, envelope_of, feet_at, pose_of, setup_of, standing
+from tarsus.control.incremental import complete
+from tarsus.control.workspace.polygon import NORMALS, polygon_ends, polygon_margin
+from tarsus.control.workspace.stability import safe_share, support_sets
+from tarsus.control.workspace.velocity_limits import (
+    VelocityLimits,
+    stance_overhang,
+    velocity_limits,
+    with_stroke_limits,
+)
 from tarsus.gait.cycle import cycle_feet
 from tarsus.gait.gait import GAITS, Gait
-from tarsus.gait.live.envelope import Envelope, capped, envelope, overhang
-from tarsus.gait.live.parts import all_parts
-from tarsus.gait.live.polygon import NORMALS, polygon_ends, polygon_room
-from tarsus.gait.live.support import safe_share, support_sets
 from tarsus.gait.stroke import max_stroke
 from tarsus.kinematics.inverse import inverse_kinematics
 from tarsus.kinematics.stability import stability_margin
@@ -27,9 +32,11 @@ TWISTS = [(1, 0, 0), (0, -1, 0), (0.7, 0.7, 0), (0, 0, 1), (0, 0, -1), (0.5, 0, 
 def steady(name, gait, twist):
     """The feet of a steady cycle at the largest share of a twist ``(241, legs, 3)``, contacts and its stroke."""
     setup, limits = setup_of(name, gait), envelope_of(name, gait)
-    share, _ = limits.largest_share(np.array(twist, dtype=float), stance_time=1.0, duty=setup.gait.duty)
+    share, _ = limits.largest_share(np.array(twist, dtype=float), stance_time=1.0, duty_factor=setup.gait.duty_factor)
     done = share * np.array(twist)
-    feet, down = cycle_feet(setup.gait, setup.rest, done, lift=np.asarray(setup.lift), phases=np.linspace(0, 1, 241))
+    feet, down = cycle_feet(
+        setup.gait, setup.rest, done, swing_height=np.asarray(setup.swing_height), phases=np.linspace(0, 1, 241)
+    )
     return feet, down, float(np.abs(done[0] + 1j * done[1] + 1j * done[2] * limits.rest).max())
 
 
@@ -145,58 +152,60 @@ def test_a_multiple_of_a_twist_has_that_much_less_share(twist, factor):
     limits = envelope_of("phantomx")
     if max(map(abs, twist)) < 1e-3:
         twist = (0.1, 0.0, 0.0)
-    share, _ = limits.largest_share(np.array(twist), stance_time=0.5, duty=0.5)
-    other, _ = limits.largest_share(factor * np.array(twist), stance_time=0.5, duty=0.5)
+    share, _ = limits.largest_share(np.array(twist), stance_time=0.5, duty_factor=0.5)
+    other, _ = limits.largest_share(factor * np.array(twist), stance_time=0.5, duty_factor=0.5)
     assert other * factor == pytest.approx(share, rel=1e-9)
 
 
 def test_a_twist_beyond_all_measure_is_cut_too():
     limits = envelope_of("strider")
-    share, _ = limits.largest_share(np.array([1e300, -1e300, 1e308]), stance_time=0.5, duty=0.5)
-    small, _ = limits.largest_share(np.array([1e-8, -1e-8, 1.0]), stance_time=0.5, duty=0.5)
+    share, _ = limits.largest_share(np.array([1e300, -1e300, 1e308]), stance_time=0.5, duty_factor=0.5)
+    small, _ = limits.largest_share(np.array([1e-8, -1e-8, 1.0]), stance_time=0.5, duty_factor=0.5)
     assert share * 1e308 == pytest.approx(small, rel=1e-9)
 
 
 def test_no_twist_at_all_is_never_too_much():
-    assert envelope_of("strider").largest_share(np.zeros(3), stance_time=1.0, duty=0.5)[0] > 1e6
+    assert envelope_of("strider").largest_share(np.zeros(3), stance_time=1.0, duty_factor=0.5)[0] > 1e6
 
 
 def test_the_leg_with_the_least_room_is_the_one_that_stops_it():
     limits = envelope_of("strider")
     narrow = limits.room.copy()
     narrow[4] *= 0.3
-    found = Envelope(limits.bounds, narrow, limits.rest)
-    share, leg = found.largest_share(np.array([0.1, 0.02, 0.0]), stance_time=1.0, duty=0.5)
+    found = VelocityLimits(limits.bounds, narrow, limits.rest)
+    share, leg = found.largest_share(np.array([0.1, 0.02, 0.0]), stance_time=1.0, duty_factor=0.5)
     assert leg == 4
     assert found.short == 4
-    assert share < limits.largest_share(np.array([0.1, 0.02, 0.0]), stance_time=1.0, duty=0.5)[0]
+    assert share < limits.largest_share(np.array([0.1, 0.02, 0.0]), stance_time=1.0, duty_factor=0.5)[0]
 
 
 def test_joints_that_allow_so_long_a_stroke_allow_their_share_of_straight_and_turning_together():
-    limits = capped(envelope_of("strider"), 0.02, 0.01, duty=0.5)
+    limits = with_stroke_limits(envelope_of("strider"), 0.02, 0.01, duty_factor=0.5)
     outermost = np.abs(limits.rest).max()
     for forward, turn in ((0.1, 0.0), (0.0, 0.4), (0.06, 0.3)):
-        share, _ = limits.largest_share(np.array([forward, 0.0, turn]), stance_time=0.5, duty=0.5)
+        share, _ = limits.largest_share(np.array([forward, 0.0, turn]), stance_time=0.5, duty_factor=0.5)
         assert share * 0.5 * (forward / 0.02 + turn * outermost / 0.01) == pytest.approx(1)
 
 
 # Overhang, capping, meeting.
 
 
-@pytest.mark.parametrize("duty", [0.3, 0.5, 2 / 3, 5 / 6])
-def test_the_overhang_is_how_far_behind_a_foot_is_seen_in_a_steady_cycle(duty):
-    gait = Gait(duty, (0.0,))
-    feet, _ = cycle_feet(gait, np.zeros((1, 3)), (1.0, 0.0, 0.0), lift=0.02, phases=np.linspace(0, 1, 20001))
+@pytest.mark.parametrize("duty_factor", [0.3, 0.5, 2 / 3, 5 / 6])
+def test_the_overhang_is_how_far_behind_a_foot_is_seen_in_a_steady_cycle(duty_factor):
+    gait = Gait(duty_factor, (0.0,))
+    feet, _ = cycle_feet(gait, np.zeros((1, 3)), (1.0, 0.0, 0.0), swing_height=0.02, phases=np.linspace(0, 1, 20001))
     farthest = np.abs(feet[..., 0]).max()
-    assert 0 <= farthest - overhang(duty) < 2e-4
-    assert overhang(duty) > 0.5
+    assert 0 <= farthest - stance_overhang(duty_factor) < 2e-4
+    assert stance_overhang(duty_factor) > 0.5
 
 
 def test_capping_keeps_each_foot_within_the_longest_stroke_of_its_rest_foothold():
     limits = envelope_of("strider")
-    less = capped(limits, 0.02, 0.03, duty=0.5)
-    room = polygon_room(less.bounds, less.rest)
-    np.testing.assert_allclose(room, np.minimum(polygon_room(limits.bounds, limits.rest), overhang(0.5) * 0.03))
+    less = with_stroke_limits(limits, 0.02, 0.03, duty_factor=0.5)
+    room = polygon_margin(less.bounds, less.rest)
+    np.testing.assert_allclose(
+        room, np.minimum(polygon_margin(limits.bounds, limits.rest), stance_overhang(0.5) * 0.03)
+    )
     assert (less.stroke, less.turning) == (0.02, 0.03)
     np.testing.assert_array_equal(less.room, limits.room)
 
@@ -204,14 +213,19 @@ def test_capping_keeps_each_foot_within_the_longest_stroke_of_its_rest_foothold(
 def test_capping_leaves_legs_unbounded_that_do_not_step():
     setup = setup_of("strider", "wave")
     sets = support_sets(setup.gait, (2,))
-    found = all_parts(envelope(setup.robot, [standing(setup)], sets, foot_distance=setup.foot_distance, gone=(2,)))
-    less = capped(found, 0.02, 0.02, duty=setup.gait.duty)
+    found = complete(
+        velocity_limits(setup.robot, [standing(setup)], sets, foot_distance=setup.foot_distance, excluded=(2,))
+    )
+    less = with_stroke_limits(found, 0.02, 0.02, duty_factor=setup.gait.duty_factor)
     assert np.isinf(less.bounds[2]).all()
     assert np.isfinite(np.delete(less.bounds, 2, axis=0)).all()
 
 
 def test_what_is_possible_in_both_is_in_each():
-    one, other = envelope_of("strider"), capped(envelope_of("strider", body=POSTURES[1]), 0.05, 0.04, duty=0.5)
+    one, other = (
+        envelope_of("strider"),
+        with_stroke_limits(envelope_of("strider", body=POSTURES[1]), 0.05, 0.04, duty_factor=0.5),
+    )
     both = one.meet(other)
     for limits in (one, other):
         assert (both.bounds <= limits.bounds).all()
@@ -219,8 +233,8 @@ def test_what_is_possible_in_both_is_in_each():
     assert (both.stroke, both.turning) == (0.05, 0.04)
     stands = [standing(setup_of("strider"), POSTURES[i]) for i in (0, 1)]
     sets = support_sets(Gait.named("tripod"))
-    at_once = all_parts(
-        envelope(setup_of("strider").robot, stands, sets, foot_distance=setup_of("strider").foot_distance)
+    at_once = complete(
+        velocity_limits(setup_of("strider").robot, stands, sets, foot_distance=setup_of("strider").foot_distance)
     )
     np.testing.assert_array_equal(at_once.bounds, one.meet(envelope_of("strider", body=POSTURES[1])).bounds)
 
@@ -228,12 +242,12 @@ def test_what_is_possible_in_both_is_in_each():
 def test_a_body_that_stands_outside_its_support_has_no_room():
     # Four legs in a wave: on three feet the middle of the body is on an edge.
     setup = setup_of(ring(4), "wave")
-    found = all_parts(
-        envelope(setup.robot, [standing(setup)], support_sets(setup.gait), foot_distance=setup.foot_distance)
+    found = complete(
+        velocity_limits(setup.robot, [standing(setup)], support_sets(setup.gait), foot_distance=setup.foot_distance)
     )
     assert not found.possible
     assert (found.room < 0).all()
-    assert found.largest_share(np.array([0.1, 0, 0]), stance_time=1.0, duty=0.75)[0] == 0
+    assert found.largest_share(np.array([0.1, 0, 0]), stance_time=1.0, duty_factor=0.75)[0] == 0
 
 
 def test_polygons_that_shrink_for_support_stay_convex_and_hold_their_rest_footholds():
@@ -249,8 +263,8 @@ def test_polygons_that_shrink_for_support_stay_convex_and_hold_their_rest_footho
 
 def test_without_any_stroke_nothing_of_a_twist_works():
     """Where a polygon has no room at all, the joints allow no stroke either."""
-    stuck = capped(envelope_of("strider"), 0.0, 0.0, duty=0.5)
+    stuck = with_stroke_limits(envelope_of("strider"), 0.0, 0.0, duty_factor=0.5)
     for twist in ((0.1, 0.0, 0.0), (0.0, 0.0, 0.3)):
-        share, _ = stuck.largest_share(np.array(twist), stance_time=0.5, duty=0.5)
+        share, _ = stuck.largest_share(np.array(twist), stance_time=0.5, duty_factor=0.5)
         assert share == pytest.approx(0.0, abs=1e-9)
-    assert stuck.largest_share(np.zeros(3), stance_time=0.5, duty=0.5)[0] > 1
+    assert stuck.largest_share(np.zeros(3), stance_time=0.5, duty_factor=0.5)[0] > 1

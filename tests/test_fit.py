@@ -10,7 +10,7 @@ from sample_loads import robot_of, sample_loads, sample_motion
 from tarsus.errors import InputError, MissingDataError, UnknownNameError
 from tarsus.kinematics.mass import total_mass
 from tarsus.load.fit import largest_payload, length_sensitivity, why_masses_stay, with_lengths, with_servos
-from tarsus.load.loads import loads
+from tarsus.load.loads import joint_loads
 from tarsus.load.payload import Payload
 from tarsus.robot.catalogue import load_servo
 from tarsus.robot.robot import JOINTS
@@ -94,7 +94,7 @@ def test_the_largest_payload_is_just_carried(rule):
     assert most > 0.1
 
     def used(mass):
-        heavier = loads(strong.robot, strong.motion, payload=mass, inertial=False)
+        heavier = joint_loads(strong.robot, strong.motion, payload=mass, inertial=False)
         return (3 / heavier.factor if rule == "factor" else 5 * heavier.rms / heavier.stall_torque).max()
 
     assert used(most) <= 1 < used(most + 2e-4)
@@ -104,7 +104,7 @@ def test_a_payload_at_the_centre_of_mass_adds_in_proportion():
     """Without legs' weight and with the body's centre over the origin, torques go with body and payload together."""
     motion = sample_motion()
     robot = motion.robot.replace(link_mass=np.zeros((6, 3)), body_com=np.zeros(3), body_mass=2.0)
-    found = loads(robot, motion, inertial=False)
+    found = joint_loads(robot, motion, inertial=False)
     factor = found.factor.min()
     assert largest_payload(found, safety_factor=factor / 1.75) == pytest.approx(1.5, abs=2e-4)
 
@@ -117,8 +117,8 @@ def test_a_payload_that_tips_the_robot_is_not_carried():
     found = sample_loads(payload=Payload(0.0, (0.4, 0.0, 0.0)))
     most = largest_payload(found, safety_factor=0.01)
     assert 0 < most < 100
-    assert loads(found.robot, found.motion, payload=Payload(most, (0.4, 0.0, 0.0))).balanced
-    assert not loads(found.robot, found.motion, payload=Payload(most + 1e-3, (0.4, 0.0, 0.0))).balanced
+    assert joint_loads(found.robot, found.motion, payload=Payload(most, (0.4, 0.0, 0.0))).balanced
+    assert not joint_loads(found.robot, found.motion, payload=Payload(most + 1e-3, (0.4, 0.0, 0.0))).balanced
 
 
 def test_beyond_a_tonne_nobody_looks():
@@ -156,7 +156,7 @@ def test_a_longer_coxa_relieves_the_femur_by_the_foots_load():
     """With massless legs and feet that stay, the femur's arm is shorter by as much as the coxa is longer."""
     motion = sample_motion()
     robot = motion.robot.replace(link_mass=np.zeros((6, 3)))
-    found = loads(robot, motion, inertial=False)
+    found = joint_loads(robot, motion, inertial=False)
     change = length_sensitivity(found)["coxa"]
     leg = found.worst(1)
     load = found.forces[found.peak_sample[leg, 1], leg, 2]
@@ -172,6 +172,6 @@ def test_the_change_is_that_of_two_calculations():
 
 def test_what_cannot_be_reached_or_has_no_length_has_no_change():
     motion = sample_motion()
-    found = loads(motion.robot.replace(coxa=np.zeros(6), link_com=motion.robot.link_com * [0, 1, 1]), motion)
+    found = joint_loads(motion.robot.replace(coxa=np.zeros(6), link_com=motion.robot.link_com * [0, 1, 1]), motion)
     assert np.isnan(length_sensitivity(found)["coxa"]).all()
     assert np.isnan(length_sensitivity(sample_loads(), step=0.6)["femur"]).all()

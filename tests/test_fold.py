@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 
 from gait_robots import PRESETS, preset, ring
+from tarsus.control.startup.folded_pose import belly_depth, folded_pose, legs_apart
+from tarsus.control.startup.leg_path import LegFreeSpace
+from tarsus.control.startup.planner import fold, sit_down
+from tarsus.control.startup.power_off import power_off_order
 from tarsus.errors import InputError, TarsusError
-from tarsus.gait.live.fold import belly_depth, folded_pose, legs_apart
-from tarsus.gait.live.fold_power import power_off_order
-from tarsus.gait.live.fold_route import AirSpace
-from tarsus.gait.live.rise import fold, sit_down
-from tarsus.gait.setup import default_lift
+from tarsus.gait.setup import default_swing_height
 from tarsus.kinematics.inverse import inverse_kinematics
 from tarsus.kinematics.leg import forward_kinematics
 from tarsus.kinematics.pose import Pose
@@ -32,7 +32,7 @@ def test_folded_it_lies_on_its_belly_with_its_legs_drawn_in(name):
     assert rest.body.position[2] == pytest.approx(belly_depth(robot), abs=1e-12)
     assert legs_apart(robot, angles) > 2 * robot.foot_radius.max() + 0.005
     points = forward_kinematics(robot, angles)
-    standing = default_stance(robot, lift=default_lift(robot))
+    standing = default_stance(robot, swing_height=default_swing_height(robot))
     out, stance_out = (np.linalg.norm((p - robot.mount_position)[:, :2], axis=-1) for p in (points[:, 3], standing))
     assert (out <= stance_out).all()
     assert not angles.flags.writeable
@@ -91,7 +91,7 @@ def test_a_way_through_the_air_has_no_point_in_the_ground():
     direct = around = 0
     for _ in range(40):
         body = Pose.from_rpy(*rng.uniform(-0.15, 0.15, 2), 0.0, (0.0, 0.0, 0.06))
-        space = AirSpace.of(robot, 2, body)
+        space = LegFreeSpace.of(robot, 2, body)
         ends = rng.uniform(low, high, (400, 3))
         start, end = ends[space.lowest(ends) > 0][:2]
         way = space.route(start, end)
@@ -112,11 +112,11 @@ def test_a_way_through_the_air_has_no_point_in_the_ground():
 def test_where_there_is_no_way_through_the_air_it_says_so():
     """The leg under a low body: knee down on one side, there is no room to bring it to the other."""
     robot = preset("strider")
-    space = AirSpace.of(robot, 0, Pose(position=np.array([0, 0, 0.06])))
+    space = LegFreeSpace.of(robot, 0, Pose(position=np.array([0, 0, 0.06])))
     start, end = np.deg2rad([0.0, 30.0, -159.0]), np.deg2rad([0.0, 60.0, -60.0])
     assert space.lowest(end) > 0
     assert space.route(np.array([0.0, -0.9, -2.2]), end) is None
-    assert AirSpace.of(robot, 0, Pose(position=np.array([0, 0, -0.5]))).route(start, end) is None
+    assert LegFreeSpace.of(robot, 0, Pose(position=np.array([0, 0, -0.5]))).route(start, end) is None
 
 
 def test_released_in_order_nothing_falls_but_the_knees():
@@ -142,7 +142,7 @@ def test_folded_the_feet_fall_to_the_ground_first():
 
 def test_what_stands_must_not_be_released():
     robot = preset("strider")
-    stance = inverse_kinematics(robot, default_stance(robot, lift=0.03)).angles
+    stance = inverse_kinematics(robot, default_stance(robot, swing_height=0.03)).angles
     with pytest.raises(TarsusError, match=r"85.0 mm higher .* only so can it have its joints released"):
         power_off_order(robot, stance)
 

@@ -15,7 +15,7 @@ LF, LM, LR, RR, RM, RF = range(6)
 
 def feet_down(gait, clock):
     """How many feet are down, counted leg by leg."""
-    return np.array([sum(((c - o) % 1.0) < gait.duty for o in gait.offsets) for c in clock])
+    return np.array([sum(((c - o) % 1.0) < gait.duty_factor for o in gait.offsets) for c in clock])
 
 
 def air_pairs(gait, moments=6000):
@@ -31,7 +31,7 @@ def touchdown_order(gait):
 
 def test_tripod_is_even_legs_against_odd_legs():
     gait = Gait.named("tripod")
-    assert gait.duty == 0.5
+    assert gait.duty_factor == 0.5
     assert len({gait.offsets[leg] for leg in (LF, LR, RM)}) == 1
     assert (gait.offsets[LF] - gait.offsets[LM]) % 1 == 0.5
     assert air_pairs(gait) == {(LF, LR), (LF, RM), (LR, RM), (LM, RR), (LM, RF), (RR, RF)}
@@ -39,7 +39,7 @@ def test_tripod_is_even_legs_against_odd_legs():
 
 def test_tetrapod_is_three_diagonal_pairs_from_back_to_front():
     gait = Gait.named("tetrapod")
-    assert gait.duty == pytest.approx(2 / 3)
+    assert gait.duty_factor == pytest.approx(2 / 3)
     assert air_pairs(gait) == {(LF, RM), (LM, RR), (LR, RF)}
     for side in ((LR, LM, LF), (RR, RM, RF)):
         steps = [(gait.offsets[b] - gait.offsets[a]) % 1 for a, b in itertools.pairwise(side)]
@@ -48,7 +48,7 @@ def test_tetrapod_is_three_diagonal_pairs_from_back_to_front():
 
 def test_ripple_has_two_legs_in_the_air_overlapping_and_alternates_the_sides():
     gait = Gait.named("ripple")
-    assert gait.duty == pytest.approx(2 / 3)
+    assert gait.duty_factor == pytest.approx(2 / 3)
     assert sorted(gait.offsets) == pytest.approx(np.arange(6) / 6)
     down = gait.phase((np.arange(600) + 0.5) / 600)[2]
     np.testing.assert_array_equal((~down).sum(-1), 2)
@@ -62,7 +62,7 @@ def test_ripple_has_two_legs_in_the_air_overlapping_and_alternates_the_sides():
 
 def test_wave_lifts_one_leg_at_a_time_one_side_after_the_other_from_the_back():
     gait = Gait.named("wave")
-    assert gait.duty == pytest.approx(5 / 6)
+    assert gait.duty_factor == pytest.approx(5 / 6)
     assert touchdown_order(gait) == [LR, LM, LF, RR, RM, RF]
     assert air_pairs(gait) == set()
 
@@ -96,7 +96,7 @@ def test_an_unknown_name_lists_what_there_is_and_suggests_the_nearest():
 def test_wave_for_any_number_of_legs_from_four(legs):
     gait = Gait.named("wave", legs=legs)
     assert gait.legs == legs
-    assert gait.duty == (legs - 1) / legs
+    assert gait.duty_factor == (legs - 1) / legs
     assert gait.fewest_feet_down == legs - 1
     assert air_pairs(gait) == set()
 
@@ -115,10 +115,10 @@ def test_gaits_refuse_numbers_of_legs_they_are_not_for(name, legs):
         Gait.named(name, legs=legs)
 
 
-@pytest.mark.parametrize("duty", [0.0, 1.0, -0.2, 1.3, float("nan"), float("inf")])
-def test_duty_must_be_inside_0_and_1(duty):
+@pytest.mark.parametrize("duty_factor", [0.0, 1.0, -0.2, 1.3, float("nan"), float("inf")])
+def test_duty_must_be_inside_0_and_1(duty_factor):
     with pytest.raises(InputError, match="duty is"):
-        Gait(duty, (0.0, 0.5))
+        Gait(duty_factor, (0.0, 0.5))
 
 
 @pytest.mark.parametrize("offset", [1.0, -1e-9, float("nan"), float("inf")])
@@ -127,10 +127,10 @@ def test_offsets_must_be_in_0_to_1(offset):
         Gait(0.5, (0.0, offset))
 
 
-@pytest.mark.parametrize(("duty", "offsets"), [("x", (0.0,)), (0.5, ("a",)), (0.5, 3), (None, (0.0,))])
-def test_duty_and_offsets_must_be_numbers(duty, offsets):
+@pytest.mark.parametrize(("duty_factor", "offsets"), [("x", (0.0,)), (0.5, ("a",)), (0.5, 3), (None, (0.0,))])
+def test_duty_and_offsets_must_be_numbers(duty_factor, offsets):
     with pytest.raises(InputError, match="must be numbers"):
-        Gait(duty, offsets)
+        Gait(duty_factor, offsets)
 
 
 def test_a_gait_has_legs():
@@ -142,7 +142,7 @@ def test_a_custom_gait_is_a_value_of_plain_numbers():
     gait = Gait(np.float32(0.5), np.array([0.0, 0.25]))
     assert gait == Gait(0.5, (0.0, 0.25))
     assert hash(gait) == hash(Gait(0.5, (0.0, 0.25)))
-    assert type(gait.duty) is float
+    assert type(gait.duty_factor) is float
     assert [type(offset) for offset in gait.offsets] == [float, float]
     assert gait.name == "custom"
 
@@ -166,13 +166,13 @@ def test_phase_counts_steps_from_the_touchdown(gait, clock):
     np.testing.assert_allclose(step + phase + gait.offsets, clock, atol=2e-9)
     assert (step == np.floor(step)).all()
     assert ((phase >= 0) & (phase < 1)).all()
-    sure = np.abs(phase - gait.duty) > 2e-9
-    np.testing.assert_array_equal(stance[sure], (phase < gait.duty)[sure])
+    sure = np.abs(phase - gait.duty_factor) > 2e-9
+    np.testing.assert_array_equal(stance[sure], (phase < gait.duty_factor)[sure])
 
 
 @given(gaits)
 def test_fewest_feet_down_is_what_a_count_over_the_cycle_finds(gait):
-    events = np.sort(np.concatenate([gait.offsets, np.array(gait.offsets) + gait.duty]) % 1)
+    events = np.sort(np.concatenate([gait.offsets, np.array(gait.offsets) + gait.duty_factor]) % 1)
     between = np.diff(events, append=events[0] + 1)
     middles = (events + between / 2)[between > 1e-6]
     counts = feet_down(gait, middles)
@@ -185,7 +185,7 @@ def test_fewest_feet_down_is_what_a_count_over_the_cycle_finds(gait):
 @pytest.mark.parametrize("name", GAITS)
 def test_at_a_handover_both_feet_count_as_down_whatever_rounding_does(name):
     gait = Gait.named(name)
-    events = np.concatenate([gait.offsets, np.array(gait.offsets) + gait.duty])
+    events = np.concatenate([gait.offsets, np.array(gait.offsets) + gait.duty_factor])
     for cycle in (0, 1, 7, 1000, 100_000):
         for slip in (-2e-10, 0.0, 2e-10):
             down = gait.phase(cycle + events + slip)[2].sum(-1)

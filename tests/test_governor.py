@@ -8,10 +8,10 @@ from scipy.integrate import solve_ivp
 
 from sample_moments import EARTH, FACING, moment_of
 from sample_stands import envelope_of, setup_of
-from tarsus.gait.live.governor import allowed_target, excess
-from tarsus.gait.live.lag import Lag
-from tarsus.gait.live.moment import carried
-from tarsus.gait.live.polygon import NORMALS, polygon_radii
+from tarsus.control.filters import CriticallyDamped
+from tarsus.control.walk.reference_governor import governed_twist, polygon_excess
+from tarsus.control.walk.state import integrate_twist
+from tarsus.control.workspace.polygon import NORMALS, polygon_radii
 
 STANCE = 0.5
 BANDWIDTH = 4 / STANCE
@@ -24,7 +24,7 @@ def situation(seed, name="strider"):
     setup, limits = setup_of(name), envelope_of(name)
     rest = limits.rest
     foot = rest * np.exp(1j * rng.uniform(-0.15, 0.15, 6)) + rng.uniform(-0.02, 0.02, (2, 6)).T @ [1, 1j]
-    twist = Lag(rng.uniform(-1, 1, 3) * [0.1, 0.1, 0.6], rng.uniform(-1, 1, 3) * [0.2, 0.2, 1.0])
+    twist = CriticallyDamped(rng.uniform(-1, 1, 3) * [0.1, 0.1, 0.6], rng.uniform(-1, 1, 3) * [0.2, 0.2, 1.0])
     now = moment_of(setup, rest, target=EARTH + np.exp(1j * FACING) * foot, twist=twist)
     ends = np.tile([STANCE, STANCE / 2], 3) * rng.uniform(0.1, 1)
     given_as = {"begins": np.zeros(6), "ends": ends, "bounds": limits.bounds, "bandwidth": BANDWIDTH}
@@ -32,13 +32,13 @@ def situation(seed, name="strider"):
 
 
 def worst(now, target, given_as):
-    return excess(now, target[None], **given_as).max()
+    return polygon_excess(now, target[None], **given_as).max()
 
 
-def settled(now, current, wish, given_as):
+def settled(now, current, command, given_as):
     """The target after many ticks at this moment."""
     for _ in range(60):
-        current = allowed_target(now, current, wish, **given_as)
+        current = governed_twist(now, current, command, **given_as)
         assert worst(now, current, given_as) <= 1e-9
     return current
 
@@ -59,8 +59,8 @@ def driven(now, target, times):
 
 @pytest.mark.parametrize("seed", range(12))
 def test_feet_stay_within_their_polygons_under_what_is_allowed(seed):
-    now, current, wish, given_as = situation(seed)
-    target = allowed_target(now, current, wish, **given_as)
+    now, current, command, given_as = situation(seed)
+    target = governed_twist(now, current, command, **given_as)
     assert worst(now, np.zeros(3), given_as) < 0
     times = np.linspace(0, given_as["ends"].max(), 101)
     origin, yaw = driven(now, target, times)
@@ -73,25 +73,25 @@ def test_feet_stay_within_their_polygons_under_what_is_allowed(seed):
 
 def test_without_turning_what_is_reckoned_is_what_happens():
     now, _, _, given_as = situation(3)
-    now = now._replace(twist=Lag(np.array([0.05, -0.04, 0.0]), np.array([0.1, 0.2, 0.0])))
+    now = now._replace(twist=CriticallyDamped(np.array([0.05, -0.04, 0.0]), np.array([0.1, 0.2, 0.0])))
     target = np.array([0.2, 0.1, 0.0])
     times = np.array([0.0, 0.5, 1.0]) * given_as["ends"][0]
     origin, yaw = driven(now, target, times)
     seen = (now.target[0] - origin) * np.exp(-1j * yaw)
     over = (seen[:, None] * NORMALS.conj()).real - given_as["bounds"][0]
-    np.testing.assert_allclose(excess(now, target[None], **given_as)[0, :, 0], over, atol=1e-8)
+    np.testing.assert_allclose(polygon_excess(now, target[None], **given_as)[0, :, 0], over, atol=1e-8)
 
 
 @given(seeds, st.sampled_from(["strider", "phantomx", "freenove"]))
 def test_what_is_allowed_works_and_two_percent_more_would_not(seed, name):
-    now, current, wish, given_as = situation(seed, name)
+    now, current, command, given_as = situation(seed, name)
     if worst(now, current, given_as) > 1e-9:
-        current = allowed_target(now, current, wish, **given_as)
+        current = governed_twist(now, current, command, **given_as)
     if worst(now, current, given_as) > 1e-9:
         assert worst(now, np.zeros(3), given_as) > 1e-9
         return
-    target = settled(now, current, wish, given_as)
-    way = wish - current
+    target = settled(now, current, command, given_as)
+    way = command - current
     share = float((target - current) @ way / (way @ way))
     np.testing.assert_allclose(target, current + share * way, atol=1e-12)
     assert 0 <= share <= 1
@@ -101,12 +101,12 @@ def test_what_is_allowed_works_and_two_percent_more_would_not(seed, name):
 
 @given(seeds, st.floats(0.001, 0.05))
 def test_what_was_allowed_stays_allowed(seed, dt):
-    now, current, wish, given_as = situation(seed)
-    target = allowed_target(now, current, wish, **given_as)
+    now, current, command, given_as = situation(seed)
+    target = governed_twist(now, current, command, **given_as)
     if worst(now, target, given_as) > 1e-9:
         return
     twist = now.twist.step(target, dt, bandwidth=BANDWIDTH)
-    origin, yaw = carried(now.origin, now.yaw, now.twist.travel(target, dt, bandwidth=BANDWIDTH))
+    origin, yaw = integrate_twist(now.origin, now.yaw, now.twist.travel(target, dt, bandwidth=BANDWIDTH))
     later = now._replace(twist=twist, origin=origin, yaw=yaw)
     given_as = {**given_as, "ends": np.maximum(given_as["ends"] - dt, 0.0)}
     # What is left of a walk that turns differs a little from the walk as it was seen from its beginning.
@@ -117,8 +117,8 @@ def test_what_was_allowed_stays_allowed(seed, dt):
 
 def test_a_wish_that_works_is_taken_whole():
     now, current, _, given_as = situation(1)
-    wish = np.array([0.01, 0.0, 0.0])
-    assert allowed_target(now, current, wish, **given_as) is wish
+    command = np.array([0.01, 0.0, 0.0])
+    assert governed_twist(now, current, command, **given_as) is command
 
 
 @pytest.mark.parametrize("heading", np.arange(8) * np.pi / 4)
@@ -130,18 +130,18 @@ def test_a_foot_at_its_edge_allows_no_step_further_out(heading):
     foot[1] -= way * polygon_radii(limits.bounds, limits.rest, np.array([-way]))[1, 0]
     now = moment_of(setup, limits.rest, target=EARTH + np.exp(1j * FACING) * foot)
     given_as = {"begins": np.zeros(6), "ends": np.full(6, STANCE), "bounds": limits.bounds, "bandwidth": BANDWIDTH}
-    wish = 0.1 * np.array([way.real, way.imag, 0.0])
-    np.testing.assert_allclose(allowed_target(now, np.zeros(3), wish, **given_as), 0, atol=1e-6)
-    assert allowed_target(now, np.zeros(3), -wish / 4, **given_as) @ -wish > 0
+    command = 0.1 * np.array([way.real, way.imag, 0.0])
+    np.testing.assert_allclose(governed_twist(now, np.zeros(3), command, **given_as), 0, atol=1e-6)
+    assert governed_twist(now, np.zeros(3), -command / 4, **given_as) @ -command > 0
 
 
 def test_where_the_current_target_does_not_work_any_more_as_much_less_as_does():
     setup, limits = setup_of("strider"), envelope_of("strider")
-    now = moment_of(setup, limits.rest, twist=Lag.still(np.array([0.3, 0.0, 0.0])))
+    now = moment_of(setup, limits.rest, twist=CriticallyDamped.still(np.array([0.3, 0.0, 0.0])))
     given_as = {"begins": np.zeros(6), "ends": np.full(6, STANCE), "bounds": limits.bounds, "bandwidth": BANDWIDTH}
     current = np.array([0.5, 0.0, 0.0])
     assert worst(now, current, given_as) > 0.01
-    found = allowed_target(now, current, np.array([0.6, 0.1, 0.0]), **given_as)
+    found = governed_twist(now, current, np.array([0.6, 0.1, 0.0]), **given_as)
     assert worst(now, found, given_as) <= 1e-9
     np.testing.assert_allclose(found, found[0] / current[0] * current)
     found = settled(now, found, 1.2 * current, given_as)
@@ -152,11 +152,11 @@ def test_where_the_current_target_does_not_work_any_more_as_much_less_as_does():
 @pytest.mark.parametrize("current", [(0.5, 0.0, 0.0), (0.0, 0.0, 0.0), (-0.2, 0.0, 0.0)])
 def test_where_not_even_stopping_keeps_the_feet_inside_it_does_not_go_on_as_it_was(current):
     setup, limits = setup_of("strider"), envelope_of("strider")
-    now = moment_of(setup, limits.rest, twist=Lag.still(np.array([3.0, 0.0, 0.0])))
+    now = moment_of(setup, limits.rest, twist=CriticallyDamped.still(np.array([3.0, 0.0, 0.0])))
     given_as = {"begins": np.zeros(6), "ends": np.full(6, STANCE), "bounds": limits.bounds, "bandwidth": BANDWIDTH}
     assert worst(now, np.zeros(3), given_as) > 0.1
     current = np.array(current)
-    found = allowed_target(now, current, np.array([0.6, 0.0, 0.0]), **given_as)
+    found = governed_twist(now, current, np.array([0.6, 0.0, 0.0]), **given_as)
     assert worst(now, found, given_as) <= worst(now, current, given_as)
     assert (np.abs(found) <= np.abs(current)).all()
 
@@ -166,8 +166,8 @@ def test_each_foot_is_looked_at_from_when_to_when_it_is_down():
     target = np.array([0.1, 0.0, 0.2])
     begins = np.stack([np.zeros(6), given_as["ends"] / 2])
     ends = np.stack([given_as["ends"], given_as["ends"]])
-    both = excess(now, target[None], **{**given_as, "begins": begins, "ends": ends})
+    both = polygon_excess(now, target[None], **{**given_as, "begins": begins, "ends": ends})
     assert both.shape == (2, 1, 3, 6, 16)
-    whole = excess(now, target[None], **given_as)
+    whole = polygon_excess(now, target[None], **given_as)
     np.testing.assert_allclose(both[0], whole)
     np.testing.assert_allclose(both[1].reshape(3, 6, 16)[0], whole.reshape(3, 6, 16)[1])

@@ -15,11 +15,10 @@ from hypothesis import strategies as st
 
 from gait_robots import PRESETS, preset, ring
 from sample_robots import random_hexapod
+from tarsus.control.safety.guard import Guard, GuardBounds
+from tarsus.control.safety.interventions import KINDS
 from tarsus.errors import InputError, UnknownNameError
 from tarsus.gait.gait import GAITS, Gait
-from tarsus.gait.live.guard import Guard, GuardBounds
-from tarsus.gait.live.guard_bounds import UNKNOWN_SPEED
-from tarsus.gait.live.guard_record import KINDS
 from tarsus.gait.path import curved_path, straight_path
 from tarsus.gait.plan import plan_walk
 from tarsus.kinematics.inverse import inverse_kinematics
@@ -28,6 +27,7 @@ from tarsus.kinematics.mass import centre_of_mass
 from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.stability import stability_margin
 from tarsus.kinematics.stance import default_stance
+from tarsus.robot.joint_limits import UNKNOWN_SPEED
 from tarsus.robot.robot import stack_robots
 
 TICK = 0.01
@@ -321,7 +321,7 @@ def test_without_a_pose_the_plane_of_the_feet_is_level(seed):
     rng = np.random.default_rng(seed)
     robot = ring(6)
     body = Pose.from_rpy(*rng.uniform(-0.2, 0.2, 2), rng.uniform(-3, 3), (0, 0, 0.1))
-    stance = default_stance(robot, clearance=0.1) * [1, 1, 0] + [0, 0, -0.1]
+    stance = default_stance(robot, body_height=0.1) * [1, 1, 0] + [0, 0, -0.1]
     feet = Pose.from_rpy(0, 0, body.rpy[2], (0, 0, 0.1)) @ stance + [*rng.uniform(-0.01, 0.01, 2), 0]
     angles = inverse_kinematics(robot, feet, body).angles
     contacts = np.zeros(6, dtype=bool)
@@ -699,9 +699,9 @@ def test_a_reset_is_off_when_something_breaks_a_bound_on_the_way():
 def test_a_command_that_runs_away_while_it_recovers_is_let_go():
     guard = Guard(preset("strider"), start=standing())
     guard.check(NAN, TICK)
-    near, on_the_way, gone = (guard.check(standing() + apart, TICK) for apart in (0.09, 0.18, 0.25))
-    assert [near.state, on_the_way.state, gone.state] == ["recovering", "recovering", "holding"]
-    (found,) = gone.interventions
+    near, on_the_way, excluded = (guard.check(standing() + apart, TICK) for apart in (0.09, 0.18, 0.25))
+    assert [near.state, on_the_way.state, excluded.state] == ["recovering", "recovering", "holding"]
+    (found,) = excluded.interventions
     assert (found.kind, found.bound) == ("away", 2 * guard.bounds.near)
     assert found.value == pytest.approx(0.25 - (on_the_way.angles - standing()).min())
 
@@ -825,7 +825,7 @@ def test_a_robot_without_a_stance_starts_straight():
     np.testing.assert_array_equal(guard.check(NAN, TICK).angles, np.tile([0.0, 1.0, 0.0], (6, 1)))
 
 
-# Sitting down.
+# SitDown down.
 
 
 def sit(name, moment, *, attitude=True, ticks=1200, **changes):
@@ -1079,11 +1079,11 @@ def test_the_pages_example_runs(capsys):
 
 def test_the_centre_of_mass_is_that_of_the_whole_robot():
     rng = np.random.default_rng(9)
-    from tarsus.gait.live.guard_feet import FeetWatch
+    from tarsus.control.safety.feet_monitor import FeetMonitor
 
     for _ in range(20):
         robot = random_hexapod(rng)
         angles = rng.uniform(-3, 3, (6, 3))
-        feet, com = FeetWatch(robot, GuardBounds.of(robot)).points(angles.ravel().tolist())
+        feet, com = FeetMonitor(robot, GuardBounds.of(robot)).points(angles.ravel().tolist())
         np.testing.assert_allclose(feet, forward_kinematics(robot, angles)[:, 3], rtol=0, atol=1e-15)
         np.testing.assert_allclose(com, centre_of_mass(robot, angles), rtol=0, atol=1e-15)

@@ -608,7 +608,7 @@ def test_where_the_hand_method_is_safe_for_the_strider(tripod, wave):
     assert tripod.row("speeding up", "coxa").verdict == "safe"
     assert wave.row("walking", "femur").reserve == pytest.approx(1.33, abs=0.03)
     assert wave.row("leg in the air", "femur").verdict == "safe"
-    low = compare_with_statics(STRIDER, gait="wave", clearance=0.04)
+    low = compare_with_statics(STRIDER, gait="wave", body_height=0.04)
     assert low.row("speeding up", "femur").verdict == "unsafe"
     assert "even 3 times that is too little" in low.sentence("femur")
 
@@ -705,7 +705,7 @@ def test_heading_stroke_gravity_and_factor_are_passed_on():
     )
     motion = comparison.motion
     assert motion.stroke == 0.05
-    assert motion.body.position[-1] == pytest.approx([0.0, 1.0, motion.clearance], abs=1e-9)
+    assert motion.body.position[-1] == pytest.approx([0.0, 1.0, motion.body_height], abs=1e-9)
     row = comparison.row("walking", "femur")
     on_earth = compare_with_statics(STRIDER, gait="tripod", heading=math.pi / 2, stroke=0.05)
     assert row.statics == pytest.approx(on_earth.row("walking", "femur").statics * 3.7 / 9.8)
@@ -718,7 +718,7 @@ def test_heading_stroke_gravity_and_factor_are_passed_on():
     assert push.statics == pytest.approx(max(sideways), rel=1e-6)
     assert push.statics == pytest.approx(on_earth.row("speeding up", "coxa").statics / 2, rel=0.1)
     with pytest.raises(InputError, match="feet_down is 2"):
-        compare_with_statics(STRIDER, gait=Gait(duty=0.4, offsets=(0.0, 0.3, 0.6, 0.0, 0.3, 0.6)))
+        compare_with_statics(STRIDER, gait=Gait(duty_factor=0.4, offsets=(0.0, 0.3, 0.6, 0.0, 0.3, 0.6)))
 
 
 # The page

@@ -9,14 +9,14 @@ from hypothesis import strategies as st
 from scipy.integrate import quad, solve_ivp
 from scipy.linalg import expm
 
-from tarsus.gait.live.lag import PEAK_RATE, Lag, travel_factors
+from tarsus.control.filters import PEAK_RATE, CriticallyDamped, integral_factors
 
 small = st.floats(-2, 2)
 bandwidths = st.floats(0.3, 30)
 
 
 def lag(value, rate):
-    return Lag(np.array([value]), np.array([rate]))
+    return CriticallyDamped(np.array([value]), np.array([rate]))
 
 
 @given(small, small, small, st.floats(0, 3), bandwidths)
@@ -34,7 +34,7 @@ def test_a_step_and_its_travel_are_the_exponential_of_the_linear_system(value, r
 
 @given(small, small, small, st.floats(1e-3, 1), bandwidths)
 def test_to_go_is_to_step_and_to_travel(value, rate, target, dt, w):
-    start, goal = Lag(np.array([value, 0.3]), np.array([rate, 0.0])), np.array([target, -0.2])
+    start, goal = CriticallyDamped(np.array([value, 0.3]), np.array([rate, 0.0])), np.array([target, -0.2])
     after, travel = start.go(goal, dt, bandwidth=w)
     expected = start.step(goal, dt, bandwidth=w)
     np.testing.assert_allclose(after.value, expected.value, atol=1e-13)
@@ -62,14 +62,16 @@ def test_travel_is_the_integral_of_the_value():
 
 def test_factors_of_an_array_of_times_are_those_of_each():
     times = np.array([[0.0, 0.3], [1.0, 7.0]])
-    together = travel_factors(times, bandwidth=3.0)
+    together = integral_factors(times, bandwidth=3.0)
     for index, time in np.ndenumerate(times):
-        np.testing.assert_allclose([f[index] for f in together], travel_factors(float(time), bandwidth=3.0), atol=1e-15)
+        np.testing.assert_allclose(
+            [f[index] for f in together], integral_factors(float(time), bandwidth=3.0), atol=1e-15
+        )
 
 
 @given(st.lists(st.tuples(st.floats(-1, 1), st.floats(0.001, 0.5)), min_size=1, max_size=12), bandwidths)
 def test_it_stays_between_its_targets_and_its_rates_below_what_is_said(targets, w):
-    now = Lag.still(np.array([0.0]))
+    now = CriticallyDamped.still(np.array([0.0]))
     for target, time in targets:
         for share in np.linspace(0, 1, 9):
             here = now.step(np.array([target]), share * time, bandwidth=w)
@@ -86,7 +88,7 @@ def test_a_value_of_the_plane_stays_in_the_hull_of_its_targets(targets):
     points = np.array([[math.cos(a), math.sin(a)] for a, _ in targets] + [[0.0, 0.0]])
     normals = np.stack([np.cos(np.arange(24) * np.pi / 12), np.sin(np.arange(24) * np.pi / 12)])
     bounds = (points @ normals).max(axis=0)
-    now = Lag.still(np.zeros(2))
+    now = CriticallyDamped.still(np.zeros(2))
     for point, (_, time) in zip(points, targets, strict=False):
         now = now.step(point, time, bandwidth=6.0)
         assert (now.value @ normals <= bounds + 1e-12).all()
@@ -108,7 +110,7 @@ def test_two_steps_are_one(value, rate, target, first, second, w):
 
 
 def test_a_lag_at_rest_on_its_target_stays_there():
-    still = Lag.still(np.array([0.3, -2.0]))
+    still = CriticallyDamped.still(np.array([0.3, -2.0]))
     after = still.step(still.value, 5.0, bandwidth=2.0)
     np.testing.assert_array_equal(after.value, still.value)
     np.testing.assert_array_equal(after.rate, 0.0)

@@ -12,7 +12,7 @@ from sample_loads import BURNT, robot_of, sample_loads, sample_motion
 from tarsus.errors import InputError, MissingDataError
 from tarsus.kinematics.mass import total_mass
 from tarsus.load.inertia import motion_torques
-from tarsus.load.loads import at_supply, loads, utilisation
+from tarsus.load.loads import at_supply, joint_loads, utilisation
 from tarsus.load.payload import Payload
 from tarsus.load.verdict import BURNS_BELOW, joint_verdicts
 from tarsus.robot.catalogue import load_servo
@@ -35,7 +35,7 @@ def test_torques_are_those_of_the_motion_with_inertia_and_without():
     motion = sample_motion()
     for inertial in (True, False):
         solved = motion_torques(motion.robot, motion, payload=0.3, inertial=inertial)
-        found = loads(motion.robot, motion, payload=0.3, inertial=inertial)
+        found = joint_loads(motion.robot, motion, payload=0.3, inertial=inertial)
         np.testing.assert_array_equal(found.torques, solved.torques)
         np.testing.assert_array_equal(found.forces, solved.forces)
         np.testing.assert_array_equal(found.margin, solved.margin)
@@ -168,18 +168,18 @@ def test_what_is_assumed_stands_in_the_result():
 def test_a_voltage_that_is_not_known_is_said(servo, supply, said):
     motion = sample_motion()
     robot = motion.robot.replace(servos=((servo,) * 3,) * 6)
-    assert said in loads(robot, motion, supply=supply).assumed
+    assert said in joint_loads(robot, motion, supply=supply).assumed
 
 
 def test_joints_without_a_servo_are_named():
     motion = sample_motion()
     rows = [list(row) for row in motion.robot.servos]
     rows[2][1] = None
-    some = loads(motion.robot.replace(servos=rows), motion)
+    some = joint_loads(motion.robot.replace(servos=rows), motion)
     assert "the robot file names no servo for femur of LR: not judged" in some.assumed
     assert np.isnan(some.factor[2, 1])
     assert np.isnan(some.factor).sum() == 1
-    none = loads(motion.robot.replace(servos=()), motion)
+    none = joint_loads(motion.robot.replace(servos=()), motion)
     assert "the robot file names no servo for any joint: not judged" in none.assumed
 
 
@@ -187,33 +187,33 @@ def test_feet_out_of_reach_are_said():
     motion = sample_motion()
     reach = motion.reach.copy()
     reach[3:5, 1] = 1
-    found = loads(motion.robot, replace(motion, reach=reach))
+    found = joint_loads(motion.robot, replace(motion, reach=reach))
     assert f"in 2 of {len(motion.time)} samples a foot is out of reach: its leg is as near as it gets" in found.assumed
 
 
 def test_masses_are_asked_for_by_name():
     motion = sample_motion()
     with pytest.raises(MissingDataError, match=r"\[body\] mass_kg and \[leg\] mass_kg missing"):
-        loads(motion.robot.replace(body_mass=None, link_mass=None), motion)
+        joint_loads(motion.robot.replace(body_mass=None, link_mass=None), motion)
 
 
 @pytest.mark.parametrize("supply", [0.0, -6.0, math.nan, math.inf])
 def test_a_supply_that_is_none_is_refused(supply):
     with pytest.raises(InputError, match="supply is"):
-        loads(sample_motion().robot, sample_motion(), supply=supply)
+        joint_loads(sample_motion().robot, sample_motion(), supply=supply)
 
 
 def test_a_motion_of_other_legs_is_refused():
     robot = sample_motion().robot
     four = robot.from_dict({**robot.to_dict(), "legs": [robot.to_dict()["legs"][i] for i in (0, 2, 3, 5)]})
     with pytest.raises(InputError, match="the motion is of 6 legs, robot 'strider' has 4"):
-        loads(four, sample_motion())
+        joint_loads(four, sample_motion())
 
 
 def test_a_payload_off_the_middle_tips_the_robot():
     motion = sample_motion()
-    assert loads(motion.robot, motion).balanced
-    tipping = loads(motion.robot, motion, payload=Payload(3.0, (0.4, 0.0, 0.0)))
+    assert joint_loads(motion.robot, motion).balanced
+    tipping = joint_loads(motion.robot, motion, payload=Payload(3.0, (0.4, 0.0, 0.0)))
     assert not tipping.balanced
     assert tipping.to_dict()["balanced"] is False
 
@@ -230,7 +230,7 @@ def test_the_document_is_plain_and_has_every_joint():
     assert row["peak_power_w"] == found.power[:, 1, 1].max()
     assert row["factor"] == found.factor[1, 1]
     assert document["payload_kg"] == 0.2
-    nameless = loads(found.robot.replace(servos=()), found.motion).to_dict()["joints"][0]
+    nameless = joint_loads(found.robot.replace(servos=()), found.motion).to_dict()["joints"][0]
     assert (nameless["servo"], nameless["stall_nm"], nameless["factor"]) == (None, None, None)
 
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from sample_loads import sample_loads, sample_motion
-from tarsus.load.loads import loads
+from tarsus.load.loads import joint_loads
 from tarsus.load.torque import joint_torques
 from tarsus.load.verdict import class_of
 from tarsus.robot.robot import JOINTS
@@ -45,8 +45,8 @@ def fates():
     ]
     for name, fate in FATES.items():
         walk = sample_loads(name)
-        motion = sample_motion(name, clearance=walk.motion.clearance + 0.03)
-        high, still = loads(motion.robot, motion).factor, six_feet(name)
+        motion = sample_motion(name, body_height=walk.motion.body_height + 0.03)
+        high, still = joint_loads(motion.robot, motion).factor, six_feet(name)
         heat = (5 * walk.rms / walk.stall_torque).max()
         cells = [name, fate, _worst(walk.factor), class_of(walk.factor.min()), f"{heat:.0%}".replace("%", " %")]
         cells += [_worst(high), class_of(high.min()), _worst(still), class_of(still.min())]
@@ -62,7 +62,7 @@ def test_the_table_of_fates_is_what_is_worked_out_now():
 def test_what_the_page_says_of_the_phantomx():
     walk = sample_loads("phantomx")
     assert walk.factor.min() < 1.5
-    motion, high = sample_motion("phantomx"), sample_motion("phantomx", clearance=0.12)
+    motion, high = sample_motion("phantomx"), sample_motion("phantomx", body_height=0.12)
     out, nearer = (
         np.linalg.norm((walk.feet[0] - walk.body.position[0] - walk.robot.mount_position)[1, :2])
         for walk in (motion, high)
@@ -73,7 +73,8 @@ def test_what_the_page_says_of_the_phantomx():
     assert nearer - motion.robot.coxa[1] < (out - motion.robot.coxa[1]) / 2
     short = sample_motion("phantomx", stroke=0.02)
     assert (
-        f"in place of {motion.stroke * 1000:.0f} mm the factor is {loads(short.robot, short).factor.min():.2f}" in TEXT
+        f"in place of {motion.stroke * 1000:.0f} mm the factor is {joint_loads(short.robot, short).factor.min():.2f}"
+        in TEXT
     )
     share = walk.forces[..., 2].max() / walk.weight
     assert f"a middle leg carries {share:.0%}".replace("%", " %") in TEXT

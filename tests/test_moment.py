@@ -11,15 +11,15 @@ from scipy.linalg import expm
 from gait_robots import PRESETS
 from sample_moments import EARTH, FACING, begun, course_of, moment_of, rest_of
 from sample_stands import setup_of
+from tarsus.control.filters import CriticallyDamped
+from tarsus.control.sensing.ground_plane import GroundPlane
+from tarsus.control.terrain.early_contact import stop_on_contact
+from tarsus.control.walk.foothold import final_footholds
+from tarsus.control.walk.state import EARLY_STOP_FRACTION, POSITION_TOLERANCE, chord_factor, integrate_twist
+from tarsus.control.walk.stepper import TARGET_FREEZE, advance
+from tarsus.control.workspace.stance_geometry import with_sway
 from tarsus.gait.cycle import cycle_feet
 from tarsus.gait.gait import GAITS
-from tarsus.gait.live.foothold import final_rest
-from tarsus.gait.live.lag import Lag
-from tarsus.gait.live.moment import GIVE, THERE, carried, turned
-from tarsus.gait.live.posture import swayed
-from tarsus.gait.live.slope import GroundPlane
-from tarsus.gait.live.stepping import FREEZE, go_on
-from tarsus.gait.live.touchdown import meet_ground
 from tarsus.kinematics.pose import Pose
 
 TWISTS = [(0.08, 0.0, 0.0), (0.0, -0.06, 0.0), (0.05, 0.02, 0.3), (0.0, 0.0, -0.5)]
@@ -30,13 +30,13 @@ every_walk = pytest.mark.parametrize(
 
 def walked(now, course, seconds, dt):
     for _ in range(round(seconds / dt)):
-        now = go_on(now, course, dt)
+        now = advance(now, course, dt)
     return now
 
 
-def seen(now, lift):
+def seen(now, swing_height):
     feet = (now.foot - now.origin) * np.exp(-1j * now.yaw)
-    return np.stack([feet.real, feet.imag, now.height(lift)], axis=-1)
+    return np.stack([feet.real, feet.imag, now.height(swing_height)], axis=-1)
 
 
 @every_walk
@@ -47,11 +47,13 @@ def test_a_constant_twist_comes_to_the_steady_cycle(name, gait):
         course = course_of(setup, rest, twist)
         now = walked(begun(setup, rest), course, 9.0, 0.03)
         for _ in range(12):
-            now = go_on(now, course, 0.093)
-            stride = np.array(twist) * setup.gait.duty
+            now = advance(now, course, 0.093)
+            stride = np.array(twist) * setup.gait.duty_factor
             phase = np.array([now.clock])
-            expected, down = cycle_feet(setup.gait, setup.rest, stride, lift=np.asarray(setup.lift), phases=phase)
-            np.testing.assert_allclose(seen(now, setup.lift), expected[0], atol=1e-9)
+            expected, down = cycle_feet(
+                setup.gait, setup.rest, stride, swing_height=np.asarray(setup.swing_height), phases=phase
+            )
+            np.testing.assert_allclose(seen(now, setup.swing_height), expected[0], atol=1e-9)
             np.testing.assert_array_equal(now.down, down[0])
 
 
@@ -61,7 +63,7 @@ def test_a_step_is_two_half_steps_where_nothing_begins_or_ends(twist):
     course = course_of(setup, rest, twist)
     now, compared = walked(begun(setup, rest), course, 6.0, 0.01), 0
     for _ in range(100):
-        whole, halves = go_on(now, course, 0.01), walked(now, course, 0.01, 0.005)
+        whole, halves = advance(now, course, 0.01), walked(now, course, 0.01, 0.005)
         if (whole.down == now.down).all():
             compared += 1
             for one, other in zip(whole[:13], halves[:13], strict=True):
@@ -75,7 +77,7 @@ def test_the_body_goes_where_its_twist_takes_it_half_step_by_half_step():
     setup, rest = setup_of("strider"), rest_of("strider")
     course = course_of(setup, rest, (0.1, 0.05, 0.0))
     now = begun(setup, rest)
-    whole, halves = go_on(now, course, 0.02), walked(now, course, 0.02, 0.01)
+    whole, halves = advance(now, course, 0.02), walked(now, course, 0.02, 0.01)
     assert whole.origin == pytest.approx(halves.origin, abs=1e-14)
     np.testing.assert_allclose(whole.twist.value, halves.twist.value, atol=1e-14)
     np.testing.assert_allclose(whole.posture.value, halves.posture.value, atol=1e-14)
@@ -91,17 +93,17 @@ def test_a_swing_lands_exactly_on_its_target_and_gently(seed, dt):
     for tick in range(round(1.5 / dt)):
         if tick % 7 == 0:
             course = course_of(setup, rest, rng.uniform(-1, 1, 3) * [0.1, 0.1, 0.4])
-        after = go_on(now, course, dt)
+        after = advance(now, course, dt)
         landed = after.down & ~now.down
         landings += landed.sum()
         np.testing.assert_array_equal(after.foot[landed], after.target[landed])
         assert not after.pace[landed].any()
         assert not after.bend[landed].any()
-        np.testing.assert_array_equal(after.height(setup.lift)[after.down], 0.0)
+        np.testing.assert_array_equal(after.height(setup.swing_height)[after.down], 0.0)
         # Standing feet stand, and what is bound for somewhere late in its swing stays bound for it.
         still = now.down & after.down
         np.testing.assert_array_equal(after.foot[still], now.foot[still])
-        late = ~now.down & (now.share > FREEZE)
+        late = ~now.down & (now.share > TARGET_FREEZE)
         np.testing.assert_array_equal(after.target[late], now.target[late])
         assert np.isfinite(after.foot).all()
         now = after
@@ -114,10 +116,10 @@ def test_a_foot_comes_down_ever_slower():
     now = walked(begun(setup, rest), course, 2.0, 0.01)
     fine, speeds = 1e-4, []
     while not (~now.down & (now.share > 0.98)).any():
-        now = go_on(now, course, fine * 10)
+        now = advance(now, course, fine * 10)
     leg = int(np.flatnonzero(~now.down)[0])
     while not now.down[leg]:
-        after = go_on(now, course, fine)
+        after = advance(now, course, fine)
         speeds.append(abs(after.foot[leg] - now.foot[leg]) / fine)
         now = after
     assert all(later <= earlier + 1e-9 for earlier, later in itertools.pairwise(speeds))
@@ -128,8 +130,8 @@ def test_ticks_longer_than_a_swing_land_the_foot_where_shorter_ones_do():
     setup, rest = setup_of("strider", "wave"), rest_of("strider")
     course = course_of(setup, rest, (0.04, 0.0, 0.0), frequency=4.0)
     now = walked(begun(setup, rest), course, 6.0, 0.005)
-    swing = (1 - setup.gait.duty) / 4.0
-    at_once, slowly = go_on(now, course, 1.2 * swing), walked(now, course, 1.2 * swing, 0.02 * swing)
+    swing = (1 - setup.gait.duty_factor) / 4.0
+    at_once, slowly = advance(now, course, 1.2 * swing), walked(now, course, 1.2 * swing, 0.02 * swing)
     both = at_once.down & slowly.down & (at_once.number == slowly.number)
     assert both.any()
     np.testing.assert_allclose(at_once.foot[both], slowly.foot[both], atol=1e-9)
@@ -150,7 +152,7 @@ def test_the_given_moment_is_not_changed(twist):
         for array in arrays_of(now) + [a for a in course if isinstance(a, np.ndarray)]:
             array.setflags(write=False)
         before = [array.copy() for array in arrays_of(now)]
-        after = go_on(now, course, 0.01)
+        after = advance(now, course, 0.01)
         for old, new in zip(before, arrays_of(now), strict=True):
             np.testing.assert_array_equal(old, new)
         now = after
@@ -161,13 +163,13 @@ def test_stopping_ends_at_rest_with_every_foot_at_its_rest_foothold(gait):
     setup, rest = setup_of("strider", gait), rest_of("strider")
     now = walked(begun(setup, rest), course_of(setup, rest, (0.05, 0.02, 0.2)), 3.13, 0.01)
     stop = course_of(setup, rest, (0.0, 0.0, 0.0))
-    assert final_rest(now, stop) is None
+    assert final_footholds(now, stop) is None
     now = walked(now, stop, 8.0, 0.01)
     assert now.down.all()
     assert not now.twist.value.any()
     expected = now.origin + np.exp(1j * now.yaw) * rest
-    assert np.abs(now.foot - expected).max() <= THERE
-    np.testing.assert_allclose(final_rest(now, stop), expected)
+    assert np.abs(now.foot - expected).max() <= POSITION_TOLERANCE
+    np.testing.assert_allclose(final_footholds(now, stop), expected)
     # And there it stays: no foot is lifted that is there already.
     later = walked(now, stop, 2.0, 0.01)
     np.testing.assert_array_equal(later.foot, now.foot)
@@ -190,7 +192,7 @@ def test_a_robot_whose_clock_stands_moves_its_body_only():
     setup, rest = setup_of("strider"), rest_of("strider")
     now = moment_of(setup, rest)
     posture = now.posture.value + 0.01
-    after = go_on(now, course_of(setup, rest, (0, 0, 0), frequency=0.0, posture=posture), 0.1)
+    after = advance(now, course_of(setup, rest, (0, 0, 0), frequency=0.0, posture=posture), 0.1)
     assert after.clock == now.clock
     np.testing.assert_array_equal(after.foot, now.foot)
     expected = now.posture.step(posture, 0.1, bandwidth=4.0)
@@ -199,7 +201,7 @@ def test_a_robot_whose_clock_stands_moves_its_body_only():
 
 @given(st.floats(-3, 3), st.floats(-1, 1), st.floats(-1, 1), st.floats(-4, 4))
 def test_a_travel_is_the_exponential_of_its_displacement(yaw, x, y, angle):
-    origin, facing = carried(0.4 - 0.1j, yaw, np.array([x, y, angle]))
+    origin, facing = integrate_twist(0.4 - 0.1j, yaw, np.array([x, y, angle]))
     start = Pose.from_rpy(0, 0, yaw, (0.4, -0.1, 0.0))
     here = np.eye(3)
     here[:2, :2], here[:2, 2] = start.rotation[:2, :2], start.position[:2]
@@ -210,16 +212,18 @@ def test_a_travel_is_the_exponential_of_its_displacement(yaw, x, y, angle):
 
 def test_how_a_way_bends_is_the_same_for_numbers_and_arrays():
     angles = np.array([0.0, 1e-9, 1e-7, 1e-5, 0.3, -2.0, np.pi, 2 * np.pi])
-    direct = np.array([turned(float(a)) for a in angles])
-    np.testing.assert_allclose(turned(angles), direct, atol=1e-15)
+    direct = np.array([chord_factor(float(a)) for a in angles])
+    np.testing.assert_allclose(chord_factor(angles), direct, atol=1e-15)
     np.testing.assert_allclose(direct[4:], (np.exp(1j * angles[4:]) - 1) / (1j * angles[4:]), atol=1e-15)
 
 
 def test_final_rest_is_where_the_lag_leaves_the_body():
     setup, rest = setup_of("strider"), rest_of("strider")
-    now = moment_of(setup, rest, twist=Lag(np.array([0.005, -0.003, 0.008]), np.array([0.02, 0.01, -0.03])))
+    now = moment_of(
+        setup, rest, twist=CriticallyDamped(np.array([0.005, -0.003, 0.008]), np.array([0.02, 0.01, -0.03]))
+    )
     stop = course_of(setup, rest, (0, 0, 0), frequency=0.0)
-    expected = final_rest(now, stop)
+    expected = final_footholds(now, stop)
     end = walked(now, stop, 6.0, 0.05)
     np.testing.assert_allclose(end.origin + np.exp(1j * end.yaw) * rest, expected, atol=1e-5)
     assert now.origin == EARTH
@@ -232,22 +236,22 @@ def test_a_foot_that_meets_the_ground_comes_to_rest_on_it_without_a_jump(share):
     course = course_of(setup, rest, (0.1, 0.0, 0.0))
     now = walked(begun(setup, rest), course, 2.0, 0.01)
     while not (~now.down & (now.share > share)).any():
-        now = go_on(now, course, 0.002)
+        now = advance(now, course, 0.002)
     met = ~now.down
-    rate = 1 / (1 - setup.gait.duty)
-    found = meet_ground(setup.robot, now, met, acceleration=np.full((6, 3), 1e4), swing_rate=np.full(6, rate))
-    assert (found.give[met] <= GIVE).all()
-    np.testing.assert_allclose(found.height(setup.lift), now.height(setup.lift), atol=1e-12)
+    rate = 1 / (1 - setup.gait.duty_factor)
+    found = stop_on_contact(setup.robot, now, met, acceleration=np.full((6, 3), 1e4), swing_rate=np.full(6, rate))
+    assert (found.give[met] <= EARLY_STOP_FRACTION).all()
+    np.testing.assert_allclose(found.height(setup.swing_height), now.height(setup.swing_height), atol=1e-12)
     np.testing.assert_array_equal(found.foot, now.foot)
     heights = []
     while (~found.down & met).any():
-        heights.append(found.height(setup.lift)[met])
-        found = go_on(found, course, 0.001)
-    heights.append(found.height(setup.lift)[met])
+        heights.append(found.height(setup.swing_height)[met])
+        found = advance(found, course, 0.001)
+    heights.append(found.height(setup.swing_height)[met])
     np.testing.assert_allclose(heights[-1], found.ground[met], atol=1e-12)
     speeds = np.diff(heights, axis=0)
     # As fast as before at first, and ever more slowly.
-    unmet = go_on(now, course, 0.001).height(setup.lift) - now.height(setup.lift)
+    unmet = advance(now, course, 0.001).height(setup.swing_height) - now.height(setup.swing_height)
     np.testing.assert_allclose(speeds[0], unmet[met], atol=1e-4)
     assert np.abs(np.diff(speeds, axis=0)).max() < 2e-4
 
@@ -258,7 +262,7 @@ def test_a_foot_that_does_not_land_waits_over_its_target():
     now = walked(begun(setup, rest), course, 0.7, 0.01)
     waiting = ~now.down & (now.share >= 1)
     assert waiting.any()
-    later = go_on(now, course, 0.01)
+    later = advance(now, course, 0.01)
     np.testing.assert_array_equal(later.foot[waiting], now.foot[waiting])
     assert not later.down[waiting].any()
 
@@ -266,10 +270,10 @@ def test_a_foot_that_does_not_land_waits_over_its_target():
 def test_a_sway_is_within_its_amplitudes_and_takes_each_of_them():
     amplitude = np.array([0.01, 0.02, 0.0, 0.05, 0.06, 0.0])
     row = np.array([0.0, 0.0, 0.1, 0.0, 0.0, 0.0, 0.03, *amplitude])
-    seen = np.array([swayed(row, clock, 2 * clock) for clock in np.linspace(0, 1, 401)]) - row[:7]
+    seen = np.array([with_sway(row, clock, 2 * clock) for clock in np.linspace(0, 1, 401)]) - row[:7]
     np.testing.assert_allclose(np.abs(seen[:, :6]).max(axis=0), amplitude, atol=1e-9)
     assert not seen[:, 6].any()
-    np.testing.assert_array_equal(swayed(np.array([*row[:7], *np.zeros(6)]), 0.3, 0.6), row[:7])
+    np.testing.assert_array_equal(with_sway(np.array([*row[:7], *np.zeros(6)]), 0.3, 0.6), row[:7])
 
 
 def test_a_foot_is_put_down_on_the_slope_where_it_lands():
@@ -279,14 +283,16 @@ def test_a_foot_is_put_down_on_the_slope_where_it_lands():
     now = begun(setup, rest)
     up = set()
     for _ in range(800):
-        after = go_on(now, course, 0.005)
+        after = advance(now, course, 0.005)
         # Wherever it is bound for by now, the ground there is where it will land.
         off = after.ground - hill.height(after.target.real, after.target.imag)
         assert np.abs(off[~after.down]).max(initial=0.0) < 1e-12
         up |= set(np.flatnonzero(now.down & ~after.down).tolist())
         now = after
     assert up == set(range(6))
-    np.testing.assert_allclose(now.height(setup.lift)[now.down], hill.height(now.foot.real, now.foot.imag)[now.down])
+    np.testing.assert_allclose(
+        now.height(setup.swing_height)[now.down], hill.height(now.foot.real, now.foot.imag)[now.down]
+    )
 
 
 def test_no_foot_is_put_down_lower_than_it_may_be():
@@ -301,11 +307,11 @@ def test_what_a_foot_has_given_way_is_part_of_its_swing():
     setup, rest = setup_of("strider"), rest_of("strider")
     given = np.linspace(-0.004, 0.006, len(rest))
     now = begun(setup, rest)
-    now = now._replace(give_way=Lag(given, np.zeros(len(rest))))
+    now = now._replace(give_way=CriticallyDamped(given, np.zeros(len(rest))))
     course = course_of(setup, rest, (0.05, 0.0, 0.0), give_way=given)
-    after = go_on(now, course, 1e-6)
+    after = advance(now, course, 1e-6)
     assert not after.down.all()
-    before, later = (m.height(setup.lift) + m.give_way.value for m in (now, after))
+    before, later = (m.height(setup.swing_height) + m.give_way.value for m in (now, after))
     np.testing.assert_allclose(later, before, atol=1e-9)
     assert not after.give_way.value[~after.down].any()
 
@@ -317,7 +323,7 @@ def test_the_heading_frame_rides_over_the_ground():
     now = moment_of(setup, rest)
     heights = []
     for _ in range(400):
-        now = go_on(now, course, 0.02)
+        now = advance(now, course, 0.02)
         heights.append(float(now.elevation.value[0]))
     assert (np.diff(heights) >= 0).all()
     assert now.elevation.value is high

@@ -48,8 +48,8 @@ def stepping(angles, *, robot=None, contacts=None, time=None, foot_distance=0.0)
         cycle_time=1.0,
         stroke=0.01,
         speed=0.01,
-        clearance=0.08,
-        lift=0.02,
+        body_height=0.08,
+        swing_height=0.02,
         foot_distance=foot_distance,
     )
 

@@ -3,14 +3,14 @@
 import numpy as np
 import pytest
 
-from tarsus.gait.live.own_time import OwnTime
+from tarsus.control.walk.time_scaling import TimeScaling
 
 SPEED, ACCELERATION = np.full((1, 3), 5.0), np.full((1, 3), 100.0)
 
 
 def driven(way, ticks, dt):
     """Go along a way; return the own times and the joints' speed and acceleration over the greatest."""
-    own = OwnTime(way(0.0), SPEED, ACCELERATION)
+    own = TimeScaling(way(0.0), SPEED, ACCELERATION)
     time, times, angles = 0.0, [0.0], [own.angles]
     for _ in range(ticks):
         time = own.advance(lambda step, time=time: time + step, way, dt, stop=False)
@@ -42,7 +42,7 @@ def test_where_they_do_not_it_is_slower_and_they_do(fast, dt):
 
 
 def test_told_to_stop_it_comes_to_rest():
-    own = OwnTime(np.zeros((1, 3)), SPEED, ACCELERATION)
+    own = TimeScaling(np.zeros((1, 3)), SPEED, ACCELERATION)
     time, rates = 0.0, []
     for _ in range(20):
         time = own.advance(lambda step, time=time: time + step, lambda t: np.full((1, 3), t), 0.01, stop=True)
@@ -52,7 +52,7 @@ def test_told_to_stop_it_comes_to_rest():
 
 
 def test_on_a_way_that_no_joint_could_go_it_goes_on_all_the_same():
-    own = OwnTime(np.zeros((1, 3)), SPEED, ACCELERATION)
+    own = TimeScaling(np.zeros((1, 3)), SPEED, ACCELERATION)
     tried = []
 
     def jumping(time):

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from scipy.linalg import expm
 
 from tarsus.errors import InputError
-from tarsus.gait.path import Path, carry, carry_back, curved_path, exponential, straight_path, twist_path
+from tarsus.gait.path import BodyPath, carry, carry_back, curved_path, exponential, straight_path, twist_path
 
 numbers = st.floats(-20, 20)
 small = st.floats(-1e-6, 1e-6)
@@ -36,7 +36,7 @@ def test_exponential_is_the_matrix_exponential_of_the_twist(x, y, yaw, share):
 
 @given(numbers, numbers, angles)
 def test_a_path_s_velocity_is_its_twist_in_the_body_s_frame(x, y, yaw):
-    path = Path((x + 1, y, yaw))
+    path = BodyPath((x + 1, y, yaw))
     step = 1e-6
     before, here, after = path.place(np.array([0.4 - step, 0.4, 0.4 + step]))
     seen = np.linalg.inv(matrix(here)) @ ((matrix(after) - matrix(before)) / (2 * step))
@@ -77,8 +77,8 @@ def test_every_array_library_gives_the_same(library):
         np.testing.assert_allclose(np.asarray(carry(other, points)), carry(place, points), atol=1e-14)
         np.testing.assert_allclose(np.asarray(carry_back(other, points)), carry_back(place, points), atol=1e-14)
         np.testing.assert_allclose(
-            np.asarray(Path(displacement).travel(library.asarray(points))),
-            Path(displacement).travel(points),
+            np.asarray(BodyPath(displacement).travel(library.asarray(points))),
+            BodyPath(displacement).travel(points),
             atol=1e-13,
         )
 
@@ -134,7 +134,7 @@ def test_a_twist_path_is_its_speeds_for_its_duration():
 
 @given(numbers, numbers, angles, st.integers(0, 2**32 - 1))
 def test_travel_is_the_length_of_the_foot_s_track_past_the_body(x, y, yaw, seed):
-    path = Path((x + 0.5, y, yaw))
+    path = BodyPath((x + 0.5, y, yaw))
     feet = np.random.default_rng(seed).uniform(-0.3, 0.3, (6, 3))
     n = 2000
     track = carry_back(path.place(np.linspace(0, 1, n + 1)), feet)
@@ -147,11 +147,11 @@ def test_travel_is_the_length_of_the_foot_s_track_past_the_body(x, y, yaw, seed)
 )
 def test_a_displacement_must_be_three_finite_numbers(values):
     with pytest.raises(InputError, match="must be three finite numbers"):
-        Path(values)
+        BodyPath(values)
 
 
 @pytest.mark.parametrize(
-    "make", [lambda: straight_path(0.0), lambda: curved_path(0.0, (1, 2)), lambda: Path((0, 0, 0))]
+    "make", [lambda: straight_path(0.0), lambda: curved_path(0.0, (1, 2)), lambda: BodyPath((0, 0, 0))]
 )
 def test_a_path_must_go_somewhere(make):
     with pytest.raises(InputError, match="goes nowhere"):
@@ -175,6 +175,6 @@ def test_arguments_that_are_not_finite_are_refused():
         with pytest.raises(InputError, match="duration is"):
             twist_path(1.0, 0, 0, duration)
         with pytest.raises(InputError, match="duration is"):
-            Path((1.0, 0.0, 0.0), duration=duration)
+            BodyPath((1.0, 0.0, 0.0), duration=duration)
     with pytest.raises(InputError, match="goes nowhere"):
         twist_path(0, 0, 0, 1.0)

@@ -12,7 +12,7 @@ from tarsus.errors import CollisionError, InputError, StrokeError, TarsusError, 
 from tarsus.gait import plan
 from tarsus.gait.cycle import cycle_feet
 from tarsus.gait.gait import GAITS, Gait
-from tarsus.gait.path import Path, curved_path, straight_path, twist_path
+from tarsus.gait.path import BodyPath, curved_path, straight_path, twist_path
 from tarsus.gait.plan import plan_walk
 from tarsus.gait.setup import Setup
 from tarsus.gait.spacing import feet_distance
@@ -53,7 +53,7 @@ def check_walk(motion, path, *, rest):
     assert np.linalg.norm(np.diff(motion.feet, axis=0), axis=-1)[both].max(initial=0) <= 1e-9
     assert (motion.feet[..., 2][motion.contacts] == 0).all()
     assert motion.feet[..., 2].min() >= 0
-    assert motion.feet[..., 2].max() <= motion.lift * (1 + 1e-12)
+    assert motion.feet[..., 2].max() <= motion.swing_height * (1 + 1e-12)
     assert motion.contacts.sum(-1).min() >= motion.gait.fewest_feet_down
     # No stance excursion exceeds half a stroke: the foot's way past the body, along its track.
     half = 0.5 * motion.stroke * path.travel(rest) / path.travel(rest).max()
@@ -66,7 +66,7 @@ def check_walk(motion, path, *, rest):
 
 
 def rest_of(robot, **more):
-    setup = {"clearance": None, "lift": None, "body_tilt": (0, 0), "foot_distance": None} | more
+    setup = {"body_height": None, "swing_height": None, "body_tilt": (0, 0), "foot_distance": None} | more
     return Setup.of(robot, Gait.named("wave", legs=robot.legs), **setup).rest
 
 
@@ -90,8 +90,8 @@ def test_the_default_walk_of_every_preset_works(robot):
     check_walk(motion, path, rest=rest_of(robot))
     assert motion.ok, motion.problems
     assert 0.02 < motion.stroke < 0.2
-    assert motion.clearance == robot.gait.clearance
-    assert motion.lift == robot.gait.lift
+    assert motion.body_height == robot.gait.body_height
+    assert motion.swing_height == robot.gait.swing_height
 
 
 @pytest.mark.parametrize("cycle_time", [0.37, 0.5, 1.0, 1.37])
@@ -99,7 +99,7 @@ def test_the_default_walk_of_every_preset_works(robot):
 @pytest.mark.parametrize("name", GAITS)
 def test_at_every_rate_as_many_feet_are_down_as_the_gait_has(name, rate, cycle_time):
     gait, path = Gait.named(name), straight_path(0.25)
-    if (1 - gait.duty) * cycle_time * rate < 1:
+    if (1 - gait.duty_factor) * cycle_time * rate < 1:
         with pytest.raises(InputError, match="so that feet would move between two samples unseen; at least"):
             plan_walk(preset("strider"), gait, path, stroke=0.06, cycle_time=cycle_time, rate=rate)
         return
@@ -127,7 +127,7 @@ def test_cruise_is_the_steady_cycle(name, direction):
     robot, gait, stroke = preset("strider"), Gait.named(name), 0.08
     rest = rest_of(robot)
     twist = unit_twist(rest, direction) * stroke
-    path = Path(tuple(twist / gait.duty * 4))
+    path = BodyPath(tuple(twist / gait.duty_factor * 4))
     motion = plan_walk(robot, gait, path, stroke=stroke, cycle_time=1.0, rate=111)
     # The first sample is the first lift-off: a whole number of twelfths of the cycle, found by its contacts alone.
     seen = in_heading_frame(motion)
@@ -135,13 +135,13 @@ def test_cruise_is_the_steady_cycle(name, direction):
     best = np.inf
     for shift in np.arange(36) / 36:
         phases = motion.time[cruise] + shift
-        feet, contacts = cycle_feet(gait, rest, twist, lift=robot.gait.lift, phases=phases)
+        feet, contacts = cycle_feet(gait, rest, twist, swing_height=robot.gait.swing_height, phases=phases)
         error = np.abs(feet - seen[cruise]).max()
         if error < best:
             best, found, down = error, feet, contacts
     np.testing.assert_allclose(seen[cruise], found, atol=1e-12)
     np.testing.assert_array_equal(motion.contacts[cruise], down)
-    angles = inverse_kinematics(robot, found - [0, 0, motion.clearance]).angles
+    angles = inverse_kinematics(robot, found - [0, 0, motion.body_height]).angles
     np.testing.assert_allclose(motion.angles[cruise], angles, atol=1e-9)
 
 
@@ -200,7 +200,7 @@ def test_swinging_feet_reach_the_lift():
     motion = plan_walk(
         preset("strider"), Gait.named("ripple"), straight_path(0.5), stroke=0.08, cycle_time=1.2, rate=500
     )
-    np.testing.assert_allclose(motion.feet[..., 2].max(0), motion.lift, rtol=1e-3)
+    np.testing.assert_allclose(motion.feet[..., 2].max(0), motion.swing_height, rtol=1e-3)
 
 
 def test_a_tilted_body_keeps_its_tilt_over_flat_ground():
@@ -211,9 +211,9 @@ def test_a_tilted_body_keeps_its_tilt_over_flat_ground():
     check_walk(motion, path, rest=rest_of(robot))
     np.testing.assert_allclose(motion.body.rpy[:, 0], roll, atol=1e-12)
     np.testing.assert_allclose(motion.body.rpy[:, 1], pitch, atol=1e-12)
-    np.testing.assert_array_equal(motion.body.position[:, 2], motion.clearance)
+    np.testing.assert_array_equal(motion.body.position[:, 2], motion.body_height)
     seen = forward_kinematics(robot, motion.angles)[..., 3, :]
-    height = -motion.clearance / (math.cos(roll) * math.cos(pitch))
+    height = -motion.body_height / (math.cos(roll) * math.cos(pitch))
     plane = height + seen[..., 0] * math.tan(pitch) / math.cos(roll) - seen[..., 1] * math.tan(roll)
     np.testing.assert_allclose(seen[..., 2][motion.contacts], plane[motion.contacts], atol=1e-9)
 
@@ -229,11 +229,11 @@ def test_a_tilted_body_keeps_its_tilt_over_flat_ground():
     st.sampled_from([0.5, 1.0, 2.3]),
     st.sampled_from([50.0, 97.0, 100.0, 240.0]),
 )
-def test_any_gait_on_any_path(duty, offsets, distance, heading, angle, share, cycle_time, rate):
-    robot, gait = ring(6), Gait(duty, tuple(offsets))
-    path = Path((distance * math.cos(heading), distance * math.sin(heading), angle))
+def test_any_gait_on_any_path(duty_factor, offsets, distance, heading, angle, share, cycle_time, rate):
+    robot, gait = ring(6), Gait(duty_factor, tuple(offsets))
+    path = BodyPath((distance * math.cos(heading), distance * math.sin(heading), angle))
     args = {"stroke": 0.04 * share, "cycle_time": cycle_time, "rate": rate, "foot_distance": 0}
-    if (1 - duty) * cycle_time * rate < 1:
+    if (1 - duty_factor) * cycle_time * rate < 1:
         with pytest.raises(InputError, match="a swing takes"):
             plan_walk(robot, gait, path, **args)
         return
@@ -252,7 +252,7 @@ def test_any_gait_on_any_path(duty, offsets, distance, heading, angle, share, cy
 def test_whatever_the_numbers_there_is_a_motion_or_an_error_of_tarsus(stroke, speed, cycle_time, rate, displacement):
     robot = ring(6)
     try:
-        path = Path(displacement)
+        path = BodyPath(displacement)
         motion = plan_walk(robot, TRIPOD, path, stroke=stroke, speed=speed, cycle_time=cycle_time, rate=rate)
     except TarsusError as error:
         text = str(error)
@@ -334,7 +334,7 @@ def test_the_default_cycle_keeps_joints_at_half_their_servo_s_speed(robot, name,
 
 
 def test_a_slow_stroke_takes_a_second_a_cycle():
-    motion = plan_walk(preset("strider"), TRIPOD, straight_path(0.05), stroke=0.01, lift=0.003)
+    motion = plan_walk(preset("strider"), TRIPOD, straight_path(0.05), stroke=0.01, swing_height=0.003)
     assert motion.cycle_time == 1
     assert "cycle time 1 s" in motion.assumed
 
@@ -343,16 +343,18 @@ def test_what_is_assumed_is_said():
     bare = ring(6, body_mass=None, link_mass=None)
     assumed = plan_walk(bare, TRIPOD, straight_path(0.2)).assumed
     for part in (
-        "clearance 80 mm: from the lengths of femur and tibia",
-        "lift 20 mm: a quarter of the clearance",
+        "body_height 80 mm: from the lengths of femur and tibia",
+        "swing_height 20 mm: a quarter of the body height",
         "the robot file gives no masses",
         "0.6 of the longest that works",
         "cycle time 1 s: the robot file does not tell how fast every servo is",
     ):
         assert any(part in line for line in assumed), part
-    given_all = plan_walk(ring(6), TRIPOD, straight_path(0.2), clearance=0.08, lift=0.02, stroke=0.03, cycle_time=1.0)
+    given_all = plan_walk(
+        ring(6), TRIPOD, straight_path(0.2), body_height=0.08, swing_height=0.02, stroke=0.03, cycle_time=1.0
+    )
     assert given_all.assumed == ()
-    own = ring(6, gait=GaitDefaults(clearance=0.08, lift=0.02))
+    own = ring(6, gait=GaitDefaults(body_height=0.08, swing_height=0.02))
     assert plan_walk(own, TRIPOD, straight_path(0.2), stroke=0.03, cycle_time=1.0).assumed == ()
 
 
@@ -365,7 +367,7 @@ def test_the_default_stroke_is_a_share_of_the_longest():
 # What is refused
 
 
-@pytest.mark.parametrize("name", ["stroke", "speed", "cycle_time", "rate", "lift", "foot_distance"])
+@pytest.mark.parametrize("name", ["stroke", "speed", "cycle_time", "rate", "swing_height", "foot_distance"])
 def test_numbers_must_be_finite_and_not_negative(name):
     for bad in (math.nan, math.inf, -math.inf, -0.1, "fast", (1, 2)):
         with pytest.raises(InputError, match=f"{name} is"):
@@ -379,7 +381,7 @@ def test_some_numbers_must_not_be_zero(name):
 
 
 def test_a_stroke_without_lift_slides_and_may():
-    motion = plan_walk(preset("strider"), TRIPOD, straight_path(0.1), stroke=0.05, cycle_time=1.0, lift=0)
+    motion = plan_walk(preset("strider"), TRIPOD, straight_path(0.1), stroke=0.05, cycle_time=1.0, swing_height=0)
     assert motion.feet[..., 2].max() == 0
 
 
@@ -394,11 +396,11 @@ def test_senseless_sizes_are_refused():
         ({"stroke": 0.05, "speed": 1e308}, "a swing takes"),
         ({"stroke": 0.05, "cycle_time": 1.0, "rate": 1e9}, "at most 2000000"),
         ({"stroke": 0.05, "cycle_time": 1.0, "rate": 1.5}, "a swing takes 0.5 s.*at least 2 are needed"),
-        ({"lift": 1e6}, "lift is"),
+        ({"swing_height": 1e6}, "swing_height is"),
     ):
         with pytest.raises(InputError, match=match):
             plan_walk(robot, TRIPOD, straight_path(0.5), **bad)
-    for path in (straight_path(1e-12), Path((0, 0, 1e-200)), Path((1e308, 1e308, 0))):
+    for path in (straight_path(1e-12), BodyPath((0, 0, 1e-200)), BodyPath((1e308, 1e308, 0))):
         with pytest.raises(InputError, match=r"that is no walk|at most 2000000"):
             plan_walk(robot, TRIPOD, path, stroke=0.05, cycle_time=1.0)
 
@@ -412,11 +414,11 @@ def test_batches_and_other_gaits_are_refused():
 
 
 def test_a_clearance_that_no_leg_reaches_names_those_that_work():
-    with pytest.raises(UnreachableError, match=r"clearance 400.0 mm: leg .*all legs do at clearances between"):
-        plan_walk(preset("strider"), TRIPOD, straight_path(0.1), clearance=0.4)
+    with pytest.raises(UnreachableError, match=r"body height 400.0 mm: leg .*all legs do at body heights between"):
+        plan_walk(preset("strider"), TRIPOD, straight_path(0.1), body_height=0.4)
     for bad in (math.nan, math.inf, -math.inf):
-        with pytest.raises(InputError, match="clearance is"):
-            plan_walk(preset("strider"), TRIPOD, straight_path(0.1), clearance=bad)
+        with pytest.raises(InputError, match="body_height is"):
+            plan_walk(preset("strider"), TRIPOD, straight_path(0.1), body_height=bad)
 
 
 def test_a_long_stroke_says_which_leg_why_and_what_works():
@@ -498,7 +500,9 @@ def test_samples_out_of_reach_are_refused_even_where_the_stroke_s_verdict_is_goo
 
 def test_rest_footholds_are_those_that_can_be_lifted():
     robot = preset("phoenix")
-    np.testing.assert_allclose(rest_of(robot)[:, :2], default_stance(robot, lift=robot.gait.lift)[:, :2])
+    np.testing.assert_allclose(
+        rest_of(robot)[:, :2], default_stance(robot, swing_height=robot.gait.swing_height)[:, :2]
+    )
 
 
 def test_a_stroke_out_of_reach_says_nothing_of_the_pace():

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from tarsus import Pose, default_stance, inverse_kinematics, list_robots, load_robot
-from tarsus.gait.live.quick import QuickLegs
+from tarsus.control.walk.joint_solver import ScalarLegs
 
 UP = np.array([0, 0, 1.0])
 
@@ -12,9 +12,9 @@ UP = np.array([0, 0, 1.0])
 @pytest.mark.parametrize("name", list_robots())
 def test_it_agrees_with_the_arrays(name):
     robot = load_robot(name)
-    quick, rng = QuickLegs(robot), np.random.default_rng(1)
+    quick, rng = ScalarLegs(robot), np.random.default_rng(1)
     stance = default_stance(robot)
-    solved = refused = 0
+    solved = rejected = 0
     for _ in range(300):
         feet = stance + rng.normal(size=stance.shape) * 0.04
         body = Pose.from_rpy(*rng.normal(size=3) * 0.1, rng.normal(size=3) * 0.02)
@@ -26,14 +26,14 @@ def test_it_agrees_with_the_arrays(name):
             assert expected.ok.all()
             np.testing.assert_allclose(found, expected.angles, atol=1e-9)
         else:
-            refused += 1
+            rejected += 1
             # It leaves to the arrays whatever isn't plainly within reach and limits.
             plain = np.isclose(expected.angles, robot.limits[..., 0]) | np.isclose(
                 expected.angles, robot.limits[..., 1]
             )
             assert not expected.ok.all() or plain.any() or not _plain(robot, body, feet)
     assert solved > 20
-    assert refused > 20
+    assert rejected > 20
 
 
 def _plain(robot, body, feet):
@@ -47,11 +47,11 @@ def _plain(robot, body, feet):
 def test_a_foot_beside_the_legs_plane_is_refused():
     robot = load_robot("strider").replace(femur_axis_offset=np.tile([0.05, 0.0], (6, 1)))
     axis = np.asarray(robot.mount_position) + np.array([0.01, 0, -0.1])
-    assert QuickLegs(robot).angles(axis.tolist(), np.eye(3).tolist(), (0.0, 0.0, 0.0)) is None
+    assert ScalarLegs(robot).angles(axis.tolist(), np.eye(3).tolist(), (0.0, 0.0, 0.0)) is None
 
 
 def test_folded_and_far_feet_are_refused():
     robot = load_robot("strider")
     feet = default_stance(robot)
     for scale in (3.0, 0.4):
-        assert QuickLegs(robot).angles((feet * scale).tolist(), np.eye(3).tolist(), (0.0, 0.0, 0.0)) is None
+        assert ScalarLegs(robot).angles((feet * scale).tolist(), np.eye(3).tolist(), (0.0, 0.0, 0.0)) is None

@@ -14,9 +14,9 @@ from hypothesis import strategies as st
 from PIL import Image
 
 from sample_loads import sample_loads
-from tarsus.load.loads import loads
+from tarsus.load.loads import joint_loads
 from tarsus.load.sizing import size_servos
-from tarsus.load.supply import supply
+from tarsus.load.supply import supply_load
 from tarsus.load.verdict import joint_verdicts
 from tarsus.report.loads_files import write_loads
 from tarsus.report.loads_page import loads_page
@@ -32,17 +32,17 @@ PLOTS = (plot_torques, plot_torque_speed)
 def bare():
     """The strider without servos."""
     found = sample_loads()
-    return loads(found.robot.replace(servos=()), found.motion)
+    return joint_loads(found.robot.replace(servos=()), found.motion)
 
 
 def speedless():
     """The strider on servos whose speed is unknown."""
     found = sample_loads()
-    return loads(found.robot.replace(servos=((Servo(name="slow", stall_torque=9.0),) * 3,) * 6), found.motion)
+    return joint_loads(found.robot.replace(servos=((Servo(name="slow", stall_torque=9.0),) * 3,) * 6), found.motion)
 
 
 def summary_of(found):
-    return loads_summary(found, supply(found))
+    return loads_summary(found, supply_load(found))
 
 
 @pytest.mark.parametrize("plot", PLOTS)
@@ -93,7 +93,7 @@ def test_the_weakest_servo_of_a_kind_is_the_one_drawn():
     found = sample_loads()
     rows = [list(row) for row in found.robot.servos]
     rows[3][1] = Servo(name="weak", stall_torque=1.0, no_load_speed=4.0)
-    mixed = loads(found.robot.replace(servos=rows), found.motion)
+    mixed = joint_loads(found.robot.replace(servos=rows), found.motion)
     assert servo_limits(mixed, 1)[0] == ("stall 1.00 N m", 1.0)
     axes = plot_torque_speed(mixed).axes[1]
     assert axes.texts[-1].get_text() == "weak"
@@ -171,9 +171,9 @@ def test_joints_that_bear_nothing_are_good():
 
 
 def test_peaks_at_once_are_told_with_the_battery():
-    lines = loads_lines(loads_summary(sample_loads("burnt-5kg"), supply(sample_loads("burnt-5kg"), capacity=2.0)))
+    lines = loads_lines(loads_summary(sample_loads("burnt-5kg"), supply_load(sample_loads("burnt-5kg"), capacity=2.0)))
     assert any(line.startswith("current: ") and "the battery lasts" in line for line in lines)
-    together = supply(sample_loads("burnt-5kg")).warning
+    together = supply_load(sample_loads("burnt-5kg")).warning
     assert (f"supply: {together}" in lines) == (together is not None)
 
 

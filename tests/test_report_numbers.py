@@ -16,7 +16,7 @@ from tarsus.kinematics.inverse import inverse_kinematics
 from tarsus.kinematics.mass import total_mass
 from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.rest import resting_pose
-from tarsus.kinematics.stance import default_clearance, default_stance
+from tarsus.kinematics.stance import default_body_height, default_stance
 from tarsus.report.robot_summary import check_robot, dimensions, robot_summary
 from tarsus.report.standing_summary import Standing, rest_summary
 from tarsus.report.tables import angle_table, number, robot_table, source_table, verdict, walk_table
@@ -114,7 +114,7 @@ def test_a_number_has_its_unit_or_is_unknown(value, said):
 
 def standing(name, *, knee="up", **move):
     robot = load_robot(name) if isinstance(name, str) else name
-    height = default_clearance(robot)
+    height = default_body_height(robot)
     start = Pose.from_rpy(position=(0, 0, height))
     feet = default_stance(robot) + np.array([0, 0, height])
     body = Pose.from_rpy(
@@ -235,7 +235,7 @@ def test_a_robots_summary_is_the_robots(name):
     assert (summary["mass_kg"] is None) == (not robot.has_masses)
     if robot.has_masses:
         assert summary["mass_kg"] == pytest.approx(float(total_mass(robot)))
-    assert summary["clearance_mm"] == pytest.approx(default_clearance(robot) * 1000)
+    assert summary["body_height_mm"] == pytest.approx(default_body_height(robot) * 1000)
     text = text_of(robot_table([summary]))
     assert name in text
     assert all(servo in text for servo in summary["servos"] or ["unknown"])
@@ -263,7 +263,7 @@ def test_the_nearest_of_two_sources_is_named():
     assert rows["leg.servo"]["note"] == "The repository does not name the servo."
     assert rows["body.size_mm"]["note"].startswith("Only the underside")
     assert rows["front left: yaw_deg"]["value"] == 45
-    assert rows["gait.lift_mm"]["source_number"] == 4
+    assert rows["gait.swing_height_mm"]["source_number"] == 4
 
 
 def test_numbers_without_a_source_say_so():
@@ -280,7 +280,7 @@ def test_a_check_says_what_a_file_lacks_and_what_that_costs():
     keys = [line.split(":")[0] for line in report["missing"]]
     assert keys == [
         *("body.mass_kg", "leg.mass_kg", "body.size_mm", "leg.servo"),
-        *("gait.clearance_mm", "gait.lift_mm"),
+        *("gait.body_height_mm", "gait.swing_height_mm"),
     ]
     assert check_robot(load_robot("strider"))["missing"] == []
 
@@ -298,7 +298,7 @@ def test_a_check_names_servos_whose_speed_is_unknown():
     ("gait", "said"),
     [
         (GaitDefaults(name="tetrapod"), "not for 4 legs"),
-        (GaitDefaults(name="wave", clearance=0.5), "nowhere reaches the ground"),
+        (GaitDefaults(name="wave", body_height=0.5), "nowhere reaches the ground"),
     ],
 )
 def test_a_check_says_why_a_robot_can_not_walk(gait, said):
@@ -312,7 +312,7 @@ def test_a_robot_that_can_not_step_is_found():
     robot = load_robot("strider")
     locked = np.array(robot.limits)
     locked[:, 1] = locked[:, 2] = np.radians([[-0.001, 0.001]])
-    report = check_robot(robot.replace(limits=locked, gait=GaitDefaults(clearance=0.0, lift=0.05)))
+    report = check_robot(robot.replace(limits=locked, gait=GaitDefaults(body_height=0.0, swing_height=0.05)))
     assert not report["possible"]
 
 

@@ -12,7 +12,7 @@ from tarsus.errors import InputError, TarsusError
 from tarsus.kinematics.inverse import inverse_kinematics
 from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.rest import resting_pose
-from tarsus.kinematics.stance import default_clearance, default_stance
+from tarsus.kinematics.stance import default_body_height, default_stance
 from tarsus.report.angles import plot_angles
 from tarsus.report.footpaths import footholds, plot_footpaths, walking_direction
 from tarsus.report.gait_diagram import plot_gait, rows_of_legs
@@ -28,7 +28,7 @@ PLOTS = (plot_angles, plot_footpaths, plot_gait)
 
 
 def standing(robot, **tilt):
-    height = default_clearance(robot)
+    height = default_body_height(robot)
     feet = default_stance(robot) + np.array([0, 0, height])
     body = Pose.from_rpy(**tilt, position=(0, 0, height))
     return inverse_kinematics(robot, feet, body).angles, body

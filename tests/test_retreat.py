@@ -3,16 +3,16 @@
 import numpy as np
 
 from sample_moments import course_of, moment_of, rest_of, setup_of
-from tarsus.gait.live.retreat import Retreat, Steepness, swung_again
-from tarsus.gait.live.slope import GroundPlane
-from tarsus.gait.live.stand import LEVEL, Terrain
-from tarsus.gait.live.stepping import go_on
+from tarsus.control.sensing.ground_plane import GroundPlane
+from tarsus.control.terrain.hole_recovery import HoleRecovery, SlopeLimit, repeated_swing
+from tarsus.control.walk.stepper import advance
+from tarsus.control.workspace.stance_geometry import LEVEL_TERRAIN, TerrainEstimate
 
 ON, BACK, LEFT = (((x, y, 0.0), "so") for x, y in ((0.1, 0.0), (-0.05, 0.0), (0.0, 0.1)))
 
 
 def test_what_led_there_is_not_tried_again_and_anything_else_once():
-    retreat = Retreat()
+    retreat = HoleRecovery()
     assert not retreat.consider(ON, 0j)
     assert not retreat.consider(ON, 0j)
     assert retreat.consider(BACK, 0j)
@@ -39,23 +39,23 @@ def test_what_led_there_is_not_tried_again_and_anything_else_once():
 def test_a_foot_swings_once_more_from_where_it_hangs_to_another_foothold():
     setup, rest = setup_of("strider"), rest_of("strider")
     gait, hole = setup.gait, np.arange(6) == 2
-    swing = 1 - gait.duty
+    swing = 1 - gait.duty_factor
     clock = gait.offsets[2] + 1.0 + 0.01
-    number = np.ceil(clock - np.asarray(gait.offsets) - gait.duty - 1e-9)
+    number = np.ceil(clock - np.asarray(gait.offsets) - gait.duty_factor - 1e-9)
     number[2] = 0
     now = moment_of(setup, rest, clock=clock, number=number, down=~hole, share=np.where(hole, 1.0, 0.0))
     now = now._replace(ground=np.where(hole, -0.02, 0.0))
-    again = swung_again(now, [2], gait, GroundPlane(z=0.005))
+    again = repeated_swing(now, [2], gait, GroundPlane(z=0.005))
     np.testing.assert_array_equal(again.foot, now.foot)
-    np.testing.assert_allclose(again.height(setup.lift)[2], -0.02)
+    np.testing.assert_allclose(again.height(setup.swing_height)[2], -0.02)
     # All others wait for as long as that takes.
-    since = again.clock - (np.asarray(gait.offsets) + gait.duty + again.number)
+    since = again.clock - (np.asarray(gait.offsets) + gait.duty_factor + again.number)
     np.testing.assert_allclose(since[2], 0, atol=1e-12)
     assert (since[~hole] <= -swing + 1e-9).all()
     course = course_of(setup, rest, (-0.05, 0.0, 0.0), frequency=1.0)
     landed = again
     while not landed.down[2]:
-        landed = go_on(landed, course, 0.005)
+        landed = advance(landed, course, 0.005)
         assert landed.down[~hole].all()
     assert np.abs(landed.foot[2] - now.foot[2]) > 0.01
     np.testing.assert_allclose(landed.ground[2], 0.005)
@@ -63,28 +63,28 @@ def test_a_foot_swings_once_more_from_where_it_hangs_to_another_foothold():
 
 
 def test_a_hand_that_trembles_asks_for_the_same():
-    retreat = Retreat()
+    retreat = HoleRecovery()
     assert not retreat.consider(ON, 0j)
     assert not retreat.consider(((0.105, 0.01, 0.01), "so"), 0j)
     assert retreat.consider(((0.1, 0.0, 0.0), "otherwise"), 0j)
-    still = Retreat()
+    still = HoleRecovery()
     assert not still.consider(((0.0, 0.0, 0.0), "so"), 0j)
     assert not still.consider(((5e-4, 0.0, 0.0), "so"), 0j)
     assert still.consider(((5e-3, 0.0, 0.0), "so"), 0j)
 
 
 def test_too_steep_a_slope_is_left_the_way_that_did_not_lead_there():
-    steep, known = Steepness(), Terrain(0.1 + 0j, 0.6)
+    steep, known = SlopeLimit(), TerrainEstimate(0.1 + 0j, 0.6)
     assert not steep.forbids((0.1, 0.0, 0.0), known)
     # Who stands was led there by nothing.
-    steep.refused(known, (0.0, 0.0, 0.0))
+    steep.rejected(known, (0.0, 0.0, 0.0))
     assert not steep.forbids((0.1, 0.0, 0.0), known)
-    steep.refused(known, (0.05, 0.01, 0.1))
-    steep.refused(known, (-0.05, 0.0, 0.0))
+    steep.rejected(known, (0.05, 0.01, 0.1))
+    steep.rejected(known, (-0.05, 0.0, 0.0))
     assert steep.forbids((0.1, 0.0, 0.0), known)
     assert steep.forbids((0.0, 0.0, 0.5), known)
     assert not steep.forbids((-0.1, 0.0, 0.0), known)
     assert not steep.forbids((0.0, 0.0, 0.0), known)
     # As soon as it stands on other ground, that is over.
-    assert not steep.forbids((0.1, 0.0, 0.0), LEVEL)
+    assert not steep.forbids((0.1, 0.0, 0.0), LEVEL_TERRAIN)
     assert not steep.forbids((0.1, 0.0, 0.0), known)

@@ -8,14 +8,14 @@ from hypothesis import Phase, given, settings
 from hypothesis import strategies as st
 
 from gait_robots import PRESETS, preset
+from tarsus.control.sequence.joint_rates import JointRates
+from tarsus.control.startup.folded_pose import belly_depth, folded_pose, rest_points
+from tarsus.control.startup.foothold_stations import stations
+from tarsus.control.startup.initial_state import initial_state
+from tarsus.control.startup.planner import fold, sit_down, stand_up
+from tarsus.control.startup.raise_body import raise_body
 from tarsus.errors import InputError, TarsusError, UnreachableError
-from tarsus.gait.live.fold import belly_depth, folded_pose, rest_points
-from tarsus.gait.live.rise import fold, sit_down, stand_up
-from tarsus.gait.live.rise_found import as_found
-from tarsus.gait.live.rise_height import push_up
-from tarsus.gait.live.rise_steps import stations
-from tarsus.gait.live.sequence_limits import JointPace
-from tarsus.gait.setup import default_lift
+from tarsus.gait.setup import default_swing_height
 from tarsus.kinematics.inverse import inverse_kinematics
 from tarsus.kinematics.leg import forward_kinematics
 from tarsus.kinematics.mass import centre_of_mass
@@ -23,15 +23,15 @@ from tarsus.kinematics.polygon import hull_margin
 from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.rest import resting_pose
 from tarsus.kinematics.stability import stability_margin
-from tarsus.kinematics.stance import default_clearance, default_stance
+from tarsus.kinematics.stance import default_body_height, default_stance
 from tarsus.robot.robot import stack_robots
 
 _DT = 0.004
 
 
-def stance_angles(robot, clearance=None, lift=None):
-    lift = default_lift(robot) if lift is None else lift
-    return inverse_kinematics(robot, default_stance(robot, clearance, lift=lift)).require().angles
+def stance_angles(robot, body_height=None, swing_height=None):
+    swing_height = default_swing_height(robot) if swing_height is None else swing_height
+    return inverse_kinematics(robot, default_stance(robot, body_height, swing_height=swing_height)).require().angles
 
 
 def excess(robot, angles):
@@ -123,10 +123,10 @@ REASONS = (
 @given(found(), st.floats(0.6, 1.4))
 def test_it_gets_up_from_any_angles_or_says_why_not(start, share):
     robot, angles = start
-    clearance = max(default_clearance(robot) * share, belly_depth(robot))
+    body_height = max(default_body_height(robot) * share, belly_depth(robot))
     try:
-        stance = stance_angles(robot, clearance)
-        sequence = stand_up(robot, angles, clearance=clearance)
+        stance = stance_angles(robot, body_height)
+        sequence = stand_up(robot, angles, body_height=body_height)
     except TarsusError as error:
         refusal = str(error)
     else:
@@ -137,7 +137,7 @@ def test_it_gets_up_from_any_angles_or_says_why_not(start, share):
     times, moments = check(sequence, angles)
     np.testing.assert_array_equal(sequence.angles_end, stance)
     assert moments[-1].contacts.all()
-    assert moments[-1].body.position[2] == pytest.approx(clearance, abs=1e-12)
+    assert moments[-1].body.position[2] == pytest.approx(body_height, abs=1e-12)
     as_it_rests(robot, sequence, times, moments)
 
 
@@ -219,14 +219,14 @@ def test_it_sits_down_the_way_it_got_up(name):
 @pytest.mark.parametrize("name", PRESETS)
 def test_too_high_for_one_foothold_it_changes_footholds_with_the_margin_kept(name):
     robot = preset(name)
-    clearance = {"makeyourpet": 0.125, "strider": 0.2}.get(name, 0.17)
-    sequence = stand_up(robot, folded_pose(robot), clearance=clearance, margin=0.02)
+    body_height = {"makeyourpet": 0.125, "strider": 0.2}.get(name, 0.17)
+    sequence = stand_up(robot, folded_pose(robot), body_height=body_height, margin=0.02)
     check(sequence, folded_pose(robot))
     names = [stage.name for stage in sequence.stages]
     assert names.count("push up") == 2
-    lifts = [stage for stage in sequence.stages if stage.name.startswith("place")]
-    assert [stage.name for stage in lifts] == ["place LF LR RM", "place LM RR RF"]
-    for stage in lifts:
+    swing_heights = [stage for stage in sequence.stages if stage.name.startswith("place")]
+    assert [stage.name for stage in swing_heights] == ["place LF LR RM", "place LM RR RF"]
+    for stage in swing_heights:
         for share in np.linspace(0, 1, 9):
             angles, body = stage.angles_at(np.array([share]))[0], stage.body_at(np.array([share]))[0]
             assert stability_margin(robot, angles, body, stage.contacts) >= 0.02
@@ -255,14 +255,14 @@ def test_only_single_legs_are_lifted_where_a_tripod_would_not_hold():
     robot = preset("strider").replace(body_com=np.array([0.1, 0, 0]))
     start = stance_angles(robot, 0.11)
     names = {
-        margin: {s.name for s in stand_up(robot, start, clearance=0.2, margin=margin).stages if "place" in s.name}
+        margin: {s.name for s in stand_up(robot, start, body_height=0.2, margin=margin).stages if "place" in s.name}
         for margin in (0.06, 0.074)
     }
     assert names[0.06] == {"place LF LR RM", "place LM RR RF"}
     assert names[0.074] == {f"place {code}" for code in robot.leg_codes}
-    check(stand_up(robot, start, clearance=0.2, margin=0.074), start)
+    check(stand_up(robot, start, body_height=0.2, margin=0.074), start)
     with pytest.raises(TarsusError, match=r"held by .*, the stability margin would be .* at least 300.0 mm"):
-        stand_up(robot, start, clearance=0.2, margin=0.3)
+        stand_up(robot, start, body_height=0.2, margin=0.3)
 
 
 def test_slower_joints_take_longer_and_limits_are_kept_by_each():
@@ -316,37 +316,37 @@ def test_what_cannot_be_pushed_up_is_refused_with_what_would_work():
     with pytest.raises(
         UnreachableError,
         match=r"pushing the body up to 180.0 mm: leg [a-z ]+ can't stand 111.1 mm from its coxa axis with the body's "
-        r"origin 180.0 mm up: 0.7 mm too far, it reaches from .* a clearance of 175.0 mm works",
+        r"origin 180.0 mm up: 0.7 mm too far, it reaches from .* a body height of 175.0 mm works",
     ):
-        stand_up(robot, folded_pose(robot), clearance=0.18, lift=0.12)
+        stand_up(robot, folded_pose(robot), body_height=0.18, swing_height=0.12)
     straight = preset("freenove")
     with pytest.raises(UnreachableError, match=r"origin 200.0 mm up, front left: it would be straight, or folded back"):
-        stand_up(straight, folded_pose(straight), clearance=0.2, lift=0.02)
+        stand_up(straight, folded_pose(straight), body_height=0.2, swing_height=0.02)
     strider = preset("strider")
     with pytest.raises(
-        UnreachableError, match=r"at a clearance of 10.0 mm the body would be in the ground: .* 25.0 mm"
+        UnreachableError, match=r"at a body height of 10.0 mm the body would be in the ground: .* 25.0 mm"
     ):
-        stand_up(strider, folded_pose(strider), clearance=0.01)
+        stand_up(strider, folded_pose(strider), body_height=0.01)
 
 
 def test_heights_beyond_all_reach_are_named():
     robot = preset("strider")
     feet = default_stance(robot, 0.11)
     with pytest.raises(UnreachableError, match=r"origin .* mm up: there it reaches the ground nowhere"):
-        stations(robot, 0.025, 0.5, feet, lift=0.03)
+        stations(robot, 0.025, 0.5, feet, swing_height=0.03)
 
 
 def test_a_stance_of_other_angles_is_no_end_to_jump_to():
     robot = preset("strider")
     stance = stance_angles(robot)
-    draft = as_found(robot, stance, JointPace.of(robot))
+    draft = initial_state(robot, stance, JointRates.of(robot))
     with pytest.raises(UnreachableError, match=r"the stance is reached by other angles, 0\.[0-9]+ deg off"):
-        push_up(draft, default_stance(robot, lift=0.03), stance - 1e-5, lift=0.03, least=0.01)
+        raise_body(draft, default_stance(robot, swing_height=0.03), stance - 1e-5, swing_height=0.03, least=0.01)
 
 
 def test_a_foot_that_bears_nothing_is_not_dragged_along_either():
     robot = preset("strider")
-    draft = as_found(robot, stance_angles(robot), JointPace.of(robot))
+    draft = initial_state(robot, stance_angles(robot), JointRates.of(robot))
     draft.let_go(0)
     aside = Pose(draft.body.rotation, draft.body.position + np.array([0.02, 0.0, 0.001]))
     with pytest.raises(UnreachableError, match=r"foot of leg front left would be dragged .* up 1.0 mm"):
@@ -371,7 +371,7 @@ def test_only_what_lies_on_its_belly_can_fold():
             r"(?s)joint_acceleration is .*; expected a number, or numbers of shape",
         ),
         ({"margin": -1.0}, "margin is -1"),
-        ({"lift": np.inf}, "lift is inf"),
+        ({"swing_height": np.inf}, "swing_height is inf"),
         ({"angles": np.zeros((2, 6, 3))}, "a single robot in a single pose"),
         ({"angles": np.zeros((5, 3))}, "angles has shape"),
         ({"angles": np.full((6, 3), np.nan)}, "angles"),

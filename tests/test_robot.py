@@ -36,7 +36,7 @@ def test_what_is_left_out_is_filled_in_or_unknown():
     np.testing.assert_array_equal(robot.link_com, [[0.025, 0.04, 0.065]] * 6)
     assert (robot.link_mass, robot.body_mass, robot.body_size) == (None, None, None)
     assert robot.servos == ((None,) * len(JOINTS),) * 6
-    assert robot.gait == GaitDefaults(name="tripod", clearance=None, lift=None)
+    assert robot.gait == GaitDefaults(name="tripod", body_height=None, swing_height=None)
     assert robot.sources == ()
 
 

@@ -115,7 +115,7 @@ MISTAKES = [
     (("leg", 'a "b"'), 98, r'leg."a \"b\"": unknown key; known here: coxa_mm'),
     (("leg", "q" * 500), 98, f'leg."{"q" * 56}...: unknown key; known here: coxa_mm'),
     (("coxa_mm",), 68, "coxa_mm: unknown key; it belongs to [leg] or [[legs]]"),
-    (("clearance_mm",), 68, "clearance_mm: unknown key; it belongs to [gait]"),
+    (("body_height_mm",), 68, "body_height_mm: unknown key; it belongs to [gait]"),
     (("body", "mass_kg"), 0, "body.mass_kg = 0: must be from 1e-06 to 10000 kg"),
     (("body", "com_mm"), [0, 0], "body.com_mm = [0, 0]: must be a list of 3 numbers from -10000 to 10000 mm, and"),
     (("body", "com_mm"), [[1], NAN, 0, 0, 0, 0, 0], "= [[...], nan, 0, 0, 0, 0, ...]: must be a list of 3"),
@@ -128,7 +128,7 @@ MISTAKES = [
     (("name",), "\ud800", "it holds half of a character"),
     (("gait", "name"), "tripd", 'gait.name = "tripd": must be one of tripod, tetrapod, amble, ripple, wave; did you'),
     (("gait", "name"), 3, "gait.name = 3: must be one of tripod, tetrapod, amble, ripple, wave"),
-    (("gait", "lift_mm"), 0, "gait.lift_mm = 0: must be from 0.001 to 10000 mm"),
+    (("gait", "swing_height_mm"), 0, "gait.swing_height_mm = 0: must be from 0.001 to 10000 mm"),
     (("leg", "servo"), "MG-996", "leg.servo = \"MG-996\": the catalogue has no such servo; did you mean 'MG996R'?"),
     (("leg", "servo"), 996, "leg.servo = 996: must be the name of a servo, a table {"),
     (("leg", "servo"), {"coxa": 996}, "leg.servo.coxa = 996: must be the name of a servo, or a table with"),
@@ -251,7 +251,7 @@ def test_what_may_be_left_out_is_unknown_or_plain():
     assert robot.body_size is None
     assert not robot.has_masses
     assert robot.servos == ((None,) * 3,) * 6
-    assert robot.gait == GaitDefaults(name="tripod", clearance=None, lift=None)
+    assert robot.gait == GaitDefaults(name="tripod", body_height=None, swing_height=None)
     assert robot.sources == ()
     np.testing.assert_array_equal(robot.body_com, 0)
     np.testing.assert_array_equal(robot.foot_radius, 0)
@@ -474,7 +474,9 @@ def robots(draw):
             | st.lists(st.tuples(*[optional(SERVOS)] * 3), min_size=legs, max_size=legs).map(tuple)
         ),
         gait=GaitDefaults(
-            name=draw(st.sampled_from(GAIT_NAMES)), clearance=draw(optional(lengths)), lift=draw(optional(lengths))
+            name=draw(st.sampled_from(GAIT_NAMES)),
+            body_height=draw(optional(lengths)),
+            swing_height=draw(optional(lengths)),
         ),
         sources=tuple(
             draw(

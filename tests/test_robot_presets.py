@@ -91,7 +91,7 @@ def test_it_can_stand_with_its_knees_up_inside_its_limits(name):
     robot = load_robot(name)
     margin = math.radians(10)
     for leg in range(robot.legs):
-        stances = [knee_up(robot, leg, reach, robot.gait.clearance) for reach in np.linspace(0, 0.3, 301)]
+        stances = [knee_up(robot, leg, reach, robot.gait.body_height) for reach in np.linspace(0, 0.3, 301)]
         lower, upper = robot.limits[leg, :, 0], robot.limits[leg, :, 1]
         assert lower[0] + margin < 0 < upper[0] - margin
         inside = [
@@ -148,7 +148,7 @@ def test_strider_has_its_source_s_numbers():
     np.testing.assert_allclose(np.arctan2(*robot.mount_position.T[1::-1]), robot.mount_yaw, atol=1e-5)
     np.testing.assert_array_equal([robot.coxa, robot.femur, robot.tibia], [[0.068] * 6, [0.098] * 6, [0.181] * 6])
     np.testing.assert_array_equal(robot.link_com, [[0.034, 0.049, 0.078]] * 6)
-    assert (robot.gait.clearance, robot.gait.lift) == (0.11, 0.03)
+    assert (robot.gait.body_height, robot.gait.swing_height) == (0.11, 0.03)
 
 
 def test_phantomx_follows_from_its_maker_s_model():

@@ -10,13 +10,23 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tarsus.drive.command import GAIT_NAMES, quantities
-from tarsus.drive.commands import COMMANDS, Clearance, CycleTime, Force, GaitChange, HandSpeed, Lift, MoveHand, Walk
-from tarsus.drive.quantities import UNITS
-from tarsus.drive.scenario import LEVELLINGS, STARTS, Scenario
-from tarsus.drive.settings import ADMITTANCE
+from tarsus.control.pose.admittance import Admittance
 from tarsus.errors import InputError, TarsusError, UnknownNameError
-from tarsus.gait.live.admittance import Admittance
+from tarsus.scenario.commands import (
+    COMMANDS,
+    BodyHeight,
+    CycleTime,
+    FootTarget,
+    FootVelocity,
+    Force,
+    GaitChange,
+    SwingHeight,
+    Walk,
+)
+from tarsus.scenario.quantities import UNITS
+from tarsus.scenario.scenario import LEVELLINGS, STARTS, Scenario
+from tarsus.scenario.settings import ADMITTANCE
+from tarsus.scenario.timed_command import GAIT_NAMES, quantities
 
 # Names that need quotes, and escapes, are names too.
 LEGS = st.one_of(st.sampled_from(["RF", "front left", "L1", '"', "a;b#c\n", "Bein-ü"]), st.text(min_size=1, max_size=8))
@@ -64,8 +74,8 @@ def scenarios(draw):
         duration=draw(st.none() | st.floats(0.1, 100)),
         gait=draw(st.sampled_from(["", *GAIT_NAMES])),
         levelling=draw(st.sampled_from(["", *LEVELLINGS])),
-        clearance=draw(st.none() | st.floats(0.001, 0.9)),
-        lift=draw(st.none() | st.floats(0, 0.9)),
+        body_height=draw(st.none() | st.floats(0.001, 0.9)),
+        swing_height=draw(st.none() | st.floats(0, 0.9)),
         admittance=draw(st.none() | admittances()),
     )
 
@@ -96,10 +106,10 @@ def test_text_and_tables_of_the_same_commands_are_the_same():
         at 500 ms: stand_up                 # a remark
         at 2.0 s: walk 0.1 m/s; gait wave
         at 5s: walk speed 10cm/s heading 90 deg turn -5 deg/s; body z -1 cm pitch 5 deg
-        clearance 90 mm; lift 0.03 m; stance_width 5 mm; cycle_time 900 ms; sway z 2 mm
-        at 6 s: hand RF x 250 mm y -.12e3 mm z +60. mm; ground "front left" 10 mm; tilt roll 3 deg
-        hand_speed RF vx 2 cm/s vz -10 mm/s; force RF -2.5 N; cycle_time auto
-        at 7 s: hand_back RF; stop; body; sit; fold; power_off
+        body_height 90 mm; lift 0.03 m; stance_width 5 mm; cycle_time 900 ms; sway z 2 mm
+        at 6 s: foot_target RF x 250 mm y -.12e3 mm z +60. mm; ground "front left" 10 mm; tilt roll 3 deg
+        foot_velocity RF vx 2 cm/s vz -10 mm/s; force RF -2.5 N; cycle_time auto
+        at 7 s: foot_release RF; stop; body; sit; fold; power_off
         """
     )
     tables = Scenario.from_dict(
@@ -110,18 +120,18 @@ def test_text_and_tables_of_the_same_commands_are_the_same():
                 {"time_s": 2, "gait": "wave"},
                 {"time_s": 5, "walk": {"vy_mm_s": 100, "turn_deg_s": -5}},
                 {"time_s": 5, "body": {"z_mm": -10, "pitch_deg": 5}},
-                {"time_s": 5, "clearance_mm": 90},
-                {"time_s": 5, "lift_mm": 30},
+                {"time_s": 5, "body_height_mm": 90},
+                {"time_s": 5, "swing_height_mm": 30},
                 {"time_s": 5, "stance_width_mm": 5},
                 {"time_s": 5, "cycle_time_s": 0.9},
                 {"time_s": 5, "sway": {"z_mm": 2}},
-                {"time_s": 6, "hands_mm": {"RF": [250, -120, 60]}},
+                {"time_s": 6, "foot_targets_mm": {"RF": [250, -120, 60]}},
                 {"time_s": 6, "ground_mm": {"front left": 10}},
                 {"time_s": 6, "tilt": {"roll_deg": 3}},
-                {"time_s": 6, "hand_speeds_mm_s": {"RF": [20, 0, -10]}},
+                {"time_s": 6, "foot_velocities_mm_s": {"RF": [20, 0, -10]}},
                 {"time_s": 6, "force_n": {"RF": -2.5}},
                 {"time_s": 6, "cycle_time_s": "auto"},
-                {"time_s": 7, "hands_mm": {"RF": "back"}},
+                {"time_s": 7, "foot_targets_mm": {"RF": "back"}},
                 {"time_s": 7, "do": "stop"},
                 {"time_s": 7, "body": {}},
                 {"time_s": 7, "do": "sit"},
@@ -135,8 +145,10 @@ def test_text_and_tables_of_the_same_commands_are_the_same():
 
 
 def test_tables_hold_several_commands_of_a_moment():
-    several = Scenario.from_dict({"at": [{"time_s": 1, "gait": "wave", "walk": {"speed_mm_s": 50}, "lift_mm": 20}]})
-    assert several == Scenario.from_text("at 1 s: gait wave; walk 50 mm/s; lift 20 mm")
+    several = Scenario.from_dict(
+        {"at": [{"time_s": 1, "gait": "wave", "walk": {"speed_mm_s": 50}, "swing_height_mm": 20}]}
+    )
+    assert several == Scenario.from_text("at 1 s: gait wave; walk 50 mm/s; swing_height 20 mm")
 
 
 def test_timeline_and_tables_of_one_document_are_put_in_the_order_of_their_times():
@@ -173,18 +185,18 @@ def test_straight_to_the_left_is_not_a_little_forward():
         ("at 1 s: stop now", "'now' is too much: stop takes no numbers"),
         ("at 1 s: gait", "a gait is missing; there are: tripod"),
         ("at 1 s: gait wavy", "no gait is called 'wavy'. Did you mean 'wave'?"),
-        ("at 1 s: lift", "lift needs lift (mm)"),
-        ("at 1 s: hand", "hand needs a leg, such as RF"),
-        ("at 1 s: hand RF x 5 mm", "hand needs y (mm), z (mm)"),
-        ('at 1 s: hand_back "R\\F"', "is no text: a backslash"),
+        ("at 1 s: swing_height", "swing_height needs swing_height (mm)"),
+        ("at 1 s: foot_target", "foot_target needs a leg, such as RF"),
+        ("at 1 s: foot_target RF x 5 mm", "foot_target needs y (mm), z (mm)"),
+        ('at 1 s: foot_release "R\\F"', "is no text: a backslash"),
         ("at 1 s: cycle_time", "cycle_time needs cycle_time (s, or auto)"),
         ("at 1 s: cycle_time aut", "cycle_time needs a number with its unit, s or ms, or auto, not 'aut'"),
         ("at 1 s: cycle_time auto 2 s", "cycle_time is given twice"),
         ("at 1 s: cycle_time 99 s", "cycle_time = 99 s: must be from 0.01 to 60 s"),
-        ("at 1 s: lift auto", "lift needs a number with its unit, mm or cm or m, not 'auto'"),
-        ("at 1 s: hand_speed 5 mm/s", "hand_speed needs a leg, such as RF"),
-        ("at 1 s: hand_speed RF 5 mm/s", "5 stands alone; say which number it is: vx, vy, vz"),
-        ("at 1 s: hand_speed RF vz 2 m/s", "vz = 2 m/s: must be from -1000 to 1000 mm/s"),
+        ("at 1 s: swing_height auto", "swing_height needs a number with its unit, mm or cm or m, not 'auto'"),
+        ("at 1 s: foot_velocity 5 mm/s", "foot_velocity needs a leg, such as RF"),
+        ("at 1 s: foot_velocity RF 5 mm/s", "5 stands alone; say which number it is: vx, vy, vz"),
+        ("at 1 s: foot_velocity RF vz 2 m/s", "vz = 2 m/s: must be from -1000 to 1000 mm/s"),
         ("at 1 s: force 5 N", "force needs a leg, such as RF"),
         ("at 1 s: force RF", "force needs force (N)"),
         ("at 1 s: force RF 5 mm", "force 5 has the unit 'mm'; it must have N"),
@@ -194,16 +206,16 @@ def test_straight_to_the_left_is_not_a_little_forward():
 )
 def test_what_is_wrong_with_a_timeline_is_told_with_its_line(text, wanted):
     for read in (Scenario.from_text, lambda timeline: Scenario.from_dict({"timeline": timeline})):
-        with pytest.raises(InputError) as refused:
+        with pytest.raises(InputError) as rejected:
             read(text)
-        assert wanted in str(refused.value)
+        assert wanted in str(rejected.value)
 
 
 def test_all_problems_of_a_timeline_are_told_and_long_ones_are_shortened():
-    with pytest.raises(InputError, match="2 problems") as refused:
+    with pytest.raises(InputError, match="2 problems") as rejected:
         Scenario.from_text("at 1 s: " + "x" * 500 + "\nat 2 s: stop\nat 3 s: hop")
-    assert "..." in str(refused.value)
-    assert "line 3" in str(refused.value)
+    assert "..." in str(rejected.value)
+    assert "line 3" in str(rejected.value)
 
 
 @pytest.mark.parametrize(
@@ -223,14 +235,20 @@ def test_all_problems_of_a_timeline_are_told_and_long_ones_are_shortened():
         ({"at": [{"time_s": 3, "wlak": {}}]}, "at[0].wlak: unknown key; did you mean 'walk'?"),
         ({"at": [{"time_s": 3, "body": 4}]}, "at[0].body = 4: must be a table of keys"),
         ({"at": [{"time_s": 3, "walk": {"heading_deg": 4}}]}, "at[0]: heading needs speed"),
-        ({"at": [{"time_s": 3, "hands_mm": {"RF": [1, 2]}}]}, "RF: must be a list of 3 numbers"),
+        ({"at": [{"time_s": 3, "foot_targets_mm": {"RF": [1, 2]}}]}, "RF: must be a list of 3 numbers"),
         ({"at": [{"time_s": 3, "ground_mm": {"RF": "back"}}]}, "RF: must be a number from -1000 to 1000 mm"),
         (
-            {"at": [{"time_s": 3, "hands_mm": {"RF": "bak"}}]},
+            {"at": [{"time_s": 3, "foot_targets_mm": {"RF": "bak"}}]},
             'RF: must be a list of 3 numbers from -1000 to 1000 mm, or "back"',
         ),
-        ({"at": [{"time_s": 3, "hand_speeds_mm_s": {"RF": "back"}}]}, "RF: must be a list of 3 numbers from -1000 to"),
-        ({"at": [{"time_s": 3, "hand_speeds_mm_s": {"RF": [0, 0, 2e3]}}]}, "RF: the third number must be from -1000"),
+        (
+            {"at": [{"time_s": 3, "foot_velocities_mm_s": {"RF": "back"}}]},
+            "RF: must be a list of 3 numbers from -1000 to",
+        ),
+        (
+            {"at": [{"time_s": 3, "foot_velocities_mm_s": {"RF": [0, 0, 2e3]}}]},
+            "RF: the third number must be from -1000",
+        ),
         ({"at": [{"time_s": 3, "force_n": {"RF": 2e3}}]}, "at[0].force_n: RF: must be from -1000 to 1000 N"),
         ({"at": [{"time_s": 3, "force_n": {"RF": [1, 2, 3]}}]}, "RF: must be a number from -1000 to 1000 N"),
         (
@@ -246,9 +264,9 @@ def test_all_problems_of_a_timeline_are_told_and_long_ones_are_shortened():
     ],
 )
 def test_what_is_wrong_with_a_document_is_told_with_its_key(document, wanted):
-    with pytest.raises(InputError) as refused:
+    with pytest.raises(InputError) as rejected:
         Scenario.from_dict(document)
-    assert wanted in str(refused.value)
+    assert wanted in str(rejected.value)
 
 
 def test_problems_of_a_file_are_told_with_the_line_of_their_table(tmp_path):
@@ -256,7 +274,9 @@ def test_problems_of_a_file_are_told_with_the_line_of_their_table(tmp_path):
     path.write_text(
         "name = 'x'\n\n[[at]]\ntime_s = 1\ndo = 'stop'\n\n[[at]]\ntime_s = 2\nlift_mm = -1\n", encoding="utf-8"
     )
-    with pytest.raises(InputError, match=r"at\[1\].lift_mm \(in the table of line 7\) = -1: must be from 0 to 1000 mm"):
+    with pytest.raises(
+        InputError, match=r"at\[1\].swing_height_mm \(in the table of line 7\) = -1: must be from 0 to 1000 mm"
+    ):
         Scenario.load(path)
     path.write_text("\n[[at]]\ntime_s = 2\n", encoding="utf-8")
     with pytest.raises(InputError, match=r"at\[0\] \(line 2\): no command"):
@@ -301,7 +321,7 @@ def test_files_that_can_not_be_read_or_written_are_told(tmp_path):
             "admittance: mass is 0.01 kg; it must be from 0.1 to 1000 kg",
         ),
         ({"rate": 5.0}, "rate is 5 Hz; it must be from 20 to 1000 Hz"),
-        ({"clearance": float("nan")}, "clearance is nan m"),
+        ({"body_height": float("nan")}, "body_height is nan m"),
         ({"duration": 0.0}, "duration is 0 s"),
         ({"jitter": 0.02}, "it must be less than a tick, 0.01 s"),
         ({"rate": 25.0, "jitter": 0.02}, "a tick takes up to 0.06 s; at most 0.05 s works"),
@@ -320,18 +340,21 @@ def test_scenarios_that_can_not_be_are_refused(changes, wanted):
         (lambda: Walk(0.0, vx=float("nan")), "vx is nan; it must be a finite number"),
         (lambda: Walk(0.0, vx="fast"), "vx is 'fast'; it must be a finite number"),
         (lambda: Walk(0.0, vx=True), "vx is True; it must be a finite number"),
-        (lambda: Clearance(1.0, clearance=-0.1), "clearance is -100 mm; it must be from 0.001 to 1000 mm"),
+        (lambda: BodyHeight(1.0, body_height=-0.1), "body_height is -100 mm; it must be from 0.001 to 1000 mm"),
         (lambda: CycleTime(1.0, cycle_time="aut"), "cycle_time is 'aut'; it must be a finite number, or 'auto'"),
-        (lambda: Lift(1.0, lift="auto"), "lift is 'auto'; it must be a finite number"),
-        (lambda: HandSpeed(1.0, leg="RF", vz=2.0), "hand_speed at 1 s: vz is 2000 mm/s; it must be from -1000 to 1000"),
+        (lambda: SwingHeight(1.0, swing_height="auto"), "swing_height is 'auto'; it must be a finite number"),
+        (
+            lambda: FootVelocity(1.0, leg="RF", vz=2.0),
+            "foot_velocity at 1 s: vz is 2000 mm/s; it must be from -1000 to 1000",
+        ),
         (lambda: Force(1.0, leg="RF", force=2e3), "force at 1 s: force is 2000 N; it must be from -1000 to 1000 N"),
-        (lambda: MoveHand(1.0, leg="RF", x=2.0, y=0.0, z=0.0), "hand at 1 s: x is 2000 mm"),
+        (lambda: FootTarget(1.0, leg="RF", x=2.0, y=0.0, z=0.0), "foot_target at 1 s: x is 2000 mm"),
     ],
 )
 def test_commands_out_of_their_bounds_are_refused(make, wanted):
-    with pytest.raises(InputError) as refused:
+    with pytest.raises(InputError) as rejected:
         make()
-    assert wanted in str(refused.value)
+    assert wanted in str(rejected.value)
 
 
 def test_unknown_gaits_are_refused_with_the_nearest():

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from sample_moments import moment_of, rest_of, setup_of
-from tarsus.gait.live.search import Searches
+from tarsus.control.terrain.ground_search import GroundSearch
 
 DT = 0.02
 LIFT = 0.03
@@ -32,7 +32,7 @@ def run(searches, now, ground, seconds=3.0):
 
 
 def test_a_foot_that_touches_ground_just_then_needs_no_search():
-    searches = Searches(np.full((6, 3), 100.0))
+    searches = GroundSearch(np.full((6, 3), 100.0))
     now = landing()
     assert searches.step(now, DT, touches=lambda leg: True, lowest=lowest).ground == pytest.approx(0)
     assert not searches
@@ -41,7 +41,7 @@ def test_a_foot_that_touches_ground_just_then_needs_no_search():
 
 
 def test_it_goes_down_gently_to_the_ground_and_stands_there():
-    searches = Searches(np.full((6, 3), 100.0))
+    searches = GroundSearch(np.full((6, 3), 100.0))
     moments = run(searches, landing(), -0.01)
     height = np.array([now.ground[2] for now in moments])
     assert (np.diff(height) <= 1e-9).all()
@@ -58,7 +58,7 @@ def test_it_goes_down_gently_to_the_ground_and_stands_there():
 
 
 def test_where_there_is_none_it_stops_at_its_lowest_and_says_so():
-    searches = Searches(np.full((6, 3), 100.0))
+    searches = GroundSearch(np.full((6, 3), 100.0))
     moments = run(searches, landing(), -1.0)
     assert moments[-1].ground[2] == pytest.approx(-0.6 * LIFT, abs=1e-3)
     assert searches.in_vain == [2]

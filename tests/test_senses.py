@@ -10,10 +10,10 @@ from hypothesis import strategies as st
 
 from sample_robots import hexapod
 from tarsus import load_robot
+from tarsus.control.readings import SensorReadings, ValidReadings
+from tarsus.control.sensing.channel_validation import items, number, vector
+from tarsus.control.sensing.validation import ReadingsValidator
 from tarsus.errors import InputError
-from tarsus.gait.live.reading import items, number, vector
-from tarsus.gait.live.senses import Admitted, Senses
-from tarsus.gait.live.sieve import Sieve
 from tarsus.robot.robot import stack_robots
 
 STRIDER = load_robot("strider")
@@ -65,18 +65,18 @@ class EvilShape:
 
 
 def admitted(sieve=None, dt=0.01, **readings):
-    return (sieve or Sieve(STRIDER)).admit(Senses(**readings), dt)
+    return (sieve or ReadingsValidator(STRIDER)).admit(SensorReadings(**readings), dt)
 
 
 def test_good_readings_come_through_as_plain_numbers():
     found = admitted(**GOOD)
-    assert found == Admitted(
+    assert found == ValidReadings(
         contacts=(True, False) * 3,
         attitude=(0.1, -0.2),
         forces=tuple((0.0, 0.0, float(i)) for i in range(6)),
         torques=((0.1, -0.5, 0.2),) * 6,
     )
-    assert found.refused == ()
+    assert found.rejected == ()
 
 
 @pytest.mark.parametrize("make", [tuple, list, np.array, jnp.array])
@@ -84,7 +84,7 @@ def test_lists_and_arrays_of_any_kind_say_the_same(make):
     forces = [[0.5, -0.25, 2.0]] * 6
     contacts = [1, 0, 1, 0, 1, 0]
     found = admitted(contacts=make(contacts), attitude=make([0.5, 0.25]), forces=make(forces), torques=make(forces))
-    assert found == Admitted(
+    assert found == ValidReadings(
         contacts=(True, False) * 3, attitude=(0.5, 0.25), forces=((0.5, -0.25, 2.0),) * 6, torques=found.forces
     )
     for value in (*found.contacts, *found.attitude, *found.forces[0]):
@@ -95,8 +95,8 @@ def test_lists_and_arrays_of_any_kind_say_the_same(make):
 
 
 def test_without_senses_there_is_nothing_and_nothing_is_refused():
-    sieve = Sieve(STRIDER)
-    assert sieve.admit(None, 0.01) == sieve.admit(Senses(), 0.01) == Admitted()
+    sieve = ReadingsValidator(STRIDER)
+    assert sieve.admit(None, 0.01) == sieve.admit(SensorReadings(), 0.01) == ValidReadings()
     assert sieve.counts == {}
 
 
@@ -131,10 +131,10 @@ def test_without_senses_there_is_nothing_and_nothing_is_refused():
     ],
 )
 def test_what_is_no_reading_is_refused_and_named(sense, value, reason):
-    sieve = Sieve(STRIDER)
+    sieve = ReadingsValidator(STRIDER)
     found = admitted(sieve, **(GOOD | {sense: value}))
     assert getattr(found, sense) is None
-    assert found.refused == (reason,)
+    assert found.rejected == (reason,)
     assert sieve.counts == {reason: 1}
     for other in GOOD.keys() - {sense}:
         assert getattr(found, other) is not None
@@ -166,107 +166,114 @@ def test_what_is_no_reading_is_refused_and_named(sense, value, reason):
     ],
 )
 def test_what_is_wrong_on_one_leg_is_refused_there_alone(sense, value, reason):
-    sieve = Sieve(STRIDER)
+    sieve = ReadingsValidator(STRIDER)
     readings = [*GOOD[sense][:2], value, *GOOD[sense][3:]]
     found = admitted(sieve, **(GOOD | {sense: readings}))
-    assert found.refused == (f"{sense} of {LEGS[2]}: {reason}",)
+    assert found.rejected == (f"{sense} of {LEGS[2]}: {reason}",)
     good = getattr(admitted(**GOOD), sense)
     assert getattr(found, sense) == (*good[:2], None, *good[3:])
 
 
 def test_where_no_leg_is_believed_the_sense_is_none():
-    sieve = Sieve(STRIDER)
+    sieve = ReadingsValidator(STRIDER)
     found = admitted(sieve, contacts=[None] * 6, torques=np.full((6, 3), np.nan))
     assert found.contacts is found.torques is None
-    assert len(found.refused) == 12
+    assert len(found.rejected) == 12
 
 
 @pytest.mark.parametrize("age", [math.nan, -0.01, "old", None, True, -math.inf])
 def test_an_age_that_is_none_refuses_everything(age):
     found = admitted(**GOOD, age=age)
-    assert found == Admitted(refused=("senses: of no possible age",))
+    assert found == ValidReadings(rejected=("senses: of no possible age",))
 
 
 def test_late_readings_are_refused_and_must_settle():
-    sieve = Sieve(STRIDER, max_age=0.05)
-    assert admitted(sieve, **GOOD, age=0.05).refused == ()
+    sieve = ReadingsValidator(STRIDER, max_age=0.05)
+    assert admitted(sieve, **GOOD, age=0.05).rejected == ()
     for age in (0.0501, math.inf):
-        assert admitted(sieve, **GOOD, age=age) == Admitted(refused=("senses: older than 50 ms",))
+        assert admitted(sieve, **GOOD, age=age) == ValidReadings(rejected=("senses: older than 50 ms",))
     for _ in range(3):
         found = admitted(sieve, **GOOD)
         assert (found.contacts, found.attitude, found.forces, found.torques) == (None,) * 4
-        assert all(reason.endswith("on trial") for reason in found.refused)
+        assert all(reason.endswith("on trial") for reason in found.rejected)
     assert admitted(sieve, **GOOD) == admitted(**GOOD)
     assert sieve.counts["senses: older than 50 ms"] == 2
     assert sieve.counts["attitude: on trial"] == sieve.counts["torques of RF: on trial"] == 3
 
 
-@pytest.mark.parametrize("thing", ["senses", 3, {"contacts": [True] * 6}, EvilShape(), Admitted()])
+@pytest.mark.parametrize("thing", ["readings", 3, {"contacts": [True] * 6}, EvilShape(), ValidReadings()])
 def test_what_is_no_senses_at_all_is_refused(thing):
-    assert Sieve(STRIDER).admit(thing, 0.01) == Admitted(refused=("senses: not of the class Senses",))
+    assert ReadingsValidator(STRIDER).admit(thing, 0.01) == ValidReadings(
+        rejected=("senses: not of the class SensorReadings",)
+    )
 
 
 @pytest.mark.parametrize("sense", ["contacts", "forces", "torques"])
 @pytest.mark.parametrize("settle", [1, 4])
 def test_a_leg_that_comes_back_is_on_trial_first(sense, settle):
-    sieve = Sieve(STRIDER, settle=settle)
+    sieve = ReadingsValidator(STRIDER, settle=settle)
     bad = [None, *GOOD[sense][1:]]
     assert getattr(admitted(sieve, **{sense: bad}), sense)[0] is None
     for _ in range(settle):
         found = admitted(sieve, **{sense: GOOD[sense]})
         assert getattr(found, sense)[0] is None
         assert getattr(found, sense)[1] is not None
-        assert found.refused == (f"{sense} of LF: on trial",)
-        sieve.admit(Senses(), 0.01)  # a reading that is absent counts neither way
+        assert found.rejected == (f"{sense} of LF: on trial",)
+        sieve.admit(SensorReadings(), 0.01)  # a reading that is absent counts neither way
     found = admitted(sieve, **{sense: GOOD[sense]})
     assert getattr(found, sense)[0] is not None
-    assert found.refused == ()
+    assert found.rejected == ()
 
 
 def test_an_attitude_that_jumps_is_refused_until_readings_agree():
-    sieve = Sieve(STRIDER)
+    sieve = ReadingsValidator(STRIDER)
     assert admitted(sieve, attitude=(0.0, 0.0)).attitude == (0.0, 0.0)
     assert admitted(sieve, attitude=(0.05, 0.0)).attitude == (0.05, 0.0)
     spike = admitted(sieve, attitude=(0.05, 0.5))
-    assert spike == Admitted(refused=("attitude: turned by more than 343.8 deg/s",))
-    assert admitted(sieve, attitude=(0.05, 0.0)).refused == spike.refused
+    assert spike == ValidReadings(rejected=("attitude: turned by more than 343.8 deg/s",))
+    assert admitted(sieve, attitude=(0.05, 0.0)).rejected == spike.rejected
     # What it agrees on need not be where it was: the robot may have been tipped meanwhile.
-    assert admitted(sieve, attitude=(0.4, 0.4)).refused == spike.refused
+    assert admitted(sieve, attitude=(0.4, 0.4)).rejected == spike.rejected
     for _ in range(3):
-        assert admitted(sieve, attitude=(0.4, 0.4)).refused == ("attitude: on trial",)
+        assert admitted(sieve, attitude=(0.4, 0.4)).rejected == ("attitude: on trial",)
     assert admitted(sieve, attitude=(0.41, 0.4)).attitude == (0.41, 0.4)
 
 
 def test_an_attitude_may_turn_further_the_longer_it_was_absent():
-    sieve = Sieve(STRIDER, max_turn=1.0)
+    sieve = ReadingsValidator(STRIDER, max_turn=1.0)
     admitted(sieve, attitude=(0.0, 0.0))
     for _ in range(30):
-        assert sieve.admit(None, 0.01) == Admitted()
+        assert sieve.admit(None, 0.01) == ValidReadings()
     assert admitted(sieve, attitude=(0.3, 0.0)).attitude == (0.3, 0.0)
     assert admitted(sieve, attitude=(0.3, 0.1)).attitude is None
 
 
 def test_a_nan_on_the_way_leaves_the_last_attitude_to_compare_with():
-    sieve = Sieve(STRIDER)
+    sieve = ReadingsValidator(STRIDER)
     admitted(sieve, attitude=(0.0, 0.0))
     admitted(sieve, attitude=(math.nan, 0.0))
-    assert admitted(sieve, attitude=(0.9, 0.0)).refused == ("attitude: turned by more than 343.8 deg/s",)
+    assert admitted(sieve, attitude=(0.9, 0.0)).rejected == ("attitude: turned by more than 343.8 deg/s",)
 
 
 def test_without_masses_and_servos_only_the_impossible_is_refused():
     robot = hexapod(link_mass=None, body_mass=None)
     readings = {"forces": [9e3] * 6, "torques": [[-1e3] * 3] * 6}
-    assert Sieve(robot).admit(Senses(**readings), 0.01).refused == ()
-    assert len(Sieve(robot).admit(Senses(forces=[1e300] * 6, torques=[[1e300] * 3] * 6), 0.01).refused) == 12
+    assert ReadingsValidator(robot).admit(SensorReadings(**readings), 0.01).rejected == ()
+    assert (
+        len(
+            ReadingsValidator(robot).admit(SensorReadings(forces=[1e300] * 6, torques=[[1e300] * 3] * 6), 0.01).rejected
+        )
+        == 12
+    )
 
 
 def test_a_sieve_that_makes_no_sense_is_refused():
     for bound in ("max_age", "max_tilt", "max_turn", "max_weights", "max_stalls", "settle"):
         for value in (0, -1.0, math.nan, math.inf):
             with pytest.raises(InputError, match=f"{bound} is {value}; it must be a positive number"):
-                Sieve(STRIDER, **{bound: value})
+                ReadingsValidator(STRIDER, **{bound: value})
     with pytest.raises(InputError, match="batch of designs"):
-        Sieve(stack_robots([STRIDER, STRIDER]))
+        ReadingsValidator(stack_robots([STRIDER, STRIDER]))
 
 
 GARBAGE = st.recursive(
@@ -301,23 +308,23 @@ GARBAGE = st.recursive(
 
 @given(st.lists(st.tuples(GARBAGE, GARBAGE, GARBAGE, GARBAGE, st.sampled_from([0.0, 0.0, 0.01, 5.0, "x"])), max_size=4))
 def test_nothing_raises_nothing_absurd_gets_through_and_counts_stay_few(stream):
-    sieve, named = Sieve(STRIDER), 0
+    sieve, named = ReadingsValidator(STRIDER), 0
     for contacts, attitude, forces, torques, age in stream:
         found = admitted(sieve, contacts=contacts, attitude=attitude, forces=forces, torques=torques, age=age)
-        assert isinstance(found, Admitted)
+        assert isinstance(found, ValidReadings)
         assert found.contacts is None or all(type(c) in {bool, type(None)} for c in found.contacts)
         assert found.attitude is None or all(abs(a) <= math.pi / 3 for a in found.attitude)
         for vectors, most in ((found.forces, 4 * WEIGHT), (found.torques, 100.0)):
             assert vectors is None or len(vectors) == 6
             for part in vectors or ():
                 assert part is None or all(type(x) is float and abs(x) <= most for x in part)
-        named += len(found.refused)
+        named += len(found.rejected)
     assert sum(sieve.counts.values()) == named
     assert len(sieve.counts) <= 70
 
 
 def test_memory_is_bounded_however_long_garbage_comes_in():
-    sieve = Sieve(STRIDER)
+    sieve = ReadingsValidator(STRIDER)
     rng = np.random.default_rng(0)
     for _ in range(2000):
         noise = rng.normal(size=(6, 3)) * 10.0 ** rng.integers(-3, 300)

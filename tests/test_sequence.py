@@ -6,14 +6,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from gait_robots import preset
+from tarsus.control.sequence.player import SequencePlayer
+from tarsus.control.startup.folded_pose import folded_pose
+from tarsus.control.startup.planner import fold, stand_up
 from tarsus.errors import InputError
-from tarsus.gait.live.fold import folded_pose
-from tarsus.gait.live.rise import fold, stand_up
-from tarsus.gait.live.sequence_player import SequencePlayer
-from tarsus.load.loads import loads
+from tarsus.load.loads import joint_loads
 
 STRIDER = preset("strider")
-UP = stand_up(STRIDER, folded_pose(STRIDER), clearance=0.2)
+UP = stand_up(STRIDER, folded_pose(STRIDER), body_height=0.2)
 
 
 def play_to_the_end(player, dt):
@@ -132,7 +132,7 @@ def test_sampled_it_is_a_motion_with_loads():
     assert standing.contacts.sum(-1).min() >= 3
     assert standing.ok
     assert standing.time[-1] < motion.time[-1]
-    assert 0 < np.abs(loads(STRIDER, standing).torques).max() < 5
+    assert 0 < np.abs(joint_loads(STRIDER, standing).torques).max() < 5
     with pytest.raises(InputError, match="rests on the ground all the time"):
         fold(STRIDER, UP.stages[1].angles).to_motion(standing=True)
     with pytest.raises(InputError, match="rate is 0"):

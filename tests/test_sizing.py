@@ -8,7 +8,7 @@ import pytest
 from sample_loads import robot_of, sample_loads, sample_motion
 from tarsus.errors import InputError, MissingDataError, UnknownNameError
 from tarsus.load.fit import largest_payload, with_servos
-from tarsus.load.loads import loads
+from tarsus.load.loads import joint_loads
 from tarsus.load.sizing import size_servos
 from tarsus.load.verdict import joint_verdicts
 from tarsus.robot.catalogue import list_servos, load_servo
@@ -18,7 +18,7 @@ from tarsus.robot.servo import Servo
 
 def carried_with(found, servos, *, rule, safety_factor):
     """Whether a robot with other servos is carried, worked out from the beginning."""
-    again = loads(with_servos(found.robot, servos), found.motion, inertial=found.inertial, supply=found.supply)
+    again = joint_loads(with_servos(found.robot, servos), found.motion, inertial=found.inertial, supply=found.supply)
     return all(verdict.does(rule) for verdict in joint_verdicts(again, safety_factor=safety_factor))
 
 
@@ -118,7 +118,7 @@ def test_gravity_and_payload_of_the_loads_hold_for_what_is_tried():
 def test_a_robot_without_servos_is_sized_with_the_masses_in_its_file():
     motion = sample_motion("strider", "wave")
     bare = motion.robot.replace(servos=())
-    sizing = size_servos(bare, loads(bare, motion), safety_factor=2.0)
+    sizing = size_servos(bare, joint_loads(bare, motion), safety_factor=2.0)
     assert sizing.candidates
     assert not sizing.ok
     assert (sizing.payload, sizing.utmost_payload) == (None, None)

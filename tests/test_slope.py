@@ -11,18 +11,17 @@ from scipy.integrate import solve_ivp
 
 from sample_robots import hexapod
 from tarsus import default_stance, inverse_kinematics, load_robot
+from tarsus.control.filters import RateLimitedFilter
+from tarsus.control.pose.attitude import CommandedAttitude, tilt_onto
+from tarsus.control.pose.levelling import Correction, Levelling, com_shift_ratio
+from tarsus.control.sensing.ground_plane import FLAT, GroundPlane, ground_plane
 from tarsus.errors import InputError, UnknownNameError
-from tarsus.gait.live.carried import carried_share
-from tarsus.gait.live.follower import Follower
-from tarsus.gait.live.levelling import Correction, Levelling
-from tarsus.gait.live.slope import FLAT, GroundPlane, ground_plane
-from tarsus.gait.live.tilt import Commanded, tilt_onto
 from tarsus.kinematics.mass import centre_of_mass
 from tarsus.kinematics.pose import Pose
 
 PAGE = (Path(__file__).parents[1] / "docs" / "ground.md").read_text(encoding="utf-8")
 BEFORE = GroundPlane(1.0, 2.0, 3.0, 0.5, -0.25)
-HERE = Commanded()
+HERE = CommandedAttitude()
 MOST_TILT, MOST_SHIFT = math.radians(20), 0.04
 
 
@@ -120,7 +119,7 @@ def test_wrong_feet_are_refused():
 
 
 def follow(goals, dts, **bounds):
-    follower = Follower(**bounds)
+    follower = RateLimitedFilter(**bounds)
     return np.array([follower.step(goal, dt) for goal, dt in zip(goals, dts, strict=True)])
 
 
@@ -162,7 +161,7 @@ def test_follower_agrees_with_an_integration_and_with_itself_in_other_ticks():
 
 
 def test_follower_comes_to_exactly_nothing_and_stays_for_ticks_that_are_none():
-    follower = Follower(1.0, rate=1.0, frequency=10.0)
+    follower = RateLimitedFilter(1.0, rate=1.0, frequency=10.0)
     assert follower.step((0.0, 0.0), 0.01) == (0.0, 0.0)
     follower.step((1.0, 1.0), 0.1)
     there = follower.values
@@ -171,7 +170,7 @@ def test_follower_comes_to_exactly_nothing_and_stays_for_ticks_that_are_none():
     for _ in range(1000):
         follower.step((0.0, 0.0), 0.01)
     assert follower.values == (0.0, 0.0)
-    far = Follower(0.5, rate=1.0, frequency=10.0)
+    far = RateLimitedFilter(0.5, rate=1.0, frequency=10.0)
     for _ in range(400):
         far.step((0.36, 0.48), 0.01)
     assert far.values == pytest.approx((0.3, 0.4))
@@ -210,7 +209,7 @@ def test_rotations_are_the_projects():
 def test_tilt_onto_a_direction(roll, pitch, lean_roll, lean_pitch):
     """Seen from the direction, B leans as it was commanded to lean against z."""
     up = rotation(lean_roll, lean_pitch)[:, 2]
-    more = tilt_onto(tuple(up), Commanded(roll, pitch))
+    more = tilt_onto(tuple(up), CommandedAttitude(roll, pitch))
     got = rotation(roll + more[0], pitch + more[1])
     np.testing.assert_allclose(got.T @ up, rotation(roll, pitch)[2], rtol=0, atol=1e-12)
     if not (roll or pitch):
@@ -219,7 +218,7 @@ def test_tilt_onto_a_direction(roll, pitch, lean_roll, lean_pitch):
 
 def test_signs_by_the_right_hand_rule():
     """Ground that rises ahead: nose up is a negative pitch. Ground that rises to the left: left side up, roll > 0."""
-    level = Commanded(height=0.1)
+    level = CommandedAttitude(height=0.1)
     follow_ = Levelling("follow")
     ahead = settle(follow_, plane=GroundPlane(slope_x=0.1))
     assert ahead.pitch == pytest.approx(-math.atan(0.1))
@@ -261,7 +260,7 @@ def test_the_centre_of_mass_stays_over_its_place_and_the_attitude_is_the_wished(
     """The true geometry: G leans in the world, the ground leans in G; projected along gravity, on the ground."""
     rng = np.random.default_rng(seed)
     com = rng.uniform(-0.03, 0.03, 3)
-    commanded = Commanded(*rng.uniform(-0.15, 0.15, 2), yaw=rng.uniform(-3, 3), height=rng.uniform(0.05, 0.15))
+    commanded = CommandedAttitude(*rng.uniform(-0.15, 0.15, 2), yaw=rng.uniform(-3, 3), height=rng.uniform(0.05, 0.15))
     plane = GroundPlane(*rng.normal(size=3), *rng.uniform(-0.15, 0.15, 2))
     lean = rng.uniform(-0.15, 0.15, 2)
     levelling = Levelling(mode, com=tuple(com), max_shift=1.0, max_tilt=1.0, gain=5.0)
@@ -293,21 +292,23 @@ def test_legs_that_lag_behind_are_made_up_for():
     robot = load_robot("strider")
     feet = default_stance(robot)
     angles = inverse_kinematics(robot, feet).require().angles
-    share = carried_share(robot, feet)
+    share = com_shift_ratio(robot, feet)
     body_share = float(robot.body_mass / (robot.body_mass + robot.link_mass.sum()))
     assert body_share < share < 1
     assert f"(strider: {share:.2f})" in PAGE
     com = centre_of_mass(robot, angles)
     height = -float(feet[0, 2])
     got = settle_in_the_world(
-        Levelling("follow", com=tuple(com), carried=share), slope_pitch=-0.15, commanded=Commanded(height=height)
+        Levelling("follow", com=tuple(com), carried=share),
+        slope_pitch=-0.15,
+        commanded=CommandedAttitude(height=height),
     )
     body = Pose(position=np.array([got.x, got.y, height]))
     standing = inverse_kinematics(robot, feet + np.array([0, 0, height]), body=body).require().angles
     centre = body @ centre_of_mass(robot, standing)
     want = com[:2] + np.array([(height + com[2]) * math.tan(0.15), 0])
     np.testing.assert_allclose(centre[:2], want, rtol=0, atol=1e-4)
-    assert carried_share(hexapod(link_mass=None, body_mass=None), feet) == pytest.approx(1.0)
+    assert com_shift_ratio(hexapod(link_mass=None, body_mass=None), feet) == pytest.approx(1.0)
 
 
 # The loop through the real robot: late, soft, noisy.
@@ -323,7 +324,7 @@ def closed_loop(levelling, *, lean, delay, dt, stiffness=1.0, noise=0.0, seconds
         waiting.append((stiffness * got.roll, stiffness * got.pitch))
         measured.append(leaning(ground @ rotation(*waiting.pop(0))))
         noisy = rng.normal(size=2) * noise + measured[-1]
-        levelling.step(dt, None, (float(noisy[0]), float(noisy[1])), Commanded(height=0.1))
+        levelling.step(dt, None, (float(noisy[0]), float(noisy[1])), CommandedAttitude(height=0.1))
     return np.array(measured)
 
 
@@ -360,19 +361,22 @@ def test_does_not_wind_up_at_its_bound():
 @pytest.mark.parametrize("lost", [None, (math.nan, 0.0), (0.0, math.inf)])
 def test_without_attitude_it_fades_to_exactly_nothing(lost):
     levelling = Levelling("level", com=(0.01, 0.0, 0.02))
-    settle(levelling, attitude=(0.1, 0.2), commanded=Commanded(0.05, 0.02, 1.0, 0.1), seconds=3)
+    settle(levelling, attitude=(0.1, 0.2), commanded=CommandedAttitude(0.05, 0.02, 1.0, 0.1), seconds=3)
     assert min(map(abs, levelling.correction)) > 0.001
-    settle(levelling, attitude=lost, commanded=Commanded(0.05, 0.02, 1.0, 0.1), seconds=40)
+    settle(levelling, attitude=lost, commanded=CommandedAttitude(0.05, 0.02, 1.0, 0.1), seconds=40)
     assert levelling.correction == Correction(0, 0, 0, 0)
     assert levelling.lean == (0.0, 0.0)
     never = Levelling("level", com=(0.01, 0.0, 0.02))
-    assert settle(never, attitude=lost, plane=GroundPlane(slope_x=0.3), commanded=Commanded(height=0.1)) == Correction()
+    assert (
+        settle(never, attitude=lost, plane=GroundPlane(slope_x=0.3), commanded=CommandedAttitude(height=0.1))
+        == Correction()
+    )
 
 
 def test_modes():
     levelling = Levelling()
     assert levelling.mode is None
-    args = {"plane": GroundPlane(slope_x=0.1), "attitude": (0.0, 0.1), "commanded": Commanded(height=0.1)}
+    args = {"plane": GroundPlane(slope_x=0.1), "attitude": (0.0, 0.1), "commanded": CommandedAttitude(height=0.1)}
     assert settle(levelling, **args) == Correction()
     levelling.mode = "follow"
     assert settle(levelling, **args).pitch == pytest.approx(-math.atan(0.1))
@@ -391,7 +395,7 @@ def test_modes():
 def test_what_no_robot_could_stand_on_still_gives_something_finite():
     for attitude in ((0.0, 1.57), (-1.57, 0.0), (3.0, 0.0)):
         levelling = Levelling("level", com=(0.0, 0.0, 0.05))
-        got = settle(levelling, attitude=attitude, commanded=Commanded(0.0, 1.57, height=0.1))
+        got = settle(levelling, attitude=attitude, commanded=CommandedAttitude(0.0, 1.57, height=0.1))
         assert np.isfinite(got).all()
         assert math.hypot(got.roll, got.pitch) <= MOST_TILT + 1e-12
 
@@ -408,10 +412,10 @@ def test_bounded_slow_and_smooth_whatever_comes_in(stream):
         plane = GroundPlane(slope_x=slope_x, slope_y=slope_y) if odd_dt == odd_dt else None
         before = levelling.correction
         if not 0 < odd_dt < math.inf:
-            assert levelling.step(odd_dt, plane, (roll, pitch), Commanded(*commanded)) == before
+            assert levelling.step(odd_dt, plane, (roll, pitch), CommandedAttitude(*commanded)) == before
         for _ in range(3):
             moving = math.isfinite(sum(commanded))
-            now = np.array(levelling.step(0.02, plane, (roll, pitch), Commanded(*commanded)))
+            now = np.array(levelling.step(0.02, plane, (roll, pitch), CommandedAttitude(*commanded)))
             assert np.isfinite(now).all()
             assert math.hypot(*now[:2]) <= MOST_SHIFT + 1e-12
             assert math.hypot(*now[2:]) <= MOST_TILT + 1e-12

@@ -5,8 +5,8 @@ import pytest
 
 from sample_moments import EARTH, FACING, moment_of, rest_of, setup_of
 from tarsus import Pose, inverse_kinematics, list_robots
-from tarsus.gait.live.lag import Lag
-from tarsus.gait.live.solver import Solver
+from tarsus.control.filters import CriticallyDamped
+from tarsus.control.walk.joint_solver import JointSolver
 from tarsus.gait.swing import ground_share, height_share
 
 SWAY = (0.01, 0.005, 0.004, 0.02, -0.03, 0.05)
@@ -17,18 +17,23 @@ def moment(name, *, sway=(0.0,) * 6, out=1.0):
     setup, rest = setup_of(name), out * rest_of(name)
     up = np.arange(len(rest)) % 2 == 0
     now = moment_of(setup, rest, down=~up, share=np.where(up, 0.4, 0.0), start_height=np.full(len(rest), 0.002))
-    now = now._replace(elevation=Lag.still(np.array([0.3])), give_way=Lag.still(np.linspace(-0.002, 0.002, len(rest))))
+    now = now._replace(
+        elevation=CriticallyDamped.still(np.array([0.3])),
+        give_way=CriticallyDamped.still(np.linspace(-0.002, 0.002, len(rest))),
+    )
     now = now._replace(ground=now.ground + 0.3, start_height=now.start_height + 0.3)
-    return setup, now._replace(posture=Lag.still(np.append(now.posture.value, sway)), cycles=0.3, beats=0.6)
+    return setup, now._replace(
+        posture=CriticallyDamped.still(np.append(now.posture.value, sway)), cycles=0.3, beats=0.6
+    )
 
 
 def expected(setup, now, sway):
-    x, y, z, roll, pitch, yaw, lift = now.posture.value[:7]
+    x, y, z, roll, pitch, yaw, swing_height = now.posture.value[:7]
     once, often = np.sin(2 * np.pi * now.cycles), np.sin(2 * np.pi * now.beats)
     dx, dy, dz, dr, dp, dw = np.array(sway) * [often, once, often, once, often, once]
     heading = Pose.from_rpy(0, 0, FACING, (EARTH.real, EARTH.imag, 0.3))
     body = heading @ Pose.from_rpy(roll + dr, pitch + dp, yaw + dw, (x + dx, y + dy, z + dz))
-    swinging = 0.002 * (1 - ground_share(now.share)) + lift * height_share(now.share)
+    swinging = 0.002 * (1 - ground_share(now.share)) + swing_height * height_share(now.share)
     height = 0.3 + np.where(now.down, 0.0, swinging) + now.give_way.value
     feet = np.stack([now.foot.real, now.foot.imag, height], axis=-1)
     return inverse_kinematics(setup.robot, body.inverse() @ feet)
@@ -38,13 +43,13 @@ def expected(setup, now, sway):
 @pytest.mark.parametrize("name", list_robots())
 def test_it_is_the_inverse_kinematics_of_the_moment(name, sway):
     setup, now = moment(name, sway=sway)
-    solver = Solver(setup.robot)
+    solver = JointSolver(setup.robot)
     found = expected(setup, now, sway)
     assert found.ok.all()
     for _ in range(2):
         np.testing.assert_allclose(solver.angles(now), found.angles, atol=1e-9)
     # Of another posture, what it knows of the first is no more true.
-    higher = now._replace(posture=Lag.still(now.posture.value + np.eye(13)[2] * 0.002))
+    higher = now._replace(posture=CriticallyDamped.still(now.posture.value + np.eye(13)[2] * 0.002))
     found = expected(setup, higher, sway)
     np.testing.assert_allclose(solver.angles(higher), found.angles, atol=1e-9)
 
@@ -53,6 +58,6 @@ def test_out_of_reach_it_gives_the_nearest():
     setup, now = moment("strider", out=2.0)
     found = expected(setup, now, (0.0,) * 6)
     assert not found.ok.all()
-    angles = Solver(setup.robot).angles(now)
+    angles = JointSolver(setup.robot).angles(now)
     np.testing.assert_allclose(angles, found.angles, atol=1e-9)
     assert not angles.flags.writeable

@@ -169,7 +169,7 @@ def test_000_leg_point_to_body_point_by_the_attachment_point() -> None:
 
 def test_000_a_tripod_steps_forward_together() -> None:
     robot, gait = load_robot("strider"), Gait.named("tripod")
-    motion = plan_walk(robot, gait, straight_path(0.3), stroke=0.05, clearance=0.11)
+    motion = plan_walk(robot, gait, straight_path(0.3), stroke=0.05, body_height=0.11)
     in_air = {tuple(np.flatnonzero(~row)) for row in motion.contacts}
     assert in_air == {(), (0, 2, 4), (1, 3, 5)}
     moved = motion.feet[-1] - motion.feet[0]
@@ -266,12 +266,12 @@ def test_001_body_frame_is_ours_turned_by_a_quarter() -> None:
 
 
 def test_001_rest_foothold_in_the_middle_of_the_reachable_band() -> None:
-    robot, clearance = load_robot("strider"), 0.11
-    x_min, x_max = reachable_band(robot, -clearance)
-    distance = np.linalg.norm((default_stance(robot, clearance) - robot.mount_position)[:, :2], axis=-1)
+    robot, body_height = load_robot("strider"), 0.11
+    x_min, x_max = reachable_band(robot, -body_height)
+    distance = np.linalg.norm((default_stance(robot, body_height) - robot.mount_position)[:, :2], axis=-1)
     assert distance == pytest.approx(x_min + (x_max - x_min) / 2, abs=TIGHT)
     for distance, reached in ((x_min + 1e-6, True), (x_max - 1e-6, True), (x_max + 1e-4, False)):
-        feet = coxa_frames(robot) @ (distance[:, None] * [1, 0, 0] + np.array([0, 0, -clearance]))
+        feet = coxa_frames(robot) @ (distance[:, None] * [1, 0, 0] + np.array([0, 0, -body_height]))
         assert ((inverse_kinematics(robot, feet).reach == Reach.OK) == reached).all()
 
 
@@ -289,10 +289,10 @@ def stance_ends(motion: object, leg: int) -> tuple[np.ndarray, np.ndarray]:
 
 def test_001_straight_walk_is_a_stroke_centred_on_the_rest_foothold() -> None:
     """With a cycle of 2 s sampled at 100 Hz, the stances begin and end on samples."""
-    robot, heading, stroke, clearance = load_robot("strider"), 0.7, 0.04, 0.11
+    robot, heading, stroke, body_height = load_robot("strider"), 0.7, 0.04, 0.11
     path = straight_path(0.4, heading)
-    motion = plan_walk(robot, Gait.named("tripod"), path, stroke=stroke, clearance=clearance, cycle_time=2.0)
-    rest = default_stance(robot, clearance, lift=motion.lift)
+    motion = plan_walk(robot, Gait.named("tripod"), path, stroke=stroke, body_height=body_height, cycle_time=2.0)
+    rest = default_stance(robot, body_height, swing_height=motion.swing_height)
     # There `A` is counted from the front axis y, and x is to the right: the walk is along (-sin A, cos A).
     walk = np.array([math.cos(heading), math.sin(heading)])
     for leg in range(6):
@@ -306,18 +306,18 @@ def test_001_number_of_cycles_is_distance_over_stroke() -> None:
     """A cycle of a gait with duty factor `d` carries the body `P / d`: cruising, `d L / P` of our cycles."""
     robot, gait, stroke = load_robot("strider"), Gait.named("tripod"), 0.04
     times = [
-        plan_walk(robot, gait, straight_path(distance), stroke=stroke, clearance=0.11, cycle_time=2.0).duration
+        plan_walk(robot, gait, straight_path(distance), stroke=stroke, body_height=0.11, cycle_time=2.0).duration
         for distance in (0.8, 1.6)
     ]
-    assert (times[1] - times[0]) / 2.0 == pytest.approx(gait.duty * 0.8 / stroke, abs=0.02)
+    assert (times[1] - times[0]) / 2.0 == pytest.approx(gait.duty_factor * 0.8 / stroke, abs=0.02)
 
 
 @pytest.mark.parametrize("centre", [(0.0, 0.4), (-0.1, -0.3), (0.0, 0.0)])
 def test_001_curved_walk_turns_every_foot_by_the_same_angle(centre: tuple[float, float]) -> None:
-    robot, stroke, clearance = load_robot("strider"), 0.04, 0.11
+    robot, stroke, body_height = load_robot("strider"), 0.04, 0.11
     path = curved_path(1.0, centre)
-    motion = plan_walk(robot, Gait.named("tripod"), path, stroke=stroke, clearance=clearance, cycle_time=2.0)
-    arm = default_stance(robot, clearance, lift=motion.lift)[:, :2] - centre
+    motion = plan_walk(robot, Gait.named("tripod"), path, stroke=stroke, body_height=body_height, cycle_time=2.0)
+    arm = default_stance(robot, body_height, swing_height=motion.swing_height)[:, :2] - centre
     cp = np.hypot(arm[:, 0], arm[:, 1])
     t = stroke / cp.max()
     at_rest = np.arctan2(arm[:, 1], arm[:, 0])
@@ -331,18 +331,18 @@ def test_001_curved_walk_turns_every_foot_by_the_same_angle(centre: tuple[float,
 @pytest.mark.parametrize(("roll", "pitch"), [(0.15, 0.0), (0.0, -0.12), (0.1, 0.14)])
 def test_001_tilt_puts_the_feet_on_one_tilted_plane(roll: float, pitch: float) -> None:
     """In B the ground rises with `tan(pitch)` to the front and falls with `tan(roll)` to the left."""
-    robot, clearance = load_robot("strider"), 0.11
+    robot, body_height = load_robot("strider"), 0.11
     motion = plan_walk(
         robot,
         Gait.named("tripod"),
         straight_path(0.2),
         stroke=0.02,
-        clearance=clearance,
+        body_height=body_height,
         body_tilt=(roll, pitch),
     )
     feet = (motion.body.inverse() @ motion.feet)[0]
     # `G` is measured along the body's own z axis; the plane of two turns one after the other has a cosine more.
-    g = clearance / (math.cos(roll) * math.cos(pitch))
+    g = body_height / (math.cos(roll) * math.cos(pitch))
     plane = -g + feet[:, 0] * math.tan(pitch) / math.cos(roll) - feet[:, 1] * math.tan(roll)
     assert feet[:, 2] == pytest.approx(plane, abs=TIGHT)
 
@@ -401,7 +401,7 @@ def test_001_erratum_arctan_of_a_quotient_loses_the_quadrant() -> None:
 def test_001_erratum_a_step_is_the_stroke_not_the_distance() -> None:
     robot, distance, stroke = load_robot("strider"), 0.8, 0.04
     motion = plan_walk(
-        robot, Gait.named("tripod"), straight_path(distance), stroke=stroke, clearance=0.11, cycle_time=2.0
+        robot, Gait.named("tripod"), straight_path(distance), stroke=stroke, body_height=0.11, cycle_time=2.0
     )
     landing, lift_off = stance_ends(motion, 0)
     assert np.linalg.norm(landing - lift_off) == pytest.approx(stroke, abs=1e-9)
@@ -411,12 +411,12 @@ def test_001_erratum_a_step_is_the_stroke_not_the_distance() -> None:
 
 def test_001_erratum_the_tilted_plane_has_the_tangent_as_its_slope() -> None:
     """Printed, a level body divides by zero, and at 5 degrees the plane is a metre off: it stands nearly upright."""
-    robot, clearance, pitch = load_robot("strider"), 0.11, math.radians(5)
-    rest = default_stance(robot, clearance)
-    body = Pose.from_rpy(pitch=pitch, position=(0, 0, clearance))
+    robot, body_height, pitch = load_robot("strider"), 0.11, math.radians(5)
+    rest = default_stance(robot, body_height)
+    body = Pose.from_rpy(pitch=pitch, position=(0, 0, body_height))
     on_ground = rest * (1, 1, 0)
     feet = body.inverse() @ on_ground
-    right = -clearance / math.cos(pitch) + feet[:, 0] * math.tan(pitch)
+    right = -body_height / math.cos(pitch) + feet[:, 0] * math.tan(pitch)
     assert feet[:, 2] == pytest.approx(right, abs=TIGHT)
     front = np.abs(feet[:, 0]) > 0.1
     assert np.abs(feet[front, 0] / math.tan(pitch) - feet[front, 0] * math.tan(pitch)).min() > 1
@@ -426,13 +426,13 @@ def test_001_erratum_the_tilted_plane_has_the_tangent_as_its_slope() -> None:
 
 def test_001_erratum_the_two_slopes_have_their_own_signs() -> None:
     """The plane's equation with the printed normal and `E_z` contradict each other; the right-hand rule decides."""
-    clearance, tilt = 0.11, 0.1
+    body_height, tilt = 0.11, 0.1
     ahead, left = np.array([0.2, 0.0, 0.0]), np.array([0.0, 0.2, 0.0])
-    rolled = Pose.from_rpy(roll=tilt, position=(0, 0, clearance)).inverse()
-    pitched = Pose.from_rpy(pitch=tilt, position=(0, 0, clearance)).inverse()
+    rolled = Pose.from_rpy(roll=tilt, position=(0, 0, body_height)).inverse()
+    pitched = Pose.from_rpy(pitch=tilt, position=(0, 0, body_height)).inverse()
     # Rolled to the right the left side rises, so the ground is lower there; pitched nose down, the front sinks.
-    assert (rolled @ left)[2] + clearance / math.cos(tilt) == pytest.approx(-(rolled @ left)[1] * math.tan(tilt))
-    assert (pitched @ ahead)[2] + clearance / math.cos(tilt) == pytest.approx((pitched @ ahead)[0] * math.tan(tilt))
+    assert (rolled @ left)[2] + body_height / math.cos(tilt) == pytest.approx(-(rolled @ left)[1] * math.tan(tilt))
+    assert (pitched @ ahead)[2] + body_height / math.cos(tilt) == pytest.approx((pitched @ ahead)[0] * math.tan(tilt))
 
 
 def test_001_erratum_only_the_last_line_of_the_knee_derivation_is_right() -> None:
@@ -1048,7 +1048,7 @@ def test_004_loose_ripple_there_is_the_wave_gait() -> None:
     """Five feet down is the literature's wave; its ripple has four."""
     wave, ripple, tripod = (Gait.named(name) for name in ("wave", "ripple", "tripod"))
     assert (tripod.fewest_feet_down, wave.fewest_feet_down, ripple.fewest_feet_down) == (3, 5, 4)
-    assert (tripod.duty, wave.duty, ripple.duty) == pytest.approx((1 / 2, 5 / 6, 2 / 3))
+    assert (tripod.duty_factor, wave.duty_factor, ripple.duty_factor) == pytest.approx((1 / 2, 5 / 6, 2 / 3))
 
 
 # The page and the tests

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from robots import plain_hexapod, random_robot, robots, seeds
 from tarsus.errors import InputError, UnreachableError
 from tarsus.kinematics.inverse import inverse_kinematics
-from tarsus.kinematics.stance import default_clearance, default_stance, reachable_band, stance_or_nan
+from tarsus.kinematics.stance import default_body_height, default_stance, reachable_band, stance_or_nan
 from tarsus.robot.robot import GaitDefaults, stack_robots
 
 STEPS = 4001
@@ -87,14 +87,14 @@ def test_a_leg_that_only_bends_upwards_has_the_band_of_its_mirror_image():
     assert np.abs(np.array(found) - np.array(expected)).max() <= 1e-15
 
 
-@given(robot=robots(), height=st.floats(0.02, 0.25), lift=st.sampled_from([0.0, 0.02]))
-def test_every_default_foothold_is_reached_straight_out_and_lifted(robot, height, lift):
+@given(robot=robots(), height=st.floats(0.02, 0.25), swing_height=st.sampled_from([0.0, 0.02]))
+def test_every_default_foothold_is_reached_straight_out_and_lifted(robot, height, swing_height):
     try:
-        feet = default_stance(robot, height, lift=lift)
+        feet = default_stance(robot, height, swing_height=swing_height)
     except UnreachableError:
         return
     assert np.array_equal(feet[:, 2], np.full(robot.legs, -height))
-    for rise in (0, lift):
+    for rise in (0, swing_height):
         angles = inverse_kinematics(robot, feet + np.array([0, 0, rise])).require().angles
         straight = np.clip(0, robot.limits[:, 0, 0], robot.limits[:, 0, 1])
         middle = sum(np.array(v) for v in reachable_band(robot, -height)) / 2
@@ -123,14 +123,14 @@ def test_a_coxa_that_can_not_point_straight_out_stands_at_its_limit():
 
 def test_the_default_clearance_is_the_files_or_from_the_lengths():
     robot = plain_hexapod()
-    assert default_clearance(robot) == pytest.approx(0.181 - 0.098 / 2, abs=1e-15)
+    assert default_body_height(robot) == pytest.approx(0.181 - 0.098 / 2, abs=1e-15)
     short = robot.replace(tibia=np.full(6, 0.08))
-    assert default_clearance(short) == pytest.approx(0.04, abs=1e-15)
+    assert default_body_height(short) == pytest.approx(0.04, abs=1e-15)
     raised = robot.replace(mount_position=robot.mount_position + np.array([0, 0, 0.02]))
-    assert default_clearance(raised) == pytest.approx(0.132 - 0.02, abs=1e-15)
-    assert default_clearance(robot.replace(gait=GaitDefaults(clearance=0.11))) == 0.11
-    assert default_clearance(stack_robots([robot, short])) == pytest.approx(0.04, abs=1e-15)
-    assert np.array_equal(default_stance(robot), default_stance(robot, default_clearance(robot)))
+    assert default_body_height(raised) == pytest.approx(0.132 - 0.02, abs=1e-15)
+    assert default_body_height(robot.replace(gait=GaitDefaults(body_height=0.11))) == 0.11
+    assert default_body_height(stack_robots([robot, short])) == pytest.approx(0.04, abs=1e-15)
+    assert np.array_equal(default_stance(robot), default_stance(robot, default_body_height(robot)))
 
 
 def test_the_error_names_the_leg_and_the_clearances_that_work():
@@ -139,7 +139,7 @@ def test_the_error_names_the_leg_and_the_clearances_that_work():
         default_stance(robot, 0.25)
     text = str(caught.value)
     assert text.startswith(
-        "clearance 250.0 mm: leg LR nowhere reaches the ground within its joint limits; all legs do at"
+        "body height 250.0 mm: leg LR nowhere reaches the ground within its joint limits; all legs do at"
     )
     low, high, nearest = (float(v) / 1000 for v in re.findall(r"(-?\d+\.\d) (?:and|mm$|mm,)", text))
     # The femur at its -80 deg and the tibia upright: 98 sin 80 deg + 120 = 216.51 mm; up, less than 218 mm, in line.
@@ -151,37 +151,37 @@ def test_the_error_names_the_leg_and_the_clearances_that_work():
             default_stance(robot, fails)
 
 
-@given(robot=robots(), clearance=st.floats(-1, 1), lift=st.sampled_from([0.0, 0.03]))
-def test_every_clearance_that_an_error_names_works(robot, clearance, lift):
+@given(robot=robots(), body_height=st.floats(-1, 1), swing_height=st.sampled_from([0.0, 0.03]))
+def test_every_clearance_that_an_error_names_works(robot, body_height, swing_height):
     try:
-        default_stance(robot, clearance, lift=lift)
+        default_stance(robot, body_height, swing_height=swing_height)
     except UnreachableError as error:
         text = str(error)
-        assert ("and can be lifted 30.0 mm" in text) == (lift > 0)
-        if "there is no clearance" in text:
+        assert ("and can be lifted 30.0 mm" in text) == (swing_height > 0)
+        if "there is no body height" in text:
             for height in np.linspace(-0.5, 0.5, 5):
                 with pytest.raises(UnreachableError):
-                    default_stance(robot, height, lift=lift)
+                    default_stance(robot, height, swing_height=swing_height)
             return
         named = re.search(r"between (-?[\d.]+) and (-?[\d.]+) mm, nearest to it at (-?[\d.]+) mm$", text).groups()
         for works in named:
-            assert np.isfinite(default_stance(robot, float(works) / 1000, lift=lift)).all()
+            assert np.isfinite(default_stance(robot, float(works) / 1000, swing_height=swing_height)).all()
 
 
 def test_where_no_clearance_works_that_is_said():
     limits = np.array(plain_hexapod().limits)
     limits[0, 1:] = np.deg2rad([[80, 90], [-20, 0]])
     limits[3, 1:] = np.deg2rad([[-80, -70], [-20, 0]])
-    with pytest.raises(UnreachableError, match=r"there is no clearance at which all legs do$"):
+    with pytest.raises(UnreachableError, match=r"there is no body_height at which all legs do$"):
         default_stance(plain_hexapod(limits=limits), 0.1)
 
 
 def test_in_a_batch_the_failing_clearance_and_design_are_named():
     robot = plain_hexapod()
-    with pytest.raises(UnreachableError, match=r"^\[2\] clearance 900.0 mm: leg LF .*nearest to it at 277.5 mm$"):
+    with pytest.raises(UnreachableError, match=r"^\[2\] body height 900.0 mm: leg LF .*nearest to it at 277.5 mm$"):
         default_stance(robot, np.array([0.05, 0.11, 0.9]))
     short = robot.replace(tibia=np.full(6, 0.03))
-    with pytest.raises(UnreachableError, match=r"^\[1\] clearance 150.0 mm: leg LF .*between .* and 126.5 mm"):
+    with pytest.raises(UnreachableError, match=r"^\[1\] body height 150.0 mm: leg LF .*between .* and 126.5 mm"):
         default_stance(stack_robots([robot, short]), 0.15)
 
 
@@ -216,11 +216,11 @@ def test_a_batch_in_one_part_alone_is_its_loop(part):
     expected = np.stack([np.array(reachable_band(design, height)) for design in designs], axis=1)
     assert np.array_equal(found, expected, equal_nan=True)
     assert np.isfinite(found).any()
-    clearance = np.full(5, -height)
-    for lift in (0.0, np.linspace(0, 0.01, 5)):
-        feet = stance_or_nan(batch, clearance, lift=lift)
-        rises = np.broadcast_to(lift, 5)
-        loop = [stance_or_nan(design, -height, lift=rise) for design, rise in zip(designs, rises, strict=True)]
+    body_height = np.full(5, -height)
+    for swing_height in (0.0, np.linspace(0, 0.01, 5)):
+        feet = stance_or_nan(batch, body_height, swing_height=swing_height)
+        rises = np.broadcast_to(swing_height, 5)
+        loop = [stance_or_nan(design, -height, swing_height=rise) for design, rise in zip(designs, rises, strict=True)]
         assert np.array_equal(feet, np.stack(loop), equal_nan=True)
 
 
@@ -235,33 +235,33 @@ def test_other_libraries_give_numpys_numbers(xp):
 
 def test_under_jit_the_stance_is_numpys_and_nan_where_there_is_none():
     robot = plain_hexapod()
-    stance = jax.jit(lambda clearance: default_stance(robot, clearance, lift=0.03))
-    assert np.abs(np.asarray(stance(0.11)) - default_stance(robot, 0.11, lift=0.03)).max() <= 1e-15
+    stance = jax.jit(lambda body_height: default_stance(robot, body_height, swing_height=0.03))
+    assert np.abs(np.asarray(stance(0.11)) - default_stance(robot, 0.11, swing_height=0.03)).max() <= 1e-15
     assert np.isnan(np.asarray(stance(0.9))[:, 0]).all()
 
 
 def test_the_gradient_with_respect_to_a_length_is_the_finite_difference():
     robot = plain_hexapod()
 
-    def far(tibia, clearance):
-        return (default_stance(robot.replace(tibia=tibia), clearance)[..., :2] ** 2).sum()
+    def far(tibia, body_height):
+        return (default_stance(robot.replace(tibia=tibia), body_height)[..., :2] ** 2).sum()
 
     step = 1e-6 * np.eye(6)
     expected = [(far(robot.tibia + h, 0.11) - far(robot.tibia - h, 0.11)) / 2e-6 for h in step]
     found = jax.jit(jax.grad(far))(jnp.asarray(robot.tibia), 0.11)
     assert np.abs(np.asarray(found) - expected).max() <= 1e-9
-    own = jax.grad(lambda tibia: default_clearance(robot.replace(tibia=tibia)))(robot.tibia - 0.01 * np.eye(6)[0])
+    own = jax.grad(lambda tibia: default_body_height(robot.replace(tibia=tibia)))(robot.tibia - 0.01 * np.eye(6)[0])
     assert np.abs(np.asarray(own) - np.eye(6)[0]).max() <= 1e-15
 
 
 @pytest.mark.parametrize(
     ("call", "message"),
     [
-        (lambda r: default_stance(r, np.nan), "^clearance is nan; it must be a finite number$"),
-        (lambda r: default_stance(r, np.inf), "clearance is inf"),
-        (lambda r: default_stance(r, [0.1, np.nan]), r"clearance\[1\] is nan"),
-        (lambda r: default_stance(r, "high"), "clearance: expected an array of real numbers"),
-        (lambda r: default_stance(r, 0.1, lift=np.inf), "lift is inf"),
+        (lambda r: default_stance(r, np.nan), "^body_height is nan; it must be a finite number$"),
+        (lambda r: default_stance(r, np.inf), "body_height is inf"),
+        (lambda r: default_stance(r, [0.1, np.nan]), r"body_height\[1\] is nan"),
+        (lambda r: default_stance(r, "high"), "body_height: expected an array of real numbers"),
+        (lambda r: default_stance(r, 0.1, swing_height=np.inf), "swing_height is inf"),
         (lambda r: reachable_band(r, np.nan), "height is nan"),
         (lambda r: reachable_band(r, 1j), "height: expected an array of real numbers"),
     ],

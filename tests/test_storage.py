@@ -16,7 +16,7 @@ from tarsus.gait.plan import plan_walk
 from tarsus.kinematics.reach import Reach
 
 ARRAYS = ("time", "feet", "contacts", "angles", "reach")
-NUMBERS = ("cycle_time", "stroke", "speed", "clearance", "lift", "foot_distance")
+NUMBERS = ("cycle_time", "stroke", "speed", "body_height", "swing_height", "foot_distance")
 
 
 def walk(robot="strider", **more):
@@ -99,8 +99,8 @@ def test_a_motion_planned_with_numpy_s_numbers_is_saved_as_well(tmp_path):
         straight_path(np.float32(0.1)),
         stroke=np.float32(0.05),
         cycle_time=np.int64(1),
-        lift=np.float32(0.03),
-        clearance=np.float32(0.11),
+        swing_height=np.float32(0.03),
+        body_height=np.float32(0.11),
         foot_distance=np.float32(0.02),
     )
     motion.save(tmp_path / "walk.npz")
@@ -161,7 +161,7 @@ def test_what_does_not_fit_is_refused(tmp_path):
     rewritten(motion, path, about={"stroke": "long"})
     with pytest.raises(InputError, match="is not a motion that Tarsus saved"):
         Motion.load(path)
-    rewritten(motion, path, about={"gait": {"duty": 2.0, "offsets": [0.0]}})
+    rewritten(motion, path, about={"gait": {"duty_factor": 2.0, "offsets": [0.0]}})
     with pytest.raises(InputError, match=r"duty is 2\.0"):
         Motion.load(path)
     rewritten(motion, path, about={"robot": 'name = "x"\n'})

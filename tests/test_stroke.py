@@ -8,9 +8,9 @@ from tarsus.errors import CollisionError, InputError, StrokeError, UnreachableEr
 from tarsus.gait.branch import branches
 from tarsus.gait.excursion import extreme_excursions, walk_excursions
 from tarsus.gait.gait import GAITS, Gait
-from tarsus.gait.path import Path, curved_path, straight_path
+from tarsus.gait.path import BodyPath, curved_path, straight_path
 from tarsus.gait.plan import plan_walk
-from tarsus.gait.setup import default_lift
+from tarsus.gait.setup import default_swing_height
 from tarsus.gait.spacing import default_foot_distance, feet_distance, passing_distance
 from tarsus.gait.stroke import max_stroke, unit_twist
 from tarsus.kinematics.inverse import inverse_kinematics
@@ -30,8 +30,8 @@ IMPOSSIBLE = ("out of reach", "jumps", "feet too near")
 
 def walk_of(robot, gait, direction, *, stroke, cycles):
     """A path of so many cycles of cruise at the stroke."""
-    rest = default_stance(robot, lift=default_lift(robot))
-    return Path(tuple(unit_twist(rest, direction) * stroke / gait.duty * cycles))
+    rest = default_stance(robot, swing_height=default_swing_height(robot))
+    return BodyPath(tuple(unit_twist(rest, direction) * stroke / gait.duty_factor * cycles))
 
 
 def works(robot, gait, direction, *, stroke, cycles, of, **more):
@@ -89,21 +89,21 @@ def test_every_shorter_stroke_works(robot):
             plan_walk(robot, gait, path, stroke=share * longest, cycle_time=1.0, rate=40)
 
 
-def scan(robot, gait, heading, clearance, lift):
+def scan(robot, gait, heading, body_height, swing_height):
     """The longest straight stroke by an independent scan: feet by the definition, legs checked through their angles."""
-    rest = default_stance(robot, clearance, lift=lift) * [1, 1, 0]
+    rest = default_stance(robot, body_height, swing_height=swing_height) * [1, 1, 0]
     way = np.array([math.cos(heading), math.sin(heading), 0.0])
     s = np.linspace(0, 1, 60)
-    ground, height = s**3 * (10 - 15 * s + 6 * s**2), lift * 64 * s**3 * (1 - s) ** 3
-    step = 1 / gait.duty
+    ground, height = s**3 * (10 - 15 * s + 6 * s**2), swing_height * 64 * s**3 * (1 - s) ** 3
+    step = 1 / gait.duty_factor
     along = np.concatenate([np.linspace(0.5, -0.5, 40), -0.5 + step * ground - (step - 1) * s])
     up = np.concatenate([np.zeros(40), height])
     strokes = np.arange(1e-3, 0.6, 1e-3)
     feet = rest + (strokes[:, None] * along)[..., None, None] * way + up[:, None, None] * [0, 0, 1]
-    solution = inverse_kinematics(robot, feet - [0, 0, clearance])
+    solution = inverse_kinematics(robot, feet - [0, 0, body_height])
     limits = np.asarray(robot.limits)
     within = (solution.angles > limits[..., 0] - 1e-6) & (solution.angles < limits[..., 1] + 1e-6)
-    hits = np.abs(forward_kinematics(robot, solution.angles)[..., 3, :] + [0, 0, clearance] - feet).max(-1) < 1e-9
+    hits = np.abs(forward_kinematics(robot, solution.angles)[..., 3, :] + [0, 0, body_height] - feet).max(-1) < 1e-9
     knees = solution.angles[..., 2] <= 1e-9
     works = (within.all(-1) & hits & knees).all((1, 2))
     return strokes[int(np.argmin(works)) - 1] if not works[0] or not works.all() else strokes[-1]
@@ -114,7 +114,7 @@ def scan(robot, gait, heading, clearance, lift):
 def test_the_longest_stroke_against_an_independent_scan_of_the_steady_cycle(robot, heading):
     """Start and stop hang over farther than the steady cycle that is scanned: at most 5 per cent of the stroke."""
     robot, gait = preset(robot), Gait.named("tetrapod")
-    steady = scan(robot, gait, heading, robot.gait.clearance, robot.gait.lift)
+    steady = scan(robot, gait, heading, robot.gait.body_height, robot.gait.swing_height)
     assert 0.95 * steady <= max_stroke(robot, gait, heading) <= steady + 1e-3
 
 
@@ -127,7 +127,7 @@ def test_one_leg_decides_and_only_in_the_directions_in_which_it_is_the_worst():
     assert max_stroke(stiff, gait, 0.0) < 0.5 * max_stroke(robot, gait, 0.0)
     assert max_stroke(stiff, gait, math.pi / 2) > 0.95 * max_stroke(robot, gait, math.pi / 2)
     # The coxa angle at the end of a stroke bounds it: 0.2 rad at the radius of the rest foothold.
-    rest = default_stance(stiff, lift=default_lift(stiff))[1] - stiff.mount_position[1]
+    rest = default_stance(stiff, swing_height=default_swing_height(stiff))[1] - stiff.mount_position[1]
     half = math.hypot(*rest[:2]) * math.tan(0.2)
     assert 1.6 * half < max_stroke(stiff, gait, 0.0) < 2 * half
 
@@ -151,9 +151,9 @@ def test_a_symmetric_robot_s_strokes_are_symmetric():
 def test_a_higher_lift_a_tilt_and_a_wider_distance_shorten_it():
     robot, gait = preset("strider"), Gait.named("tripod")
     usual = max_stroke(robot, gait)
-    assert max_stroke(robot, gait, lift=0.09) < usual
+    assert max_stroke(robot, gait, swing_height=0.09) < usual
     assert max_stroke(robot, gait, body_tilt=(0.2, 0.1)) < usual
-    rest = default_stance(robot, lift=robot.gait.lift)
+    rest = default_stance(robot, swing_height=robot.gait.swing_height)
     apart = float(feet_distance(rest)[0])
     near = max_stroke(robot, gait, foot_distance=0.9 * apart)
     assert 0 < near < usual
@@ -198,23 +198,23 @@ def test_no_leg_is_let_behind_its_coxa_axis():
         assert branches(robot, jump.angles)[..., 0].any() or jump.reach.any()
 
 
-@pytest.mark.parametrize("duty", [0.3, 0.5, 2 / 3, 0.95])
+@pytest.mark.parametrize("duty_factor", [0.3, 0.5, 2 / 3, 0.95])
 @pytest.mark.parametrize("curved", [False, True])
-def test_no_foot_of_any_walk_is_farther_from_rest_than_the_extremes(duty, curved):
+def test_no_foot_of_any_walk_is_farther_from_rest_than_the_extremes(duty_factor, curved):
     """Against walks with other lengths and offsets than those that the extremes were picked from."""
-    extremes = extreme_excursions(duty, curved=curved)
+    extremes = extreme_excursions(duty_factor, curved=curved)
     levels = np.unique(extremes.up.round(12))
     bound = [np.abs(extremes.offset[np.abs(extremes.up - level) < 1e-9]).max() for level in levels]
     rng = np.random.default_rng(7)
     for _ in range(4):
-        walk = walk_excursions(Gait(duty, tuple(rng.uniform(0, 1, 7))))
+        walk = walk_excursions(Gait(duty_factor, tuple(rng.uniform(0, 1, 7))))
         air = walk.up > 0
         assert (np.abs(walk.offset[air]) <= np.interp(walk.up[air], levels, bound) + 0.02).all()
         assert np.abs(walk.offset[~air]).max() <= 0.5 + 1e-9
 
 
 def test_where_the_feet_of_excursions_are():
-    rest = default_stance(preset("strider"), lift=0.03) * [1, 1, 0]
+    rest = default_stance(preset("strider"), swing_height=0.03) * [1, 1, 0]
     moments = walk_excursions(Gait.named("tripod"))
     feet = moments.feet(rest, np.array([[0.1, 0.0, 0.0], [0.0, 0.2, 0.0]]), 0.03)
     assert feet.shape == (2, len(moments.up), 6, 3)
@@ -236,9 +236,9 @@ def test_branches_tell_the_facing_and_the_knee():
 
 def test_default_lift_and_foot_distance():
     robot = preset("strider")
-    assert default_lift(robot) == robot.gait.lift
+    assert default_swing_height(robot) == robot.gait.swing_height
     assert default_foot_distance(robot) == 2 * float(np.max(robot.foot_radius)) + 0.01
-    assert default_lift(ring(6)) == pytest.approx((0.12 - 0.04) / 4)
+    assert default_swing_height(ring(6)) == pytest.approx((0.12 - 0.04) / 4)
 
 
 def test_feet_distance_names_the_nearest_two():
@@ -266,15 +266,15 @@ def test_what_is_refused():
         max_stroke(stack_robots([robot, robot]), gait)
     with pytest.raises(InputError, match="for 8 legs, the robot has 6"):
         max_stroke(robot, Gait.named("wave", legs=8))
-    with pytest.raises(UnreachableError, match="clearances between"):
-        max_stroke(robot, gait, clearance=0.5)
+    with pytest.raises(UnreachableError, match="body heights between"):
+        max_stroke(robot, gait, body_height=0.5)
     for direction in (math.nan, math.inf, (math.nan, 0, 1), (0, 0, 0), (1, 2)):
         with pytest.raises(InputError, match=r"finite|goes nowhere"):
             max_stroke(robot, gait, direction)
     for bad in (math.nan, math.inf, -math.inf, 1e300):
-        with pytest.raises(InputError, match="clearance is"):
-            max_stroke(robot, gait, clearance=bad)
-    for name in ("lift", "foot_distance"):
+        with pytest.raises(InputError, match="body_height is"):
+            max_stroke(robot, gait, body_height=bad)
+    for name in ("swing_height", "foot_distance"):
         for bad in (math.nan, math.inf, -0.01, "x"):
             with pytest.raises(InputError, match=f"{name} is"):
                 max_stroke(robot, gait, **{name: bad})
@@ -284,7 +284,7 @@ def test_what_is_refused():
 
 
 def test_a_curve_s_stroke_is_that_of_the_foot_farthest_from_the_centre():
-    rest = default_stance(preset("strider"), lift=0.03)
+    rest = default_stance(preset("strider"), swing_height=0.03)
     for centre in ((0.0, 0.0), (0.0, 0.5), (0.2, -0.1)):
         twist = unit_twist(rest, curved_path(2.0, centre).displacement)
         assert abs(twist[2]) * np.hypot(*(rest[:, :2] - centre).T).max() == pytest.approx(1.0)

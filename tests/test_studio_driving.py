@@ -7,8 +7,8 @@ import pytest
 
 from sample_studio import Asked, table
 from tarsus import centre_of_mass, list_robots, load_robot, stability_margin
-from tarsus.gait.live.walker import Walker
-from tarsus.gait.live.wish import Wish
+from tarsus.control.command import Command
+from tarsus.control.walk_controller import WalkController
 
 DT = 1 / 60
 
@@ -27,25 +27,25 @@ def frames(asked, count):
 
 @pytest.mark.parametrize("name", list_robots())
 def test_frames_are_what_the_walker_does(name):
-    asked, walker = driven(name), Walker(load_robot(name))
-    wish = {"velocity_mm_s": [40, -10], "turn_deg_s": 6, "body": [0, 0, 5, 1, 2, 3]}
-    assert asked.types("wish", **wish) == ["done"]
+    asked, controller = driven(name), WalkController(load_robot(name))
+    command = {"velocity_mm_s": [40, -10], "turn_deg_s": 6, "body": [0, 0, 5, 1, 2, 3]}
+    assert asked.types("wish", **command) == ["done"]
     turn = math.radians(1), math.radians(2), math.radians(3)
-    same = Wish(twist=(0.04, -0.01, math.radians(6)), body=(0, 0, 0.005, *turn))
+    same = Command(twist=(0.04, -0.01, math.radians(6)), body=(0, 0, 0.005, *turn))
     for frame in frames(asked, 90):
-        angles = np.asarray(walker.step(same, DT))
+        angles = np.asarray(controller.step(same, DT))
         assert table(frame.angles_deg, 3) == pytest.approx(np.degrees(angles), abs=6e-4)
-        body = walker.body
+        body = controller.body
         assert frame.position_mm == pytest.approx(body.position * 1000, abs=0.006)
-        assert frame.contacts == "".join(str(int(down)) for down in walker.contacts)
-        com = body @ centre_of_mass(walker.robot, angles)
+        assert frame.contacts == "".join(str(int(down)) for down in controller.contacts)
+        com = body @ centre_of_mass(controller.robot, angles)
         assert frame.com_mm == pytest.approx(com[:2] * 1000, abs=0.006)
-        margin = stability_margin(walker.robot, angles, body, walker.contacts)
+        margin = stability_margin(controller.robot, angles, body, controller.contacts)
         assert frame.margin_mm == pytest.approx(float(margin) * 1000, abs=0.006)
         assert frame.interventions == 0
     assert frame.mode == "walking"
     assert frame.twist == pytest.approx(
-        [walker.twist[0] * 1e3, walker.twist[1] * 1e3, math.degrees(walker.twist[2])], abs=1e-4
+        [controller.twist[0] * 1e3, controller.twist[1] * 1e3, math.degrees(controller.twist[2])], abs=1e-4
     )
 
 
@@ -72,13 +72,13 @@ def test_a_wish_holds_until_the_next_and_the_robot_stops_in_its_stance():
 
 @pytest.mark.parametrize(
     ("wish", "kind"),
-    [({"gait": "gallop"}, "unknown_name"), ({"cycle_time_s": 0.0}, None), ({"clearance_mm": -90_000}, None)],
+    [({"gait": "gallop"}, "unknown_name"), ({"cycle_time_s": 0.0}, None), ({"body_height_mm": -90_000}, None)],
 )
-def test_a_wish_that_can_not_be_is_told_and_the_walk_goes_on(wish, kind):
+def test_a_wish_that_can_not_be_is_told_and_the_walk_goes_on(command, kind):
     asked = driven()
     asked.all("wish", velocity_mm_s=[50, 0], turn_deg_s=0)
     frames(asked, 30)
-    answers = asked.all("wish", velocity_mm_s=[50, 0], turn_deg_s=0, **wish)
+    answers = asked.all("wish", velocity_mm_s=[50, 0], turn_deg_s=0, **command)
     told = [answer for answer in answers if answer["type"] == "error"] or [
         frame.model_dump() for frame in frames(asked, 200) if frame.type == "error" or frame.limited
     ]
@@ -102,7 +102,7 @@ def test_driving_ends_where_something_else_begins(kind, more):
 def test_a_robot_that_can_not_walk_can_not_be_driven():
     asked = Asked()
     document = load_robot("strider").to_dict()
-    document["gait"]["clearance_mm"] = 400
+    document["gait"]["body_height_mm"] = 400
     asked.all("document", document=document)
     assert asked.error("drive", on=True)["kind"] == "unreachable"
     assert not asked.session.driving
@@ -114,7 +114,7 @@ def test_a_bug_in_the_walker_ends_the_drive_and_not_the_session(monkeypatch, cap
     def fails(*_given):
         raise ZeroDivisionError
 
-    monkeypatch.setattr(Walker, "step", fails)
+    monkeypatch.setattr(WalkController, "step", fails)
     assert asked.session.frame(DT).kind == "internal"
     assert asked.session.frame(DT) is None
     assert "ZeroDivisionError" in caplog.text

@@ -119,7 +119,7 @@ walks = st.fixed_dictionaries(
     optional={
         "gait": st.sampled_from([None, "tripod", "wave", "ripple", "tetrapod"])
         | st.fixed_dictionaries(
-            {"duty": st.floats(0, 1.2), "offsets": st.lists(st.floats(-1, 2), min_size=5, max_size=7)}
+            {"duty_factor": st.floats(0, 1.2), "offsets": st.lists(st.floats(-1, 2), min_size=5, max_size=7)}
         ),
         "path": st.one_of(
             st.fixed_dictionaries({"way": st.just("straight"), "distance_mm": moderate, "heading_deg": moderate}),
@@ -138,8 +138,8 @@ walks = st.fixed_dictionaries(
         "stroke_mm": maybe,
         "speed_mm_s": maybe,
         "cycle_time_s": st.none() | st.floats(0, 20),
-        "clearance_mm": st.none() | moderate,
-        "lift_mm": maybe,
+        "body_height_mm": st.none() | moderate,
+        "swing_height_mm": maybe,
         "roll_deg": st.floats(-100, 100),
         "pitch_deg": st.floats(-30, 30),
         "foot_distance_mm": maybe,
@@ -151,7 +151,7 @@ bodies = st.fixed_dictionaries(
     {},
     optional={
         **dict.fromkeys(("x_mm", "y_mm", "z_mm", "roll_deg", "pitch_deg", "yaw_deg"), moderate),
-        "clearance_mm": st.none() | moderate,
+        "body_height_mm": st.none() | moderate,
         "knee": st.sampled_from(["up", "down"]),
         "feet_mm": st.none() | st.lists(moderate, min_size=18, max_size=18),
     },
@@ -206,8 +206,8 @@ plausible = st.one_of(
             "velocity_mm_s": st.tuples(moderate, moderate),
             "turn_deg_s": moderate,
             "gait": st.none() | st.sampled_from(["wave", "tripod", "none"]),
-            "clearance_mm": st.none() | moderate,
-            "lift_mm": maybe,
+            "body_height_mm": st.none() | moderate,
+            "swing_height_mm": maybe,
             "cycle_time_s": maybe,
         }
     ),

@@ -13,16 +13,16 @@ from tarsus import (
     Payload,
     Pose,
     centre_of_mass,
-    default_clearance,
+    default_body_height,
     default_stance,
     forward_kinematics,
     inverse_kinematics,
+    joint_loads,
     joint_torques,
     joint_verdicts,
     list_robots,
     list_servos,
     load_robot,
-    loads,
     max_stroke,
     plan_walk,
     resting_pose,
@@ -72,8 +72,8 @@ def test_the_robot_is_told_so_that_forward_kinematics_can_be_done_with_it(name):
     angles = np.random.default_rng(1).uniform(-1, 1, (robot.legs, 3))
     assert by_the_formula(told, angles) == pytest.approx(forward_kinematics(robot, angles) * 1000, abs=0.03)
     assert table(told["limits_deg"], 3, 2) == pytest.approx(np.degrees(robot.limits), abs=DEG)
-    height = default_clearance(robot)
-    assert told["clearance_mm"] == pytest.approx(height * 1000)
+    height = default_body_height(robot)
+    assert told["body_height_mm"] == pytest.approx(height * 1000)
     assert table(told["stance_mm"], 3)[:, :2] == pytest.approx(default_stance(robot, height)[:, :2] * 1000, abs=MM)
     assert told["longest_stroke_mm"] == pytest.approx(max_stroke(robot, Gait.named(robot.gait.name)) * 1000)
     assert [bool(servo) for servo in told["servos"]] == [servo is not None for row in robot.servos for servo in row]
@@ -152,10 +152,10 @@ def body_pose(body, height):
     return Pose.from_rpy(*turn, place)
 
 
-@pytest.mark.parametrize("clearance", [None, 130.0])
-def test_body_moves_over_still_feet(ask, clearance):
-    told = ask("body", "pose", body={**BODY, "clearance_mm": clearance})
-    height = default_clearance(STRIDER) if clearance is None else clearance / 1000
+@pytest.mark.parametrize("body_height", [None, 130.0])
+def test_body_moves_over_still_feet(ask, body_height):
+    told = ask("body", "pose", body={**BODY, "body_height_mm": body_height})
+    height = default_body_height(STRIDER) if body_height is None else body_height / 1000
     feet, body = stance_in_ground(height), body_pose(BODY, height)
     solution = inverse_kinematics(STRIDER, feet, body)
     assert table(told["angles_deg"], 3) == pytest.approx(np.degrees(solution.angles), abs=DEG)
@@ -176,7 +176,7 @@ def test_body_moves_over_still_feet(ask, clearance):
 
 def test_a_leg_that_cannot_reach_says_why_and_by_how_much(ask):
     told = ask("body", "pose", body={"pitch_deg": 25})
-    height = default_clearance(STRIDER)
+    height = default_body_height(STRIDER)
     solution = inverse_kinematics(STRIDER, stance_in_ground(height), body_pose({"pitch_deg": 25}, height))
     failing = np.flatnonzero(solution.reach)
     assert [leg["leg"] for leg in told["legs"]] == failing.tolist() != []
@@ -191,14 +191,14 @@ def test_a_leg_that_cannot_reach_says_why_and_by_how_much(ask):
 
 
 def test_a_body_too_high_to_stand_is_refused(ask):
-    assert ask.error("body", body={"clearance_mm": 400})["kind"] == "unreachable"
+    assert ask.error("body", body={"body_height_mm": 400})["kind"] == "unreachable"
 
 
 def test_a_foot_is_dragged_and_the_leg_follows(ask):
     ask.all("view", view="body")
     state, told, done = ask.all("drag_foot", leg=1, position_mm=[10, 240, 25])
     assert state["state"]["body"]["feet_mm"][3:6] == [10, 240, 25]
-    height = default_clearance(STRIDER)
+    height = default_body_height(STRIDER)
     feet = stance_in_ground(height)
     feet[1] = 0.010, 0.240, 0.025
     solution = inverse_kinematics(STRIDER, feet, body_pose({}, height))
@@ -225,9 +225,11 @@ def test_a_foot_dragged_in_the_view_joints_turns_that_leg_alone(ask):
 WALKS = [
     ({}, lambda r: plan_walk(r, Gait.named("tripod"), straight_path(0.5))),
     (
-        {"gait": "wave", "clearance_mm": 120, "lift_mm": 25,
+        {"gait": "wave", "body_height_mm": 120, "swing_height_mm": 25,
          "path": {"way": "curve", "angle_deg": 60, "centre_mm": [0, 300]}},
-        lambda r: plan_walk(r, Gait.named("wave"), curved_path(math.radians(60), (0, 0.3)), clearance=0.12, lift=0.025),
+        lambda r: plan_walk(
+            r, Gait.named("wave"), curved_path(math.radians(60), (0, 0.3)), body_height=0.12, swing_height=0.025
+        ),
     ),
     (
         {"gait": "ripple", "rate_hz": 50,
@@ -243,8 +245,10 @@ WALKS = [
         ),
     ),
     (
-        {"gait": {"duty": 0.75, "offsets": [0, 0.5, 0, 0.5, 0, 0.5]}, "speed_mm_s": 20, "strict": False},
-        lambda r: plan_walk(r, Gait(duty=0.75, offsets=(0, 0.5) * 3), straight_path(0.5), speed=0.02, strict=False),
+        {"gait": {"duty_factor": 0.75, "offsets": [0, 0.5, 0, 0.5, 0, 0.5]}, "speed_mm_s": 20, "strict": False},
+        lambda r: plan_walk(
+            r, Gait(duty_factor=0.75, offsets=(0, 0.5) * 3), straight_path(0.5), speed=0.02, strict=False
+        ),
     ),
 ]  # fmt: skip
 
@@ -267,7 +271,16 @@ def test_a_walk_is_what_plan_walk_gives(ask, options, plan):
     com = (motion.body @ centre_of_mass(STRIDER, motion.angles)[:, None])[:, 0, :2]
     assert table(told["com_mm"], 2) == pytest.approx(com * 1000, abs=MM)
     summary = walk_summary(motion)
-    for key in ("gait", "duration_s", "cycle_time_s", "steps", "stroke_mm", "speed_mm_s", "clearance_mm", "lift_mm"):
+    for key in (
+        "gait",
+        "duration_s",
+        "cycle_time_s",
+        "steps",
+        "stroke_mm",
+        "speed_mm_s",
+        "body_height_mm",
+        "swing_height_mm",
+    ):
         assert told[key] == pytest.approx(summary[key])
     for key in ("possible", "problems", "assumed"):
         assert told[key] == summary[key]
@@ -318,7 +331,7 @@ LOADS = {"payload_kg": 0.2, "payload_at_mm": [10, 0, 20], "supply_v": 6.8, "capa
 def test_loads_are_what_loads_gives(ask):
     motion = plan_walk(STRIDER, Gait.named("tripod"), straight_path(0.5))
     told = ask("loads", "loads", loads=LOADS)
-    found = loads(STRIDER, motion, payload=Payload(0.2, (0.01, 0, 0.02)), supply=6.8)
+    found = joint_loads(STRIDER, motion, payload=Payload(0.2, (0.01, 0, 0.02)), supply=6.8)
     assert table(told["torques_nm"], 6, 3) == pytest.approx(found.torques, abs=1e-4)
     assert table(told["forces_n"], 6, 3) == pytest.approx(found.forces, abs=1e-4)
     verdicts = joint_verdicts(found, safety_factor=2)
@@ -352,12 +365,12 @@ def test_loads_out_of_range_are_refused(ask, loading):
 def test_servos_are_those_of_size_servos(ask):
     ask.all(
         "walk",
-        walk={"gait": "wave", "clearance_mm": 130, "path": {"way": "straight", "distance_mm": 150, "heading_deg": 0}},
+        walk={"gait": "wave", "body_height_mm": 130, "path": {"way": "straight", "distance_mm": 150, "heading_deg": 0}},
     )
     ask.all("loads", loads={"safety_factor": 2.5})
     told = ask("servos", "servos")
-    motion = plan_walk(STRIDER, Gait.named("wave"), straight_path(0.15), clearance=0.13)
-    sizing = size_servos(STRIDER, loads(STRIDER, motion), safety_factor=2.5)
+    motion = plan_walk(STRIDER, Gait.named("wave"), straight_path(0.15), body_height=0.13)
+    sizing = size_servos(STRIDER, joint_loads(STRIDER, motion), safety_factor=2.5)
     assert told["present_do"] == sizing.ok
     assert [servo["name"] for servo in told["candidates"]] == [servo.name for servo in sizing.candidates] != []
     assert told["mixed"]["factor"] == pytest.approx(sizing.mixed.factor)
@@ -414,7 +427,7 @@ def test_toml_in_and_out(ask):
 
 def test_a_robot_that_cannot_stand_is_shown_all_the_same(ask):
     document = STRIDER.to_dict()
-    document["gait"]["clearance_mm"] = 500
+    document["gait"]["body_height_mm"] = 500
     answers = ask.all("document", document=document)
     assert [answer["type"] for answer in answers] == ["robot", "state", "error", "pose", "done"]
     assert answers[0]["stance_mm"] is None
@@ -428,7 +441,7 @@ def test_a_preset_of_another_number_of_legs_begins_anew(ask):
     document["legs"] = document["legs"][:5]
     ask.all("joints", joints={"angles_deg": [0, 30, -100] * 6})
     ask.all("drag_foot", leg=5, position_mm=[100, -200, 0])
-    ask.all("walk", walk={"gait": {"duty": 0.75, "offsets": [0, 0.5, 0, 0.5, 0, 0.5]}, "speed_mm_s": 20})
+    ask.all("walk", walk={"gait": {"duty_factor": 0.75, "offsets": [0, 0.5, 0, 0.5, 0, 0.5]}, "speed_mm_s": 20})
     ask.all("source", source={"number": "001", "leg": 5})
     state = ask("document", "state", document=document)["state"]
     assert state["joints"]["angles_deg"] is None

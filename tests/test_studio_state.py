@@ -36,7 +36,7 @@ states = st.builds(
     body=st.builds(BodyState, x_mm=numbers, yaw_deg=numbers, knee=st.sampled_from(["up", "down"])),
     walk=st.builds(
         WalkOptions,
-        gait=st.sampled_from([None, "wave", OwnGait(duty=0.6, offsets=(0.1,) * 6)]),
+        gait=st.sampled_from([None, "wave", OwnGait(duty_factor=0.6, offsets=(0.1,) * 6)]),
         path=st.builds(Curve, way=st.just("curve"), angle_deg=numbers)
         | st.builds(
             Twist,

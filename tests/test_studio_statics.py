@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from tarsus import (
     Pose,
     centre_of_mass,
-    default_clearance,
+    default_body_height,
     default_stance,
     forward_kinematics,
     inverse_kinematics,
@@ -26,7 +26,7 @@ masks = st.lists(st.booleans(), min_size=6, max_size=6).map(np.array)
 
 @given(st.sampled_from(ROBOTS), st.tuples(*[small] * 6), masks)
 def test_of_a_robot_that_stands(robot, shift, contacts):
-    height = default_clearance(robot)
+    height = default_body_height(robot)
     x, y, z, roll, pitch, yaw = shift
     body = Pose.from_rpy(roll * 0.2, pitch * 0.2, yaw, (x * 0.12, y * 0.12, height + z * 0.02))
     angles = np.asarray(inverse_kinematics(robot, default_stance(robot, height)).angles)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from sample_studio import Asked, table
-from tarsus import Pose, default_clearance, inverse_kinematics, list_robots, load_robot, reachable_band
+from tarsus import Pose, default_body_height, inverse_kinematics, list_robots, load_robot, reachable_band
 from tarsus.gait.branch import branches
 from tarsus.studio.zone import ground_band, ground_outline, plane_outline
 
@@ -12,7 +12,7 @@ TILTED = Pose.from_rpy(0.08, -0.05, 0.4, (0.03, -0.02, 0.12))
 
 
 def level(robot):
-    return Pose.from_rpy(position=(0, 0, default_clearance(robot)))
+    return Pose.from_rpy(position=(0, 0, default_body_height(robot)))
 
 
 def reached(robot, leg, feet, body=None):
@@ -25,7 +25,7 @@ def reached(robot, leg, feet, body=None):
 @pytest.mark.parametrize("name", list_robots())
 def test_the_band_on_the_ground_is_that_of_reachable_band(name):
     robot = load_robot(name)
-    near, far = (np.asarray(end) for end in reachable_band(robot, -default_clearance(robot)))
+    near, far = (np.asarray(end) for end in reachable_band(robot, -default_body_height(robot)))
     for leg in (0, 3):
         found = ground_band(robot, leg, level(robot))
         assert found[1] == pytest.approx(far[leg], abs=2e-6)
@@ -80,7 +80,7 @@ def test_the_zone_is_told_for_the_body_that_is_shown():
     ask.all("body", body={"z_mm": 20, "pitch_deg": 5})
     told = ask("zone", "zone", leg=2)
     robot = load_robot("strider")
-    body = Pose.from_rpy(pitch=np.radians(5), position=(0, 0, default_clearance(robot) + 0.02))
+    body = Pose.from_rpy(pitch=np.radians(5), position=(0, 0, default_body_height(robot) + 0.02))
     assert table(told["ground_mm"], 3) == pytest.approx(ground_outline(robot, 2, body).closed * 1000, abs=0.006)
     assert told["farthest_mm"] == pytest.approx(ground_band(robot, 2, body)[1] * 1000, abs=1e-3)
     assert len(told["plane_mm"]) > 100

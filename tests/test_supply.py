@@ -8,7 +8,7 @@ import pytest
 
 from sample_loads import sample_loads
 from tarsus.errors import InputError
-from tarsus.load.supply import supply
+from tarsus.load.supply import supply_load
 from tarsus.robot.servo import Servo
 
 
@@ -26,7 +26,7 @@ def samples():
 
 
 def test_current_goes_with_torque_of_either_sign_up_to_the_stall():
-    drawn = supply(with_torques(np.array([0.5, -0.5, 1.0, 0.0, 2.0, 3.0])))
+    drawn = supply_load(with_torques(np.array([0.5, -0.5, 1.0, 0.0, 2.0, 3.0])))
     np.testing.assert_allclose(drawn.current, 1 + 1 + 2 + 0 + 4 + 4)
     assert drawn.peak_current == pytest.approx(12)
     assert drawn.mean_current == pytest.approx(12)
@@ -35,34 +35,34 @@ def test_current_goes_with_torque_of_either_sign_up_to_the_stall():
 
 def test_the_current_of_a_torque_is_the_motors_own_at_any_voltage_but_the_stall_is_not():
     torques = np.array([0.5, 0, 0, 0, 0, 0.0])
-    assert supply(with_torques(torques, supply=12.0)).peak_current == pytest.approx(1)
-    assert supply(with_torques(torques * 20, supply=12.0)).peak_current == pytest.approx(8)
-    assert supply(with_torques(torques * 20)).peak_current == pytest.approx(4)
+    assert supply_load(with_torques(torques, supply=12.0)).peak_current == pytest.approx(1)
+    assert supply_load(with_torques(torques * 20, supply=12.0)).peak_current == pytest.approx(8)
+    assert supply_load(with_torques(torques * 20)).peak_current == pytest.approx(4)
 
 
 def test_the_battery_lasts_capacity_over_mean_current():
     ramp = np.linspace(0, 2, samples())[:, None] * np.eye(6)[0]
-    drawn = supply(with_torques(ramp), capacity=3.0)
+    drawn = supply_load(with_torques(ramp), capacity=3.0)
     assert drawn.mean_current == pytest.approx(2.0)
     assert drawn.battery_time == pytest.approx(3.0 / 2.0 * 3600)
-    assert supply(with_torques(ramp)).battery_time is None
-    assert supply(with_torques(np.zeros(6)), capacity=3.0).battery_time == math.inf
+    assert supply_load(with_torques(ramp)).battery_time is None
+    assert supply_load(with_torques(np.zeros(6)), capacity=3.0).battery_time == math.inf
 
 
 def test_a_stall_current_that_is_not_known_leaves_the_current_unknown():
-    drawn = supply(sample_loads(), capacity=3.0)
+    drawn = supply_load(sample_loads(), capacity=3.0)
     assert drawn.unknown == ("DS3225",)
     assert (drawn.current, drawn.peak_current, drawn.mean_current, drawn.battery_time) == (None,) * 4
     found = sample_loads("burnt-mg996r")
     rows = [list(row) for row in found.robot.servos]
     rows[0][0] = None
-    some = supply(replace(found, robot=found.robot.replace(servos=rows)))
+    some = supply_load(replace(found, robot=found.robot.replace(servos=rows)))
     assert some.unknown == ("a joint without a servo",)
     assert some.current is None
 
 
 def test_the_burnt_robot_draws_amperes():
-    drawn = supply(sample_loads("burnt-mg996r"))
+    drawn = supply_load(sample_loads("burnt-mg996r"))
     found = sample_loads("burnt-mg996r")
     expected = (np.minimum(np.abs(found.torques), 1.079) * 2.5 / 1.079).sum((1, 2))
     np.testing.assert_allclose(drawn.current, expected)
@@ -74,13 +74,13 @@ def test_peaks_that_coincide_are_warned_of():
     torques[7, :3] = 1.0
     torques[9, 3] = 1.5
     torques[11, 4:] = 1.2
-    drawn = supply(with_torques(torques))
+    drawn = supply_load(with_torques(torques))
     assert drawn.together == ("LF", "LM", "LR")
     assert drawn.moment == sample_loads().motion.time[7]
     assert f"at {drawn.moment:.2f} s 3 legs (LF LM LR) bear their peaks at once, 6.6 A in all" in drawn.warning
     torques[7, 0] = 0.5
     torques[3, 0] = 1.0
-    apart = supply(with_torques(torques))
+    apart = supply_load(with_torques(torques))
     assert len(apart.together) == 2
     assert apart.warning is None
 
@@ -88,14 +88,14 @@ def test_peaks_that_coincide_are_warned_of():
 def test_without_currents_the_warning_has_no_amperes():
     found = with_torques(np.full((samples(), 6), 0.5))
     unknown = replace(found, robot=found.robot.replace(servos=((Servo(name="S", stall_torque=2.0),) * 3,) * 6))
-    assert "bear their peaks at once: a supply" in supply(unknown).warning
+    assert "bear their peaks at once: a supply" in supply_load(unknown).warning
 
 
 def test_legs_that_bear_nothing_have_no_peak():
-    assert supply(with_torques(np.zeros(6))).together == ()
+    assert supply_load(with_torques(np.zeros(6))).together == ()
 
 
 @pytest.mark.parametrize("capacity", [0.0, -1.0, math.nan, math.inf])
 def test_a_capacity_that_is_none_is_refused(capacity):
     with pytest.raises(InputError, match="capacity is"):
-        supply(sample_loads(), capacity=capacity)
+        supply_load(sample_loads(), capacity=capacity)

@@ -12,10 +12,10 @@ START, END = np.array([0.1, -0.2, 0.0]), np.array([0.25, -0.1, 0.0])
 
 
 @given(st.integers(0, 2**32 - 1), st.floats(0, 0.2))
-def test_a_swing_goes_from_foothold_to_foothold(seed, lift):
+def test_a_swing_goes_from_foothold_to_foothold(seed, swing_height):
     start, end = np.random.default_rng(seed).uniform(-1, 1, (2, 6, 3))
-    np.testing.assert_array_equal(swing(start, end, np.zeros(6), lift), start)
-    np.testing.assert_allclose(swing(start, end, np.ones(6), lift), end, atol=1e-15)
+    np.testing.assert_array_equal(swing(start, end, np.zeros(6), swing_height), start)
+    np.testing.assert_allclose(swing(start, end, np.ones(6), swing_height), end, atol=1e-15)
 
 
 def test_a_swing_reaches_its_lift_in_the_middle_and_nowhere_more():
@@ -73,5 +73,5 @@ def test_every_array_library_gives_the_same(library):
 
 
 def test_the_lift_may_be_traced():
-    height = jax.jit(lambda lift: swing(START, END, np.array(0.25), lift)[2])
+    height = jax.jit(lambda swing_height: swing(START, END, np.array(0.25), swing_height)[2])
     assert jax.grad(height)(0.05) == pytest.approx(0.75**3)

@@ -7,11 +7,12 @@ import pytest
 
 from gait_robots import PRESETS, preset, ring
 from sample_stands import envelope_of, setup_of, standing, tempo_of
+from tarsus.control.incremental import complete
+from tarsus.control.workspace.cycle_time import SteadyCycle, cycle_timing
+from tarsus.control.workspace.velocity_limits import velocity_limits, with_stroke_limits
 from tarsus.gait.cycle import cycle_feet
 from tarsus.gait.gait import Gait
-from tarsus.gait.live.envelope import capped, envelope
-from tarsus.gait.live.parts import all_parts
-from tarsus.gait.live.tempo import Cycle, joint_limits, tempo
+from tarsus.robot.joint_limits import joint_limits
 
 HEADINGS = [(np.cos(a), np.sin(a), 0.0) for a in np.arange(7) * 2 * np.pi / 7 + 0.2]
 TWISTS = [
@@ -27,9 +28,11 @@ TWISTS = [
 
 def strain(setup, limits, twist, cycle_time):
     """The greatest joint speed and acceleration over their limits in a steady cycle at the largest share of a twist."""
-    share, _ = limits.largest_share(np.array(twist), stance_time=1.0, duty=setup.gait.duty)
+    share, _ = limits.largest_share(np.array(twist), stance_time=1.0, duty_factor=setup.gait.duty_factor)
     phases, step = np.linspace(0, 1, 1201, retstep=True)
-    feet, _ = cycle_feet(setup.gait, setup.rest, share * np.array(twist), lift=np.asarray(setup.lift), phases=phases)
+    feet, _ = cycle_feet(
+        setup.gait, setup.rest, share * np.array(twist), swing_height=np.asarray(setup.swing_height), phases=phases
+    )
     stand = standing(setup)
     angles = np.stack(stand.solve(setup.robot, feet[..., 0], feet[..., 1], feet[..., 2])[:3], axis=-1)
     rate = np.diff(angles, axis=0) / (step * cycle_time)
@@ -39,7 +42,9 @@ def strain(setup, limits, twist, cycle_time):
 
 
 def limits_of(name, gait, found):
-    return capped(envelope_of(name, gait), found.stroke, found.turning, duty=Gait.named(gait).duty)
+    return with_stroke_limits(
+        envelope_of(name, gait), found.stroke, found.turning, duty_factor=Gait.named(gait).duty_factor
+    )
 
 
 @pytest.mark.parametrize(("name", "gait"), list(itertools.product(PRESETS, ["tripod", "ripple", "wave"])))
@@ -75,8 +80,10 @@ def test_a_long_cycle_allows_all_that_the_legs_do():
     found = tempo_of("strider", "tripod", 30.0)
     assert found.cycle_time == 30.0
     for twist in TWISTS[:-2]:
-        legs, _ = envelope_of("strider").largest_share(np.array(twist), stance_time=1.0, duty=0.5)
-        joints, _ = limits_of("strider", "tripod", found).largest_share(np.array(twist), stance_time=1.0, duty=0.5)
+        legs, _ = envelope_of("strider").largest_share(np.array(twist), stance_time=1.0, duty_factor=0.5)
+        joints, _ = limits_of("strider", "tripod", found).largest_share(
+            np.array(twist), stance_time=1.0, duty_factor=0.5
+        )
         assert joints == pytest.approx(legs)
 
 
@@ -87,7 +94,7 @@ def test_left_out_the_cycle_time_is_the_one_that_gets_the_robot_farthest():
         found = tempo_of("phantomx", "tripod", cycle_time)
         limits = limits_of("phantomx", "tripod", found)
         forward = np.array([1.0, 0.0, 0.0])
-        return limits.largest_share(forward, stance_time=setup.gait.duty * found.cycle_time, duty=0.5)[0]
+        return limits.largest_share(forward, stance_time=setup.gait.duty_factor * found.cycle_time, duty_factor=0.5)[0]
 
     best = speed(free.cycle_time)
     assert best >= 0.99 * max(speed(part * free.cycle_time) for part in (0.8, 0.9, 1.1, 1.3, 1.8))
@@ -99,10 +106,10 @@ def test_where_the_stance_is_the_shorter_part_its_speed_counts():
     gait = Gait(3 / 8, tuple((3 * leg % 8) / 8 for leg in range(8)))
     setup = setup_of(robot, gait)
     # Support isn't what this is about: all eight at once.
-    limits = all_parts(envelope(robot, [standing(setup)], np.ones((1, 8), dtype=bool), foot_distance=0.01))
+    limits = complete(velocity_limits(robot, [standing(setup)], np.ones((1, 8), dtype=bool), foot_distance=0.01))
     speed, acceleration = joint_limits(robot, None, None)
-    found = all_parts(tempo(robot, gait, standing(setup), limits, speed=speed, acceleration=acceleration))
-    less = capped(limits, found.stroke, found.turning, duty=gait.duty)
+    found = complete(cycle_timing(robot, gait, standing(setup), limits, speed=speed, acceleration=acceleration))
+    less = with_stroke_limits(limits, found.stroke, found.turning, duty_factor=gait.duty_factor)
     strains = [strain(setup, less, twist, found.cycle_time)[0] for twist in TWISTS[:-2]]
     assert 0.8 < max(strains) <= 1
 
@@ -112,8 +119,8 @@ def test_slower_joints_step_slower():
     speed, acceleration = joint_limits(setup.robot, None, None)
 
     def found(part):
-        return all_parts(
-            tempo(
+        return complete(
+            cycle_timing(
                 setup.robot,
                 setup.gait,
                 standing(setup),
@@ -151,19 +158,21 @@ def test_joint_limits_without_servos_and_as_asked_for():
 def test_the_more_legs_the_more_parts_the_work_is_done_in(legs):
     setup = setup_of(ring(legs), "wave")
     speed, acceleration = joint_limits(setup.robot, None, None)
-    limits = all_parts(envelope(setup.robot, [standing(setup)], np.ones((1, legs), dtype=bool), foot_distance=0.01))
-    work = tempo(setup.robot, setup.gait, standing(setup), limits, speed=speed, acceleration=acceleration)
+    limits = complete(
+        velocity_limits(setup.robot, [standing(setup)], np.ones((1, legs), dtype=bool), foot_distance=0.01)
+    )
+    work = cycle_timing(setup.robot, setup.gait, standing(setup), limits, speed=speed, acceleration=acceleration)
     assert sum(1 for _ in work) >= legs // 3
 
 
-@pytest.mark.parametrize(("duty", "lift"), [(0.5, 0.03), (5 / 6, 0.1), (3 / 8, 0.0)])
-def test_the_cycle_in_complex_numbers_is_that_of_the_plan(duty, lift):
+@pytest.mark.parametrize(("duty_factor", "swing_height"), [(0.5, 0.03), (5 / 6, 0.1), (3 / 8, 0.0)])
+def test_the_cycle_in_complex_numbers_is_that_of_the_plan(duty_factor, swing_height):
     moves = np.array([(0.1, 0.0, 0.0), (0.0, 0.0, 0.5), (-0.03, 0.07, -0.4), (0.0, 0.0, 0.0), (0.02, 0.01, 1e-9)])
     rest = np.array([0.2 + 0.1j, -0.1 + 0.25j, 0.0 - 0.3j])
-    cycle = Cycle(Gait(duty, (0.0,) * 3), moves, lift)
+    cycle = SteadyCycle(Gait(duty_factor, (0.0,) * 3), moves, swing_height)
     points = np.stack([rest.real, rest.imag, 0 * rest.real], axis=-1)
-    together = Gait(duty, (0.0,) * 3)
-    feet, _ = cycle_feet(together, points, moves, lift=np.asarray(lift), phases=cycle.phases)
+    together = Gait(duty_factor, (0.0,) * 3)
+    feet, _ = cycle_feet(together, points, moves, swing_height=np.asarray(swing_height), phases=cycle.phases)
     found = cycle.shift[..., None] + cycle.factor[..., None] * rest
     np.testing.assert_allclose(found, (feet[..., 0] + 1j * feet[..., 1]).swapaxes(0, 1), atol=1e-15)
     np.testing.assert_allclose(np.broadcast_to(cycle.height, feet.shape[1:3]), feet[0, ..., 2], atol=1e-15)

@@ -14,7 +14,7 @@ gaits = st.builds(Gait, st.floats(0.1, 0.95), st.lists(st.floats(0, 0.999), min_
 
 def walk(gait, *, strokes, cycle_time):
     """The steps of a walk of so many strokes."""
-    clock = BodyClock.of(rate=1 / (strokes * gait.duty * cycle_time), ramp=cycle_time)
+    clock = BodyClock.of(rate=1 / (strokes * gait.duty_factor * cycle_time), ramp=cycle_time)
     return plan_steps(gait, clock, cycle_time=cycle_time, least_step=least_step_share(strokes))
 
 
@@ -61,7 +61,7 @@ def test_footholds_are_where_the_middle_of_their_stance_has_the_body(gait, strok
     for number in range(-3, 40):
         shares = steps.foothold_share(np.array([number]))
         for leg, offset in enumerate(gait.offsets):
-            share = float(steps.clock.share((number + offset + gait.duty / 2) * cycle_time))
+            share = float(steps.clock.share((number + offset + gait.duty_factor / 2) * cycle_time))
             if share < steps.least_step:
                 share = 0.0
             elif share > 1 - steps.least_step:
@@ -78,7 +78,7 @@ def test_start_and_end_are_the_first_lift_off_and_the_last_touchdown(gait, strok
     resolution = time[1] - time[0]
     assert steps.start >= -cycle_time
     assert not moving[(time < steps.start - 1e-6) | (time > steps.end + 1e-6)].any()
-    if (1 - gait.duty) * cycle_time > 2 * resolution:
+    if (1 - gait.duty_factor) * cycle_time > 2 * resolution:
         assert time[moving][0] <= steps.start + resolution + 1e-6
         assert time[moving][-1] >= steps.end - resolution - 1e-6
     assert ((swung >= 0) & (swung <= 1 + 1e-9)).all()

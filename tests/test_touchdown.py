@@ -5,12 +5,12 @@ import pytest
 
 from gait_robots import PRESETS
 from sample_moments import begun, course_of, rest_of, setup_of
-from tarsus.gait.live.lag import Lag
-from tarsus.gait.live.moment import GIVE
-from tarsus.gait.live.solver import Solver
-from tarsus.gait.live.stepping import go_on
-from tarsus.gait.live.tempo import joint_limits
-from tarsus.gait.live.touchdown import meet_ground, unhurried
+from tarsus.control.filters import CriticallyDamped
+from tarsus.control.terrain.early_contact import relaxed_rate, stop_on_contact
+from tarsus.control.walk.joint_solver import JointSolver
+from tarsus.control.walk.state import EARLY_STOP_FRACTION
+from tarsus.control.walk.stepper import advance
+from tarsus.robot.joint_limits import joint_limits
 
 DT = 5e-4
 
@@ -21,7 +21,7 @@ def falling(name, share, frequency):
     course = course_of(setup, rest, (0.05, 0.02, 0.1), frequency=frequency)
     now = begun(setup, rest)
     for _ in range(20_000):
-        now = go_on(now, course, DT)
+        now = advance(now, course, DT)
         if now.clock > 1.5 and (~now.down & (now.share > share)).any():
             return setup, course, now
     raise AssertionError("no foot came so far")
@@ -30,8 +30,8 @@ def falling(name, share, frequency):
 def met(setup, course, now):
     """The moment in which all feet in the air have met the ground, and which of them can stop."""
     _, acceleration = joint_limits(setup.robot, None, None)
-    rate = course.frequency / (1 - setup.gait.duty - now.late)
-    after = meet_ground(setup.robot, now, ~now.down, acceleration=acceleration, swing_rate=rate)
+    rate = course.frequency / (1 - setup.gait.duty_factor - now.late)
+    after = stop_on_contact(setup.robot, now, ~now.down, acceleration=acceleration, swing_rate=rate)
     stops = np.isfinite(after.met)
     assert not stops[now.down].any()
     return after, stops
@@ -44,13 +44,13 @@ def test_feet_stop_within_what_their_joints_can_do(name, share):
     after, stops = met(setup, course, now)
     assert stops.any()
     _, acceleration = joint_limits(setup.robot, None, None)
-    solver = Solver(setup.robot)
-    before = go_on(now, course, -DT)
-    angles, heights = [solver.angles(before), solver.angles(after)], [after.height(setup.lift)]
+    solver = JointSolver(setup.robot)
+    before = advance(now, course, -DT)
+    angles, heights = [solver.angles(before), solver.angles(after)], [after.height(setup.swing_height)]
     while not after.down[stops].all():
-        after = go_on(after, course, DT)
+        after = advance(after, course, DT)
         angles.append(solver.angles(after))
-        heights.append(after.height(setup.lift))
+        heights.append(after.height(setup.swing_height))
     rate = np.diff(angles, axis=0) / DT
     # Nothing jumps as it is met.
     assert np.abs(rate[1] - rate[0])[stops].max() < 0.1
@@ -68,28 +68,28 @@ def test_slow_feet_stop_at_once_fast_ones_take_longer_and_the_fastest_land_as_pl
         setup, course, now = falling("strider", 0.75, frequency)
         after, stops = met(setup, course, now)
         gives.append(after.give[stops].max(initial=0.0))
-        sunk.append((now.height(setup.lift) - after.ground)[~now.down].max())
-    assert gives[0] == pytest.approx(GIVE)
+        sunk.append((now.height(setup.swing_height) - after.ground)[~now.down].max())
+    assert gives[0] == pytest.approx(EARLY_STOP_FRACTION)
     assert gives == [*sorted(gives[:3]), 0.0]
-    assert gives[2] > GIVE
+    assert gives[2] > EARLY_STOP_FRACTION
     assert (np.diff(sunk) > -1e-4).all()
     assert sunk[2] > 1.2 * sunk[0]
 
 
 def test_harder_swings_take_longer():
     setup, rest = setup_of("strider"), rest_of("strider")
-    duty = setup.gait.duty
-    swing = 1 - duty
+    duty_factor = setup.gait.duty_factor
+    swing = 1 - duty_factor
     now = begun(setup, rest)
-    assert unhurried(now, duty) == 1
+    assert relaxed_rate(now, duty_factor) == 1
     up = now._replace(down=np.arange(6) > 0)
-    assert unhurried(up, duty) == 1
+    assert relaxed_rate(up, duty_factor) == 1
     late = up._replace(late=np.full(6, swing / 2))
-    lower = up._replace(ground=np.full(6, -setup.lift))
-    assert unhurried(late, duty) == pytest.approx((1.1 / 4) ** 0.5)
-    assert unhurried(lower, duty) == pytest.approx((1.1 / 1.5) ** 0.5)
+    lower = up._replace(ground=np.full(6, -setup.swing_height))
+    assert relaxed_rate(late, duty_factor) == pytest.approx((1.1 / 4) ** 0.5)
+    assert relaxed_rate(lower, duty_factor) == pytest.approx((1.1 / 1.5) ** 0.5)
     # Of feet on the ground neither says anything.
-    assert unhurried(late._replace(down=np.ones(6, dtype=bool)), duty) == 1
+    assert relaxed_rate(late._replace(down=np.ones(6, dtype=bool)), duty_factor) == 1
     # Without a lift there still is one.
-    flat = up._replace(posture=Lag.still(np.zeros(13)))
-    assert unhurried(flat, duty) == 1
+    flat = up._replace(posture=CriticallyDamped.still(np.zeros(13)))
+    assert relaxed_rate(flat, duty_factor) == 1

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from sample_loads import sample_loads, sample_motion
 from tarsus.errors import InputError, UnknownNameError
-from tarsus.load.loads import loads
+from tarsus.load.loads import joint_loads
 from tarsus.load.verdict import CLASSES, JointVerdict, class_of, joint_verdicts, require_rule
 from tarsus.robot.servo import Servo
 
@@ -137,7 +137,7 @@ def test_verdicts_are_of_every_joint_in_order():
 def test_a_servo_without_speed_is_asked_for_it_by_name():
     motion = sample_motion()
     robot = motion.robot.replace(servos=((Servo(name="mystery", stall_torque=9.0),) * 3,) * 6)
-    for one in joint_verdicts(loads(robot, motion)):
+    for one in joint_verdicts(joint_loads(robot, motion)):
         assert "the speed of mystery is unknown: give its no_load_rad_s" in one.text()
         assert not one.fast_enough
 

@@ -16,12 +16,12 @@ import numpy as np
 import pytest
 
 from gait_robots import PRESETS, preset, ring
+from tarsus.control.command import Command
+from tarsus.control.readings import SensorReadings
+from tarsus.control.safety.guard import Guard
+from tarsus.control.walk_controller import WalkController
 from tarsus.errors import InputError, UnknownNameError, UnreachableError
 from tarsus.gait.gait import Gait
-from tarsus.gait.live.guard import Guard
-from tarsus.gait.live.senses import Senses
-from tarsus.gait.live.walker import Walker
-from tarsus.gait.live.wish import Wish
 from tarsus.gait.path import twist_path
 from tarsus.gait.plan import plan_walk
 from tarsus.kinematics.inverse import inverse_kinematics
@@ -33,8 +33,8 @@ DIRECTIONS = {"forward": (1, 0, 0), "left": (0, 1, 0), "turning": (0, 0, 1), "al
 STOP = (0.0, 0.0, 0.0)
 
 
-def walker(name, gait="tripod", **given):
-    return Walker(preset(name), Gait.named(gait), **given)
+def controller(name, gait="tripod", **given):
+    return WalkController(preset(name), Gait.named(gait), **given)
 
 
 def top(w, direction, share=1.0):
@@ -49,8 +49,8 @@ def heading_feet(w):
 
 
 def stopped(trace, tick=0.025):
-    """Wish to stand until the robot does."""
-    w = trace.walker
+    """Command to stand until the robot does."""
+    w = trace.controller
     until = w.time + 8 * w.cycle_time
     while w.mode != "standing":
         assert w.time < until, f"still {w.mode}"
@@ -90,43 +90,43 @@ def assert_planned(w, twist, **given):
 @pytest.mark.parametrize("gait", GAITS)
 @pytest.mark.parametrize("name", PRESETS)
 def test_a_constant_twist_gives_the_planned_walks_cycle(name, gait):
-    w = walker(name, gait)
+    w = controller(name, gait)
     turn = PRESETS.index(name) + GAITS.index(gait)
     assert_planned(w, top(w, list(DIRECTIONS.values())[turn % len(DIRECTIONS)], 0.8))
 
 
 @pytest.mark.parametrize("direction", DIRECTIONS.values(), ids=DIRECTIONS)
 def test_so_it_does_with_another_height_lift_and_pace(direction):
-    given = {"clearance": 0.13, "lift": 0.02}
-    w = walker("strider", "ripple", cycle_time=2.3, **given)
+    given = {"body_height": 0.13, "swing_height": 0.02}
+    w = controller("strider", "ripple", cycle_time=2.3, **given)
     assert w.cycle_time == 2.3
     assert_planned(w, top(w, direction, 0.8), **given)
 
 
 def test_a_cycle_time_goes_back_to_the_one_that_gets_farthest():
-    w = walker("strider")
+    w = controller("strider")
     best = w.cycle_time
-    for wish, expected in ((Wish(cycle_time=2.0), 2.0), (Wish(cycle_time="auto"), best)):
+    for command, expected in ((Command(cycle_time=2.0), 2.0), (Command(cycle_time="auto"), best)):
         for _ in range(400):
-            w.step(wish, 0.02)
+            w.step(command, 0.02)
         assert w.cycle_time == pytest.approx(expected, rel=1e-9)
 
 
 def test_so_it_does_after_a_change_on_the_move():
-    w = walker("strider", "tripod")
+    w = controller("strider", "tripod")
     for _ in range(400):
-        w.step(Wish(twist=(0.05, 0, 0), gait="wave", clearance=0.12, lift=0.025), 0.04)
+        w.step(Command(twist=(0.05, 0, 0), gait="wave", body_height=0.12, swing_height=0.025), 0.04)
     assert w.gait.name == "wave"
     # It starts afresh, so that its lifts fall on samples.
     stopped(Trace(w))
-    assert_planned(w, np.array((0.03, 0.01, 0.05)), clearance=0.12, lift=0.025)
+    assert_planned(w, np.array((0.03, 0.01, 0.05)), body_height=0.12, swing_height=0.025)
 
 
 # Start, move, stop.
 
 
 def test_a_new_walker_stands_over_the_origin_in_the_stance_of_walks():
-    w = walker("strider")
+    w = controller("strider")
     assert w.mode == "standing"
     assert w.place == (0, 0, 0)
     assert w.time == 0
@@ -141,7 +141,7 @@ def test_a_new_walker_stands_over_the_origin_in_the_stance_of_walks():
 
 @pytest.mark.parametrize("name", PRESETS)
 def test_standing_still_is_still(name):
-    w = walker(name)
+    w = controller(name)
     before = w.angles.copy()
     for _ in range(50):
         assert (w.step(STOP, 0.03) == before).all()
@@ -153,7 +153,7 @@ def test_standing_still_is_still(name):
 @pytest.mark.parametrize("gait", GAITS)
 @pytest.mark.parametrize("name", PRESETS)
 def test_a_robot_that_stops_puts_every_foot_to_its_rest_foothold(name, gait):
-    w = walker(name, gait)
+    w = controller(name, gait)
     rest, angles = heading_feet(w), w.angles.copy()
     trace = Trace(w).run(top(w, (1, 0.5, 1)), 2.3 * w.cycle_time)
     assert w.mode == "walking"
@@ -169,13 +169,13 @@ def test_a_robot_that_stops_puts_every_foot_to_its_rest_foothold(name, gait):
 
 
 def test_a_foot_that_is_at_its_rest_foothold_is_not_lifted_to_stop():
-    w = walker("strider", "wave")
+    w = controller("strider", "wave")
     trace = stopped(Trace(w).run((0.02, 0, 0), 0.2))
     assert trace.contacts.sum() > 0.9 * trace.contacts.size
 
 
 def test_it_starts_again_from_where_it_stopped():
-    w = walker("strider")
+    w = controller("strider")
     trace = stopped(Trace(w).run((0.1, 0, 0), 3))
     x = w.place[0]
     trace.run((0.1, 0, 0), 3)
@@ -188,7 +188,7 @@ def test_it_starts_again_from_where_it_stopped():
 @pytest.mark.parametrize("name", PRESETS)
 def test_at_full_speed_from_standing_and_back(name, gait):
     for direction in ((1, 0, 0), (-1, 0, -4), (0, 1, 0), (0, 0, 4)):
-        w = walker(name, gait)
+        w = controller(name, gait)
         trace = Trace(w).run(10 * np.array(direction), 3 * w.cycle_time, 0.05)
         stopped(trace, tick=0.05).assert_sound()
 
@@ -198,13 +198,13 @@ def test_at_full_speed_from_standing_and_back(name, gait):
 
 def test_linear_and_angular_wishes_are_scaled_together():
     for direction in ((1.0, 0.5, 3.0), (0.3, -0.8, 2.0), (-0.7, 0.1, -1.0)):
-        w, wish = walker("strider"), np.array(direction)
+        w, command = controller("strider"), np.array(direction)
         reached = []
         for _ in range(300):
-            w.step(10 * wish, 0.025)
+            w.step(10 * command, 0.025)
             reached.append(w.twist)
-        along = np.array(reached) @ wish / (wish @ wish)
-        np.testing.assert_allclose(np.array(reached), along[:, None] * wish, atol=1e-9)
+        along = np.array(reached) @ command / (command @ command)
+        np.testing.assert_allclose(np.array(reached), along[:, None] * command, atol=1e-9)
         assert along[-1] == pytest.approx(w.top_speed(direction), rel=1e-6)
         (reason,) = w.limited
         assert reason.startswith(f"twist: {100 * along[-1] / 10:.0f} % of it; ")
@@ -213,7 +213,7 @@ def test_linear_and_angular_wishes_are_scaled_together():
 
 @pytest.mark.parametrize("name", PRESETS)
 def test_every_legs_reach_bounds_the_speed_in_every_direction(name):
-    w = walker(name)
+    w = controller(name)
     for direction in itertools.product((-1, 0, 1), (-1, 0, 1), (-3, 0, 3)):
         if any(direction):
             whole = w.top_speed(direction)
@@ -222,7 +222,7 @@ def test_every_legs_reach_bounds_the_speed_in_every_direction(name):
 
 
 def test_what_is_wished_within_reach_is_what_is_walked():
-    w = walker("phantomx")
+    w = controller("phantomx")
     trace = Trace(w).run((0.08, 0.02, 0.2), 4)
     np.testing.assert_allclose(w.twist, (0.08, 0.02, 0.2), atol=1e-9)
     assert w.limited == ()
@@ -238,11 +238,11 @@ def test_what_is_wished_within_reach_is_what_is_walked():
 @pytest.mark.parametrize("direction", ["forward", "turning"])
 @pytest.mark.parametrize("name", ["strider", "phantomx"])
 def test_top_speeds_are_reached_within_the_joints_limits(name, direction):
-    w = walker(name)
-    wish = 10 * np.array(DIRECTIONS[direction])
-    trace = Trace(w).run(wish, 4 * w.cycle_time, 0.02)
+    w = controller(name)
+    command = 10 * np.array(DIRECTIONS[direction])
+    trace = Trace(w).run(command, 4 * w.cycle_time, 0.02)
     start, begun = np.array(w.place), w.time
-    trace.run(wish, 4 * w.cycle_time, 0.02).assert_sound()
+    trace.run(command, 4 * w.cycle_time, 0.02).assert_sound()
     way, time = np.subtract(w.place, start), w.time - begun
     if direction == "forward":
         assert np.linalg.norm(way[:2]) / time >= 0.15
@@ -257,10 +257,10 @@ def test_top_speeds_are_reached_within_the_joints_limits(name, direction):
 @pytest.mark.parametrize("gaits", list(itertools.permutations(GAITS, 2)), ids="-".join)
 def test_the_gait_changes_on_the_move_without_a_missing_support(name, gaits):
     first, second = gaits
-    w = walker(name, first)
-    twist = 0.8 * np.minimum(top(w, (1, 0, 1)), top(walker(name, second), (1, 0, 1)))
+    w = controller(name, first)
+    twist = 0.8 * np.minimum(top(w, (1, 0, 1)), top(controller(name, second), (1, 0, 1)))
     trace = Trace(w).run(twist, 2.2 * w.cycle_time)
-    trace.step(Wish(twist=twist, gait=second), 0.025)
+    trace.step(Command(twist=twist, gait=second), 0.025)
     until = w.time + 15
     while w.gait.name != second:
         assert w.time < until
@@ -273,13 +273,13 @@ def test_the_gait_changes_on_the_move_without_a_missing_support(name, gaits):
     # It never stood still for it.
     moving = np.linalg.norm(np.diff(trace.body.position[:, :2], axis=0), axis=1) / trace.dt[1:]
     assert moving[40:].min() > 0.1 * twist[0]
-    assert trace.contacts[settled:].mean() == pytest.approx(Gait.named(second).duty, abs=0.03)
+    assert trace.contacts[settled:].mean() == pytest.approx(Gait.named(second).duty_factor, abs=0.03)
 
 
 def aside_near_the_ground(trace, height=0.001):
     """How far a swinging foot that is lower than `height` is from its foothold at most [m]."""
     found = 0.0
-    for leg in range(trace.walker.robot.legs):
+    for leg in range(trace.controller.robot.legs):
         down, feet = trace.contacts[:, leg], trace.feet[:, leg]
         rows, last = np.arange(len(down)), np.flatnonzero(down)[-1]
         before = np.maximum.accumulate(np.where(down, rows, 0))
@@ -296,7 +296,7 @@ def test_reversing_drags_no_foot(gait, direction):
     """Feet leave the ground and come down to it about as steeply as when walking on."""
     aside = []
     for turns in ((1, 1, 1), (1, -1, 1)):
-        w = walker("strider", gait)
+        w = controller("strider", gait)
         trace = Trace(w)
         for sign in turns:
             trace.run(sign * top(w, direction), 1.6 * w.cycle_time, 0.01)
@@ -309,7 +309,7 @@ def test_a_foot_in_the_air_goes_where_the_new_wish_needs_it():
     """Strides adapt mid-swing: the foothold follows a wish that comes while the foot is up."""
     ends = []
     for second in ((0.15, 0, 0), (0.0, 0.1, 0.5)):
-        w = walker("strider")
+        w = controller("strider")
         trace = Trace(w).run((0.15, 0, 0), 2.0, 0.02)
         while w.contacts[0]:
             trace.step((0.15, 0, 0), 0.02)
@@ -324,10 +324,10 @@ def test_a_foot_in_the_air_goes_where_the_new_wish_needs_it():
 
 
 def test_height_lift_width_and_pace_change_on_the_move():
-    w = walker("strider")
+    w = controller("strider")
     trace = Trace(w).run((0.08, 0, 0), 2)
-    wish = Wish(twist=(0.08, 0, 0), clearance=0.14, lift=0.045, stance_width=0.01, cycle_time=1.5)
-    trace.run(wish, 20)
+    command = Command(twist=(0.08, 0, 0), body_height=0.14, swing_height=0.045, stance_width=0.01, cycle_time=1.5)
+    trace.run(command, 20)
     assert w.limited == ()
     assert w.cycle_time == pytest.approx(1.5)
     assert w.body.position[2] == pytest.approx(0.14, abs=1e-3)
@@ -338,7 +338,9 @@ def test_height_lift_width_and_pace_change_on_the_move():
     np.testing.assert_allclose(np.diff(touchdowns) * 0.02, 1.5, atol=0.021)
     stopped(trace)
     # As if it had stood so from the start; there, the width alone makes the difference.
-    narrow, wide = (walker("strider", clearance=0.14, lift=0.045, stance_width=width) for width in (0.0, 0.01))
+    narrow, wide = (
+        controller("strider", body_height=0.14, swing_height=0.045, stance_width=width) for width in (0.0, 0.01)
+    )
     np.testing.assert_allclose(heading_feet(w), heading_feet(wide), atol=1e-6)
     mount = w.robot.geometry.mount_x + 1j * w.robot.geometry.mount_y
     out = np.abs(heading_feet(wide) - mount) - np.abs(heading_feet(narrow) - mount)
@@ -346,22 +348,22 @@ def test_height_lift_width_and_pace_change_on_the_move():
 
 
 def test_what_a_wish_leaves_out_stays_as_it_is():
-    one, other = walker("strider"), walker("strider")
-    wish = Wish(twist=(0.05, 0, 0), body=(0, 0, 0.01, 0, 0.05, 0), lift=0.02, cycle_time=1.3)
+    one, other = controller("strider"), controller("strider")
+    command = Command(twist=(0.05, 0, 0), body=(0, 0, 0.01, 0, 0.05, 0), swing_height=0.02, cycle_time=1.3)
     for tick in range(300):
-        first = one.step(wish, 0.02)
-        second = other.step(wish if tick == 0 else (0.05, 0, 0), 0.02)
+        first = one.step(command, 0.02)
+        second = other.step(command if tick == 0 else (0.05, 0, 0), 0.02)
         assert (first == second).all()
 
 
 @pytest.mark.parametrize("name", ["strider", "phantomx"])
 @pytest.mark.parametrize("axis", range(6), ids=("x", "y", "z", "roll", "pitch", "yaw"))
 def test_the_body_goes_as_far_as_all_legs_reach_and_says_which_one_stops_it(name, axis):
-    w = walker(name)
+    w = controller(name)
     size = 0.3 if axis < 3 else 1.5
     body = np.eye(6)[axis] * size
     level = w.body.position[2]
-    trace = Trace(w).run(Wish(body=body), 45, 0.05)
+    trace = Trace(w).run(Command(body=body), 45, 0.05)
     trace.assert_sound()
     assert w.mode == "standing"
     (reason,) = w.limited
@@ -370,7 +372,7 @@ def test_the_body_goes_as_far_as_all_legs_reach_and_says_which_one_stops_it(name
     assert 0.1 < row[axis] / size < 0.95
     np.testing.assert_allclose(np.delete(row, axis), 0, atol=1e-3)
     # On the ground and lifted every foot is within reach; a sixteenth of the way farther, that leg's isn't.
-    feet = w.feet * [1, 1, 0] + np.array([0.0, w.robot.gait.lift])[:, None, None] * [0, 0, 1]
+    feet = w.feet * [1, 1, 0] + np.array([0.0, w.robot.gait.swing_height])[:, None, None] * [0, 0, 1]
     assert inverse_kinematics(w.robot, feet, w.body).ok.all()
     row += body / 15
     beyond = Pose.from_rpy(*row[3:], row[:3] + np.array((0, 0, level)))
@@ -378,10 +380,10 @@ def test_the_body_goes_as_far_as_all_legs_reach_and_says_which_one_stops_it(name
 
 
 def test_a_small_wish_for_the_body_is_met_whole_while_walking():
-    w = walker("strider")
+    w = controller("strider")
     body = (0.01, -0.01, 0.015, 0.05, -0.04, 0.08)
     level = w.body.position[2]
-    trace = Trace(w).run(Wish(twist=(0.06, 0, 0), body=body), 5)
+    trace = Trace(w).run(Command(twist=(0.06, 0, 0), body=body), 5)
     trace.assert_sound()
     x, y, yaw = w.place
     seen = Pose.from_rpy(0, 0, yaw, (x, y, level)).inverse() @ w.body
@@ -390,7 +392,7 @@ def test_a_small_wish_for_the_body_is_met_whole_while_walking():
 
 
 def test_a_cycle_that_is_too_short_for_the_joints_is_lengthened_and_said():
-    w = walker("phantomx", cycle_time=0.2)
+    w = controller("phantomx", cycle_time=0.2)
     w.step(STOP, 0.02)
     (reason,) = w.limited
     assert reason.startswith("cycle_time 0.2 s is too short")
@@ -399,12 +401,12 @@ def test_a_cycle_that_is_too_short_for_the_joints_is_lengthened_and_said():
 
 
 def test_what_cannot_be_is_refused_by_name_and_walking_goes_on():
-    w = walker("strider")
+    w = controller("strider")
     trace = Trace(w).run((0.1, 0, 0), 1)
-    trace.run(Wish(twist=(0.1, 0, 0), clearance=5.0), 3)
-    assert w.limited == ("no leg reaches the ground at clearance 5000.0 mm",)
+    trace.run(Command(twist=(0.1, 0, 0), body_height=5.0), 3)
+    assert w.limited == ("no leg reaches the ground at body height 5000.0 mm",)
     assert w.mode == "walking"
-    trace.run(Wish(twist=(0.1, 0, 0), clearance=0.11), 3).assert_sound()
+    trace.run(Command(twist=(0.1, 0, 0), body_height=0.11), 3).assert_sound()
     assert w.limited == ()
 
 
@@ -420,10 +422,10 @@ def hand_of(trace, leg):
 
 
 def test_a_leg_leaves_the_gait_goes_where_it_is_told_and_comes_back():
-    w = walker("strider", "wave")
+    w = controller("strider", "wave")
     point = w.feet[0] + [0.03, 0.02, 0.06]
     trace = Trace(w).run((0.006, 0, 0.01), 3)
-    trace.run(Wish(twist=(0.006, 0, 0.01), hands={0: point}), 12)
+    trace.run(Command(twist=(0.006, 0, 0.01), foot_targets={0: point}), 12)
     assert w.limited == ()
     # The body leans over the other legs: the foot is seen from the heading frame, not from under the body.
     x, y, yaw = w.place
@@ -431,47 +433,47 @@ def test_a_leg_leaves_the_gait_goes_where_it_is_told_and_comes_back():
     np.testing.assert_allclose(seen[0], point, atol=1e-4)
     assert not w.contacts[0]
     np.testing.assert_allclose(w.twist, (0.006, 0, 0.01), atol=1e-4)
-    trace.run(Wish(twist=(0.006, 0, 0.01), hands={0: None}), 12)
+    trace.run(Command(twist=(0.006, 0, 0.01), foot_targets={0: None}), 12)
     before = len(trace.contacts)
     trace.run((0.006, 0, 0.01), 2 * w.cycle_time)
-    assert trace.contacts[before:, 0].mean() == pytest.approx(w.gait.duty, abs=0.03)
+    assert trace.contacts[before:, 0].mean() == pytest.approx(w.gait.duty_factor, abs=0.03)
     stopped(trace).assert_sound()
     assert w.contacts.all()
 
 
 def test_a_hand_goes_as_fast_as_it_is_told():
-    w = walker("strider", "wave")
-    trace = Trace(w).run(Wish(hands={5: w.feet[5] + [0, 0, 0.03]}), 10)
+    w = controller("strider", "wave")
+    trace = Trace(w).run(Command(foot_targets={5: w.feet[5] + [0, 0, 0.03]}), 10)
     start = hand_of(trace, 5)[-1]
     for _ in range(100):
-        trace.step(Wish(hand_speeds={5: (0.01, 0, 0.02)}), 0.02)
+        trace.step(Command(foot_velocities={5: (0.01, 0, 0.02)}), 0.02)
     trace.run(STOP, 2).assert_sound()
     np.testing.assert_allclose(hand_of(trace, 5)[-1] - start, (0.02, 0, 0.04), atol=1e-3)
 
 
 def test_a_hand_goes_no_farther_than_its_leg_and_says_so():
-    w = walker("strider", "wave")
-    trace = Trace(w).run(Wish(hands={0: (0.6, 0.3, 0.1)}), 12)
+    w = controller("strider", "wave")
+    trace = Trace(w).run(Command(foot_targets={0: (0.6, 0.3, 0.1)}), 12)
     (reason,) = w.limited
-    assert reason.startswith("hand: ")
+    assert reason.startswith("foot_target: ")
     assert "front left" in reason
-    trace.run(Wish(hands={0: None}), 12).assert_sound()
+    trace.run(Command(foot_targets={0: None}), 12).assert_sound()
     assert w.limited == ()
 
 
 def test_a_leg_that_the_gait_cannot_do_without_stays_and_the_margin_is_said():
-    w = walker("strider", "tripod")
-    trace = Trace(w).run(Wish(twist=(0.05, 0, 0), hands={0: w.feet[0] + [0, 0, 0.05]}), 10)
+    w = controller("strider", "tripod")
+    trace = Trace(w).run(Command(twist=(0.05, 0, 0), foot_targets={0: w.feet[0] + [0, 0, 0.05]}), 10)
     trace.assert_sound()
     (reason,) = w.limited
-    assert re.match(r"hand: without front left the tripod would stand -?\d+ mm inside its support", reason)
+    assert re.match(r"foot_target: without front left the tripod would stand -?\d+ mm inside its support", reason)
     assert trace.contacts[-60:, 0].any()
 
 
 def test_the_body_sways_with_the_steps_and_is_still_when_it_stands():
-    w = walker("strider", "wave")
+    w = controller("strider", "wave")
     level = w.body.position[2]
-    trace = Trace(w).run(Wish(sway=(0, 0, 0.01, 0, 0, 0)), 2)
+    trace = Trace(w).run(Command(sway=(0, 0, 0.01, 0, 0, 0)), 2)
     assert (trace.body.position[:, 2] == level).all()
     trace.run((0.03, 0, 0), 4 * w.cycle_time)
     before = len(trace.contacts)
@@ -487,12 +489,12 @@ def test_the_body_sways_with_the_steps_and_is_still_when_it_stands():
 @pytest.mark.parametrize("step", [0.008, -0.008])
 def test_feet_meet_ground_that_is_higher_or_lower(step):
     """A step across the way, felt by contacts alone: feet stop on it, or look for it."""
-    w = walker("strider", "wave", levelling="level")
+    w = controller("strider", "wave", levelling="level")
     trace = Trace(w)
     for _ in range(1200):
-        feet = trace.walker.body @ forward_kinematics(w.robot, w.angles)[..., 3, :]
+        feet = trace.controller.body @ forward_kinematics(w.robot, w.angles)[..., 3, :]
         ground = np.where(feet[:, 0] > 0.3, step, 0.0)
-        trace.step((0.05, 0, 0), 0.025, senses=Senses(contacts=feet[:, 2] <= ground + 1e-3))
+        trace.step((0.05, 0, 0), 0.025, readings=SensorReadings(contacts=feet[:, 2] <= ground + 1e-3))
     trace.assert_sound(flat=False)
     assert w.place[0] > 0.6
     feet, down = trace.feet[-1], trace.contacts[-1]
@@ -503,18 +505,18 @@ def test_feet_meet_ground_that_is_higher_or_lower(step):
 
 
 def test_a_late_tick_is_no_jump():
-    late, prompt = Trace(walker("strider")), Trace(walker("strider"))
+    late, prompt = Trace(controller("strider")), Trace(controller("strider"))
     for tick in range(100):
         late.step((0.2, 0, 0.3), 2.0 if tick % 7 == 3 else 0.05)
         prompt.step((0.2, 0, 0.3), 0.05)
     assert (late.angles == prompt.angles).all()
-    assert late.walker.time == prompt.walker.time
+    assert late.controller.time == prompt.controller.time
 
 
 def test_short_ticks_and_long_ones_go_the_same_way():
     places, angles = [], []
     for dt in (0.005, 0.01, 0.025, 0.05):
-        w = walker("strider")
+        w = controller("strider")
         trace = Trace(w)
         for twist in ((0.1, 0, 0), (0.1, 0.05, 0.4), (-0.1, 0, 0.2), STOP):
             trace.run(twist, 2.5, dt)
@@ -526,7 +528,7 @@ def test_short_ticks_and_long_ones_go_the_same_way():
 
 
 def digest(seed):
-    trace = drive(walker("phantomx", "ripple"), seed, 20.0)
+    trace = drive(controller("phantomx", "ripple"), seed, 20.0)
     return hashlib.sha256(trace.angles.tobytes()).hexdigest()
 
 
@@ -542,14 +544,14 @@ def test_the_same_stream_gives_the_same_angles_to_the_bit():
 
 def test_memory_does_not_grow():
     """One number kept a tick would show, and an object kept for each change of how it walks."""
-    w = walker("strider")
-    wishes = [Wish(twist=(0.1, 0, 0.2), gait=gait, body=(0, 0, z, 0, 0, 0)) for gait in GAITS for z in (0.0, 0.01)]
+    w = controller("strider")
+    commands = [Command(twist=(0.1, 0, 0.2), gait=gait, body=(0, 0, z, 0, 0, 0)) for gait in GAITS for z in (0.0, 0.01)]
 
     def kept():
         """Walk for six minutes, and count what is there afterwards: objects that hold others, and blocks of memory."""
-        for wish in wishes * 2:
+        for command in commands * 2:
             for _ in range(600):
-                w.step(wish, 0.05)
+                w.step(command, 0.05)
         gc.collect()
         return np.array([len(gc.get_objects()), sys.getallocatedblocks()])
 
@@ -578,64 +580,64 @@ BAD = {
 BAD_WISHES = {
     "body": {"body": (0, 0, NAN, 0, 0, 0)},
     "body of two": {"body": (0, 0)},
-    "clearance": {"clearance": NAN},
-    "clearance in words": {"clearance": "high"},
-    "lift": {"lift": -0.01},
-    "infinite lift": {"lift": INF},
+    "body_height": {"body_height": NAN},
+    "body height in words": {"body_height": "high"},
+    "swing_height": {"swing_height": -0.01},
+    "infinite lift": {"swing_height": INF},
     "width": {"stance_width": -INF},
     "cycle time": {"cycle_time": 0.0},
     "negative cycle time": {"cycle_time": -1.0},
-    "a leg too many": {"hands": {6: (0, 0, 0)}},
-    "a hand that is nowhere": {"hands": {0: (NAN, 0, 0)}},
-    "hands without legs": {"hands": [(0, 0, 0)]},
-    "a hand's speed in words": {"hand_speeds": {0: "slow"}},
+    "a leg too many": {"foot_targets": {6: (0, 0, 0)}},
+    "a hand that is nowhere": {"foot_targets": {0: (NAN, 0, 0)}},
+    "hands without legs": {"foot_targets": [(0, 0, 0)]},
+    "a hand's speed in words": {"foot_velocities": {0: "slow"}},
     "sway": {"sway": (INF,) * 6},
-    "a leg that is no whole number": {"hands": {1.0: (0, 0, 0)}},
-    "a hand's speed that is none": {"hand_speeds": {1: None}},
+    "a leg that is no whole number": {"foot_targets": {1.0: (0, 0, 0)}},
+    "a hand's speed that is none": {"foot_velocities": {1: None}},
     "cycle times": {"cycle_time": np.array([1.0, 2.0])},
     "gait by number": {"gait": 3},
-    "gait for four": {"gait": Gait(duty=0.75, offsets=(0, 0.25, 0.5, 0.75))},
+    "gait for four": {"gait": Gait(duty_factor=0.75, offsets=(0, 0.25, 0.5, 0.75))},
 }
 
 
 @functools.cache
 def undisturbed():
-    return Trace(walker("strider")).run((0.1, 0, 0.1), 1).run((0, 0.1, 0), 1).angles
+    return Trace(controller("strider")).run((0.1, 0, 0.1), 1).run((0, 0.1, 0), 1).angles
 
 
 @pytest.mark.parametrize("bad", [*BAD.values(), *({"twist": (0, 0, 0), **w} for w in BAD_WISHES.values())], ids=repr)
 def test_what_is_no_wish_is_refused_and_changes_nothing(bad):
-    w = walker("strider")
+    w = controller("strider")
     trace = Trace(w).run((0.1, 0, 0.1), 1)
     with pytest.raises(InputError):
-        w.step(Wish(**bad), 0.02) if isinstance(bad, dict) else w.step(*bad)
+        w.step(Command(**bad), 0.02) if isinstance(bad, dict) else w.step(*bad)
     trace.run((0, 0.1, 0), 1)
     assert (trace.angles == undisturbed()).all()
 
 
 def test_a_robot_that_could_not_step_as_it_stands_is_refused_with_the_reason():
     with pytest.raises(UnreachableError, match=r"can't walk so: body: the knee of front left comes to the ground"):
-        walker("strider", clearance=-0.05)
+        controller("strider", body_height=-0.05)
 
 
 @pytest.mark.parametrize("direction", [(0, 0, 0), (NAN, 0, 0), (1, 0), "ahead"])
 def test_a_top_speed_is_of_a_direction(direction):
     with pytest.raises(InputError, match="direction"):
-        walker("strider").top_speed(direction)
+        controller("strider").top_speed(direction)
 
 
 def test_an_unknown_gait_is_refused_with_those_that_there_are():
-    w = walker("strider")
+    w = controller("strider")
     with pytest.raises(UnknownNameError, match="tripod"):
-        w.step(Wish(gait="tripot"), 0.02)
-    assert (w.step(STOP, 0.02) == walker("strider").angles).all()
+        w.step(Command(gait="tripot"), 0.02)
+    assert (w.step(STOP, 0.02) == controller("strider").angles).all()
 
 
 @pytest.mark.parametrize(
     "given",
     [
-        {"clearance": NAN},
-        {"lift": -0.1},
+        {"body_height": NAN},
+        {"swing_height": -0.1},
         {"cycle_time": 0.0},
         {"stance_width": INF},
         {"joint_speed": 0.0},
@@ -646,14 +648,14 @@ def test_an_unknown_gait_is_refused_with_those_that_there_are():
 )
 def test_a_walker_of_nonsense_is_refused(given):
     with pytest.raises(InputError):
-        walker("strider", **given)
+        controller("strider", **given)
 
 
 def test_a_robot_that_cannot_walk_so_is_refused():
     with pytest.raises(UnreachableError):
-        walker("strider", clearance=2.0)
+        controller("strider", body_height=2.0)
     with pytest.raises(InputError):
-        Walker(preset("strider"), Gait(duty=0.75, offsets=(0, 0.25, 0.5, 0.75)))
+        WalkController(preset("strider"), Gait(duty_factor=0.75, offsets=(0, 0.25, 0.5, 0.75)))
 
 
 # With the guard behind it, and on other legs.
@@ -661,13 +663,13 @@ def test_a_robot_that_cannot_walk_so_is_refused():
 
 @pytest.mark.parametrize("name", PRESETS)
 def test_the_guard_lets_clean_walks_through(name):
-    w = walker(name)
+    w = controller(name)
     guard = Guard(w.robot, start=w.angles)
     script = [top(w, (1, 0, 0)), top(w, (0.5, 0.5, 1)), top(w, (-1, 0, 0)), STOP]
     gaits = ("tripod", "ripple", "tripod", "wave")
     for twist, gait in zip(script, gaits, strict=True):
         for _ in range(150):
-            angles = w.step(Wish(twist=twist, gait=gait), 0.02)
+            angles = w.step(Command(twist=twist, gait=gait), 0.02)
             told = guard.check(angles, 0.02, w.contacts, w.body)
             assert told.ok, told.interventions
             assert (told.angles == angles).all()
@@ -677,14 +679,14 @@ def test_the_guard_lets_clean_walks_through(name):
 @pytest.mark.parametrize("legs", [5, 8])
 def test_other_numbers_of_legs_walk_too(legs):
     robot = ring(legs)
-    w = Walker(robot, Gait.named("wave", legs=legs))
+    w = WalkController(robot, Gait.named("wave", legs=legs))
     trace = Trace(w).run(top(w, (1, 0, 1)), 2.5 * w.cycle_time, 0.05)
     stopped(trace).assert_sound()
     assert w.place[0] > 0.01
 
 
 def test_slow_joints_make_a_slow_walk():
-    slow, quick = (walker("strider", joint_speed=speed, joint_acceleration=20 * speed) for speed in (1.5, 6.0))
+    slow, quick = (controller("strider", joint_speed=speed, joint_acceleration=20 * speed) for speed in (1.5, 6.0))
     assert slow.cycle_time > 2 * quick.cycle_time
     assert slow.top_speed((1, 0, 0)) < 0.5 * quick.top_speed((1, 0, 0))
     Trace(slow).run((1, 0, 1), 10, 0.05).assert_sound()
@@ -718,11 +720,11 @@ def test_the_pages_top_speeds_are_those_reached(name, gait):
     cells = [float(cell) for cell in shown.split("|")]
     reached = [benchmark().top_speed(preset(name), gait, direction) for direction in benchmark().DIRECTIONS]
     reached.append(benchmark().top_speed(preset(name), gait, "forward", feeling=True))
-    np.testing.assert_allclose(cells, [walker(name, gait).cycle_time, *reached], atol=0.0051)
+    np.testing.assert_allclose(cells, [controller(name, gait).cycle_time, *reached], atol=0.0051)
 
 
 def test_the_page_shows_every_preset_and_gait_and_every_wish():
     rows = re.findall(r"^\| ([\w-]+) \| (\w+) \| [\d. |]+$", PAGE, flags=re.MULTILINE)
     assert rows == list(itertools.product(PRESETS, GAITS))
-    for name in Wish.__dataclass_fields__:
+    for name in Command.__dataclass_fields__:
         assert f"`{name}`" in PAGE

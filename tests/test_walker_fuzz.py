@@ -7,11 +7,11 @@ from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, initialize, rule
 
 from gait_robots import PRESETS, preset, ring
+from tarsus.control.command import Command
+from tarsus.control.pose.admittance import Admittance
+from tarsus.control.readings import SensorReadings
+from tarsus.control.walk_controller import WalkController
 from tarsus.gait.gait import Gait
-from tarsus.gait.live.admittance import Admittance
-from tarsus.gait.live.senses import Senses
-from tarsus.gait.live.walker import Walker
-from tarsus.gait.live.wish import Wish
 from walker_machine import GAITS, LONGEST_TICK, Trace, drive
 
 SECONDS = 40.0
@@ -21,27 +21,29 @@ GIVING = Admittance(mass=1.0, damping=40.0, stiffness=400.0)
 @pytest.mark.parametrize("seed", range(64))
 def test_any_stream_of_wishes_keeps_the_invariants(seed):
     name, gait = PRESETS[seed % len(PRESETS)], GAITS[seed // len(PRESETS) % len(GAITS)]
-    drive(Walker(preset(name), Gait.named(gait)), seed, SECONDS).assert_sound()
+    drive(WalkController(preset(name), Gait.named(gait)), seed, SECONDS).assert_sound()
 
 
 @pytest.mark.parametrize("seed", [*range(300, 324), 1023])
 def test_legs_moved_by_hand_and_a_swaying_body_keep_them(seed):
-    walker = Walker(preset(PRESETS[seed % len(PRESETS)]), Gait.named(GAITS[seed // len(PRESETS) % len(GAITS)]))
-    drive(walker, seed, SECONDS, legs_as_hands=True).assert_sound()
+    controller = WalkController(
+        preset(PRESETS[seed % len(PRESETS)]), Gait.named(GAITS[seed // len(PRESETS) % len(GAITS)])
+    )
+    drive(controller, seed, SECONDS, legs_as_hands=True).assert_sound()
 
 
 @pytest.mark.parametrize("seed", range(100, 116))
 def test_sensors_garbage_keeps_them(seed):
-    walker = Walker(preset(PRESETS[seed % len(PRESETS)]), levelling="level", admittance=GIVING)
-    drive(walker, seed, SECONDS, sensing=True).assert_sound()
+    controller = WalkController(preset(PRESETS[seed % len(PRESETS)]), levelling="level", admittance=GIVING)
+    drive(controller, seed, SECONDS, sensing=True).assert_sound()
 
 
 @pytest.mark.parametrize("seed", range(200, 208))
 def test_ticks_of_a_millisecond_keep_them(seed):
-    walker = Walker(preset(PRESETS[seed % len(PRESETS)]))
-    trace, rng = Trace(walker), np.random.default_rng(seed)
+    controller = WalkController(preset(PRESETS[seed % len(PRESETS)]))
+    trace, rng = Trace(controller), np.random.default_rng(seed)
     for twist in rng.normal(size=(6, 3)) * [0.3, 0.3, 1.0]:
-        trace.step(Wish(twist=twist, gait=str(rng.choice(GAITS))), 0.001)
+        trace.step(Command(twist=twist, gait=str(rng.choice(GAITS))), 0.001)
         for _ in range(400):
             trace.step(twist, float(rng.uniform(0.001, 0.004)))
     trace.assert_sound()
@@ -67,12 +69,12 @@ class AnyWishes(RuleBasedStateMachine):
     )
     def begin(self, name, gait, cycle_time):
         robot = ring(6) if name == "ring" else preset(name)
-        self.trace = Trace(Walker(robot, Gait.named(gait), cycle_time=cycle_time))
-        self.clearance, self.lift = self.trace.walker.body.position[2], robot.gait.lift or 0.03
-        self.twist, self.dt, self.senses = (0.0, 0.0, 0.0), 0.03, {}
+        self.trace = Trace(WalkController(robot, Gait.named(gait), cycle_time=cycle_time))
+        self.body_height, self.swing_height = self.trace.controller.body.position[2], robot.gait.swing_height or 0.03
+        self.twist, self.dt, self.readings = (0.0, 0.0, 0.0), 0.03, {}
 
     def ask(self, **changes):
-        self.trace.step(Wish(twist=self.twist, **changes), self.dt, **self.senses)
+        self.trace.step(Command(twist=self.twist, **changes), self.dt, **self.readings)
 
     @rule(twist=triples, size=st.sampled_from([0.05, 0.2, 1.0, 1e3]))
     def walk(self, twist, size):
@@ -89,11 +91,11 @@ class AnyWishes(RuleBasedStateMachine):
 
     @rule(share=st.floats(0.1, 3))
     def change_clearance(self, share):
-        self.ask(clearance=share * self.clearance)
+        self.ask(body_height=share * self.body_height)
 
     @rule(share=st.floats(0, 3))
     def change_lift(self, share):
-        self.ask(lift=share * self.lift)
+        self.ask(swing_height=share * self.swing_height)
 
     @rule(width=st.floats(-0.1, 0.1))
     def change_width(self, width):
@@ -109,15 +111,15 @@ class AnyWishes(RuleBasedStateMachine):
 
     @rule(leg=st.integers(0, 5), point=triples)
     def take_leg(self, leg, point):
-        self.ask(hands={leg: tuple(self.trace.walker.feet[leg] + 0.1 * np.array(point))})
+        self.ask(foot_targets={leg: tuple(self.trace.controller.feet[leg] + 0.1 * np.array(point))})
 
     @rule(leg=st.integers(0, 5), speed=triples)
     def move_leg(self, leg, speed):
-        self.ask(hand_speeds={leg: tuple(0.1 * v for v in speed)})
+        self.ask(foot_velocities={leg: tuple(0.1 * v for v in speed)})
 
     @rule()
     def give_legs_back(self):
-        self.ask(hands=dict.fromkeys(range(6)))
+        self.ask(foot_targets=dict.fromkeys(range(6)))
 
     @rule(dt=st.floats(0.001, LONGEST_TICK))
     def change_tick(self, dt):
@@ -127,19 +129,19 @@ class AnyWishes(RuleBasedStateMachine):
     def feel_garbage(self, contacts, attitude, forces, torques):
         # Contacts that could be true would be believed, and this ground is known to be flat.
         contacts = contacts if not isinstance(contacts, list) or len(contacts) != 6 else "garbage"
-        readings = Senses(contacts=contacts, attitude=attitude, forces=forces, torques=torques)
-        self.senses = {"senses": readings}
+        readings = SensorReadings(contacts=contacts, attitude=attitude, forces=forces, torques=torques)
+        self.readings = {"readings": readings}
         self.ask()
 
     @rule()
     def feel_nothing(self):
-        self.senses = {}
+        self.readings = {}
         self.ask()
 
     @rule(ticks=st.sampled_from([1, 10, 40, 120, 240]))
     def go_on(self, ticks):
         for _ in range(ticks):
-            self.trace.step(self.twist, self.dt, **self.senses)
+            self.trace.step(self.twist, self.dt, **self.readings)
 
     def teardown(self):
         if hasattr(self, "trace"):

@@ -4,158 +4,158 @@ import numpy as np
 import pytest
 
 from tarsus import Gait, load_robot
+from tarsus.control.command import Command
+from tarsus.control.walk_controller import WalkController
 from tarsus.errors import InputError
-from tarsus.gait.live.walker import Walker
-from tarsus.gait.live.wish import Wish
 from walker_machine import Trace
 
 DT = 0.01
 
 
-def walk(walker, wish, seconds):
+def walk(controller, command, seconds):
     """Walk, and return the worst joint speed, acceleration and margin."""
-    angles, rate, worst = walker.angles, None, [0.0, 0.0, 1.0]
+    angles, rate, worst = controller.angles, None, [0.0, 0.0, 1.0]
     for _ in range(round(seconds / DT)):
-        after = walker.step(wish, DT)
+        after = controller.step(command, DT)
         now = (after - angles) / DT
-        worst[0] = max(worst[0], (abs(now) / walker.joint_speed).max())
+        worst[0] = max(worst[0], (abs(now) / controller.joint_speed).max())
         if rate is not None:
-            worst[1] = max(worst[1], (abs(now - rate) / DT / walker.joint_acceleration).max())
-        worst[2] = min(worst[2], walker.margin)
+            worst[1] = max(worst[1], (abs(now - rate) / DT / controller.joint_acceleration).max())
+        worst[2] = min(worst[2], controller.margin)
         angles, rate = after, now
     assert worst[0] <= 1.001
     assert worst[1] <= 1.001
     assert worst[2] > 0
 
 
-def in_heading_frame(walker, leg):
-    x, y, yaw = walker.place
-    off = walker.feet[leg] - [x, y, 0]
+def in_heading_frame(controller, leg):
+    x, y, yaw = controller.place
+    off = controller.feet[leg] - [x, y, 0]
     return np.array([np.cos(yaw) * off[0] + np.sin(yaw) * off[1], np.cos(yaw) * off[1] - np.sin(yaw) * off[0], off[2]])
 
 
 def test_a_leg_goes_where_it_is_told_while_the_others_walk():
-    walker = Walker(load_robot("strider"), Gait.named("wave"))
+    controller = WalkController(load_robot("strider"), Gait.named("wave"))
     point = (0.25, 0.2, 0.08)
-    walk(walker, Wish(twist=(0.03, 0, 0.05)), 3)
-    walk(walker, Wish(twist=(0.03, 0, 0.05), hands={0: point}), 14)
-    np.testing.assert_allclose(in_heading_frame(walker, 0), point, atol=1e-3)
-    assert not walker.contacts[0]
-    assert walker.twist[0] > 0.003
+    walk(controller, Command(twist=(0.03, 0, 0.05)), 3)
+    walk(controller, Command(twist=(0.03, 0, 0.05), foot_targets={0: point}), 14)
+    np.testing.assert_allclose(in_heading_frame(controller, 0), point, atol=1e-3)
+    assert not controller.contacts[0]
+    assert controller.twist[0] > 0.003
     # By speed, from there.
-    walk(walker, Wish(twist=(0, 0, 0), hand_speeds={0: (0, -0.05, 0)}), 1)
-    walk(walker, Wish(), 2)
-    np.testing.assert_allclose(in_heading_frame(walker, 0), (0.25, 0.15, 0.08), atol=2e-3)
+    walk(controller, Command(twist=(0, 0, 0), foot_velocities={0: (0, -0.05, 0)}), 1)
+    walk(controller, Command(), 2)
+    np.testing.assert_allclose(in_heading_frame(controller, 0), (0.25, 0.15, 0.08), atol=2e-3)
     # And back: it steps to its rest foothold, and bears load again.
-    walk(walker, Wish(hands={0: None}), 20)
-    assert walker.contacts.all()
-    assert walker.mode == "standing"
-    fresh = Walker(walker.robot, Gait.named("wave"))
-    np.testing.assert_allclose(in_heading_frame(walker, 0), in_heading_frame(fresh, 0), atol=1e-5)
+    walk(controller, Command(foot_targets={0: None}), 20)
+    assert controller.contacts.all()
+    assert controller.mode == "standing"
+    fresh = WalkController(controller.robot, Gait.named("wave"))
+    np.testing.assert_allclose(in_heading_frame(controller, 0), in_heading_frame(fresh, 0), atol=1e-5)
 
 
 def test_a_point_holds_until_there_is_another():
-    walker = Walker(load_robot("strider"), Gait.named("wave"))
-    walk(walker, Wish(hands={0: (0.25, 0.2, 0.08)}), 14)
+    controller = WalkController(load_robot("strider"), Gait.named("wave"))
+    walk(controller, Command(foot_targets={0: (0.25, 0.2, 0.08)}), 14)
     # Said once; what follows only walks.
-    walk(walker, Wish(hands={0: (0.2, 0.22, 0.1)}), DT)
-    walk(walker, Wish(twist=(0.01, 0, 0)), 4)
-    np.testing.assert_allclose(in_heading_frame(walker, 0), (0.2, 0.22, 0.1), atol=1e-3)
+    walk(controller, Command(foot_targets={0: (0.2, 0.22, 0.1)}), DT)
+    walk(controller, Command(twist=(0.01, 0, 0)), 4)
+    np.testing.assert_allclose(in_heading_frame(controller, 0), (0.2, 0.22, 0.1), atol=1e-3)
 
 
 def test_two_legs_at_once():
-    walker = Walker(load_robot("strider"), Gait.named("wave"))
-    walk(walker, Wish(hands={1: (0.0, 0.3, 0.1), 4: (0.0, -0.3, 0.1)}), 8)
-    assert walker.contacts.sum() == 4 or walker.limited
-    assert walker.contacts.sum() >= 3
+    controller = WalkController(load_robot("strider"), Gait.named("wave"))
+    walk(controller, Command(foot_targets={1: (0.0, 0.3, 0.1), 4: (0.0, -0.3, 0.1)}), 8)
+    assert controller.contacts.sum() == 4 or controller.limited
+    assert controller.contacts.sum() >= 3
 
 
 def test_a_leg_that_bears_the_robot_is_refused_with_the_margin():
-    walker = Walker(load_robot("strider"), Gait.named("tripod"))
-    walk(walker, Wish(twist=(0.05, 0, 0), hands={0: (0.25, 0.2, 0.08)}), 8)
-    (reason,) = (text for text in walker.limited if "hand" in text)
+    controller = WalkController(load_robot("strider"), Gait.named("tripod"))
+    walk(controller, Command(twist=(0.05, 0, 0), foot_targets={0: (0.25, 0.2, 0.08)}), 8)
+    (reason,) = (text for text in controller.limited if "foot_target" in text)
     assert "front left" in reason
     assert "mm" in reason
-    assert walker.gait.name == "tripod"
-    assert walker.twist[0] > 0.03
+    assert controller.gait.name == "tripod"
+    assert controller.twist[0] > 0.03
 
 
 def test_out_of_reach_it_goes_as_far_as_it_reaches():
-    walker = Walker(load_robot("strider"), Gait.named("wave"))
-    walk(walker, Wish(hands={0: (0.25, 0.2, 0.08)}), 8)
-    walk(walker, Wish(hands={0: (0.9, 0.7, 0.08)}), 3)
-    assert any("front left comes to the end of its reach" in reason for reason in walker.limited)
-    reached = in_heading_frame(walker, 0)
+    controller = WalkController(load_robot("strider"), Gait.named("wave"))
+    walk(controller, Command(foot_targets={0: (0.25, 0.2, 0.08)}), 8)
+    walk(controller, Command(foot_targets={0: (0.9, 0.7, 0.08)}), 3)
+    assert any("front left comes to the end of its reach" in reason for reason in controller.limited)
+    reached = in_heading_frame(controller, 0)
     assert np.hypot(*reached[:2]) > 0.33
 
 
 @pytest.mark.parametrize("leg", [6, -1, "front left", 1.5])
 def test_there_is_no_such_leg(leg):
-    walker = Walker(load_robot("strider"), Gait.named("wave"))
-    with pytest.raises(InputError, match="hand"):
-        walker.step(Wish(hands={leg: (0.2, 0.2, 0.1)}), DT)
+    controller = WalkController(load_robot("strider"), Gait.named("wave"))
+    with pytest.raises(InputError, match="foot_target"):
+        controller.step(Command(foot_targets={leg: (0.2, 0.2, 0.1)}), DT)
 
 
 def test_sway_moves_the_body_with_the_steps_and_fades():
-    walker = Walker(load_robot("strider"), Gait.named("tripod"))
-    wish = Wish(twist=(0.05, 0, 0), sway=(0.001, 0.004, 0.003, 0.01, 0.005, 0.01))
-    walk(walker, wish, 4)
+    controller = WalkController(load_robot("strider"), Gait.named("tripod"))
+    command = Command(twist=(0.05, 0, 0), sway=(0.001, 0.004, 0.003, 0.01, 0.005, 0.01))
+    walk(controller, command, 4)
     heights = []
-    for _ in range(round(walker.cycle_time / DT)):
-        walker.step(wish, DT)
-        heights.append(walker.body.position[2])
+    for _ in range(round(controller.cycle_time / DT)):
+        controller.step(command, DT)
+        heights.append(controller.body.position[2])
     assert np.ptp(heights) == pytest.approx(0.006, abs=0.0015)
     # More of it than the joints can follow is cut, and said to be.
-    walk(walker, Wish(twist=(0.05, 0, 0), sway=(0.004, 0.02, 0.02, 0.05, 0.05, 0.05)), 4)
-    assert any(reason.startswith("sway: ") for reason in walker.limited)
-    walk(walker, Wish(sway=(0.0,) * 6), 8)
-    assert walker.mode == "standing"
-    np.testing.assert_allclose(walker.body.position[2], 0.110, atol=5e-4)
+    walk(controller, Command(twist=(0.05, 0, 0), sway=(0.004, 0.02, 0.02, 0.05, 0.05, 0.05)), 4)
+    assert any(reason.startswith("sway: ") for reason in controller.limited)
+    walk(controller, Command(sway=(0.0,) * 6), 8)
+    assert controller.mode == "standing"
+    np.testing.assert_allclose(controller.body.position[2], 0.110, atol=5e-4)
 
 
 def test_a_sway_that_the_joints_do_not_allow_is_cut_and_that_is_said():
-    walker = Walker(load_robot("strider"), Gait.named("tripod"), cycle_time=1.0)
-    walk(walker, Wish(twist=(0.05, 0, 0), sway=(0, 0, 0.014, 0, 0, 0)), 3)
-    (reason,) = (reason for reason in walker.limited if reason.startswith("sway"))
+    controller = WalkController(load_robot("strider"), Gait.named("tripod"), cycle_time=1.0)
+    walk(controller, Command(twist=(0.05, 0, 0), sway=(0, 0, 0.014, 0, 0, 0)), 3)
+    (reason,) = (reason for reason in controller.limited if reason.startswith("sway"))
     share = float(reason.split()[1]) / 100
     assert 0 < share < 1
     # As much sway less is not cut.
-    walk(walker, Wish(twist=(0.05, 0, 0), sway=(0, 0, 0.014 * (share - 0.01), 0, 0, 0)), 3)
-    assert not any(reason.startswith("sway") for reason in walker.limited)
+    walk(controller, Command(twist=(0.05, 0, 0), sway=(0, 0, 0.014 * (share - 0.01), 0, 0, 0)), 3)
+    assert not any(reason.startswith("sway") for reason in controller.limited)
 
 
 @pytest.mark.parametrize("name", ["freenove", "strider", "phoenix"])
 def test_a_hand_comes_to_the_edge_of_its_reach_wherever_the_body_sways(name):
-    walker = Walker(load_robot(name), Gait.named("wave"), cycle_time=6.0)
-    trace, twist = Trace(walker), (0.005, 0, 0)
-    trace.run(Wish(twist=twist, sway=(0, 0.015, 0.01, 0.06, 0.05, 0.08)), 3, 0.02)
-    out = walker.feet[1] * [1, 1, 0] / np.hypot(*walker.feet[1, :2])
-    trace.run(Wish(twist=twist, hand_speeds={1: 0.05 * out + [0, 0, 0.01]}), 9, 0.02)
-    trace.run(Wish(twist=twist), 8, 0.02).assert_sound()
+    controller = WalkController(load_robot(name), Gait.named("wave"), cycle_time=6.0)
+    trace, twist = Trace(controller), (0.005, 0, 0)
+    trace.run(Command(twist=twist, sway=(0, 0.015, 0.01, 0.06, 0.05, 0.08)), 3, 0.02)
+    out = controller.feet[1] * [1, 1, 0] / np.hypot(*controller.feet[1, :2])
+    trace.run(Command(twist=twist, foot_velocities={1: 0.05 * out + [0, 0, 0.01]}), 9, 0.02)
+    trace.run(Command(twist=twist), 8, 0.02).assert_sound()
 
 
 @pytest.mark.parametrize("name", ["phantomx-mk2", "mithi"])
 def test_a_sway_stops_and_changes_its_pace_without_a_jump(name):
-    walker = Walker(load_robot(name), Gait.named("tripod"))
-    trace, twist = Trace(walker), 0.5 * walker.top_speed((1, 0, 0)) * np.array([1, 0, 0])
-    trace.run(Wish(twist=twist, sway=(0, 0.005, 0.005, 0.03, 0, 0)), 2.5, 0.002)
-    trace.run(Wish(), 2.5, 0.002)
-    trace.run(Wish(twist=0.5 * twist), 1.5, 0.002)
-    trace.run(Wish(twist=0.5 * twist, gait="wave"), 4, 0.002).assert_sound()
+    controller = WalkController(load_robot(name), Gait.named("tripod"))
+    trace, twist = Trace(controller), 0.5 * controller.top_speed((1, 0, 0)) * np.array([1, 0, 0])
+    trace.run(Command(twist=twist, sway=(0, 0.005, 0.005, 0.03, 0, 0)), 2.5, 0.002)
+    trace.run(Command(), 2.5, 0.002)
+    trace.run(Command(twist=0.5 * twist), 1.5, 0.002)
+    trace.run(Command(twist=0.5 * twist, gait="wave"), 4, 0.002).assert_sound()
 
 
 @pytest.mark.parametrize("name", ["mithi", "strider"])
 def test_one_hand_is_swapped_for_another(name):
-    walker = Walker(load_robot(name), Gait.named("wave"))
-    walk(walker, Wish(twist=(0.005, 0, 0), hands={0: (0.2, 0.15, 0.06)}), 14)
-    assert not walker.contacts[0]
-    walk(walker, Wish(twist=(0.005, 0, 0), hands={0: None, 5: (0.2, -0.15, 0.06)}), 30)
-    walk(walker, Wish(), 12)
-    assert walker.contacts.tolist() == [True] * 5 + [False]
+    controller = WalkController(load_robot(name), Gait.named("wave"))
+    walk(controller, Command(twist=(0.005, 0, 0), foot_targets={0: (0.2, 0.15, 0.06)}), 14)
+    assert not controller.contacts[0]
+    walk(controller, Command(twist=(0.005, 0, 0), foot_targets={0: None, 5: (0.2, -0.15, 0.06)}), 30)
+    walk(controller, Command(), 12)
+    assert controller.contacts.tolist() == [True] * 5 + [False]
 
 
 def test_what_is_no_longer_asked_for_is_refused_no_more():
-    walker = Walker(load_robot("strider"))
-    walker.step(Wish(sway=(0, 0, 0.2, 0, 0, 0)), DT)
-    walk(walker, Wish(sway=(0,) * 6), 5)
-    assert walker.limited == ()
+    controller = WalkController(load_robot("strider"))
+    controller.step(Command(sway=(0, 0, 0.2, 0, 0, 0)), DT)
+    walk(controller, Command(sway=(0,) * 6), 5)
+    assert controller.limited == ()

@@ -3,19 +3,19 @@
 import numpy as np
 import pytest
 
-from tarsus import Gait, Walker, Wish, list_robots, load_robot
+from tarsus import Command, Gait, WalkController, list_robots, load_robot
 from walker_machine import beyond
 
 GAITS = ("tripod", "ripple", "wave", "tetrapod")
 DT = 0.02
 
 
-def asked(walker, rng):
+def asked(controller, rng):
     """Any gait, at up to twice the speed that it has now, or a stop; at times another posture too."""
     way = rng.normal(size=3) * (1, 1, 3)
-    twist = walker.top_speed(way) * way * rng.choice([0, 0, 0.5, 1, 1, 2])
+    twist = controller.top_speed(way) * way * rng.choice([0, 0, 0.5, 1, 1, 2])
     body = rng.uniform(-1, 1, 6) * (0.02, 0.02, 0.02, 0.1, 0.1, 0.1) if rng.random() < 0.3 else None
-    return Wish(twist=twist, gait=str(rng.choice(GAITS)), body=body)
+    return Command(twist=twist, gait=str(rng.choice(GAITS)), body=body)
 
 
 # In each of these feet were 4 to 24 mm beyond: changes let in that they had no room for, and steps too long.
@@ -23,11 +23,11 @@ def asked(walker, rng):
 def test_every_foot_that_stands_is_within_its_polygon(seed):
     rng = np.random.default_rng(seed)
     name = str(rng.choice(list_robots()))
-    walker = Walker(load_robot(name), Gait.named(str(rng.choice(GAITS))))
+    controller = WalkController(load_robot(name), Gait.named(str(rng.choice(GAITS))))
     worst = -np.inf
     for _ in range(12):
-        wish = asked(walker, rng)
+        command = asked(controller, rng)
         for _ in range(rng.integers(10, 120)):
-            walker.step(wish, DT)
-            worst = max(worst, beyond(walker))
+            controller.step(command, DT)
+            worst = max(worst, beyond(controller))
     assert worst <= 1e-6, name

@@ -8,11 +8,10 @@ from scipy.spatial import HalfspaceIntersection
 
 from gait_robots import PRESETS, ring
 from sample_stands import POSTURES, feet_at, polygons, pose_of, posture_of, setup_of, standing
-from tarsus.gait.live.parts import all_parts
-from tarsus.gait.live.polygon import NORMALS, polygon_ends, polygon_radii, polygon_room
-from tarsus.gait.live.posture import stand_of
-from tarsus.gait.live.stand import Terrain, joint_slack
-from tarsus.gait.live.workspace import workspace
+from tarsus.control.incremental import complete
+from tarsus.control.workspace.foot_workspace import foot_workspace
+from tarsus.control.workspace.polygon import NORMALS, polygon_ends, polygon_margin, polygon_radii
+from tarsus.control.workspace.stance_geometry import TerrainEstimate, joint_margin, stance_geometry_of
 from tarsus.kinematics.inverse import inverse_kinematics
 from tarsus.kinematics.leg import forward_kinematics
 from tarsus.kinematics.pose import Pose
@@ -42,10 +41,10 @@ def test_every_foot_is_reached_wherever_in_its_polygon_it_is(name, body):
     setup, bounds = setup_of(name), polygons(name, body)
     stand = standing(setup, body)
     points = random_points(np.random.default_rng(7), corners_of(bounds, stand.rest), 1500)
-    assert (polygon_room(bounds, stand.rest) > 0).all()
+    assert (polygon_margin(bounds, stand.rest) > 0).all()
     # On the ground anywhere; at half the lift and the whole, in a part of the polygon.
     for height, part in ((0.0, 1.0), (0.5, 0.9), (1.0, 0.4)):
-        feet = feet_at(stand.rest + part * (points - stand.rest), height * stand.lift)
+        feet = feet_at(stand.rest + part * (points - stand.rest), height * stand.swing_height)
         found = inverse_kinematics(setup.robot, feet, pose_of(stand))
         assert found.ok.all(), found.explain()
 
@@ -102,7 +101,7 @@ def test_radii_end_on_the_nearest_side():
 
 def test_the_inside_of_a_point_outside_is_negative_room():
     bounds = np.full((1, 16), 0.1)
-    np.testing.assert_allclose(polygon_room(bounds, np.array([0.3 + 0j])).min(), -0.2)
+    np.testing.assert_allclose(polygon_margin(bounds, np.array([0.3 + 0j])).min(), -0.2)
     assert polygon_radii(bounds, np.array([0.3 + 0j]), NORMALS).min() == 0
 
 
@@ -110,8 +109,8 @@ def test_a_foot_out_of_reach_at_rest_has_a_side_short_of_it():
     setup = setup_of("strider")
     stand = standing(setup)
     away = stand._replace(rest=stand.rest * np.array([1, 1, 2.5, 1, 1, 1]))
-    bounds = all_parts(workspace(setup.robot, away, foot_distance=setup.foot_distance))
-    room = polygon_room(bounds, away.rest).min(axis=-1)
+    bounds = complete(foot_workspace(setup.robot, away, foot_distance=setup.foot_distance))
+    room = polygon_margin(bounds, away.rest).min(axis=-1)
     assert room[2] < 0
     assert (np.delete(room, 2) > 0).all()
 
@@ -120,7 +119,7 @@ def test_feet_nearer_to_each_other_than_allowed_may_not_move_towards_each_other(
     setup = setup_of("strider")
     stand = standing(setup)
     between = np.abs(stand.rest[0] - stand.rest[1])
-    bounds = all_parts(workspace(setup.robot, stand, foot_distance=2 * between))
+    bounds = complete(foot_workspace(setup.robot, stand, foot_distance=2 * between))
     way = (stand.rest[1] - stand.rest[0]) / between
     towards = polygon_radii(bounds, stand.rest, np.array([way, -way]))
     assert towards[0, 0] < 1e-9
@@ -149,13 +148,13 @@ def test_slack_is_negative_wherever_inverse_kinematics_says_no(name):
     setup = setup_of(name)
     stand, rng = standing(setup), np.random.default_rng(5)
     points = stand.rest + rng.uniform(-0.3, 0.3, (4000, 6)) + 1j * rng.uniform(-0.3, 0.3, (4000, 6))
-    slack = joint_slack(
+    slack = joint_margin(
         setup.robot.geometry, stand.solve(setup.robot, points.real, points.imag, np.zeros(points.shape))
     )
     found = inverse_kinematics(setup.robot, (feet_at(points) - stand.position) @ stand.rotation)
-    refused = found.reach != 0
-    assert refused.any()
-    assert (slack[refused] < 0).all()
+    rejected = found.reach != 0
+    assert rejected.any()
+    assert (slack[rejected] < 0).all()
     # Positive slack keeps 0.01 rad from every limit.
     low, high = setup.robot.limits[..., 0], setup.robot.limits[..., 1]
     inside = np.minimum(found.angles - low, high - found.angles).min(axis=-1)
@@ -164,9 +163,9 @@ def test_slack_is_negative_wherever_inverse_kinematics_says_no(name):
 
 # A hill that the body does not follow; one that it follows, feet up to half a lift lower than that.
 TERRAINS = [
-    (Terrain(0.12 - 0.08j, 0.0), (0.0,) * 6),
-    (Terrain(0.15 + 0.05j, 0.5), (0.0, 0.0, 0.0, 0.05, -0.15, 0.0)),
-    (Terrain(0j, 0.6), POSTURES[1]),
+    (TerrainEstimate(0.12 - 0.08j, 0.0), (0.0,) * 6),
+    (TerrainEstimate(0.15 + 0.05j, 0.5), (0.0, 0.0, 0.0, 0.05, -0.15, 0.0)),
+    (TerrainEstimate(0j, 0.6), POSTURES[1]),
 ]
 
 
@@ -176,13 +175,13 @@ def test_polygons_on_a_slope_are_within_reach_above_it_on_it_and_below_it(name, 
     setup = setup_of(name)
     terrain, body = TERRAINS[case]
     posture, rest = posture_of(setup, body), setup.rest[:, 0] + 1j * setup.rest[:, 1]
-    stand = stand_of(posture, rest, terrain)
-    bounds = all_parts(workspace(setup.robot, stand, foot_distance=setup.foot_distance))
-    assert polygon_room(bounds, rest).min() > 0.005
+    stand = stance_geometry_of(posture, rest, terrain)
+    bounds = complete(foot_workspace(setup.robot, stand, foot_distance=setup.foot_distance))
+    assert polygon_margin(bounds, rest).min() > 0.005
     points = random_points(np.random.default_rng(7), corners_of(bounds, rest), 400)
     pose = Pose.from_rpy(*posture[3:6], posture[:3])
     ground = (terrain.slope.conjugate() * points).real
-    for above, inner in ((0.0, 1.0), (-terrain.depth * setup.lift, 1.0), (setup.lift, 0.4)):
+    for above, inner in ((0.0, 1.0), (-terrain.depth * setup.swing_height, 1.0), (setup.swing_height, 0.4)):
         places = rest + inner * (points - rest)
         height = (terrain.slope.conjugate() * places).real + above
         feet = np.stack([places.real, places.imag, height], axis=-1)
@@ -203,8 +202,8 @@ def test_a_body_and_a_ground_that_lean_alike_stand_as_on_level_ground():
     # The ground leans about the y axis, and with it everything that stands on it; seen from above it is shorter.
     lean = Pose.from_rpy(0.0, -angle, 0.0, (0.0, 0.0, 0.0))
     rest = lean.rotation[0, 0] * flat.rest.real + 1j * flat.rest.imag
-    posture = np.array([*(lean @ flat.position), 0.0, -angle, 0.0, setup.lift])
-    stand = stand_of(posture, rest, Terrain(complex(np.tan(angle)), 0.0))
+    posture = np.array([*(lean @ flat.position), 0.0, -angle, 0.0, setup.swing_height])
+    stand = stance_geometry_of(posture, rest, TerrainEstimate(complex(np.tan(angle)), 0.0))
     level = flat.solve(setup.robot, flat.rest.real, flat.rest.imag, np.zeros(6))
     leaning = stand.solve(setup.robot, rest.real, rest.imag, np.zeros(6))
     np.testing.assert_allclose(np.array(leaning[:3]), np.array(level[:3]), atol=1e-12)
@@ -212,16 +211,16 @@ def test_a_body_and_a_ground_that_lean_alike_stand_as_on_level_ground():
 
 def test_the_work_is_done_in_parts():
     setup = setup_of("strider")
-    assert sum(1 for _ in workspace(setup.robot, standing(setup), foot_distance=0.02)) >= 6
+    assert sum(1 for _ in foot_workspace(setup.robot, standing(setup), foot_distance=0.02)) >= 6
 
 
 def test_robots_of_any_number_of_legs_have_polygons():
     for legs in (4, 5, 8):
         setup = setup_of(ring(legs), "wave")
         stand = standing(setup)
-        bounds = all_parts(workspace(setup.robot, stand, foot_distance=setup.foot_distance))
+        bounds = complete(foot_workspace(setup.robot, stand, foot_distance=setup.foot_distance))
         assert bounds.shape == (legs, 16)
-        room = polygon_room(bounds, stand.rest)
+        room = polygon_margin(bounds, stand.rest)
         assert (room > 0).all()
         # As like as the ring's legs are.
         np.testing.assert_allclose(room.sum(axis=-1), room.sum() / legs, rtol=0.1)

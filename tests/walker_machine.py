@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from tarsus.gait.live.polygon import NORMALS
-from tarsus.gait.live.senses import Senses
-from tarsus.gait.live.walker import Walker
-from tarsus.gait.live.wish import Wish
+from tarsus.control.command import Command
+from tarsus.control.readings import SensorReadings
+from tarsus.control.walk_controller import WalkController
+from tarsus.control.workspace.polygon import NORMALS
 from tarsus.kinematics.leg import forward_kinematics
 from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.stability import stability_margin
@@ -29,26 +29,26 @@ class Trace:
     forward kinematics.
     """
 
-    def __init__(self, walker: Walker) -> None:
-        self.walker = walker
+    def __init__(self, controller: WalkController) -> None:
+        self.controller = controller
         self._rows: list[tuple[Any, ...]] = []
-        self.wishes: list[tuple[Any, float]] = []
-        self._record(walker.angles, LONGEST_TICK)
+        self.commands: list[tuple[Any, float]] = []
+        self._record(controller.angles, LONGEST_TICK)
 
-    def step(self, wish: Any, dt: float, **senses: Any) -> None:
+    def step(self, command: Any, dt: float, **readings: Any) -> None:
         """Go on by one tick, and note what came of it."""
-        self.wishes.append((wish, dt))
-        self._record(self.walker.step(wish, dt, **senses), dt)
+        self.commands.append((command, dt))
+        self._record(self.controller.step(command, dt, **readings), dt)
 
-    def run(self, wish: Any, duration: float, dt: float = 0.025) -> Trace:
+    def run(self, command: Any, duration: float, dt: float = 0.025) -> Trace:
         """Go on with one wish for a while."""
         for _ in range(max(1, round(duration / dt))):
-            self.step(wish, dt)
+            self.step(command, dt)
         return self
 
     def _record(self, angles: np.ndarray, dt: float) -> None:
-        body = self.walker.body
-        self._rows.append((dt, angles, body.rotation, body.position, self.walker.contacts))
+        body = self.controller.body
+        self._rows.append((dt, angles, body.rotation, body.position, self.controller.contacts))
 
     def column(self, which: int) -> np.ndarray:
         return np.array([row[which] for row in self._rows])
@@ -72,10 +72,10 @@ class Trace:
     @property
     def feet(self) -> np.ndarray:
         """The feet in G ``(n, legs, 3)`` [m]."""
-        return self.body @ forward_kinematics(self.walker.robot, self.angles)[..., 3, :]
+        return self.body @ forward_kinematics(self.controller.robot, self.angles)[..., 3, :]
 
     def margins(self) -> np.ndarray:
-        return np.asarray(stability_margin(self.walker.robot, self.angles, self.body, self.contacts))
+        return np.asarray(stability_margin(self.controller.robot, self.angles, self.body, self.contacts))
 
     def joint_shares(self) -> tuple[np.ndarray, np.ndarray]:
         """Speed and acceleration of every joint by divided differences, over the greatest; ``(n - 1, legs, 3)``."""
@@ -83,7 +83,7 @@ class Trace:
         speed = np.diff(angles, axis=0) / dt[1:, None, None]
         change = np.diff(speed, axis=0, prepend=np.zeros_like(speed[:1]))
         between = (dt[1:] + np.concatenate([dt[1:2], dt[1:-1]])) / 2
-        fastest, hardest = self.walker.joint_speed, self.walker.joint_acceleration
+        fastest, hardest = self.controller.joint_speed, self.controller.joint_acceleration
         return np.abs(speed) / fastest, np.abs(change / between[:, None, None]) / hardest
 
     def slip(self) -> np.ndarray:
@@ -99,7 +99,7 @@ class Trace:
 
         On ground that is not flat, or not known to be, margins and heights are not looked at.
         """
-        angles, limits = self.angles, self.walker.robot.limits
+        angles, limits = self.angles, self.controller.robot.limits
         if not np.isfinite(angles).all():
             return ["angles that are not finite"]
         speed, acceleration = self.joint_shares()
@@ -123,12 +123,12 @@ class Trace:
 
     def assert_sound(self, *, flat: bool = True) -> None:
         found = self.broken(flat=flat)
-        assert not found, f"{self.walker.robot.name}: " + "; ".join(found)
+        assert not found, f"{self.controller.robot.name}: " + "; ".join(found)
 
 
-def beyond(walker: Walker) -> float:
+def beyond(controller: WalkController) -> float:
     """How far the foot on the ground that is farthest out is beyond its polygon [m]."""
-    now, bounds = walker._now, walker._footing.bounds
+    now, bounds = controller._now, controller._footholds.bounds
     seen = (now.foot - now.origin) * np.exp(-1j * now.yaw)
     return float(((seen[:, None] * NORMALS.conj()).real - bounds)[now.down].max())
 
@@ -141,15 +141,18 @@ def _over(what: str, values: np.ndarray, bound: float) -> Iterable[str]:
 
 
 class Stream:
-    """Random wishes, for as long as one likes: each lasts for a while, and changes one thing at a time or several.
+    """Random commands, for as long as one likes: each lasts for a while, and changes one thing at a time or several.
 
     The seed settles everything: robot apart, the same stream always asks for the same.
     """
 
-    def __init__(self, seed: int, walker: Walker, *, legs_as_hands: bool = False) -> None:
+    def __init__(self, seed: int, controller: WalkController, *, legs_as_hands: bool = False) -> None:
         self._rng = np.random.default_rng(seed)
-        self._clearance, self._lift = walker.robot.gait.clearance or 0.1, walker.robot.gait.lift or 0.03
-        self._feet = walker.feet
+        self._body_height, self._lift = (
+            controller.robot.gait.body_height or 0.1,
+            controller.robot.gait.swing_height or 0.03,
+        )
+        self._feet = controller.feet
         self._twist = np.zeros(3)
         # Some streams tick evenly, most don't.
         self._even = float(self._rng.choice([0.0, 0.0, 0.05, 0.03]))
@@ -159,7 +162,7 @@ class Stream:
             self._height,
             self._stance,
             self._pace,
-            *([self._sway, self._hand, self._hand_speed] if legs_as_hands else []),
+            *([self._sway, self._foot_target, self._foot_velocity] if legs_as_hands else []),
         )
 
     def dt(self) -> float:
@@ -170,18 +173,18 @@ class Stream:
         """For how long the next wish stays [s]."""
         return float(self._rng.choice([0.05, 0.3, 1.0, 3.0, 10.0]))
 
-    def wish(self) -> Wish:
+    def command(self) -> Command:
         """The next wish."""
         changes: dict[str, Any] = {}
         for kind in self._rng.choice(len(self._kinds), size=self._rng.choice([1, 1, 1, 3])):
             changes |= self._kinds[kind]()
-        return Wish(twist=tuple(self._twist), **changes)
+        return Command(twist=tuple(self._twist), **changes)
 
-    def senses(self) -> Senses:
+    def readings(self) -> SensorReadings:
         """Readings that no sensor could give, mixed with some that one could on flat ground."""
         rng = self._rng
         garbage = (None, math.nan, math.inf, "broken", [], [math.nan] * 6, np.full((6, 3), np.nan), [[1e9] * 3] * 6)
-        return Senses(
+        return SensorReadings(
             contacts=garbage[rng.integers(len(garbage))],
             attitude=(None, (math.nan, 0.0), (9.0, 0.0), "level", (0.0, 0.0))[rng.integers(5)],
             forces=garbage[rng.integers(len(garbage))],
@@ -203,10 +206,10 @@ class Stream:
         return {"body": tuple(size * self._rng.normal(size=6) * [0.02, 0.02, 0.02, 0.1, 0.1, 0.1])}
 
     def _height(self) -> dict[str, Any]:
-        return {"clearance": self._clearance * self._rng.uniform(0.5, 1.5)}
+        return {"body_height": self._body_height * self._rng.uniform(0.5, 1.5)}
 
     def _stance(self) -> dict[str, Any]:
-        return {"lift": self._lift * self._rng.uniform(0, 1.8), "stance_width": self._rng.uniform(-0.03, 0.03)}
+        return {"swing_height": self._lift * self._rng.uniform(0, 1.8), "stance_width": self._rng.uniform(-0.03, 0.03)}
 
     def _pace(self) -> dict[str, Any]:
         return {"cycle_time": self._rng.choice([0.3, 0.5, 1, 2, 4])}
@@ -215,23 +218,25 @@ class Stream:
         size = self._rng.choice([0, 1])
         return {"sway": tuple(size * self._rng.uniform(0, 1, size=6) * [0.01, 0.01, 0.01, 0.05, 0.05, 0.05])}
 
-    def _hand(self) -> dict[str, Any]:
+    def _foot_target(self) -> dict[str, Any]:
         leg = int(self._rng.integers(6))
         point = self._feet[leg] + self._rng.normal(size=3) * 0.05 + [0, 0, 0.05]
         back = dict.fromkeys(range(6))
-        return {"hands": back | {leg: tuple(point)} if self._rng.random() < 0.6 else back}
+        return {"foot_targets": back | {leg: tuple(point)} if self._rng.random() < 0.6 else back}
 
-    def _hand_speed(self) -> dict[str, Any]:
-        return {"hand_speeds": {int(self._rng.integers(6)): tuple(self._rng.normal(size=3) * 0.05)}}
+    def _foot_velocity(self) -> dict[str, Any]:
+        return {"foot_velocities": {int(self._rng.integers(6)): tuple(self._rng.normal(size=3) * 0.05)}}
 
 
-def drive(walker: Walker, seed: int, duration: float, *, sensing: bool = False, legs_as_hands: bool = False) -> Trace:
-    """Drive a walker with a stream of wishes, and of sensors' garbage where it is `sensing`."""
-    stream, trace = Stream(seed, walker, legs_as_hands=legs_as_hands), Trace(walker)
-    while walker.time < duration:
-        asked: Any = stream.wish()
-        until, twist = min(walker.time + stream.lasts(), duration), asked.twist
-        while asked is not twist or walker.time < until:
-            trace.step(asked, stream.dt(), **({"senses": stream.senses()} if sensing else {}))
+def drive(
+    controller: WalkController, seed: int, duration: float, *, sensing: bool = False, legs_as_hands: bool = False
+) -> Trace:
+    """Drive a walker with a stream of commands, and of sensors' garbage where it is `sensing`."""
+    stream, trace = Stream(seed, controller, legs_as_hands=legs_as_hands), Trace(controller)
+    while controller.time < duration:
+        asked: Any = stream.command()
+        until, twist = min(controller.time + stream.lasts(), duration), asked.twist
+        while asked is not twist or controller.time < until:
+            trace.step(asked, stream.dt(), **({"readings": stream.readings()} if sensing else {}))
             asked = twist
     return trace

@@ -16,9 +16,16 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from tarsus.drive.recording import Recording
-    from tarsus.drive.run import run_scenario
-    from tarsus.drive.scenario import Scenario
+    from tarsus.control.command import Command
+    from tarsus.control.pose.admittance import Admittance
+    from tarsus.control.readings import SensorReadings
+    from tarsus.control.safety.guard import Guard, GuardBounds, GuardOutput, Intervention
+    from tarsus.control.sequence.player import SequencePlayer
+    from tarsus.control.sequence.sequence import MotionSequence
+    from tarsus.control.startup.folded_pose import folded_pose
+    from tarsus.control.startup.planner import fold, sit_down, stand_up
+    from tarsus.control.startup.power_off import power_off_order
+    from tarsus.control.walk_controller import WalkController
     from tarsus.errors import (
         CollisionError,
         InputError,
@@ -31,18 +38,8 @@ if TYPE_CHECKING:
     )
     from tarsus.gait.cycle import cycle_feet
     from tarsus.gait.gait import GAITS, Gait
-    from tarsus.gait.live.admittance import Admittance
-    from tarsus.gait.live.fold import folded_pose
-    from tarsus.gait.live.fold_power import power_off_order
-    from tarsus.gait.live.guard import Guard, GuardBounds, Guarded, Intervention
-    from tarsus.gait.live.rise import fold, sit_down, stand_up
-    from tarsus.gait.live.senses import Senses
-    from tarsus.gait.live.sequence import Sequence
-    from tarsus.gait.live.sequence_player import SequencePlayer
-    from tarsus.gait.live.walker import Walker
-    from tarsus.gait.live.wish import Wish
     from tarsus.gait.motion import Motion
-    from tarsus.gait.path import Path, curved_path, straight_path, twist_path
+    from tarsus.gait.path import BodyPath, curved_path, straight_path, twist_path
     from tarsus.gait.plan import plan_walk
     from tarsus.gait.stroke import max_stroke
     from tarsus.kinematics.body import coxa_frames, reachable_share
@@ -52,19 +49,19 @@ if TYPE_CHECKING:
     from tarsus.kinematics.polygon import support_polygon
     from tarsus.kinematics.pose import Pose
     from tarsus.kinematics.reach import IKSolution, Reach
-    from tarsus.kinematics.rest import Rest, resting_pose
+    from tarsus.kinematics.rest import RestingPose, resting_pose
     from tarsus.kinematics.stability import stability_margin
-    from tarsus.kinematics.stance import default_clearance, default_stance, reachable_band
+    from tarsus.kinematics.stance import default_body_height, default_stance, reachable_band
     from tarsus.load.contact import ContactForces, contact_forces
     from tarsus.load.designs import CycleTorques, cycle_torques
     from tarsus.load.friction import contact_forces_with_friction
     from tarsus.load.handbook.method import handbook
     from tarsus.load.handbook.statics import compare_with_statics
     from tarsus.load.inertia import MotionTorques, motion_torques
-    from tarsus.load.loads import Loads, loads
+    from tarsus.load.loads import JointLoads, joint_loads
     from tarsus.load.payload import Payload
     from tarsus.load.sizing import ServoSizing, size_servos
-    from tarsus.load.supply import Supply, supply
+    from tarsus.load.supply import SupplyLoad, supply_load
     from tarsus.load.torque import joint_torques
     from tarsus.load.verdict import JointVerdict, joint_verdicts
     from tarsus.report.angles import plot_angles
@@ -77,33 +74,36 @@ if TYPE_CHECKING:
     from tarsus.robot.file import list_robots, load_robot, robot_schema
     from tarsus.robot.robot import JOINTS, GaitDefaults, Robot, Source, stack_robots
     from tarsus.robot.servo import Servo
+    from tarsus.scenario.recording import Recording
+    from tarsus.scenario.runner import run_scenario
+    from tarsus.scenario.scenario import Scenario
 
 __version__ = "0.1.0"
 
 # Where each public name lives. It is imported when first asked for: `import tarsus` and `tarsus --help` do not wait
 # for NumPy. A test holds this table, the imports above and `__all__` against each other.
 _HOMES = {
-    "tarsus.drive.recording": ("Recording",),
-    "tarsus.drive.run": ("run_scenario",),
-    "tarsus.drive.scenario": ("Scenario",),
+    "tarsus.scenario.recording": ("Recording",),
+    "tarsus.scenario.runner": ("run_scenario",),
+    "tarsus.scenario.scenario": ("Scenario",),
     "tarsus.errors": (
         *("CollisionError", "InputError", "MissingDataError", "RobotFileError", "StrokeError", "TarsusError"),
         *("UnknownNameError", "UnreachableError"),
     ),
     "tarsus.gait.cycle": ("cycle_feet",),
     "tarsus.gait.gait": ("GAITS", "Gait"),
-    "tarsus.gait.live.admittance": ("Admittance",),
-    "tarsus.gait.live.fold": ("folded_pose",),
-    "tarsus.gait.live.fold_power": ("power_off_order",),
-    "tarsus.gait.live.guard": ("Guard", "GuardBounds", "Guarded", "Intervention"),
-    "tarsus.gait.live.rise": ("fold", "sit_down", "stand_up"),
-    "tarsus.gait.live.senses": ("Senses",),
-    "tarsus.gait.live.sequence": ("Sequence",),
-    "tarsus.gait.live.sequence_player": ("SequencePlayer",),
-    "tarsus.gait.live.walker": ("Walker",),
-    "tarsus.gait.live.wish": ("Wish",),
+    "tarsus.control.pose.admittance": ("Admittance",),
+    "tarsus.control.startup.folded_pose": ("folded_pose",),
+    "tarsus.control.startup.power_off": ("power_off_order",),
+    "tarsus.control.safety.guard": ("Guard", "GuardBounds", "GuardOutput", "Intervention"),
+    "tarsus.control.startup.planner": ("fold", "sit_down", "stand_up"),
+    "tarsus.control.readings": ("SensorReadings",),
+    "tarsus.control.sequence.sequence": ("MotionSequence",),
+    "tarsus.control.sequence.player": ("SequencePlayer",),
+    "tarsus.control.walk_controller": ("WalkController",),
+    "tarsus.control.command": ("Command",),
     "tarsus.gait.motion": ("Motion",),
-    "tarsus.gait.path": ("Path", "curved_path", "straight_path", "twist_path"),
+    "tarsus.gait.path": ("BodyPath", "curved_path", "straight_path", "twist_path"),
     "tarsus.gait.plan": ("plan_walk",),
     "tarsus.gait.stroke": ("max_stroke",),
     "tarsus.kinematics.body": ("coxa_frames", "reachable_share"),
@@ -113,19 +113,19 @@ _HOMES = {
     "tarsus.kinematics.polygon": ("support_polygon",),
     "tarsus.kinematics.pose": ("Pose",),
     "tarsus.kinematics.reach": ("IKSolution", "Reach"),
-    "tarsus.kinematics.rest": ("Rest", "resting_pose"),
+    "tarsus.kinematics.rest": ("RestingPose", "resting_pose"),
     "tarsus.kinematics.stability": ("stability_margin",),
-    "tarsus.kinematics.stance": ("default_clearance", "default_stance", "reachable_band"),
+    "tarsus.kinematics.stance": ("default_body_height", "default_stance", "reachable_band"),
     "tarsus.load.contact": ("ContactForces", "contact_forces"),
     "tarsus.load.designs": ("CycleTorques", "cycle_torques"),
     "tarsus.load.friction": ("contact_forces_with_friction",),
     "tarsus.load.handbook.method": ("handbook",),
     "tarsus.load.handbook.statics": ("compare_with_statics",),
     "tarsus.load.inertia": ("MotionTorques", "motion_torques"),
-    "tarsus.load.loads": ("Loads", "loads"),
+    "tarsus.load.loads": ("JointLoads", "joint_loads"),
     "tarsus.load.payload": ("Payload",),
     "tarsus.load.sizing": ("ServoSizing", "size_servos"),
-    "tarsus.load.supply": ("Supply", "supply"),
+    "tarsus.load.supply": ("SupplyLoad", "supply_load"),
     "tarsus.load.torque": ("joint_torques",),
     "tarsus.load.verdict": ("JointVerdict", "joint_verdicts"),
     "tarsus.report.angles": ("plot_angles",),
@@ -145,44 +145,44 @@ __all__ = [
     "GAITS",
     "JOINTS",
     "Admittance",
+    "BodyPath",
     "CollisionError",
+    "Command",
     "ContactForces",
     "CycleTorques",
     "Gait",
     "GaitDefaults",
     "Guard",
     "GuardBounds",
-    "Guarded",
+    "GuardOutput",
     "IKSolution",
     "InputError",
     "Intervention",
+    "JointLoads",
     "JointVerdict",
-    "Loads",
     "MissingDataError",
     "Motion",
+    "MotionSequence",
     "MotionTorques",
-    "Path",
     "Payload",
     "Pose",
     "Reach",
     "Recording",
-    "Rest",
+    "RestingPose",
     "Robot",
     "RobotFileError",
     "Scenario",
-    "Senses",
-    "Sequence",
+    "SensorReadings",
     "SequencePlayer",
     "Servo",
     "ServoSizing",
     "Source",
     "StrokeError",
-    "Supply",
+    "SupplyLoad",
     "TarsusError",
     "UnknownNameError",
     "UnreachableError",
-    "Walker",
-    "Wish",
+    "WalkController",
     "__version__",
     "animate",
     "centre_of_mass",
@@ -193,13 +193,14 @@ __all__ = [
     "curved_path",
     "cycle_feet",
     "cycle_torques",
-    "default_clearance",
+    "default_body_height",
     "default_stance",
     "fold",
     "folded_pose",
     "forward_kinematics",
     "handbook",
     "inverse_kinematics",
+    "joint_loads",
     "joint_torques",
     "joint_verdicts",
     "leg_jacobian",
@@ -207,7 +208,6 @@ __all__ = [
     "list_servos",
     "load_robot",
     "load_servo",
-    "loads",
     "max_stroke",
     "motion_torques",
     "plan_walk",
@@ -228,7 +228,7 @@ __all__ = [
     "stack_robots",
     "stand_up",
     "straight_path",
-    "supply",
+    "supply_load",
     "support_polygon",
     "total_mass",
     "twist_path",

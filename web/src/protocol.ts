@@ -26,7 +26,7 @@ export interface BodyState {
   pitch_deg: number;
   yaw_deg: number;
   /** Null for the robot's own. */
-  clearance_mm: number | null;
+  body_height_mm: number | null;
   knee: "up" | "down";
   /** Legs x (x, y, z) in G; null for the rest stance. */
   feet_mm: number[] | null;
@@ -70,6 +70,21 @@ export interface ChooseSource {
   commit?: boolean;
   type: "source";
   source: SourceChoice;
+}
+
+/** What the live walker shall do from now on; null leaves a thing as it is. Answer: done. */
+export interface Command {
+  id: number;
+  type: "command";
+  /** Forward, left. */
+  velocity_mm_s: [number, number];
+  turn_deg_s: number;
+  /** x, y, z [mm], roll, pitch, yaw [deg] against the level body. */
+  body?: [number, number, number, number, number, number] | null;
+  gait?: string | null;
+  body_height_mm?: number | null;
+  swing_height_mm?: number | null;
+  cycle_time_s?: number | null;
 }
 
 /** A walk round a centre on the floor. */
@@ -147,7 +162,7 @@ export interface DriveFrame {
   com_mm: number[];
   /** What it does: forward, left [mm/s], turn [deg/s]. */
   twist: number[];
-  /** Why the wish is not met in full. */
+  /** Why the command is not met in full. */
   limited: string[];
   /** How often the guard stepped in. */
   interventions: number;
@@ -322,7 +337,7 @@ export interface OpenState {
 /** A gait without a name. */
 export interface OwnGait {
   /** Share of the cycle that a foot is down. */
-  duty: number;
+  duty_factor: number;
   /** When in the cycle each leg touches down, from 0 to 1. */
   offsets: number[];
 }
@@ -445,8 +460,8 @@ export interface RobotMessage {
   servos: (string | null)[];
   /** Legs x (coxa, femur, tibia), as in the catalogue. */
   stall_torque_nm: (number | null)[];
-  clearance_mm: number;
-  lift_mm: number;
+  body_height_mm: number;
+  swing_height_mm: number;
   gait: string;
   /** Those that a robot of so many legs has. */
   gaits: string[];
@@ -655,14 +670,14 @@ export interface WalkMessage {
   /** n x (x, y) of the centre of mass over the ground in G. */
   com_mm: number[];
   gait: string;
-  duty: number;
+  duty_factor: number;
   duration_s: number;
   cycle_time_s: number;
   steps: number;
   stroke_mm: number;
   speed_mm_s: number;
-  clearance_mm: number;
-  lift_mm: number;
+  body_height_mm: number;
+  swing_height_mm: number;
   longest_stroke_mm: number | null;
   end: WalkEnd;
   joint_speed: JointSpeed[];
@@ -682,8 +697,8 @@ export interface WalkOptions {
   stroke_mm: number | null;
   speed_mm_s: number | null;
   cycle_time_s: number | null;
-  clearance_mm: number | null;
-  lift_mm: number | null;
+  body_height_mm: number | null;
+  swing_height_mm: number | null;
   roll_deg: number;
   pitch_deg: number;
   foot_distance_mm: number | null;
@@ -707,21 +722,6 @@ export interface Welcome {
   bounds: Bounds;
   /** JSON schema of a robot file: descriptions and bounds of its keys. */
   robot_schema: Record<string, unknown>;
-}
-
-/** What the live walker shall do from now on; null leaves a thing as it is. Answer: done. */
-export interface Wish {
-  id: number;
-  type: "wish";
-  /** Forward, left. */
-  velocity_mm_s: [number, number];
-  turn_deg_s: number;
-  /** x, y, z [mm], roll, pitch, yaw [deg] against the level body. */
-  body?: [number, number, number, number, number, number] | null;
-  gait?: string | null;
-  clearance_mm?: number | null;
-  lift_mm?: number | null;
-  cycle_time_s?: number | null;
 }
 
 /** What a leg reaches, as closed outlines in B: they move with the body. Empty where it reaches nothing there. */
@@ -754,7 +754,7 @@ export type ClientMessage =
   | ShowZone
   | ChooseSource
   | Drive
-  | Wish
+  | Command
   | Undo
   | Redo
   | OpenState
@@ -803,9 +803,9 @@ export interface FileGait {
   /** The gait. */
   name?: "tripod" | "tetrapod" | "amble" | "ripple" | "wave";
   /** Height of the body's origin over the ground [mm]. */
-  clearance_mm?: number;
+  body_height_mm?: number;
   /** How high a swinging foot is lifted [mm]. */
-  lift_mm?: number;
+  swing_height_mm?: number;
 }
 
 /** Where the links' centres of mass are, along the link from its inner joint [mm]; left out: the middle. */

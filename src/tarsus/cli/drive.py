@@ -14,8 +14,8 @@ from tarsus.cli.values import examples, json_option, number_option
 if TYPE_CHECKING:
     from rich.table import Table
 
-    from tarsus.drive.recording import Recording
-    from tarsus.load.loads import Loads
+    from tarsus.load.loads import JointLoads
+    from tarsus.scenario.recording import Recording
 
 __all__ = ["drive"]
 
@@ -53,8 +53,8 @@ def drive(
     with semicolons between them. The exit code is 0 only if nothing was refused, the guard had nothing to do, and all
     of the motion is possible.
     """
-    from tarsus.drive.run import run_scenario
-    from tarsus.drive.summary import drive_summary
+    from tarsus.scenario.runner import run_scenario
+    from tarsus.scenario.summary import drive_summary
 
     if not dry:
         raise click.UsageError("real servos come later; --dry computes what they would do")
@@ -80,7 +80,7 @@ def _scenario(text: str, rate: float | None) -> Any:
     """Return the scenario of a file, or of a timeline."""
     import dataclasses
 
-    from tarsus.drive.scenario import Scenario
+    from tarsus.scenario.scenario import Scenario
 
     # What has a colon and a word before it is no file's name.
     is_timeline = text.lstrip().startswith("at ") and not Path(text).is_file()
@@ -88,17 +88,17 @@ def _scenario(text: str, rate: float | None) -> Any:
     return told if rate is None else dataclasses.replace(told, rate=rate)
 
 
-def _loads(recording: Recording) -> Loads | None:
+def _loads(recording: Recording) -> JointLoads | None:
     """Return the loads of the longest stretch in which the body is off the ground, where masses are known."""
-    from tarsus.load.loads import loads
+    from tarsus.load.loads import joint_loads
 
     if not recording.standing or not recording.robot.has_masses:
         return None
     longest = max(recording.standing, key=lambda part: part.duration)
-    return loads(recording.robot, longest) if len(longest.time) > 2 else None
+    return joint_loads(recording.robot, longest) if len(longest.time) > 2 else None
 
 
-def _load_numbers(found: Loads | None) -> dict[str, Any] | None:
+def _load_numbers(found: JointLoads | None) -> dict[str, Any] | None:
     """Return each kind of joint's greatest torque, and its factor where the servo is known."""
     if found is None:
         return None

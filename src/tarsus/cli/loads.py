@@ -18,7 +18,7 @@ __all__ = ["loads"]
 @click.command(
     epilog=examples(
         "tarsus loads strider",
-        "tarsus loads phantomx --clearance 130 --gait ripple",
+        "tarsus loads phantomx --body-height 130 --gait ripple",
         "tarsus loads strider --payload 0.2 --supply 6.8 --distance 300",
         "tarsus loads strider --static --capacity 3 --json",
         "tarsus loads strider --distance 300 --out loads",
@@ -49,16 +49,16 @@ def loads(
     doesn't tip.
     """
     from tarsus.cli.planning import plan
-    from tarsus.load.loads import loads as loads_of
-    from tarsus.load.supply import supply as supply_of
+    from tarsus.load.loads import joint_loads
+    from tarsus.load.supply import supply_load
     from tarsus.report.loads_summary import loads_summary
     from tarsus.report.loads_table import loads_lines, loads_table, loads_verdict
 
     if out is not None:
         make_folder(out)
     motion = plan(robot, asked)
-    found = loads_of(motion.robot, motion, payload=payload, supply=supply, inertial=not static)
-    drawn = supply_of(found, capacity=capacity)
+    found = joint_loads(motion.robot, motion, payload=payload, supply=supply, inertial=not static)
+    drawn = supply_load(found, capacity=capacity)
     summary = loads_summary(found, drawn)
     if not as_json:
         show(loads_table(summary), *loads_lines(summary), loads_verdict(summary))

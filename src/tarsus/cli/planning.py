@@ -9,7 +9,7 @@ import click
 
 from tarsus.gait.gait import Gait
 from tarsus.gait.motion import Motion
-from tarsus.gait.path import Path, curved_path, straight_path, twist_path
+from tarsus.gait.path import BodyPath, curved_path, straight_path, twist_path
 from tarsus.gait.plan import plan_walk
 from tarsus.robot.file import load_robot
 
@@ -18,7 +18,7 @@ __all__ = ["path_of", "plan"]
 _DISTANCE = 500.0
 # Options that say where to, with those that go with them.
 _WAYS = {"distance": ("heading",), "curve": ("centre",), "twist": ("duration",)}
-_LENGTHS = ("stroke", "speed", "clearance", "lift", "foot_distance")
+_LENGTHS = ("stroke", "speed", "body_height", "swing_height", "foot_distance")
 
 
 def plan(name: str, asked: dict[str, Any]) -> Motion:
@@ -54,7 +54,7 @@ def plan(name: str, asked: dict[str, Any]) -> Motion:
     )
 
 
-def path_of(asked: dict[str, Any]) -> Path:
+def path_of(asked: dict[str, Any]) -> BodyPath:
     """Return the path that the options ask for.
 
     Parameters

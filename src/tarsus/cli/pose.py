@@ -19,7 +19,7 @@ __all__ = ["pose"]
 @click.command(
     epilog=examples(
         "tarsus pose strider --pitch 12 --z 20",
-        "tarsus pose strider --x 30 --yaw -10 --clearance 120",
+        "tarsus pose strider --x 30 --yaw -10 --body-height 120",
         "tarsus pose strider --roll 8 --json",
         "tarsus pose mithi --knee down",
         "tarsus pose phantomx --z -15 --picture pose.png",
@@ -32,7 +32,7 @@ __all__ = ["pose"]
 @number_option("--roll", "DEG", "Turn it about x: the left side up.", default=0.0)
 @number_option("--pitch", "DEG", "Turn it about y: the front down.", default=0.0)
 @number_option("--yaw", "DEG", "Turn it about z: to the left.", default=0.0)
-@number_option("--clearance", "MM", "Height of the body's origin before it is moved.  [default: the robot's own]")
+@number_option("--body-height", "MM", "Height of the body's origin before it is moved.  [default: the robot's own]")
 @click.option("--knee", type=click.Choice(["up", "down"]), default="up", show_default=True, help="Where the knees are.")
 @click.option(
     "--picture", type=click.Path(path_type=Path), metavar="FILE", help="Draw it to this file (png, svg, pdf)."
@@ -71,12 +71,12 @@ def _standing(name: str, knee: Literal["up", "down"], move: dict[str, Any]) -> S
 
     from tarsus.kinematics.inverse import inverse_kinematics
     from tarsus.kinematics.pose import Pose
-    from tarsus.kinematics.stance import default_clearance, default_stance
+    from tarsus.kinematics.stance import default_body_height, default_stance
     from tarsus.report.standing_summary import Standing
     from tarsus.robot.file import load_robot
 
     robot = load_robot(name)
-    height = default_clearance(robot) if move["clearance"] is None else move["clearance"] / 1000
+    height = default_body_height(robot) if move["body_height"] is None else move["body_height"] / 1000
     feet = np.asarray(default_stance(robot, height)) + np.array([0.0, 0.0, height])
     start = Pose.from_rpy(position=(0.0, 0.0, height))
     roll, pitch, yaw = np.radians([move["roll"], move["pitch"], move["yaw"]])

@@ -15,10 +15,10 @@ __all__ = ["servos"]
 
 @click.command(
     epilog=examples(
-        "tarsus servos strider --gait wave --clearance 130",
+        "tarsus servos strider --gait wave --body-height 130",
         "tarsus servos strider --factor 1.5 --payload 0.2",
-        "tarsus servos phantomx --gait ripple --clearance 130 --distance 300 --json",
-        "tarsus servos strider --rule continuous --gait wave --clearance 140",
+        "tarsus servos phantomx --gait ripple --body-height 130 --distance 300 --json",
+        "tarsus servos strider --rule continuous --gait wave --body-height 140",
     )
 )
 @robot_argument
@@ -53,13 +53,13 @@ def servos(
     from rich.text import Text
 
     from tarsus.cli.planning import plan
-    from tarsus.load.loads import loads as loads_of
+    from tarsus.load.loads import joint_loads
     from tarsus.load.sizing import size_servos
     from tarsus.report.loads_summary import servos_summary
     from tarsus.report.loads_table import candidate_table, servo_lines
 
     motion = plan(robot, asked)
-    found = loads_of(motion.robot, motion, payload=payload, supply=supply, inertial=not static)
+    found = joint_loads(motion.robot, motion, payload=payload, supply=supply, inertial=not static)
     summary = servos_summary(size_servos(motion.robot, found, safety_factor=factor, rule=rule), found)
     done = bool(summary["present_do"] and summary["balanced"])
     if as_json:

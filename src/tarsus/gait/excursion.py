@@ -56,7 +56,7 @@ class Excursions(NamedTuple):
         """Place along a straight path, from the rest foothold, in strokes."""
         return np.asarray(self.last + (self.following - self.last) * self.along)
 
-    def feet(self, rest: Array, twist: Array, lift: float) -> np.ndarray[Any, Any]:
+    def feet(self, rest: Array, twist: Array, swing_height: float) -> np.ndarray[Any, Any]:
         """Return the feet in the body's heading frame on the ground.
 
         Parameters
@@ -65,7 +65,7 @@ class Excursions(NamedTuple):
             Rest footholds [m].
         twist : array, shape (..., 3)
             What the body moves in one stance time: forward [m], left [m], yaw [rad].
-        lift : float
+        swing_height : float
             Lift [m].
 
         Returns
@@ -78,12 +78,12 @@ class Excursions(NamedTuple):
         start = carry(exponential(displacement, self.last), each)[..., 0, :]
         end = carry(exponential(displacement, self.following), each)[..., 0, :]
         feet = start + (end - start) * self.along[..., None]
-        feet[..., 2] += self.up * lift
+        feet[..., 2] += self.up * swing_height
         return np.asarray(feet)
 
 
 @functools.lru_cache(maxsize=64)
-def extreme_excursions(duty: float, *, curved: bool) -> Excursions:
+def extreme_excursions(duty_factor: float, *, curved: bool) -> Excursions:
     """Return the moments ``(k, 1)`` at which a foot is farthest from its track, of all walks with a duty factor.
 
     A step while the body gathers speed is shorter than one in cruise, so that the foot hangs over farther before it
@@ -94,12 +94,12 @@ def extreme_excursions(duty: float, *, curved: bool) -> Excursions:
 
     Parameters
     ----------
-    duty : float
+    duty_factor : float
         Duty factor.
     curved : bool
         Whether the walk turns.
     """
-    every = _swings(duty)
+    every = _swings(duty_factor)
     ahead = every.offset.reshape(-1, len(_SHARES))
     length = (every.following - every.last).reshape(ahead.shape)
     picked = np.unique(
@@ -114,7 +114,7 @@ def extreme_excursions(duty: float, *, curved: bool) -> Excursions:
     )
     still = _STANCE[:, None]
     extreme = Excursions(*(column[picked] for column in every))
-    return Excursions.joined(Excursions(still, still, 0 * still, 0 * still), _steady_swing(duty), extreme)
+    return Excursions.joined(Excursions(still, still, 0 * still, 0 * still), _steady_swing(duty_factor), extreme)
 
 
 @functools.lru_cache(maxsize=64)
@@ -129,22 +129,22 @@ def walk_excursions(gait: Gait) -> Excursions:
     return Excursions.joined(*(_walk(gait, cruise) for cruise in _CRUISES_OF_WALKS))
 
 
-def _steady_swing(duty: float) -> Excursions:
+def _steady_swing(duty_factor: float) -> Excursions:
     """Return one swing in cruise."""
     share = _SHARES[::2, None]
-    since = 0.5 + share * (1 - duty) / duty
-    return Excursions(-since, 1 / duty - since, ground_share(share), height_share(share))
+    since = 0.5 + share * (1 - duty_factor) / duty_factor
+    return Excursions(-since, 1 / duty_factor - since, ground_share(share), height_share(share))
 
 
-def _swings(duty: float) -> Excursions:
+def _swings(duty_factor: float) -> Excursions:
     """Return all swings of a walk, of legs that start anywhere in the cycle."""
-    gait = Gait(duty, tuple(np.arange(_OFFSETS) / _OFFSETS))
+    gait = Gait(duty_factor, tuple(np.arange(_OFFSETS) / _OFFSETS))
     steps, strokes = _walk_steps(gait, _CRUISE)
     number = np.arange(-2, int(_CRUISE) + 3)[:, None]
     last, following = steps.foothold_share(number), steps.foothold_share(number + 1)
-    lift_off = number + np.asarray(gait.offsets) + duty
+    lift_off = number + np.asarray(gait.offsets) + duty_factor
     moves = last != following
-    body = steps.clock.share(lift_off[moves][:, None] + _SHARES * (1 - duty))
+    body = steps.clock.share(lift_off[moves][:, None] + _SHARES * (1 - duty_factor))
     start, end = ((share[moves][:, None] - body) * strokes for share in (last, following))
     along, up = ground_share(_SHARES) + 0 * body, height_share(_SHARES) + 0 * body
     return Excursions(*(column.reshape(-1, 1) for column in (start, end, along, up)))
@@ -153,7 +153,7 @@ def _swings(duty: float) -> Excursions:
 def _walk(gait: Gait, cruise: float) -> Excursions:
     """Return a walk with so many cycles of cruise."""
     steps, strokes = _walk_steps(gait, cruise)
-    time = np.arange(steps.start, steps.end, (1 - gait.duty) / MOMENTS_OF_SWING)
+    time = np.arange(steps.start, steps.end, (1 - gait.duty_factor) / MOMENTS_OF_SWING)
     last, following, swung, _ = steps.at(time)
     body = steps.clock.share(time)[:, None]
     return Excursions((last - body) * strokes, (following - body) * strokes, ground_share(swung), height_share(swung))
@@ -162,5 +162,5 @@ def _walk(gait: Gait, cruise: float) -> Excursions:
 def _walk_steps(gait: Gait, cruise: float) -> tuple[Steps, float]:
     """Return the steps of a walk with so many cycles of cruise, a second each, and its length in strokes."""
     clock = BodyClock(rate=1 / (1 + cruise), ramp=1.0, cruise=cruise)
-    strokes = (1 + cruise) / gait.duty
+    strokes = (1 + cruise) / gait.duty_factor
     return plan_steps(gait, clock, cycle_time=1.0, least_step=least_step_share(strokes)), strokes

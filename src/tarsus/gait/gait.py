@@ -57,7 +57,7 @@ class Gait:
 
     Attributes
     ----------
-    duty : float
+    duty_factor : float
         Duty factor: the share of the cycle that a foot is on the ground.
     offsets : tuple of float
         For each leg, the share of the cycle at which its foot touches down, in [0, 1).
@@ -65,20 +65,22 @@ class Gait:
         What it is called.
     """
 
-    duty: float
+    duty_factor: float
     offsets: tuple[float, ...]
     name: str = "custom"
 
     def __post_init__(self) -> None:
         try:
-            object.__setattr__(self, "duty", float(self.duty))
+            object.__setattr__(self, "duty_factor", float(self.duty_factor))
             object.__setattr__(self, "offsets", tuple(float(offset) for offset in self.offsets))
         except (TypeError, ValueError) as error:
             raise InputError(f"gait {self.name!r}: duty and offsets must be numbers: {error}") from None
         if not self.offsets:
             raise InputError(f"gait {self.name!r} has no legs: offsets must be one for each leg")
-        if not 0 < self.duty < 1:
-            raise InputError(f"gait {self.name!r}: duty is {self.duty}; it must be between 0 and 1, both excluded")
+        if not 0 < self.duty_factor < 1:
+            raise InputError(
+                f"gait {self.name!r}: duty is {self.duty_factor}; it must be between 0 and 1, both excluded"
+            )
         for leg, offset in enumerate(self.offsets):
             if not 0 <= offset < 1:
                 raise InputError(f"gait {self.name!r}: offsets[{leg}] is {offset}; it must be in [0, 1)")
@@ -108,8 +110,8 @@ class Gait:
         fits = {"tripod": legs >= 6 and legs % 2 == 0, "wave": legs >= 4}.get(key, legs == 6)
         if not fits:
             raise InputError(f"the {key} gait is not for {legs} legs; the wave gait is for any number from 4")
-        duty, offsets = _NAMED[key](legs)
-        return cls(duty=duty, offsets=offsets, name=key)
+        duty_factor, offsets = _NAMED[key](legs)
+        return cls(duty_factor=duty_factor, offsets=offsets, name=key)
 
     @property
     def legs(self) -> int:
@@ -120,7 +122,7 @@ class Gait:
     def fewest_feet_down(self) -> int:
         """The least number of feet that are on the ground at any moment of the cycle."""
         # It falls only at lift-offs; a moment after each tells all there is.
-        after = np.asarray(self.offsets) + self.duty + 2 * _MOMENT
+        after = np.asarray(self.offsets) + self.duty_factor + 2 * _MOMENT
         return int(self.phase(after)[2].sum(-1).min())
 
     def phase(self, clock: Array) -> tuple[Array, Array, Array]:
@@ -148,7 +150,7 @@ class Gait:
         step = xp.floor(since + _MOMENT)
         phase = since - step
         phase = xp.where(phase < 0, xp.zeros_like(phase), phase)
-        return step, phase, phase <= self.duty + _MOMENT
+        return step, phase, phase <= self.duty_factor + _MOMENT
 
     def require_legs(self, legs: int) -> None:
         """Refuse a robot with another number of legs.

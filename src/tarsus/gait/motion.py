@@ -57,7 +57,7 @@ class Motion:
     cycle_time, stroke, speed : float
         Duration of a cycle [s]; stroke of the foot that goes farthest [m]; its speed past the body while cruising
         [m/s], on a straight walk the body's speed.
-    clearance, lift, foot_distance : float
+    body_height, swing_height, foot_distance : float
         Height of the body's origin, lift of the swinging feet, least distance between feet that was asked for [m].
     assumed : tuple of str
         What was not given and had to be assumed.
@@ -74,8 +74,8 @@ class Motion:
     cycle_time: float
     stroke: float
     speed: float
-    clearance: float
-    lift: float
+    body_height: float
+    swing_height: float
     foot_distance: float
     assumed: tuple[str, ...] = field(default=())
 

@@ -15,11 +15,11 @@ import numpy as np
 from tarsus.arrays import Array, Namespace, as_array, namespace, stack_last
 from tarsus.errors import InputError
 
-__all__ = ["Path", "carry", "carry_back", "curved_path", "straight_path", "twist_path"]
+__all__ = ["BodyPath", "carry", "carry_back", "curved_path", "straight_path", "twist_path"]
 
 
 @dataclass(frozen=True)
-class Path:
+class BodyPath:
     """A path of the body over the ground.
 
     Attributes
@@ -124,7 +124,7 @@ def carry_back(place: Array, points: Array) -> Array:
     return stack_last(xp, (*moved, points[..., 2] + xp.zeros_like(moved[0])))
 
 
-def straight_path(distance: float, heading: float = 0.0) -> Path:
+def straight_path(distance: float, heading: float = 0.0) -> BodyPath:
     """Return a straight path; the body keeps facing forward (source 001's L and A).
 
     Parameters
@@ -141,10 +141,10 @@ def straight_path(distance: float, heading: float = 0.0) -> Path:
     """
     if not (math.isfinite(distance) and math.isfinite(heading)):
         raise InputError(f"the path's distance is {distance} m, its heading {heading} rad; both must be finite numbers")
-    return Path((distance * math.cos(heading), distance * math.sin(heading), 0.0))
+    return BodyPath((distance * math.cos(heading), distance * math.sin(heading), 0.0))
 
 
-def curved_path(angle: float, centre: tuple[float, float] = (0.0, 0.0)) -> Path:
+def curved_path(angle: float, centre: tuple[float, float] = (0.0, 0.0)) -> BodyPath:
     """Return a path round a centre (source 001's A and C); round the body's own origin it turns on the spot.
 
     Parameters
@@ -159,10 +159,10 @@ def curved_path(angle: float, centre: tuple[float, float] = (0.0, 0.0)) -> Path:
     InputError
         If the angle is 0, or a value is not finite.
     """
-    return Path((angle * centre[1], -angle * centre[0], angle))
+    return BodyPath((angle * centre[1], -angle * centre[0], angle))
 
 
-def twist_path(vx: float, vy: float, wz: float, duration: float) -> Path:
+def twist_path(vx: float, vy: float, wz: float, duration: float) -> BodyPath:
     """Return the path of a constant twist of the body.
 
     Parameters
@@ -183,4 +183,4 @@ def twist_path(vx: float, vy: float, wz: float, duration: float) -> Path:
         raise InputError(f"the twist is ({vx}, {vy}, {wz}); it must be three finite numbers")
     if not 0 < duration < math.inf:
         raise InputError(f"the duration is {duration} s; it must be greater than 0 and finite")
-    return Path((vx * duration, vy * duration, wz * duration), duration=duration)
+    return BodyPath((vx * duration, vy * duration, wz * duration), duration=duration)

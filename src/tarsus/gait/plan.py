@@ -14,7 +14,7 @@ from tarsus.gait.excursion import MOMENTS_OF_SWING
 from tarsus.gait.gait import Gait
 from tarsus.gait.motion import Motion
 from tarsus.gait.pace import choose_pace
-from tarsus.gait.path import Path, carry
+from tarsus.gait.path import BodyPath, carry
 from tarsus.gait.setup import Setup, require_number
 from tarsus.gait.spacing import passing_distance
 from tarsus.gait.stroke import longest_stroke, stroke_verdict, unit_twist
@@ -32,13 +32,13 @@ _LONGEST_STROKE = 1e3
 def plan_walk(  # noqa: PLR0913 - what a walk can be told is one list, all of it optional
     robot: Robot,
     gait: Gait,
-    path: Path,
+    path: BodyPath,
     *,
     stroke: float | None = None,
     speed: float | None = None,
     cycle_time: float | None = None,
-    clearance: float | None = None,
-    lift: float | None = None,
+    body_height: float | None = None,
+    swing_height: float | None = None,
     body_tilt: Sequence[float] = (0.0, 0.0),
     foot_distance: float | None = None,
     rate: float = 100.0,
@@ -69,9 +69,9 @@ def plan_walk(  # noqa: PLR0913 - what a walk can be told is one list, all of it
     cycle_time : float, optional
         Duration of a cycle [s]. Left out, it follows from stroke and speed; where neither speed nor duration is
         given, it is 1 s, or longer where a joint would else exceed half its servo's no-load speed.
-    clearance : float, optional
+    body_height : float, optional
         Height of the body's origin over the ground [m]; the robot's own where left out.
-    lift : float, optional
+    swing_height : float, optional
         Lift of the swinging feet [m]; the robot's own where left out.
     body_tilt : (roll, pitch)
         Tilt of the body against the ground while walking [rad].
@@ -94,14 +94,21 @@ def plan_walk(  # noqa: PLR0913 - what a walk can be told is one list, all of it
     InputError
         If an argument is not finite or out of its range, or stroke, speed and cycle time contradict each other.
     UnreachableError
-        If a leg reaches the ground nowhere at that clearance.
+        If a leg reaches the ground nowhere at that body height.
     StrokeError
         If the stroke leaves the workspace; the message says which leg, and the longest stroke that works.
     CollisionError
         If two feet come nearer to each other than allowed.
     """
-    setup = Setup.of(robot, gait, clearance=clearance, lift=lift, body_tilt=body_tilt, foot_distance=foot_distance)
-    assumed = setup.assumed(clearance, lift)
+    setup = Setup.of(
+        robot,
+        gait,
+        body_height=body_height,
+        swing_height=swing_height,
+        body_tilt=body_tilt,
+        foot_distance=foot_distance,
+    )
+    assumed = setup.assumed(body_height, swing_height)
     stroke, speed, cycle_time = (
         None if value is None else require_number(name, value, zero=False)
         for name, value in (("stroke", stroke), ("speed", speed), ("cycle_time", cycle_time))
@@ -122,36 +129,38 @@ def plan_walk(  # noqa: PLR0913 - what a walk can be told is one list, all of it
 
 def _steps(gait: Gait, *, travel: float, stroke: float, cycle_time: float, rate: float) -> Steps:
     """Return the steps of a walk; refuse one of too many samples, or with too few to show every swing."""
-    swing_time = cycle_time * (1 - gait.duty)
+    swing_time = cycle_time * (1 - gait.duty_factor)
     if swing_time * rate < 1:
         raise InputError(
             f"rate is {rate:g} samples a second: a swing takes {swing_time:g} s, so that feet would move between two "
             f"samples unseen; at least {1 / swing_time if swing_time else math.inf:.4g} are needed"
         )
     strokes = travel / stroke
-    cycles = strokes * gait.duty + 2
+    cycles = strokes * gait.duty_factor + 2
     if not cycles * cycle_time * rate <= _MOST_SAMPLES:
         raise InputError(
             f"the walk takes {cycles * cycle_time:.3g} s: {cycles * cycle_time * rate:.3g} samples at {rate:g} a "
             f"second; at most {_MOST_SAMPLES} are planned at once"
         )
     # A path that is far shorter than a stroke is all start and stop, how much shorter makes no difference.
-    clock = BodyClock.of(rate=1 / (max(strokes * gait.duty, 0.1) * cycle_time), ramp=cycle_time)
+    clock = BodyClock.of(rate=1 / (max(strokes * gait.duty_factor, 0.1) * cycle_time), ramp=cycle_time)
     return plan_steps(gait, clock, cycle_time=cycle_time, least_step=least_step_share(strokes))
 
 
 def _walk_feet(
-    setup: Setup, path: Path, steps: Steps, moments: np.ndarray[Any, Any]
+    setup: Setup, path: BodyPath, steps: Steps, moments: np.ndarray[Any, Any]
 ) -> tuple[np.ndarray[Any, Any], np.ndarray[Any, Any]]:
     """Return the feet in G, and whether they are on the ground."""
     last, following, swung, contacts = steps.at(moments)
     rest = setup.rest[:, None, :]
     start = carry(path.place(last), rest)[..., 0, :]
     end = carry(path.place(following), rest)[..., 0, :]
-    return np.where(contacts[..., None], start, swing(start, end, swung, setup.lift)), contacts
+    return np.where(contacts[..., None], start, swing(start, end, swung, setup.swing_height)), contacts
 
 
-def _sample(setup: Setup, path: Path, steps: Steps, *, stroke: float, rate: float, assumed: tuple[str, ...]) -> Motion:
+def _sample(
+    setup: Setup, path: BodyPath, steps: Steps, *, stroke: float, rate: float, assumed: tuple[str, ...]
+) -> Motion:
     """Work out the motion at every sample."""
     duration = steps.end - steps.start
     # Rounding must not add a sample where the end falls on one.
@@ -165,25 +174,25 @@ def _sample(setup: Setup, path: Path, steps: Steps, *, stroke: float, rate: floa
         robot=setup.robot,
         gait=setup.gait,
         time=time,
-        body=tilted_body(place, clearance=np.asarray(setup.clearance), body_tilt=setup.body_tilt),
+        body=tilted_body(place, body_height=np.asarray(setup.body_height), body_tilt=setup.body_tilt),
         feet=feet,
         contacts=contacts,
         angles=solution.angles,
         reach=solution.reach,
         cycle_time=steps.cycle_time,
         stroke=stroke,
-        speed=stroke / (setup.gait.duty * steps.cycle_time),
-        clearance=setup.clearance,
-        lift=setup.lift,
+        speed=stroke / (setup.gait.duty_factor * steps.cycle_time),
+        body_height=setup.body_height,
+        swing_height=setup.swing_height,
         foot_distance=setup.foot_distance,
         assumed=assumed,
     )
 
 
-def _refuse_near_feet(setup: Setup, path: Path, steps: Steps, motion: Motion) -> None:
+def _refuse_near_feet(setup: Setup, path: BodyPath, steps: Steps, motion: Motion) -> None:
     """Raise if the feet come too near to each other, at a sample or between."""
     time, feet = motion.time, motion.feet
-    between = steps.cycle_time * (1 - setup.gait.duty) / MOMENTS_OF_SWING
+    between = steps.cycle_time * (1 - setup.gait.duty_factor) / MOMENTS_OF_SWING
     if time[1] - time[0] > between:
         time = np.arange(0, steps.end - steps.start, between)
         feet = _walk_feet(setup, path, steps, time + steps.start)[0]
@@ -199,7 +208,7 @@ def _refuse_near_feet(setup: Setup, path: Path, steps: Steps, motion: Motion) ->
         )
 
 
-def _refuse_stroke(setup: Setup, path: Path, motion: Motion) -> None:
+def _refuse_stroke(setup: Setup, path: BodyPath, motion: Motion) -> None:
     """Raise if the stroke is too long for a walk of any length; that this one leaves the workspace follows."""
     works, solution = stroke_verdict(setup, unit_twist(setup.rest, path.displacement) * motion.stroke)
     if works.all() and not motion.reach.any():

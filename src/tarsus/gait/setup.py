@@ -16,32 +16,32 @@ from tarsus.gait.gait import Gait
 from tarsus.gait.spacing import default_foot_distance
 from tarsus.kinematics.inverse import inverse_kinematics
 from tarsus.kinematics.reach import IKSolution
-from tarsus.kinematics.stance import default_clearance, default_stance
+from tarsus.kinematics.stance import default_body_height, default_stance
 from tarsus.robot.robot import Robot
 
-__all__ = ["Setup", "default_lift", "require_number"]
+__all__ = ["Setup", "default_swing_height", "require_number"]
 
 # No length of a walk's step is greater [m]: what is, is a slip, and its square may overflow.
 _MOST = 1e3
 
 
-def default_lift(robot: Robot) -> float:
+def default_swing_height(robot: Robot) -> float:
     """Return how high a swinging foot is lifted unless told otherwise [m].
 
-    The robot file's `lift_mm`; where it has none, a quarter of the clearance.
+    The robot file's `swing_height_mm`; where it has none, a quarter of the body height.
 
     Parameters
     ----------
     robot : Robot
         The robot.
     """
-    return robot.gait.lift if robot.gait.lift is not None else abs(default_clearance(robot)) / 4
+    return robot.gait.swing_height if robot.gait.swing_height is not None else abs(default_body_height(robot)) / 4
 
 
 _UNITS = {
     "stroke": " m",
-    "clearance": " m",
-    "lift": " m",
+    "body_height": " m",
+    "swing_height": " m",
     "foot_distance": " m",
     "speed": " m/s",
     "cycle_time": " s",
@@ -94,7 +94,7 @@ class Setup:
         For that many legs.
     rest : array, shape (legs, 3)
         Rest footholds in the body's heading frame on the ground [m].
-    clearance, lift : float
+    body_height, swing_height : float
         Height of the body's origin, lift of the swinging feet [m].
     body_tilt : (roll, pitch)
         Tilt of the body against the ground [rad].
@@ -105,8 +105,8 @@ class Setup:
     robot: Robot
     gait: Gait
     rest: np.ndarray[Any, Any]
-    clearance: float
-    lift: float
+    body_height: float
+    swing_height: float
     body_tilt: tuple[float, float]
     foot_distance: float
 
@@ -116,8 +116,8 @@ class Setup:
         robot: Robot,
         gait: Gait,
         *,
-        clearance: float | None,
-        lift: float | None,
+        body_height: float | None,
+        swing_height: float | None,
         body_tilt: Sequence[float],
         foot_distance: float | None,
     ) -> Self:
@@ -125,7 +125,7 @@ class Setup:
 
         Parameters
         ----------
-        robot, gait, clearance, lift, body_tilt, foot_distance
+        robot, gait, body height, lift, body_tilt, foot_distance
             As the attributes; None for the robot's own.
 
         Raises
@@ -133,41 +133,45 @@ class Setup:
         InputError
             If the robot is a batch, the gait is for another number of legs, or a number is out of its range.
         UnreachableError
-            If a leg reaches the ground nowhere at that clearance.
+            If a leg reaches the ground nowhere at that body height.
         """
         if robot.batch_shape:
             raise InputError(f"a walk is planned for a single robot, not for a batch {robot.batch_shape} of designs")
         gait.require_legs(robot.legs)
         robot = robot.item(())
-        lift = default_lift(robot) if lift is None else require_number("lift", lift, zero=True, most=_MOST)
+        swing_height = (
+            default_swing_height(robot)
+            if swing_height is None
+            else require_number("swing_height", swing_height, zero=True, most=_MOST)
+        )
         distance = default_foot_distance(robot) if foot_distance is None else foot_distance
-        height = default_clearance(robot) if clearance is None else clearance
+        height = default_body_height(robot) if body_height is None else body_height
         if not abs(height) <= _MOST:
-            raise InputError(f"clearance is {height} m; it must be a finite number, at most {_MOST:g}")
-        stance = default_stance(robot, height, lift=lift)
+            raise InputError(f"body height is {height} m; it must be a finite number, at most {_MOST:g}")
+        stance = default_stance(robot, height, swing_height=swing_height)
         return cls(
             robot=robot,
             gait=gait,
             rest=stance * np.array([1.0, 1.0, 0.0]),
-            clearance=float(height),
-            lift=lift,
+            body_height=float(height),
+            swing_height=swing_height,
             body_tilt=_tilt(body_tilt),
             foot_distance=require_number("foot_distance", distance, zero=True),
         )
 
-    def assumed(self, clearance: float | None, lift: float | None) -> list[str]:
+    def assumed(self, body_height: float | None, swing_height: float | None) -> list[str]:
         """Say what neither the caller nor the robot file gives.
 
         Parameters
         ----------
-        clearance, lift : float, optional
+        body_height, swing_height : float, optional
             What the caller gave.
         """
         assumed = []
-        if clearance is None and self.robot.gait.clearance is None:
-            assumed.append(f"clearance {self.clearance * 1000:.0f} mm: from the lengths of femur and tibia")
-        if lift is None and self.robot.gait.lift is None:
-            assumed.append(f"lift {self.lift * 1000:.0f} mm: a quarter of the clearance")
+        if body_height is None and self.robot.gait.body_height is None:
+            assumed.append(f"body height {self.body_height * 1000:.0f} mm: from the lengths of femur and tibia")
+        if swing_height is None and self.robot.gait.swing_height is None:
+            assumed.append(f"lift {self.swing_height * 1000:.0f} mm: a quarter of the body height")
         if not self.robot.has_masses:
             assumed.append(
                 "the robot file gives no masses: the stability margin is that of the body's centre of mass, "
@@ -186,7 +190,7 @@ class Setup:
             The body's places on the ground: x [m], y [m] and yaw [rad].
         """
         at = np.zeros(3) if place is None else place
-        body = tilted_body(at, clearance=np.asarray(self.clearance), body_tilt=self.body_tilt)
+        body = tilted_body(at, body_height=np.asarray(self.body_height), body_tilt=self.body_tilt)
         return inverse_kinematics(self.robot, feet, body)
 
 

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 __all__ = ["load_motion", "save_motion", "to_dataset", "write_csv"]
 
 _ARRAYS = ("time", "feet", "contacts", "angles", "reach")
-_NUMBERS = ("cycle_time", "stroke", "speed", "clearance", "lift", "foot_distance")
+_NUMBERS = ("cycle_time", "stroke", "speed", "body_height", "swing_height", "foot_distance")
 _FORMAT = "tarsus motion 1"
 
 
@@ -105,7 +105,7 @@ def save_motion(motion: Motion, path: str | os.PathLike[str]) -> None:
     about = {
         "format": _FORMAT,
         "robot": robot_text(motion.robot),
-        "gait": {"duty": motion.gait.duty, "offsets": motion.gait.offsets, "name": motion.gait.name},
+        "gait": {"duty_factor": motion.gait.duty_factor, "offsets": motion.gait.offsets, "name": motion.gait.name},
         "assumed": motion.assumed,
         **{name: getattr(motion, name) for name in _NUMBERS},
     }

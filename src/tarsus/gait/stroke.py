@@ -13,7 +13,7 @@ from tarsus.gait.branch import branches
 from tarsus.gait.cycle import cycle_feet
 from tarsus.gait.excursion import MOMENTS_OF_SWING, extreme_excursions, walk_excursions
 from tarsus.gait.gait import Gait
-from tarsus.gait.path import Path
+from tarsus.gait.path import BodyPath
 from tarsus.gait.setup import Setup
 from tarsus.gait.spacing import passing_distance
 from tarsus.kinematics.reach import IKSolution
@@ -37,15 +37,17 @@ def unit_twist(rest: Array, direction: float | Sequence[float]) -> np.ndarray[An
     if np.ndim(direction) == 0:
         heading = float(direction)  # type: ignore[arg-type]
         direction = (math.cos(heading), math.sin(heading), 0.0) if math.isfinite(heading) else (heading, 0.0, 0.0)
-    path = Path(tuple(direction))  # type: ignore[arg-type]
+    path = BodyPath(tuple(direction))  # type: ignore[arg-type]
     largest = max(map(abs, path.displacement))
-    path = Path(tuple(v / largest for v in path.displacement))  # type: ignore[arg-type]
+    path = BodyPath(tuple(v / largest for v in path.displacement))  # type: ignore[arg-type]
     return np.asarray(path.displacement) / float(path.travel(rest).max())
 
 
 def steady_solution(setup: Setup, twist: Array, phases: Array) -> IKSolution:
     """Return the angles ``(..., m, legs, 3)`` at phases ``(m,)`` of a steady cycle; `twist` is that of a stance."""
-    feet, _ = cycle_feet(setup.gait, setup.rest, np.asarray(twist), lift=np.asarray(setup.lift), phases=phases)
+    feet, _ = cycle_feet(
+        setup.gait, setup.rest, np.asarray(twist), swing_height=np.asarray(setup.swing_height), phases=phases
+    )
     return setup.solve(feet)
 
 
@@ -66,8 +68,8 @@ def stroke_verdict(setup: Setup, twist: Array) -> tuple[np.ndarray[Any, Any], IK
     solution : IKSolution
         At the moments of `extreme_excursions`.
     """
-    excursions = extreme_excursions(setup.gait.duty, curved=bool(np.any(twist[..., 2])))
-    solution = setup.solve(excursions.feet(setup.rest, twist, setup.lift))
+    excursions = extreme_excursions(setup.gait.duty_factor, curved=bool(np.any(twist[..., 2])))
+    solution = setup.solve(excursions.feet(setup.rest, twist, setup.swing_height))
     at_rest = branches(setup.robot, setup.solve(setup.rest).angles)
     same = (branches(setup.robot, solution.angles) == at_rest).all(-1)
     return ((np.asarray(solution.reach) == 0) & same).all(-2), solution
@@ -97,8 +99,10 @@ def _feet_apart(setup: Setup, twist: Array, longest: float) -> float:
     """Return the stroke, at most `longest`, up to which the feet keep their distance."""
 
     def in_cruise(strokes: Floats) -> Floats:
-        phases = np.linspace(0, 1, math.ceil(MOMENTS_OF_SWING / (1 - setup.gait.duty)) + 1)
-        feet, _ = cycle_feet(setup.gait, setup.rest, strokes[:, None] * twist, lift=setup.lift, phases=phases)
+        phases = np.linspace(0, 1, math.ceil(MOMENTS_OF_SWING / (1 - setup.gait.duty_factor)) + 1)
+        feet, _ = cycle_feet(
+            setup.gait, setup.rest, strokes[:, None] * twist, swing_height=setup.swing_height, phases=phases
+        )
         return np.asarray(passing_distance(feet)[0].min(-1))
 
     def surely(strokes: Floats) -> Floats:
@@ -111,7 +115,7 @@ def _feet_apart(setup: Setup, twist: Array, longest: float) -> float:
     high = _before_failure(lambda strokes: in_cruise(strokes) >= setup.foot_distance, longest, tolerance=tolerance)
     # Between the two, start and stop decide.
     for stroke in np.linspace(low, high, _AT_ONCE + 1)[1:]:
-        feet = walk_excursions(setup.gait).feet(setup.rest, stroke * twist, setup.lift)
+        feet = walk_excursions(setup.gait).feet(setup.rest, stroke * twist, setup.swing_height)
         if (passing_distance(feet)[0] < setup.foot_distance).any():
             break
         low = float(stroke)
@@ -142,9 +146,9 @@ def max_stroke(
     robot: Robot,
     gait: Gait,
     direction: float | Sequence[float] = 0.0,
-    clearance: float | None = None,
+    body_height: float | None = None,
     *,
-    lift: float | None = None,
+    swing_height: float | None = None,
     body_tilt: Sequence[float] = (0.0, 0.0),
     foot_distance: float | None = None,
 ) -> float:
@@ -164,9 +168,9 @@ def max_stroke(
     direction : float or (forward, left, yaw)
         A heading from the body's front, counter-clockwise [rad]; or a twist, of which only the direction counts
         (``(0, 0, 1)`` turns on the spot). The stroke is that of the foot that goes farthest.
-    clearance : float, optional
+    body_height : float, optional
         Height of the body's origin [m]; the robot's own where left out.
-    lift : float, optional
+    swing_height : float, optional
         Lift of the swinging feet [m]; the robot's own where left out.
     body_tilt : (roll, pitch)
         The body's tilt [rad].
@@ -184,7 +188,14 @@ def max_stroke(
         If an argument is not finite or out of its range, the robot is a batch, or the gait is for another number of
         legs.
     UnreachableError
-        If a leg reaches the ground nowhere at that clearance.
+        If a leg reaches the ground nowhere at that body height.
     """
-    setup = Setup.of(robot, gait, clearance=clearance, lift=lift, body_tilt=body_tilt, foot_distance=foot_distance)
+    setup = Setup.of(
+        robot,
+        gait,
+        body_height=body_height,
+        swing_height=swing_height,
+        body_tilt=body_tilt,
+        foot_distance=foot_distance,
+    )
     return longest_stroke(setup, direction)

@@ -17,7 +17,7 @@ def height_share(share: Array) -> Array:
     return (4 * share * (1 - share)) ** 3
 
 
-def swing(start: Array, end: Array, share: Array, lift: Array) -> Array:
+def swing(start: Array, end: Array, share: Array, swing_height: Array) -> Array:
     """Return where a swinging foot is, in the ground frame.
 
     Over the ground, the quintic ``10 s^3 - 15 s^4 + 6 s^5``: its velocity and acceleration are 0 at both ends, so that
@@ -29,7 +29,7 @@ def swing(start: Array, end: Array, share: Array, lift: Array) -> Array:
         Footholds in G [m].
     share : array, shape (...)
         Share of the swing, 0 to 1.
-    lift : array, shape (...)
+    swing_height : array, shape (...)
         Greatest height above the straight line [m].
 
     Returns
@@ -37,8 +37,8 @@ def swing(start: Array, end: Array, share: Array, lift: Array) -> Array:
     array, shape (..., 3)
         Points in G [m].
     """
-    xp = namespace(start, end, share, lift)
+    xp = namespace(start, end, share, swing_height)
     start, end, share = as_array(xp, start), as_array(xp, end), as_array(xp, share)
-    along, up = ground_share(share), as_array(xp, lift) * height_share(share)
+    along, up = ground_share(share), as_array(xp, swing_height) * height_share(share)
     parts = [start[..., i] + (end[..., i] - start[..., i]) * along for i in range(3)]
     return stack_last(xp, (parts[0], parts[1], parts[2] + up))

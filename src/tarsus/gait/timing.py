@@ -114,7 +114,7 @@ class Steps:
 
     def foothold_share(self, step: Array) -> np.ndarray[Any, Any]:
         """Return where along the path the footholds of steps ``(..., legs)`` are, as shares."""
-        middle = (np.asarray(step) + np.asarray(self.gait.offsets) + self.gait.duty / 2) * self.cycle_time
+        middle = (np.asarray(step) + np.asarray(self.gait.offsets) + self.gait.duty_factor / 2) * self.cycle_time
         share = self.clock.share(middle)
         return np.where(share < self.least_step, 0.0, np.where(share > 1 - self.least_step, 1.0, share))
 
@@ -138,7 +138,7 @@ class Steps:
         step, phase, stance = self.gait.phase(np.asarray(time) / self.cycle_time)
         last, following = self.foothold_share(step), self.foothold_share(step + 1)
         stance = stance | (last == following)
-        swung = np.where(stance, 0.0, (phase - self.gait.duty) / (1 - self.gait.duty))
+        swung = np.where(stance, 0.0, (phase - self.gait.duty_factor) / (1 - self.gait.duty_factor))
         return last, following, swung, stance
 
 
@@ -159,7 +159,7 @@ def plan_steps(gait: Gait, clock: BodyClock, *, cycle_time: float, least_step: f
     steps = Steps(gait, clock, cycle_time, least_step, start=0.0, end=clock.duration)
     numbers = np.arange(-3, math.ceil(clock.duration / cycle_time) + 3)[:, None]
     moves = steps.foothold_share(numbers) != steps.foothold_share(numbers + 1)
-    lift_off = (numbers + np.asarray(gait.offsets) + gait.duty) * cycle_time
+    lift_off = (numbers + np.asarray(gait.offsets) + gait.duty_factor) * cycle_time
     touchdown = (numbers + 1 + np.asarray(gait.offsets)) * cycle_time
     start = min(0.0, float(lift_off[moves].min()))
     end = max(clock.duration, float(touchdown[moves].max()))

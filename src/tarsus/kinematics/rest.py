@@ -18,14 +18,14 @@ from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.roll import Settled, rotation_rows, settle
 from tarsus.robot.robot import Robot
 
-__all__ = ["Rest", "resting_pose"]
+__all__ = ["RestingPose", "resting_pose"]
 
 CORNERS = np.array(list(itertools.product((-0.5, 0.5), repeat=3)))
 """The corners of a body's box in the order of `Rest.corners_down`, as shares of its size: x varies slowest."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Rest:
+class RestingPose:
     """How a robot rests on flat ground, one configuration or a batch.
 
     Attributes
@@ -107,7 +107,7 @@ def _short(name: str) -> str:
     return (words[1][0] + words[0][0]).upper() if len(words) == 2 else name
 
 
-def resting_pose(robot: Robot, angles: Array, *, max_rolls: int = 64) -> Rest:
+def resting_pose(robot: Robot, angles: Array, *, max_rolls: int = 64) -> RestingPose:
     """Return how the robot rests on flat ground with its joints held at the given angles.
 
     It is let down upright, B's z up, until something touches, and rolls slowly from contact to contact until its
@@ -177,7 +177,7 @@ def _settle_block(
     )
 
 
-def _rest(xp: Namespace, robot: Robot, blocks: list[Settled], batch: tuple[int, ...]) -> Rest:
+def _rest(xp: Namespace, robot: Robot, blocks: list[Settled], batch: tuple[int, ...]) -> RestingPose:
     def joined(parts: list[Array], *tail: int) -> Array:
         return xp.reshape(xp.concat(parts, axis=0), (*batch, *tail))
 
@@ -188,7 +188,7 @@ def _rest(xp: Namespace, robot: Robot, blocks: list[Settled], batch: tuple[int, 
     level = xp.zeros_like(height)
     down = joined([xp.matrix_transpose(block.down) for block in blocks], blocks[0].down.shape[0])
     leg_points = xp.reshape(down[..., : 4 * robot.legs], (*batch, robot.legs, 4))
-    return Rest(
+    return RestingPose(
         robot=robot,
         body=Pose(rotation, stack_last(xp, (level, level, height))),
         contacts=leg_points[..., 3],

@@ -14,22 +14,22 @@ from tarsus.kinematics.verdict import ANGLE_TOLERANCE
 from tarsus.robot.geometry import LegGeometry
 from tarsus.robot.robot import Robot
 
-__all__ = ["default_clearance", "default_stance", "reachable_band", "stance_or_nan"]
+__all__ = ["default_body_height", "default_stance", "reachable_band", "stance_or_nan"]
 
 
-def default_clearance(robot: Robot) -> Array:
+def default_body_height(robot: Robot) -> Array:
     """Return the height of the body's origin over the ground that the robot walks at unless told otherwise [m].
 
-    The robot file's `clearance_mm`; where it has none, the least height at which a leg's upright tibia hangs from a
+    The robot file's `body_height_mm`; where it has none, the least height at which a leg's upright tibia hangs from a
     femur raised by 30 degrees, but at least half the tibia below the femur axis.
 
     Parameters
     ----------
     robot : Robot
-        The robot; of a batch of designs, the least clearance of all.
+        The robot; of a batch of designs, the least body height of all.
     """
-    if robot.gait.clearance is not None:
-        return robot.gait.clearance
+    if robot.gait.body_height is not None:
+        return robot.gait.body_height
     g = robot.geometry
     xp = namespace(*g)
     g = g.to(xp)
@@ -49,7 +49,7 @@ def reachable_band(robot: Robot, height: Array) -> tuple[Array, Array]:
     robot : Robot
         The robot, or a batch of designs.
     height : array, shape (...)
-        Height of the feet in B [m]: the negative of the clearance.
+        Height of the feet in B [m]: the negative of the body height.
 
     Returns
     -------
@@ -112,7 +112,7 @@ def _in_limits(xp: Namespace, g: LegGeometry, r: Array, z: Array) -> Array:
     return within
 
 
-def default_stance(robot: Robot, clearance: Array | None = None, *, lift: Array = 0.0) -> Array:
+def default_stance(robot: Robot, body_height: Array | None = None, *, swing_height: Array = 0.0) -> Array:
     """Return where the feet stand at rest, in the body frame.
 
     Straight out from each coxa axis (or as near to that as its limits allow), in the middle of the reachable band:
@@ -123,42 +123,42 @@ def default_stance(robot: Robot, clearance: Array | None = None, *, lift: Array 
     ----------
     robot : Robot
         The robot, or a batch of designs.
-    clearance : array, shape (...), optional
-        Height of the body's origin over the ground [m]; `default_clearance` where left out.
-    lift : array, shape (...)
+    body_height : array, shape (...), optional
+        Height of the body's origin over the ground [m]; `default_body_height` where left out.
+    swing_height : array, shape (...)
         How far above the ground a foot must be able to rise [m].
 
     Returns
     -------
     array, shape (..., legs, 3)
-        Footholds in B [m]; their height is the negative of the clearance.
+        Footholds in B [m]; their height is the negative of the body height.
 
     Raises
     ------
     InputError
-        If the clearance is not a finite number.
+        If the body height is not a finite number.
     UnreachableError
-        If a leg reaches the ground nowhere at that clearance; the message says which clearances work.
+        If a leg reaches the ground nowhere at that body height; the message says which body heights work.
     """
-    height = default_clearance(robot) if clearance is None else clearance
-    feet = stance_or_nan(robot, height, lift=lift)
+    height = default_body_height(robot) if body_height is None else body_height
+    feet = stance_or_nan(robot, height, swing_height=swing_height)
     xp = namespace(feet)
     missing = xp.isnan(feet[..., 0])
     if not is_traced(feet) and bool(xp.any(missing)):
-        raise UnreachableError(_why_no_stance(robot, np.asarray(height), np.asarray(lift), np.asarray(missing)))
+        raise UnreachableError(_why_no_stance(robot, np.asarray(height), np.asarray(swing_height), np.asarray(missing)))
     return feet
 
 
-def stance_or_nan(robot: Robot, clearance: Array, *, lift: Array = 0.0) -> Array:
+def stance_or_nan(robot: Robot, body_height: Array, *, swing_height: Array = 0.0) -> Array:
     """Return what `default_stance` does, NaN where it raises that a leg reaches the ground nowhere.
 
     Parameters
     ----------
     robot : Robot
         The robot, or a batch of designs.
-    clearance : array, shape (...)
+    body_height : array, shape (...)
         Height of the body's origin over the ground [m].
-    lift : array, shape (...)
+    swing_height : array, shape (...)
         How far above the ground a foot must be able to rise [m].
 
     Returns
@@ -169,14 +169,14 @@ def stance_or_nan(robot: Robot, clearance: Array, *, lift: Array = 0.0) -> Array
     Raises
     ------
     InputError
-        If the clearance or the lift is not a finite number.
+        If the body height or the lift is not a finite number.
     """
     g = robot.geometry
-    xp = namespace(clearance, lift, *g)
+    xp = namespace(body_height, swing_height, *g)
     g = g.to(xp)
-    z, rise = -as_floats(xp, clearance, name="clearance"), as_floats(xp, lift, name="lift")
-    require_finite("clearance", -z)
-    require_finite("lift", rise)
+    z, rise = -as_floats(xp, body_height, name="body_height"), as_floats(xp, swing_height, name="swing_height")
+    require_finite("body_height", -z)
+    require_finite("swing_height", rise)
     middle = _middle(xp, robot, z, rise)
     zero = xp.zeros_like(middle)
     coxa = xp.minimum(xp.maximum(zero, g.coxa_lower), g.coxa_upper)
@@ -186,38 +186,38 @@ def stance_or_nan(robot: Robot, clearance: Array, *, lift: Array = 0.0) -> Array
     return stack_last(xp, (x, y, z[..., None] + zero))
 
 
-def _middle(xp: Namespace, robot: Robot, height: Array, lift: Array) -> Array:
+def _middle(xp: Namespace, robot: Robot, height: Array, swing_height: Array) -> Array:
     """Return the middle of what each foot reaches on the ground and lifted; NaN where there is nothing."""
-    height, lift = height + xp.zeros_like(lift), lift + xp.zeros_like(height)
+    height, swing_height = height + xp.zeros_like(swing_height), swing_height + xp.zeros_like(height)
     # The two heights come before the axes of a batch of designs.
     shape = (1,) * (len(robot.batch_shape) - height.ndim) + height.shape
-    low, high = reachable_band(robot, xp.stack([xp.reshape(z, shape) for z in (height, height + lift)]))
+    low, high = reachable_band(robot, xp.stack([xp.reshape(z, shape) for z in (height, height + swing_height)]))
     nearest, farthest = xp.maximum(low[0, ...], low[1, ...]), xp.minimum(high[0, ...], high[1, ...])
     return xp.where(nearest <= farthest, (nearest + farthest) / 2, xp.full_like(nearest, xp.nan))
 
 
 def _why_no_stance(
-    robot: Robot, clearance: np.ndarray[Any, Any], lift: np.ndarray[Any, Any], missing: np.ndarray[Any, Any]
+    robot: Robot, body_height: np.ndarray[Any, Any], swing_height: np.ndarray[Any, Any], missing: np.ndarray[Any, Any]
 ) -> str:
-    """Say which leg has no foothold, and at which clearances all legs of that design have one."""
+    """Say which leg has no foothold, and at which body heights all legs of that design have one."""
     *batch, leg = (int(i) for i in np.argwhere(missing)[0])
     where, whole = tuple(batch), missing.shape[:-1]
-    wanted, rise = (float(np.broadcast_to(values, whole)[where]) * 1000 for values in (clearance, lift))
+    wanted, rise = (float(np.broadcast_to(values, whole)[where]) * 1000 for values in (body_height, swing_height))
     lifted = f" and can be lifted {rise:.1f} mm" if rise else ""
     text = (
-        f"{f'{batch} ' if batch else ''}clearance {wanted:.1f} mm: leg {robot.leg_names[leg]} nowhere reaches the "
+        f"{f'{batch} ' if batch else ''}body height {wanted:.1f} mm: leg {robot.leg_names[leg]} nowhere reaches the "
         f"ground{lifted} within its joint limits"
     )
     one = robot.item(where, of=whole)
     g = one.geometry
     reach = float((g.femur + g.tibia).max() + np.abs(g.mount_z + g.up).max())
-    # In tenths of a millimetre, so that the clearances work as they are written.
+    # In tenths of a millimetre, so that the body heights work as they are written.
     steps = np.arange(-np.ceil(reach * 1e4), np.ceil(reach * 1e4) + 1)
     works = steps[~np.isnan(_middle(np, one, -steps / 1e4, np.asarray(rise / 1000))).any(-1)] / 10
     if not len(works):
-        return f"{text}, and there is no clearance at which all legs do"
+        return f"{text}, and there is no body height at which all legs do"
     nearest = works[np.argmin(np.abs(works - wanted))]
     return (
-        f"{text}; all legs do at clearances between {works.min():.1f} and {works.max():.1f} mm, "
+        f"{text}; all legs do at body heights between {works.min():.1f} and {works.max():.1f} mm, "
         f"nearest to it at {nearest:.1f} mm"
     )

@@ -50,8 +50,8 @@ class Block(NamedTuple):
     mass: Column
     rest: tuple[Column, ...]
     stroke: Column
-    clearance: Column
-    lift: Column
+    body_height: Column
+    swing_height: Column
 
 
 class LegPlane(NamedTuple):
@@ -85,13 +85,13 @@ def solve_block(block: Block, along: Array) -> tuple[Triangle, Array, LegPlane]:
     x, y, z = to_leg_frame(g, *block.rest)
     ahead, aside = along[0] * block.stroke, along[1] * block.stroke
     x, y = x + g.cos_yaw * ahead + g.sin_yaw * aside, y + g.cos_yaw * aside - g.sin_yaw * ahead
-    z = z + along[2] * block.lift
+    z = z + along[2] * block.swing_height
     sideways = bool(g.side.any())
     triangle = solve_triangle(np, g, x, y, z, knee=1, sideways=sideways)
     within = all_within(g, triangle)
     codes = np.zeros(triangle.far.shape, dtype=np.int8) if within else reach_codes(np, g, triangle)
     zero, one = np.zeros(1), np.ones(1)
-    place = BodyPlace(((one, zero, zero), (zero, one, zero), (zero, zero, one)), (zero, zero, block.clearance))
+    place = BodyPlace(((one, zero, zero), (zero, one, zero), (zero, zero, one)), (zero, zero, block.body_height))
     if not surely_above(g, triangle.femur, place):
         codes = mark_below_ground(np, g, triangle[:3], codes, place)
     plane, singular = plane_by_foot(g, triangle, x, y, z, sideways=sideways)

@@ -19,12 +19,12 @@ from tarsus.blocks import Index, batch_blocks
 from tarsus.errors import InputError
 from tarsus.gait.cycle import cycle_feet
 from tarsus.gait.gait import Gait
-from tarsus.gait.setup import default_lift
+from tarsus.gait.setup import default_swing_height
 from tarsus.kinematics.inverse import inverse_kinematics
 from tarsus.kinematics.mass import point_masses, total_mass
 from tarsus.kinematics.pairs import columns_of
 from tarsus.kinematics.pose import Pose
-from tarsus.kinematics.stance import default_clearance, default_stance
+from tarsus.kinematics.stance import default_body_height, default_stance
 from tarsus.load.contact import GRAVITY
 from tarsus.load.design_block import (
     Block,
@@ -97,8 +97,8 @@ def cycle_torques(
     *,
     stroke: Array,
     heading: float = 0.0,
-    clearance: Array | None = None,
-    lift: Array | None = None,
+    body_height: Array | None = None,
+    swing_height: Array | None = None,
     phases: int = 32,
     payload: Payload | float = 0.0,
 ) -> CycleTorques:
@@ -116,9 +116,9 @@ def cycle_torques(
         How far the body moves in a stance [m].
     heading : float
         Where to, counter-clockwise from the front [rad].
-    clearance : array, shape (...), optional
+    body_height : array, shape (...), optional
         Height of the body's origin over the ground [m]; the robot's own where left out.
-    lift : array, shape (...), optional
+    swing_height : array, shape (...), optional
         Lift of the swinging feet [m]; the robot's own where left out.
     phases : int
         At how many even moments of the cycle.
@@ -130,7 +130,7 @@ def cycle_torques(
     MissingDataError
         If the robot's masses are unknown.
     UnreachableError
-        If a leg of a design reaches the ground nowhere at that clearance; the message says which.
+        If a leg of a design reaches the ground nowhere at that body height; the message says which.
     InputError
         If a number is not finite or out of its range, or the gait is for another number of legs.
     """
@@ -141,22 +141,24 @@ def cycle_torques(
         raise InputError(f"phases is {phases}; it must be a whole number from 1 to {_MOST_PHASES}")
     if not math.isfinite(heading):
         raise InputError(f"heading is {heading} rad; it must be a finite number")
-    clearance = default_clearance(robot) if clearance is None else clearance
-    lift = default_lift(robot) if lift is None else lift
+    body_height = default_body_height(robot) if body_height is None else body_height
+    swing_height = default_swing_height(robot) if swing_height is None else swing_height
     arrays = {name: getattr(robot, name) for name in TAILS if getattr(robot, name) is not None}
-    xp = namespace(stroke, clearance, lift, *arrays.values())
-    stroke, clearance, lift = (
+    xp = namespace(stroke, body_height, swing_height, *arrays.values())
+    stroke, body_height, swing_height = (
         as_floats(xp, value, name=name)
-        for name, value in (("stroke", stroke), ("clearance", clearance), ("lift", lift))
+        for name, value in (("stroke", stroke), ("body_height", body_height), ("swing_height", swing_height))
     )
     require_finite("stroke", stroke)
-    rest = default_stance(robot, clearance, lift=lift)
+    rest = default_stance(robot, body_height, swing_height=swing_height)
     batch = broadcast_shapes(
-        "robot, stroke, clearance and lift", robot.batch_shape, *(v.shape for v in (stroke, clearance, lift))
+        "robot, stroke, body height and lift",
+        robot.batch_shape,
+        *(v.shape for v in (stroke, body_height, swing_height)),
     )
     cycle = _Cycle.of(gait, heading, phases)
     cycle = _Cycle.of(gait, heading, int(phases))
-    sweep = _Sweep(xp, robot, carried, rest, stroke, clearance, lift, batch or (1,), cycle)
+    sweep = _Sweep(xp, robot, carried, rest, stroke, body_height, swing_height, batch or (1,), cycle)
     return sweep.result(sweep.by_blocks() if xp is np else sweep.by_angles(), batch)
 
 
@@ -173,7 +175,7 @@ class _Cycle(NamedTuple):
         moments = np.arange(phases) / phases
         twist = np.array([math.cos(heading), math.sin(heading), 0.0])
         # Straight on, a foot's way does not depend on where it rests: it is the same for all designs.
-        feet, contacts = cycle_feet(gait, np.zeros((gait.legs, 3)), twist, lift=np.ones(()), phases=moments)
+        feet, contacts = cycle_feet(gait, np.zeros((gait.legs, 3)), twist, swing_height=np.ones(()), phases=moments)
         if not contacts.any(-1).all():
             hanging = moments[int(np.argmin(contacts.any(-1)))]
             raise InputError(f"gait {gait.name!r}: no foot is on the ground at {hanging:g} of the cycle")
@@ -191,8 +193,8 @@ class _Sweep:
     payload: Payload
     rest: Array
     stroke: Array
-    clearance: Array
-    lift: Array
+    body_height: Array
+    swing_height: Array
     batch: tuple[int, ...]
     cycle: _Cycle
 
@@ -227,9 +229,13 @@ class _Sweep:
         """Return angles, torques, forces, reach and balance of all designs, in a row, from their joint angles."""
         xp, legs, moments = self.xp, self.robot.legs, len(self.cycle.phases)
         ahead, aside, up = (as_array(xp, np.ascontiguousarray(part[..., 0].T)) for part in self.cycle.along)
-        stroke, lift, height = (v[..., None, None] for v in (self.stroke, self.lift, self.clearance))
+        stroke, swing_height, height = (v[..., None, None] for v in (self.stroke, self.swing_height, self.body_height))
         rest = self.rest[..., None, :, :]
-        parts = (rest[..., 0] + stroke * ahead, rest[..., 1] + stroke * aside, rest[..., 2] + height + lift * up)
+        parts = (
+            rest[..., 0] + stroke * ahead,
+            rest[..., 1] + stroke * aside,
+            rest[..., 2] + height + swing_height * up,
+        )
         feet = xp.stack(xp.broadcast_arrays(*parts), axis=-1)
         above = height[..., 0] + xp.zeros_like(height[..., 0])
         body = Pose(xp.eye(3, dtype=feet.dtype), stack_last(xp, (0 * above, 0 * above, above)))
@@ -263,8 +269,8 @@ class _Sweep:
             mass=columns(as_array(xp, total_mass(robot)) + carried, 0),
             rest=tuple(part[:, None, :] for part in _rows(columns(self.rest, 2))),
             stroke=columns(self.stroke, 0),
-            clearance=columns(self.clearance, 0),
-            lift=columns(self.lift, 0),
+            body_height=columns(self.body_height, 0),
+            swing_height=columns(self.swing_height, 0),
         )
 
     def statics(self, block: Block, plane: LegPlane) -> tuple[Array, Array, Array, Array]:
@@ -295,7 +301,7 @@ class _Sweep:
         arrays = {
             name: pick(getattr(self.robot, name), len(tail)) for name, tail in TAILS.items() if _known(self, name)
         }
-        numbers = {name: pick(getattr(self, name), 0) for name in ("stroke", "clearance", "lift")}
+        numbers = {name: pick(getattr(self, name), 0) for name in ("stroke", "body_height", "swing_height")}
         robot = self.robot.replace(**arrays)
         return replace(self, robot=robot, rest=pick(self.rest, 2), batch=(len(where[0]),), **numbers)
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from tarsus.errors import InputError, MissingDataError
 from tarsus.kinematics.inverse import inverse_kinematics
-from tarsus.load.loads import Loads, loads
+from tarsus.load.loads import JointLoads, joint_loads
 from tarsus.load.payload import Payload
 from tarsus.load.verdict import SAFETY_FACTOR, Rule, joint_verdicts, require_rule
 from tarsus.robot.robot import JOINTS, Robot
@@ -107,7 +107,7 @@ def _mass(servo: Servo | None) -> float:
     return 0.0 if servo is None or servo.mass is None else servo.mass
 
 
-def largest_payload(base: Loads, *, safety_factor: float = SAFETY_FACTOR, rule: Rule = "factor") -> float:
+def largest_payload(base: JointLoads, *, safety_factor: float = SAFETY_FACTOR, rule: Rule = "factor") -> float:
     """Return the heaviest payload that the present servos carry through the same motion.
 
     Parameters
@@ -138,7 +138,7 @@ def largest_payload(base: Loads, *, safety_factor: float = SAFETY_FACTOR, rule: 
         )
 
     def carried(mass: float) -> bool:
-        found = loads(base.robot, base.motion, payload=Payload(mass, base.payload.position), **base.conditions)
+        found = joint_loads(base.robot, base.motion, payload=Payload(mass, base.payload.position), **base.conditions)
         verdicts = joint_verdicts(found, safety_factor=safety_factor)
         return found.balanced and all(verdict.keeps(rule) for verdict in verdicts)
 
@@ -178,7 +178,7 @@ def with_lengths(robot: Robot, **lengths: float) -> Robot:
     return robot.replace(link_com=com, **changes)
 
 
-def length_sensitivity(base: Loads, *, step: float = 0.01) -> dict[str, Floats]:
+def length_sensitivity(base: JointLoads, *, step: float = 0.01) -> dict[str, Floats]:
     """Return how each joint kind's peak torque changes with the length of each link, feet and body where they are.
 
     Central differences over two calculations of the whole motion with the same footholds and the same body.
@@ -204,11 +204,11 @@ def length_sensitivity(base: Loads, *, step: float = 0.01) -> dict[str, Floats]:
     return found
 
 
-def _peak_with(base: Loads, link: str, factor: float) -> Floats:
+def _peak_with(base: JointLoads, link: str, factor: float) -> Floats:
     """Return the peak torques of the joint kinds with one link longer by a factor."""
     motion, changed = base.motion, with_lengths(base.robot, **{link: factor})
     solution = inverse_kinematics(changed, motion.feet, motion.body)
     if not bool(np.all(solution.ok)):
         return np.full(3, np.nan)
     moved = replace(motion, robot=changed, angles=solution.angles, reach=solution.reach)
-    return np.asarray(loads(changed, moved, payload=base.payload, **base.conditions).peak.max(0))
+    return np.asarray(joint_loads(changed, moved, payload=base.payload, **base.conditions).peak.max(0))

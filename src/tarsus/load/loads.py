@@ -19,7 +19,7 @@ from tarsus.load.payload import Payload, as_payload
 from tarsus.robot.robot import JOINTS, Robot
 from tarsus.robot.servo import Servo
 
-__all__ = ["Loads", "at_supply", "loads", "utilisation"]
+__all__ = ["JointLoads", "at_supply", "joint_loads", "utilisation"]
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]
 
@@ -28,7 +28,7 @@ _ROUNDING = 1e-9
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Loads:
+class JointLoads:
     """What the joints bear over a motion. Arrays ``(legs, 3)`` are of coxa, femur and tibia.
 
     Attributes
@@ -68,7 +68,7 @@ class Loads:
 
     @property
     def conditions(self) -> dict[str, Any]:
-        """What `loads` was told besides robot, motion and payload: to work out others under the same."""
+        """What `joint_loads` was told besides robot, motion and payload: to work out others under the same."""
         return {"gravity": self.gravity, "inertial": self.inertial, "supply": self.supply}
 
     @property
@@ -274,7 +274,7 @@ def utilisation(torque: Floats, speed: Floats, stall_torque: Floats, no_load_spe
     return _floats(np.abs(torque) / stall_torque + driving / no_load_speed)
 
 
-def loads(
+def joint_loads(
     robot: Robot,
     motion: Motion,
     *,
@@ -282,7 +282,7 @@ def loads(
     gravity: Sequence[float] = GRAVITY,
     inertial: bool = True,
     supply: float | None = None,
-) -> Loads:
+) -> JointLoads:
     """Return what every joint bears over a motion.
 
     Parameters
@@ -313,7 +313,7 @@ def loads(
     if supply is not None and not 0 < supply < float("inf"):
         raise InputError(f"supply is {supply} V; it must be greater than 0 and finite")
     solved = motion_torques(robot, motion, payload=payload, gravity=gravity, inertial=inertial)
-    return Loads(
+    return JointLoads(
         robot=robot,
         motion=motion,
         payload=as_payload(payload),

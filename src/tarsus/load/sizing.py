@@ -12,7 +12,7 @@ import numpy as np
 
 from tarsus.kinematics.mass import total_mass
 from tarsus.load.fit import largest_payload, length_sensitivity, why_masses_stay, with_servos
-from tarsus.load.loads import Loads, loads
+from tarsus.load.loads import JointLoads, joint_loads
 from tarsus.load.verdict import (
     BURNS_BELOW,
     SAFETY_FACTOR,
@@ -115,7 +115,7 @@ class ServoSizing:
 
 
 def size_servos(
-    robot: Robot, loads: Loads, *, safety_factor: float = SAFETY_FACTOR, rule: Rule = "factor"
+    robot: Robot, joint_loads: JointLoads, *, safety_factor: float = SAFETY_FACTOR, rule: Rule = "factor"
 ) -> ServoSizing:
     """Judge a robot's servos, and find those of the catalogue that would do.
 
@@ -142,7 +142,7 @@ def size_servos(
     """
     require_rule(rule)
     robot.require_masses()
-    base = loads if loads.robot == robot else _again(loads, robot)
+    base = joint_loads if joint_loads.robot == robot else _again(joint_loads, robot)
     judge = _Judge(base, safety_factor, rule)
     verdicts = joint_verdicts(base, safety_factor=safety_factor)
     candidates, left_out = judge.candidates()
@@ -161,8 +161,8 @@ def size_servos(
     )
 
 
-def _again(base: Loads, robot: Robot) -> Loads:
-    return loads(robot, base.motion, payload=base.payload, **base.conditions)
+def _again(base: JointLoads, robot: Robot) -> JointLoads:
+    return joint_loads(robot, base.motion, payload=base.payload, **base.conditions)
 
 
 def _where_servos_sit(robot: Robot) -> str:
@@ -179,18 +179,18 @@ def _where_servos_sit(robot: Robot) -> str:
 class _Judge:
     """Tries servos in the robot, each time with its loads worked out anew."""
 
-    base: Loads
+    base: JointLoads
     safety_factor: float
     rule: Rule
 
-    def fit(self, servos: Mapping[str, Servo]) -> Loads:
+    def fit(self, servos: Mapping[str, Servo]) -> JointLoads:
         """Return the loads with other servos, their masses counted."""
         return _again(self.base, with_servos(self.base.robot, servos))
 
-    def verdicts(self, found: Loads) -> tuple[JointVerdict, ...]:
+    def verdicts(self, found: JointLoads) -> tuple[JointVerdict, ...]:
         return joint_verdicts(found, safety_factor=self.safety_factor)
 
-    def candidate(self, servos: Mapping[str, Servo], found: Loads) -> Candidate:
+    def candidate(self, servos: Mapping[str, Servo], found: JointLoads) -> Candidate:
         verdicts = self.verdicts(found)
         return Candidate(
             servos=MappingProxyType(dict(servos)),
@@ -200,7 +200,7 @@ class _Judge:
             robot_mass=float(total_mass(found.robot)),
         )
 
-    def lacking(self, found: Loads) -> set[str]:
+    def lacking(self, found: JointLoads) -> set[str]:
         """Return the kinds of joint of which some don't do."""
         return {verdict.joint for verdict in self.verdicts(found) if not verdict.does(self.rule)}
 
@@ -251,7 +251,7 @@ class _Judge:
         return None
 
 
-def _judged_with(found: Loads, servo: Servo) -> Loads:
+def _judged_with(found: JointLoads, servo: Servo) -> JointLoads:
     """Return the same loads on another servo, its mass not counted."""
     return replace(found, robot=found.robot.replace(servos=((servo,) * len(JOINTS),) * found.robot.legs))
 

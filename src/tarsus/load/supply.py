@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 
 from tarsus.errors import InputError
-from tarsus.load.loads import Loads
+from tarsus.load.loads import JointLoads
 
-__all__ = ["Supply", "supply"]
+__all__ = ["SupplyLoad", "supply_load"]
 
 # A leg is at its peak while its torque is at least this share of the most that it bears.
 _NEAR_PEAK = 0.9
@@ -19,7 +19,7 @@ _LEGS_AT_ONCE = 3
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Supply:
+class SupplyLoad:
     """Currents of a robot's servos over a motion.
 
     Attributes
@@ -78,7 +78,7 @@ class Supply:
         )
 
 
-def supply(loads: Loads, *, capacity: float | None = None) -> Supply:
+def supply_load(loads: JointLoads, *, capacity: float | None = None) -> SupplyLoad:
     """Return the currents that a motion draws.
 
     A servo draws its stall current when it exerts its stall torque, and in proportion less: the direct current motor
@@ -105,7 +105,7 @@ def supply(loads: Loads, *, capacity: float | None = None) -> Supply:
     near = (by_leg >= _NEAR_PEAK * by_leg.max(0)) & (by_leg > 0)
     # The moment at which most legs are near their peaks, and of those the one with the greatest sum.
     worst = int(np.lexsort((by_leg.sum(1), near.sum(1)))[-1])
-    return Supply(
+    return SupplyLoad(
         current=None if unknown else _total_current(loads),
         time=loads.motion.time,
         unknown=tuple(sorted(unknown)),
@@ -115,7 +115,7 @@ def supply(loads: Loads, *, capacity: float | None = None) -> Supply:
     )
 
 
-def _total_current(loads: Loads) -> np.ndarray[Any, np.dtype[np.float64]]:
+def _total_current(loads: JointLoads) -> np.ndarray[Any, np.dtype[np.float64]]:
     """Return the current of all servos together ``(n,)`` [A]; one that can't bear its load draws its stall current."""
     robot = loads.robot
     own = np.array([[(s.stall_current, s.stall_torque) for s in leg if s is not None] for leg in robot.servos])

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from tarsus.errors import InputError, UnknownNameError
-from tarsus.load.loads import Loads
+from tarsus.load.loads import JointLoads
 from tarsus.robot.robot import JOINTS
 from tarsus.robot.servo import Servo
 
@@ -192,7 +192,7 @@ class JointVerdict:
         return f"; warm: its lasting load is {self.thermal_ratio:.1f} times a fifth of its stall torque"
 
 
-def joint_verdicts(loads: Loads, *, safety_factor: float = SAFETY_FACTOR) -> tuple[JointVerdict, ...]:
+def joint_verdicts(loads: JointLoads, *, safety_factor: float = SAFETY_FACTOR) -> tuple[JointVerdict, ...]:
     """Return a verdict for every joint, leg by leg.
 
     Parameters

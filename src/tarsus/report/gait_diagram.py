@@ -44,7 +44,7 @@ def plot_gait(motion: Motion) -> Figure:
     _draw_margin(below, motion)
     below.set_xlim(0, motion.duration)
     gait = motion.gait
-    text = f"{motion.robot.name}: {gait.name} gait, duty factor {gait.duty:.3g}, cycle {motion.cycle_time:.3g} s"
+    text = f"{motion.robot.name}: {gait.name} gait, duty factor {gait.duty_factor:.3g}, cycle {motion.cycle_time:.3g} s"
     figure.suptitle(f"{text}. Bars: foot on the ground", x=0.01, ha="left", color=INK)
     return figure
 

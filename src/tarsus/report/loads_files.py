@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from tarsus.errors import InputError
-from tarsus.load.loads import Loads
+from tarsus.load.loads import JointLoads
 from tarsus.report.loads_page import loads_page
 from tarsus.report.loads_speed import plot_torque_speed
 from tarsus.report.loads_torque import plot_torques
@@ -17,7 +17,7 @@ from tarsus.robot.robot import JOINTS
 __all__ = ["write_loads", "write_loads_csv"]
 
 
-def write_loads(found: Loads, summary: dict[str, Any], folder: Path) -> list[Path]:
+def write_loads(found: JointLoads, summary: dict[str, Any], folder: Path) -> list[Path]:
     """Write table, pictures and page, and return where they are.
 
     Parameters
@@ -48,7 +48,7 @@ def write_loads(found: Loads, summary: dict[str, Any], folder: Path) -> list[Pat
     return [table, *(folder / name for name in pictures), page]
 
 
-def write_loads_csv(found: Loads, path: Path) -> None:
+def write_loads_csv(found: JointLoads, path: Path) -> None:
     """Write a row for each moment: torques, and the ground's forces.
 
     Parameters

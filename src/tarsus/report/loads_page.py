@@ -72,7 +72,7 @@ def _walk(summary: dict[str, Any]) -> str:
     inertia = "with inertia" if summary["inertial"] else "statics alone"
     return (
         f"{summary['gait']} gait, {summary['distance_m'] * 1000:.0f} mm at {summary['speed_mm_s']:.0f} mm/s, body "
-        f"{summary['clearance_mm']:.0f} mm over the ground{payload}; {inertia}."
+        f"{summary['body_height_mm']:.0f} mm over the ground{payload}; {inertia}."
     )
 
 

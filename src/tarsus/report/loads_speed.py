@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tarsus.load.loads import Loads
+from tarsus.load.loads import JointLoads
 from tarsus.load.verdict import CONTINUOUS_SHARE, SAFETY_FACTOR
 from tarsus.report.style import INK, PALE, WARNING, halo, leg_colours, new_figure, thinned, tidy_axes
 from tarsus.robot.robot import JOINTS
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 __all__ = ["plot_torque_speed"]
 
 
-def plot_torque_speed(found: Loads) -> Figure:
+def plot_torque_speed(found: JointLoads) -> Figure:
     """Draw torque over speed for each kind of joint, with the line of its weakest servo.
 
     Speed counts in the direction of the torque: to the right the servo drives, to the left it is driven.
@@ -52,7 +52,7 @@ def plot_torque_speed(found: Loads) -> Figure:
     return figure
 
 
-def _draw_demand(axes: Axes, found: Loads, joint: int) -> None:
+def _draw_demand(axes: Axes, found: JointLoads, joint: int) -> None:
     shown = thinned(found.motion)
     for leg, colour in enumerate(leg_colours(found.robot)):
         torque = found.torques[shown, leg, joint]
@@ -62,7 +62,7 @@ def _draw_demand(axes: Axes, found: Loads, joint: int) -> None:
         )
 
 
-def _draw_servo(axes: Axes, found: Loads, joint: int) -> None:
+def _draw_servo(axes: Axes, found: JointLoads, joint: int) -> None:
     """Draw the line of the weakest servo, flat where it is driven, and a third and a fifth of its stall torque."""
     stalls = found.stall_torque[:, joint]
     left = min(axes.get_xlim()[0], 0.0)

@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from tarsus.load.loads import Loads
+from tarsus.load.loads import JointLoads
 from tarsus.load.sizing import Candidate, ServoSizing
-from tarsus.load.supply import Supply
+from tarsus.load.supply import SupplyLoad
 from tarsus.load.verdict import BURNS_BELOW, JointVerdict, joint_verdicts
 from tarsus.robot.robot import JOINTS
 
@@ -20,7 +20,7 @@ _NOTHING = 0.05
 _STEP = 0.01
 
 
-def loads_summary(found: Loads, drawn: Supply) -> dict[str, Any]:
+def loads_summary(found: JointLoads, drawn: SupplyLoad) -> dict[str, Any]:
     """Return loads, verdicts and currents as plain numbers with units in their keys; what is unknown is None.
 
     Parameters
@@ -40,7 +40,7 @@ def loads_summary(found: Loads, drawn: Supply) -> dict[str, Any]:
         **document,
         "gait": found.motion.gait.name,
         "speed_mm_s": found.motion.speed * 1000,
-        "clearance_mm": found.motion.clearance * 1000,
+        "body_height_mm": found.motion.body_height * 1000,
         "stroke_mm": found.motion.stroke * 1000,
         "worst": [f"{v.leg} {v.joint}" for v in worst_of_each(verdicts)],
         "class": min(verdicts, key=_rank).class_name,
@@ -76,7 +76,7 @@ def worst_of_each(verdicts: tuple[JointVerdict, ...]) -> list[JointVerdict]:
     return [min((v for v in verdicts if v.joint == joint), key=lambda v: (_rank(v), -v.peak)) for joint in JOINTS]
 
 
-def servos_summary(sizing: ServoSizing, found: Loads) -> dict[str, Any]:
+def servos_summary(sizing: ServoSizing, found: JointLoads) -> dict[str, Any]:
     """Return which servos would do as plain numbers with units in their keys; what is unknown is None.
 
     Parameters

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tarsus.load.loads import Loads
+from tarsus.load.loads import JointLoads
 from tarsus.load.verdict import CONTINUOUS_SHARE, SAFETY_FACTOR
 from tarsus.report.joint_panels import joint_panels
 from tarsus.report.style import PALE, WARNING, halo
@@ -21,7 +21,7 @@ __all__ = ["plot_torques", "servo_limits"]
 _IN_SIGHT = 3.5
 
 
-def servo_limits(found: Loads, joint: int) -> list[tuple[str, float]]:
+def servo_limits(found: JointLoads, joint: int) -> list[tuple[str, float]]:
     """Return the limits of a kind of joint's weakest servo, with their names [N m]; none where no servo is known.
 
     Parameters
@@ -42,7 +42,7 @@ def servo_limits(found: Loads, joint: int) -> list[tuple[str, float]]:
     ]
 
 
-def plot_torques(found: Loads) -> Figure:
+def plot_torques(found: JointLoads) -> Figure:
     """Draw how much torque every joint bears over time: a panel for each kind, and below it when each foot is down.
 
     Parameters
@@ -71,7 +71,7 @@ def plot_torques(found: Loads) -> Figure:
     return figure
 
 
-def _draw_limits(axes: Axes, found: Loads, joint: int) -> None:
+def _draw_limits(axes: Axes, found: JointLoads, joint: int) -> None:
     """Draw the limits that are in sight, and name those that are not."""
     greatest = float(found.peak[:, joint].max())
     limits = servo_limits(found, joint)

@@ -11,7 +11,7 @@ from tarsus.errors import InputError, UnreachableError
 from tarsus.gait.gait import Gait
 from tarsus.gait.stroke import max_stroke
 from tarsus.kinematics.mass import total_mass
-from tarsus.kinematics.stance import default_clearance
+from tarsus.kinematics.stance import default_body_height
 from tarsus.robot.robot import JOINTS, Robot, Source
 
 __all__ = ["Check", "check_robot", "dimensions", "robot_summary"]
@@ -39,7 +39,7 @@ def robot_summary(robot: Robot) -> dict[str, Any]:
         "mass_kg": float(total_mass(robot)) if robot.has_masses else None,
         "servos": servos,
         "gait": robot.gait.name,
-        "clearance_mm": default_clearance(robot) * 1000,
+        "body_height_mm": default_body_height(robot) * 1000,
     }
 
 
@@ -130,7 +130,7 @@ def _missing(robot: Robot) -> Iterator[str]:
     slow = sorted({servo.name for servo in servos if servo is not None and servo.no_load_speed is None})
     for name in slow:
         yield f"no_load_rad_s of the servo {name}: without it, no verdict on joint speeds"
-    if robot.gait.clearance is None:
-        yield f"gait.clearance_mm: {default_clearance(robot) * 1000:.0f} mm is taken, from the lengths of the legs"
-    if robot.gait.lift is None:
-        yield "gait.lift_mm: a quarter of the clearance is taken"
+    if robot.gait.body_height is None:
+        yield f"gait.body_height_mm: {default_body_height(robot) * 1000:.0f} mm is taken, from the lengths of the legs"
+    if robot.gait.swing_height is None:
+        yield "gait.swing_height_mm: a quarter of the body height is taken"

@@ -12,7 +12,7 @@ from tarsus.kinematics.leg import forward_kinematics
 from tarsus.kinematics.mass import centre_of_mass
 from tarsus.kinematics.polygon import hull_margin
 from tarsus.kinematics.pose import Pose
-from tarsus.kinematics.rest import CORNERS, Rest
+from tarsus.kinematics.rest import CORNERS, RestingPose
 from tarsus.robot.robot import Robot
 
 __all__ = ["Sample", "sample_of", "touching_points"]
@@ -100,7 +100,7 @@ def sample_of(
     )
 
 
-def touching_points(rest: Rest, angles: Floats) -> Floats:
+def touching_points(rest: RestingPose, angles: Floats) -> Floats:
     """Return the points of a resting robot that touch the ground.
 
     Parameters

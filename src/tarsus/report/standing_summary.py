@@ -11,7 +11,7 @@ import numpy as np
 from tarsus.kinematics.body import reachable_share
 from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.reach import IKSolution, Reach
-from tarsus.kinematics.rest import CORNERS, Rest
+from tarsus.kinematics.rest import CORNERS, RestingPose
 from tarsus.kinematics.stability import stability_margin
 from tarsus.robot.robot import JOINTS, Robot
 
@@ -106,7 +106,7 @@ class Standing:
         }
 
 
-def rest_summary(robot: Robot, angles: np.ndarray[Any, Any], rest: Rest) -> dict[str, Any]:
+def rest_summary(robot: Robot, angles: np.ndarray[Any, Any], rest: RestingPose) -> dict[str, Any]:
     """Return in numbers how a robot rests, in the units that the keys name.
 
     Parameters

@@ -54,7 +54,9 @@ def walk_table(summary: dict[str, Any]) -> Table:
     table.add_row("duration", f"{summary['duration_s']:.2f} s, {summary['steps']} steps")
     table.add_row("stroke", f"{summary['stroke_mm']:.1f} mm at {summary['speed_mm_s']:.1f} mm/s")
     table.add_row("cycle time", number(summary["cycle_time_s"], "s", digits=3))
-    table.add_row("clearance", f"{summary['clearance_mm']:.1f} mm, feet lifted by {summary['lift_mm']:.1f} mm")
+    table.add_row(
+        "body_height", f"{summary['body_height_mm']:.1f} mm, feet lifted by {summary['swing_height_mm']:.1f} mm"
+    )
     for joint, speed in summary["joint_speed"].items():
         table.add_row(f"fastest {joint}", _joint_speed(speed))
     table.add_row("least margin", _least_margin(margin))

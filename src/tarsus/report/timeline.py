@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tarsus.drive.recording import Event, Recording
 from tarsus.report.gait_diagram import draw_stance
 from tarsus.report.style import INK, PALE, WARNING, leg_colours, new_figure, thinned, tidy_axes
+from tarsus.scenario.recording import Event, Recording
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -155,7 +155,7 @@ def _draw_speed(axes: Axes, recording: Recording) -> None:
     _draw_wish(axes, recording, wished, done)
     for event in _of(recording, "limit"):
         axes.axvspan(event.time, event.until, color=_LIMITED, alpha=0.6, linewidth=0, zorder=0)
-    # A wish far beyond what the robot can do would leave nothing to be seen of what it does.
+    # A command far beyond what the robot can do would leave nothing to be seen of what it does.
     high = max(float(done.max()) * 1.6, 10.0)
     if wished.max() > high:
         axes.set_ylim(-0.05 * high, high)

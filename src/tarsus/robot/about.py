@@ -15,15 +15,15 @@ class GaitDefaults:
     ----------
     name : str
         The gait's name.
-    clearance : float or None
+    body_height : float or None
         Height of the body's origin over the ground [m]; None for a height worked out from the legs.
-    lift : float or None
-        How high a swinging foot is lifted [m]; None for a share of the clearance.
+    swing_height : float or None
+        How high a swinging foot is lifted [m]; None for a share of the body height.
     """
 
     name: str = "tripod"
-    clearance: float | None = None
-    lift: float | None = None
+    body_height: float | None = None
+    swing_height: float | None = None
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -43,8 +43,8 @@ def build_robot(file: RobotFile, *, where: str) -> Robot:
         servos=tuple(tuple(_servo(leg.get(f"servo.{joint}")) for joint in JOINTS) for leg in legs),
         gait=GaitDefaults(
             name=file.gait.name,
-            clearance=_metre(file.gait.clearance_mm),
-            lift=_metre(file.gait.lift_mm),
+            body_height=_metre(file.gait.body_height_mm),
+            swing_height=_metre(file.gait.swing_height_mm),
         ),
         sources=tuple(
             Source(of=tuple(entry.of), source=entry.source, confidence=entry.confidence, note=entry.note)

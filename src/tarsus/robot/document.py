@@ -121,10 +121,10 @@ def _body(robot: Robot) -> dict[str, Any]:
 
 def _gait(gait: GaitDefaults) -> dict[str, Any]:
     table: dict[str, Any] = {"name": gait.name}
-    if gait.clearance is not None:
-        table["clearance_mm"] = to_milli(gait.clearance)
-    if gait.lift is not None:
-        table["lift_mm"] = to_milli(gait.lift)
+    if gait.body_height is not None:
+        table["body_height_mm"] = to_milli(gait.body_height)
+    if gait.swing_height is not None:
+        table["swing_height_mm"] = to_milli(gait.swing_height)
     return table
 
 

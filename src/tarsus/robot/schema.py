@@ -219,8 +219,8 @@ class Gait(Table):
     """How this robot walks unless told otherwise."""
 
     name: Annotated[str, Choice(GAIT_NAMES)] = Field(default="tripod", description="The gait.")
-    clearance_mm: Length | None = Field(default=None, description="Height of the body's origin over the ground [mm].")
-    lift_mm: Length | None = Field(default=None, description="How high a swinging foot is lifted [mm].")
+    body_height_mm: Length | None = Field(default=None, description="Height of the body's origin over the ground [mm].")
+    swing_height_mm: Length | None = Field(default=None, description="How high a swinging foot is lifted [mm].")
 
 
 class SourceEntry(Table):

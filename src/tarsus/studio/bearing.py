@@ -7,10 +7,10 @@ from typing import Any
 
 from tarsus.errors import InputError
 from tarsus.gait.motion import Motion
-from tarsus.load.loads import Loads, loads
+from tarsus.load.loads import JointLoads, joint_loads
 from tarsus.load.payload import Payload
 from tarsus.load.sizing import size_servos
-from tarsus.load.supply import supply
+from tarsus.load.supply import supply_load
 from tarsus.load.verdict import joint_verdicts
 from tarsus.report.loads_summary import loads_summary, servos_summary
 from tarsus.studio.messages.moving import Candidate, JointLoad, LoadsMessage, ServosMessage
@@ -23,7 +23,7 @@ __all__ = ["loads_message", "loads_of", "servos_message"]
 _MOST_SIZED = 3000
 
 
-def loads_of(motion: Motion, options: LoadOptions) -> Loads:
+def loads_of(motion: Motion, options: LoadOptions) -> JointLoads:
     """Return what every joint bears over a walk.
 
     Parameters
@@ -41,7 +41,7 @@ def loads_of(motion: Motion, options: LoadOptions) -> Loads:
         If a value is out of its range.
     """
     x, y, z = (value / 1000 for value in options.payload_at_mm)
-    return loads(
+    return joint_loads(
         motion.robot,
         motion,
         payload=Payload(options.payload_kg, (x, y, z)),
@@ -50,7 +50,7 @@ def loads_of(motion: Motion, options: LoadOptions) -> Loads:
     )
 
 
-def loads_message(found: Loads, options: LoadOptions, *, id: int) -> LoadsMessage:
+def loads_message(found: JointLoads, options: LoadOptions, *, id: int) -> LoadsMessage:
     """Return loads with the verdicts on them.
 
     Parameters
@@ -67,7 +67,7 @@ def loads_message(found: Loads, options: LoadOptions, *, id: int) -> LoadsMessag
     InputError
         If a value is out of its range.
     """
-    drawn = supply(found, capacity=options.capacity_ah)
+    drawn = supply_load(found, capacity=options.capacity_ah)
     summary = loads_summary(found, drawn)
     currents = summary["supply"]
     texts = [verdict.text() for verdict in joint_verdicts(found, safety_factor=_factor(options))]
@@ -119,7 +119,7 @@ def _joint(row: dict[str, Any], text: str) -> JointLoad:
     )
 
 
-def servos_message(found: Loads, options: LoadOptions, *, id: int) -> ServosMessage:
+def servos_message(found: JointLoads, options: LoadOptions, *, id: int) -> ServosMessage:
     """Return which servos would do.
 
     Parameters

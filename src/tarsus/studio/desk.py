@@ -9,7 +9,7 @@ import numpy as np
 
 from tarsus.gait.motion import Motion
 from tarsus.kinematics.pose import Pose
-from tarsus.load.loads import Loads
+from tarsus.load.loads import JointLoads
 from tarsus.robot.robot import Robot
 from tarsus.studio.bearing import loads_of
 from tarsus.studio.messages.state import StudioState
@@ -65,7 +65,7 @@ class Desk:
         options = state.walk.model_copy(update=slow)
         return self._once("longest", (robot, options), lambda: longest(robot, options))
 
-    def loads(self, state: StudioState) -> Loads:
+    def loads(self, state: StudioState) -> JointLoads:
         """Return what the walk asks of the joints."""
         motion = self.walk(state)
         return self._once("loads", (motion, state.loads), lambda: loads_of(motion, state.loads))

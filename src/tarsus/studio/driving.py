@@ -7,11 +7,11 @@ from typing import Any
 
 import numpy as np
 
+from tarsus.control.command import Command
+from tarsus.control.safety.guard import Guard, GuardBounds
+from tarsus.control.walk_controller import WalkController
 from tarsus.errors import TarsusError
 from tarsus.gait.gait import Gait
-from tarsus.gait.live.guard import Guard, GuardBounds
-from tarsus.gait.live.walker import Walker
-from tarsus.gait.live.wish import Wish
 from tarsus.kinematics.leg import forward_kinematics
 from tarsus.kinematics.mass import centre_of_mass
 from tarsus.kinematics.pose import Pose
@@ -43,18 +43,18 @@ class Driver:
     def __init__(self, robot: Robot, *, id: int) -> None:
         self.id = id
         self._robot = robot
-        self._walker = Walker(robot)
-        walker = self._walker
-        bounds = GuardBounds.of(robot, speed=walker.joint_speed, acceleration=walker.joint_acceleration)
-        self._guard = Guard(robot, bounds=bounds, start=walker.angles)
-        self._wish = self._granted = Wish()
+        self._controller = WalkController(robot)
+        controller = self._controller
+        bounds = GuardBounds.of(robot, speed=controller.joint_speed, acceleration=controller.joint_acceleration)
+        self._guard = Guard(robot, bounds=bounds, start=controller.angles)
+        self._command = self._granted = Command()
 
-    def wish(self, message: ask.Wish) -> None:
-        """Take a wish; it holds until the next.
+    def command(self, message: ask.Command) -> None:
+        """Take a command; it holds until the next.
 
         Parameters
         ----------
-        message : Wish
+        message : Command
             What the walker shall do.
 
         Raises
@@ -62,12 +62,12 @@ class Driver:
         TarsusError
             If there is no such gait.
         """
-        self._wish = Wish(
+        self._command = Command(
             twist=(*(speed / 1000 for speed in message.velocity_mm_s), math.radians(message.turn_deg_s)),
             body=None if message.body is None else _body(message.body),
             gait=None if message.gait is None else Gait.named(message.gait, legs=self._robot.legs),
-            clearance=_metres(message.clearance_mm),
-            lift=_metres(message.lift_mm),
+            body_height=_metres(message.body_height_mm),
+            swing_height=_metres(message.swing_height_mm),
             cycle_time=message.cycle_time_s,
         )
 
@@ -82,39 +82,39 @@ class Driver:
         Raises
         ------
         TarsusError
-            If the walker refuses the wish; it goes on with the one before.
+            If the walker refuses the command; it goes on with the one before.
         """
-        walker = self._walker
+        controller = self._controller
         try:
-            angles = walker.step(self._wish, dt)
+            angles = controller.step(self._command, dt)
         except TarsusError:
-            self._wish = self._granted
+            self._command = self._granted
             raise
-        self._granted = self._wish
-        body = walker.body
-        guarded = self._guard.check(angles, dt, walker.contacts, body)
+        self._granted = self._command
+        body = controller.body
+        guarded = self._guard.check(angles, dt, controller.contacts, body)
         return self._frame(np.asarray(guarded.angles), body)
 
     def _frame(self, angles: np.ndarray[Any, Any], body: Pose) -> DriveFrame:
-        walker = self._walker
+        controller = self._controller
         points = forward_kinematics(self._robot, angles)
         com = np.asarray(body @ np.asarray(centre_of_mass(self._robot, angles, points=points)))
-        margin = margin_of(np.asarray(body @ points[:, 3]), walker.contacts, com)
-        vx, vy, wz = walker.twist
+        margin = margin_of(np.asarray(body @ points[:, 3]), controller.contacts, com)
+        vx, vy, wz = controller.twist
         return DriveFrame(
             type="frame",
             id=self.id,
-            time_s=round(walker.time, 4),
-            mode=walker.mode,
-            gait=walker.gait.name,
+            time_s=round(controller.time, 4),
+            mode=controller.mode,
+            gait=controller.gait.name,
             position_mm=millimetres(body.position),
             rpy_deg=degrees(body.rpy),
             angles_deg=degrees(angles),
-            contacts=flags(walker.contacts),
+            contacts=flags(controller.contacts),
             margin_mm=or_null(margin * 1000, decimals=2),
             com_mm=millimetres(com[:2]),
             twist=plain([vx * 1000, vy * 1000, math.degrees(wz)]),
-            limited=list(walker.limited),
+            limited=list(controller.limited),
             interventions=sum(self._guard.counts.values()),
         )
 

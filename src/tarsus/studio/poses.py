@@ -10,8 +10,8 @@ import numpy as np
 from tarsus.errors import InputError
 from tarsus.kinematics.inverse import inverse_kinematics
 from tarsus.kinematics.pose import Pose
-from tarsus.kinematics.rest import Rest, resting_pose
-from tarsus.kinematics.stance import default_clearance, default_stance
+from tarsus.kinematics.rest import RestingPose, resting_pose
+from tarsus.kinematics.stance import default_body_height, default_stance
 from tarsus.robot.robot import Robot
 from tarsus.studio.messages.state import BodyState, JointsState
 from tarsus.studio.robots import stance_of
@@ -33,7 +33,7 @@ class Resting:
     """
 
     angles: np.ndarray[Any, Any]
-    rest: Rest
+    rest: RestingPose
 
 
 def resting(robot: Robot, joints: JointsState) -> Resting:
@@ -74,9 +74,9 @@ def standing(robot: Robot, body: BodyState) -> OnFootholds:
     InputError
         If there are not three coordinates a foot.
     UnreachableError
-        If a leg reaches the ground nowhere at that clearance, and no footholds are given.
+        If a leg reaches the ground nowhere at that body height, and no footholds are given.
     """
-    height = default_clearance(robot) if body.clearance_mm is None else body.clearance_mm / 1000
+    height = default_body_height(robot) if body.body_height_mm is None else body.body_height_mm / 1000
     if body.feet_mm is None:
         feet = np.asarray(default_stance(robot, height)) + np.array([0.0, 0.0, height])
     else:

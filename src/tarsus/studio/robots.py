@@ -9,11 +9,11 @@ import numpy as np
 
 from tarsus.errors import InputError, UnknownNameError, UnreachableError
 from tarsus.gait.gait import GAITS, Gait
-from tarsus.gait.setup import default_lift
+from tarsus.gait.setup import default_swing_height
 from tarsus.kinematics.inverse import inverse_kinematics
 from tarsus.kinematics.mass import total_mass
 from tarsus.kinematics.pose import Pose
-from tarsus.kinematics.stance import default_clearance, default_stance
+from tarsus.kinematics.stance import default_body_height, default_stance
 from tarsus.report.robot_summary import check_robot, dimensions
 from tarsus.robot.file import list_robots, load_robot, robot_from_text
 from tarsus.robot.robot import Robot
@@ -126,7 +126,7 @@ def stance_of(robot: Robot) -> tuple[np.ndarray[Any, Any], np.ndarray[Any, Any]]
     robot : Robot
         A single robot.
     """
-    height = default_clearance(robot)
+    height = default_body_height(robot)
     try:
         feet = np.asarray(default_stance(robot, height)) + np.array([0.0, 0.0, height])
     except UnreachableError:
@@ -186,8 +186,8 @@ def robot_message(robot: Robot, choice: RobotChoice, *, id: int) -> RobotMessage
         mass_kg=float(total_mass(robot)) if robot.has_masses else None,
         servos=[None if servo is None else servo.name for servo in servos],
         stall_torque_nm=[None if servo is None else or_null(servo.stall_torque) for servo in servos],
-        clearance_mm=default_clearance(robot) * 1000,
-        lift_mm=default_lift(robot) * 1000,
+        body_height_mm=default_body_height(robot) * 1000,
+        swing_height_mm=default_swing_height(robot) * 1000,
         gait=robot.gait.name,
         gaits=gaits_of(robot),
         stance_mm=None if stance is None else millimetres(stance[0]),

@@ -117,7 +117,7 @@ class Session:
             return None
         try:
             return self._driver.step(dt)
-        except Exception as error:  # as above; a wish that is refused leaves the walker as it is
+        except Exception as error:  # as above; a command that is refused leaves the walker as it is
             answer = error_message(error, id=self._driver.id)
             if not isinstance(error, TarsusError):
                 self._driver = None
@@ -265,9 +265,9 @@ class Session:
         self._driver = Driver(self._views.desk.robot(self.state), id=message.id) if message.on else None
         yield from ()
 
-    def _wish(self, message: ask.Wish) -> Answers:
+    def _command(self, message: ask.Command) -> Answers:
         if self._driver is not None:
-            self._driver.wish(message)
+            self._driver.command(message)
         yield from ()
 
     def _undo(self, message: ask.Undo) -> Answers:
@@ -301,7 +301,7 @@ _HANDLERS: dict[type[Any], Callable[[Session, Any], Answers]] = {
     ask.ShowZone: Session._zone,
     ask.ChooseSource: Session._source,
     ask.Drive: Session._drive,
-    ask.Wish: Session._wish,
+    ask.Command: Session._command,
     ask.Undo: Session._undo,
     ask.Redo: Session._redo,
     ask.OpenState: Session._open,

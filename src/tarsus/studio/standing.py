@@ -14,7 +14,7 @@ from tarsus.kinematics.mass import centre_of_mass
 from tarsus.kinematics.polygon import support_polygon
 from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.reach import Reach
-from tarsus.kinematics.rest import CORNERS, Rest
+from tarsus.kinematics.rest import CORNERS, RestingPose
 from tarsus.report.standing_summary import Standing, rest_summary
 from tarsus.robot.robot import JOINTS, Robot
 from tarsus.studio.messages.state import View
@@ -68,7 +68,9 @@ class _Placed:
         return plain(forces), plain(torques)
 
 
-def resting_message(robot: Robot, angles: np.ndarray[Any, Any], rest: Rest, *, id: int, view: View) -> PoseMessage:
+def resting_message(
+    robot: Robot, angles: np.ndarray[Any, Any], rest: RestingPose, *, id: int, view: View
+) -> PoseMessage:
     """Return how the robot rests with its joints at the given angles.
 
     Parameters

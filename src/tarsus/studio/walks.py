@@ -12,7 +12,7 @@ from tarsus.errors import InputError
 from tarsus.gait.gait import Gait
 from tarsus.gait.motion import Motion
 from tarsus.gait.pace import choose_pace
-from tarsus.gait.path import Path, curved_path, straight_path, twist_path
+from tarsus.gait.path import BodyPath, curved_path, straight_path, twist_path
 from tarsus.gait.plan import plan_walk
 from tarsus.gait.setup import Setup, require_number
 from tarsus.gait.stroke import longest_stroke
@@ -49,11 +49,11 @@ def gait_of(robot: Robot, asked: str | OwnGait | None) -> Gait:
         If there is no such gait for so many legs, or its figures are out of their range.
     """
     if isinstance(asked, OwnGait):
-        return Gait(duty=asked.duty, offsets=asked.offsets)
+        return Gait(duty_factor=asked.duty_factor, offsets=asked.offsets)
     return Gait.named(asked or robot.gait.name, legs=robot.legs)
 
 
-def path_of(options: WalkOptions) -> Path:
+def path_of(options: WalkOptions) -> BodyPath:
     """Return the path that is asked for.
 
     Parameters
@@ -91,8 +91,8 @@ class _Options:
                 "cycle_time": options.cycle_time_s,
             },
             heights={
-                "clearance": _metres(options.clearance_mm),
-                "lift": _metres(options.lift_mm),
+                "body_height": _metres(options.body_height_mm),
+                "swing_height": _metres(options.swing_height_mm),
                 "foot_distance": _metres(options.foot_distance_mm),
                 "body_tilt": (math.radians(options.roll_deg), math.radians(options.pitch_deg)),
             },
@@ -127,7 +127,7 @@ def plan(robot: Robot, options: WalkOptions) -> Motion:
     asked, path, setup = _Options.of(options), path_of(options), _setup_of(robot, options)
     pace = {n: None if v is None else require_number(n, v, zero=False) for n, v in asked.pace.items()}
     # The pace is chosen here, so that the number of samples is known before any is worked out.
-    assumed = setup.assumed(asked.heights["clearance"], asked.heights["lift"])
+    assumed = setup.assumed(asked.heights["body_height"], asked.heights["swing_height"])
     stroke, cycle_time = choose_pace(setup, path, **pace, assumed=assumed)
     _refuse_long(robot, setup, path, stroke=stroke, cycle_time=cycle_time, rate=options.rate_hz)
     motion = plan_walk(
@@ -156,10 +156,10 @@ def fewer_for_more_legs(samples: int, robot: Robot) -> int:
     return int(samples * min(1.0, (_USUAL_LEGS / robot.legs) ** 2))
 
 
-def _refuse_long(robot: Robot, setup: Setup, path: Path, *, stroke: float, cycle_time: float, rate: float) -> None:
+def _refuse_long(robot: Robot, setup: Setup, path: BodyPath, *, stroke: float, cycle_time: float, rate: float) -> None:
     most = fewer_for_more_legs(MOST_SAMPLES, robot)
     travel = float(path.travel(setup.rest).max())
-    seconds = (travel / stroke * setup.gait.duty + 2) * cycle_time
+    seconds = (travel / stroke * setup.gait.duty_factor + 2) * cycle_time
     if not seconds * rate <= most:
         raise InputError(
             f"the walk takes about {seconds:.3g} s: {seconds * rate:.3g} samples at {rate:g} a second, and the studio "
@@ -215,14 +215,14 @@ def walk_message(motion: Motion, *, longest: float | None, id: int) -> WalkMessa
         margin_mm=[or_null(value) for value in np.round(motion.margin * 1000, 2).tolist()],
         com_mm=millimetres(com[:, :2]),
         gait=motion.gait.name,
-        duty=motion.gait.duty,
+        duty_factor=motion.gait.duty_factor,
         duration_s=motion.duration,
         cycle_time_s=motion.cycle_time,
         steps=motion.steps,
         stroke_mm=motion.stroke * 1000,
         speed_mm_s=motion.speed * 1000,
-        clearance_mm=motion.clearance * 1000,
-        lift_mm=motion.lift * 1000,
+        body_height_mm=motion.body_height * 1000,
+        swing_height_mm=motion.swing_height * 1000,
         longest_stroke_mm=None if longest is None else longest * 1000,
         end=WalkEnd(**{key: float(value) for key, value in summary["end"].items()}),
         joint_speed=[_joint_speed(joint, summary["joint_speed"][joint]) for joint in JOINTS],

@@ -16,5 +16,5 @@ export function reachOf(robot: RobotMessage): number {
   let far = 0;
   for (let i = 0; i + 1 < feet.length; i += 3)
     far = Math.max(far, Math.hypot(feet[i] ?? 0, feet[i + 1] ?? 0));
-  return Math.max(far, robot.clearance_mm) * 1.3;
+  return Math.max(far, robot.body_height_mm) * 1.3;
 }

@@ -11,7 +11,7 @@ const EVERY: ReadonlySet<ClientType> = new Set(["undo", "redo", "download"]);
 /** These are waited for by nobody. */
 const ALONE: ReadonlySet<ClientType> = new Set(["ping", "hello"]);
 /** These change nothing that others would have to come before or after. */
-const FREE: ReadonlySet<ClientType> = new Set(["ping", "hello", "wish", "zone"]);
+const FREE: ReadonlySet<ClientType> = new Set(["ping", "hello", "command", "zone"]);
 /** No type is sent more often than this [ms]: a screen shows no more. */
 const SPACING = 15;
 

@@ -42,12 +42,12 @@ describe("what the page knows", () => {
   });
 
   it("does not lead the visitor back to a view that was left since", () => {
-    const here = { view: "body", walk: { lift_mm: 1 } } as Studio["state"];
-    const told = { type: "state", id: 4, state: { view: "robot", walk: { lift_mm: 2 } } } as ServerMessage;
+    const here = { view: "body", walk: { swing_height_mm: 1 } } as Studio["state"];
+    const told = { type: "state", id: 4, state: { view: "robot", walk: { swing_height_mm: 2 } } } as ServerMessage;
     const studio = { ...EMPTY, state: here };
     expect(received(studio, told, "document", (type) => type === "view").state).toMatchObject({
       view: "body",
-      walk: { lift_mm: 2 },
+      walk: { swing_height_mm: 2 },
     });
     expect(received(studio, told, "document").state?.view).toBe("robot");
   });

@@ -77,17 +77,17 @@ export function BodyView() {
       <fieldset>
         <legend>Stance</legend>
         <Slider
-          label="Clearance"
-          value={body.clearance_mm ?? robot.clearance_mm}
+          label="Body height"
+          value={body.body_height_mm ?? robot.body_height_mm}
           min={0}
-          max={Math.max(200, Math.round(robot.clearance_mm * 2))}
+          max={Math.max(200, Math.round(robot.body_height_mm * 2))}
           typedMax={10_000}
           step={1}
           unit="mm"
           testId="body-clearance"
-          auto={body.clearance_mm === null}
-          onAuto={() => set({ clearance_mm: null })}
-          onChange={(value, commit) => set({ clearance_mm: value }, commit)}
+          auto={body.body_height_mm === null}
+          onAuto={() => set({ body_height_mm: null })}
+          onChange={(value, commit) => set({ body_height_mm: value }, commit)}
         />
         <div className="row">
           <span>Knee</span>

@@ -32,7 +32,7 @@ class ComparisonRow:
         A joint, for its torque; or ``"load of a foot"``, ``"arm about the femur axis"``, ``"arm about the knee"``.
     unit : str
         ``"N m"``, ``"N"`` or ``"m"``.
-    hand : float
+    foot_target : float
         By the hand method, without a safety factor.
     statics : float
         The greatest that the statics give, without a sign.
@@ -86,7 +86,7 @@ class Comparison:
 
     Attributes
     ----------
-    hand : Handbook
+    foot_target : Handbook
         The hand calculation, its slips corrected.
     motion : Motion
         The walk that the statics were taken from.

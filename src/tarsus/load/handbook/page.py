@@ -17,7 +17,7 @@ from tarsus.robot.robot import Robot
 
 __all__ = ["TABLES", "docs_page", "markdown_table"]
 
-_CLEARANCES = (0.04, 0.06, 0.08, 0.11, 0.14)
+_BODY_HEIGHTS = (0.04, 0.06, 0.08, 0.11, 0.14)
 _BLOCK = re.compile(r"(<!-- table: ([^>]*?) -->\n).*?(<!-- end -->)", flags=re.DOTALL)
 
 
@@ -103,12 +103,14 @@ def _statics(robot: Robot, gait: str) -> str:
 def _clearances(robot: Robot) -> str:
     """How much of the hand method's torque is left, by how high the body is."""
     rows = [
-        ("clearance", "gait", "femur: hand / statics", "with the factor", "tibia: hand / statics", "with the factor")
+        ("body_height", "gait", "femur: hand / statics", "with the factor", "tibia: hand / statics", "with the factor")
     ]
-    for clearance in _CLEARANCES:
+    for body_height in _BODY_HEIGHTS:
         for gait in ("tripod", "wave"):
-            comparison = compare_with_statics(robot, gait=gait, clearance=clearance)
-            rows.append((f"{clearance * 1000:.0f} mm", gait, *_left(comparison, "femur"), *_left(comparison, "tibia")))
+            comparison = compare_with_statics(robot, gait=gait, body_height=body_height)
+            rows.append(
+                (f"{body_height * 1000:.0f} mm", gait, *_left(comparison, "femur"), *_left(comparison, "tibia"))
+            )
     return markdown_table(rows)
 
 
@@ -126,6 +128,6 @@ TABLES: dict[str, Callable[[Robot], str]] = {
     "tripod": lambda robot: _statics(robot, "tripod"),
     "wave": lambda robot: _statics(robot, "wave"),
     "ripple": lambda robot: _statics(robot, "ripple"),
-    "clearances": _clearances,
+    "body_heights": _clearances,
 }
 """The tables, and how each is worked out."""

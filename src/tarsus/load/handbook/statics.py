@@ -34,7 +34,7 @@ def compare_with_statics(
     distance: float = 1.0,
     heading: float = 0.0,
     stroke: float | None = None,
-    clearance: float | None = None,
+    body_height: float | None = None,
     gravity: float = 9.8,
     acceleration: float = 1.0,
     safety_factor: float = 3.0,
@@ -54,7 +54,7 @@ def compare_with_statics(
         The gait, or its name; with it the number of feet down.
     distance, heading : float
         How far it walks [m], and in which direction from its front [rad].
-    stroke, clearance : float, optional
+    stroke, body_height : float, optional
         As in `plan_walk` [m].
     gravity : float
         Strength of gravity [m/s^2]: in both methods the source's 9.8 where left out.
@@ -80,7 +80,7 @@ def compare_with_statics(
         acceleration=acceleration,
         safety_factor=safety_factor,
     )
-    motion = plan_walk(robot, gait, straight_path(distance, heading), stroke=stroke, clearance=clearance)
+    motion = plan_walk(robot, gait, straight_path(distance, heading), stroke=stroke, body_height=body_height)
     down, push = np.array([0.0, 0.0, -gravity]), acceleration * np.array([math.cos(heading), math.sin(heading), 0.0])
     stance = _Statics.of(robot, motion.angles[0], motion.body[0], fewest_down(gait), [down])
     walk = _Statics.of(robot, motion.angles, motion.body, motion.contacts, [down])
@@ -104,7 +104,7 @@ def fewest_down(gait: Gait) -> Bools:
     gait : Gait
         The gait.
     """
-    events = np.unique(np.array([[offset, offset + gait.duty] for offset in gait.offsets]) % 1.0)
+    events = np.unique(np.array([[offset, offset + gait.duty_factor] for offset in gait.offsets]) % 1.0)
     ends = np.append(events, events[0] + 1)
     contacts = np.asarray(gait.phase((ends[1:] + ends[:-1])[np.diff(ends) > 1e-6] / 2)[2])
     return np.unique(contacts[contacts.sum(-1) == contacts.sum(-1).min()], axis=0)

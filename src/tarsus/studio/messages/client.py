@@ -24,6 +24,7 @@ from tarsus.studio.messages.state import (
 __all__ = [
     "ChooseSource",
     "ClientMessage",
+    "Command",
     "Download",
     "DragFoot",
     "Drive",
@@ -42,7 +43,6 @@ __all__ = [
     "ShowZone",
     "SizeServos",
     "Undo",
-    "Wish",
 ]
 
 Leg: TypeAlias = Annotated[int, Field(ge=0, lt=MOST_LEGS)]
@@ -163,18 +163,18 @@ class Drive(Message):
     on: bool
 
 
-class Wish(Message):
+class Command(Message):
     """What the live walker shall do from now on; null leaves a thing as it is. Answer: done."""
 
-    type: Literal["wish"]
+    type: Literal["command"]
     velocity_mm_s: tuple[Number, Number] = Field(description="Forward, left.")
     turn_deg_s: Angle
     body: tuple[Coordinate, Coordinate, Coordinate, Angle, Angle, Angle] | None = Field(
         default=None, description="x, y, z [mm], roll, pitch, yaw [deg] against the level body."
     )
     gait: Name | None = None
-    clearance_mm: Coordinate | None = None
-    lift_mm: Positive | None = None
+    body_height_mm: Coordinate | None = None
+    swing_height_mm: Positive | None = None
     cycle_time_s: Positive | None = None
 
 
@@ -220,7 +220,7 @@ ClientMessage: TypeAlias = Annotated[
     | ShowZone
     | ChooseSource
     | Drive
-    | Wish
+    | Command
     | Undo
     | Redo
     | OpenState

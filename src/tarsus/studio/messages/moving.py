@@ -61,14 +61,14 @@ class WalkMessage(Message):
     margin_mm: list[float | None] = Field(description="n; null where no foot stands.")
     com_mm: list[float] = Field(description="n x (x, y) of the centre of mass over the ground in G.")
     gait: str
-    duty: float
+    duty_factor: float
     duration_s: float
     cycle_time_s: float
     steps: int
     stroke_mm: float
     speed_mm_s: float
-    clearance_mm: float
-    lift_mm: float
+    body_height_mm: float
+    swing_height_mm: float
     longest_stroke_mm: float | None
     end: WalkEnd
     joint_speed: list[JointSpeed]
@@ -165,5 +165,5 @@ class DriveFrame(Message):
     margin_mm: float | None
     com_mm: list[float] = Field(description="(x, y) of the centre of mass over the ground in G.")
     twist: list[float] = Field(description="What it does: forward, left [mm/s], turn [deg/s].")
-    limited: list[str] = Field(description="Why the wish is not met in full.")
+    limited: list[str] = Field(description="Why the command is not met in full.")
     interventions: int = Field(description="How often the guard stepped in.")

@@ -53,7 +53,7 @@ class BodyState(Part):
     roll_deg: Angle = 0.0
     pitch_deg: Angle = 0.0
     yaw_deg: Angle = 0.0
-    clearance_mm: Coordinate | None = Field(default=None, description="Null for the robot's own.")
+    body_height_mm: Coordinate | None = Field(default=None, description="Null for the robot's own.")
     knee: Literal["up", "down"] = "up"
     feet_mm: Points | None = Field(default=None, description="Legs x (x, y, z) in G; null for the rest stance.")
 
@@ -89,7 +89,7 @@ Way: TypeAlias = Annotated[Straight | Curve | Twist, Field(discriminator="way")]
 class OwnGait(Part):
     """A gait without a name."""
 
-    duty: Positive = Field(description="Share of the cycle that a foot is down.")
+    duty_factor: Positive = Field(description="Share of the cycle that a foot is down.")
     offsets: Annotated[tuple[Number, ...], Field(max_length=MOST_LEGS)] = Field(
         description="When in the cycle each leg touches down, from 0 to 1."
     )
@@ -103,8 +103,8 @@ class WalkOptions(Part):
     stroke_mm: Positive | None = None
     speed_mm_s: Positive | None = None
     cycle_time_s: Positive | None = None
-    clearance_mm: Coordinate | None = None
-    lift_mm: Positive | None = None
+    body_height_mm: Coordinate | None = None
+    swing_height_mm: Positive | None = None
     roll_deg: Angle = 0.0
     pitch_deg: Angle = 0.0
     foot_distance_mm: Positive | None = None

@@ -83,8 +83,8 @@ class RobotMessage(Message):
     mass_kg: float | None
     servos: list[str | None] = Field(description="Legs x (coxa, femur, tibia).")
     stall_torque_nm: list[float | None] = Field(description="Legs x (coxa, femur, tibia), as in the catalogue.")
-    clearance_mm: float
-    lift_mm: float
+    body_height_mm: float
+    swing_height_mm: float
     gait: str
     gaits: list[str] = Field(description="Those that a robot of so many legs has.")
     stance_mm: list[float] | None = Field(description="Rest footholds in G, body over the origin; null: none.")

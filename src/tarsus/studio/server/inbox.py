@@ -16,7 +16,7 @@ __all__ = ["Inbox"]
 # Of these only the newest counts: each tells the whole of its part of the state, or asks for what would be outdated.
 _NEWEST = (
     *(ask.SetJoints, ask.SetBody, ask.DragFoot, ask.SetWalk, ask.SetLoads, ask.SetDocument, ask.ChooseSource),
-    *(ask.SizeServos, ask.ShowZone, ask.Wish),
+    *(ask.SizeServos, ask.ShowZone, ask.Command),
 )
 
 

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 __all__ = ["Visitor"]
 
 # What takes a millisecond or two: to hand it to a thread and back would cost as much again.
-_QUICK = (ask.Ping, ask.SetJoints, ask.Wish)
+_QUICK = (ask.Ping, ask.SetJoints, ask.Command)
 
 # A frame after a long wait makes no longer a step than this [s]: the walker is not made to leap.
 _LONGEST_STEP = 0.05

@@ -38,7 +38,7 @@ class Live:
         Where the coxa axis is, in B [m].
     rpy : array, shape (3,)
         Attitude of the body [rad].
-    clearance : float
+    body_height : float
         Height of the body's origin before it was moved [m].
     """
 
@@ -49,7 +49,7 @@ class Live:
     foot_in_body: Floats
     mount: Floats
     rpy: Floats
-    clearance: float
+    body_height: float
 
     @classmethod
     def of(cls, standing: OnFootholds, leg: int) -> Self:
@@ -73,7 +73,7 @@ class Live:
             foot_in_body=feet[leg],
             mount=np.asarray(robot.mount_position)[leg],
             rpy=np.asarray(standing.body.rpy),
-            clearance=float(standing.start.position[2]),
+            body_height=float(standing.start.position[2]),
         )
 
     def length(self, link: str) -> float:
@@ -100,5 +100,5 @@ class Live:
     @property
     def band(self) -> tuple[float, float]:
         """How near and how far the foot can stand straight out [m]; NaN where it can't."""
-        near, far = reachable_band(self.robot, np.asarray(-self.clearance))
+        near, far = reachable_band(self.robot, np.asarray(-self.body_height))
         return float(near[self.leg]), float(far[self.leg])

@@ -10,7 +10,7 @@ import { useStudio } from "../../state/store";
 import { AngleTable } from "../AngleTable";
 import { useInputs } from "../useInputs";
 import { ViewHead } from "../ViewHead";
-import { BodyWish } from "./BodyWish";
+import { BodyPose } from "./BodyPose";
 import { Stick } from "./Stick";
 import { useDriving, type Settings } from "./useDriving";
 
@@ -18,8 +18,8 @@ const BEGIN: Settings = {
   speed: 120,
   turn: 25,
   gait: null,
-  clearance: null,
-  lift: null,
+  bodyHeight: null,
+  swingHeight: null,
   body: [0, 0, 0, 0, 0, 0],
 };
 
@@ -36,7 +36,7 @@ export function DriveView() {
         Keys W, A, S, D walk and Q, E turn; or push the sticks, or a gamepad’s. Let go, and it stops on its
         feet.
       </ViewHead>
-      <Failure of={["drive", "wish"]} />
+      <Failure of={["drive", "command"]} />
       <div className="sticks">
         <figure>
           <Stick label="Walk" testId="stick-walk" onPush={sticks.walk} />
@@ -79,26 +79,26 @@ export function DriveView() {
           onChange={(gait) => set({ gait: gait || robot.gait })}
         />
         <Slider
-          label="Clearance"
-          value={settings.clearance ?? robot.clearance_mm}
-          min={Math.round(robot.clearance_mm * 0.5)}
-          max={Math.round(robot.clearance_mm * 1.6)}
+          label="Body height"
+          value={settings.bodyHeight ?? robot.body_height_mm}
+          min={Math.round(robot.body_height_mm * 0.5)}
+          max={Math.round(robot.body_height_mm * 1.6)}
           step={1}
           unit="mm"
-          testId="drive-clearance"
-          onChange={(clearance) => set({ clearance })}
+          testId="drive-bodyHeight"
+          onChange={(bodyHeight) => set({ bodyHeight })}
         />
         <Slider
-          label="Lift"
-          value={settings.lift ?? robot.lift_mm}
+          label="Swing height"
+          value={settings.swingHeight ?? robot.swing_height_mm}
           min={5}
           max={80}
           step={1}
           unit="mm"
-          testId="drive-lift"
-          onChange={(lift) => set({ lift })}
+          testId="drive-swingHeight"
+          onChange={(swingHeight) => set({ swingHeight })}
         />
-        <BodyWish body={settings.body} onChange={(body) => set({ body })} />
+        <BodyPose body={settings.body} onChange={(body) => set({ body })} />
       </fieldset>
       {drive && (
         <>

@@ -3,7 +3,7 @@ import { useEffect, useRef } from "react";
 import { isTyping } from "../../app/useShortcuts";
 import { ask } from "../../state/session";
 import { useStudio } from "../../state/store";
-import { gamepadPush, isDriveKey, isStill, keyPush, STILL, sumOf, type Push } from "./wish";
+import { gamepadPush, isDriveKey, isStill, keyPush, STILL, sumOf, type Push } from "./push";
 
 /** How often a wish is sent while something is pushed [ms]. */
 const EVERY = 50;
@@ -13,8 +13,8 @@ export interface Settings {
   speed: number;
   turn: number;
   gait: string | null;
-  clearance: number | null;
-  lift: number | null;
+  bodyHeight: number | null;
+  swingHeight: number | null;
   /** x, y, z [mm], roll, pitch, yaw [deg] over the level body. */
   body: readonly [number, number, number, number, number, number];
 }
@@ -34,7 +34,7 @@ export function useDriving(settings: Settings): Sticks {
 
   useEffect(() => {
     latest.current = settings;
-    if (open) ask(wishOf(sumOf([keyPush(held.current), sticks.current]), settings));
+    if (open) ask(commandOf(sumOf([keyPush(held.current), sticks.current]), settings));
   }, [settings, open]);
 
   // Neither the session after a broken connection nor another robot drives yet.
@@ -55,7 +55,7 @@ export function useDriving(settings: Settings): Sticks {
       // Standing still is said once.
       if (isStill(push) && still) return;
       still = isStill(push);
-      ask(wishOf(push, latest.current));
+      ask(commandOf(push, latest.current));
     };
     const down = (event: KeyboardEvent) => {
       if (!isDriveKey(event.key) || event.ctrlKey || event.metaKey || event.altKey || isTyping(event.target))
@@ -85,14 +85,14 @@ export function useDriving(settings: Settings): Sticks {
   };
 }
 
-function wishOf(push: Push, { speed, turn, gait, clearance, lift, body }: Settings) {
+function commandOf(push: Push, { speed, turn, gait, bodyHeight, swingHeight, body }: Settings) {
   return {
-    type: "wish",
+    type: "command",
     velocity_mm_s: [push.forward * speed, push.left * speed] as [number, number],
     turn_deg_s: push.turn * turn,
     gait,
-    clearance_mm: clearance,
-    lift_mm: lift,
+    body_height_mm: bodyHeight,
+    swing_height_mm: swingHeight,
     body: [...body] as [number, number, number, number, number, number],
   } as const;
 }

@@ -71,8 +71,8 @@ export const LIMITS: readonly { joint: string; low: NumberField; high: NumberFie
 );
 
 export const GAIT: readonly NumberField[] = [
-  { path: ["gait", "clearance_mm"], label: "Clearance", unit: "mm", step: 1, min: 0.001 },
-  { path: ["gait", "lift_mm"], label: "Lift", unit: "mm", step: 1, min: 0.001 },
+  { path: ["gait", "body_height_mm"], label: "Body height", unit: "mm", step: 1, min: 0.001 },
+  { path: ["gait", "swing_height_mm"], label: "Swing height", unit: "mm", step: 1, min: 0.001 },
 ];
 
 /** The fields of one leg's own entry. */

@@ -13,7 +13,7 @@ export function GaitChoice() {
   const choose = (value: string) => {
     if (value === "own") {
       const legs = robot.leg_names.length;
-      change("walk", { gait: { duty: 0.75, offsets: robot.leg_names.map((_, leg) => leg / legs) } });
+      change("walk", { gait: { duty_factor: 0.75, offsets: robot.leg_names.map((_, leg) => leg / legs) } });
     } else change("walk", { gait: value === "" ? null : value });
   };
   return (
@@ -33,15 +33,15 @@ export function GaitChoice() {
         <>
           <Slider
             label="Duty factor"
-            value={own.duty}
+            value={own.duty_factor}
             min={0.5}
             max={0.95}
             typedMin={0.01}
             typedMax={0.99}
             step={0.01}
             unit=""
-            testId="duty"
-            onChange={(duty, commit) => change("walk", { gait: { ...own, duty } }, commit)}
+            testId="duty-factor"
+            onChange={(value, commit) => change("walk", { gait: { ...own, duty_factor: value } }, commit)}
           />
           {robot.leg_codes.map((code, leg) => (
             <Slider
@@ -67,7 +67,7 @@ export function GaitChoice() {
       )}
       {walk && (
         <p className="hint" data-testid="gait-said">
-          {walk.gait}: each foot is down for {Math.round(walk.duty * 100)} % of the cycle of{" "}
+          {walk.gait}: each foot is down for {Math.round(walk.duty_factor * 100)} % of the cycle of{" "}
           {walk.cycle_time_s.toFixed(2)} s.
         </p>
       )}

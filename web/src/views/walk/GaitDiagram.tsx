@@ -42,7 +42,7 @@ export function GaitDiagram({ walk }: { walk: WalkMessage }) {
       <svg
         viewBox={`0 0 ${WIDTH} ${height}`}
         role="img"
-        aria-label={`${walk.gait}: each foot is down for ${Math.round(walk.duty * 100)} % of a cycle.`}
+        aria-label={`${walk.gait}: each foot is down for ${Math.round(walk.duty_factor * 100)} % of a cycle.`}
         data-testid="gait-diagram"
         onClick={(event) => {
           const box = event.currentTarget.getBoundingClientRect();

@@ -4,7 +4,7 @@ import { change } from "../../state/session";
 import { useStudio } from "../../state/store";
 import { useInputs } from "../useInputs";
 
-type Key = "stroke_mm" | "speed_mm_s" | "clearance_mm" | "lift_mm";
+type Key = "stroke_mm" | "speed_mm_s" | "body_height_mm" | "swing_height_mm";
 
 interface Row {
   key: Key;
@@ -36,18 +36,18 @@ const ROWS: readonly Row[] = [
     unit: "mm",
   },
   {
-    key: "lift_mm",
-    label: "Lift",
-    taken: (walk) => walk.lift_mm,
+    key: "swing_height_mm",
+    label: "Swing height",
+    taken: (walk) => walk.swing_height_mm,
     max: 100,
     typedMax: 2000,
     step: 1,
     unit: "mm",
   },
   {
-    key: "clearance_mm",
-    label: "Clearance",
-    taken: (walk) => walk.clearance_mm,
+    key: "body_height_mm",
+    label: "Body height",
+    taken: (walk) => walk.body_height_mm,
     max: 220,
     typedMax: 5000,
     step: 1,

@@ -1,0 +1,144 @@
+"""What the live walker is asked for."""
+
+from __future__ import annotations
+
+import math
+import operator
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Literal
+
+from tarsus.errors import InputError
+
+__all__ = ["BODY_AXES", "Command", "finite_numbers"]
+
+BODY_AXES = ("x", "y", "z", "roll", "pitch", "yaw")
+"""The six ways in which the body can be moved over its feet."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Command:
+    """What the robot should do; what is None stays as it is.
+
+    Attributes
+    ----------
+    twist : (vx, vy, wz)
+        Speed forward and to the left [m/s], turning speed counter-clockwise [rad/s].
+    body : (x, y, z, roll, pitch, yaw), optional
+        How the body is moved [m] and turned [rad] against standing level over its feet at its body height.
+    gait : str or Gait, optional
+        The order of steps.
+    body_height : float, optional
+        Height of the body's origin over the ground [m].
+    swing_height : float, optional
+        How high a swinging foot rises [m].
+    stance_width : float, optional
+        How much farther out than usual the feet rest, away from each coxa axis [m].
+    cycle_time : float or "auto", optional
+        Duration of a cycle [s]; "auto" for the one that gets the robot farthest.
+    sway : (x, y, z, roll, pitch, yaw), optional
+        Amplitude of a rhythmic motion of the body with the steps [m], [rad].
+    foot_targets : mapping of leg to (x, y, z) or None, optional
+        Legs that leave the gait, and where their feet go, in the heading frame [m]; None for a leg that comes back.
+    foot_velocities : mapping of leg to (x, y, z), optional
+        How fast the feet of such legs go from where they are instead, in the heading frame [m/s].
+    """
+
+    twist: Sequence[float] = (0.0, 0.0, 0.0)
+    body: Sequence[float] | None = None
+    gait: Any = None
+    body_height: float | None = None
+    swing_height: float | None = None
+    stance_width: float | None = None
+    cycle_time: float | Literal["auto"] | None = None
+    sway: Sequence[float] | None = None
+    foot_targets: Mapping[int, Sequence[float] | None] | None = None
+    foot_velocities: Mapping[int, Sequence[float]] | None = None
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "twist", finite_numbers("twist", self.twist, ("vx", "vy", "wz"), most=math.inf))
+        for name in ("body", "sway"):
+            if getattr(self, name) is not None:
+                object.__setattr__(self, name, finite_numbers(name, getattr(self, name), BODY_AXES))
+        for name in ("body_height", "swing_height", "stance_width", "cycle_time"):
+            value = getattr(self, name)
+            auto = name == "cycle_time" and isinstance(value, str) and value == "auto"
+            if value is not None and not auto:
+                object.__setattr__(self, name, finite_numbers(name, (value,), (name,))[0])
+        for name in ("foot_targets", "foot_velocities"):
+            if getattr(self, name) is not None:
+                object.__setattr__(self, name, _by_leg(name, getattr(self, name), back=name == "foot_targets"))
+
+    @property
+    def only_twist(self) -> bool:
+        """Whether all but the twist stays as it is."""
+        others = (
+            self.body,
+            self.gait,
+            self.body_height,
+            self.swing_height,
+            self.stance_width,
+            self.cycle_time,
+            self.sway,
+        )
+        return others == _NOTHING and self.foot_targets is None and self.foot_velocities is None
+
+
+_NOTHING = (None,) * 7
+
+
+def _by_leg(name: str, given: Any, *, back: bool) -> dict[int, tuple[float, ...] | None]:
+    """Return what is given for each leg; with `back`, it may be None."""
+    if not isinstance(given, Mapping):
+        raise InputError(f"the command's {name} is {given!r}; it must be a mapping of legs to x, y, z")
+    found: dict[int, tuple[float, ...] | None] = {}
+    for leg, value in given.items():
+        try:
+            number = operator.index(leg)
+        except TypeError:
+            raise InputError(f"the command's {name} names the leg {leg!r}; it must be a whole number") from None
+        found[number] = None if value is None and back else finite_numbers(f"{name}[{number}]", value, ("x", "y", "z"))
+    return found
+
+
+def finite_numbers(name: str, values: Sequence[float], axes: Sequence[str], *, most: float = 1e3) -> tuple[float, ...]:
+    """Return so many finite numbers.
+
+    Parameters
+    ----------
+    name : str
+        What they are, for the message.
+    values : sequence of float
+        The numbers.
+    axes : sequence of str
+        What each is called.
+    most : float
+        What none is greater than, whatever its sign: no length of a robot [m], no time of a step [s] is greater than
+        1000, and the squares of what is may overflow.
+
+    Raises
+    ------
+    InputError
+        If they are something else.
+    """
+    single = len(axes) == 1
+    try:
+        found = tuple(_number(value) for value in values)
+    except (TypeError, ValueError, OverflowError):
+        needed = "a number" if single else f"{len(axes)} numbers: {', '.join(axes)}"
+        raise InputError(f"the command's {name} is {values[0] if single else values!r}; it must be {needed}") from None
+    if len(found) != len(axes):
+        raise InputError(f"the command's {name} has {len(found)} numbers; it must have {len(axes)}: {', '.join(axes)}")
+    for axis, value in zip(axes, found, strict=True):
+        what = f"{name} is {value}" if axis == name else f"{name} has {axis} = {value}"
+        if not math.isfinite(value):
+            raise InputError(f"the command's {what}; it must be finite")
+        if abs(value) > most:
+            raise InputError(f"the command's {what}; it must be between {-most:g} and {most:g}")
+    return found
+
+
+def _number(value: Any) -> float:
+    if isinstance(value, str):
+        raise TypeError
+    return float(value)

@@ -1,0 +1,1 @@
+"""The body's pose while it walks: filtering, levelling, compliance of the feet."""

@@ -1,0 +1,1 @@
+"""The guard: an independent monitor of joint angles."""

@@ -1,0 +1,1 @@
+"""What sensor readings are worth: validation, ground plane, foot forces."""

@@ -1,0 +1,1 @@
+"""Timed sequences of joint motions, and how they are played."""

@@ -1,0 +1,1 @@
+"""Standing up from any joint angles, sitting down, folding, power-off."""

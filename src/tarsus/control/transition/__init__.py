@@ -1,0 +1,1 @@
+"""Stance transitions: another gait, posture or pace, planned incrementally while the robot walks."""

@@ -1,1 +1,0 @@
-"""Driving: what the robot is told over time, and what came of it. So far without servos."""

@@ -1,1 +1,0 @@
-"""Live walking: from wishes to joint angles, tick by tick."""

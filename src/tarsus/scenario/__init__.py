@@ -1,0 +1,1 @@
+"""Timelines of commands, and how they are run."""

@@ -1,0 +1,58 @@
+"""What a robot can't be told, found before a scenario begins."""
+
+from __future__ import annotations
+
+from tarsus.errors import InputError, UnknownNameError
+from tarsus.gait.gait import Gait
+from tarsus.robot.robot import Robot
+from tarsus.scenario.active_commands import leg_number
+from tarsus.scenario.commands import Force, GaitChange
+from tarsus.scenario.scenario import Scenario
+from tarsus.scenario.wording import command_text
+
+__all__ = ["require_drivable"]
+
+
+def require_drivable(scenario: Scenario, robot: Robot) -> None:
+    """Refuse commands that this robot can't be told.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        What it is to be told.
+    robot : Robot
+        A single robot.
+
+    Raises
+    ------
+    InputError
+        If a command names a gait that it can't walk, or a force is to be felt that no foot gives way to.
+    UnknownNameError
+        If a command names a leg that it has not.
+    """
+    for command in scenario.commands:
+        at = f"at {command.at:g} s"
+        leg = getattr(command, "leg", None)
+        if leg is not None and leg_number(robot, leg) is None:
+            raise UnknownNameError(f"{at}: {UnknownNameError.of('leg', leg, robot.leg_codes)}")
+        if isinstance(command, Force):
+            why = _not_followed(scenario, robot)
+            if why:
+                raise InputError(f"{at}: {command_text(command)}: {why}")
+        if isinstance(command, GaitChange):
+            try:
+                Gait.named(command.gait, legs=robot.legs)
+            except InputError as error:
+                raise InputError(f"{at}: {error}") from None
+
+
+def _not_followed(scenario: Scenario, robot: Robot) -> str:
+    """Return why no foot would give way to a force; nothing where one would."""
+    if scenario.admittance is None:
+        return (
+            "no foot gives way; set how it does in the scenario: "
+            "admittance = { mass_kg = 1, damping_ns_m = 60, stiffness_n_m = 400 }"
+        )
+    if not robot.has_masses:
+        return f"{robot.name} has no masses, so that its weight on a foot is unknown; give them in its robot file"
+    return ""

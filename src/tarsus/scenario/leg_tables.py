@@ -1,0 +1,79 @@
+"""Commands that a file has in tables of legs, such as ``foot_targets_mm = { RF = [250, -150, 60], LF = "back" }``."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from decimal import Decimal
+from types import MappingProxyType
+from typing import Any, NamedTuple
+
+from tarsus.scenario.commands import FootRelease, FootTarget, FootVelocity, Force, Ground
+from tarsus.scenario.timed_command import TimedCommand, quantities
+from tarsus.scenario.wording import command_from, numbers_of
+
+__all__ = ["LEG_TABLES", "LegTable", "commands_of_legs", "entry_of_leg"]
+
+
+class LegTable(NamedTuple):
+    """A key whose value is a table of legs.
+
+    Attributes
+    ----------
+    key : str
+        The key.
+    kind : type
+        The command that a leg's number, or list of numbers, gives.
+    words : mapping of str to type
+        What may stand in place of them, and the command that it gives.
+    """
+
+    key: str
+    kind: type[TimedCommand]
+    words: Mapping[str, type[TimedCommand]] = MappingProxyType({})
+
+
+LEG_TABLES = (
+    LegTable("foot_targets_mm", FootTarget, MappingProxyType({"back": FootRelease})),
+    LegTable("foot_velocities_mm_s", FootVelocity),
+    LegTable("ground_mm", Ground),
+    LegTable("force_n", Force),
+)
+"""Every such key."""
+
+
+def commands_of_legs(table: Any, at: Decimal) -> Iterator[TimedCommand]:
+    """Return the commands for legs of one ``[[at]]``.
+
+    Parameters
+    ----------
+    table : At
+        The ``[[at]]``.
+    at : Decimal
+        When [s].
+    """
+    for key, kind, words in LEG_TABLES:
+        for leg, value in (getattr(table, key) or {}).items():
+            if isinstance(value, str):
+                yield command_from(words[value], at, {}, leg=leg)
+            else:
+                numbers = value if isinstance(value, tuple) else (value,)
+                yield command_from(kind, at, dict(zip(quantities(kind), numbers, strict=True)), leg=leg)
+
+
+def entry_of_leg(command: TimedCommand) -> dict[str, Any] | None:
+    """Return the key and value of a command for a leg; None for any other.
+
+    Parameters
+    ----------
+    command : Command
+        The command.
+    """
+    leg = getattr(command, "leg", "")
+    for key, kind, words in LEG_TABLES:
+        if isinstance(command, kind):
+            numbers = list(numbers_of(command, zeros=True).values())
+            return {key: {leg: numbers if len(numbers) > 1 else numbers[0]}}
+        for word, other in words.items():
+            if isinstance(command, other):
+                return {key: {leg: word}}
+    return None

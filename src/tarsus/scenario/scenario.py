@@ -1,0 +1,228 @@
+"""A scenario: a robot, how it is found, and what it is told at which moment."""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any, Self
+
+from tarsus.control.pose.admittance import Admittance
+from tarsus.errors import InputError, UnknownNameError
+from tarsus.scenario.quantities import require_quantity
+from tarsus.scenario.settings import ADMITTANCE
+from tarsus.scenario.timed_command import GAIT_NAMES, LATEST, TimedCommand
+from tarsus.scenario.wording import command_text, time_text
+
+__all__ = ["LEVELLINGS", "LONGEST_TICK", "STARTS", "Scenario"]
+
+STARTS = ("standing", "sitting", "folded")
+"""How the robot may be found."""
+
+LEVELLINGS = ("level", "follow")
+"""What the body may do on ground that is not level."""
+
+LONGEST_TICK = 0.05
+"""The longest tick [s]: of a longer one the walker walks no more than this."""
+
+_MOST_TICKS = 1_000_000
+
+
+@dataclass(frozen=True)
+class Scenario:
+    """What a robot is told over time.
+
+    Attributes
+    ----------
+    commands : tuple of Command
+        In the order of their times; those of the same time in the order given.
+    name : str
+        What the scenario is called.
+    robot : str
+        A robot's name, or the path of its file; empty where any robot will do.
+    rate : float
+        Ticks per second [1/s].
+    jitter : float
+        By how much a tick may be longer or shorter, at random [s].
+    seed : int
+        Of what is random.
+    start : {"standing", "sitting", "folded"}
+        How the robot is found.
+    duration : float, optional
+        How long it takes [s]. Left out: until 2 s after the last command, and until what that began is over.
+    gait : str
+        The gait it starts with; the robot's own where empty.
+    body_height, swing_height : float, optional
+        Of the stance it starts in or gets up to [m]; the robot's own where left out.
+    levelling : {"", "level", "follow"}
+        On ground that it feels is not level: nothing, or the body stays level, or follows the slope.
+    admittance : Admittance, optional
+        How feet give way to the forces on them; left out, they don't.
+
+    Raises
+    ------
+    InputError
+        If a number is not finite or out of its range.
+    UnknownNameError
+        If there is no such start or gait.
+    """
+
+    commands: tuple[TimedCommand, ...] = ()
+    name: str = ""
+    robot: str = ""
+    rate: float = 100.0
+    jitter: float = 0.0
+    seed: int = 0
+    start: str = "standing"
+    duration: float | None = None
+    gait: str = ""
+    body_height: float | None = None
+    swing_height: float | None = None
+    levelling: str = ""
+    admittance: Admittance | None = None
+
+    def __post_init__(self) -> None:
+        commands: Iterable[object] = self.commands
+        for command in commands:
+            if not isinstance(command, TimedCommand):
+                raise InputError(f"a scenario's commands are Walk, Stop and the like, not {command!r}")
+        object.__setattr__(self, "commands", tuple(sorted(self.commands, key=lambda command: command.at)))
+        if self.start not in STARTS:
+            raise UnknownNameError.of("start", str(self.start), STARTS)
+        for kind, known in (("gait", GAIT_NAMES), ("levelling", LEVELLINGS)):
+            if getattr(self, kind) not in ("", *known):
+                raise UnknownNameError.of(kind, str(getattr(self, kind)), known)
+        self._check_numbers()
+        self._check_admittance()
+
+    def _check_admittance(self) -> None:
+        admittance: object = self.admittance
+        if admittance is None:
+            return
+        if not isinstance(admittance, Admittance):
+            raise InputError(f"a scenario's admittance is an Admittance or None, not {admittance!r}")
+        for each in ADMITTANCE:
+            require_quantity(f"a scenario's admittance: {each.name}", getattr(admittance, each.name), each)
+
+    def _check_numbers(self) -> None:
+        for name, low, high, unit in _BOUNDS:
+            value = getattr(self, name)
+            if value is not None and not (math.isfinite(value) and low <= value <= high):
+                raise InputError(f"a scenario's {name} is {value:g}{unit}; it must be from {low:g} to {high:g}{unit}")
+        tick = 1 / self.rate
+        if self.jitter >= tick:
+            raise InputError(f"jitter is {self.jitter:g} s; it must be less than a tick, {tick:g} s")
+        if tick + self.jitter > LONGEST_TICK + 1e-12:
+            raise InputError(
+                f"with a rate of {self.rate:g} Hz and a jitter of {self.jitter:g} s a tick takes up to "
+                f"{tick + self.jitter:g} s; at most {LONGEST_TICK:g} s works"
+            )
+        last = self.duration if self.duration is not None else max((c.at for c in self.commands), default=0.0)
+        if last * self.rate > _MOST_TICKS:
+            raise InputError(
+                f"{last:g} s at {self.rate:g} Hz are {last * self.rate:.3g} ticks, more than {_MOST_TICKS}"
+            )
+
+    @property
+    def timeline(self) -> str:
+        """The commands as text, a line for each moment; `tarsus.scenario.text` reads it back to the same commands."""
+        lines: list[str] = []
+        last: float | None = None
+        for command in self.commands:
+            text = command_text(command)
+            if command.at == last:
+                lines[-1] += f"; {text}"
+            else:
+                lines.append(f"at {time_text(command.at)}: {text}")
+            last = command.at
+        return "\n".join(lines)
+
+    @classmethod
+    def from_text(cls, timeline: str, **settings: Any) -> Self:
+        """Build a scenario from a timeline in the short text form.
+
+        Parameters
+        ----------
+        timeline : str
+            Such as ``"at 2 s: walk 0.1 m/s; at 5 s: gait wave"``.
+        **settings
+            Attributes but `commands`.
+
+        Raises
+        ------
+        InputError
+            If something in it is wrong; a line of the message for each.
+        """
+        from tarsus.scenario.file import commands_of_text
+
+        return cls(commands_of_text(timeline), **settings)
+
+    @classmethod
+    def from_dict(cls, document: Mapping[str, Any]) -> Self:
+        """Build a scenario from the keys of a scenario file.
+
+        Parameters
+        ----------
+        document : mapping
+            The keys, in mm, degrees and seconds.
+
+        Raises
+        ------
+        InputError
+            If something in it is wrong; a line of the message for each.
+        """
+        from tarsus.scenario.file import scenario_of
+
+        return cls(**scenario_of(dict(document), where="the scenario"))
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the keys of the scenario's file, in mm, degrees and seconds."""
+        from tarsus.scenario.file import document_of
+
+        return document_of(self)
+
+    @classmethod
+    def load(cls, path: str | os.PathLike[str]) -> Self:
+        """Read a scenario file (TOML).
+
+        Parameters
+        ----------
+        path : path
+            Where it is.
+
+        Raises
+        ------
+        InputError
+            If it can't be read, or something in it is wrong; a line of the message for each.
+        """
+        from tarsus.scenario.file import read_scenario
+
+        return cls(**read_scenario(path))
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write the scenario's file (TOML); `load` gives the same scenario back, to the bit.
+
+        Parameters
+        ----------
+        path : path
+            Where to write it.
+
+        Raises
+        ------
+        InputError
+            If it can't be written.
+        """
+        from tarsus.scenario.file import write_scenario
+
+        write_scenario(self, path)
+
+
+_BOUNDS = (
+    ("rate", 20.0, 1000.0, " Hz"),
+    ("jitter", 0.0, 0.025, " s"),
+    ("seed", 0, 2**53, ""),
+    ("duration", 0.1, LATEST, " s"),
+    ("body_height", 1e-6, 1.0, " m"),
+    ("swing_height", 0.0, 1.0, " m"),
+)

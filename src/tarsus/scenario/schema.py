@@ -1,0 +1,156 @@
+"""The scenario file's tables and keys, as pydantic models made from the commands; imported where a file is read."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from decimal import Decimal
+from typing import Annotated, Any, cast
+
+from pydantic import BaseModel, ConfigDict, Field, create_model
+from pydantic_core import PydanticCustomError, core_schema
+
+from tarsus.robot.fields import Choice, Number, Numbers, Text, refuse
+from tarsus.scenario.commands import COMMANDS, MoveBody, Sway, Tilt, Walk
+from tarsus.scenario.leg_tables import LEG_TABLES, LegTable
+from tarsus.scenario.quantities import Quantity
+from tarsus.scenario.scenario import LEVELLINGS, STARTS
+from tarsus.scenario.settings import ADMITTANCE
+from tarsus.scenario.timed_command import GAIT_NAMES, LATEST, TimedCommand, quantities
+from tarsus.scenario.wording import Value, takes
+
+__all__ = ["RATES", "SCALARS", "TABLES", "WORDS", "At", "GivingWay", "ScenarioFile"]
+
+RATES = (20.0, 1000.0)
+"""The least and the greatest rate [1/s]."""
+
+TABLES: tuple[type[TimedCommand], ...] = (Walk, MoveBody, Sway, Tilt)
+"""Commands that are a table of numbers under their word."""
+
+SCALARS = tuple(COMMANDS[word] for word in ("body_height", "swing_height", "stance_width", "cycle_time"))
+"""Commands of one number, under its key."""
+
+WORDS = ("stand_up", "stop", "sit", "fold", "power_off")
+"""Commands that take nothing, under ``do``."""
+
+
+class Table(BaseModel):
+    """Any table of the file: a key that it does not know is refused."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class _OrWord:
+    """A value, or one of some words in its place."""
+
+    def __init__(self, each: Number | Numbers, words: Collection[str]) -> None:
+        self._each, self._words = each, words
+
+    def check(self, value: object) -> Any:
+        """Return the value, or the word; refuse what is neither."""
+        if isinstance(value, str) and value in self._words:
+            return value
+        try:
+            return self._each.check(value)
+        except PydanticCustomError as error:
+            more = "".join(f', or "{word}"' for word in self._words)
+            raise refuse(f"{error.message()}{more}") from None
+
+    def __get_pydantic_core_schema__(self, source: object, handler: object) -> Any:
+        return core_schema.no_info_plain_validator_function(self.check)
+
+
+def _number(each: Quantity, *, needed: bool = False) -> Any:
+    field = Field(default=... if needed else None, description=f"{each.text} [{each.shown}]")
+    number = Number(each.low, each.high, each.shown)
+    return Annotated[Value | None, _OrWord(number, each.words) if each.words else number], field
+
+
+def _table(kind: type[TimedCommand]) -> type[Table]:
+    """Return the model of a command that is a table."""
+    fields: dict[str, Any] = {each.key: _number(each) for each in takes(kind).values()}
+    return cast("type[Table]", create_model(kind.__name__, __base__=Table, __doc__=kind.__doc__, **fields))
+
+
+class _ByLeg:
+    """A table of legs: for each what one of `LEG_TABLES` says."""
+
+    def __init__(self, table: LegTable) -> None:
+        numbers = [Number(each.low, each.high, each.shown) for each in quantities(table.kind).values()]
+        one = numbers[0] if len(numbers) == 1 else Numbers(len(numbers), numbers[0])
+        self._each = _OrWord(one, table.words)
+
+    def check(self, value: object) -> dict[str, Any]:
+        """Return the table; refuse what is none."""
+        if not isinstance(value, dict):
+            raise refuse("must be a table of legs, such as { RF = ... }")
+        return {str(leg): self._one(str(leg), item) for leg, item in value.items()}
+
+    def _one(self, leg: str, value: object) -> Any:
+        try:
+            return self._each.check(value)
+        except PydanticCustomError as error:
+            raise refuse(f"{leg}: {error.message()}") from None
+
+    def __get_pydantic_core_schema__(self, source: object, handler: object) -> Any:
+        return core_schema.no_info_plain_validator_function(self.check)
+
+
+class _Lines:
+    """Lines of text."""
+
+    def check(self, value: object) -> str:
+        """Return the text."""
+        if not isinstance(value, str):
+            raise refuse('must be text in quotes, such as "at 0 s: walk 0.1 m/s"')
+        return value
+
+    def __get_pydantic_core_schema__(self, source: object, handler: object) -> Any:
+        return core_schema.no_info_plain_validator_function(self.check)
+
+
+_AT: dict[str, Any] = {
+    "time_s": (Annotated[Decimal, Number(0, LATEST, "s")], Field(description="When [s].")),
+    "do": (Annotated[str | None, Choice(WORDS)], Field(default=None, description="What takes no numbers.")),
+    "gait": (Annotated[str | None, Choice(GAIT_NAMES)], Field(default=None, description="Another gait.")),
+    **{kind.word: (_table(kind) | None, None) for kind in TABLES},
+    **{each.key: _number(each) for kind in SCALARS for each in takes(kind).values()},
+    **{table.key: (Annotated[dict[str, Any] | None, _ByLeg(table)], None) for table in LEG_TABLES},
+}
+
+At = cast("type[Table]", create_model("At", __base__=Table, __doc__="What is told at a moment.", **_AT))
+"""One ``[[at]]``: a moment and the commands that are given then."""
+
+
+_GIVING_WAY: dict[str, Any] = {each.key: _number(each, needed=each.needed) for each in ADMITTANCE}
+
+GivingWay = cast("type[Table]", create_model("GivingWay", __base__=Table, __doc__="How feet give way.", **_GIVING_WAY))
+"""How feet give way to the forces on them."""
+
+
+class ScenarioFile(Table):
+    """A scenario."""
+
+    name: Annotated[str, Text(empty=True)] = Field(default="", description="What it is called.")
+    robot: Annotated[str, Text()] | None = Field(default=None, description="A robot's name, or the path of its file.")
+    rate_hz: Annotated[Decimal, Number(*RATES, "Hz")] | None = Field(default=None, description="Ticks per second.")
+    jitter_ms: Annotated[Decimal, Number(0, 25, "ms")] | None = Field(
+        default=None, description="By how much a tick may be longer or shorter, at random [ms]."
+    )
+    seed: Annotated[Decimal, Number(0, 2**53, "")] | None = Field(default=None, description="Of what is random.")
+    start: Annotated[str, Choice(STARTS)] | None = Field(default=None, description="How the robot is found.")
+    duration_s: Annotated[Decimal, Number(0.1, LATEST, "s")] | None = Field(default=None, description="How long [s].")
+    gait: Annotated[str, Choice(GAIT_NAMES)] | None = Field(default=None, description="The gait it starts with.")
+    body_height_mm: Annotated[Decimal, Number(0.001, 1000, "mm")] | None = Field(
+        default=None, description="Height of the body's origin at the start [mm]."
+    )
+    swing_height_mm: Annotated[Decimal, Number(0, 1000, "mm")] | None = Field(
+        default=None, description="Lift of swinging feet at the start [mm]."
+    )
+    levelling: Annotated[str, Choice(LEVELLINGS)] | None = Field(
+        default=None, description="Whether the body stays level on ground that is not, or follows it."
+    )
+    admittance: GivingWay | None = Field(  # type: ignore[valid-type]
+        default=None, description="How feet give way to the forces on them; without it they don't."
+    )
+    timeline: Annotated[str, _Lines()] | None = Field(default=None, description="Commands as text.")
+    at: list[At] = Field(default=[], description="Commands as tables.")  # type: ignore[valid-type]
