@@ -42,6 +42,8 @@ class Command:
         Legs that leave the gait, and where their feet go, in the heading frame [m]; None for a leg that comes back.
     foot_velocities : mapping of leg to (x, y, z), optional
         How fast the feet of such legs go from where they are instead, in the heading frame [m/s].
+    state : RobotState or str, optional
+        The state that is wanted, standing, lying or folded: for a `RobotController`.
     """
 
     twist: Sequence[float] = (0.0, 0.0, 0.0)
@@ -54,6 +56,7 @@ class Command:
     sway: Sequence[float] | None = None
     foot_targets: Mapping[int, Sequence[float] | None] | None = None
     foot_velocities: Mapping[int, Sequence[float]] | None = None
+    state: Any = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "twist", finite_numbers("twist", self.twist, ("vx", "vy", "wz"), most=math.inf))

@@ -37,6 +37,11 @@ class SensorReadings:
     torques: Any = None
     age: Any = 0.0
 
+    @property
+    def feels_ground(self) -> bool:
+        """Whether anything that tells of the ground is measured: contacts, attitude, forces or torques."""
+        return any(each is not None for each in (self.contacts, self.attitude, self.forces, self.torques))
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ValidReadings:

@@ -1,0 +1,180 @@
+"""What a robot controller does at a time: walk, play a motion sequence, or rest on the belly."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple, Protocol
+
+import numpy as np
+
+from tarsus.control.command import Command
+from tarsus.control.limitation import Limitation, LimitationKind
+from tarsus.control.readings import SensorReadings
+from tarsus.control.robot_state import RobotState
+from tarsus.control.sequence.player import SequencePlayer
+from tarsus.control.sequence.sequence import MotionSequence, SequenceSample
+from tarsus.control.walk_controller import WalkController
+from tarsus.kinematics.pose import Pose
+
+__all__ = ["Activity", "Playing", "Resting", "Snapshot", "Walking"]
+
+Floats = np.ndarray[Any, Any]
+
+_NO_TWIST = (0.0, 0.0, 0.0)
+
+
+class Snapshot(NamedTuple):
+    """The robot in an activity; poses and points are in the activity's own ground frame.
+
+    Attributes
+    ----------
+    angles : array, shape (legs, 3)
+        Joint angles [rad].
+    body : Pose
+        The body's pose.
+    feet : array, shape (legs, 3), or None
+        The feet [m]; None where they follow from angles and body.
+    contacts : array of bool, shape (legs,)
+        Which feet are on the ground.
+    belly : bool
+        Whether the body rests on the ground.
+    state : RobotState
+        What the robot does.
+    activity : str
+        What it does in detail.
+    twist : tuple of float
+        Speed of the walk: forward, left [m/s], turning [rad/s].
+    limitations : tuple of Limitation
+        Why the command is not met in full.
+    """
+
+    angles: Floats
+    body: Pose
+    feet: Floats | None
+    contacts: Floats
+    belly: bool
+    state: RobotState
+    activity: str
+    twist: tuple[float, float, float] = _NO_TWIST
+    limitations: tuple[Limitation, ...] = ()
+
+
+class Activity(Protocol):
+    """Something that moves all joints tick by tick."""
+
+    def step(self, command: Command, dt: float, readings: SensorReadings | None) -> None:
+        """Advance by one tick."""
+
+    @property
+    def snapshot(self) -> Snapshot:
+        """The robot now."""
+
+
+class Walking:
+    """Standing and walking, by a walk controller.
+
+    Parameters
+    ----------
+    controller : WalkController
+        The walk controller.
+    """
+
+    def __init__(self, controller: WalkController) -> None:
+        self.controller = controller
+
+    def step(self, command: Command, dt: float, readings: SensorReadings | None) -> None:
+        """Advance by one tick."""
+        felt = readings if readings is not None and readings.feels_ground else None
+        self.controller.step(command, dt, readings=felt)
+
+    @property
+    def stands(self) -> bool:
+        """Whether the robot stands, every foot on the ground and no step under way."""
+        return self.controller.mode == "standing"
+
+    @property
+    def snapshot(self) -> Snapshot:
+        """The robot now."""
+        walk = self.controller
+        vx, vy, wz = walk.twist.tolist()
+        return Snapshot(
+            walk.angles,
+            walk.body,
+            walk.feet,
+            walk.contacts,
+            belly=False,
+            state=RobotState.STANDING if self.stands else RobotState.WALKING,
+            activity=walk.mode,
+            twist=(vx, vy, wz),
+            limitations=tuple(Limitation(kind=LimitationKind.TWIST, cause=text) for text in walk.limited),
+        )
+
+
+class Playing:
+    """Rising, sitting down or folding, by a planned motion sequence; can return to its start.
+
+    Parameters
+    ----------
+    sequence : MotionSequence
+        What is played.
+    state : RobotState
+        What the robot does meanwhile.
+    before : Activity
+        What it did before, and does again where the sequence is played back to its start.
+    end : RobotState
+        The state at the end.
+    """
+
+    def __init__(self, sequence: MotionSequence, state: RobotState, *, before: Activity, end: RobotState) -> None:
+        self.sequence, self.state, self.before, self.end = sequence, state, before, end
+        self._player = SequencePlayer(sequence)
+        self.returning = False
+
+    def turn(self, *, back: bool) -> None:
+        """Continue to the end, or return to the start; the joints' accelerations stay within their limits."""
+        if back != self.returning:
+            self.returning = back
+            (self._player.go_back if back else self._player.resume)()
+
+    def leads_to(self, goal: RobotState) -> bool:
+        """Return whether the end of the sequence is on the way to a state that is wanted."""
+        return self.end is goal or (self.state is RobotState.SITTING and goal is RobotState.FOLDED)
+
+    @property
+    def done(self) -> bool:
+        """Whether the sequence is at its end, or back at its start where it returns."""
+        return self._player.done
+
+    def step(self, command: Command, dt: float, readings: SensorReadings | None) -> None:  # noqa: ARG002 - the protocol's
+        """Advance by one tick."""
+        self._player.step(dt)
+
+    @property
+    def snapshot(self) -> Snapshot:
+        """The robot now."""
+        now = self._player.now
+        return Snapshot(now.angles, now.body, None, now.contacts, now.belly, self.state, now.stage)
+
+
+class Resting:
+    """Lying on the belly.
+
+    Parameters
+    ----------
+    sample : SequenceSample
+        How the robot lies.
+    state : RobotState
+        Lying or folded.
+    """
+
+    def __init__(self, sample: SequenceSample, state: RobotState) -> None:
+        self._snapshot = Snapshot(
+            sample.angles, sample.body, None, sample.contacts, belly=True, state=state, activity=str(state)
+        )
+
+    def step(self, command: Command, dt: float, readings: SensorReadings | None) -> None:
+        """Do nothing."""
+
+    @property
+    def snapshot(self) -> Snapshot:
+        """The robot now."""
+        return self._snapshot

@@ -1,0 +1,78 @@
+"""What a robot controller gives for each tick."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from tarsus.control.limitation import Limitation
+from tarsus.control.robot_state import RobotState
+from tarsus.control.safety.interventions import Intervention
+from tarsus.gait.gait import Gait
+from tarsus.kinematics.pose import Pose
+
+__all__ = ["ControlOutput"]
+
+Floats = np.ndarray[Any, Any]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ControlOutput:
+    """The joint angles of a tick, and what they belong to.
+
+    Attributes
+    ----------
+    time : float
+        Sum of all ticks [s].
+    angles : array, shape (legs, 3)
+        Joint angles to execute, read-only [rad].
+    state : RobotState
+        What the robot does.
+    activity : str
+        What it does in detail: the walk state, the stage of rising, sitting or folding, or the state.
+    limitations : tuple of Limitation
+        Why the command is not met in full.
+    interventions : tuple of Intervention
+        What the guard began to prevent in this tick.
+    guard : str
+        The guard's state; empty without a guard.
+    body : Pose
+        The body's pose in G, as commanded.
+    feet : array, shape (legs, 3)
+        The feet in G, as commanded [m].
+    contacts : array of bool, shape (legs,)
+        Which feet are on the ground.
+    belly : bool
+        Whether the body rests on the ground.
+    twist : tuple of float
+        Speed of the walk: forward, left [m/s], turning [rad/s].
+    gait : Gait
+        Order of the steps.
+    cycle_time : float
+        Duration of a cycle, 0 before the first walk [s].
+    at_rest : bool
+        Whether the robot neither moves nor is about to.
+    """
+
+    time: float
+    angles: Floats
+    state: RobotState
+    activity: str
+    limitations: tuple[Limitation, ...]
+    interventions: tuple[Intervention, ...]
+    guard: str
+    body: Pose
+    feet: Floats
+    contacts: Floats
+    belly: bool
+    twist: tuple[float, float, float]
+    gait: Gait
+    cycle_time: float
+    at_rest: bool
+
+    @property
+    def heading(self) -> float:
+        """Yaw of the body in G [rad]."""
+        return float(np.asarray(self.body.rpy)[2])

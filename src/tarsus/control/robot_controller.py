@@ -1,0 +1,289 @@
+"""The controller of the whole robot: from a command and sensor readings to joint angles, in every state."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from tarsus.control.activity import Activity, Playing, Resting, Snapshot, Walking
+from tarsus.control.command import Command
+from tarsus.control.control_output import ControlOutput
+from tarsus.control.limitation import Limitation, LimitationKind
+from tarsus.control.persistent_command import PersistentCommand
+from tarsus.control.pose.admittance import Admittance
+from tarsus.control.pose.levelling import LevellingMode
+from tarsus.control.readings import SensorReadings
+from tarsus.control.robot_state import RobotState, next_state, requested_state
+from tarsus.control.safety.guard import Guard, GuardBounds
+from tarsus.control.safety.interventions import Intervention
+from tarsus.control.sequence.sequence import MotionSequence, SequenceSample
+from tarsus.control.startup.planner import fold, sit_down, stand_up
+from tarsus.control.walk_controller import WalkController
+from tarsus.errors import InputError, TarsusError
+from tarsus.gait.gait import Gait
+from tarsus.gait.setup import require_number
+from tarsus.kinematics.leg import forward_kinematics
+from tarsus.kinematics.pose import Pose
+from tarsus.kinematics.rest import resting_pose
+from tarsus.robot.robot import Robot
+
+__all__ = ["RobotController"]
+
+# A robot whose joints are all slower than this is at rest [rad/s].
+_AT_REST = 1e-3
+_NO_TWIST = (0.0, 0.0, 0.0)
+
+
+class RobotController:
+    """Controls a robot in all its states: lying, rising, standing, walking, sitting down, folding.
+
+    Each tick takes a command, with the state that is wanted, and sensor readings, and gives joint angles. A guard,
+    which is independent of the rest, checks every tick's angles before they are given out; while it holds the robot,
+    the state is FAULT and nothing else advances.
+
+    Parameters
+    ----------
+    robot : Robot
+        A single robot.
+    gait : Gait, optional
+        Order of the steps; the robot's own where left out.
+    start : RobotState or str
+        Standing, lying or folded.
+    angles : array, shape (legs, 3), optional
+        Joint angles as measured of a robot that lies, in whatever pose [rad]; left out, those that sitting down (and
+        folding) ends in.
+    body_height, swing_height : float, optional
+        Of the stance that it starts in or stands up to [m]; the robot's own where left out.
+    levelling : "level", "follow" or None
+        Whether the body stays level on ground that is not, or follows its slope.
+    admittance : Admittance, optional
+        How the feet comply with the forces on them; left out, they don't.
+    guard : bool or GuardBounds
+        Whether a guard checks the angles, or the bounds that it keeps.
+
+    Raises
+    ------
+    InputError
+        If an argument is not finite or out of its range, or the robot is a batch.
+    UnreachableError
+        If the robot can't stand or lie so.
+    """
+
+    def __init__(
+        self,
+        robot: Robot,
+        gait: Gait | None = None,
+        *,
+        start: RobotState | str = RobotState.STANDING,
+        angles: Sequence[Any] | np.ndarray[Any, Any] | None = None,
+        body_height: float | None = None,
+        swing_height: float | None = None,
+        levelling: LevellingMode | None = None,
+        admittance: Admittance | None = None,
+        guard: bool | GuardBounds = True,
+    ) -> None:
+        self.robot = robot
+        self.body_height, self.swing_height = body_height, swing_height
+        self._gait = Gait.named(robot.gait.name, legs=robot.legs) if gait is None else gait
+        self._feel: dict[str, Any] = {"levelling": levelling, "admittance": admittance}
+        self._command = PersistentCommand(robot)
+        self._base = Pose.from_rpy(0.0, 0.0, 0.0, (0.0, 0.0, 0.0))
+        self._cycle_time, self._time, self._rate = 0.0, 0.0, 0.0
+        walking = self._new_walk()
+        self._activity: Activity = walking
+        start = requested_state(start)
+        if start is not RobotState.STANDING or angles is not None:
+            self._activity = self._found_lying(walking, start, angles)
+            self._base = _ground_frame(self._activity.snapshot.body).inverse()
+        self._now = self._placed(self._activity.snapshot)
+        self._goal = RobotState.STANDING if self._now.state.upright else self._now.state
+        self._rejected: Limitation | None = None
+        bounds = guard if isinstance(guard, GuardBounds) else None
+        if guard is True:
+            # Where a servo's speed is unknown, walk controller and guard have to assume the same.
+            walk = walking.controller
+            bounds = GuardBounds.of(robot, speed=walk.joint_speed, acceleration=walk.joint_acceleration)
+        self.guard = None if bounds is None else Guard(robot, bounds=bounds, start=self._now.angles)
+        self._present: set[str] = set()
+        self._output = self._shown(self._now.angles, ())
+
+    def _new_walk(self) -> Walking:
+        heights: dict[str, Any] = {"body_height": self.body_height, "swing_height": self.swing_height}
+        return Walking(WalkController(self.robot, self._gait, **heights, **self._feel))
+
+    def _found_lying(self, walking: Walking, start: RobotState, angles: Any) -> Resting:
+        """Return how the robot lies at the start."""
+        if angles is None:
+            sequence = sit_down(self.robot, walking.controller.angles)
+            if start is RobotState.FOLDED:
+                sequence = fold(self.robot, sequence.angles_end)
+            return Resting(sequence.at(sequence.duration), start)
+        found = np.array(angles, dtype=float)
+        if found.shape != (self.robot.legs, 3) or not np.isfinite(found).all():
+            raise InputError(f"angles must be {self.robot.legs} x 3 finite numbers [rad]")
+        found.setflags(write=False)
+        contacts = np.zeros(self.robot.legs, dtype=bool)
+        sample = SequenceSample(found, contacts, resting_pose(self.robot, found).body, "lying", belly=True)
+        return Resting(sample, RobotState.LYING)
+
+    @property
+    def output(self) -> ControlOutput:
+        """What the last tick gave; before the first, how the robot starts."""
+        return self._output
+
+    @property
+    def state(self) -> RobotState:
+        """The state now."""
+        return self._output.state
+
+    def step(
+        self, command: Command | Sequence[float], dt: float, readings: SensorReadings | None = None
+    ) -> ControlOutput:
+        """Advance by one tick.
+
+        Parameters
+        ----------
+        command : Command or (vx, vy, wz)
+            What is asked for; what is None in it stays as it is, a twist alone leaves everything else.
+        dt : float
+            The time since the last tick [s].
+        readings : SensorReadings, optional
+            What is measured.
+
+        Raises
+        ------
+        InputError
+            If the command or the time is not finite, or out of its range. Nothing has changed then.
+        UnknownNameError
+            If there is no such gait. Nothing has changed then.
+        """
+        require_number("dt", dt, zero=False)
+        command = command if isinstance(command, Command) else Command(twist=command)
+        full = self._command.merged(command)
+        if self.guard is None or self.guard.state == "passing":
+            self._advance(full, dt, readings)
+        self._command.keep(command, full)
+        self._time += dt
+        self._output = self._shown(*self._guarded(dt))
+        return self._output
+
+    def _advance(self, command: Command, dt: float, readings: SensorReadings | None) -> None:
+        """Advance what the robot does, and begin or end changes of state."""
+        self._begin_change(command)
+        before, activity = self._now.angles, self._activity
+        upright = self._goal is RobotState.STANDING
+        activity.step(command if upright else _stopped(command, self.robot.legs), dt, readings)
+        self._now = self._placed(activity.snapshot)
+        self._rate = float(np.abs(self._now.angles - before).max()) / dt
+        if isinstance(activity, Walking):
+            self._gait, self._cycle_time = activity.controller.gait, activity.controller.cycle_time
+        if isinstance(activity, Playing) and activity.done:
+            self._end_change(activity)
+
+    @property
+    def _at_rest(self) -> bool:
+        moves = isinstance(self._activity, Playing) or (
+            isinstance(self._activity, Walking) and not self._activity.stands
+        )
+        return not moves and self._rate < _AT_REST
+
+    # Changes of state.
+
+    def _begin_change(self, command: Command) -> None:
+        """Begin the next change on the way to the state that is wanted, once the robot is at rest."""
+        goal = self._goal if command.state is None else requested_state(command.state)
+        if goal is not self._goal:
+            self._goal, self._rejected = goal, None
+        if isinstance(self._activity, Playing):
+            self._activity.turn(back=not self._activity.leads_to(goal))
+            return
+        state = RobotState.STANDING if self._now.state.upright else self._now.state
+        change = next_state(state, goal)
+        if change is None or self._rejected is not None or not self._at_rest:
+            return
+        try:
+            sequence = self._plan(change[0])
+        except TarsusError as error:
+            self._rejected = Limitation(kind=LimitationKind.STATE, cause=f"{change[0]} is not possible: {error}")
+            return
+        playing = Playing(sequence, change[0], before=self._activity, end=change[1])
+        self._before = self._base
+        self._base = _ground_frame(self._now.body) @ _ground_frame(sequence.stages[0].start).inverse()
+        self._activity = playing
+
+    def _plan(self, state: RobotState) -> MotionSequence:
+        angles = self._now.angles
+        if state is RobotState.RISING:
+            return stand_up(self.robot, angles, body_height=self.body_height, swing_height=self.swing_height)
+        return sit_down(self.robot, angles) if state is RobotState.SITTING else fold(self.robot, angles)
+
+    def _end_change(self, playing: Playing) -> None:
+        """Go over to what follows a motion sequence."""
+        end = playing.sequence.at(playing.sequence.duration)
+        if playing.returning:
+            self._activity, self._base = playing.before, self._before
+        elif playing.end is RobotState.STANDING:
+            self._base = self._base @ _ground_frame(end.body)
+            self._activity = self._new_walk()
+            self._command.forget_released()
+        else:
+            self._activity = Resting(end, playing.end)
+        after = self._activity.snapshot
+        self._now = self._now._replace(state=after.state, activity=after.activity)
+
+    # What is given out.
+
+    def _guarded(self, dt: float) -> tuple[np.ndarray[Any, Any], tuple[Intervention, ...]]:
+        """Return the angles that the guard lets through, and the interventions that begin with this tick."""
+        now = self._now
+        if self.guard is None:
+            return now.angles, ()
+        told = self.guard.check(now.angles, dt, *((None, None) if now.belly else (now.contacts, now.body)))
+        began = tuple(each for each in told.interventions if each.kind not in self._present)
+        self._present = {each.kind for each in told.interventions}
+        return told.angles, began
+
+    def _placed(self, snapshot: Snapshot) -> Snapshot:
+        """Return a snapshot with body and feet in G."""
+        body = self._base @ snapshot.body
+        if snapshot.feet is None:
+            feet = np.asarray(body @ forward_kinematics(self.robot, snapshot.angles)[..., 3, :])
+        else:
+            feet = np.asarray(self._base @ snapshot.feet)
+        return snapshot._replace(body=body, feet=feet)
+
+    def _shown(self, angles: np.ndarray[Any, Any], began: tuple[Intervention, ...]) -> ControlOutput:
+        now, guard = self._now, "" if self.guard is None else str(self.guard.state)
+        assert now.feet is not None  # as placed
+        return ControlOutput(
+            time=self._time,
+            angles=angles,
+            state=now.state if guard in ("", "passing") else RobotState.FAULT,
+            activity=now.activity,
+            limitations=now.limitations if self._rejected is None else (*now.limitations, self._rejected),
+            interventions=began,
+            guard=guard,
+            body=now.body,
+            feet=now.feet,
+            contacts=now.contacts,
+            belly=now.belly,
+            twist=now.twist,
+            gait=self._gait,
+            cycle_time=self._cycle_time,
+            at_rest=self._at_rest,
+        )
+
+
+def _stopped(command: Command, legs: int) -> Command:
+    """Return the command to stand with every foot in the gait: what a robot does before it sits down."""
+    targets = dict.fromkeys(range(legs)) if command.foot_targets or command.foot_velocities else None
+    return dataclasses.replace(command, twist=_NO_TWIST, foot_targets=targets, foot_velocities=None)
+
+
+def _ground_frame(body: Pose) -> Pose:
+    """Return the frame on the ground below a body that has the body's heading."""
+    yaw = float(np.asarray(body.rpy)[2])
+    return Pose.from_rpy(0.0, 0.0, yaw, (float(body.position[0]), float(body.position[1]), 0.0))

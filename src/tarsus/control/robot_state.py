@@ -1,0 +1,98 @@
+"""The states of a robot, and which of them may follow each other."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from enum import StrEnum
+from types import MappingProxyType
+
+from tarsus.errors import InputError
+
+__all__ = ["REQUESTABLE", "TRANSITIONS", "RobotState", "next_state", "requested_state"]
+
+
+class RobotState(StrEnum):
+    """What the robot as a whole does."""
+
+    LYING = "lying"
+    FOLDED = "folded"
+    RISING = "rising"
+    STANDING = "standing"
+    WALKING = "walking"
+    SITTING = "sitting"
+    FOLDING = "folding"
+    FAULT = "fault"
+
+    @property
+    def upright(self) -> bool:
+        """Whether the walk controller moves the robot: it stands or walks."""
+        return self in (RobotState.STANDING, RobotState.WALKING)
+
+    @property
+    def on_belly(self) -> bool:
+        """Whether the robot rests on its belly, and nothing moves."""
+        return self in (RobotState.LYING, RobotState.FOLDED)
+
+
+_ALLOWED: dict[RobotState, tuple[RobotState, ...]] = {
+    RobotState.LYING: (RobotState.RISING, RobotState.FOLDING, RobotState.FAULT),
+    RobotState.FOLDED: (RobotState.RISING, RobotState.FAULT),
+    RobotState.RISING: (RobotState.STANDING, RobotState.LYING, RobotState.FOLDED, RobotState.FAULT),
+    RobotState.STANDING: (RobotState.WALKING, RobotState.SITTING, RobotState.FAULT),
+    RobotState.WALKING: (RobotState.STANDING, RobotState.FAULT),
+    RobotState.SITTING: (RobotState.LYING, RobotState.STANDING, RobotState.FAULT),
+    RobotState.FOLDING: (RobotState.FOLDED, RobotState.LYING, RobotState.FAULT),
+}
+
+TRANSITIONS: Mapping[RobotState, frozenset[RobotState]] = MappingProxyType(
+    {state: frozenset(following) for state, following in _ALLOWED.items()}
+    # A robot that the guard releases continues what it did.
+    | {RobotState.FAULT: frozenset(RobotState) - {RobotState.FAULT}}
+)
+"""The states that may follow each state. From RISING, SITTING and FOLDING the robot may also return to where it was."""
+
+REQUESTABLE = (RobotState.STANDING, RobotState.LYING, RobotState.FOLDED)
+"""The states that a command may ask for; walking follows from a twist."""
+
+# The first step from one requestable state towards another, and the state that it ends in.
+_STEPS: dict[tuple[RobotState, RobotState], tuple[RobotState, RobotState]] = {
+    (RobotState.STANDING, RobotState.LYING): (RobotState.SITTING, RobotState.LYING),
+    (RobotState.STANDING, RobotState.FOLDED): (RobotState.SITTING, RobotState.LYING),
+    (RobotState.LYING, RobotState.STANDING): (RobotState.RISING, RobotState.STANDING),
+    (RobotState.LYING, RobotState.FOLDED): (RobotState.FOLDING, RobotState.FOLDED),
+    (RobotState.FOLDED, RobotState.STANDING): (RobotState.RISING, RobotState.STANDING),
+}
+
+
+def requested_state(value: RobotState | str) -> RobotState:
+    """Return the state that a command asks for.
+
+    Parameters
+    ----------
+    value : RobotState or str
+        One of `REQUESTABLE`, or its value.
+
+    Raises
+    ------
+    InputError
+        If it is another.
+    """
+    if value not in [*REQUESTABLE, *map(str, REQUESTABLE)]:
+        known = ", ".join(f"'{state}'" for state in REQUESTABLE)
+        raise InputError(f"the command's state is {value!r}; it must be one of {known}")
+    return RobotState(value)
+
+
+def next_state(state: RobotState, goal: RobotState) -> tuple[RobotState, RobotState] | None:
+    """Return the next state on the way to a goal, and the state that it ends in; None where the goal is reached.
+
+    A robot that lies already counts as lying when it is folded: folded legs are unfolded by standing up only.
+
+    Parameters
+    ----------
+    state : RobotState
+        The state now: standing, lying or folded.
+    goal : RobotState
+        One of `REQUESTABLE`.
+    """
+    return _STEPS.get((state, goal))
