@@ -112,8 +112,8 @@ def test_a_foot_gives_way_by_the_force_over_its_stiffness():
     # What no robot could feel is not believed.
     assert heights[600, [right, left]] == pytest.approx(0.0, abs=1e-6)
     assert [event.text for event in found.events if event.kind == "limit"] == [
-        "forces of LM: beyond 4 times the weight, or pulling down",
-        "forces of LM: on trial",
+        "forces of LM: beyond 4 times the robot's weight, or downward beyond 0.25 times",
+        "forces of LM: settling after a rejected reading",
     ]
     # More than leads to the end of its travel is cut off.
     assert heights[900, [right, left]] == pytest.approx([SOFT.travel, 0.0], abs=1e-6)

@@ -1,41 +1,66 @@
-"""What the robot feels of the ground: the readings that a live walker may be given, and those that it believes."""
+"""Sensor readings: what plants measure and report to a controller, and what is left of it after validation."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
 from typing import Any, TypeAlias
 
-__all__ = ["SensorReadings", "ValidReadings", "Vector"]
+__all__ = ["CHANNELS", "SensorReadings", "ValidReadings", "Vector"]
 
 Vector: TypeAlias = tuple[float, float, float]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class SensorReadings:
-    """The sensors' readings of one moment, as they come: nothing is checked here, and each may be missing.
+    """Readings of all sensors at one tick, as measured; each channel may be missing (None).
 
-    `ReadingsValidator` decides what is plausible. Where the sensors are slower than the controller, give the last
-    reading again with its `age`.
+    Nothing is checked here: a `WalkController` validates readings before it uses them, and reports in its
+    limitations which it rejected. Where a sensor is slower than the controller, pass its last reading again with
+    its `age`.
 
     Attributes
     ----------
+    joint_angles : array, shape (legs, 3), or None
+        Measured joint angles of coxa, femur and tibia [rad].
+    joint_speeds : array, shape (legs, 3), or None
+        Measured joint speeds [rad/s].
+    currents : array, shape (legs, 3), or None
+        Servo currents [A].
+    temperatures : array, shape (legs, 3), or None
+        Servo temperatures [deg C].
+    voltages : array, shape (legs, 3), or None
+        Supply voltages at the servos [V].
     contacts : array of bool, shape (legs,), or None
-        Which feet touch the ground; 0 and 1 will do.
-    attitude : (roll, pitch), or None
-        How B leans in the world, whose vertical is gravity's: of ``Rz(yaw) Ry(pitch) Rx(roll)`` [rad].
-    forces : array, shape (legs,) or (legs, 3), or None
-        Ground on foot in B [N]: along B's z axis alone, or all of it.
+        Which feet touch the ground; 0 and 1 are accepted too.
+    forces : array, shape (legs, 3) or (legs,), or None
+        Forces of the ground on the feet in B, or their components along B's z axis [N].
     torques : array, shape (legs, 3), or None
-        What the servos of coxa, femur and tibia exert, signs as in `tarsus.joint_torques` [N m].
-    age : float
-        How old the readings are [s].
+        Torques exerted by the servos, signs as in `tarsus.joint_torques` [N m].
+    attitude : array, shape (2,), or None
+        Roll and pitch of B in the world, z along gravity: those of ``Rz(yaw) Ry(pitch) Rx(roll)`` [rad].
+    angular_rates : array, shape (3,), or None
+        Angular velocity of B in the world, components along B's axes [rad/s].
+    age : float or mapping of str to float
+        Time since the measurement [s]: of all channels, or of each by its name; channels not in the mapping have
+        age 0.
     """
 
+    joint_angles: Any = None
+    joint_speeds: Any = None
+    currents: Any = None
+    temperatures: Any = None
+    voltages: Any = None
     contacts: Any = None
-    attitude: Any = None
     forces: Any = None
     torques: Any = None
-    age: Any = 0.0
+    attitude: Any = None
+    angular_rates: Any = None
+    age: float | Mapping[str, float] = 0.0
+
+
+CHANNELS = tuple(field.name for field in fields(SensorReadings) if field.name != "age")
+"""Names of all channels, as used for ages."""
 
     @property
     def feels_ground(self) -> bool:
@@ -45,24 +70,42 @@ class SensorReadings:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ValidReadings:
-    """The readings that are plausible, as plain numbers: None for a sense, or for one leg of it, that is not.
+    """Readings that passed validation, as plain Python values: None for a channel, or one leg of it, that did not.
 
     Attributes
     ----------
+    joint_angles : tuple of ((coxa, femur, tibia) or None), or None
+        Measured joint angles [rad].
+    joint_speeds : tuple of ((coxa, femur, tibia) or None), or None
+        Measured joint speeds [rad/s].
+    currents : tuple of ((coxa, femur, tibia) or None), or None
+        Servo currents [A].
+    temperatures : tuple of ((coxa, femur, tibia) or None), or None
+        Servo temperatures [deg C].
+    voltages : tuple of ((coxa, femur, tibia) or None), or None
+        Supply voltages at the servos [V].
     contacts : tuple of (bool or None), or None
         Which feet touch the ground.
-    attitude : (roll, pitch), or None
-        How B leans in the world [rad].
     forces : tuple of ((x, y, z) or None), or None
-        Ground on foot in B [N]; x and y are 0 where only z was measured.
+        Forces of the ground on the feet in B; x and y are 0 where only z was measured [N].
     torques : tuple of ((coxa, femur, tibia) or None), or None
-        What the servos exert [N m].
+        Torques exerted by the servos [N m].
+    attitude : (roll, pitch), or None
+        Roll and pitch of B in the world [rad].
+    angular_rates : (x, y, z), or None
+        Angular velocity of B in the world, components along B's axes [rad/s].
     rejected : tuple of str
-        Which readings are not believed, and why.
+        Rejected channels, or legs of them, with the reason.
     """
 
+    joint_angles: tuple[Vector | None, ...] | None = None
+    joint_speeds: tuple[Vector | None, ...] | None = None
+    currents: tuple[Vector | None, ...] | None = None
+    temperatures: tuple[Vector | None, ...] | None = None
+    voltages: tuple[Vector | None, ...] | None = None
     contacts: tuple[bool | None, ...] | None = None
-    attitude: tuple[float, float] | None = None
     forces: tuple[Vector | None, ...] | None = None
     torques: tuple[Vector | None, ...] | None = None
-    rejected: tuple[str, ...] = field(default=())
+    attitude: tuple[float, float] | None = None
+    angular_rates: Vector | None = None
+    rejected: tuple[str, ...] = ()

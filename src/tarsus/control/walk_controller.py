@@ -251,7 +251,7 @@ class WalkController(WalkControllerState):
 
     def _sense(self, readings: SensorReadings | None, dt: float) -> None:
         """Take in what is measured, and let feet come to rest that have met the ground early."""
-        if readings is None and self._terrain.numb:
+        if readings is None and not self._terrain.has_feedback:
             return
         now, body = self._now, self._scheduler.wanted.body
         height = float(now.posture.value[2]) - self._scheduler.doing.parameters.correction[2]

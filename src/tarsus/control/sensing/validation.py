@@ -1,62 +1,68 @@
-"""Which readings a live walker believes: those that a real robot could give."""
+"""Validation of sensor readings: only those that the robot could have measured are used."""
 
 from __future__ import annotations
 
 import math
+from typing import Any
 
-from tarsus.control.readings import SensorReadings, ValidReadings
-from tarsus.control.sensing.attitude_validation import AttitudeValidator
-from tarsus.control.sensing.channel_validation import ContactChannel, Range, VectorChannel, number
+from tarsus.control.readings import CHANNELS, SensorReadings, ValidReadings
+from tarsus.control.sensing.body_channels import AngularRateChannel, AttitudeChannel
 from tarsus.control.sensing.foot_force import STANDARD_GRAVITY
+from tarsus.control.sensing.leg_channels import ContactChannel, Range, VectorChannel
+from tarsus.control.sensing.plain_values import as_number
 from tarsus.errors import InputError
 from tarsus.kinematics.mass import total_mass
 from tarsus.robot.robot import Robot
 
 __all__ = ["ReadingsValidator"]
 
-# Where the robot's masses or servos are unknown: more than any robot with legs of this kind weighs or exerts.
+# Bounds where the robot's masses or servos are unknown, above those of any robot this is made for.
 _ANY_WEIGHT = 1e4  # [N]
 _ANY_STALL_TORQUE = 1e3  # [N m]
-# A load cell is a little off zero, and a swinging foot pulls a little; a foot that is held down is a wrong sign.
+# Greatest downward force on a foot, in weights: from a load cell's zero offset and the inertia of a swinging leg.
+# Beyond that the sign is wrong.
 _PULL = 0.25
+# Channels that are plausible wherever they are finite.
+_FINITE_CHANNELS = ("joint_angles", "joint_speeds", "currents", "temperatures", "voltages")
 
-_NOTHING = ValidReadings()
+_NO_READINGS = ValidReadings()
+_BAD_AGE = "age is not a number >= 0 s"
 
 
 class ReadingsValidator:
-    """Takes the sensors' readings tick by tick and lets only the plausible ones through.
+    """Passes plausible readings on, tick by tick, and names the others.
 
-    A reading is refused that is not finite numbers of the right shape, too old, or beyond what the robot could feel:
-    of one leg where it is one leg's, else the whole sense. Once refused, a sense is believed again after it has been
-    plausible `settle` times in a row; an attitude must also agree from one reading to the next. Whatever is in the
-    fields, nothing is raised.
+    A reading is rejected if it does not consist of finite numbers in the right shape, is too old, or lies outside
+    the range the robot can measure: for one leg if only that leg's reading is wrong, otherwise the whole channel.
+    After a rejection a channel is accepted again once it has been plausible `settle` times in a row. No content of
+    the fields raises an error.
 
     Parameters
     ----------
     robot : Robot
-        One robot; its weight and its servos' stall torques bound forces and torques, where it has them.
+        One robot; forces and torques are bounded by its weight and its servos' stall torques where these are known.
     max_age : float
         Greatest age of a reading [s].
     max_tilt : float
-        Greatest roll or pitch, either way [rad].
+        Greatest magnitude of roll and pitch [rad].
     max_turn : float
-        Greatest speed of roll and pitch from one reading to the next [rad/s].
+        Greatest rate of change of roll and pitch [rad/s].
     max_weights : float
         Greatest force on one foot, in weights of the robot.
     max_stalls : float
         Greatest torque, in stall torques of the joint's servo.
     settle : int
-        Plausible readings in a row after which a sense that was refused is believed again.
+        Consecutive plausible readings after which a rejected channel is accepted again.
 
     Attributes
     ----------
     counts : dict of str to int
-        How often each reason was given so far.
+        How often each reason of rejection has been given.
 
     Raises
     ------
     InputError
-        If the robot is a batch of designs, or a bound is not positive.
+        If the robot is a batch of designs, or a bound is not a positive number.
     """
 
     def __init__(
@@ -83,75 +89,101 @@ class ReadingsValidator:
             if not 0 < bound < math.inf:
                 raise InputError(f"{name} is {bound}; it must be a positive number")
         self._max_age = max_age
-        weight = float(total_mass(robot)) * STANDARD_GRAVITY if robot.has_masses else _ANY_WEIGHT
-        legs, most = robot.leg_codes, max_weights * weight
-        self._contacts = ContactChannel(legs, settle=settle)
-        self._attitude = AttitudeValidator(max_tilt=max_tilt, max_turn=max_turn, settle=settle)
-        self._forces = VectorChannel(
-            "forces",
-            legs,
-            bounds=[((-most, most), (-most, most), (-_PULL * weight, most))] * robot.legs,
-            beyond=f"beyond {max_weights:g} times the weight, or pulling down",
-            lone=True,
-            settle=settle,
-        )
-        self._torques = VectorChannel(
-            "torques",
-            legs,
-            bounds=[_both_ways([max_stalls * torque for torque in row]) for row in _stall_torques(robot)],
-            beyond=f"beyond {max_stalls:g} times the stall torque",
-            lone=False,
-            settle=settle,
-        )
-        self._old = f"senses: older than {max_age * 1e3:g} ms"
+        legs = robot.leg_codes
+        self._attitude = AttitudeChannel(max_tilt=max_tilt, max_turn=max_turn, settle=settle)
+        self._channels: dict[str, Any] = {
+            "contacts": ContactChannel(legs, settle=settle),
+            "attitude": self._attitude,
+            "forces": _forces_channel(robot, max_weights, settle=settle),
+            "torques": _torques_channel(robot, max_stalls, settle=settle),
+            **{name: VectorChannel(name, legs, settle=settle) for name in _FINITE_CHANNELS},
+            "angular_rates": AngularRateChannel(settle=settle),
+        }
+        old = f"older than {max_age * 1e3:g} ms"
+        self._old = {name: f"{name}: {old}" for name in ("readings", *CHANNELS)}
         self.counts: dict[str, int] = {}
 
-    def admit(self, readings: SensorReadings | None, dt: float) -> ValidReadings:
-        """Return what can be believed of the readings.
+    def validate(self, readings: SensorReadings | None, dt: float) -> ValidReadings:
+        """Return the readings that pass, and the reasons of all rejections.
 
         Parameters
         ----------
         readings : SensorReadings or None
-            The readings; anything else is refused as a whole.
+            The readings; an object of any other class is rejected as a whole.
         dt : float
             Time since the last call [s].
         """
-        self._attitude.wait(dt)
+        self._attitude.elapse(dt)
         if readings is None:
-            return _NOTHING
+            return _NO_READINGS
         rejected: list[str] = []
-        why = self._wrong_as_a_whole(readings)
-        if why:
-            rejected.append(why)
-            for channel in (self._contacts, self._attitude, self._forces, self._torques):
-                channel.distrust()
-            admitted = ValidReadings(rejected=(why,))
+        problem, ages = self._ages(readings)
+        if problem:
+            rejected.append(problem)
+            for channel in self._channels.values():
+                channel.reset()
+            valid = ValidReadings(rejected=(problem,))
         else:
-            admitted = ValidReadings(
-                contacts=self._contacts.read(readings.contacts, rejected),
-                attitude=self._attitude.read(readings.attitude, rejected),
-                forces=self._forces.read(readings.forces, rejected),
-                torques=self._torques.read(readings.torques, rejected),
-                rejected=tuple(rejected),
-            )
+            accepted = {}
+            for name, channel in self._channels.items():
+                value = getattr(readings, name)
+                if value is None:
+                    continue
+                if ages and (stale := self._stale(name, ages.get(name, 0.0))):
+                    rejected.append(stale)
+                    channel.reset()
+                else:
+                    accepted[name] = channel.read(value, rejected)
+            valid = ValidReadings(**accepted, rejected=tuple(rejected))
         for reason in rejected:
             self.counts[reason] = self.counts.get(reason, 0) + 1
-        return admitted
+        return valid
 
-    def _wrong_as_a_whole(self, readings: SensorReadings) -> str:
-        """Return what is wrong with all readings at once, nothing if they can be looked at one by one."""
+    def _ages(self, readings: SensorReadings) -> tuple[str, dict[str, Any]]:
+        """Return what is wrong with all readings together, "" if nothing is, and the ages of single channels."""
         if type(readings) is not SensorReadings:
-            return "senses: not of the class SensorReadings"
-        age = number(readings.age)
-        if 0.0 <= age <= self._max_age:
+            return "readings: not of class SensorReadings", {}
+        age: Any = readings.age
+        if type(age) is float or not hasattr(type(age), "keys"):
+            return self._stale("readings", age), {}
+        try:
+            ages = {name: age[name] for name in CHANNELS if name in age}
+            unknown = len(age) != len(ages)
+        except Exception:  # a foreign mapping may raise anything
+            return f"readings: {_BAD_AGE}", {}
+        return ("readings: age of a channel that does not exist" if unknown else ""), ages
+
+    def _stale(self, name: str, age: Any) -> str:
+        """Return what is wrong with an age, "" if it is at most the greatest."""
+        seconds = as_number(age)
+        if 0.0 <= seconds <= self._max_age:
             return ""
-        return self._old if age > 0 else "senses: of no possible age"
+        return self._old[name] if seconds > 0 else f"{name}: {_BAD_AGE}"
 
 
-def _stall_torques(robot: Robot) -> list[list[float]]:
-    """Stall torques of each leg's joints [N m]; a great one where the servo is unknown."""
-    return [[s.stall_torque if s else _ANY_STALL_TORQUE for s in row] for row in robot.servos]
+def _forces_channel(robot: Robot, max_weights: float, *, settle: int) -> VectorChannel:
+    weight = float(total_mass(robot)) * STANDARD_GRAVITY if robot.has_masses else _ANY_WEIGHT
+    most = max_weights * weight
+    return VectorChannel(
+        "forces",
+        robot.leg_codes,
+        bounds=[((-most, most), (-most, most), (-_PULL * weight, most))] * robot.legs,
+        beyond=f"beyond {max_weights:g} times the robot's weight, or downward beyond {_PULL:g} times",
+        accept_z=True,
+        settle=settle,
+    )
 
 
-def _both_ways(most: list[float]) -> tuple[Range, Range, Range]:
-    return (-most[0], most[0]), (-most[1], most[1]), (-most[2], most[2])
+def _torques_channel(robot: Robot, max_stalls: float, *, settle: int) -> VectorChannel:
+    bounds = [[max_stalls * (s.stall_torque if s else _ANY_STALL_TORQUE) for s in row] for row in robot.servos]
+    return VectorChannel(
+        "torques",
+        robot.leg_codes,
+        bounds=[(_symmetric(coxa), _symmetric(femur), _symmetric(tibia)) for coxa, femur, tibia in bounds],
+        beyond=f"beyond {max_stalls:g} times the stall torque",
+        settle=settle,
+    )
+
+
+def _symmetric(most: float) -> Range:
+    return (-most, most)

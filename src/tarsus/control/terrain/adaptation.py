@@ -54,10 +54,10 @@ class TerrainAdaptation:
 
     Attributes
     ----------
-    numb : bool
-        Whether there has been nothing to feel with, nor anything to do about it.
-    estimate : Felt or None
-        What was felt last; None as long as it is numb.
+    has_feedback : bool
+        Whether readings have been given, or levelling or admittance need an estimate without them.
+    estimate : GroundEstimate or None
+        The last estimate; None without feedback.
     hold : float
         How long feet may have to wait for others that look for ground [s].
     searches : GroundSearch
@@ -77,7 +77,7 @@ class TerrainAdaptation:
         self.estimate: GroundEstimate | None = None
         self.hold = 0.0
         self.searches = GroundSearch(acceleration)
-        self.numb = levelling is None and admittance is None
+        self.has_feedback = levelling is not None or admittance is not None
         self._robot, self._gives_way = robot, admittance is not None
         self._estimator = GroundEstimator(robot, angles, feet, levelling=levelling, admittance=admittance)
         self._retreat = HoleRecovery()
@@ -130,7 +130,7 @@ class TerrainAdaptation:
         commanded : Commanded
             How the body is asked to stand.
         """
-        self.numb = False
+        self.has_feedback = True
         lean = now.posture.value[3:5] - (commanded.roll, commanded.pitch)
         self._estimator.leaning(float(lean[0]), float(lean[1]))
         self.estimate = self._estimator.step(

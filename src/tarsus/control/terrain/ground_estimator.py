@@ -124,17 +124,17 @@ class GroundEstimator:
         angles : array, shape (legs, 3)
             Joint angles [rad].
         """
-        admitted = self._validator.admit(readings, dt)
+        valid = self._validator.validate(readings, dt)
         # Where the ground is, not where feet are that have given way.
         stood = feet - np.outer(offsets, (0.0, 0.0, 1.0))
         self.plane = ground_plane(stood, contacts, self.plane)
-        self._correct(self.levelling.step(dt, self.plane, admitted.attitude, commanded), yaw, commanded.yaw)
+        self._correct(self.levelling.step(dt, self.plane, valid.attitude, commanded), yaw, commanded.yaw)
         return GroundEstimate(
-            contacts=admitted.contacts,
+            contacts=valid.contacts,
             correction=self._correction,
             slope=self._slope,
-            offsets=self._offsets(admitted, dt, feet=feet, contacts=contacts, angles=angles),
-            rejected=admitted.rejected,
+            offsets=self._offsets(valid, dt, feet=feet, contacts=contacts, angles=angles),
+            rejected=valid.rejected,
         )
 
     def leaning(self, roll: float, pitch: float) -> None:
@@ -158,13 +158,13 @@ class GroundEstimator:
             self._correction = (x, y, rise_x * x + rise_y * y, level.roll, level.pitch, 0.0)
             self._slope, self._found = complex(rise_x, rise_y), found
 
-    def _offsets(self, admitted: ValidReadings, dt: float, *, feet: Floats, contacts: Floats, angles: Floats) -> Floats:
+    def _offsets(self, valid: ValidReadings, dt: float, *, feet: Floats, contacts: Floats, angles: Floats) -> Floats:
         """Return how far each foot gives way."""
         if self._filter is None:
             return self._none
-        measured = admitted.forces
-        if measured is None and admitted.torques is not None and self._torques is not None:
-            measured = self._torques.forces(angles.tolist(), admitted.torques)
+        measured = valid.forces
+        if measured is None and valid.torques is not None and self._torques is not None:
+            measured = self._torques.forces(angles.tolist(), valid.torques)
         if measured is None or not self._weight:
             return np.array(self._filter.step((None,) * len(feet), dt))
         wanted = balanced_forces(feet.tolist(), contacts.tolist(), feet[:, :2].mean(axis=0).tolist(), self._weight)

@@ -1,0 +1,441 @@
+"""Validation of sensor readings: invalid values of any kind never raise, never pass, and are named."""
+
+import math
+
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from sample_robots import hexapod
+from tarsus import load_robot
+from tarsus.control.readings import CHANNELS, SensorReadings, ValidReadings
+from tarsus.control.sensing.plain_values import as_bool, as_items, as_number, as_vector
+from tarsus.control.sensing.validation import ReadingsValidator
+from tarsus.errors import InputError
+from tarsus.robot.robot import stack_robots
+
+STRIDER = load_robot("strider")
+LEGS = STRIDER.leg_codes
+WEIGHT = 9.80665 * float(np.asarray(STRIDER.body_mass) + STRIDER.link_mass.sum())
+PLAUSIBLE = {
+    "contacts": [True, False] * 3,
+    "attitude": (0.1, -0.2),
+    "forces": [float(i) for i in range(6)],
+    "torques": [[0.1, -0.5, 0.2]] * 6,
+}
+
+FINITE = ["joint_angles", "joint_speeds", "currents", "temperatures", "voltages"]
+
+
+class Hostile(list):
+    """A list whose items cannot be read."""
+
+    def __len__(self):
+        return 6
+
+    def __getitem__(self, at):
+        raise RuntimeError("no")
+
+
+class HostileFloat(float):
+    def __float__(self):
+        raise RuntimeError("no")
+
+
+class HostileArray:
+    shape = (6, 3)
+
+    def __array__(self, dtype=None, copy=None):
+        raise RuntimeError("no")
+
+
+class WrongShape:
+    """An array whose shape attribute is wrong."""
+
+    shape = (6, 3)
+
+    def __array__(self, dtype=None, copy=None):
+        return np.zeros(5)
+
+
+class HostileShape:
+    @property
+    def shape(self):
+        raise RuntimeError("no")
+
+
+def validated(validator=None, dt=0.01, **readings):
+    return (validator or ReadingsValidator(STRIDER)).validate(SensorReadings(**readings), dt)
+
+
+def test_plausible_readings_pass_as_plain_numbers():
+    found = validated(**PLAUSIBLE)
+    assert found == ValidReadings(
+        contacts=(True, False) * 3,
+        attitude=(0.1, -0.2),
+        forces=tuple((0.0, 0.0, float(i)) for i in range(6)),
+        torques=((0.1, -0.5, 0.2),) * 6,
+    )
+    assert found.rejected == ()
+
+
+@pytest.mark.parametrize("make", [tuple, list, np.array, jnp.array])
+def test_lists_and_arrays_of_any_library_are_equivalent(make):
+    forces = [[0.5, -0.25, 2.0]] * 6
+    contacts = [1, 0, 1, 0, 1, 0]
+    found = validated(contacts=make(contacts), attitude=make([0.5, 0.25]), forces=make(forces), torques=make(forces))
+    assert found == ValidReadings(
+        contacts=(True, False) * 3, attitude=(0.5, 0.25), forces=((0.5, -0.25, 2.0),) * 6, torques=found.forces
+    )
+    for value in (*found.contacts, *found.attitude, *found.forces[0]):
+        assert type(value) in {bool, float}
+    mixed = validated(contacts=[np.True_, np.float32(0), np.int8(1), True, 0.0, False], forces=np.arange(6))
+    assert mixed.contacts == (True, False, True, True, False, False)
+    assert mixed.forces[5] == (0.0, 0.0, 5.0)
+
+
+def test_missing_readings_are_not_rejected():
+    validator = ReadingsValidator(STRIDER)
+    assert validator.validate(None, 0.01) == validator.validate(SensorReadings(), 0.01) == ValidReadings()
+    assert validator.counts == {}
+
+
+@pytest.mark.parametrize(
+    ("channel", "value", "reason"),
+    [
+        ("contacts", "abcdef", "contacts: expected one reading per leg"),
+        ("contacts", [True] * 5, "contacts: expected one reading per leg"),
+        ("contacts", 1, "contacts: expected one reading per leg"),
+        ("contacts", np.ones((6, 2)), "contacts: expected one reading per leg"),
+        ("contacts", {0, 1, 2, 3, 4, 5}, "contacts: expected one reading per leg"),
+        ("contacts", Hostile(), "contacts: expected one reading per leg"),
+        ("attitude", 0.1, "attitude: expected roll and pitch"),
+        ("attitude", (0.1, 0.2, 0.3), "attitude: expected roll and pitch"),
+        ("attitude", HostileShape(), "attitude: expected roll and pitch"),
+        ("attitude", (math.nan, 0.1), "attitude: not finite numbers"),
+        ("attitude", (0.1, -math.inf), "attitude: not finite numbers"),
+        ("attitude", ("0.1", 0.1), "attitude: not finite numbers"),
+        ("attitude", (None, None), "attitude: not finite numbers"),
+        ("attitude", (True, False), "attitude: not finite numbers"),
+        ("attitude", (10**400, 0.0), "attitude: not finite numbers"),
+        ("attitude", (HostileFloat(0.1), 0.0), "attitude: not finite numbers"),
+        ("attitude", (0.0, -1.05), "attitude: roll or pitch beyond 60 deg"),
+        ("attitude", (3, 0), "attitude: roll or pitch beyond 60 deg"),
+        ("forces", np.zeros((6, 2)), "forces: expected one reading per leg"),
+        ("forces", np.zeros((3, 6)), "forces: expected one reading per leg"),
+        ("forces", np.broadcast_to(0.0, (6, 10**9)), "forces: expected one reading per leg"),
+        ("torques", np.zeros(6), "torques: expected one reading per leg"),
+        ("torques", HostileArray(), "torques: expected one reading per leg"),
+        ("torques", WrongShape(), "torques: expected one reading per leg"),
+        ("torques", np.zeros(10**6), "torques: expected one reading per leg"),
+    ],
+)
+def test_a_malformed_channel_is_rejected_and_named(channel, value, reason):
+    validator = ReadingsValidator(STRIDER)
+    found = validated(validator, **(PLAUSIBLE | {channel: value}))
+    assert getattr(found, channel) is None
+    assert found.rejected == (reason,)
+    assert validator.counts == {reason: 1}
+    for other in PLAUSIBLE.keys() - {channel}:
+        assert getattr(found, other) is not None
+    # Its next plausible reading is not accepted yet.
+    assert getattr(validated(validator, **PLAUSIBLE), channel) is None
+
+
+@pytest.mark.parametrize(
+    ("channel", "value", "reason"),
+    [
+        ("contacts", 0.5, "neither a boolean nor 0 or 1"),
+        ("contacts", 2, "neither a boolean nor 0 or 1"),
+        ("contacts", "yes", "neither a boolean nor 0 or 1"),
+        ("contacts", None, "neither a boolean nor 0 or 1"),
+        ("contacts", math.nan, "neither a boolean nor 0 or 1"),
+        ("contacts", np.array([True, False]), "neither a boolean nor 0 or 1"),
+        ("forces", math.nan, "not finite numbers"),
+        ("forces", None, "not finite numbers"),
+        ("forces", [1.0, 2.0], "not finite numbers"),
+        ("forces", [1.0, 2.0, "3"], "not finite numbers"),
+        ("forces", 4.01 * WEIGHT, "beyond 4 times the robot's weight, or downward beyond 0.25 times"),
+        ("forces", (0.0, 4.01 * WEIGHT, 0.0), "beyond 4 times the robot's weight, or downward beyond 0.25 times"),
+        ("forces", (-4.01 * WEIGHT, 0.0, 0.0), "beyond 4 times the robot's weight, or downward beyond 0.25 times"),
+        ("forces", -0.3 * WEIGHT, "beyond 4 times the robot's weight, or downward beyond 0.25 times"),
+        ("torques", 1.0, "not finite numbers"),
+        ("torques", (0.0, math.inf, 0.0), "not finite numbers"),
+        ("torques", (0.0, 0.0, STRIDER.servos[2][2].stall_torque * 1.51), "beyond 1.5 times the stall torque"),
+        ("torques", (-STRIDER.servos[2][0].stall_torque * 1.51, 0.0, 0.0), "beyond 1.5 times the stall torque"),
+    ],
+)
+def test_a_malformed_reading_of_one_leg_is_rejected_for_that_leg_only(channel, value, reason):
+    validator = ReadingsValidator(STRIDER)
+    readings = [*PLAUSIBLE[channel][:2], value, *PLAUSIBLE[channel][3:]]
+    found = validated(validator, **(PLAUSIBLE | {channel: readings}))
+    assert found.rejected == (f"{channel} of {LEGS[2]}: {reason}",)
+    good = getattr(validated(**PLAUSIBLE), channel)
+    assert getattr(found, channel) == (*good[:2], None, *good[3:])
+
+
+def test_a_channel_with_every_leg_rejected_is_none():
+    validator = ReadingsValidator(STRIDER)
+    found = validated(validator, contacts=[None] * 6, torques=np.full((6, 3), np.nan))
+    assert found.contacts is found.torques is None
+    assert len(found.rejected) == 12
+
+
+@pytest.mark.parametrize("age", [math.nan, -0.01, "old", None, True, -math.inf])
+def test_an_invalid_age_rejects_all_channels(age):
+    found = validated(**PLAUSIBLE, age=age)
+    assert found == ValidReadings(rejected=("readings: age is not a number >= 0 s",))
+
+
+def test_old_readings_are_rejected_and_must_settle():
+    validator = ReadingsValidator(STRIDER, max_age=0.05)
+    assert validated(validator, **PLAUSIBLE, age=0.05).rejected == ()
+    for age in (0.0501, math.inf):
+        assert validated(validator, **PLAUSIBLE, age=age) == ValidReadings(rejected=("readings: older than 50 ms",))
+    for _ in range(3):
+        found = validated(validator, **PLAUSIBLE)
+        assert (found.contacts, found.attitude, found.forces, found.torques) == (None,) * 4
+        assert all(reason.endswith("settling after a rejected reading") for reason in found.rejected)
+    assert validated(validator, **PLAUSIBLE) == validated(**PLAUSIBLE)
+    assert validator.counts["readings: older than 50 ms"] == 2
+    assert (
+        validator.counts["attitude: settling after a rejected reading"]
+        == validator.counts["torques of RF: settling after a rejected reading"]
+        == 3
+    )
+
+
+@pytest.mark.parametrize("channel", FINITE)
+def test_joint_channels_pass_where_they_are_finite(channel):
+    reading = np.arange(18.0).reshape(6, 3) - 5.0
+    found = validated(**{channel: reading})
+    assert found == ValidReadings(**{channel: tuple(map(tuple, reading.tolist()))})
+    assert getattr(validated(**{channel: np.full((6, 3), 1e300)}), channel)[0] == (1e300,) * 3
+    assert validated(**{channel: reading[:5]}).rejected == (f"{channel}: expected one reading per leg",)
+    assert validated(**{channel: reading[0]}).rejected == (f"{channel}: expected one reading per leg",)
+    for value in (math.nan, math.inf, -math.inf):
+        reading[2, 1] = value
+        found = validated(**{channel: reading})
+        assert getattr(found, channel)[2] is None
+        assert getattr(found, channel)[3] == (4.0, 5.0, 6.0)
+        assert found.rejected == (f"{channel} of {LEGS[2]}: not finite numbers",)
+
+
+def test_angular_rates_pass_where_they_are_finite():
+    validator = ReadingsValidator(STRIDER)
+    assert validated(validator, angular_rates=np.array([1, -2, 3])) == ValidReadings(angular_rates=(1.0, -2.0, 3.0))
+    for value, reason in (
+        ((1.0, 2.0), "angular_rates: expected three numbers"),
+        (3.0, "angular_rates: expected three numbers"),
+        ((1.0, math.nan, 2.0), "angular_rates: not finite numbers"),
+        ((1.0, 2.0, math.inf), "angular_rates: not finite numbers"),
+        ((1.0, "2", 3.0), "angular_rates: not finite numbers"),
+    ):
+        assert validated(validator, angular_rates=value) == ValidReadings(rejected=(reason,))
+    for _ in range(3):
+        found = validated(validator, angular_rates=(0.0, 0.0, 0.1))
+        assert found == ValidReadings(rejected=("angular_rates: settling after a rejected reading",))
+    assert validated(validator, angular_rates=(0.0, 0.0, 0.1)).angular_rates == (0.0, 0.0, 0.1)
+
+
+def test_each_channel_may_have_its_own_age():
+    validator = ReadingsValidator(STRIDER)
+    ages = {"forces": 0.2, "torques": 0.05, "currents": 9.0}
+    found = validated(validator, **PLAUSIBLE, age=ages)
+    assert found.forces is None
+    assert None not in (found.contacts, found.attitude, found.torques)
+    assert found.rejected == ("forces: older than 100 ms",)  # no currents, so their age does not matter
+    for _ in range(3):
+        assert validated(validator, **PLAUSIBLE, age={"forces": 0.05}).forces is None
+    assert validated(validator, **PLAUSIBLE, age={}) == validated(**PLAUSIBLE)
+    found = validated(validator, **PLAUSIBLE, age={"attitude": -1.0, "contacts": "old"})
+    assert set(found.rejected) == {f"{name}: age is not a number >= 0 s" for name in ("attitude", "contacts")}
+
+
+class HostileMapping(dict):
+    def __getitem__(self, key):
+        raise RuntimeError("no")
+
+
+@pytest.mark.parametrize(
+    ("age", "reason"),
+    [
+        ({"force": 0.0}, "age of a channel that does not exist"),
+        ({"age": 0.0}, "age of a channel that does not exist"),
+        ({3: 0.0, "forces": 0.0}, "age of a channel that does not exist"),
+        (HostileMapping(forces=0.0), "age is not a number >= 0 s"),
+    ],
+)
+def test_invalid_ages_of_channels_reject_all_channels(age, reason):
+    assert validated(**PLAUSIBLE, age=age) == ValidReadings(rejected=(f"readings: {reason}",))
+
+
+def test_channels_are_the_fields_of_the_readings():
+    assert set(CHANNELS) == set(FINITE) | set(PLAUSIBLE) | {"angular_rates"}
+    assert all(hasattr(ValidReadings(), name) for name in CHANNELS)
+
+
+@pytest.mark.parametrize("value", ["readings", 3, {"contacts": [True] * 6}, HostileShape(), ValidReadings()])
+def test_an_object_of_another_class_is_rejected(value):
+    assert ReadingsValidator(STRIDER).validate(value, 0.01) == ValidReadings(
+        rejected=("readings: not of class SensorReadings",)
+    )
+
+
+@pytest.mark.parametrize("channel", ["contacts", "forces", "torques"])
+@pytest.mark.parametrize("settle", [1, 4])
+def test_a_rejected_leg_settles_before_it_is_accepted(channel, settle):
+    validator = ReadingsValidator(STRIDER, settle=settle)
+    bad = [None, *PLAUSIBLE[channel][1:]]
+    assert getattr(validated(validator, **{channel: bad}), channel)[0] is None
+    for _ in range(settle):
+        found = validated(validator, **{channel: PLAUSIBLE[channel]})
+        assert getattr(found, channel)[0] is None
+        assert getattr(found, channel)[1] is not None
+        assert found.rejected == (f"{channel} of LF: settling after a rejected reading",)
+        validator.validate(SensorReadings(), 0.01)  # a missing reading does not count
+    found = validated(validator, **{channel: PLAUSIBLE[channel]})
+    assert getattr(found, channel)[0] is not None
+    assert found.rejected == ()
+
+
+def test_an_attitude_that_jumps_is_rejected_until_readings_agree():
+    validator = ReadingsValidator(STRIDER)
+    assert validated(validator, attitude=(0.0, 0.0)).attitude == (0.0, 0.0)
+    assert validated(validator, attitude=(0.05, 0.0)).attitude == (0.05, 0.0)
+    spike = validated(validator, attitude=(0.05, 0.5))
+    assert spike == ValidReadings(rejected=("attitude: changes faster than 343.8 deg/s",))
+    assert validated(validator, attitude=(0.05, 0.0)).rejected == spike.rejected
+    # The readings may agree on another attitude than before the jump.
+    assert validated(validator, attitude=(0.4, 0.4)).rejected == spike.rejected
+    for _ in range(3):
+        assert validated(validator, attitude=(0.4, 0.4)).rejected == ("attitude: settling after a rejected reading",)
+    assert validated(validator, attitude=(0.41, 0.4)).attitude == (0.41, 0.4)
+
+
+def test_the_allowed_attitude_change_grows_with_the_time_without_readings():
+    validator = ReadingsValidator(STRIDER, max_turn=1.0)
+    validated(validator, attitude=(0.0, 0.0))
+    for _ in range(30):
+        assert validator.validate(None, 0.01) == ValidReadings()
+    assert validated(validator, attitude=(0.3, 0.0)).attitude == (0.3, 0.0)
+    assert validated(validator, attitude=(0.3, 0.1)).attitude is None
+
+
+def test_attitude_after_a_nan_is_compared_with_the_reading_before_it():
+    validator = ReadingsValidator(STRIDER)
+    validated(validator, attitude=(0.0, 0.0))
+    validated(validator, attitude=(math.nan, 0.0))
+    assert validated(validator, attitude=(0.9, 0.0)).rejected == ("attitude: changes faster than 343.8 deg/s",)
+
+
+def test_without_masses_and_servos_only_extreme_values_are_rejected():
+    robot = hexapod(link_mass=None, body_mass=None)
+    readings = {"forces": [9e3] * 6, "torques": [[-1e3] * 3] * 6}
+    assert ReadingsValidator(robot).validate(SensorReadings(**readings), 0.01).rejected == ()
+    assert (
+        len(
+            ReadingsValidator(robot)
+            .validate(SensorReadings(forces=[1e300] * 6, torques=[[1e300] * 3] * 6), 0.01)
+            .rejected
+        )
+        == 12
+    )
+
+
+def test_invalid_bounds_and_batches_raise():
+    for bound in ("max_age", "max_tilt", "max_turn", "max_weights", "max_stalls", "settle"):
+        for value in (0, -1.0, math.nan, math.inf):
+            with pytest.raises(InputError, match=f"{bound} is {value}; it must be a positive number"):
+                ReadingsValidator(STRIDER, **{bound: value})
+    with pytest.raises(InputError, match="batch of designs"):
+        ReadingsValidator(stack_robots([STRIDER, STRIDER]))
+
+
+ARBITRARY = st.recursive(
+    st.one_of(
+        st.none(),
+        st.booleans(),
+        st.floats(),
+        st.integers(),
+        st.text(max_size=7),
+        st.complex_numbers(),
+        st.just(10**400),
+        st.just(np.float32(np.nan)),
+        st.just(HostileFloat(1)),
+        st.just(HostileArray()),
+        st.just(WrongShape()),
+        st.just(Hostile()),
+        st.sampled_from(
+            [np.zeros((6, 3)), np.full(6, np.inf), np.array(["x"] * 6), np.array([None] * 6), np.float64(3)]
+        ),
+        st.sampled_from([PLAUSIBLE["contacts"], PLAUSIBLE["torques"], (0.0, 0.1), 1.0]),
+    ),
+    lambda inner: st.one_of(
+        st.lists(inner, max_size=7),
+        st.lists(inner, min_size=6, max_size=6),
+        st.tuples(inner, inner),
+        st.tuples(inner, inner, inner),
+        st.dictionaries(st.text(max_size=2), inner, max_size=3),
+    ),
+    max_leaves=20,
+)
+
+
+AGES = st.one_of(
+    st.sampled_from([0.0, 0.0, 0.01, 5.0, "x"]),
+    st.dictionaries(st.sampled_from([*CHANNELS, 3]), st.sampled_from([0.0, 0.5, -1.0, "x"]), max_size=3),
+)
+
+
+@given(st.lists(st.tuples(st.tuples(*[ARBITRARY] * 6), AGES), max_size=4))
+def test_arbitrary_objects_never_raise_and_never_pass(stream):
+    validator, rejections = ReadingsValidator(STRIDER), 0
+    for values, age in stream:
+        channels = dict(zip([*PLAUSIBLE, "currents", "angular_rates"], values, strict=True))
+        found = validated(validator, **channels, age=age)
+        assert isinstance(found, ValidReadings)
+        assert found.contacts is None or all(type(c) in {bool, type(None)} for c in found.contacts)
+        assert found.attitude is None or all(abs(a) <= math.pi / 3 for a in found.attitude)
+        assert found.angular_rates is None or all(map(math.isfinite, found.angular_rates))
+        for vectors, most in ((found.forces, 4 * WEIGHT), (found.torques, 100.0), (found.currents, math.inf)):
+            assert vectors is None or len(vectors) == 6
+            for part in vectors or ():
+                assert part is None or all(type(x) is float and math.isfinite(x) and abs(x) <= most for x in part)
+        rejections += len(found.rejected)
+    assert sum(validator.counts.values()) == rejections
+    assert len(validator.counts) <= 110
+
+
+def test_counts_are_bounded_for_a_long_stream_of_invalid_readings():
+    validator = ReadingsValidator(STRIDER)
+    rng = np.random.default_rng(0)
+    for _ in range(2000):
+        noise = rng.normal(size=(6, 3)) * 10.0 ** rng.integers(-3, 300)
+        validated(
+            validator, contacts=noise[:, 0], attitude=noise[0, :2], forces=noise, torques=noise, age=abs(noise[1, 1])
+        )
+    assert 0 < len(validator.counts) <= 70
+
+
+@given(st.one_of(st.floats(), st.integers(), st.text()))
+def test_as_number(value):
+    found = as_number(value)
+    if isinstance(value, str):
+        assert math.isnan(found)
+    else:
+        assert found == float(value) or (math.isnan(found) and math.isnan(value))
+
+
+def test_as_items_as_vector_and_as_bool():
+    assert as_items((1, 2), (2,)) == [1, 2]
+    assert as_items([1, 2, 3], (2,)) is None
+    assert as_items(np.arange(3), (2,), (3,)) == [0, 1, 2]
+    assert as_items("ab", (2,)) is None
+    assert as_vector([1, 2, 3]) == as_vector((1, 2, 3)) == as_vector(np.arange(1, 4)) == (1.0, 2.0, 3.0)
+    assert as_vector([1, 2]) is as_vector("abc") is None
+    assert as_bool(True) is as_bool(np.True_) is as_bool(1.0) is True
+    assert as_bool(False) is as_bool(np.int8(0)) is False
+    assert as_bool(0.5) is as_bool("yes") is as_bool(None) is None
