@@ -17,8 +17,15 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from tarsus.control.command import Command
+    from tarsus.control.control_output import ControlOutput
+    from tarsus.control.limitation import Limitation, LimitationKind
+    from tarsus.control.plant import IdealPlant, Plant
     from tarsus.control.pose.admittance import Admittance
     from tarsus.control.readings import SensorReadings
+    from tarsus.control.recording import Recording
+    from tarsus.control.robot_controller import RobotController
+    from tarsus.control.robot_state import RobotState
+    from tarsus.control.run import run
     from tarsus.control.safety.guard import Guard, GuardBounds, GuardOutput, Intervention
     from tarsus.control.sequence.player import SequencePlayer
     from tarsus.control.sequence.sequence import MotionSequence
@@ -74,7 +81,6 @@ if TYPE_CHECKING:
     from tarsus.robot.file import list_robots, load_robot, robot_schema
     from tarsus.robot.robot import JOINTS, GaitDefaults, Robot, Source, stack_robots
     from tarsus.robot.servo import Servo
-    from tarsus.scenario.recording import Recording
     from tarsus.scenario.runner import run_scenario
     from tarsus.scenario.scenario import Scenario
 
@@ -83,7 +89,7 @@ __version__ = "0.1.0"
 # Where each public name lives. It is imported when first asked for: `import tarsus` and `tarsus --help` do not wait
 # for NumPy. A test holds this table, the imports above and `__all__` against each other.
 _HOMES = {
-    "tarsus.scenario.recording": ("Recording",),
+    "tarsus.control.recording": ("Recording",),
     "tarsus.scenario.runner": ("run_scenario",),
     "tarsus.scenario.scenario": ("Scenario",),
     "tarsus.errors": (
@@ -97,6 +103,18 @@ _HOMES = {
     "tarsus.control.startup.power_off": ("power_off_order",),
     "tarsus.control.safety.guard": ("Guard", "GuardBounds", "GuardOutput", "Intervention"),
     "tarsus.control.startup.planner": ("fold", "sit_down", "stand_up"),
+    "tarsus.control.control_output": ("ControlOutput",),
+    "tarsus.control.limitation": (
+        "Limitation",
+        "LimitationKind",
+    ),
+    "tarsus.control.plant": (
+        "IdealPlant",
+        "Plant",
+    ),
+    "tarsus.control.robot_controller": ("RobotController",),
+    "tarsus.control.robot_state": ("RobotState",),
+    "tarsus.control.run": ("run",),
     "tarsus.control.readings": ("SensorReadings",),
     "tarsus.control.sequence.sequence": ("MotionSequence",),
     "tarsus.control.sequence.player": ("SequencePlayer",),
@@ -149,6 +167,7 @@ __all__ = [
     "CollisionError",
     "Command",
     "ContactForces",
+    "ControlOutput",
     "CycleTorques",
     "Gait",
     "GaitDefaults",
@@ -156,21 +175,27 @@ __all__ = [
     "GuardBounds",
     "GuardOutput",
     "IKSolution",
+    "IdealPlant",
     "InputError",
     "Intervention",
     "JointLoads",
     "JointVerdict",
+    "Limitation",
+    "LimitationKind",
     "MissingDataError",
     "Motion",
     "MotionSequence",
     "MotionTorques",
     "Payload",
+    "Plant",
     "Pose",
     "Reach",
     "Recording",
     "RestingPose",
     "Robot",
+    "RobotController",
     "RobotFileError",
+    "RobotState",
     "Scenario",
     "SensorReadings",
     "SequencePlayer",
@@ -221,6 +246,7 @@ __all__ = [
     "reachable_share",
     "resting_pose",
     "robot_schema",
+    "run",
     "run_scenario",
     "sit_down",
     "size_servos",

@@ -1,4 +1,4 @@
-"""`tarsus drive`: run a scenario, tell how it went, write what happened."""
+"""`tarsus drive`: run a scenario, print a summary, write tables and pictures."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ from tarsus.cli.values import examples, json_option, number_option
 if TYPE_CHECKING:
     from rich.table import Table
 
+    from tarsus.control.recording import Recording
     from tarsus.load.loads import JointLoads
-    from tarsus.scenario.recording import Recording
 
 __all__ = ["drive"]
 
@@ -30,11 +30,11 @@ _DEFAULT_ROBOT = "strider"
     )
 )
 @click.argument("scenario", metavar="SCENARIO")
-@click.option("--dry", is_flag=True, help="Without servos: compute what would happen.")
+@click.option("--dry", is_flag=True, help="Run on an ideal plant, without servos.")
 @click.option("--robot", metavar="ROBOT", help="Drive this one.  [default: the scenario's, else strider]")
 @click.option("--out", type=click.Path(path_type=Path), metavar="DIR", help="Write tables, motion and pictures here.")
 @click.option("--no-animation", is_flag=True, help="Leave out the animation (of the first 20 s at most).")
-@click.option("--no-guard", is_flag=True, help="Let everything through.")
+@click.option("--no-guard", is_flag=True, help="Without the guard that checks every tick's joint angles.")
 @number_option("--rate", "HZ", "Ticks per second.  [default: the scenario's, else 100]")
 @json_option
 def drive(
@@ -50,18 +50,18 @@ def drive(
     """Drive a robot through a scenario: a timeline of commands.
 
     SCENARIO is the path of a scenario file (TOML), or the timeline itself: commands such as "at 2 s: walk 0.1 m/s",
-    with semicolons between them. The exit code is 0 only if nothing was refused, the guard had nothing to do, and all
-    of the motion is possible.
+    with semicolons between them. The exit code is 0 only if every command was met in full, the guard did not
+    intervene, and the motion is possible.
     """
     from tarsus.scenario.runner import run_scenario
     from tarsus.scenario.summary import drive_summary
 
     if not dry:
-        raise click.UsageError("real servos come later; --dry computes what they would do")
+        raise click.UsageError("servos are not supported yet; --dry runs the scenario on an ideal plant")
     if out is not None:
         make_folder(out)
-    told = _scenario(scenario, rate)
-    recording = run_scenario(told, robot=robot or told.robot or _DEFAULT_ROBOT, guard=not no_guard)
+    timeline = _scenario(scenario, rate)
+    recording = run_scenario(timeline, robot=robot or timeline.robot or _DEFAULT_ROBOT, guard=not no_guard)
     found = _loads(recording)
     summary = {**drive_summary(recording), "loads": _load_numbers(found)}
     if not as_json:
@@ -82,10 +82,10 @@ def _scenario(text: str, rate: float | None) -> Any:
 
     from tarsus.scenario.scenario import Scenario
 
-    # What has a colon and a word before it is no file's name.
+    # A file name is not expected to begin with "at ".
     is_timeline = text.lstrip().startswith("at ") and not Path(text).is_file()
-    told = Scenario.from_text(text) if is_timeline else Scenario.load(text)
-    return told if rate is None else dataclasses.replace(told, rate=rate)
+    found = Scenario.from_text(text) if is_timeline else Scenario.load(text)
+    return found if rate is None else dataclasses.replace(found, rate=rate)
 
 
 def _loads(recording: Recording) -> JointLoads | None:
@@ -134,16 +134,20 @@ def _table(summary: dict[str, Any]) -> Table:
     if summary["scenario"]:
         table.add_row("scenario", summary["scenario"])
     table.add_row("duration", f"{summary['duration_s']:.2f} s at {summary['rate_hz']:g} ticks a second")
-    table.add_row("walked", f"{summary['walked_s']:.2f} s, {summary['way_mm']:.0f} mm, {summary['steps']} steps")
+    table.add_row("walked", f"{summary['walked_s']:.2f} s, {summary['distance_mm']:.0f} mm, {summary['steps']} steps")
     table.add_row("gaits", ", ".join(summary["gaits"]))
-    table.add_row("ends at", f"x {end['x_mm']:.1f} mm, y {end['y_mm']:.1f} mm, turned {end['turned_deg']:.1f} deg")
+    table.add_row(
+        "ends at", f"x {end['x_mm']:.1f} mm, y {end['y_mm']:.1f} mm, turned {end['turned_deg']:.1f} deg, {end['state']}"
+    )
     table.add_row("top speed", f"{summary['top_speed_mm_s']:.1f} mm/s, {summary['top_turn_deg_s']:.1f} deg/s")
     table.add_row(
-        "least margin", "it never stood" if margin is None else f"{margin['mm']:.1f} mm at {margin['at_s']:.2f} s"
+        "least margin", "never off the ground" if margin is None else f"{margin['mm']:.1f} mm at {margin['at_s']:.2f} s"
     )
     for joint, load in (summary["loads"] or {}).items():
-        factor = "" if load["factor"] != load["factor"] else f", a factor of {load['factor']:.2f}"
-        table.add_row(f"greatest {joint}", f"{load['peak_nm']:.3f} N m ({load['leg']}){factor}")
+        factor = "" if load["factor"] != load["factor"] else f", safety factor {load['factor']:.2f}"
+        table.add_row(f"peak torque, {joint}", f"{load['peak_nm']:.3f} N m ({load['leg']}){factor}")
+    for unmet in summary["unmet"]:
+        table.add_row("not met", f"{unmet['from_s']:.2f} to {unmet['until_s']:.2f} s: {unmet['text']}")
     for limit in summary["limits"]:
         table.add_row("limited", f"{limit['from_s']:.2f} to {limit['until_s']:.2f} s: {limit['text']}")
     number = sum(summary["interventions"].values())

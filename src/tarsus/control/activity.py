@@ -83,7 +83,7 @@ class Walking:
 
     def step(self, command: Command, dt: float, readings: SensorReadings | None) -> None:
         """Advance by one tick."""
-        felt = readings if readings is not None and readings.feels_ground else None
+        felt = readings if readings is not None and readings.has_ground_feedback else None
         self.controller.step(command, dt, readings=felt)
 
     @property

@@ -58,14 +58,14 @@ class SensorReadings:
     angular_rates: Any = None
     age: float | Mapping[str, float] = 0.0
 
+    @property
+    def has_ground_feedback(self) -> bool:
+        """Whether anything that tells of the ground is measured: contacts, attitude, forces or torques."""
+        return any(each is not None for each in (self.contacts, self.attitude, self.forces, self.torques))
+
 
 CHANNELS = tuple(field.name for field in fields(SensorReadings) if field.name != "age")
 """Names of all channels, as used for ages."""
-
-    @property
-    def feels_ground(self) -> bool:
-        """Whether anything that tells of the ground is measured: contacts, attitude, forces or torques."""
-        return any(each is not None for each in (self.contacts, self.attitude, self.forces, self.torques))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -88,7 +88,8 @@ class RobotController:
         self.robot = robot
         self.body_height, self.swing_height = body_height, swing_height
         self._gait = Gait.named(robot.gait.name, legs=robot.legs) if gait is None else gait
-        self._feel: dict[str, Any] = {"levelling": levelling, "admittance": admittance}
+        self.compliant = admittance is not None
+        self._ground: dict[str, Any] = {"levelling": levelling, "admittance": admittance}
         self._command = PersistentCommand(robot)
         self._base = Pose.from_rpy(0.0, 0.0, 0.0, (0.0, 0.0, 0.0))
         self._cycle_time, self._time, self._rate = 0.0, 0.0, 0.0
@@ -112,7 +113,7 @@ class RobotController:
 
     def _new_walk(self) -> Walking:
         heights: dict[str, Any] = {"body_height": self.body_height, "swing_height": self.swing_height}
-        return Walking(WalkController(self.robot, self._gait, **heights, **self._feel))
+        return Walking(WalkController(self.robot, self._gait, **heights, **self._ground))
 
     def _found_lying(self, walking: Walking, start: RobotState, angles: Any) -> Resting:
         """Return how the robot lies at the start."""

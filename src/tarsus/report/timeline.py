@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from tarsus.control.recording import Event, Recording
 from tarsus.report.gait_diagram import draw_stance
 from tarsus.report.style import INK, PALE, WARNING, leg_colours, new_figure, thinned, tidy_axes
-from tarsus.scenario.recording import Event, Recording
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -31,7 +31,7 @@ def plot_timeline(recording: Recording) -> Figure:
     Parameters
     ----------
     recording : Recording
-        From `tarsus.drive.run.run`.
+        From `tarsus.run` or `tarsus.run_scenario`.
 
     Returns
     -------
@@ -46,8 +46,8 @@ def plot_timeline(recording: Recording) -> Figure:
     motion = recording.motion
     labels = _rows(recording)
     told = 0.19 * (1 + max((row for _, row, _ in labels), default=0)) + 0.1
-    gives_way = recording.scenario.admittance is not None
-    heights = [told, 0.24 * motion.robot.legs, 1.25, 1.0, 1.25, *([1.15] if gives_way else []), 1.15]
+    complies = recording.compliant
+    heights = [told, 0.24 * motion.robot.legs, 1.25, 1.0, 1.25, *([1.15] if complies else []), 1.15]
     figure = new_figure(width=_WIDTH + 1, height=sum(heights) + 1.9)
     axes = figure.subplots(len(heights), 1, sharex=True, height_ratios=heights)
     for panel in axes:
@@ -59,10 +59,10 @@ def plot_timeline(recording: Recording) -> Figure:
     tidy_axes(axes[2], y="speed\n(mm/s)")
     _draw_speed(axes[2], recording)
     tidy_axes(axes[3], y="turning\n(deg/s)")
-    _draw_wish(axes[3], recording, np.degrees(recording.wished[:, 2]), np.degrees(recording.done[:, 2]))
+    _draw_commanded(axes[3], recording, np.degrees(recording.twist_commanded[:, 2]), np.degrees(recording.twist[:, 2]))
     tidy_axes(axes[4], y="body height\n(mm)")
     _draw_body(axes[4], recording)
-    if gives_way:
+    if complies:
         tidy_axes(axes[5], y="bearing feet\n(mm)")
         _draw_feet(axes[5], recording)
     tidy_axes(axes[-1], x="time (s)", y="stability\nmargin (mm)")
@@ -77,11 +77,11 @@ def plot_timeline(recording: Recording) -> Figure:
 
 
 def _title(recording: Recording) -> str:
-    name = recording.scenario.name
+    name = recording.name
     text = f"{recording.robot.name}: {name}" if name else recording.robot.name
     number = sum(recording.interventions.values())
     guard = f"{number} intervention{'s' * (number != 1)} of the guard" if recording.guard else "no guard"
-    return f"{text}. Grey: lying or getting up; yellow: less than wished for; {guard}"
+    return f"{text}. Grey: lying, rising, sitting down; yellow: limited; {guard}"
 
 
 def _of(recording: Recording, *kinds: str) -> list[Event]:
@@ -151,16 +151,16 @@ def _draw_gaits(axes: Axes, recording: Recording) -> None:
 
 
 def _draw_speed(axes: Axes, recording: Recording) -> None:
-    wished, done = (np.hypot(*twist[:, :2].T) * 1000 for twist in (recording.wished, recording.done))
-    _draw_wish(axes, recording, wished, done)
+    commanded, walked = (np.hypot(*twist[:, :2].T) * 1000 for twist in (recording.twist_commanded, recording.twist))
+    _draw_commanded(axes, recording, commanded, walked)
     for event in _of(recording, "limit"):
         axes.axvspan(event.time, event.until, color=_LIMITED, alpha=0.6, linewidth=0, zorder=0)
     # A command far beyond what the robot can do would leave nothing to be seen of what it does.
-    high = max(float(done.max()) * 1.6, 10.0)
-    if wished.max() > high:
+    high = max(float(walked.max()) * 1.6, 10.0)
+    if commanded.max() > high:
         axes.set_ylim(-0.05 * high, high)
         axes.annotate(
-            f"wished for: up to {wished.max():.0f}",
+            f"commanded: up to {commanded.max():.0f}",
             (1, 1),
             xycoords="axes fraction",
             xytext=(-4, -4),
@@ -172,10 +172,10 @@ def _draw_speed(axes: Axes, recording: Recording) -> None:
         )
 
 
-def _draw_wish(axes: Axes, recording: Recording, wished: Any, done: Any) -> None:
+def _draw_commanded(axes: Axes, recording: Recording, commanded: Any, walked: Any) -> None:
     shown, time = thinned(recording.motion), recording.motion.time
-    axes.plot(time[shown], wished[shown], color=PALE, linewidth=1.3, linestyle=(0, (4, 2)), label="wished for")
-    axes.plot(time[shown], done[shown], color=_DONE, linewidth=1.6, label="done")
+    axes.plot(time[shown], commanded[shown], color=PALE, linewidth=1.3, linestyle=(0, (4, 2)), label="commanded")
+    axes.plot(time[shown], walked[shown], color=_DONE, linewidth=1.6, label="walked")
     axes.legend(loc="upper left", fontsize=8, frameon=False, ncols=2, borderaxespad=0.1)
     low, high = axes.get_ylim()
     # Room for the legend.

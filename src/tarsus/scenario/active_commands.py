@@ -1,11 +1,18 @@
-"""What the robot has been told and holds to, until it is told something else."""
+"""The commands of a scenario as a source of commands for a controller: each holds until another one of its kind."""
 
 from __future__ import annotations
 
 from collections import deque
+from collections.abc import Callable
 from typing import Any
 
 from tarsus.control.command import BODY_AXES, Command
+from tarsus.control.control_output import ControlOutput
+from tarsus.control.limitation import LimitationKind
+from tarsus.control.plant import Environment
+from tarsus.control.robot_state import RobotState
+from tarsus.control.run import AFTER, LONGEST
+from tarsus.control.startup.power_off import power_off_order
 from tarsus.robot.robot import Robot
 from tarsus.scenario.commands import (
     BodyHeight,
@@ -27,12 +34,20 @@ from tarsus.scenario.commands import (
     Tilt,
     Walk,
 )
-from tarsus.scenario.environment import Environment
+from tarsus.scenario.scenario import Scenario
 from tarsus.scenario.timed_command import TimedCommand
+from tarsus.scenario.wording import command_text
 
-__all__ = ["ActiveCommands", "leg_number"]
+__all__ = ["ScenarioCommands", "leg_number"]
 
-_STILL = (0.0, 0.0, 0.0)
+_NO_TWIST = (0.0, 0.0, 0.0)
+# Two times this near to each other are the same [s].
+_SAME_TIME = 1e-9
+_STATES: dict[type[TimedCommand], RobotState] = {
+    StandUp: RobotState.STANDING,
+    Sit: RobotState.LYING,
+    Fold: RobotState.FOLDED,
+}
 
 
 def leg_number(robot: Robot, name: str) -> int | None:
@@ -52,64 +67,152 @@ def leg_number(robot: Robot, name: str) -> int | None:
     return None
 
 
-class ActiveCommands:
-    """The orders that hold: each until another one of its kind; and the acts that are to come.
+class ScenarioCommands:
+    """Gives the command of every tick; changes of state wait in a queue until the one before them has ended.
 
     Parameters
     ----------
+    scenario : Scenario
+        The scenario.
     robot : Robot
         A single robot.
+    environment : Environment, optional
+        What the commands ``ground``, ``tilt`` and ``force`` change.
     """
 
-    def __init__(self, robot: Robot) -> None:
-        self._robot = robot
-        self._asked: dict[str, Any] = {}
-        # Legs that are moved by hand, each to a point or at a speed; None for one that comes back.
-        self._foot_targets: dict[int, FootTarget | FootVelocity | None] = {}
-        self.twist = _STILL
-        self.acts: deque[TimedCommand] = deque()
-        self.feeling = Environment(robot)
+    def __init__(self, scenario: Scenario, robot: Robot, environment: Environment | None) -> None:
+        self._scenario, self._robot, self._environment = scenario, robot, environment
+        self._left = deque(scenario.commands)
+        self._queue: deque[TimedCommand] = deque()
+        self._twist = _NO_TWIST
+        self._held: dict[str, Any] = {}
+        # Legs out of the gait, each with a target or a velocity; None for one that is put back into it.
+        self._feet: dict[int, FootTarget | FootVelocity | None] = {}
+        self._state: RobotState | None = None
+        self._command = Command()
 
-    def take(self, command: TimedCommand) -> None:
-        """Take a command."""
+    # The source of a run.
+
+    def command(self, time: float, output: ControlOutput, note: Callable[[str, str], None]) -> Command:
+        """Return the command for the next tick, with everything that holds.
+
+        Parameters
+        ----------
+        time : float
+            The time at the end of the last tick [s].
+        output : ControlOutput
+            What the controller gave last.
+        note : callable
+            Takes the kind and the text of an event.
+        """
+        changed = False
+        while self._left and self._left[0].at <= time + _SAME_TIME:
+            command = self._left.popleft()
+            note("command", command_text(command))
+            self._take(command)
+            changed = True
+        while self._queue and self._handled(self._queue[0], output, note):
+            self._queue.popleft()
+            changed = True
+        if self._queue and type(self._queue[0]) in _STATES:
+            changed = changed or self._state is not _STATES[type(self._queue[0])]
+            self._state = _STATES[type(self._queue[0])]
+        if changed:
+            self._command = self._merged()
+        return self._command
+
+    def over(self, time: float, output: ControlOutput) -> bool:
+        """Return whether the run is over.
+
+        Parameters
+        ----------
+        time : float
+            The time at the end of the last tick [s].
+        output : ControlOutput
+            What the controller gave last.
+        """
+        if self._scenario.duration is not None:
+            return time >= self._scenario.duration - _SAME_TIME
+        last = self._scenario.commands[-1].at if self._scenario.commands else 0.0
+        if self._left or time < last + AFTER - _SAME_TIME:
+            return False
+        walks = output.state.upright and any(self._twist)
+        waits = bool(self._queue) and not self._is_met(self._queue[0], output)
+        return (not waits and (walks or output.at_rest)) or time >= last + LONGEST
+
+    # What holds.
+
+    def _take(self, command: TimedCommand) -> None:
         if isinstance(command, StandUp | Sit | Fold | PowerOff):
-            self.acts.append(command)
+            self._queue.append(command)
         elif isinstance(command, Walk | Stop):
-            self.twist = (command.vx, command.vy, command.turn) if isinstance(command, Walk) else _STILL
+            self._twist = (command.vx, command.vy, command.turn) if isinstance(command, Walk) else _NO_TWIST
         elif isinstance(command, MoveBody | Sway):
             axes = tuple(float(getattr(command, axis)) for axis in BODY_AXES)
-            self._asked["body" if isinstance(command, MoveBody) else "sway"] = axes
+            self._held["body" if isinstance(command, MoveBody) else "sway"] = axes
         elif isinstance(command, GaitChange | BodyHeight | SwingHeight | StanceWidth | CycleTime):
-            self._asked[command.word] = getattr(command, command.word)
+            self._held[command.word] = getattr(command, command.word)
         else:
             self._take_for_leg(command)
 
     def _take_for_leg(self, command: TimedCommand) -> None:
         leg = leg_number(self._robot, getattr(command, "leg", ""))
-        if isinstance(command, Ground | Tilt | Force):
-            self.feeling.take(command, leg)
+        if isinstance(command, Tilt) and self._environment is not None:
+            self._environment.set_tilt(command.roll, command.pitch)
+        elif isinstance(command, Ground) and leg is not None and self._environment is not None:
+            self._environment.set_ground(leg, command.height)
+        elif isinstance(command, Force) and leg is not None and self._environment is not None:
+            self._environment.set_force(leg, command.force)
         elif leg is not None:
-            self._foot_targets[leg] = command if isinstance(command, FootTarget | FootVelocity) else None
+            self._feet[leg] = command if isinstance(command, FootTarget | FootVelocity) else None
 
-    def command(self) -> Command:
-        """Return what the walker is asked for: to stand with all its feet down where an act is to come."""
-        if self.acts:
-            return Command(twist=_STILL, foot_targets=dict.fromkeys(self._foot_targets) or None, **self._asked)
-        told = self._foot_targets.items()
-        speeds = {
-            leg: (foot_target.vx, foot_target.vy, foot_target.vz)
-            for leg, foot_target in told
-            if isinstance(foot_target, FootVelocity)
+    def _merged(self) -> Command:
+        """Return what is commanded now."""
+        velocities = {n: (f.vx, f.vy, f.vz) for n, f in self._feet.items() if isinstance(f, FootVelocity)}
+        targets = {
+            n: (f.x, f.y, f.z) if isinstance(f, FootTarget) else None
+            for n, f in self._feet.items()
+            if not isinstance(f, FootVelocity)
         }
-        points = {
-            leg: (foot_target.x, foot_target.y, foot_target.z) if foot_target else None
-            for leg, foot_target in told
-            if not isinstance(foot_target, FootVelocity)
-        }
-        return Command(twist=self.twist, foot_targets=points or None, foot_velocities=speeds or None, **self._asked)
+        return Command(
+            twist=self._twist,
+            foot_targets=targets or None,
+            foot_velocities=velocities or None,
+            state=self._state,
+            **self._held,
+        )
 
-    def forget_hands_back(self) -> None:
-        """Forget the legs that are back in the gait: a robot that has got up has them all there."""
-        self._foot_targets = {
-            leg: foot_target for leg, foot_target in self._foot_targets.items() if foot_target is not None
-        }
+    # Changes of state.
+
+    @staticmethod
+    def _is_met(command: TimedCommand, output: ControlOutput) -> bool:
+        """Return whether the robot is in the state that a command asks for."""
+        if isinstance(command, StandUp):
+            return output.state.upright
+        if isinstance(command, Sit):
+            return output.state.on_belly
+        return output.state is RobotState.FOLDED
+
+    def _handled(self, command: TimedCommand, output: ControlOutput, note: Callable[[str, str], None]) -> bool:
+        """Return whether a change of state has ended, was refused, or is a power-off that is now worked out."""
+        if isinstance(command, PowerOff):
+            return self._powered_off(output, note)
+        if self._is_met(command, output):
+            return True
+        refused = [each for each in output.limitations if each.kind is LimitationKind.STATE]
+        if not refused or self._state is not _STATES[type(command)]:
+            return False
+        note("refused", f"{command.word}: {refused[0].cause}")
+        self._state = RobotState.STANDING if output.state.upright else RobotState(output.state)
+        return True
+
+    def _powered_off(self, output: ControlOutput, note: Callable[[str, str], None]) -> bool:
+        """Say what falls when the joints are released; the robot must rest on its belly."""
+        if output.state.upright:
+            note("refused", "power_off: the robot stands; it must lie on its belly before the joints are released")
+            return True
+        if not (output.state.on_belly and output.at_rest):
+            return False
+        falls = power_off_order(self._robot, output.angles).falls
+        note("power", "joints released: coxae, femurs, tibiae; " + ("; ".join(falls) or "nothing falls"))
+        return True

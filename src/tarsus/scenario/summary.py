@@ -7,8 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from tarsus.scenario.recording import Recording
-from tarsus.scenario.wording import command_text
+from tarsus.control.recording import Recording
 
 __all__ = ["drive_summary"]
 
@@ -19,33 +18,48 @@ def drive_summary(recording: Recording) -> dict[str, Any]:
     Parameters
     ----------
     recording : Recording
-        From `tarsus.drive.run.run`.
+        From `tarsus.run` or `tarsus.run_scenario`.
     """
-    motion, scenario = recording.motion, recording.scenario
-    walking = recording.upright & np.array([doing != "standing" for doing in recording.doing])
+    motion = recording.motion
+    walking = recording.upright & np.array([activity != "standing" for activity in recording.activities])
     steps = np.diff(motion.time)
     path = np.linalg.norm(np.diff(motion.body.position[:, :2], axis=0), axis=1)
     moved = walking[1:]
     yaw = np.unwrap(np.asarray(motion.body.rpy)[:, 2])
     x, y = motion.body.position[-1, :2] * 1000
     return {
-        "scenario": scenario.name,
+        "scenario": recording.name,
         "robot": recording.robot.name,
-        "rate_hz": scenario.rate,
+        "rate_hz": recording.rate,
         "duration_s": motion.duration,
         "walked_s": float(steps[moved].sum()),
-        "way_mm": float(path[moved].sum()) * 1000,
+        "distance_mm": float(path[moved].sum()) * 1000,
         "steps": motion.steps,
-        "end": {"x_mm": x, "y_mm": y, "turned_deg": math.degrees(yaw[-1] - yaw[0])},
+        "end": {
+            "x_mm": x,
+            "y_mm": y,
+            "turned_deg": math.degrees(yaw[-1] - yaw[0]),
+            "body_height_mm": float(motion.body.position[-1, 2]) * 1000,
+            "state": recording.states[-1],
+        },
         "gaits": list(dict.fromkeys(recording.gaits)),
-        "top_speed_mm_s": float(np.hypot(*recording.done[:, :2].T).max()) * 1000,
-        "top_turn_deg_s": math.degrees(float(np.abs(recording.done[:, 2]).max())),
+        "top_speed_mm_s": float(np.hypot(*recording.twist[:, :2].T).max()) * 1000,
+        "top_turn_deg_s": math.degrees(float(np.abs(recording.twist[:, 2]).max())),
         "least_margin": _least_margin(recording),
-        "commands": [{"time_s": command.at, "text": command_text(command)} for command in scenario.commands],
+        "commands": [{"time_s": e.time, "text": e.text} for e in recording.events if e.kind == "command"],
         "limits": [
             {"from_s": event.time, "until_s": event.until, "text": event.text}
             for event in recording.events
             if event.kind == "limit"
+        ],
+        "unmet": [
+            {
+                "from_s": each.time,
+                "until_s": each.until,
+                "kind": str(each.limitation.kind),
+                "text": each.limitation.text(),
+            }
+            for each in recording.unmet
         ],
         "guard": bool(recording.guard),
         "interventions": dict(recording.interventions),

@@ -1,0 +1,170 @@
+"""Plants: what executes joint angles and gives sensor readings."""
+
+from __future__ import annotations
+
+from typing import Any, Protocol, runtime_checkable
+
+import numpy as np
+
+from tarsus.control.control_output import ControlOutput
+from tarsus.control.readings import SensorReadings
+from tarsus.control.sensing.foot_force import STANDARD_GRAVITY, balanced_forces
+from tarsus.kinematics.mass import total_mass
+from tarsus.kinematics.pose import Pose
+from tarsus.robot.robot import Robot
+
+__all__ = ["Environment", "IdealPlant", "Plant"]
+
+Floats = np.ndarray[Any, Any]
+
+# Height over the ground below which a foot switch closes [m].
+_TOUCH = 1e-4
+
+
+@runtime_checkable
+class Plant(Protocol):
+    """A robot, ideal, simulated or real, that executes what a controller gives out.
+
+    A new kind of plant needs these methods only; `tarsus.run` works with each.
+
+    Attributes
+    ----------
+    robot : Robot
+        Which robot it is.
+    """
+
+    robot: Robot
+
+    def start(self, output: ControlOutput) -> None:
+        """Get ready: bring the joints to where the controller starts, however long that takes."""
+
+    def step(self, output: ControlOutput, dt: float) -> SensorReadings:
+        """Execute joint angles for one tick, and return what is measured at its end.
+
+        Parameters
+        ----------
+        output : ControlOutput
+            What the controller gave out; a real plant uses its angles only.
+        dt : float
+            Duration of the tick [s].
+        """
+
+    def stop(self) -> None:
+        """End: release what is held; also called after an error, and more than once."""
+
+
+class Environment:
+    """Deviations from flat, level ground that an ideal plant measures; none until they are set.
+
+    Parameters
+    ----------
+    robot : Robot
+        A single robot.
+    """
+
+    def __init__(self, robot: Robot) -> None:
+        self._weight = float(total_mass(robot)) * STANDARD_GRAVITY if robot.has_masses else 0.0
+        self._height, self._force = np.zeros(robot.legs), np.zeros(robot.legs)
+        self._tilt = np.zeros(2)
+        self._contacts = self._attitude = self._forces = False
+
+    def set_ground(self, leg: int, height: float) -> None:
+        """Set the height of the ground under a foot; foot switches are present from then on.
+
+        Parameters
+        ----------
+        leg : int
+            Number of the leg.
+        height : float
+            Over flat ground [m].
+        """
+        self._height[leg], self._contacts = height, True
+
+    def set_tilt(self, roll: float, pitch: float) -> None:
+        """Set by how much the ground is tilted; an attitude sensor is present from then on.
+
+        Parameters
+        ----------
+        roll, pitch : float
+            Left side up, front down [rad].
+        """
+        self._tilt, self._attitude = np.array([roll, pitch]), True
+
+    def set_force(self, leg: int, force: float) -> None:
+        """Set the vertical force on a foot beyond its share of the weight; load cells are present from then on.
+
+        Parameters
+        ----------
+        leg : int
+            Number of the leg.
+        force : float
+            Ground on foot [N].
+        """
+        self._force[leg], self._forces = force, True
+
+    def readings(self, feet: Floats, body: Pose, contacts: Floats) -> dict[str, Any]:
+        """Return what is measured, by the names of `SensorReadings`.
+
+        Parameters
+        ----------
+        feet : array, shape (legs, 3)
+            The feet in G [m].
+        body : Pose
+            The body's pose in G, as it would be on flat ground.
+        contacts : array of bool, shape (legs,)
+            Which feet bear load.
+        """
+        return {
+            "contacts": feet[:, 2] <= self._height + _TOUCH if self._contacts else None,
+            "attitude": tuple(np.asarray(body.rpy)[:2] + self._tilt) if self._attitude else None,
+            "forces": self._loads(feet, contacts) if self._forces else None,
+        }
+
+    def _loads(self, feet: Floats, contacts: Floats) -> Floats:
+        """Return the ground's vertical forces on the feet ``(legs,)`` [N]."""
+        # The walk controller takes the centre of mass to be in the middle of the feet; only so is a share no error.
+        centre = feet[:, :2].mean(axis=0)
+        share = balanced_forces(feet.tolist(), contacts.tolist(), centre.tolist(), self._weight)
+        return np.where(contacts, np.array(share) + self._force, 0.0)
+
+
+class IdealPlant:
+    """Executes joint angles exactly and at once, and measures them exactly.
+
+    Parameters
+    ----------
+    robot : Robot
+        A single robot.
+
+    Attributes
+    ----------
+    environment : Environment
+        Deviations from flat, level ground, as they are measured.
+    """
+
+    def __init__(self, robot: Robot) -> None:
+        self.robot = robot
+        self.environment = Environment(robot)
+        self._angles: Floats | None = None
+
+    def start(self, output: ControlOutput) -> None:
+        """Take over the joint angles that the controller starts with."""
+        self._angles = output.angles
+
+    def step(self, output: ControlOutput, dt: float) -> SensorReadings:
+        """Execute joint angles, and return exact readings.
+
+        Parameters
+        ----------
+        output : ControlOutput
+            What the controller gave out.
+        dt : float
+            Duration of the tick [s].
+        """
+        before = output.angles if self._angles is None else self._angles
+        self._angles = output.angles
+        felt = self.environment.readings(output.feet, output.body, output.contacts) if not output.belly else {}
+        return SensorReadings(joint_angles=output.angles, joint_speeds=(output.angles - before) / dt, **felt)
+
+    def stop(self) -> None:
+        """Do nothing: there is nothing to release."""

@@ -1,0 +1,242 @@
+"""Notes every tick of a run, and makes a recording of them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, TypeAlias
+
+import numpy as np
+
+from tarsus.control.command import Command
+from tarsus.control.control_output import ControlOutput
+from tarsus.control.limitation import Limitation, LimitationKind
+from tarsus.control.readings import SensorReadings
+from tarsus.control.recording import Event, Recording, Unmet
+from tarsus.control.robot_controller import RobotController
+from tarsus.control.robot_state import RobotState
+from tarsus.gait.motion import Motion
+from tarsus.gait.setup import Setup
+from tarsus.gait.spacing import default_foot_distance
+from tarsus.kinematics.leg import forward_kinematics
+from tarsus.kinematics.pose import Pose
+
+__all__ = ["Recorder"]
+
+Floats = np.ndarray[Any, Any]
+_Key: TypeAlias = tuple[str, str, str, str]
+
+# A limitation that is absent for less than this is still the same one [s].
+_GAP = 0.1
+_CHANGES = (RobotState.RISING, RobotState.SITTING, RobotState.FOLDING)
+# Which parts of a command ask for what may be limited; a limitation of another kind is always a shortfall.
+_ASKED_BY: dict[LimitationKind, Callable[[Command], Any]] = {
+    LimitationKind.TWIST: lambda command: command.twist,
+    LimitationKind.BODY: lambda command: command.body,
+    LimitationKind.BODY_HEIGHT: lambda command: command.body_height,
+    LimitationKind.SWING_HEIGHT: lambda command: command.swing_height,
+    LimitationKind.STANCE_WIDTH: lambda command: command.stance_width,
+    LimitationKind.GAIT: lambda command: command.gait,
+    LimitationKind.CYCLE_TIME: lambda command: command.cycle_time,
+    LimitationKind.SWAY: lambda command: command.sway,
+    LimitationKind.FOOT_TARGET: lambda command: command.foot_targets or command.foot_velocities,
+    LimitationKind.STATE: lambda command: command.state,
+}
+
+
+class Recorder:
+    """Takes in every tick of a run.
+
+    Parameters
+    ----------
+    controller : RobotController
+        What is recorded.
+    """
+
+    def __init__(self, controller: RobotController) -> None:
+        self._controller = controller
+        self._command = Command()
+        self._outputs = [controller.output]
+        self._times = [0.0]
+        self._twists = [(0.0, 0.0, 0.0)]
+        self._measured: list[Any] = [None]
+        self._events: list[Event] = []
+        self._unmet: dict[tuple[Any, ...], Unmet] = {}
+        # Every limitation that is present or was lately: since when, its event's number, its last tick and value.
+        self._present: dict[_Key, tuple[float, int, float, Limitation]] = {}
+        self._counts: dict[str, int] = {}
+
+    @property
+    def time(self) -> float:
+        """The time of the last tick [s]."""
+        return self._times[-1]
+
+    def note(self, kind: str, text: str) -> None:
+        """Note an event at the time of the last tick.
+
+        Parameters
+        ----------
+        kind, text : str
+            See `Event`.
+        """
+        self._events.append(Event(self.time, self.time, kind, text))
+
+    def command(self, command: Command) -> None:
+        """Note what is commanded for the next tick; what it replaces has been met by now, or is unmet.
+
+        Parameters
+        ----------
+        command : Command
+            The command, with everything that holds.
+        """
+        if command is self._command:
+            return
+        for since, _, last, limitation in self._present.values():
+            asked = _ASKED_BY.get(limitation.kind)
+            if asked is not None and last > self.time - _GAP and _replaces(asked(command), asked(self._command)):
+                self._note_unmet(since, limitation)
+        self._command = command
+
+    def _note_unmet(self, since: float, limitation: Limitation) -> None:
+        key = (*limitation.key, since)
+        self._unmet[key] = Unmet(since, self.time, limitation)
+
+    def tick(self, time: float, output: ControlOutput, readings: SensorReadings) -> None:
+        """Note a tick.
+
+        Parameters
+        ----------
+        time : float
+            Its end [s].
+        output : ControlOutput
+            What the controller gave.
+        readings : SensorReadings
+            What the plant measured before it.
+        """
+        before = self._outputs[-1]
+        self._measured[-1] = readings.joint_angles
+        self._measured.append(None)
+        self._times.append(time)
+        for found in output.interventions:
+            self._counts[found.kind] = self._counts.get(found.kind, 0) + 1
+            self.note("guard", found.text())
+        if output.gait.name != before.gait.name:
+            self.note("gait", f"{output.gait.name} from here on")
+        if output.state != before.state and RobotState.FAULT in (output.state, before.state):
+            self.note("state", str(output.state))
+        if output.activity != before.activity and output.state in _CHANGES:
+            self.note("stage", output.activity)
+        self._note_limitations(output.limitations)
+        self._outputs.append(output)
+        vx, vy, wz = self._command.twist
+        self._twists.append((vx, vy, wz))
+
+    def _note_limitations(self, limitations: tuple[Limitation, ...]) -> None:
+        """Note the limitations of a tick; one that comes and goes from tick to tick is one event."""
+        time = self.time
+        present: dict[_Key, tuple[float, int, float, Limitation]] = {}
+        for limitation in limitations:
+            known = self._present.get(limitation.key)
+            if known is None:
+                self.note("limit", limitation.text())
+                since, number = time, len(self._events) - 1
+            else:
+                since, number, _, _ = known
+            self._events[number] = self._events[number]._replace(until=time)
+            present[limitation.key] = (since, number, time, limitation)
+            if limitation.kind not in _ASKED_BY:
+                self._note_unmet(since, limitation)
+        lately = {key: known for key, known in self._present.items() if known[2] > time - _GAP}
+        self._present = {**lately, **present}
+
+    def recording(self, *, name: str, rate: float) -> Recording:
+        """Return the recording.
+
+        Parameters
+        ----------
+        name : str
+            What the run is called.
+        rate : float
+            Nominal ticks per second [1/s].
+        """
+        for since, _, last, limitation in self._present.values():
+            if last > self.time - _GAP:
+                self._note_unmet(since, limitation)
+        outputs = self._outputs
+        twist = np.array([output.twist for output in outputs])
+        guard = tuple(output.guard for output in outputs)
+        return Recording(
+            robot=self._controller.robot,
+            name=name,
+            rate=rate,
+            compliant=self._controller.compliant,
+            motion=self._motion(twist),
+            twist_commanded=_locked(np.array(self._twists)),
+            twist=_locked(twist),
+            cycle_times=_locked(np.array([output.cycle_time for output in outputs])),
+            belly=_locked(np.array([output.belly for output in outputs])),
+            measured_angles=_locked(self._measured_angles()),
+            states=tuple(str(output.state) for output in outputs),
+            activities=tuple(output.activity for output in outputs),
+            gaits=tuple(output.gait.name for output in outputs),
+            guard=guard if any(guard) else (),
+            interventions=dict(self._counts),
+            unmet=tuple(sorted(self._unmet.values(), key=lambda each: each.time)),
+            events=tuple(sorted(self._events, key=lambda event: event.time)),
+        )
+
+    def _measured_angles(self) -> Floats:
+        missing = np.full((self._controller.robot.legs, 3), np.nan)
+        return np.array([missing if angles is None else angles for angles in self._measured], dtype=float)
+
+    def _motion(self, twist: Floats) -> Motion:
+        """Return what was given out, as a motion."""
+        outputs, robot, controller = self._outputs, self._controller.robot, self._controller
+        angles = np.array([output.angles for output in outputs])
+        body = Pose(
+            np.array([np.asarray(output.body.rotation) for output in outputs]),
+            np.array([np.asarray(output.body.position) for output in outputs]),
+        )
+        feet = np.array([output.feet for output in outputs])
+        # Where the guard gave out other angles, the feet are where these take them; the body's pose is as commanded.
+        held = np.array([output.state is RobotState.FAULT for output in outputs])
+        if held.any():
+            feet[held] = (body @ forward_kinematics(robot, angles)[..., 3, :])[held]
+        heights = {"body_height": controller.body_height, "swing_height": controller.swing_height}
+        setup = Setup.of(robot, outputs[0].gait, body_tilt=(0.0, 0.0), foot_distance=None, **heights)
+        passing = _foot_speeds(twist, setup.rest)
+        fastest = int(passing.max(1).argmax())
+        output, speed = outputs[fastest], float(passing[fastest].max())
+        return Motion(
+            robot=robot,
+            gait=output.gait,
+            time=np.array(self._times),
+            body=body,
+            feet=feet,
+            contacts=np.array([output.contacts for output in outputs]),
+            angles=angles,
+            reach=np.zeros((len(outputs), robot.legs), dtype=np.int8),
+            cycle_time=output.cycle_time,
+            stroke=speed * output.cycle_time * output.gait.duty_factor,
+            speed=speed,
+            body_height=setup.body_height,
+            swing_height=setup.swing_height,
+            # Legs that are folded may come nearer to each other than walking ones.
+            foot_distance=0.0 if any(output.belly for output in outputs) else default_foot_distance(robot),
+            assumed=tuple(setup.assumed(controller.body_height, controller.swing_height)),
+        )
+
+
+def _foot_speeds(twist: Floats, rest: Floats) -> Floats:
+    """Return the speed of each foot at rest against the body, for every twist ``(n, legs)`` [m/s]."""
+    vx, vy, wz = (twist[:, axis, None] for axis in range(3))
+    return np.asarray(np.hypot(vx - wz * rest[:, 1], vy + wz * rest[:, 0]))
+
+
+def _replaces(new: Any, old: Any) -> bool:
+    """Return whether a part of a command replaces another; None leaves it as it is."""
+    return new is not None and bool(new != old)
+
+
+def _locked(array: Floats) -> Floats:
+    array.setflags(write=False)
+    return array

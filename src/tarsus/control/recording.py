@@ -1,0 +1,211 @@
+"""What a run gave: motion, commands, limitations, interventions, and which commands were met."""
+
+from __future__ import annotations
+
+import csv
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from tarsus.control.limitation import Limitation
+from tarsus.errors import InputError
+from tarsus.gait.motion import Motion
+from tarsus.robot.robot import Robot
+
+__all__ = ["Event", "Recording", "Unmet"]
+
+Floats = np.ndarray[Any, Any]
+
+
+class Event(NamedTuple):
+    """Something that happened in a run.
+
+    Attributes
+    ----------
+    time : float
+        When it happened or began [s].
+    until : float
+        When it ended [s]; the same as `time` where it has no duration.
+    kind : str
+        ``"command"``, ``"stage"`` of rising, sitting down or folding, ``"state"``, ``"gait"``, ``"limit"``: a command
+        is not met in full, ``"refused"``, ``"power"``, ``"guard"``: an intervention.
+    text : str
+        What happened.
+    """
+
+    time: float
+    until: float
+    kind: str
+    text: str
+
+
+class Unmet(NamedTuple):
+    """A command that was not met in full by the time it was replaced, or the run ended.
+
+    Attributes
+    ----------
+    time : float
+        When the limitation began [s].
+    until : float
+        When the command was replaced, or the run ended [s].
+    limitation : Limitation
+        Why it was not met.
+    """
+
+    time: float
+    until: float
+    limitation: Limitation
+
+    def text(self) -> str:
+        """Return it as a line of text."""
+        return f"{self.time:.2f} to {self.until:.2f} s: {self.limitation.text()}"
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Recording:
+    """A run of a controller and a plant. Arrays have a row for each tick; the first is the robot at the start.
+
+    Attributes
+    ----------
+    robot : Robot
+        Which robot.
+    name : str
+        What the run is called.
+    rate : float
+        Nominal ticks per second [1/s].
+    compliant : bool
+        Whether feet comply with forces.
+    motion : Motion
+        All of the motion; while the robot lies on its belly, margins mean nothing. The gait, the cycle time, the
+        stroke and the speed are those of its fastest walking; `body_height` and `swing_height` those at the start.
+    twist_commanded, twist : array, shape (n, 3)
+        Twist that was commanded, and that was walked: forward, left [m/s], turning [rad/s].
+    cycle_times : array, shape (n,)
+        Duration of a cycle [s].
+    belly : array of bool, shape (n,)
+        Whether the body rests on the ground.
+    measured_angles : array, shape (n, legs, 3)
+        Joint angles as measured by the plant; NaN where they are not [rad].
+    states : tuple of str
+        State of the robot.
+    activities : tuple of str
+        The state in detail: walk state, or stage of rising, sitting down or folding.
+    gaits : tuple of str
+        Name of the gait.
+    guard : tuple of str
+        State of the guard: ``"passing"``, ``"holding"``, ...; empty without a guard.
+    interventions : mapping of str to int
+        How often each kind of intervention of the guard began.
+    unmet : tuple of Unmet
+        Commands that were not met in full.
+    events : tuple of Event
+        In the order of their times.
+    """
+
+    robot: Robot
+    name: str
+    rate: float
+    compliant: bool
+    motion: Motion
+    twist_commanded: Floats
+    twist: Floats
+    cycle_times: Floats
+    belly: Floats
+    measured_angles: Floats
+    states: tuple[str, ...]
+    activities: tuple[str, ...]
+    gaits: tuple[str, ...]
+    guard: tuple[str, ...]
+    interventions: Mapping[str, int]
+    unmet: tuple[Unmet, ...]
+    events: tuple[Event, ...]
+
+    @cached_property
+    def upright(self) -> Floats:
+        """Whether the robot stands or walks, and is not lying, rising, sitting down or folding ``(n,)``."""
+        upright = np.array([activity in _UPRIGHT for activity in self.activities])
+        upright.setflags(write=False)
+        return upright
+
+    @cached_property
+    def standing(self) -> tuple[Motion, ...]:
+        """The intervals in which the body is off the ground, each as a motion of its own that starts at 0 s.
+
+        Margins and loads mean something for these.
+        """
+        edges = np.flatnonzero(np.diff(np.concatenate([[True], self.belly, [True]]).astype(int)))
+        return tuple(self._part(int(first), int(end)) for first, end in edges.reshape(-1, 2) if end - first > 1)
+
+    def _part(self, first: int, end: int) -> Motion:
+        whole, rows = self.motion, slice(first, end)
+        if end - first == len(whole.time):
+            return whole
+        return Motion(
+            robot=whole.robot,
+            gait=whole.gait,
+            time=whole.time[rows] - whole.time[first],
+            body=whole.body[rows],
+            feet=whole.feet[rows],
+            contacts=whole.contacts[rows],
+            angles=whole.angles[rows],
+            reach=whole.reach[rows],
+            cycle_time=whole.cycle_time,
+            stroke=whole.stroke,
+            speed=whole.speed,
+            body_height=whole.body_height,
+            swing_height=whole.swing_height,
+            foot_distance=whole.foot_distance,
+            assumed=whole.assumed,
+        )
+
+    @property
+    def problems(self) -> tuple[str, ...]:
+        """What went wrong, a line for each: refused and unmet commands, interventions, infeasible motion."""
+        refused = [f"at {event.time:.2f} s {event.text}" for event in self.events if event.kind == "refused"]
+        unmet = [f"not met in full, {each.text()}" for each in self.unmet]
+        stopped = [f"guard: {number} x {kind}" for kind, number in self.interventions.items()]
+        bodily = [problem for part in self.standing for problem in part.problems]
+        return tuple(dict.fromkeys([*refused, *unmet, *stopped, *bodily]))
+
+    @property
+    def ok(self) -> bool:
+        """Whether the motion is possible, every command was met in full, and the guard did not intervene."""
+        return not self.problems
+
+    def to_csv(self, path: str | os.PathLike[str]) -> None:
+        """Write the log as a table: a row for each tick, in mm/s and deg/s. The angles are in `motion`'s table.
+
+        Parameters
+        ----------
+        path : path
+            Where to write it.
+
+        Raises
+        ------
+        InputError
+            If it can't be written.
+        """
+        scale = np.array([1e3, 1e3, 180 / np.pi])
+        twists = [self.motion.time[:, None], self.twist_commanded * scale, self.twist * scale]
+        rows = np.hstack([*twists, self.cycle_times[:, None], self.motion.margin[:, None] * 1e3]).tolist()
+        guard = self.guard or ("",) * len(rows)
+        try:
+            with open(path, "w", newline="", encoding="utf-8") as file:
+                writer = csv.writer(file)
+                writer.writerow(_COLUMNS)
+                for row, *words in zip(rows, self.gaits, self.states, self.activities, guard, strict=True):
+                    writer.writerow([*(f"{round(value, 6) + 0.0:.6f}" for value in row), *words])
+        except OSError as error:
+            raise InputError(f"{path} can't be written: {error.strerror}") from None
+
+
+_UPRIGHT = ("standing", "starting", "walking", "stopping", "searching")
+_COLUMNS = (
+    "time_s",
+    *(f"{what}_{axis}" for what in ("commanded", "walked") for axis in ("vx_mm_s", "vy_mm_s", "turn_deg_s")),
+    *("cycle_time_s", "margin_mm", "gait", "state", "activity", "guard"),
+)

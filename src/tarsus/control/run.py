@@ -1,0 +1,155 @@
+"""The one loop: a source of commands, a controller, and a plant."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from typing import Protocol, TypeAlias, runtime_checkable
+
+import numpy as np
+
+from tarsus.control.command import Command
+from tarsus.control.control_output import ControlOutput
+from tarsus.control.plant import Plant
+from tarsus.control.recorder import Recorder
+from tarsus.control.recording import Recording
+from tarsus.control.robot_controller import RobotController
+from tarsus.errors import InputError
+from tarsus.gait.setup import require_number
+
+__all__ = ["CommandSource", "TimedCommands", "run"]
+
+Asked: TypeAlias = Command | tuple[float, float, float]
+"""A command, or a twist alone."""
+
+# Two times this near to each other are the same [s].
+_SAME_TIME = 1e-9
+# How long a run without a duration continues after the last command [s], and how long what that command began may take.
+AFTER, LONGEST = 2.0, 120.0
+
+
+@runtime_checkable
+class CommandSource(Protocol):
+    """What gives the commands of a run: a scenario, a gamepad, a list."""
+
+    def command(self, time: float, output: ControlOutput, note: Callable[[str, str], None]) -> Command:
+        """Return the command for the next tick, with everything that holds.
+
+        Parameters
+        ----------
+        time : float
+            The time at the end of the last tick [s].
+        output : ControlOutput
+            What the controller gave last.
+        note : callable
+            Takes the kind and the text of an event to be recorded.
+        """
+
+    def over(self, time: float, output: ControlOutput) -> bool:
+        """Return whether the run is over."""
+
+
+class TimedCommands:
+    """Commands, each from its time on until the next.
+
+    Parameters
+    ----------
+    commands : iterable of (float, Command or (vx, vy, wz))
+        Times [s] and commands.
+    duration : float, optional
+        How long the run takes [s]; left out, until 2 s after the last command and until the robot is at rest, or its
+        twist is not 0.
+    """
+
+    def __init__(
+        self, commands: Iterable[tuple[float, Command | tuple[float, float, float]]], *, duration: float | None = None
+    ) -> None:
+        timed = [(require_number("time", time, zero=True), each) for time, each in commands]
+        self._left = [
+            (time, each if isinstance(each, Command) else Command(twist=each))
+            for time, each in sorted(timed, key=lambda pair: pair[0])
+        ]
+        self._last = self._left[-1][0] if self._left else 0.0
+        self._duration = None if duration is None else require_number("duration", duration, zero=False)
+        self._now = Command()
+
+    def command(self, time: float, output: ControlOutput, note: Callable[[str, str], None]) -> Command:  # noqa: ARG002
+        """Return the command for the next tick."""
+        while self._left and self._left[0][0] <= time + _SAME_TIME:
+            _, self._now = self._left.pop(0)
+        return self._now
+
+    def over(self, time: float, output: ControlOutput) -> bool:
+        """Return whether the run is over."""
+        if self._duration is not None:
+            return time >= self._duration - _SAME_TIME
+        late = time >= self._last + AFTER - _SAME_TIME
+        return late and not self._left and (output.at_rest or any(self._now.twist) or time >= self._last + LONGEST)
+
+
+def run(
+    controller: RobotController,
+    plant: Plant,
+    commands: CommandSource | Iterable[tuple[float, Asked]],
+    *,
+    duration: float | None = None,
+    rate: float = 100.0,
+    jitter: float = 0.0,
+    seed: int = 0,
+    name: str = "",
+) -> Recording:
+    """Run a controller and a plant through commands, and record every tick.
+
+    In each tick the plant executes the angles of the last one and measures, and the controller takes what was
+    measured and gives the next angles. Whatever ends the run, the plant is stopped.
+
+    Parameters
+    ----------
+    controller : RobotController
+        The controller.
+    plant : Plant
+        Executes the joint angles: an ideal, simulated or real robot of the same kind.
+    commands : CommandSource or iterable of (float, Command or (vx, vy, wz))
+        Times [s] and what is commanded from then on; or what gives a command for every tick.
+    duration : float, optional
+        How long the run takes [s]; for a list of commands, left out: until 2 s after the last one, and until the robot
+        is at rest where the twist is 0.
+    rate : float
+        Ticks per second [1/s].
+    jitter : float
+        By how much a tick may be longer or shorter, at random [s].
+    seed : int
+        Seed of what is random.
+    name : str
+        What the run is called.
+
+    Raises
+    ------
+    InputError
+        If the plant is another robot, or a number is not finite or out of its range.
+    """
+    if plant.robot.leg_names != controller.robot.leg_names:
+        raise InputError(
+            f"the plant is {plant.robot.name!r} with {plant.robot.legs} legs, the controller is for "
+            f"{controller.robot.name!r} with {controller.robot.legs}; both must be the same robot"
+        )
+    rate = require_number("rate", rate, zero=False)
+    if not 0 <= jitter < 1 / rate:
+        raise InputError(f"jitter is {jitter:g} s; it must be at least 0 and less than a tick, {1 / rate:g} s")
+    source = commands if isinstance(commands, CommandSource) else TimedCommands(commands, duration=duration)
+    recorder, random = Recorder(controller), np.random.default_rng(seed)
+    output = controller.output
+    plant.start(output)
+    try:
+        time, number = 0.0, 0
+        while not source.over(time, output):
+            number += 1
+            after = number / rate + (float(random.uniform(-0.5, 0.5)) * jitter if jitter else 0.0)
+            command = source.command(time, output, recorder.note)
+            recorder.command(command)
+            readings = plant.step(output, after - time)
+            output = controller.step(command, after - time, readings)
+            time = after
+            recorder.tick(time, output, readings)
+    finally:
+        plant.stop()
+    return recorder.recording(name=name, rate=rate)
