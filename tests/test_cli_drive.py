@@ -22,7 +22,7 @@ def test_the_numbers_are_those_of_the_same_scenario_in_python():
     assert document.pop("files") == []
     bears = document.pop("loads")
     assert document.keys() == wanted.keys()
-    for key in ("duration_s", "way_mm", "top_speed_mm_s", "walked_s", "steps"):
+    for key in ("duration_s", "distance_mm", "top_speed_mm_s", "walked_s", "steps"):
         assert document[key] == pytest.approx(wanted[key], abs=1e-6)
     assert document["gaits"] == ["tripod", "wave"]
     assert set(bears) == {"coxa", "femur", "tibia"}
@@ -33,7 +33,7 @@ def test_it_prints_a_table_and_the_verdict():
     result = run("drive", "--dry", TIMELINE)
     assert result.exit_code == 0
     assert result.stdout.strip().endswith("possible")
-    for words in ("strider", "0 interventions", "top speed", "greatest femur", "tripod, wave"):
+    for words in ("strider", "0 interventions", "top speed", "peak torque, femur", "tripod, wave"):
         assert words in result.stdout
 
 
@@ -62,24 +62,36 @@ def test_files_are_named_after_they_are_written(tmp_path):
     assert not (tmp_path / "walk.gif").exists()
 
 
-def test_without_dry_it_says_that_servos_come_later():
+def test_without_dry_servos_are_refused():
     result = run("drive", TIMELINE)
     assert result.exit_code == 2
-    assert "real servos come later; --dry" in result.stderr
+    assert "servos are not supported yet; --dry" in result.stderr
 
 
 def test_a_refused_command_is_told_and_is_exit_code_1():
-    result = run("drive", "--dry", "at 0 s: fold")
+    result = run("drive", "--dry", "at 0 s: power_off")
     assert result.exit_code == 1
     assert "not possible" in result.stdout
-    assert "fold: it stands; let it sit first" in result.stdout
+    assert "power_off: the robot stands" in result.stdout
 
 
-def test_limits_are_told():
-    result = run("drive", "--dry", "at 0 s: walk 5 m/s")
-    assert result.exit_code == 0
-    assert "limited" in result.stdout
-    assert "twist: " in result.stdout
+@pytest.mark.parametrize(
+    ("timeline", "kind"),
+    [
+        ("at 0 s: walk 5 m/s", "twist"),
+        ("at 0 s: body_height 400 mm", "body_height"),
+        ("at 0 s: gait ripple; at 3 s: foot_target RF x 250 mm y -200 mm z 60 mm", "foot_target"),
+    ],
+)
+def test_a_command_that_is_not_met_in_full_is_said_and_is_exit_code_1(timeline, kind):
+    code, document = run_json("drive", "--dry", timeline)
+    assert code == 1
+    assert not document["possible"]
+    assert kind in {each["kind"] for each in document["unmet"]}
+    result = run("drive", "--dry", timeline)
+    assert result.exit_code == 1
+    assert "not met in full" in result.stdout
+    assert f"{kind}: " in result.stdout
 
 
 def test_a_robot_that_never_stands_has_no_margin_and_no_loads(tmp_path):
@@ -87,8 +99,8 @@ def test_a_robot_that_never_stands_has_no_margin_and_no_loads(tmp_path):
     Scenario(start="folded", duration=0.3).save(path)
     result = run("drive", "--dry", path)
     assert result.exit_code == 0
-    assert "it never stood" in result.stdout
-    assert "greatest" not in result.stdout
+    assert "never off the ground" in result.stdout
+    assert "peak torque" not in result.stdout
 
 
 @pytest.mark.parametrize(
