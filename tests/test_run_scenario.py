@@ -154,7 +154,7 @@ def test_a_hand_at_a_speed_goes_on_to_the_end_of_its_reach_and_a_point_ends_it()
     found = run_scenario(Scenario.from_text(text, duration=15.0), robot="strider")
     # At the edge it comes and goes from tick to tick, and is told once.
     (limit,) = (event for event in found.events if event.kind == "limit")
-    assert "front right comes to the end of its reach" in limit.text
+    assert "front right: out of reach" in limit.text
     assert limit.time == pytest.approx(8.3, abs=0.5)
     assert limit.until == pytest.approx(11.0, abs=0.02)
     foot = found.motion.feet[:, found.robot.leg_codes.index("RF")]

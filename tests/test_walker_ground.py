@@ -5,6 +5,7 @@ import pytest
 
 from tarsus import Gait, forward_kinematics, list_robots, load_robot
 from tarsus.control.command import Command
+from tarsus.control.limitation import Limitation
 from tarsus.control.pose.admittance import Admittance
 from tarsus.control.readings import SensorReadings
 from tarsus.control.walk_controller import WalkController
@@ -35,7 +36,7 @@ class World:
             change = abs(rate - self.rate) / DT / self.controller.joint_acceleration
             self.worst_acceleration = max(self.worst_acceleration, change.max())
             self.angles, self.rate = angles, rate
-            self.modes.add(self.controller.mode)
+            self.modes.add(self.controller.walk_state)
             self.least_down = min(self.least_down, self.controller.contacts.sum())
         return self
 
@@ -71,15 +72,15 @@ def test_feet_look_for_ground_below():
 
 def test_without_ground_the_robot_holds_still_and_says_so():
     world = World(lambda foot: -0.5 if foot[0] > 0.4 else 0.0).walk((0.1, 0, 0), 8)
-    assert world.controller.mode == "searching"
-    assert any("no ground under" in reason for reason in world.controller.limited)
+    assert world.controller.walk_state == "searching"
+    assert any("no ground under" in reason for reason in map(Limitation.text, world.controller.limitations))
     before = world.controller.angles
     world.walk((0.1, 0, 0), 0.5)
     np.testing.assert_allclose(world.controller.angles, before, atol=1e-3)
     # Blind again, it takes the ground to be where the foot is.
     for _ in range(200):
         world.controller.step((0.0, 0, 0), DT)
-    assert world.controller.mode != "searching"
+    assert world.controller.walk_state != "searching"
 
 
 def test_garbage_is_refused_and_named():
@@ -88,8 +89,8 @@ def test_garbage_is_refused_and_named():
     garbage = SensorReadings(contacts="yes", attitude=(np.nan, 9.0), forces=[1e30] * 6, torques=None, age=0.0)
     for _ in range(200):
         np.testing.assert_array_equal(controller.step((0.1, 0, 0), DT, readings=garbage), blind.step((0.1, 0, 0), DT))
-    assert any("attitude" in reason for reason in controller.limited)
-    assert any("contacts" in reason for reason in controller.limited)
+    assert any("attitude" in reason for reason in map(Limitation.text, controller.limitations))
+    assert any("contacts" in reason for reason in map(Limitation.text, controller.limitations))
 
 
 @pytest.mark.parametrize("axis", [0, 1])

@@ -5,6 +5,7 @@ import pytest
 
 from tarsus import Gait, load_robot
 from tarsus.control.command import Command
+from tarsus.control.limitation import Limitation
 from tarsus.control.walk_controller import WalkController
 from tarsus.errors import InputError
 from walker_machine import Trace
@@ -49,7 +50,7 @@ def test_a_leg_goes_where_it_is_told_while_the_others_walk():
     # And back: it steps to its rest foothold, and bears load again.
     walk(controller, Command(foot_targets={0: None}), 20)
     assert controller.contacts.all()
-    assert controller.mode == "standing"
+    assert controller.walk_state == "standing"
     fresh = WalkController(controller.robot, Gait.named("wave"))
     np.testing.assert_allclose(in_heading_frame(controller, 0), in_heading_frame(fresh, 0), atol=1e-5)
 
@@ -66,14 +67,14 @@ def test_a_point_holds_until_there_is_another():
 def test_two_legs_at_once():
     controller = WalkController(load_robot("strider"), Gait.named("wave"))
     walk(controller, Command(foot_targets={1: (0.0, 0.3, 0.1), 4: (0.0, -0.3, 0.1)}), 8)
-    assert controller.contacts.sum() == 4 or controller.limited
+    assert controller.contacts.sum() == 4 or controller.limitations
     assert controller.contacts.sum() >= 3
 
 
 def test_a_leg_that_bears_the_robot_is_refused_with_the_margin():
     controller = WalkController(load_robot("strider"), Gait.named("tripod"))
     walk(controller, Command(twist=(0.05, 0, 0), foot_targets={0: (0.25, 0.2, 0.08)}), 8)
-    (reason,) = (text for text in controller.limited if "foot_target" in text)
+    (reason,) = (text for text in map(Limitation.text, controller.limitations) if "foot_target" in text)
     assert "front left" in reason
     assert "mm" in reason
     assert controller.gait.name == "tripod"
@@ -84,7 +85,7 @@ def test_out_of_reach_it_goes_as_far_as_it_reaches():
     controller = WalkController(load_robot("strider"), Gait.named("wave"))
     walk(controller, Command(foot_targets={0: (0.25, 0.2, 0.08)}), 8)
     walk(controller, Command(foot_targets={0: (0.9, 0.7, 0.08)}), 3)
-    assert any("front left comes to the end of its reach" in reason for reason in controller.limited)
+    assert any("front left: out of reach" in reason for reason in map(Limitation.text, controller.limitations))
     reached = in_heading_frame(controller, 0)
     assert np.hypot(*reached[:2]) > 0.33
 
@@ -107,21 +108,21 @@ def test_sway_moves_the_body_with_the_steps_and_fades():
     assert np.ptp(heights) == pytest.approx(0.006, abs=0.0015)
     # More of it than the joints can follow is cut, and said to be.
     walk(controller, Command(twist=(0.05, 0, 0), sway=(0.004, 0.02, 0.02, 0.05, 0.05, 0.05)), 4)
-    assert any(reason.startswith("sway: ") for reason in controller.limited)
+    assert any(reason.startswith("sway: ") for reason in map(Limitation.text, controller.limitations))
     walk(controller, Command(sway=(0.0,) * 6), 8)
-    assert controller.mode == "standing"
+    assert controller.walk_state == "standing"
     np.testing.assert_allclose(controller.body.position[2], 0.110, atol=5e-4)
 
 
 def test_a_sway_that_the_joints_do_not_allow_is_cut_and_that_is_said():
     controller = WalkController(load_robot("strider"), Gait.named("tripod"), cycle_time=1.0)
     walk(controller, Command(twist=(0.05, 0, 0), sway=(0, 0, 0.014, 0, 0, 0)), 3)
-    (reason,) = (reason for reason in controller.limited if reason.startswith("sway"))
+    (reason,) = (reason for reason in map(Limitation.text, controller.limitations) if reason.startswith("sway"))
     share = float(reason.split()[1]) / 100
     assert 0 < share < 1
     # As much sway less is not cut.
     walk(controller, Command(twist=(0.05, 0, 0), sway=(0, 0, 0.014 * (share - 0.01), 0, 0, 0)), 3)
-    assert not any(reason.startswith("sway") for reason in controller.limited)
+    assert not any(reason.startswith("sway") for reason in map(Limitation.text, controller.limitations))
 
 
 @pytest.mark.parametrize("name", ["freenove", "strider", "phoenix"])
@@ -158,4 +159,4 @@ def test_what_is_no_longer_asked_for_is_refused_no_more():
     controller = WalkController(load_robot("strider"))
     controller.step(Command(sway=(0, 0, 0.2, 0, 0, 0)), DT)
     walk(controller, Command(sway=(0,) * 6), 5)
-    assert controller.limited == ()
+    assert controller.limitations == ()

@@ -5,6 +5,7 @@ import pytest
 
 from gait_robots import PRESETS, preset
 from tarsus.control.command import Command
+from tarsus.control.limitation import Limitation
 from tarsus.control.pose.admittance import Admittance
 from tarsus.control.readings import SensorReadings
 from tarsus.control.walk_controller import WalkController
@@ -110,7 +111,7 @@ def test_feet_that_wait_for_others_to_find_ground_stay_within_their_polygons():
         # All ground is a centimetre lower every other second.
         ground = -0.01 * (tick // 100 % 2)
         trace.step(twist, 0.02, readings=SensorReadings(contacts=touching(controller, ground)))
-        modes.add(controller.mode)
+        modes.add(controller.walk_state)
         assert beyond(controller) < 1e-6
     trace.assert_sound(flat=False)
     assert "searching" in modes
@@ -125,8 +126,8 @@ def test_ground_out_of_reach_is_not_looked_for():
     for _ in range(300):
         trace.step((0.05, 0.0, 0.0), 0.02, readings=SensorReadings(contacts=touching(controller, np.full(6, -0.1))))
     trace.assert_sound(flat=False)
-    assert controller.mode == "searching"
-    assert any("no ground under" in reason for reason in controller.limited)
+    assert controller.walk_state == "searching"
+    assert any("no ground under" in reason for reason in map(Limitation.text, controller.limitations))
 
 
 def at_an_edge(name, gait):
@@ -134,8 +135,8 @@ def at_an_edge(name, gait):
     controller = WalkController(preset(name), Gait.named(gait))
     trace, speed = Trace(controller), 0.5 * controller.top_speed((1, 0, 0))
     tick_over_the_drop(trace, (speed, 0.0, 0.0), 900)
-    assert controller.mode == "searching"
-    assert any("no ground under" in reason for reason in controller.limited)
+    assert controller.walk_state == "searching"
+    assert any("no ground under" in reason for reason in map(Limitation.text, controller.limitations))
     return trace, speed
 
 
@@ -156,7 +157,7 @@ def test_a_foot_over_a_drop_is_drawn_back_when_the_robot_is_told_to_go_back(name
     tick_over_the_drop(trace, (-speed, 0.0, 0.0), 900)
     assert controller.place[0] < x - 0.1
     tick_over_the_drop(trace, (0.0, 0.0, 0.0), 900)
-    assert controller.mode == "standing"
+    assert controller.walk_state == "standing"
     assert controller.contacts.all()
     trace.assert_sound(flat=False)
     assert trace.margins().min() > 0
@@ -166,7 +167,7 @@ def test_the_same_stop_draws_a_foot_back_only_once():
     trace, _ = at_an_edge("strider", "tripod")
     tick_over_the_drop(trace, (0.0, 0.0, 0.0), 300)
     # Under its rest foothold there is no ground either.
-    assert trace.controller.mode == "searching"
+    assert trace.controller.walk_state == "searching"
     hung = trace.controller.angles
     tick_over_the_drop(trace, (0.0, 0.0, 0.0), 300)
     np.testing.assert_allclose(trace.controller.angles, hung, atol=1e-6)
@@ -203,7 +204,11 @@ def test_where_it_gets_too_steep_the_robot_stops_says_so_and_can_turn_back():
     for tick in range(1600):
         twist = (speed if tick < 1000 else -speed, 0.0, 0.0)
         trace.step(twist, 0.02, readings=SensorReadings(contacts=touching(controller, hill(controller.feet[:, 0]))))
-        said |= {reason for reason in controller.limited if "too steep" in reason} if tick < 1000 else set()
+        said |= (
+            {reason for reason in map(Limitation.text, controller.limitations) if "too steep" in reason}
+            if tick < 1000
+            else set()
+        )
         if tick == 999:
             x = controller.place[0]
     assert said
@@ -231,7 +236,7 @@ def test_slow_joints_look_for_ground_as_slowly_as_they_can(name, acceleration):
     for _ in range(1200):
         ground = np.where((controller.feet[:, 0] * 7).astype(int) % 2 == 1, -0.01, 0.0)
         trace.step((speed, 0.0, 0.0), 0.02, readings=SensorReadings(contacts=touching(controller, ground)))
-        modes.add(controller.mode)
+        modes.add(controller.walk_state)
     assert "searching" in modes
     trace.assert_sound(flat=False)
 

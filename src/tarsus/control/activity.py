@@ -7,12 +7,13 @@ from typing import Any, NamedTuple, Protocol
 import numpy as np
 
 from tarsus.control.command import Command
-from tarsus.control.limitation import Limitation, LimitationKind
+from tarsus.control.limitation import Limitation
 from tarsus.control.readings import SensorReadings
 from tarsus.control.robot_state import RobotState
 from tarsus.control.sequence.player import SequencePlayer
 from tarsus.control.sequence.sequence import MotionSequence, SequenceSample
 from tarsus.control.walk_controller import WalkController
+from tarsus.control.walk_state import WalkState
 from tarsus.kinematics.pose import Pose
 
 __all__ = ["Activity", "Playing", "Resting", "Snapshot", "Walking"]
@@ -89,7 +90,7 @@ class Walking:
     @property
     def stands(self) -> bool:
         """Whether the robot stands, every foot on the ground and no step under way."""
-        return self.controller.mode == "standing"
+        return self.controller.walk_state is WalkState.STANDING
 
     @property
     def snapshot(self) -> Snapshot:
@@ -103,9 +104,9 @@ class Walking:
             walk.contacts,
             belly=False,
             state=RobotState.STANDING if self.stands else RobotState.WALKING,
-            activity=walk.mode,
+            activity=walk.walk_state.value,
             twist=(vx, vy, wz),
-            limitations=tuple(Limitation(kind=LimitationKind.TWIST, cause=text) for text in walk.limited),
+            limitations=walk.limitations,
         )
 
 

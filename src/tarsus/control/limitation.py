@@ -5,8 +5,9 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from enum import StrEnum
+from typing import NamedTuple
 
-__all__ = ["Limitation", "LimitationKind"]
+__all__ = ["Cause", "Limitation", "LimitationKind"]
 
 _NONE = math.nan
 
@@ -29,17 +30,60 @@ class LimitationKind(StrEnum):
     READINGS = "readings"
 
 
+# Unit and scale of the numbers of each kind.
+_LENGTH, _FRACTION = ("mm", 1000.0), ("%", 100.0)
 _UNITS = {
-    LimitationKind.TWIST: ("%", 100.0),
-    LimitationKind.BODY: ("%", 100.0),
-    LimitationKind.BODY_HEIGHT: ("mm", 1000.0),
-    LimitationKind.SWING_HEIGHT: ("mm", 1000.0),
-    LimitationKind.STANCE_WIDTH: ("mm", 1000.0),
+    LimitationKind.TWIST: _FRACTION,
+    LimitationKind.BODY: _FRACTION,
+    LimitationKind.BODY_HEIGHT: _LENGTH,
+    LimitationKind.SWING_HEIGHT: _LENGTH,
+    LimitationKind.STANCE_WIDTH: _LENGTH,
     LimitationKind.CYCLE_TIME: ("s", 1.0),
-    LimitationKind.SWAY: ("%", 100.0),
-    LimitationKind.FOOT_TARGET: ("%", 100.0),
+    LimitationKind.SWAY: _FRACTION,
+    LimitationKind.FOOT_TARGET: _FRACTION,
     LimitationKind.ATTITUDE: ("deg", 180 / math.pi),
 }
+
+
+class Cause(NamedTuple):
+    """What stops a motion or makes it impossible.
+
+    Attributes
+    ----------
+    reason : str
+        In words, without numbers that change from tick to tick.
+    leg : str
+        Name of the leg that sets the bound; empty where none does.
+    margin : float
+        Static stability margin that would result [m]; NaN where it is not the reason.
+    least_margin : float
+        Least static stability margin that is allowed [m].
+    """
+
+    reason: str
+    leg: str = ""
+    margin: float = _NONE
+    least_margin: float = _NONE
+
+    def limitation(self, kind: LimitationKind, *, asked: float = _NONE, granted: float = _NONE) -> Limitation:
+        """Return the limitation that this causes.
+
+        Parameters
+        ----------
+        kind : LimitationKind
+            The part of the command.
+        asked, granted : float
+            What was commanded and what is done, as in `Limitation`.
+        """
+        return Limitation(
+            kind=kind,
+            cause=self.reason,
+            leg=self.leg,
+            asked=asked,
+            granted=granted,
+            margin=self.margin,
+            least_margin=self.least_margin,
+        )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -59,6 +103,9 @@ class Limitation:
         and foot targets; NaN where there is no number.
     bound : float
         The bound that is reached, in the unit of `asked`; NaN where it is no single number.
+    margin, least_margin : float
+        Static stability margin that would result, and the least that is allowed [m]; NaN where they are not the
+        reason.
     """
 
     kind: LimitationKind
@@ -68,6 +115,8 @@ class Limitation:
     asked: float = _NONE
     granted: float = _NONE
     bound: float = _NONE
+    margin: float = _NONE
+    least_margin: float = _NONE
 
     @property
     def key(self) -> tuple[str, str, str, str]:
@@ -75,14 +124,33 @@ class Limitation:
         return (str(self.kind), self.cause, self.leg, self.joint)
 
     def text(self) -> str:
-        """Return it as a line of text, in mm, degrees and percent."""
-        unit, scale = _UNITS.get(self.kind, ("", 1.0))
+        """Return it as a line of text, in mm, degrees, seconds and percent."""
         where = " ".join(name for name in (self.leg, self.joint) if name)
-        numbers = []
-        if not math.isnan(self.granted):
-            asked = "" if math.isnan(self.asked) else f" of {self.asked * scale:.4g}"
-            numbers.append(f"{self.granted * scale:.4g}{asked} {unit}".strip())
-        if not math.isnan(self.bound):
-            numbers.append(f"bound {self.bound * scale:.4g} {unit}".strip())
-        parts = [", ".join(numbers), ": ".join(part for part in (where, self.cause) if part)]
+        numbers = [self._granted_text(), self._value("bound ", self.bound)]
+        reason = ": ".join(part for part in (where, self.cause) if part) + self._margin_text()
+        parts = [", ".join(part for part in numbers if part), reason]
         return f"{self.kind}: " + "; ".join(part for part in parts if part)
+
+    def _granted_text(self) -> str:
+        granted = self._value("", self.granted)
+        if not granted or math.isnan(self.asked):
+            return granted
+        if _UNITS.get(self.kind) is _FRACTION:
+            return f"{granted} of the command"
+        return f"{granted} instead of {self._value('', self.asked)}"
+
+    def _value(self, prefix: str, value: float) -> str:
+        if math.isnan(value):
+            return ""
+        unit, scale = _UNITS.get(self.kind, ("", 1.0))
+        number = f"{value * scale:.0f}" if unit == "%" else f"{value * scale:.4g}"
+        return f"{prefix}{number} {unit}".strip()
+
+    def _margin_text(self) -> str:
+        if math.isnan(self.margin):
+            return ""
+        if math.isinf(self.margin):
+            return ", without a support polygon"
+        side = "outside" if self.margin < 0 else "inside"
+        least = "" if math.isnan(self.least_margin) else f" (at least {1000 * self.least_margin:.0f} mm inside needed)"
+        return f", {1000 * abs(self.margin):.0f} mm {side} its support polygon{least}"

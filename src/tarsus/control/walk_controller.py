@@ -12,6 +12,7 @@ import numpy as np
 from tarsus.control.command import Command
 from tarsus.control.filters import CriticallyDamped
 from tarsus.control.incremental import Incremental, complete
+from tarsus.control.limitation import Limitation, LimitationKind
 from tarsus.control.pose.admittance import Admittance
 from tarsus.control.pose.attitude import CommandedAttitude
 from tarsus.control.pose.levelling import LevellingMode
@@ -199,7 +200,7 @@ class WalkController(WalkControllerState):
         dt : float
             The time since the last tick [s]. Of a tick later than 0.05 s no more than that is walked.
         readings : SensorReadings, optional
-            What is measured. Implausible readings are refused and named in `limited`; the walk goes on without them.
+            What is measured. Implausible readings are rejected and named in `limitations`.
 
         Returns
         -------
@@ -508,31 +509,32 @@ class WalkController(WalkControllerState):
         return share, leg
 
     @property
-    def limited(self) -> tuple[str, ...]:
+    def limitations(self) -> tuple[Limitation, ...]:
         """Why the command is not met in full."""
-        share, leg = self._share
-        reasons = [
-            *self._scheduler.doing.limited,
-            *self._scheduler.rejections.values(),
-            *self._foot_targets.limited,
+        names, twist = self.robot.leg_names, LimitationKind.TWIST
+        fraction, leg = self._share
+        found = [
+            *self._scheduler.doing.limitations,
+            *(Limitation(kind=LimitationKind.BODY, cause=why) for why in self._scheduler.rejections.values()),
+            *self._foot_targets.limitations,
         ]
-        if share < 1:
-            cycle = self._scheduler.doing.cycle_timing.cycle_time
-            name = self.robot.leg_names[leg]
-            reasons.append(f"twist: {100 * share:.0f} % of it; {name} gets no farther at {cycle:.2f} s a cycle")
+        if fraction < 1:
+            cause = "workspace and joint speed at this cycle time"
+            found.append(Limitation(kind=twist, cause=cause, leg=names[leg], asked=1.0, granted=fraction))
         if self._steep:
-            reasons.append("twist: the ground gets too steep that way for the robot as it stands")
+            cause = "the ground is too steep in this direction"
+            found.append(Limitation(kind=twist, cause=cause, asked=1.0, granted=0.0))
         sway = self._scheduler.doing.parameters.sway
         calm = sway_fraction(np.array(sway), self._frequency, self._beats) if any(sway) else 1.0
         if calm < 1:
-            reasons.append(
-                f"sway: {100 * calm:.0f} % of it; the joints allow no more at {self.cycle_time:.2f} s a cycle"
-            )
+            cause = "joint speed and acceleration at this cycle time"
+            found.append(Limitation(kind=LimitationKind.SWAY, cause=cause, asked=1.0, granted=calm))
         if self._terrain.estimate is not None:
-            reasons += self._terrain.estimate.rejected
+            found += [Limitation(kind=LimitationKind.READINGS, cause=why) for why in self._terrain.estimate.rejected]
         for missing in self._terrain.searches.in_vain:
-            reasons.append(f"no ground under {self.robot.leg_names[missing]}: the robot holds still")
-        return tuple(reasons)
+            cause = "no ground under the foot, the robot stands still"
+            found.append(Limitation(kind=LimitationKind.GROUND, cause=cause, leg=names[missing]))
+        return tuple(found)
 
     def _at_rest(self) -> bool:
         """Return whether every foot that steps is at its rest foothold."""

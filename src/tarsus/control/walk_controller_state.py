@@ -13,6 +13,7 @@ from tarsus.control.transition.scheduler import TransitionScheduler
 from tarsus.control.walk.foot_targets import FootTargets
 from tarsus.control.walk.state import GaitState
 from tarsus.control.walk.time_scaling import TimeScaling
+from tarsus.control.walk_state import WalkState
 from tarsus.control.workspace.stance_geometry import SWING_HEIGHT, StanceGeometry, stance_geometry_of, with_sway
 from tarsus.errors import InputError
 from tarsus.gait.gait import Gait
@@ -53,13 +54,13 @@ class WalkControllerState:
         return stance_geometry_of(with_sway(now.posture.value, now.cycles, now.beats), self._footholds.rest)
 
     @property
-    def mode(self) -> str:
-        """``"standing"``, ``"walking"``; ``"stopping"``, on the way to standing; ``"searching"`` for ground."""
+    def walk_state(self) -> WalkState:
+        """What it does: standing, walking, stopping, or searching for ground."""
         if self._terrain.searches:
-            return "searching"
+            return WalkState.SEARCHING
         if not self._walking:
-            return "standing"
-        return "walking" if self._target.any() else "stopping"
+            return WalkState.STANDING
+        return WalkState.WALKING if self._target.any() else WalkState.STOPPING
 
     @property
     def gait(self) -> Gait:

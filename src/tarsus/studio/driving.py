@@ -105,7 +105,7 @@ class Driver:
             type="frame",
             id=self.id,
             time_s=round(controller.time, 4),
-            mode=controller.mode,
+            mode=controller.walk_state.value,
             gait=controller.gait.name,
             position_mm=millimetres(body.position),
             rpy_deg=degrees(body.rpy),
@@ -114,7 +114,7 @@ class Driver:
             margin_mm=or_null(margin * 1000, decimals=2),
             com_mm=millimetres(com[:2]),
             twist=plain([vx * 1000, vy * 1000, math.degrees(wz)]),
-            limited=list(controller.limited),
+            limited=[limitation.text() for limitation in controller.limitations],
             interventions=sum(self._guard.counts.values()),
         )
 

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from tarsus.control.incremental import Incremental
+from tarsus.control.limitation import Limitation, LimitationKind
 from tarsus.control.transition.feasible_fraction import (
     StanceTarget,
     balanced_fraction,
@@ -53,7 +54,7 @@ class StanceTransition:
         How fast the legs step there.
     stepping, way, there : VelocityLimits
         What is possible while the feet step, while the body moves, and there.
-    limited : tuple of str
+    limitations : tuple of Limitation
         Why it isn't all that was asked for.
     terrain : Terrain
         How the ground was taken to lie.
@@ -67,7 +68,7 @@ class StanceTransition:
     stepping: VelocityLimits
     way: VelocityLimits
     there: VelocityLimits
-    limited: tuple[str, ...]
+    limitations: tuple[Limitation, ...]
     terrain: TerrainEstimate
 
 
@@ -167,7 +168,7 @@ def plan_transition(
         stepping=stepping,
         way=way,
         there=there,
-        limited=_limits(parameters, pace, why if whole else ""),
+        limitations=_limitations(parameters, pace, why if whole else ""),
         terrain=goal.terrain,
     )
 
@@ -189,13 +190,16 @@ def _why_not(robot: Robot, parameters: WalkParameters, posed: StanceTarget, ther
     return limiting_cause(robot, posed.stand)
 
 
-def _limits(parameters: WalkParameters, pace: CycleTiming, why: str) -> tuple[str, ...]:
-    """Say what of a manner doesn't work."""
-    limited: tuple[str, ...] = (f"body: it goes no farther that way, {why}",) if why else ()
+def _limitations(parameters: WalkParameters, pace: CycleTiming, why: str) -> tuple[Limitation, ...]:
+    """Return what of the parameters is not met."""
+    limitations: tuple[Limitation, ...] = (Limitation(kind=LimitationKind.BODY, cause=why),) if why else ()
     if parameters.cycle_time is not None and pace.cycle_time > parameters.cycle_time:
-        reason = (
-            f"cycle_time {parameters.cycle_time:.3g} s is too short for the joints to lift the feet "
-            f"{parameters.swing_height * 1000:.0f} mm and get on: {pace.cycle_time:.3g} s is taken"
+        limitations += (
+            Limitation(
+                kind=LimitationKind.CYCLE_TIME,
+                cause="too short for the joints' speed and acceleration at this swing height",
+                asked=parameters.cycle_time,
+                granted=pace.cycle_time,
+            ),
         )
-        limited += (reason,)
-    return limited
+    return limitations

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from tarsus.control.command import Command
+from tarsus.control.limitation import Limitation, LimitationKind
 from tarsus.control.walk.foot_target_motion import FootTargetMotion, apply_foot_targets, begin_foot_target
 from tarsus.control.walk.state import GaitState
 from tarsus.errors import InputError
@@ -74,10 +75,12 @@ class FootTargets:
         return len(self._foot_targets) > len(self._out)
 
     @property
-    def limited(self) -> list[str]:
-        """What hands don't reach."""
+    def limitations(self) -> list[Limitation]:
+        """Foot targets that are out of reach."""
         return [
-            f"foot_target: {100 * part:.0f} % of the way, there {self._names[leg]} comes to the end of its reach"
+            Limitation(
+                kind=LimitationKind.FOOT_TARGET, cause="out of reach", leg=self._names[leg], asked=1.0, granted=part
+            )
             for leg, part in self._parts.items()
             if part < 1
         ]
