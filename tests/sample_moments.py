@@ -14,7 +14,7 @@ def moment_of(setup, rest, **changes):
     return now._replace(**{"origin": EARTH, "yaw": FACING, **changes})
 
 
-def course_of(setup, rest, twist, **changes):
+def step_inputs_of(setup, rest, twist, **changes):
     values = {
         "gait": setup.gait,
         "frequency": 1.0,
@@ -22,12 +22,12 @@ def course_of(setup, rest, twist, **changes):
         "posture": posture_of(setup),
         "bandwidth": 4 / setup.gait.duty_factor,
         "posture_bandwidth": 4.0,
-        "steps": np.ones(len(rest), dtype=bool),
-        "holds": False,
-        "lands": np.ones(len(rest), dtype=bool),
+        "may_lift": np.ones(len(rest), dtype=bool),
+        "hold_feet": False,
+        "may_land": np.ones(len(rest), dtype=bool),
         "rest": rest,
-        "room": np.full((len(rest), 16), np.inf),
-        "give_way": np.zeros(len(rest)),
+        "placement_bounds": np.full((len(rest), 16), np.inf),
+        "admittance_offset": np.zeros(len(rest)),
     }
     return StepInputs(**{**values, **changes})
 
@@ -36,11 +36,11 @@ def begun(setup, rest):
     """Standing, the clock at the moment when leg 0 lifts."""
     offsets, duty_factor = np.asarray(setup.gait.offsets), setup.gait.duty_factor
     clock = float(offsets[0]) + duty_factor
-    return moment_of(setup, rest, clock=clock, number=np.ceil(clock - offsets - duty_factor - 1e-9))
+    return moment_of(setup, rest, clock=clock, step_number=np.ceil(clock - offsets - duty_factor - 1e-9))
 
 
 def rest_of(name):
     return envelope_of(name).rest
 
 
-__all__ = ["EARTH", "FACING", "begun", "course_of", "moment_of", "rest_of", "setup_of"]
+__all__ = ["EARTH", "FACING", "begun", "moment_of", "rest_of", "setup_of", "step_inputs_of"]

@@ -14,7 +14,7 @@ from tarsus.kinematics.pose import Pose
 def high(name="strider", **changes):
     setup, rest = setup_of(name), rest_of(name)
     now = moment_of(setup, rest, **changes)
-    return setup, now._replace(elevation=CriticallyDamped.still(np.array([0.2])), ground=now.ground + 0.2)
+    return setup, now._replace(elevation=CriticallyDamped.still(np.array([0.2])), ground_height=now.ground_height + 0.2)
 
 
 def test_planned_is_a_depth_below_the_slope_under_each_foot():
@@ -36,7 +36,9 @@ def test_it_is_no_lower_than_the_leg_reaches(out):
     setup, now = high()
     far = np.where(np.arange(6) == 1, out, 1.0) * rest_of("strider")
     foot = EARTH + np.exp(1j * FACING) * far
-    now = now._replace(foot=foot, target=foot, posture=CriticallyDamped.still(now.posture.value + np.eye(7)[2] * 0.05))
+    now = now._replace(
+        foot=foot, foothold=foot, posture=CriticallyDamped.still(now.posture.value + np.eye(7)[2] * 0.05)
+    )
     lowest = lowest_reachable_height(setup.robot, now, 1, 0.3)
     assert 0.2 - SEARCH_DEPTH * float(now.posture.value[6]) < lowest <= 0.2
 
@@ -53,7 +55,9 @@ def test_where_the_foot_goes_in_its_stance_counts():
     setup, now = high()
     far = np.where(np.arange(6) == 1, 1.2, 1.0) * rest_of("strider")
     foot = EARTH + np.exp(1j * FACING) * far
-    now = now._replace(foot=foot, target=foot, posture=CriticallyDamped.still(now.posture.value + np.eye(7)[2] * 0.06))
+    now = now._replace(
+        foot=foot, foothold=foot, posture=CriticallyDamped.still(now.posture.value + np.eye(7)[2] * 0.06)
+    )
     away = -1j * np.sign(far[1].imag)
     leaving = now._replace(twist=CriticallyDamped.still(np.array([away.real, away.imag, 0.0]) * 0.12))
     assert lowest_reachable_height(setup.robot, leaving, 1, 0.5) > lowest_reachable_height(setup.robot, now, 1, 0.5)

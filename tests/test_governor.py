@@ -25,7 +25,7 @@ def situation(seed, name="strider"):
     rest = limits.rest
     foot = rest * np.exp(1j * rng.uniform(-0.15, 0.15, 6)) + rng.uniform(-0.02, 0.02, (2, 6)).T @ [1, 1j]
     twist = CriticallyDamped(rng.uniform(-1, 1, 3) * [0.1, 0.1, 0.6], rng.uniform(-1, 1, 3) * [0.2, 0.2, 1.0])
-    now = moment_of(setup, rest, target=EARTH + np.exp(1j * FACING) * foot, twist=twist)
+    now = moment_of(setup, rest, foothold=EARTH + np.exp(1j * FACING) * foot, twist=twist)
     ends = np.tile([STANCE, STANCE / 2], 3) * rng.uniform(0.1, 1)
     given_as = {"begins": np.zeros(6), "ends": ends, "bounds": limits.bounds, "bandwidth": BANDWIDTH}
     return now, twist.value * rng.uniform(0, 1), rng.uniform(-1, 1, 3) * [0.4, 0.4, 2.0], given_as
@@ -64,7 +64,7 @@ def test_feet_stay_within_their_polygons_under_what_is_allowed(seed):
     assert worst(now, np.zeros(3), given_as) < 0
     times = np.linspace(0, given_as["ends"].max(), 101)
     origin, yaw = driven(now, target, times)
-    seen = (now.target - origin[:, None]) * np.exp(-1j * yaw)[:, None]
+    seen = (now.foothold - origin[:, None]) * np.exp(-1j * yaw)[:, None]
     over = (seen[..., None] * NORMALS.conj()).real - given_as["bounds"]
     down = times[:, None] <= given_as["ends"]
     # The walk that is reckoned with turns by the mean of its twist: that is less than a millimetre away.
@@ -77,7 +77,7 @@ def test_without_turning_what_is_reckoned_is_what_happens():
     target = np.array([0.2, 0.1, 0.0])
     times = np.array([0.0, 0.5, 1.0]) * given_as["ends"][0]
     origin, yaw = driven(now, target, times)
-    seen = (now.target[0] - origin) * np.exp(-1j * yaw)
+    seen = (now.foothold[0] - origin) * np.exp(-1j * yaw)
     over = (seen[:, None] * NORMALS.conj()).real - given_as["bounds"][0]
     np.testing.assert_allclose(polygon_excess(now, target[None], **given_as)[0, :, 0], over, atol=1e-8)
 
@@ -128,7 +128,7 @@ def test_a_foot_at_its_edge_allows_no_step_further_out(heading):
     way = np.exp(1j * heading)
     foot = limits.rest.copy()
     foot[1] -= way * polygon_radii(limits.bounds, limits.rest, np.array([-way]))[1, 0]
-    now = moment_of(setup, limits.rest, target=EARTH + np.exp(1j * FACING) * foot)
+    now = moment_of(setup, limits.rest, foothold=EARTH + np.exp(1j * FACING) * foot)
     given_as = {"begins": np.zeros(6), "ends": np.full(6, STANCE), "bounds": limits.bounds, "bandwidth": BANDWIDTH}
     command = 0.1 * np.array([way.real, way.imag, 0.0])
     np.testing.assert_allclose(governed_twist(now, np.zeros(3), command, **given_as), 0, atol=1e-6)

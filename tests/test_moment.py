@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from scipy.linalg import expm
 
 from gait_robots import PRESETS
-from sample_moments import EARTH, FACING, begun, course_of, moment_of, rest_of
+from sample_moments import EARTH, FACING, begun, moment_of, rest_of, step_inputs_of
 from sample_stands import setup_of
 from tarsus.control.filters import CriticallyDamped
 from tarsus.control.sensing.ground_plane import GroundPlane
@@ -28,9 +28,9 @@ every_walk = pytest.mark.parametrize(
 )
 
 
-def walked(now, course, seconds, dt):
+def walked(now, inputs, seconds, dt):
     for _ in range(round(seconds / dt)):
-        now = advance(now, course, dt)
+        now = advance(now, inputs, dt)
     return now
 
 
@@ -44,10 +44,10 @@ def test_a_constant_twist_comes_to_the_steady_cycle(name, gait):
     setup = setup_of(name, gait)
     rest = rest_of(name)
     for twist in TWISTS[-2:] if name != "strider" else TWISTS:
-        course = course_of(setup, rest, twist)
-        now = walked(begun(setup, rest), course, 9.0, 0.03)
+        inputs = step_inputs_of(setup, rest, twist)
+        now = walked(begun(setup, rest), inputs, 9.0, 0.03)
         for _ in range(12):
-            now = advance(now, course, 0.093)
+            now = advance(now, inputs, 0.093)
             stride = np.array(twist) * setup.gait.duty_factor
             phase = np.array([now.clock])
             expected, down = cycle_feet(
@@ -60,10 +60,10 @@ def test_a_constant_twist_comes_to_the_steady_cycle(name, gait):
 @pytest.mark.parametrize("twist", TWISTS)
 def test_a_step_is_two_half_steps_where_nothing_begins_or_ends(twist):
     setup, rest = setup_of("strider", "ripple"), rest_of("strider")
-    course = course_of(setup, rest, twist)
-    now, compared = walked(begun(setup, rest), course, 6.0, 0.01), 0
+    inputs = step_inputs_of(setup, rest, twist)
+    now, compared = walked(begun(setup, rest), inputs, 6.0, 0.01), 0
     for _ in range(100):
-        whole, halves = advance(now, course, 0.01), walked(now, course, 0.01, 0.005)
+        whole, halves = advance(now, inputs, 0.01), walked(now, inputs, 0.01, 0.005)
         if (whole.down == now.down).all():
             compared += 1
             for one, other in zip(whole[:13], halves[:13], strict=True):
@@ -75,9 +75,9 @@ def test_a_step_is_two_half_steps_where_nothing_begins_or_ends(twist):
 
 def test_the_body_goes_where_its_twist_takes_it_half_step_by_half_step():
     setup, rest = setup_of("strider"), rest_of("strider")
-    course = course_of(setup, rest, (0.1, 0.05, 0.0))
+    inputs = step_inputs_of(setup, rest, (0.1, 0.05, 0.0))
     now = begun(setup, rest)
-    whole, halves = advance(now, course, 0.02), walked(now, course, 0.02, 0.01)
+    whole, halves = advance(now, inputs, 0.02), walked(now, inputs, 0.02, 0.01)
     assert whole.origin == pytest.approx(halves.origin, abs=1e-14)
     np.testing.assert_allclose(whole.twist.value, halves.twist.value, atol=1e-14)
     np.testing.assert_allclose(whole.posture.value, halves.posture.value, atol=1e-14)
@@ -92,19 +92,19 @@ def test_a_swing_lands_exactly_on_its_target_and_gently(seed, dt):
     landings = 0
     for tick in range(round(1.5 / dt)):
         if tick % 7 == 0:
-            course = course_of(setup, rest, rng.uniform(-1, 1, 3) * [0.1, 0.1, 0.4])
-        after = advance(now, course, dt)
+            inputs = step_inputs_of(setup, rest, rng.uniform(-1, 1, 3) * [0.1, 0.1, 0.4])
+        after = advance(now, inputs, dt)
         landed = after.down & ~now.down
         landings += landed.sum()
-        np.testing.assert_array_equal(after.foot[landed], after.target[landed])
-        assert not after.pace[landed].any()
-        assert not after.bend[landed].any()
+        np.testing.assert_array_equal(after.foot[landed], after.foothold[landed])
+        assert not after.swing_velocity[landed].any()
+        assert not after.swing_acceleration[landed].any()
         np.testing.assert_array_equal(after.height(setup.swing_height)[after.down], 0.0)
         # Standing feet stand, and what is bound for somewhere late in its swing stays bound for it.
         still = now.down & after.down
         np.testing.assert_array_equal(after.foot[still], now.foot[still])
-        late = ~now.down & (now.share > TARGET_FREEZE)
-        np.testing.assert_array_equal(after.target[late], now.target[late])
+        late = ~now.down & (now.swing_phase > TARGET_FREEZE)
+        np.testing.assert_array_equal(after.foothold[late], now.foothold[late])
         assert np.isfinite(after.foot).all()
         now = after
     assert landings >= 6
@@ -112,14 +112,14 @@ def test_a_swing_lands_exactly_on_its_target_and_gently(seed, dt):
 
 def test_a_foot_comes_down_ever_slower():
     setup, rest = setup_of("strider"), rest_of("strider")
-    course = course_of(setup, rest, (0.1, 0.0, 0.2))
-    now = walked(begun(setup, rest), course, 2.0, 0.01)
+    inputs = step_inputs_of(setup, rest, (0.1, 0.0, 0.2))
+    now = walked(begun(setup, rest), inputs, 2.0, 0.01)
     fine, speeds = 1e-4, []
-    while not (~now.down & (now.share > 0.98)).any():
-        now = advance(now, course, fine * 10)
+    while not (~now.down & (now.swing_phase > 0.98)).any():
+        now = advance(now, inputs, fine * 10)
     leg = int(np.flatnonzero(~now.down)[0])
     while not now.down[leg]:
-        after = advance(now, course, fine)
+        after = advance(now, inputs, fine)
         speeds.append(abs(after.foot[leg] - now.foot[leg]) / fine)
         now = after
     assert all(later <= earlier + 1e-9 for earlier, later in itertools.pairwise(speeds))
@@ -128,11 +128,11 @@ def test_a_foot_comes_down_ever_slower():
 
 def test_ticks_longer_than_a_swing_land_the_foot_where_shorter_ones_do():
     setup, rest = setup_of("strider", "wave"), rest_of("strider")
-    course = course_of(setup, rest, (0.04, 0.0, 0.0), frequency=4.0)
-    now = walked(begun(setup, rest), course, 6.0, 0.005)
+    inputs = step_inputs_of(setup, rest, (0.04, 0.0, 0.0), frequency=4.0)
+    now = walked(begun(setup, rest), inputs, 6.0, 0.005)
     swing = (1 - setup.gait.duty_factor) / 4.0
-    at_once, slowly = advance(now, course, 1.2 * swing), walked(now, course, 1.2 * swing, 0.02 * swing)
-    both = at_once.down & slowly.down & (at_once.number == slowly.number)
+    at_once, slowly = advance(now, inputs, 1.2 * swing), walked(now, inputs, 1.2 * swing, 0.02 * swing)
+    both = at_once.down & slowly.down & (at_once.step_number == slowly.step_number)
     assert both.any()
     np.testing.assert_allclose(at_once.foot[both], slowly.foot[both], atol=1e-9)
 
@@ -146,13 +146,13 @@ def arrays_of(value):
 @pytest.mark.parametrize("twist", [(0.1, 0.0, 0.3), (0.0, 0.0, 0.0)])
 def test_the_given_moment_is_not_changed(twist):
     setup, rest = setup_of("strider"), rest_of("strider")
-    now = walked(begun(setup, rest), course_of(setup, rest, (0.1, 0.0, 0.3)), 0.7, 0.01)
-    course = course_of(setup, rest, twist)
+    now = walked(begun(setup, rest), step_inputs_of(setup, rest, (0.1, 0.0, 0.3)), 0.7, 0.01)
+    inputs = step_inputs_of(setup, rest, twist)
     for _ in range(150):
-        for array in arrays_of(now) + [a for a in course if isinstance(a, np.ndarray)]:
+        for array in arrays_of(now) + [a for a in inputs if isinstance(a, np.ndarray)]:
             array.setflags(write=False)
         before = [array.copy() for array in arrays_of(now)]
-        after = advance(now, course, 0.01)
+        after = advance(now, inputs, 0.01)
         for old, new in zip(before, arrays_of(now), strict=True):
             np.testing.assert_array_equal(old, new)
         now = after
@@ -161,8 +161,8 @@ def test_the_given_moment_is_not_changed(twist):
 @pytest.mark.parametrize("gait", GAITS)
 def test_stopping_ends_at_rest_with_every_foot_at_its_rest_foothold(gait):
     setup, rest = setup_of("strider", gait), rest_of("strider")
-    now = walked(begun(setup, rest), course_of(setup, rest, (0.05, 0.02, 0.2)), 3.13, 0.01)
-    stop = course_of(setup, rest, (0.0, 0.0, 0.0))
+    now = walked(begun(setup, rest), step_inputs_of(setup, rest, (0.05, 0.02, 0.2)), 3.13, 0.01)
+    stop = step_inputs_of(setup, rest, (0.0, 0.0, 0.0))
     assert final_footholds(now, stop) is None
     now = walked(now, stop, 8.0, 0.01)
     assert now.down.all()
@@ -180,11 +180,11 @@ def test_legs_that_may_not_lift_miss_their_steps_and_go_on_in_order():
     setup, rest = setup_of("strider"), rest_of("strider")
     begin = begun(setup, rest)
     stays = np.array([True, False, True, True, True, True])
-    now = walked(begin, course_of(setup, rest, (0.02, 0.0, 0.0), steps=stays), 2.25, 0.01)
+    now = walked(begin, step_inputs_of(setup, rest, (0.02, 0.0, 0.0), may_lift=stays), 2.25, 0.01)
     assert now.foot[1] == begin.foot[1]
-    assert now.number[1] > begin.number[1]
+    assert now.step_number[1] > begin.step_number[1]
     assert abs(now.foot[3] - begin.foot[3]) > 0.01
-    again = walked(now, course_of(setup, rest, (0.02, 0.0, 0.0)), 2.0, 0.01)
+    again = walked(now, step_inputs_of(setup, rest, (0.02, 0.0, 0.0)), 2.0, 0.01)
     assert abs(again.foot[1] - begin.foot[1]) > 0.01
 
 
@@ -192,7 +192,7 @@ def test_a_robot_whose_clock_stands_moves_its_body_only():
     setup, rest = setup_of("strider"), rest_of("strider")
     now = moment_of(setup, rest)
     posture = now.posture.value + 0.01
-    after = advance(now, course_of(setup, rest, (0, 0, 0), frequency=0.0, posture=posture), 0.1)
+    after = advance(now, step_inputs_of(setup, rest, (0, 0, 0), frequency=0.0, posture=posture), 0.1)
     assert after.clock == now.clock
     np.testing.assert_array_equal(after.foot, now.foot)
     expected = now.posture.step(posture, 0.1, bandwidth=4.0)
@@ -222,7 +222,7 @@ def test_final_rest_is_where_the_lag_leaves_the_body():
     now = moment_of(
         setup, rest, twist=CriticallyDamped(np.array([0.005, -0.003, 0.008]), np.array([0.02, 0.01, -0.03]))
     )
-    stop = course_of(setup, rest, (0, 0, 0), frequency=0.0)
+    stop = step_inputs_of(setup, rest, (0, 0, 0), frequency=0.0)
     expected = final_footholds(now, stop)
     end = walked(now, stop, 6.0, 0.05)
     np.testing.assert_allclose(end.origin + np.exp(1j * end.yaw) * rest, expected, atol=1e-5)
@@ -233,36 +233,36 @@ def test_final_rest_is_where_the_lag_leaves_the_body():
 @pytest.mark.parametrize("share", [0.3, 0.65, 0.95])
 def test_a_foot_that_meets_the_ground_comes_to_rest_on_it_without_a_jump(share):
     setup, rest = setup_of("strider"), rest_of("strider")
-    course = course_of(setup, rest, (0.1, 0.0, 0.0))
-    now = walked(begun(setup, rest), course, 2.0, 0.01)
-    while not (~now.down & (now.share > share)).any():
-        now = advance(now, course, 0.002)
+    inputs = step_inputs_of(setup, rest, (0.1, 0.0, 0.0))
+    now = walked(begun(setup, rest), inputs, 2.0, 0.01)
+    while not (~now.down & (now.swing_phase > share)).any():
+        now = advance(now, inputs, 0.002)
     met = ~now.down
     rate = 1 / (1 - setup.gait.duty_factor)
     found = stop_on_contact(setup.robot, now, met, acceleration=np.full((6, 3), 1e4), swing_rate=np.full(6, rate))
-    assert (found.give[met] <= EARLY_STOP_FRACTION).all()
+    assert (found.stop_phase[met] <= EARLY_STOP_FRACTION).all()
     np.testing.assert_allclose(found.height(setup.swing_height), now.height(setup.swing_height), atol=1e-12)
     np.testing.assert_array_equal(found.foot, now.foot)
     heights = []
     while (~found.down & met).any():
         heights.append(found.height(setup.swing_height)[met])
-        found = advance(found, course, 0.001)
+        found = advance(found, inputs, 0.001)
     heights.append(found.height(setup.swing_height)[met])
-    np.testing.assert_allclose(heights[-1], found.ground[met], atol=1e-12)
+    np.testing.assert_allclose(heights[-1], found.ground_height[met], atol=1e-12)
     speeds = np.diff(heights, axis=0)
     # As fast as before at first, and ever more slowly.
-    unmet = advance(now, course, 0.001).height(setup.swing_height) - now.height(setup.swing_height)
+    unmet = advance(now, inputs, 0.001).height(setup.swing_height) - now.height(setup.swing_height)
     np.testing.assert_allclose(speeds[0], unmet[met], atol=1e-4)
     assert np.abs(np.diff(speeds, axis=0)).max() < 2e-4
 
 
 def test_a_foot_that_does_not_land_waits_over_its_target():
     setup, rest = setup_of("strider"), rest_of("strider")
-    course = course_of(setup, rest, (0.05, 0.0, 0.0), lands=np.zeros(6, dtype=bool))
-    now = walked(begun(setup, rest), course, 0.7, 0.01)
-    waiting = ~now.down & (now.share >= 1)
+    inputs = step_inputs_of(setup, rest, (0.05, 0.0, 0.0), may_land=np.zeros(6, dtype=bool))
+    now = walked(begun(setup, rest), inputs, 0.7, 0.01)
+    waiting = ~now.down & (now.swing_phase >= 1)
     assert waiting.any()
-    later = advance(now, course, 0.01)
+    later = advance(now, inputs, 0.01)
     np.testing.assert_array_equal(later.foot[waiting], now.foot[waiting])
     assert not later.down[waiting].any()
 
@@ -279,13 +279,13 @@ def test_a_sway_is_within_its_amplitudes_and_takes_each_of_them():
 def test_a_foot_is_put_down_on_the_slope_where_it_lands():
     setup, rest = setup_of("strider"), rest_of("strider")
     hill = GroundPlane(z=0.02, slope_x=0.15, slope_y=-0.1)
-    course = course_of(setup, rest, (0.08, 0.02, 0.2), ground=hill, lowest=np.full(len(rest), -1.0))
+    inputs = step_inputs_of(setup, rest, (0.08, 0.02, 0.2), ground_plane=hill, lowest_ground=np.full(len(rest), -1.0))
     now = begun(setup, rest)
     up = set()
     for _ in range(800):
-        after = advance(now, course, 0.005)
+        after = advance(now, inputs, 0.005)
         # Wherever it is bound for by now, the ground there is where it will land.
-        off = after.ground - hill.height(after.target.real, after.target.imag)
+        off = after.ground_height - hill.height(after.foothold.real, after.foothold.imag)
         assert np.abs(off[~after.down]).max(initial=0.0) < 1e-12
         up |= set(np.flatnonzero(now.down & ~after.down).tolist())
         now = after
@@ -297,33 +297,33 @@ def test_a_foot_is_put_down_on_the_slope_where_it_lands():
 
 def test_no_foot_is_put_down_lower_than_it_may_be():
     setup, rest = setup_of("strider"), rest_of("strider")
-    course = course_of(setup, rest, (0.0, 0.0, 0.0), frequency=1.0, ground=GroundPlane(z=-0.05))
-    course = course._replace(lowest=np.full(len(rest), -0.01), twist=np.array([0.05, 0.0, 0.0]))
-    now = walked(begun(setup, rest), course, 3.0, 0.01)
-    np.testing.assert_allclose(now.ground[now.down], -0.01)
+    inputs = step_inputs_of(setup, rest, (0.0, 0.0, 0.0), frequency=1.0, ground_plane=GroundPlane(z=-0.05))
+    inputs = inputs._replace(lowest_ground=np.full(len(rest), -0.01), twist=np.array([0.05, 0.0, 0.0]))
+    now = walked(begun(setup, rest), inputs, 3.0, 0.01)
+    np.testing.assert_allclose(now.ground_height[now.down], -0.01)
 
 
 def test_what_a_foot_has_given_way_is_part_of_its_swing():
     setup, rest = setup_of("strider"), rest_of("strider")
     given = np.linspace(-0.004, 0.006, len(rest))
     now = begun(setup, rest)
-    now = now._replace(give_way=CriticallyDamped(given, np.zeros(len(rest))))
-    course = course_of(setup, rest, (0.05, 0.0, 0.0), give_way=given)
-    after = advance(now, course, 1e-6)
+    now = now._replace(admittance_offset=CriticallyDamped(given, np.zeros(len(rest))))
+    inputs = step_inputs_of(setup, rest, (0.05, 0.0, 0.0), admittance_offset=given)
+    after = advance(now, inputs, 1e-6)
     assert not after.down.all()
-    before, later = (m.height(setup.swing_height) + m.give_way.value for m in (now, after))
+    before, later = (m.height(setup.swing_height) + m.admittance_offset.value for m in (now, after))
     np.testing.assert_allclose(later, before, atol=1e-9)
-    assert not after.give_way.value[~after.down].any()
+    assert not after.admittance_offset.value[~after.down].any()
 
 
 def test_the_heading_frame_rides_over_the_ground():
     setup, rest = setup_of("strider"), rest_of("strider")
     high = np.array([0.05])
-    course = course_of(setup, rest, (0.0, 0.0, 0.0), frequency=0.0, elevation=high)
+    inputs = step_inputs_of(setup, rest, (0.0, 0.0, 0.0), frequency=0.0, elevation=high)
     now = moment_of(setup, rest)
     heights = []
     for _ in range(400):
-        now = advance(now, course, 0.02)
+        now = advance(now, inputs, 0.02)
         heights.append(float(now.elevation.value[0]))
     assert (np.diff(heights) >= 0).all()
     assert now.elevation.value is high

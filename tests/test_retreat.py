@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from sample_moments import course_of, moment_of, rest_of, setup_of
+from sample_moments import moment_of, rest_of, setup_of, step_inputs_of
 from tarsus.control.sensing.ground_plane import GroundPlane
 from tarsus.control.terrain.hole_recovery import HoleRecovery, SlopeLimit, repeated_swing
 from tarsus.control.walk.stepper import advance
@@ -43,23 +43,23 @@ def test_a_foot_swings_once_more_from_where_it_hangs_to_another_foothold():
     clock = gait.offsets[2] + 1.0 + 0.01
     number = np.ceil(clock - np.asarray(gait.offsets) - gait.duty_factor - 1e-9)
     number[2] = 0
-    now = moment_of(setup, rest, clock=clock, number=number, down=~hole, share=np.where(hole, 1.0, 0.0))
-    now = now._replace(ground=np.where(hole, -0.02, 0.0))
+    now = moment_of(setup, rest, clock=clock, step_number=number, down=~hole, swing_phase=np.where(hole, 1.0, 0.0))
+    now = now._replace(ground_height=np.where(hole, -0.02, 0.0))
     again = repeated_swing(now, [2], gait, GroundPlane(z=0.005))
     np.testing.assert_array_equal(again.foot, now.foot)
     np.testing.assert_allclose(again.height(setup.swing_height)[2], -0.02)
     # All others wait for as long as that takes.
-    since = again.clock - (np.asarray(gait.offsets) + gait.duty_factor + again.number)
+    since = again.clock - (np.asarray(gait.offsets) + gait.duty_factor + again.step_number)
     np.testing.assert_allclose(since[2], 0, atol=1e-12)
     assert (since[~hole] <= -swing + 1e-9).all()
-    course = course_of(setup, rest, (-0.05, 0.0, 0.0), frequency=1.0)
+    inputs = step_inputs_of(setup, rest, (-0.05, 0.0, 0.0), frequency=1.0)
     landed = again
     while not landed.down[2]:
-        landed = advance(landed, course, 0.005)
+        landed = advance(landed, inputs, 0.005)
         assert landed.down[~hole].all()
     assert np.abs(landed.foot[2] - now.foot[2]) > 0.01
-    np.testing.assert_allclose(landed.ground[2], 0.005)
-    assert landed.number[2] == now.number[2] + 1
+    np.testing.assert_allclose(landed.ground_height[2], 0.005)
+    assert landed.step_number[2] == now.step_number[2] + 1
 
 
 def test_a_hand_that_trembles_asks_for_the_same():

@@ -13,7 +13,7 @@ UP = np.arange(6) == 2
 
 def landing():
     """Foot 2 is at the end of its swing."""
-    return moment_of(setup_of("strider"), rest_of("strider"), down=~UP, share=np.where(UP, 1.0, 0.0))
+    return moment_of(setup_of("strider"), rest_of("strider"), down=~UP, swing_phase=np.where(UP, 1.0, 0.0))
 
 
 def lowest(leg):
@@ -26,7 +26,7 @@ def run(searches, now, ground, seconds=3.0):
     for _ in range(round(seconds / DT)):
         now = moments[-1]
         moments.append(
-            searches.step(now, DT, touches=lambda leg, now=now: bool(now.ground[leg] <= ground), lowest=lowest)
+            searches.step(now, DT, touches=lambda leg, now=now: bool(now.ground_height[leg] <= ground), lowest=lowest)
         )
     return moments
 
@@ -34,7 +34,7 @@ def run(searches, now, ground, seconds=3.0):
 def test_a_foot_that_touches_ground_just_then_needs_no_search():
     searches = GroundSearch(np.full((6, 3), 100.0))
     now = landing()
-    assert searches.step(now, DT, touches=lambda leg: True, lowest=lowest).ground == pytest.approx(0)
+    assert searches.step(now, DT, touches=lambda leg: True, lowest=lowest).ground_height == pytest.approx(0)
     assert not searches
     assert searches.stands(2, touches=True)
     assert not searches.stands(2, touches=False)
@@ -43,13 +43,13 @@ def test_a_foot_that_touches_ground_just_then_needs_no_search():
 def test_it_goes_down_gently_to_the_ground_and_stands_there():
     searches = GroundSearch(np.full((6, 3), 100.0))
     moments = run(searches, landing(), -0.01)
-    height = np.array([now.ground[2] for now in moments])
+    height = np.array([now.ground_height[2] for now in moments])
     assert (np.diff(height) <= 1e-9).all()
     speed = np.diff(height) / DT
     assert np.abs(speed).max() <= 0.051
     assert np.abs(np.diff(speed, prepend=0)).max() / DT < 2
     assert -0.013 < height[-1] <= -0.01
-    assert np.abs([now.ground[~UP] for now in moments]).max() == 0
+    assert np.abs([now.ground_height[~UP] for now in moments]).max() == 0
     assert searches
     assert searches.stands(2, touches=True)
     assert searches.in_vain == []

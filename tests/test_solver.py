@@ -16,12 +16,12 @@ def moment(name, *, sway=(0.0,) * 6, out=1.0):
     """In the middle of a step: every other foot in the air, half a swing on."""
     setup, rest = setup_of(name), out * rest_of(name)
     up = np.arange(len(rest)) % 2 == 0
-    now = moment_of(setup, rest, down=~up, share=np.where(up, 0.4, 0.0), start_height=np.full(len(rest), 0.002))
+    now = moment_of(setup, rest, down=~up, swing_phase=np.where(up, 0.4, 0.0), start_height=np.full(len(rest), 0.002))
     now = now._replace(
         elevation=CriticallyDamped.still(np.array([0.3])),
-        give_way=CriticallyDamped.still(np.linspace(-0.002, 0.002, len(rest))),
+        admittance_offset=CriticallyDamped.still(np.linspace(-0.002, 0.002, len(rest))),
     )
-    now = now._replace(ground=now.ground + 0.3, start_height=now.start_height + 0.3)
+    now = now._replace(ground_height=now.ground_height + 0.3, start_height=now.start_height + 0.3)
     return setup, now._replace(
         posture=CriticallyDamped.still(np.append(now.posture.value, sway)), cycles=0.3, beats=0.6
     )
@@ -33,8 +33,8 @@ def expected(setup, now, sway):
     dx, dy, dz, dr, dp, dw = np.array(sway) * [often, once, often, once, often, once]
     heading = Pose.from_rpy(0, 0, FACING, (EARTH.real, EARTH.imag, 0.3))
     body = heading @ Pose.from_rpy(roll + dr, pitch + dp, yaw + dw, (x + dx, y + dy, z + dz))
-    swinging = 0.002 * (1 - ground_share(now.share)) + swing_height * height_share(now.share)
-    height = 0.3 + np.where(now.down, 0.0, swinging) + now.give_way.value
+    swinging = 0.002 * (1 - ground_share(now.swing_phase)) + swing_height * height_share(now.swing_phase)
+    height = 0.3 + np.where(now.down, 0.0, swinging) + now.admittance_offset.value
     feet = np.stack([now.foot.real, now.foot.imag, height], axis=-1)
     return inverse_kinematics(setup.robot, body.inverse() @ feet)
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from gait_robots import PRESETS
-from sample_moments import begun, course_of, rest_of, setup_of
+from sample_moments import begun, rest_of, setup_of, step_inputs_of
 from tarsus.control.filters import CriticallyDamped
 from tarsus.control.terrain.early_contact import relaxed_rate, stop_on_contact
 from tarsus.control.walk.joint_solver import JointSolver
@@ -18,21 +18,21 @@ DT = 5e-4
 def falling(name, share, frequency):
     """In the middle of a walk, some feet in the last part of their swing."""
     setup, rest = setup_of(name), rest_of(name)
-    course = course_of(setup, rest, (0.05, 0.02, 0.1), frequency=frequency)
+    inputs = step_inputs_of(setup, rest, (0.05, 0.02, 0.1), frequency=frequency)
     now = begun(setup, rest)
     for _ in range(20_000):
-        now = advance(now, course, DT)
-        if now.clock > 1.5 and (~now.down & (now.share > share)).any():
-            return setup, course, now
+        now = advance(now, inputs, DT)
+        if now.clock > 1.5 and (~now.down & (now.swing_phase > share)).any():
+            return setup, inputs, now
     raise AssertionError("no foot came so far")
 
 
-def met(setup, course, now):
+def met(setup, inputs, now):
     """The moment in which all feet in the air have met the ground, and which of them can stop."""
     _, acceleration = joint_limits(setup.robot, None, None)
-    rate = course.frequency / (1 - setup.gait.duty_factor - now.late)
+    rate = inputs.frequency / (1 - setup.gait.duty_factor - now.lift_delay)
     after = stop_on_contact(setup.robot, now, ~now.down, acceleration=acceleration, swing_rate=rate)
-    stops = np.isfinite(after.met)
+    stops = np.isfinite(after.contact_phase)
     assert not stops[now.down].any()
     return after, stops
 
@@ -40,15 +40,15 @@ def met(setup, course, now):
 @pytest.mark.parametrize("share", [0.55, 0.75, 0.9])
 @pytest.mark.parametrize("name", PRESETS)
 def test_feet_stop_within_what_their_joints_can_do(name, share):
-    setup, course, now = falling(name, share, 0.8)
-    after, stops = met(setup, course, now)
+    setup, inputs, now = falling(name, share, 0.8)
+    after, stops = met(setup, inputs, now)
     assert stops.any()
     _, acceleration = joint_limits(setup.robot, None, None)
     solver = JointSolver(setup.robot)
-    before = advance(now, course, -DT)
+    before = advance(now, inputs, -DT)
     angles, heights = [solver.angles(before), solver.angles(after)], [after.height(setup.swing_height)]
     while not after.down[stops].all():
-        after = advance(after, course, DT)
+        after = advance(after, inputs, DT)
         angles.append(solver.angles(after))
         heights.append(after.height(setup.swing_height))
     rate = np.diff(angles, axis=0) / DT
@@ -57,18 +57,18 @@ def test_feet_stop_within_what_their_joints_can_do(name, share):
     bend = np.abs(np.diff(rate[1:], axis=0)) / DT / acceleration
     assert bend[:-1][:, stops].max() <= 1.0
     assert (np.diff(np.array(heights), axis=0)[:, stops] <= 1e-12).all()
-    np.testing.assert_allclose(heights[-1][stops], after.ground[stops], atol=1e-12)
+    np.testing.assert_allclose(heights[-1][stops], after.ground_height[stops], atol=1e-12)
     # No foot sinks lower than it was bound for anyway.
-    assert (after.ground[stops] >= now.ground[stops] - 1e-9).all()
+    assert (after.ground_height[stops] >= now.ground_height[stops] - 1e-9).all()
 
 
 def test_slow_feet_stop_at_once_fast_ones_take_longer_and_the_fastest_land_as_planned():
     gives, sunk = [], []
     for frequency in (0.3, 0.8, 1.2, 3.0):
-        setup, course, now = falling("strider", 0.75, frequency)
-        after, stops = met(setup, course, now)
-        gives.append(after.give[stops].max(initial=0.0))
-        sunk.append((now.height(setup.swing_height) - after.ground)[~now.down].max())
+        setup, inputs, now = falling("strider", 0.75, frequency)
+        after, stops = met(setup, inputs, now)
+        gives.append(after.stop_phase[stops].max(initial=0.0))
+        sunk.append((now.height(setup.swing_height) - after.ground_height)[~now.down].max())
     assert gives[0] == pytest.approx(EARLY_STOP_FRACTION)
     assert gives == [*sorted(gives[:3]), 0.0]
     assert gives[2] > EARLY_STOP_FRACTION
@@ -84,8 +84,8 @@ def test_harder_swings_take_longer():
     assert relaxed_rate(now, duty_factor) == 1
     up = now._replace(down=np.arange(6) > 0)
     assert relaxed_rate(up, duty_factor) == 1
-    late = up._replace(late=np.full(6, swing / 2))
-    lower = up._replace(ground=np.full(6, -setup.swing_height))
+    late = up._replace(lift_delay=np.full(6, swing / 2))
+    lower = up._replace(ground_height=np.full(6, -setup.swing_height))
     assert relaxed_rate(late, duty_factor) == pytest.approx((1.1 / 4) ** 0.5)
     assert relaxed_rate(lower, duty_factor) == pytest.approx((1.1 / 1.5) ** 0.5)
     # Of feet on the ground neither says anything.

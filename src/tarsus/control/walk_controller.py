@@ -182,7 +182,7 @@ class WalkController(WalkControllerState):
         self.time = 0.0
         self._set_gait(change.parameters.gait)
         self._all, self._none = np.ones(legs, dtype=bool), np.zeros(legs, dtype=bool)
-        self._blind = {"give_way": np.zeros(legs)}
+        self._blind = {"admittance_offset": np.zeros(legs)}
         self._now = GaitState.standing(change.rest, self._pose.goal)
         self._time_scaling = TimeScaling(self._solver.angles(self._now), self.joint_speed, self.joint_acceleration)
 
@@ -407,7 +407,7 @@ class WalkController(WalkControllerState):
         """Set the clock to the moment when a leg lifts."""
         clock = float(self._offsets[first]) + self.gait.duty_factor
         self._now = self._now._replace(
-            clock=clock, number=np.ceil(clock - self._offsets - self.gait.duty_factor - PHASE_TOLERANCE)
+            clock=clock, step_number=np.ceil(clock - self._offsets - self.gait.duty_factor - PHASE_TOLERANCE)
         )
 
     def _reachable(self, leg: int, start: Floats, wished: Floats) -> float:
@@ -538,7 +538,7 @@ class WalkController(WalkControllerState):
 
     def _at_rest(self) -> bool:
         """Return whether every foot that steps is at its rest foothold."""
-        rest = final_footholds(self._now, self._course())
+        rest = final_footholds(self._now, self._step_inputs())
         assert rest is not None  # nobody asks while it is fast
         off = np.abs(self._now.foot - rest)
         off[list(self._scheduler.doing.parameters.excluded)] = 0.0
@@ -546,7 +546,7 @@ class WalkController(WalkControllerState):
 
     # The next moment.
 
-    def _course(self, dt: float = 0.0) -> StepInputs:
+    def _step_inputs(self, dt: float = 0.0) -> StepInputs:
         now = self._now
         steps, lands, holds = self._all, self._all, self._settling is not None
         if self._foot_targets:
@@ -554,7 +554,7 @@ class WalkController(WalkControllerState):
             steps[list(self._scheduler.doing.parameters.excluded)] = False
         estimate = self._terrain.estimate is not None
         if estimate:
-            soon = now.share + dt * self._frequency / now.swings(self.gait.duty_factor) >= 1.0 - PHASE_TOLERANCE
+            soon = now.swing_phase + dt * self._frequency / now.swings(self.gait.duty_factor) >= 1.0 - PHASE_TOLERANCE
             lands, waits = self._terrain.lands(now, soon)
             holds = holds or waits
         return StepInputs(
@@ -564,21 +564,21 @@ class WalkController(WalkControllerState):
             posture=self._pose.goal,
             bandwidth=self._bandwidth(),
             posture_bandwidth=self._pose.bandwidth(now.posture.value),
-            steps=steps,
-            lands=lands,
+            may_lift=steps,
+            may_land=lands,
             rest=self._footholds.rest,
-            room=self._footholds.room,
-            holds=holds,
+            placement_bounds=self._footholds.room,
+            hold_feet=holds,
             beats=self._beats,
-            sways=self._pose.sways(now.posture.value),
-            **(self._terrain.course(now, self._scheduler.doing.terrain) if estimate else self._blind),
+            swaying=self._pose.sways(now.posture.value),
+            **(self._terrain.step_inputs(now, self._scheduler.doing.terrain) if estimate else self._blind),
         )
 
     def _advance(self, dt: float) -> None:
         """Go on by one tick, or less of it where the joints need longer."""
         sway = self._scheduler.doing.parameters.sway if self._walking else _NO_MOTION
         self._pose.sway(sway, frequency=self._frequency, beats=self._beats)
-        before, course, terrain = self._now, self._course(dt), self._terrain
+        before, inputs, terrain = self._now, self._step_inputs(dt), self._terrain
         self._now = terrain.search(
             before,
             dt,
@@ -588,7 +588,7 @@ class WalkController(WalkControllerState):
         swing_time = (1 - self.gait.duty_factor) / self._frequency
 
         def move(time: float) -> GaitState:
-            return self._foot_targets.carry(advance(self._now, course, time), time, swing_time=swing_time)
+            return self._foot_targets.carry(advance(self._now, inputs, time), time, swing_time=swing_time)
 
         fastest = 1.0 if terrain.estimate is None else relaxed_rate(self._now, self.gait.duty_factor)
         self._now = self._time_scaling.advance(move, self._solver.angles, dt, stop=terrain.stops, fastest=fastest)

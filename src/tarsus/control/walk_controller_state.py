@@ -88,7 +88,7 @@ class WalkControllerState:
     def feet(self) -> Floats:
         """The feet in G ``(legs, 3)`` [m]."""
         now = self._now
-        height = now.height(float(now.posture.value[SWING_HEIGHT])) + now.give_way.value
+        height = now.height(float(now.posture.value[SWING_HEIGHT])) + now.admittance_offset.value
         return np.stack([now.foot.real, now.foot.imag, height], axis=-1)
 
     @property

@@ -137,7 +137,7 @@ class TerrainAdaptation:
             readings,
             dt,
             feet=feet,
-            offsets=now.give_way.value,
+            offsets=now.admittance_offset.value,
             contacts=contacts,
             yaw=now.yaw,
             commanded=commanded,
@@ -170,10 +170,10 @@ class TerrainAdaptation:
         if self.estimate is None or self.estimate.contacts is None:
             return np.zeros_like(now.down)
         touch = np.array([contact is True for contact in self.estimate.contacts])
-        falls = ~now.down & (now.share > _DESCENDING) & (now.share < 1.0) & np.isinf(now.met)
+        falls = ~now.down & (now.swing_phase > _DESCENDING) & (now.swing_phase < 1.0) & np.isinf(now.contact_phase)
         if not (touch & falls).any():
             return np.zeros_like(falls)
-        high = now.height(float(now.posture.value[SWING_HEIGHT])) > now.ground + _EARLY
+        high = now.height(float(now.posture.value[SWING_HEIGHT])) > now.ground_height + _EARLY
         return np.asarray(touch & falls & high)
 
     def _touches(self, leg: int) -> bool:
@@ -196,7 +196,7 @@ class TerrainAdaptation:
         # Where a foot that is about to land finds no ground, none may lift in its stead.
         return lands, bool(self.searches) or bool((~now.down & ~lands & soon).any())
 
-    def course(self, now: GaitState, terrain: TerrainEstimate) -> dict[str, Any]:
+    def step_inputs(self, now: GaitState, terrain: TerrainEstimate) -> dict[str, Any]:
         """Return what a `Course` knows of the ground.
 
         Parameters
@@ -210,10 +210,11 @@ class TerrainAdaptation:
         lowest = lowest_planned_height(now, terrain)
         return {
             # Feet in the air have nothing to give way to.
-            "give_way": np.maximum(self.estimate.offsets, np.minimum(lowest - now.ground, 0.0)) * now.down,
-            "ground": self._estimator.plane,
-            "lowest": lowest,
-            "highest": lowest + (1 + RAISED_FRACTION) * SEARCH_DEPTH * float(now.posture.value[SWING_HEIGHT]),
+            "admittance_offset": np.maximum(self.estimate.offsets, np.minimum(lowest - now.ground_height, 0.0))
+            * now.down,
+            "ground_plane": self._estimator.plane,
+            "lowest_ground": lowest,
+            "highest_ground": lowest + (1 + RAISED_FRACTION) * SEARCH_DEPTH * float(now.posture.value[SWING_HEIGHT]),
             "elevation": self._elevation,
             "elevation_bandwidth": elevation_bandwidth(float(self._elevation[0] - now.elevation.value[0])),
         }

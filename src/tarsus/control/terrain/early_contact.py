@@ -52,19 +52,19 @@ def stop_on_contact(
     """
     height, speed = _height_and_speed(now)
     # (tried, legs)
-    give = np.minimum(_LONGER * EARLY_STOP_FRACTION, np.maximum(1 - now.share, 1e-9))
-    sinks = np.minimum(now.ground - height - speed * give / 3, 0.0) * _DEEPER
+    give = np.minimum(_LONGER * EARLY_STOP_FRACTION, np.maximum(1 - now.swing_phase, 1e-9))
+    sinks = np.minimum(now.ground_height - height - speed * give / 3, 0.0) * _DEEPER
     bend = _bend(robot, now, (height, speed), give, sinks, swing_rate)
     works = (bend <= _TAKEN * acceleration).all(axis=-1) & met
     stops, first = works.any(axis=0), works.argmax(axis=0)[None]
     give, sinks = (np.take_along_axis(tried, first, axis=0)[0] for tried in (give, sinks))
     return now._replace(
-        target=np.where(stops, now.foot + now.pace * give / 3, now.target),
-        met=np.where(stops, now.share, now.met),
-        give=np.where(stops, give, now.give),
-        met_height=np.where(stops, height, now.met_height),
-        met_speed=np.where(stops, speed, now.met_speed),
-        ground=np.where(stops, height + speed * give / 3 + sinks, now.ground),
+        foothold=np.where(stops, now.foot + now.swing_velocity * give / 3, now.foothold),
+        contact_phase=np.where(stops, now.swing_phase, now.contact_phase),
+        stop_phase=np.where(stops, give, now.stop_phase),
+        contact_height=np.where(stops, height, now.contact_height),
+        contact_speed=np.where(stops, speed, now.contact_speed),
+        ground_height=np.where(stops, height + speed * give / 3 + sinks, now.ground_height),
     )
 
 
@@ -72,7 +72,7 @@ def _height_and_speed(now: GaitState) -> tuple[Floats, Floats]:
     """Return the feet's heights, and how these change with the share of the swing [m]."""
     swing_height, step = float(now.posture.value[SWING_HEIGHT]), 1e-4
     height = now.height(swing_height)
-    later = now._replace(share=np.minimum(now.share + step, 1.0)).height(swing_height)
+    later = now._replace(swing_phase=np.minimum(now.swing_phase + step, 1.0)).height(swing_height)
     return height, (later - height) / step
 
 
@@ -84,8 +84,10 @@ def _bend(
     # (tried, moments, legs)
     give, part = give[:, None], np.concatenate([_BEGINNING, _ALONG])[:, None]
     time = part * give / swing_rate
-    foot, _, _ = quintic((now.foot, now.pace, now.bend), now.foot + now.pace * give / 3, give, part)
-    over = now.give_way.value - now.elevation.value
+    foot, _, _ = quintic(
+        (now.foot, now.swing_velocity, now.swing_acceleration), now.foot + now.swing_velocity * give / 3, give, part
+    )
+    over = now.admittance_offset.value - now.elevation.value
     z = height + over + speed * give * stopping_fraction(part) + sinks[:, None] * ground_share(part)
     forward, left, turning = now.twist.value.tolist()
     excluded = complex(forward, left) * time * chord_factor(turning * time)
@@ -110,6 +112,6 @@ def relaxed_rate(now: GaitState, duty_factor: float) -> float:
         Duty factor.
     """
     swing_height = max(float(now.posture.value[SWING_HEIGHT]), 1e-3)
-    rise = np.abs(now.ground - now.start_height) / swing_height
+    rise = np.abs(now.ground_height - now.start_height) / swing_height
     harder = np.where(now.down, 1.0, (1 + _BY_RISE * rise) * ((1 - duty_factor) / now.swings(duty_factor)) ** 2)
     return math.sqrt(_HARDER / max(float(harder.max()), _HARDER))

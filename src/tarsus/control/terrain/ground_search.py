@@ -36,7 +36,7 @@ def lowest_planned_height(now: GaitState, terrain: TerrainEstimate) -> Floats:
         How the ground was thought to lie.
     """
     deep = SEARCH_DEPTH * float(now.posture.value[SWING_HEIGHT])
-    seen = (now.target - now.origin) * cmath.exp(-1j * now.yaw)
+    seen = (now.foothold - now.origin) * cmath.exp(-1j * now.yaw)
     return np.asarray(now.elevation.value + (terrain.slope.conjugate() * seen).real - deep)
 
 
@@ -63,7 +63,7 @@ def lowest_reachable_height(robot: Robot, now: GaitState, leg: int, stance_time:
     here = (now.foot - now.origin) * cmath.exp(-1j * now.yaw)
     there = (here - complex(forward, left) * chord_factor(turning)) * cmath.exp(-1j * turning)
     deep = SEARCH_DEPTH * float(now.posture.value[SWING_HEIGHT])
-    heights = float(now.ground[leg]) - np.linspace(0.0, deep, _HEIGHTS)
+    heights = float(now.ground_height[leg]) - np.linspace(0.0, deep, _HEIGHTS)
     places = np.stack([here, there])[:, None]
     above = (heights - float(now.elevation.value[0]))[:, None]
     solution = stance_geometry_of(now.posture.value, now.foot).solve(robot, places.real, places.imag, above)
@@ -201,8 +201,8 @@ class GroundSearch:
         lowest : callable
             How low the foot of a leg may go [m].
         """
-        over = ~now.down & (now.share >= 1.0)
-        ground = now.ground.copy()
+        over = ~now.down & (now.swing_phase >= 1.0)
+        ground = now.ground_height.copy()
         for leg in np.flatnonzero(over).tolist():
             if leg not in self._feet:
                 if touches(leg):
@@ -210,7 +210,7 @@ class GroundSearch:
                 self._feet[leg] = FootSearch.begin(float(ground[leg]), lowest(leg), self._pace)
             self._feet[leg] = self._feet[leg].step(dt, ground=touches(leg))
             ground[leg] = float(self._feet[leg].height.value[0])
-        return now._replace(ground=ground, met=np.where(over, np.inf, now.met))
+        return now._replace(ground_height=ground, contact_phase=np.where(over, np.inf, now.contact_phase))
 
     def land(self, landed: Floats) -> None:
         """Note which feet have been put down.

@@ -152,13 +152,15 @@ def repeated_swing(now: GaitState, legs: Sequence[int], gait: Gait, ground: Grou
     """
     again = np.zeros(len(now.down), dtype=bool)
     again[list(legs)] = True
-    since = now.clock - (np.asarray(gait.offsets) + gait.duty_factor + now.number)
+    since = now.clock - (np.asarray(gait.offsets) + gait.duty_factor + now.step_number)
     back = float(since[again].min())
     return now._replace(
         clock=now.clock - back,
-        share=np.where(again, 0.0, now.share),
-        late=np.where(again, np.clip(since - back, 0.0, LATEST_LIFT_OFF * (1 - gait.duty_factor)), now.late),
-        start_height=np.where(again, now.ground, now.start_height),
-        ground=np.where(again, ground.height(now.foot.real, now.foot.imag), now.ground),
-        met=np.where(again, np.inf, now.met),
+        swing_phase=np.where(again, 0.0, now.swing_phase),
+        lift_delay=np.where(
+            again, np.clip(since - back, 0.0, LATEST_LIFT_OFF * (1 - gait.duty_factor)), now.lift_delay
+        ),
+        start_height=np.where(again, now.ground_height, now.start_height),
+        ground_height=np.where(again, ground.height(now.foot.real, now.foot.imag), now.ground_height),
+        contact_phase=np.where(again, np.inf, now.contact_phase),
     )

@@ -73,7 +73,7 @@ def begin_foot_target(now: GaitState, leg: int) -> FootTargetMotion:
     vx, vy, wz = now.twist.value.tolist()
     # On the ground, it goes past the body as fast as that walks.
     past = -(complex(vx, vy) + 1j * wz * seen)
-    here = np.array([seen.real, seen.imag, float(now.ground[leg] - now.elevation.value[0])])
+    here = np.array([seen.real, seen.imag, float(now.ground_height[leg] - now.elevation.value[0])])
     return FootTargetMotion(
         CriticallyDamped(here, np.array([past.real, past.imag, -float(now.elevation.rate[0])])), here
     )
@@ -91,7 +91,7 @@ def apply_foot_targets(now: GaitState, foot_targets: dict[int, FootTargetMotion]
     swing_time : float
         How long a swing takes [s].
     """
-    foot, ground, pace = now.foot.copy(), now.ground.copy(), now.pace.copy()
+    foot, ground, pace = now.foot.copy(), now.ground_height.copy(), now.swing_velocity.copy()
     turn = cmath.exp(1j * now.yaw)
     vx, vy, wz = now.twist.value.tolist()
     for leg, foot_target in foot_targets.items():
@@ -102,8 +102,8 @@ def apply_foot_targets(now: GaitState, foot_targets: dict[int, FootTargetMotion]
         seen = complex(x, y)
         foot[leg], ground[leg] = now.origin + turn * seen, z + float(now.elevation.value[0])
         pace[leg] = turn * (complex(dx, dy) + complex(vx, vy) + 1j * wz * seen) * swing_time
-    target = np.where(now.down, foot, now.target)
-    return now._replace(foot=foot, target=target, ground=ground, pace=pace)
+    target = np.where(now.down, foot, now.foothold)
+    return now._replace(foot=foot, foothold=target, ground_height=ground, swing_velocity=pace)
 
 
 def best_body_shift(rest: Floats, centre: complex, sets: Floats) -> complex:

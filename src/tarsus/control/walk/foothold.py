@@ -21,13 +21,13 @@ _CREEPING = 0.01
 _ROUNDING = 1e-9
 
 
-def final_footholds(now: GaitState, course: StepInputs) -> Floats | None:
+def final_footholds(now: GaitState, inputs: StepInputs) -> Floats | None:
     """Return where the feet rest once the robot stands, where it is about to; None while it is still fast."""
     if max(map(abs, now.twist.value.tolist())) >= _CREEPING:
         return None
-    w = course.bandwidth
+    w = inputs.bandwidth
     origin, yaw = integrate_twist(now.origin, now.yaw, ((2 * now.twist.value + now.twist.rate / w) / w).tolist())
-    final: Floats = origin + cmath.exp(1j * yaw) * course.rest
+    final: Floats = origin + cmath.exp(1j * yaw) * inputs.rest
     return final
 
 
@@ -51,18 +51,18 @@ class FootholdPredictor(NamedTuple):
     bandwidth: float
 
     @classmethod
-    def of(cls, now: GaitState, course: StepInputs) -> FootholdPredictor:
+    def of(cls, now: GaitState, inputs: StepInputs) -> FootholdPredictor:
         """Return that of a moment.
 
         Parameters
         ----------
         now : Moment
             The moment.
-        course : Course
+        inputs : Course
             What the robot is doing.
         """
         turn = cmath.exp(1j * now.yaw)
-        return cls(now.origin, turn, now.twist.value.tolist(), now.twist.rate.tolist(), course.bandwidth)
+        return cls(now.origin, turn, now.twist.value.tolist(), now.twist.rate.tolist(), inputs.bandwidth)
 
     def foothold(self, rest: complex, room: Floats, until: float, middle: float) -> complex:
         """Return where a foot is to be put down in G [m].

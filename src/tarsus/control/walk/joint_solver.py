@@ -49,7 +49,7 @@ class JointSolver:
         elevation = float(now.elevation.value[0])
         feet = []
         for foot, height, given in zip(
-            now.foot.tolist(), now.heights(swing_height), now.give_way.value.tolist(), strict=True
+            now.foot.tolist(), now.heights(swing_height), now.admittance_offset.value.tolist(), strict=True
         ):
             seen = (foot - origin) * turn
             feet.append((seen.real, seen.imag, height + given - elevation))

@@ -76,7 +76,7 @@ class _Prediction(NamedTuple):
         of_target, of_value, of_rate = integral_factors(times, bandwidth=bandwidth)
         axes = (3, *(1,) * times.ndim)
         way = now.twist.value.reshape(axes) * of_value + now.twist.rate.reshape(axes) * of_rate
-        return cls((now.target - now.origin) * cmath.exp(-1j * now.yaw), of_target, way)
+        return cls((now.foothold - now.origin) * cmath.exp(-1j * now.yaw), of_target, way)
 
     def beyond(self, targets: Floats, bounds: Floats) -> Floats:
         """Return the excess ``(..., n, 3, legs, 16)`` under targets ``(n, 3)``."""
@@ -162,7 +162,7 @@ def stance_intervals(now: GaitState, gait: Gait, frequency: float, hold: float) 
     begins: list[float] = []
     ends: list[float] = []
     for down, share, number, offset in zip(
-        now.down.tolist(), now.share.tolist(), now.number.tolist(), gait.offsets, strict=True
+        now.down.tolist(), now.swing_phase.tolist(), now.step_number.tolist(), gait.offsets, strict=True
     ):
         begins.append(0.0 if down else (1 - share) * (1 - duty_factor) / frequency)
         swing_height = (offset + duty_factor + number - now.clock) / frequency
@@ -179,7 +179,7 @@ def time_to_touchdown(now: GaitState, gait: Gait, frequency: float) -> Floats:
     now, gait, frequency
         As for `stance_intervals`.
     """
-    return np.where(now.down, 0.0, (1 - now.share) * (1 - gait.duty_factor) / frequency)
+    return np.where(now.down, 0.0, (1 - now.swing_phase) * (1 - gait.duty_factor) / frequency)
 
 
 def lift_delays(gait: Gait, cycle_time: float) -> Floats:

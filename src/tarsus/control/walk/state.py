@@ -92,28 +92,28 @@ class GaitState(NamedTuple):
     """
 
     clock: float
-    number: Floats
+    step_number: Floats
     down: Floats
-    share: Floats
+    swing_phase: Floats
     foot: Floats
-    target: Floats
-    pace: Floats
-    bend: Floats
-    ground: Floats
+    foothold: Floats
+    swing_velocity: Floats
+    swing_acceleration: Floats
+    ground_height: Floats
     start_height: Floats
-    lift_part: Floats
-    met: Floats
-    give: Floats
-    met_height: Floats
-    met_speed: Floats
+    height_factor: Floats
+    contact_phase: Floats
+    stop_phase: Floats
+    contact_height: Floats
+    contact_speed: Floats
     origin: complex
     yaw: float
     twist: CriticallyDamped
     posture: CriticallyDamped
-    late: Floats
+    lift_delay: Floats
     rhythm: CriticallyDamped
     elevation: CriticallyDamped
-    give_way: CriticallyDamped
+    admittance_offset: CriticallyDamped
     cycles: float = 0.0
     beats: float = 0.0
 
@@ -131,28 +131,28 @@ class GaitState(NamedTuple):
         none, zero = np.zeros(len(rest)), np.zeros(len(rest), dtype=complex)
         return cls(
             clock=0.0,
-            number=none,
+            step_number=none,
             down=np.ones(len(rest), dtype=bool),
-            share=none,
+            swing_phase=none,
             foot=rest,
-            target=rest,
-            pace=zero,
-            bend=zero,
-            ground=none,
+            foothold=rest,
+            swing_velocity=zero,
+            swing_acceleration=zero,
+            ground_height=none,
             start_height=none,
-            lift_part=np.ones(len(rest)),
-            met=np.full(len(rest), np.inf),
-            give=np.full(len(rest), EARLY_STOP_FRACTION),
-            met_height=none,
-            met_speed=none,
+            height_factor=np.ones(len(rest)),
+            contact_phase=np.full(len(rest), np.inf),
+            stop_phase=np.full(len(rest), EARLY_STOP_FRACTION),
+            contact_height=none,
+            contact_speed=none,
             origin=0j,
             yaw=0.0,
             twist=CriticallyDamped.still(np.zeros(3)),
             posture=CriticallyDamped.still(posture),
-            late=none,
+            lift_delay=none,
             rhythm=CriticallyDamped.still(np.zeros(2)),
             elevation=CriticallyDamped.still(ZERO_ELEVATION),
-            give_way=CriticallyDamped.still(none),
+            admittance_offset=CriticallyDamped.still(none),
         )
 
     def swings(self, duty_factor: float) -> Floats:
@@ -163,7 +163,7 @@ class GaitState(NamedTuple):
         duty_factor : float
             Duty factor.
         """
-        return np.asarray(1 - duty_factor - np.where(self.down, 0.0, self.late))
+        return np.asarray(1 - duty_factor - np.where(self.down, 0.0, self.lift_delay))
 
     def height(self, swing_height: float) -> Floats:
         """Return the feet's heights in G [m].
@@ -183,7 +183,7 @@ class GaitState(NamedTuple):
         swing_height : float
             How high a swinging foot rises [m].
         """
-        heights: list[float] = self.ground.tolist()
+        heights: list[float] = self.ground_height.tolist()
         for leg, down in enumerate(self.down.tolist()):
             if not down:
                 heights[leg] = self._height(leg, swing_height)
@@ -191,15 +191,19 @@ class GaitState(NamedTuple):
 
     def _height(self, leg: int, swing_height: float) -> float:
         """Return the height of a foot in the air."""
-        share, ground, met = float(self.share[leg]), float(self.ground[leg]), float(self.met[leg])
+        share, ground, met = (
+            float(self.swing_phase[leg]),
+            float(self.ground_height[leg]),
+            float(self.contact_phase[leg]),
+        )
         if met == math.inf:
             start = float(self.start_height[leg])
-            swing_height *= float(self.lift_part[leg])
+            swing_height *= float(self.height_factor[leg])
             return float(start + (ground - start) * ground_share(share) + swing_height * height_share(share))
         # A foot that has met the ground comes to rest on it.
-        left = min(1 - met, float(self.give[leg]))
+        left = min(1 - met, float(self.stop_phase[leg]))
         part = min(max((share - met) / left, 0.0), 1.0)
-        start, speed = float(self.met_height[leg]), float(self.met_speed[leg]) * left
+        start, speed = float(self.contact_height[leg]), float(self.contact_speed[leg]) * left
         height: float = start + speed * stopping_fraction(part) + (ground - start - speed / 3) * ground_share(part)
         return height
 
@@ -247,17 +251,17 @@ class StepInputs(NamedTuple):
     posture: Floats
     bandwidth: float
     posture_bandwidth: float
-    steps: Floats
-    lands: Floats
+    may_lift: Floats
+    may_land: Floats
     rest: Floats
-    room: Floats
-    give_way: Floats
-    holds: bool = False
+    placement_bounds: Floats
+    admittance_offset: Floats
+    hold_feet: bool = False
     beats: int = 2
-    sways: bool = True
-    ground: GroundPlane = FLAT
-    lowest: Floats | float = -math.inf
-    highest: Floats | float = math.inf
+    swaying: bool = True
+    ground_plane: GroundPlane = FLAT
+    lowest_ground: Floats | float = -math.inf
+    highest_ground: Floats | float = math.inf
     elevation: Floats = ZERO_ELEVATION
     elevation_bandwidth: float = 4.0
 
