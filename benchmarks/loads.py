@@ -23,7 +23,7 @@ from tarsus import (
     plan_walk,
     straight_path,
 )
-from tarsus.load.designs import cycle_torques
+from tarsus.load.cycle_torques import cycle_torques
 from tarsus.load.loads import joint_loads
 from tarsus.load.torque import joint_torques
 

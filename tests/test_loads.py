@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from sample_loads import BURNT, robot_of, sample_loads, sample_motion
 from tarsus.errors import InputError, MissingDataError
 from tarsus.kinematics.mass import total_mass
-from tarsus.load.inertia import motion_torques
+from tarsus.load.inverse_dynamics import motion_torques
 from tarsus.load.loads import at_supply, joint_loads, utilisation
 from tarsus.load.payload import Payload
 from tarsus.load.verdict import BURNS_BELOW, joint_verdicts

@@ -7,7 +7,7 @@ import pytest
 
 from sample_loads import robot_of, sample_loads, sample_motion
 from tarsus.errors import InputError, MissingDataError, UnknownNameError
-from tarsus.load.fit import largest_payload, with_servos
+from tarsus.load.design_changes import largest_payload, with_servos
 from tarsus.load.loads import joint_loads
 from tarsus.load.sizing import size_servos
 from tarsus.load.verdict import joint_verdicts

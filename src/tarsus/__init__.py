@@ -60,11 +60,11 @@ if TYPE_CHECKING:
     from tarsus.kinematics.stability import stability_margin
     from tarsus.kinematics.stance import default_body_height, default_stance, reachable_band
     from tarsus.load.contact import ContactForces, contact_forces
-    from tarsus.load.designs import CycleTorques, cycle_torques
+    from tarsus.load.cycle_torques import CycleTorques, cycle_torques
     from tarsus.load.friction import contact_forces_with_friction
     from tarsus.load.handbook.method import handbook
     from tarsus.load.handbook.statics import compare_with_statics
-    from tarsus.load.inertia import MotionTorques, motion_torques
+    from tarsus.load.inverse_dynamics import MotionTorques, motion_torques
     from tarsus.load.loads import JointLoads, joint_loads
     from tarsus.load.payload import Payload
     from tarsus.load.sizing import ServoSizing, size_servos
@@ -135,11 +135,11 @@ _HOMES = {
     "tarsus.kinematics.stability": ("stability_margin",),
     "tarsus.kinematics.stance": ("default_body_height", "default_stance", "reachable_band"),
     "tarsus.load.contact": ("ContactForces", "contact_forces"),
-    "tarsus.load.designs": ("CycleTorques", "cycle_torques"),
+    "tarsus.load.cycle_torques": ("CycleTorques", "cycle_torques"),
     "tarsus.load.friction": ("contact_forces_with_friction",),
     "tarsus.load.handbook.method": ("handbook",),
     "tarsus.load.handbook.statics": ("compare_with_statics",),
-    "tarsus.load.inertia": ("MotionTorques", "motion_torques"),
+    "tarsus.load.inverse_dynamics": ("MotionTorques", "motion_torques"),
     "tarsus.load.loads": ("JointLoads", "joint_loads"),
     "tarsus.load.payload": ("Payload",),
     "tarsus.load.sizing": ("ServoSizing", "size_servos"),

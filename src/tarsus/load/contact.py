@@ -27,8 +27,8 @@ from tarsus.kinematics.mass import centre_of_mass, total_mass
 from tarsus.kinematics.pairs import columns_of
 from tarsus.kinematics.polygon import as_mask, margin_and_nearest
 from tarsus.kinematics.pose import Pose
+from tarsus.load.load_distribution import shared_load
 from tarsus.load.payload import Payload, as_payload
-from tarsus.load.share import shared_load
 from tarsus.robot.robot import Robot
 
 __all__ = ["GRAVITY", "ContactForces", "contact_forces"]

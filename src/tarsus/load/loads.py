@@ -14,7 +14,7 @@ from tarsus.errors import InputError
 from tarsus.gait.motion import Motion
 from tarsus.kinematics.mass import total_mass
 from tarsus.load.contact import GRAVITY, upward
-from tarsus.load.inertia import motion_torques
+from tarsus.load.inverse_dynamics import motion_torques
 from tarsus.load.payload import Payload, as_payload
 from tarsus.robot.robot import JOINTS, Robot
 from tarsus.robot.servo import Servo

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from tarsus.kinematics.mass import total_mass
-from tarsus.load.fit import largest_payload, length_sensitivity, why_masses_stay, with_servos
+from tarsus.load.design_changes import largest_payload, length_sensitivity, why_masses_stay, with_servos
 from tarsus.load.loads import JointLoads, joint_loads
 from tarsus.load.verdict import (
     BURNS_BELOW,

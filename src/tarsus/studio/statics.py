@@ -97,7 +97,7 @@ def torques_and_forces(
 def _plane_of_shares(feet: Floats) -> Floats | None:
     """Return the least squares of shares of a load over the origin, or None where a foot may not push.
 
-    They are a plane over the feet, as in `tarsus.load.share`, whose way is for the rest: feet that would have to pull,
+    They are a plane over the feet, as in `tarsus.load.load_distribution`, whose way is for the rest: feet that would have to pull,
     and feet on a line.
     """
     middle = feet.mean(0)

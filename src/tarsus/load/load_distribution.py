@@ -21,7 +21,7 @@ from typing import Any
 import numpy as np
 
 from tarsus.arrays import Array, Namespace, is_traced, root
-from tarsus.load.spread import FLAT, Spread, Triple, plane
+from tarsus.load.foot_spread import FLAT, Spread, Triple, plane
 
 __all__ = ["shared_load"]
 

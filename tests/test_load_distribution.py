@@ -8,7 +8,7 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from tarsus.load.share import shared_load
+from tarsus.load.load_distribution import shared_load
 
 
 def exhaustive(x, y, down):

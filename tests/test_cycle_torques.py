@@ -20,9 +20,9 @@ from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.stance import default_body_height, default_stance
 from tarsus.load import designs
 from tarsus.load.contact import contact_forces
-from tarsus.load.design_block import share_weight
-from tarsus.load.designs import cycle_torques
+from tarsus.load.cycle_torques import cycle_torques
 from tarsus.load.payload import Payload
+from tarsus.load.planar_statics import share_weight
 from tarsus.load.torque import joint_torques
 from tarsus.robot.robot import stack_robots
 

@@ -26,7 +26,8 @@ from tarsus.kinematics.pairs import columns_of
 from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.stance import default_body_height, default_stance
 from tarsus.load.contact import GRAVITY
-from tarsus.load.design_block import (
+from tarsus.load.payload import Payload, as_payload
+from tarsus.load.planar_statics import (
     Block,
     LegPlane,
     feet_from_load,
@@ -35,7 +36,6 @@ from tarsus.load.design_block import (
     solve_block,
     torques_in_plane,
 )
-from tarsus.load.payload import Payload, as_payload
 from tarsus.robot.geometry import LegGeometry
 from tarsus.robot.robot import Robot
 from tarsus.robot.shape import TAILS

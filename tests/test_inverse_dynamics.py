@@ -17,7 +17,7 @@ from tarsus.kinematics.leg import forward_kinematics
 from tarsus.kinematics.mass import centre_of_mass
 from tarsus.kinematics.pose import Pose
 from tarsus.load.acceleration import BodyRates, JointRates, differences, point_accelerations
-from tarsus.load.inertia import dynamic_torques, motion_torques
+from tarsus.load.inverse_dynamics import dynamic_torques, motion_torques
 from tarsus.load.payload import Payload
 from tarsus.load.torque import joint_torques
 from tarsus.robot.robot import stack_robots

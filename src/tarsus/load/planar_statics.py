@@ -16,7 +16,7 @@ from tarsus.kinematics.ground import BodyPlace, mark_below_ground, surely_above
 from tarsus.kinematics.polygon import margin_and_nearest
 from tarsus.kinematics.triangle import Triangle, solve_triangle, to_leg_frame
 from tarsus.kinematics.verdict import all_within, reach_codes
-from tarsus.load.share import shared_load
+from tarsus.load.load_distribution import shared_load
 from tarsus.robot.geometry import LegGeometry
 
 __all__ = [

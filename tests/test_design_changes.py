@@ -9,7 +9,7 @@ import pytest
 from sample_loads import robot_of, sample_loads, sample_motion
 from tarsus.errors import InputError, MissingDataError, UnknownNameError
 from tarsus.kinematics.mass import total_mass
-from tarsus.load.fit import largest_payload, length_sensitivity, why_masses_stay, with_lengths, with_servos
+from tarsus.load.design_changes import largest_payload, length_sensitivity, why_masses_stay, with_lengths, with_servos
 from tarsus.load.loads import joint_loads
 from tarsus.load.payload import Payload
 from tarsus.robot.catalogue import load_servo
