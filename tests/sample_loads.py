@@ -1,4 +1,4 @@
-"""Walks with their loads, worked out once."""
+"""Sample walks and their joint loads, cached."""
 
 from functools import cache
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Ground forces: equilibrium with every weight, only pushing, and a tip said by how much."""
+"""Contact forces: equilibrium, non-negative forces, tipping."""
 
 import array_api_strict
 import jax
@@ -38,7 +38,7 @@ def random_case(rng, batch=()):
 
 
 def moments_about(point, robot, angles, body, payload, gravity, forces):
-    """Of weight and ground about a point of G."""
+    """Moment of weight and contact forces about a point of G."""
     feet = body @ forward_kinematics(robot, angles)[..., 3, :]
     weights = [(total_mass(robot), centre_of_mass(robot, angles)), (payload.mass, np.array(payload.position))]
     total = np.cross(feet - point, forces).sum(0)
@@ -63,14 +63,14 @@ def test_equilibrium(seed):
         np.testing.assert_allclose(moment, 0, rtol=0, atol=1e-9)
         base, _ = Reference(robot, payload=payload, gravity=gravity).residual(angles, body, found.forces)
         np.testing.assert_allclose(base, 0, rtol=0, atol=1e-9)
-    # Else it is missing as much as it says.
+    # Without equilibrium, the residual is the tipping moment.
     np.testing.assert_allclose(np.linalg.norm(moment), found.tipping_moment, rtol=0, atol=1e-9)
     if not seed % 2 and not payload.mass:
         np.testing.assert_allclose(found.margin, stability_margin(robot, angles, body, contacts), rtol=0, atol=1e-12)
 
 
 @pytest.mark.parametrize("feet", [ALL, TRIPOD, feet_of(1, 1, 0, 1, 1, 0)], ids=["six", "three", "four"])
-def test_symmetric_stances_share_alike(feet):
+def test_symmetric_stances_have_equal_forces(feet):
     found = contact_forces(hexapod(), standing(), Pose(), feet)
     want = np.where(feet, total_mass(hexapod()) * 9.80665 / feet.sum(), 0)
     np.testing.assert_allclose(found.forces, want[:, None] * [0, 0, 1], rtol=0, atol=1e-12)
@@ -78,8 +78,8 @@ def test_symmetric_stances_share_alike(feet):
     assert found.tipping_moment == 0
 
 
-def test_a_foot_that_would_have_to_pull_gets_nothing():
-    # The load over the triangle of the front left, middle left and front right feet; the rear right one can only pull.
+def test_foot_that_would_have_to_pull_carries_nothing():
+    # The load is over the triangle of the LF, LM and RF feet; the RR foot could only pull.
     feet = feet_of(1, 1, 0, 1, 0, 1)
     payload = Payload(40.0, (0.2, 0.15, 0.0))
     found = contact_forces(hexapod(), standing(), Pose(), feet, payload=payload)
@@ -90,7 +90,7 @@ def test_a_foot_that_would_have_to_pull_gets_nothing():
     np.testing.assert_allclose(found.forces, without.forces, rtol=0, atol=1e-10)
 
 
-def test_the_margin_says_by_how_much_it_tips():
+def test_margin_of_a_tipping_robot():
     robot, angles = hexapod(body_mass=1e6), standing()
     feet = forward_kinematics(robot, angles)[:, 3]
     front = (feet[0, 0] + feet[5, 0]) / 2
@@ -98,13 +98,13 @@ def test_the_margin_says_by_how_much_it_tips():
     assert not beyond.balanced
     np.testing.assert_allclose(beyond.margin, -0.02, rtol=0, atol=1e-6)  # the legs weigh a millionth
     np.testing.assert_allclose(beyond.tipping_moment, 0.02 * beyond.weight, rtol=1e-4)
-    # The forces are those of the nearest balance: on the two front feet, with the lever's ratio.
+    # The forces are those at the nearest point of the polygon: on the two front feet, by the lever rule.
     np.testing.assert_array_equal(beyond.forces[1:5], 0)
     ratio = (0.01 - feet[5, 1]) / (feet[0, 1] - feet[5, 1])
     np.testing.assert_allclose(beyond.forces[0, 2] / beyond.weight, ratio, rtol=1e-4)
 
 
-def test_on_the_very_edge_it_still_stands():
+def test_load_on_the_edge_is_balanced():
     robot = hexapod(link_mass=np.zeros((6, 3)))
     feet = forward_kinematics(robot, standing())[:, 3]
     for share in np.linspace(0, 1, 50):
@@ -114,7 +114,7 @@ def test_on_the_very_edge_it_still_stands():
         np.testing.assert_allclose(found.forces[[0, 2, 4], 2] / found.weight, [share, 1 - share, 0], rtol=0, atol=1e-12)
 
 
-def test_feet_on_a_line():
+def test_collinear_feet():
     robot = hexapod(
         link_mass=np.zeros((6, 3)), body_com=[0.02, 0, 0], mount_yaw=np.deg2rad([0.0, 90, 180, 180, 270, 0])
     )
@@ -127,14 +127,14 @@ def test_feet_on_a_line():
     x = forward_kinematics(robot, standing())[along, 3, 0]
     pushes = found.forces[along, 2] / found.weight
     np.testing.assert_allclose([pushes.sum(), pushes @ x], [1, 0.02], rtol=0, atol=1e-13)
-    # Of least squares: linear in x.
+    # Least squares: linear in x.
     np.testing.assert_allclose(np.polyval(np.polyfit(x, pushes, 1), x), pushes, rtol=0, atol=1e-13)
     aside = contact_forces(robot.replace(body_com=[0.02, 0.003, 0]), standing(), Pose(), along)
     np.testing.assert_allclose(aside.margin, -0.003, rtol=0, atol=1e-15)
 
 
-def test_a_slope_is_a_tilted_gravity():
-    """Gravity tilted against the robot, and the robot and its ground tilted against gravity, are the same."""
+def test_slope_equals_tilted_gravity():
+    """Tilting gravity is equivalent to tilting robot and ground."""
     rng = np.random.default_rng(0)
     robot, angles, body, contacts, payload = random_case(rng)
     slope = Pose.from_rpy(0.2, -0.15, 0.4)
@@ -176,7 +176,7 @@ def test_other_libraries_agree(xp):
         np.testing.assert_allclose(np.asarray(getattr(got, name)), getattr(want, name), rtol=0, atol=1e-11)
 
 
-def test_jit_hands_back_no_forces_where_no_foot_is_down():
+def test_jit_without_a_foot_down():
     def solve(contacts):
         found = contact_forces(hexapod(), standing(), Pose(), contacts)
         return found.forces, found.margin
@@ -186,11 +186,11 @@ def test_jit_hands_back_no_forces_where_no_foot_is_down():
     assert margin == -np.inf
 
 
-def test_what_is_missing_or_wrong():
+def test_errors():
     robot, angles = hexapod(), standing()
     with pytest.raises(MissingDataError, match=r"\[body\] mass_kg and \[leg\] mass_kg missing"):
         contact_forces(robot.replace(body_mass=None, link_mass=None), angles, Pose(), ALL)
-    with pytest.raises(InputError, match=r"no foot is on the ground: nothing carries"):
+    with pytest.raises(InputError, match=r"no foot is on the ground; at least one"):
         contact_forces(robot, angles, Pose(), ~ALL)
     some = np.array([[ALL, ALL], [~ALL, ALL], [ALL, ~ALL]])
     with pytest.raises(InputError, match=r"no foot is on the ground in sample 1, 0 \(and 1 more\)"):
@@ -204,7 +204,7 @@ def test_what_is_missing_or_wrong():
     with pytest.raises(InputError, match=r"angles\[0, 0\] is nan"):
         contact_forces(robot, angles * np.nan, Pose(), ALL)
     for gravity in ((0, 0, 0), (1, 2)):
-        with pytest.raises(InputError, match="three numbers, not all of them 0"):
+        with pytest.raises(InputError, match="three finite numbers, not all 0"):
             contact_forces(robot, angles, Pose(), ALL, gravity=gravity)
     with pytest.raises(InputError, match=r"gravity\[2\] is inf"):
         contact_forces(robot, angles, Pose(), ALL, gravity=(0, 0, np.inf))
@@ -216,7 +216,7 @@ def test_payloads():
     assert as_payload(given_) is given_
     assert given_ == Payload(1.0, (1.0, 2.0, 3.0))
     for mass in (-1, np.nan, np.inf, "much", None, [1, 2]):
-        with pytest.raises(InputError, match="it must be one finite number, not negative"):
+        with pytest.raises(InputError, match="it must be a finite number, at least 0"):
             as_payload(mass)
     for place in ((1, 2), (0, 0, np.nan), "here", None, 3):
         with pytest.raises(InputError, match="it must be three finite numbers"):

@@ -1,4 +1,4 @@
-"""Cycles of many designs in one call: the same as one design at a time with the functions for any pose."""
+"""Cycle torques of a batch of designs against the general functions, one design at a time."""
 
 import math
 
@@ -18,11 +18,11 @@ from tarsus.gait.gait import GAITS, Gait
 from tarsus.kinematics.inverse import inverse_kinematics
 from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.stance import default_body_height, default_stance
-from tarsus.load import designs
+from tarsus.load import cycle_sweep
 from tarsus.load.contact import contact_forces
 from tarsus.load.cycle_torques import cycle_torques
 from tarsus.load.payload import Payload
-from tarsus.load.planar_statics import share_weight
+from tarsus.load.planar_statics import weight_fractions
 from tarsus.load.torque import joint_torques
 from tarsus.robot.robot import stack_robots
 
@@ -31,7 +31,7 @@ PARTS = ("angles", "torques", "forces")
 
 
 def step_by_step(robot, gait, *, stroke, heading=0.0, body_height, swing_height, phases, payload=0.0):
-    """One design's cycle by the functions for any pose."""
+    """Cycle of one design by the general functions."""
     feet, contacts = cycle_feet(
         gait,
         default_stance(robot, body_height, swing_height=swing_height),
@@ -57,7 +57,7 @@ def assert_same(found, index, expected):
 
 
 def sized(count, rng, robot=None):
-    """Designs with other lengths, each with its own."""
+    """Designs with random lengths."""
     robot = hexapod() if robot is None else robot
     scale = rng.uniform(0.8, 1.2, (3, count, 1))
     return robot.replace(
@@ -70,7 +70,7 @@ def sized(count, rng, robot=None):
 
 @pytest.mark.parametrize("gait", GAITS)
 @pytest.mark.parametrize("name", ["strider", "phantomx", "ch3r", "freenove"])
-def test_a_preset_walks_as_with_the_functions_for_any_pose(name, gait):
+def test_presets_match_the_general_functions(name, gait):
     robot = robot_of(name)
     if not robot.has_masses:
         robot = robot.replace(body_mass=1.0, link_mass=np.full((6, 3), 0.05))
@@ -90,7 +90,7 @@ def test_a_preset_walks_as_with_the_functions_for_any_pose(name, gait):
 
 
 @given(seed=seeds(), gait=st.sampled_from(GAITS), heading=st.floats(-4, 4))
-def test_a_batch_is_a_loop(seed, gait, heading):
+def test_batch_equals_loop(seed, gait, heading):
     rng = np.random.default_rng(seed)
     together = sized(3, rng)
     stroke, body_height = rng.uniform(0.01, 0.09, 3), rng.uniform(0.08, 0.13, 3)
@@ -110,7 +110,7 @@ def test_a_batch_is_a_loop(seed, gait, heading):
 
 
 @given(seed=seeds())
-def test_offset_axes_and_legs_that_all_differ(seed):
+def test_offset_axes_and_different_legs(seed):
     rng = np.random.default_rng(seed)
     robot = random_robot(rng, legs=6, limits="full").replace(
         body_mass=1.5, link_mass=rng.uniform(0, 0.2, (6, 3)), body_com=rng.uniform(-0.05, 0.05, 3)
@@ -120,7 +120,7 @@ def test_offset_axes_and_legs_that_all_differ(seed):
     assert_same(cycle_torques(robot, TRIPOD, **options), (), step_by_step(robot, TRIPOD, **options))
 
 
-def test_strokes_out_of_reach_are_solved_as_near_as_legs_get_and_told():
+def test_unreachable_strokes_give_the_nearest_pose():
     rng = np.random.default_rng(3)
     together = sized(40, rng)
     stroke = np.where(np.arange(40) % 3 == 0, 0.45, 0.05)
@@ -133,7 +133,7 @@ def test_strokes_out_of_reach_are_solved_as_near_as_legs_get_and_told():
         assert_same(found, (i,), step_by_step(together.item((i,)), TRIPOD, **options))
 
 
-def test_knees_below_the_ground_are_told():
+def test_knees_below_the_ground():
     robot = hexapod(limits=np.broadcast_to(np.deg2rad([[-60, 60], [-90, 90], [-170, 170]]), (6, 3, 2)))
     low = robot.replace(mount_position=robot.mount_position * 1.0)
     options = {"stroke": 0.02, "body_height": -0.02, "swing_height": 0.0, "phases": 4}
@@ -143,8 +143,8 @@ def test_knees_below_the_ground_are_told():
     assert_same(found, (), expected)
 
 
-def test_a_foot_on_an_axis_is_solved_all_the_same():
-    """A coxa of no length and a foot that swings through the coxa axis, where no direction can be told from it."""
+def test_foot_on_a_joint_axis():
+    """A coxa of zero length and a foot that passes through the coxa axis, where its direction is undefined."""
     robot = hexapod(coxa=np.zeros(6), femur=np.full(6, 0.1), tibia=np.full(6, 0.1), link_com=np.zeros((6, 3)))
     rest = default_stance(robot, 0.1, swing_height=0.0)
     out = float(np.linalg.norm((rest - robot.mount_position)[1, :2]))
@@ -176,16 +176,16 @@ def test_batches_of_several_axes_and_broadcast_arguments():
     assert alone.torques.shape == (3, 6, 6, 3)
 
 
-def test_blocks_make_no_difference(monkeypatch):
+def test_blocks_do_not_change_the_result(monkeypatch):
     together = sized(11, np.random.default_rng(6))
     whole = cycle_torques(together, TRIPOD, stroke=0.05, body_height=0.1, swing_height=0.02, phases=5)
-    monkeypatch.setattr(designs, "_BLOCK", 100)
+    monkeypatch.setattr(cycle_sweep, "_BLOCK_SIZE", 100)
     cut = cycle_torques(together, TRIPOD, stroke=0.05, body_height=0.1, swing_height=0.02, phases=5)
     for part in (*PARTS, "reach", "balanced"):
         np.testing.assert_array_equal(getattr(cut, part), getattr(whole, part))
 
 
-def test_a_robot_that_tips_is_told():
+def test_tipping_robot():
     back = hexapod(body_com=np.array([-0.7, 0.0, 0.0]))
     options = {"stroke": 0.05, "body_height": 0.11, "swing_height": 0.02, "phases": 8}
     found = cycle_torques(back, TRIPOD, **options)
@@ -195,18 +195,18 @@ def test_a_robot_that_tips_is_told():
 
 
 @given(seed=seeds(), feet=st.integers(1, 6))
-def test_shares_push_and_balance(seed, feet):
+def test_fractions_are_non_negative_and_balance(seed, feet):
     rng = np.random.default_rng(seed)
     x, y = rng.uniform(-1, 1, (2, feet, 20))
-    shares, balanced = share_weight(np, x, y)
-    assert (shares >= 0).all()
-    np.testing.assert_allclose(shares.sum(0), 1, atol=1e-9)
-    moments = np.stack([(shares * x).sum(0), (shares * y).sum(0)])
+    fractions, balanced = weight_fractions(np, x, y)
+    assert (fractions >= 0).all()
+    np.testing.assert_allclose(fractions.sum(0), 1, atol=1e-9)
+    moments = np.stack([(fractions * x).sum(0), (fractions * y).sum(0)])
     np.testing.assert_allclose(moments[:, balanced], 0, atol=1e-9)
     assert feet > 2 or not balanced.any()
 
 
-def test_jax_gives_the_same_where_feet_are_out_of_reach_and_robots_tip():
+def test_jax_agrees_for_unreachable_feet_and_tipping_robots():
     together = sized(3, np.random.default_rng(7)).replace(body_com=np.array([[0, 0, 0], [0, 0, 0], [-0.7, 0, 0]]))
 
     def cycle(stroke):
@@ -223,7 +223,7 @@ def test_jax_gives_the_same_where_feet_are_out_of_reach_and_robots_tip():
     np.testing.assert_array_equal(expected[-1], [True, False, False])
 
 
-def test_the_gradient_is_that_of_differences():
+def test_gradient_against_finite_differences():
     robot = hexapod()
 
     def peak(scale):
@@ -235,7 +235,7 @@ def test_the_gradient_is_that_of_differences():
     assert float(slope) == pytest.approx(float((peak(1 + 1e-6) - peak(1 - 1e-6)) / 2e-6), rel=1e-5)
 
 
-def test_many_designs_are_stacked_robots():
+def test_stacked_robots():
     robots = [robot_of("strider").replace(body_mass=mass) for mass in (1.0, 2.0)]
     found = cycle_torques(stack_robots(robots), TRIPOD, stroke=0.05)
     for i, robot in enumerate(robots):
@@ -246,7 +246,7 @@ def test_many_designs_are_stacked_robots():
 
 
 @pytest.mark.parametrize(
-    ("changes", "said"),
+    ("changes", "text"),
     [
         ({"phases": 0}, "phases is 0"),
         ({"phases": 1.5}, "phases is 1.5"),
@@ -256,17 +256,17 @@ def test_many_designs_are_stacked_robots():
         ({"swing_height": math.inf}, "swing_height is inf"),
         ({"stroke": np.zeros(2), "body_height": np.full(3, 0.1)}, "don't fit together"),
         ({"gait": Gait.named("wave", legs=8)}, "is for 8 legs"),
-        ({"gait": Gait(duty_factor=0.4, offsets=(0.0, 0.5) * 3)}, "no foot is on the ground at 0.4"),
+        ({"gait": Gait(duty_factor=0.4, offsets=(0.0, 0.5) * 3)}, "no foot is on the ground at phase 0.4"),
         ({"payload": -1.0}, "payload"),
     ],
 )
-def test_what_is_asked_wrongly_is_refused(changes, said):
+def test_invalid_arguments(changes, text):
     asked = {"gait": TRIPOD, "stroke": 0.05, **changes}
-    with pytest.raises(InputError, match=said):
+    with pytest.raises(InputError, match=text):
         cycle_torques(robot_of("strider"), asked.pop("gait"), **asked)
 
 
-def test_what_is_missing_or_out_of_reach_is_told():
+def test_missing_masses_and_unreachable_ground():
     with pytest.raises(MissingDataError, match="mass_kg"):
         cycle_torques(robot_of("strider").replace(body_mass=None), TRIPOD, stroke=0.05)
     with pytest.raises(UnreachableError, match="nowhere reaches the ground"):

@@ -1,4 +1,4 @@
-"""Other servos, payloads and lengths put into a robot: masses where they belong, and the loads worked out anew."""
+"""Loads with other servos, payloads and link lengths."""
 
 import math
 from dataclasses import replace
@@ -26,7 +26,7 @@ def light(mass):
 # Servos
 
 
-def test_masses_of_servos_are_exchanged_in_the_part_inside_of_the_joint():
+def test_servo_masses_change_on_the_inner_side_of_the_joint():
     robot = robot_of("burnt-mg996r")  # links of 75, 75 and 42 g, servos of 55 g
     changed = with_servos(robot, dict.fromkeys(JOINTS, HEAVY))
     assert changed.body_mass == pytest.approx(robot.body_mass + 6 * 0.045)
@@ -37,14 +37,14 @@ def test_masses_of_servos_are_exchanged_in_the_part_inside_of_the_joint():
     assert only.servos[0] == (robot.servos[0][0], HEAVY, robot.servos[0][2])
 
 
-def test_a_servo_that_the_inner_part_is_too_light_for_sits_outside():
+def test_servo_sits_on_the_outer_side_if_the_inner_part_is_too_light():
     robot = robot_of("strider")  # links of 40, 160 and 80 g, servos of 60 g: the femur holds two
     changed = with_servos(robot, dict.fromkeys(JOINTS, light(0.01)))
     assert changed.body_mass == pytest.approx(robot.body_mass - 6 * 0.05)
     np.testing.assert_allclose(changed.link_mass - robot.link_mass, np.tile([0.0, -0.1, 0.0], (6, 1)))
 
 
-def test_the_same_servos_change_nothing():
+def test_same_servos_change_nothing():
     robot = robot_of("phantomx")
     same = with_servos(robot, dict.fromkeys(JOINTS, robot.servos[0][0]))
     np.testing.assert_allclose(same.link_mass, robot.link_mass, rtol=1e-15)
@@ -54,12 +54,12 @@ def test_the_same_servos_change_nothing():
 @pytest.mark.parametrize(
     ("servos", "why"),
     [
-        ((), "no servo is named for the coxa of LF"),
-        (((Servo(name="X", stall_torque=1.0),) * 3,) * 6, "the mass of the present servo X is unknown (mass_g)"),
-        (((light(5.0),) * 3,) * 6, "leg LF weighs less than its present servos"),
+        ((), "the robot file names no servo for the coxa of LF"),
+        (((Servo(name="X", stall_torque=1.0),) * 3,) * 6, "the mass of the current servo X is unknown (mass_g)"),
+        (((light(5.0),) * 3,) * 6, "leg LF is lighter than its current servos"),
     ],
 )
-def test_where_masses_cannot_be_told_apart_they_stay_and_it_is_said(servos, why):
+def test_masses_stay_if_servo_masses_cannot_be_separated(servos, why):
     robot = robot_of("strider").replace(servos=servos)
     assert why_masses_stay(robot) == why
     changed = with_servos(robot, dict.fromkeys(JOINTS, HEAVY))
@@ -68,16 +68,16 @@ def test_where_masses_cannot_be_told_apart_they_stay_and_it_is_said(servos, why)
     assert changed.body_mass == robot.body_mass
 
 
-def test_masses_can_be_told_apart_in_the_examples():
+def test_servo_masses_are_separable_in_the_examples():
     assert why_masses_stay(robot_of("strider")) is None
     assert why_masses_stay(robot_of("burnt-5kg")) is None
 
 
-def test_what_cannot_be_put_in_is_refused():
+def test_with_servos_errors():
     robot = robot_of("strider")
-    with pytest.raises(MissingDataError, match="the mass of LSS-ST1 is unknown; give its mass_g"):
+    with pytest.raises(MissingDataError, match="the mass of servo LSS-ST1 is unknown; set its mass_g"):
         with_servos(robot, {"coxa": load_servo("LSS-ST1")})
-    with pytest.raises(InputError, match="no joint 'hip'; there are coxa, femur, tibia"):
+    with pytest.raises(InputError, match="unknown joint 'hip'; the joints are coxa, femur, tibia"):
         with_servos(robot, {"hip": HEAVY})
     with pytest.raises(MissingDataError, match="mass_kg"):
         with_servos(robot.replace(body_mass=None), {"coxa": HEAVY})
@@ -87,7 +87,7 @@ def test_what_cannot_be_put_in_is_refused():
 
 
 @pytest.mark.parametrize("rule", ["factor", "continuous"])
-def test_the_largest_payload_is_just_carried(rule):
+def test_largest_payload_is_at_the_limit(rule):
     found = sample_loads("strider", "wave", inertial=False)
     strong = replace(found, robot=found.robot.replace(servos=((replace(HEAVY, stall_torque=9.0),) * 3,) * 6))
     most = largest_payload(strong, safety_factor=3.0, rule=rule)
@@ -100,8 +100,8 @@ def test_the_largest_payload_is_just_carried(rule):
     assert used(most) <= 1 < used(most + 2e-4)
 
 
-def test_a_payload_at_the_centre_of_mass_adds_in_proportion():
-    """Without legs' weight and with the body's centre over the origin, torques go with body and payload together."""
+def test_payload_at_the_centre_of_mass_adds_in_proportion():
+    """With massless legs and the body's centre of mass at the origin, torques are proportional to the total mass."""
     motion = sample_motion()
     robot = motion.robot.replace(link_mass=np.zeros((6, 3)), body_com=np.zeros(3), body_mass=2.0)
     found = joint_loads(robot, motion, inertial=False)
@@ -109,11 +109,11 @@ def test_a_payload_at_the_centre_of_mass_adds_in_proportion():
     assert largest_payload(found, safety_factor=factor / 1.75) == pytest.approx(1.5, abs=2e-4)
 
 
-def test_nothing_is_carried_by_servos_that_do_not_carry_the_robot():
+def test_payload_is_zero_if_the_servos_do_not_carry_the_robot():
     assert largest_payload(sample_loads("burnt-5kg"), safety_factor=3.0) == 0.0
 
 
-def test_a_payload_that_tips_the_robot_is_not_carried():
+def test_payload_is_limited_by_tipping():
     found = sample_loads(payload=Payload(0.0, (0.4, 0.0, 0.0)))
     most = largest_payload(found, safety_factor=0.01)
     assert 0 < most < 100
@@ -121,13 +121,13 @@ def test_a_payload_that_tips_the_robot_is_not_carried():
     assert not joint_loads(found.robot, found.motion, payload=Payload(most + 1e-3, (0.4, 0.0, 0.0))).balanced
 
 
-def test_beyond_a_tonne_nobody_looks():
+def test_payload_is_limited_to_a_tonne():
     found = sample_loads()
     strong = replace(found, robot=found.robot.replace(servos=((replace(HEAVY, stall_torque=1e9),) * 3,) * 6))
     assert largest_payload(strong, safety_factor=3.0) == pytest.approx(1000.0, abs=1e-3)
 
 
-def test_what_limits_the_payload_must_be_known():
+def test_largest_payload_errors():
     found = sample_loads()
     with pytest.raises(MissingDataError, match="the file names none for some joints"):
         largest_payload(replace(found, robot=found.robot.replace(servos=())))
@@ -140,7 +140,7 @@ def test_what_limits_the_payload_must_be_known():
 # Lengths
 
 
-def test_lengths_change_with_the_centres_of_mass():
+def test_link_lengths_scale_with_their_centres_of_mass():
     robot = robot_of("strider")
     longer = with_lengths(robot, femur=1.1, tibia=0.9)
     np.testing.assert_allclose(longer.femur, 1.1 * robot.femur)
@@ -148,12 +148,12 @@ def test_lengths_change_with_the_centres_of_mass():
     np.testing.assert_allclose(longer.link_com, robot.link_com * [1, 1.1, 0.9])
     np.testing.assert_array_equal(longer.coxa, robot.coxa)
     np.testing.assert_array_equal(longer.link_mass, robot.link_mass)
-    with pytest.raises(InputError, match="no link 'foot'"):
+    with pytest.raises(InputError, match="unknown link 'foot'"):
         with_lengths(robot, foot=2.0)
 
 
-def test_a_longer_coxa_relieves_the_femur_by_the_foots_load():
-    """With massless legs and feet that stay, the femur's arm is shorter by as much as the coxa is longer."""
+def test_longer_coxa_reduces_the_femur_torque_by_the_foot_load():
+    """With massless legs and fixed feet, the femur's lever arm shrinks by as much as the coxa grows."""
     motion = sample_motion()
     robot = motion.robot.replace(link_mass=np.zeros((6, 3)))
     found = joint_loads(robot, motion, inertial=False)
@@ -163,14 +163,14 @@ def test_a_longer_coxa_relieves_the_femur_by_the_foots_load():
     assert change[1] == pytest.approx(-load, rel=1e-6)
 
 
-def test_the_change_is_that_of_two_calculations():
+def test_sensitivity_converges():
     found = sample_loads("phantomx", inertial=False)
     fine, coarse = length_sensitivity(found, step=0.002), length_sensitivity(found, step=0.02)
     for link in JOINTS:
         np.testing.assert_allclose(fine[link], coarse[link], atol=0.15, rtol=0.05)
 
 
-def test_what_cannot_be_reached_or_has_no_length_has_no_change():
+def test_sensitivity_is_nan_for_unreachable_feet_or_zero_length():
     motion = sample_motion()
     found = joint_loads(motion.robot.replace(coxa=np.zeros(6), link_com=motion.robot.link_com * [0, 1, 1]), motion)
     assert np.isnan(length_sensitivity(found)["coxa"]).all()

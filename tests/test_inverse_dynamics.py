@@ -1,4 +1,4 @@
-"""Inverse dynamics against Pinocchio's recursive Newton-Euler algorithm, and what motions make of it."""
+"""Inverse dynamics against Pinocchio's recursive Newton-Euler algorithm, and torques of motions."""
 
 import array_api_strict
 import jax
@@ -37,7 +37,7 @@ def random_rates(rng, batch=(), *, size=1.0):
 
 
 def on_level_ground(rng, batch=()):
-    """Random robot with its feet level, body tilted, angles from inverse kinematics."""
+    """Random robot with level feet and a tilted body, angles from inverse kinematics."""
     robot = random_hexapod(rng, box=bool(rng.integers(2))).replace(
         **{name: getattr(hexapod(), name) for name in ("coxa", "femur", "tibia", "link_com")}
     )
@@ -51,7 +51,7 @@ def on_level_ground(rng, batch=()):
 
 
 @given(st.integers(0, 2**32 - 1))
-def test_level_ground_balances_all_six_equations(seed):
+def test_six_equations_of_motion_on_level_ground(seed):
     rng = np.random.default_rng(seed)
     robot, angles, body, contacts, payload = on_level_ground(rng)
     joints, rates = random_rates(rng, size=rng.choice([0.3, 8]))
@@ -76,7 +76,7 @@ def test_level_ground_balances_all_six_equations(seed):
 
 @given(st.integers(0, 2**32 - 1))
 def test_torques_agree_with_pinocchio_in_any_state(seed):
-    """Feet anywhere; links without length and without mass; forces that are given."""
+    """Feet anywhere, links without length or mass, given contact forces."""
     rng = np.random.default_rng(seed)
     robot = random_hexapod(rng, box=seed % 2 == 0)
     if seed % 3 == 0:
@@ -93,8 +93,8 @@ def test_torques_agree_with_pinocchio_in_any_state(seed):
     np.testing.assert_array_equal(found.forces, forces)
 
 
-def test_uneven_feet_balance_too():
-    """Three feet of any heights that are pressed to the ground."""
+def test_six_equations_of_motion_on_uneven_feet():
+    """Three feet at any heights, all pushing."""
     rng = np.random.default_rng(5)
     robot, (joints, rates) = random_hexapod(rng), random_rates(rng)
     angles = standing()
@@ -106,7 +106,7 @@ def test_uneven_feet_balance_too():
     np.testing.assert_allclose(base, 0, rtol=0, atol=1e-9)
 
 
-def test_at_rest_it_is_statics():
+def test_statics_at_rest():
     rng = np.random.default_rng(0)
     robot, angles, body, contacts, payload = on_level_ground(rng, (30,))
     still = JointRates(velocity=np.zeros((6, 3)), acceleration=np.zeros((6, 3)))
@@ -117,7 +117,7 @@ def test_at_rest_it_is_statics():
         np.testing.assert_allclose(found.torques, torques, rtol=0, atol=1e-9)
 
 
-def test_one_foot_alone_bears_what_it_can():
+def test_single_foot():
     robot = hexapod()
     com = centre_of_mass(robot, standing())
     foot = forward_kinematics(robot, standing())[0, 3] - [0, 0, com[2]]
@@ -127,12 +127,12 @@ def test_one_foot_alone_bears_what_it_can():
     mass = 1.386 + 6 * 0.28
     np.testing.assert_allclose(found.forces[0], mass * np.array([0.5, 0.2, 10.80665]), rtol=1e-12)
     np.testing.assert_array_equal(found.forces[1:], 0)
-    # As with the load where gravity and inertia together point to, at the foot's height.
+    # The margin is that of the load projected along gravity and inertia to the foot's height.
     zero_moment = foot[2] / 10.80665 * np.array([0.5, 0.2])
     np.testing.assert_allclose(found.margin, -np.linalg.norm(foot[:2] - zero_moment - com[:2]), rtol=1e-9)
 
 
-def test_a_falling_robot_is_not_held():
+def test_falling_robot_has_no_contact_forces():
     still = JointRates(velocity=np.zeros((6, 3)), acceleration=np.zeros((6, 3)))
     falls = BodyRates(acceleration=np.array([[0, 0, -12.0], [0, 0, -9.80665], [0, 0, 0]]))
     found = dynamic_torques(hexapod(), standing(), Pose(), ALL, still, falls)
@@ -142,8 +142,8 @@ def test_a_falling_robot_is_not_held():
     np.testing.assert_allclose(found.torques[1], 0, rtol=0, atol=1e-15)
 
 
-def test_point_accelerations_are_those_of_the_points():
-    """Against second differences of forward kinematics along smooth motions of joints and body."""
+def test_point_accelerations_against_finite_differences():
+    """Second differences of forward kinematics along smooth motions of joints and body."""
     rng = np.random.default_rng(2)
     robot, step = random_hexapod(rng), 1e-3
     start, speed, gain = standing(), rng.normal(size=(6, 3)), rng.normal(size=(6, 3))
@@ -184,7 +184,7 @@ def walk():
     return tarsus.plan_walk(tarsus.load_robot("strider"), tarsus.Gait.named("tripod"), tarsus.straight_path(0.3))
 
 
-def test_a_walk(walk):
+def test_walk(walk):
     robot = walk.robot
     found = motion_torques(robot, walk, payload=0.5)
     assert found.torques.shape == walk.angles.shape
@@ -204,7 +204,7 @@ def test_a_walk(walk):
     assert "the body a point, as its size is not known;" in point.assumed[0]
 
 
-def test_a_walk_without_inertia_is_statics(walk):
+def test_walk_without_inertia_is_statics(walk):
     found = motion_torques(walk.robot, walk, payload=0.5, inertial=False)
     torques, forces = joint_torques(walk.robot, walk.angles, walk.body, walk.contacts, 0.5)
     np.testing.assert_array_equal(found.torques, torques)
@@ -213,7 +213,7 @@ def test_a_walk_without_inertia_is_statics(walk):
     np.testing.assert_array_less(0, found.margin)
 
 
-def test_a_batch_of_designs_walks(walk):
+def test_walk_of_a_batch_of_designs(walk):
     designs = [walk.robot.replace(body_mass=mass, link_mass=walk.robot.link_mass * mass) for mass in (1.0, 2.0)]
     stacked = stack_robots(designs)
     arrays = {name: value[:, None] for name, value in vars(stacked).items() if isinstance(value, np.ndarray)}
@@ -241,7 +241,7 @@ def test_other_libraries_agree(xp):
         np.testing.assert_allclose(np.asarray(got), wanted, rtol=0, atol=1e-9)
 
 
-def test_what_is_missing_or_wrong(walk):
+def test_errors(walk):
     robot, joints, rates = hexapod(), *random_rates(np.random.default_rng(4))
     with pytest.raises(MissingDataError, match=r"\[body\] mass_kg"):
         motion_torques(robot.replace(body_mass=None), walk)

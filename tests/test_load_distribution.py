@@ -1,4 +1,4 @@
-"""Shares against an exhaustive search over all sets of feet, and what must hold of them."""
+"""Load fractions against an exhaustive search over all sets of feet, and optimality conditions."""
 
 import itertools
 
@@ -8,11 +8,11 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from tarsus.load.load_distribution import shared_load
+from tarsus.load.load_distribution import load_fractions
 
 
 def exhaustive(x, y, down):
-    """The least sum of squares among the balances of every set of feet, one sample."""
+    """Least sum of squares over the equilibria of every set of feet, one sample."""
     best = None
     for count in range(1, down.sum() + 1):
         for feet in itertools.combinations(np.flatnonzero(down), count):
@@ -28,7 +28,7 @@ def exhaustive(x, y, down):
 
 
 def feet_around_the_load(rng, n, kind, legs=6):
-    """Feet, seen from a load anywhere in their polygon, on an edge of it (or between two feet), or on a foot."""
+    """Feet relative to a load inside their polygon, on its edge (or between two feet), or on a foot."""
     x, y = rng.uniform(-0.3, 0.3, (2, legs, n))
     down = rng.random((legs, n)) < 0.7
     down[0] |= ~down.any(0)
@@ -57,9 +57,9 @@ KINDS = ["plain", "line", "across", "thin", "grid", "pairs"]
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_balance_and_least_squares(kind):
+def test_equilibrium_with_least_squares(kind):
     x, y, down = feet_around_the_load(np.random.default_rng(KINDS.index(kind)), 150, kind)
-    shares = shared_load(np, x, y, down)
+    shares = load_fractions(np, x, y, down)
     assert shares.min() >= 0
     assert (shares[~down] == 0).all()
     np.testing.assert_allclose(shares.sum(0), 1, rtol=0, atol=1e-12)
@@ -69,10 +69,10 @@ def test_balance_and_least_squares(kind):
 
 
 @pytest.mark.parametrize("seed", range(4))
-def test_no_other_balance_is_less(seed):
-    """The first-order conditions: over the feet that bear the shares are a plane, which is not positive elsewhere."""
+def test_first_order_conditions(seed):
+    """The fractions of bearing feet are linear in position, and that plane is not positive at the other feet."""
     x, y, down = feet_around_the_load(np.random.default_rng(seed), 300, "plain", legs=8)
-    shares = shared_load(np, x, y, down)
+    shares = load_fractions(np, x, y, down)
     pulling = 0
     for j in range(300):
         bears = shares[:, j] > 1e-9
@@ -86,70 +86,70 @@ def test_no_other_balance_is_less(seed):
     assert pulling > 10
 
 
-def test_by_hand():
+def test_known_cases():
     one = np.ones((1, 1), dtype=bool)
-    np.testing.assert_array_equal(shared_load(np, 0.0 * one, 0.0 * one, one), [[1]])
-    # Two feet: the lever; the third, on neither side, can't help.
+    np.testing.assert_array_equal(load_fractions(np, 0.0 * one, 0.0 * one, one), [[1]])
+    # Two feet: the lever rule; the third foot can't contribute.
     x, y = np.array([[-0.1], [0.3], [0.0]]), np.array([[0.0], [0.0], [0.2]])
-    np.testing.assert_allclose(shared_load(np, x, y, np.ones((3, 1), bool)), [[0.75], [0.25], [0]], atol=1e-15)
-    # A square: all alike; with the load over the middle of an edge, only its two corners.
+    np.testing.assert_allclose(load_fractions(np, x, y, np.ones((3, 1), bool)), [[0.75], [0.25], [0]], atol=1e-15)
+    # A square: equal fractions; with the load on the middle of an edge, only its two corners.
     x, y = np.array([[1.0], [-1], [-1], [1]]), np.array([[1.0], [1], [-1], [-1]])
     down = np.ones((4, 1), bool)
-    np.testing.assert_allclose(shared_load(np, x, y, down), np.full((4, 1), 0.25), atol=1e-15)
-    np.testing.assert_allclose(shared_load(np, x - 1, y, down), [[0.5], [0], [0], [0.5]], atol=1e-15)
-    # Two feet in one place share what they bear.
+    np.testing.assert_allclose(load_fractions(np, x, y, down), np.full((4, 1), 0.25), atol=1e-15)
+    np.testing.assert_allclose(load_fractions(np, x - 1, y, down), [[0.5], [0], [0], [0.5]], atol=1e-15)
+    # Two feet at the same position bear equal fractions.
     x, y = np.array([[1.0], [1.0], [-1.0]]), np.zeros((3, 1))
-    np.testing.assert_allclose(shared_load(np, x, y, np.ones((3, 1), bool)), [[0.25], [0.25], [0.5]], atol=1e-15)
+    np.testing.assert_allclose(load_fractions(np, x, y, np.ones((3, 1), bool)), [[0.25], [0.25], [0.5]], atol=1e-15)
 
 
-def test_three_feet_are_plain_statics():
+def test_three_feet_are_statically_determinate():
     rng = np.random.default_rng(5)
     x, y, down = feet_around_the_load(rng, 200, "plain", legs=3)
     down[:] = True
     weights = rng.dirichlet(np.ones(3), 200).T
     x, y = x - (weights * x).sum(0), y - (weights * y).sum(0)
-    np.testing.assert_allclose(shared_load(np, x, y, down), weights, rtol=0, atol=1e-11)
+    np.testing.assert_allclose(load_fractions(np, x, y, down), weights, rtol=0, atol=1e-11)
 
 
-def test_no_foot_down_bears_nothing():
+def test_no_foot_down():
     x = np.ones((6, 2))
-    np.testing.assert_array_equal(shared_load(np, x, x, np.zeros((6, 2), bool)), np.zeros((6, 2)))
+    np.testing.assert_array_equal(load_fractions(np, x, x, np.zeros((6, 2), bool)), np.zeros((6, 2)))
 
 
-def test_scale_and_turn_do_not_matter():
+def test_invariance_under_scale_and_rotation():
     x, y, down = feet_around_the_load(np.random.default_rng(6), 50, "plain")
-    shares = shared_load(np, x, y, down)
+    shares = load_fractions(np, x, y, down)
     for scale in (1e-6, 1e6):
-        np.testing.assert_allclose(shared_load(np, -scale * y, scale * x, down), shares, rtol=0, atol=1e-10)
+        np.testing.assert_allclose(load_fractions(np, -scale * y, scale * x, down), shares, rtol=0, atol=1e-10)
 
 
 def test_batch_equals_loop():
     x, y, down = feet_around_the_load(np.random.default_rng(7), 100, "plain")
-    together = shared_load(np, x, y, down)
-    single = [shared_load(np, x[:, j : j + 1], y[:, j : j + 1], down[:, j : j + 1]) for j in range(100)]
+    together = load_fractions(np, x, y, down)
+    single = [load_fractions(np, x[:, j : j + 1], y[:, j : j + 1], down[:, j : j + 1]) for j in range(100)]
     np.testing.assert_allclose(together, np.concatenate(single, axis=1), rtol=0, atol=1e-14)
 
 
 @pytest.mark.parametrize("xp", [jnp, array_api_strict], ids=["jax", "strict"])
 def test_other_libraries_agree(xp):
     x, y, down = feet_around_the_load(np.random.default_rng(8), 60, "plain")
-    want = shared_load(np, x, y, down)
-    got = shared_load(xp, *(xp.asarray(v) for v in (x, y, down)))
+    want = load_fractions(np, x, y, down)
+    got = load_fractions(xp, *(xp.asarray(v) for v in (x, y, down)))
     np.testing.assert_allclose(np.asarray(got), want, rtol=0, atol=1e-13)
-    # Where no foot would have to pull, the search is left out.
+    # Without a foot that would have to pull, the iteration is skipped.
     around = np.arange(6) * np.pi / 3
     x, y = (np.repeat(v[:, None], 60, axis=1) for v in (np.cos(around), np.sin(around)))
-    got = shared_load(xp, xp.asarray(x), xp.asarray(y), xp.asarray(np.ones_like(down)))
+    got = load_fractions(xp, xp.asarray(x), xp.asarray(y), xp.asarray(np.ones_like(down)))
     np.testing.assert_allclose(np.asarray(got), 1 / 6, rtol=0, atol=1e-15)
 
 
 def test_jit_and_derivative():
-    # Well inside, so that the load can be moved.
+    # Well inside the polygon, so that the load can be moved.
     x, y = np.array([[1.0, 1], [-1, 1], [-1, -1], [1, -1], [0.2, 0.1]]).T[..., None]
     at, all_down, change = np.array([0.9, 0.55]), np.ones((5, 1), bool), 1e-6
 
     def share(load, xp):
-        return shared_load(xp, xp.asarray(x) - load[0], xp.asarray(y) - load[1], xp.asarray(all_down))[:, 0]
+        return load_fractions(xp, xp.asarray(x) - load[0], xp.asarray(y) - load[1], xp.asarray(all_down))[:, 0]
 
     def share_and_slope(load):
         return share(load, jnp), jax.jacfwd(lambda where: share(where, jnp))(load)

@@ -1,4 +1,4 @@
-"""Loads over a motion: peaks, work, speeds and the servo's line, against sums and a robot that stands still."""
+"""Joint loads over a motion: peaks, work, speeds, servo limits, assumptions."""
 
 import math
 from dataclasses import replace
@@ -12,15 +12,16 @@ from sample_loads import BURNT, robot_of, sample_loads, sample_motion
 from tarsus.errors import InputError, MissingDataError
 from tarsus.kinematics.mass import total_mass
 from tarsus.load.inverse_dynamics import motion_torques
-from tarsus.load.loads import at_supply, joint_loads, utilisation
+from tarsus.load.loads import joint_loads
 from tarsus.load.payload import Payload
-from tarsus.load.verdict import BURNS_BELOW, joint_verdicts
+from tarsus.load.servo_limits import at_supply, utilisation
+from tarsus.load.verdict import BURNOUT_FACTOR, joint_verdicts
 from tarsus.robot.catalogue import load_servo
 from tarsus.robot.robot import JOINTS
 from tarsus.robot.servo import Servo
 
 
-def test_peak_its_moment_and_its_leg_are_those_of_the_torques():
+def test_peaks_follow_from_the_torques():
     found = sample_loads()
     for leg in range(6):
         for joint in range(3):
@@ -31,7 +32,7 @@ def test_peak_its_moment_and_its_leg_are_those_of_the_torques():
         assert found.peak[found.worst(joint), joint] == found.peak[:, joint].max()
 
 
-def test_torques_are_those_of_the_motion_with_inertia_and_without():
+def test_torques_with_and_without_inertia():
     motion = sample_motion()
     for inertial in (True, False):
         solved = motion_torques(motion.robot, motion, payload=0.3, inertial=inertial)
@@ -42,15 +43,15 @@ def test_torques_are_those_of_the_motion_with_inertia_and_without():
         assert found.inertial is inertial
 
 
-def test_a_constant_torque_heats_as_much_as_it_weighs():
+def test_rms_of_a_constant_torque():
     found = sample_loads()
     constant = replace(found, torques=np.broadcast_to([0.1, -0.5, 0.2], found.torques.shape))
     np.testing.assert_allclose(constant.rms, np.broadcast_to([0.1, 0.5, 0.2], (6, 3)), rtol=1e-12)
     assert (found.rms <= found.peak).all()
 
 
-def test_energy_is_the_work_of_lifting():
-    """A joint that turns against a constant torque does torque times angle as work; a driven one gets none back."""
+def test_energy_is_positive_work_only():
+    """A joint with constant torque does torque times angle as work; the negative work of a driven joint is lost."""
     found = sample_loads()
     n = len(found.motion.time)
     angles = np.zeros((n, 6, 3))
@@ -64,7 +65,7 @@ def test_energy_is_the_work_of_lifting():
     np.testing.assert_allclose(turned.peak_speed[0, 1], 0.8 / found.motion.duration)
 
 
-def test_the_cost_of_transport_is_energy_over_weight_and_way():
+def test_cost_of_transport():
     found = sample_loads(payload=0.5)
     weight = 9.80665 * (total_mass(found.robot) + 0.5)
     assert found.weight == pytest.approx(weight)
@@ -74,7 +75,7 @@ def test_the_cost_of_transport_is_energy_over_weight_and_way():
     assert replace(found, motion=replace(found.motion, body=body)).cost_of_transport == math.inf
 
 
-def test_weight_is_that_under_the_gravity_asked_for():
+def test_weight_under_other_gravity():
     moon = sample_loads(gravity=(0.0, 0.0, -1.62), inertial=False)
     earth = sample_loads(inertial=False)
     assert moon.weight / earth.weight == pytest.approx(1.62 / 9.80665)
@@ -82,47 +83,47 @@ def test_weight_is_that_under_the_gravity_asked_for():
     assert moon.conditions == {"gravity": (0.0, 0.0, -1.62), "inertial": False, "supply": None}
 
 
-def test_the_cause_names_the_moment_the_feet_and_the_share():
+def test_cause_of_the_peak_torque():
     found = sample_loads(inertial=False)
     leg = found.worst(1)
     sample = found.peak_sample[leg, 1]
     text = found.cause(leg, 1)
-    assert text.startswith(f"at {found.motion.time[sample]:.2f} s, standing on ")
+    assert text.startswith(f"at {found.motion.time[sample]:.2f} s, stance of ")
     down = [code for code, at in zip(found.robot.leg_codes, found.motion.contacts[sample], strict=True) if at]
-    assert f"standing on {' '.join(down)}, " in text
+    assert f"stance of {' '.join(down)}, " in text
     assert f"{found.forces[sample, leg, 2] / found.forces[sample, :, 2].sum():.0%} of the weight" in text
     air = replace(found, motion=replace(found.motion, contacts=np.zeros_like(found.motion.contacts)))
-    assert air.cause(leg, 1).endswith("s, swinging")
+    assert air.cause(leg, 1).endswith("s, swing")
 
 
-# The servo's figures
+# Servo limits
 
 
 @given(volts=st.floats(1, 30))
-def test_torque_and_speed_go_with_the_voltage(volts):
+def test_ratings_scale_with_the_voltage(volts):
     servo = Servo(name="a", stall_torque=2.0, torque_at=6.0, no_load_speed=5.0, speed_at=5.0)
     assert at_supply(servo, volts) == pytest.approx((2 * volts / 6, volts))
     assert at_supply(servo, None) == (2.0, 5.0)
-    unsaid = Servo(name="b", stall_torque=2.0, no_load_speed=5.0)
-    assert at_supply(unsaid, volts) == (2.0, 5.0)
+    unrated = Servo(name="b", stall_torque=2.0, no_load_speed=5.0)
+    assert at_supply(unrated, volts) == (2.0, 5.0)
 
 
-def test_what_is_unknown_of_a_servo_is_nan():
+def test_unknown_ratings_are_nan():
     np.testing.assert_array_equal(at_supply(None, 6.0), (math.nan, math.nan))
     np.testing.assert_array_equal(at_supply(Servo(name="a", stall_torque=2.0), 6.0), (2.0, math.nan))
 
 
 @given(
-    share=st.floats(0, 1),
+    fraction=st.floats(0, 1),
     stall=st.floats(0.1, 10),
     free=st.floats(0.1, 20),
     sign=st.sampled_from([-1, 1]),
 )
-def test_the_line_from_stall_to_running_free_is_used_up_wholly_all_along(share, stall, free, sign):
-    torque, speed = np.array(sign * share * stall), np.array(sign * (1 - share) * free)
-    assert utilisation(torque, speed, stall, free) == pytest.approx(1 if share else (share or 0.0), abs=1e-9)
-    # A servo that is driven needs torque alone.
-    assert utilisation(torque, -speed, stall, free) == pytest.approx(share, abs=1e-9)
+def test_utilisation_is_1_along_the_torque_speed_line(fraction, stall, free, sign):
+    torque, speed = np.array(sign * fraction * stall), np.array(sign * (1 - fraction) * free)
+    assert utilisation(torque, speed, stall, free) == pytest.approx(1 if fraction else (fraction or 0.0), abs=1e-9)
+    # A driven servo is limited by its torque alone.
+    assert utilisation(torque, -speed, stall, free) == pytest.approx(fraction, abs=1e-9)
 
 
 def test_factor_and_utilisation_of_the_joints():
@@ -135,82 +136,85 @@ def test_factor_and_utilisation_of_the_joints():
     assert sample_loads(supply=3.4).factor == pytest.approx(found.factor / 2)
 
 
-# What is assumed, and what is missing
+# Assumptions and errors
 
 
-def test_what_is_assumed_stands_in_the_result():
+def test_assumptions():
     strider = sample_loads().assumed
     assert any("slender uniform rod" in text for text in strider)
-    assert "DS3225 at 6.8 V, that of its stall torque" in strider
+    assert "DS3225 at 6.8 V, the voltage of its rated stall torque" in strider
     given_volts = sample_loads(supply=9.0).assumed
-    assert "DS3225 is made for 4.8 to 6.8 V, and is given 9 V" in given_volts
-    assert not any("that of its stall torque" in text for text in given_volts)
+    assert "DS3225 is rated for 4.8 to 6.8 V; the supply is 9 V" in given_volts
+    assert not any("rated stall torque" in text for text in given_volts)
     assert not any("rod" in text for text in sample_loads(inertial=False).assumed)
     assert not any("DS3225" in text for text in sample_loads(supply=6.0).assumed)
 
 
 @pytest.mark.parametrize(
-    ("servo", "supply", "said"),
+    ("servo", "supply", "text"),
     [
-        (Servo(name="X", stall_torque=2.0), None, "X at a voltage that is not known, that of its stall torque"),
+        (Servo(name="X", stall_torque=2.0), None, "X at an unknown voltage, the voltage of its rated stall torque"),
         (
             Servo(name="X", stall_torque=2.0),
             6.0,
-            "X: not known at which voltage its figures hold; taken as they are at 6 V",
+            "X: the voltage of its ratings is unknown; they are used unchanged at 6 V",
         ),
         (
             Servo(name="X", stall_torque=2.0, torque_at=6.0, no_load_speed=5.0),
             5.0,
-            "X: not known at which voltage its figures hold; taken as they are at 5 V",
+            "X: the voltage of its ratings is unknown; they are used unchanged at 5 V",
         ),
     ],
 )
-def test_a_voltage_that_is_not_known_is_said(servo, supply, said):
+def test_unknown_rated_voltage_is_an_assumption(servo, supply, text):
     motion = sample_motion()
     robot = motion.robot.replace(servos=((servo,) * 3,) * 6)
-    assert said in joint_loads(robot, motion, supply=supply).assumed
+    assert text in joint_loads(robot, motion, supply=supply).assumed
 
 
-def test_joints_without_a_servo_are_named():
+def test_joints_without_a_servo():
     motion = sample_motion()
     rows = [list(row) for row in motion.robot.servos]
     rows[2][1] = None
     some = joint_loads(motion.robot.replace(servos=rows), motion)
-    assert "the robot file names no servo for femur of LR: not judged" in some.assumed
+    assert "the robot file names no servo for femur of LR; no verdict there" in some.assumed
     assert np.isnan(some.factor[2, 1])
     assert np.isnan(some.factor).sum() == 1
     none = joint_loads(motion.robot.replace(servos=()), motion)
-    assert "the robot file names no servo for any joint: not judged" in none.assumed
+    assert "the robot file names no servo for any joint; no verdict there" in none.assumed
 
 
-def test_feet_out_of_reach_are_said():
+def test_feet_out_of_reach_are_an_assumption():
     motion = sample_motion()
     reach = motion.reach.copy()
     reach[3:5, 1] = 1
     found = joint_loads(motion.robot, replace(motion, reach=reach))
-    assert f"in 2 of {len(motion.time)} samples a foot is out of reach: its leg is as near as it gets" in found.assumed
+    assert (
+        f"a foot is out of reach in 2 of {len(motion.time)} samples; its leg takes the nearest reachable pose"
+        in found.assumed
+    )
 
 
-def test_masses_are_asked_for_by_name():
+def test_missing_masses():
     motion = sample_motion()
     with pytest.raises(MissingDataError, match=r"\[body\] mass_kg and \[leg\] mass_kg missing"):
         joint_loads(motion.robot.replace(body_mass=None, link_mass=None), motion)
 
 
 @pytest.mark.parametrize("supply", [0.0, -6.0, math.nan, math.inf])
-def test_a_supply_that_is_none_is_refused(supply):
+def test_invalid_supply_voltage(supply):
     with pytest.raises(InputError, match="supply is"):
         joint_loads(sample_motion().robot, sample_motion(), supply=supply)
 
 
-def test_a_motion_of_other_legs_is_refused():
+def test_motion_with_another_number_of_legs():
     robot = sample_motion().robot
     four = robot.from_dict({**robot.to_dict(), "legs": [robot.to_dict()["legs"][i] for i in (0, 2, 3, 5)]})
-    with pytest.raises(InputError, match="the motion is of 6 legs, robot 'strider' has 4"):
+    with pytest.raises(InputError, match="the motion has 6 legs, robot 'strider' has 4"):
         joint_loads(four, sample_motion())
 
 
-def test_a_payload_off_the_middle_tips_the_robot():
+def test_eccentric_payload_tips_the_robot():
     motion = sample_motion()
     assert joint_loads(motion.robot, motion).balanced
     tipping = joint_loads(motion.robot, motion, payload=Payload(3.0, (0.4, 0.0, 0.0)))
@@ -218,7 +222,7 @@ def test_a_payload_off_the_middle_tips_the_robot():
     assert tipping.to_dict()["balanced"] is False
 
 
-def test_the_document_is_plain_and_has_every_joint():
+def test_to_dict():
     found = sample_loads(payload=0.2)
     document = found.to_dict()
     assert [(row["leg"], row["joint"]) for row in document["joints"]] == [
@@ -234,26 +238,26 @@ def test_the_document_is_plain_and_has_every_joint():
     assert (nameless["servo"], nameless["stall_nm"], nameless["factor"]) == (None, None, None)
 
 
-# Robots whose fate is known
+# Robots whose servos are known to have survived or burnt
 
 
 @pytest.mark.parametrize("name", BURNT)
 @pytest.mark.parametrize("inertial", [True, False])
-def test_robots_that_burnt_are_below_one_and_a_half_by_their_femurs(name, inertial):
+def test_burnt_robots_have_femur_factors_below_1_5(name, inertial):
     found = sample_loads(name, inertial=inertial)
     worst = min(joint_verdicts(found), key=lambda verdict: verdict.factor)
     assert worst.joint == "femur"
-    assert worst.factor < BURNS_BELOW
+    assert worst.factor < BURNOUT_FACTOR
     assert worst.class_name in ("cannot stand", "stalls or burns")
 
 
 @pytest.mark.parametrize("living", ["phantomx", "strider"])
 @pytest.mark.parametrize("gait", ["tripod", "wave"])
-def test_robots_that_live_come_out_better_than_those_that_burnt(living, gait):
+def test_surviving_robots_have_larger_factors_than_burnt_ones(living, gait):
     for dead in BURNT:
         assert sample_loads(living, gait).factor.min() > sample_loads(dead, gait).factor.min()
 
 
-def test_the_burnt_robots_weigh_what_their_builders_say():
+def test_masses_of_the_burnt_robots():
     assert total_mass(robot_of("burnt-5kg")) == pytest.approx(5.0)
     assert total_mass(robot_of("burnt-mg996r")) == pytest.approx(1.8 + 0.25, abs=0.001)

@@ -1,4 +1,4 @@
-"""docs/loads.md: its table is what the functions say now, and its blocks of code run."""
+"""docs/loads.md: the table matches the functions, and the code runs."""
 
 import re
 from pathlib import Path
@@ -28,7 +28,7 @@ def _worst(factor):
 
 
 def six_feet(name):
-    """Least factor of standing still on all feet, where the walk begins."""
+    """Smallest factor when standing on all feet, at the start of the walk."""
     motion = sample_motion(name)
     start = motion.body[0]
     torques, _ = joint_torques(motion.robot, motion.angles[0], start, np.ones(6, dtype=bool))
@@ -37,8 +37,8 @@ def six_feet(name):
         return stall / np.abs(torques)
 
 
-def fates():
-    """The lines of the table."""
+def known_robots():
+    """Rows of the table."""
     lines = [
         "| robot | fate | tripod walk | class | heat | 30 mm higher | class | on six feet | class |",
         "| --- | --- | --- | --- | --- | --- | --- | --- | --- |",
@@ -54,12 +54,12 @@ def fates():
     return lines
 
 
-def test_the_table_of_fates_is_what_is_worked_out_now():
+def test_table_of_known_robots():
     block = re.search(r"<!-- table: fates -->\n(.*?)<!-- end -->", TEXT, flags=re.DOTALL)
-    assert block[1].splitlines() == fates()
+    assert block[1].splitlines() == known_robots()
 
 
-def test_what_the_page_says_of_the_phantomx():
+def test_statements_about_the_phantomx():
     walk = sample_loads("phantomx")
     assert walk.factor.min() < 1.5
     motion, high = sample_motion("phantomx"), sample_motion("phantomx", body_height=0.12)
@@ -82,6 +82,6 @@ def test_what_the_page_says_of_the_phantomx():
 
 
 @pytest.mark.parametrize("block", re.findall(r"```python\n(.*?)```", TEXT, flags=re.DOTALL))
-def test_the_code_on_the_page_runs(block, capsys):
+def test_code_runs(block, capsys):
     exec(compile(block, str(PAGE), "exec"), {})
     assert capsys.readouterr().out

@@ -1,4 +1,4 @@
-"""Currents, the battery, and peaks that coincide, against sums and motions made for it."""
+"""Supply current, battery life and coinciding peaks, for prescribed torques."""
 
 import math
 from dataclasses import replace
@@ -25,7 +25,7 @@ def samples():
     return len(sample_loads().motion.time)
 
 
-def test_current_goes_with_torque_of_either_sign_up_to_the_stall():
+def test_current_is_proportional_to_torque_up_to_the_stall_current():
     drawn = supply_load(with_torques(np.array([0.5, -0.5, 1.0, 0.0, 2.0, 3.0])))
     np.testing.assert_allclose(drawn.current, 1 + 1 + 2 + 0 + 4 + 4)
     assert drawn.peak_current == pytest.approx(12)
@@ -33,14 +33,14 @@ def test_current_goes_with_torque_of_either_sign_up_to_the_stall():
     assert drawn.unknown == ()
 
 
-def test_the_current_of_a_torque_is_the_motors_own_at_any_voltage_but_the_stall_is_not():
+def test_voltage_changes_the_stall_current_only():
     torques = np.array([0.5, 0, 0, 0, 0, 0.0])
     assert supply_load(with_torques(torques, supply=12.0)).peak_current == pytest.approx(1)
     assert supply_load(with_torques(torques * 20, supply=12.0)).peak_current == pytest.approx(8)
     assert supply_load(with_torques(torques * 20)).peak_current == pytest.approx(4)
 
 
-def test_the_battery_lasts_capacity_over_mean_current():
+def test_battery_life_is_capacity_over_mean_current():
     ramp = np.linspace(0, 2, samples())[:, None] * np.eye(6)[0]
     drawn = supply_load(with_torques(ramp), capacity=3.0)
     assert drawn.mean_current == pytest.approx(2.0)
@@ -49,7 +49,7 @@ def test_the_battery_lasts_capacity_over_mean_current():
     assert supply_load(with_torques(np.zeros(6)), capacity=3.0).battery_time == math.inf
 
 
-def test_a_stall_current_that_is_not_known_leaves_the_current_unknown():
+def test_unknown_stall_current():
     drawn = supply_load(sample_loads(), capacity=3.0)
     assert drawn.unknown == ("DS3225",)
     assert (drawn.current, drawn.peak_current, drawn.mean_current, drawn.battery_time) == (None,) * 4
@@ -61,41 +61,42 @@ def test_a_stall_current_that_is_not_known_leaves_the_current_unknown():
     assert some.current is None
 
 
-def test_the_burnt_robot_draws_amperes():
+def test_current_of_an_overloaded_robot():
     drawn = supply_load(sample_loads("burnt-mg996r"))
     found = sample_loads("burnt-mg996r")
     expected = (np.minimum(np.abs(found.torques), 1.079) * 2.5 / 1.079).sum((1, 2))
     np.testing.assert_allclose(drawn.current, expected)
 
 
-def test_peaks_that_coincide_are_warned_of():
+def test_coinciding_peaks_give_a_warning():
     n = samples()
     torques = np.full((n, 6), 0.1)
     torques[7, :3] = 1.0
     torques[9, 3] = 1.5
     torques[11, 4:] = 1.2
     drawn = supply_load(with_torques(torques))
-    assert drawn.together == ("LF", "LM", "LR")
-    assert drawn.moment == sample_loads().motion.time[7]
-    assert f"at {drawn.moment:.2f} s 3 legs (LF LM LR) bear their peaks at once, 6.6 A in all" in drawn.warning
+    assert drawn.peak_legs == ("LF", "LM", "LR")
+    assert drawn.peak_time == sample_loads().motion.time[7]
+    peaks = "the peak loads of 3 legs (LF LM LR) coincide, 6.6 A in total"
+    assert f"at {drawn.peak_time:.2f} s {peaks}" in drawn.warning
     torques[7, 0] = 0.5
     torques[3, 0] = 1.0
     apart = supply_load(with_torques(torques))
-    assert len(apart.together) == 2
+    assert len(apart.peak_legs) == 2
     assert apart.warning is None
 
 
-def test_without_currents_the_warning_has_no_amperes():
+def test_warning_without_known_currents():
     found = with_torques(np.full((samples(), 6), 0.5))
     unknown = replace(found, robot=found.robot.replace(servos=((Servo(name="S", stall_torque=2.0),) * 3,) * 6))
-    assert "bear their peaks at once: a supply" in supply_load(unknown).warning
+    assert "coincide: a weaker supply" in supply_load(unknown).warning
 
 
-def test_legs_that_bear_nothing_have_no_peak():
-    assert supply_load(with_torques(np.zeros(6))).together == ()
+def test_unloaded_legs_have_no_peak():
+    assert supply_load(with_torques(np.zeros(6))).peak_legs == ()
 
 
 @pytest.mark.parametrize("capacity", [0.0, -1.0, math.nan, math.inf])
-def test_a_capacity_that_is_none_is_refused(capacity):
+def test_invalid_capacity(capacity):
     with pytest.raises(InputError, match="capacity is"):
         supply_load(sample_loads(), capacity=capacity)

@@ -35,7 +35,7 @@ def test_agrees_with_pinocchio(seed):
     np.testing.assert_allclose(torques, reference.residual(angles, body, forces)[1], rtol=0, atol=1e-12)
     solved = contact_forces(robot, angles, body, contacts, payload=payload, gravity=gravity)
     np.testing.assert_array_equal(forces, solved.forces)
-    # With any other forces on the feet too.
+    # Also with arbitrary forces on the feet.
     forces = rng.normal(size=(6, 3))
     torques, same = joint_torques(robot, angles, body, contacts, gravity=gravity, forces=forces)
     np.testing.assert_array_equal(same, forces)
@@ -124,11 +124,11 @@ def test_jit_and_derivative_of_the_peak():
     np.testing.assert_allclose(by_mass, (ahead - back) / 2e-6, rtol=0, atol=1e-6)
 
 
-def test_what_is_missing_or_wrong():
+def test_errors():
     robot, angles = hexapod(), standing()
     with pytest.raises(MissingDataError, match=r"\[leg\] mass_kg missing"):
         joint_torques(robot.replace(link_mass=None), angles, Pose(), ALL)
-    with pytest.raises(InputError, match="payload's mass is nan"):
+    with pytest.raises(InputError, match="payload mass is nan"):
         joint_torques(robot, angles, Pose(), ALL, np.nan)
     with pytest.raises(InputError, match="no foot is on the ground"):
         joint_torques(robot, angles, Pose(), ~ALL)

@@ -1,4 +1,4 @@
-"""Verdicts: the classes at their bounds, the heat, the speed, in numbers and in words."""
+"""Joint verdicts: class boundaries, continuous load, speed, and their text."""
 
 import math
 
@@ -48,57 +48,57 @@ def verdict(**changes):
         (math.nan, "unknown"),
     ],
 )
-def test_the_classes_begin_where_they_should(factor, name):
+def test_class_boundaries(factor, name):
     assert class_of(factor) == name
 
 
 @given(factor=st.floats(0, 100))
-def test_a_greater_factor_is_never_in_a_worse_class(factor):
+def test_class_is_monotonic_in_the_factor(factor):
     names = [name for _, name in CLASSES]
     assert names.index(class_of(factor)) <= names.index(class_of(factor * 1.5 + 0.1))
 
 
 @given(stall=st.floats(0.1, 10), peak=st.floats(0.01, 10), rms=st.floats(0, 5))
-def test_numbers(stall, peak, rms):
+def test_factor_and_thermal_ratio(stall, peak, rms):
     one = verdict(stall_torque=stall, peak=peak, rms=rms)
     assert one.factor == stall / peak
     assert one.thermal_ratio == pytest.approx(5 * rms / stall)
-    assert one.lasting == (one.thermal_ratio <= 1)
-    assert one.strong_enough == one.keeps("factor") == (stall >= 3 * peak or stall / peak >= 3)
-    assert one.keeps("continuous") == one.lasting
+    assert one.within_continuous_limit == (one.thermal_ratio <= 1)
+    assert one.strong_enough == one.satisfies("factor") == (stall >= 3 * peak or stall / peak >= 3)
+    assert one.satisfies("continuous") == one.within_continuous_limit
     assert one.class_name == class_of(stall / peak)
 
 
-def test_a_joint_that_bears_nothing_is_carried_by_any_servo_but_by_none():
+def test_joint_without_load():
     assert verdict(peak=0.0, rms=0.0).factor == math.inf
-    assert verdict(peak=0.0, rms=0.0).text() == "bears nothing"
+    assert verdict(peak=0.0, rms=0.0).text() == "no load"
     assert math.isnan(verdict(peak=0.0, servo=None, stall_torque=math.nan).factor)
 
 
 @pytest.mark.parametrize(
     ("changes", "text"),
     [
-        ({}, "carries with factor 3.0"),
-        ({"peak": 2.4}, "stalls or burns: factor 1.25, too weak by 4.20 N m for factor 3"),
-        ({"peak": 4.0, "rms": 0.0}, "cannot stand: factor 0.75, too weak by 9.00 N m for factor 3"),
-        ({"peak": 1.5, "safety_factor": 2.0}, "carries with factor 2.0"),
-        ({"rms": 0.9}, "carries with factor 3.0; warm: its lasting load is 1.5 times a fifth of its stall torque"),
-        ({"peak_speed": 8.0, "utilisation": 1.4}, "carries with factor 3.0; too slow by 115 deg/s"),
+        ({}, "safety factor 3.0"),
+        ({"peak": 2.4}, "stalls or burns: safety factor 1.25, 4.20 N m short of factor 3"),
+        ({"peak": 4.0, "rms": 0.0}, "cannot stand: safety factor 0.75, 9.00 N m short of factor 3"),
+        ({"peak": 1.5, "safety_factor": 2.0}, "safety factor 2.0"),
+        ({"rms": 0.9}, "safety factor 3.0; runs warm: rms torque 1.5 times its continuous limit (1/5 of stall)"),
+        ({"peak_speed": 8.0, "utilisation": 1.4}, "safety factor 3.0; too slow by 115 deg/s"),
         (
             {"utilisation": 1.1},
-            "carries with factor 3.0; too slow under load: torque and speed together are 1.10 of what it gives",
+            "safety factor 3.0; too slow under load: 110% of its torque-speed line",
         ),
         (
             {"no_load_speed": math.nan, "utilisation": math.nan},
-            "carries with factor 3.0; the speed of S is unknown: give its no_load_rad_s in the robot file",
+            "safety factor 3.0; the no-load speed of S is unknown: set no_load_rad_s in the robot file",
         ),
         (
             {"servo": None, "stall_torque": math.nan, "no_load_speed": math.nan, "utilisation": math.nan},
-            "no servo is named in the robot file; 3.00 N m are needed",
+            "the robot file names no servo; 3.00 N m required",
         ),
     ],
 )
-def test_words(changes, text):
+def test_text(changes, text):
     assert verdict(**changes).text() == text
 
 
@@ -114,12 +114,12 @@ def test_words(changes, text):
         ({"stall_torque": math.nan, "servo": None}, False, False),
     ],
 )
-def test_what_does_must_keep_the_rule_and_be_known_to_be_fast_enough(changes, factor, continuous):
-    assert verdict(**{"rms": 0.5, **changes}).does("factor") is factor
-    assert verdict(**{"rms": 0.5, **changes}).does("continuous") is continuous
+def test_sufficient_servo_satisfies_the_rule_and_is_fast_enough(changes, factor, continuous):
+    assert verdict(**{"rms": 0.5, **changes}).is_sufficient("factor") is factor
+    assert verdict(**{"rms": 0.5, **changes}).is_sufficient("continuous") is continuous
 
 
-def test_verdicts_are_of_every_joint_in_order():
+def test_verdicts_cover_every_joint_in_order():
     found = sample_loads()
     verdicts = joint_verdicts(found, safety_factor=2.0)
     assert [v.leg for v in verdicts[::3]] == list(found.robot.leg_codes)
@@ -134,21 +134,21 @@ def test_verdicts_are_of_every_joint_in_order():
         assert one.safety_factor == 2.0
 
 
-def test_a_servo_without_speed_is_asked_for_it_by_name():
+def test_unknown_no_load_speed():
     motion = sample_motion()
     robot = motion.robot.replace(servos=((Servo(name="mystery", stall_torque=9.0),) * 3,) * 6)
     for one in joint_verdicts(joint_loads(robot, motion)):
-        assert "the speed of mystery is unknown: give its no_load_rad_s" in one.text()
+        assert "the no-load speed of mystery is unknown: set no_load_rad_s" in one.text()
         assert not one.fast_enough
 
 
 @pytest.mark.parametrize("factor", [0.0, -1.0, math.nan, math.inf])
-def test_a_safety_factor_that_is_none_is_refused(factor):
+def test_invalid_safety_factor(factor):
     with pytest.raises(InputError, match="safety_factor is"):
         joint_verdicts(sample_loads(), safety_factor=factor)
 
 
-def test_a_rule_that_is_none_is_refused_with_those_there_are():
+def test_unknown_rule():
     with pytest.raises(UnknownNameError, match="Did you mean 'continuous'"):
         require_rule("continous")
     require_rule("factor")

@@ -1,1 +1,1 @@
-"""What the joints bear: forces on the feet, torques, servos."""
+"""Contact forces, joint torques and servo sizing."""

@@ -1,10 +1,11 @@
-"""How the points of the legs accelerate, from how joints and body move: the rigid-body recursion, exactly.
+"""Accelerations of the leg points, from the rates of the joints and of the body.
 
-A point at ``p`` in the moving body frame B, with joints that move it by ``p'`` and ``p''`` in B, accelerates by
+A point at ``p`` in the moving body frame B, with velocity ``p'`` and acceleration ``p''`` relative to B, has the
+acceleration
 
     a = a_B + alpha x p + omega x (omega x p) + 2 omega x p' + p''
 
-all in B's axes: of the origin, Euler, centripetal, Coriolis and relative acceleration (any textbook of mechanics).
+in B's axes: origin, Euler, centripetal, Coriolis and relative acceleration (any textbook of mechanics).
 """
 
 from __future__ import annotations
@@ -18,69 +19,69 @@ from tarsus.arrays import Array, Namespace, as_array, as_floats, require_finite,
 from tarsus.kinematics.pose import Pose
 from tarsus.robot.robot import Robot
 
-__all__ = ["BodyRates", "JointRates", "differences", "point_accelerations", "turning"]
+__all__ = ["BodyRates", "JointRates", "angular_matrix", "differences", "point_accelerations"]
 
 
-def _still() -> Array:
+def _zeros() -> Array:
     return np.zeros(3)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class BodyRates:
-    """How the pose of B in G changes; its speed has no bearing on forces.
+    """Angular rates and acceleration of B in G; forces do not depend on its linear velocity.
 
     Attributes
     ----------
     angular_velocity : array, shape (..., 3)
-        In G [rad/s].
+        Angular velocity, in G [rad/s].
     angular_acceleration : array, shape (..., 3)
-        In G [rad/s^2].
+        Angular acceleration, in G [rad/s^2].
     acceleration : array, shape (..., 3)
-        Of B's origin, in G [m/s^2].
+        Linear acceleration of B's origin, in G [m/s^2].
     """
 
-    angular_velocity: Array = field(default_factory=_still)
-    angular_acceleration: Array = field(default_factory=_still)
-    acceleration: Array = field(default_factory=_still)
+    angular_velocity: Array = field(default_factory=_zeros)
+    angular_acceleration: Array = field(default_factory=_zeros)
+    acceleration: Array = field(default_factory=_zeros)
 
     @classmethod
     def of(cls, time: Array, body: Pose) -> Self:
-        """Differentiate poses sampled in time, as `differences` does.
+        """Differentiate sampled body poses with `differences`.
 
         Parameters
         ----------
         time : array, shape (n,)
-            Moments [s].
+            Sample times [s].
         body : Pose
-            Places of B in G, ``(n,)``.
+            Poses of B in G, ``(n,)``.
 
         Notes
         -----
-        With a rotation R, ``R' R^T`` is the angular velocity's matrix, and the skew part of ``R'' R^T`` that of
-        the angular acceleration.
+        For a rotation R, ``R' R^T`` is the skew matrix of the angular velocity, and the skew part of ``R'' R^T`` is
+        that of the angular acceleration.
         """
         first, second = differences(time, np.broadcast_to(body.rotation, (len(time), 3, 3)))
-        back = np.swapaxes(body.rotation, -1, -2)
+        inverse = np.swapaxes(body.rotation, -1, -2)
         return cls(
-            angular_velocity=_axis(first @ back),
-            angular_acceleration=_axis(second @ back),
+            angular_velocity=_axis(first @ inverse),
+            angular_acceleration=_axis(second @ inverse),
             acceleration=differences(time, np.broadcast_to(body.position, (len(time), 3)))[1],
         )
 
     def within(self, xp: Namespace, rotation: Array) -> tuple[Array, Array, Array]:
-        """Return the three in B's axes, for rotations ``(..., 3, 3)`` of B in G."""
-        turned = []
+        """Return angular velocity, angular acceleration and acceleration in B's axes, for rotations of B in G."""
+        rotated = []
         for name in ("angular_velocity", "angular_acceleration", "acceleration"):
             value = as_floats(xp, getattr(self, name), name=name)
             require_shape(name, value, (3,))
             require_finite(name, value)
-            turned.append(xp.matmul(value[..., None, :], rotation)[..., 0, :])
-        return turned[0], turned[1], turned[2]
+            rotated.append(xp.matmul(value[..., None, :], rotation)[..., 0, :])
+        return rotated[0], rotated[1], rotated[2]
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class JointRates:
-    """How the joint angles change.
+    """Velocities and accelerations of the joints.
 
     Attributes
     ----------
@@ -93,18 +94,23 @@ class JointRates:
 
 
 def differences(time: Array, values: Array) -> tuple[Array, Array]:
-    """Return first and second derivatives of samples, by central differences; steps in time may differ.
+    """Return first and second time derivatives by central differences; the time steps may be uneven.
 
-    Those of the parabola through each sample and its neighbours: with even steps h the errors are ``h^2/6`` times
-    the third and ``h^2/12`` times the fourth derivative. The first and last sample take their neighbour's parabola,
-    two samples a straight line, and a single one stands still.
+    The derivatives are those of the parabola through each sample and its two neighbours. With even steps h the errors
+    are ``h^2/6`` times the third and ``h^2/12`` times the fourth derivative. The first and last sample use their
+    neighbour's parabola; two samples give a straight line, a single sample zero.
 
     Parameters
     ----------
     time : array, shape (n,)
-        Moments [s].
+        Sample times [s].
     values : array, shape (n, ...)
-        What is sampled.
+        Sampled values.
+
+    Returns
+    -------
+    first, second : array, shape (n, ...)
+        Derivatives per second and per second squared.
     """
     if len(time) == 1:
         return np.zeros_like(values), np.zeros_like(values)
@@ -120,13 +126,13 @@ def differences(time: Array, values: Array) -> tuple[Array, Array]:
 
 
 def _axis(matrix: Array) -> Array:
-    """Return the vectors of the skew parts of matrices ``(..., 3, 3)``."""
+    """Return the axial vectors of the skew parts of matrices ``(..., 3, 3)``."""
     skew = (matrix - np.swapaxes(matrix, -1, -2)) / 2
     return np.stack([skew[..., 2, 1], skew[..., 0, 2], skew[..., 1, 0]], axis=-1)
 
 
-def turning(xp: Namespace, omega: Array, alpha: Array) -> Array:
-    """Return the matrix ``(..., 3, 3)`` that takes an arm to ``alpha x arm + omega x (omega x arm)``."""
+def angular_matrix(xp: Namespace, omega: Array, alpha: Array) -> Array:
+    """Return the matrix ``(..., 3, 3)`` that maps r to ``alpha x r + omega x (omega x r)``."""
     x, y, z = (omega[..., i] for i in range(3))
     u, v, w = (alpha[..., i] for i in range(3))
     rows = (-y * y - z * z, x * y - w, x * z + v, x * y + w, -x * x - z * z, y * z - u, x * z - v, y * z + u)
@@ -135,9 +141,9 @@ def turning(xp: Namespace, omega: Array, alpha: Array) -> Array:
 
 
 def point_accelerations(
-    xp: Namespace, robot: Robot, angles: Array, points: Array, joints: JointRates, turns: tuple[Array, Array, Array]
+    xp: Namespace, robot: Robot, angles: Array, points: Array, joints: JointRates, body: tuple[Array, Array, Array]
 ) -> Array:
-    """Return the accelerations of the leg points against G, in B's axes.
+    """Return the accelerations of the leg points relative to G, in B's axes.
 
     Parameters
     ----------
@@ -150,9 +156,9 @@ def point_accelerations(
     points : array, shape (..., legs, 4, 3)
         Leg points in B [m].
     joints : JointRates
-        How the angles change.
-    turns : tuple of array, shape (..., 3)
-        The body's angular velocity, angular acceleration and acceleration in B's axes: `BodyRates.within`.
+        Joint velocities and accelerations.
+    body : tuple of array, shape (..., 3)
+        Angular velocity, angular acceleration and acceleration of the body in B's axes: `BodyRates.within`.
 
     Returns
     -------
@@ -162,7 +168,7 @@ def point_accelerations(
     Raises
     ------
     InputError
-        If a rate is not finite or not of the angles' kind.
+        If a rate is not finite or has the wrong shape.
     """
     rates = []
     for name, value in (("velocity", joints.velocity), ("acceleration", joints.acceleration)):
@@ -170,26 +176,26 @@ def point_accelerations(
         require_shape(f"joint {name}", rate, (robot.legs, 3))
         require_finite(f"joint {name}", rate)
         rates.append(rate)
-    omega, alpha, along = turns
+    omega, alpha, linear = body
     first, second = _relative(xp, robot, as_array(xp, angles), rates[0], rates[1])
-    flat = [xp.reshape(part, (*part.shape[:-3], 4 * robot.legs, 3)) for part in (points, first, second)]
-    coriolis = 2 * turning(xp, xp.zeros_like(omega), omega)
-    total = xp.matmul(flat[0], xp.matrix_transpose(turning(xp, omega, alpha)))
-    total = total + xp.matmul(flat[1], xp.matrix_transpose(coriolis)) + flat[2] + along[..., None, :]
+    flat = [xp.reshape(values, (*values.shape[:-3], 4 * robot.legs, 3)) for values in (points, first, second)]
+    coriolis = 2 * angular_matrix(xp, xp.zeros_like(omega), omega)
+    total = xp.matmul(flat[0], xp.matrix_transpose(angular_matrix(xp, omega, alpha)))
+    total = total + xp.matmul(flat[1], xp.matrix_transpose(coriolis)) + flat[2] + linear[..., None, :]
     return xp.reshape(total, (*total.shape[:-2], robot.legs, 4, 3))
 
 
 def _relative(xp: Namespace, robot: Robot, angles: Array, velocity: Array, acceleration: Array) -> tuple[Array, Array]:
-    """Return first and second derivatives of the leg points in B.
+    """Return the velocities and accelerations of the leg points relative to B.
 
-    In the leg's plane, which turns by h, a point at r outward, s sideways and z up moves by ``r' - s h'`` outward,
-    ``r h'`` sideways and ``z'`` up; once more derived, its parts are those of `second` below.
+    With the leg's plane at heading h, a point r outward, s sideways and z up has the velocity ``r' - s h'`` outward,
+    ``r h'`` sideways and ``z'`` up. Differentiating once more gives `second` below.
     """
     heading = as_array(xp, robot.mount_yaw) + angles[..., 0]
     cos, sin = xp.cos(heading), xp.sin(heading)
-    turn, turn2 = velocity[..., 0], acceleration[..., 0]
+    yaw1, yaw2 = velocity[..., 0], acceleration[..., 0]
     side = as_array(xp, robot.femur_axis_offset)[..., 0]
-    r, z = as_array(xp, robot.coxa), xp.zeros_like(turn)
+    r, z = as_array(xp, robot.coxa), xp.zeros_like(yaw1)
     r1 = r2 = z1 = z2 = z
     slope = slope1 = slope2 = z
     first, second = [z, z, z], [z, z, z]
@@ -201,11 +207,11 @@ def _relative(xp: Namespace, robot: Robot, angles: Array, velocity: Array, accel
             square = slope1 * slope1
             r, r1, r2 = r + out, r1 - up * slope1, r2 - out * square - up * slope2
             z1, z2 = z1 + out * slope1, z2 - up * square + out * slope2
-        away, across = r1 - side * turn, r * turn
-        first += [away * cos - across * sin, away * sin + across * cos, z1]
-        away = r2 - r * turn * turn - side * turn2
-        across = r * turn2 + 2 * r1 * turn - side * turn * turn
-        second += [away * cos - across * sin, away * sin + across * cos, z2]
-    both = (stack_last(xp, tuple(parts)) for parts in (first, second))
+        outward, sideways = r1 - side * yaw1, r * yaw1
+        first += [outward * cos - sideways * sin, outward * sin + sideways * cos, z1]
+        outward = r2 - r * yaw1 * yaw1 - side * yaw2
+        sideways = r * yaw2 + 2 * r1 * yaw1 - side * yaw1 * yaw1
+        second += [outward * cos - sideways * sin, outward * sin + sideways * cos, z2]
+    both = (stack_last(xp, tuple(columns)) for columns in (first, second))
     shaped = [xp.reshape(flat, (*flat.shape[:-1], 4, 3)) for flat in both]
     return shaped[0], shaped[1]

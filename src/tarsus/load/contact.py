@@ -1,4 +1,4 @@
-"""What the ground pushes on the feet with, so that the robot is in equilibrium."""
+"""Contact forces in static equilibrium."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from tarsus.kinematics.mass import centre_of_mass, total_mass
 from tarsus.kinematics.pairs import columns_of
 from tarsus.kinematics.polygon import as_mask, margin_and_nearest
 from tarsus.kinematics.pose import Pose
-from tarsus.load.load_distribution import shared_load
+from tarsus.load.load_distribution import load_fractions
 from tarsus.load.payload import Payload, as_payload
 from tarsus.robot.robot import Robot
 
@@ -36,21 +36,21 @@ __all__ = ["GRAVITY", "ContactForces", "contact_forces"]
 GRAVITY = (0.0, 0.0, -9.80665)
 """Standard gravity in the ground frame [m/s^2]."""
 
-_ROUNDING = 1e-12  # how far outside the polygon rounding may put a load that acts on its very edge [m]
-_BLOCK = 1024  # samples in a block: the pairs of their feet stay in a core's second-level cache
+_ROUNDING = 1e-12  # of the margin of a load on the edge of the support polygon [m]
+_BLOCK = 1024  # samples in a block, so that the pairs of their feet fit in the second-level cache
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class ContactForces:
-    """The ground's forces on the feet.
+    """Contact forces on the feet.
 
     Attributes
     ----------
     forces : array, shape (..., legs, 3)
-        Ground on foot, in G [N]. Where there is no equilibrium, those with which the robot begins to tip.
+        Ground on foot, in G [N]. Without an equilibrium, the forces at the onset of tipping.
     margin : array, shape (...)
-        How far inside the polygon of the feet the load acts, seen along gravity [m]. Negative: the robot tips, and
-        the load is this far outside.
+        Distance of the centre of mass from the nearest edge of the support polygon, projected along gravity [m];
+        negative outside: the robot tips.
     weight : array, shape (...)
         Weight of robot and payload [N].
     """
@@ -61,12 +61,12 @@ class ContactForces:
 
     @cached_property
     def balanced(self) -> Array:
-        """Whether there is an equilibrium ``(...)``; a load on the very edge of the polygon still has one."""
+        """Whether there is an equilibrium, array of bool ``(...)``; a load on the edge of the polygon has one."""
         return self.margin >= -_ROUNDING
 
     @property
     def tipping_moment(self) -> Array:
-        """Moment that is missing for an equilibrium ``(...)`` [N m]; 0 where there is one."""
+        """Unbalanced moment ``(...)`` [N m]; 0 in equilibrium."""
         xp = namespace(self.margin)
         return self.weight * xp.maximum(-self.margin, xp.zeros_like(self.margin))
 
@@ -81,10 +81,10 @@ def contact_forces(
     gravity: Sequence[float] = GRAVITY,
     points: Array | None = None,
 ) -> ContactForces:
-    """Return the forces along gravity that hold the robot up: not negative, least squares over more than three feet.
+    """Return contact forces along gravity in equilibrium: non-negative, with the least sum of squares.
 
-    A foot that would have to pull gets none, and the rest balance. A settled rigid robot leaves friction undetermined;
-    forces along gravity alone are the conservative case for the joints.
+    A foot that would have to pull carries nothing. For a rigid robot at rest the friction forces are statically
+    indeterminate; forces along gravity alone are the conservative case for the joints.
 
     Parameters
     ----------
@@ -93,22 +93,22 @@ def contact_forces(
     angles : array, shape (..., legs, 3)
         Joint angles [rad].
     body : Pose
-        Places of B in G.
+        Pose of B in G.
     contacts : array of bool, shape (..., legs)
         Which feet are on the ground.
     payload : Payload or float
-        What the body carries; a number is a mass at its origin [kg].
+        Payload on the body; a number is a mass at the body's origin [kg].
     gravity : sequence of float
-        Gravity in G [m/s^2]: tilted, it is that of a slope.
+        Gravity in G [m/s^2]; tilted, it represents a slope.
     points : array, shape (..., legs, 4, 3), optional
-        Leg points in B, where they are known already.
+        Leg points in B [m], if already computed.
 
     Raises
     ------
     MissingDataError
         If the robot's masses are unknown.
     InputError
-        If a shape is wrong, a value is not finite, no foot is down, or there is no gravity.
+        If a shape is wrong, a value is not finite, no foot is on the ground, or gravity is 0.
     """
     robot.require_masses()
     carried = as_payload(payload)
@@ -121,109 +121,122 @@ def contact_forces(
     load = (com * mass[..., None] + carried.mass * as_array(xp, np.array(carried.position))) / (
         mass[..., None] + carried.mass
     )
-    # Seen along gravity, with the load at the origin, only the feet's two coordinates across it count.
-    across = xp.matmul(as_array(xp, axes[1:]), as_array(xp, body.rotation))
-    feet = xp.matmul(points[..., 3, :] - load[..., None, :], xp.matrix_transpose(across))
+    # With the load at the origin, only the foot coordinates perpendicular to gravity matter.
+    projection = xp.matmul(as_array(xp, axes[1:]), as_array(xp, body.rotation))
+    feet = xp.matmul(points[..., 3, :] - load[..., None, :], xp.matrix_transpose(projection))
     batch = broadcast_shapes("robot, angles, body and contacts", feet.shape[:-2], contacts.shape[:-1])
-    shares, margin, _ = shared(xp, feet, contacts, batch)
+    fractions, margin, _ = distribute_load(xp, feet, contacts, batch)
     weight = (mass + carried.mass) * strength + xp.zeros(batch, dtype=feet.dtype)
-    forces = (shares * weight[..., None])[..., None] * as_array(xp, axes[0])
+    forces = (fractions * weight[..., None])[..., None] * as_array(xp, axes[0])
     return ContactForces(forces=forces, margin=margin, weight=weight)
 
 
 def checked_contacts(xp: Namespace, robot: Robot, contacts: Array) -> Array:
-    """Return which feet are down, refusing samples in which none is.
+    """Validate contacts; every sample needs a foot on the ground.
 
     Parameters
     ----------
     xp : namespace
         The array library.
     robot : Robot
-        Whose feet.
+        The robot.
     contacts : array of bool, shape (..., legs)
         Which feet are on the ground.
+
+    Returns
+    -------
+    array of bool, shape (..., legs)
+        The same.
 
     Raises
     ------
     InputError
-        If the shape is wrong, they are not booleans, or no foot is down in some sample; the message says in which.
+        If the shape is wrong, the contacts are not boolean, or a sample has no foot on the ground; the message names
+        the sample.
     """
     contacts = as_mask(xp, contacts, name="contacts")
     require_shape("contacts", contacts, (robot.legs,))
     if not is_traced(contacts) and not bool(xp.all(xp.any(contacts, axis=-1))):
-        hanging = np.argwhere(~np.asarray(contacts).any(-1))
-        where = f" in sample {', '.join(map(str, hanging[0]))}" if contacts.ndim > 1 else ""
-        more = f" (and {len(hanging) - 1} more)" if len(hanging) > 1 else ""
-        raise InputError(f"no foot is on the ground{where}{more}: nothing carries the robot")
+        airborne = np.argwhere(~np.asarray(contacts).any(-1))
+        where = f" in sample {', '.join(map(str, airborne[0]))}" if contacts.ndim > 1 else ""
+        more = f" (and {len(airborne) - 1} more)" if len(airborne) > 1 else ""
+        raise InputError(f"no foot is on the ground{where}{more}; at least one must be")
     return contacts
 
 
 def upward(gravity: Sequence[float]) -> tuple[float, np.ndarray[Any, Any]]:
-    """Return the strength of gravity, and unit vectors in G: against it, and two across it and each other.
+    """Return the magnitude of gravity and an orthonormal basis in G whose first axis points against gravity.
 
     Parameters
     ----------
     gravity : sequence of float
         Gravity in G [m/s^2].
 
+    Returns
+    -------
+    magnitude : float
+        Magnitude of gravity [m/s^2].
+    basis : array, shape (3, 3)
+        Unit vectors as rows: up, and two perpendicular to it.
+
     Raises
     ------
     InputError
-        If it is not three finite numbers, or 0.
+        If gravity is not three finite numbers, or is 0.
     """
     vector = as_floats(np, gravity, name="gravity")
     require_finite("gravity", vector)
     if vector.shape != (3,) or not vector.any():
-        raise InputError(f"gravity is {gravity!r}; it must be three numbers, not all of them 0")
+        raise InputError(f"gravity is {gravity!r}; it must be three finite numbers, not all 0")
     strength = float(np.linalg.norm(vector))
     up = -vector / strength
-    # Of x and y the one that is more across; on level ground the first is x itself.
-    aside = np.eye(3)[int(abs(up[0]) > abs(up[1]))]
-    first = aside - up * (aside @ up)
+    # Start from the axis, x or y, with the smaller component along gravity; on level ground that is x.
+    start = np.eye(3)[int(abs(up[0]) > abs(up[1]))]
+    first = start - up * (start @ up)
     first /= np.linalg.norm(first)
     return strength, np.stack([up, first, np.cross(up, first)])
 
 
-def shared(xp: Namespace, feet: Array, contacts: Array, batch: tuple[int, ...]) -> tuple[Array, Array, Array]:
-    """Return how feet share a load that acts at the origin of a plane, or the nearest point where it can act.
+def distribute_load(xp: Namespace, feet: Array, contacts: Array, batch: tuple[int, ...]) -> tuple[Array, Array, Array]:
+    """Return the load fractions of feet for a load at the origin, or at the nearest point of the support polygon.
 
     Parameters
     ----------
     xp : namespace
         The array library.
     feet : array, shape (..., legs, 2)
-        The feet in that plane [m].
+        Feet in the plane perpendicular to gravity [m].
     contacts : array of bool, shape (..., legs)
-        Which of them are down.
+        Which feet are on the ground.
     batch : tuple of int
-        The batch axes that these have together.
+        Common batch shape.
 
     Returns
     -------
-    shares : array, shape (..., legs)
-        Shares of the load, not negative.
+    fractions : array, shape (..., legs)
+        Fraction of the load on each foot, at least 0.
     margin : array, shape (...)
-        How far inside the polygon of the feet the load acts [m]; negative outside.
+        Distance of the load from the nearest edge of the support polygon [m]; negative outside.
     nearest : array, shape (..., 2)
-        The nearest point of the polygon: the origin where that is inside [m].
+        Point of the support polygon nearest to the load [m]; the origin if the load is inside.
     """
     legs = feet.shape[-2]
     if xp is not np:
-        rows = _share_block(xp, feet, contacts, batch, ())
+        rows = _distribute_block(xp, feet, contacts, batch, ())
     else:
         rows = np.empty((legs + 3, *batch))
         for index in batch_blocks(batch, _BLOCK):
-            part = (slice(None), *index)
-            rows[part] = _share_block(np, feet, contacts, batch, index).reshape(rows[part].shape)
+            selection = (slice(None), *index)
+            rows[selection] = _distribute_block(np, feet, contacts, batch, index).reshape(rows[selection].shape)
     by_sample = xp.reshape(xp.permute_dims(xp.reshape(rows, (legs + 3, -1)), (1, 0)), (*batch, legs + 3))
     return by_sample[..., :legs], by_sample[..., legs], by_sample[..., legs + 1 :]
 
 
-def _share_block(xp: Namespace, feet: Array, contacts: Array, batch: tuple[int, ...], index: Index) -> Array:
-    both = columns_of(xp, feet, batch, index, tail=2)
-    x, y = both[0, ...], both[1, ...]
+def _distribute_block(xp: Namespace, feet: Array, contacts: Array, batch: tuple[int, ...], index: Index) -> Array:
+    coordinates = columns_of(xp, feet, batch, index, tail=2)
+    x, y = coordinates[0, ...], coordinates[1, ...]
     down = columns_of(xp, contacts, batch, index, tail=1)
-    x, y, down = (xp.broadcast_to(part, np.broadcast_shapes(x.shape, down.shape)) for part in (x, y, down))
+    x, y, down = (xp.broadcast_to(selection, np.broadcast_shapes(x.shape, down.shape)) for selection in (x, y, down))
     margin, near_x, near_y = margin_and_nearest(xp, x, y, down)
-    shares = shared_load(xp, x - near_x, y - near_y, down)
-    return xp.concat((shares, xp.stack((margin, near_x, near_y))), axis=0)
+    fractions = load_fractions(xp, x - near_x, y - near_y, down)
+    return xp.concat((fractions, xp.stack((margin, near_x, near_y))), axis=0)

@@ -1,4 +1,4 @@
-"""Putting other servos, a payload or other link lengths into a robot, and working its loads out anew."""
+"""Loads of a robot with other servos, another payload or other link lengths."""
 
 from __future__ import annotations
 
@@ -20,44 +20,44 @@ __all__ = ["largest_payload", "length_sensitivity", "why_masses_stay", "with_len
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]
 
-_HEAVIEST = 1e3
-_TO_THE_GRAM = 1e-4
+_HEAVIEST_PAYLOAD = 1e3  # [kg]
+_PAYLOAD_TOLERANCE = 1e-4  # [kg]
 _BODY = -1
 
 
 def with_servos(robot: Robot, servos: Mapping[str, Servo]) -> Robot:
-    """Return the robot with other servos, their masses in the place of the old ones'.
+    """Return the robot with other servos, their masses replacing those of the old ones.
 
-    A joint's servo is taken to sit in the part inside of the joint (body, coxa, femur) if that weighs as much, else in
-    the part outside; where a link's centre of mass is stays. Where that can't be told, all masses stay as they are:
-    `why_masses_stay`.
+    The servo of a joint is assumed to sit in the part on the joint's inner side (body, coxa, femur) if that part is
+    heavy enough, else in the part on its outer side. The centres of mass of the links stay. If servo masses can't be
+    separated from those of the parts, all masses stay: `why_masses_stay`.
 
     Parameters
     ----------
     robot : Robot
         A single robot; its masses must be known.
     servos : mapping
-        Servos by the name of the joint, ``"coxa"``, ``"femur"``, ``"tibia"``; a joint left out keeps its own.
+        Servo by joint name (``"coxa"``, ``"femur"``, ``"tibia"``); joints not given keep their servo.
 
     Raises
     ------
     MissingDataError
         If the masses of the robot, or of a new servo, are unknown.
     InputError
-        If there is no such joint.
+        If a joint name is unknown.
     """
     robot.require_masses()
     for name, servo in servos.items():
         if name not in JOINTS:
-            raise InputError(f"there is no joint {name!r}; there are {', '.join(JOINTS)}")
+            raise InputError(f"unknown joint {name!r}; the joints are {', '.join(JOINTS)}")
         if servo.mass is None:
-            raise MissingDataError(f"the mass of {servo.name} is unknown; give its mass_g")
+            raise MissingDataError(f"the mass of servo {servo.name} is unknown; set its mass_g")
     rows = tuple(tuple(servos.get(n, s) for n, s in zip(JOINTS, leg, strict=True)) for leg in robot.servos)
     if why_masses_stay(robot) is not None:
         return robot.replace(servos=rows)
     body, links = float(robot.body_mass), np.array(robot.link_mass)
-    for leg, places in enumerate(_places(robot)):
-        for joint, part in enumerate(places):
+    for leg, parts in enumerate(_servo_parts(robot)):
+        for joint, part in enumerate(parts):
             new, old = rows[leg][joint], robot.servos[leg][joint]
             change = _mass(new) - _mass(old)
             if part == _BODY:
@@ -68,7 +68,7 @@ def with_servos(robot: Robot, servos: Mapping[str, Servo]) -> Robot:
 
 
 def why_masses_stay(robot: Robot) -> str | None:
-    """Say why the masses of a robot can't be told apart from those of its servos; None where they can.
+    """Return why servo masses can't be separated from a robot's part masses, or None if they can.
 
     Parameters
     ----------
@@ -78,29 +78,29 @@ def why_masses_stay(robot: Robot) -> str | None:
     for leg, row in enumerate(robot.servos):
         for joint, servo in enumerate(row):
             if servo is None:
-                return f"no servo is named for the {JOINTS[joint]} of {robot.leg_codes[leg]}"
+                return f"the robot file names no servo for the {JOINTS[joint]} of {robot.leg_codes[leg]}"
             if servo.mass is None:
-                return f"the mass of the present servo {servo.name} is unknown (mass_g)"
-    for leg, places in enumerate(_places(robot)):
-        if len(places) < len(JOINTS):
-            return f"leg {robot.leg_codes[leg]} weighs less than its present servos"
+                return f"the mass of the current servo {servo.name} is unknown (mass_g)"
+    for leg, parts in enumerate(_servo_parts(robot)):
+        if len(parts) < len(JOINTS):
+            return f"leg {robot.leg_codes[leg]} is lighter than its current servos"
     return None
 
 
-def _places(robot: Robot) -> list[list[int]]:
-    """Return for each leg in which part each joint's servo sits; fewer than three where they find no place."""
-    found = []
+def _servo_parts(robot: Robot) -> list[list[int]]:
+    """Return for each leg the part that holds each joint's servo; fewer than three if the parts are too light."""
+    assignment = []
     for leg, row in enumerate(robot.servos):
         free = [float(robot.body_mass) / robot.legs, *np.asarray(robot.link_mass)[leg].tolist()]
-        places = []
+        parts = []
         for joint, servo in enumerate(row):
             part = next((part for part in (joint, joint + 1) if free[part] >= _mass(servo)), None)
             if part is None:
                 break
             free[part] -= _mass(servo)
-            places.append(part - 1)
-        found.append(places)
-    return found
+            parts.append(part - 1)
+        assignment.append(parts)
+    return assignment
 
 
 def _mass(servo: Servo | None) -> float:
@@ -108,104 +108,106 @@ def _mass(servo: Servo | None) -> float:
 
 
 def largest_payload(base: JointLoads, *, safety_factor: float = SAFETY_FACTOR, rule: Rule = "factor") -> float:
-    """Return the heaviest payload that the present servos carry through the same motion.
+    """Return the heaviest payload that the robot's servos carry through the same motion.
 
     Parameters
     ----------
-    base : Loads
-        The loads as they are; a heavier payload is put where theirs is. Speeds don't count here.
+    base : JointLoads
+        The current loads; a heavier payload is placed where theirs is. Joint speeds are not considered.
     safety_factor : float
-        What stall torque over peak torque must remain.
+        Required stall torque over peak torque.
     rule : {"factor", "continuous"}
-        What must be kept, as for `size_servos`.
+        Sizing rule, as for `size_servos`.
 
     Returns
     -------
     float
-        Mass [kg], to a tenth of a gram, at most 1000; 0 where not even the bare robot is carried, or kept in balance.
+        Mass [kg], to 0.1 g, at most 1000; 0 if not even the robot alone is carried, or it tips.
 
     Raises
     ------
     MissingDataError
         If a servo is unknown.
     InputError
-        If the factor is not positive and finite, or there is no such rule.
+        If the factor is not positive and finite.
+    UnknownNameError
+        If the rule is unknown.
     """
     require_rule(rule)
     if np.isnan(base.stall_torque).any():
         raise MissingDataError(
-            f"robot {base.robot.name!r}: its payload is limited by its servos, and the file names none for some joints"
+            f"robot {base.robot.name!r}: the largest payload depends on its servos; the file names none for some joints"
         )
 
     def carried(mass: float) -> bool:
-        found = joint_loads(base.robot, base.motion, payload=Payload(mass, base.payload.position), **base.conditions)
-        verdicts = joint_verdicts(found, safety_factor=safety_factor)
-        return found.balanced and all(verdict.keeps(rule) for verdict in verdicts)
+        loads = joint_loads(base.robot, base.motion, payload=Payload(mass, base.payload.position), **base.conditions)
+        verdicts = joint_verdicts(loads, safety_factor=safety_factor)
+        return loads.balanced and all(verdict.satisfies(rule) for verdict in verdicts)
 
     if not carried(0.0):
         return 0.0
     low, high = 0.0, 0.5
-    while high < _HEAVIEST and carried(high):
-        low, high = high, min(2 * high, _HEAVIEST)
-    while high - low > _TO_THE_GRAM:
+    while high < _HEAVIEST_PAYLOAD and carried(high):
+        low, high = high, min(2 * high, _HEAVIEST_PAYLOAD)
+    while high - low > _PAYLOAD_TOLERANCE:
         middle = (low + high) / 2
         low, high = (middle, high) if carried(middle) else (low, middle)
     return low
 
 
 def with_lengths(robot: Robot, **lengths: float) -> Robot:
-    """Return the robot with links longer or shorter by a factor; each link keeps its mass, its centre in proportion.
+    """Return the robot with link lengths scaled; each link keeps its mass, and its centre of mass scales along.
 
     Parameters
     ----------
     robot : Robot
         The robot.
     **lengths : float
-        Factors by link: ``femur=1.1``.
+        Scale factors by link, e.g. ``femur=1.1``.
 
     Raises
     ------
     InputError
-        If there is no such link.
+        If a link name is unknown.
     """
     changes: dict[str, Any] = {}
     com = np.array(robot.link_com)
     for name, factor in lengths.items():
         if name not in JOINTS:
-            raise InputError(f"there is no link {name!r}; there are {', '.join(JOINTS)}")
+            raise InputError(f"unknown link {name!r}; the links are {', '.join(JOINTS)}")
         changes[name] = np.asarray(getattr(robot, name)) * factor
         com[..., JOINTS.index(name)] *= factor
     return robot.replace(link_com=com, **changes)
 
 
 def length_sensitivity(base: JointLoads, *, step: float = 0.01) -> dict[str, Floats]:
-    """Return how each joint kind's peak torque changes with the length of each link, feet and body where they are.
+    """Return the derivative of the peak torques with respect to each link length, for fixed feet and body poses.
 
-    Central differences over two calculations of the whole motion with the same footholds and the same body.
+    Central differences over two computations of the whole motion with the same footholds and body poses.
 
     Parameters
     ----------
-    base : Loads
-        The loads as they are.
+    base : JointLoads
+        The current loads.
     step : float
-        Change of length, as a share.
+        Relative change of length.
 
     Returns
     -------
     dict
-        By link, ``(3,)``: change of the peak torque of coxa, femur and tibia, of the leg that bears most, with the
-        link's length [N m/m]. NaN where a foot can't be reached with the changed link, or the link has no length.
+        By link, ``(3,)``: change of the largest peak torque of coxa, femur and tibia with the link's length [N m/m].
+        NaN if a foot is out of reach with the changed link, or the link has no length.
     """
-    found = {}
+    sensitivity = {}
     for link in JOINTS:
         length = float(np.mean(np.asarray(getattr(base.robot, link))))
-        less, more = (_peak_with(base, link, factor) for factor in (1 - step, 1 + step))
-        found[link] = (more - less) / (2 * step * length) if length else np.full(3, np.nan)
-    return found
+        shorter, longer = (_peak_with(base, link, factor) for factor in (1 - step, 1 + step))
+        sensitivity[link] = (longer - shorter) / (2 * step * length) if length else np.full(3, np.nan)
+    return sensitivity
 
 
 def _peak_with(base: JointLoads, link: str, factor: float) -> Floats:
-    """Return the peak torques of the joint kinds with one link longer by a factor."""
+    """Return the largest peak torques of coxa, femur and tibia with one link scaled."""
     motion, changed = base.motion, with_lengths(base.robot, **{link: factor})
     solution = inverse_kinematics(changed, motion.feet, motion.body)
     if not bool(np.all(solution.ok)):

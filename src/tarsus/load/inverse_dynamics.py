@@ -1,8 +1,8 @@
-"""What inertia adds to the torques: those of a robot that moves.
+"""Joint torques of a moving robot: inverse dynamics with ground contacts.
 
-A link is a slender uniform rod about its own centre of mass: of mass m and length L it has the moment of inertia
-``m L^2 / 12`` across its axis, and none about it. The body is a homogeneous box of `body_size`, or a point where its
-size is unknown; the payload is a point. What turns inside the servos is left out.
+A link is a slender uniform rod with its own centre of mass: of mass m and length L, it has the moment of inertia
+``m L^2 / 12`` across its axis and none about it. The body is a homogeneous box of `body_size`, or a point mass if its
+size is unknown; the payload is a point mass. Rotor inertia is neglected.
 """
 
 from __future__ import annotations
@@ -30,19 +30,19 @@ __all__ = ["MotionTorques", "dynamic_torques", "motion_torques"]
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class MotionTorques:
-    """Torques of a motion.
+    """Joint torques and contact forces of a motion.
 
     Attributes
     ----------
     torques : array, shape (..., legs, 3)
-        What the servos must exert [N m].
+        Joint torques [N m].
     forces : array, shape (..., legs, 3)
         Ground on foot, in G [N].
     margin : array, shape (...)
-        How far inside the polygon of the feet the load acts, or with inertia the zero-moment point [m]; negative
-        outside: the robot tips.
+        Distance of the centre of mass, or with inertia of the zero-moment point, from the nearest edge of the support
+        polygon [m]; negative outside: the robot tips.
     assumed : tuple of str
-        What had to be assumed.
+        Assumptions made.
     """
 
     torques: Array
@@ -59,20 +59,20 @@ def motion_torques(
     gravity: Sequence[float] = GRAVITY,
     inertial: bool = True,
 ) -> MotionTorques:
-    """Return the torques along a motion, with the inertia of legs, body and payload or without.
+    """Return the joint torques along a motion, with or without the inertia of legs, body and payload.
 
     Parameters
     ----------
     robot : Robot
-        The robot, or a batch of designs ``(..., 1)`` whose last axis is that of time; its masses must be known.
+        The robot, or a batch of designs ``(..., 1)`` whose last axis is time; its masses must be known.
     motion : Motion
-        How it moves, on flat ground; its angles are taken as they are.
+        The motion, on flat ground.
     payload : Payload or float
-        What the body carries; a number is a mass at its origin [kg].
+        Payload on the body; a number is a mass at the body's origin [kg].
     gravity : sequence of float
-        Gravity in G [m/s^2]: tilted, it is that of a slope.
+        Gravity in G [m/s^2]; tilted, it represents a slope.
     inertial : bool
-        Whether inertia counts; if not, statics alone.
+        Whether inertial forces are included; without them the torques are quasi-static.
 
     Returns
     -------
@@ -88,7 +88,7 @@ def motion_torques(
 
     Notes
     -----
-    Speeds and accelerations are central differences of the samples (`differences`): with steps h the error of an
+    Velocities and accelerations are central differences of the samples (`differences`): with steps h the error of an
     acceleration is ``h^2/12`` times the fourth derivative.
     """
     angles, body, contacts = motion.angles, motion.body, motion.contacts
@@ -114,7 +114,7 @@ def dynamic_torques(
     gravity: Sequence[float] = GRAVITY,
     forces: Array | None = None,
 ) -> MotionTorques:
-    """Return the torques that move a robot as given: inverse dynamics with contacts.
+    """Return the joint torques for given joint and body accelerations.
 
     Parameters
     ----------
@@ -123,19 +123,19 @@ def dynamic_torques(
     angles : array, shape (..., legs, 3)
         Joint angles [rad].
     body : Pose
-        Places of B in G.
+        Pose of B in G.
     contacts : array of bool, shape (..., legs)
         Which feet are on the ground.
     joints : JointRates
-        How the angles change.
+        Joint velocities and accelerations.
     rates : BodyRates
-        How the body's place changes.
+        Angular rates and acceleration of the body.
     payload : Payload or float
-        What the body carries; a number is a mass at its origin [kg].
+        Payload on the body; a number is a mass at the body's origin [kg].
     gravity : sequence of float
         Gravity in G [m/s^2].
     forces : array, shape (..., legs, 3), optional
-        Ground on foot in G [N], where they are known; `margin` is of the zero-moment point all the same.
+        Ground on foot in G [N], if known; `margin` is still that of the zero-moment point.
 
     Raises
     ------
@@ -154,15 +154,17 @@ def dynamic_torques(
     batch = broadcast_shapes(
         "robot, angles, body, rates and contacts", feet.shape[:-2], loads.force.shape[:-1], contacts.shape[:-1]
     )
-    needed = [-xp.matmul(as_array(xp, v)[..., None, :], to_ground)[..., 0, :] for v in (loads.force, loads.moment)]
-    solved, margin = ground_forces(xp, feet, contacts, needed[0], needed[1], batch)
+    ground_wrench = [
+        -xp.matmul(as_array(xp, v)[..., None, :], to_ground)[..., 0, :] for v in (loads.force, loads.moment)
+    ]
+    solved, margin = ground_forces(xp, feet, contacts, ground_wrench[0], ground_wrench[1], batch)
     forces = solved if forces is None else checked_forces(xp, robot, forces)
-    pushes = xp.matmul(forces, rotation)
-    torques = torques_of(xp, robot, as_array(xp, angles), points, as_array(xp, loads.points), pushes)
+    contact = xp.matmul(forces, rotation)
+    torques = torques_of(xp, robot, as_array(xp, angles), points, as_array(xp, loads.points), contact)
     return MotionTorques(torques=torques, forces=forces, margin=margin, assumed=_assumed(robot))
 
 
 def _assumed(robot: Robot) -> tuple[str, ...]:
-    """Say what inverse dynamics takes for granted."""
-    body = "a homogeneous box" if robot.body_size is not None else "a point, as its size is not known"
-    return (f"inertia: each link is a slender uniform rod, the body {body}; the servos' rotors are left out",)
+    """Return the assumptions of inverse dynamics."""
+    body = "a homogeneous box" if robot.body_size is not None else "a point mass, as its size is unknown"
+    return (f"inertia: each link is a slender uniform rod, the body {body}; rotor inertia is neglected",)

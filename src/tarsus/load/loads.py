@@ -1,9 +1,8 @@
-"""What every joint bears over a whole motion: torque, speed, power, against its servo."""
+"""Joint loads over a motion: torque, speed and power, compared with the servos."""
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
@@ -13,46 +12,47 @@ import numpy as np
 from tarsus.errors import InputError
 from tarsus.gait.motion import Motion
 from tarsus.kinematics.mass import total_mass
+from tarsus.load.assumptions import load_assumptions
 from tarsus.load.contact import GRAVITY, upward
 from tarsus.load.inverse_dynamics import motion_torques
 from tarsus.load.payload import Payload, as_payload
+from tarsus.load.servo_limits import at_supply, utilisation
 from tarsus.robot.robot import JOINTS, Robot
-from tarsus.robot.servo import Servo
 
-__all__ = ["JointLoads", "at_supply", "joint_loads", "utilisation"]
+__all__ = ["JointLoads", "joint_loads"]
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]
 
-# What rounding may add to a margin [m]: a load on the very edge of the feet's polygon is in balance.
+# Rounding of a margin [m]: a load on the edge of the support polygon is in equilibrium.
 _ROUNDING = 1e-9
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class JointLoads:
-    """What the joints bear over a motion. Arrays ``(legs, 3)`` are of coxa, femur and tibia.
+    """Joint loads over a motion; arrays ``(legs, 3)`` hold coxa, femur and tibia.
 
     Attributes
     ----------
     robot : Robot
-        Who moves.
+        The robot.
     motion : Motion
-        How.
+        The motion.
     payload : Payload
-        What it carries.
+        Payload on the body.
     torques : array, shape (n, legs, 3)
-        What the servos must exert [N m].
+        Joint torques [N m].
     forces : array, shape (n, legs, 3)
         Ground on foot, in G [N].
     margin : array, shape (n,)
-        How far inside the polygon of the feet the load acts [m]; negative where the robot tips.
+        Distance of the load from the nearest edge of the support polygon [m]; negative where the robot tips.
     gravity : tuple of float
         Gravity in G [m/s^2].
     inertial : bool
-        Whether the inertia of legs and body is in it.
+        Whether inertial forces are included.
     supply : float or None
-        Voltage that the servos get [V]; None for those at which their figures hold.
+        Supply voltage of the servos [V]; None for the voltage at which their ratings hold.
     assumed : tuple of str
-        What was not given and had to be assumed.
+        Assumptions made.
     """
 
     robot: Robot
@@ -68,17 +68,17 @@ class JointLoads:
 
     @property
     def conditions(self) -> dict[str, Any]:
-        """What `joint_loads` was told besides robot, motion and payload: to work out others under the same."""
+        """Keyword arguments of `joint_loads` besides the payload, to compute other loads under the same conditions."""
         return {"gravity": self.gravity, "inertial": self.inertial, "supply": self.supply}
 
     @property
     def balanced(self) -> bool:
-        """Whether the robot stays on its feet at every moment."""
+        """Whether the robot is in equilibrium throughout the motion."""
         return bool((self.margin >= -_ROUNDING).all())
 
     @property
     def speeds(self) -> Floats:
-        """Speed of every joint ``(n, legs, 3)`` [rad/s]."""
+        """Joint velocities ``(n, legs, 3)`` [rad/s]."""
         return self.motion.joint_speed
 
     @cached_property
@@ -88,12 +88,12 @@ class JointLoads:
 
     @cached_property
     def peak_sample(self) -> np.ndarray[Any, np.dtype[np.int64]]:
-        """Sample at which each joint bears most ``(legs, 3)``."""
+        """Index of the sample with each joint's peak torque ``(legs, 3)``."""
         return np.asarray(np.abs(self.torques).argmax(0))
 
     @cached_property
     def rms(self) -> Floats:
-        """Root mean square of each joint's torque over the motion ``(legs, 3)`` [N m]: what heats its motor."""
+        """Root mean square torque of each joint over the motion ``(legs, 3)`` [N m]; it determines motor heating."""
         mean = np.trapezoid(self.torques**2, self.motion.time, axis=0) / self.motion.duration
         return _floats(np.sqrt(mean))
 
@@ -104,18 +104,18 @@ class JointLoads:
 
     @cached_property
     def power(self) -> Floats:
-        """Mechanical power that each joint gives ``(n, legs, 3)`` [W]; negative where it is driven."""
+        """Mechanical power of each joint ``(n, legs, 3)`` [W]; negative where the load drives the joint."""
         return _floats(self.torques * self.speeds)
 
     @cached_property
     def energy(self) -> float:
-        """Mechanical work of all joints, without getting any back from those that are driven [J]."""
-        given = np.maximum(self.power, 0).sum((1, 2))
-        return float(np.trapezoid(given, self.motion.time))
+        """Positive mechanical work of all joints [J]; negative work is not recovered."""
+        positive_power = np.maximum(self.power, 0).sum((1, 2))
+        return float(np.trapezoid(positive_power, self.motion.time))
 
     @property
     def distance(self) -> float:
-        """How far the body's origin went over the ground [m]."""
+        """Length of the path of the body's origin over the ground [m]."""
         steps = np.diff(self.motion.body.position[:, :2], axis=0)
         return float(np.hypot(steps[:, 0], steps[:, 1]).sum())
 
@@ -126,7 +126,7 @@ class JointLoads:
 
     @property
     def cost_of_transport(self) -> float:
-        """Mechanical energy over weight and distance; infinite where the body doesn't get anywhere.
+        """Mechanical energy over weight times distance; infinite without any distance.
 
         G. Gabrielli and Th. von Karman, "What price speed?", Mechanical Engineering 72 (1950).
         """
@@ -134,51 +134,48 @@ class JointLoads:
 
     @cached_property
     def stall_torque(self) -> Floats:
-        """Stall torque of each joint's servo at its supply ``(legs, 3)`` [N m]; NaN where no servo is known."""
-        return self._figures[..., 0]
+        """Stall torque of each servo at the supply voltage ``(legs, 3)`` [N m]; NaN where no servo is known."""
+        return self._ratings[..., 0]
 
     @cached_property
     def no_load_speed(self) -> Floats:
-        """Speed without load of each joint's servo at its supply ``(legs, 3)`` [rad/s]; NaN where unknown."""
-        return self._figures[..., 1]
+        """No-load speed of each servo at the supply voltage ``(legs, 3)`` [rad/s]; NaN where unknown."""
+        return self._ratings[..., 1]
 
     @cached_property
-    def _figures(self) -> Floats:
+    def _ratings(self) -> Floats:
         return np.array([[at_supply(servo, self.supply) for servo in leg] for leg in self.robot.servos])
 
     @cached_property
     def factor(self) -> Floats:
-        """Stall torque over peak torque ``(legs, 3)``; NaN where no servo is known, infinite without load."""
+        """Safety factor: stall torque over peak torque ``(legs, 3)``; NaN without a servo, infinite without load."""
         with np.errstate(divide="ignore"):
             return _floats(self.stall_torque / self.peak)
 
     @cached_property
     def utilisation(self) -> Floats:
-        """Share of the servo's torque-speed line that each joint uses at every moment ``(n, legs, 3)``: `utilisation`.
-
-        NaN where a figure is unknown.
-        """
+        """Utilisation of each servo's torque-speed line ``(n, legs, 3)``; NaN where a rating is unknown."""
         return utilisation(self.torques, self.speeds, self.stall_torque, self.no_load_speed)
 
     def cause(self, leg: int, joint: int) -> str:
-        """Say when and why a joint bears most.
+        """Describe when and why a joint has its peak torque.
 
         Parameters
         ----------
         leg, joint : int
-            Which joint.
+            Indices of the joint.
         """
         sample = int(self.peak_sample[leg, joint])
         codes = self.robot.leg_codes
-        down = [code for code, contact in zip(codes, self.motion.contacts[sample], strict=True) if contact]
-        moment = f"at {self.motion.time[sample]:.2f} s"
+        standing = [code for code, contact in zip(codes, self.motion.contacts[sample], strict=True) if contact]
+        time = f"at {self.motion.time[sample]:.2f} s"
         if not self.motion.contacts[sample, leg]:
-            return f"{moment}, swinging"
-        share = float(self.forces[sample, leg] @ upward(self.gravity)[1][0]) / self.weight
-        return f"{moment}, standing on {' '.join(down)}, {share:.0%} of the weight on {codes[leg]}"
+            return f"{time}, swing"
+        fraction = float(self.forces[sample, leg] @ upward(self.gravity)[1][0]) / self.weight
+        return f"{time}, stance of {' '.join(standing)}, {fraction:.0%} of the weight on {codes[leg]}"
 
     def worst(self, joint: int) -> int:
-        """Return the leg whose joint of that kind bears most.
+        """Return the leg with the largest peak torque in a joint.
 
         Parameters
         ----------
@@ -188,7 +185,7 @@ class JointLoads:
         return int(self.peak[:, joint].argmax())
 
     def to_dict(self) -> dict[str, Any]:
-        """Return what each joint bears, as plain numbers with units in their keys."""
+        """Return the loads as plain numbers, with units in the keys."""
         rows = []
         for leg, code in enumerate(self.robot.leg_codes):
             for joint, name in enumerate(JOINTS):
@@ -231,47 +228,8 @@ def _floats(values: Any) -> Floats:
 
 
 def _number(value: float) -> float | None:
-    """Return a number, or None for what JSON has no word for."""
+    """Return a number, or None if it is not finite: JSON has no NaN or infinity."""
     return float(value) if np.isfinite(value) else None
-
-
-def at_supply(servo: Servo | None, supply: float | None) -> tuple[float, float]:
-    """Return a servo's stall torque [N m] and its speed without load [rad/s]; NaN where unknown.
-
-    Parameters
-    ----------
-    servo : Servo or None
-        The servo.
-    supply : float or None
-        Voltage that it gets [V]: both figures are in proportion to it, as a motor's with brushes are, as far as it
-        is known at which voltage they hold. None for the figures as they are.
-    """
-
-    def one(value: float | None, at: float | None) -> float:
-        if value is None:
-            return math.nan
-        return value * supply / at if supply and at else value
-
-    if servo is None:
-        return math.nan, math.nan
-    return one(servo.stall_torque, servo.torque_at), one(servo.no_load_speed, servo.speed_at)
-
-
-def utilisation(torque: Floats, speed: Floats, stall_torque: Floats, no_load_speed: Floats) -> Floats:
-    """Return the share of a servo's torque-speed line that a torque at a speed uses; above 1 it can't be had.
-
-    A servo that drives gives at most ``stall (1 - speed / no-load speed)``: the shares of torque and speed add up. One
-    that is driven, by the load or by another joint, gives its full torque.
-
-    Parameters
-    ----------
-    torque, speed : array
-        What is asked for [N m, rad/s]; signs count.
-    stall_torque, no_load_speed : array
-        The servo's [N m, rad/s].
-    """
-    driving = np.maximum(np.sign(torque) * speed, 0.0)
-    return _floats(np.abs(torque) / stall_torque + driving / no_load_speed)
 
 
 def joint_loads(
@@ -283,33 +241,32 @@ def joint_loads(
     inertial: bool = True,
     supply: float | None = None,
 ) -> JointLoads:
-    """Return what every joint bears over a motion.
+    """Return the joint loads over a motion.
 
     Parameters
     ----------
     robot : Robot
-        Who moves; its masses must be known. It may differ from the motion's own robot in masses and servos.
+        The robot; its masses must be known. It may differ from the motion's robot in masses and servos.
     motion : Motion
-        How it moves.
+        The motion.
     payload : Payload or float
-        What the body carries; a number is a mass at its origin [kg].
+        Payload on the body; a number is a mass at the body's origin [kg].
     gravity : sequence of float
-        Gravity in G [m/s^2]; tilted, it is that of a slope.
+        Gravity in G [m/s^2]; tilted, it represents a slope.
     inertial : bool
-        Whether the inertia of legs and body counts; if not, statics alone.
+        Whether inertial forces are included; without them the torques are quasi-static.
     supply : float, optional
-        Voltage that the servos get [V]: their torque and speed are taken in proportion to it. Left out, their
-        figures are taken as they are in the catalogue.
+        Supply voltage of the servos [V]; their torque and speed scale with it. Default: their rated values.
 
     Raises
     ------
     MissingDataError
         If the robot's masses are unknown.
     InputError
-        If a value is not finite or out of its range, or the motion has another number of legs.
+        If a value is not finite or out of range, or the motion has another number of legs.
     """
     if robot.legs != motion.angles.shape[1]:
-        raise InputError(f"the motion is of {motion.angles.shape[1]} legs, robot {robot.name!r} has {robot.legs}")
+        raise InputError(f"the motion has {motion.angles.shape[1]} legs, robot {robot.name!r} has {robot.legs}")
     if supply is not None and not 0 < supply < float("inf"):
         raise InputError(f"supply is {supply} V; it must be greater than 0 and finite")
     solved = motion_torques(robot, motion, payload=payload, gravity=gravity, inertial=inertial)
@@ -323,30 +280,5 @@ def joint_loads(
         gravity=tuple(float(v) for v in gravity),
         inertial=inertial,
         supply=supply,
-        assumed=(*motion.assumed, *solved.assumed, *_assumed(robot, motion, supply)),
+        assumed=(*motion.assumed, *solved.assumed, *load_assumptions(robot, motion, supply)),
     )
-
-
-def _assumed(robot: Robot, motion: Motion, supply: float | None) -> Iterator[str]:
-    """Say what a calculation of loads takes for granted."""
-    missed = int((motion.reach != 0).any(-1).sum())
-    if missed:
-        yield f"in {missed} of {len(motion.time)} samples a foot is out of reach: its leg is as near as it gets"
-    for servo in {servo.name: servo for leg in robot.servos for servo in leg if servo is not None}.values():
-        if supply is None:
-            at = "a voltage that is not known" if servo.torque_at is None else f"{servo.torque_at:g} V"
-            yield f"{servo.name} at {at}, that of its stall torque"
-            continue
-        if servo.torque_at is None or (servo.no_load_speed is not None and servo.speed_at is None):
-            yield f"{servo.name}: not known at which voltage its figures hold; taken as they are at {supply:g} V"
-        if servo.supply is not None and not servo.supply[0] <= supply <= servo.supply[1]:
-            yield f"{servo.name} is made for {servo.supply[0]:g} to {servo.supply[1]:g} V, and is given {supply:g} V"
-    without = [
-        f"{JOINTS[joint]} of {robot.leg_codes[leg]}"
-        for leg, row in enumerate(robot.servos)
-        for joint, servo in enumerate(row)
-        if servo is None
-    ]
-    if without:
-        which = "any joint" if len(without) == 3 * robot.legs else ", ".join(without)
-        yield f"the robot file names no servo for {which}: not judged"

@@ -1,4 +1,4 @@
-"""What the robot carries."""
+"""Payload on the body."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ class Payload:
     Attributes
     ----------
     mass : float
-        How much [kg].
+        Mass [kg].
     position : tuple of float
-        Where its centre of mass is in the body frame B [m].
+        Centre of mass in the body frame B [m].
     """
 
     mass: float
@@ -33,28 +33,28 @@ class Payload:
         except (TypeError, ValueError):
             mass = math.nan
         if not 0 <= mass < math.inf:
-            raise InputError(f"a payload's mass is {self.mass!r} kg; it must be one finite number, not negative")
+            raise InputError(f"payload mass is {self.mass!r} kg; it must be a finite number, at least 0")
         try:
             position = np.asarray(self.position, dtype=np.float64)
         except (TypeError, ValueError):
             position = np.empty(0)
         if position.shape != (3,) or not np.isfinite(position).all():
-            raise InputError(f"a payload's position is {self.position!r}; it must be three finite numbers [m]")
+            raise InputError(f"payload position is {self.position!r}; it must be three finite numbers [m]")
         object.__setattr__(self, "mass", mass)
         object.__setattr__(self, "position", tuple(position.tolist()))
 
 
 def as_payload(payload: Payload | float) -> Payload:
-    """Return a payload; a bare number is a mass [kg] at the body's origin.
+    """Convert a number, a mass [kg] at the body's origin, to a payload.
 
     Parameters
     ----------
     payload : Payload or float
-        What is carried.
+        Payload, or its mass [kg].
 
     Raises
     ------
     InputError
-        If the mass is negative, or not one finite number.
+        If the mass is negative or not a finite number.
     """
     return payload if isinstance(payload, Payload) else Payload(payload)

@@ -1,8 +1,8 @@
-"""Statics of a level robot on level ground, in the planes of its legs: legs in front, moments, designs behind.
+"""Statics of a level robot on level ground, in the planes of its legs; axes are (legs, phases, designs).
 
-All forces are vertical. What counts of a point is how far outward in its leg's plane it is; heights, and the coxa
-joints, which turn about the vertical, play no part. A leg whose foot is where it should be is known by its foot: its
-heading and its knee's place need no cosines, which take longer than all the rest.
+All forces are vertical, so only the radial distances of the points in a leg's plane matter: heights do not, and the
+coxa joints, with their vertical axes, bear nothing. If a foot is reached, the leg's heading and its knee follow from
+the foot position without cosines, which would take most of the computation.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from tarsus.kinematics.ground import BodyPlace, mark_below_ground, surely_above
 from tarsus.kinematics.polygon import margin_and_nearest
 from tarsus.kinematics.triangle import Triangle, solve_triangle, to_leg_frame
 from tarsus.kinematics.verdict import all_within, reach_codes
-from tarsus.load.load_distribution import shared_load
+from tarsus.load.load_distribution import load_fractions
 from tarsus.robot.geometry import LegGeometry
 
 __all__ = [
@@ -25,23 +25,23 @@ __all__ = [
     "feet_from_load",
     "plane_by_angles",
     "plane_by_foot",
-    "share_weight",
     "solve_block",
     "torques_in_plane",
+    "weight_fractions",
 ]
 
 Column: TypeAlias = Array
 
-_ROUNDING = 1e-12  # how far outside the polygon rounding may put a load that acts on its very edge [m]
-_THIN = 1e-12  # spread across over spread in all of feet that are taken to be on a line
-_SINGULAR = 1e-18  # squares of distances [m^2] at which a foot is on an axis, and tells no direction
+_ROUNDING = 1e-12  # of the margin of a load on the edge of the support polygon [m]
+_COLLINEAR = 1e-12  # ratio of determinant to squared trace of the second moments below which feet are collinear
+_SINGULAR = 1e-18  # squared distance [m^2] below which a foot lies on a joint axis, and its direction is undefined
 
 
 class Block(NamedTuple):
-    """Some designs. Arrays are ``(legs, 1, designs)``, or ``(designs,)`` for `moment`, `mass` and the last three.
+    """A block of designs. Arrays are ``(legs, 1, designs)``; `moment`, `mass` and the last three ``(designs,)``.
 
-    `masses` are those of the leg points (four), `moment` is the body's and payload's mass times its place, x and y,
-    `mass` the whole; `rest` are the footholds in B.
+    `masses` are the point masses of the four leg points, `moment` the first moment of body and payload in x and y
+    [kg m], `mass` the total mass, `rest` the rest footholds in B.
     """
 
     legs: LegGeometry
@@ -55,9 +55,9 @@ class Block(NamedTuple):
 
 
 class LegPlane(NamedTuple):
-    """Legs seen in their planes ``(legs, moments, designs)``.
+    """Legs in their planes ``(legs, phases, designs)``.
 
-    `cos` and `sin` are those of the coxa joint, `knee` and `foot` how far outward from the femur axis those are [m].
+    `cos` and `sin` are those of the coxa angle; `knee` and `foot` are radial distances from the femur axis [m].
     """
 
     cos: Array
@@ -66,34 +66,38 @@ class LegPlane(NamedTuple):
     foot: Array
 
 
-def solve_block(block: Block, along: Array) -> tuple[Triangle, Array, LegPlane]:
-    """Return the joint angles of NumPy designs, and their legs in their planes, where every foot is reached at once.
+def solve_block(block: Block, offsets: Array) -> tuple[Triangle, Array, LegPlane]:
+    """Return the joint angles and leg planes of NumPy designs; designs with an unreachable foot are marked unsolved.
 
     Parameters
     ----------
     block : Block
         The designs.
-    along : array, shape (3, legs, moments, 1)
-        Where the feet are, from rest: forward and left in strokes, up in lifts.
+    offsets : array, shape (3, legs, phases, 1)
+        Foot offsets from rest: forward and left in strokes, up in swing heights.
 
     Returns
     -------
-    triangle, solved, plane
-        Whether all feet of a design are solved ``(designs,)``; of one that is not, nothing here is valid.
+    triangle : Triangle
+        Joint angles and reach, ``(legs, phases, designs)``.
+    solved : array of bool, shape (designs,)
+        Designs with every foot reached; the other results are valid for these only.
+    plane : LegPlane
+        The legs in their planes.
     """
     g = block.legs
     x, y, z = to_leg_frame(g, *block.rest)
-    ahead, aside = along[0] * block.stroke, along[1] * block.stroke
-    x, y = x + g.cos_yaw * ahead + g.sin_yaw * aside, y + g.cos_yaw * aside - g.sin_yaw * ahead
-    z = z + along[2] * block.swing_height
+    forward, left = offsets[0] * block.stroke, offsets[1] * block.stroke
+    x, y = x + g.cos_yaw * forward + g.sin_yaw * left, y + g.cos_yaw * left - g.sin_yaw * forward
+    z = z + offsets[2] * block.swing_height
     sideways = bool(g.side.any())
     triangle = solve_triangle(np, g, x, y, z, knee=1, sideways=sideways)
     within = all_within(g, triangle)
     codes = np.zeros(triangle.far.shape, dtype=np.int8) if within else reach_codes(np, g, triangle)
     zero, one = np.zeros(1), np.ones(1)
-    place = BodyPlace(((one, zero, zero), (zero, one, zero), (zero, zero, one)), (zero, zero, block.body_height))
-    if not surely_above(g, triangle.femur, place):
-        codes = mark_below_ground(np, g, triangle[:3], codes, place)
+    body = BodyPlace(((one, zero, zero), (zero, one, zero), (zero, zero, one)), (zero, zero, block.body_height))
+    if not surely_above(g, triangle.femur, body):
+        codes = mark_below_ground(np, g, triangle[:3], codes, body)
     plane, singular = plane_by_foot(g, triangle, x, y, z, sideways=sideways)
     return triangle, ~((codes != 0) | singular).any((0, 1)), plane
 
@@ -101,102 +105,104 @@ def solve_block(block: Block, along: Array) -> tuple[Triangle, Array, LegPlane]:
 def plane_by_foot(
     g: LegGeometry, triangle: Triangle, x: Array, y: Array, z: Array, *, sideways: bool
 ) -> tuple[LegPlane, Array]:
-    """Return NumPy legs in their planes, from where their feet are in the leg frames; and which can't be told so."""
+    """Return NumPy legs in their planes from the feet in the leg frames, and which are singular."""
     across2 = x * x + y * y
-    out = root(np, across2 - g.side2 if sideways else across2)
-    foot = out - g.coxa
+    radial = root(np, across2 - g.side2 if sideways else across2)
+    foot = radial - g.coxa
     distance2 = foot * foot + z * z
     singular = (across2 <= _SINGULAR) | (distance2 <= _SINGULAR)
     if singular.any():
         across2, distance2 = (np.where(singular, 1.0, square) for square in (across2, distance2))
     bend = root(np, triangle.far * triangle.near)
     knee = (foot * (distance2 + g.difference2) - z * bend) / (2 * distance2)
-    ahead, aside = (x * out + y * g.side, y * out - x * g.side) if sideways else (x * out, y * out)
-    return LegPlane(ahead / across2, aside / across2, knee, foot), singular
+    forward, left = (x * radial + y * g.side, y * radial - x * g.side) if sideways else (x * radial, y * radial)
+    return LegPlane(forward / across2, left / across2, knee, foot), singular
 
 
 def plane_by_angles(xp: Namespace, g: LegGeometry, coxa: Array, femur: Array, tibia: Array) -> LegPlane:
-    """Return legs in their planes, from any joint angles."""
+    """Return legs in their planes from joint angles."""
     knee = g.femur * xp.cos(femur)
     return LegPlane(xp.cos(coxa), xp.sin(coxa), knee, knee + g.tibia * xp.cos(femur + tibia))
 
 
 def feet_from_load(xp: Namespace, block: Block, plane: LegPlane) -> tuple[Array, Array]:
-    """Return x and y of the feet, seen from the centre of all that is carried ``(legs, moments, designs)`` [m]."""
+    """Return x and y of the feet relative to the centre of mass, ``(legs, phases, designs)`` [m]."""
     g = block.legs
     mount, axis, knee, foot = block.masses
     outer = axis + knee + foot
-    far = outer * g.coxa + knee * plane.knee + foot * plane.foot
-    near = outer * g.side
-    moment_x, moment_y = _turned(g, far * plane.cos - near * plane.sin, far * plane.sin + near * plane.cos)
-    whole = mount + outer
-    com_x = (xp.sum(moment_x + whole * g.mount_x, axis=0) + block.moment[0]) / block.mass
-    com_y = (xp.sum(moment_y + whole * g.mount_y, axis=0) + block.moment[1]) / block.mass
-    out = g.coxa + plane.foot
-    x, y = _turned(g, out * plane.cos - g.side * plane.sin, out * plane.sin + g.side * plane.cos)
+    radial_moment = outer * g.coxa + knee * plane.knee + foot * plane.foot
+    side_moment = outer * g.side
+    moment_x, moment_y = _to_body(
+        g, radial_moment * plane.cos - side_moment * plane.sin, radial_moment * plane.sin + side_moment * plane.cos
+    )
+    leg_mass = mount + outer
+    com_x = (xp.sum(moment_x + leg_mass * g.mount_x, axis=0) + block.moment[0]) / block.mass
+    com_y = (xp.sum(moment_y + leg_mass * g.mount_y, axis=0) + block.moment[1]) / block.mass
+    radial = g.coxa + plane.foot
+    x, y = _to_body(g, radial * plane.cos - g.side * plane.sin, radial * plane.sin + g.side * plane.cos)
     return x + (g.mount_x - com_x), y + (g.mount_y - com_y)
 
 
-def _turned(g: LegGeometry, x: Array, y: Array) -> tuple[Array, Array]:
-    """Turn vectors of the leg frames into B's."""
+def _to_body(g: LegGeometry, x: Array, y: Array) -> tuple[Array, Array]:
+    """Rotate vectors of the leg frames into B."""
     return g.cos_yaw * x - g.sin_yaw * y, g.sin_yaw * x + g.cos_yaw * y
 
 
-def share_weight(xp: Namespace, x: Array, y: Array) -> tuple[Array, Array]:
-    """Return which share of the weight each of some feet bears, and whether there is an equilibrium.
+def weight_fractions(xp: Namespace, x: Array, y: Array) -> tuple[Array, Array]:
+    """Return the fraction of the weight on each foot, and whether there is an equilibrium.
 
     Parameters
     ----------
     xp : namespace
         The array library.
     x, y : array, shape (feet, batch)
-        The feet that are down, seen from the load [m].
+        Feet on the ground relative to the load [m].
 
     Returns
     -------
-    shares : array, shape (feet, batch)
-        Not negative.
+    fractions : array, shape (feet, batch)
+        Fractions of the weight, at least 0.
     balanced : array of bool, shape (batch,)
-        Whether the load is inside the feet's polygon, or on its edge.
+        Whether the load is inside the support polygon or on its edge.
     """
-    shares, clear = _even_plane(xp, x, y)
-    clear = clear & xp.all(shares >= 0, axis=0)
+    fractions, settled = _least_squares_fractions(xp, x, y)
+    settled = settled & xp.all(fractions >= 0, axis=0)
     if xp is np:
-        # Where no foot would have to pull, the plane of least squares is the answer; nearly always that is everywhere.
-        few = np.flatnonzero(~clear)
+        # The unconstrained least squares hold wherever no foot would have to pull, which is almost everywhere.
+        few = np.flatnonzero(~settled)
         if len(few):
-            shares[:, few], clear[few] = _share_by_pushing(np, x[:, few], y[:, few])
-        return shares, clear
+            fractions[:, few], settled[few] = _constrained_fractions(np, x[:, few], y[:, few])
+        return fractions, settled
 
-    def all_anew() -> tuple[Array, Array]:
-        pushing, balanced = _share_by_pushing(xp, x, y)
-        return xp.where(clear, shares, pushing), clear | balanced
+    def recompute() -> tuple[Array, Array]:
+        constrained, balanced = _constrained_fractions(xp, x, y)
+        return xp.where(settled, fractions, constrained), settled | balanced
 
-    new, balanced = only_where_needed(xp.any(~clear), all_anew, (shares, clear))
-    return new, balanced
+    result, balanced = only_where_needed(xp.any(~settled), recompute, (fractions, settled))
+    return result, balanced
 
 
-def _even_plane(xp: Namespace, x: Array, y: Array) -> tuple[Array, Array]:
-    """Return the shares of least squares, pulling ones included, and whether the feet span an area."""
+def _least_squares_fractions(xp: Namespace, x: Array, y: Array) -> tuple[Array, Array]:
+    """Return the unconstrained least-squares fractions, and whether the feet are not collinear."""
     feet = x.shape[0]
     mid_x, mid_y = xp.sum(x, axis=0) / feet, xp.sum(y, axis=0) / feet
     u, v = x - mid_x, y - mid_y
     uu, uv, vv = xp.sum(u * u, axis=0), xp.sum(u * v, axis=0), xp.sum(v * v, axis=0)
     area = uu * vv - uv * uv
-    wide = area > _THIN * (uu + vv) ** 2
-    area = xp.where(wide, area, 1.0)
+    spans_area = area > _COLLINEAR * (uu + vv) ** 2
+    area = xp.where(spans_area, area, 1.0)
     along_x, along_y = (uv * mid_y - vv * mid_x) / area, (uv * mid_x - uu * mid_y) / area
-    return 1 / feet + along_x * u + along_y * v, wide
+    return 1 / feet + along_x * u + along_y * v, spans_area
 
 
-def _share_by_pushing(xp: Namespace, x: Array, y: Array) -> tuple[Array, Array]:
+def _constrained_fractions(xp: Namespace, x: Array, y: Array) -> tuple[Array, Array]:
     down = xp.ones_like(x, dtype=xp.bool)
     margin, near_x, near_y = margin_and_nearest(xp, x, y, down)
-    return shared_load(xp, x - near_x, y - near_y, down), margin >= -_ROUNDING
+    return load_fractions(xp, x - near_x, y - near_y, down), margin >= -_ROUNDING
 
 
-def torques_in_plane(block: Block, plane: LegPlane, push: Array, gravity: float) -> tuple[Array, Array]:
-    """Return the torques of femur and tibia for the ground's forces on the feet ``(legs, moments, designs)``."""
-    at_foot = push - gravity * block.masses[3]
+def torques_in_plane(block: Block, plane: LegPlane, normal_force: Array, gravity: float) -> tuple[Array, Array]:
+    """Return femur and tibia torques for vertical contact forces ``(legs, phases, designs)`` [N m]."""
+    at_foot = normal_force - gravity * block.masses[3]
     femur = gravity * block.masses[2] * plane.knee - at_foot * plane.foot
     return femur, at_foot * (plane.knee - plane.foot)

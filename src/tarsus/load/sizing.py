@@ -1,4 +1,4 @@
-"""Which servos carry a robot: a verdict on those it has, and the catalogue's that would do."""
+"""Servo sizing: a verdict on the robot's servos, and suitable servos of the catalogue."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from tarsus.kinematics.mass import total_mass
 from tarsus.load.design_changes import largest_payload, length_sensitivity, why_masses_stay, with_servos
 from tarsus.load.loads import JointLoads, joint_loads
 from tarsus.load.verdict import (
-    BURNS_BELOW,
+    BURNOUT_FACTOR,
     SAFETY_FACTOR,
     JointVerdict,
     Rule,
@@ -29,26 +29,26 @@ __all__ = ["Candidate", "ServoSizing", "size_servos"]
 
 
 _COXA_CAUTION = (
-    "the coxa joints bear no friction between the feet, no slope and no obstacle: their servos may well need more"
+    "friction between the feet, slopes and obstacles are not included: the coxa servos may need more torque than shown"
 )
 
 
 @dataclass(frozen=True, kw_only=True)
 class Candidate:
-    """Servos that would carry the robot, their own masses counted.
+    """Servos of the catalogue that carry the robot, with their own masses included.
 
     Attributes
     ----------
     servos : mapping
-        Servo by joint: the same for all three, or chosen for each.
+        Servo by joint: the same for all three, or one for each.
     factor : float
-        Least stall torque over peak torque of all joints.
+        Smallest stall torque over peak torque of all joints.
     thermal_ratio : float
-        Largest lasting load of all joints, over 1/5 of the stall torque.
+        Largest root mean square torque over the continuous limit of all joints.
     servo_mass : float
-        What all its servos weigh together [kg].
+        Mass of all servos [kg].
     robot_mass : float
-        What the robot then weighs, payload apart [kg].
+        Mass of the robot with these servos, without payload [kg].
     """
 
     servos: Mapping[str, Servo]
@@ -59,45 +59,45 @@ class Candidate:
 
     @property
     def name(self) -> str:
-        """The servo's name, or those of coxa, femur and tibia."""
+        """Name of the servo, or names of the coxa, femur and tibia servos."""
         names = [self.servos[joint].name for joint in JOINTS]
         return names[0] if len(set(names)) == 1 else " / ".join(names)
 
 
 @dataclass(frozen=True, kw_only=True)
 class ServoSizing:
-    """Which servos carry a robot through a motion.
+    """Result of sizing the servos of a robot for a motion.
 
     Attributes
     ----------
     verdicts : tuple of JointVerdict
-        On the servos that it has, leg by leg.
+        Verdicts on the robot's servos, leg by leg.
     candidates : tuple of Candidate
-        Servos of the catalogue that would do in all joints, the lightest first.
+        Servos of the catalogue that suffice in all joints, the lightest first.
     mixed : Candidate or None
-        The lightest servo for each kind of joint, settled with their masses; None where there is none.
-    left_out : mapping
-        Servos of the catalogue that could not be tried, and why.
+        The lightest sufficient servo for each of coxa, femur and tibia; None if there is none.
+    excluded : mapping
+        Servos of the catalogue that could not be evaluated, and the reasons.
     payload : float or None
-        Heaviest payload that the present servos carry and keep the rule [kg]; None where one is unknown.
-    utmost_payload : float or None
-        Heaviest payload at which they neither stall nor burn: factor 1.5 [kg]; None where one is unknown.
+        Heaviest payload with which the robot's servos satisfy the rule [kg]; None if a servo is unknown.
+    maximum_payload : float or None
+        Heaviest payload at a safety factor of 1.5, below which servos stall or burn [kg]; None if a servo is unknown.
     sensitivity : mapping
         By link, change of the peak torque of coxa, femur and tibia with its length [N m/m]: `length_sensitivity`.
     safety_factor : float
-        Stall torque over peak torque that is asked for.
+        Required stall torque over peak torque.
     rule : str
-        ``"factor"``, or ``"continuous"`` for the maker's rule.
+        ``"factor"`` or ``"continuous"``, the continuous load limit of the manufacturer.
     assumed : tuple of str
-        What was not given and had to be assumed.
+        Assumptions made.
     """
 
     verdicts: tuple[JointVerdict, ...]
     candidates: tuple[Candidate, ...]
     mixed: Candidate | None
-    left_out: Mapping[str, str]
+    excluded: Mapping[str, str]
     payload: float | None
-    utmost_payload: float | None
+    maximum_payload: float | None
     sensitivity: Mapping[str, np.ndarray[Any, Any]]
     safety_factor: float
     rule: Rule
@@ -105,156 +105,154 @@ class ServoSizing:
 
     @property
     def ok(self) -> bool:
-        """Whether the servos that the robot has do."""
-        return all(verdict.does(self.rule) for verdict in self.verdicts)
+        """Whether the robot's servos suffice."""
+        return all(verdict.is_sufficient(self.rule) for verdict in self.verdicts)
 
     @property
     def worst(self) -> JointVerdict:
-        """The joint with the least stall torque over peak torque; joints without a servo come first."""
+        """The joint with the smallest safety factor; joints without a servo come first."""
         return min(self.verdicts, key=lambda v: -math.inf if math.isnan(v.factor) else v.factor)
 
 
 def size_servos(
-    robot: Robot, joint_loads: JointLoads, *, safety_factor: float = SAFETY_FACTOR, rule: Rule = "factor"
+    robot: Robot, loads: JointLoads, *, safety_factor: float = SAFETY_FACTOR, rule: Rule = "factor"
 ) -> ServoSizing:
-    """Judge a robot's servos, and find those of the catalogue that would do.
+    """Judge a robot's servos, and find sufficient ones in the catalogue.
 
     Parameters
     ----------
     robot : Robot
-        A single robot with masses; its servos are those judged.
-    loads : Loads
-        What the joints bear in the motion that counts; worked out anew where it is of another robot.
+        A single robot with masses; its servos are judged.
+    loads : JointLoads
+        Joint loads of the decisive motion; computed again if they are of another robot.
     safety_factor : float
-        Stall torque over peak torque that is asked for; 3 is source 004's.
+        Required stall torque over peak torque; source 004 recommends 3.
     rule : {"factor", "continuous"}
-        What a servo must keep: the safety factor, or the maker's rule of a lasting load of at most 1/5 of its stall
-        torque, its peaks below the stall torque. Fast enough it must be in either case.
+        Sizing rule: the safety factor, or the manufacturer's continuous load limit (root mean square torque at most 1/5
+        of the stall torque, peak torque below it). The servo must be fast enough in either case.
 
     Raises
     ------
     InputError
         If the factor is not positive and finite.
     UnknownNameError
-        If there is no such rule.
+        If the rule is unknown.
     MissingDataError
         If the robot's masses are unknown.
     """
     require_rule(rule)
     robot.require_masses()
-    base = joint_loads if joint_loads.robot == robot else _again(joint_loads, robot)
-    judge = _Judge(base, safety_factor, rule)
+    base = loads if loads.robot == robot else _reloaded(loads, robot)
+    evaluation = _Evaluation(base, safety_factor, rule)
     verdicts = joint_verdicts(base, safety_factor=safety_factor)
-    candidates, left_out = judge.candidates()
+    candidates, excluded = evaluation.candidates()
     known = all(verdict.servo is not None for verdict in verdicts)
     return ServoSizing(
         verdicts=verdicts,
         candidates=candidates,
-        mixed=judge.mixed(left_out),
-        left_out=left_out,
+        mixed=evaluation.mixed(excluded),
+        excluded=excluded,
         payload=largest_payload(base, safety_factor=safety_factor, rule=rule) if known else None,
-        utmost_payload=largest_payload(base, safety_factor=BURNS_BELOW) if known else None,
+        maximum_payload=largest_payload(base, safety_factor=BURNOUT_FACTOR) if known else None,
         sensitivity=length_sensitivity(base),
         safety_factor=safety_factor,
         rule=rule,
-        assumed=(*base.assumed, _COXA_CAUTION, _where_servos_sit(robot)),
+        assumed=(*base.assumed, _COXA_CAUTION, _servo_placement(robot)),
     )
 
 
-def _again(base: JointLoads, robot: Robot) -> JointLoads:
+def _reloaded(base: JointLoads, robot: Robot) -> JointLoads:
     return joint_loads(robot, base.motion, payload=base.payload, **base.conditions)
 
 
-def _where_servos_sit(robot: Robot) -> str:
+def _servo_placement(robot: Robot) -> str:
     reason = why_masses_stay(robot)
     if reason is None:
-        return "a servo sits in the part inside of its joint where that weighs as much, else in the part outside"
-    return (
-        f"{reason}: the masses in the robot file stay as they are whichever servo is tried, and hold for servos as "
-        "heavy as those that the robot was weighed with"
-    )
+        return "a servo sits on the inner side of its joint if the part there is heavy enough, else on the outer side"
+    return f"{reason}: the masses of the robot file are used unchanged for every servo"
 
 
 @dataclass(frozen=True)
-class _Judge:
-    """Tries servos in the robot, each time with its loads worked out anew."""
+class _Evaluation:
+    """Evaluates servos in the robot, recomputing its loads with their masses."""
 
     base: JointLoads
     safety_factor: float
     rule: Rule
 
-    def fit(self, servos: Mapping[str, Servo]) -> JointLoads:
-        """Return the loads with other servos, their masses counted."""
-        return _again(self.base, with_servos(self.base.robot, servos))
+    def loads_for(self, servos: Mapping[str, Servo]) -> JointLoads:
+        """Return the loads with other servos, their masses included."""
+        return _reloaded(self.base, with_servos(self.base.robot, servos))
 
-    def verdicts(self, found: JointLoads) -> tuple[JointVerdict, ...]:
-        return joint_verdicts(found, safety_factor=self.safety_factor)
+    def verdicts(self, loads: JointLoads) -> tuple[JointVerdict, ...]:
+        return joint_verdicts(loads, safety_factor=self.safety_factor)
 
-    def candidate(self, servos: Mapping[str, Servo], found: JointLoads) -> Candidate:
-        verdicts = self.verdicts(found)
+    def candidate(self, servos: Mapping[str, Servo], loads: JointLoads) -> Candidate:
+        verdicts = self.verdicts(loads)
         return Candidate(
             servos=MappingProxyType(dict(servos)),
             factor=min(v.factor for v in verdicts),
             thermal_ratio=max(v.thermal_ratio for v in verdicts),
-            servo_mass=sum(found.robot.legs * (servos[joint].mass or 0.0) for joint in JOINTS),
-            robot_mass=float(total_mass(found.robot)),
+            servo_mass=sum(loads.robot.legs * (servos[joint].mass or 0.0) for joint in JOINTS),
+            robot_mass=float(total_mass(loads.robot)),
         )
 
-    def lacking(self, found: JointLoads) -> set[str]:
-        """Return the kinds of joint of which some don't do."""
-        return {verdict.joint for verdict in self.verdicts(found) if not verdict.does(self.rule)}
+    def insufficient(self, loads: JointLoads) -> set[str]:
+        """Return the joints (coxa, femur, tibia) whose servo is insufficient in some leg."""
+        return {verdict.joint for verdict in self.verdicts(loads) if not verdict.is_sufficient(self.rule)}
 
     def candidates(self) -> tuple[tuple[Candidate, ...], dict[str, str]]:
-        """Try each servo of the catalogue in all joints."""
-        fit, left_out = [], {}
+        """Evaluate each servo of the catalogue in all joints; return the sufficient ones and the excluded ones."""
+        suitable: list[Candidate] = []
+        excluded: dict[str, str] = {}
         for name, servo in servo_catalogue().items():
-            reason = self._why_not_tried(servo)
+            reason = self._exclusion_reason(servo)
             if reason is not None:
-                left_out[name] = reason
+                excluded[name] = reason
                 continue
-            alike = dict.fromkeys(JOINTS, servo)
-            found = self.fit(alike)
-            if not self.lacking(found):
-                fit.append(self.candidate(alike, found))
-        return tuple(sorted(fit, key=lambda c: (c.servo_mass, c.name))), left_out
+            servos = dict.fromkeys(JOINTS, servo)
+            loads = self.loads_for(servos)
+            if not self.insufficient(loads):
+                suitable.append(self.candidate(servos, loads))
+        return tuple(sorted(suitable, key=lambda c: (c.servo_mass, c.name))), excluded
 
-    def _why_not_tried(self, servo: Servo) -> str | None:
+    def _exclusion_reason(self, servo: Servo) -> str | None:
         volts = self.base.supply
         if servo.no_load_speed is None:
-            return "its speed is unknown"
+            return "its no-load speed is unknown"
         if servo.mass is None:
             return "its mass is unknown"
         if volts is not None and servo.supply is not None and not servo.supply[0] <= volts <= servo.supply[1]:
-            return f"it is made for {servo.supply[0]:g} to {servo.supply[1]:g} V, the supply is {volts:g} V"
+            return f"it is rated for {servo.supply[0]:g} to {servo.supply[1]:g} V, the supply is {volts:g} V"
         return None
 
-    def mixed(self, left_out: Mapping[str, str]) -> Candidate | None:
-        """Choose the lightest servo for each kind of joint.
+    def mixed(self, excluded: Mapping[str, str]) -> Candidate | None:
+        """Choose the lightest sufficient servo for each of coxa, femur and tibia.
 
-        All joints begin with the lightest of all. Whatever doesn't do is exchanged for the next heavier that does
-        with the loads as they then are, and the loads are worked out anew, until all do: as heavier servos only add to
-        the loads, none is heavier than it must be.
+        All joints start with the lightest servo. An insufficient one is replaced by the next heavier one that suffices
+        for the current loads, and the loads are recomputed, until all suffice. As heavier servos only increase the
+        loads, no chosen servo is heavier than necessary.
         """
-        by_mass = sorted((s for name, s in servo_catalogue().items() if name not in left_out), key=_lighter_first)
-        chosen = {joint: iter(by_mass) for joint in JOINTS}
-        servos = {joint: next(rest, None) for joint, rest in chosen.items()}
+        by_mass = sorted((s for name, s in servo_catalogue().items() if name not in excluded), key=_mass_order)
+        remaining = {joint: iter(by_mass) for joint in JOINTS}
+        servos = {joint: next(candidates, None) for joint, candidates in remaining.items()}
         while None not in servos.values():
             fitted = {joint: servo for joint, servo in servos.items() if servo is not None}
-            found = self.fit(fitted)
-            lacking = self.lacking(found)
-            if not lacking:
-                return self.candidate(fitted, found)
-            for joint in lacking:
+            loads = self.loads_for(fitted)
+            insufficient = self.insufficient(loads)
+            if not insufficient:
+                return self.candidate(fitted, loads)
+            for joint in insufficient:
                 servos[joint] = next(
-                    (s for s in chosen[joint] if joint not in self.lacking(_judged_with(found, s))), None
+                    (s for s in remaining[joint] if joint not in self.insufficient(_with_servo(loads, s))), None
                 )
         return None
 
 
-def _judged_with(found: JointLoads, servo: Servo) -> JointLoads:
-    """Return the same loads on another servo, its mass not counted."""
-    return replace(found, robot=found.robot.replace(servos=((servo,) * len(JOINTS),) * found.robot.legs))
+def _with_servo(loads: JointLoads, servo: Servo) -> JointLoads:
+    """Return the same loads with another servo in all joints, its mass not included."""
+    return replace(loads, robot=loads.robot.replace(servos=((servo,) * len(JOINTS),) * loads.robot.legs))
 
 
-def _lighter_first(servo: Servo) -> tuple[float, str]:
+def _mass_order(servo: Servo) -> tuple[float, str]:
     return servo.mass or 0.0, servo.name

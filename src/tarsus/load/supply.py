@@ -1,4 +1,4 @@
-"""What the supply must give: current from the torque, and the moments at which the legs' peaks coincide."""
+"""Load of the power supply: current from torque, and coinciding peaks of several legs."""
 
 from __future__ import annotations
 
@@ -13,53 +13,53 @@ from tarsus.load.loads import JointLoads
 
 __all__ = ["SupplyLoad", "supply_load"]
 
-# A leg is at its peak while its torque is at least this share of the most that it bears.
+# A leg counts as near its peak while its torque is at least this fraction of its maximum.
 _NEAR_PEAK = 0.9
-_LEGS_AT_ONCE = 3
+_COINCIDING_LEGS = 3
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class SupplyLoad:
-    """Currents of a robot's servos over a motion.
+    """Supply current of a robot's servos over a motion.
 
     Attributes
     ----------
     current : array, shape (n,) or None
-        Current of all servos together [A]; None where the stall current of one is unknown.
+        Total current of all servos [A]; None if a stall current is unknown.
     time : array, shape (n,)
-        Moments [s].
+        Sample times [s].
     unknown : tuple of str
         Servos whose stall current is unknown.
     capacity : float or None
-        Of the battery [A h].
-    together : tuple of str
-        Legs that are near their own peak load at once, at the moment at which most are.
-    moment : float
-        That moment [s].
+        Battery capacity [A h].
+    peak_legs : tuple of str
+        Legs near their own peak load at `peak_time`.
+    peak_time : float
+        Time at which most legs are near their peak load [s].
     """
 
     current: np.ndarray[Any, np.dtype[np.float64]] | None
     time: np.ndarray[Any, np.dtype[np.float64]]
     unknown: tuple[str, ...]
     capacity: float | None
-    together: tuple[str, ...]
-    moment: float
+    peak_legs: tuple[str, ...]
+    peak_time: float
 
     @property
     def peak_current(self) -> float | None:
-        """Greatest current [A]; None where unknown."""
+        """Largest current [A]; None if unknown."""
         return None if self.current is None else float(self.current.max())
 
     @property
     def mean_current(self) -> float | None:
-        """Mean current over the motion [A]; None where unknown."""
+        """Mean current over the motion [A]; None if unknown."""
         if self.current is None:
             return None
         return float(np.trapezoid(self.current, self.time) / (self.time[-1] - self.time[0]))
 
     @property
     def battery_time(self) -> float | None:
-        """How long the battery lasts at the mean current [s]; None where either is unknown."""
+        """Battery life at the mean current [s]; None if current or capacity is unknown."""
         mean = self.mean_current
         if mean is None or self.capacity is None:
             return None
@@ -67,30 +67,30 @@ class SupplyLoad:
 
     @property
     def warning(self) -> str | None:
-        """What to look out for: several legs at their peaks at once make the voltage drop."""
-        if len(self.together) < _LEGS_AT_ONCE:
+        """Warning if several legs have their peaks at the same time, which makes the voltage drop; else None."""
+        if len(self.peak_legs) < _COINCIDING_LEGS:
             return None
-        now = None if self.current is None else float(np.interp(self.moment, self.time, self.current))
-        amount = "" if now is None else f", {now:.1f} A in all"
+        current = None if self.current is None else float(np.interp(self.peak_time, self.time, self.current))
+        amount = "" if current is None else f", {current:.1f} A in total"
+        legs = f"{len(self.peak_legs)} legs ({' '.join(self.peak_legs)})"
         return (
-            f"at {self.moment:.2f} s {len(self.together)} legs ({' '.join(self.together)}) bear their peaks at once"
-            f"{amount}: a supply that can't give that drops its voltage, and the controller restarts"
+            f"at {self.peak_time:.2f} s the peak loads of {legs} coincide{amount}: "
+            "a weaker supply drops its voltage and resets the controller"
         )
 
 
 def supply_load(loads: JointLoads, *, capacity: float | None = None) -> SupplyLoad:
-    """Return the currents that a motion draws.
+    """Return the supply current of a motion.
 
-    A servo draws its stall current when it exerts its stall torque, and in proportion less: the direct current motor
-    without friction; one that can't bear its load draws its stall current. What a servo draws to move itself without
-    load, and what gears rub, comes on top.
+    The current of a servo is proportional to its torque, up to the stall current at the stall torque: a DC motor
+    without friction. No-load current and gear friction are not included.
 
     Parameters
     ----------
-    loads : Loads
-        What the joints bear.
+    loads : JointLoads
+        Joint loads.
     capacity : float, optional
-        Of the battery [A h].
+        Battery capacity [A h].
 
     Raises
     ------
@@ -101,25 +101,25 @@ def supply_load(loads: JointLoads, *, capacity: float | None = None) -> SupplyLo
         raise InputError(f"capacity is {capacity} A h; it must be greater than 0 and finite")
     servos = {servo for leg in loads.robot.servos for servo in leg}
     unknown = {"a joint without a servo" if s is None else s.name for s in servos if s is None or not s.stall_current}
-    by_leg = np.abs(loads.torques).sum(2)
-    near = (by_leg >= _NEAR_PEAK * by_leg.max(0)) & (by_leg > 0)
-    # The moment at which most legs are near their peaks, and of those the one with the greatest sum.
-    worst = int(np.lexsort((by_leg.sum(1), near.sum(1)))[-1])
+    leg_load = np.abs(loads.torques).sum(2)
+    near = (leg_load >= _NEAR_PEAK * leg_load.max(0)) & (leg_load > 0)
+    # The sample with most legs near their peaks; of several, the one with the largest total.
+    worst = int(np.lexsort((leg_load.sum(1), near.sum(1)))[-1])
     return SupplyLoad(
         current=None if unknown else _total_current(loads),
         time=loads.motion.time,
         unknown=tuple(sorted(unknown)),
         capacity=capacity,
-        together=tuple(code for code, at in zip(loads.robot.leg_codes, near[worst], strict=True) if at),
-        moment=float(loads.motion.time[worst]),
+        peak_legs=tuple(code for code, at in zip(loads.robot.leg_codes, near[worst], strict=True) if at),
+        peak_time=float(loads.motion.time[worst]),
     )
 
 
 def _total_current(loads: JointLoads) -> np.ndarray[Any, np.dtype[np.float64]]:
-    """Return the current of all servos together ``(n,)`` [A]; one that can't bear its load draws its stall current."""
+    """Return the total current of all servos ``(n,)`` [A]; an overloaded servo draws its stall current."""
     robot = loads.robot
-    own = np.array([[(s.stall_current, s.stall_torque) for s in leg if s is not None] for leg in robot.servos])
-    # Torque and current scale alike with the voltage: their ratio is the motor's own.
-    per_torque = own[..., 0] / own[..., 1]
+    stall = np.array([[(s.stall_current, s.stall_torque) for s in leg if s is not None] for leg in robot.servos])
+    # Torque and current scale alike with the voltage, so their ratio is constant.
+    per_torque = stall[..., 0] / stall[..., 1]
     total = np.minimum(np.abs(loads.torques), loads.stall_torque) * per_torque
     return np.asarray(total.sum((1, 2)))

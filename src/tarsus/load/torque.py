@@ -1,4 +1,4 @@
-"""What torque every joint's servo must exert to hold the robot: statics."""
+"""Joint torques in static equilibrium."""
 
 from __future__ import annotations
 
@@ -25,10 +25,10 @@ def joint_torques(
     gravity: Sequence[float] = GRAVITY,
     forces: Array | None = None,
 ) -> tuple[Array, Array]:
-    """Return the torques that the servos must exert to hold the robot, and the ground's forces on its feet.
+    """Return the joint torques that hold the robot, and the contact forces.
 
-    Quasi-static: what each link's weight turns the joint with, and ``-J^T f`` of the contact forces `f`. A positive
-    torque turns the joint the positive way; a standing leg pushes its foot down with a negative femur torque.
+    Quasi-static: the moments of the link weights, and ``-J^T f`` for the contact forces `f`. A positive torque acts in
+    the joint's positive direction; a standing leg pushes its foot down with a negative femur torque.
 
     Parameters
     ----------
@@ -37,21 +37,20 @@ def joint_torques(
     angles : array, shape (..., legs, 3)
         Joint angles [rad].
     body : Pose
-        Places of B in G.
+        Pose of B in G.
     contacts : array of bool, shape (..., legs)
         Which feet are on the ground.
     payload : Payload or float
-        What the body carries; a number is a mass at its origin [kg].
+        Payload on the body; a number is a mass at the body's origin [kg].
     gravity : sequence of float
         Gravity in G [m/s^2].
     forces : array, shape (..., legs, 3), optional
-        Ground on foot in G [N], where they are known: `contacts` and `payload` are then not looked at. Left out,
-        those of `contact_forces`.
+        Ground on foot in G [N], if known; `contacts` and `payload` are then ignored. Default: `contact_forces`.
 
     Returns
     -------
     torques : array, shape (..., legs, 3)
-        Of coxa, femur and tibia [N m].
+        Torques of coxa, femur and tibia [N m].
     forces : array, shape (..., legs, 3)
         Ground on foot, in G [N].
 
@@ -60,7 +59,7 @@ def joint_torques(
     MissingDataError
         If the robot's masses are unknown.
     InputError
-        If a shape is wrong, a value is not finite, no foot is down, or there is no gravity.
+        If a shape is wrong, a value is not finite, no foot is on the ground, or gravity is 0.
     """
     robot.require_masses()
     strength, axes = upward(gravity)
@@ -73,23 +72,28 @@ def joint_torques(
     xp = namespace(points, forces, body.rotation, masses)
     rotation = as_array(xp, body.rotation)
     forces = checked_forces(xp, robot, forces)
-    pull = xp.matmul(as_array(xp, -strength * axes[0]), rotation)
-    weights = as_array(xp, masses)[..., None] * pull[..., None, None, :]
-    pushes = xp.matmul(forces, rotation)
-    return torques_of(xp, robot, as_array(xp, q), as_array(xp, points), weights, pushes), forces
+    weight = xp.matmul(as_array(xp, -strength * axes[0]), rotation)
+    weights = as_array(xp, masses)[..., None] * weight[..., None, None, :]
+    contact = xp.matmul(forces, rotation)
+    return torques_of(xp, robot, as_array(xp, q), as_array(xp, points), weights, contact), forces
 
 
 def checked_forces(xp: Namespace, robot: Robot, forces: Array) -> Array:
-    """Return forces on the feet as floats, refusing what is not ``(..., legs, 3)`` finite numbers.
+    """Validate forces on the feet.
 
     Parameters
     ----------
     xp : namespace
         The array library.
     robot : Robot
-        Whose feet.
+        The robot.
     forces : array, shape (..., legs, 3)
         Ground on foot in G [N].
+
+    Returns
+    -------
+    array, shape (..., legs, 3)
+        The same, as floats.
 
     Raises
     ------
@@ -102,8 +106,8 @@ def checked_forces(xp: Namespace, robot: Robot, forces: Array) -> Array:
     return forces
 
 
-def torques_of(xp: Namespace, robot: Robot, angles: Array, points: Array, loads: Array, pushes: Array) -> Array:
-    """Return the torques that hold forces on the leg points, all in B.
+def torques_of(xp: Namespace, robot: Robot, angles: Array, points: Array, loads: Array, contact: Array) -> Array:
+    """Return the joint torques that balance forces on the leg points, all in B.
 
     Parameters
     ----------
@@ -116,34 +120,39 @@ def torques_of(xp: Namespace, robot: Robot, angles: Array, points: Array, loads:
     points : array, shape (..., legs, 4, 3)
         Leg points [m].
     loads : array, shape (..., legs, 4, 3)
-        Forces on the points: weights, inertia [N].
-    pushes : array, shape (..., legs, 3)
-        Further forces on the feet: the ground's [N].
+        Forces on the leg points: weight and inertia [N].
+    contact : array, shape (..., legs, 3)
+        Contact forces on the feet [N].
+
+    Returns
+    -------
+    array, shape (..., legs, 3)
+        Torques of coxa, femur and tibia [N m].
     """
     heading = as_array(xp, robot.mount_yaw) + angles[..., 0]
     cos, sin = xp.cos(heading), xp.sin(heading)
-    foot = loads[..., 3, :] + pushes
-    forces = ((loads[..., 1, 0], loads[..., 1, 1], loads[..., 1, 2]), *_split(loads[..., 2, :], foot))
+    foot = loads[..., 3, :] + contact
+    forces = ((loads[..., 1, 0], loads[..., 1, 1], loads[..., 1, 2]), *_components(loads[..., 2, :], foot))
     at = [tuple(points[..., i, axis] for axis in range(3)) for i in range(4)]
     coxa = femur = tibia = 0.0
     for point, (fx, fy, fz) in enumerate(forces, start=1):
         arm = [at[point][axis] - at[0][axis] for axis in range(2)]
         coxa = coxa - (arm[0] * fy - arm[1] * fx)
-        along = fx * cos + fy * sin
+        radial = fx * cos + fy * sin
         if point > 1:
-            femur = femur - _lifting(at[1], at[point], cos, sin, along, fz)
+            femur = femur - _lifting_moment(at[1], at[point], cos, sin, radial, fz)
         if point > 2:
-            tibia = tibia - _lifting(at[2], at[point], cos, sin, along, fz)
+            tibia = tibia - _lifting_moment(at[2], at[point], cos, sin, radial, fz)
     return stack_last(xp, (coxa, femur, tibia))
 
 
-def _split(*vectors: Array) -> list[tuple[Array, Array, Array]]:
+def _components(*vectors: Array) -> list[tuple[Array, Array, Array]]:
     return [(v[..., 0], v[..., 1], v[..., 2]) for v in vectors]
 
 
-def _lifting(
-    axis: tuple[Array, ...], point: tuple[Array, ...], cos: Array, sin: Array, along: Array, up: Array
+def _lifting_moment(
+    axis: tuple[Array, ...], point: tuple[Array, ...], cos: Array, sin: Array, radial: Array, up: Array
 ) -> Array:
-    """Return the moment, in the lifting sense, of a force in the leg's plane about a joint axis across it."""
-    out = (point[0] - axis[0]) * cos + (point[1] - axis[1]) * sin
-    return out * up - (point[2] - axis[2]) * along
+    """Return the moment, positive when lifting, of a force in the leg's plane about a joint axis normal to it."""
+    distance = (point[0] - axis[0]) * cos + (point[1] - axis[1]) * sin
+    return distance * up - (point[2] - axis[2]) * radial

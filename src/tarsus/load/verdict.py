@@ -1,4 +1,4 @@
-"""Whether a joint's servo carries its load: the classes, and the maker's rule for lasting loads."""
+"""Verdict on each joint's servo: class of its safety factor, continuous load and speed."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from tarsus.robot.robot import JOINTS
 from tarsus.robot.servo import Servo
 
 __all__ = [
-    "BURNS_BELOW",
+    "BURNOUT_FACTOR",
     "CLASSES",
-    "CONTINUOUS_SHARE",
+    "CONTINUOUS_FRACTION",
     "RULES",
     "SAFETY_FACTOR",
     "JointVerdict",
@@ -27,26 +27,26 @@ __all__ = [
 Rule = Literal["factor", "continuous"]
 
 RULES = ("factor", "continuous")
-"""What a servo can be asked to keep: the safety factor on its peak, or the maker's rule for its lasting load."""
+"""Sizing rules: a safety factor on the peak torque, or the manufacturer's limit of the continuous load."""
 
 SAFETY_FACTOR = 3.0
-"""Stall torque over peak torque that source 004 asks for."""
+"""Stall torque over peak torque recommended by source 004."""
 
-CONTINUOUS_SHARE = 1 / 5
-"""Share of its stall torque that a servo bears lastingly: ROBOTIS' advice for its AX-12A."""
+CONTINUOUS_FRACTION = 1 / 5
+"""Continuous load limit over stall torque, recommended by ROBOTIS for its AX-12A."""
 
-BURNS_BELOW = 1.5
-"""Stall torque over peak torque below which servos stall, or burn in time."""
+BURNOUT_FACTOR = 1.5
+"""Stall torque over peak torque below which servos stall or burn."""
 
-CLASSES = ((1.0, "cannot stand"), (BURNS_BELOW, "stalls or burns"), (SAFETY_FACTOR, "marginal"), (math.inf, "good"))
-"""Names of the classes of stall torque over peak torque, each with the bound that it stays below.
+CLASSES = ((1.0, "cannot stand"), (BURNOUT_FACTOR, "stalls or burns"), (SAFETY_FACTOR, "marginal"), (math.inf, "good"))
+"""Classes of stall torque over peak torque: upper bound and name.
 
-A marginal robot walks, warm and without reserve.
+A marginal robot walks, but its servos run warm and have no reserve.
 """
 
 
 def class_of(factor: float) -> str:
-    """Return the name of a factor's class: see `CLASSES`; ``"unknown"`` for NaN.
+    """Return the name of a factor's class in `CLASSES`; ``"unknown"`` for NaN.
 
     Parameters
     ----------
@@ -59,17 +59,17 @@ def class_of(factor: float) -> str:
 
 
 def require_rule(rule: str) -> None:
-    """Refuse a rule that is none of `RULES`.
+    """Check that a sizing rule is one of `RULES`.
 
     Parameters
     ----------
     rule : str
-        Its name.
+        Name of the rule.
 
     Raises
     ------
     UnknownNameError
-        If there is no such rule.
+        If the rule is unknown.
     """
     if rule not in RULES:
         raise UnknownNameError.of("rule", str(rule), RULES)
@@ -77,26 +77,26 @@ def require_rule(rule: str) -> None:
 
 @dataclass(frozen=True, kw_only=True)
 class JointVerdict:
-    """Whether one joint's servo carries its load.
+    """Verdict on one joint's servo.
 
     Attributes
     ----------
     leg, joint : str
-        Which joint.
+        Short name of the leg, name of the joint.
     servo : Servo or None
-        What turns it; None where the robot file names none.
+        The servo; None if the robot file names none.
     peak, rms : float
-        Largest torque, and its root mean square over the motion [N m].
+        Peak and root mean square torque over the motion [N m].
     peak_speed : float
-        Largest speed [rad/s].
+        Peak speed [rad/s].
     stall_torque, no_load_speed : float
-        The servo's at its supply [N m, rad/s]; NaN where unknown.
+        Stall torque and no-load speed at the supply voltage [N m, rad/s]; NaN if unknown.
     utilisation : float
-        Largest share of the servo's torque-speed line; NaN where unknown.
+        Largest utilisation of the servo's torque-speed line; NaN if unknown.
     cause : str
-        When and why the joint bears most.
+        When and why the joint has its peak torque.
     safety_factor : float
-        What stall torque over peak torque is asked for.
+        Required stall torque over peak torque.
     """
 
     leg: str
@@ -113,83 +113,83 @@ class JointVerdict:
 
     @property
     def factor(self) -> float:
-        """Stall torque over peak torque; NaN where no servo is known."""
+        """Safety factor: stall torque over peak torque; NaN if no servo is known."""
         return self.stall_torque / self.peak if self.peak > 0 else self.stall_torque * math.inf
 
     @property
     def class_name(self) -> str:
-        """Name of the factor's class: see `CLASSES`; ``"unknown"`` where no servo is known."""
+        """Name of the factor's class in `CLASSES`; ``"unknown"`` if no servo is known."""
         return class_of(self.factor)
 
     @property
     def thermal_ratio(self) -> float:
-        """Root mean square torque over what the servo bears lastingly, 1/5 of its stall torque; NaN where unknown."""
-        return self.rms / (CONTINUOUS_SHARE * self.stall_torque)
+        """Root mean square torque over the continuous limit, 1/5 of the stall torque; NaN if unknown."""
+        return self.rms / (CONTINUOUS_FRACTION * self.stall_torque)
 
     @property
     def strong_enough(self) -> bool:
-        """Whether the factor is what is asked for."""
+        """Whether the factor is at least the required one."""
         return self.factor >= self.safety_factor
 
     @property
     def fast_enough(self) -> bool:
-        """Whether the torque-speed line covers every moment, driven ones included; False where the speed is unknown."""
+        """Whether torque and speed stay within the torque-speed line; False if the no-load speed is unknown."""
         return self.utilisation <= 1 and self.peak_speed <= self.no_load_speed
 
     @property
-    def lasting(self) -> bool:
-        """Whether the maker's rule for lasting loads is kept."""
+    def within_continuous_limit(self) -> bool:
+        """Whether the root mean square torque is within the continuous limit."""
         return self.thermal_ratio <= 1
 
-    def keeps(self, rule: Rule) -> bool:
-        """Return whether a rule is kept, speed apart.
+    def satisfies(self, rule: Rule) -> bool:
+        """Return whether the servo satisfies a sizing rule, regardless of speed.
 
         Parameters
         ----------
         rule : {"factor", "continuous"}
-            The safety factor, or the maker's rule for lasting loads.
+            Safety factor, or continuous load limit.
         """
-        return self.strong_enough if rule == "factor" else self.lasting
+        return self.strong_enough if rule == "factor" else self.within_continuous_limit
 
-    def does(self, rule: Rule) -> bool:
-        """Return whether the servo keeps a rule and is fast enough.
+    def is_sufficient(self, rule: Rule) -> bool:
+        """Return whether the servo satisfies a sizing rule and is fast enough.
 
         Parameters
         ----------
         rule : {"factor", "continuous"}
-            The safety factor, or the maker's rule for lasting loads.
+            Safety factor, or continuous load limit.
         """
-        return self.keeps(rule) and self.fast_enough
+        return self.satisfies(rule) and self.fast_enough
 
     def text(self) -> str:
-        """Say whether it carries, by how much, and what is unknown."""
+        """Describe the verdict: safety factor, shortfalls and unknown ratings."""
         if self.servo is None:
-            return f"no servo is named in the robot file; {self.safety_factor * self.peak:.2f} N m are needed"
+            return f"the robot file names no servo; {self.safety_factor * self.peak:.2f} N m required"
         return f"{self._strength()}{self._speed()}{self._heat()}"
 
     def _strength(self) -> str:
         if self.strong_enough:
-            return "bears nothing" if math.isinf(self.factor) else f"carries with factor {self.factor:.1f}"
-        needed = self.safety_factor * self.peak
+            return "no load" if math.isinf(self.factor) else f"safety factor {self.factor:.1f}"
+        required = self.safety_factor * self.peak
         return (
-            f"{self.class_name}: factor {self.factor:.2f}, too weak by {needed - self.stall_torque:.2f} N m "
-            f"for factor {self.safety_factor:g}"
+            f"{self.class_name}: safety factor {self.factor:.2f}, {required - self.stall_torque:.2f} N m short of "
+            f"factor {self.safety_factor:g}"
         )
 
     def _speed(self) -> str:
         name = self.servo.name if self.servo is not None else ""
         if math.isnan(self.no_load_speed):
-            return f"; the speed of {name} is unknown: give its no_load_rad_s in the robot file"
+            return f"; the no-load speed of {name} is unknown: set no_load_rad_s in the robot file"
         if self.peak_speed > self.no_load_speed:
             return f"; too slow by {math.degrees(self.peak_speed - self.no_load_speed):.0f} deg/s"
         if not self.fast_enough:
-            return f"; too slow under load: torque and speed together are {self.utilisation:.2f} of what it gives"
+            return f"; too slow under load: {self.utilisation:.0%} of its torque-speed line"
         return ""
 
     def _heat(self) -> str:
-        if self.lasting:
+        if self.within_continuous_limit:
             return ""
-        return f"; warm: its lasting load is {self.thermal_ratio:.1f} times a fifth of its stall torque"
+        return f"; runs warm: rms torque {self.thermal_ratio:.1f} times its continuous limit (1/5 of stall)"
 
 
 def joint_verdicts(loads: JointLoads, *, safety_factor: float = SAFETY_FACTOR) -> tuple[JointVerdict, ...]:
@@ -197,10 +197,10 @@ def joint_verdicts(loads: JointLoads, *, safety_factor: float = SAFETY_FACTOR) -
 
     Parameters
     ----------
-    loads : Loads
-        What the joints bear.
+    loads : JointLoads
+        Joint loads.
     safety_factor : float
-        What stall torque over peak torque is asked for.
+        Required stall torque over peak torque.
 
     Raises
     ------

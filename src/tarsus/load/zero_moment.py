@@ -1,82 +1,86 @@
-"""The ground's forces on a robot that accelerates, on flat ground: all six equations of its motion balance.
+"""Contact forces on an accelerating robot on flat ground: all six equations of motion are satisfied.
 
-Across the ground the forces act together at the zero-moment point, where nothing is left that could tip the robot; the
-feet share them as they share a weight that acts there (M. Vukobratovic and B. Borovac, "Zero-moment point - thirty-five
-years of its life", International Journal of Humanoid Robotics 1, 2004). Along the ground each foot takes the same part
-of the whole, and what turns the robot about the vertical is shared in least squares, weighted with the load: the feet
-that are pressed most hold most, and none needs more friction than it must.
+The normal forces have their resultant at the zero-moment point, and are distributed as a weight that acts there
+(M. Vukobratovic and B. Borovac, "Zero-moment point - thirty-five years of its life", International Journal of Humanoid
+Robotics 1, 2004). The tangential force on each foot is proportional to its normal force, and the moment about the
+vertical is distributed by least squares weighted with the normal force. This keeps the required friction coefficient
+low.
 """
 
 from __future__ import annotations
 
 from tarsus.arrays import Array, Namespace
-from tarsus.load.contact import shared
+from tarsus.load.contact import distribute_load
 
 __all__ = ["ground_forces"]
 
-_SOFTENING = 1e-9  # relative to a matrix of trace 1: enough to solve it where the feet that bear lie on a line
-_ROUNDS = 3
+_REGULARISATION = 1e-9  # of a matrix of trace 1: enough to invert it where the bearing feet are collinear
+_REFINEMENTS = 3
 
 
 def ground_forces(
     xp: Namespace, feet: Array, contacts: Array, force: Array, moment: Array, batch: tuple[int, ...]
 ) -> tuple[Array, Array]:
-    """Return the forces on the feet that make up a force and a moment, and the margin of the zero-moment point.
+    """Return the contact forces for a given resultant, and the margin of the zero-moment point.
 
     Parameters
     ----------
     xp : namespace
         The array library.
     feet : array, shape (..., legs, 3)
-        The feet, in G's axes [m].
+        Feet, in G's axes [m].
     contacts : array of bool, shape (..., legs)
-        Which of them are down; those should be level.
-    force, moment : array, shape (..., 3)
-        What the ground has to exert, the moment about the feet's origin, in G's axes [N, N m].
+        Which feet are on the ground; these should be level.
+    force : array, shape (..., 3)
+        Resultant force of the ground, in G's axes [N].
+    moment : array, shape (..., 3)
+        Resultant moment of the ground about the origin of `feet`, in G's axes [N m].
     batch : tuple of int
-        The batch axes that these have together.
+        Common batch shape.
 
     Returns
     -------
     forces : array, shape (..., legs, 3)
-        Ground on foot [N]. Where the zero-moment point is outside the polygon of the feet, they balance what
-        they can from the nearest point of it; where the ground would have to pull, they are 0.
+        Ground on foot [N]. If the zero-moment point is outside the support polygon, the normal forces act at its
+        nearest point; if the ground would have to pull, they are 0.
     margin : array, shape (...)
-        Distance from the zero-moment point to the polygon's nearest edge [m], negative outside; minus infinity
-        where the ground would have to pull.
+        Distance from the zero-moment point to the nearest edge of the support polygon [m], negative outside; minus
+        infinity if the ground would have to pull.
     """
     down = xp.astype(contacts, feet.dtype)
     height = xp.sum(down * feet[..., 2], axis=-1) / xp.maximum(xp.sum(down, axis=-1), xp.asarray(1.0))
-    pushed = force[..., 2] > 0
-    up = xp.where(pushed, force[..., 2], 1.0)
+    pushing = force[..., 2] > 0
+    up = xp.where(pushing, force[..., 2], 1.0)
     zero_moment = xp.stack((height * force[..., 0] - moment[..., 1], height * force[..., 1] + moment[..., 0]), axis=-1)
-    zero_moment = xp.where(pushed[..., None], zero_moment / up[..., None], 0.0)
-    shares, margin, nearest = shared(xp, feet[..., :2] - zero_moment[..., None, :], contacts, batch)
-    centre = xp.sum(shares[..., None] * feet, axis=-2)
-    rest = moment - xp.linalg.cross(centre, force)
-    # What tips the robot is not to be balanced, where it can't be: it is known from how far outside the load is.
+    zero_moment = xp.where(pushing[..., None], zero_moment / up[..., None], 0.0)
+    fractions, margin, nearest = distribute_load(xp, feet[..., :2] - zero_moment[..., None, :], contacts, batch)
+    centre = xp.sum(fractions[..., None] * feet, axis=-2)
+    remaining = moment - xp.linalg.cross(centre, force)
+    # The tipping moment can't be balanced; it follows from the distance of the load from the support polygon.
     tipping = up[..., None] * xp.stack((-nearest[..., 1], nearest[..., 0]), axis=-1)
-    rest = xp.concat((rest[..., :2] - tipping, rest[..., 2:]), axis=-1)
-    forces = shares[..., None] * (force[..., None, :] + _turning(xp, feet - centre[..., None, :], shares, rest))
-    return xp.where(pushed[..., None, None], forces, 0.0), xp.where(pushed, margin, -xp.inf)
+    remaining = xp.concat((remaining[..., :2] - tipping, remaining[..., 2:]), axis=-1)
+    forces = fractions[..., None] * (
+        force[..., None, :] + _moment_forces(xp, feet - centre[..., None, :], fractions, remaining)
+    )
+    return xp.where(pushing[..., None, None], forces, 0.0), xp.where(pushing, margin, -xp.inf)
 
 
-def _turning(xp: Namespace, arms: Array, shares: Array, moment: Array) -> Array:
-    """Return forces per share, without a sum, that make up a moment: those of least squares over the shares.
+def _moment_forces(xp: Namespace, arms: Array, fractions: Array, moment: Array) -> Array:
+    """Return forces per load fraction with zero resultant and a given moment: weighted least squares.
 
-    They are ``mu x arm``, as the speeds of a turning body are, with mu from the inertia of the shares.
+    They are ``mu x arm``, like the velocities of a rotating body, with mu from the inertia tensor of the fractions.
     """
-    weighted = shares[..., None] * arms
+    weighted = fractions[..., None] * arms
     second = xp.matmul(xp.matrix_transpose(weighted), arms)
     trace = second[..., 0, 0] + second[..., 1, 1] + second[..., 2, 2]
     spread = xp.where(trace > 0, trace, 1.0)[..., None, None]
     eye = xp.eye(3, dtype=arms.dtype)
     inertia = (trace[..., None, None] * eye - second) / spread
-    inverse = _inverse(xp, inertia + _SOFTENING * eye)
-    goal = moment[..., None] / spread
-    axis = xp.zeros_like(goal)
-    for _ in range(_ROUNDS):
-        axis = axis + xp.matmul(inverse, goal - xp.matmul(inertia, axis))
+    inverse = _inverse(xp, inertia + _REGULARISATION * eye)
+    target = moment[..., None] / spread
+    axis = xp.zeros_like(target)
+    for _ in range(_REFINEMENTS):
+        axis = axis + xp.matmul(inverse, target - xp.matmul(inertia, axis))
     axis = xp.where(trace[..., None, None] > 0, axis, 0.0)
     return xp.linalg.cross(xp.broadcast_to(axis[..., 0][..., None, :], arms.shape), arms)
 

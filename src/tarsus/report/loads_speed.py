@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tarsus.load.loads import JointLoads
-from tarsus.load.verdict import CONTINUOUS_SHARE, SAFETY_FACTOR
+from tarsus.load.verdict import CONTINUOUS_FRACTION, SAFETY_FACTOR
 from tarsus.report.style import INK, PALE, WARNING, halo, leg_colours, new_figure, thinned, tidy_axes
 from tarsus.robot.robot import JOINTS
 
@@ -78,7 +78,7 @@ def _draw_servo(axes: Axes, found: JointLoads, joint: int) -> None:
             note += ": speed unknown"
         else:
             axes.plot([left, 0, free], [stall, stall, 0], color=WARNING, linewidth=1.4)
-        for share, style, name in ((1 / SAFETY_FACTOR, "--", "1/3"), (CONTINUOUS_SHARE, ":", "1/5")):
+        for share, style, name in ((1 / SAFETY_FACTOR, "--", "1/3"), (CONTINUOUS_FRACTION, ":", "1/5")):
             axes.axhline(share * stall, color=WARNING, linewidth=1.0, linestyle=style)
             axes.annotate(
                 name,

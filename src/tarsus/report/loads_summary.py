@@ -10,7 +10,7 @@ import numpy as np
 from tarsus.load.loads import JointLoads
 from tarsus.load.sizing import Candidate, ServoSizing
 from tarsus.load.supply import SupplyLoad
-from tarsus.load.verdict import BURNS_BELOW, JointVerdict, joint_verdicts
+from tarsus.load.verdict import BURNOUT_FACTOR, JointVerdict, joint_verdicts
 from tarsus.robot.robot import JOINTS
 
 __all__ = ["length_advice", "loads_summary", "servos_summary", "worst_of_each"]
@@ -44,13 +44,13 @@ def loads_summary(found: JointLoads, drawn: SupplyLoad) -> dict[str, Any]:
         "stroke_mm": found.motion.stroke * 1000,
         "worst": [f"{v.leg} {v.joint}" for v in worst_of_each(verdicts)],
         "class": min(verdicts, key=_rank).class_name,
-        "carried": found.balanced and all(verdict.factor >= BURNS_BELOW for verdict in verdicts),
+        "carried": found.balanced and all(verdict.factor >= BURNOUT_FACTOR for verdict in verdicts),
         "supply": {
             "peak_a": drawn.peak_current,
             "mean_a": drawn.mean_current,
             "battery_min": None if drawn.battery_time is None else _number(drawn.battery_time / 60),
             "stall_current_unknown": list(drawn.unknown),
-            "together": list(drawn.together),
+            "together": list(drawn.peak_legs),
             "warning": drawn.warning,
         },
     }
@@ -97,13 +97,13 @@ def servos_summary(sizing: ServoSizing, found: JointLoads) -> dict[str, Any]:
         "candidates": [_candidate(candidate) for candidate in sizing.candidates],
         "mixed": None if sizing.mixed is None else _candidate(sizing.mixed),
         "payload_carried_kg": sizing.payload,
-        "payload_before_burning_kg": sizing.utmost_payload,
+        "payload_before_burning_kg": sizing.maximum_payload,
         "lengths": {
             link: {joint: _number(float(v)) for joint, v in zip(JOINTS, row, strict=True)}
             for link, row in sizing.sensitivity.items()
         },
         "advice": length_advice(sizing),
-        "left_out": dict(sizing.left_out),
+        "left_out": dict(sizing.excluded),
         "assumed": list(sizing.assumed),
     }
 
@@ -119,7 +119,7 @@ def _joint(verdict: JointVerdict, sizing: ServoSizing) -> dict[str, Any]:
         "factor": _number(verdict.factor),
         "thermal_ratio": _number(verdict.thermal_ratio),
         "class": verdict.class_name,
-        "does": verdict.does(sizing.rule),
+        "does": verdict.is_sufficient(sizing.rule),
         "text": verdict.text(),
         "cause": verdict.cause,
     }

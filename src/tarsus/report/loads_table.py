@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
-from tarsus.load.verdict import BURNS_BELOW
+from tarsus.load.verdict import BURNOUT_FACTOR
 from tarsus.report.tables import number
 
 if TYPE_CHECKING:
@@ -150,7 +150,7 @@ def loads_verdict(summary: dict[str, Any]) -> RenderableType:
     factor = "" if worst["factor"] is None else f" with factor {worst['factor']:.2f}"
     text = f"{summary['class']}: {name}{factor}"
     if not summary["carried"]:
-        return Text(f"{text}; at least {BURNS_BELOW:g} is needed to last", style="bold red")
+        return Text(f"{text}; at least {BURNOUT_FACTOR:g} is needed to last", style="bold red")
     return Text(text, style="bold green" if summary["class"] == "good" else "bold yellow")
 
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tarsus.load.loads import JointLoads
-from tarsus.load.verdict import CONTINUOUS_SHARE, SAFETY_FACTOR
+from tarsus.load.verdict import CONTINUOUS_FRACTION, SAFETY_FACTOR
 from tarsus.report.joint_panels import joint_panels
 from tarsus.report.style import PALE, WARNING, halo
 
@@ -38,7 +38,7 @@ def servo_limits(found: JointLoads, joint: int) -> list[tuple[str, float]]:
     return [
         (f"stall {least:.2f} N m", least),
         ("1/3: factor 3", least / SAFETY_FACTOR),
-        ("1/5: lasting", least * CONTINUOUS_SHARE),
+        ("1/5: lasting", least * CONTINUOUS_FRACTION),
     ]
 
 

@@ -97,8 +97,8 @@ def torques_and_forces(
 def _plane_of_shares(feet: Floats) -> Floats | None:
     """Return the least squares of shares of a load over the origin, or None where a foot may not push.
 
-    They are a plane over the feet, as in `tarsus.load.load_distribution`, whose way is for the rest: feet that would have to pull,
-    and feet on a line.
+    They are a plane over the feet, as in `tarsus.load.load_distribution`, whose way is for the rest: feet that would
+    have to pull, and feet on a line.
     """
     middle = feet.mean(0)
     arms = feet - middle
