@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from tarsus.control.walk.state import EARLY_STOP_FRACTION, GaitState, chord_factor, stopping_fraction
-from tarsus.control.walk.stepper import quintic
+from tarsus.control.walk.state import EARLY_STOP_FRACTION, GaitState, chord_factor
+from tarsus.control.walk.swing_trajectory import quintic, stopping_fraction
 from tarsus.control.workspace.stance_geometry import SWING_HEIGHT, stance_geometry_of, with_sway
 from tarsus.gait.swing import ground_share
 from tarsus.robot.robot import Robot

@@ -14,8 +14,8 @@ import numpy as np
 
 from tarsus.control.filters import CriticallyDamped
 from tarsus.control.sensing.ground_plane import FLAT, GroundPlane
+from tarsus.control.walk.swing_trajectory import stopping_height, swinging_height
 from tarsus.gait.gait import Gait
-from tarsus.gait.swing import ground_share, height_share
 
 __all__ = [
     "EARLY_STOP_FRACTION",
@@ -26,7 +26,6 @@ __all__ = [
     "StepInputs",
     "chord_factor",
     "integrate_twist",
-    "stopping_fraction",
 ]
 
 Floats = np.ndarray[Any, Any]
@@ -191,21 +190,22 @@ class GaitState(NamedTuple):
 
     def _height(self, leg: int, swing_height: float) -> float:
         """Return the height of a foot in the air."""
-        share, ground, met = (
+        fraction, ground, contact = (
             float(self.swing_phase[leg]),
             float(self.ground_height[leg]),
             float(self.contact_phase[leg]),
         )
-        if met == math.inf:
-            start = float(self.start_height[leg])
-            swing_height *= float(self.height_factor[leg])
-            return float(start + (ground - start) * ground_share(share) + swing_height * height_share(share))
-        # A foot that has met the ground comes to rest on it.
-        left = min(1 - met, float(self.stop_phase[leg]))
-        part = min(max((share - met) / left, 0.0), 1.0)
-        start, speed = float(self.contact_height[leg]), float(self.contact_speed[leg]) * left
-        height: float = start + speed * stopping_fraction(part) + (ground - start - speed / 3) * ground_share(part)
-        return height
+        if contact == math.inf:
+            rise = swing_height * float(self.height_factor[leg])
+            return swinging_height(fraction, start=float(self.start_height[leg]), ground=ground, swing_height=rise)
+        return stopping_height(
+            fraction,
+            contact=contact,
+            duration=float(self.stop_phase[leg]),
+            height=float(self.contact_height[leg]),
+            speed=float(self.contact_speed[leg]),
+            ground=ground,
+        )
 
 
 class StepInputs(NamedTuple):
@@ -285,17 +285,3 @@ def integrate_twist(origin: complex, yaw: float, travel: Sequence[float]) -> tup
     """Return where the heading frame is after a travel (x, y, angle), the exponential of its displacement."""
     x, y, angle = travel
     return origin + cmath.exp(1j * yaw) * complex(x, y) * chord_factor(angle), yaw + angle
-
-
-def stopping_fraction(part: Any) -> Any:
-    """Return what of ``speed time`` a motion has gone that stops within a time: a third of it at the end.
-
-    The speed falls with the square of the time that is left: never below 0, and without a jolt at the end.
-
-    Parameters
-    ----------
-    part : float or array
-        What part of the time has passed.
-    """
-    left = 1 - part
-    return (1 - left * left * left) / 3

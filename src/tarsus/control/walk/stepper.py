@@ -11,9 +11,10 @@ from tarsus.control.filters import CriticallyDamped
 from tarsus.control.sensing.ground_plane import FLAT
 from tarsus.control.walk.foothold import FootholdPredictor, final_footholds
 from tarsus.control.walk.state import PHASE_TOLERANCE, POSITION_TOLERANCE, GaitState, StepInputs, integrate_twist
+from tarsus.control.walk.swing_trajectory import quintic
 from tarsus.control.workspace.stance_geometry import SWING_HEIGHT
 
-__all__ = ["LATEST_LIFT_OFF", "TARGET_FREEZE", "advance", "quintic"]
+__all__ = ["LATEST_LIFT_OFF", "TARGET_FREEZE", "advance"]
 
 Floats = np.ndarray[Any, Any]
 
@@ -176,32 +177,6 @@ def _on_ground(ground: Floats, leg: int, moved: complex, inputs: StepInputs, *, 
     if just_lifted:
         changed[leg] = max(changed[leg], np.broadcast_to(inputs.lowest_ground, ground.shape)[leg])
     return changed
-
-
-def quintic(way: tuple[Any, Any, Any], target: Any, left: Any, x: Any) -> tuple[Any, Any, Any]:
-    """Go a part of the rest of the swing, on the quintic that ends at the target at rest.
-
-    Parameters
-    ----------
-    way : tuple of (complex or array)
-        Where the foot is [m], and the first and second derivative of its way by the share of the swing.
-    target : complex or array
-        Where it goes [m].
-    left : float or array
-        What share of the swing is left, above 0.
-    x : float or array
-        What part of that to go.
-    """
-    here, speed, half = way[0], way[1] * left, way[2] * (left * left / 2)
-    gap, missing, bent = target - (here + speed + half), -(speed + 2 * half), -2 * half
-    a3 = 10 * gap - 4 * missing + bent / 2
-    a4 = -15 * gap + 7 * missing - bent
-    a5 = 6 * gap - 3 * missing + bent / 2
-    return (
-        here + x * (speed + x * (half + x * (a3 + x * (a4 + x * a5)))),
-        (speed + x * (2 * half + x * (3 * a3 + x * (4 * a4 + x * 5 * a5)))) / left,
-        (2 * half + x * (6 * a3 + x * (12 * a4 + x * 20 * a5))) / (left * left),
-    )
 
 
 def _land(now: GaitState, landed: list[int]) -> GaitState:

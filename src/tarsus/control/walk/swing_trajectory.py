@@ -1,0 +1,106 @@
+"""Swing trajectories: the position over the ground, the height, and the stop after early ground contact.
+
+Progress is measured as the fraction of the swing that has passed, from 0 at lift-off to 1 at touchdown. Derivatives
+are by this fraction, so that they do not depend on how fast the swing is executed. Positions are complex numbers,
+x + iy in G.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from tarsus.gait.swing import ground_share, height_share
+
+__all__ = ["quintic", "stopping_fraction", "stopping_height", "swinging_height"]
+
+
+def quintic(state: tuple[Any, Any, Any], target: Any, remaining: Any, fraction: Any) -> tuple[Any, Any, Any]:
+    """Advance along the quintic that ends at the target, at rest there.
+
+    The target may move during a swing: each step starts a new quintic from the state reached, so that position,
+    velocity and acceleration stay continuous.
+
+    Parameters
+    ----------
+    state : tuple of (complex or array)
+        Position of the foot and its first and second derivative by the fraction of the swing [m].
+    target : complex or array
+        Where the swing ends [m].
+    remaining : float or array
+        Fraction of the swing that remains, above 0.
+    fraction : float or array
+        How far to advance, as a fraction of what remains.
+
+    Returns
+    -------
+    tuple of (complex or array)
+        Position and derivatives after that [m].
+    """
+    position, speed, half = state[0], state[1] * remaining, state[2] * (remaining * remaining / 2)
+    # Errors of position, velocity and acceleration at the end, without the terms of third to fifth order.
+    gap, missing, bend = target - (position + speed + half), -(speed + 2 * half), -2 * half
+    a3 = 10 * gap - 4 * missing + bend / 2
+    a4 = -15 * gap + 7 * missing - bend
+    a5 = 6 * gap - 3 * missing + bend / 2
+    x = fraction
+    return (
+        position + x * (speed + x * (half + x * (a3 + x * (a4 + x * a5)))),
+        (speed + x * (2 * half + x * (3 * a3 + x * (4 * a4 + x * 5 * a5)))) / remaining,
+        (2 * half + x * (6 * a3 + x * (12 * a4 + x * 20 * a5))) / (remaining * remaining),
+    )
+
+
+def swinging_height(fraction: float, *, start: float, ground: float, swing_height: float) -> float:
+    """Return the height of a foot in an undisturbed swing [m].
+
+    Parameters
+    ----------
+    fraction : float
+        Fraction of the swing that has passed.
+    start, ground : float
+        Heights at lift-off and of the ground at the target [m].
+    swing_height : float
+        Greatest height above the line from the one to the other [m].
+    """
+    return float(start + (ground - start) * ground_share(fraction) + swing_height * height_share(fraction))
+
+
+def stopping_height(
+    fraction: float, *, contact: float, duration: float, height: float, speed: float, ground: float
+) -> float:
+    """Return the height of a foot that stops after early ground contact [m].
+
+    Parameters
+    ----------
+    fraction : float
+        Fraction of the swing that has passed.
+    contact : float
+        Fraction at which the foot touched the ground.
+    duration : float
+        Duration of the stop, as a fraction of the swing; at the latest it ends with the swing.
+    height, speed : float
+        Height at contact, and its derivative by the fraction of the swing [m].
+    ground : float
+        Height at which the foot comes to rest [m].
+    """
+    duration = min(1 - contact, duration)
+    progress = min(max((fraction - contact) / duration, 0.0), 1.0)
+    speed = speed * duration
+    stopped: float = (
+        height + speed * stopping_fraction(progress) + (ground - height - speed / 3) * ground_share(progress)
+    )
+    return stopped
+
+
+def stopping_fraction(progress: Any) -> Any:
+    """Return the distance covered while stopping, over initial speed times duration of the stop; 1/3 at its end.
+
+    The speed falls with the square of the time that remains: it is never negative, and the acceleration ends at 0.
+
+    Parameters
+    ----------
+    progress : float or array
+        Fraction of the stop that has passed.
+    """
+    remaining = 1 - progress
+    return (1 - remaining * remaining * remaining) / 3
