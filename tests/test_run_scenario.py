@@ -13,7 +13,7 @@ from tarsus.control.command import Command
 from tarsus.control.plant import Environment
 from tarsus.control.pose.admittance import Admittance
 from tarsus.control.recording import Recording
-from tarsus.control.safety.guard import GuardOutput, Intervention
+from tarsus.control.safety import GuardOutput, Intervention
 from tarsus.control.walk_controller import WalkController
 from tarsus.errors import InputError, UnknownNameError
 from tarsus.gait.gait import Gait

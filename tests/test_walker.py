@@ -19,7 +19,7 @@ from gait_robots import PRESETS, preset, ring
 from tarsus.control.command import Command
 from tarsus.control.limitation import Limitation
 from tarsus.control.readings import SensorReadings
-from tarsus.control.safety.guard import Guard
+from tarsus.control.safety import Guard
 from tarsus.control.walk_controller import WalkController
 from tarsus.errors import InputError, UnknownNameError, UnreachableError
 from tarsus.gait.gait import Gait

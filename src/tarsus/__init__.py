@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from tarsus.control.robot_controller import RobotController
     from tarsus.control.robot_state import RobotState
     from tarsus.control.run import run
-    from tarsus.control.safety.guard import Guard, GuardBounds, GuardOutput, Intervention
+    from tarsus.control.safety import Guard, GuardBounds, GuardOutput, GuardState, Intervention, InterventionKind
     from tarsus.control.sequence.player import SequencePlayer
     from tarsus.control.sequence.sequence import MotionSequence
     from tarsus.control.startup.folded_pose import folded_pose
@@ -101,7 +101,7 @@ _HOMES = {
     "tarsus.control.pose.admittance": ("Admittance",),
     "tarsus.control.startup.folded_pose": ("folded_pose",),
     "tarsus.control.startup.power_off": ("power_off_order",),
-    "tarsus.control.safety.guard": ("Guard", "GuardBounds", "GuardOutput", "Intervention"),
+    "tarsus.control.safety": ("Guard", "GuardBounds", "GuardOutput", "GuardState", "Intervention", "InterventionKind"),
     "tarsus.control.startup.planner": ("fold", "sit_down", "stand_up"),
     "tarsus.control.control_output": ("ControlOutput",),
     "tarsus.control.limitation": (
@@ -174,10 +174,12 @@ __all__ = [
     "Guard",
     "GuardBounds",
     "GuardOutput",
+    "GuardState",
     "IKSolution",
     "IdealPlant",
     "InputError",
     "Intervention",
+    "InterventionKind",
     "JointLoads",
     "JointVerdict",
     "Limitation",

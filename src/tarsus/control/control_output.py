@@ -9,7 +9,7 @@ import numpy as np
 
 from tarsus.control.limitation import Limitation
 from tarsus.control.robot_state import RobotState
-from tarsus.control.safety.interventions import Intervention
+from tarsus.control.safety import Intervention
 from tarsus.gait.gait import Gait
 from tarsus.kinematics.pose import Pose
 

@@ -17,8 +17,7 @@ from tarsus.control.pose.admittance import Admittance
 from tarsus.control.pose.levelling import LevellingMode
 from tarsus.control.readings import SensorReadings
 from tarsus.control.robot_state import RobotState, next_state, requested_state
-from tarsus.control.safety.guard import Guard, GuardBounds
-from tarsus.control.safety.interventions import Intervention
+from tarsus.control.safety import Guard, GuardBounds, GuardState, Intervention
 from tarsus.control.sequence.sequence import MotionSequence, SequenceSample
 from tarsus.control.startup.planner import fold, sit_down, stand_up
 from tarsus.control.walk_controller import WalkController
@@ -164,7 +163,7 @@ class RobotController:
         require_number("dt", dt, zero=False)
         command = command if isinstance(command, Command) else Command(twist=command)
         full = self._command.merged(command)
-        if self.guard is None or self.guard.state == "passing":
+        if self.guard is None or self.guard.state is GuardState.PASSING:
             self._advance(full, dt, readings)
         self._command.keep(command, full)
         self._time += dt

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from tarsus.control.command import Command
-from tarsus.control.safety.guard import Guard, GuardBounds
+from tarsus.control.safety import Guard, GuardBounds
 from tarsus.control.walk_controller import WalkController
 from tarsus.errors import TarsusError
 from tarsus.gait.gait import Gait

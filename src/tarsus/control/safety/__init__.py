@@ -1,1 +1,21 @@
-"""The guard: an independent monitor of joint angles."""
+"""The guard: an independent monitor of the joint angles that are sent to the robot.
+
+The package imports nothing else of `tarsus.control`, so that it shares no code with what it monitors. Its public names
+are those listed in ``__all__``; everything else is private to the package.
+"""
+
+from tarsus.control.safety.bounds import GuardBounds
+from tarsus.control.safety.guard import Guard, Policy, Recovery
+from tarsus.control.safety.interventions import Intervention, InterventionKind
+from tarsus.control.safety.output import GuardOutput, GuardState
+
+__all__ = [
+    "Guard",
+    "GuardBounds",
+    "GuardOutput",
+    "GuardState",
+    "Intervention",
+    "InterventionKind",
+    "Policy",
+    "Recovery",
+]

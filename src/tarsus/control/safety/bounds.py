@@ -1,4 +1,4 @@
-"""What a guard lets through: the bounds, with defaults from the robot."""
+"""Bounds of the guard, with defaults from the robot."""
 
 from __future__ import annotations
 
@@ -16,16 +16,16 @@ __all__ = ["GuardBounds"]
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]
 
-# What each number must be above (or at, where True), and what it must be below.
+# Lower end of each range, whether it is included, and upper end.
 _RANGES: dict[str, tuple[float, bool, float]] = {
-    "drag": (0.0, False, math.inf),
-    "ground": (0.0, False, math.inf),
-    "slope": (0.0, True, math.pi / 2),
-    "shortest": (0.0, False, 1.0),
-    "longest": (0.0, False, 60.0),
-    "near": (0.0, False, math.inf),
-    "recovery": (0.0, False, 1.0),
-    "sit_after": (0.0, True, math.inf),
+    "foot_drag": (0.0, False, math.inf),
+    "foot_height": (0.0, False, math.inf),
+    "ground_slope": (0.0, True, math.pi / 2),
+    "min_time_step": (0.0, False, 1.0),
+    "max_time_step": (0.0, False, 60.0),
+    "recovery_distance": (0.0, False, math.inf),
+    "recovery_speed": (0.0, False, 1.0),
+    "sit_delay": (0.0, True, math.inf),
     "sit_speed": (0.0, False, math.inf),
     "sit_height": (0.0, True, math.inf),
 }
@@ -33,77 +33,74 @@ _RANGES: dict[str, tuple[float, bool, float]] = {
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class GuardBounds:
-    """The bounds that a `Guard` keeps.
+    """Bounds that a `Guard` enforces.
 
     Attributes
     ----------
     limits : array, shape (legs, 3, 2)
-        Lowest and highest angle of each joint [rad].
+        Lower and upper limit of each joint angle [rad].
     speed : array, shape (legs, 3)
-        Highest speed of each joint [rad/s]; a number stands for all.
+        Greatest speed of each joint [rad/s]; a single number applies to all.
     acceleration : array, shape (legs, 3)
-        Highest acceleration of each joint [rad/s^2]; a number stands for all.
+        Greatest acceleration of each joint [rad/s^2]; a single number applies to all.
     margin : float
-        Least stability margin [m]; minus infinity for no check.
-    drag : float
-        How much the distance between two feet may change while both are said to be down [m]; infinity for no check.
-    ground : float
-        How far a foot that is said to be down may be above or below the ground's plane [m]; infinity for no check.
-    slope : float
-        Steepest ground where the body's attitude is given [rad].
-    shortest, longest : float
-        Shortest and longest time step that is taken for one [s].
-    near : float
-        How near the commanded angles must come to the held ones for the guard to recover [rad].
-    recovery : float
-        Share of each joint's bound on speed at which it catches up while recovering, and at most moves while sitting
-        down.
-    sit_after : float
-        How long the robot is held at rest before it sits down [s].
+        Least stability margin [m]; minus infinity disables the check.
+    foot_drag : float
+        Greatest change of the distance between two feet while both are in stance [m]; infinity disables the check.
+    foot_height : float
+        Greatest distance of a stance foot above or below the ground plane [m]; infinity disables the check.
+    ground_slope : float
+        Steepest ground expected where the attitude of the body is given [rad].
+    min_time_step, max_time_step : float
+        Shortest and longest valid time step [s].
+    recovery_distance : float
+        Greatest distance of a commanded joint angle from the held one at which the guard recovers [rad].
+    recovery_speed : float
+        Greatest joint speed while recovering and while sitting down, as a fraction of `speed`.
+    sit_delay : float
+        Time at rest before the robot sits down [s].
     sit_speed : float
-        How fast the body is lowered [m/s].
+        Speed at which the body is lowered [m/s].
     sit_height : float
-        How high the lowest point of body and legs but the feet then stays over the ground [m].
-    assumed : tuple of str
-        What was not known and had to be assumed.
+        Final height over the ground of the lowest point of body and legs, feet excluded [m].
+    assumptions : tuple of str
+        Defaults that replace unknown values.
     """
 
     limits: Floats
     speed: Floats
     acceleration: Floats
     margin: float = 0.0
-    drag: float = 1e-3
-    ground: float = 0.01
-    slope: float = 0.0
-    shortest: float = 1e-4
-    longest: float = 0.1
-    near: float = 0.1
-    recovery: float = 0.25
-    sit_after: float = 1.0
+    foot_drag: float = 1e-3
+    foot_height: float = 0.01
+    ground_slope: float = 0.0
+    min_time_step: float = 1e-4
+    max_time_step: float = 0.1
+    recovery_distance: float = 0.1
+    recovery_speed: float = 0.25
+    sit_delay: float = 1.0
     sit_speed: float = 0.03
     sit_height: float = 0.005
-    assumed: tuple[str, ...] = ()
+    assumptions: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
-        limits = _numbers("limits", self.limits)
-        if limits.ndim != 3 or limits.shape[1:] != (3, 2):
-            raise InputError(f"limits of a guard have shape {limits.shape}; expected (legs, 3, 2)")
-        if (limits[..., 0] > limits[..., 1]).any():
-            raise InputError("limits of a guard: a lowest angle is greater than its highest")
-        self._lock("limits", limits)
+        self._lock("limits", _checked_limits(self.limits))
         for name in ("speed", "acceleration"):
-            self._lock(name, _each_joint(name, getattr(self, name), len(limits)))
+            self._lock(name, _per_joint(name, getattr(self, name), len(self.limits)))
         for name, (low, included, high) in _RANGES.items():
-            object.__setattr__(self, name, _number(name, getattr(self, name)))
-            value = getattr(self, name)
+            value = _number(name, getattr(self, name))
+            object.__setattr__(self, name, value)
             if not (low < value or (included and value == low)) or not value <= high:
-                at_least = "at least" if included else "more than"
-                raise InputError(f"{name} of a guard is {value:g}; it must be {at_least} {low:g}, at most {high:g}")
+                at_least = "at least" if included else "greater than"
+                raise InputError(f"guard bound {name} is {value:g}; it must be {at_least} {low:g} and at most {high:g}")
         object.__setattr__(self, "margin", _number("margin", self.margin))
         if math.isnan(self.margin):
-            raise InputError("margin of a guard is nan; it must be a number of metres, or minus infinity for no check")
-        if self.longest < self.shortest:
-            raise InputError(f"longest of a guard is {self.longest:g} s, less than shortest, {self.shortest:g} s")
+            raise InputError("guard bound margin is nan; it must be a number [m], minus infinity to disable the check")
+        if self.max_time_step < self.min_time_step:
+            raise InputError(
+                f"guard bound max_time_step is {self.max_time_step:g} s; it must be at least min_time_step, "
+                f"{self.min_time_step:g} s"
+            )
 
     def _lock(self, name: str, array: Floats) -> None:
         array.setflags(write=False)
@@ -111,37 +108,37 @@ class GuardBounds:
 
     @classmethod
     def of(cls, robot: Robot, **changes: Any) -> Self:
-        """Return the bounds of a robot, some of them changed.
+        """Return the default bounds of a robot, with changes.
 
-        Limits are the robot's; speeds its servos' without load, `UNKNOWN_SPEED` where that is unknown; accelerations
-        the speed over `STOPPING_TIME`.
+        By default, `limits` are those of the robot, `speed` is the servos' no-load speed (5 rad/s where unknown), and
+        `acceleration` reaches `speed` within 0.05 s.
 
         Parameters
         ----------
         robot : Robot
             A single robot.
         **changes
-            Attributes and their values; where speeds are given and accelerations are not, these follow from those.
+            Attributes and their values. A changed `speed` also changes the default `acceleration`.
 
         Raises
         ------
         InputError
-            If the robot is a batch of designs, or a value has the wrong shape or range.
+            If the robot is a batch of designs, or a value has the wrong shape or is out of range.
         """
         if robot.batch_shape:
-            raise InputError(f"a guard is for a single robot; {robot.name!r} is a batch of {robot.batch_shape} designs")
-        assumed: tuple[str, ...] = ()
+            raise InputError(f"a guard needs a single robot; {robot.name!r} is a batch of {robot.batch_shape} designs")
+        assumptions: tuple[str, ...] = ()
         if "speed" not in changes:
             known = servo_speeds(robot)
             changes["speed"] = np.array([[speed or UNKNOWN_SPEED for speed in leg] for leg in known])
             unknown = sum(not speed for leg in known for speed in leg)
             if unknown:
-                assumed = (f"{unknown} joints turn at up to {UNKNOWN_SPEED:g} rad/s: their servos' speed is unknown",)
-        speed = _each_joint("speed", changes["speed"], robot.legs)
-        values = {"limits": robot.limits, "acceleration": speed / STOPPING_TIME, "assumed": assumed, **changes}
-        bounds = cls(**values)
+                assumptions = (f"joint speed {UNKNOWN_SPEED:g} rad/s for {unknown} joints: servo speed unknown",)
+        speed = _per_joint("speed", changes["speed"], robot.legs)
+        defaults = {"limits": robot.limits, "acceleration": speed / STOPPING_TIME, "assumptions": assumptions}
+        bounds = cls(**{**defaults, **changes})
         if len(bounds.limits) != robot.legs:
-            raise InputError(f"limits of a guard are for {len(bounds.limits)} legs; {robot.name!r} has {robot.legs}")
+            raise InputError(f"guard bound limits is for {len(bounds.limits)} legs; {robot.name!r} has {robot.legs}")
         return bounds
 
 
@@ -149,26 +146,35 @@ def _number(name: str, value: Any) -> float:
     try:
         return float(value)
     except (TypeError, ValueError):
-        raise InputError(f"{name} of a guard is {value!r:.80}; it must be a number") from None
+        raise InputError(f"guard bound {name} is {value!r:.80}; it must be a number") from None
 
 
 def _numbers(name: str, value: Any) -> Floats:
     try:
         array = np.array(value, dtype=np.float64)
     except (TypeError, ValueError) as error:
-        raise InputError(f"{name} of a guard: expected an array of numbers: {error}") from None
+        raise InputError(f"guard bound {name} must be an array of numbers: {error}") from None
     if not np.isfinite(array).all():
-        raise InputError(f"{name} of a guard holds a value that is not a finite number")
+        raise InputError(f"guard bound {name} contains a value that is not a finite number")
     return array
 
 
-def _each_joint(name: str, value: Any, legs: int) -> Floats:
-    """Return a positive number for each joint."""
+def _checked_limits(value: Any) -> Floats:
+    limits = _numbers("limits", value)
+    if limits.ndim != 3 or limits.shape[1:] != (3, 2):
+        raise InputError(f"guard bound limits has shape {limits.shape}; expected (legs, 3, 2)")
+    if (limits[..., 0] > limits[..., 1]).any():
+        raise InputError("guard bound limits: a lower limit is greater than its upper limit")
+    return limits
+
+
+def _per_joint(name: str, value: Any, legs: int) -> Floats:
+    """Return positive numbers of shape (legs, 3)."""
     array = _numbers(name, value)
     try:
         array = np.broadcast_to(array, (legs, 3)).copy()
     except ValueError:
-        raise InputError(f"{name} of a guard has shape {array.shape}; expected a number or ({legs}, 3)") from None
+        raise InputError(f"guard bound {name} has shape {array.shape}; expected a number or ({legs}, 3)") from None
     if not (array > 0).all():
-        raise InputError(f"{name} of a guard is {array.min():g}; it must be greater than 0")
+        raise InputError(f"guard bound {name} is {array.min():g}; it must be greater than 0")
     return array

@@ -1,4 +1,4 @@
-"""Reading what a guard is given: numbers or a fault come of it, whatever it is, and never an exception."""
+"""Parsing of the guard's inputs: each function returns plain numbers or a violation and never raises."""
 
 from __future__ import annotations
 
@@ -7,37 +7,54 @@ from typing import Any
 
 import numpy as np
 
-from tarsus.control.safety.interventions import Violation
+from tarsus.control.safety.interventions import InterventionKind, Violation
 from tarsus.kinematics.pose import Pose
 
-__all__ = ["Rows", "read_angles", "read_body", "read_contacts", "read_step"]
+__all__ = ["Rows", "read_angles", "read_body", "read_contacts", "read_time_step"]
 
 Rows = list[list[float]]
+"""Rows of a rotation matrix."""
 
-_NUMBERS = "fiu"
+_NUMERIC_KINDS = "fiu"
 
 
 def read_angles(angles: Any, legs: int) -> list[float] | Violation:
-    """Return the joint angles one after the other, or what is wrong with them."""
+    """Return the joint angles in one flat list, or the violation.
+
+    Parameters
+    ----------
+    angles : any
+        Joint angles as given; valid are real numbers of shape (legs, 3) [rad].
+    legs : int
+        Number of legs.
+    """
     shape = (legs, 3)
-    # Anything can be wrong with an object that claims to be an array; whatever it raises, the robot needs angles.
+    # The conversion of an arbitrary object can raise anything, and the guard must still return angles.
     try:
         array = np.asarray(angles)
-        if array.dtype.kind not in _NUMBERS or array.shape != shape:
-            return Violation("shape", -1, -1, float(array.size), 3.0 * legs)
+        if array.dtype.kind not in _NUMERIC_KINDS or array.shape != shape:
+            return Violation(InterventionKind.SHAPE, -1, -1, float(array.size), 3.0 * legs)
         listed = array.ravel().tolist()
         values = listed if array.dtype == np.float64 else [float(value) for value in listed]
     except Exception:
-        return Violation("shape", -1, -1, math.nan, 3.0 * legs)
+        return Violation(InterventionKind.SHAPE, -1, -1, math.nan, 3.0 * legs)
     if math.isfinite(sum(values)):
         return values
-    # The sum of huge numbers may be infinite without any of them being so.
-    wrong = next((i for i, value in enumerate(values) if not math.isfinite(value)), None)
-    return values if wrong is None else Violation("finite", wrong // 3, wrong % 3, values[wrong], math.nan)
+    # The sum of finite values can overflow.
+    index = next((i for i, value in enumerate(values) if not math.isfinite(value)), None)
+    if index is None:
+        return values
+    return Violation(InterventionKind.NOT_FINITE, index // 3, index % 3, values[index], math.nan)
 
 
-def read_step(dt: Any) -> float:
-    """Return the time step, NaN where it is no number."""
+def read_time_step(dt: Any) -> float:
+    """Return the time step as a float, NaN if it is not a number.
+
+    Parameters
+    ----------
+    dt : any
+        Time step as given [s].
+    """
     if type(dt) is float:
         return dt
     try:
@@ -47,20 +64,35 @@ def read_step(dt: Any) -> float:
 
 
 def read_contacts(contacts: Any, legs: int) -> list[bool] | Violation:
-    """Return which feet are said to be down, or what is wrong with it."""
+    """Return the feet in stance, or the violation.
+
+    Parameters
+    ----------
+    contacts : any
+        Contacts as given; valid is an array of bool, shape (legs,).
+    legs : int
+        Number of legs.
+    """
     try:
         array = np.asarray(contacts)
         if array.dtype.kind == "b" and array.shape == (legs,):
-            down: list[bool] = array.tolist()
-            return down
-        return Violation("contacts", -1, -1, float(array.size), float(legs))
+            stance: list[bool] = array.tolist()
+            return stance
+        return Violation(InterventionKind.CONTACTS, -1, -1, float(array.size), float(legs))
     except Exception:
-        return Violation("contacts", -1, -1, math.nan, float(legs))
+        return Violation(InterventionKind.CONTACTS, -1, -1, math.nan, float(legs))
 
 
 def read_body(body: Any) -> Rows | Violation:
-    """Return the rotation of a single pose as three rows, or what is wrong with it."""
+    """Return the rotation of a single pose as three rows, or the violation.
+
+    Parameters
+    ----------
+    body : any
+        Pose of B in G as given; valid is a single `Pose`.
+    """
     if isinstance(body, Pose) and body.rotation.shape == (3, 3):
         rows: Rows = body.rotation.tolist()
         return rows
-    return Violation("body", -1, -1, float(body.rotation.size) if isinstance(body, Pose) else math.nan, 9.0)
+    size = float(body.rotation.size) if isinstance(body, Pose) else math.nan
+    return Violation(InterventionKind.BODY_POSE, -1, -1, size, 9.0)

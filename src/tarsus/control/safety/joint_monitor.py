@@ -1,13 +1,13 @@
-"""The joints as they were last sent: what breaks their bounds, how they come to rest, how they catch up.
+"""Bounds on joint angles, speeds and accelerations; braking and recovery within these bounds.
 
-Angles are sent at moments; the speed over a step is the difference of two angles over the step, the acceleration
-the difference of two speeds over the time between the middles of their steps (the second divided difference). With
-the acceleration A, a joint whose last step h had the speed v comes to rest within::
+Angles are sent at discrete times. The speed of a step is the difference of two angles over the step; the acceleration
+is the difference of two speeds over the time between the centres of their steps (the second divided difference). With
+the acceleration A, a joint with speed v over its last step h comes to rest within the braking distance::
 
-    stop(v, h) = max(0, |v| - A h / 2)^2 / (2 A)
+    max(0, |v| - A h / 2)^2 / (2 A)
 
-whatever steps follow: the angles sent while it brakes are midpoint sums of a speed that falls as a straight line, and
-these are at most its integral. A joint that always has this much room before its limit can always be stopped.
+whatever the following steps are: the angles sent while braking are midpoint sums of a linearly decreasing speed, which
+are at most its integral. A joint that keeps this distance from its limit can always be stopped before the limit.
 """
 
 from __future__ import annotations
@@ -15,22 +15,29 @@ from __future__ import annotations
 import math
 
 from tarsus.control.safety.bounds import GuardBounds
-from tarsus.control.safety.interventions import Violation
+from tarsus.control.safety.interventions import InterventionKind, Violation
 from tarsus.kinematics.verdict import ANGLE_TOLERANCE
 
-__all__ = ["ROUNDING", "JointMonitor"]
+__all__ = ["ROUNDING", "JointMonitor", "stoppable_speed"]
 
 ROUNDING = 1e-12
-"""What rounding may add to an angle that is sent [rad], against its bounds on speed and acceleration."""
+"""Tolerance of a sent angle for the bounds on speed and acceleration [rad]."""
 
 
 class JointMonitor:
-    """Where each joint was last sent, how fast it went there, and where it may go next.
+    """Last sent angles and speeds of the joints, and which angles may follow.
 
     Attributes
     ----------
-    angles, speeds : list of float
-        Joint angles as last sent, one after the other [rad], and the speeds of the last step [rad/s].
+    angles : list of float
+        Last sent joint angles of all legs in one flat list [rad].
+    speeds : list of float
+        Joint speeds of the last step [rad/s].
+
+    Parameters
+    ----------
+    bounds : GuardBounds
+        The bounds.
     """
 
     def __init__(self, bounds: GuardBounds) -> None:
@@ -38,7 +45,7 @@ class JointMonitor:
         self._bounds: list[tuple[float, float, float, float]] = list(
             zip(lower, upper, bounds.speed.ravel().tolist(), bounds.acceleration.ravel().tolist(), strict=True)
         )
-        self._slow: list[float] = (bounds.recovery * bounds.speed).ravel().tolist()
+        self._recovery_speeds: list[float] = (bounds.recovery_speed * bounds.speed).ravel().tolist()
         self.angles: list[float] = [min(max(0.0, low), high) for low, high, _, _ in self._bounds]
         self.speeds = [0.0] * len(lower)
         self._step = 0.0
@@ -48,116 +55,160 @@ class JointMonitor:
         """Whether no joint moved in the last step."""
         return not any(self.speeds)
 
-    def place(self, angles: list[float], step: float) -> None:
-        """Start at rest in some angles."""
+    def start(self, angles: list[float], step: float) -> None:
+        """Set the joints to angles, at rest.
+
+        Parameters
+        ----------
+        angles : list of float
+            Joint angles in one flat list [rad].
+        step : float
+            Time step that led there [s].
+        """
         self.angles, self.speeds, self._step = angles, [0.0] * len(angles), step
 
-    def forget_step(self) -> None:
-        """Take a joint at rest for one that has long been so: after a gap, its length permits no sudden start."""
+    def end_gap(self) -> None:
+        """Discard the length of the last step if the joints are at rest: a long gap must not allow a sudden start."""
         if self.at_rest:
             self._step = 0.0
 
-    def within(self, angles: list[float]) -> list[Violation]:
-        """Return which angles are beyond a limit; bring those within that are beyond it by rounding."""
-        faults = []
+    def limit_violations(self, angles: list[float]) -> list[Violation]:
+        """Return the angles beyond a limit; clamp `angles` to the limits in place.
+
+        Parameters
+        ----------
+        angles : list of float
+            Joint angles in one flat list [rad]. Excess within the tolerance of inverse kinematics is clamped only.
+        """
+        violations = []
         for i, (angle, (low, high, _, _)) in enumerate(zip(angles, self._bounds, strict=True)):
             if not low <= angle <= high:
                 bound = low if angle < low else high
                 if abs(angle - bound) > ANGLE_TOLERANCE:
-                    faults.append(Violation("limit", i // 3, i % 3, angle, bound))
+                    violations.append(Violation(InterventionKind.JOINT_LIMIT, i // 3, i % 3, angle, bound))
                 angles[i] = bound
-        return faults
+        return violations
 
-    def too_rash(self, angles: list[float], step: float) -> list[Violation]:
-        """Return what breaks a bound if the joints are sent to `angles` within a step."""
-        faults = []
-        between = (step + self._step) / 2
-        slack = ROUNDING / step
+    def motion_violations(self, angles: list[float], step: float) -> list[Violation]:
+        """Return the violated bounds on speed, acceleration and braking distance.
+
+        Parameters
+        ----------
+        angles : list of float
+            Joint angles at the end of the step, in one flat list [rad].
+        step : float
+            Time step [s].
+        """
+        violations = []
+        interval = (step + self._step) / 2
+        tolerance = ROUNDING / step
         joints = zip(angles, self.angles, self.speeds, self._bounds, strict=True)
-        for i, (angle, last, speed, (low, high, fastest, most)) in enumerate(joints):
-            now = (angle - last) / step
-            size = now if now >= 0 else -now
-            if size > fastest + slack:
-                faults.append(Violation("speed", i // 3, i % 3, size, fastest))
-            change = now - speed if now >= speed else speed - now
-            if change > most * between + slack:
-                faults.append(Violation("acceleration", i // 3, i % 3, change / between, most))
-            # The part of a step in which it would brake already.
-            rest = size - most * step / 2
-            if rest > 0:
-                room = high - angle if now > 0 else angle - low
-                if rest * rest > 2 * most * (room + ROUNDING):
-                    faults.append(Violation("braking", i // 3, i % 3, rest * rest / (2 * most), room))
-        return faults
+        for i, (angle, last_angle, last_speed, (low, high, max_speed, max_acceleration)) in enumerate(joints):
+            velocity = (angle - last_angle) / step
+            speed = velocity if velocity >= 0 else -velocity
+            if speed > max_speed + tolerance:
+                violations.append(Violation(InterventionKind.JOINT_SPEED, i // 3, i % 3, speed, max_speed))
+            change = velocity - last_speed if velocity >= last_speed else last_speed - velocity
+            if change > max_acceleration * interval + tolerance:
+                kind = InterventionKind.JOINT_ACCELERATION
+                violations.append(Violation(kind, i // 3, i % 3, change / interval, max_acceleration))
+            braking_speed = speed - max_acceleration * step / 2
+            if braking_speed > 0:
+                distance = high - angle if velocity > 0 else angle - low
+                if braking_speed * braking_speed > 2 * max_acceleration * (distance + ROUNDING):
+                    needed = braking_speed * braking_speed / (2 * max_acceleration)
+                    violations.append(Violation(InterventionKind.BRAKING_DISTANCE, i // 3, i % 3, needed, distance))
+        return violations
 
     def send(self, angles: list[float], step: float) -> None:
-        """Take note that the joints are sent to `angles` within a step."""
+        """Store the angles that are sent at the end of a step.
+
+        Parameters
+        ----------
+        angles : list of float
+            Joint angles in one flat list [rad].
+        step : float
+            Time step [s].
+        """
         self.speeds = [(angle - last) / step for angle, last in zip(angles, self.angles, strict=True)]
         self.angles, self._step = angles, step
 
     def brake(self, step: float) -> None:
-        """Send every joint on along its speed, braking as hard as it may."""
-        self._send_at([0.0] * len(self.speeds), step)
-
-    def distance(self, angles: list[float]) -> tuple[float, int]:
-        """Return how far the joint is that is farthest from `angles` [rad], and which one."""
-        apart = [abs(angle - last) for angle, last in zip(angles, self.angles, strict=True)]
-        most = max(apart)
-        return most, apart.index(most)
-
-    def follow(self, before: list[float], angles: list[float], step: float) -> bool:
-        """Send the joints nearer to where they are commanded, and tell whether they are there, as fast as commanded.
+        """Move every joint on along its velocity while braking at its greatest acceleration.
 
         Parameters
         ----------
-        before, angles : list of float
-            The commanded angles of the last step and of this [rad].
         step : float
-            The time step [s].
+            Time step [s].
         """
-        met, wanted = True, []
-        for last, old, new, slow, (_, _, fastest, most) in zip(
-            self.angles, before, angles, self._slow, self._bounds, strict=True
+        self._send_velocities([0.0] * len(self.speeds), step)
+
+    def distance(self, angles: list[float]) -> tuple[float, int]:
+        """Return the greatest distance of a joint from `angles` [rad], and the index of the joint.
+
+        Parameters
+        ----------
+        angles : list of float
+            Joint angles in one flat list [rad].
+        """
+        distances = [abs(angle - last) for angle, last in zip(angles, self.angles, strict=True)]
+        greatest = max(distances)
+        return greatest, distances.index(greatest)
+
+    def recover(self, last_command: list[float], command: list[float], step: float) -> bool:
+        """Move the joints towards the command; return whether they match its angles and velocities.
+
+        Parameters
+        ----------
+        last_command, command : list of float
+            Commanded angles of the last step and of this one, in flat lists [rad].
+        step : float
+            Time step [s].
+        """
+        matches, velocities = True, []
+        for last_angle, last, angle, recovery_speed, (_, _, max_speed, max_acceleration) in zip(
+            self.angles, last_command, command, self._recovery_speeds, self._bounds, strict=True
         ):
-            gap, commanded = old - last, (new - old) / step
-            # Half of the acceleration is left for following what the command itself does.
-            closing = min(stoppable_speed(abs(gap), most / 2, step), slow)
-            wanted.append(min(max(commanded, -fastest), fastest) + math.copysign(closing, gap))
-            met = met and abs(gap) <= most * step * step / 2
-        if met and not self.too_rash(angles, step):
-            self.send(angles, step)
+            gap, commanded = last - last_angle, (angle - last) / step
+            # Half of the acceleration is reserved for changes of the commanded velocity.
+            closing = min(stoppable_speed(abs(gap), max_acceleration / 2, step), recovery_speed)
+            velocities.append(min(max(commanded, -max_speed), max_speed) + math.copysign(closing, gap))
+            matches = matches and abs(gap) <= max_acceleration * step * step / 2
+        if matches and not self.motion_violations(command, step):
+            self.send(command, step)
             return True
-        self._send_at(wanted, step)
+        self._send_velocities(velocities, step)
         return False
 
-    def _send_at(self, wanted: list[float], step: float) -> None:
-        """Send the joints on at the speeds that are wanted, as nearly as their bounds permit."""
-        between = (step + self._step) / 2
+    def _send_velocities(self, velocities: list[float], step: float) -> None:
+        """Move the joints at the nearest velocities within their bounds."""
+        interval = (step + self._step) / 2
         angles = []
-        for speed, last, old, (low, high, fastest, most) in zip(
-            wanted, self.angles, self.speeds, self._bounds, strict=True
+        for velocity, last_angle, last_speed, (low, high, max_speed, max_acceleration) in zip(
+            velocities, self.angles, self.speeds, self._bounds, strict=True
         ):
-            change = most * between
-            # Each of these intervals meets the ones before, but for rounding: the last is the one that is kept.
-            now = min(max(speed, -stoppable_speed(last - low, most, step)), stoppable_speed(high - last, most, step))
-            now = min(max(now, old - change), old + change)
-            now = min(max(now, -fastest), fastest)
-            angles.append(min(max(last + now * step, low), high))
+            change = max_acceleration * interval
+            # The intervals overlap up to rounding; the last one applied takes precedence.
+            lowest = -stoppable_speed(last_angle - low, max_acceleration, step)
+            allowed = min(max(velocity, lowest), stoppable_speed(high - last_angle, max_acceleration, step))
+            allowed = min(max(allowed, last_speed - change), last_speed + change)
+            allowed = min(max(allowed, -max_speed), max_speed)
+            angles.append(min(max(last_angle + allowed * step, low), high))
         self.send(angles, step)
 
 
-def stoppable_speed(room: float, acceleration: float, step: float) -> float:
-    """Return the highest speed of a step after which a joint can still be stopped within a room [rad/s].
+def stoppable_speed(distance: float, acceleration: float, step: float) -> float:
+    """Return the greatest speed of a step from which a joint can still stop within a distance [rad/s].
 
     Parameters
     ----------
-    room : float
-        How far it may go, this step included [rad].
+    distance : float
+        Distance available, this step included [rad].
     acceleration : float
-        The most it may have [rad/s^2].
+        Greatest acceleration [rad/s^2].
     step : float
-        The time step [s].
+        Time step [s].
     """
     half = acceleration * step / 2
-    # The step alone uses the room up, or the room is that of the step and of `stop` after it.
-    return room / step if room <= half * step else math.sqrt(2 * acceleration * room) - half
+    # Either the step alone uses the distance, or the step and the braking distance after it do.
+    return distance / step if distance <= half * step else math.sqrt(2 * acceleration * distance) - half

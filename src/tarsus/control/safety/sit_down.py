@@ -1,4 +1,4 @@
-"""SitDown down: the feet in the air are set down, then the body is lowered straight onto its belly."""
+"""Lowering of a robot whose commands are rejected: swing feet are set down, then the body is lowered vertically."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ import numpy as np
 
 from tarsus.control.safety.bounds import GuardBounds
 from tarsus.control.safety.joint_monitor import JointMonitor
+from tarsus.control.safety.support_geometry import Point
 from tarsus.kinematics.leg import forward_kinematics, leg_jacobian
 from tarsus.robot.robot import Robot
 
@@ -17,103 +18,98 @@ __all__ = ["SitDown"]
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]
 
-# Time in which the body gets up to speed, and from there to rest [s].
-_STARTING_TIME = 0.5
-# How near to its height the body has arrived [m].
-_ARRIVED = 1e-4
-# How much slower than it would be the body is tried to be lowered, before it is left where it is.
-_SHARES = (1.0, 0.5, 0.25)
+# Time to accelerate to the sitting speed and to decelerate from it [s].
+_ACCELERATION_TIME = 0.5
+# Position tolerance at the end of a motion [m].
+_TOLERANCE = 1e-4
+# Fractions of the planned speed to try in turn before the motion ends.
+_SPEED_FRACTIONS = (1.0, 0.5, 0.25)
 
 
 class SitDown:
     """Lowers the body step by step.
 
-    The angles go after the feet by the inverse of each leg's Jacobian: from the angles the legs have, whichever way
-    their knees are bent, and to where they can't go on.
+    The joint angles follow the feet by the inverse Jacobian of each leg. So the current solution of inverse kinematics
+    is kept, and the motion ends where a leg cannot follow.
 
     Parameters
     ----------
     robot : Robot
-        The robot.
+        A single robot.
     bounds : GuardBounds
-        How fast, how far.
+        Bounds on speeds and heights.
     joints : JointMonitor
         The joints, at rest.
-    down : list of bool or None
-        Which feet are on the ground; None for all.
-    up : tuple of float
-        Direction of up in B.
+    stance : list of bool or None
+        Feet in stance; None for all.
+    up : Point
+        Upward direction in B.
     """
 
     def __init__(
-        self,
-        robot: Robot,
-        bounds: GuardBounds,
-        joints: JointMonitor,
-        *,
-        down: list[bool] | None,
-        up: tuple[float, float, float],
+        self, robot: Robot, bounds: GuardBounds, joints: JointMonitor, *, stance: list[bool] | None, up: Point
     ) -> None:
         self._robot, self._bounds, self._joints = robot, bounds, joints
-        self._slow = bounds.recovery * bounds.speed
+        self._max_speed = bounds.recovery_speed * bounds.speed
         self._up = np.array(up)
-        self._belly = float((_lowest_of_body(robot) @ self._up).min())
-        # Where the feet are to be, and how high over the ground those are that are not on it.
+        self._underside = float((_body_corners(robot) @ self._up).min())
+        # Commanded feet in B, and the heights of the swing feet over the ground.
         self._feet = self._points()[:, 3]
         heights = self._feet @ self._up
-        standing = heights if down is None else heights[np.array(down)]
-        self._ground = float(standing.mean()) if standing.size else math.inf
-        self._in_air = np.zeros(robot.legs)
-        if down is not None and standing.size:
-            self._in_air = np.where(down, 0.0, heights - self._ground)
+        stance_heights = heights if stance is None else heights[np.array(stance)]
+        self._ground = float(stance_heights.mean()) if stance_heights.size else math.inf
+        self._swing_heights = np.zeros(robot.legs)
+        if stance is not None and stance_heights.size:
+            self._swing_heights = np.where(stance, 0.0, heights - self._ground)
         self._speed = 0.0
 
     def step(self, dt: float) -> bool:
-        """Send the joints to where the body is a little lower; return whether there was anywhere to send them.
+        """Move the joints by one step; return False if the motion has ended.
 
         Parameters
         ----------
         dt : float
-            The time step [s].
+            Time step [s].
         """
         points = self._points()
-        highest = float(np.abs(self._in_air).max())
-        if highest > _ARRIVED:
-            if self._move(points, -self._in_air / highest, highest, dt):
-                self._in_air *= 1 - self._speed * dt / highest
+        highest = float(np.abs(self._swing_heights).max())
+        if highest > _TOLERANCE:
+            if self._move(points, -self._swing_heights / highest, highest, dt):
+                self._swing_heights *= 1 - self._speed * dt / highest
                 return True
-            # A foot that can't be set down stays as high over the ground as it is.
-            self._in_air, self._speed = np.zeros_like(self._in_air), 0.0
+            # Feet that cannot be set down keep their height in B.
+            self._swing_heights, self._speed = np.zeros_like(self._swing_heights), 0.0
         if not self._move(points, np.ones(len(points)), self._height(points) - self._bounds.sit_height, dt):
             return False
         self._ground += self._speed * dt
         return True
 
     def _move(self, points: Floats, direction: Floats, remaining: float, dt: float) -> bool:
-        """Move the feet in B along up, by shares of a speed, if anything remains and the bounds permit."""
-        if remaining <= _ARRIVED:
+        """Move the feet in B along the vertical; return False if nothing remains or the bounds do not permit it."""
+        if remaining <= _TOLERANCE:
             return False
-        most = self._bounds.sit_speed
-        gain = most / _STARTING_TIME
-        fastest = min(self._speed + gain * dt, most, math.sqrt(2 * gain * remaining), remaining / dt)
-        for speed in (share * fastest for share in _SHARES):
+        max_speed = self._bounds.sit_speed
+        acceleration = max_speed / _ACCELERATION_TIME
+        planned = min(self._speed + acceleration * dt, max_speed, math.sqrt(2 * acceleration * remaining))
+        planned = min(planned, remaining / dt)
+        for speed in (fraction * planned for fraction in _SPEED_FRACTIONS):
             feet = self._feet + (speed * dt * direction)[:, None] * self._up
             if self._send(feet - points[:, 3], dt):
                 self._feet, self._speed = feet, speed
                 return True
         return False
 
-    def _send(self, miss: Floats, dt: float) -> bool:
-        """Send the joints to where the feet are moved by `miss`, if the bounds permit."""
-        now = self._angles()
+    def _send(self, offsets: Floats, dt: float) -> bool:
+        """Move the feet by offsets, if the bounds permit."""
+        current = self._angles()
         try:
-            turn = np.linalg.solve(leg_jacobian(self._robot, now), miss[..., None])[..., 0]
+            change = np.linalg.solve(leg_jacobian(self._robot, current), offsets[..., None])[..., 0]
         except np.linalg.LinAlgError:
             return False
-        if not (np.abs(turn) <= self._slow * dt).all():
+        if not (np.abs(change) <= self._max_speed * dt).all():
             return False
-        angles: list[float] = (now + turn).ravel().tolist()
-        if self._joints.within(angles) or self._joints.too_rash(angles, dt):
+        angles: list[float] = (current + change).ravel().tolist()
+        if self._joints.limit_violations(angles) or self._joints.motion_violations(angles, dt):
             return False
         self._joints.send(angles, dt)
         return True
@@ -126,13 +122,13 @@ class SitDown:
         return points
 
     def _height(self, points: Floats) -> float:
-        """Return how high the lowest point of body and legs, but the feet, is over the ground."""
-        lowest = min(self._belly, float((points[:, :3] @ self._up).min()))
+        """Return the height over the ground of the lowest point of body and legs, feet excluded [m]."""
+        lowest = min(self._underside, float((points[:, :3] @ self._up).min()))
         return lowest - self._ground
 
 
-def _lowest_of_body(robot: Robot) -> Floats:
-    """Return the points of B one of which is the body's lowest, however it is turned."""
+def _body_corners(robot: Robot) -> Floats:
+    """Return points of the body in B that include its lowest point in any attitude."""
     if robot.body_size is None:
         corners: Floats = np.asarray(robot.mount_position)
     else:
