@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple, Protocol
+from typing import Any, NamedTuple, Protocol, Self
 
 import numpy as np
 
@@ -12,9 +12,13 @@ from tarsus.control.readings import SensorReadings
 from tarsus.control.robot_state import RobotState
 from tarsus.control.sequence.player import SequencePlayer
 from tarsus.control.sequence.sequence import MotionSequence, SequenceSample
+from tarsus.control.startup.planner import fold, sit_down
 from tarsus.control.walk_controller import WalkController
 from tarsus.control.walk_state import WalkState
+from tarsus.errors import InputError
 from tarsus.kinematics.pose import Pose
+from tarsus.kinematics.rest import resting_pose
+from tarsus.robot.robot import Robot
 
 __all__ = ["Activity", "Playing", "Resting", "Snapshot", "Walking"]
 
@@ -171,6 +175,48 @@ class Resting:
         self._snapshot = Snapshot(
             sample.angles, sample.body, None, sample.contacts, belly=True, state=state, activity=str(state)
         )
+
+    @classmethod
+    def after_sitting(cls, robot: Robot, stance: Floats, state: RobotState) -> Self:
+        """Return how a robot lies that has sat down from a stance, and folded its legs where that is the state.
+
+        Parameters
+        ----------
+        robot : Robot
+            A single robot.
+        stance : array, shape (legs, 3)
+            Joint angles of the stance [rad].
+        state : RobotState
+            Lying or folded.
+        """
+        sequence = sit_down(robot, stance)
+        if state is RobotState.FOLDED:
+            sequence = fold(robot, sequence.angles_end)
+        return cls(sequence.at(sequence.duration), state)
+
+    @classmethod
+    def measured(cls, robot: Robot, angles: Any) -> Self:
+        """Return how a robot lies with measured joint angles.
+
+        Parameters
+        ----------
+        robot : Robot
+            A single robot.
+        angles : array, shape (legs, 3)
+            Joint angles [rad].
+
+        Raises
+        ------
+        InputError
+            If they are not finite, or not one for each joint.
+        """
+        found = np.array(angles, dtype=float)
+        if found.shape != (robot.legs, 3) or not np.isfinite(found).all():
+            raise InputError(f"angles must be {robot.legs} x 3 finite numbers [rad]")
+        found.setflags(write=False)
+        contacts = np.zeros(robot.legs, dtype=bool)
+        sample = SequenceSample(found, contacts, resting_pose(robot, found).body, str(RobotState.LYING), belly=True)
+        return cls(sample, RobotState.LYING)
 
     def step(self, command: Command, dt: float, readings: SensorReadings | None) -> None:
         """Do nothing."""

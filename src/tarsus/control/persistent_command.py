@@ -32,6 +32,11 @@ class PersistentCommand:
         # The last command that was merged, and the result: commands mostly stay the same object for many ticks.
         self._last: tuple[Command, Command] | None = None
 
+    @property
+    def full(self) -> Command:
+        """What is commanded now."""
+        return self._full
+
     def merged(self, command: Command) -> Command:
         """Return a command with everything that holds; nothing is changed.
 

@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from tarsus.control.limitation import Limitation
+from tarsus.control.walk_state import WalkState
 from tarsus.errors import InputError
 from tarsus.gait.motion import Motion
 from tarsus.robot.robot import Robot
@@ -127,7 +128,7 @@ class Recording:
     @cached_property
     def upright(self) -> Floats:
         """Whether the robot stands or walks, and is not lying, rising, sitting down or folding ``(n,)``."""
-        upright = np.array([activity in _UPRIGHT for activity in self.activities])
+        upright = np.array([activity in _WALK_STATES for activity in self.activities])
         upright.setflags(write=False)
         return upright
 
@@ -203,7 +204,7 @@ class Recording:
             raise InputError(f"{path} can't be written: {error.strerror}") from None
 
 
-_UPRIGHT = ("standing", "starting", "walking", "stopping", "searching")
+_WALK_STATES = frozenset(map(str, WalkState))
 _COLUMNS = (
     "time_s",
     *(f"{what}_{axis}" for what in ("commanded", "walked") for axis in ("vx_mm_s", "vy_mm_s", "turn_deg_s")),

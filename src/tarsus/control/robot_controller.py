@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import numpy as np
@@ -18,15 +18,14 @@ from tarsus.control.pose.levelling import LevellingMode
 from tarsus.control.readings import SensorReadings
 from tarsus.control.robot_state import RobotState, next_state, requested_state
 from tarsus.control.safety import Guard, GuardBounds, GuardState, Intervention
-from tarsus.control.sequence.sequence import MotionSequence, SequenceSample
+from tarsus.control.sequence.sequence import MotionSequence
 from tarsus.control.startup.planner import fold, sit_down, stand_up
 from tarsus.control.walk_controller import WalkController
-from tarsus.errors import InputError, TarsusError
+from tarsus.errors import TarsusError
 from tarsus.gait.gait import Gait
 from tarsus.gait.setup import require_number
 from tarsus.kinematics.leg import forward_kinematics
 from tarsus.kinematics.pose import Pose
-from tarsus.kinematics.rest import resting_pose
 from tarsus.robot.robot import Robot
 
 __all__ = ["RobotController"]
@@ -96,7 +95,10 @@ class RobotController:
         self._activity: Activity = walking
         start = requested_state(start)
         if start is not RobotState.STANDING or angles is not None:
-            self._activity = self._found_lying(walking, start, angles)
+            stance = walking.controller.angles
+            self._activity = (
+                Resting.after_sitting(robot, stance, start) if angles is None else Resting.measured(robot, angles)
+            )
             self._base = _ground_frame(self._activity.snapshot.body).inverse()
         self._now = self._placed(self._activity.snapshot)
         self._goal = RobotState.STANDING if self._now.state.upright else self._now.state
@@ -113,21 +115,6 @@ class RobotController:
     def _new_walk(self) -> Walking:
         heights: dict[str, Any] = {"body_height": self.body_height, "swing_height": self.swing_height}
         return Walking(WalkController(self.robot, self._gait, **heights, **self._ground))
-
-    def _found_lying(self, walking: Walking, start: RobotState, angles: Any) -> Resting:
-        """Return how the robot lies at the start."""
-        if angles is None:
-            sequence = sit_down(self.robot, walking.controller.angles)
-            if start is RobotState.FOLDED:
-                sequence = fold(self.robot, sequence.angles_end)
-            return Resting(sequence.at(sequence.duration), start)
-        found = np.array(angles, dtype=float)
-        if found.shape != (self.robot.legs, 3) or not np.isfinite(found).all():
-            raise InputError(f"angles must be {self.robot.legs} x 3 finite numbers [rad]")
-        found.setflags(write=False)
-        contacts = np.zeros(self.robot.legs, dtype=bool)
-        sample = SequenceSample(found, contacts, resting_pose(self.robot, found).body, "lying", belly=True)
-        return Resting(sample, RobotState.LYING)
 
     @property
     def output(self) -> ControlOutput:
@@ -234,6 +221,22 @@ class RobotController:
         after = self._activity.snapshot
         self._now = self._now._replace(state=after.state, activity=after.activity)
 
+    def _own_limitations(self) -> Iterator[Limitation]:
+        """Yield what of the command does not fit the state."""
+        if self._rejected is not None:
+            yield self._rejected
+        if self._goal is RobotState.STANDING and self._now.state.upright:
+            return
+        command, state = self._command.full, self._now.state
+        if self._goal is RobotState.STANDING:
+            cause = f"the robot is {state}; it starts once it stands"
+        else:
+            cause = f"the robot is {state}, and {self._goal} is the state that is wanted; it must stand"
+        if any(command.twist):
+            yield Limitation(kind=LimitationKind.TWIST, cause=cause, asked=1.0, granted=0.0)
+        if command.foot_velocities or any(point is not None for point in (command.foot_targets or {}).values()):
+            yield Limitation(kind=LimitationKind.FOOT_TARGET, cause=cause, asked=1.0, granted=0.0)
+
     # What is given out.
 
     def _guarded(self, dt: float) -> tuple[np.ndarray[Any, Any], tuple[Intervention, ...]]:
@@ -263,7 +266,7 @@ class RobotController:
             angles=angles,
             state=now.state if guard in ("", "passing") else RobotState.FAULT,
             activity=now.activity,
-            limitations=now.limitations if self._rejected is None else (*now.limitations, self._rejected),
+            limitations=(*now.limitations, *self._own_limitations()),
             interventions=began,
             guard=guard,
             body=now.body,
