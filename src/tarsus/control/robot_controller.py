@@ -187,9 +187,8 @@ class RobotController:
         if isinstance(self._activity, Playing):
             self._activity.turn(back=not self._activity.leads_to(goal))
             return
-        state = RobotState.STANDING if self._now.state.upright else self._now.state
-        change = next_state(state, goal)
-        if change is None or self._rejected is not None or not self._at_rest:
+        change = self._next_change()
+        if change is None or not self._at_rest:
             return
         try:
             sequence = self._plan(change[0])
@@ -200,6 +199,11 @@ class RobotController:
         self._before = self._base
         self._base = _ground_frame(self._now.body) @ _ground_frame(sequence.stages[0].start).inverse()
         self._activity = playing
+
+    def _next_change(self) -> tuple[RobotState, RobotState] | None:
+        """Return the next change on the way to the state that is wanted; None where there is none that is possible."""
+        state = RobotState.STANDING if self._now.state.upright else self._now.state
+        return None if self._rejected is not None else next_state(state, self._goal)
 
     def _plan(self, state: RobotState) -> MotionSequence:
         angles = self._now.angles
@@ -276,7 +280,7 @@ class RobotController:
             twist=now.twist,
             gait=self._gait,
             cycle_time=self._cycle_time,
-            at_rest=self._at_rest,
+            at_rest=self._at_rest and self._next_change() is None,
         )
 
 

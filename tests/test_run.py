@@ -1,0 +1,174 @@
+"""The loop of controller and plant: every kind of plant and of command source runs in it, and is stopped at its end."""
+
+import math
+
+import numpy as np
+import pytest
+
+import tarsus
+from tarsus.control.command import Command
+from tarsus.control.plant import IdealPlant, Plant
+from tarsus.control.readings import SensorReadings
+from tarsus.control.robot_controller import RobotController
+from tarsus.control.run import CommandSource, TimedCommands, run
+from tarsus.errors import InputError
+from tarsus.robot.file import load_robot
+from tarsus.scenario.runner import run_scenario
+from tarsus.scenario.scenario import Scenario
+
+STRIDER = load_robot("strider")
+FORWARD = (0.05, 0.0, 0.0)
+
+
+class LaggingPlant:
+    """A plant whose joints follow with a lag of first order, and that notes how it is used."""
+
+    def __init__(self, robot, *, time_constant=0.05, fails_at=math.inf):
+        self.robot, self._constant, self._fails_at = robot, time_constant, fails_at
+        self.calls, self._angles, self._time = [], None, 0.0
+
+    def start(self, output):
+        self.calls.append("start")
+        self._angles = np.array(output.angles)
+
+    def step(self, output, dt):
+        self._time += dt
+        if self._time > self._fails_at:
+            raise RuntimeError("unplugged")
+        self._angles = self._angles + (output.angles - self._angles) * -math.expm1(-dt / self._constant)
+        return SensorReadings(joint_angles=self._angles)
+
+    def stop(self):
+        self.calls.append("stop")
+
+
+def test_the_public_names_are_these():
+    assert tarsus.run is run
+    assert tarsus.IdealPlant is IdealPlant
+    assert isinstance(IdealPlant(STRIDER), Plant)
+    assert isinstance(LaggingPlant(STRIDER), Plant)
+    assert isinstance(TimedCommands([]), CommandSource)
+
+
+def test_an_ideal_plant_is_where_it_is_commanded_to_be():
+    recording = run(RobotController(STRIDER), IdealPlant(STRIDER), [(0.0, FORWARD)], duration=2.0)
+    assert recording.ok, recording.problems
+    assert (recording.measured_angles[:-1] == recording.motion.angles[:-1]).all()
+    assert np.isnan(recording.measured_angles[-1]).all()
+    assert recording.motion.time == pytest.approx(np.arange(201) / 100)
+    assert recording.twist_commanded[1:] == pytest.approx(np.tile(FORWARD, (200, 1)))
+    assert recording.states[0] == "standing"
+    assert recording.states[-1] == "walking"
+    assert recording.rate == 100
+
+
+def test_its_joint_speeds_are_those_of_the_last_tick():
+    controller, plant = RobotController(STRIDER), IdealPlant(STRIDER)
+    plant.start(controller.output)
+    before = controller.output.angles
+    for _ in range(20):
+        output = controller.step(FORWARD, 0.02)
+        readings = plant.step(output, 0.02)
+        assert readings.joint_speeds == pytest.approx((output.angles - before) / 0.02)
+        before = output.angles
+
+
+def test_the_difference_between_command_and_another_plant_is_recorded():
+    plant = LaggingPlant(STRIDER)
+    recording = run(RobotController(STRIDER), plant, [(0.0, FORWARD), (1.5, (0.0, 0.0, 0.0))])
+    assert plant.calls == ["start", "stop"]
+    error = np.abs(recording.measured_angles - recording.motion.angles)[:-1]
+    assert 0.01 < np.nanmax(error) < 0.5
+    # A lag of 0.05 s has faded when the robot has stood for a while.
+    assert np.nanmax(error[-20:]) < 1e-3
+
+
+def test_the_plant_is_stopped_when_something_fails():
+    plant = LaggingPlant(STRIDER, fails_at=0.5)
+    with pytest.raises(RuntimeError, match="unplugged"):
+        run(RobotController(STRIDER), plant, [(0.0, FORWARD)])
+    assert plant.calls == ["start", "stop"]
+
+
+def test_scenarios_run_on_any_plant():
+    scenario = Scenario.from_text("at 0 s: walk 50 mm/s; at 1 s: stop", robot="strider")
+    lagging, ideal = run_scenario(scenario, plant=LaggingPlant(STRIDER)), run_scenario(scenario)
+    assert (lagging.motion.angles == ideal.motion.angles).all()
+    assert (lagging.measured_angles[50] != ideal.measured_angles[50]).any()
+    with pytest.raises(InputError, match=r"at 1 s: ground RF 3 mm: only an ideal plant .* leave .* a LaggingPlant"):
+        run_scenario(Scenario.from_text("at 1 s: ground RF 3 mm"), plant=LaggingPlant(STRIDER))
+
+
+def test_commands_hold_until_the_next_and_the_run_ends_at_rest():
+    commands = [(2.0, Command(state="lying")), (0.5, Command(twist=FORWARD, gait="wave")), (1.5, (0.0, 0.0, 0.0))]
+    recording = run(RobotController(STRIDER), IdealPlant(STRIDER), commands, name="down")
+    assert recording.ok, recording.problems
+    assert recording.name == "down"
+    assert recording.states[-1] == "lying"
+    assert recording.motion.duration >= 4.0
+    asked = recording.motion.time[1:][recording.twist_commanded[1:, 0] > 0]
+    assert asked[[0, -1]] == pytest.approx([0.51, 1.5])
+    assert recording.gaits[-1] == "wave"
+
+
+def test_a_source_may_answer_to_what_the_controller_gives():
+    class UntilHalfAMetre:
+        def command(self, time, output, note):
+            if output.body.position[0] > 0.1 and not self.noted:
+                note("command", "far enough")
+                self.noted = True
+            return Command(twist=(0.0, 0.0, 0.0) if self.noted else FORWARD)
+
+        def over(self, time, output):
+            return self.noted and output.at_rest
+
+        noted = False
+
+    recording = run(RobotController(STRIDER), IdealPlant(STRIDER), UntilHalfAMetre(), rate=50.0)
+    assert recording.motion.body.position[-1, 0] == pytest.approx(0.12, abs=0.03)
+    assert [event.text for event in recording.events if event.kind == "command"] == ["far enough"]
+
+
+def test_random_ticks_are_the_same_for_the_same_seed():
+    times = [
+        run(RobotController(STRIDER), IdealPlant(STRIDER), [], duration=0.5, jitter=0.004, seed=seed).motion.time
+        for seed in (1, 1, 2)
+    ]
+    assert (times[0] == times[1]).all()
+    assert (times[0][:40] != times[2][:40]).any()
+    assert np.abs(np.diff(times[0]) - 0.01).max() <= 0.004
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        ({"rate": 0.0}, "rate"),
+        ({"rate": math.nan}, "rate"),
+        ({"jitter": 0.02}, "jitter is 0.02 s; it must be at least 0 and less than a tick, 0.01 s"),
+        ({"duration": -1.0}, "duration"),
+    ],
+)
+def test_senseless_numbers_are_refused(arguments, words):
+    with pytest.raises(InputError, match=words):
+        run(RobotController(STRIDER), IdealPlant(STRIDER), [], **arguments)
+
+
+def test_times_must_be_numbers():
+    with pytest.raises(InputError, match="time"):
+        TimedCommands([(math.nan, FORWARD)])
+
+
+def test_controller_and_plant_are_of_one_robot():
+    other = IdealPlant(load_robot("phantomx").replace(leg_names=tuple("abcdef")))
+    with pytest.raises(InputError, match="both must be the same robot"):
+        run(RobotController(STRIDER), other, [])
+
+
+def test_a_limitation_that_ends_before_its_command_is_no_unmet_command():
+    commands = [(0.0, (2.0, 0.0, 0.0)), (1.0, (0.02, 0.0, 0.0)), (2.0, Command(gait="wave", twist=(0.02, 0.0, 0.0)))]
+    recording = run(RobotController(STRIDER), IdealPlant(STRIDER), commands, duration=8.0)
+    (unmet,) = recording.unmet
+    assert str(unmet.limitation.kind) == "twist"
+    assert (unmet.time, unmet.until) == pytest.approx((0.01, 1.0), abs=0.011)
+    assert unmet.limitation.granted < 1
+    assert recording.problems == (f"not met in full, {unmet.text()}",)
