@@ -106,7 +106,7 @@ def test_text_and_tables_of_the_same_commands_are_the_same():
         at 500 ms: stand_up                 # a remark
         at 2.0 s: walk 0.1 m/s; gait wave
         at 5s: walk speed 10cm/s heading 90 deg turn -5 deg/s; body z -1 cm pitch 5 deg
-        body_height 90 mm; lift 0.03 m; stance_width 5 mm; cycle_time 900 ms; sway z 2 mm
+        body_height 90 mm; swing_height 0.03 m; stance_width 5 mm; cycle_time 900 ms; sway z 2 mm
         at 6 s: foot_target RF x 250 mm y -.12e3 mm z +60. mm; ground "front left" 10 mm; tilt roll 3 deg
         foot_velocity RF vx 2 cm/s vz -10 mm/s; force RF -2.5 N; cycle_time auto
         at 7 s: foot_release RF; stop; body; sit; fold; power_off
