@@ -1,4 +1,4 @@
-"""Keep what the pages show true: run the commands and examples in them, and put what they print in its place."""
+"""Regenerate the outputs and tables in README.md and docs: run the commands, the examples and the calculations."""
 
 from __future__ import annotations
 
@@ -9,36 +9,41 @@ from pathlib import Path
 
 from click.testing import CliRunner
 
+from tarsus import load_robot
 from tarsus.cli import main as tarsus
+from tarsus.load.handbook.page import docs_page
 
 ROOT = Path(__file__).parents[1]
 PAGES = (ROOT / "README.md", *(ROOT / "docs" / name for name in ("commands.md", "walking-live.md")))
 
 
 def refreshed(text: str) -> str:
-    """Return a page with the outputs of its console blocks and of its Python example as they are now."""
+    """Return a page with the current outputs of its console blocks and of its Python example."""
     text = re.sub(r"```console\n(\$ tarsus [^\n]*)\n.*?```", _console, text, flags=re.DOTALL)
     return re.sub(r"```python\n(.*?)```\n\n```text\n.*?```", _example, text, flags=re.DOTALL)
 
 
-def _console(block: re.Match[str]) -> str:
-    command = block[1].removeprefix("$ tarsus ")
-    answer = CliRunner(env={"COLUMNS": "100"}).invoke(tarsus, command.split())
-    lines = [line.rstrip() for line in answer.output.strip("\n").splitlines()]
-    return "```console\n" + "\n".join([block[1], *lines]) + "\n```"
+def _console(match: re.Match[str]) -> str:
+    command = match[1].removeprefix("$ tarsus ")
+    result = CliRunner(env={"COLUMNS": "100"}).invoke(tarsus, command.split())
+    lines = [line.rstrip() for line in result.output.strip("\n").splitlines()]
+    return "```console\n" + "\n".join([match[1], *lines]) + "\n```"
 
 
-def _example(block: re.Match[str]) -> str:
+def _example(match: re.Match[str]) -> str:
     printed = io.StringIO()
     with contextlib.redirect_stdout(printed):
-        exec(compile(block[1], "example", "exec"), {})
-    return f"```python\n{block[1]}```\n\n```text\n{printed.getvalue()}```"
+        exec(compile(match[1], "example", "exec"), {})
+    return f"```python\n{match[1]}```\n\n```text\n{printed.getvalue()}```"
 
 
 def main() -> None:
     for page in PAGES:
         page.write_text(refreshed(page.read_text(encoding="utf-8")), encoding="utf-8")
         print(f"refreshed {page.name}")
+    handbook = ROOT / "docs" / "handbook.md"
+    handbook.write_text(docs_page(handbook.read_text(encoding="utf-8"), load_robot("strider")), encoding="utf-8")
+    print(f"refreshed {handbook.name}")
 
 
 if __name__ == "__main__":

@@ -201,7 +201,7 @@ def test_walk(walk):
     assert (found.forces[..., 2] >= -1e-9).all()
     assert "slender uniform rod, the body a homogeneous box;" in found.assumed[0]
     point = motion_torques(robot.replace(body_size=None), walk)
-    assert "the body a point, as its size is not known;" in point.assumed[0]
+    assert "the body a point mass, as its size is unknown;" in point.assumed[0]
 
 
 def test_walk_without_inertia_is_statics(walk):

@@ -14,7 +14,7 @@ from tarsus.robot.robot import JOINTS
 
 PAGE = Path(__file__).parents[1] / "docs" / "loads.md"
 TEXT = PAGE.read_text(encoding="utf-8")
-FATES = {
+OUTCOMES = {
     "burnt-mg996r": "femur servos dead in days",
     "burnt-5kg": "burnt while standing",
     "phantomx": "alive",
@@ -40,22 +40,22 @@ def six_feet(name):
 def known_robots():
     """Rows of the table."""
     lines = [
-        "| robot | fate | tripod walk | class | heat | 30 mm higher | class | on six feet | class |",
+        "| robot | outcome | tripod walk | class | thermal load | 30 mm higher | class | on six feet | class |",
         "| --- | --- | --- | --- | --- | --- | --- | --- | --- |",
     ]
-    for name, fate in FATES.items():
+    for name, outcome in OUTCOMES.items():
         walk = sample_loads(name)
         motion = sample_motion(name, body_height=walk.motion.body_height + 0.03)
-        high, still = joint_loads(motion.robot, motion).factor, six_feet(name)
-        heat = (5 * walk.rms / walk.stall_torque).max()
-        cells = [name, fate, _worst(walk.factor), class_of(walk.factor.min()), f"{heat:.0%}".replace("%", " %")]
-        cells += [_worst(high), class_of(high.min()), _worst(still), class_of(still.min())]
+        high, standing = joint_loads(motion.robot, motion).factor, six_feet(name)
+        thermal_load = (5 * walk.rms / walk.stall_torque).max()
+        cells = [name, outcome, _worst(walk.factor), class_of(walk.factor.min()), f"{thermal_load:.0%}".replace("%", " %")]
+        cells += [_worst(high), class_of(high.min()), _worst(standing), class_of(standing.min())]
         lines.append(f"| {' | '.join(cells)} |")
     return lines
 
 
 def test_table_of_known_robots():
-    block = re.search(r"<!-- table: fates -->\n(.*?)<!-- end -->", TEXT, flags=re.DOTALL)
+    block = re.search(r"<!-- table: known robots -->\n(.*?)<!-- end -->", TEXT, flags=re.DOTALL)
     assert block[1].splitlines() == known_robots()
 
 
@@ -68,16 +68,16 @@ def test_statements_about_the_phantomx():
         for walk in (motion, high)
     )
     words = " ".join(TEXT.split())
-    assert f"{out * 1000:.0f} mm out from the coxa axis" in words
-    assert f"At 120 mm they stand {nearer * 1000:.0f} mm out" in words
+    assert f"{out * 1000:.0f} mm from the coxa axis" in words
+    assert f"At a body height of 120 mm the distance is {nearer * 1000:.0f} mm" in words
     assert nearer - motion.robot.coxa[1] < (out - motion.robot.coxa[1]) / 2
     short = sample_motion("phantomx", stroke=0.02)
     assert (
-        f"in place of {motion.stroke * 1000:.0f} mm the factor is {joint_loads(short.robot, short).factor.min():.2f}"
+        f"instead of {motion.stroke * 1000:.0f} mm the factor is {joint_loads(short.robot, short).factor.min():.2f}"
         in TEXT
     )
-    share = walk.forces[..., 2].max() / walk.weight
-    assert f"a middle leg carries {share:.0%}".replace("%", " %") in TEXT
+    fraction = walk.forces[..., 2].max() / walk.weight
+    assert f"a middle leg carries {fraction:.0%}".replace("%", " %") in TEXT
     assert walk.worst(1) in (1, 4)
 
 

@@ -1,1 +1,1 @@
-"""Source 004's hand calculation of torques, line by line, and beside the statics."""
+"""Source 004's hand calculation of joint torques, line by line, and its comparison with statics."""

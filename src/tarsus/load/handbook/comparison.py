@@ -1,4 +1,4 @@
-"""The hand method and the statics side by side: where it is safe to size a servo by hand, and where it is not."""
+"""Comparison of the hand method with statics: where sizing a servo by hand is safe, and where it is not."""
 
 from __future__ import annotations
 
@@ -12,36 +12,37 @@ from tarsus.load.handbook.lines import plain_number
 from tarsus.load.handbook.method import Handbook
 from tarsus.robot.robot import JOINTS
 
-__all__ = ["SPEEDING", "STANDING", "SWINGING", "WALKING", "Comparison", "ComparisonRow"]
+__all__ = ["ACCELERATING", "STANDING", "SWINGING", "WALKING", "Comparison", "ComparisonRow"]
 
-STANDING, WALKING, SPEEDING, SWINGING = "standing", "walking", "speeding up", "leg in the air"
+STANDING, WALKING, ACCELERATING, SWINGING = "standing", "walking", "accelerating", "leg in swing"
 _HEADER = ("case", "quantity", "unit", "hand", "hand x factor", "statics", "hand / statics", "leg", "at", "verdict")
-_NOTHING = 1e-9  # torques below this are rounding [N m]
-_FAR_TOO_MUCH = 2.0
+_NO_LOAD = 1e-9  # torques below this are rounding [N m]
+_OVERSIZED = 2.0
 
 
 @dataclass(frozen=True, kw_only=True)
 class ComparisonRow:
-    """One quantity by hand and by statics.
+    """One quantity by the hand method and by statics.
 
     Attributes
     ----------
     case : str
-        ``"standing"``, ``"walking"``, ``"speeding up"`` or ``"leg in the air"``.
+        ``"standing"``, ``"walking"``, ``"accelerating"`` or ``"leg in swing"``.
     quantity : str
-        A joint, for its torque; or ``"load of a foot"``, ``"arm about the femur axis"``, ``"arm about the knee"``.
+        A joint, for its torque; or ``"foot load"``, ``"lever arm about the femur axis"``,
+        ``"lever arm about the knee"``.
     unit : str
         ``"N m"``, ``"N"`` or ``"m"``.
-    foot_target : float
-        By the hand method, without a safety factor.
+    hand : float
+        Value of the hand method, without a safety factor.
     statics : float
-        The greatest that the statics give, without a sign.
+        Largest absolute value of the statics.
     factor : float
-        The safety factor; 1 where none applies.
+        Safety factor; 1 where none applies.
     leg : str
-        Which leg has that greatest.
+        Leg with the largest value.
     time : float or None
-        When [s]; None while standing.
+        Time of the largest value [s]; None while standing.
     """
 
     case: str
@@ -55,50 +56,50 @@ class ComparisonRow:
 
     @property
     def with_factor(self) -> float:
-        """By the hand method, times the safety factor."""
+        """Value of the hand method times the safety factor."""
         return self.hand * self.factor
 
     @property
     def ratio(self) -> float:
-        """Hand method over statics; infinite where the statics give nothing."""
-        return self.hand / self.statics if self.statics > _NOTHING else math.inf
+        """Hand method over statics; infinite if the statics give no load."""
+        return self.hand / self.statics if self.statics > _NO_LOAD else math.inf
 
     @property
     def reserve(self) -> float:
-        """What is left of the safety factor: hand method times factor, over statics."""
+        """Effective safety factor: hand method times factor over statics."""
         return self.ratio * self.factor
 
     @property
     def verdict(self) -> str:
-        """Whether it is safe to go by the hand method."""
+        """Whether sizing by the hand method is safe."""
         if math.isinf(self.ratio):
-            return "statics: nothing to bear"
-        if self.ratio >= _FAR_TOO_MUCH:
-            return "safe, far too much"
+            return "no load in statics"
+        if self.ratio >= _OVERSIZED:
+            return "safe, oversized"
         if self.ratio >= 1:
             return "safe"
-        return "safe by the factor only" if self.reserve >= 1 else "unsafe"
+        return "safe with the factor only" if self.reserve >= 1 else "unsafe"
 
 
 @dataclass(frozen=True, kw_only=True)
 class Comparison:
-    """The hand method and the statics side by side.
+    """Comparison of the hand method with statics.
 
     Attributes
     ----------
-    foot_target : Handbook
-        The hand calculation, its slips corrected.
+    hand : Handbook
+        The hand calculation, with the errors of the source corrected.
     motion : Motion
-        The walk that the statics were taken from.
+        The walk evaluated by statics.
     rows : tuple of ComparisonRow
-        Torques.
+        Joint torques.
     reasons : tuple of ComparisonRow
-        What the torques come from: load of a foot, and its arms about femur axis and knee.
+        Causes of the torques: foot load, and its lever arms about the femur axis and the knee.
     acceleration : float
-        With what the body speeds up, and brakes, in the rows that say so [m/s^2].
+        Acceleration and deceleration of the body in the case ``"accelerating"`` [m/s^2].
     margin : mapping
-        For each case, how far inside the polygon of its feet the load stays [m]; negative: the robot tips, and the
-        torques are those with which it begins to.
+        For each case, smallest distance of the load from the nearest edge of the support polygon [m]. Negative: the
+        robot tips, and the torques are those at the onset of tipping.
     """
 
     hand: Handbook
@@ -114,21 +115,21 @@ class Comparison:
         Parameters
         ----------
         case, quantity : str
-            Its case and quantity.
+            Case and quantity of the row.
 
         Raises
         ------
         UnknownNameError
-            If there is no such row.
+            If the row does not exist.
         """
         rows = {f"{row.case}, {row.quantity}": row for row in (*self.rows, *self.reasons)}
-        wanted = f"{case}, {quantity}"
-        if wanted not in rows:
-            raise UnknownNameError.of("row of the comparison", wanted, rows)
-        return rows[wanted]
+        name = f"{case}, {quantity}"
+        if name not in rows:
+            raise UnknownNameError.of("row of the comparison", name, rows)
+        return rows[name]
 
     def sentence(self, joint: str) -> str:
-        """Say of a joint where the hand method is safe and where not, with the numbers.
+        """Summarise the comparison for a joint in a sentence with numbers.
 
         Parameters
         ----------
@@ -138,30 +139,30 @@ class Comparison:
         Raises
         ------
         UnknownNameError
-            If there is no such joint.
+            If the joint is unknown.
         """
         if joint not in JOINTS:
             raise UnknownNameError.of("joint", joint, JOINTS)
-        return _coxa_sentence(self) if joint == "coxa" else _carrying_sentence(self, joint)
+        return _coxa_sentence(self) if joint == "coxa" else _supporting_joint_sentence(self, joint)
 
     @property
     def sentences(self) -> tuple[str, ...]:
-        """One sentence for each joint, and one for each case in which the robot tips."""
-        tips = (
-            f"{case}: the robot tips, the load is {-margin * 1000:.0f} mm outside its feet; what is given here is what "
-            "it bears as it begins to."
+        """One sentence for each joint, and one for each case with a tipping robot."""
+        tipping = (
+            f"{case}: the robot tips, with the load {-margin * 1000:.0f} mm outside its support polygon; the torques "
+            "are those at the onset of tipping."
             for case, margin in self.margin.items()
             if margin < 0
         )
-        return (*(self.sentence(joint) for joint in JOINTS), *tips)
+        return (*(self.sentence(joint) for joint in JOINTS), *tipping)
 
     def table(self, *, reasons: bool = False) -> tuple[tuple[str, ...], ...]:
-        """Return torques, or what they come from, as rows of texts, a header first: for printing.
+        """Return torques, or foot loads and lever arms, as rows of text with a header.
 
         Parameters
         ----------
         reasons : bool
-            Whether loads and arms are wanted, not torques.
+            Whether to return foot loads and lever arms instead of torques.
         """
         return (_HEADER, *(_texts(row) for row in (self.reasons if reasons else self.rows)))
 
@@ -182,34 +183,34 @@ def _texts(row: ComparisonRow) -> tuple[str, ...]:
     )
 
 
-def _carrying_sentence(comparison: Comparison, joint: str) -> str:
-    """Of the femur or the tibia: they carry the robot."""
+def _supporting_joint_sentence(comparison: Comparison, joint: str) -> str:
+    """Return the sentence for the femur or the tibia, which support the robot."""
     worst = min((r for r in comparison.rows if r.quantity == joint and r.case != SWINGING), key=lambda r: r.ratio)
-    load = comparison.row(WALKING, "load of a foot")
-    arm = comparison.row(WALKING, "arm about the femur axis" if joint == "femur" else "arm about the knee")
+    load = comparison.row(WALKING, "foot load")
+    arm = comparison.row(WALKING, f"lever arm about the {'femur axis' if joint == 'femur' else 'knee'}")
     factor = plain_number(worst.factor)
-    ends = {
-        "statics: nothing to bear": "there is nothing to bear",
-        "unsafe": f"even {factor} times that is too little",
-        "safe by the factor only": f"too little, and of the factor {factor} only {worst.reserve:.2f} is left",
-        "safe": f"enough, and with the factor {factor} it is {worst.reserve:.1f} times as much",
-        "safe, far too much": f"{worst.ratio:.1f} times as much as needed, {worst.reserve:.1f} times with the factor",
+    conclusions = {
+        "no load in statics": "no load",
+        "unsafe": f"too small even with the factor {factor}",
+        "safe with the factor only": f"too small; of the factor {factor}, {worst.reserve:.2f} remains",
+        "safe": f"sufficient, with an effective safety factor of {worst.reserve:.1f}",
+        "safe, oversized": f"{worst.ratio:.1f} times the required torque, {worst.reserve:.1f} times with the factor",
     }
     return (
-        f"{joint}: by hand {worst.hand:.3f} N m where the statics have up to {worst.statics:.3f} N m "
-        f"({worst.case}, {worst.leg}): {ends[worst.verdict]}. The hand method puts {load.hand:.1f} N at "
-        f"{arm.hand * 1000:.0f} mm; walking, a foot bears up to {load.statics:.1f} N, up to "
-        f"{arm.statics * 1000:.0f} mm out."
+        f"{joint}: {worst.hand:.3f} N m by the hand method, up to {worst.statics:.3f} N m by statics "
+        f"({worst.case}, {worst.leg}): {conclusions[worst.verdict]}. The hand method assumes {load.hand:.1f} N at a "
+        f"lever arm of {arm.hand * 1000:.0f} mm; while walking, the foot load reaches {load.statics:.1f} N and the "
+        f"lever arm {arm.statics * 1000:.0f} mm."
     )
 
 
 def _coxa_sentence(comparison: Comparison) -> str:
-    """Of the coxa: on the level it only pushes."""
-    even, speeding = comparison.row(WALKING, "coxa"), comparison.row(SPEEDING, "coxa")
+    """Return the sentence for the coxa, which only pushes on level ground."""
+    constant_speed, accelerating = comparison.row(WALKING, "coxa"), comparison.row(ACCELERATING, "coxa")
     return (
-        f"coxa: on level ground at an even pace it holds {even.statics:.3f} N m; speeding up or braking with "
-        f"{plain_number(comparison.acceleration)} m/s², shared by the standing feet, takes up to "
-        f"{speeding.statics:.3f} N m ({speeding.leg}) where the hand method has {speeding.hand:.3f} N m: "
-        f"{speeding.verdict}, {speeding.reserve:.2f} times as much with the factor {plain_number(speeding.factor)}. "
-        "Friction between the feet that push against each other is in neither."
+        f"coxa: {constant_speed.statics:.3f} N m by statics at constant speed on level ground; an acceleration of "
+        f"{plain_number(comparison.acceleration)} m/s², distributed over the feet on the ground, requires up to "
+        f"{accelerating.statics:.3f} N m ({accelerating.leg}), the hand method gives {accelerating.hand:.3f} N m: "
+        f"{accelerating.verdict}, with an effective safety factor of {accelerating.reserve:.2f}. "
+        "Neither includes friction forces of feet that push against each other."
     )

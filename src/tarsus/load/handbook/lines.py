@@ -1,4 +1,4 @@
-"""Sums that show their work: a number that remembers how it was come by, and the sheet that such lines stand on."""
+"""Calculations that show their steps: numbers with their formulas, and the sheet that lists them."""
 
 from __future__ import annotations
 
@@ -9,18 +9,18 @@ import numpy as np
 
 __all__ = ["Line", "Sheet", "Term", "plain_number"]
 
-_SUM, _PRODUCT, _SINGLE = 1, 2, 3  # how firmly a text holds together; less firm ones get brackets
+_SUM, _PRODUCT, _SINGLE = 1, 2, 3  # precedence of an expression; operands of lower precedence get brackets
 
 
 def plain_number(value: float, unit: str = "") -> str:
-    """Return a number as one writes it by hand: six digits, no exponent; lengths to a tenth of a millimetre.
+    """Format a number with six significant digits and no exponent; lengths to 0.1 mm.
 
     Parameters
     ----------
     value : float
         The number.
     unit : str
-        Its unit; ``"m"`` for a length.
+        Unit; ``"m"`` for a length.
     """
     rounded = round(value, 4) if unit == "m" else value
     return str(np.format_float_positional(rounded, precision=6, fractional=False, trim="-"))
@@ -28,7 +28,7 @@ def plain_number(value: float, unit: str = "") -> str:
 
 @dataclass(frozen=True)
 class Term:
-    """A number with the formula that it comes from, in symbols and in numbers.
+    """A number with its formula, in symbols and in numbers.
 
     Attributes
     ----------
@@ -37,15 +37,15 @@ class Term:
     symbols : str
         The formula in symbols.
     numbers : str
-        The formula with the numbers put in.
-    level : int
-        How firmly the texts hold together: 1 a sum, 2 a product, 3 a single symbol.
+        The formula with the numbers substituted.
+    precedence : int
+        Precedence of the expression: 1 a sum, 2 a product, 3 a single symbol.
     """
 
     value: float
     symbols: str
     numbers: str
-    level: int = _SINGLE
+    precedence: int = _SINGLE
 
     @classmethod
     def number(cls, value: float) -> Term:
@@ -72,12 +72,12 @@ class Term:
         symbols, numbers = self._texts(_SINGLE)
         return Term(self.value**2, f"{symbols}²", f"{numbers}²")
 
-    def _join(self, sign: str, other: Term, value: float, level: int, right: int) -> Term:
-        mine, theirs = self._texts(level), other._texts(right)
-        return Term(value, mine[0] + sign + theirs[0], mine[1] + sign + theirs[1], level)
+    def _join(self, sign: str, other: Term, value: float, precedence: int, right: int) -> Term:
+        left_text, right_text = self._texts(precedence), other._texts(right)
+        return Term(value, left_text[0] + sign + right_text[0], left_text[1] + sign + right_text[1], precedence)
 
-    def _texts(self, level: int) -> tuple[str, str]:
-        if self.level < level:
+    def _texts(self, precedence: int) -> tuple[str, str]:
+        if self.precedence < precedence:
             return f"({self.symbols})", f"({self.numbers})"
         return self.symbols, self.numbers
 
@@ -89,21 +89,21 @@ class Line:
     Attributes
     ----------
     key : str
-        What it is called here, such as ``"stance.femur"``.
+        Key of the line, such as ``"stance.femur"``.
     symbol : str
-        Its symbol, such as ``"τ_femur"``.
+        Symbol, such as ``"τ_femur"``.
     formula : str
-        Its formula in symbols; empty for a given number.
+        Formula in symbols; empty for a given number.
     substitution : str
-        The formula with the numbers put in; empty for a given number.
+        Formula with the numbers substituted; empty for a given number.
     value : float
-        What comes out, in SI units.
+        Result, in SI units.
     unit : str
-        The unit.
+        Unit of the result.
     printed : str or None
-        What source 004 prints, to its digits; None where it has no such line, or for any other robot than its own.
+        Number printed in source 004; None if it has no such line, or for other robots.
     note : str
-        What is to be said of it: a slip in the source, or what the line leaves out.
+        Remark: an error in the source, or what the line neglects.
     """
 
     key: str
@@ -117,7 +117,7 @@ class Line:
 
     @property
     def agrees(self) -> bool | None:
-        """Whether the value, rounded or cut off, is the printed number; None where none is printed."""
+        """Whether the value, rounded or truncated, is the printed number; None if none is printed."""
         if self.printed is None:
             return None
         digits = len(self.printed.partition(".")[2])
@@ -126,16 +126,16 @@ class Line:
 
 @dataclass(frozen=True)
 class Sheet:
-    """Lines in the order in which they are worked out.
+    """Lines of a calculation, in order.
 
     Attributes
     ----------
     printed : mapping
-        For each key, the number that source 004 prints.
+        Number printed in source 004, by key.
     notes : mapping
-        For each key, what is to be said of the line.
+        Remark, by key.
     carry_printed : bool
-        Whether later lines go on with the printed numbers, as the source does, or with the full ones.
+        Whether later lines use the printed numbers, as the source does, or the full ones.
     lines : list of Line
         The lines so far.
     """
@@ -145,13 +145,13 @@ class Sheet:
     carry_printed: bool
     lines: list[Line] = field(default_factory=list)
 
-    def give(self, key: str, symbol: str, unit: str, value: float) -> Term:
-        """Note a given number, and return it for later lines."""
+    def given(self, key: str, symbol: str, unit: str, value: float) -> Term:
+        """Add a given number, and return it for later lines."""
         return self._write(key, symbol, unit, Term(value, "", ""))
 
-    def work(self, key: str, symbol: str, unit: str, result: Term) -> Term:
-        """Note a result, and return it for later lines."""
-        return self._write(key, symbol, unit, result)
+    def result(self, key: str, symbol: str, unit: str, term: Term) -> Term:
+        """Add a result, and return it for later lines."""
+        return self._write(key, symbol, unit, term)
 
     def _write(self, key: str, symbol: str, unit: str, term: Term) -> Term:
         printed = self.printed.get(key)

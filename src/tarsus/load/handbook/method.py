@@ -1,7 +1,7 @@
-"""The torques of source 004's hand calculation, line by line: for students, and for checking with pencil and paper.
+"""Source 004's hand calculation of joint torques, line by line, for students.
 
-It is a hand method: the body hangs on a cantilever, and where the feet stand does not enter. What the joints really
-bear is `joint_torques`; `compare_with_statics` puts both side by side.
+The hand method models the body as a load on a cantilever and ignores the foot positions. `joint_torques` computes the
+actual torques; `compare_with_statics` compares both.
 """
 
 from __future__ import annotations
@@ -15,34 +15,34 @@ import numpy as np
 
 from tarsus.errors import InputError, UnknownNameError
 from tarsus.load.handbook.lines import Line, Sheet, Term, plain_number
-from tarsus.load.handbook.sections import work_out
+from tarsus.load.handbook.sections import write_sections
 from tarsus.load.handbook.source import NOTES, NOTES_ONE_LEG_UP, printed_numbers
 from tarsus.robot.robot import JOINTS, Robot
 
 __all__ = ["Handbook", "handbook"]
 
-_FEMUR_RAISED = math.pi / 4
+_FEMUR_ANGLE = math.pi / 4
 _HEADER = ("key", "symbol", "formula", "with numbers", "value", "unit", "source 004", "note")
 
 
 @dataclass(frozen=True, kw_only=True)
 class Handbook:
-    """The hand calculation of a robot's torques, every line of it.
+    """Hand calculation of a robot's joint torques.
 
     Attributes
     ----------
     robot : Robot
-        Whose torques they are.
+        The robot.
     leg : int
-        Which leg's numbers stand for every leg's.
+        Index of the leg whose dimensions represent all legs.
     feet_down : int
-        How many feet stand at a time.
+        Number of feet on the ground.
     safety_factor : float
-        By what the walking torque is multiplied at the end.
+        Factor applied to the walking torque.
     corrected : bool
-        Whether the source's slips are put right.
+        Whether the errors of the source are corrected.
     lines : tuple of Line
-        The lines, in the source's order.
+        The lines, in the order of the source.
     """
 
     robot: Robot
@@ -54,19 +54,19 @@ class Handbook:
 
     @property
     def gait(self) -> str:
-        """What a gait with so many feet down is called; source 004 calls the wave "ripple"."""
+        """Name of a gait with that many feet on the ground; source 004 calls the wave "ripple"."""
         legs = self.robot.legs
-        names = {legs: "standing on every foot", legs - 1: 'wave gait (source 004\'s "ripple")'}
+        names = {legs: "standing on all feet", legs - 1: 'wave gait (source 004\'s "ripple")'}
         if legs == 6:
-            names |= {3: "tripod gait", 4: "tetrapod or ripple gait (in the literature's sense)"}
+            names |= {3: "tripod gait", 4: "tetrapod gait, or ripple gait as in the literature"}
         return names.get(self.feet_down, f"{self.feet_down} feet down")
 
     @property
     def title(self) -> str:
-        """What this is the calculation of, in one line."""
+        """Title of the calculation, in one line."""
         return (
-            f"{self.robot.name}: {self.feet_down} of {self.robot.legs} feet down, {self.gait}; every leg as the "
-            f"{self.robot.leg_names[self.leg]} one, {'slips corrected' if self.corrected else 'as printed'}"
+            f"{self.robot.name}: {self.feet_down} of {self.robot.legs} feet down, {self.gait}; all legs like the "
+            f"{self.robot.leg_names[self.leg]} one, {'errors corrected' if self.corrected else 'as printed'}"
         )
 
     def line(self, key: str) -> Line:
@@ -75,12 +75,12 @@ class Handbook:
         Parameters
         ----------
         key : str
-            Its key, such as ``"stance.femur"``.
+            Key of the line, such as ``"stance.femur"``.
 
         Raises
         ------
         UnknownNameError
-            If there is no such line.
+            If the line does not exist.
         """
         for line in self.lines:
             if line.key == key:
@@ -88,36 +88,36 @@ class Handbook:
         raise UnknownNameError.of("line of the hand calculation", key, [line.key for line in self.lines])
 
     def value(self, key: str) -> float:
-        """Return what comes out of a line, in SI units.
+        """Return the result of a line, in SI units.
 
         Parameters
         ----------
         key : str
-            Its key, such as ``"stance.femur"``.
+            Key of the line, such as ``"stance.femur"``.
 
         Raises
         ------
         UnknownNameError
-            If there is no such line.
+            If the line does not exist.
         """
         return self.line(key).value
 
     def torque(self, joint: str, *, factor: bool = False) -> float:
-        """Return the torque that a joint has to exert while its foot stands [N m].
+        """Return the torque of a joint in stance [N m].
 
-        Femur and tibia hold the robot up; the coxa pushes it forward.
+        Femur and tibia support the robot; the coxa pushes it forward.
 
         Parameters
         ----------
         joint : str
             ``"coxa"``, ``"femur"`` or ``"tibia"``.
         factor : bool
-            Whether multiplied by the safety factor.
+            Whether to multiply by the safety factor.
 
         Raises
         ------
         UnknownNameError
-            If there is no such joint.
+            If the joint is unknown.
         """
         if joint not in JOINTS:
             raise UnknownNameError.of("joint", joint, JOINTS)
@@ -125,7 +125,7 @@ class Handbook:
         return torque * self.safety_factor if factor else torque
 
     def table(self) -> tuple[tuple[str, ...], ...]:
-        """Return the lines as rows of texts, a header first: for printing."""
+        """Return the lines as rows of text with a header."""
         rows = (
             (
                 line.key,
@@ -155,58 +155,59 @@ def handbook(  # noqa: PLR0913 - the calculation's assumptions are one list, all
     femur_out: float | None = None,
     leg: int | None = None,
 ) -> Handbook:
-    """Work out a robot's torques by hand, as source 004 does: free swing, stance, walking.
+    """Compute a robot's joint torques by the hand method of source 004: swing, stance, walking.
 
-    All legs are taken to be like one. Offsets of the femur axes and the place of the body's centre of mass do not
-    enter.
+    All legs are assumed to be equal. Femur axis offsets and the body's centre of mass are ignored.
 
     Parameters
     ----------
     robot : Robot
         A single robot with masses.
     feet_down : int
-        How many feet stand at a time: 3 for the tripod, 5 for the wave, which the source calls "ripple".
+        Number of feet on the ground: 3 for the tripod, 5 for the wave, which the source calls "ripple".
     gravity : float
-        Strength of gravity [m/s^2]; the source's 9.8.
-    sweep, sweep_time : float
-        How far a swinging coxa turns [rad], from rest to rest, and in what time [s].
+        Magnitude of gravity [m/s^2]; 9.8 in the source.
+    sweep : float
+        Angle of the coxa's swing, from rest to rest [rad].
+    sweep_time : float
+        Duration of the swing [s].
     acceleration : float
-        With what the body speeds up [m/s^2].
+        Acceleration of the body [m/s^2].
     safety_factor : float
-        By what the walking torque is multiplied.
+        Factor applied to the walking torque.
     corrected : bool
-        Whether the source's slips are put right. If not, they are made for any robot, and for the source's own the
-        calculation goes on with the printed, rounded numbers, as the source does.
+        Whether to correct the errors of the source. If not, they are reproduced for any robot, and for the source's own
+        robot the calculation continues with the printed, rounded numbers, as the source does.
     femur_out : float, optional
-        How far out the standing femur reaches [m]; its length at 45 deg, to the millimetre, where left out: that gives
-        the source's 0.069.
+        Horizontal length of the femur in stance [m]. Default: its length at 45 deg, rounded to 1 mm, which gives the
+        source's 0.069.
     leg : int, optional
-        Which leg stands for all; where left out, the worst: the one whose femur has most to bear in stance.
+        Index of the leg that represents all. Default: the leg with the largest femur torque in stance.
 
     Raises
     ------
     MissingDataError
         If the robot's masses are unknown.
     InputError
-        If the robot is a batch, there is no such leg, or a number is out of its range.
+        If the robot is a batch, the leg does not exist, or a number is out of range.
     """
     if robot.batch_shape:
         raise InputError(f"handbook takes a single robot, not a batch {robot.batch_shape}")
     robot.require_masses()
-    choices = {
+    parameters = {
         "gravity": gravity,
         "sweep": sweep,
         "sweep_time": sweep_time,
         "acceleration": acceleration,
         "safety_factor": safety_factor,
     }
-    _check(robot, feet_down, leg, choices | ({} if femur_out is None else {"femur_out": femur_out}))
+    _check(robot, feet_down, leg, parameters | ({} if femur_out is None else {"femur_out": femur_out}))
     feet_down, leg = int(feet_down), _worst_leg(robot, feet_down, gravity) if leg is None else int(leg)
     values = _given(robot, leg, femur_out)
-    printed = printed_numbers(values, choices, legs=robot.legs, feet_down=feet_down)
-    one_up = robot.legs - feet_down == 1
-    sheet = Sheet(printed, {**NOTES, **(NOTES_ONE_LEG_UP if one_up else {})}, carry_printed=not corrected)
-    terms = {key.partition(".")[2]: sheet.give(key, *_symbol(key), value) for key, value in values.items()}
+    printed = printed_numbers(values, parameters, legs=robot.legs, feet_down=feet_down)
+    one_leg_up = robot.legs - feet_down == 1
+    sheet = Sheet(printed, {**NOTES, **(NOTES_ONE_LEG_UP if one_leg_up else {})}, carry_printed=not corrected)
+    terms = {key.partition(".")[2]: sheet.given(key, *_symbol(key), value) for key, value in values.items()}
     terms |= {
         "g": Term(gravity, "g", plain_number(gravity)),
         "sweep": Term(sweep, "Δθ", plain_number(sweep)),
@@ -216,7 +217,7 @@ def handbook(  # noqa: PLR0913 - the calculation's assumptions are one list, all
         "up": Term(robot.legs - feet_down, "n_up", str(robot.legs - feet_down)),
         "down": Term(feet_down, "n_down", str(feet_down)),
     }
-    work_out(sheet, terms, corrected=corrected, one_leg_up=one_up)
+    write_sections(sheet, terms, corrected=corrected, one_leg_up=one_leg_up)
     return Handbook(
         robot=robot,
         leg=leg,
@@ -238,7 +239,7 @@ def _check(robot: Robot, feet_down: int, leg: int | None, numbers: Mapping[str, 
 
 
 def _worst_leg(robot: Robot, feet_down: int, gravity: float) -> int:
-    """Return the leg whose femur has most to bear in stance, were all legs like it; the first of equal ones."""
+    """Return the leg that gives the largest femur torque in stance if all legs are like it; the first of equals."""
     masses, radius = np.asarray(robot.link_mass), _radius(robot)
     load = (float(robot.body_mass) + (robot.legs - feet_down) * masses.sum(-1)) * gravity / feet_down
     femur = masses[:, 0] * gravity * robot.link_com[:, 0] + load * (robot.coxa + radius)
@@ -246,20 +247,20 @@ def _worst_leg(robot: Robot, feet_down: int, gravity: float) -> int:
 
 
 def _radius(robot: Robot) -> np.ndarray[Any, Any]:
-    """How far each coxa axis is from the body's origin, seen from above [m]."""
+    """Return the horizontal distance of each coxa axis from the body's origin [m]."""
     radius: np.ndarray[Any, Any] = np.hypot(robot.mount_position[:, 0], robot.mount_position[:, 1])
     return radius
 
 
 def _given(robot: Robot, leg: int, femur_out: float | None) -> dict[str, float]:
-    """Return the numbers that the calculation starts from [kg, m]."""
+    """Return the given numbers of the calculation [kg, m]."""
     lengths = [float(length[leg]) for length in (robot.coxa, robot.femur, robot.tibia)]
     given = {"given.m_body": float(robot.body_mass)}
     given |= {f"given.m_{joint}": float(robot.link_mass[leg, i]) for i, joint in enumerate(JOINTS)}
     given |= {f"given.L_{joint}": lengths[i] for i, joint in enumerate(JOINTS)}
     given |= {f"given.l_{joint}": float(robot.link_com[leg, i]) for i, joint in enumerate(JOINTS)}
     given["given.R_b"] = float(_radius(robot)[leg])
-    given["given.L_femur_out"] = round(lengths[1] * math.cos(_FEMUR_RAISED), 3) if femur_out is None else femur_out
+    given["given.L_femur_out"] = round(lengths[1] * math.cos(_FEMUR_ANGLE), 3) if femur_out is None else femur_out
     return given
 
 

@@ -1,6 +1,6 @@
-"""The tables of docs/handbook.md, worked out afresh: so that the page can't drift from the code.
+"""Tables of docs/handbook.md, generated from the code.
 
-A table stands between ``<!-- table: NAME -->`` and ``<!-- end -->``; `docs_page` puts it there.
+A table stands between ``<!-- table: NAME -->`` and ``<!-- end -->``; `docs_page` replaces it.
 """
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ import re
 from collections.abc import Callable, Iterable, Sequence
 
 from tarsus.errors import UnknownNameError
-from tarsus.load.handbook.comparison import SPEEDING, Comparison
+from tarsus.load.handbook.comparison import ACCELERATING, Comparison
 from tarsus.load.handbook.lines import Line, plain_number
 from tarsus.load.handbook.method import Handbook, handbook
 from tarsus.load.handbook.statics import compare_with_statics
@@ -22,27 +22,27 @@ _BLOCK = re.compile(r"(<!-- table: ([^>]*?) -->\n).*?(<!-- end -->)", flags=re.D
 
 
 def docs_page(text: str, robot: Robot) -> str:
-    """Return a page with every table in it worked out afresh.
+    """Return a page with its tables regenerated.
 
     Parameters
     ----------
     text : str
         The page.
     robot : Robot
-        The robot that the tables are of.
+        The robot of the tables.
 
     Raises
     ------
     UnknownNameError
-        If the page asks for a table that there is not.
+        If a table name is unknown.
     """
 
-    def fresh(found: re.Match[str]) -> str:
-        if found[2] not in TABLES:
-            raise UnknownNameError.of("table", found[2], TABLES)
-        return f"{found[1]}{TABLES[found[2]](robot)}\n{found[3]}"
+    def table(match: re.Match[str]) -> str:
+        if match[2] not in TABLES:
+            raise UnknownNameError.of("table", match[2], TABLES)
+        return f"{match[1]}{TABLES[match[2]](robot)}\n{match[3]}"
 
-    return _BLOCK.sub(fresh, text)
+    return _BLOCK.sub(table, text)
 
 
 def markdown_table(rows: Iterable[Sequence[str]]) -> str:
@@ -51,7 +51,7 @@ def markdown_table(rows: Iterable[Sequence[str]]) -> str:
     Parameters
     ----------
     rows : iterable of sequence of str
-        Its rows, the header first.
+        Rows, the header first.
     """
     header, *body = rows
     lines = [header, ["---"] * len(header), *body]
@@ -77,8 +77,8 @@ def _section(hand: Handbook, *sections: str) -> str:
     return _line_rows(line for line in hand.lines if line.key.partition(".")[0] in sections)
 
 
-def _slips(robot: Robot) -> str:
-    """Where the corrected value is not the printed one."""
+def _source_errors(robot: Robot) -> str:
+    """Return the table of lines whose corrected value differs from the printed one."""
     rows = [("line", "feet down", "source 004", "corrected", "unit", "note")]
     for feet_down in (3, 5):
         for line in handbook(robot, feet_down=feet_down).lines:
@@ -100,22 +100,22 @@ def _statics(robot: Robot, gait: str) -> str:
     )
 
 
-def _clearances(robot: Robot) -> str:
-    """How much of the hand method's torque is left, by how high the body is."""
+def _body_height_table(robot: Robot) -> str:
+    """Return the table of the hand method over statics at several body heights."""
     rows = [
-        ("body_height", "gait", "femur: hand / statics", "with the factor", "tibia: hand / statics", "with the factor")
+        ("body height", "gait", "femur: hand / statics", "with the factor", "tibia: hand / statics", "with the factor")
     ]
     for body_height in _BODY_HEIGHTS:
         for gait in ("tripod", "wave"):
             comparison = compare_with_statics(robot, gait=gait, body_height=body_height)
             rows.append(
-                (f"{body_height * 1000:.0f} mm", gait, *_left(comparison, "femur"), *_left(comparison, "tibia"))
+                (f"{body_height * 1000:.0f} mm", gait, *_ratios(comparison, "femur"), *_ratios(comparison, "tibia"))
             )
     return markdown_table(rows)
 
 
-def _left(comparison: Comparison, joint: str) -> tuple[str, str]:
-    row = comparison.row(SPEEDING, joint)
+def _ratios(comparison: Comparison, joint: str) -> tuple[str, str]:
+    row = comparison.row(ACCELERATING, joint)
     return f"{row.ratio:.2f}", f"{row.reserve:.2f}"
 
 
@@ -124,10 +124,10 @@ TABLES: dict[str, Callable[[Robot], str]] = {
     "free swing": lambda robot: _section(handbook(robot), "weight", "swing", "inertia"),
     "three feet down": lambda robot: _section(handbook(robot), "stance", "walk"),
     "five feet down": lambda robot: _section(handbook(robot, feet_down=5), "stance", "walk"),
-    "slips": _slips,
+    "errors": _source_errors,
     "tripod": lambda robot: _statics(robot, "tripod"),
     "wave": lambda robot: _statics(robot, "wave"),
     "ripple": lambda robot: _statics(robot, "ripple"),
-    "body_heights": _clearances,
+    "body heights": _body_height_table,
 }
-"""The tables, and how each is worked out."""
+"""Generator of each table, by name."""

@@ -1,4 +1,4 @@
-"""What source 004 prints, and what is to be said of its lines."""
+"""Numbers printed in source 004, and remarks on its lines."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _GIVEN = {
     "given.R_b": "0.086",
     "given.L_femur_out": "0.069",
 }
-_FREE = {
+_SWING = {
     "weight.body": "13.5828",
     "weight.coxa": "0.392",
     "weight.femur": "1.568",
@@ -64,54 +64,55 @@ _FIVE_DOWN = {
     "walk.coxa": "0.1794",
     "walk.coxa_with_factor": "0.5382",
 }
-_CHOICES = {"gravity": 9.8, "sweep": math.pi / 3, "sweep_time": 2.0, "acceleration": 1.0, "safety_factor": 3.0}
-_DOWN = {3: _THREE_DOWN, 5: _FIVE_DOWN}
+_PARAMETERS = {"gravity": 9.8, "sweep": math.pi / 3, "sweep_time": 2.0, "acceleration": 1.0, "safety_factor": 3.0}
+_BY_FEET_DOWN = {3: _THREE_DOWN, 5: _FIVE_DOWN}
 
 NOTES: Mapping[str, str] = {
-    "given.L_femur_out": "how far out the standing femur reaches, to the millimetre: its length at 45 deg, unless "
-    "given otherwise; the source gives 0.069 m for 0.098 m without a reason, and that is what 45 deg gives",
-    "swing.femur": "the source puts the coxa's arm for the femur's",
-    "swing.acceleration": "half of the time speeding up, half slowing down; the source writes rad/s",
-    "inertia.coxa": "a rod about its end, 0.33 for 1/3; the source's number is not that of its formula, but a third "
-    "of the tibia's mass times the square of the coxa's length",
-    "inertia.femur_at_coxa": "the source puts a tenth of the femur's mass",
-    "inertia.leg": "in the source with the two slips above",
-    "swing.inertia": "in the source with the slips above",
-    "swing.bending": "a bending load on the coxa's bearing; a torque only for a robot on its side",
-    "swing.gravity": "a weight has no moment about a vertical axis; the source puts the bending load here",
-    "swing.coxa": "in the source with the bending load",
-    "stance.mass": "the weight of the legs that stand is left out; the source writes 0.05 kg for its coxa of 0.04 kg, "
-    "but did the sum with 0.04",
-    "stance.load": "shared evenly, as it is only with the centre of mass midway between the feet",
-    "stance.femur": "the body's weight on a cantilever: where the foot stands does not enter; the source writes N",
-    "stance.tibia": "the same cantilever, longer by the femur: a knee over the foot bears far less",
-    "walk.inertia": "a cube with the circle's radius for its side, about a coxa axis; the source leaves out a square",
-    "walk.inertia_torque": "in the source with the slip above",
-    "walk.coxa": "in the source with the slip above",
-    "walk.coxa_with_factor": "in the source with the slip above",
+    "given.L_femur_out": "horizontal length of the femur in stance; default: its length at 45 deg, rounded to 1 mm. "
+    "The source gives 0.069 m for 0.098 m without a reason, which is the value at 45 deg",
+    "swing.femur": "the source uses the coxa's lever arm instead of the femur's",
+    "swing.acceleration": "acceleration for half of the time, deceleration for the other half; the source has the unit "
+    "rad/s",
+    "inertia.coxa": "rod about its end, 0.33 for 1/3; the number in the source does not follow from its formula, but "
+    "is 1/3 of the tibia's mass times the square of the coxa's length",
+    "inertia.femur_at_coxa": "the source uses 1/10 of the femur's mass",
+    "inertia.leg": "the source includes the two errors above",
+    "swing.inertia": "the source includes the errors above",
+    "swing.bending": "bending moment on the coxa's bearing; a joint torque only for a robot lying on its side",
+    "swing.gravity": "weight has no moment about a vertical axis; the source uses the bending moment",
+    "swing.coxa": "the source includes the bending moment",
+    "stance.mass": "without the weight of the stance legs; the source writes 0.05 kg for its coxa of 0.04 kg, but "
+    "calculates with 0.04",
+    "stance.load": "equal loads, valid only with the centre of mass midway between the feet",
+    "stance.femur": "the body's weight on a cantilever, independent of the foot position; the source has the unit N",
+    "stance.tibia": "the same cantilever, extended by the femur; a knee above the foot bears far less",
+    "walk.inertia": "cube with the circle's radius as its side, about a coxa axis; the source omits a square",
+    "walk.inertia_torque": "the source includes the error above",
+    "walk.coxa": "the source includes the error above",
+    "walk.coxa_with_factor": "the source includes the error above",
 }
 NOTES_ONE_LEG_UP: Mapping[str, str] = {
-    "walk.coxa": "in the source with the slip above, and the inertia added where its torque is meant",
-    "walk.coxa_with_factor": "in the source with both slips above",
+    "walk.coxa": "the source includes the error above, and adds the moment of inertia instead of its torque",
+    "walk.coxa_with_factor": "the source includes both errors above",
 }
 
 
 def printed_numbers(
-    given: Mapping[str, float], choices: Mapping[str, float], *, legs: int, feet_down: int
+    given: Mapping[str, float], parameters: Mapping[str, float], *, legs: int, feet_down: int
 ) -> Mapping[str, str]:
-    """Return what source 004 prints for each line, where robot and choices are its own; nothing otherwise.
+    """Return the numbers printed in source 004 by key; empty for another robot or other parameters.
 
     Parameters
     ----------
     given : mapping
-        The robot's numbers by key [kg, m].
-    choices : mapping
-        Gravity, sweep, its time, acceleration and safety factor.
+        Given numbers of the robot by key [kg, m].
+    parameters : mapping
+        Gravity, sweep, sweep time, acceleration and safety factor.
     legs, feet_down : int
-        How many legs there are, and how many of them stand.
+        Number of legs, and number of feet on the ground.
     """
     same_robot = legs == 6 and all(math.isclose(given[key], float(text), rel_tol=1e-5) for key, text in _GIVEN.items())
-    same_choices = all(math.isclose(choices[key], value, rel_tol=1e-5) for key, value in _CHOICES.items())
-    if not (same_robot and same_choices and feet_down in _DOWN):
+    same_parameters = all(math.isclose(parameters[key], value, rel_tol=1e-5) for key, value in _PARAMETERS.items())
+    if not (same_robot and same_parameters and feet_down in _BY_FEET_DOWN):
         return {}
-    return {**_GIVEN, **_FREE, **_DOWN[feet_down]}
+    return {**_GIVEN, **_SWING, **_BY_FEET_DOWN[feet_down]}

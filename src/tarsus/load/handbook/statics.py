@@ -1,4 +1,4 @@
-"""The hand method beside the statics: the torques of a planned walk against the lines of the hand calculation."""
+"""Comparison of the hand calculation with the static joint torques of a planned walk."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from tarsus.gait.plan import plan_walk
 from tarsus.kinematics.leg import forward_kinematics
 from tarsus.kinematics.pose import Pose
 from tarsus.load.contact import contact_forces
-from tarsus.load.handbook.comparison import SPEEDING, STANDING, SWINGING, WALKING, Comparison, ComparisonRow
+from tarsus.load.handbook.comparison import ACCELERATING, STANDING, SWINGING, WALKING, Comparison, ComparisonRow
 from tarsus.load.handbook.method import Handbook, handbook
 from tarsus.load.torque import joint_torques
 from tarsus.robot.robot import JOINTS, Robot
 
-__all__ = ["compare_with_statics", "fewest_down"]
+__all__ = ["compare_with_statics", "minimal_contacts"]
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]
 Bools = np.ndarray[Any, np.dtype[np.bool_]]
@@ -41,36 +41,38 @@ def compare_with_statics(
 ) -> Comparison:
     """Compare the hand method with the torques of `joint_torques`, standing and over a planned straight walk.
 
-    Standing: in the stance of the walk, with only those feet down that the gait leaves down, the worst of its
-    patterns. Walking: the feet that are down, level, at an even pace. Speeding up: the same with the ground's forces
-    leaning forward or back, for an acceleration of the whole robot; the links' own motion against it is left out.
-    In the air: the swinging legs, held against gravity.
+    Standing: in the stance of the walk, on the feet of the gait's worst contact pattern. Walking: the stance legs on
+    level ground at constant speed. Accelerating: the same with tangential contact forces that accelerate or decelerate
+    the whole robot; the motion of the links relative to the body is ignored. Leg in swing: the swing legs, held against
+    gravity.
 
     Parameters
     ----------
     robot : Robot
         A single robot with masses.
     gait : Gait or str
-        The gait, or its name; with it the number of feet down.
-    distance, heading : float
-        How far it walks [m], and in which direction from its front [rad].
+        Gait or its name; it determines the number of feet on the ground.
+    distance : float
+        Walking distance [m].
+    heading : float
+        Direction of walking, from the robot's front [rad].
     stroke, body_height : float, optional
         As in `plan_walk` [m].
     gravity : float
-        Strength of gravity [m/s^2]: in both methods the source's 9.8 where left out.
+        Magnitude of gravity in both methods [m/s^2]; 9.8 in the source.
     acceleration : float
-        With what the body speeds up and brakes [m/s^2].
+        Acceleration and deceleration of the body [m/s^2].
     safety_factor : float
-        The hand method's factor.
+        Safety factor of the hand method.
 
     Raises
     ------
     MissingDataError
         If the robot's masses are unknown.
     InputError
-        If an argument is out of its range, or the gait leaves less than three feet down.
+        If an argument is out of range, or the gait has fewer than three feet on the ground.
     UnreachableError
-        If the walk can't be walked.
+        If a foot of the walk is out of reach.
     """
     gait = Gait.named(gait, legs=robot.legs) if isinstance(gait, str) else gait
     hand = handbook(
@@ -81,23 +83,36 @@ def compare_with_statics(
         safety_factor=safety_factor,
     )
     motion = plan_walk(robot, gait, straight_path(distance, heading), stroke=stroke, body_height=body_height)
-    down, push = np.array([0.0, 0.0, -gravity]), acceleration * np.array([math.cos(heading), math.sin(heading), 0.0])
-    stance = _Statics.of(robot, motion.angles[0], motion.body[0], fewest_down(gait), [down])
-    walk = _Statics.of(robot, motion.angles, motion.body, motion.contacts, [down])
-    speed = _Statics.of(robot, motion.angles, motion.body, motion.contacts, [down - push, down + push])
-    statics = {STANDING: (stance, None), WALKING: (walk, motion.time), SPEEDING: (speed, np.tile(motion.time, 2))}
+    gravity_vector, acceleration_vector = (
+        np.array([0.0, 0.0, -gravity]),
+        acceleration * np.array([math.cos(heading), math.sin(heading), 0.0]),
+    )
+    stance = _LoadCase.of(robot, motion.angles[0], motion.body[0], minimal_contacts(gait), [gravity_vector])
+    walk = _LoadCase.of(robot, motion.angles, motion.body, motion.contacts, [gravity_vector])
+    accelerated = _LoadCase.of(
+        robot,
+        motion.angles,
+        motion.body,
+        motion.contacts,
+        [gravity_vector - acceleration_vector, gravity_vector + acceleration_vector],
+    )
+    statics = {
+        STANDING: (stance, None),
+        WALKING: (walk, motion.time),
+        ACCELERATING: (accelerated, np.tile(motion.time, 2)),
+    }
     return Comparison(
         hand=hand,
         motion=motion,
         rows=tuple(_torque_rows(hand, statics)),
         reasons=tuple(_reason_rows(hand, statics)),
         acceleration=acceleration,
-        margin={case: float(each.margin.min()) for case, (each, _) in statics.items()},
+        margin={case: float(case_loads.margin.min()) for case, (case_loads, _) in statics.items()},
     )
 
 
-def fewest_down(gait: Gait) -> Bools:
-    """Return every pattern of the gait's feet on the ground that has the fewest of them ``(patterns, legs)``.
+def minimal_contacts(gait: Gait) -> Bools:
+    """Return the contact patterns of a gait with the fewest feet on the ground, ``(patterns, legs)``.
 
     Parameters
     ----------
@@ -111,18 +126,18 @@ def fewest_down(gait: Gait) -> Bools:
 
 
 @dataclass(frozen=True, kw_only=True)
-class _Statics:
-    """What the joints bear, without signs, and what that comes from; under each gravity in turn."""
+class _LoadCase:
+    """Absolute torques, foot loads and lever arms, for each gravity vector in turn."""
 
-    torques: Floats  # (n, legs, 3)
+    torques: Floats  # (n, legs, 3) [N m]
     contacts: Bools  # (n, legs)
-    load: Floats  # (n, legs), along gravity
-    femur_arm: Floats  # (n, legs), from the femur axis to the foot, seen from above
-    knee_arm: Floats
-    margin: Floats  # (n,)
+    load: Floats  # (n, legs), along gravity [N]
+    femur_arm: Floats  # (n, legs), horizontal, from the femur axis to the foot [m]
+    knee_arm: Floats  # (n, legs), horizontal, from the knee to the foot [m]
+    margin: Floats  # (n,), of the load in the support polygon [m]
 
     @classmethod
-    def of(cls, robot: Robot, angles: Array, body: Pose, contacts: Bools, gravities: list[Floats]) -> _Statics:
+    def of(cls, robot: Robot, angles: Array, body: Pose, contacts: Bools, gravities: list[Floats]) -> _LoadCase:
         points = forward_kinematics(robot, angles)
         flat = points[..., :2] - points[..., 3:, :2]
         arms = np.broadcast_to(np.hypot(flat[..., 0], flat[..., 1]), (*contacts.shape, 4))
@@ -144,11 +159,11 @@ class _Statics:
         )
 
 
-def _torque_rows(hand: Handbook, statics: Mapping[str, tuple[_Statics, Floats | None]]) -> Iterator[ComparisonRow]:
-    for case, (each, time) in statics.items():
+def _torque_rows(hand: Handbook, statics: Mapping[str, tuple[_LoadCase, Floats | None]]) -> Iterator[ComparisonRow]:
+    for case, (case_loads, time) in statics.items():
         for i, joint in enumerate(JOINTS):
             if (case, joint) != (STANDING, "coxa"):
-                peak = (each.torques[..., i], each.contacts, time)
+                peak = (case_loads.torques[..., i], case_loads.contacts, time)
                 yield _row(hand, case, joint, "N m", hand.torque(joint), peak, factor=hand.safety_factor)
     walk, time = statics[WALKING]
     for joint in ("femur", "tibia"):
@@ -156,16 +171,16 @@ def _torque_rows(hand: Handbook, statics: Mapping[str, tuple[_Statics, Floats | 
         yield _row(hand, SWINGING, joint, "N m", hand.value(f"swing.{joint}"), peak, factor=hand.safety_factor)
 
 
-def _reason_rows(hand: Handbook, statics: Mapping[str, tuple[_Statics, Floats | None]]) -> Iterator[ComparisonRow]:
+def _reason_rows(hand: Handbook, statics: Mapping[str, tuple[_LoadCase, Floats | None]]) -> Iterator[ComparisonRow]:
     arm = hand.value("given.L_coxa") + hand.value("given.R_b")
     for case in (STANDING, WALKING):
-        each, time = statics[case]
-        for quantity, unit, value, found in (
-            ("load of a foot", "N", hand.value("stance.load"), each.load),
-            ("arm about the femur axis", "m", arm, each.femur_arm),
-            ("arm about the knee", "m", arm + hand.value("given.L_femur_out"), each.knee_arm),
+        case_loads, time = statics[case]
+        for quantity, unit, value, values in (
+            ("foot load", "N", hand.value("stance.load"), case_loads.load),
+            ("lever arm about the femur axis", "m", arm, case_loads.femur_arm),
+            ("lever arm about the knee", "m", arm + hand.value("given.L_femur_out"), case_loads.knee_arm),
         ):
-            yield _row(hand, case, quantity, unit, value, (found, each.contacts, time), factor=1.0)
+            yield _row(hand, case, quantity, unit, value, (values, case_loads.contacts, time), factor=1.0)
 
 
 def _row(
@@ -178,17 +193,17 @@ def _row(
     *,
     factor: float,
 ) -> ComparisonRow:
-    """Return the row with the greatest of what is found, among the legs that count."""
-    found, counts, time = peak
-    found = np.where(counts, found, -1.0)
-    # Of equal ones the first, whatever the rounding.
-    sample, leg = np.unravel_index(int(np.argmax(found >= found.max() * (1 - 1e-6))), found.shape)
+    """Return the row of the largest value among the selected legs."""
+    values, selected, time = peak
+    values = np.where(selected, values, -1.0)
+    # The first of equal values, regardless of rounding.
+    sample, leg = np.unravel_index(int(np.argmax(values >= values.max() * (1 - 1e-6))), values.shape)
     return ComparisonRow(
         case=case,
         quantity=quantity,
         unit=unit,
         hand=value,
-        statics=float(found[sample, leg]),
+        statics=float(values[sample, leg]),
         factor=factor,
         leg=hand.robot.leg_codes[int(leg)],
         time=None if time is None else float(time[sample]),
