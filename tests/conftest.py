@@ -1,9 +1,17 @@
-"""What all tests share: JAX in double precision, hypothesis without a clock and the same at every run."""
+"""What all tests share: shapes enforced, JAX in double precision, hypothesis without a clock, the same at every run."""
 
 from __future__ import annotations
 
+import os
+
 import jax
 from hypothesis import HealthCheck, settings
+
+from shape_enforcement import install
+
+# TARSUS_SHAPES=none leaves the annotations alone, for comparing times.
+if os.environ.get("TARSUS_SHAPES") != "none":
+    install(("tarsus",))
 
 jax.config.update("jax_enable_x64", True)
 
