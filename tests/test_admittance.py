@@ -92,7 +92,7 @@ def test_passive(a, seed):
     rng = np.random.default_rng(seed)
     feet = AdmittanceFilter(a, 3)
     for i, dt in enumerate(10.0 ** rng.uniform(-4, 0, 60)):
-        forces = rng.uniform(-1, 1, 3) * a.strongest if i < 30 else np.zeros(3)
+        forces = rng.uniform(-1, 1, 3) * a.max_force if i < 30 else np.zeros(3)
         stored, offsets = energy(a, feet), np.array(feet.offsets)
         feet.step(forces.tolist(), dt)
         given_ = forces * (np.array(feet.offsets) - offsets)
@@ -136,8 +136,8 @@ def test_speed_is_continuous(seed):
     for _ in range(100):
         before, dt = feet.speeds[0], rng.uniform(0.001, 0.05)
         feet.step([rng.choice([-1e9, 0.0, 1e9, None])], dt)
-        fastest = a.strongest / a.damping
-        most = (a.strongest + a.stiffness * a.travel + a.damping * fastest) / a.mass
+        fastest = a.max_force / a.damping
+        most = (a.max_force + a.stiffness * a.travel + a.damping * fastest) / a.mass
         assert abs(feet.speeds[0] - before) <= most * dt
 
 

@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from gait_robots import PRESETS, ring
-from sample_stands import feet_at, pose_of, posture_of, setup_of
+from sample_stances import feet_at, pose_of, posture_of, setup_of
 from tarsus.control.incremental import complete
 from tarsus.control.limitation import Limitation, LimitationKind
 from tarsus.control.transition.parameters import WalkParameters
@@ -70,7 +70,7 @@ def test_every_preset_stands_and_walks_in_every_gait_as_it_is(name):
         stance = default_stance(setup.robot, setup.body_height, swing_height=setup.swing_height)
         np.testing.assert_allclose(found.rest, stance[:, 0] + 1j * stance[:, 1])
         assert found.there is found.way is found.stepping
-        assert found.there.possible
+        assert found.there.feasible
         assert min(found.there.stroke, found.there.turning) > 0
 
 
@@ -86,7 +86,7 @@ def test_small_changes_work_whole_and_on_all_the_way(name):
     for part in np.linspace(0, 1, 5):
         assert reached(setup, first.posture + part * (found.posture - first.posture), found.rest)
     for limits in (found.there, found.way, found.stepping):
-        assert limits.possible
+        assert limits.feasible
     assert (found.way.bounds <= np.minimum(found.there.bounds, found.stepping.bounds)).all()
 
 
@@ -220,9 +220,9 @@ def test_from_a_posture_out_of_reach_nothing_works():
 
 def test_a_body_that_sways_has_less_room():
     still, swaying = start("strider"), from_start("strider", sway=(0.0, 0.02, 0.0, 0.05, 0.0, 0.0))
-    assert swaying.there.possible
+    assert swaying.there.feasible
     assert (swaying.there.bounds <= still.there.bounds + 1e-9).mean() > 0.8
-    assert swaying.there.room.sum() < still.there.room.sum()
+    assert swaying.there.margins.sum() < still.there.margins.sum()
 
 
 def test_a_correction_for_the_ground_is_added_to_the_body():

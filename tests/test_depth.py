@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from sample_moments import EARTH, FACING, moment_of, rest_of, setup_of
+from sample_gait_states import EARTH, FACING, moment_of, rest_of, setup_of
 from tarsus.control.filters import CriticallyDamped
 from tarsus.control.terrain.ground_search import SEARCH_DEPTH, lowest_planned_height, lowest_reachable_height
 from tarsus.control.workspace.stance_geometry import LEVEL_TERRAIN, TerrainEstimate

@@ -6,8 +6,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
-from sample_moments import EARTH, FACING, moment_of
-from sample_stands import envelope_of, setup_of
+from sample_gait_states import EARTH, FACING, moment_of
+from sample_stances import envelope_of, setup_of
 from tarsus.control.filters import CriticallyDamped
 from tarsus.control.walk.reference_governor import governed_twist, polygon_excess
 from tarsus.control.walk.state import integrate_twist

@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 from scipy.linalg import expm
 
 from gait_robots import PRESETS
-from sample_moments import EARTH, FACING, begun, moment_of, rest_of, step_inputs_of
-from sample_stands import setup_of
+from sample_gait_states import EARTH, FACING, begun, moment_of, rest_of, step_inputs_of
+from sample_stances import setup_of
 from tarsus.control.filters import CriticallyDamped
 from tarsus.control.sensing.ground_plane import GroundPlane
 from tarsus.control.terrain.early_contact import stop_on_contact

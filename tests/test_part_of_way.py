@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from gait_robots import PRESETS
-from sample_stands import feet_at, pose_of, posture_of, setup_of
+from sample_stances import feet_at, pose_of, posture_of, setup_of
 from tarsus.control.incremental import complete
 from tarsus.control.transition.feasible_fraction import (
     StanceTarget,

@@ -20,7 +20,7 @@ from tarsus.control.pose.pose_controller import PoseController
 from tarsus.control.readings import SensorReadings
 from tarsus.control.terrain.adaptation import TerrainAdaptation
 from tarsus.control.terrain.early_contact import relaxed_rate, stop_on_contact
-from tarsus.control.terrain.hole_recovery import SlopeLimit
+from tarsus.control.terrain.slope_limit import SlopeLimit
 from tarsus.control.transition.foothold_transfer import FootholdTransfer
 from tarsus.control.transition.parameters import WalkParameters
 from tarsus.control.transition.planner import StanceTransition, plan_transition
@@ -183,7 +183,7 @@ class WalkController(WalkControllerState):
         self._set_gait(change.parameters.gait)
         self._all, self._none = np.ones(legs, dtype=bool), np.zeros(legs, dtype=bool)
         self._blind = {"admittance_offset": np.zeros(legs)}
-        self._now = GaitState.standing(change.rest, self._pose.goal)
+        self._now = GaitState.standing(change.rest, self._pose.target)
         self._time_scaling = TimeScaling(self._solver.angles(self._now), self.joint_speed, self.joint_acceleration)
 
     def _set_gait(self, gait: Gait) -> None:
@@ -222,7 +222,7 @@ class WalkController(WalkControllerState):
         self._change(dt)
         if self._terrain.searches:
             self._draw_back(command)
-        self._foot_targets.tell(command, dt, self._reachable)
+        self._foot_targets.set_targets(command, dt, self._reachable)
         self._aim(command.twist)
         self._advance(dt)
         self.time += dt
@@ -265,7 +265,7 @@ class WalkController(WalkControllerState):
             angles=self.angles,
             commanded=CommandedAttitude(body[3], body[4], now.yaw + body[5], height),
         )
-        met = self._terrain.met(now)
+        met = self._terrain.early_contacts(now)
         if met.any():
             swing_rate = self._frequency / now.swings(self.gait.duty_factor)
             self._now = stop_on_contact(
@@ -274,11 +274,11 @@ class WalkController(WalkControllerState):
 
     def _draw_back(self, command: Command) -> None:
         """Let feet that hang over a hole swing once more as soon as something else is asked for."""
-        standing = self._time_scaling.rate == 0 or self._terrain.retreats
-        if not (standing and self._terrain.searches.all_in_vain):
+        standing = self._time_scaling.rate == 0 or self._terrain.recovering
+        if not (standing and self._terrain.searches.all_failed):
             return
         wanted = dataclasses.replace(self._scheduler.wanted, correction=_NO_MOTION, terrain=LEVEL_TERRAIN)
-        again = self._terrain.draw_back(self._now, (tuple(command.twist), wanted), self.gait)
+        again = self._terrain.recover(self._now, (tuple(command.twist), wanted), self.gait)
         if again is not None:
             # It stands still, whatever it was about to do.
             self._target, self._now = np.zeros(3), again._replace(twist=CriticallyDamped.still(np.zeros(3)))
@@ -337,15 +337,15 @@ class WalkController(WalkControllerState):
         # It steps faster only once the change is over.
         frequency = min(self._frequency, 1 / change.cycle_timing.cycle_time)
         leaving = list(set(change.parameters.excluded) - set(self._scheduler.doing.parameters.excluded))
-        share, _ = change.stepping.largest_share(
+        share, _ = change.stepping.feasible_fraction(
             self._now.twist.value,
             stance_time=new.duty_factor / frequency,
             duty_factor=new.duty_factor,
-            hold=self._terrain.hold,
+            hold=self._terrain.hold_time,
         )
         if new.duty_factor == old.duty_factor and new.offsets == old.offsets:
             begins, ends = self._stances(frequency)
-            bounds = self._foot_targets.without(self._footholds.begun(change))
+            bounds = self._foot_targets.without_bounds(self._footholds.begun(change))
             if leaving:
                 bounds = np.minimum(bounds, change.there.bounds)
             if (
@@ -363,8 +363,8 @@ class WalkController(WalkControllerState):
         """Let all feet come down, if they may wait so long; then the new order begins with the leg that suits best."""
         frequency = 1 / change.cycle_timing.cycle_time
         delays = lift_delays(change.parameters.gait, change.cycle_timing.cycle_time)
-        ends = time_to_touchdown(self._now, self.gait, self._frequency).max() + delays + self._terrain.hold
-        bounds = np.minimum(self._foot_targets.without(self._footholds.begun(change)), change.there.bounds)
+        ends = time_to_touchdown(self._now, self.gait, self._frequency).max() + delays + self._terrain.hold_time
+        bounds = np.minimum(self._foot_targets.without_bounds(self._footholds.begun(change)), change.there.bounds)
         bandwidth = _bandwidth(change.parameters.gait, frequency)
         over = self._excess(np.zeros(delays.shape), ends, bounds, bandwidth).max(axis=(1, 2, 3, 4))
         first = int(over.argmin())
@@ -379,10 +379,10 @@ class WalkController(WalkControllerState):
         stepped[excluded] = True
         begins, ends = self._stances(self._frequency)
         slow = self._frequency <= 1 / change.cycle_timing.cycle_time
-        bounds = self._foot_targets.without(change.way.bounds)
+        bounds = self._foot_targets.without_bounds(change.way.bounds)
         if slow and stepped.all() and self._works(begins, ends, bounds, self._bandwidth()):
             self._footholds.tighten(change.way)
-            self._pose.go_to(change.posture)
+            self._pose.set_posture(change.posture)
             self._stepping = None
 
     def _adopt(self, change: StanceTransition) -> None:
@@ -393,7 +393,7 @@ class WalkController(WalkControllerState):
         excluded = change.parameters.excluded
         if excluded:
             self._footholds.tighten(change.there)
-        self._foot_targets.take(excluded, self._now)
+        self._foot_targets.set_legs(excluded, self._now)
 
     def _switch(self, change: StanceTransition, first: int) -> None:
         """Begin the new order of steps; every foot is down."""
@@ -427,11 +427,11 @@ class WalkController(WalkControllerState):
     def _stances(self, frequency: float) -> tuple[Floats, Floats]:
         """Return from when until when each foot is where it stands, or where it is about to [s]."""
         if self._settling is None:
-            return stance_intervals(self._now, self.gait, frequency, self._terrain.hold)
+            return stance_intervals(self._now, self.gait, frequency, self._terrain.hold_time)
         change, first = self._settling
         begins = time_to_touchdown(self._now, self.gait, self._frequency)
         delays = lift_delays(change.parameters.gait, change.cycle_timing.cycle_time)[first]
-        return begins, begins.max() + delays + self._terrain.hold
+        return begins, begins.max() + delays + self._terrain.hold_time
 
     def _excess(self, begins: Floats, ends: Floats, bounds: Floats, bandwidth: float) -> Floats:
         return polygon_excess(
@@ -439,7 +439,7 @@ class WalkController(WalkControllerState):
         )
 
     def _bounds(self) -> Floats:
-        return self._foot_targets.without(self._footholds.bounds)
+        return self._foot_targets.without_bounds(self._footholds.bounds)
 
     def _works(self, begins: Floats, ends: Floats, bounds: Floats, bandwidth: float) -> bool:
         return bool(self._excess(begins, ends, bounds, bandwidth).max() <= POSITION_TOLERANCE)
@@ -448,7 +448,7 @@ class WalkController(WalkControllerState):
         """Set the target of the twist: as much of the command as the legs allow, for good and right now."""
         share, _ = self._largest_share(tuple(twist))
         self._steep = bool(self._scheduler.rejections or self._steepness) and self._too_steep(twist)
-        if self._terrain.retreats:
+        if self._terrain.recovering:
             return
         part = 0.0 if self._steep else min(share, self._patience)
         command = [part * speed for speed in twist]
@@ -475,7 +475,7 @@ class WalkController(WalkControllerState):
         """Return whether a twist leads on to ground that the robot was refused to stand on."""
         scheduler, known = self._scheduler, self._scheduler.doing.terrain
         if any(parameters.terrain != known for parameters in scheduler.rejections):
-            self._steepness.rejected(known, self._now.twist.value.tolist())
+            self._steepness.record(known, self._now.twist.value.tolist())
         return self._steepness.forbids(twist, known)
 
     def _steady(self, twist: Sequence[float]) -> bool:
@@ -487,7 +487,7 @@ class WalkController(WalkControllerState):
     def _largest_share(self, twist: tuple[float, ...]) -> tuple[float, int]:
         """Return how much of a twist works for good in all that is gone over to, and which leg stops it."""
         doing, settling = self._scheduler.doing, self._settling[0] if self._settling else None
-        hold = self._terrain.hold
+        hold = self._terrain.hold_time
         frequency = min(self._frequency, 1 / doing.cycle_timing.cycle_time)
         key = (twist, frequency, hold, self._footholds.way, self._scheduler.ready, self._stepping, settling)
         if key == self._share_of:
@@ -500,7 +500,7 @@ class WalkController(WalkControllerState):
         for change, way in asked:
             duty_factor = change.parameters.gait.duty_factor
             stance_time = duty_factor * max(1 / frequency, change.cycle_timing.cycle_time)
-            allowed, which = way.largest_share(
+            allowed, which = way.feasible_fraction(
                 np.array(twist), stance_time=stance_time, duty_factor=duty_factor, hold=hold
             )
             if allowed < share:
@@ -531,7 +531,7 @@ class WalkController(WalkControllerState):
             found.append(Limitation(kind=LimitationKind.SWAY, cause=cause, asked=1.0, granted=calm))
         if self._terrain.estimate is not None:
             found += [Limitation(kind=LimitationKind.READINGS, cause=why) for why in self._terrain.estimate.rejected]
-        for missing in self._terrain.searches.in_vain:
+        for missing in self._terrain.searches.failed_legs:
             cause = "no ground under the foot, the robot stands still"
             found.append(Limitation(kind=LimitationKind.GROUND, cause=cause, leg=names[missing]))
         return tuple(found)
@@ -555,13 +555,13 @@ class WalkController(WalkControllerState):
         estimate = self._terrain.estimate is not None
         if estimate:
             soon = now.swing_phase + dt * self._frequency / now.swings(self.gait.duty_factor) >= 1.0 - PHASE_TOLERANCE
-            lands, waits = self._terrain.lands(now, soon)
+            lands, waits = self._terrain.may_land(now, soon)
             holds = holds or waits
         return StepInputs(
             gait=self.gait,
             frequency=self._frequency if self._walking else 0.0,
             twist=self._target,
-            posture=self._pose.goal,
+            posture=self._pose.target,
             bandwidth=self._bandwidth(),
             posture_bandwidth=self._pose.bandwidth(now.posture.value),
             may_lift=steps,
@@ -570,14 +570,14 @@ class WalkController(WalkControllerState):
             placement_bounds=self._footholds.room,
             hold_feet=holds,
             beats=self._beats,
-            swaying=self._pose.sways(now.posture.value),
+            swaying=self._pose.is_swaying(now.posture.value),
             **(self._terrain.step_inputs(now, self._scheduler.doing.terrain) if estimate else self._blind),
         )
 
     def _advance(self, dt: float) -> None:
         """Go on by one tick, or less of it where the joints need longer."""
         sway = self._scheduler.doing.parameters.sway if self._walking else _NO_MOTION
-        self._pose.sway(sway, frequency=self._frequency, beats=self._beats)
+        self._pose.set_sway(sway, frequency=self._frequency, beats=self._beats)
         before, inputs, terrain = self._now, self._step_inputs(dt), self._terrain
         self._now = terrain.search(
             before,
@@ -588,10 +588,10 @@ class WalkController(WalkControllerState):
         swing_time = (1 - self.gait.duty_factor) / self._frequency
 
         def move(time: float) -> GaitState:
-            return self._foot_targets.carry(advance(self._now, inputs, time), time, swing_time=swing_time)
+            return self._foot_targets.apply(advance(self._now, inputs, time), time, swing_time=swing_time)
 
         fastest = 1.0 if terrain.estimate is None else relaxed_rate(self._now, self.gait.duty_factor)
-        self._now = self._time_scaling.advance(move, self._solver.angles, dt, stop=terrain.stops, fastest=fastest)
+        self._now = self._time_scaling.advance(move, self._solver.angles, dt, stop=terrain.stops_walk, fastest=fastest)
         self._foot_targets.step(dt * self._time_scaling.rate, self._now.down)
         self._finish(before, dt)
 
@@ -601,7 +601,7 @@ class WalkController(WalkControllerState):
         landed = now.down & ~before.down if now.down is not before.down else self._none
         if landed.any():
             self._footholds.land(landed)
-            self._terrain.land(landed)
+            self._terrain.feet_landed(landed)
         arrived = self._arrived()
         if self._settling is not None and now.down.all():
             self._switch(*self._settling)

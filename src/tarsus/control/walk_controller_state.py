@@ -135,7 +135,7 @@ class WalkControllerState:
         doing = self._scheduler.doing
         duty_factor = self.gait.duty_factor
         stance_time = duty_factor * doing.cycle_timing.cycle_time
-        share, _ = doing.there.largest_share(
-            way, stance_time=stance_time, duty_factor=duty_factor, hold=self._terrain.hold
+        share, _ = doing.there.feasible_fraction(
+            way, stance_time=stance_time, duty_factor=duty_factor, hold=self._terrain.hold_time
         )
         return share

@@ -89,7 +89,7 @@ class Admittance:
         return self.damping / self.mass / 2
 
     @cached_property
-    def strongest(self) -> float:
+    def max_force(self) -> float:
         """Greatest force error that is followed [N]: however it varies, the offset stays within `travel`.
 
         The integral of the impulse response's magnitude: ``1 / stiffness`` without swinging, with swinging
@@ -159,13 +159,13 @@ class AdmittanceFilter:
         """
         if dt != self._tick[0]:
             self._tick = dt, self.admittance.transition(dt)
-        (xx, xv, vx, vv), strongest = self._tick[1], self.admittance.strongest
+        (xx, xv, vx, vv), max_force = self._tick[1], self.admittance.max_force
         stiffness = self.admittance.stiffness
         offsets, speeds = [], []
         for x, v, force in zip(self.offsets, self.speeds, force_errors, strict=True):
             goal = 0.0
             if force is not None and not math.isnan(force):
-                goal = (strongest if force > strongest else max(force, -strongest)) / stiffness
+                goal = (max_force if force > max_force else max(force, -max_force)) / stiffness
             away = x - goal
             offsets.append(goal + xx * away + xv * v)
             speeds.append(vx * away + vv * v)

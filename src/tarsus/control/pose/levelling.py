@@ -100,7 +100,7 @@ class Levelling:
         What to do; may be changed at any time by setting the attribute of that name.
     com : (x, y, z)
         Centre of mass in B [m].
-    carried : float
+    com_shift_ratio : float
         How far the centre of mass goes with the body when it is shifted over feet that stay, as a share: less than
         1, as the legs' masses lag behind.
     gain : float
@@ -135,7 +135,7 @@ class Levelling:
         mode: LevellingMode | None = None,
         *,
         com: Sequence[float] = (0.0, 0.0, 0.0),
-        carried: float = 1.0,
+        com_shift_ratio: float = 1.0,
         gain: float = 1.0,
         max_tilt: float = math.radians(20.0),
         max_shift: float = 0.04,
@@ -144,7 +144,7 @@ class Levelling:
         frequency: float = 8.0,
     ) -> None:
         for name, bound in (
-            ("carried", carried),
+            ("com_shift_ratio", com_shift_ratio),
             ("gain", gain),
             ("max_tilt", max_tilt),
             ("max_shift", max_shift),
@@ -158,7 +158,7 @@ class Levelling:
             raise InputError(f"com is {com}; it must be three finite numbers")
         self.mode = mode
         self._com = (float(com[0]), float(com[1]), float(com[2]))
-        self._carried, self._gain = carried, gain
+        self._com_shift_ratio, self._gain = com_shift_ratio, gain
         self._tilt = RateLimitedFilter(max_tilt, rate=tilt_rate, frequency=frequency)
         self._shift = RateLimitedFilter(max_shift, rate=shift_rate, frequency=frequency)
         self.correction = Correction()
@@ -234,6 +234,6 @@ class Levelling:
         tilted = rotated(self._com, commanded.roll + self.correction.roll, commanded.pitch + self.correction.pitch)
         height = commanded.height + tilted[2] - slope[0] * wished[0] - slope[1] * wished[1]
         return (
-            (height * up[0] / up[2] + wished[0] - tilted[0]) / self._carried,
-            (height * up[1] / up[2] + wished[1] - tilted[1]) / self._carried,
+            (height * up[0] / up[2] + wished[0] - tilted[0]) / self._com_shift_ratio,
+            (height * up[1] / up[2] + wished[1] - tilted[1]) / self._com_shift_ratio,
         )

@@ -35,15 +35,15 @@ class PoseController:
     ----------
     posture : array, shape (7,)
         The posture to go to.
-    goal : array, shape (13,)
+    target : array, shape (13,)
         The same with the sway's amplitudes; the same array for as long as it stays the same.
     """
 
     def __init__(self, posture: Floats) -> None:
         self.posture = posture
-        self.goal = np.append(posture, np.zeros(SWING_HEIGHT))
+        self.target = np.append(posture, np.zeros(SWING_HEIGHT))
 
-    def go_to(self, posture: Floats) -> None:
+    def set_posture(self, posture: Floats) -> None:
         """Go to another posture.
 
         Parameters
@@ -52,9 +52,9 @@ class PoseController:
             The posture.
         """
         self.posture = posture
-        self.goal = np.append(posture, self.goal[SWING_HEIGHT + 1 :])
+        self.target = np.append(posture, self.target[SWING_HEIGHT + 1 :])
 
-    def sway(self, wished: tuple[float, ...], *, frequency: float, beats: int) -> None:
+    def set_sway(self, wished: tuple[float, ...], *, frequency: float, beats: int) -> None:
         """Sway as much as is wished for and slow enough.
 
         Parameters
@@ -66,15 +66,15 @@ class PoseController:
         beats : int
             How often in a cycle feet are lifted.
         """
-        if not any(wished) and not any(self.goal[SWING_HEIGHT + 1 :].tolist()):
+        if not any(wished) and not any(self.target[SWING_HEIGHT + 1 :].tolist()):
             return
         amplitude = np.array(wished)
         if amplitude.any():
             amplitude *= sway_fraction(amplitude, frequency, beats)
-        if (self.goal[SWING_HEIGHT + 1 :] != amplitude).any():
-            self.goal = np.append(self.posture, amplitude)
+        if (self.target[SWING_HEIGHT + 1 :] != amplitude).any():
+            self.target = np.append(self.posture, amplitude)
 
-    def sways(self, value: Floats) -> bool:
+    def is_swaying(self, value: Floats) -> bool:
         """Return whether a posture sways, or is to.
 
         Parameters
@@ -82,8 +82,8 @@ class PoseController:
         value : array, shape (13,)
             The posture now.
         """
-        swaying = any(self.goal[SWING_HEIGHT + 1 :].tolist())
-        return swaying or (value is not self.goal and any(value[SWING_HEIGHT + 1 :].tolist()))
+        swaying = any(self.target[SWING_HEIGHT + 1 :].tolist())
+        return swaying or (value is not self.target and any(value[SWING_HEIGHT + 1 :].tolist()))
 
     def reached(self, value: Floats) -> bool:
         """Return whether a posture is the one to go to, and sways as it is to.
@@ -93,9 +93,9 @@ class PoseController:
         value : array, shape (13,)
             The posture now.
         """
-        if value is self.goal:
+        if value is self.target:
             return True
-        off: list[float] = np.abs(value - self.goal).tolist()
+        off: list[float] = np.abs(value - self.target).tolist()
         return max(off[: SWING_HEIGHT + 1]) < _REACHED and max(off[SWING_HEIGHT + 1 :]) < _SWAYS
 
     def bandwidth(self, value: Floats) -> float:
@@ -114,7 +114,7 @@ class PoseController:
 
     def _left(self, value: Floats) -> list[float]:
         """Return how far there is to go, each of the posture's numbers."""
-        if value is self.goal:
+        if value is self.target:
             return _NOWHERE
         posture, now = self.posture.tolist(), value[: SWING_HEIGHT + 1].tolist()
         return [abs(a - b) for a, b in zip(posture, now, strict=True)]

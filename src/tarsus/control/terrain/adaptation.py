@@ -19,7 +19,7 @@ from tarsus.control.terrain.ground_search import (
     lowest_planned_height,
     lowest_reachable_height,
 )
-from tarsus.control.terrain.hole_recovery import Asked, HoleRecovery, repeated_swing
+from tarsus.control.terrain.hole_recovery import HoleRecovery, Request, repeated_swing
 from tarsus.control.walk.state import ZERO_ELEVATION, GaitState
 from tarsus.control.walk.time_scaling import STOP_DURATION
 from tarsus.control.workspace.stance_geometry import LEVEL_TERRAIN, RAISED_FRACTION, SWING_HEIGHT, TerrainEstimate
@@ -58,7 +58,7 @@ class TerrainAdaptation:
         Whether readings have been given, or levelling or admittance need an estimate without them.
     estimate : GroundEstimate or None
         The last estimate; None without feedback.
-    hold : float
+    hold_time : float
         How long feet may have to wait for others that look for ground [s].
     searches : GroundSearch
         The feet that do.
@@ -75,12 +75,12 @@ class TerrainAdaptation:
         admittance: Admittance | None,
     ) -> None:
         self.estimate: GroundEstimate | None = None
-        self.hold = 0.0
+        self.hold_time = 0.0
         self.searches = GroundSearch(acceleration)
         self.has_feedback = levelling is not None or admittance is not None
         self._robot, self._gives_way = robot, admittance is not None
         self._estimator = GroundEstimator(robot, angles, feet, levelling=levelling, admittance=admittance)
-        self._retreat = HoleRecovery()
+        self._recovery = HoleRecovery()
         self._touching: list[bool | None] = [None] * robot.legs
         self._since = [0.0] * robot.legs
         self._elevation = ZERO_ELEVATION
@@ -90,17 +90,17 @@ class TerrainAdaptation:
         """How the ground lies, as far as it is felt."""
         if self.estimate is None:
             return LEVEL_TERRAIN
-        return TerrainEstimate(self.estimate.slope, SEARCH_DEPTH if self.hold or self._gives_way else 0.0)
+        return TerrainEstimate(self.estimate.slope, SEARCH_DEPTH if self.hold_time or self._gives_way else 0.0)
 
     @property
-    def stops(self) -> bool:
+    def stops_walk(self) -> bool:
         """Whether the robot is to stand still, as feet look for ground."""
-        return bool(self.searches) and not self.retreats
+        return bool(self.searches) and not self.recovering
 
     @property
-    def retreats(self) -> bool:
+    def recovering(self) -> bool:
         """Whether a foot over a hole is to be drawn back once all others are down."""
-        return self._retreat.under_way
+        return self._recovery.active
 
     def sense(
         self,
@@ -132,7 +132,7 @@ class TerrainAdaptation:
         """
         self.has_feedback = True
         lean = now.posture.value[3:5] - (commanded.roll, commanded.pitch)
-        self._estimator.leaning(float(lean[0]), float(lean[1]))
+        self._estimator.set_applied_correction(float(lean[0]), float(lean[1]))
         self.estimate = self._estimator.step(
             readings,
             dt,
@@ -150,7 +150,7 @@ class TerrainAdaptation:
         self._remember(self.estimate.contacts, dt)
         if self.estimate.contacts is not None:
             # A foot that finds no ground is noticed a tick later, and the walk takes a while to stop.
-            self.hold = max(self.hold, STOP_DURATION + dt)
+            self.hold_time = max(self.hold_time, STOP_DURATION + dt)
 
     def _remember(self, contacts: tuple[bool | None, ...] | None, dt: float) -> None:
         """Note which feet touch; where that is not known, they do as they did, for a while."""
@@ -159,7 +159,7 @@ class TerrainAdaptation:
             if contact is not None or self._since[leg] > _LASTS:
                 self._touching[leg] = contact
 
-    def met(self, now: GaitState) -> Floats:
+    def early_contacts(self, now: GaitState) -> Floats:
         """Return which feet have come to ground that they were not expected to meet yet ``(legs,)``.
 
         Parameters
@@ -180,7 +180,7 @@ class TerrainAdaptation:
         """Return whether a foot at the end of its swing is on the ground, as far as is known."""
         return self._touching[leg] is not False
 
-    def lands(self, now: GaitState, soon: Floats) -> tuple[Floats, bool]:
+    def may_land(self, now: GaitState, soon: Floats) -> tuple[Floats, bool]:
         """Return which feet may be put down at the end of their swing, and whether none may be lifted meanwhile.
 
         Parameters
@@ -235,12 +235,12 @@ class TerrainAdaptation:
         """
 
         def lowest(leg: int) -> float:
-            reached = lowest_reachable_height(self._robot, now, leg, stance_time + self.hold)
+            reached = lowest_reachable_height(self._robot, now, leg, stance_time + self.hold_time)
             return min(float(lowest_planned_height(now, terrain)[leg]), reached) if terrain.depth else reached
 
         return self.searches.step(now, dt, touches=self._touches, lowest=lowest) if self.estimate else now
 
-    def land(self, landed: Floats) -> None:
+    def feet_landed(self, landed: Floats) -> None:
         """Note which feet have been put down in this tick.
 
         Parameters
@@ -250,9 +250,9 @@ class TerrainAdaptation:
         """
         self.searches.land(landed)
         if not self.searches:
-            self._retreat.landed(landed)
+            self._recovery.landed(landed)
 
-    def draw_back(self, now: GaitState, asked: Asked, gait: Gait) -> GaitState | None:
+    def recover(self, now: GaitState, asked: Request, gait: Gait) -> GaitState | None:
         """Let feet that hang over a hole swing once more as soon as something else is asked for.
 
         Parameters
@@ -269,9 +269,9 @@ class TerrainAdaptation:
         Moment or None
             The moment after that; None where nothing comes of it.
         """
-        legs, begins = self.searches.in_vain, self._retreat.consider(asked, now.origin)
-        if self._retreat.under_way and np.delete(now.down, legs).all():
+        legs, begins = self.searches.failed_legs, self._recovery.consider(asked, now.origin)
+        if self._recovery.active and np.delete(now.down, legs).all():
             self.searches.give_up()
-            self._retreat.begun(legs)
+            self._recovery.begun(legs)
             return repeated_swing(now, legs, gait, self._estimator.plane)
         return now if begins else None

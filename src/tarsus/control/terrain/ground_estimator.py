@@ -84,7 +84,7 @@ class GroundEstimator:
         self._validator = ReadingsValidator(robot)
         self.plane: GroundPlane = FLAT
         com = centre_of_mass(robot, angles)
-        self.levelling = Levelling(levelling, com=tuple(com.tolist()), carried=com_shift_ratio(robot, feet))
+        self.levelling = Levelling(levelling, com=tuple(com.tolist()), com_shift_ratio=com_shift_ratio(robot, feet))
         self._filter = AdmittanceFilter(admittance, robot.legs) if admittance else None
         self._torques = FootForceEstimator(robot) if admittance and robot.has_masses else None
         self._weight = float(total_mass(robot)) * STANDARD_GRAVITY if robot.has_masses else 0.0
@@ -137,7 +137,7 @@ class GroundEstimator:
             rejected=valid.rejected,
         )
 
-    def leaning(self, roll: float, pitch: float) -> None:
+    def set_applied_correction(self, roll: float, pitch: float) -> None:
         """Take note of how much of the correction has been carried out.
 
         Parameters

@@ -137,7 +137,7 @@ class FootSearch(NamedTuple):
         return self.found is not None and abs(float(self.height.rate[0])) < _RESTING
 
     @property
-    def in_vain(self) -> bool:
+    def failed(self) -> bool:
         """Whether the foot is as low as it goes, without ground."""
         return self.found is None and float(self.height.value[0]) - self.lowest < 1e-3
 
@@ -160,14 +160,14 @@ class GroundSearch:
         return bool(self._feet)
 
     @property
-    def in_vain(self) -> list[int]:
+    def failed_legs(self) -> list[int]:
         """The legs under which there is no ground."""
-        return [leg for leg, search in self._feet.items() if search.in_vain]
+        return [leg for leg, search in self._feet.items() if search.failed]
 
     @property
-    def all_in_vain(self) -> bool:
+    def all_failed(self) -> bool:
         """Whether there is no ground under any foot that looks for it."""
-        return bool(self._feet) and all(search.in_vain for search in self._feet.values())
+        return bool(self._feet) and all(search.failed for search in self._feet.values())
 
     def give_up(self) -> None:
         """Look for ground no more."""

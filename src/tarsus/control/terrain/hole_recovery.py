@@ -11,10 +11,9 @@ import numpy as np
 from tarsus.control.sensing.ground_plane import GroundPlane
 from tarsus.control.walk.state import GaitState
 from tarsus.control.walk.stepper import LATEST_LIFT_OFF
-from tarsus.control.workspace.stance_geometry import LEVEL_TERRAIN, TerrainEstimate
 from tarsus.gait.gait import Gait
 
-__all__ = ["Asked", "HoleRecovery", "SlopeLimit", "repeated_swing"]
+__all__ = ["HoleRecovery", "Request", "repeated_swing"]
 
 Floats = np.ndarray[Any, Any]
 
@@ -22,51 +21,9 @@ Floats = np.ndarray[Any, Any]
 _ELSEWHERE = 1e-5
 # Twists are the same that differ by less, over their size; and by how much they may anyway [m/s, rad/s].
 _ALIKE, _NOTHING = 0.2, 1e-3
-# What turning counts beside going, for feet that are some 0.2 m from the middle.
-_LIKE_STEPS = (1.0, 1.0, 0.04)
 
 
-class SlopeLimit:
-    """Whether the ground has got too steep to go on: it is no more walked the way that led there."""
-
-    def __init__(self) -> None:
-        self._led_here: Sequence[float] | None = None
-        self._known = LEVEL_TERRAIN
-
-    def __bool__(self) -> bool:
-        return self._led_here is not None
-
-    def rejected(self, known: TerrainEstimate, twist: Sequence[float]) -> None:
-        """Note that the robot can't stand on the ground as it is felt to lie by now.
-
-        Parameters
-        ----------
-        known : Terrain
-            How it was taken to lie when the robot last could.
-        twist : (vx, vy, wz)
-            How the robot moves [m/s, m/s, rad/s].
-        """
-        if self._led_here is None and any(abs(speed) > _NOTHING for speed in twist):
-            self._led_here, self._known = twist, known
-
-    def forbids(self, twist: Sequence[float], known: TerrainEstimate) -> bool:
-        """Return whether a twist leads on to where the robot can't stand.
-
-        Parameters
-        ----------
-        twist : (vx, vy, wz)
-            The twist [m/s, m/s, rad/s].
-        known : Terrain
-            How the ground is taken to lie: once that is something else, it can stand there.
-        """
-        if known != self._known:
-            self._led_here = None
-        if self._led_here is None:
-            return False
-        return sum(a * b * c for a, b, c in zip(twist, self._led_here, _LIKE_STEPS, strict=True)) > 0
-
-
-Asked: TypeAlias = tuple[Sequence[float], Any]
+Request: TypeAlias = tuple[Sequence[float], Any]
 """A twist [m/s, m/s, rad/s], and all else that is asked for."""
 
 
@@ -75,17 +32,17 @@ class HoleRecovery:
 
     Attributes
     ----------
-    under_way : bool
+    active : bool
         Whether they are to be drawn back as soon as all others are down.
     """
 
     def __init__(self) -> None:
-        self.under_way = False
-        self._led_here: Asked | None = None
-        self._tried: tuple[Asked, complex] | None = None
+        self.active = False
+        self._led_here: Request | None = None
+        self._tried: tuple[Request, complex] | None = None
         self._legs: set[int] = set()
 
-    def consider(self, asked: Asked, place: complex) -> bool:
+    def consider(self, asked: Request, place: complex) -> bool:
         """Return whether feet that have just been found to hang over a hole are to be drawn back.
 
         Parameters
@@ -98,11 +55,11 @@ class HoleRecovery:
         """
         if self._led_here is None:
             self._led_here = asked
-        if self.under_way or _alike(asked, self._led_here):
+        if self.active or _alike(asked, self._led_here):
             return False
         if self._tried is not None and _alike(asked, self._tried[0]) and abs(place - self._tried[1]) < _ELSEWHERE:
             return False
-        self.under_way, self._tried = True, (asked, place)
+        self.active, self._tried = True, (asked, place)
         return True
 
     def begun(self, legs: Sequence[int]) -> None:
@@ -113,7 +70,7 @@ class HoleRecovery:
         legs : sequence of int
             Their legs.
         """
-        self.under_way, self._legs = False, set(legs)
+        self.active, self._legs = False, set(legs)
 
     def landed(self, landed: Floats) -> None:
         """Note which feet have been put down in this tick; once it is those over the hole, that is over.
@@ -125,10 +82,10 @@ class HoleRecovery:
         """
         self._legs -= set(np.flatnonzero(landed).tolist())
         if not self._legs:
-            self.under_way, self._led_here, self._tried = False, None, None
+            self.active, self._led_here, self._tried = False, None, None
 
 
-def _alike(asked: Asked, other: Asked) -> bool:
+def _alike(asked: Request, other: Request) -> bool:
     """Return whether the same is asked for, but for a hand that trembles."""
     bound = max(_ALIKE * math.hypot(*other[0]), _NOTHING)
     return asked[1] == other[1] and math.dist(asked[0], other[0]) < bound

@@ -15,8 +15,8 @@ from tarsus.control.workspace.stance_geometry import (
     SWING_HEIGHT,
     StanceGeometry,
     TerrainEstimate,
+    ground_rise,
     joint_margin,
-    rise,
     rotation_rows,
     stance_geometry_of,
 )
@@ -182,7 +182,7 @@ def reach_margin(robot: Robot, posed: list[StanceTarget]) -> Floats:
     rows, rest = np.array([p.posture for p in posed]), np.array([p.rest for p in posed])
     rotation = np.array([rotation_rows(*row) for row in rows[:, 3:SWING_HEIGHT].tolist()])
     (slope, depth), position, swing_height = posed[0].terrain, rows[:, :3].T[..., None], rows[:, SWING_HEIGHT:]
-    above = position[2] - rise(slope, position[0], position[1])
+    above = position[2] - ground_rise(slope, position[0], position[1])
     stand = StanceGeometry(rest, rotation[:, None], np.stack([position[0], position[1], above]), 0.0, slope)
     height = np.stack([-depth * swing_height, 0 * swing_height, swing_height][0 if depth else 1 :])
     return np.asarray(joint_margin(robot.geometry, stand.solve(robot, rest.real, rest.imag, height)).min(axis=0))

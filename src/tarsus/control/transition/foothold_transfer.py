@@ -82,7 +82,7 @@ class FootholdTransfer:
         down : array of bool, shape (legs,)
             Which feet are on the ground.
         """
-        self.way = self.way.meet(change.stepping)
+        self.way = self.way.intersection(change.stepping)
         moved = self._moved(change)
         self.bounds = self.begun(change)
         self.stepped = ~moved
@@ -114,7 +114,7 @@ class FootholdTransfer:
         limits : VelocityLimits
             The limits.
         """
-        self.way = self.way.meet(limits)
+        self.way = self.way.intersection(limits)
         self.bounds = self._landing = np.minimum(self.bounds, limits.bounds)
         self._make_room()
 

@@ -121,7 +121,7 @@ def plan_transition(
     if np.abs(wished.rest - here.rest).max() > _SAME:
         yield
     there = yield from _envelope_of(robot, parameters, here.towards(wished, share), sets, foot_distance)
-    if not (there.possible or there.balanced or here is wished):
+    if not (there.feasible or there.balanced or here is wished):
         works = share = yield from balanced_fraction(
             StabilityCheck(robot, sets, parameters.excluded), here, wished, share
         )
@@ -129,7 +129,7 @@ def plan_transition(
         if share == 0:
             return f"body: {why}"
         there = yield from _envelope_of(robot, parameters, here.towards(wished, share), sets, foot_distance)
-    while not there.possible:
+    while not there.feasible:
         why = _why_not(robot, parameters, here.towards(wished, share), there)
         share /= 2
         if share < _LEAST_PART or here is wished:
@@ -151,12 +151,12 @@ def plan_transition(
     stepping = way = there
     if np.abs(goal.posture - here.posture).max() > _SAME:
         between = [goal._replace(posture=here.towards(goal, part).posture) for part in (0.5, 0.0)]
-        way = there.meet((yield from _envelope_of(robot, parameters, between[0], sets, foot_distance)))
+        way = there.intersection((yield from _envelope_of(robot, parameters, between[0], sets, foot_distance)))
         stepping = yield from _envelope_of(robot, parameters, between[1], sets, foot_distance)
         stepping = with_stroke_limits(stepping, pace.stroke, pace.turning, duty_factor=parameters.gait.duty_factor)
-        way = way.meet(stepping)
-    if not way.possible:
-        who = f"{robot.leg_names[way.short]} could not stand and step" if way.balanced else _TIPS_OVER
+        way = way.intersection(stepping)
+    if not way.feasible:
+        who = f"{robot.leg_names[way.limiting_leg]} could not stand and step" if way.balanced else _TIPS_OVER
         return f"body: on the way there {who}"
     whole = share == works
     return StanceTransition(
@@ -186,7 +186,7 @@ def _why_not(robot: Robot, parameters: WalkParameters, posed: StanceTarget, ther
     if not there.balanced:
         return _TIPS_OVER
     if any(parameters.sway):
-        return f"{robot.leg_names[there.short]} comes to the end of its reach as the body sways"
+        return f"{robot.leg_names[there.limiting_leg]} comes to the end of its reach as the body sways"
     return limiting_cause(robot, posed.stand)
 
 

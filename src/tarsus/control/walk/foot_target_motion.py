@@ -31,13 +31,13 @@ class FootTargetMotion(NamedTuple):
 
     Attributes
     ----------
-    place : CriticallyDamped
+    position : CriticallyDamped
         Where it is in the heading frame ``(3,)`` [m].
     target : array, shape (3,)
         Where it goes [m].
     """
 
-    place: CriticallyDamped
+    position: CriticallyDamped
     target: Floats
 
     def step(self, dt: float) -> FootTargetMotion:
@@ -48,14 +48,14 @@ class FootTargetMotion(NamedTuple):
         dt : float
             The time [s].
         """
-        way = float(np.abs(self.target - self.place.value).max())
+        way = float(np.abs(self.target - self.position.value).max())
         # A lag whose bandwidth is 2 v over the way that is left comes to the speed v, and goes on at it.
         bandwidth = min(_BANDWIDTH, 2 * _SPEED / max(way, 1e-9))
-        return self._replace(place=self.place.step(self.target, dt, bandwidth=bandwidth))
+        return self._replace(position=self.position.step(self.target, dt, bandwidth=bandwidth))
 
     def stopped(self) -> FootTargetMotion:
         """Return the hand, on its way to rest near where it is."""
-        return self._replace(target=self.place.value + 2 * self.place.rate / _BANDWIDTH)
+        return self._replace(target=self.position.value + 2 * self.position.rate / _BANDWIDTH)
 
 
 def begin_foot_target(now: GaitState, leg: int) -> FootTargetMotion:
@@ -97,8 +97,8 @@ def apply_foot_targets(now: GaitState, foot_targets: dict[int, FootTargetMotion]
     for leg, foot_target in foot_targets.items():
         if not now.down[leg]:
             continue
-        x, y, z = foot_target.place.value.tolist()
-        dx, dy, _ = foot_target.place.rate.tolist()
+        x, y, z = foot_target.position.value.tolist()
+        dx, dy, _ = foot_target.position.rate.tolist()
         seen = complex(x, y)
         foot[leg], ground[leg] = now.origin + turn * seen, z + float(now.elevation.value[0])
         pace[leg] = turn * (complex(dx, dy) + complex(vx, vy) + 1j * wz * seen) * swing_time

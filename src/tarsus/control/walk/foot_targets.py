@@ -85,7 +85,7 @@ class FootTargets:
             if part < 1
         ]
 
-    def take(self, out: tuple[int, ...], now: GaitState) -> None:
+    def set_legs(self, out: tuple[int, ...], now: GaitState) -> None:
         """Make the legs that are out from now on hands; one that comes back stays in the air until its next step.
 
         Parameters
@@ -99,7 +99,7 @@ class FootTargets:
         self._foot_targets = stopped | {leg: self._foot_targets.get(leg) or begin_foot_target(now, leg) for leg in out}
         self._out, self._parts = out, {}
 
-    def tell(self, command: Command, dt: float, reachable: Callable[[int, Floats, Floats], float]) -> None:
+    def set_targets(self, command: Command, dt: float, reachable: Callable[[int, Floats, Floats], float]) -> None:
         """Set where the hands go: as far towards what is asked for as their legs reach.
 
         Parameters
@@ -118,7 +118,7 @@ class FootTargets:
         self._points = {leg: point for leg, point in asked.items() if point is not None and leg not in speeds}
         for leg in self._out:
             foot_target = self._foot_targets[leg]
-            here = foot_target.place.value
+            here = foot_target.position.value
             if leg in speeds:
                 wished = foot_target.target + np.array(speeds[leg]) * dt
             elif leg in self._points:
@@ -129,7 +129,7 @@ class FootTargets:
             part = self._parts[leg] = reachable(leg, here, wished)
             self._foot_targets[leg] = foot_target._replace(target=here + part * (wished - here))
 
-    def carry(self, now: GaitState, time: float, *, swing_time: float) -> GaitState:
+    def apply(self, now: GaitState, time: float, *, swing_time: float) -> GaitState:
         """Return a moment with the hands where they are after a time.
 
         Parameters
@@ -162,7 +162,7 @@ class FootTargets:
                 leg: foot_target.step(time) for leg, foot_target in self._foot_targets.items() if down[leg]
             }
 
-    def without(self, bounds: Floats) -> Floats:
+    def without_bounds(self, bounds: Floats) -> Floats:
         """Return the feet's polygons without those of the hands, whose legs bound them by themselves.
 
         Parameters

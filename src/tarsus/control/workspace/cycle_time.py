@@ -40,7 +40,7 @@ class CycleTiming(NamedTuple):
         Duration of a cycle [s].
     stroke, turning : float
         The longest strokes, straight on and on the spot, for which the joints are fast enough [m].
-    least_cycle_time : float
+    shortest_cycle_time : float
         The shortest cycle in which the joints can lift the feet and carry them on by a quarter of what the legs
         allow [s].
     """
@@ -48,7 +48,7 @@ class CycleTiming(NamedTuple):
     cycle_time: float
     stroke: float
     turning: float
-    least_cycle_time: float
+    shortest_cycle_time: float
 
 
 def cycle_timing(
@@ -76,7 +76,7 @@ def cycle_timing(
         allow shorter strokes only, in a longer one the legs no longer ones.
     """
     # What the body moves in one stance, as far as the legs allow, and in parts of that; not at all, first of all.
-    farthest = limits.largest_shares(_TWISTS, stance_time=1.0, duty_factor=gait.duty_factor)[:, None] * _TWISTS
+    farthest = limits.feasible_fractions(_TWISTS, stance_time=1.0, duty_factor=gait.duty_factor)[:, None] * _TWISTS
     stroke = np.abs(farthest[:, :1] + 1j * farthest[:, 1:2] + 1j * farthest[:, 2:] * limits.rest).max(-1)
     moves = np.concatenate([np.zeros((1, 3)), (_SIZES[1:, None, None] * farthest).reshape(-1, 3)])
     cycle = SteadyCycle(gait, moves, stand.swing_height)

@@ -54,7 +54,7 @@ class LegMargin:
         uneven = [(stand.swing_height + RAISED_FRACTION * stand.depth, swing_heights[-1][1]), (-stand.depth, 1.0)]
         heights = [*swing_heights[:-1], *uneven] if stand.depth else swing_heights
         height, self._narrower = (np.array(column)[:, None, None] for column in zip(*heights, strict=True))
-        at_rest = stand.turned_into_body(rest.real - p[0], rest.imag - p[1], height[:, 0] - p[2])
+        at_rest = stand.to_body(rest.real - p[0], rest.imag - p[1], height[:, 0] - p[2])
         self._at_rest = [part[:, None] for part in to_leg_frame(g, *at_rest)]
         # What a step over the ground along x or y of the heading frame is in the legs' frames, and what up is.
         slope, r = stand.slope, stand.rotation

@@ -16,7 +16,7 @@ from tarsus.kinematics.leg import forward_kinematics
 from tarsus.kinematics.mass import point_masses, total_mass
 from tarsus.robot.robot import Robot
 
-__all__ = ["StabilityCheck", "margin_at_rest", "safe_share", "support_sets"]
+__all__ = ["StabilityCheck", "margin_at_rest", "safe_fraction", "support_sets"]
 
 Floats = np.ndarray[Any, Any]
 
@@ -54,7 +54,7 @@ def _support_sets(gait: Gait, excluded: tuple[int, ...]) -> Floats:
     return sets
 
 
-def safe_share(
+def safe_fraction(
     sets: Floats, bounds: Floats, rest: Floats, centre: complex, *, margin: float, shift: Floats | None = None
 ) -> float:
     """Return by how much the polygons must shrink towards the rest footholds, so that no support tips over.
@@ -189,7 +189,7 @@ class StabilityCheck:
             reach = np.asarray(robot.coxa + robot.femur + robot.tibia) * np.asarray(robot.link_mass).sum(-1) / 4
             self.least_margin += float(reach[self._gone].sum() / total)
 
-    def safe_share(self, stand: StanceGeometry, sides: Floats, centre: complex, shift: Floats) -> float:
+    def safe_fraction(self, stand: StanceGeometry, sides: Floats, centre: complex, shift: Floats) -> float:
         """Return by how much the feet's polygons must shrink towards the rest footholds, so that nothing tips over.
 
         Parameters
@@ -206,7 +206,7 @@ class StabilityCheck:
         float
             A share of the polygons' size; 0 where the robot tips over even with its feet at rest.
         """
-        return safe_share(self._sets, sides, stand.rest, centre, margin=self.least_margin, shift=shift)
+        return safe_fraction(self._sets, sides, stand.rest, centre, margin=self.least_margin, shift=shift)
 
     def centre_of_mass(self, stand: StanceGeometry, sides: Floats) -> tuple[complex, Floats]:
         """Return the projected centre of mass with the feet at rest, and its shift by each leg at each corner.

@@ -21,8 +21,8 @@ __all__ = [
     "Rows",
     "StanceGeometry",
     "TerrainEstimate",
+    "ground_rise",
     "joint_margin",
-    "rise",
     "rotation_rows",
     "stance_geometry_of",
     "sway_fraction",
@@ -95,10 +95,10 @@ class StanceGeometry(NamedTuple):
             The feet [m].
         """
         g, p = robot.geometry, self.position
-        in_leg = to_leg_frame(g, *self.turned_into_body(x - p[0], y - p[1], z - p[2]))
+        in_leg = to_leg_frame(g, *self.to_body(x - p[0], y - p[1], z - p[2]))
         return solve_triangle(np, g, *in_leg, knee=1, sideways=bool(g.side.any()))
 
-    def turned_into_body(self, x: Floats, y: Floats, z: Floats) -> tuple[Floats, Floats, Floats]:
+    def to_body(self, x: Floats, y: Floats, z: Floats) -> tuple[Floats, Floats, Floats]:
         """Return x, y, z in B of vectors in the heading frame, each of any shape.
 
         Parameters
@@ -108,12 +108,12 @@ class StanceGeometry(NamedTuple):
         """
         r = self.rotation
         if self.slope:
-            z = z + rise(self.slope, x, y)
+            z = z + ground_rise(self.slope, x, y)
         in_x, in_y, in_z = (x * r[..., 0, i] + y * r[..., 1, i] + z * r[..., 2, i] for i in range(3))
         return in_x, in_y, in_z
 
 
-def rise(slope: complex, x: Any, y: Any) -> Any:
+def ground_rise(slope: complex, x: Any, y: Any) -> Any:
     """Return how much the ground rises on the way to places [m].
 
     Parameters
@@ -181,7 +181,7 @@ def stance_geometry_of(row: Floats, rest: Floats, terrain: TerrainEstimate = LEV
     x, y, z, roll, pitch, yaw, swing_height = row[: SWING_HEIGHT + 1].tolist()
     slope, position = terrain.slope, row[:3]
     if slope:
-        position = np.array([x, y, z - rise(slope, x, y)])
+        position = np.array([x, y, z - ground_rise(slope, x, y)])
     return StanceGeometry(
         rest, np.array(rotation_rows(roll, pitch, yaw)), position, swing_height, slope, terrain.depth * swing_height
     )

@@ -35,7 +35,7 @@ class VelocityLimits:
     ----------
     bounds : array, shape (legs, 16)
         Sides of the feet's polygons, from the heading frame's origin along `NORMALS` [m].
-    room : array, shape (legs, 16)
+    margins : array, shape (legs, 16)
         How far a foot may go from its rest foothold along `NORMALS` [m]; negative where it can't even be there.
     rest : complex array, shape (legs,)
         Rest footholds of the last stand [m].
@@ -46,23 +46,23 @@ class VelocityLimits:
     """
 
     bounds: Floats
-    room: Floats
+    margins: Floats
     rest: Floats
     balanced: bool = True
     stroke: float = math.inf
     turning: float = math.inf
 
     @property
-    def possible(self) -> bool:
+    def feasible(self) -> bool:
         """Whether every foot can be at its rest foothold."""
-        return bool((self.room >= 0).all())
+        return bool((self.margins >= 0).all())
 
     @property
-    def short(self) -> int:
+    def limiting_leg(self) -> int:
         """The leg with the least room."""
-        return int(self.room.min(-1).argmin())
+        return int(self.margins.min(-1).argmin())
 
-    def meet(self, other: VelocityLimits) -> VelocityLimits:
+    def intersection(self, other: VelocityLimits) -> VelocityLimits:
         """Return what is possible in both.
 
         Parameters
@@ -72,14 +72,14 @@ class VelocityLimits:
         """
         return VelocityLimits(
             np.minimum(self.bounds, other.bounds),
-            np.minimum(self.room, other.room),
+            np.minimum(self.margins, other.margins),
             self.rest,
             self.balanced and other.balanced,
             min(self.stroke, other.stroke),
             min(self.turning, other.turning),
         )
 
-    def largest_share(
+    def feasible_fraction(
         self, twist: Floats, *, stance_time: float, duty_factor: float, hold: float = 0.0
     ) -> tuple[float, int]:
         """Return how much of a twist the robot can walk at for good, and which leg stops it.
@@ -113,8 +113,8 @@ class VelocityLimits:
         fastest = 1 / max(self._strain(straight, turning, stance_time), _LEAST)
         return min(float(share.flat[worst]), fastest) / scale, worst // len(NORMALS)
 
-    def largest_shares(self, twists: Floats, *, stance_time: float, duty_factor: float) -> Floats:
-        """Return how much of each of some twists the robot can walk at for good, as `largest_share`.
+    def feasible_fractions(self, twists: Floats, *, stance_time: float, duty_factor: float) -> Floats:
+        """Return how much of each of some twists the robot can walk at for good, as `feasible_fraction`.
 
         Parameters
         ----------
@@ -144,7 +144,7 @@ class VelocityLimits:
         way = (straight + 1j * turn * self.rest) * ahead
         along = np.abs((NORMALS_CONJUGATE * way[..., None]).real)
         across = np.maximum((NORMALS_CONJUGATE * (0.5j * turn * ahead * way)[..., None]).real, 0.0)
-        return _positive_root(across, along, np.maximum(self.room, 0.0))
+        return _positive_root(across, along, np.maximum(self.margins, 0.0))
 
     def _strain(self, straight: Any, turning: Any, stance_time: float) -> Any:
         """Return how much of the joints' speed is taken: what straight on and turning ask of them adds up."""
@@ -228,7 +228,7 @@ def velocity_limits(
         sides = yield from foot_workspace(robot, stand, foot_distance=foot_distance)
         centre, shift = balance.centre_of_mass(stand, sides)
         yield
-        share = balance.safe_share(stand, sides, centre, shift)
+        share = balance.safe_fraction(stand, sides, centre, shift)
         at_rest = (NORMALS_CONJUGATE * stand.rest[:, None]).real
         free = sides - at_rest
         free = np.where(free > 0, free * share, free)

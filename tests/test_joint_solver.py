@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from sample_moments import EARTH, FACING, moment_of, rest_of, setup_of
+from sample_gait_states import EARTH, FACING, moment_of, rest_of, setup_of
 from tarsus import Pose, inverse_kinematics, list_robots
 from tarsus.control.filters import CriticallyDamped
 from tarsus.control.walk.joint_solver import JointSolver

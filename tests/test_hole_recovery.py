@@ -2,9 +2,10 @@
 
 import numpy as np
 
-from sample_moments import moment_of, rest_of, setup_of, step_inputs_of
+from sample_gait_states import moment_of, rest_of, setup_of, step_inputs_of
 from tarsus.control.sensing.ground_plane import GroundPlane
-from tarsus.control.terrain.hole_recovery import HoleRecovery, SlopeLimit, repeated_swing
+from tarsus.control.terrain.hole_recovery import HoleRecovery, repeated_swing
+from tarsus.control.terrain.slope_limit import SlopeLimit
 from tarsus.control.walk.stepper import advance
 from tarsus.control.workspace.stance_geometry import LEVEL_TERRAIN, TerrainEstimate
 
@@ -16,11 +17,11 @@ def test_what_led_there_is_not_tried_again_and_anything_else_once():
     assert not retreat.consider(ON, 0j)
     assert not retreat.consider(ON, 0j)
     assert retreat.consider(BACK, 0j)
-    assert retreat.under_way
+    assert retreat.active
     # Once it is under way, that is that.
     assert not retreat.consider(LEFT, 0j)
     retreat.begun([2])
-    assert not retreat.under_way
+    assert not retreat.active
     assert not retreat.consider(BACK, 0j)
     assert retreat.consider(LEFT, 0j)
     retreat.begun([2])
@@ -77,10 +78,10 @@ def test_too_steep_a_slope_is_left_the_way_that_did_not_lead_there():
     steep, known = SlopeLimit(), TerrainEstimate(0.1 + 0j, 0.6)
     assert not steep.forbids((0.1, 0.0, 0.0), known)
     # Who stands was led there by nothing.
-    steep.rejected(known, (0.0, 0.0, 0.0))
+    steep.record(known, (0.0, 0.0, 0.0))
     assert not steep.forbids((0.1, 0.0, 0.0), known)
-    steep.rejected(known, (0.05, 0.01, 0.1))
-    steep.rejected(known, (-0.05, 0.0, 0.0))
+    steep.record(known, (0.05, 0.01, 0.1))
+    steep.record(known, (-0.05, 0.0, 0.0))
     assert steep.forbids((0.1, 0.0, 0.0), known)
     assert steep.forbids((0.0, 0.0, 0.5), known)
     assert not steep.forbids((-0.1, 0.0, 0.0), known)

@@ -7,7 +7,7 @@ import pytest
 from scipy.spatial import HalfspaceIntersection
 
 from gait_robots import PRESETS, ring
-from sample_stands import POSTURES, feet_at, polygons, pose_of, posture_of, setup_of, standing
+from sample_stances import POSTURES, feet_at, polygons, pose_of, posture_of, setup_of, standing
 from tarsus.control.incremental import complete
 from tarsus.control.workspace.foot_workspace import foot_workspace
 from tarsus.control.workspace.polygon import NORMALS, polygon_ends, polygon_margin, polygon_radii

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from sample_moments import moment_of, rest_of, setup_of
+from sample_gait_states import moment_of, rest_of, setup_of
 from tarsus.control.terrain.ground_search import GroundSearch
 
 DT = 0.02
@@ -52,7 +52,7 @@ def test_it_goes_down_gently_to_the_ground_and_stands_there():
     assert np.abs([now.ground_height[~UP] for now in moments]).max() == 0
     assert searches
     assert searches.stands(2, touches=True)
-    assert searches.in_vain == []
+    assert searches.failed_legs == []
     searches.land(UP)
     assert not searches
 
@@ -61,7 +61,7 @@ def test_where_there_is_none_it_stops_at_its_lowest_and_says_so():
     searches = GroundSearch(np.full((6, 3), 100.0))
     moments = run(searches, landing(), -1.0)
     assert moments[-1].ground[2] == pytest.approx(-0.6 * LIFT, abs=1e-3)
-    assert searches.in_vain == [2]
+    assert searches.failed_legs == [2]
     assert not searches.stands(2, touches=False)
     searches.land(~UP)
     assert searches

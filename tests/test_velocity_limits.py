@@ -10,10 +10,10 @@ from hypothesis import strategies as st
 from scipy.spatial import ConvexHull
 
 from gait_robots import PRESETS, ring
-from sample_stands import POSTURES, envelope_of, feet_at, pose_of, setup_of, standing
+from sample_stances import POSTURES, envelope_of, feet_at, pose_of, setup_of, standing
 from tarsus.control.incremental import complete
 from tarsus.control.workspace.polygon import NORMALS, polygon_ends, polygon_margin
-from tarsus.control.workspace.stability import safe_share, support_sets
+from tarsus.control.workspace.stability import safe_fraction, support_sets
 from tarsus.control.workspace.velocity_limits import (
     VelocityLimits,
     stance_overhang,
@@ -32,7 +32,9 @@ TWISTS = [(1, 0, 0), (0, -1, 0), (0.7, 0.7, 0), (0, 0, 1), (0, 0, -1), (0.5, 0, 
 def steady(name, gait, twist):
     """The feet of a steady cycle at the largest share of a twist ``(241, legs, 3)``, contacts and its stroke."""
     setup, limits = setup_of(name, gait), envelope_of(name, gait)
-    share, _ = limits.largest_share(np.array(twist, dtype=float), stance_time=1.0, duty_factor=setup.gait.duty_factor)
+    share, _ = limits.feasible_fraction(
+        np.array(twist, dtype=float), stance_time=1.0, duty_factor=setup.gait.duty_factor
+    )
     done = share * np.array(twist)
     feet, down = cycle_feet(
         setup.gait, setup.rest, done, swing_height=np.asarray(setup.swing_height), phases=np.linspace(0, 1, 241)
@@ -78,7 +80,7 @@ def test_the_safe_share_is_the_largest_step_that_works():
     rest = 0.2 * np.exp(1j * np.pi / 6 * np.array([1, 3, 5, 7, 9, 11]))
     bounds = 0.12 + (NORMALS.conj() * rest[:, None]).real
     sets = support_sets(Gait.named("tripod"))
-    share = safe_share(sets, bounds, rest, 0j, margin=0.0)
+    share = safe_fraction(sets, bounds, rest, 0j, margin=0.0)
     corners = polygon_ends(bounds, rest)[1]
 
     def least(part):
@@ -102,14 +104,14 @@ def test_legs_that_shift_the_centre_of_mass_leave_less_share():
     bounds = 0.05 + (NORMALS.conj() * rest[:, None]).real
     sets = support_sets(Gait.named("tripod"))
     shift = 0.6 * polygon_ends(bounds, rest)[1]
-    assert safe_share(sets, bounds, rest, 0j, margin=0.0) == 1.0
-    assert 0 < safe_share(sets, bounds, rest, 0j, margin=0.0, shift=shift) < 1.0
+    assert safe_fraction(sets, bounds, rest, 0j, margin=0.0) == 1.0
+    assert 0 < safe_fraction(sets, bounds, rest, 0j, margin=0.0, shift=shift) < 1.0
 
 
 def test_what_tips_over_at_rest_has_no_safe_share():
     rest = 0.2 * np.exp(1j * np.pi / 6 * np.array([1, 3, 5, 7, 9, 11]))
     bounds = 0.05 + (NORMALS.conj() * rest[:, None]).real
-    assert safe_share(support_sets(Gait.named("tripod")), bounds, rest, 0.15 + 0j, margin=0.0) == 0.0
+    assert safe_fraction(support_sets(Gait.named("tripod")), bounds, rest, 0.15 + 0j, margin=0.0) == 0.0
 
 
 @pytest.mark.parametrize("size", [0.05, 0.0])
@@ -117,7 +119,7 @@ def test_two_feet_support_nothing_not_even_where_they_have_no_room(size):
     rest = 0.2 * np.exp(1j * np.pi / 6 * np.array([1, 3, 5, 7, 9, 11]))
     bounds = size + (NORMALS.conj() * rest[:, None]).real
     sets = np.array([[True, False, False, True, False, False]])
-    assert safe_share(sets, bounds, rest, 0j, margin=0.0) == 0.0
+    assert safe_fraction(sets, bounds, rest, 0j, margin=0.0) == 0.0
 
 
 # The largest share.
@@ -152,38 +154,38 @@ def test_a_multiple_of_a_twist_has_that_much_less_share(twist, factor):
     limits = envelope_of("phantomx")
     if max(map(abs, twist)) < 1e-3:
         twist = (0.1, 0.0, 0.0)
-    share, _ = limits.largest_share(np.array(twist), stance_time=0.5, duty_factor=0.5)
-    other, _ = limits.largest_share(factor * np.array(twist), stance_time=0.5, duty_factor=0.5)
+    share, _ = limits.feasible_fraction(np.array(twist), stance_time=0.5, duty_factor=0.5)
+    other, _ = limits.feasible_fraction(factor * np.array(twist), stance_time=0.5, duty_factor=0.5)
     assert other * factor == pytest.approx(share, rel=1e-9)
 
 
 def test_a_twist_beyond_all_measure_is_cut_too():
     limits = envelope_of("strider")
-    share, _ = limits.largest_share(np.array([1e300, -1e300, 1e308]), stance_time=0.5, duty_factor=0.5)
-    small, _ = limits.largest_share(np.array([1e-8, -1e-8, 1.0]), stance_time=0.5, duty_factor=0.5)
+    share, _ = limits.feasible_fraction(np.array([1e300, -1e300, 1e308]), stance_time=0.5, duty_factor=0.5)
+    small, _ = limits.feasible_fraction(np.array([1e-8, -1e-8, 1.0]), stance_time=0.5, duty_factor=0.5)
     assert share * 1e308 == pytest.approx(small, rel=1e-9)
 
 
 def test_no_twist_at_all_is_never_too_much():
-    assert envelope_of("strider").largest_share(np.zeros(3), stance_time=1.0, duty_factor=0.5)[0] > 1e6
+    assert envelope_of("strider").feasible_fraction(np.zeros(3), stance_time=1.0, duty_factor=0.5)[0] > 1e6
 
 
 def test_the_leg_with_the_least_room_is_the_one_that_stops_it():
     limits = envelope_of("strider")
-    narrow = limits.room.copy()
+    narrow = limits.margins.copy()
     narrow[4] *= 0.3
     found = VelocityLimits(limits.bounds, narrow, limits.rest)
-    share, leg = found.largest_share(np.array([0.1, 0.02, 0.0]), stance_time=1.0, duty_factor=0.5)
+    share, leg = found.feasible_fraction(np.array([0.1, 0.02, 0.0]), stance_time=1.0, duty_factor=0.5)
     assert leg == 4
-    assert found.short == 4
-    assert share < limits.largest_share(np.array([0.1, 0.02, 0.0]), stance_time=1.0, duty_factor=0.5)[0]
+    assert found.limiting_leg == 4
+    assert share < limits.feasible_fraction(np.array([0.1, 0.02, 0.0]), stance_time=1.0, duty_factor=0.5)[0]
 
 
 def test_joints_that_allow_so_long_a_stroke_allow_their_share_of_straight_and_turning_together():
     limits = with_stroke_limits(envelope_of("strider"), 0.02, 0.01, duty_factor=0.5)
     outermost = np.abs(limits.rest).max()
     for forward, turn in ((0.1, 0.0), (0.0, 0.4), (0.06, 0.3)):
-        share, _ = limits.largest_share(np.array([forward, 0.0, turn]), stance_time=0.5, duty_factor=0.5)
+        share, _ = limits.feasible_fraction(np.array([forward, 0.0, turn]), stance_time=0.5, duty_factor=0.5)
         assert share * 0.5 * (forward / 0.02 + turn * outermost / 0.01) == pytest.approx(1)
 
 
@@ -207,7 +209,7 @@ def test_capping_keeps_each_foot_within_the_longest_stroke_of_its_rest_foothold(
         room, np.minimum(polygon_margin(limits.bounds, limits.rest), stance_overhang(0.5) * 0.03)
     )
     assert (less.stroke, less.turning) == (0.02, 0.03)
-    np.testing.assert_array_equal(less.room, limits.room)
+    np.testing.assert_array_equal(less.margins, limits.margins)
 
 
 def test_capping_leaves_legs_unbounded_that_do_not_step():
@@ -226,17 +228,17 @@ def test_what_is_possible_in_both_is_in_each():
         envelope_of("strider"),
         with_stroke_limits(envelope_of("strider", body=POSTURES[1]), 0.05, 0.04, duty_factor=0.5),
     )
-    both = one.meet(other)
+    both = one.intersection(other)
     for limits in (one, other):
         assert (both.bounds <= limits.bounds).all()
-        assert (both.room <= limits.room).all()
+        assert (both.margins <= limits.margins).all()
     assert (both.stroke, both.turning) == (0.05, 0.04)
     stands = [standing(setup_of("strider"), POSTURES[i]) for i in (0, 1)]
     sets = support_sets(Gait.named("tripod"))
     at_once = complete(
         velocity_limits(setup_of("strider").robot, stands, sets, foot_distance=setup_of("strider").foot_distance)
     )
-    np.testing.assert_array_equal(at_once.bounds, one.meet(envelope_of("strider", body=POSTURES[1])).bounds)
+    np.testing.assert_array_equal(at_once.bounds, one.intersection(envelope_of("strider", body=POSTURES[1])).bounds)
 
 
 def test_a_body_that_stands_outside_its_support_has_no_room():
@@ -245,9 +247,9 @@ def test_a_body_that_stands_outside_its_support_has_no_room():
     found = complete(
         velocity_limits(setup.robot, [standing(setup)], support_sets(setup.gait), foot_distance=setup.foot_distance)
     )
-    assert not found.possible
-    assert (found.room < 0).all()
-    assert found.largest_share(np.array([0.1, 0, 0]), stance_time=1.0, duty_factor=0.75)[0] == 0
+    assert not found.feasible
+    assert (found.margins < 0).all()
+    assert found.feasible_fraction(np.array([0.1, 0, 0]), stance_time=1.0, duty_factor=0.75)[0] == 0
 
 
 def test_polygons_that_shrink_for_support_stay_convex_and_hold_their_rest_footholds():
@@ -257,7 +259,7 @@ def test_polygons_that_shrink_for_support_stay_convex_and_hold_their_rest_footho
         hull = ConvexHull(np.stack([corners.real, corners.imag], axis=-1))
         assert len(hull.vertices) == len(corners)
         assert (hull.equations[:, 2] < 0).all(), leg
-    assert limits.possible
+    assert limits.feasible
     assert feet_at(limits.rest).shape == (6, 3)
 
 
@@ -265,6 +267,6 @@ def test_without_any_stroke_nothing_of_a_twist_works():
     """Where a polygon has no room at all, the joints allow no stroke either."""
     stuck = with_stroke_limits(envelope_of("strider"), 0.0, 0.0, duty_factor=0.5)
     for twist in ((0.1, 0.0, 0.0), (0.0, 0.0, 0.3)):
-        share, _ = stuck.largest_share(np.array(twist), stance_time=0.5, duty_factor=0.5)
+        share, _ = stuck.feasible_fraction(np.array(twist), stance_time=0.5, duty_factor=0.5)
         assert share == pytest.approx(0.0, abs=1e-9)
-    assert stuck.largest_share(np.zeros(3), stance_time=0.5, duty_factor=0.5)[0] > 1
+    assert stuck.feasible_fraction(np.zeros(3), stance_time=0.5, duty_factor=0.5)[0] > 1

@@ -15,9 +15,9 @@ SWAY = (0.0, 0.01, 0.0, 0.02, 0.0, 0.0)
 
 def test_there_it_is_at_once_and_nothing_is_left_to_go():
     carriage = PoseController(LEVEL)
-    assert carriage.reached(carriage.goal)
-    assert carriage.reached(carriage.goal + 1e-4)
-    assert not carriage.reached(carriage.goal + 3e-4)
+    assert carriage.reached(carriage.target)
+    assert carriage.reached(carriage.target + 1e-4)
+    assert not carriage.reached(carriage.target + 3e-4)
 
 
 @pytest.mark.parametrize(
@@ -27,10 +27,10 @@ def test_the_body_is_no_faster_than_it_may(axis, way, fastest):
     carriage = PoseController(LEVEL)
     there = LEVEL.copy()
     there[axis] += way
-    carriage.go_to(there)
+    carriage.set_posture(there)
     posture, speeds = CriticallyDamped.still(np.append(LEVEL, np.zeros(6))), []
     for _ in range(3000):
-        after = posture.step(carriage.goal, 0.002, bandwidth=carriage.bandwidth(posture.value))
+        after = posture.step(carriage.target, 0.002, bandwidth=carriage.bandwidth(posture.value))
         speeds.append(abs(after.value[axis] - posture.value[axis]) / 0.002)
         posture = after
     assert carriage.reached(posture.value)
@@ -39,15 +39,15 @@ def test_the_body_is_no_faster_than_it_may(axis, way, fastest):
 
 def test_a_sway_is_no_more_than_is_slow_enough_and_ends():
     carriage = PoseController(LEVEL)
-    carriage.sway(SWAY, frequency=2.0, beats=2)
+    carriage.set_sway(SWAY, frequency=2.0, beats=2)
     calm = sway_fraction(np.array(SWAY), 2.0, 2)
     assert 0 < calm < 1
-    np.testing.assert_allclose(carriage.goal, [*LEVEL, *(calm * np.array(SWAY))])
-    same = carriage.goal
-    carriage.sway(SWAY, frequency=2.0, beats=2)
-    assert carriage.goal is same
+    np.testing.assert_allclose(carriage.target, [*LEVEL, *(calm * np.array(SWAY))])
+    same = carriage.target
+    carriage.set_sway(SWAY, frequency=2.0, beats=2)
+    assert carriage.target is same
     # On the way to another posture it sways on.
-    carriage.go_to(LEVEL + 0.01)
-    np.testing.assert_allclose(carriage.goal, [*(LEVEL + 0.01), *(calm * np.array(SWAY))])
-    carriage.sway((0.0,) * 6, frequency=2.0, beats=2)
-    np.testing.assert_array_equal(carriage.goal, [*(LEVEL + 0.01), *np.zeros(6)])
+    carriage.set_posture(LEVEL + 0.01)
+    np.testing.assert_allclose(carriage.target, [*(LEVEL + 0.01), *(calm * np.array(SWAY))])
+    carriage.set_sway((0.0,) * 6, frequency=2.0, beats=2)
+    np.testing.assert_array_equal(carriage.target, [*(LEVEL + 0.01), *np.zeros(6)])

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from gait_robots import PRESETS
-from sample_moments import begun, rest_of, setup_of, step_inputs_of
+from sample_gait_states import begun, rest_of, setup_of, step_inputs_of
 from tarsus.control.filters import CriticallyDamped
 from tarsus.control.terrain.early_contact import relaxed_rate, stop_on_contact
 from tarsus.control.walk.joint_solver import JointSolver

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from sample_stands import envelope_of, posture_of, setup_of
+from sample_stances import envelope_of, posture_of, setup_of
 from tarsus.control.walk.state import GaitState, StepInputs
 
 EARTH, FACING = 0.3 - 0.2j, 0.7

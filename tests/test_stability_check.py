@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from gait_robots import PRESETS, ring
-from sample_stands import POSTURES, polygons, setup_of, standing
+from sample_stances import POSTURES, polygons, setup_of, standing
 from tarsus.control.workspace.polygon import NORMALS, polygon_ends
-from tarsus.control.workspace.stability import StabilityCheck, margin_at_rest, safe_share, support_sets
+from tarsus.control.workspace.stability import StabilityCheck, margin_at_rest, safe_fraction, support_sets
 from tarsus.gait.gait import GAITS
 from tarsus.kinematics.mass import centre_of_mass
 
@@ -49,15 +49,17 @@ def test_legs_that_hang_about_anywhere_take_a_wider_margin_and_shift_nothing():
 def test_the_safe_share_is_the_first_of_all_that_works(gait):
     rest = 0.2 * np.exp(1j * np.pi / 6 * np.array([1, 3, 5, 7, 9, 11]))
     sets = support_sets(setup_of("strider", gait).gait)
-    found = {safe_share(sets, size + (NORMALS.conj() * rest[:, None]).real, rest, 0j, margin=0.0) for size in _SIZES}
+    found = {safe_fraction(sets, size + (NORMALS.conj() * rest[:, None]).real, rest, 0j, margin=0.0) for size in _SIZES}
     # Smaller polygons never need to shrink more, and every share comes up.
-    shares = [safe_share(sets, size + (NORMALS.conj() * rest[:, None]).real, rest, 0j, margin=0.0) for size in _SIZES]
+    shares = [
+        safe_fraction(sets, size + (NORMALS.conj() * rest[:, None]).real, rest, 0j, margin=0.0) for size in _SIZES
+    ]
     assert shares == sorted(shares, reverse=True)
     assert len(found) > 8
     for size, share in zip(_SIZES, shares, strict=True):
         if share:
             bounds = share * size + (NORMALS.conj() * rest[:, None]).real
-            assert safe_share(sets, bounds, rest, 0j, margin=0.0) == 1.0
+            assert safe_fraction(sets, bounds, rest, 0j, margin=0.0) == 1.0
 
 
 _SIZES = np.geomspace(0.01, 4.0, 60)

@@ -299,7 +299,7 @@ def test_legs_that_lag_behind_are_made_up_for():
     com = centre_of_mass(robot, angles)
     height = -float(feet[0, 2])
     got = settle_in_the_world(
-        Levelling("follow", com=tuple(com), carried=share),
+        Levelling("follow", com=tuple(com), com_shift_ratio=share),
         slope_pitch=-0.15,
         commanded=CommandedAttitude(height=height),
     )
