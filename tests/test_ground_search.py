@@ -60,7 +60,7 @@ def test_it_goes_down_gently_to_the_ground_and_stands_there():
 def test_where_there_is_none_it_stops_at_its_lowest_and_says_so():
     searches = GroundSearch(np.full((6, 3), 100.0))
     moments = run(searches, landing(), -1.0)
-    assert moments[-1].ground[2] == pytest.approx(-0.6 * LIFT, abs=1e-3)
+    assert moments[-1].ground_height[2] == pytest.approx(-0.6 * LIFT, abs=1e-3)
     assert searches.failed_legs == [2]
     assert not searches.stands(2, touches=False)
     searches.land(~UP)
