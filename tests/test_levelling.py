@@ -111,7 +111,7 @@ def test_wrong_feet_are_refused():
         ground_plane(np.zeros((2, 6, 3)), np.ones((3, 6), dtype=bool))
     for batch in ((), (2,)):
         for wrong in (np.nan, np.inf, -1e9):
-            with pytest.raises(InputError, match="a foot on the ground is NaN, infinite or more"):
+            with pytest.raises(InputError, match="a stance foot is NaN, infinite or more"):
                 ground_plane(np.full((*batch, 6, 3), wrong), down)
 
 

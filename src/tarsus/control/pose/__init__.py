@@ -1,1 +1,1 @@
-"""The body's pose while it walks: filtering, levelling, compliance of the feet."""
+"""Body pose while walking: filtering, levelling, compliance of the feet."""

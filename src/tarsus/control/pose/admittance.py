@@ -1,11 +1,11 @@
-"""A foot that gives way: a virtual mass on a spring and a damper, moved by the force that is too much.
+"""Admittance control of a foot: a virtual mass on a spring and a damper, driven by the force error.
 
 N. Hogan, "Impedance control: an approach to manipulation", parts I to III, Journal of Dynamic Systems, Measurement,
-and Control 107 (1985): where a servo holds positions, the motion that a force asks for is commanded::
+and Control 107 (1985): position-controlled joints are commanded the motion of the virtual mass::
 
     mass a + damping v + stiffness x = force error
 
-Linear, so that its motion under a constant force is known in closed form, for ticks of any length.
+The equation is linear: its solution for a constant force is exact for ticks of any length.
 """
 
 from __future__ import annotations
@@ -20,18 +20,19 @@ from tarsus.errors import InputError
 
 __all__ = ["Admittance", "AdmittanceFilter", "StateTransition"]
 
-_FASTEST = 1e6  # [rad/s]; far beyond any servo, far below what would overflow
+# Bound of natural frequency and decay rate [rad/s]: far above any servo, far below overflow.
+_FASTEST = 1e6
 
 
 class StateTransition(NamedTuple):
-    """How offset and speed carry over a tick without force: rows of the matrix exponential.
+    """State transition of offset and speed over a tick without force: the matrix exponential.
 
     Attributes
     ----------
     xx, xv : float
-        The offset after the tick by offset [1] and speed [s] before.
+        Offset after the tick, per offset [1] and speed [s] before.
     vx, vv : float
-        The speed after the tick by offset [1/s] and speed [1] before.
+        Speed after the tick, per offset [1/s] and speed [1] before.
     """
 
     xx: float
@@ -42,23 +43,23 @@ class StateTransition(NamedTuple):
 
 @dataclass(frozen=True, kw_only=True)
 class Admittance:
-    """What a foot feels like.
+    """Parameters of the virtual mass, spring and damper of a foot.
 
     Attributes
     ----------
     mass : float
         Virtual mass [kg].
     damping : float
-        Virtual damper [N s/m].
+        Virtual damping [N s/m].
     stiffness : float
-        Virtual spring [N/m].
+        Virtual stiffness [N/m].
     travel : float
-        Greatest offset [m]: forces beyond what leads there are cut off.
+        Greatest offset [m]; force errors that would exceed it are limited.
 
     Raises
     ------
     InputError
-        If a number is not finite and positive, or the mass is next to nothing.
+        If a number is not finite and positive, or the mass is too small for the stiffness or damping.
     """
 
     mass: float
@@ -74,72 +75,72 @@ class Admittance:
         for name, rate in (("stiffness", self.frequency), ("damping", self.decay)):
             if not rate < _FASTEST:
                 raise InputError(
-                    f"admittance: {name} is {getattr(self, name)} for a mass of {self.mass} kg, which makes "
-                    f"{rate:.3g} rad/s of it; below {_FASTEST:g} is allowed: raise the mass"
+                    f"admittance: {name} is {getattr(self, name)} for a mass of {self.mass} kg: {rate:.3g} rad/s; "
+                    f"it must be below {_FASTEST:g} rad/s: increase the mass"
                 )
 
     @cached_property
     def frequency(self) -> float:
-        """Angular frequency without damping [rad/s]."""
+        """Undamped natural frequency [rad/s]."""
         return math.sqrt(self.stiffness / self.mass)
 
     @cached_property
     def decay(self) -> float:
-        """Half of damping over mass [1/s]: below `frequency` the foot swings, at or above it it does not."""
+        """Decay rate, damping / (2 mass) [1/s]; below `frequency` the motion is underdamped."""
         return self.damping / self.mass / 2
 
     @cached_property
     def max_force(self) -> float:
-        """Greatest force error that is followed [N]: however it varies, the offset stays within `travel`.
+        """Bound of the force error [N] for which the offset stays within `travel`, however the force varies.
 
-        The integral of the impulse response's magnitude: ``1 / stiffness`` without swinging, with swinging
-        ``coth(pi decay / (2 swing frequency)) / stiffness``.
+        That is `travel` over the integral of the magnitude of the impulse response: ``1 / stiffness``, or if
+        underdamped ``coth(pi decay / (2 damped frequency)) / stiffness``.
         """
         square = self.frequency**2 - self.decay**2
-        share = math.tanh(math.pi * self.decay / (2 * math.sqrt(square))) if square > 0 else 1.0
-        return self.stiffness * self.travel * share
+        fraction = math.tanh(math.pi * self.decay / (2 * math.sqrt(square))) if square > 0 else 1.0
+        return self.stiffness * self.travel * fraction
 
     def transition(self, dt: float) -> StateTransition:
-        """Return how a tick without force carries the state over, exactly.
+        """Return the exact state transition over a tick without force.
 
         Parameters
         ----------
         dt : float
             Length of the tick [s].
         """
-        fade, swing = self.decay, self.frequency**2 - self.decay**2
-        if swing > 0:
-            rate = math.sqrt(swing)
-            even = math.exp(-fade * dt) * math.cos(rate * dt)
-            odd = math.exp(-fade * dt) * math.sin(rate * dt) / rate
-        elif swing < 0:
-            rate = math.sqrt(-swing)
-            # The slow rate as a quotient: the difference of the two would cancel where the damper is strong.
-            slow = math.exp(-(self.frequency**2) / (fade + rate) * dt)
+        decay, damped2 = self.decay, self.frequency**2 - self.decay**2
+        if damped2 > 0:
+            rate = math.sqrt(damped2)
+            even = math.exp(-decay * dt) * math.cos(rate * dt)
+            odd = math.exp(-decay * dt) * math.sin(rate * dt) / rate
+        elif damped2 < 0:
+            rate = math.sqrt(-damped2)
+            # The slow rate as a quotient: the difference of both rates would cancel under strong damping.
+            slow = math.exp(-(self.frequency**2) / (decay + rate) * dt)
             ratio = math.expm1(-2 * rate * dt)
             even, odd = slow * (1 + ratio / 2), slow * -ratio / (2 * rate)
         else:
-            even = math.exp(-fade * dt)
+            even = math.exp(-decay * dt)
             odd = even * dt
-        return StateTransition(even + fade * odd, odd, -(self.frequency**2) * odd, even - fade * odd)
+        return StateTransition(even + decay * odd, odd, -(self.frequency**2) * odd, even - decay * odd)
 
 
 class AdmittanceFilter:
-    """The offsets of some feet, tick by tick.
+    """Admittance offsets of the feet, tick by tick.
 
     Parameters
     ----------
     admittance : Admittance
-        What each foot feels like.
+        Parameters, the same for each foot.
     legs : int
-        How many feet there are.
+        Number of feet.
 
     Attributes
     ----------
     offsets : tuple of float
-        How far each foot has given way: upwards, for forces upwards [m].
+        Upward offset of each foot [m].
     speeds : tuple of float
-        How fast it does [m/s].
+        Its rate [m/s].
     """
 
     def __init__(self, admittance: Admittance, legs: int) -> None:
@@ -148,14 +149,14 @@ class AdmittanceFilter:
         self._tick = (0.0, admittance.transition(0.0))
 
     def step(self, force_errors: Sequence[float | None], dt: float) -> tuple[float, ...]:
-        """Return the offsets after a tick in which each foot is pushed by a constant force.
+        """Return the offsets after a tick with constant force errors.
 
         Parameters
         ----------
         force_errors : sequence of (float or None), length legs
-            What the ground pushes more than it should [N]; None or NaN where that is not known: the foot goes back.
+            Measured minus expected upward force [N]; None or NaN where unknown: the offset returns to 0.
         dt : float
-            Length of the tick, finite, 0 or more [s].
+            Length of the tick, finite and at least 0 [s].
         """
         if dt != self._tick[0]:
             self._tick = dt, self.admittance.transition(dt)
@@ -163,11 +164,11 @@ class AdmittanceFilter:
         stiffness = self.admittance.stiffness
         offsets, speeds = [], []
         for x, v, force in zip(self.offsets, self.speeds, force_errors, strict=True):
-            goal = 0.0
+            target = 0.0
             if force is not None and not math.isnan(force):
-                goal = (max_force if force > max_force else max(force, -max_force)) / stiffness
-            away = x - goal
-            offsets.append(goal + xx * away + xv * v)
-            speeds.append(vx * away + vv * v)
+                target = (max_force if force > max_force else max(force, -max_force)) / stiffness
+            distance = x - target
+            offsets.append(target + xx * distance + xv * v)
+            speeds.append(vx * distance + vv * v)
         self.offsets, self.speeds = tuple(offsets), tuple(speeds)
         return self.offsets

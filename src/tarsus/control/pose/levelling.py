@@ -1,9 +1,9 @@
-"""Holding the body level or along the slope, its centre of mass over the support.
+"""Levelling: keeps the body level or parallel to the slope, with its centre of mass over the support polygon.
 
-The walker's ground frame G has a vertical of its own. On ground that is steeper than the walker knows, or on feet that
-give way, it leans against gravity's. An attitude sensor tells how: with R the attitude that B was commanded to have in
-G, and u the upward direction in B that was measured, ``R u`` is gravity's upward direction in G. Slowly averaged, it is
-the one thing estimated here; the corrections follow from it in closed form (docs/ground.md).
+The vertical of the ground frame G deviates from gravity's where the ground is steeper than estimated, or where legs
+are compliant. With R the commanded attitude of B in G and u the measured upward direction in B, ``R u`` is the upward
+direction of gravity in G. Its low-pass filtered value is the only state estimated here; the corrections follow from it
+in closed form (docs/ground.md).
 """
 
 from __future__ import annotations
@@ -16,7 +16,14 @@ import numpy as np
 
 from tarsus.arrays import Array
 from tarsus.control.filters import RateLimitedFilter
-from tarsus.control.pose.attitude import CommandedAttitude, direction, rotated, slope_along, tilt_onto, turned
+from tarsus.control.pose.attitude import (
+    CommandedAttitude,
+    rotate_roll_pitch,
+    rotate_z,
+    slope_along,
+    tilt_onto,
+    upward_direction,
+)
 from tarsus.control.readings import Vector
 from tarsus.control.sensing.ground_plane import GroundPlane
 from tarsus.errors import InputError, UnknownNameError
@@ -31,22 +38,22 @@ _STEP = 1e-3  # [m]
 
 
 def com_shift_ratio(robot: Robot, feet: Array) -> float:
-    """Return the share of the body's shift over the ground that the centre of mass makes.
+    """Return the shift of the centre of mass over the shift of the body, with the feet fixed.
 
-    The body's mass goes all the way, the links' less the nearer they are to their feet. By central differences over
-    a millimetre; the mean of forward and sideways.
+    The links move less than the body, the less the nearer they are to their feet. Computed by central differences
+    over a millimetre, as the mean of forward and sideways.
 
     Parameters
     ----------
     robot : Robot
-        One robot; where its file gives no masses, the links count as massless and the share is 1.
+        One robot; without masses in its file the links count as massless and the ratio is 1.
     feet : array, shape (legs, 3)
-        Where the feet stand, in B before the shift [m].
+        Feet in B before the shift [m].
 
     Returns
     -------
     float
-        Between the body's share of the whole mass and 1, in any stance that is not close to a leg's limits.
+        Between the body's fraction of the total mass and 1, for stances that are not close to joint limits.
 
     Raises
     ------
@@ -63,19 +70,19 @@ def com_shift_ratio(robot: Robot, feet: Array) -> float:
 LevellingMode: TypeAlias = Literal["level", "follow"]
 LEVELLING_MODES: tuple[LevellingMode, ...] = ("level", "follow")
 
-# Below this an estimate that fades away has gone: a lean of less than a hundred-thousandth of a degree.
-_NOTHING = 1e-7
+# Below this a decaying estimate is set to 0: a hundred-thousandth of a degree.
+_NEGLIGIBLE = 1e-7
 
 
 class Correction(NamedTuple):
-    """What to add to the command.
+    """Correction that is added to the commanded body pose.
 
     Attributes
     ----------
     x, y : float
-        Shift of B along the axes of G turned by the commanded yaw [m].
+        Shift of B along the axes of G rotated by the commanded yaw [m].
     roll, pitch : float
-        To be added to the commanded ones [rad].
+        Changes of the commanded roll and pitch [rad].
     """
 
     x: float = 0.0
@@ -85,47 +92,45 @@ class Correction(NamedTuple):
 
 
 class Levelling:
-    """The body's correction on ground that is not level, tick by tick.
+    """Correction of the body pose on ground that is not level, tick by tick.
 
-    ``"level"`` keeps the attitude that is wished for against gravity, ``"follow"`` against the plane through the
-    stance feet; None goes back to no correction. In both, the centre of mass stays, seen along gravity, over the place
-    where it is on level ground. Without an attitude the corrections that need one fade to zero, and gravity is taken
-    to act along G's z.
+    ``"level"`` keeps the commanded attitude relative to gravity, ``"follow"`` relative to the plane through the stance
+    feet; None returns to no correction. In both modes the centre of mass, projected along gravity, stays over the point
+    where it is on level ground. Without an attitude reading the estimate of gravity decays to G's z axis.
 
-    Whatever comes in, corrections stay within their bounds, change no faster than their rates, and change smoothly.
+    For any input, corrections stay within their bounds and rates, with a continuous rate.
 
     Parameters
     ----------
     mode : "level", "follow" or None
-        What to do; may be changed at any time by setting the attribute of that name.
+        What the attitude refers to; the attribute `mode` may be set at any time.
     com : (x, y, z)
         Centre of mass in B [m].
     com_shift_ratio : float
-        How far the centre of mass goes with the body when it is shifted over feet that stay, as a share: less than
-        1, as the legs' masses lag behind.
+        Shift of the centre of mass over the shift of the body, from `com_shift_ratio`.
     gain : float
-        How fast the estimate follows the sensor [1/s]. Where sensor and servos together are late by T, stable while
-        ``gain T < 1``; a third of that settles without swinging.
+        Bandwidth of the estimate [1/s]. With a total delay T of sensor and servos, stable while ``gain T < 1``; a third
+        of that settles without overshoot.
     max_tilt : float
-        Greatest correction of roll and pitch, together [rad].
+        Greatest magnitude of the correction of roll and pitch together [rad].
     max_shift : float
         Greatest shift [m].
     tilt_rate, shift_rate : float
-        Greatest speeds of both [rad/s, m/s].
+        Greatest rates of both [rad/s, m/s].
     frequency : float
-        How fast the corrections follow their goals [rad/s].
+        Bandwidth with which the corrections follow their targets [rad/s].
 
     Attributes
     ----------
     correction : Correction
-        The last.
+        The last correction.
     lean : (x, y)
-        Gravity's upward direction in G as estimated: its parts along G's x and y.
+        Estimated upward direction of gravity in G: its components along x and y.
 
     Raises
     ------
     UnknownNameError
-        If there is no such mode.
+        If the mode is unknown.
     InputError
         If a bound is not positive, or `com` not three finite numbers.
     """
@@ -166,7 +171,7 @@ class Levelling:
 
     @property
     def mode(self) -> LevellingMode | None:
-        """What to do: "level", "follow" or None."""
+        """What the attitude refers to: "level", "follow" or None."""
         return self._mode
 
     @mode.setter
@@ -183,24 +188,24 @@ class Levelling:
         Parameters
         ----------
         dt : float
-            Length of the tick [s]; nothing moves unless it is finite and positive.
+            Length of the tick [s]; the correction stays unless it is finite and positive.
         plane : GroundPlane or None
             The plane through the stance feet in G; None for level ground.
         attitude : (roll, pitch) or None
-            How B leans in the world, as measured and admitted [rad].
-        commanded : Commanded
-            Where the command has the body; nothing moves unless it is finite.
+            Valid reading of the attitude of B in the world [rad].
+        commanded : CommandedAttitude
+            Commanded attitude and height; the correction stays unless it is finite.
         """
         if not (0.0 < dt < math.inf and math.isfinite(sum(commanded))):
             return self.correction
         cos, sin = math.cos(commanded.yaw), math.sin(commanded.yaw)
         self._estimate(dt, attitude, commanded, cos, sin)
-        up = direction(*turned(*self.lean, cos, -sin))
+        up = upward_direction(*rotate_z(*self.lean, cos, -sin))
         tilt = shift = (0.0, 0.0)
         if self._mode is not None:
             slope = slope_along(plane, cos, sin)
-            steep = math.sqrt(1.0 + slope[0] * slope[0] + slope[1] * slope[1])
-            normal = (-slope[0] / steep, -slope[1] / steep, 1.0 / steep)
+            length = math.sqrt(1.0 + slope[0] * slope[0] + slope[1] * slope[1])
+            normal = (-slope[0] / length, -slope[1] / length, 1.0 / length)
             tilt = tilt_onto(up if self._mode == "level" else normal, commanded)
             shift = self._shift_over(up, slope, commanded)
         roll, pitch = self._tilt.step(tilt, dt)
@@ -211,29 +216,31 @@ class Levelling:
     def _estimate(
         self, dt: float, attitude: tuple[float, float] | None, commanded: CommandedAttitude, cos: float, sin: float
     ) -> None:
-        """Move the estimate of gravity's direction in G towards what is measured, or back to G's own vertical."""
+        """Move the estimate of gravity's direction in G towards the measured one, or back to G's z axis."""
         x = y = 0.0
         known = attitude is not None and math.isfinite(attitude[0] + attitude[1])
         if known and attitude is not None:
             roll, pitch = attitude
             tilt = math.cos(pitch)
             up = (-math.sin(pitch), tilt * math.sin(roll), tilt * math.cos(roll))
-            # The correction that is under way is in the sum: no wind-up, whatever bounds or slows it.
-            up = rotated(up, commanded.roll + self.correction.roll, commanded.pitch + self.correction.pitch)
-            x, y = turned(up[0], up[1], cos, sin)
-        share = -math.expm1(-self._gain * dt)
-        x, y = self.lean[0] + share * (x - self.lean[0]), self.lean[1] + share * (y - self.lean[1])
-        self.lean = (x, y) if known or abs(x) + abs(y) > _NOTHING else (0.0, 0.0)
+            # With the correction actually applied, bounds and rates cause no wind-up.
+            up = rotate_roll_pitch(up, commanded.roll + self.correction.roll, commanded.pitch + self.correction.pitch)
+            x, y = rotate_z(up[0], up[1], cos, sin)
+        fraction = -math.expm1(-self._gain * dt)
+        x, y = self.lean[0] + fraction * (x - self.lean[0]), self.lean[1] + fraction * (y - self.lean[1])
+        self.lean = (x, y) if known or abs(x) + abs(y) > _NEGLIGIBLE else (0.0, 0.0)
 
     def _shift_over(self, up: Vector, slope: tuple[float, float], commanded: CommandedAttitude) -> tuple[float, float]:
-        """Return the shift that brings the centre of mass, seen along gravity, over its place on level ground.
+        """Return the shift that keeps the centre of mass, projected along gravity, over its point on level ground.
 
-        That place is on the ground under the centre of mass as it was wished for, seen along G's z.
+        That point is the projection of the centre of mass of the commanded pose along G's z.
         """
-        wished = rotated(self._com, commanded.roll, commanded.pitch)
-        tilted = rotated(self._com, commanded.roll + self.correction.roll, commanded.pitch + self.correction.pitch)
-        height = commanded.height + tilted[2] - slope[0] * wished[0] - slope[1] * wished[1]
+        nominal = rotate_roll_pitch(self._com, commanded.roll, commanded.pitch)
+        tilted = rotate_roll_pitch(
+            self._com, commanded.roll + self.correction.roll, commanded.pitch + self.correction.pitch
+        )
+        height = commanded.height + tilted[2] - slope[0] * nominal[0] - slope[1] * nominal[1]
         return (
-            (height * up[0] / up[2] + wished[0] - tilted[0]) / self._com_shift_ratio,
-            (height * up[1] / up[2] + wished[1] - tilted[1]) / self._com_shift_ratio,
+            (height * up[0] / up[2] + nominal[0] - tilted[0]) / self._com_shift_ratio,
+            (height * up[1] / up[2] + nominal[1] - tilted[1]) / self._com_shift_ratio,
         )

@@ -1,4 +1,4 @@
-"""How the body is to be carried: where its posture goes, how fast, and by how much it sways there."""
+"""Pose controller: the target posture of the body, its sway, and the bandwidth with which it is followed."""
 
 from __future__ import annotations
 
@@ -12,31 +12,31 @@ __all__ = ["ELEVATION_BANDWIDTH", "PoseController", "elevation_bandwidth"]
 
 Floats = np.ndarray[Any, Any]
 
-# How fast the posture follows [rad/s], and how fast it may move the body at the most [m/s], turn it [rad/s].
+# Greatest bandwidth of the posture [rad/s], and the greatest speed and turning rate of the body [m/s, rad/s].
 _BANDWIDTH = 4.0
 _BODY_SPEED, _BODY_TURN = 0.08, 0.5
 ELEVATION_BANDWIDTH = _BANDWIDTH
-"""How fast the heading frame follows the ground's height [rad/s]."""
+"""Greatest bandwidth with which the heading frame follows the height of the ground [rad/s]."""
 
-# How near the posture counts as reached, and how near its sway [m, rad].
-_REACHED, _SWAYS = 2e-4, 1e-3
-_NOWHERE = [0.0] * (SWING_HEIGHT + 1)
+# Tolerances within which a posture and a sway count as reached [m, rad].
+_POSTURE_TOLERANCE, _SWAY_TOLERANCE = 2e-4, 1e-3
+_NO_DISTANCE = [0.0] * (SWING_HEIGHT + 1)
 
 
 class PoseController:
-    """The posture to go to, and the sway.
+    """Target posture and sway of the body.
 
     Parameters
     ----------
     posture : array, shape (7,)
-        The posture to begin with.
+        The initial posture.
 
     Attributes
     ----------
     posture : array, shape (7,)
-        The posture to go to.
+        The target posture.
     target : array, shape (13,)
-        The same with the sway's amplitudes; the same array for as long as it stays the same.
+        The target posture and the sway's amplitudes; the same array object until either changes.
     """
 
     def __init__(self, posture: Floats) -> None:
@@ -44,94 +44,98 @@ class PoseController:
         self.target = np.append(posture, np.zeros(SWING_HEIGHT))
 
     def set_posture(self, posture: Floats) -> None:
-        """Go to another posture.
+        """Set the target posture.
 
         Parameters
         ----------
         posture : array, shape (7,)
-            The posture.
+            The target posture.
         """
         self.posture = posture
         self.target = np.append(posture, self.target[SWING_HEIGHT + 1 :])
 
-    def set_sway(self, wished: tuple[float, ...], *, frequency: float, beats: int) -> None:
-        """Sway as much as is wished for and slow enough.
+    def set_sway(self, sway: tuple[float, ...], *, frequency: float, beats: int) -> None:
+        """Set the sway, reduced to what the joints can follow.
 
         Parameters
         ----------
-        wished : tuple of float
-            Amplitudes: x, y, z [m], roll, pitch, yaw [rad].
+        sway : tuple of float
+            Commanded amplitudes: x, y, z [m], roll, pitch, yaw [rad].
         frequency : float
-            Cycles a second [1/s].
+            Gait cycles per second [1/s].
         beats : int
-            How often in a cycle feet are lifted.
+            Number of lift-offs per cycle, of legs that lift together.
         """
-        if not any(wished) and not any(self.target[SWING_HEIGHT + 1 :].tolist()):
+        if not any(sway) and not any(self.target[SWING_HEIGHT + 1 :].tolist()):
             return
-        amplitude = np.array(wished)
+        amplitude = np.array(sway)
         if amplitude.any():
             amplitude *= sway_fraction(amplitude, frequency, beats)
         if (self.target[SWING_HEIGHT + 1 :] != amplitude).any():
             self.target = np.append(self.posture, amplitude)
 
     def is_swaying(self, value: Floats) -> bool:
-        """Return whether a posture sways, or is to.
+        """Return whether a posture sways, or its target does.
 
         Parameters
         ----------
         value : array, shape (13,)
-            The posture now.
+            The current posture.
         """
         swaying = any(self.target[SWING_HEIGHT + 1 :].tolist())
         return swaying or (value is not self.target and any(value[SWING_HEIGHT + 1 :].tolist()))
 
     def reached(self, value: Floats) -> bool:
-        """Return whether a posture is the one to go to, and sways as it is to.
+        """Return whether a posture and its sway have reached their target.
 
         Parameters
         ----------
         value : array, shape (13,)
-            The posture now.
+            The current posture.
         """
         if value is self.target:
             return True
         off: list[float] = np.abs(value - self.target).tolist()
-        return max(off[: SWING_HEIGHT + 1]) < _REACHED and max(off[SWING_HEIGHT + 1 :]) < _SWAYS
+        return max(off[: SWING_HEIGHT + 1]) < _POSTURE_TOLERANCE and max(off[SWING_HEIGHT + 1 :]) < _SWAY_TOLERANCE
 
     def bandwidth(self, value: Floats) -> float:
-        """Return how fast the posture is to follow, for the body to be no faster than it may [rad/s].
+        """Return the bandwidth at which the body keeps to its greatest speeds [rad/s].
 
         Parameters
         ----------
         value : array, shape (13,)
-            The posture now.
+            The current posture.
         """
-        left = self._left(value)
-        if max(left) < _REACHED:
+        distance = self._distance(value)
+        if max(distance) < _POSTURE_TOLERANCE:
             return _BANDWIDTH
-        far = max(max(left[:3]) / _BODY_SPEED, max(left[3:SWING_HEIGHT]) / _BODY_TURN, left[SWING_HEIGHT] / _BODY_SPEED)
-        return _no_faster(far)
+        time = max(
+            max(distance[:3]) / _BODY_SPEED,
+            max(distance[3:SWING_HEIGHT]) / _BODY_TURN,
+            distance[SWING_HEIGHT] / _BODY_SPEED,
+        )
+        return _bandwidth_for(time)
 
-    def _left(self, value: Floats) -> list[float]:
-        """Return how far there is to go, each of the posture's numbers."""
+    def _distance(self, value: Floats) -> list[float]:
+        """Return the distance to the target, for each number of the posture."""
         if value is self.target:
-            return _NOWHERE
-        posture, now = self.posture.tolist(), value[: SWING_HEIGHT + 1].tolist()
-        return [abs(a - b) for a, b in zip(posture, now, strict=True)]
+            return _NO_DISTANCE
+        posture, current = self.posture.tolist(), value[: SWING_HEIGHT + 1].tolist()
+        return [abs(a - b) for a, b in zip(posture, current, strict=True)]
 
 
 def elevation_bandwidth(gap: float) -> float:
-    """Return how fast the heading frame is to follow the ground, for the body to be no faster than it may [rad/s].
+    """Return the bandwidth of the heading frame's height at which the body keeps to its greatest speed [rad/s].
 
     Parameters
     ----------
     gap : float
-        How much higher the ground is [m].
+        Height of the ground over the heading frame [m].
     """
-    return _no_faster(abs(gap) / _BODY_SPEED)
+    return _bandwidth_for(abs(gap) / _BODY_SPEED)
 
 
-def _no_faster(time: float) -> float:
-    """Return how fast to follow what is so long away at the greatest speed [rad/s]."""
-    # A lag whose bandwidth is 2 v over the way that is left comes to the speed v, and goes on at it.
+def _bandwidth_for(time: float) -> float:
+    """Return the bandwidth for a target that is this far away in time at the greatest speed [rad/s]."""
+    # A critically damped filter with bandwidth 2 v / distance, renewed every tick, reaches the speed v and keeps it.
     return min(_BANDWIDTH, 2 / max(time, 1e-9))

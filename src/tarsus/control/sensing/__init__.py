@@ -1,1 +1,1 @@
-"""What sensor readings are worth: validation, ground plane, foot forces."""
+"""Validation of sensor readings, ground plane, foot forces."""

@@ -1,4 +1,4 @@
-"""The ground that a robot stands on: a plane through its stance feet."""
+"""Ground plane: least-squares fit through the stance feet."""
 
 from __future__ import annotations
 
@@ -13,24 +13,24 @@ from tarsus.kinematics.polygon import as_mask
 
 __all__ = ["FLAT", "GroundPlane", "ground_plane"]
 
-# Feet are as good as in a line where their spread across it is this share of their spread along it, squared: there
-# a millimetre's error in a foot's height would tilt the plane by degrees. Two feet, or one, always are.
+# Feet count as collinear where the square of their spread across a line is this fraction of that along it: there, an
+# error of a millimetre in a foot's height tilts the plane by degrees. One or two feet are always collinear.
 _NARROW = 0.05**2
-_FARTHEST = 1e9  # [m]; beyond, squares of squares would overflow
+_FARTHEST = 1e9  # [m]; beyond, fourth powers could overflow
 
 
 @dataclass(frozen=True, slots=True)
 class GroundPlane:
-    """A plane ``z = height + slope . ((x, y) - place)`` in G: numbers, or arrays of one shape for a batch.
+    """A plane ``z_0 + slope . ((x, y) - (x_0, y_0))`` in G: numbers, or arrays of one shape for a batch.
 
     Attributes
     ----------
     x, y : float or array, shape (...)
-        The place where its height is given: the middle of the feet [m].
+        Reference point: the mean of the feet [m].
     z : float or array, shape (...)
-        Height there [m].
+        Height of the plane there [m].
     slope_x, slope_y : float or array, shape (...)
-        How much it rises along x and y [m/m].
+        Rise along x and y [m/m].
     """
 
     x: Array = 0.0
@@ -40,12 +40,12 @@ class GroundPlane:
     slope_y: Array = 0.0
 
     def height(self, x: Array, y: Array) -> Array:
-        """Return the plane's height at a place.
+        """Return the height of the plane at a point.
 
         Parameters
         ----------
         x, y : float or array, shape (...)
-            The place in G [m].
+            The point in G [m].
 
         Returns
         -------
@@ -60,51 +60,51 @@ FLAT = GroundPlane()
 
 
 def ground_plane(feet: Array, contacts: Array, previous: GroundPlane = FLAT) -> GroundPlane:
-    """Return the plane from which the stance feet's heights differ least, in squares.
+    """Return the least-squares plane through the stance feet.
 
-    Three feet or more that are not in a line give a plane. Otherwise its slope stays what it was, and goes
-    through the feet's middle; with no foot down the plane stays as it was.
+    Three or more feet that are not collinear determine a plane. With fewer, or collinear, feet it keeps the previous
+    slope and passes through their mean; with no foot in stance the previous plane is returned.
 
     Parameters
     ----------
     feet : array, shape (..., legs, 3)
         Feet in G [m].
     contacts : array of bool, shape (..., legs)
-        Which are on the ground.
+        Which feet are in stance.
     previous : GroundPlane
-        The plane before: flat ground, where nothing is known.
+        The previous plane; flat ground by default.
 
     Returns
     -------
     GroundPlane
-        Of plain numbers for one robot, of arrays ``(...)`` for a batch.
+        Plain numbers for one robot, arrays ``(...)`` for a batch.
 
     Raises
     ------
     InputError
-        If a shape is wrong, `contacts` is not of booleans, or a foot on the ground is NaN or infinite.
+        If a shape is wrong, `contacts` is not boolean, or a stance foot is NaN, infinite or more than 1e9 m away.
 
     Notes
     -----
-    The normal equations of ``z - z_mean = a (x - x_mean) + b (y - y_mean)``: two unknowns, and well conditioned
-    wherever the feet are not in a line, wherever in G they are.
+    Solves the normal equations of ``z - z_mean = a (x - x_mean) + b (y - y_mean)``. Centring keeps these two equations
+    well conditioned at any distance from the origin of G, unless the feet are collinear.
     """
     feet, contacts = np.asarray(feet, dtype=float), as_mask(np, contacts, name="contacts")
     legs = contacts.shape[-1] if contacts.ndim else 0
     require_shape("feet", feet, (legs, 3))
     if feet.ndim == 2 and contacts.ndim == 1:
-        return _one(feet.tolist(), contacts.tolist(), previous)
-    return _many(feet, contacts, previous)
+        return _fit_one(feet.tolist(), contacts.tolist(), previous)
+    return _fit_batch(feet, contacts, previous)
 
 
-def _one(feet: list[list[float]], contacts: list[bool], previous: GroundPlane) -> GroundPlane:
-    """Fit one plane in plain numbers: several times as fast as arrays of six."""
+def _fit_one(feet: list[list[float]], contacts: list[bool], previous: GroundPlane) -> GroundPlane:
+    """Fit one plane in plain numbers: for six feet several times as fast as arrays."""
     down = [foot for foot, touch in zip(feet, contacts, strict=True) if touch]
     count = len(down)
     if not count:
         return previous
     if not all(abs(part) < _FARTHEST for foot in down for part in foot):
-        raise _not_there()
+        raise _bad_feet()
     mean_x, mean_y, mean_z = (sum(parts) / count for parts in zip(*down, strict=True))
     xx = xy = yy = xz = yz = 0.0
     for foot in down:
@@ -117,11 +117,11 @@ def _one(feet: list[list[float]], contacts: list[bool], previous: GroundPlane) -
     return GroundPlane(mean_x, mean_y, mean_z, (yy * xz - xy * yz) / area, (xx * yz - xy * xz) / area)
 
 
-def _many(feet: np.ndarray[Any, Any], contacts: np.ndarray[Any, Any], previous: GroundPlane) -> GroundPlane:
+def _fit_batch(feet: np.ndarray[Any, Any], contacts: np.ndarray[Any, Any], previous: GroundPlane) -> GroundPlane:
     broadcast_shapes("feet and contacts", feet.shape[:-2], contacts.shape[:-1])
     feet = np.where(contacts[..., None], feet, 0.0)
     if not (np.abs(feet) < _FARTHEST).all():
-        raise _not_there()
+        raise _bad_feet()
     count = np.broadcast_to(contacts.sum(-1), feet.shape[:-2])
     mean = feet.sum(-2) / np.maximum(count, 1)[..., None]
     x, y, z = np.moveaxis(np.where(contacts[..., None], feet - mean[..., None, :], 0.0), -1, 0)
@@ -139,5 +139,5 @@ def _many(feet: np.ndarray[Any, Any], contacts: np.ndarray[Any, Any], previous: 
     )
 
 
-def _not_there() -> InputError:
-    return InputError(f"feet: a foot on the ground is NaN, infinite or more than {_FARTHEST:g} m away")
+def _bad_feet() -> InputError:
+    return InputError(f"feet: a stance foot is NaN, infinite or more than {_FARTHEST:g} m away")

@@ -1,4 +1,4 @@
-"""What is under the feet: what the walker feels of the ground, and what it has its feet do about that."""
+"""Terrain adaptation: the ground estimate and the feet's reactions to early, late and missing ground."""
 
 from __future__ import annotations
 
@@ -30,27 +30,27 @@ __all__ = ["TerrainAdaptation"]
 
 Floats = np.ndarray[Any, Any]
 
-# What share of the swing is over before ground may be met, and how much higher that is than it was expected [m].
-_DESCENDING, _EARLY = 0.5, 1e-3
-# How long a foot is taken to touch or not to touch as it was last felt to [s].
-_LASTS = 0.5
+# Ground contact counts as early in this part of the swing, and at least this far above the expected ground [m].
+_EARLIEST_PHASE, _LEAST_HEIGHT = 0.5, 1e-3
+# A missing contact reading is replaced by the last one for this long [s].
+_CONTACT_TIMEOUT = 0.5
 
 
 class TerrainAdaptation:
-    """What a walker knows of the ground under its feet, and the feet that look for it.
+    """Estimate of the ground under a walking robot, and the reactions of its feet.
 
     Parameters
     ----------
     robot : Robot
         A single robot.
     angles, feet : array, shape (legs, 3)
-        Joint angles [rad] and feet in G [m] when it stands.
+        Joint angles [rad] and feet in G [m] in the initial stance.
     acceleration : array, shape (legs, 3)
-        Greatest of each joint [rad/s^2].
+        Acceleration limits of the joints [rad/s^2].
     levelling : "level", "follow" or None
-        Whether the body stays level on ground that is not, or follows its slope.
+        Whether the body stays level on a slope, follows it, or neither.
     admittance : Admittance, optional
-        How the feet give way to the forces on them; left out, they don't.
+        Compliance of the feet; left out, they are stiff.
 
     Attributes
     ----------
@@ -59,9 +59,9 @@ class TerrainAdaptation:
     estimate : GroundEstimate or None
         The last estimate; None without feedback.
     hold_time : float
-        How long feet may have to wait for others that look for ground [s].
+        How long a stance may be extended while other feet search for ground [s].
     searches : GroundSearch
-        The feet that do.
+        The feet that search for ground.
     """
 
     def __init__(
@@ -78,42 +78,42 @@ class TerrainAdaptation:
         self.hold_time = 0.0
         self.searches = GroundSearch(acceleration)
         self.has_feedback = levelling is not None or admittance is not None
-        self._robot, self._gives_way = robot, admittance is not None
+        self._robot, self._compliant = robot, admittance is not None
         self._estimator = GroundEstimator(robot, angles, feet, levelling=levelling, admittance=admittance)
         self._recovery = HoleRecovery()
-        self._touching: list[bool | None] = [None] * robot.legs
-        self._since = [0.0] * robot.legs
+        self._contacts: list[bool | None] = [None] * robot.legs
+        self._contact_ages = [0.0] * robot.legs
         self._elevation = ZERO_ELEVATION
 
     @property
     def terrain(self) -> TerrainEstimate:
-        """How the ground lies, as far as it is felt."""
+        """Slope of the ground, and the depth below it that stances must allow for."""
         if self.estimate is None:
             return LEVEL_TERRAIN
-        return TerrainEstimate(self.estimate.slope, SEARCH_DEPTH if self.hold_time or self._gives_way else 0.0)
+        return TerrainEstimate(self.estimate.slope, SEARCH_DEPTH if self.hold_time or self._compliant else 0.0)
 
     @property
     def stops_walk(self) -> bool:
-        """Whether the robot is to stand still, as feet look for ground."""
+        """Whether the robot stands still while feet search for ground."""
         return bool(self.searches) and not self.recovering
 
     @property
     def recovering(self) -> bool:
-        """Whether a foot over a hole is to be drawn back once all others are down."""
+        """Whether feet over a hole swing again once all others are down."""
         return self._recovery.active
 
     def sense(
         self,
         readings: SensorReadings | None,
         dt: float,
-        now: GaitState,
+        state: GaitState,
         *,
         feet: Floats,
         contacts: Floats,
         angles: Floats,
         commanded: CommandedAttitude,
     ) -> None:
-        """Take in what is measured.
+        """Update the estimate from the readings of one tick.
 
         Parameters
         ----------
@@ -121,157 +121,170 @@ class TerrainAdaptation:
             The readings.
         dt : float
             Time since the last tick [s].
-        now : Moment
-            The moment.
+        state : GaitState
+            The state of the walk.
         feet, angles : array, shape (legs, 3)
-            The feet in G [m], the joints [rad].
+            Feet in G [m], joint angles [rad].
         contacts : array of bool, shape (legs,)
-            Which feet the walker has put down.
-        commanded : Commanded
-            How the body is asked to stand.
+            Which feet are in stance.
+        commanded : CommandedAttitude
+            Commanded attitude and height of the body.
         """
         self.has_feedback = True
-        lean = now.posture.value[3:5] - (commanded.roll, commanded.pitch)
-        self._estimator.set_applied_correction(float(lean[0]), float(lean[1]))
+        applied = state.posture.value[3:5] - (commanded.roll, commanded.pitch)
+        self._estimator.set_applied_correction(float(applied[0]), float(applied[1]))
         self.estimate = self._estimator.step(
             readings,
             dt,
             feet=feet,
-            offsets=now.admittance_offset.value,
+            offsets=state.admittance_offset.value,
             contacts=contacts,
-            yaw=now.yaw,
+            yaw=state.yaw,
             commanded=commanded,
             angles=angles,
         )
-        # A lag is late by 2 over its bandwidth: where the robot will be by then.
-        forward, left, _ = now.twist.value.tolist()
-        ahead = now.origin + cmath.exp(1j * now.yaw) * complex(forward, left) * (2 / ELEVATION_BANDWIDTH)
+        # A critically damped filter lags by 2 / bandwidth: the ground's height is taken where the robot will be then.
+        forward, left, _ = state.twist.value.tolist()
+        ahead = state.origin + cmath.exp(1j * state.yaw) * complex(forward, left) * (2 / ELEVATION_BANDWIDTH)
         self._elevation = np.array([self._estimator.plane.height(ahead.real, ahead.imag)])
-        self._remember(self.estimate.contacts, dt)
+        self._update_contacts(self.estimate.contacts, dt)
         if self.estimate.contacts is not None:
-            # A foot that finds no ground is noticed a tick later, and the walk takes a while to stop.
+            # Missing ground is detected one tick later, and the walk takes a while to stop.
             self.hold_time = max(self.hold_time, STOP_DURATION + dt)
 
-    def _remember(self, contacts: tuple[bool | None, ...] | None, dt: float) -> None:
-        """Note which feet touch; where that is not known, they do as they did, for a while."""
-        for leg, contact in enumerate(contacts or (None,) * len(self._since)):
-            self._since[leg] = 0.0 if contact is not None else self._since[leg] + dt
-            if contact is not None or self._since[leg] > _LASTS:
-                self._touching[leg] = contact
+    def _update_contacts(self, contacts: tuple[bool | None, ...] | None, dt: float) -> None:
+        """Store the contacts; one that is missing keeps its last value until the timeout."""
+        for leg, contact in enumerate(contacts or (None,) * len(self._contact_ages)):
+            self._contact_ages[leg] = 0.0 if contact is not None else self._contact_ages[leg] + dt
+            if contact is not None or self._contact_ages[leg] > _CONTACT_TIMEOUT:
+                self._contacts[leg] = contact
 
-    def early_contacts(self, now: GaitState) -> Floats:
-        """Return which feet have come to ground that they were not expected to meet yet ``(legs,)``.
+    def early_contacts(self, state: GaitState) -> Floats:
+        """Return which swinging feet touch ground above its expected height.
 
         Parameters
         ----------
-        now : Moment
-            The moment.
+        state : GaitState
+            The state of the walk.
+
+        Returns
+        -------
+        array of bool, shape (legs,)
+            Feet with early contact that was not detected before.
         """
         if self.estimate is None or self.estimate.contacts is None:
-            return np.zeros_like(now.down)
-        touch = np.array([contact is True for contact in self.estimate.contacts])
-        falls = ~now.down & (now.swing_phase > _DESCENDING) & (now.swing_phase < 1.0) & np.isinf(now.contact_phase)
-        if not (touch & falls).any():
-            return np.zeros_like(falls)
-        high = now.height(float(now.posture.value[SWING_HEIGHT])) > now.ground_height + _EARLY
-        return np.asarray(touch & falls & high)
+            return np.zeros_like(state.down)
+        touching = np.array([contact is True for contact in self.estimate.contacts])
+        descending = ~state.down & (state.swing_phase > _EARLIEST_PHASE) & (state.swing_phase < 1.0)
+        descending = descending & np.isinf(state.contact_phase)
+        if not (touching & descending).any():
+            return np.zeros_like(descending)
+        above = state.height(float(state.posture.value[SWING_HEIGHT])) > state.ground_height + _LEAST_HEIGHT
+        return np.asarray(touching & descending & above)
 
     def _touches(self, leg: int) -> bool:
-        """Return whether a foot at the end of its swing is on the ground, as far as is known."""
-        return self._touching[leg] is not False
+        """Return whether a foot at the end of its swing is on the ground; True where nothing is known."""
+        return self._contacts[leg] is not False
 
-    def may_land(self, now: GaitState, soon: Floats) -> tuple[Floats, bool]:
-        """Return which feet may be put down at the end of their swing, and whether none may be lifted meanwhile.
-
-        Parameters
-        ----------
-        now : Moment
-            The moment.
-        soon : array of bool, shape (legs,)
-            Whose swing ends with this tick.
-        """
-        lands = np.ones_like(now.down)
-        for leg in np.flatnonzero(~now.down).tolist():
-            lands[leg] = self.searches.stands(leg, touches=self._touches(leg))
-        # Where a foot that is about to land finds no ground, none may lift in its stead.
-        return lands, bool(self.searches) or bool((~now.down & ~lands & soon).any())
-
-    def step_inputs(self, now: GaitState, terrain: TerrainEstimate) -> dict[str, Any]:
-        """Return what a `Course` knows of the ground.
+    def may_land(self, state: GaitState, ending: Floats) -> tuple[Floats, bool]:
+        """Return which feet may end their swing, and whether all others are held on the ground.
 
         Parameters
         ----------
-        now : Moment
-            The moment.
-        terrain : Terrain
-            How the ground was thought to lie when the polygons were worked out.
+        state : GaitState
+            The state of the walk.
+        ending : array of bool, shape (legs,)
+            Feet whose swing ends in this tick.
+
+        Returns
+        -------
+        may_land : array of bool, shape (legs,)
+            Feet that may be put down.
+        hold : bool
+            Whether no foot may lift.
         """
-        assert self.estimate is not None  # or there is nothing to know
-        lowest = lowest_planned_height(now, terrain)
+        may_land = np.ones_like(state.down)
+        for leg in np.flatnonzero(~state.down).tolist():
+            may_land[leg] = self.searches.stands(leg, touches=self._touches(leg))
+        # While a foot that should land has no ground, no other may lift.
+        return may_land, bool(self.searches) or bool((~state.down & ~may_land & ending).any())
+
+    def step_inputs(self, state: GaitState, terrain: TerrainEstimate) -> dict[str, Any]:
+        """Return the fields of `StepInputs` that depend on the ground.
+
+        Parameters
+        ----------
+        state : GaitState
+            The state of the walk.
+        terrain : TerrainEstimate
+            The terrain for which the stance was planned.
+        """
+        assert self.estimate is not None  # called with feedback only
+        lowest = lowest_planned_height(state, terrain)
+        offsets = np.maximum(self.estimate.offsets, np.minimum(lowest - state.ground_height, 0.0))
         return {
-            # Feet in the air have nothing to give way to.
-            "admittance_offset": np.maximum(self.estimate.offsets, np.minimum(lowest - now.ground_height, 0.0))
-            * now.down,
+            "admittance_offset": offsets * state.down,
             "ground_plane": self._estimator.plane,
             "lowest_ground": lowest,
-            "highest_ground": lowest + (1 + RAISED_FRACTION) * SEARCH_DEPTH * float(now.posture.value[SWING_HEIGHT]),
+            "highest_ground": lowest + (1 + RAISED_FRACTION) * SEARCH_DEPTH * float(state.posture.value[SWING_HEIGHT]),
             "elevation": self._elevation,
-            "elevation_bandwidth": elevation_bandwidth(float(self._elevation[0] - now.elevation.value[0])),
+            "elevation_bandwidth": elevation_bandwidth(float(self._elevation[0] - state.elevation.value[0])),
         }
 
-    def search(self, now: GaitState, dt: float, *, terrain: TerrainEstimate, stance_time: float) -> GaitState:
-        """Let feet that have come down where there is no ground look for it, in the world's time.
+    def search(self, state: GaitState, dt: float, *, terrain: TerrainEstimate, stance_time: float) -> GaitState:
+        """Lower feet that are at the end of their swing without ground contact; not subject to time scaling.
 
         Parameters
         ----------
-        now : Moment
-            The moment.
+        state : GaitState
+            The state of the walk.
         dt : float
-            The time [s].
-        terrain : Terrain
-            How the ground was thought to lie when the polygons were worked out.
+            Length of the tick [s].
+        terrain : TerrainEstimate
+            The terrain for which the stance was planned.
         stance_time : float
-            How long feet are to stand [s].
+            Duration of a stance [s].
         """
 
         def lowest(leg: int) -> float:
-            reached = lowest_reachable_height(self._robot, now, leg, stance_time + self.hold_time)
-            return min(float(lowest_planned_height(now, terrain)[leg]), reached) if terrain.depth else reached
+            reachable = lowest_reachable_height(self._robot, state, leg, stance_time + self.hold_time)
+            return min(float(lowest_planned_height(state, terrain)[leg]), reachable) if terrain.depth else reachable
 
-        return self.searches.step(now, dt, touches=self._touches, lowest=lowest) if self.estimate else now
+        return self.searches.step(state, dt, touches=self._touches, lowest=lowest) if self.estimate else state
 
     def feet_landed(self, landed: Floats) -> None:
-        """Note which feet have been put down in this tick.
+        """Remove feet that have been put down from the search.
 
         Parameters
         ----------
         landed : array of bool, shape (legs,)
-            The feet.
+            Feet put down in this tick.
         """
         self.searches.land(landed)
         if not self.searches:
             self._recovery.landed(landed)
 
-    def recover(self, now: GaitState, asked: Request, gait: Gait) -> GaitState | None:
-        """Let feet that hang over a hole swing once more as soon as something else is asked for.
+    def recover(self, state: GaitState, request: Request, gait: Gait) -> GaitState | None:
+        """Repeat the swing of feet over a hole, once the command has changed.
 
         Parameters
         ----------
-        now : Moment
-            The moment.
-        asked : (twist, manner)
-            What is asked for.
+        state : GaitState
+            The state of the walk.
+        request : (twist, parameters)
+            What is commanded.
         gait : Gait
             Order of the steps.
 
         Returns
         -------
-        Moment or None
-            The moment after that; None where nothing comes of it.
+        GaitState or None
+            The state with the swing restarted, or the same one while the feet wait for all others to be down; None
+            if nothing changes.
         """
-        legs, begins = self.searches.failed_legs, self._recovery.consider(asked, now.origin)
-        if self._recovery.active and np.delete(now.down, legs).all():
+        legs, begins = self.searches.failed_legs, self._recovery.consider(request, state.origin)
+        if self._recovery.active and np.delete(state.down, legs).all():
             self.searches.give_up()
             self._recovery.begun(legs)
-            return repeated_swing(now, legs, gait, self._estimator.plane)
-        return now if begins else None
+            return repeated_swing(state, legs, gait, self._estimator.plane)
+        return state if begins else None

@@ -1,4 +1,4 @@
-"""Feet that meet ground before they were to: how gently they come to rest on it."""
+"""Early ground contact during swing: the foot stops on the ground within its joints' acceleration limits."""
 
 from __future__ import annotations
 
@@ -17,101 +17,106 @@ __all__ = ["relaxed_rate", "stop_on_contact"]
 
 Floats = np.ndarray[Any, Any]
 
-# What is tried: in how many times the least share of the swing feet stop; at its end, how much of the way from where
-# that would be to where they were bound for they sink.
-_LONGER = np.array([1.0, 1.4, 2.0, 2.8, 4.0, 5.6, 8.0, 8.0, 8.0])[:, None]
-_DEEPER = np.array([0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.35, 0.7])[:, None]
-# At which parts of a stop the joints are looked at: right at its beginning, where it is hardest, and all along it.
-_BEGINNING, _ALONG = np.linspace(0.0, 0.04, 3), np.linspace(0.0, 1.0, 9)
-# What of their acceleration it may take: the rest is for the body, whose own time speeds up or slows down.
-_TAKEN = 0.9
-# How much harder it is for the joints to swing to other ground, per lift that it is higher or lower; and how much
-# harder than planned a swing may be.
-_BY_RISE, _HARDER = 0.5, 1.1
+# Stops that are tried: their durations, in shortest ones; and how much of the way from where the foot would come to
+# rest to its planned foothold it sinks.
+_DURATIONS = np.array([1.0, 1.4, 2.0, 2.8, 4.0, 5.6, 8.0, 8.0, 8.0])[:, None]
+_SINKS = np.array([0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.35, 0.7])[:, None]
+# Where joint accelerations are evaluated: closely at the beginning, where they are greatest, and along the whole stop.
+_BEGINNING, _WHOLE = np.linspace(0.0, 0.04, 3), np.linspace(0.0, 1.0, 9)
+# Fraction of the acceleration limits available to the stop; the rest is for the motion of the body.
+_ACCELERATION_FRACTION = 0.9
+# Increase of joint acceleration per swing height of height difference; increase allowed without slowing down.
+_PER_RISE, _ALLOWED_INCREASE = 0.5, 1.1
 
 
 def stop_on_contact(
-    robot: Robot, now: GaitState, met: Floats, *, acceleration: Floats, swing_rate: Floats
+    robot: Robot, state: GaitState, early: Floats, *, acceleration: Floats, swing_rate: Floats
 ) -> GaitState:
-    """Return the moment in which feet have met the ground before they were to: they stop as soon as their joints can.
+    """Return the state in which feet with early contact stop as soon as their joints can.
 
-    Those that are too fast for any stop go on to where they were bound for.
+    Feet that no stop is gentle enough for continue to their planned foothold.
 
     Parameters
     ----------
     robot : Robot
         A single robot.
-    now : Moment
-        The moment.
-    met : array of bool, shape (legs,)
-        Which feet; in the air, and not met already.
+    state : GaitState
+        The state of the walk.
+    early : array of bool, shape (legs,)
+        Swinging feet with early contact that are not stopping yet.
     acceleration : array, shape (legs, 3)
-        Greatest of each joint [rad/s^2].
+        Acceleration limits of the joints [rad/s^2].
     swing_rate : array, shape (legs,)
-        What share of its swing each foot goes in a second [1/s].
+        Rate of each foot's swing phase [1/s].
     """
-    height, speed = _height_and_speed(now)
-    # (tried, legs)
-    give = np.minimum(_LONGER * EARLY_STOP_FRACTION, np.maximum(1 - now.swing_phase, 1e-9))
-    sinks = np.minimum(now.ground_height - height - speed * give / 3, 0.0) * _DEEPER
-    bend = _bend(robot, now, (height, speed), give, sinks, swing_rate)
-    works = (bend <= _TAKEN * acceleration).all(axis=-1) & met
+    height, speed = _height_and_speed(state)
+    # (stops, legs)
+    duration = np.minimum(_DURATIONS * EARLY_STOP_FRACTION, np.maximum(1 - state.swing_phase, 1e-9))
+    sink = np.minimum(state.ground_height - height - speed * duration / 3, 0.0) * _SINKS
+    needed = _joint_acceleration(robot, state, (height, speed), duration, sink, swing_rate)
+    works = (needed <= _ACCELERATION_FRACTION * acceleration).all(axis=-1) & early
     stops, first = works.any(axis=0), works.argmax(axis=0)[None]
-    give, sinks = (np.take_along_axis(tried, first, axis=0)[0] for tried in (give, sinks))
-    return now._replace(
-        foothold=np.where(stops, now.foot + now.swing_velocity * give / 3, now.foothold),
-        contact_phase=np.where(stops, now.swing_phase, now.contact_phase),
-        stop_phase=np.where(stops, give, now.stop_phase),
-        contact_height=np.where(stops, height, now.contact_height),
-        contact_speed=np.where(stops, speed, now.contact_speed),
-        ground_height=np.where(stops, height + speed * give / 3 + sinks, now.ground_height),
+    duration, sink = (np.take_along_axis(tried, first, axis=0)[0] for tried in (duration, sink))
+    return state._replace(
+        foothold=np.where(stops, state.foot + state.swing_velocity * duration / 3, state.foothold),
+        contact_phase=np.where(stops, state.swing_phase, state.contact_phase),
+        stop_phase=np.where(stops, duration, state.stop_phase),
+        contact_height=np.where(stops, height, state.contact_height),
+        contact_speed=np.where(stops, speed, state.contact_speed),
+        ground_height=np.where(stops, height + speed * duration / 3 + sink, state.ground_height),
     )
 
 
-def _height_and_speed(now: GaitState) -> tuple[Floats, Floats]:
-    """Return the feet's heights, and how these change with the share of the swing [m]."""
-    swing_height, step = float(now.posture.value[SWING_HEIGHT]), 1e-4
-    height = now.height(swing_height)
-    later = now._replace(swing_phase=np.minimum(now.swing_phase + step, 1.0)).height(swing_height)
+def _height_and_speed(state: GaitState) -> tuple[Floats, Floats]:
+    """Return the feet's heights and their derivatives by the swing phase [m]."""
+    swing_height, step = float(state.posture.value[SWING_HEIGHT]), 1e-4
+    height = state.height(swing_height)
+    later = state._replace(swing_phase=np.minimum(state.swing_phase + step, 1.0)).height(swing_height)
     return height, (later - height) / step
 
 
-def _bend(
-    robot: Robot, now: GaitState, falling: tuple[Floats, Floats], give: Floats, sinks: Floats, swing_rate: Floats
+def _joint_acceleration(
+    robot: Robot,
+    state: GaitState,
+    vertical: tuple[Floats, Floats],
+    duration: Floats,
+    sink: Floats,
+    swing_rate: Floats,
 ) -> Floats:
-    """Return the joints' greatest acceleration ``(tried, legs, 3)`` on the ways that feet stop on [rad/s^2]."""
-    height, speed = falling
-    # (tried, moments, legs)
-    give, part = give[:, None], np.concatenate([_BEGINNING, _ALONG])[:, None]
-    time = part * give / swing_rate
-    foot, _, _ = quintic(
-        (now.foot, now.swing_velocity, now.swing_acceleration), now.foot + now.swing_velocity * give / 3, give, part
-    )
-    over = now.admittance_offset.value - now.elevation.value
-    z = height + over + speed * give * stopping_fraction(part) + sinks[:, None] * ground_share(part)
-    forward, left, turning = now.twist.value.tolist()
-    excluded = complex(forward, left) * time * chord_factor(turning * time)
-    seen = ((foot - now.origin) * np.exp(-1j * now.yaw) - excluded) * np.exp(-1j * turning * time)
-    stand = stance_geometry_of(with_sway(now.posture.value, now.cycles, now.beats), now.foot)
-    solution = stand.solve(robot, seen.real, seen.imag, z)
-    angles, lasts = np.stack(solution[:3], axis=-1), (give / swing_rate)[..., None]
-    bends = []
-    for some, parts in ((angles[:, :3], _BEGINNING), (angles[:, 3:], _ALONG)):
-        bends.append(np.abs(np.diff(some, 2, axis=1)).max(axis=1) / ((parts[1] - parts[0]) * lasts[:, 0]) ** 2)
-    return np.asarray(np.maximum(*bends))
+    """Return the joints' greatest accelerations ``(stops, legs, 3)`` during each stop [rad/s^2]."""
+    height, speed = vertical
+    # (stops, samples, legs)
+    duration, progress = duration[:, None], np.concatenate([_BEGINNING, _WHOLE])[:, None]
+    time = progress * duration / swing_rate
+    swing = (state.foot, state.swing_velocity, state.swing_acceleration)
+    foot, _, _ = quintic(swing, state.foot + state.swing_velocity * duration / 3, duration, progress)
+    offset = state.admittance_offset.value - state.elevation.value
+    z = height + offset + speed * duration * stopping_fraction(progress) + sink[:, None] * ground_share(progress)
+    forward, left, turning = state.twist.value.tolist()
+    travelled = complex(forward, left) * time * chord_factor(turning * time)
+    in_heading = ((foot - state.origin) * np.exp(-1j * state.yaw) - travelled) * np.exp(-1j * turning * time)
+    stance = stance_geometry_of(with_sway(state.posture.value, state.cycles, state.beats), state.foot)
+    solution = stance.solve(robot, in_heading.real, in_heading.imag, z)
+    angles, seconds = np.stack(solution[:3], axis=-1), (duration / swing_rate)[..., None]
+    greatest = []
+    for part, samples in ((angles[:, :3], _BEGINNING), (angles[:, 3:], _WHOLE)):
+        step = (samples[1] - samples[0]) * seconds[:, 0]
+        greatest.append(np.abs(np.diff(part, 2, axis=1)).max(axis=1) / step**2)
+    return np.asarray(np.maximum(*greatest))
 
 
-def relaxed_rate(now: GaitState, duty_factor: float) -> float:
-    """Return how fast the walk's own time may run for swings that are shorter than planned, or end higher or lower.
+def relaxed_rate(state: GaitState, duty_factor: float) -> float:
+    """Return the fastest rate of scaled time for swings shorter than planned, or between different heights.
 
     Parameters
     ----------
-    now : Moment
-        The moment.
+    state : GaitState
+        The state of the walk.
     duty_factor : float
         Duty factor.
     """
-    swing_height = max(float(now.posture.value[SWING_HEIGHT]), 1e-3)
-    rise = np.abs(now.ground_height - now.start_height) / swing_height
-    harder = np.where(now.down, 1.0, (1 + _BY_RISE * rise) * ((1 - duty_factor) / now.swings(duty_factor)) ** 2)
-    return math.sqrt(_HARDER / max(float(harder.max()), _HARDER))
+    swing_height = max(float(state.posture.value[SWING_HEIGHT]), 1e-3)
+    rise = np.abs(state.ground_height - state.start_height) / swing_height
+    shortening = (1 - duty_factor) / state.swings(duty_factor)
+    increase = np.where(state.down, 1.0, (1 + _PER_RISE * rise) * shortening**2)
+    return math.sqrt(_ALLOWED_INCREASE / max(float(increase.max()), _ALLOWED_INCREASE))

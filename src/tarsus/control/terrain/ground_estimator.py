@@ -1,4 +1,4 @@
-"""What the walker makes of what it feels: the ground under each foot, how the body should lean, how feet give way."""
+"""Ground estimate from sensor readings: contacts, ground plane, body correction and compliance of the feet."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from tarsus.control.pose.admittance import Admittance, AdmittanceFilter
-from tarsus.control.pose.attitude import CommandedAttitude, slope_along, turned
+from tarsus.control.pose.attitude import CommandedAttitude, rotate_z, slope_along
 from tarsus.control.pose.levelling import Correction, Levelling, LevellingMode, com_shift_ratio
 from tarsus.control.readings import SensorReadings, ValidReadings
 from tarsus.control.sensing.foot_force import STANDARD_GRAVITY, FootForceEstimator, balanced_forces
@@ -21,26 +21,26 @@ __all__ = ["GroundEstimate", "GroundEstimator"]
 
 Floats = np.ndarray[Any, Any]
 
-# The body's correction and the ground's slope are gone over to in steps of these sizes: x, y [m], roll, pitch [rad],
-# slope along x and y.
-_STEPS = np.array([0.004, 0.004, 0.012, 0.012, 0.015, 0.015])
+# Body correction and slope are updated once they have changed by this much, since each update plans a new stance:
+# x, y [m], roll, pitch [rad], slope along x and y.
+_UPDATE_STEPS = np.array([0.004, 0.004, 0.012, 0.012, 0.015, 0.015])
 
 
 class GroundEstimate(NamedTuple):
-    """What is felt in a tick.
+    """Estimate of the ground after one tick.
 
     Attributes
     ----------
     contacts : tuple of (bool or None), or None
-        Which feet touch the ground; None where that is not known.
+        Which feet touch the ground; None where unknown.
     correction : tuple of float
-        x, y, z [m], roll, pitch, yaw [rad] to be added to the body's wish.
+        x, y, z [m], roll, pitch, yaw [rad] to be added to the commanded body pose.
     slope : complex
-        How much the ground rises along x and y of the heading frame [m/m].
+        Rise of the ground along x and y of the heading frame [m/m].
     offsets : array, shape (legs,)
-        How far each foot gives way upwards [m].
+        Upward admittance offset of each foot [m].
     rejected : tuple of str
-        Readings that are not believed, and why.
+        Rejected readings, with the reason.
     """
 
     contacts: tuple[bool | None, ...] | None
@@ -51,25 +51,25 @@ class GroundEstimate(NamedTuple):
 
 
 class GroundEstimator:
-    """Goes from readings to what they mean for the walk, tick by tick.
+    """Estimates the ground from sensor readings, tick by tick.
 
     Parameters
     ----------
     robot : Robot
         A single robot.
     angles, feet : array, shape (legs, 3)
-        Joint angles [rad] and feet in G [m] when it stands.
+        Joint angles [rad] and feet in G [m] in the initial stance.
     levelling : "level", "follow" or None
         Whether the body stays level on a slope, follows it, or neither.
     admittance : Admittance, optional
-        How feet give way to forces; left out, they don't.
+        Compliance of the feet; left out, they are stiff.
 
     Attributes
     ----------
     plane : GroundPlane
-        The ground, as the feet that stand tell.
+        Plane through the stance feet, in G.
     levelling : Levelling
-        What holds the body.
+        Correction of the body pose.
     """
 
     def __init__(
@@ -88,8 +88,8 @@ class GroundEstimator:
         self._filter = AdmittanceFilter(admittance, robot.legs) if admittance else None
         self._torques = FootForceEstimator(robot) if admittance and robot.has_masses else None
         self._weight = float(total_mass(robot)) * STANDARD_GRAVITY if robot.has_masses else 0.0
-        self._correction, self._slope, self._found = (0.0,) * 6, 0j, np.zeros(len(_STEPS))
-        self._none = np.zeros(robot.legs)
+        self._correction, self._slope, self._adopted = (0.0,) * 6, 0j, np.zeros(len(_UPDATE_STEPS))
+        self._no_offsets = np.zeros(robot.legs)
 
     def step(
         self,
@@ -103,7 +103,7 @@ class GroundEstimator:
         commanded: CommandedAttitude,
         angles: Floats,
     ) -> GroundEstimate:
-        """Take in one tick's readings.
+        """Return the estimate after one tick.
 
         Parameters
         ----------
@@ -112,22 +112,22 @@ class GroundEstimator:
         dt : float
             Time since the last tick [s].
         feet : array, shape (legs, 3)
-            In G [m].
+            Feet in G [m].
         offsets : array, shape (legs,)
-            How far each has given way upwards [m].
+            Their admittance offsets [m].
         contacts : array of bool, shape (legs,)
-            Which feet the walker has put down.
+            Which feet are in stance.
         yaw : float
-            Where the heading frame faces [rad].
-        commanded : Commanded
-            How the body is asked to stand.
+            Yaw of the heading frame in G [rad].
+        commanded : CommandedAttitude
+            Commanded attitude and height of the body.
         angles : array, shape (legs, 3)
             Joint angles [rad].
         """
         valid = self._validator.validate(readings, dt)
-        # Where the ground is, not where feet are that have given way.
-        stood = feet - np.outer(offsets, (0.0, 0.0, 1.0))
-        self.plane = ground_plane(stood, contacts, self.plane)
+        # The ground is where the feet would be without their admittance offsets.
+        uncorrected = feet - np.outer(offsets, (0.0, 0.0, 1.0))
+        self.plane = ground_plane(uncorrected, contacts, self.plane)
         self._correct(self.levelling.step(dt, self.plane, valid.attitude, commanded), yaw, commanded.yaw)
         return GroundEstimate(
             contacts=valid.contacts,
@@ -138,38 +138,38 @@ class GroundEstimator:
         )
 
     def set_applied_correction(self, roll: float, pitch: float) -> None:
-        """Take note of how much of the correction has been carried out.
+        """Set the part of the correction that has been applied so far.
 
         Parameters
         ----------
         roll, pitch : float
-            How the body leans against the command [rad].
+            Difference between the attitude of the body in G and the commanded one [rad].
         """
         self.levelling.correction = self.levelling.correction._replace(roll=roll, pitch=pitch)
 
     def _correct(self, level: Correction, yaw: float, body_yaw: float) -> None:
-        """Go over to what the ground asks of the body by now, where that is a step from what it asked before."""
+        """Adopt the correction and the slope once they differ enough from those in use."""
         cos, sin = math.cos(body_yaw - yaw), math.sin(body_yaw - yaw)
-        x, y = turned(level.x, level.y, cos, sin)
+        x, y = rotate_z(level.x, level.y, cos, sin)
         rise_x, rise_y = slope_along(self.plane, math.cos(yaw), math.sin(yaw))
-        found = np.array([x, y, level.roll, level.pitch, rise_x, rise_y])
-        if (np.abs(found - self._found) > _STEPS).any():
-            # As high over the ground beneath it as it was before it was shifted.
+        current = np.array([x, y, level.roll, level.pitch, rise_x, rise_y])
+        if (np.abs(current - self._adopted) > _UPDATE_STEPS).any():
+            # z keeps the height over the ground plane when the body shifts along the slope.
             self._correction = (x, y, rise_x * x + rise_y * y, level.roll, level.pitch, 0.0)
-            self._slope, self._found = complex(rise_x, rise_y), found
+            self._slope, self._adopted = complex(rise_x, rise_y), current
 
     def _offsets(self, valid: ValidReadings, dt: float, *, feet: Floats, contacts: Floats, angles: Floats) -> Floats:
-        """Return how far each foot gives way."""
+        """Return the admittance offsets of the feet."""
         if self._filter is None:
-            return self._none
+            return self._no_offsets
         measured = valid.forces
         if measured is None and valid.torques is not None and self._torques is not None:
             measured = self._torques.forces(angles.tolist(), valid.torques)
         if measured is None or not self._weight:
             return np.array(self._filter.step((None,) * len(feet), dt))
-        wanted = balanced_forces(feet.tolist(), contacts.tolist(), feet[:, :2].mean(axis=0).tolist(), self._weight)
+        expected = balanced_forces(feet.tolist(), contacts.tolist(), feet[:, :2].mean(axis=0).tolist(), self._weight)
         errors = [
-            force[2] - float(want) if force is not None and down else None
-            for force, want, down in zip(measured, wanted, contacts.tolist(), strict=True)
+            force[2] - float(share) if force is not None and down else None
+            for force, share, down in zip(measured, expected, contacts.tolist(), strict=True)
         ]
         return np.array(self._filter.step(errors, dt))

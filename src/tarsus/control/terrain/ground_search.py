@@ -1,4 +1,4 @@
-"""Feet that find no ground where it was expected: they look for it further down."""
+"""Ground search: a foot at the end of its swing without contact is lowered until it touches the ground."""
 
 from __future__ import annotations
 
@@ -19,205 +19,210 @@ __all__ = ["SEARCH_DEPTH", "FootSearch", "GroundSearch", "lowest_planned_height"
 Floats = np.ndarray[Any, Any]
 
 SEARCH_DEPTH = 0.6
-"""How far below the ground feet look for it, in lifts."""
+"""Depth below the expected ground that is searched, in swing heights."""
 
-# How many heights are tried.
+# Number of heights tested.
 _HEIGHTS = 13
 
 
-def lowest_planned_height(now: GaitState, terrain: TerrainEstimate) -> Floats:
-    """Return how low each foot may be put down ``(legs,)`` [m]: so far below the ground as it was taken to lie.
+def lowest_planned_height(state: GaitState, terrain: TerrainEstimate) -> Floats:
+    """Return the lowest height at which each foot may be put down: `SEARCH_DEPTH` below the planned ground [m].
 
     Parameters
     ----------
-    now : Moment
-        The moment.
-    terrain : Terrain
-        How the ground was thought to lie.
+    state : GaitState
+        The state of the walk.
+    terrain : TerrainEstimate
+        The terrain for which the stance was planned.
+
+    Returns
+    -------
+    array, shape (legs,)
+        Heights in G [m].
     """
-    deep = SEARCH_DEPTH * float(now.posture.value[SWING_HEIGHT])
-    seen = (now.foothold - now.origin) * cmath.exp(-1j * now.yaw)
-    return np.asarray(now.elevation.value + (terrain.slope.conjugate() * seen).real - deep)
+    depth = SEARCH_DEPTH * float(state.posture.value[SWING_HEIGHT])
+    seen = (state.foothold - state.origin) * cmath.exp(-1j * state.yaw)
+    return np.asarray(state.elevation.value + (terrain.slope.conjugate() * seen).real - depth)
 
 
-def lowest_reachable_height(robot: Robot, now: GaitState, leg: int, stance_time: float) -> float:
-    """Return how low a leg can put its foot down and stand there for a stance, if the robot walks on as it does [m].
+def lowest_reachable_height(robot: Robot, state: GaitState, leg: int, stance_time: float) -> float:
+    """Return the lowest height at which a leg can hold its foot for a whole stance at the current twist [m].
 
     Parameters
     ----------
     robot : Robot
         A single robot.
-    now : Moment
-        The moment; the foot is where it is to be put down.
+    state : GaitState
+        The state of the walk; the foot is over its foothold.
     leg : int
-        The leg.
+        Index of the leg.
     stance_time : float
-        How long it is to stand there [s].
+        Duration of the stance [s].
 
     Returns
     -------
     float
-        Not lower than `SEARCH_DEPTH` below the ground that was expected.
+        At most `SEARCH_DEPTH` below the expected ground.
     """
-    forward, left, turning = (now.twist.value * stance_time).tolist()
-    here = (now.foot - now.origin) * cmath.exp(-1j * now.yaw)
+    forward, left, turning = (state.twist.value * stance_time).tolist()
+    here = (state.foot - state.origin) * cmath.exp(-1j * state.yaw)
     there = (here - complex(forward, left) * chord_factor(turning)) * cmath.exp(-1j * turning)
-    deep = SEARCH_DEPTH * float(now.posture.value[SWING_HEIGHT])
-    heights = float(now.ground_height[leg]) - np.linspace(0.0, deep, _HEIGHTS)
+    depth = SEARCH_DEPTH * float(state.posture.value[SWING_HEIGHT])
+    heights = float(state.ground_height[leg]) - np.linspace(0.0, depth, _HEIGHTS)
     places = np.stack([here, there])[:, None]
-    above = (heights - float(now.elevation.value[0]))[:, None]
-    solution = stance_geometry_of(now.posture.value, now.foot).solve(robot, places.real, places.imag, above)
-    fails = (joint_margin(robot.geometry, solution)[..., leg].min(axis=0) < 0).tolist()
-    return float(heights[max(fails.index(True) - 1, 0) if True in fails else -1])
+    above = (heights - float(state.elevation.value[0]))[:, None]
+    solution = stance_geometry_of(state.posture.value, state.foot).solve(robot, places.real, places.imag, above)
+    failing = (joint_margin(robot.geometry, solution)[..., leg].min(axis=0) < 0).tolist()
+    return float(heights[max(failing.index(True) - 1, 0) if True in failing else -1])
 
 
-# How fast a foot goes down [m/s], how fast it stops once it has found ground [rad/s], and when it is at rest [m/s];
-# and what the joints' acceleration must be for that [rad/s^2].
-_SPEED, _STOPPING, _RESTING, _BRISK = 0.05, 40.0, 1e-3, 60.0
+# Search speed [m/s], bandwidth of the stop on the ground [rad/s], speed below which a foot is at rest [m/s], and the
+# joint acceleration that this speed and stop need [rad/s^2].
+_SPEED, _STOP_BANDWIDTH, _REST_SPEED, _FULL_ACCELERATION = 0.05, 40.0, 1e-3, 60.0
 
 
 class FootSearch(NamedTuple):
-    """A foot on its way down.
+    """A foot that is lowered in search of ground.
 
     Attributes
     ----------
     height : CriticallyDamped
-        Where it is ``(1,)`` [m].
+        Its height in G ``(1,)`` [m].
     lowest : float
-        How low it goes at most [m].
-    bandwidth, stopping : float
-        How fast it goes there, and how fast it stops [rad/s].
-    found : float or None
-        Where it comes to rest, once there is ground [m].
+        Lowest height of the search [m].
+    bandwidth, stop_bandwidth : float
+        Bandwidths of the motion down and of the stop on the ground [rad/s].
+    ground : float or None
+        Height at which the foot comes to rest, once it has touched the ground [m].
     """
 
     height: CriticallyDamped
     lowest: float
     bandwidth: float
-    stopping: float
-    found: float | None = None
+    stop_bandwidth: float
+    ground: float | None = None
 
     @classmethod
-    def begin(cls, height: float, lowest: float, pace: float) -> FootSearch:
+    def begin(cls, height: float, lowest: float, speed_factor: float) -> FootSearch:
         """Return the search of a foot that is at rest.
 
         Parameters
         ----------
         height : float
-            Where it is [m].
+            Height of the foot in G [m].
         lowest : float
-            How low it goes at most; no lower, if it is as low already [m].
-        pace : float
-            How fast it goes and stops, of what it does at its fastest.
+            Lowest height of the search; the foot's own if that is lower [m].
+        speed_factor : float
+            Fraction of the full speed and bandwidth of the stop.
         """
-        lowest, stopping = min(lowest, height), pace * _STOPPING
-        bandwidth = min(math.e * pace * _SPEED / max(height - lowest, 1e-6), stopping)
-        return cls(CriticallyDamped.still(np.array([height])), lowest, bandwidth, stopping)
+        lowest, stop_bandwidth = min(lowest, height), speed_factor * _STOP_BANDWIDTH
+        bandwidth = min(math.e * speed_factor * _SPEED / max(height - lowest, 1e-6), stop_bandwidth)
+        return cls(CriticallyDamped.still(np.array([height])), lowest, bandwidth, stop_bandwidth)
 
-    def step(self, dt: float, *, ground: bool) -> FootSearch:
-        """Return the search after a time.
+    def step(self, dt: float, *, touches: bool) -> FootSearch:
+        """Return the search one tick later.
 
         Parameters
         ----------
         dt : float
-            The time [s].
-        ground : bool
-            Whether the foot touches ground.
+            Length of the tick [s].
+        touches : bool
+            Whether the foot touches the ground.
         """
-        found = self.found
-        if ground and found is None:
-            found = float(self.height.value[0] + 2 * self.height.rate[0] / self.stopping)
-        target, bandwidth = (self.lowest, self.bandwidth) if found is None else (found, self.stopping)
+        ground = self.ground
+        if touches and ground is None:
+            ground = float(self.height.value[0] + 2 * self.height.rate[0] / self.stop_bandwidth)
+        target, bandwidth = (self.lowest, self.bandwidth) if ground is None else (ground, self.stop_bandwidth)
         height = self.height.step(np.array([target]), dt, bandwidth=bandwidth)
-        return self._replace(height=height, found=found)
+        return self._replace(height=height, ground=ground)
 
     @property
     def at_rest(self) -> bool:
-        """Whether the foot has found ground, and stands."""
-        return self.found is not None and abs(float(self.height.rate[0])) < _RESTING
+        """Whether the foot has found ground and stopped on it."""
+        return self.ground is not None and abs(float(self.height.rate[0])) < _REST_SPEED
 
     @property
     def failed(self) -> bool:
-        """Whether the foot is as low as it goes, without ground."""
-        return self.found is None and float(self.height.value[0]) - self.lowest < 1e-3
+        """Whether the foot is at its lowest height without ground contact."""
+        return self.ground is None and float(self.height.value[0]) - self.lowest < 1e-3
 
 
 class GroundSearch:
-    """All feet that look for ground, by their legs.
+    """The feet of a robot that search for ground.
 
     Parameters
     ----------
     acceleration : array, shape (legs, 3)
-        Greatest of each joint [rad/s^2]: where it is low, feet go more slowly.
+        Acceleration limits of the joints [rad/s^2]; low limits slow the search down.
     """
 
     def __init__(self, acceleration: Floats) -> None:
         self._feet: dict[int, FootSearch] = {}
-        # The foot's acceleration goes with the square of its pace.
-        self._pace = min(1.0, math.sqrt(float(acceleration.min()) / _BRISK))
+        # The foot's acceleration is proportional to the square of its speed.
+        self._speed_factor = min(1.0, math.sqrt(float(acceleration.min()) / _FULL_ACCELERATION))
 
     def __bool__(self) -> bool:
         return bool(self._feet)
 
     @property
     def failed_legs(self) -> list[int]:
-        """The legs under which there is no ground."""
+        """Indices of the legs that found no ground."""
         return [leg for leg, search in self._feet.items() if search.failed]
 
     @property
     def all_failed(self) -> bool:
-        """Whether there is no ground under any foot that looks for it."""
+        """Whether every searching foot has failed to find ground."""
         return bool(self._feet) and all(search.failed for search in self._feet.values())
 
     def give_up(self) -> None:
-        """Look for ground no more."""
+        """End all searches."""
         self._feet = {}
 
     def stands(self, leg: int, *, touches: bool) -> bool:
-        """Return whether a foot at the end of its swing may stand where it is: on ground, if it had to look for it.
+        """Return whether a foot at the end of its swing may be put down: at rest on ground if it had to search.
 
         Parameters
         ----------
         leg : int
-            The leg.
+            Index of the leg.
         touches : bool
-            Whether it touches ground.
+            Whether its foot touches the ground.
         """
         return self._feet[leg].at_rest if leg in self._feet else touches
 
     def step(
-        self, now: GaitState, dt: float, *, touches: Callable[[int], bool], lowest: Callable[[int], float]
+        self, state: GaitState, dt: float, *, touches: Callable[[int], bool], lowest: Callable[[int], float]
     ) -> GaitState:
-        """Let feet that have come down where there is no ground look for it, in the world's time.
+        """Lower the feet that are at the end of their swing without contact, by one tick.
 
         Parameters
         ----------
-        now : Moment
-            The moment.
+        state : GaitState
+            The state of the walk.
         dt : float
-            The time [s].
+            Length of the tick [s].
         touches : callable
-            Whether the foot of a leg touches ground.
+            Whether the foot of a leg touches the ground.
         lowest : callable
-            How low the foot of a leg may go [m].
+            Lowest height of the search of a leg's foot [m].
         """
-        over = ~now.down & (now.swing_phase >= 1.0)
-        ground = now.ground_height.copy()
-        for leg in np.flatnonzero(over).tolist():
+        swing_ended = ~state.down & (state.swing_phase >= 1.0)
+        ground = state.ground_height.copy()
+        for leg in np.flatnonzero(swing_ended).tolist():
             if leg not in self._feet:
                 if touches(leg):
                     continue
-                self._feet[leg] = FootSearch.begin(float(ground[leg]), lowest(leg), self._pace)
-            self._feet[leg] = self._feet[leg].step(dt, ground=touches(leg))
+                self._feet[leg] = FootSearch.begin(float(ground[leg]), lowest(leg), self._speed_factor)
+            self._feet[leg] = self._feet[leg].step(dt, touches=touches(leg))
             ground[leg] = float(self._feet[leg].height.value[0])
-        return now._replace(ground_height=ground, contact_phase=np.where(over, np.inf, now.contact_phase))
+        return state._replace(ground_height=ground, contact_phase=np.where(swing_ended, np.inf, state.contact_phase))
 
     def land(self, landed: Floats) -> None:
-        """Note which feet have been put down.
+        """End the searches of feet that have been put down.
 
         Parameters
         ----------
         landed : array of bool, shape (legs,)
-            The feet.
+            Feet put down in this tick.
         """
         self._feet = {leg: search for leg, search in self._feet.items() if not landed[leg]}

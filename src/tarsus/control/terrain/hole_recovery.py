@@ -1,4 +1,4 @@
-"""Ground that leads nowhere: holes, from which feet are drawn back when something else is asked for; steep slopes."""
+"""Recovery from holes: a foot that found no ground swings again once the command changes."""
 
 from __future__ import annotations
 
@@ -17,107 +17,108 @@ __all__ = ["HoleRecovery", "Request", "repeated_swing"]
 
 Floats = np.ndarray[Any, Any]
 
-# What the robot must have moved for another try to make sense [m].
-_ELSEWHERE = 1e-5
-# Twists are the same that differ by less, over their size; and by how much they may anyway [m/s, rad/s].
-_ALIKE, _NOTHING = 0.2, 1e-3
+# Least distance travelled after which a request is tried again [m].
+_NEW_PLACE = 1e-5
+# Twists within this of each other count as equal: relative to their size, and absolute [m/s, rad/s].
+_RELATIVE, _ABSOLUTE = 0.2, 1e-3
 
 
 Request: TypeAlias = tuple[Sequence[float], Any]
-"""A twist [m/s, m/s, rad/s], and all else that is asked for."""
+"""The commanded twist [m/s, m/s, rad/s] and walk parameters."""
 
 
 class HoleRecovery:
-    """What is to be done about feet over a hole: they hang there until something else is asked for.
+    """Decides when feet over a hole swing again: after a change of the command.
 
     Attributes
     ----------
     active : bool
-        Whether they are to be drawn back as soon as all others are down.
+        Whether they swing again as soon as all other feet are down.
     """
 
     def __init__(self) -> None:
         self.active = False
-        self._led_here: Request | None = None
+        self._cause: Request | None = None
         self._tried: tuple[Request, complex] | None = None
         self._legs: set[int] = set()
 
-    def consider(self, asked: Request, place: complex) -> bool:
-        """Return whether feet that have just been found to hang over a hole are to be drawn back.
+    def consider(self, request: Request, position: complex) -> bool:
+        """Return whether a recovery begins.
+
+        The request that led to the hole is not tried again. Any other is tried once at each place.
 
         Parameters
         ----------
-        asked : (twist, manner)
-            What is asked for: what it was when they got there is not tried again, anything else once, and more often
-            as long as the robot gets on by it.
-        place : complex
-            Where the robot is [m].
+        request : (twist, parameters)
+            What is commanded.
+        position : complex
+            Position of the robot in G [m].
         """
-        if self._led_here is None:
-            self._led_here = asked
-        if self.active or _alike(asked, self._led_here):
+        if self._cause is None:
+            self._cause = request
+        if self.active or _equal(request, self._cause):
             return False
-        if self._tried is not None and _alike(asked, self._tried[0]) and abs(place - self._tried[1]) < _ELSEWHERE:
+        if self._tried is not None and _equal(request, self._tried[0]) and abs(position - self._tried[1]) < _NEW_PLACE:
             return False
-        self.active, self._tried = True, (asked, place)
+        self.active, self._tried = True, (request, position)
         return True
 
     def begun(self, legs: Sequence[int]) -> None:
-        """Note that feet swing once more.
+        """Set the feet that swing again.
 
         Parameters
         ----------
         legs : sequence of int
-            Their legs.
+            Their leg indices.
         """
         self.active, self._legs = False, set(legs)
 
     def landed(self, landed: Floats) -> None:
-        """Note which feet have been put down in this tick; once it is those over the hole, that is over.
+        """End the recovery once all feet over the hole have been put down.
 
         Parameters
         ----------
         landed : array of bool, shape (legs,)
-            The feet.
+            Feet put down in this tick.
         """
         self._legs -= set(np.flatnonzero(landed).tolist())
         if not self._legs:
-            self.active, self._led_here, self._tried = False, None, None
+            self.active, self._cause, self._tried = False, None, None
 
 
-def _alike(asked: Request, other: Request) -> bool:
-    """Return whether the same is asked for, but for a hand that trembles."""
-    bound = max(_ALIKE * math.hypot(*other[0]), _NOTHING)
-    return asked[1] == other[1] and math.dist(asked[0], other[0]) < bound
+def _equal(request: Request, other: Request) -> bool:
+    """Return whether two requests are equal within operator input noise."""
+    bound = max(_RELATIVE * math.hypot(*other[0]), _ABSOLUTE)
+    return request[1] == other[1] and math.dist(request[0], other[0]) < bound
 
 
-def repeated_swing(now: GaitState, legs: Sequence[int], gait: Gait, ground: GroundPlane) -> GaitState:
-    """Return the moment in which feet that have come to the end of their swing begin it once more, where they are.
+def repeated_swing(state: GaitState, legs: Sequence[int], gait: Gait, ground: GroundPlane) -> GaitState:
+    """Return the state in which feet at the end of their swing begin it again from where they are.
 
-    The clock goes back to when they were lifted: all others wait for their turn once more.
+    The gait's clock is set back to their lift-off.
 
     Parameters
     ----------
-    now : Moment
-        The moment; every other foot is down.
+    state : GaitState
+        The state of the walk; every other foot is down.
     legs : sequence of int
-        The legs whose feet are at the end of their swing, at rest.
+        Legs whose feet are at the end of their swing, at rest.
     gait : Gait
         Order of the steps.
     ground : GroundPlane
-        Where the ground is expected.
+        Expected ground.
     """
-    again = np.zeros(len(now.down), dtype=bool)
-    again[list(legs)] = True
-    since = now.clock - (np.asarray(gait.offsets) + gait.duty_factor + now.step_number)
-    back = float(since[again].min())
-    return now._replace(
-        clock=now.clock - back,
-        swing_phase=np.where(again, 0.0, now.swing_phase),
+    restarted = np.zeros(len(state.down), dtype=bool)
+    restarted[list(legs)] = True
+    elapsed = state.clock - (np.asarray(gait.offsets) + gait.duty_factor + state.step_number)
+    back = float(elapsed[restarted].min())
+    return state._replace(
+        clock=state.clock - back,
+        swing_phase=np.where(restarted, 0.0, state.swing_phase),
         lift_delay=np.where(
-            again, np.clip(since - back, 0.0, LATEST_LIFT_OFF * (1 - gait.duty_factor)), now.lift_delay
+            restarted, np.clip(elapsed - back, 0.0, LATEST_LIFT_OFF * (1 - gait.duty_factor)), state.lift_delay
         ),
-        start_height=np.where(again, now.ground_height, now.start_height),
-        ground_height=np.where(again, ground.height(now.foot.real, now.foot.imag), now.ground_height),
-        contact_phase=np.where(again, np.inf, now.contact_phase),
+        start_height=np.where(restarted, state.ground_height, state.start_height),
+        ground_height=np.where(restarted, ground.height(state.foot.real, state.foot.imag), state.ground_height),
+        contact_phase=np.where(restarted, np.inf, state.contact_phase),
     )

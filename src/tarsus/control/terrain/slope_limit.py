@@ -9,46 +9,46 @@ from tarsus.control.workspace.stance_geometry import LEVEL_TERRAIN, TerrainEstim
 __all__ = ["SlopeLimit"]
 
 # Below this a speed counts as zero [m/s, rad/s].
-_NOTHING = 1e-3
-# What turning counts beside going, for feet that are some 0.2 m from the middle.
-_LIKE_STEPS = (1.0, 1.0, 0.04)
+_ZERO_SPEED = 1e-3
+# Weights of a twist in m/s, with the feet some 0.2 m from the middle.
+_WEIGHTS = (1.0, 1.0, 0.04)
 
 
 class SlopeLimit:
-    """Whether the ground has got too steep to go on: it is no more walked the way that led there."""
+    """Records the twist that led to ground too steep to stand on, and refuses twists in its direction."""
 
     def __init__(self) -> None:
-        self._led_here: Sequence[float] | None = None
-        self._known = LEVEL_TERRAIN
+        self._cause: Sequence[float] | None = None
+        self._terrain = LEVEL_TERRAIN
 
     def __bool__(self) -> bool:
-        return self._led_here is not None
+        return self._cause is not None
 
-    def record(self, known: TerrainEstimate, twist: Sequence[float]) -> None:
-        """Note that the robot can't stand on the ground as it is felt to lie by now.
-
-        Parameters
-        ----------
-        known : Terrain
-            How it was taken to lie when the robot last could.
-        twist : (vx, vy, wz)
-            How the robot moves [m/s, m/s, rad/s].
-        """
-        if self._led_here is None and any(abs(speed) > _NOTHING for speed in twist):
-            self._led_here, self._known = twist, known
-
-    def forbids(self, twist: Sequence[float], known: TerrainEstimate) -> bool:
-        """Return whether a twist leads on to where the robot can't stand.
+    def record(self, terrain: TerrainEstimate, twist: Sequence[float]) -> None:
+        """Record that no feasible stance exists on the ground as it is estimated now.
 
         Parameters
         ----------
+        terrain : TerrainEstimate
+            The terrain of the last feasible stance.
         twist : (vx, vy, wz)
-            The twist [m/s, m/s, rad/s].
-        known : Terrain
-            How the ground is taken to lie: once that is something else, it can stand there.
+            Current twist of the robot [m/s, m/s, rad/s].
         """
-        if known != self._known:
-            self._led_here = None
-        if self._led_here is None:
+        if self._cause is None and any(abs(speed) > _ZERO_SPEED for speed in twist):
+            self._cause, self._terrain = twist, terrain
+
+    def forbids(self, twist: Sequence[float], terrain: TerrainEstimate) -> bool:
+        """Return whether a twist leads further in the direction of infeasible ground.
+
+        Parameters
+        ----------
+        twist : (vx, vy, wz)
+            A twist [m/s, m/s, rad/s].
+        terrain : TerrainEstimate
+            The terrain of the current stance; another one than recorded clears the limit.
+        """
+        if terrain != self._terrain:
+            self._cause = None
+        if self._cause is None:
             return False
-        return sum(a * b * c for a, b, c in zip(twist, self._led_here, _LIKE_STEPS, strict=True)) > 0
+        return sum(a * b * c for a, b, c in zip(twist, self._cause, _WEIGHTS, strict=True)) > 0

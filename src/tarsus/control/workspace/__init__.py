@@ -1,1 +1,1 @@
-"""Where each foot may be while the robot walks, and how fast that lets it walk."""
+"""Foot workspaces of a stance, its stability, and the velocities and cycle times that they allow."""
