@@ -272,7 +272,7 @@ def test_what_is_wrong_with_a_document_is_told_with_its_key(document, wanted):
 def test_problems_of_a_file_are_told_with_the_line_of_their_table(tmp_path):
     path = tmp_path / "wrong.toml"
     path.write_text(
-        "name = 'x'\n\n[[at]]\ntime_s = 1\ndo = 'stop'\n\n[[at]]\ntime_s = 2\nlift_mm = -1\n", encoding="utf-8"
+        "name = 'x'\n\n[[at]]\ntime_s = 1\ndo = 'stop'\n\n[[at]]\ntime_s = 2\nswing_height_mm = -1\n", encoding="utf-8"
     )
     with pytest.raises(
         InputError, match=r"at\[1\].swing_height_mm \(in the table of line 7\) = -1: must be from 0 to 1000 mm"
