@@ -9,6 +9,7 @@ import numpy as np
 
 import tarsus
 from draw_hill import plot_hill
+from draw_states import plot_states
 from tarsus.report.angles import plot_angles
 from tarsus.report.animation import animate
 from tarsus.report.footpaths import plot_footpaths
@@ -46,6 +47,7 @@ def main() -> None:
     day = Scenario.load(FIGURES.parents[1] / "examples" / "whole-day.toml")
     save_figure(plot_timeline(run_scenario(day)), FIGURES / "timeline.png")
     save_figure(plot_hill(), FIGURES / "hill.png")
+    save_figure(plot_states(), FIGURES / "states.png")
     limp = np.radians(np.tile([0.0, 20.0, -60.0], (6, 1)))
     limp[:3] = np.radians([0.0, -30.0, -30.0])
     rest = tarsus.resting_pose(strider, limp)
