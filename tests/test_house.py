@@ -20,7 +20,7 @@ import tarsus
 ROOT = Path(tarsus.__file__).parent
 MOST_MODULES, MOST_LINES = 12, 300
 SAFETY = "tarsus.control.safety"
-USERS_OF_SAFETY = {"tarsus", "tarsus.control.robot_controller"}
+USERS_OF_SAFETY = {"tarsus", "tarsus.control.control_output", "tarsus.control.robot_controller"}
 
 
 @dataclass(frozen=True)

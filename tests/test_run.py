@@ -7,10 +7,10 @@ import pytest
 
 import tarsus
 from tarsus.control.command import Command
+from tarsus.control.loop.run import CommandSource, TimedCommands, run
 from tarsus.control.plant import IdealPlant, Plant
 from tarsus.control.readings import SensorReadings
 from tarsus.control.robot_controller import RobotController
-from tarsus.control.run import CommandSource, TimedCommands, run
 from tarsus.errors import InputError
 from tarsus.robot.file import load_robot
 from tarsus.scenario.runner import run_scenario

@@ -10,9 +10,9 @@ import pytest
 
 import tarsus.control.robot_controller as robot_controller
 from tarsus.control.command import Command
+from tarsus.control.loop.recording import Recording
 from tarsus.control.plant import Environment
 from tarsus.control.pose.admittance import Admittance
-from tarsus.control.recording import Recording
 from tarsus.control.safety import GuardOutput, Intervention
 from tarsus.control.walk_controller import WalkController
 from tarsus.errors import InputError, UnknownNameError

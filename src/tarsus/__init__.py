@@ -19,19 +19,19 @@ if TYPE_CHECKING:
     from tarsus.control.command import Command
     from tarsus.control.control_output import ControlOutput
     from tarsus.control.limitation import Limitation, LimitationKind
+    from tarsus.control.loop.recording import Recording
+    from tarsus.control.loop.run import run
     from tarsus.control.plant import IdealPlant, Plant
     from tarsus.control.pose.admittance import Admittance
     from tarsus.control.readings import SensorReadings
-    from tarsus.control.recording import Recording
     from tarsus.control.robot_controller import RobotController
-    from tarsus.control.robot_state import RobotState
-    from tarsus.control.run import run
     from tarsus.control.safety import Guard, GuardBounds, GuardOutput, GuardState, Intervention, InterventionKind
     from tarsus.control.sequence.player import SequencePlayer
     from tarsus.control.sequence.sequence import MotionSequence
     from tarsus.control.startup.folded_pose import folded_pose
     from tarsus.control.startup.planner import fold, sit_down, stand_up
     from tarsus.control.startup.power_off import power_off_order
+    from tarsus.control.states.robot_state import RobotState
     from tarsus.control.walk_controller import WalkController
     from tarsus.errors import (
         CollisionError,
@@ -89,7 +89,7 @@ __version__ = "0.1.0"
 # Where each public name lives. It is imported when first asked for: `import tarsus` and `tarsus --help` do not wait
 # for NumPy. A test holds this table, the imports above and `__all__` against each other.
 _HOMES = {
-    "tarsus.control.recording": ("Recording",),
+    "tarsus.control.loop.recording": ("Recording",),
     "tarsus.scenario.runner": ("run_scenario",),
     "tarsus.scenario.scenario": ("Scenario",),
     "tarsus.errors": (
@@ -113,8 +113,8 @@ _HOMES = {
         "Plant",
     ),
     "tarsus.control.robot_controller": ("RobotController",),
-    "tarsus.control.robot_state": ("RobotState",),
-    "tarsus.control.run": ("run",),
+    "tarsus.control.states.robot_state": ("RobotState",),
+    "tarsus.control.loop.run": ("run",),
     "tarsus.control.readings": ("SensorReadings",),
     "tarsus.control.sequence.sequence": ("MotionSequence",),
     "tarsus.control.sequence.player": ("SequencePlayer",),

@@ -14,7 +14,7 @@ from tarsus.cli.values import examples, json_option, number_option
 if TYPE_CHECKING:
     from rich.table import Table
 
-    from tarsus.control.recording import Recording
+    from tarsus.control.loop.recording import Recording
     from tarsus.load.loads import JointLoads
 
 __all__ = ["drive"]

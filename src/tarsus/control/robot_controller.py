@@ -8,18 +8,18 @@ from typing import Any
 
 import numpy as np
 
-from tarsus.control.activity import Activity, Playing, Resting, Snapshot, Walking
 from tarsus.control.command import Command
 from tarsus.control.control_output import ControlOutput
 from tarsus.control.limitation import Limitation, LimitationKind
-from tarsus.control.persistent_command import PersistentCommand
 from tarsus.control.pose.admittance import Admittance
 from tarsus.control.pose.levelling import LevellingMode
 from tarsus.control.readings import SensorReadings
-from tarsus.control.robot_state import RobotState, next_state, requested_state
 from tarsus.control.safety import Guard, GuardBounds, GuardState, Intervention
 from tarsus.control.sequence.sequence import MotionSequence
 from tarsus.control.startup.planner import fold, sit_down, stand_up
+from tarsus.control.states.activity import Activity, Playing, Resting, Snapshot, Walking
+from tarsus.control.states.persistent_command import PersistentCommand
+from tarsus.control.states.robot_state import RobotState, next_state, requested_state
 from tarsus.control.walk_controller import WalkController
 from tarsus.errors import TarsusError
 from tarsus.gait.gait import Gait

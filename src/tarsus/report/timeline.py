@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tarsus.control.recording import Event, Recording
+from tarsus.control.loop.recording import Event, Recording
 from tarsus.report.gait_diagram import draw_stance
 from tarsus.report.style import INK, PALE, WARNING, leg_colours, new_figure, thinned, tidy_axes
 

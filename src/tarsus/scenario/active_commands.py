@@ -9,10 +9,10 @@ from typing import Any
 from tarsus.control.command import BODY_AXES, Command
 from tarsus.control.control_output import ControlOutput
 from tarsus.control.limitation import LimitationKind
+from tarsus.control.loop.run import AFTER, LONGEST
 from tarsus.control.plant import Environment
-from tarsus.control.robot_state import RobotState
-from tarsus.control.run import AFTER, LONGEST
 from tarsus.control.startup.power_off import power_off_order
+from tarsus.control.states.robot_state import RobotState
 from tarsus.robot.robot import Robot
 from tarsus.scenario.commands import (
     BodyHeight,

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from tarsus.control.recording import Recording
+from tarsus.control.loop.recording import Recording
 
 __all__ = ["drive_summary"]
 

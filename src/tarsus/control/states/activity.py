@@ -9,10 +9,10 @@ import numpy as np
 from tarsus.control.command import Command
 from tarsus.control.limitation import Limitation
 from tarsus.control.readings import SensorReadings
-from tarsus.control.robot_state import RobotState
 from tarsus.control.sequence.player import SequencePlayer
 from tarsus.control.sequence.sequence import MotionSequence, SequenceSample
 from tarsus.control.startup.planner import fold, sit_down
+from tarsus.control.states.robot_state import RobotState
 from tarsus.control.walk_controller import WalkController
 from tarsus.control.walk_state import WalkState
 from tarsus.errors import InputError

@@ -10,10 +10,10 @@ import numpy as np
 from tarsus.control.command import Command
 from tarsus.control.control_output import ControlOutput
 from tarsus.control.limitation import Limitation, LimitationKind
+from tarsus.control.loop.recording import Event, Recording, Unmet
 from tarsus.control.readings import SensorReadings
-from tarsus.control.recording import Event, Recording, Unmet
 from tarsus.control.robot_controller import RobotController
-from tarsus.control.robot_state import RobotState
+from tarsus.control.states.robot_state import RobotState
 from tarsus.gait.motion import Motion
 from tarsus.gait.setup import Setup
 from tarsus.gait.spacing import default_foot_distance

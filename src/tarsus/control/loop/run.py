@@ -9,9 +9,9 @@ import numpy as np
 
 from tarsus.control.command import Command
 from tarsus.control.control_output import ControlOutput
+from tarsus.control.loop.recorder import Recorder
+from tarsus.control.loop.recording import Recording
 from tarsus.control.plant import Plant
-from tarsus.control.recorder import Recorder
-from tarsus.control.recording import Recording
 from tarsus.control.robot_controller import RobotController
 from tarsus.errors import InputError
 from tarsus.gait.setup import require_number

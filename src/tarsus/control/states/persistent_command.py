@@ -6,7 +6,7 @@ import dataclasses
 from typing import Any
 
 from tarsus.control.command import Command
-from tarsus.control.robot_state import requested_state
+from tarsus.control.states.robot_state import requested_state
 from tarsus.errors import InputError
 from tarsus.gait.gait import Gait
 from tarsus.robot.robot import Robot

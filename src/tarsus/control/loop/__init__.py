@@ -1,0 +1,1 @@
+"""The loop of a controller and a plant, and its recording."""
