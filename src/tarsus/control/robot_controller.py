@@ -89,7 +89,8 @@ class RobotController:
         self.compliant = admittance is not None
         self._ground: dict[str, Any] = {"levelling": levelling, "admittance": admittance}
         self._command = PersistentCommand(robot)
-        self._base = Pose.from_rpy(0.0, 0.0, 0.0, (0.0, 0.0, 0.0))
+        # Pose of the activity's ground frame in G; None where they are the same.
+        self._base: Pose | None = None
         self._cycle_time, self._time, self._rate = 0.0, 0.0, 0.0
         walking = self._new_walk()
         self._activity: Activity = walking
@@ -217,7 +218,8 @@ class RobotController:
         if playing.returning:
             self._activity, self._base = playing.before, self._before
         elif playing.end is RobotState.STANDING:
-            self._base = self._base @ _ground_frame(end.body)
+            frame = _ground_frame(end.body)
+            self._base = frame if self._base is None else self._base @ frame
             self._activity = self._new_walk()
             self._command.forget_released()
         else:
@@ -255,11 +257,11 @@ class RobotController:
 
     def _placed(self, snapshot: Snapshot) -> Snapshot:
         """Return a snapshot with body and feet in G."""
-        body = self._base @ snapshot.body
-        if snapshot.feet is None:
+        body, feet = snapshot.body, snapshot.feet
+        if self._base is not None:
+            body, feet = self._base @ body, None if feet is None else np.asarray(self._base @ feet)
+        if feet is None:
             feet = np.asarray(body @ forward_kinematics(self.robot, snapshot.angles)[..., 3, :])
-        else:
-            feet = np.asarray(self._base @ snapshot.feet)
         return snapshot._replace(body=body, feet=feet)
 
     def _shown(self, angles: np.ndarray[Any, Any], began: tuple[Intervention, ...]) -> ControlOutput:
