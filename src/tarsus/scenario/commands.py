@@ -1,4 +1,4 @@
-"""The commands of a scenario: what the robot may be told at a moment. Values in SI, each a class of its own."""
+"""The commands of a scenario, a class for each kind; values in SI."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ _WIDE, _FAST, _TURN = 1000, 10_000, 3600
 
 @dataclass(frozen=True, kw_only=True)
 class Walk(TimedCommand):
-    """Walk: vx forward, vy to the left [m/s], turn counter-clockwise [rad/s]; until told otherwise."""
+    """Walk with a twist: vx forward, vy to the left [m/s], turn counter-clockwise [rad/s]."""
 
     word: ClassVar[str] = "walk"
     vx: float = quantity("mm_s", "forward", low=-_FAST, high=_FAST)
@@ -48,14 +48,14 @@ class Walk(TimedCommand):
 
 @dataclass(frozen=True, kw_only=True)
 class Stop(TimedCommand):
-    """Come to a stop, every foot at its rest foothold."""
+    """Stop, every foot at its rest foothold."""
 
     word: ClassVar[str] = "stop"
 
 
 @dataclass(frozen=True, kw_only=True)
 class GaitChange(TimedCommand):
-    """Go over to another gait."""
+    """Change the gait."""
 
     word: ClassVar[str] = "gait"
     gait: str
@@ -63,7 +63,7 @@ class GaitChange(TimedCommand):
 
 @dataclass(frozen=True, kw_only=True)
 class _SixWays(TimedCommand):
-    """The six ways in which a body can be moved [m] and turned [rad]."""
+    """The six coordinates of a body pose [m], [rad]."""
 
     x: float = quantity("mm", "forward", low=-_WIDE, high=_WIDE)
     y: float = quantity("mm", "to the left", low=-_WIDE, high=_WIDE)
@@ -75,14 +75,14 @@ class _SixWays(TimedCommand):
 
 @dataclass(frozen=True, kw_only=True)
 class MoveBody(_SixWays):
-    """Move [m] and turn [rad] the body over its feet, against standing level; all 0 is level again."""
+    """Set the body pose over the feet, relative to standing level [m], [rad]; all 0 is level."""
 
     word: ClassVar[str] = "body"
 
 
 @dataclass(frozen=True, kw_only=True)
 class BodyHeight(TimedCommand):
-    """Carry the body's origin so high over the ground [m]."""
+    """Set the height of the body's origin over the ground [m]."""
 
     word: ClassVar[str] = "body_height"
     body_height: float = quantity("mm", "height of the body's origin", low=0.001, high=_WIDE, needed=True)
@@ -90,15 +90,15 @@ class BodyHeight(TimedCommand):
 
 @dataclass(frozen=True, kw_only=True)
 class SwingHeight(TimedCommand):
-    """Lift swinging feet so high [m]."""
+    """Set the height of swinging feet [m]."""
 
     word: ClassVar[str] = "swing_height"
-    swing_height: float = quantity("mm", "of a swinging foot", low=0, high=_WIDE, needed=True)
+    swing_height: float = quantity("mm", "height of a swinging foot", low=0, high=_WIDE, needed=True)
 
 
 @dataclass(frozen=True, kw_only=True)
 class StanceWidth(TimedCommand):
-    """Set the feet so much farther out than usual [m]."""
+    """Set how much farther out than the default stance the feet rest [m]."""
 
     word: ClassVar[str] = "stance_width"
     stance_width: float = quantity("mm", "farther out", low=-_WIDE, high=_WIDE, needed=True)
@@ -106,15 +106,17 @@ class StanceWidth(TimedCommand):
 
 @dataclass(frozen=True, kw_only=True)
 class CycleTime(TimedCommand):
-    """Step with cycles of this duration [s]; "auto" for the one that gets the robot farthest."""
+    """Set the duration of a gait cycle [s]; "auto" for the one with the highest speed."""
 
     word: ClassVar[str] = "cycle_time"
-    cycle_time: float | Literal["auto"] = quantity("s", "of a cycle", low=0.01, high=60, needed=True, words=("auto",))
+    cycle_time: float | Literal["auto"] = quantity(
+        "s", "duration of a cycle", low=0.01, high=60, needed=True, words=("auto",)
+    )
 
 
 @dataclass(frozen=True, kw_only=True)
 class FootTarget(TimedCommand):
-    """Take a leg out of the gait, and move its foot to a point in the heading frame [m]."""
+    """Take a leg out of the gait and move its foot to a point in the heading frame [m]."""
 
     word: ClassVar[str] = "foot_target"
     leg: str
@@ -125,7 +127,7 @@ class FootTarget(TimedCommand):
 
 @dataclass(frozen=True, kw_only=True)
 class FootVelocity(TimedCommand):
-    """Take a leg out of the gait, and move its foot at a speed in the heading frame [m/s]; all 0 holds it there."""
+    """Take a leg out of the gait and move its foot at a velocity in the heading frame [m/s]; all 0 holds it."""
 
     word: ClassVar[str] = "foot_velocity"
     leg: str
@@ -144,42 +146,42 @@ class FootRelease(TimedCommand):
 
 @dataclass(frozen=True, kw_only=True)
 class Sway(_SixWays):
-    """Move the body to and fro with the steps, by these amplitudes [m], [rad]; all 0 ends it."""
+    """Move the body periodically with the steps, with these amplitudes [m], [rad]; all 0 ends it."""
 
     word: ClassVar[str] = "sway"
 
 
 @dataclass(frozen=True, kw_only=True)
 class StandUp(TimedCommand):
-    """Get up from where it lies."""
+    """Stand up from the belly."""
 
     word: ClassVar[str] = "stand_up"
 
 
 @dataclass(frozen=True, kw_only=True)
 class Sit(TimedCommand):
-    """Come to a stop, and go down until the belly rests on the ground."""
+    """Stop, and lower the body until the belly rests on the ground."""
 
     word: ClassVar[str] = "sit"
 
 
 @dataclass(frozen=True, kw_only=True)
 class Fold(TimedCommand):
-    """Draw the legs in; the robot must sit."""
+    """Fold the legs on the belly; a robot that stands sits down first."""
 
     word: ClassVar[str] = "fold"
 
 
 @dataclass(frozen=True, kw_only=True)
 class PowerOff(TimedCommand):
-    """Release the joints, in the order in which least falls; the robot must sit."""
+    """Release the joints in the order in which the least falls; the robot must lie on its belly."""
 
     word: ClassVar[str] = "power_off"
 
 
 @dataclass(frozen=True, kw_only=True)
 class Ground(TimedCommand):
-    """Feel the ground under a leg higher (early) or lower (late) than it is by so much [m]: a test of its senses."""
+    """Set the measured height of the ground under a foot [m]: a test of ground feedback."""
 
     word: ClassVar[str] = "ground"
     leg: str
@@ -188,7 +190,7 @@ class Ground(TimedCommand):
 
 @dataclass(frozen=True, kw_only=True)
 class Tilt(TimedCommand):
-    """Feel the ground tilted by so much [rad]: a test of its senses."""
+    """Set the measured tilt of the ground [rad]: a test of levelling."""
 
     word: ClassVar[str] = "tilt"
     roll: float = quantity("deg", "left side up", low=-90, high=90)
@@ -197,11 +199,11 @@ class Tilt(TimedCommand):
 
 @dataclass(frozen=True, kw_only=True)
 class Force(TimedCommand):
-    """Feel the ground push a foot up so much more than its share of the weight [N]: a test of its senses."""
+    """Set the measured vertical force on a foot beyond its share of the weight [N]: a test of admittance."""
 
     word: ClassVar[str] = "force"
     leg: str
-    force: float = quantity("n", "more than its share", low=-_WIDE, high=_WIDE, needed=True)
+    force: float = quantity("n", "beyond its share of the weight", low=-_WIDE, high=_WIDE, needed=True)
 
 
 _KINDS: tuple[type[TimedCommand], ...] = (
@@ -223,4 +225,4 @@ _KINDS: tuple[type[TimedCommand], ...] = (
 )
 
 COMMANDS: Mapping[str, type[TimedCommand]] = MappingProxyType({kind.word: kind for kind in _KINDS})
-"""Every command by its word."""
+"""Every kind of command by its word."""

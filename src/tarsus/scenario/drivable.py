@@ -1,4 +1,4 @@
-"""What a robot can't be told, found before a scenario begins."""
+"""Checks that the commands of a scenario fit a robot, before it runs."""
 
 from __future__ import annotations
 
@@ -14,21 +14,21 @@ __all__ = ["require_drivable"]
 
 
 def require_drivable(scenario: Scenario, robot: Robot) -> None:
-    """Refuse commands that this robot can't be told.
+    """Refuse commands that do not fit a robot.
 
     Parameters
     ----------
     scenario : Scenario
-        What it is to be told.
+        The scenario.
     robot : Robot
         A single robot.
 
     Raises
     ------
     InputError
-        If a command names a gait that it can't walk, or a force is to be felt that no foot gives way to.
+        If a command names a gait that does not fit the robot, or sets a force without compliant feet.
     UnknownNameError
-        If a command names a leg that it has not.
+        If a command names a leg that the robot does not have.
     """
     for command in scenario.commands:
         at = f"at {command.at:g} s"
@@ -36,7 +36,7 @@ def require_drivable(scenario: Scenario, robot: Robot) -> None:
         if leg is not None and leg_number(robot, leg) is None:
             raise UnknownNameError(f"{at}: {UnknownNameError.of('leg', leg, robot.leg_codes)}")
         if isinstance(command, Force):
-            why = _not_followed(scenario, robot)
+            why = _not_compliant(scenario, robot)
             if why:
                 raise InputError(f"{at}: {command_text(command)}: {why}")
         if isinstance(command, GaitChange):
@@ -46,13 +46,13 @@ def require_drivable(scenario: Scenario, robot: Robot) -> None:
                 raise InputError(f"{at}: {error}") from None
 
 
-def _not_followed(scenario: Scenario, robot: Robot) -> str:
-    """Return why no foot would give way to a force; nothing where one would."""
+def _not_compliant(scenario: Scenario, robot: Robot) -> str:
+    """Return why no foot would comply with a force; empty where one would."""
     if scenario.admittance is None:
         return (
-            "no foot gives way; set how it does in the scenario: "
+            "the feet are not compliant; set in the scenario: "
             "admittance = { mass_kg = 1, damping_ns_m = 60, stiffness_n_m = 400 }"
         )
     if not robot.has_masses:
-        return f"{robot.name} has no masses, so that its weight on a foot is unknown; give them in its robot file"
+        return f"{robot.name} has no masses, so that the weight on a foot is unknown; add them to its robot file"
     return ""

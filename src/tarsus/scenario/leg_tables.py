@@ -1,4 +1,4 @@
-"""Commands that a file has in tables of legs, such as ``foot_targets_mm = { RF = [250, -150, 60], LF = "back" }``."""
+"""Commands given in tables of legs, such as ``foot_targets_mm = { RF = [250, -150, 60], LF = "release" }``."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ class LegTable(NamedTuple):
     key : str
         The key.
     kind : type
-        The command that a leg's number, or list of numbers, gives.
+        The command for a leg's number, or list of numbers.
     words : mapping of str to type
-        What may stand in place of them, and the command that it gives.
+        Words accepted in their place, and their commands.
     """
 
     key: str
@@ -33,12 +33,12 @@ class LegTable(NamedTuple):
 
 
 LEG_TABLES = (
-    LegTable("foot_targets_mm", FootTarget, MappingProxyType({"back": FootRelease})),
+    LegTable("foot_targets_mm", FootTarget, MappingProxyType({"release": FootRelease})),
     LegTable("foot_velocities_mm_s", FootVelocity),
     LegTable("ground_mm", Ground),
     LegTable("force_n", Force),
 )
-"""Every such key."""
+"""All keys of this kind."""
 
 
 def commands_of_legs(table: Any, at: Decimal) -> Iterator[TimedCommand]:
@@ -49,7 +49,7 @@ def commands_of_legs(table: Any, at: Decimal) -> Iterator[TimedCommand]:
     table : At
         The ``[[at]]``.
     at : Decimal
-        When [s].
+        Time of the commands [s].
     """
     for key, kind, words in LEG_TABLES:
         for leg, value in (getattr(table, key) or {}).items():

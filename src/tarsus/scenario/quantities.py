@@ -1,4 +1,4 @@
-"""Quantities of commands: their units in files and in text, their bounds, and the way to SI and back."""
+"""Quantities of commands: units in files and in text, bounds, conversion to SI and back."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ class Unit(NamedTuple):
     Attributes
     ----------
     shown : str
-        How it is written in text and messages.
+        Its symbol in text and messages.
     others : mapping of str to Decimal
-        What may be written in text, and how many of this unit it is.
+        Other symbols accepted in text, each with its size in this unit.
     to_si, from_si : callable
-        The way to SI and back, exact to the bit.
+        Conversion to SI and back, exact to the bit.
     """
 
     shown: str
@@ -49,7 +49,7 @@ UNITS: Mapping[str, Unit] = MappingProxyType(
         "n_m": Unit("N/m", {"N/m": Decimal(1)}, float, to_decimal),
     }
 )
-"""The units that keys of a scenario end in."""
+"""The units that keys of a scenario file end in."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -59,17 +59,17 @@ class Quantity:
     Attributes
     ----------
     name : str
-        What it is called in Python and in text; in a file the unit follows.
+        Its name in Python and in text; in a file the unit is appended.
     unit : str
         One of `UNITS`.
     low, high : float
         Its bounds, in that unit.
     text : str
-        What it is.
+        What it describes.
     needed : bool
-        Whether it must be given; else it is 0 where left out.
+        Whether it is required; otherwise it is 0 where left out.
     words : tuple of str
-        What may stand in its place, in every form.
+        Words accepted in its place.
     """
 
     name: str
@@ -101,13 +101,13 @@ def quantity(
     unit : str
         Its unit in files: one of `UNITS`.
     text : str
-        What it is.
+        What it describes.
     low, high : float
         Its bounds, in that unit.
     needed : bool
-        Whether it must be given; else it is 0 where left out.
+        Whether it is required; otherwise it is 0 where left out.
     words : tuple of str
-        What may stand in its place.
+        Words accepted in its place.
     """
     about = {"unit": unit, "text": text, "low": low, "high": high, "needed": needed, "words": words}
     metadata = {"quantity": about}
@@ -117,12 +117,12 @@ def quantity(
 
 
 def require_quantity(what: str, value: object, wanted: Quantity) -> None:
-    """Refuse what is neither a finite number between the bounds of a quantity nor one of its words.
+    """Refuse a value that is neither a finite number within the bounds of a quantity nor one of its words.
 
     Parameters
     ----------
     what : str
-        What it is, for the message.
+        Its name, for the message.
     value : object
         The value, in SI.
     wanted : Quantity
@@ -131,7 +131,7 @@ def require_quantity(what: str, value: object, wanted: Quantity) -> None:
     Raises
     ------
     InputError
-        If it is something else.
+        If the value is another.
     """
     if isinstance(value, str) and value in wanted.words:
         return

@@ -1,4 +1,4 @@
-"""What every command of a scenario has: its moment, and quantities within their bounds."""
+"""The base of every command of a scenario: its time, and quantities within their bounds."""
 
 from __future__ import annotations
 
@@ -15,22 +15,22 @@ from tarsus.scenario.quantities import Quantity, require_quantity
 __all__ = ["GAIT_NAMES", "LATEST", "TimedCommand", "quantities"]
 
 GAIT_NAMES = (*GAITS, "amble")
-"""The gaits that a scenario may name; amble is another name for tetrapod."""
+"""Names of gaits in a scenario; amble is an alias of tetrapod."""
 
 LATEST = 3600.0
-"""The latest moment of a scenario [s]."""
+"""Greatest time of a command [s]."""
 
-_AT = Quantity("at", "s", 0, LATEST, "when", needed=True)
+_AT = Quantity("at", "s", 0, LATEST, "time of the command", needed=True)
 
 
 @dataclass(frozen=True)
 class TimedCommand:
-    """What the robot is told at a moment.
+    """A command to the robot at a time.
 
     Attributes
     ----------
     at : float
-        When [s].
+        Time of the command [s].
     """
 
     word: ClassVar[str] = ""

@@ -1,4 +1,4 @@
-"""Commands from names and numbers, as files and text give them, and back: one way for both."""
+"""Conversion of commands from names and numbers and back, for files and text alike."""
 
 from __future__ import annotations
 
@@ -18,19 +18,19 @@ from tarsus.scenario.timed_command import TimedCommand, quantities
 __all__ = ["WORD", "Value", "command_from", "command_text", "numbers_of", "takes", "time_text"]
 
 WORD = re.compile(r"[^\W\d][\w/-]*")
-"""What needs no quotes in text."""
+"""A name that needs no quotes in text."""
 
 Value: TypeAlias = Decimal | str
-"""A number in the unit of files, or a word in its place."""
+"""A number in the unit used in files, or a word in its place."""
 
 _ROUNDING = 1e-15
 
-_SPEED = Quantity("speed", "mm_s", -10_000, 10_000, "along the heading")
-_HEADING = Quantity("heading", "deg", -360, 360, "from the front; 90 is to the left")
+_SPEED = Quantity("speed", "mm_s", -10_000, 10_000, "speed along the heading")
+_HEADING = Quantity("heading", "deg", -360, 360, "direction from the front; 90 is to the left")
 
 
 def takes(kind: type[TimedCommand]) -> Mapping[str, Quantity]:
-    """Return what numbers may be given for a command: its own, and for a walk also speed and heading.
+    """Return the numbers that a command takes: its own, and for a walk also speed and heading.
 
     Parameters
     ----------
@@ -42,23 +42,23 @@ def takes(kind: type[TimedCommand]) -> Mapping[str, Quantity]:
 
 
 def command_from(kind: type[TimedCommand], at: Decimal, numbers: Mapping[str, Value], **names: str) -> TimedCommand:
-    """Return a command from its numbers in the units of files.
+    """Return a command from its numbers in the units used in files.
 
     Parameters
     ----------
     kind : type
         The command's class.
     at : Decimal
-        When [s].
+        Time of the command [s].
     numbers : mapping of str to (Decimal or str)
-        By name; within their bounds, or words in their place.
+        By name; numbers within their bounds, or words.
     **names : str
         Leg or gait.
 
     Raises
     ------
     ValueError
-        If a number is missing, or two say the same.
+        If a number is missing, or two contradict each other.
     """
     known = takes(kind)
     missing = [_named(each) for name, each in known.items() if each.needed and name not in numbers]
@@ -68,11 +68,11 @@ def command_from(kind: type[TimedCommand], at: Decimal, numbers: Mapping[str, Va
     heading = si.pop("heading", None)
     speed = si.pop("speed", None)
     if heading is not None and speed is None:
-        raise ValueError("heading needs speed: how fast in that direction")
+        raise ValueError("heading needs speed, the speed in that direction")
     if speed is not None:
         if si.keys() & {"vx", "vy"}:
-            raise ValueError("speed and heading say the same as vx and vy: give the ones or the others")
-        # Of straight to the left, rounding leaves a little forward.
+            raise ValueError("speed and heading are the same as vx and vy; give one pair only")
+        # Rounding leaves a small forward part of a walk straight to the left.
         parts = (math.cos(heading or 0.0), math.sin(heading or 0.0))
         si |= {
             axis: speed * part if abs(part) > _ROUNDING else 0.0 for axis, part in zip(("vx", "vy"), parts, strict=True)
@@ -89,14 +89,14 @@ def _to_si(each: Quantity, value: Value) -> float | str:
 
 
 def numbers_of(command: TimedCommand, *, zeros: bool = False) -> dict[str, Value]:
-    """Return a command's numbers in the units of files, or the words in their place.
+    """Return a command's numbers in the units used in files, or the words in their place.
 
     Parameters
     ----------
     command : Command
         The command.
     zeros : bool
-        Whether those are given that may be left out and are 0.
+        Whether to include optional numbers that are 0.
     """
     rows = {name: (each, getattr(command, name)) for name, each in quantities(type(command)).items()}
     return {
@@ -107,7 +107,7 @@ def numbers_of(command: TimedCommand, *, zeros: bool = False) -> dict[str, Value
 
 
 def time_text(at: float) -> str:
-    """Return a moment as text: ``2.5 s``."""
+    """Return a time as text: ``2.5 s``."""
     return f"{toml_number(UNITS['s'].from_si(at))} s"
 
 
