@@ -163,13 +163,13 @@ def test_stopping_ends_at_rest_with_every_foot_at_its_rest_foothold(gait):
     setup, rest = setup_of("strider", gait), rest_of("strider")
     now = walked(begun(setup, rest), step_inputs_of(setup, rest, (0.05, 0.02, 0.2)), 3.13, 0.01)
     stop = step_inputs_of(setup, rest, (0.0, 0.0, 0.0))
-    assert final_footholds(now, stop) is None
+    assert final_footholds(now, rest=stop.rest, bandwidth=stop.bandwidth) is None
     now = walked(now, stop, 8.0, 0.01)
     assert now.down.all()
     assert not now.twist.value.any()
     expected = now.origin + np.exp(1j * now.yaw) * rest
     assert np.abs(now.foot - expected).max() <= POSITION_TOLERANCE
-    np.testing.assert_allclose(final_footholds(now, stop), expected)
+    np.testing.assert_allclose(final_footholds(now, rest=stop.rest, bandwidth=stop.bandwidth), expected)
     # And there it stays: no foot is lifted that is there already.
     later = walked(now, stop, 2.0, 0.01)
     np.testing.assert_array_equal(later.foot, now.foot)
@@ -223,7 +223,7 @@ def test_final_rest_is_where_the_lag_leaves_the_body():
         setup, rest, twist=CriticallyDamped(np.array([0.005, -0.003, 0.008]), np.array([0.02, 0.01, -0.03]))
     )
     stop = step_inputs_of(setup, rest, (0, 0, 0), frequency=0.0)
-    expected = final_footholds(now, stop)
+    expected = final_footholds(now, rest=stop.rest, bandwidth=stop.bandwidth)
     end = walked(now, stop, 6.0, 0.05)
     np.testing.assert_allclose(end.origin + np.exp(1j * end.yaw) * rest, expected, atol=1e-5)
     assert now.origin == EARTH

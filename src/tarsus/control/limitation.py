@@ -65,6 +65,11 @@ class Cause(NamedTuple):
     margin: float = _NONE
     least_margin: float = _NONE
 
+    def text(self) -> str:
+        """Return it as a line of text."""
+        where = f"{self.leg}: " if self.leg else ""
+        return f"{where}{self.reason}{_margin_text(self.margin, self.least_margin)}"
+
     def limitation(self, kind: LimitationKind, *, asked: float = _NONE, granted: float = _NONE) -> Limitation:
         """Return the limitation that this causes.
 
@@ -127,7 +132,7 @@ class Limitation:
         """Return it as a line of text, in mm, degrees, seconds and percent."""
         where = " ".join(name for name in (self.leg, self.joint) if name)
         numbers = [self._granted_text(), self._value("bound ", self.bound)]
-        reason = ": ".join(part for part in (where, self.cause) if part) + self._margin_text()
+        reason = Cause(self.cause, where, self.margin, self.least_margin).text()
         parts = [", ".join(part for part in numbers if part), reason]
         return f"{self.kind}: " + "; ".join(part for part in parts if part)
 
@@ -146,11 +151,12 @@ class Limitation:
         number = f"{value * scale:.0f}" if unit == "%" else f"{value * scale:.4g}"
         return f"{prefix}{number} {unit}".strip()
 
-    def _margin_text(self) -> str:
-        if math.isnan(self.margin):
-            return ""
-        if math.isinf(self.margin):
-            return ", without a support polygon"
-        side = "outside" if self.margin < 0 else "inside"
-        least = "" if math.isnan(self.least_margin) else f" (at least {1000 * self.least_margin:.0f} mm inside needed)"
-        return f", {1000 * abs(self.margin):.0f} mm {side} its support polygon{least}"
+
+def _margin_text(margin: float, least: float) -> str:
+    if math.isnan(margin):
+        return ""
+    if math.isinf(margin):
+        return ", without a support polygon"
+    side = "outside" if margin < 0 else "inside"
+    needed = "" if math.isnan(least) else f" (at least {1000 * least:.0f} mm inside needed)"
+    return f", {1000 * abs(margin):.0f} mm {side} its support polygon{needed}"

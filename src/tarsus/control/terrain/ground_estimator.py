@@ -10,7 +10,7 @@ import numpy as np
 from tarsus.control.pose.admittance import Admittance, AdmittanceFilter
 from tarsus.control.pose.attitude import CommandedAttitude, rotate_z, slope_along
 from tarsus.control.pose.levelling import Correction, Levelling, LevellingMode, com_shift_ratio
-from tarsus.control.readings import SensorReadings, ValidReadings
+from tarsus.control.readings import SensorReadings, ValidReadings, Vector
 from tarsus.control.sensing.foot_force import STANDARD_GRAVITY, FootForceEstimator, balanced_forces
 from tarsus.control.sensing.ground_plane import FLAT, GroundPlane, ground_plane
 from tarsus.control.sensing.validation import ReadingsValidator
@@ -41,6 +41,8 @@ class GroundEstimate(NamedTuple):
         Upward admittance offset of each foot [m].
     rejected : tuple of str
         Rejected readings, with the reason.
+    tilt : float
+        Angle between the measured and the commanded upward direction [rad]; NaN where no attitude is measured.
     """
 
     contacts: tuple[bool | None, ...] | None
@@ -48,6 +50,7 @@ class GroundEstimate(NamedTuple):
     slope: complex
     offsets: Floats
     rejected: tuple[str, ...]
+    tilt: float = math.nan
 
 
 class GroundEstimator:
@@ -135,6 +138,7 @@ class GroundEstimator:
             slope=self._slope,
             offsets=self._offsets(valid, dt, feet=feet, contacts=contacts, angles=angles),
             rejected=valid.rejected,
+            tilt=math.nan if valid.attitude is None else _tilt(valid.attitude, commanded),
         )
 
     def set_applied_correction(self, roll: float, pitch: float) -> None:
@@ -173,3 +177,14 @@ class GroundEstimator:
             for force, share, down in zip(measured, expected, contacts.tolist(), strict=True)
         ]
         return np.array(self._filter.step(errors, dt))
+
+
+def _tilt(attitude: tuple[float, float], commanded: CommandedAttitude) -> float:
+    """Return the angle between the upward directions of two attitudes [rad]."""
+    up = (_upward(roll, pitch) for roll, pitch in (attitude, (commanded.roll, commanded.pitch)))
+    return math.acos(min(sum(a * b for a, b in zip(*up, strict=True)), 1.0))
+
+
+def _upward(roll: float, pitch: float) -> Vector:
+    """Return the world's upward direction in B."""
+    return -math.sin(pitch), math.cos(pitch) * math.sin(roll), math.cos(pitch) * math.cos(roll)

@@ -1,4 +1,4 @@
-"""How much of the straight way from one posture to another works, and what stops it there."""
+"""How much of the straight path from one stance to another is feasible, and what limits it."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from tarsus.control.incremental import Incremental
+from tarsus.control.limitation import Cause
 from tarsus.control.workspace.foot_workspace import rest_margin
 from tarsus.control.workspace.stability import StabilityCheck
 from tarsus.control.workspace.stance_geometry import (
@@ -22,21 +22,33 @@ from tarsus.control.workspace.stance_geometry import (
 )
 from tarsus.robot.robot import Robot
 
-__all__ = ["StanceTarget", "balanced_fraction", "first_increment", "largest_fraction", "limiting_cause"]
+__all__ = [
+    "HALVINGS",
+    "TIPPING",
+    "Bracket",
+    "StanceTarget",
+    "first_increment",
+    "first_unreachable",
+    "is_balanced",
+    "is_reachable",
+    "reach_cause",
+    "reach_margin",
+]
 
 Floats = np.ndarray[Any, Any]
 
-# All of the way is looked at in so many parts, then the one that fails is halved so often: to 1/2048 of the way.
-_PARTS_OF_WAY, _HALVINGS = 16, 7
-# How many postures are looked at closely in one tick.
-_AT_ONCE = 2
-# How far the rest footholds move at once at the most [m], and which parts of a step are tried.
+TIPPING = Cause("the robot would tip over")
+# The whole path is sampled at so many points; the interval that fails is then halved: to 1/2048 of the path.
+_SAMPLES = 16
+HALVINGS = 7
+"""Number of halvings of the interval in which a path ceases to be feasible."""
+
+# How far the rest footholds move in one transition at most [m], and the fractions of a step that are tried.
 _LONGEST_STEP, _SHORTER = 0.03, np.append(np.arange(16, 0, -1) / 16, (1 / 32, 1 / 64))
-# What is no step [m].
+# Rest footholds closer than this are the same [m].
 _SAME = 1e-9
-# How much more than it must be the centre of mass is inside its support, so that steps are left to the feet: a share of
-# how far these are from each other.
-_TO_STEP = 0.03
+# Additional stability margin, as a fraction of the distance between feet, which leaves the feet room to step.
+_STEP_MARGIN = 0.03
 
 
 class StanceTarget(NamedTuple):
@@ -48,27 +60,27 @@ class StanceTarget(NamedTuple):
         The posture.
     rest : complex array, shape (legs,)
         The rest footholds in the heading frame [m].
-    terrain : Terrain
-        How the ground lies.
+    terrain : TerrainEstimate
+        Slope and roughness of the ground.
     """
 
     posture: Floats
     rest: Floats
     terrain: TerrainEstimate = LEVEL_TERRAIN
 
-    def towards(self, other: StanceTarget, share: float) -> StanceTarget:
-        """Return what is a share of the way to another.
+    def towards(self, other: StanceTarget, fraction: float) -> StanceTarget:
+        """Return the stance at a fraction of the straight path to another.
 
         Parameters
         ----------
-        other : Posed
-            The other.
-        share : float
-            0 for here, 1 for there.
+        other : StanceTarget
+            The end of the path.
+        fraction : float
+            0 for this stance, 1 for the other.
         """
         return self._replace(
-            posture=self.posture + share * (other.posture - self.posture),
-            rest=self.rest + share * (other.rest - self.rest),
+            posture=self.posture + fraction * (other.posture - self.posture),
+            rest=self.rest + fraction * (other.rest - self.rest),
         )
 
     @property
@@ -77,129 +89,134 @@ class StanceTarget(NamedTuple):
         return stance_geometry_of(self.posture, self.rest, self.terrain)
 
 
-def largest_fraction(robot: Robot, now: StanceTarget, wished: StanceTarget) -> Incremental[tuple[float, str]]:
-    """Return how much of the way all legs have room about their rest footholds, and what stops it there.
+class Bracket(NamedTuple):
+    """Two fractions of a path: one that is feasible, or 0, and a greater one that is not."""
+
+    feasible: float
+    infeasible: float
+
+    @classmethod
+    def before(cls, infeasible: float) -> Bracket:
+        """Return a sample's bracket below a fraction that is not feasible."""
+        return cls(max(0.0, infeasible - 1 / _SAMPLES), infeasible)
+
+    def widened(self) -> Bracket:
+        """Return the bracket below, for a lower end that turned out not to be feasible; twice as wide."""
+        return Bracket(max(0.0, 2 * self.feasible - self.infeasible), self.feasible)
+
+    def halved(self, works: Callable[[float], bool]) -> Bracket:
+        """Return the half of the bracket in which feasibility ends.
+
+        Parameters
+        ----------
+        works : callable
+            Whether a fraction is feasible.
+        """
+        middle = (self.feasible + self.infeasible) / 2
+        return Bracket(middle, self.infeasible) if works(middle) else Bracket(self.feasible, middle)
+
+
+def first_unreachable(robot: Robot, start: StanceTarget, end: StanceTarget) -> float | None:
+    """Return the first sample of a path at which a leg does not reach its rest foothold; None where all do.
 
     Parameters
     ----------
     robot : Robot
         A single robot.
-    now, wished : Posed
-        Both ends of the way.
-
-    Returns
-    -------
-    share : float
-        To a thousandth of the way; 1 where nothing stops it.
-    why : str
-        What stops it.
+    start, end : StanceTarget
+        Both ends of the path.
     """
-    shares = np.arange(1, _PARTS_OF_WAY + 1) / _PARTS_OF_WAY
-    fails = (reach_margin(robot, [now.towards(wished, share) for share in shares.tolist()]) < 0).any(axis=-1)
-    end = float(shares[fails.argmax()]) if fails.any() else 1.0
-    yield
-
-    def works(share: float) -> bool:
-        return bool((rest_margin(robot, now.towards(wished, share).stand) >= 0).all())
-
-    if not fails.any():
-        if works(1.0):
-            return 1.0, ""
-        yield
-    share, end = yield from _bracketed(works, end)
-    yield
-    return share, limiting_cause(robot, now.towards(wished, end).stand)
+    fractions = np.arange(1, _SAMPLES + 1) / _SAMPLES
+    stances = [start.towards(end, fraction) for fraction in fractions.tolist()]
+    fails = (reach_margin(robot, stances) < 0).any(axis=-1)
+    return float(fractions[fails.argmax()]) if fails.any() else None
 
 
-def _bracketed(works: Callable[[float], bool], end: float) -> Incremental[tuple[float, float]]:
-    """Return a share that works, or 0, and one shortly after it that doesn't, from a share that doesn't."""
-    begin = max(0.0, end - 1 / _PARTS_OF_WAY)
-    while begin > 0 and not works(begin):
-        begin, end = max(0.0, 2 * begin - end), begin
-        yield
-    yield
-    for count in range(_HALVINGS):
-        middle = (begin + end) / 2
-        begin, end = (middle, end) if works(middle) else (begin, middle)
-        if count % _AT_ONCE:
-            yield
-    return begin, end
-
-
-def balanced_fraction(
-    balance: StabilityCheck, now: StanceTarget, wished: StanceTarget, share: float
-) -> Incremental[float]:
-    """Return how much of the way the robot stands well inside its supports, at most some share; 0 for none of it.
-
-    Parameters
-    ----------
-    balance : Balance
-        What keeps the robot from tipping over.
-    now, wished : Posed
-        Both ends of the way.
-    share : float
-        A share at which it tips over.
-    """
-    margin = balance.least_margin + _TO_STEP * float(np.abs(now.rest - np.roll(now.rest, 1)).max())
-
-    def works(share: float) -> bool:
-        return balance.margin_at_rest(now.towards(wished, share).stand) >= margin
-
-    return (yield from _bracketed(works, share))[0]
-
-
-def first_increment(robot: Robot, now: StanceTarget, wished: StanceTarget, share: float) -> float:
-    """Return how much of the way can be gone at once: as the body still is, the feet must reach their new places.
+def is_reachable(robot: Robot, stance: StanceTarget) -> bool:
+    """Return whether all legs have room about their rest footholds.
 
     Parameters
     ----------
     robot : Robot
         A single robot.
-    now, wished : Posed
-        Both ends of the way.
-    share : float
-        How much of it works.
+    stance : StanceTarget
+        The stance.
     """
-    parts = share * _SHORTER
-    moved = np.abs(wished.rest - now.rest).max()
+    return bool((rest_margin(robot, stance.stand) >= 0).all())
+
+
+def is_balanced(check: StabilityCheck, stance: StanceTarget, footholds: Floats) -> bool:
+    """Return whether a stance has stability margin to spare for steps.
+
+    Parameters
+    ----------
+    check : StabilityCheck
+        The check against tipping over.
+    stance : StanceTarget
+        The stance.
+    footholds : complex array, shape (legs,)
+        The present rest footholds, whose distances scale the additional margin [m].
+    """
+    margin = check.least_margin + _STEP_MARGIN * float(np.abs(footholds - np.roll(footholds, 1)).max())
+    return check.margin_at_rest(stance.stand) >= margin
+
+
+def first_increment(robot: Robot, start: StanceTarget, end: StanceTarget, fraction: float) -> float:
+    """Return how much of a path one transition can cover: in the present posture the feet must reach their new places.
+
+    Parameters
+    ----------
+    robot : Robot
+        A single robot.
+    start, end : StanceTarget
+        Both ends of the path.
+    fraction : float
+        The fraction that is feasible.
+    """
+    parts = fraction * _SHORTER
+    moved = np.abs(end.rest - start.rest).max()
     if moved < _SAME:
-        return share
-    slack = reach_margin(robot, [now._replace(rest=now.towards(wished, part).rest) for part in parts.tolist()])
-    works = (moved * parts <= _LONGEST_STEP) & (slack >= 0).all(axis=-1)
+        return fraction
+    margin = reach_margin(robot, [start._replace(rest=start.towards(end, part).rest) for part in parts.tolist()])
+    works = (moved * parts <= _LONGEST_STEP) & (margin >= 0).all(axis=-1)
     return float(parts[works.argmax()] if works.any() else parts[-1])
 
 
-def reach_margin(robot: Robot, posed: list[StanceTarget]) -> Floats:
-    """Return how much is left to each leg ``(n, legs)`` at its rest foothold, on the ground, as low as may be, lifted.
+def reach_margin(robot: Robot, stances: list[StanceTarget]) -> Floats:
+    """Return the margin of each leg at its rest foothold: on the ground, at the lowest ground, and lifted.
 
     Parameters
     ----------
     robot : Robot
         A single robot.
-    posed : list of Posed
-        Postures and footholds, on the same terrain.
+    stances : list of StanceTarget
+        Stances on the same terrain.
+
+    Returns
+    -------
+    array, shape (n, legs)
+        Negative out of reach.
     """
-    rows, rest = np.array([p.posture for p in posed]), np.array([p.rest for p in posed])
+    rows, rest = np.array([p.posture for p in stances]), np.array([p.rest for p in stances])
     rotation = np.array([rotation_rows(*row) for row in rows[:, 3:SWING_HEIGHT].tolist()])
-    (slope, depth), position, swing_height = posed[0].terrain, rows[:, :3].T[..., None], rows[:, SWING_HEIGHT:]
+    (slope, depth), position, swing_height = stances[0].terrain, rows[:, :3].T[..., None], rows[:, SWING_HEIGHT:]
     above = position[2] - ground_rise(slope, position[0], position[1])
     stand = StanceGeometry(rest, rotation[:, None], np.stack([position[0], position[1], above]), 0.0, slope)
     height = np.stack([-depth * swing_height, 0 * swing_height, swing_height][0 if depth else 1 :])
     return np.asarray(joint_margin(robot.geometry, stand.solve(robot, rest.real, rest.imag, height)).min(axis=0))
 
 
-def limiting_cause(robot: Robot, stand: StanceGeometry) -> str:
-    """Say which leg has no room about its rest foothold, and why.
+def reach_cause(robot: Robot, stand: StanceGeometry) -> Cause:
+    """Return which leg has no room about its rest foothold, and why.
 
     Parameters
     ----------
     robot : Robot
         A single robot.
-    stand : Stand
+    stand : StanceGeometry
         The body and the rest footholds.
     """
-    room = rest_margin(robot, stand)
-    name = robot.leg_names[int(room.argmin())]
-    if rest_margin(robot, stand, knees=False)[room.argmin()] >= 0:
-        return f"the knee of {name} comes to the ground"
-    return f"{name} comes to the end of its reach"
+    margin = rest_margin(robot, stand)
+    leg = int(margin.argmin())
+    knee = bool(rest_margin(robot, stand, knees=False)[leg] >= 0)
+    return Cause("the knee touches the ground" if knee else "end of the leg's reach", robot.leg_names[leg])

@@ -1,4 +1,4 @@
-"""Where each foot may be at this moment, while the robot goes over from one stand to another."""
+"""The workspace and the rest foothold of each foot while the robot transfers from one stance to another."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from tarsus.control.transition.planner import StanceTransition
+from tarsus.control.transition.stance_transition import StanceTransition
 from tarsus.control.workspace.polygon import NORMALS_CONJUGATE
 from tarsus.control.workspace.velocity_limits import VelocityLimits
 
@@ -18,82 +18,87 @@ _SAME = 1e-9
 
 
 class FootholdTransfer:
-    """The feet's polygons and rest footholds, leg by leg: each leg goes over to new ones with its own next step.
+    """Workspace polygons and rest footholds, leg by leg: each leg transfers to new ones with its next step.
 
     Parameters
     ----------
-    change : Change
-        How the robot stands to begin with.
+    transition : StanceTransition
+        The stance at the start.
 
     Attributes
     ----------
+    limits : VelocityLimits
+        Limits of the twist.
     bounds : array, shape (legs, 16)
-        Sides of the polygons in which the feet on the ground have to stay [m].
+        Sides of the polygons in which standing feet have to stay [m].
     rest : complex array, shape (legs,)
-        Where each foot rests, or is to be put down, in the heading frame [m].
-    way : VelocityLimits
-        What limits the twist.
-    stepped : array of bool, shape (legs,)
-        Which feet are where they are to rest now.
-    room : array, shape (legs, 16)
-        How far from its rest foothold each foot may be put down next, along each side's normal [m].
+        Where each foot rests, or will be put down, in the heading frame [m].
+    placement_bounds : array, shape (legs, 16)
+        Distance from its rest foothold at which each foot may be put down next, along each side's normal [m].
+    transferred : array of bool, shape (legs,)
+        Which feet stand at their new rest footholds.
     """
 
-    def __init__(self, change: StanceTransition) -> None:
-        self.way: VelocityLimits = change.there
-        self.bounds: Floats = change.there.bounds
-        self.rest: Floats = change.rest
-        self.stepped = np.ones(len(self.rest), dtype=bool)
-        self._landing = self.bounds
+    def __init__(self, transition: StanceTransition) -> None:
+        self.limits: VelocityLimits = transition.final_limits
+        self.bounds: Floats = transition.final_limits.bounds
+        self.rest: Floats = transition.rest
+        self.transferred = np.ones(len(self.rest), dtype=bool)
+        self._next_bounds = self.bounds
         self._new_rest = self.rest
-        self._old_step = ~self.stepped
-        self._make_room()
+        self._lands_at_old = ~self.transferred
+        self._update_placement()
 
-    def _make_room(self) -> None:
-        landing = np.where(self._old_step[:, None], self.bounds, self._landing)
-        self.room: Floats = np.maximum(landing - (NORMALS_CONJUGATE * self.rest[:, None]).real, 0.0)
+    def _update_placement(self) -> None:
+        landing = np.where(self._lands_at_old[:, None], self.bounds, self._next_bounds)
+        self.placement_bounds: Floats = np.maximum(landing - (NORMALS_CONJUGATE * self.rest[:, None]).real, 0.0)
 
     @property
     def new_rest(self) -> Floats:
-        """Where the feet rest once all have stepped ``(legs,)``, complex [m]."""
+        """The rest footholds once all feet are transferred: complex array, shape (legs,) [m]."""
         return self._new_rest
 
-    def begun(self, change: StanceTransition) -> Floats:
-        """Return the sides ``(legs, 16)`` with which feet would begin to step to new rest footholds [m].
+    def bounds_with(self, transition: StanceTransition) -> Floats:
+        """Return the sides with which the feet would start to transfer.
 
         Parameters
         ----------
-        change : Change
-            What would be gone over to.
+        transition : StanceTransition
+            The transition that would begin.
+
+        Returns
+        -------
+        array, shape (legs, 16)
+            The sides [m].
         """
-        moved = self._moved(change)
-        return np.where(moved[:, None], self.bounds, np.minimum(self.bounds, change.stepping.bounds))
+        moved = self._moved(transition)
+        return np.where(moved[:, None], self.bounds, np.minimum(self.bounds, transition.stepping_limits.bounds))
 
-    def _moved(self, change: StanceTransition) -> Floats:
-        return np.asarray(np.abs(change.rest - self._new_rest) > _SAME)
+    def _moved(self, transition: StanceTransition) -> Floats:
+        return np.asarray(np.abs(transition.rest - self._new_rest) > _SAME)
 
-    def begin(self, change: StanceTransition, down: Floats) -> None:
-        """Send the feet to new rest footholds.
+    def begin(self, transition: StanceTransition, down: Floats) -> None:
+        """Begin to transfer the feet to new rest footholds.
 
         Parameters
         ----------
-        change : Change
-            What is gone over to.
+        transition : StanceTransition
+            The transition that begins.
         down : array of bool, shape (legs,)
             Which feet are on the ground.
         """
-        self.way = self.way.intersection(change.stepping)
-        moved = self._moved(change)
-        self.bounds = self.begun(change)
-        self.stepped = ~moved
-        # A foot in the air lands where it is bound for; its next step is the one that counts.
-        self._old_step = moved & ~down
-        self.rest = np.where(self._old_step, self.rest, change.rest)
-        self._landing, self._new_rest = change.stepping.bounds, change.rest
-        self._make_room()
+        self.limits = self.limits.intersection(transition.stepping_limits)
+        moved = self._moved(transition)
+        self.bounds = self.bounds_with(transition)
+        self.transferred = ~moved
+        # A foot in the air lands at the foothold that it swings to; its next step is the one that counts.
+        self._lands_at_old = moved & ~down
+        self.rest = np.where(self._lands_at_old, self.rest, transition.rest)
+        self._next_bounds, self._new_rest = transition.stepping_limits.bounds, transition.rest
+        self._update_placement()
 
-    def land(self, landed: Floats) -> None:
-        """Note which feet have been put down in this tick.
+    def feet_landed(self, landed: Floats) -> None:
+        """Take note of the feet that landed in this tick.
 
         Parameters
         ----------
@@ -101,12 +106,12 @@ class FootholdTransfer:
             The feet.
         """
         self.rest = np.where(landed, self._new_rest, self.rest)
-        counts, self._old_step = landed & ~self._old_step, self._old_step & ~landed
-        self.stepped = self.stepped | counts
-        self.bounds = np.where(counts[:, None], self._landing, self.bounds)
-        self._make_room()
+        counts, self._lands_at_old = landed & ~self._lands_at_old, self._lands_at_old & ~landed
+        self.transferred = self.transferred | counts
+        self.bounds = np.where(counts[:, None], self._next_bounds, self.bounds)
+        self._update_placement()
 
-    def tighten(self, limits: VelocityLimits) -> None:
+    def restrict(self, limits: VelocityLimits) -> None:
         """Keep within further limits too.
 
         Parameters
@@ -114,17 +119,17 @@ class FootholdTransfer:
         limits : VelocityLimits
             The limits.
         """
-        self.way = self.way.intersection(limits)
-        self.bounds = self._landing = np.minimum(self.bounds, limits.bounds)
-        self._make_room()
+        self.limits = self.limits.intersection(limits)
+        self.bounds = self._next_bounds = np.minimum(self.bounds, limits.bounds)
+        self._update_placement()
 
-    def arrive(self, limits: VelocityLimits) -> None:
-        """Go over to the limits of the stand that has been reached.
+    def complete(self, limits: VelocityLimits) -> None:
+        """Change over to the limits of the stance that is reached.
 
         Parameters
         ----------
         limits : VelocityLimits
             The limits.
         """
-        self.way, self.bounds, self._landing = limits, limits.bounds, limits.bounds
-        self._make_room()
+        self.limits, self.bounds, self._next_bounds = limits, limits.bounds, limits.bounds
+        self._update_placement()

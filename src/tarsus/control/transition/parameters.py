@@ -1,4 +1,4 @@
-"""How the robot is asked to walk, apart from where to."""
+"""Parameters of walking: everything that is commanded except the twist."""
 
 from __future__ import annotations
 
@@ -12,28 +12,28 @@ __all__ = ["WalkParameters"]
 
 @dataclass(frozen=True, kw_only=True)
 class WalkParameters:
-    """How the robot is asked to walk, apart from where to.
+    """How the robot stands and steps.
 
     Attributes
     ----------
     gait : Gait
         Order of the steps.
     body : tuple of float
-        x, y, z [m], roll, pitch, yaw [rad] against standing level at the body height.
+        Body pose against level at the body height: x, y, z [m], roll, pitch, yaw [rad].
     body_height, swing_height : float
-        Height of the body's origin, lift of the swinging feet [m].
+        Height of the body's origin over the ground, and of a swinging foot over its foothold [m].
     stance_width : float
-        How much farther out than usual the feet rest [m].
+        Distance that the feet rest farther out than by default [m].
     cycle_time : float or None
-        Duration of a cycle [s]; None for the one that gets the robot farthest.
+        Duration of a cycle [s]; None for the one with the highest top speed.
     sway : tuple of float
-        Amplitudes of the body's sway, as `body`.
+        Amplitudes of the body's sway, axes as in `body`.
     correction : tuple of float
-        What is added to `body`, for the ground's sake.
+        Correction for the ground, added to `body`.
     excluded : tuple of int
-        Legs that don't step.
-    terrain : Terrain
-        How the ground lies.
+        Legs that are taken out of the gait.
+    terrain : TerrainEstimate
+        Slope and roughness of the ground.
     """
 
     gait: Gait
@@ -48,6 +48,6 @@ class WalkParameters:
     terrain: TerrainEstimate = LEVEL_TERRAIN
 
     @property
-    def stance(self) -> tuple[float, ...]:
-        """How the body is to stand, for the ground's sake too."""
+    def corrected_body(self) -> tuple[float, ...]:
+        """The body pose with the correction for the ground."""
         return tuple(a + b for a, b in zip(self.body, self.correction, strict=True))

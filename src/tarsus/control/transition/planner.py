@@ -1,205 +1,202 @@
-"""Changes that take thought: another gait, posture or pace, worked out in parts before it is gone over to."""
+"""Planning of stance transitions, in stages of less than a tick each."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from tarsus.control.incremental import Incremental
-from tarsus.control.limitation import Limitation, LimitationKind
-from tarsus.control.transition.feasible_fraction import (
-    StanceTarget,
-    balanced_fraction,
-    first_increment,
-    largest_fraction,
-    limiting_cause,
-)
+from tarsus.control.limitation import Cause, Limitation, LimitationKind
+from tarsus.control.transition.feasible_fraction import TIPPING, StanceTarget, first_increment, reach_cause
 from tarsus.control.transition.parameters import WalkParameters
+from tarsus.control.transition.shortfalls import stance_limitations
+from tarsus.control.transition.stages import balanced_fraction, reachable_fraction
+from tarsus.control.transition.stance_transition import StanceTransition
 from tarsus.control.transition.target_stance import sway_extremes, target_stance
 from tarsus.control.workspace.cycle_time import CycleTiming, cycle_timing
 from tarsus.control.workspace.stability import StabilityCheck, support_sets
-from tarsus.control.workspace.stance_geometry import TerrainEstimate
 from tarsus.control.workspace.velocity_limits import VelocityLimits, velocity_limits, with_stroke_limits
 from tarsus.robot.robot import Robot
 
-__all__ = ["StanceTransition", "plan_transition"]
+__all__ = ["TransitionPlanner"]
 
 Floats = np.ndarray[Any, Any]
 
-_LEAST_PART = 0.02
-# What is no change.
+_LEAST_FRACTION = 0.02
+# Differences below this are rounding.
 _SAME = 1e-9
-_TIPS_OVER = "the robot would tip over"
+_UNREACHABLE_HEIGHT = Cause("no leg reaches the ground at this height")
 
 
-@dataclass(frozen=True, eq=False, kw_only=True)
-class StanceTransition:
-    """What going over to a manner comes to, or to a part of it.
+class _Path(NamedTuple):
+    """The path from the present stance to the commanded one, and how much of it is feasible."""
 
-    First the feet step to new rest footholds, then the body moves over them.
+    start: StanceTarget
+    end: StanceTarget
+    fraction: float = 1.0
+    cause: Cause | None = None
 
-    Attributes
-    ----------
-    parameters : WalkParameters
-        What was asked for.
-    whole : bool
-        Whether this is all of it that works; if not, the rest comes with a further change.
-    posture : array, shape (7,)
-        The posture to go to.
-    rest : complex array, shape (legs,)
-        The rest footholds to step to, in the heading frame [m].
-    cycle_timing : CycleTiming
-        How fast the legs step there.
-    stepping, way, there : VelocityLimits
-        What is possible while the feet step, while the body moves, and there.
-    limitations : tuple of Limitation
-        Why it isn't all that was asked for.
-    terrain : Terrain
-        How the ground was taken to lie.
-    """
-
-    parameters: WalkParameters
-    whole: bool
-    posture: Floats
-    rest: Floats
-    cycle_timing: CycleTiming
-    stepping: VelocityLimits
-    way: VelocityLimits
-    there: VelocityLimits
-    limitations: tuple[Limitation, ...]
-    terrain: TerrainEstimate
+    def at(self, fraction: float) -> StanceTarget:
+        return self.start.towards(self.end, fraction)
 
 
-def plan_transition(
-    robot: Robot,
-    parameters: WalkParameters,
-    now: Floats | None,
-    rest: Floats | None,
-    *,
-    stay: bool = False,
-    speed: Floats,
-    acceleration: Floats,
-    foot_distance: float,
-) -> Incremental[StanceTransition | str]:
-    """Work out how to go over to a manner, in parts.
+class TransitionPlanner:
+    """Plans stance transitions of one robot.
 
     Parameters
     ----------
     robot : Robot
         A single robot.
-    parameters : WalkParameters
-        What is asked for.
-    now : array, shape (7,), or None
-        The present posture; None to be there at once.
-    rest : complex array, shape (legs,), or None
-        The present rest footholds [m].
-    stay : bool
-        Whether the robot keeps its present posture, and changes only how it steps.
     speed, acceleration : array, shape (legs, 3)
         Greatest of each joint [rad/s], [rad/s^2].
     foot_distance : float
         Least distance between two feet [m].
-
-    Returns
-    -------
-    Change or str
-        The change; or why nothing of it works.
     """
-    present = StanceTarget(now, rest, parameters.terrain) if now is not None and rest is not None else None
-    wished = present if present is not None and stay else target_stance(robot, parameters, now)
-    sets = support_sets(parameters.gait, parameters.excluded)
-    yield
-    here, share, why = present or wished, 1.0, ""
-    if here is not wished:
-        share, why = yield from largest_fraction(robot, here, wished)
-        if share == 0:
-            return f"body: {why}"
+
+    def __init__(self, robot: Robot, *, speed: Floats, acceleration: Floats, foot_distance: float) -> None:
+        self._robot, self._foot_distance = robot, foot_distance
+        self._speed, self._acceleration = speed, acceleration
+
+    def plan(
+        self, parameters: WalkParameters, present: StanceTarget | None, *, stay: bool = False
+    ) -> Incremental[StanceTransition | Cause]:
+        """Plan the transition to commanded parameters.
+
+        Parameters
+        ----------
+        parameters : WalkParameters
+            What is commanded.
+        present : StanceTarget or None
+            The present stance; None to start in the commanded one.
+        stay : bool
+            Whether the robot keeps its present posture, and changes only how it steps.
+
+        Returns
+        -------
+        StanceTransition or Cause
+            The transition; or why nothing of it is feasible.
+
+        Raises
+        ------
+        UnreachableError
+            If no leg reaches the ground at the body height.
+        """
+        robot = self._robot
+        keeps_posture = present is not None and stay
+        posture = None if present is None else present.posture
+        end = present if present is not None and stay else target_stance(robot, parameters, posture)
+        sets = support_sets(parameters.gait, parameters.excluded)
         yield
-    works, share = share, first_increment(robot, here, wished, share)
-    if np.abs(wished.rest - here.rest).max() > _SAME:
-        yield
-    there = yield from _envelope_of(robot, parameters, here.towards(wished, share), sets, foot_distance)
-    if not (there.feasible or there.balanced or here is wished):
-        works = share = yield from balanced_fraction(
-            StabilityCheck(robot, sets, parameters.excluded), here, wished, share
+        path = _Path(present or end, end)
+        if path.start is not end:
+            fraction, cause = yield from reachable_fraction(robot, path.start, end)
+            if cause is not None and fraction == 0:
+                return cause
+            path = path._replace(fraction=fraction, cause=cause)
+            yield
+        fraction = first_increment(robot, path.start, end, path.fraction)
+        if np.abs(end.rest - path.start.rest).max() > _SAME:
+            yield
+        limits = yield from self._limits(parameters, path.at(fraction), sets)
+        if not (limits.feasible or limits.balanced or path.start is end):
+            check = StabilityCheck(robot, sets, parameters.excluded)
+            fraction = yield from balanced_fraction(check, path.start, end, fraction)
+            path = path._replace(fraction=fraction, cause=TIPPING)
+            if fraction == 0:
+                return TIPPING
+            limits = yield from self._limits(parameters, path.at(fraction), sets)
+        while not limits.feasible:
+            cause = self._cause(parameters, path.at(fraction), limits)
+            fraction /= 2
+            if fraction < _LEAST_FRACTION or path.start is end:
+                return cause
+            yield
+            limits = yield from self._limits(parameters, path.at(fraction), sets)
+        goal = path.at(fraction)
+        timing = yield from cycle_timing(
+            robot,
+            parameters.gait,
+            goal.stand,
+            limits,
+            speed=self._speed,
+            acceleration=self._acceleration,
+            cycle_time=parameters.cycle_time,
         )
-        why = _TIPS_OVER
-        if share == 0:
-            return f"body: {why}"
-        there = yield from _envelope_of(robot, parameters, here.towards(wished, share), sets, foot_distance)
-    while not there.feasible:
-        why = _why_not(robot, parameters, here.towards(wished, share), there)
-        share /= 2
-        if share < _LEAST_PART or here is wished:
-            return f"body: {why}"
         yield
-        there = yield from _envelope_of(robot, parameters, here.towards(wished, share), sets, foot_distance)
-    goal = here.towards(wished, share)
-    pace = yield from cycle_timing(
-        robot,
-        parameters.gait,
-        goal.stand,
-        there,
-        speed=speed,
-        acceleration=acceleration,
-        cycle_time=parameters.cycle_time,
-    )
-    yield
-    there = with_stroke_limits(there, pace.stroke, pace.turning, duty_factor=parameters.gait.duty_factor)
-    stepping = way = there
-    if np.abs(goal.posture - here.posture).max() > _SAME:
-        between = [goal._replace(posture=here.towards(goal, part).posture) for part in (0.5, 0.0)]
-        way = there.intersection((yield from _envelope_of(robot, parameters, between[0], sets, foot_distance)))
-        stepping = yield from _envelope_of(robot, parameters, between[1], sets, foot_distance)
-        stepping = with_stroke_limits(stepping, pace.stroke, pace.turning, duty_factor=parameters.gait.duty_factor)
-        way = way.intersection(stepping)
-    if not way.feasible:
-        who = f"{robot.leg_names[way.limiting_leg]} could not stand and step" if way.balanced else _TIPS_OVER
-        return f"body: on the way there {who}"
-    whole = share == works
-    return StanceTransition(
-        parameters=parameters,
-        whole=whole,
-        posture=goal.posture,
-        rest=goal.rest,
-        cycle_timing=pace,
-        stepping=stepping,
-        way=way,
-        there=there,
-        limitations=_limitations(parameters, pace, why if whole else ""),
-        terrain=goal.terrain,
-    )
-
-
-def _envelope_of(
-    robot: Robot, parameters: WalkParameters, posed: StanceTarget, sets: Floats, foot_distance: float
-) -> Incremental[VelocityLimits]:
-    """Work out what is possible in a posture, with its sway."""
-    stands = [posed._replace(posture=row).stand for row in sway_extremes(posed.posture, parameters.sway)]
-    return (yield from velocity_limits(robot, stands, sets, foot_distance=foot_distance, excluded=parameters.excluded))
-
-
-def _why_not(robot: Robot, parameters: WalkParameters, posed: StanceTarget, there: VelocityLimits) -> str:
-    """Say why a robot can't stand and step in a posture."""
-    if not there.balanced:
-        return _TIPS_OVER
-    if any(parameters.sway):
-        return f"{robot.leg_names[there.limiting_leg]} comes to the end of its reach as the body sways"
-    return limiting_cause(robot, posed.stand)
-
-
-def _limitations(parameters: WalkParameters, pace: CycleTiming, why: str) -> tuple[Limitation, ...]:
-    """Return what of the parameters is not met."""
-    limitations: tuple[Limitation, ...] = (Limitation(kind=LimitationKind.BODY, cause=why),) if why else ()
-    if parameters.cycle_time is not None and pace.cycle_time > parameters.cycle_time:
-        limitations += (
-            Limitation(
-                kind=LimitationKind.CYCLE_TIME,
-                cause="too short for the joints' speed and acceleration at this swing height",
-                asked=parameters.cycle_time,
-                granted=pace.cycle_time,
+        final = with_stroke_limits(limits, timing.stroke, timing.turning, duty_factor=parameters.gait.duty_factor)
+        stepping, on_path = yield from self._path_limits(parameters, path.start, goal, final, timing, sets)
+        if not on_path.feasible:
+            return self._path_cause(on_path)
+        return StanceTransition(
+            parameters=parameters,
+            complete=fraction == path.fraction,
+            keeps_posture=keeps_posture,
+            posture=goal.posture,
+            rest=goal.rest,
+            cycle_timing=timing,
+            stepping_limits=stepping,
+            path_limits=on_path,
+            final_limits=final,
+            limitations=(
+                *(() if keeps_posture else self._shortfalls(parameters, path)),
+                *_timing_limitations(parameters, timing),
             ),
+            terrain=goal.terrain,
         )
-    return limitations
+
+    def _limits(self, parameters: WalkParameters, stance: StanceTarget, sets: Floats) -> Incremental[VelocityLimits]:
+        """Find the limits in a stance, with its sway."""
+        stands = [stance._replace(posture=row).stand for row in sway_extremes(stance.posture, parameters.sway)]
+        return (
+            yield from velocity_limits(
+                self._robot, stands, sets, foot_distance=self._foot_distance, excluded=parameters.excluded
+            )
+        )
+
+    def _path_limits(
+        self,
+        parameters: WalkParameters,
+        start: StanceTarget,
+        goal: StanceTarget,
+        final: VelocityLimits,
+        timing: CycleTiming,
+        sets: Floats,
+    ) -> Incremental[tuple[VelocityLimits, VelocityLimits]]:
+        """Find the limits while the feet step, and while the body moves to its goal."""
+        if np.abs(goal.posture - start.posture).max() <= _SAME:
+            return final, final
+        halfway, begin = (goal._replace(posture=start.towards(goal, part).posture) for part in (0.5, 0.0))
+        on_path = final.intersection((yield from self._limits(parameters, halfway, sets)))
+        stepping = yield from self._limits(parameters, begin, sets)
+        stepping = with_stroke_limits(stepping, timing.stroke, timing.turning, duty_factor=parameters.gait.duty_factor)
+        return stepping, on_path.intersection(stepping)
+
+    def _cause(self, parameters: WalkParameters, stance: StanceTarget, limits: VelocityLimits) -> Cause:
+        """Return why the robot can't stand and step in a stance."""
+        if not limits.balanced:
+            return TIPPING
+        if any(parameters.sway):
+            return Cause("end of the leg's reach as the body sways", self._robot.leg_names[limits.limiting_leg])
+        return reach_cause(self._robot, stance.stand)
+
+    def _path_cause(self, limits: VelocityLimits) -> Cause:
+        if not limits.balanced:
+            return TIPPING._replace(reason=f"{TIPPING.reason} on the way")
+        return Cause("could not stand and step on the way", self._robot.leg_names[limits.limiting_leg])
+
+    def _shortfalls(self, parameters: WalkParameters, path: _Path) -> tuple[Limitation, ...]:
+        """Return what of the commanded stance is not feasible."""
+        reached, geometry = path.at(path.fraction), self._robot.geometry
+        mount = geometry.mount_x + 1j * geometry.mount_y
+        missing = float((np.abs(path.end.rest - mount) - np.abs(reached.rest - mount)).mean())
+        width = parameters.stance_width - missing
+        return stance_limitations(parameters, reached.posture, path.cause or _UNREACHABLE_HEIGHT, stance_width=width)
+
+
+def _timing_limitations(parameters: WalkParameters, timing: CycleTiming) -> tuple[Limitation, ...]:
+    asked, granted = parameters.cycle_time, timing.cycle_time
+    if asked is None or granted <= asked:
+        return ()
+    cause = "too short for the joints' speed and acceleration at this swing height"
+    return (Limitation(kind=LimitationKind.CYCLE_TIME, cause=cause, asked=asked, granted=granted),)

@@ -1,96 +1,112 @@
-"""What the walker is asked for besides its twist, and what of it is being worked out."""
+"""What is commanded besides the twist, and the planning of stance transitions that meet it, one stage per tick."""
 
 from __future__ import annotations
 
 import dataclasses
 from collections.abc import Callable
-from typing import Any, TypeAlias
-
-import numpy as np
+from typing import TypeAlias
 
 from tarsus.control.command import Command
 from tarsus.control.incremental import Incremental
+from tarsus.control.limitation import Cause, Limitation, LimitationKind
 from tarsus.control.transition.parameters import WalkParameters
-from tarsus.control.transition.planner import StanceTransition
+from tarsus.control.transition.shortfalls import rejection_limitations
+from tarsus.control.transition.stance_transition import StanceTransition
 from tarsus.control.workspace.stance_geometry import TerrainEstimate
 from tarsus.errors import InputError, UnreachableError
 from tarsus.gait.gait import Gait
 
-__all__ = ["TransitionScheduler"]
+__all__ = ["PlanTransition", "TransitionScheduler"]
 
-Floats = np.ndarray[Any, Any]
-PlanTransition: TypeAlias = Callable[[WalkParameters, bool], Incremental[StanceTransition | str]]
+PlanTransition: TypeAlias = Callable[[WalkParameters, bool], Incremental[StanceTransition | Cause]]
+"""Plans a transition to parameters; the second argument is whether the posture stays."""
+
+# The parameters that limitations of a stance are about; those of the body pose where not named.
+_FIELDS = {
+    LimitationKind.BODY_HEIGHT: "body_height",
+    LimitationKind.SWING_HEIGHT: "swing_height",
+    LimitationKind.STANCE_WIDTH: "stance_width",
+    LimitationKind.CYCLE_TIME: "cycle_time",
+}
+_UNREACHABLE = Cause("no leg reaches the ground at this height")
+_DEFERRED = Cause("not while a leg is taken out of the gait")
 
 
 class TransitionScheduler:
-    """Holds the manner that is asked for, and gets there by changes, each worked out in parts.
+    """Holds the commanded parameters, and plans transitions until they are met.
 
     Parameters
     ----------
-    doing : Change
-        What the walker does to begin with.
+    initial : StanceTransition
+        The stance at the start.
 
     Attributes
     ----------
-    wanted : WalkParameters
-        What is asked for.
-    doing : Change
-        What was gone over to last.
-    ready : Change or None
-        What is worked out, and waits for the walk to allow it.
-    rejections : dict of WalkParameters to str
-        What doesn't work at all, and why.
+    requested : WalkParameters
+        What is commanded.
+    current : StanceTransition
+        The transition that was begun last.
+    planned : StanceTransition or None
+        A transition that is planned and has not begun.
+    rejections : dict of WalkParameters to tuple of Limitation
+        Parameters that are not feasible at all, and what that limits.
     """
 
-    def __init__(self, doing: StanceTransition) -> None:
-        self.doing = doing
-        self.wanted = doing.parameters
-        self.ready: StanceTransition | None = None
-        self.rejections: dict[WalkParameters, str] = {}
-        self._asked = doing.parameters
-        self._job: Incremental[StanceTransition | str] | None = None
-        # What there is nothing left to do for.
+    def __init__(self, initial: StanceTransition) -> None:
+        self.current = initial
+        self.requested = initial.parameters
+        self.planned: StanceTransition | None = None
+        self.rejections: dict[WalkParameters, tuple[Limitation, ...]] = {}
+        self._asked = initial.parameters
+        self._job: Incremental[StanceTransition | Cause] | None = None
+        # Parameters for which nothing is left to plan.
         self._done: WalkParameters | None = None
+        # What the limitations of the current transition are about.
+        self._planned_for, self._stays = initial.parameters, False
+        # What is limited besides by the current transition; kept until planning has come to a new result.
+        self._shortfalls: tuple[Limitation, ...] = ()
 
-    def ask(
+    @property
+    def limitations(self) -> tuple[Limitation, ...]:
+        """What of the commanded parameters is not met, and will not be."""
+        now, then = self.requested, self._planned_for
+        newer = {found.kind for found in self._shortfalls}
+        fields = [(found, _FIELDS.get(found.kind, "body")) for found in self.current.limitations]
+        valid = (found for found, name in fields if getattr(now, name) == getattr(then, name))
+        return (*(found for found in valid if found.kind not in newer), *self._shortfalls)
+
+    def request(
         self, command: Command, excluded: tuple[int, ...], correction: tuple[float, ...], terrain: TerrainEstimate
     ) -> None:
-        """Note what is asked for.
+        """Take note of a command.
 
         Parameters
         ----------
         command : Command
-            The wish; what is None in it stays.
+            The command; what is None in it stays as it is.
         excluded : tuple of int
-            Legs that are to be hands.
+            Legs to take out of the gait.
         correction : tuple of float
-            What the ground asks of the body.
-        terrain : Terrain
-            How the ground lies.
+            Correction of the body pose for the ground.
+        terrain : TerrainEstimate
+            Slope and roughness of the ground.
 
         Raises
         ------
         InputError
             If a value is out of its range, or the gait for another number of legs.
         UnknownNameError
-            If there is no such gait.
+            If no gait has the name.
         """
-        m = self.wanted
-        legs = m.gait.legs
-        gait = m.gait if command.gait is None else command.gait
-        if isinstance(gait, str):
-            gait = m.gait if gait == m.gait.name else Gait.named(gait, legs=legs)
-        if not isinstance(gait, Gait):
-            raise InputError(f"the command's gait is {gait!r}; it must be a name or a Gait")
-        gait.require_legs(legs)
+        before = self.requested
         asked = WalkParameters(
-            gait=gait,
-            body=m.body if command.body is None else tuple(command.body),
-            body_height=m.body_height if command.body_height is None else command.body_height,
-            swing_height=m.swing_height if command.swing_height is None else command.swing_height,
-            stance_width=m.stance_width if command.stance_width is None else command.stance_width,
-            cycle_time=_cycle_time(m.cycle_time, command.cycle_time),
-            sway=m.sway if command.sway is None else tuple(command.sway),
+            gait=_gait(before.gait, command.gait),
+            body=before.body if command.body is None else tuple(command.body),
+            body_height=before.body_height if command.body_height is None else command.body_height,
+            swing_height=before.swing_height if command.swing_height is None else command.swing_height,
+            stance_width=before.stance_width if command.stance_width is None else command.stance_width,
+            cycle_time=_cycle_time(before.cycle_time, command.cycle_time),
+            sway=before.sway if command.sway is None else tuple(command.sway),
             correction=correction,
             excluded=excluded,
             terrain=terrain,
@@ -99,82 +115,126 @@ class TransitionScheduler:
             raise InputError(f"the command's swing_height is {asked.swing_height} m; it must not be negative")
         if asked.cycle_time is not None and asked.cycle_time <= 0:
             raise InputError(f"the command's cycle_time is {asked.cycle_time} s; it must be greater than 0")
-        if asked != self.wanted:
-            self.wanted, self.rejections = asked, {}
+        if asked != before:
+            self.requested, self.rejections = asked, {}
+            if dataclasses.replace(asked, correction=before.correction, terrain=before.terrain) != before:
+                self._shortfalls = ()
 
-    def think(self, work_out: PlanTransition, *, free: bool) -> None:
-        """Do one part of working out the next change.
+    def advance_planning(self, plan: PlanTransition, *, idle: bool) -> None:
+        """Do one stage of planning.
 
         Parameters
         ----------
-        work_out : callable
-            Gives the parts for a manner; its second argument is whether the posture stays.
-        free : bool
-            Whether the walker has done with the last change, so that a further one may begin.
+        plan : callable
+            Plans a transition to parameters in stages; its second argument is whether the posture stays.
+        idle : bool
+            Whether the last transition is over, so that another one may be planned.
         """
         if self._job is not None:
             try:
                 next(self._job)
-            except StopIteration as done:
-                self._note(done.value)
-            except UnreachableError as error:
-                self._note(str(error))
+            except StopIteration as stop:
+                self._finish_planning(stop.value)
+            except UnreachableError:
+                self._finish_planning(_UNREACHABLE)
             else:
                 return
-        if free and self.ready is None and self.wanted is not self._done:
+        if idle and self.planned is None and self.requested is not self._done:
             asked, stay = self._next_parameters()
-            if asked not in (self.doing.parameters, *self.rejections):
-                self._asked, self._job = asked, work_out(asked, stay)
+            if asked not in (self.current.parameters, *self.rejections):
+                self._asked, self._stays, self._job = asked, stay, plan(asked, stay)
             else:
-                self._done = self.wanted
+                self._finish_request()
 
-    def adopt(self, change: StanceTransition) -> None:
-        """Note that a change has been gone over to.
+    def adopt(self, transition: StanceTransition) -> None:
+        """Take note that a transition begins.
 
         Parameters
         ----------
-        change : Change
-            The change.
+        transition : StanceTransition
+            The transition.
         """
-        parameters = change.parameters if change.whole else self.doing.parameters
-        self.doing, self.ready = dataclasses.replace(change, parameters=parameters), None
-        # What didn't work may work now.
-        self.rejections, self._done = {}, None
+        before = self.current
+        parameters = transition.parameters if transition.complete else before.parameters
+        limitations = transition.limitations
+        if transition.keeps_posture:
+            kept = (found for found in before.limitations if found.kind is not LimitationKind.CYCLE_TIME)
+            limitations = (*kept, *limitations)
+        self.current = dataclasses.replace(transition, parameters=parameters, limitations=limitations)
+        kept_for = dataclasses.replace(self._planned_for, cycle_time=transition.parameters.cycle_time)
+        self._planned_for = kept_for if transition.keeps_posture else transition.parameters
+        # What was rejected may be feasible from the new stance.
+        self.planned, self.rejections, self._done = None, {}, None
 
-    def _note(self, found: StanceTransition | str) -> None:
+    def _finish_planning(self, found: StanceTransition | Cause) -> None:
         self._job = None
-        if isinstance(found, str):
-            # What is no longer asked for by now is refused nothing.
-            if self._asked == self._next_parameters()[0]:
-                self.rejections[self._asked] = found
-        else:
-            self.ready = found
+        if isinstance(found, StanceTransition):
+            self.planned = found
+        # What is no longer commanded by now is not rejected.
+        elif self._asked == self._next_parameters()[0]:
+            current = self.current
+            rejected = rejection_limitations(
+                self._asked, current.parameters, None if self._stays else current.posture, found
+            )
+            self.rejections[self._asked] = rejected
+            self._shortfalls = self._rejected_limitations
+
+    @property
+    def _rejected_limitations(self) -> tuple[Limitation, ...]:
+        return tuple(limitation for found in self.rejections.values() for limitation in found)
+
+    def _finish_request(self) -> None:
+        """Take note that all that is feasible of the commanded parameters is met."""
+        self._done, current = self.requested, self.current.parameters
+        self._shortfalls = self._rejected_limitations
+        # Standing otherwise has to wait until all legs are back in the gait.
+        deferred = dataclasses.replace(
+            self.requested,
+            **{name: getattr(current, name) for name in ("gait", "cycle_time", "excluded", "correction", "terrain")},
+        )
+        if current.excluded and deferred not in (
+            dataclasses.replace(current, correction=deferred.correction),
+            *self.rejections,
+        ):
+            self._shortfalls += rejection_limitations(deferred, current, self.current.posture, _DEFERRED)
 
     def _next_parameters(self) -> tuple[WalkParameters, bool]:
         """Return what to change first, how the robot steps or how it stands; and whether its posture stays."""
-        doing, wanted = self.doing.parameters, self.wanted
-        stepping = dataclasses.replace(doing, gait=wanted.gait, cycle_time=wanted.cycle_time, excluded=wanted.excluded)
-        standing = dataclasses.replace(wanted, gait=doing.gait, cycle_time=doing.cycle_time, excluded=doing.excluded)
+        current, requested = self.current.parameters, self.requested
+        stepping = dataclasses.replace(
+            current, gait=requested.gait, cycle_time=requested.cycle_time, excluded=requested.excluded
+        )
+        standing = dataclasses.replace(
+            requested, gait=current.gait, cycle_time=current.cycle_time, excluded=current.excluded
+        )
         order = [(stepping, True), (standing, False)]
-        if set(doing.excluded) - set(wanted.excluded):
-            # Legs that are out come back in the order of steps that they left.
-            # Only once they are down may others leave it.
-            staying = tuple(leg for leg in doing.excluded if leg in wanted.excluded)
-            order = [(dataclasses.replace(doing, excluded=staying), True)]
-        elif doing.excluded:
-            # Where the feet of these legs are may be out of reach from another posture.
+        if set(current.excluded) - set(requested.excluded):
+            # Legs come back in the gait that they left, and others may leave only once they are down.
+            staying = tuple(leg for leg in current.excluded if leg in requested.excluded)
+            order = [(dataclasses.replace(current, excluded=staying), True)]
+        elif current.excluded:
+            # From another posture, the feet of these legs may be out of reach where they are.
             order = order[:1]
-        elif wanted.excluded:
-            # Before a leg leaves the gait, the body leans over the others.
+        elif requested.excluded:
+            # Before a leg leaves the gait, the body shifts over the others.
             order.reverse()
         for parameters, stay in order:
-            if parameters not in (doing, *self.rejections):
+            if parameters not in (current, *self.rejections):
                 return parameters, stay
-        return doing, True
+        return current, True
 
 
-def _cycle_time(before: float | None, wished: float | str | None) -> float | None:
-    """Return the duration of a cycle that is asked for; None for the one that gets the robot farthest."""
-    if wished is None:
+def _gait(before: Gait, commanded: Gait | str | None) -> Gait:
+    gait = before if commanded is None else commanded
+    if isinstance(gait, str):
+        gait = before if gait == before.name else Gait.named(gait, legs=before.legs)
+    if not isinstance(gait, Gait):
+        raise InputError(f"the command's gait is {gait!r}; it must be a name or a Gait")
+    gait.require_legs(before.legs)
+    return gait
+
+
+def _cycle_time(before: float | None, commanded: float | str | None) -> float | None:
+    if commanded is None:
         return before
-    return None if isinstance(wished, str) else wished
+    return None if isinstance(commanded, str) else commanded

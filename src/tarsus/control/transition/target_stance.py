@@ -1,4 +1,4 @@
-"""Where the body and the feet are to be for a manner of walking."""
+"""Posture and rest footholds that parameters of walking ask for."""
 
 from __future__ import annotations
 
@@ -17,49 +17,44 @@ __all__ = ["sway_extremes", "target_stance"]
 
 Floats = np.ndarray[Any, Any]
 
-_WITH_BEATS = np.array([1, 0, 1, 0, 1, 0])
-# Which parts of the way to a height are tried where no leg has a foothold so high or low.
-_TRIED = np.arange(7, 0, -1) / 8
+_AXES_WITH_BEATS = np.array([1, 0, 1, 0, 1, 0])
+# Fractions of a change of height that are tried where the whole of it has no foothold.
+_FRACTIONS = np.arange(7, 0, -1) / 8
 
 
-def target_stance(robot: Robot, parameters: WalkParameters, now: Floats | None) -> StanceTarget:
-    """Return posture and rest footholds of a manner; where a leg has no foothold so high or low, the nearest that have.
+def target_stance(robot: Robot, parameters: WalkParameters, posture: Floats | None) -> StanceTarget:
+    """Return posture and rest footholds; for a height without a foothold, of the nearest height that has them.
 
     Parameters
     ----------
     robot : Robot
         A single robot.
     parameters : WalkParameters
-        What is asked for.
-    now : array, shape (7,), or None
-        The present posture; None where there is none to start from.
+        What is commanded.
+    posture : array, shape (7,), or None
+        The present posture; None without one.
 
     Raises
     ------
     UnreachableError
-        If there is no such foothold on the way there either, or no present posture.
+        If no height between the present and the commanded one has footholds.
     """
-    body_height, swing_height, stance = _footholds(robot, parameters, now)
-    posture = np.array([*parameters.stance, swing_height])
-    posture[2] += body_height
+    body_height, swing_height, stance = _footholds(robot, parameters, posture)
+    target = np.array([*parameters.corrected_body, swing_height])
+    target[2] += body_height
     rest = _widened(robot, stance[:, 0] + 1j * stance[:, 1], parameters.stance_width)
-    return StanceTarget(posture, rest, parameters.terrain)
+    return StanceTarget(target, rest, parameters.terrain)
 
 
-def _footholds(robot: Robot, parameters: WalkParameters, now: Floats | None) -> tuple[float, float, Floats]:
-    """Return the body height, the lift and the feet in B ``(legs, 3)``."""
-    if now is None:
-        return (
-            parameters.body_height,
-            parameters.swing_height,
-            default_stance(robot, parameters.body_height, swing_height=parameters.swing_height),
-        )
-    was, lifted = float(now[2]) - parameters.stance[2], float(now[SWING_HEIGHT])
-    for shares in (np.ones(1), _TRIED):
-        body_heights, swing_heights = (
-            was + shares * (parameters.body_height - was),
-            lifted + shares * (parameters.swing_height - lifted),
-        )
+def _footholds(robot: Robot, parameters: WalkParameters, posture: Floats | None) -> tuple[float, float, Floats]:
+    """Return body height, swing height and the feet in B, shape (legs, 3)."""
+    if posture is None:
+        stance = default_stance(robot, parameters.body_height, swing_height=parameters.swing_height)
+        return parameters.body_height, parameters.swing_height, stance
+    body_height, swing_height = float(posture[2]) - parameters.corrected_body[2], float(posture[SWING_HEIGHT])
+    for fractions in (np.ones(1), _FRACTIONS):
+        body_heights = body_height + fractions * (parameters.body_height - body_height)
+        swing_heights = swing_height + fractions * (parameters.swing_height - swing_height)
         feet = stance_or_nan(robot, body_heights, swing_height=swing_heights)
         works = ~np.isnan(feet).any(axis=(-2, -1))
         if works.any():
@@ -69,20 +64,20 @@ def _footholds(robot: Robot, parameters: WalkParameters, now: Floats | None) -> 
 
 
 def sway_extremes(posture: Floats, sway: tuple[float, ...]) -> list[Floats]:
-    """Return the postures at the ends of a sway, and the one in the middle last.
+    """Return the postures at the extremes of a sway, and the one in the middle last.
 
     Parameters
     ----------
     posture : array, shape (7,)
-        The one in the middle.
+        The posture in the middle.
     sway : tuple of float
         Amplitudes: x, y, z [m], roll, pitch, yaw [rad].
     """
     if not any(sway):
         return [posture]
-    # Half of the axes go with the beats, half with the cycles: they meet in any order.
-    often, once = (np.append(np.array(sway) * part, 0.0) for part in (_WITH_BEATS, 1 - _WITH_BEATS))
-    return [*(posture + a * often + b * once for a in (1, -1) for b in (1, -1)), posture]
+    # Half of the axes sway with the beats, half with the cycles: their extremes meet in any combination.
+    beats, cycles = (np.append(np.array(sway) * axes, 0.0) for axes in (_AXES_WITH_BEATS, 1 - _AXES_WITH_BEATS))
+    return [*(posture + a * beats + b * cycles for a in (1, -1) for b in (1, -1)), posture]
 
 
 def _widened(robot: Robot, rest: Floats, width: float) -> Floats:

@@ -21,13 +21,28 @@ _CREEPING = 0.01
 _ROUNDING = 1e-9
 
 
-def final_footholds(now: GaitState, inputs: StepInputs) -> Floats | None:
-    """Return where the feet rest once the robot stands, where it is about to; None while it is still fast."""
+def final_footholds(now: GaitState, *, rest: Floats, bandwidth: float) -> Floats | None:
+    """Return where the feet rest once a robot that stops stands.
+
+    Parameters
+    ----------
+    now : GaitState
+        The gait state.
+    rest : complex array, shape (legs,)
+        Rest footholds in the heading frame [m].
+    bandwidth : float
+        Bandwidth with which the twist dies down [rad/s].
+
+    Returns
+    -------
+    complex array, shape (legs,), or None
+        In G [m]; None while the robot is still fast.
+    """
     if max(map(abs, now.twist.value.tolist())) >= _CREEPING:
         return None
-    w = inputs.bandwidth
+    w = bandwidth
     origin, yaw = integrate_twist(now.origin, now.yaw, ((2 * now.twist.value + now.twist.rate / w) / w).tolist())
-    final: Floats = origin + cmath.exp(1j * yaw) * inputs.rest
+    final: Floats = origin + cmath.exp(1j * yaw) * rest
     return final
 
 

@@ -94,7 +94,7 @@ def _lift(now: GaitState, inputs: StepInputs, due: Floats, late: Floats, *, stop
     `late` is how long ago their time was [cycles]: what the clock has gone in this tick doesn't count.
     """
     wanted = due & inputs.may_lift
-    final = final_footholds(now, inputs) if stopping else None
+    final = final_footholds(now, rest=inputs.rest, bandwidth=inputs.bandwidth) if stopping else None
     if final is not None:
         wanted = wanted & (np.abs(now.foot - final) > POSITION_TOLERANCE)
     missed = due & ~wanted
@@ -130,7 +130,7 @@ def _swing(
     duty_factor = inputs.gait.duty_factor
     swing, stance = 1 - duty_factor, duty_factor / inputs.frequency
     landing = FootholdPredictor.of(now, inputs)
-    final = final_footholds(now, inputs) if stopping else None
+    final = final_footholds(now, rest=inputs.rest, bandwidth=inputs.bandwidth) if stopping else None
     share, foot, target = now.swing_phase.tolist(), now.foot.tolist(), now.foothold.tolist()
     pace, bend = now.swing_velocity.tolist(), now.swing_acceleration.tolist()
     lands, landed = inputs.may_land.tolist(), []

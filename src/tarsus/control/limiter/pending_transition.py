@@ -1,0 +1,40 @@
+"""Slows the walk down while a planned stance transition cannot begin at the present speed."""
+
+from __future__ import annotations
+
+import math
+
+from tarsus.control.limitation import Limitation, LimitationKind
+from tarsus.control.limiter.protocol import TwistGrant, TwistRequest
+from tarsus.control.transition.executor import TransitionExecutor
+
+__all__ = ["PendingTransitionLimiter"]
+
+# Time constant of the slow-down [s].
+_TIME_CONSTANT = 1.0
+# A fraction below this is reported: the transition has been waiting for longer than it takes in regular walking.
+_REPORTED = 0.05
+_CAUSE = "the pending stance transition cannot begin at a higher speed"
+
+
+class PendingTransitionLimiter:
+    """Reduces the twist exponentially for as long as a transition waits.
+
+    Parameters
+    ----------
+    transitions : TransitionExecutor
+        The stance transitions.
+    """
+
+    def __init__(self, transitions: TransitionExecutor) -> None:
+        self._transitions = transitions
+        self._fraction = 1.0
+
+    def limit(self, request: TwistRequest, grant: TwistGrant) -> TwistGrant:
+        """Return the grant, reduced by the time that the transition has been waiting."""
+        waiting = self._transitions.waiting
+        self._fraction = self._fraction * math.exp(-request.dt / _TIME_CONSTANT) if waiting else 1.0
+        limitation = None
+        if self._fraction < _REPORTED and any(request.twist):
+            limitation = Limitation(kind=LimitationKind.TWIST, cause=_CAUSE, asked=1.0, granted=self._fraction)
+        return grant.at_most(self._fraction, limitation)

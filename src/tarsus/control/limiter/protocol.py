@@ -1,0 +1,155 @@
+"""What a speed limiter is: the two protocols, and the values that limiters take and return.
+
+Twist limiters decide, one after the other, how much of the commanded twist is followed. Time rate limiters decide how
+fast the walk advances along its trajectories. A new limiter is a class with the one method of its protocol, and one
+line in the list of the walk controller.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, NamedTuple, Protocol
+
+import numpy as np
+
+from tarsus.control.limitation import Limitation
+from tarsus.control.walk.state import GaitState
+
+__all__ = ["RateGrant", "RateLimiter", "TwistGrant", "TwistLimiter", "TwistRequest", "granted_rate", "granted_twist"]
+
+Floats = np.ndarray[Any, Any]
+
+
+class TwistRequest(NamedTuple):
+    """What a twist limiter decides on.
+
+    Attributes
+    ----------
+    twist : tuple of float
+        The commanded twist: forward, left [m/s], turning [rad/s].
+    dt : float
+        Length of the tick [s].
+    state : GaitState
+        The gait state at the start of the tick.
+    target : array, shape (3,)
+        The twist that is followed so far.
+    """
+
+    twist: tuple[float, ...]
+    dt: float
+    state: GaitState
+    target: Floats
+
+
+class TwistGrant(NamedTuple):
+    """What is left of the commanded twist.
+
+    Attributes
+    ----------
+    fraction : float
+        Fraction of the commanded twist, 0 to 1.
+    target : array, shape (3,), or None
+        The twist to follow; None until a limiter sets it, which ends further limiting of it.
+    limitations : tuple of Limitation
+        Why the commanded twist is not followed in full.
+    """
+
+    fraction: float = 1.0
+    target: Floats | None = None
+    limitations: tuple[Limitation, ...] = ()
+
+    def at_most(self, fraction: float, limitation: Limitation | None = None) -> TwistGrant:
+        """Return the grant with a fraction that is no greater than another.
+
+        Parameters
+        ----------
+        fraction : float
+            The other fraction.
+        limitation : Limitation, optional
+            What to report.
+        """
+        limitations = self.limitations if limitation is None else (*self.limitations, limitation)
+        return TwistGrant(min(self.fraction, fraction), self.target, limitations)
+
+    def scaled(self, twist: Sequence[float]) -> list[float]:
+        """Return a twist times the fraction."""
+        return [self.fraction * speed for speed in twist]
+
+
+class TwistLimiter(Protocol):
+    """Limits the commanded twist."""
+
+    def limit(self, request: TwistRequest, grant: TwistGrant, /) -> TwistGrant:
+        """Return what is left of the twist after this limiter.
+
+        Parameters
+        ----------
+        request : TwistRequest
+            The commanded twist, and what decides on it.
+        grant : TwistGrant
+            What the limiters before this one have left.
+        """
+        ...
+
+
+class RateGrant(NamedTuple):
+    """How fast the walk may advance along its trajectories.
+
+    Attributes
+    ----------
+    rate : float
+        Greatest rate of its time, 0 to 1.
+    stop : bool
+        Whether it stops.
+    """
+
+    rate: float = 1.0
+    stop: bool = False
+
+
+class RateLimiter(Protocol):
+    """Limits the rate of the walk's time."""
+
+    def limit(self, state: GaitState, grant: RateGrant, /) -> RateGrant:
+        """Return the rate after this limiter.
+
+        Parameters
+        ----------
+        state : GaitState
+            The gait state at the start of the tick.
+        grant : RateGrant
+            What the limiters before this one have left.
+        """
+        ...
+
+
+def granted_twist(limiters: Sequence[TwistLimiter], request: TwistRequest) -> TwistGrant:
+    """Return what all twist limiters leave of a commanded twist.
+
+    Parameters
+    ----------
+    limiters : sequence of TwistLimiter
+        The limiters, in their order.
+    request : TwistRequest
+        The commanded twist, and what decides on it.
+    """
+    grant = TwistGrant()
+    for limiter in limiters:
+        grant = limiter.limit(request, grant)
+    return grant
+
+
+def granted_rate(limiters: Sequence[RateLimiter], state: GaitState) -> RateGrant:
+    """Return the time rate that all rate limiters leave.
+
+    Parameters
+    ----------
+    limiters : sequence of RateLimiter
+        The limiters.
+    state : GaitState
+        The gait state at the start of the tick.
+    """
+    grant = RateGrant()
+    for limiter in limiters:
+        grant = limiter.limit(state, grant)
+    return grant

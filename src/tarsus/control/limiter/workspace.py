@@ -1,0 +1,102 @@
+"""Limits the twist to strokes that fit the feet's workspaces and that the joints are fast enough for."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from tarsus.control.limitation import Limitation, LimitationKind
+from tarsus.control.limiter.protocol import TwistGrant, TwistRequest
+from tarsus.control.terrain.adaptation import TerrainAdaptation
+from tarsus.control.transition.executor import TransitionExecutor
+from tarsus.errors import InputError
+
+__all__ = ["WorkspaceLimiter", "top_speed"]
+
+_CAUSE = "workspace and joint speed at this cycle time"
+
+
+class WorkspaceLimiter:
+    """Scales the twist, straight and turning together, to what steady walking can sustain.
+
+    Every stance that is in force counts: the present one, and that of a transition that is planned or in progress.
+
+    Parameters
+    ----------
+    names : sequence of str
+        The names of the legs.
+    transitions : TransitionExecutor
+        The stance and its transitions.
+    terrain : TerrainAdaptation
+        Decides how much longer than planned feet may have to stand.
+    """
+
+    def __init__(self, names: Sequence[str], transitions: TransitionExecutor, terrain: TerrainAdaptation) -> None:
+        self._names, self._transitions, self._terrain = names, transitions, terrain
+        self._key: tuple[Any, ...] = ()
+        self._found: tuple[float, Limitation | None] = (1.0, None)
+
+    def limit(self, request: TwistRequest, grant: TwistGrant) -> TwistGrant:
+        """Return the grant for at most the fraction that is sustainable."""
+        transitions = self._transitions
+        frequency = min(transitions.timing.frequency, 1 / transitions.current.cycle_timing.cycle_time)
+        limits, pending = transitions.footholds.limits, transitions.pending
+        key = (request.twist, frequency, self._terrain.hold_time, limits, pending)
+        if key != self._key:
+            self._key, self._found = key, self._largest(np.array(request.twist), frequency)
+        return grant.at_most(*self._found)
+
+    def _largest(self, twist: np.ndarray[Any, Any], frequency: float) -> tuple[float, Limitation | None]:
+        """Return the largest sustainable fraction, at most 1, and what limits it."""
+        transitions, pending = self._transitions, self._transitions.pending
+        stances = [(transitions.current, transitions.footholds.limits)]
+        if pending is not None:
+            stances.append((pending, pending.path_limits))
+        fraction, leg = 1.0, 0
+        for transition, limits in stances:
+            duty_factor = transition.parameters.gait.duty_factor
+            stance_time = duty_factor * max(1 / frequency, transition.cycle_timing.cycle_time)
+            allowed, which = limits.feasible_fraction(
+                twist, stance_time=stance_time, duty_factor=duty_factor, hold=self._terrain.hold_time
+            )
+            if allowed < fraction:
+                fraction, leg = allowed, which
+        if fraction == 1:
+            return fraction, None
+        return fraction, Limitation(
+            kind=LimitationKind.TWIST, cause=_CAUSE, leg=self._names[leg], asked=1.0, granted=fraction
+        )
+
+
+def top_speed(transitions: TransitionExecutor, direction: Sequence[float], *, hold: float) -> float:
+    """Return the largest multiple of a twist that the robot can sustain as it stands.
+
+    Parameters
+    ----------
+    transitions : TransitionExecutor
+        The stance.
+    direction : (vx, vy, wz)
+        The twist [m/s, m/s, rad/s].
+    hold : float
+        How much longer than planned feet may have to stand [s].
+
+    Raises
+    ------
+    InputError
+        If `direction` is not three finite numbers, or all are 0.
+    """
+    try:
+        twist = np.array([float(speed) for speed in direction])
+    except (TypeError, ValueError):
+        twist = np.zeros(0)
+    if twist.shape != (3,) or not np.isfinite(twist).all() or not twist.any():
+        raise InputError(f"direction is {direction!r}; it must be three finite numbers, not all 0: vx, vy, wz")
+    current = transitions.current
+    duty_factor = transitions.timing.gait.duty_factor
+    stance_time = duty_factor * current.cycle_timing.cycle_time
+    fraction, _ = current.final_limits.feasible_fraction(
+        twist, stance_time=stance_time, duty_factor=duty_factor, hold=hold
+    )
+    return fraction

@@ -1,0 +1,84 @@
+"""What a command and the ground ask of the stance."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from tarsus.control.command import Command
+from tarsus.control.terrain.adaptation import TerrainAdaptation
+from tarsus.control.transition.executor import TransitionExecutor
+from tarsus.control.walk.foot_target_motion import best_body_shift
+from tarsus.control.walk.foot_targets import excluded_legs
+from tarsus.control.workspace.stability import support_sets
+from tarsus.kinematics.mass import centre_of_mass
+from tarsus.robot.robot import Robot
+
+__all__ = ["CommandIntake"]
+
+Floats = np.ndarray[Any, Any]
+
+_NO_MOTION = (0.0,) * 6
+
+
+class CommandIntake:
+    """Passes commands to the transition scheduler, with the corrections of the body pose.
+
+    Parameters
+    ----------
+    robot : Robot
+        A single robot.
+    transitions : TransitionExecutor
+        The stance transitions.
+    terrain : TerrainAdaptation
+        Slope and roughness of the ground, and the correction for them.
+    """
+
+    def __init__(self, robot: Robot, transitions: TransitionExecutor, terrain: TerrainAdaptation) -> None:
+        self._robot, self._transitions, self._terrain = robot, transitions, terrain
+        self._last: Command | None = None
+        self._shifted_for: tuple[int, ...] = ()
+        self._shift = 0j
+
+    def accept(self, command: Command, angles: Floats) -> None:
+        """Request what is commanded besides the twist, where it differs from what was requested before.
+
+        Parameters
+        ----------
+        command : Command
+            The command.
+        angles : array, shape (legs, 3)
+            The joint angles [rad].
+
+        Raises
+        ------
+        InputError
+            If a value is out of its range.
+        UnknownNameError
+            If no gait has the name.
+        """
+        scheduler = self._transitions.scheduler
+        requested = scheduler.requested
+        excluded = excluded_legs(command, requested.excluded, self._robot.legs)
+        correction, terrain = self._correction(excluded, angles), self._terrain.terrain
+        known = command.only_twist or command is self._last
+        if not known or (excluded, correction, terrain) != (
+            requested.excluded,
+            requested.correction,
+            requested.terrain,
+        ):
+            scheduler.request(command, excluded, correction, terrain)
+            self._last = command
+
+    def _correction(self, excluded: tuple[int, ...], angles: Floats) -> tuple[float, ...]:
+        """Return the correction of the body pose for the ground, and for legs that bear no load."""
+        estimate = self._terrain.estimate.correction if self._terrain.estimate else _NO_MOTION
+        if not excluded:
+            return estimate
+        if excluded != self._shifted_for:
+            com = centre_of_mass(self._robot, angles)
+            sets = support_sets(self._transitions.scheduler.requested.gait, excluded)
+            shift = best_body_shift(self._transitions.footholds.new_rest, complex(com[0], com[1]), sets)
+            self._shifted_for, self._shift = excluded, shift
+        return (estimate[0] + self._shift.real, estimate[1] + self._shift.imag, *estimate[2:])

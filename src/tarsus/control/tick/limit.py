@@ -1,0 +1,79 @@
+"""Limit: how much of the commanded twist is followed, and how fast the walk may advance."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from tarsus.control.command import Command
+from tarsus.control.limiter.early_contact import EarlyContactLimiter
+from tarsus.control.limiter.ground_search import GroundSearchLimiter
+from tarsus.control.limiter.hole_recovery import HoleRecoveryLimiter
+from tarsus.control.limiter.pending_transition import PendingTransitionLimiter
+from tarsus.control.limiter.protocol import RateLimiter, TwistLimiter, TwistRequest, granted_twist
+from tarsus.control.limiter.reference_governor import GovernorLimiter
+from tarsus.control.limiter.slope import SlopeLimiter
+from tarsus.control.limiter.workspace import WorkspaceLimiter
+from tarsus.control.tick.components import WalkComponents
+from tarsus.control.tick.state import TickState
+from tarsus.control.walk_state import next_walk_state
+
+__all__ = ["limited", "rate_limiters", "twist_limiters"]
+
+
+def twist_limiters(walk: WalkComponents) -> list[TwistLimiter]:
+    """Return the twist limiters in their order; the governor sets the twist from what those before it leave.
+
+    Parameters
+    ----------
+    walk : WalkComponents
+        The components.
+    """
+    return [
+        WorkspaceLimiter(walk.robot.leg_names, walk.transitions, walk.terrain),
+        PendingTransitionLimiter(walk.transitions),
+        SlopeLimiter(walk.transitions),
+        HoleRecoveryLimiter(walk.terrain),
+        GovernorLimiter(walk.transitions, walk.terrain),
+    ]
+
+
+def rate_limiters(walk: WalkComponents) -> list[RateLimiter]:
+    """Return the limiters of the walk's time rate.
+
+    Parameters
+    ----------
+    walk : WalkComponents
+        The components.
+    """
+    return [EarlyContactLimiter(walk.transitions, walk.terrain), GroundSearchLimiter(walk.terrain)]
+
+
+def limited(
+    walk: WalkComponents, tick: TickState, command: Command, dt: float, limiters: Sequence[TwistLimiter]
+) -> TickState:
+    """Return the state with the twist to follow; a robot that stands starts to step if there is a reason to.
+
+    Parameters
+    ----------
+    walk : WalkComponents
+        The components.
+    tick : TickState
+        The state.
+    command : Command
+        What is commanded.
+    dt : float
+        Length of the tick [s].
+    limiters : sequence of TwistLimiter
+        The limiters in their order.
+    """
+    transitions = walk.transitions
+    state = transitions.timing.with_first_lift(tick.gait, 0) if tick.standing else tick.gait
+    grant = granted_twist(limiters, TwistRequest(tuple(command.twist), dt, state, tick.twist))
+    if tick.standing and not any(grant.scaled(command.twist)) and transitions.at_rest(tick.gait):
+        return tick._replace(limitations=grant.limitations)
+    assert grant.target is not None  # the governor sets it
+    after = tick._replace(gait=state, twist=grant.target, limitations=grant.limitations)
+    if not tick.standing:
+        return after
+    following = next_walk_state(tick.walk_state, follows_twist=bool(grant.target.any()), at_rest=False)
+    return after._replace(walk_state=following)

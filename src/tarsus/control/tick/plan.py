@@ -1,0 +1,103 @@
+"""Plan: stance transitions, recovery from holes, and the targets of legs that are taken out of the gait."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from tarsus.control.command import Command
+from tarsus.control.filters import CriticallyDamped
+from tarsus.control.incremental import Incremental
+from tarsus.control.limitation import Cause
+from tarsus.control.tick.components import WalkComponents
+from tarsus.control.tick.state import TickState
+from tarsus.control.transition.feasible_fraction import StanceTarget
+from tarsus.control.transition.parameters import WalkParameters
+from tarsus.control.transition.situation import WalkSituation
+from tarsus.control.transition.stance_transition import StanceTransition
+from tarsus.control.transition.target_stance import sway_extremes
+from tarsus.control.walk.foot_target_motion import reachable_fraction
+from tarsus.control.walk.state import GaitState
+from tarsus.control.workspace.stability import support_sets
+from tarsus.control.workspace.stance_geometry import LEVEL_TERRAIN, SWING_HEIGHT
+from tarsus.kinematics.pose import Pose
+from tarsus.kinematics.stability import stability_margin
+
+__all__ = ["planned"]
+
+Floats = np.ndarray[Any, Any]
+
+_NO_MOTION = (0.0,) * 6
+# Least static stability margin on the remaining feet when a leg is taken out of the gait [m].
+_LEAST_MARGIN = 0.01
+
+
+def planned(
+    walk: WalkComponents, tick: TickState, command: Command, dt: float, *, body: Callable[[], Pose]
+) -> TickState:
+    """Return the state after one stage of planning; what may begin, begins.
+
+    Parameters
+    ----------
+    walk : WalkComponents
+        The components; the transition executor plans and begins transitions.
+    tick : TickState
+        The state.
+    command : Command
+        What is commanded.
+    dt : float
+        Length of the tick [s].
+    body : callable
+        The pose of B in G at the time that it is called.
+    """
+    situation = WalkSituation(tick.gait, tick.twist, tick.standing, walk.terrain.hold_time)
+    state = walk.transitions.advance(partial(_plan_transition, walk, body), situation)
+    again = _recovered(walk, state, command) if walk.terrain.searches else None
+    tick = tick._replace(gait=state) if again is None else tick._replace(gait=again, twist=np.zeros(3))
+    _set_foot_targets(walk, tick.gait, command, dt)
+    return tick
+
+
+def _plan_transition(
+    walk: WalkComponents, body: Callable[[], Pose], parameters: WalkParameters, stay: bool
+) -> Incremental[StanceTransition | Cause]:
+    """Plan the transition from the present stance; where legs leave the gait, check the support of the others first."""
+    excluded = parameters.excluded
+    if excluded:
+        yield
+        sets = support_sets(parameters.gait, excluded)
+        margin = float(stability_margin(walk.robot, walk.time_scaling.angles, body(), sets).min())
+        if margin < _LEAST_MARGIN:
+            reason = f"not enough support in the {parameters.gait.name} gait without this leg"
+            names = " and ".join(walk.robot.leg_names[leg] for leg in excluded)
+            return Cause(reason, names, margin, _LEAST_MARGIN)
+    transitions = walk.transitions
+    present = StanceTarget(transitions.pose.posture, transitions.footholds.new_rest, parameters.terrain)
+    return (yield from walk.planner.plan(parameters, present, stay=stay))
+
+
+def _recovered(walk: WalkComponents, state: GaitState, command: Command) -> GaitState | None:
+    """Return the gait state, standing still, if feet over a hole are drawn back: another command lets them swing."""
+    terrain = walk.terrain
+    standing = walk.time_scaling.rate == 0 or terrain.recovering
+    if not (standing and terrain.searches.all_failed):
+        return None
+    requested = walk.transitions.scheduler.requested
+    commanded = dataclasses.replace(requested, correction=_NO_MOTION, terrain=LEVEL_TERRAIN)
+    again = terrain.recover(state, (tuple(command.twist), commanded), walk.transitions.timing.gait)
+    return None if again is None else again._replace(twist=CriticallyDamped.still(np.zeros(3)))
+
+
+def _set_foot_targets(walk: WalkComponents, state: GaitState, command: Command, dt: float) -> None:
+    """Set the foot targets of legs that are taken out of the gait, as far as these reach wherever the body sways."""
+
+    def reachable(leg: int, start: Floats, end: Floats) -> float:
+        sway = walk.transitions.current.parameters.sway
+        postures = sway_extremes(state.posture.value[: SWING_HEIGHT + 1], sway)
+        return reachable_fraction(walk.robot, postures, leg, start, end)
+
+    walk.foot_targets.set_targets(command, dt, reachable)

@@ -1,0 +1,290 @@
+"""Execution of stance transitions: when a planned one begins, and how feet and body carry it out."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from tarsus.control.limitation import Cause, Limitation, LimitationKind
+from tarsus.control.pose.pose_controller import PoseController
+from tarsus.control.transition.foothold_transfer import FootholdTransfer
+from tarsus.control.transition.scheduler import PlanTransition, TransitionScheduler
+from tarsus.control.transition.situation import TransitionPhase, WalkSituation
+from tarsus.control.transition.stance_transition import StanceTransition
+from tarsus.control.walk.foot_targets import FootTargets
+from tarsus.control.walk.foothold import final_footholds
+from tarsus.control.walk.reference_governor import lift_delays, polygon_excess, stance_intervals, time_to_touchdown
+from tarsus.control.walk.state import POSITION_TOLERANCE, GaitState
+from tarsus.control.walk.step_timing import StepTiming
+from tarsus.control.workspace.stance_geometry import sway_fraction
+
+__all__ = ["TransitionExecutor"]
+
+Floats = np.ndarray[Any, Any]
+
+_SWAY = Cause("joint speed and acceleration at this cycle time")
+
+
+class TransitionExecutor:
+    """Begins stance transitions as soon as no foot leaves its workspace by them, and completes them.
+
+    Parameters
+    ----------
+    initial : StanceTransition
+        The stance at the start.
+    foot_targets : FootTargets
+        The legs that are taken out of the gait.
+
+    Attributes
+    ----------
+    scheduler : TransitionScheduler
+        What is commanded, and what of it is planned.
+    footholds : FootholdTransfer
+        Workspace and rest foothold of each foot.
+    pose : PoseController
+        The posture to reach.
+    timing : StepTiming
+        The gait and its frequency.
+    phase : TransitionPhase
+        The phase of the transition in progress.
+    """
+
+    def __init__(self, initial: StanceTransition, foot_targets: FootTargets) -> None:
+        self.scheduler, self.footholds = TransitionScheduler(initial), FootholdTransfer(initial)
+        self.pose = PoseController(initial.posture)
+        self.timing = StepTiming.of(initial.parameters.gait, initial.cycle_timing.cycle_time)
+        self.phase = TransitionPhase.NONE
+        self._foot_targets = foot_targets
+        self._active: StanceTransition | None = None
+        # Of a gait that is about to begin: its timing, the leg that lifts first, how long each foot then stands [s].
+        self._next_timing, self._first_leg, self._delays = self.timing, 0, np.zeros(len(initial.rest))
+
+    @property
+    def current(self) -> StanceTransition:
+        """The transition that was begun last."""
+        return self.scheduler.current
+
+    @property
+    def pending(self) -> StanceTransition | None:
+        """The transition that is planned, or for which feet touch down or step."""
+        return self._active if self.scheduler.planned is None else self.scheduler.planned
+
+    @property
+    def limitations(self) -> tuple[Limitation, ...]:
+        """What of the commanded parameters is not met, and will not be."""
+        sway = self.current.parameters.sway
+        fraction = sway_fraction(np.array(sway), self.timing.frequency, self.timing.beats) if any(sway) else 1.0
+        found = self.scheduler.limitations
+        return found if fraction == 1 else (*found, _SWAY.limitation(LimitationKind.SWAY, asked=1.0, granted=fraction))
+
+    @property
+    def waiting(self) -> bool:
+        """Whether a transition waits until it may begin, or until its body motion may."""
+        stepped = self.phase is TransitionPhase.FOOTHOLDS and bool(self.footholds.transferred.all())
+        return self.scheduler.planned is not None or stepped
+
+    @property
+    def changes_gait(self) -> bool:
+        """Whether all feet touch down for another gait."""
+        return self.phase is TransitionPhase.TOUCHDOWN
+
+    @property
+    def timing_is_steady(self) -> bool:
+        """Whether the steps are as fast as planned, and the gait stays."""
+        return not self.changes_gait and self.timing.frequency == 1 / self.current.cycle_timing.cycle_time
+
+    @property
+    def bandwidth(self) -> float:
+        """Bandwidth with which the twist follows its target, that of the next gait once it is decided [rad/s]."""
+        return (self._next_timing if self.changes_gait else self.timing).bandwidth
+
+    @property
+    def bounds(self) -> Floats:
+        """Sides of the polygons in which the feet that bear load have to stay: array, shape (legs, 16) [m]."""
+        return self._foot_targets.without_bounds(self.footholds.bounds)
+
+    def stance_intervals(
+        self, state: GaitState, hold: float, *, frequency: float | None = None
+    ) -> tuple[Floats, Floats]:
+        """Return from when until when each foot stands where it is, or where it will touch down.
+
+        Parameters
+        ----------
+        state : GaitState
+            The gait state.
+        hold : float
+            How much longer than planned feet may have to stand [s].
+        frequency : float, optional
+            Cycles per second; the present ones where left out [1/s].
+
+        Returns
+        -------
+        begins, ends : array, shape (legs,)
+            From now [s].
+        """
+        gait = self.timing.gait
+        if not self.changes_gait:
+            return stance_intervals(state, gait, frequency or self.timing.frequency, hold)
+        begins = time_to_touchdown(state, gait, self.timing.frequency)
+        return begins, begins.max() + self._delays + hold
+
+    def is_settled(self, state: GaitState) -> bool:
+        """Return whether the last transition is over: posture reached, returning legs on the ground.
+
+        Parameters
+        ----------
+        state : GaitState
+            The gait state.
+        """
+        if self.phase is not TransitionPhase.NONE:
+            return False
+        return not self._foot_targets.returning and self.pose.reached(state.posture.value)
+
+    def at_rest(self, state: GaitState) -> bool:
+        """Return whether every foot of the gait is at its rest foothold.
+
+        Parameters
+        ----------
+        state : GaitState
+            The gait state of a robot that hardly moves.
+        """
+        rest = final_footholds(state, rest=self.footholds.rest, bandwidth=self.bandwidth)
+        assert rest is not None  # only of a robot that is fast
+        off = np.abs(state.foot - rest)
+        off[list(self.current.parameters.excluded)] = 0.0
+        return bool(off.max() <= POSITION_TOLERANCE)
+
+    # Beginning a transition.
+
+    def advance(self, plan: PlanTransition, now: WalkSituation) -> GaitState:
+        """Do one stage of planning, and begin what may begin.
+
+        Parameters
+        ----------
+        plan : callable
+            Plans a transition, as for `TransitionScheduler.advance_planning`.
+        now : WalkSituation
+            What decides whether a transition may begin.
+
+        Returns
+        -------
+        GaitState
+            The gait state; its clock is set where another gait begins.
+        """
+        self.scheduler.advance_planning(plan, idle=self.is_settled(now.state))
+        if self.scheduler.planned is not None:
+            return self._try_to_begin(self.scheduler.planned, now)
+        if self.phase is TransitionPhase.FOOTHOLDS and self._active is not None:
+            self._try_to_move_body(self._active, now)
+        return now.state
+
+    def _try_to_begin(self, planned: StanceTransition, now: WalkSituation) -> GaitState:
+        """Begin a planned transition as soon as the standing feet allow it."""
+        state, gait = now.state, planned.parameters.gait
+        # The steps get faster only after the transition.
+        frequency = min(self.timing.frequency, 1 / planned.cycle_timing.cycle_time)
+        feasible = self._feasible(planned, frequency, now)
+        if (gait.duty_factor, gait.offsets) != (self.timing.gait.duty_factor, self.timing.gait.offsets):
+            if now.standing:
+                return self._start_gait(planned, 0, state)
+            if feasible:
+                self._try_to_change_gait(planned, now)
+            return state
+        leaving = list(set(planned.parameters.excluded) - set(self.current.parameters.excluded))
+        if feasible and state.down[leaving].all():
+            bounds = self._foot_targets.without_bounds(self.footholds.bounds_with(planned))
+            if leaving:
+                bounds = np.minimum(bounds, planned.final_limits.bounds)
+            bandwidth = self.timing._replace(gait=gait, frequency=frequency).bandwidth
+            if self._stays_within(bounds, now, frequency=frequency, bandwidth=bandwidth):
+                self._begin(planned, state)
+        return state
+
+    def _feasible(self, planned: StanceTransition, frequency: float, now: WalkSituation) -> bool:
+        """Return whether the feet could step to their new rest footholds at the present twist."""
+        duty_factor = planned.parameters.gait.duty_factor
+        fraction, _ = planned.stepping_limits.feasible_fraction(
+            now.state.twist.value, stance_time=duty_factor / frequency, duty_factor=duty_factor, hold=now.hold
+        )
+        return fraction >= 1
+
+    def _try_to_change_gait(self, planned: StanceTransition, now: WalkSituation) -> None:
+        """Let all feet touch down, if they may stand for so long; the leg that suits best then lifts first."""
+        cycle_time, gait = planned.cycle_timing.cycle_time, planned.parameters.gait
+        timing, delays = StepTiming.of(gait, cycle_time), lift_delays(gait, cycle_time)
+        ends = time_to_touchdown(now.state, self.timing.gait, self.timing.frequency).max() + delays + now.hold
+        bounds = self._foot_targets.without_bounds(self.footholds.bounds_with(planned))
+        bounds = np.minimum(bounds, planned.final_limits.bounds)
+        over = self._excess(np.zeros(delays.shape), ends, bounds, now, timing.bandwidth).max(axis=(1, 2, 3, 4))
+        first = int(over.argmin())
+        if over[first] <= POSITION_TOLERANCE:
+            self.phase, self._active, self.scheduler.planned = TransitionPhase.TOUCHDOWN, planned, None
+            self._next_timing, self._first_leg, self._delays = timing, first, delays[first]
+            self.footholds.restrict(planned.final_limits)
+
+    def _try_to_move_body(self, active: StanceTransition, now: WalkSituation) -> None:
+        """Move the body once every foot is at its new rest foothold."""
+        stepped = self.footholds.transferred.copy()
+        stepped[list(self.current.parameters.excluded)] = True
+        frequency = self.timing.frequency
+        ready = frequency <= 1 / active.cycle_timing.cycle_time and bool(stepped.all())
+        bounds = self._foot_targets.without_bounds(active.path_limits.bounds)
+        if ready and self._stays_within(bounds, now, frequency=frequency, bandwidth=self.bandwidth):
+            self.footholds.restrict(active.path_limits)
+            self.pose.set_posture(active.posture)
+            self.phase, self._active = TransitionPhase.NONE, None
+
+    def _stays_within(self, bounds: Floats, now: WalkSituation, *, frequency: float, bandwidth: float) -> bool:
+        begins, ends = self.stance_intervals(now.state, now.hold, frequency=frequency)
+        return bool(self._excess(begins, ends, bounds, now, bandwidth).max() <= POSITION_TOLERANCE)
+
+    def _excess(self, begins: Floats, ends: Floats, bounds: Floats, now: WalkSituation, bandwidth: float) -> Floats:
+        return polygon_excess(now.state, now.target[None], begins=begins, ends=ends, bounds=bounds, bandwidth=bandwidth)
+
+    def _begin(self, planned: StanceTransition, state: GaitState) -> None:
+        """Transfer the feet to their new rest footholds; legs that leave the gait get foot targets."""
+        self.footholds.begin(planned, state.down)
+        self.scheduler.adopt(planned)
+        self.phase, self._active = TransitionPhase.FOOTHOLDS, planned
+        excluded = planned.parameters.excluded
+        if excluded:
+            self.footholds.restrict(planned.final_limits)
+        self._foot_targets.set_legs(excluded, state)
+
+    def _start_gait(self, planned: StanceTransition, first: int, state: GaitState) -> GaitState:
+        """Start a gait; every foot is down."""
+        self._begin(planned, state)
+        self.timing = StepTiming.of(planned.parameters.gait, planned.cycle_timing.cycle_time)
+        return self.timing.with_first_lift(state, first)
+
+    # After a tick.
+
+    def finish(self, state: GaitState, landed: Floats, dt: float) -> GaitState:
+        """Complete what is complete after a tick.
+
+        Parameters
+        ----------
+        state : GaitState
+            The gait state after the tick.
+        landed : array of bool, shape (legs,)
+            The feet that landed in it.
+        dt : float
+            Length of the tick [s].
+
+        Returns
+        -------
+        GaitState
+            The gait state; its clock is set where another gait begins.
+        """
+        if landed.any():
+            self.footholds.feet_landed(landed)
+        settled = self.is_settled(state)
+        if not self.changes_gait:
+            goal = 1 / self.current.cycle_timing.cycle_time
+            self.timing = self.timing.approach(goal if settled else min(goal, self.timing.frequency), dt)
+        elif state.down.all() and self._active is not None:
+            state = self._start_gait(self._active, self._first_leg, state)
+        if settled and self.footholds.limits is not self.current.final_limits:
+            self.footholds.complete(self.current.final_limits)
+        return state

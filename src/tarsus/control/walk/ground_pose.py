@@ -1,0 +1,46 @@
+"""Body pose and foot positions in G that follow from a gait state."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from tarsus.control.walk.state import GaitState
+from tarsus.control.workspace.stance_geometry import SWING_HEIGHT, stance_geometry_of, with_sway
+from tarsus.kinematics.pose import Pose
+
+__all__ = ["body_pose", "foot_positions"]
+
+Floats = np.ndarray[Any, Any]
+
+
+def body_pose(state: GaitState) -> Pose:
+    """Return the pose of B in G.
+
+    Parameters
+    ----------
+    state : GaitState
+        The gait state.
+    """
+    stance = stance_geometry_of(with_sway(state.posture.value, state.cycles, state.beats), state.foot)
+    elevation = float(state.elevation.value[0])
+    heading = Pose.from_rpy(0.0, 0.0, state.yaw, (state.origin.real, state.origin.imag, elevation))
+    return heading @ Pose(stance.rotation, stance.position)
+
+
+def foot_positions(state: GaitState) -> Floats:
+    """Return the positions of the feet in G.
+
+    Parameters
+    ----------
+    state : GaitState
+        The gait state.
+
+    Returns
+    -------
+    array, shape (legs, 3)
+        In G [m].
+    """
+    height = state.height(float(state.posture.value[SWING_HEIGHT])) + state.admittance_offset.value
+    return np.stack([state.foot.real, state.foot.imag, height], axis=-1)

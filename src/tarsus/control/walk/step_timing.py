@@ -1,0 +1,93 @@
+"""Gait and step frequency, and what follows from them alone."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from tarsus.control.walk.state import PHASE_TOLERANCE, GaitState
+from tarsus.gait.gait import Gait
+
+__all__ = ["StepTiming"]
+
+Floats = np.ndarray[Any, Any]
+
+# The twist follows its target within about one stance: faster, and standing feet would be left behind.
+_TIME_CONSTANTS_PER_STANCE = 4.0
+
+
+class StepTiming(NamedTuple):
+    """A gait at a step frequency.
+
+    Attributes
+    ----------
+    gait : Gait
+        Order of the steps.
+    frequency : float
+        Cycles per second [1/s].
+    beats : int
+        How many times per cycle feet lift off.
+    """
+
+    gait: Gait
+    frequency: float
+    beats: int
+
+    @classmethod
+    def of(cls, gait: Gait, cycle_time: float) -> StepTiming:
+        """Return the timing of a gait.
+
+        Parameters
+        ----------
+        gait : Gait
+            Order of the steps.
+        cycle_time : float
+            Duration of a cycle [s].
+        """
+        return cls(gait, 1 / cycle_time, len(set(gait.offsets)))
+
+    @property
+    def bandwidth(self) -> float:
+        """Bandwidth with which the twist follows its target [rad/s]."""
+        return _TIME_CONSTANTS_PER_STANCE * self.frequency / self.gait.duty_factor
+
+    @property
+    def stance_time(self) -> float:
+        """Duration of a stance [s]."""
+        return self.gait.duty_factor / self.frequency
+
+    @property
+    def swing_time(self) -> float:
+        """Duration of a swing [s]."""
+        return (1 - self.gait.duty_factor) / self.frequency
+
+    def with_first_lift(self, state: GaitState, leg: int) -> GaitState:
+        """Return the gait state with the clock at the lift-off of a leg.
+
+        Parameters
+        ----------
+        state : GaitState
+            All feet are down.
+        leg : int
+            The leg that lifts first.
+        """
+        offsets, duty_factor = np.asarray(self.gait.offsets), self.gait.duty_factor
+        clock = float(offsets[leg]) + duty_factor
+        return state._replace(clock=clock, step_number=np.ceil(clock - offsets - duty_factor - PHASE_TOLERANCE))
+
+    def approach(self, frequency: float, dt: float) -> StepTiming:
+        """Return the timing after a tick in which the step frequency changes towards another.
+
+        Parameters
+        ----------
+        frequency : float
+            The frequency to reach [1/s].
+        dt : float
+            Length of the tick [s].
+        """
+        now = self.frequency
+        step = dt * now * now / 2
+        reached = abs(frequency - now) <= step
+        return self._replace(frequency=frequency if reached else now + math.copysign(step, frequency - now))
