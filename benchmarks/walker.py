@@ -20,8 +20,7 @@ from tarsus import GAITS, Gait, Robot, list_robots, load_robot
 from tarsus.control.command import Command
 from tarsus.control.readings import SensorReadings
 from tarsus.control.safety import Guard
-from tarsus.control.startup.folded_pose import folded_pose
-from tarsus.control.startup.planner import stand_up
+from tarsus.control.startup import folded_pose, stand_up
 from tarsus.control.walk_controller import WalkController
 
 __all__ = ["speed_table", "top_speed", "walker_rows"]

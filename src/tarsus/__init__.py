@@ -26,11 +26,8 @@ if TYPE_CHECKING:
     from tarsus.control.readings import SensorReadings
     from tarsus.control.robot_controller import RobotController
     from tarsus.control.safety import Guard, GuardBounds, GuardOutput, GuardState, Intervention, InterventionKind
-    from tarsus.control.sequence.player import SequencePlayer
-    from tarsus.control.sequence.sequence import MotionSequence
-    from tarsus.control.startup.folded_pose import folded_pose
-    from tarsus.control.startup.planner import fold, sit_down, stand_up
-    from tarsus.control.startup.power_off import power_off_order
+    from tarsus.control.sequence import MotionSequence, SequencePlayer
+    from tarsus.control.startup import fold, folded_pose, power_off_order, sit_down, stand_up
     from tarsus.control.states.robot_state import RobotState
     from tarsus.control.walk_controller import WalkController
     from tarsus.errors import (
@@ -99,10 +96,8 @@ _HOMES = {
     "tarsus.gait.cycle": ("cycle_feet",),
     "tarsus.gait.gait": ("GAITS", "Gait"),
     "tarsus.control.pose.admittance": ("Admittance",),
-    "tarsus.control.startup.folded_pose": ("folded_pose",),
-    "tarsus.control.startup.power_off": ("power_off_order",),
     "tarsus.control.safety": ("Guard", "GuardBounds", "GuardOutput", "GuardState", "Intervention", "InterventionKind"),
-    "tarsus.control.startup.planner": ("fold", "sit_down", "stand_up"),
+    "tarsus.control.startup": ("fold", "folded_pose", "power_off_order", "sit_down", "stand_up"),
     "tarsus.control.control_output": ("ControlOutput",),
     "tarsus.control.limitation": (
         "Limitation",
@@ -116,8 +111,7 @@ _HOMES = {
     "tarsus.control.states.robot_state": ("RobotState",),
     "tarsus.control.loop.run": ("run",),
     "tarsus.control.readings": ("SensorReadings",),
-    "tarsus.control.sequence.sequence": ("MotionSequence",),
-    "tarsus.control.sequence.player": ("SequencePlayer",),
+    "tarsus.control.sequence": ("MotionSequence", "SequencePlayer"),
     "tarsus.control.walk_controller": ("WalkController",),
     "tarsus.control.command": ("Command",),
     "tarsus.gait.motion": ("Motion",),

@@ -15,8 +15,8 @@ from tarsus.control.pose.admittance import Admittance
 from tarsus.control.pose.levelling import LevellingMode
 from tarsus.control.readings import SensorReadings
 from tarsus.control.safety import Guard, GuardBounds, GuardState, Intervention
-from tarsus.control.sequence.sequence import MotionSequence
-from tarsus.control.startup.planner import fold, sit_down, stand_up
+from tarsus.control.sequence import MotionSequence
+from tarsus.control.startup import fold, sit_down, stand_up
 from tarsus.control.states.activity import Activity, Playing, Resting, Snapshot, Walking
 from tarsus.control.states.persistent_command import PersistentCommand
 from tarsus.control.states.robot_state import RobotState, next_state, requested_state

@@ -1,43 +1,54 @@
-"""One stage of getting up or lying down: all joints from rest to rest, in one smooth motion.
+"""A stage of a motion sequence: one smooth motion of all joints from rest to rest.
 
-Over a stage, the share ``w = 10 u^3 - 15 u^4 + 6 u^5`` of the way is gone after the share u of the time: the motion of
-least jerk between two rests (T. Flash and N. Hogan, Journal of Neuroscience 5, 1985). What goes that way is either the
-joints of a leg, or its foot in the ground frame: still, or to another foothold with a lift of ``64 u^3 (1 - u)^3``. The
-body goes the same way from one pose to another, turning about one axis through a point of it that moves straight.
+After the fraction u of its duration, a stage has covered the fraction ``10 u^3 - 15 u^4 + 6 u^5`` of its path: the
+minimum-jerk motion between two rests (T. Flash and N. Hogan, Journal of Neuroscience 5, 1985). Each leg follows either
+a straight path in joint space, or a Cartesian path of its foot in the ground frame: stationary, or to another foothold
+with a swing height profile of ``64 u^3 (1 - u)^3``. The body moves from one pose to another by a rotation about a fixed
+axis through a pivot, which moves in a straight line.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Self
 
 import numpy as np
 
 from tarsus.gait.swing import ground_share, height_share
 from tarsus.kinematics.ground import points_in_body
+from tarsus.kinematics.leg import forward_kinematics
 from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.triangle import solve_triangle, to_leg_frame
+from tarsus.robot.joint_limits import JointLimits
 from tarsus.robot.robot import Robot
 
-__all__ = ["GRID", "Stage", "Table"]
+__all__ = ["GRID", "Stage", "StageTable"]
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]
 Flags = np.ndarray[Any, np.dtype[np.bool_]]
 
 GRID = np.linspace(0.0, 1.0, 257)
-"""The shares of a stage's time at which it is looked at."""
+"""Fractions of a stage's duration at which it is evaluated."""
 
-_TURN = 2 * np.pi
-# A leg that is led by its foot keeps this far from straight and from folded on itself, where its joints would have to
-# turn ever faster for the least motion of the foot [rad].
-_LEAST_BEND = 0.01
-# Turns by less than this are none [rad]: their axis is rounding.
-_NO_TURN = 1e-12
+_FULL_TURN = 2 * np.pi
+# Least distance of a leg on a Cartesian path from its singularities, straight and folded [rad].
+_MIN_BEND = 0.01
+# The axis of a smaller rotation is undefined by rounding [rad].
+_MIN_ROTATION = 1e-12
+# Fractions of the joint limits that are used, a reserve for the times between the points of `GRID`.
+_SPEED_FRACTION = 0.99
+_ACCELERATION_FRACTION = 0.96
 
 
-class Table(NamedTuple):
-    """Joint angles at the shares of `GRID`, and their derivatives by the share of the time ``(257, legs, 3)``."""
+class StageTable(NamedTuple):
+    """Joint angles at the fractions of `GRID`, and their derivatives with respect to the fraction.
+
+    Attributes
+    ----------
+    angles, first, second : array, shape (257, legs, 3)
+        Joint angles, first and second derivative [rad].
+    """
 
     angles: Floats
     first: Floats
@@ -51,29 +62,30 @@ class Stage:
     Attributes
     ----------
     name : str
-        What happens.
+        Name of the motion.
     robot : Robot
         A single robot.
     duration : float
-        How long it takes [s].
+        Duration [s].
     start, end : Pose
-        The body's pose in G, before and after.
+        Pose of B in G at the start and at the end.
     pivot : array, shape (3,)
-        The point of B that moves straight while the body turns about it [m].
+        Point in B that moves in a straight line while the body rotates about it [m].
     angles, angles_end : array, shape (legs, 3)
-        Joint angles before and after [rad]; a leg that is led by its foot keeps to the solution it starts with.
+        Joint angles at the start and at the end [rad]. A leg on a Cartesian path keeps the solution of inverse
+        kinematics that it starts with.
     feet, feet_end : array, shape (legs, 3)
-        Footholds in G before and after, of the legs that are led by their feet [m].
+        Footholds in G at the start and at the end, for legs on a Cartesian path [m].
     swing_height : float
-        How high a foot that changes its foothold is lifted on the way [m].
-    by_foot : array of bool, shape (legs,)
-        The legs that are led by their feet; of the others, the joints go straight from start to end.
+        Swing height of feet that change their foothold [m].
+    cartesian : array of bool, shape (legs,)
+        Legs whose feet follow a Cartesian path; the others follow a straight path in joint space.
     contacts, contacts_end : array of bool, shape (legs,)
-        The feet that stay on the ground during it, and those on the ground after it.
-    props : array, shape (n, 3)
-        Points in G, besides the feet, that bear load all the while [m]: of the body, or knees.
+        Feet on the ground throughout the stage, and at its end.
+    supports : array, shape (n, 3)
+        Points in G other than feet that bear load throughout the stage: points of the body, or knees [m].
     belly : bool
-        Whether the body lies flat on the ground during it.
+        Whether the body lies on the ground throughout the stage.
     """
 
     name: str
@@ -87,49 +99,136 @@ class Stage:
     feet: Floats
     feet_end: Floats
     swing_height: float
-    by_foot: Flags
+    cartesian: Flags
     contacts: Flags
     contacts_end: Flags
-    props: Floats
+    supports: Floats
     belly: bool
 
+    @classmethod
+    def hold(
+        cls, name: str, robot: Robot, body: Pose, angles: Floats, *, contacts: Flags, supports: Floats, belly: bool
+    ) -> Self:
+        """Return a stage of one second in which nothing moves.
+
+        Parameters
+        ----------
+        name : str
+            Name of the stage.
+        robot : Robot
+            A single robot.
+        body : Pose
+            Pose of B in G.
+        angles : array, shape (legs, 3)
+            Joint angles [rad].
+        contacts : array of bool, shape (legs,)
+            Feet on the ground.
+        supports : array, shape (n, 3)
+            Points in G other than feet that bear load [m].
+        belly : bool
+            Whether the body lies on the ground.
+        """
+        feet: Floats = body @ forward_kinematics(robot, angles)[:, 3]
+        return cls(
+            name=name,
+            robot=robot,
+            duration=1.0,
+            start=body,
+            end=body,
+            pivot=np.zeros(3),
+            angles=angles,
+            angles_end=angles,
+            feet=feet,
+            feet_end=feet,
+            swing_height=0.0,
+            cartesian=np.zeros(robot.legs, dtype=bool),
+            contacts=contacts,
+            contacts_end=contacts,
+            supports=supports,
+            belly=belly,
+        )
+
+    def transformed(self, pose: Pose) -> Self:
+        """Return the stage moved in G.
+
+        Parameters
+        ----------
+        pose : Pose
+            Transform of G: yaw and horizontal translation.
+        """
+        points = {name: pose @ getattr(self, name) for name in ("feet", "feet_end", "supports")}
+        return replace(self, start=pose @ self.start, end=pose @ self.end, **points)
+
     @cached_property
-    def _turn(self) -> tuple[Floats, float]:
-        """Axis in G and angle of the body's turn."""
+    def _rotation(self) -> tuple[Floats, float]:
+        """Axis in G and angle of the body's rotation."""
         turn = self.end.rotation @ self.start.rotation.T
         axis = np.array([turn[2, 1] - turn[1, 2], turn[0, 2] - turn[2, 0], turn[1, 0] - turn[0, 1]]) / 2
         sine = float(np.linalg.norm(axis))
-        if sine < _NO_TURN:
+        if sine < _MIN_ROTATION:
             return np.zeros(3), 0.0
         return axis / sine, float(np.arctan2(sine, (np.trace(turn) - 1) / 2))
 
-    def body_at(self, share: Floats) -> Pose:
-        """Return the body's poses in G after shares of the time, shape ``(n,)``."""
-        gone = ground_share(share)[:, None]
-        axis, angle = self._turn
+    def body_at(self, fractions: Floats) -> Pose:
+        """Return the poses of B in G.
+
+        Parameters
+        ----------
+        fractions : array, shape (n,)
+            Fractions of the duration.
+
+        Returns
+        -------
+        Pose
+            A batch of shape (n,).
+        """
+        progress = ground_share(fractions)[:, None]
+        axis, angle = self._rotation
         if not angle:
-            return Pose(self.start.rotation, self.start.position + gone * (self.end.position - self.start.position))
+            return Pose(self.start.rotation, self.start.position + progress * (self.end.position - self.start.position))
         cross = np.array([[0, -axis[2], axis[1]], [axis[2], 0, -axis[0]], [-axis[1], axis[0], 0]])
-        sine, versine = np.sin(angle * gone)[..., None], 1 - np.cos(angle * gone)[..., None]
+        sine, versine = np.sin(angle * progress)[..., None], 1 - np.cos(angle * progress)[..., None]
         # Rodrigues' formula.
         rotation = (np.eye(3) + sine * cross + versine * (cross @ cross)) @ self.start.rotation
         first, last = (pose.position + pose.rotation @ self.pivot for pose in (self.start, self.end))
-        return Pose(rotation, first + gone * (last - first) - rotation @ self.pivot)
+        return Pose(rotation, first + progress * (last - first) - rotation @ self.pivot)
 
-    def feet_at(self, share: Floats) -> Floats:
-        """Return where the feet are led to in G, ``(n, legs, 3)``; without meaning for legs that aren't led so."""
-        along = ground_share(share)[:, None, None]
-        feet: Floats = self.feet + along * (self.feet_end - self.feet)
+    def feet_at(self, fractions: Floats) -> Floats:
+        """Return the Cartesian paths of the feet in G; meaningless for legs that follow a path in joint space.
+
+        Parameters
+        ----------
+        fractions : array, shape (n,)
+            Fractions of the duration.
+
+        Returns
+        -------
+        array, shape (n, legs, 3)
+            Feet in G [m].
+        """
+        progress = ground_share(fractions)[:, None, None]
+        feet: Floats = self.feet + progress * (self.feet_end - self.feet)
         moves = (self.feet != self.feet_end).any(-1)
-        feet[..., 2] += self.swing_height * height_share(share)[:, None] * moves
+        feet[..., 2] += self.swing_height * height_share(fractions)[:, None] * moves
         return feet
 
-    def angles_at(self, share: Floats) -> Floats:
-        """Return the joint angles after shares of the time, ``(n, legs, 3)``; NaN where a foot is out of reach."""
-        angles: Floats = self.angles + ground_share(share)[:, None, None] * (self.angles_end - self.angles)
-        if self.by_foot.any():
-            led = self._led(share)
-            angles[:, self.by_foot] = led[:, self.by_foot]
+    def angles_at(self, fractions: Floats) -> Floats:
+        """Return the joint angles; NaN where a foot is out of reach.
+
+        Parameters
+        ----------
+        fractions : array, shape (n,)
+            Fractions of the duration.
+
+        Returns
+        -------
+        array, shape (n, legs, 3)
+            Joint angles [rad].
+        """
+        angles: Floats = self.angles + ground_share(fractions)[:, None, None] * (self.angles_end - self.angles)
+        if self.cartesian.any():
+            solved = self._solve(fractions)
+            angles[:, self.cartesian] = solved[:, self.cartesian]
         return angles
 
     @cached_property
@@ -139,32 +238,43 @@ class Stage:
         bend = np.sin(tibia)
         return bend > 0, g.coxa + g.femur * np.cos(femur) + g.tibia * np.cos(femur + tibia) < 0
 
-    def _led(self, share: Floats) -> Floats:
-        """Solve all legs for their feet, each by the solution that it starts with."""
+    def _solve(self, fractions: Floats) -> Floats:
+        """Return the inverse kinematics of all feet, each leg with the solution that it starts with."""
         g = self.robot.geometry
-        body = self.body_at(share)
-        points = points_in_body(body, self.feet_at(share))
+        points = points_in_body(self.body_at(fractions), self.feet_at(fractions))
         x, y, z = to_leg_frame(g, points[..., 0], points[..., 1], points[..., 2])
-        down, behind = self._branches
+        knee_down, behind = self._branches
+        min_bend = _MIN_BEND**2 * g.femur * g.tibia
         solved = np.full(points.shape, np.nan)
-        for bent in {bool(d) for d in down[self.by_foot]}:
-            for away in {bool(b) for b in behind[self.by_foot]}:
-                legs = (down == bent) & (behind == away)
+        for down in {bool(value) for value in knee_down[self.cartesian]}:
+            for back in {bool(value) for value in behind[self.cartesian]}:
+                legs = (knee_down == down) & (behind == back)
                 with np.errstate(invalid="ignore"):
-                    found = solve_triangle(np, g, x, y, z, knee=-1 if bent else 1, facing=-1 if away else 1)
-                bent_enough = _LEAST_BEND**2 * g.femur * g.tibia
-                ok = (found.far >= bent_enough) & (found.near >= bent_enough) & (found.beside >= 0) & legs
+                    found = solve_triangle(np, g, x, y, z, knee=-1 if down else 1, facing=-1 if back else 1)
+                ok = (found.far >= min_bend) & (found.near >= min_bend) & (found.beside >= 0) & legs
                 for joint in range(3):
                     solved[..., joint] = np.where(ok, found[joint], solved[..., joint])
-        # Of all angles a whole turn apart, that which is nearest to where the stage starts.
-        return solved - _TURN * np.round((solved - self.angles) / _TURN)
+        # The equivalent angle nearest to the start.
+        return solved - _FULL_TURN * np.round((solved - self.angles) / _FULL_TURN)
 
     @cached_property
-    def table(self) -> Table:
-        """Joint angles over the stage and how they change."""
+    def table(self) -> StageTable:
+        """Joint angles over the stage, with derivatives."""
         angles = self.angles_at(GRID)
         step = GRID[1]
         first = np.gradient(angles, step, axis=0, edge_order=2)
         second = np.zeros_like(angles)
         second[1:-1] = (angles[2:] - 2 * angles[1:-1] + angles[:-2]) / step**2
-        return Table(angles, first, second)
+        return StageTable(angles, first, second)
+
+    def shortest_duration(self, limits: JointLimits) -> float:
+        """Return the shortest duration within the joint limits [s].
+
+        Parameters
+        ----------
+        limits : JointLimits
+            Greatest joint speeds and accelerations.
+        """
+        speed, acceleration = (np.abs(values).max(0) for values in self.table[1:])
+        by_speed = float((speed / limits.speed).max()) / _SPEED_FRACTION
+        return max(by_speed, float(np.sqrt((acceleration / limits.acceleration).max() / _ACCELERATION_FRACTION)))

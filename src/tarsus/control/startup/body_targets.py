@@ -1,110 +1,101 @@
-"""Level poses that the body of a robot could be brought to from where it is found, and the way there."""
+"""Level body poses that a robot can be moved to from its initial pose."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from tarsus.control.sequence.stage import Stage
 from tarsus.control.startup.builder import SequenceBuilder
-from tarsus.control.startup.folded_pose import belly_depth, rest_points
+from tarsus.control.startup.folded_pose import belly_depth, underside_points
 from tarsus.kinematics.mass import centre_of_mass
 from tarsus.kinematics.pose import Pose
 
-__all__ = ["FLAT", "BodyTarget", "body_targets", "path_to"]
+__all__ = ["GROUND_TOLERANCE", "BodyTarget", "body_targets", "stage_to"]
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]
 Flags = np.ndarray[Any, np.dtype[np.bool_]]
 
-FLAT = 1e-7
-"""What rounding may make of the height of a point on the ground [m]."""
+GROUND_TOLERANCE = 1e-7
+"""Height below which a point counts as on the ground [m]."""
 
-# How many heights between lying and standing are tried.
+# Number of body heights to try between lying and standing.
 _HEIGHTS = 6
-# How much higher than it is found or wanted the body may go to make room for its legs [m].
-_HIGHER = 0.04
+# How far the body may rise above its initial and its final height to make room for its legs [m].
+_EXTRA_HEIGHT = 0.04
 
 
 @dataclass(frozen=True, eq=False)
 class BodyTarget:
-    """A level pose to bring the body to.
+    """A level pose of the body.
 
     Attributes
     ----------
     body : Pose
-        The pose in G.
+        Pose of B in G.
     pivot : array, shape (3,)
-        The point of B that goes straight there [m].
-    lying : bool
-        Whether the belly then lies flat on the ground.
+        Point in B that moves there in a straight line [m].
+    belly : bool
+        Whether the body lies on the ground in this pose.
     """
 
     body: Pose
     pivot: Floats
-    lying: bool
+    belly: bool
 
 
-def body_targets(draft: SequenceBuilder, height: float) -> tuple[BodyTarget, ...]:
-    """Return the level poses that are worth a try, the likeliest first.
+def body_targets(builder: SequenceBuilder, height: float) -> tuple[BodyTarget, ...]:
+    """Return the candidate level poses, the most promising one first.
 
     Parameters
     ----------
-    draft : Draft
-        The robot as found.
+    builder : SequenceBuilder
+        The robot in its initial state.
     height : float
-        Where its body's origin is wanted in the end [m].
+        Final body height [m].
     """
-    robot, body = draft.robot, draft.body
+    robot, body = builder.robot, builder.body
     up = body.rotation[2]
-    # The least turn that brings the body's z upright: about the horizontal axis across the tilt.
-    upright = _least_turn(body.rotation[:, 2]) @ body.rotation
-    on_body = rest_points(robot)
-    touching = (on_body @ up + draft.height) < FLAT
-    lying = belly_depth(robot)
-    com = np.asarray(centre_of_mass(robot, draft.angles))
-    heights = np.linspace(max(height, draft.height) + _HIGHER, lying + _HIGHER / 2, _HEIGHTS)
-    nearest_first = sorted(heights.tolist(), key=lambda h: abs(h - draft.height))
-    standing = [BodyTarget(_over(body, upright, com, h), com, lying=False) for h in (height, *nearest_first)]
-    pivot = on_body[touching].mean(0) if touching.any() else com
-    down = BodyTarget(_over(body, upright, pivot, lying), pivot, lying=True)
-    return (down, *standing) if touching.any() else (*standing, down)
+    upright = _levelling_rotation(body.rotation[:, 2]) @ body.rotation
+    underside = underside_points(robot)
+    on_ground = (underside @ up + builder.height) < GROUND_TOLERANCE
+    lowest = belly_depth(robot)
+    com = np.asarray(centre_of_mass(robot, builder.angles))
+    heights = np.linspace(max(height, builder.height) + _EXTRA_HEIGHT, lowest + _EXTRA_HEIGHT / 2, _HEIGHTS)
+    nearest_first = sorted(heights.tolist(), key=lambda h: abs(h - builder.height))
+    standing = [BodyTarget(_pose_above(body, upright, com, h), com, belly=False) for h in (height, *nearest_first)]
+    pivot = underside[on_ground].mean(0) if on_ground.any() else com
+    lying = BodyTarget(_pose_above(body, upright, pivot, lowest), pivot, belly=True)
+    return (lying, *standing) if on_ground.any() else (*standing, lying)
 
 
-def _over(body: Pose, rotation: Floats, pivot: Floats, height: float) -> Pose:
-    """Return the pose with that rotation and height in which the pivot is over where it is now."""
-    across = body.position + body.rotation @ pivot - rotation @ pivot
-    return Pose(rotation, np.array([across[0], across[1], height]))
+def stage_to(builder: SequenceBuilder, target: BodyTarget, cartesian: Flags) -> Stage:
+    """Return a stage that moves the body to a target, unchecked.
+
+    Parameters
+    ----------
+    builder : SequenceBuilder
+        The robot in its current state.
+    target : BodyTarget
+        Pose of the body at the end.
+    cartesian : array of bool, shape (legs,)
+        Legs whose feet stay where they are; the others keep their joint angles.
+    """
+    return replace(builder.hold(""), end=target.body, pivot=target.pivot, cartesian=cartesian)
 
 
-def _least_turn(up: Floats) -> Floats:
-    """Return the rotation by the least angle that carries the unit vector `up` into z."""
+def _pose_above(body: Pose, rotation: Floats, pivot: Floats, height: float) -> Pose:
+    """Return the pose with a rotation and a height that keeps the horizontal position of the pivot."""
+    position = body.position + body.rotation @ pivot - rotation @ pivot
+    return Pose(rotation, np.array([position[0], position[1], height]))
+
+
+def _levelling_rotation(up: Floats) -> Floats:
+    """Return the smallest rotation that turns the unit vector `up` into z."""
     x, y, z = up
-    turn: Floats = np.array(
+    rotation: Floats = np.array(
         [[z + y * y / (1 + z), -x * y / (1 + z), -x], [-x * y / (1 + z), z + x * x / (1 + z), -y], up]
     )
-    return turn
-
-
-def path_to(draft: SequenceBuilder, goal: BodyTarget, by_foot: Flags) -> Stage:
-    """Return the body's way to the goal, with feet still."""
-    feet = draft.feet
-    return Stage(
-        name="",
-        robot=draft.robot,
-        duration=1.0,
-        start=draft.body,
-        end=goal.body,
-        pivot=goal.pivot,
-        angles=draft.angles,
-        angles_end=draft.angles,
-        feet=feet,
-        feet_end=feet,
-        swing_height=0.0,
-        by_foot=by_foot,
-        contacts=by_foot,
-        contacts_end=by_foot,
-        props=np.zeros((0, 3)),
-        belly=False,
-    )
+    return rotation

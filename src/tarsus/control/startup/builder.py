@@ -1,4 +1,4 @@
-"""A sequence while it is being made: where the robot is by now, and one checked stage after the other."""
+"""Builder of motion sequences: the current state of the robot, and one checked stage after the other."""
 
 from __future__ import annotations
 
@@ -7,15 +7,14 @@ from typing import Any, Self
 
 import numpy as np
 
-from tarsus.control.sequence.joint_rates import JointRates
 from tarsus.control.sequence.sequence import MotionSequence
 from tarsus.control.sequence.stage import Stage
-from tarsus.control.startup.checks import check_ground, check_lift, check_limits, check_margin, check_reach
-from tarsus.control.startup.folded_pose import rest_points
-from tarsus.control.startup.leg_path import LegFreeSpace
-from tarsus.errors import UnreachableError
+from tarsus.control.startup.checks import check_stage
+from tarsus.control.startup.folded_pose import underside_points
+from tarsus.control.startup.leg_path import leg_paths
 from tarsus.kinematics.leg import forward_kinematics
 from tarsus.kinematics.pose import Pose
+from tarsus.robot.joint_limits import JointLimits
 from tarsus.robot.robot import Robot
 
 __all__ = ["SequenceBuilder"]
@@ -23,158 +22,140 @@ __all__ = ["SequenceBuilder"]
 Floats = np.ndarray[Any, np.dtype[np.float64]]
 Flags = np.ndarray[Any, np.dtype[np.bool_]]
 
-# Joints that turn by less than this in all, and bodies that move by less, don't move [rad, m].
-_STILL = 1e-12
-# Points of the body this near to the ground touch it [m].
-_TOUCH = 1e-6
-# Of the greatest speed and acceleration, what is planned with: they are measured at the shares of `GRID`, not between.
-_OF_SPEED = 0.99
-_OF_ACCELERATION = 0.96
+# Stages in which no joint moves by more are omitted [rad].
+_MIN_MOTION = 1e-12
+# Height below which a point counts as on the ground [m].
+_GROUND_TOLERANCE = 1e-6
 
 
 @dataclass(eq=False, kw_only=True)
 class SequenceBuilder:
-    """Where the robot is, and the stages that led there.
+    """Current state of the robot, and the stages that led to it.
+
+    The methods that move the robot add checked stages. They raise a `TarsusError` if a motion is impossible; the
+    builder may then hold some of the stages, so callers try a motion on a copy.
 
     Attributes
     ----------
     robot : Robot
         A single robot.
-    pace : JointRates
-        What its joints may do.
+    joint_limits : JointLimits
+        Joint speeds and accelerations of the plan.
     angles : array, shape (legs, 3)
         Joint angles [rad].
     body : Pose
-        The body in G.
+        Pose of B in G.
     contacts : array of bool, shape (legs,)
-        The feet on the ground.
+        Feet on the ground.
     belly : bool
-        Whether the body lies flat on the ground.
-    props : array, shape (n, 3)
-        Points in G, besides the feet, that bear load [m]: of the body, or knees.
-    margin : float
-        How safely it rested as it was found [m]: legs that were found bearing load are lifted with no less than that,
-        or with what is asked for where that is less.
+        Whether the body lies on the ground.
+    supports : array, shape (n, 3)
+        Points in G other than feet that bear load: points of the body, or knees [m].
+    initial_margin : float
+        Stability margin of the initial state [m].
     stages : list of Stage
-        What led there.
+        The stages so far.
     """
 
     robot: Robot
-    pace: JointRates
+    joint_limits: JointLimits
     angles: Floats
     body: Pose
     contacts: Flags
     belly: bool
-    props: Floats
-    margin: float
+    supports: Floats
+    initial_margin: float
     stages: list[Stage] = field(default_factory=list)
 
     def copy(self) -> Self:
-        """Return a draft that can go on in another way."""
+        """Return an independent copy."""
         return replace(self, stages=list(self.stages))
 
-    def take(self, other: SequenceBuilder) -> None:
-        """Go on from where another draft is."""
+    def adopt(self, other: SequenceBuilder) -> None:
+        """Take over state and stages of another builder.
+
+        Parameters
+        ----------
+        other : SequenceBuilder
+            A builder for the same robot.
+        """
         for spec in fields(self):
             setattr(self, spec.name, getattr(other, spec.name))
 
     @property
     def feet(self) -> Floats:
-        """The feet in G ``(legs, 3)`` [m]."""
+        """Feet in G, shape (legs, 3) [m]."""
         feet: Floats = self.body @ forward_kinematics(self.robot, self.angles)[:, 3]
         return feet
 
     @property
     def height(self) -> float:
-        """Height of B's origin over the ground [m]."""
+        """Body height [m]."""
         return float(self.body.position[2])
 
-    def turn_joints(self, name: str, angles: Floats, *, landed: Flags | None = None, least: float = 0.0) -> None:
-        """Turn the joints of legs in the air, the body held still.
+    def hold(self, name: str) -> Stage:
+        """Return a stage of one second in which nothing moves.
 
         Parameters
         ----------
         name : str
-            What to call the stage.
-        angles : array, shape (legs, 3)
-            Joint angles after it [rad]; legs that keep theirs stay on the ground if they are.
-        landed : array of bool, shape (legs,), optional
-            The legs that are on the ground after it; those that stayed where left out.
-        least : float
-            The least stability margin [m].
-
-        Raises
-        ------
-        TarsusError
-            If it can't be done.
+            Name of the stage.
         """
-        stay = self.contacts & (angles == self.angles).all(-1)
-        after = stay if landed is None else landed
-        self._add(name, least=least, angles_end=angles, contacts=stay, contacts_end=after)
+        return Stage.hold(
+            name,
+            self.robot,
+            self.body,
+            self.angles,
+            contacts=self.contacts,
+            supports=self.supports,
+            belly=self.belly,
+        )
 
-    def fly(self, name: str, legs: Flags, angles: Floats, *, landed: bool, least: float = 0.0) -> None:
-        """Take legs through the air to joint angles, with no point of them through the ground.
+    def move_legs(self, name: str, legs: Flags, angles: Floats, *, landed: bool, margin: float = 0.0) -> None:
+        """Move legs through the air to joint angles, with the body stationary and no point below the ground.
 
         Parameters
         ----------
         name : str
-            What to call the stages.
+            Name of the stages.
         legs : array of bool, shape (legs,)
-            Which legs.
+            Legs to move.
         angles : array, shape (legs, 3)
-            Their joint angles after it [rad].
+            Joint angles of these legs at the end [rad].
         landed : bool
-            Whether their feet are on the ground after it.
-        least : float
-            The least stability margin [m].
-
-        Raises
-        ------
-        TarsusError
-            If it can't be done.
+            Whether the feet are on the ground at the end.
+        margin : float
+            Least stability margin [m].
         """
-        routes: dict[int, tuple[Floats, ...]] = {}
-        for leg in np.flatnonzero(legs).tolist():
-            route = LegFreeSpace.of(self.robot, leg, self.body).route(self.angles[leg], angles[leg])
-            if route is None:
-                raise UnreachableError(
-                    f"{name}: leg {self.robot.leg_names[leg]} finds no way through the air from "
-                    f"{_degrees(self.angles[leg])} to {_degrees(angles[leg])} deg with the body's origin "
-                    f"{self.height * 1000:.1f} mm up; lifting the robot by hand makes room"
-                )
-            routes[leg] = route
-        last = max(map(len, routes.values()), default=0) - 1
-        for k in range(last + 1):
+        paths = leg_paths(name, self.robot, self.body, legs=legs, start=self.angles, end=angles)
+        count = max(map(len, paths.values()), default=0)
+        for k in range(count):
             target = self.angles.copy()
-            for leg, route in routes.items():
-                target[leg] = route[min(k, len(route) - 1)]
-            after = (self.contacts & ~legs) | (legs & (landed and k == last))
-            self.turn_joints(name, target, landed=after, least=least)
+            for leg, path in paths.items():
+                target[leg] = path[min(k, len(path) - 1)]
+            stationary = self.contacts & (target == self.angles).all(-1)
+            after = (self.contacts & ~legs) | (legs & (landed and k == count - 1))
+            self._add(name, margin=margin, angles_end=target, contacts=stationary, contacts_end=after)
 
-    def swing(self, name: str, legs: Flags, feet: Floats, *, swing_height: float, least: float) -> None:
-        """Lift feet and put them down elsewhere, the body held still.
+    def swing(self, name: str, legs: Flags, feet: Floats, *, swing_height: float, margin: float) -> None:
+        """Swing feet to new footholds, with the body stationary.
 
         Parameters
         ----------
         name : str
-            What to call the stage.
+            Name of the stage.
         legs : array of bool, shape (legs,)
-            Which legs.
+            Legs to move.
         feet : array, shape (legs, 3)
-            Their new footholds in G [m].
+            New footholds of these legs in G [m].
         swing_height : float
-            How high they are lifted on the way [m].
-        least : float
-            The least stability margin [m].
-
-        Raises
-        ------
-        TarsusError
-            If it can't be done.
+            Swing height [m].
+        margin : float
+            Least stability margin [m].
         """
-        stay = self.contacts & ~legs
-        changes = {"by_foot": legs, "feet_end": feet, "swing_height": swing_height}
-        self._add(name, least=least, contacts=stay, contacts_end=stay | legs, **changes)
+        stance = self.contacts & ~legs
+        changes = {"cartesian": legs, "feet_end": feet, "swing_height": swing_height}
+        self._add(name, margin=margin, contacts=stance, contacts_end=stance | legs, **changes)
 
     def move_body(
         self,
@@ -182,120 +163,79 @@ class SequenceBuilder:
         body: Pose,
         *,
         pivot: Floats | None = None,
-        props: Floats | None = None,
-        still: Flags | None = None,
+        supports: Floats | None = None,
+        stationary: Flags | None = None,
     ) -> None:
-        """Move the body with all feet on the ground still; legs in the air keep their joint angles.
+        """Move the body with all feet on the ground stationary; legs in the air keep their joint angles.
 
         Parameters
         ----------
         name : str
-            What to call the stage.
+            Name of the stage.
         body : Pose
-            Where it goes.
+            Pose of B in G at the end.
         pivot : array, shape (3,), optional
-            The point of B that goes straight; B's origin where left out.
-        props : array, shape (n, 3), optional
-            Points in G that bear load besides the feet all the while [m]; none where left out.
-        still : array of bool, shape (legs,), optional
-            Legs whose feet stay where they are without bearing load; none where left out.
-
-        Raises
-        ------
-        TarsusError
-            If it can't be done.
+            Point in B that moves in a straight line [m]; by default the origin.
+        supports : array, shape (n, 3), optional
+            Points in G other than feet that bear load throughout [m]; by default none.
+        stationary : array of bool, shape (legs,), optional
+            Further legs whose feet are stationary without bearing load; by default none.
         """
-        self.belly, self.props = False, np.zeros((0, 3)) if props is None else props
-        by_foot = self.contacts if still is None else self.contacts | still
-        self._add(name, end=body, pivot=np.zeros(3) if pivot is None else pivot, by_foot=by_foot)
+        self.belly, self.supports = False, np.zeros((0, 3)) if supports is None else supports
+        cartesian = self.contacts if stationary is None else self.contacts | stationary
+        self._add(name, end=body, pivot=np.zeros(3) if pivot is None else pivot, cartesian=cartesian)
 
-    def let_go(self, leg: int) -> None:
-        """Note that a leg bears nothing from now on: neither its foot, nor its knee, nor its femur axis."""
+    def unload(self, leg: int) -> None:
+        """Mark a leg as bearing no load, neither on its foot nor on its knee or femur axis.
+
+        Parameters
+        ----------
+        leg : int
+            Index of the leg.
+        """
         points = self.body @ forward_kinematics(self.robot, self.angles)[leg, 1:3]
-        self.props = self.props[(np.abs(self.props[:, None] - points) > _TOUCH).any(-1).all(-1)]
+        self.supports = self.supports[(np.abs(self.supports[:, None] - points) > _GROUND_TOLERANCE).any(-1).all(-1)]
         self.contacts = self.contacts & (np.arange(self.robot.legs) != leg)
 
-    def lie(self) -> None:
-        """Note that the body now lies flat on the ground."""
+    def set_lying(self) -> None:
+        """Mark the body as lying on the ground."""
         self.belly = True
-        points = self.body @ rest_points(self.robot)
-        self.props = points[points[:, 2] < _TOUCH]
+        points = self.body @ underside_points(self.robot)
+        self.supports = points[points[:, 2] < _GROUND_TOLERANCE]
 
-    def _add(self, name: str, *, least: float = 0.0, **changes: Any) -> None:
-        """Add a stage, as long as the joints need for it; none where nothing moves.
+    def set_end_angles(self, angles: Floats) -> None:
+        """Replace the final joint angles by ones that are equal up to rounding.
 
-        `changes` are the stage's attributes in which it differs from one in which everything is held.
+        Parameters
+        ----------
+        angles : array, shape (legs, 3)
+            Joint angles [rad].
         """
-        stage = replace(self._hold(name), **changes)
-        check_reach(stage)
-        check_limits(stage)
-        check_ground(stage)
-        check_lift(stage)
-        check_margin(stage, np.concatenate([stage.feet[stage.contacts], stage.props]), least)
-        end = stage.table.angles[-1]
-        moved = float(np.abs(stage.table.angles - self.angles).max()) > _STILL
-        duration = _duration(stage, self.pace)
-        self.contacts, self.body = stage.contacts_end, stage.end
-        if moved:
-            self.angles = np.where(stage.by_foot[:, None], end, stage.angles_end)
-            self.angles.setflags(write=False)
-            self.stages.append(replace(stage, duration=duration, angles_end=self.angles))
-
-    def end_in(self, angles: Floats) -> None:
-        """Let the last stage end in these angles to the bit; they differ from its own by rounding alone."""
         self.angles = np.array(angles)
         self.angles.setflags(write=False)
         if self.stages:
             self.stages[-1] = replace(self.stages[-1], angles_end=self.angles)
 
     def sequence(self) -> MotionSequence:
-        """Return the sequence, moved on the ground so that it ends with the body over G's origin, heading along x."""
-        stages = self.stages or [replace(self._hold("hold"), duration=0.0)]
+        """Return the sequence, moved in G so that the body ends over the origin with yaw 0."""
+        stages = self.stages or [replace(self.hold("hold"), duration=0.0)]
         yaw = float(self.body.rpy[2])
-        turned = Pose.from_rpy(0.0, 0.0, -yaw)
-        away = turned.rotation @ (self.body.position * [1.0, 1.0, 0.0])
-        home = Pose(turned.rotation, -away)
-        if yaw or away.any():
-            stages = [
-                replace(
-                    s,
-                    start=home @ s.start,
-                    end=home @ s.end,
-                    **{name: home @ getattr(s, name) for name in ("feet", "feet_end", "props")},
-                )
-                for s in stages
-            ]
-        return MotionSequence(robot=self.robot, stages=tuple(stages), pace=self.pace)
+        rotation = Pose.from_rpy(0.0, 0.0, -yaw).rotation
+        offset = rotation @ (self.body.position * [1.0, 1.0, 0.0])
+        if yaw or offset.any():
+            home = Pose(rotation, -offset)
+            stages = [stage.transformed(home) for stage in stages]
+        return MotionSequence(robot=self.robot, stages=tuple(stages), joint_limits=self.joint_limits)
 
-    def _hold(self, name: str) -> Stage:
-        """Return a stage of one second in which nothing moves."""
-        feet = self.feet
-        return Stage(
-            name=name,
-            robot=self.robot,
-            duration=1.0,
-            start=self.body,
-            end=self.body,
-            pivot=np.zeros(3),
-            angles=self.angles,
-            angles_end=self.angles,
-            feet=feet,
-            feet_end=feet,
-            swing_height=0.0,
-            by_foot=np.zeros(self.robot.legs, dtype=bool),
-            contacts=self.contacts,
-            contacts_end=self.contacts,
-            props=self.props,
-            belly=self.belly,
-        )
-
-
-def _degrees(angles: Floats) -> str:
-    return "(" + ", ".join(f"{a:.0f}" for a in np.degrees(angles)) + ")"
-
-
-def _duration(stage: Stage, pace: JointRates) -> float:
-    """Return how long a stage takes so that no joint exceeds its speed or its acceleration [s]."""
-    fastest, hardest = (np.abs(values).max(0) for values in stage.table[1:])
-    by_speed = float((fastest / pace.speed).max()) / _OF_SPEED
-    return max(by_speed, float(np.sqrt((hardest / pace.acceleration).max() / _OF_ACCELERATION)))
+    def _add(self, name: str, *, margin: float = 0.0, **changes: Any) -> None:
+        """Add a stage of the shortest duration that differs from `hold` by `changes`; omit it if no joint moves."""
+        stage = replace(self.hold(name), **changes)
+        check_stage(stage, margin)
+        end = stage.table.angles[-1]
+        moves = float(np.abs(stage.table.angles - self.angles).max()) > _MIN_MOTION
+        self.contacts, self.body = stage.contacts_end, stage.end
+        if moves:
+            duration = stage.shortest_duration(self.joint_limits)
+            self.angles = np.where(stage.cartesian[:, None], end, stage.angles_end)
+            self.angles.setflags(write=False)
+            self.stages.append(replace(stage, duration=duration, angles_end=self.angles))

@@ -1,4 +1,4 @@
-"""The folded pose: legs drawn in beside the body, so that its belly can rest on the ground."""
+"""The folded pose: legs retracted beside the body, so that the belly can rest on the ground."""
 
 from __future__ import annotations
 
@@ -13,29 +13,36 @@ from tarsus.kinematics.leg import forward_kinematics, point_parts
 from tarsus.robot.geometry import LegGeometry
 from tarsus.robot.robot import Robot
 
-__all__ = ["belly_depth", "folded_pose", "legs_apart", "rest_points"]
+__all__ = ["belly_depth", "folded_pose", "leg_clearance", "underside_points"]
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]
 
-# Spacing of the angles that are looked at, and how far from a limit they keep where the range lets them [rad].
+# Spacing of the joint angles that are evaluated, and their distance from the limits where the range permits it [rad].
 _GRID = np.deg2rad(2.5)
-_FROM_LIMIT = np.deg2rad(2.5)
-# How far from body, ground and the next leg a folded leg keeps, besides its foot's radius [m].
-_GAP = 0.005
-# How many of the best folded poses are tried, at most, until legs are clear of each other.
+_LIMIT_INSET = np.deg2rad(2.5)
+# Clearance of a folded leg from the body, the ground and the next leg, besides its foot radius [m].
+_CLEARANCE = 0.005
+# Number of the best poses to try until the legs are clear of each other.
 _TRIES = 200
+# Number of points on a link at which clearances are evaluated.
+_LINK_POINTS = 9
 
 
-def rest_points(robot: Robot) -> Floats:
-    """Return the points of the body that can rest on the ground, ``(n, 3)`` in B [m].
+def underside_points(robot: Robot) -> Floats:
+    """Return the points of the body that can rest on the ground.
 
-    The lower corners of its box, and the coxa axes; without a box, the coxa axes alone. As in `resting_pose`, but for
-    the femur axes, which turn with their coxae.
+    These are the lower corners of its box and the coxa axes; without a box, the coxa axes alone. The femur axes, which
+    `resting_pose` also considers, are not included because they move with the coxae.
 
     Parameters
     ----------
     robot : Robot
         A single robot.
+
+    Returns
+    -------
+    array, shape (n, 3)
+        Points in B [m].
     """
     mounts = robot.mount_position
     if robot.body_size is None:
@@ -45,7 +52,7 @@ def rest_points(robot: Robot) -> Floats:
 
 
 def belly_depth(robot: Robot) -> float:
-    """Return how far the body's underside is below B's origin [m], femur axes included.
+    """Return the depth of the body's lowest point below the origin of B, femur axes included [m].
 
     Parameters
     ----------
@@ -53,17 +60,17 @@ def belly_depth(robot: Robot) -> float:
         A single robot.
     """
     axes = robot.mount_position[:, 2] + np.minimum(robot.femur_axis_offset[:, 1], 0.0)
-    lowest = np.append(rest_points(robot)[:, 2], axes)
+    lowest = np.append(underside_points(robot)[:, 2], axes)
     return -float(lowest.min())
 
 
 def folded_pose(robot: Robot) -> Floats:
-    """Return joint angles with which the legs are drawn in and the belly can rest on the ground.
+    """Return joint angles with which the legs are retracted and the belly can rest on the ground.
 
-    Coxae straight out (or as near to that as their limits allow). Of all femurs and tibiae with which knee and foot are
-    above the plane of the belly, outside the body's box, and the legs clear of each other: those whose greatest
-    distance from the coxa axis and greatest height over the ground have the least sum of squares. Where the limits
-    keep a foot below the belly's plane, as little as they can.
+    The coxae are straight out, as far as their limits allow. Of all femur and tibia angles with knee and foot above the
+    plane of the belly, outside the body's box, and with the legs clear of each other, the ones are chosen that minimise
+    the sum of squares of the greatest distance from the coxa axis and the greatest height over the ground. If the
+    limits keep a foot below the plane of the belly, its depth is minimised first.
 
     Parameters
     ----------
@@ -82,28 +89,27 @@ def folded_pose(robot: Robot) -> Floats:
     """
     if robot.batch_shape:
         raise InputError(f"folded_pose takes a single robot, not a batch {robot.batch_shape} of designs")
-    return _folded(robot)
+    return _folded_pose(robot)
 
 
 @lru_cache(maxsize=16)
-def _folded(robot: Robot) -> Floats:
-    """Return the folded pose; kept, for whoever plans asks for it often."""
-    choices = [_drawn_in(robot, leg) for leg in range(robot.legs)]
-    enough = 2 * float(robot.foot_radius.max()) + _GAP
-    best, clearest = np.zeros((robot.legs, 3)), -1.0
+def _folded_pose(robot: Robot) -> Floats:
+    choices = [_leg_choices(robot, leg) for leg in range(robot.legs)]
+    enough = 2 * float(robot.foot_radius.max()) + _CLEARANCE
+    best, best_clearance = np.zeros((robot.legs, 3)), -1.0
     for rank in range(min(_TRIES, *(len(leg) for leg in choices))):
         angles = np.array([leg[rank] for leg in choices])
-        apart = legs_apart(robot, angles)
-        if apart > clearest:
-            best, clearest = angles, apart
-        if apart >= enough:
+        clearance = leg_clearance(robot, angles)
+        if clearance > best_clearance:
+            best, best_clearance = angles, clearance
+        if clearance >= enough:
             break
     best.setflags(write=False)
     return best
 
 
-def legs_apart(robot: Robot, angles: Array) -> float:
-    """Return the least distance between points of two legs' femurs and tibiae [m].
+def leg_clearance(robot: Robot, angles: Array) -> float:
+    """Return the least distance between the femurs and tibiae of two legs [m].
 
     Parameters
     ----------
@@ -113,47 +119,46 @@ def legs_apart(robot: Robot, angles: Array) -> float:
         Joint angles [rad].
     """
     points = forward_kinematics(robot, angles)
-    share = np.linspace(0, 1, 9)[:, None, None, None]
-    links = points[None, :, 1:3] + share * (points[None, :, 2:4] - points[None, :, 1:3])
-    along = np.moveaxis(links, 1, 0).reshape(robot.legs, -1, 3)
+    fractions = np.linspace(0, 1, _LINK_POINTS)[:, None, None, None]
+    links = points[None, :, 1:3] + fractions * (points[None, :, 2:4] - points[None, :, 1:3])
+    samples = np.moveaxis(links, 1, 0).reshape(robot.legs, -1, 3)
     first, second = np.triu_indices(robot.legs, k=1)
-    apart = along[first][:, :, None] - along[second][:, None]
-    return float(np.sqrt((apart * apart).sum(-1).min()))
+    offsets = samples[first][:, :, None] - samples[second][:, None]
+    return float(np.sqrt((offsets * offsets).sum(-1).min()))
 
 
-def _drawn_in(robot: Robot, leg: int) -> Floats:
-    """Return the folded poses of a leg, ``(n, 3)``, the most drawn in first."""
-    (low, _), *others = robot.limits[leg]
-    coxa = np.clip(0.0, low, robot.limits[leg, 0, 1])
-    axes = [_within(*limits) for limits in others]
-    femur, tibia = (axis.ravel() for axis in np.meshgrid(*axes, indexing="ij"))
+def _leg_choices(robot: Robot, leg: int) -> Floats:
+    """Return the folded joint angles of a leg, shape (n, 3) [rad], the most retracted first."""
+    (low, high), *limits = robot.limits[leg]
+    coxa = np.clip(0.0, low, high)
+    femur, tibia = (axis.ravel() for axis in np.meshgrid(*(_angle_grid(*pair) for pair in limits), indexing="ij"))
     angles = np.stack([np.full_like(femur, coxa), femur, tibia], axis=-1)
     g = LegGeometry(*(values[leg] for values in robot.geometry))
     points = np.stack(np.broadcast_arrays(*point_parts(np, g, *angles.T)), axis=-1).reshape(-1, 4, 3)
-    lowest = points[:, 2:, 2].min(-1) + belly_depth(robot) - float(robot.foot_radius[leg]) - _GAP
-    out = np.linalg.norm(points[:, 2:, :2] - robot.mount_position[leg, :2], axis=-1)
-    ahead = g.femur * np.cos(femur) + g.tibia * np.cos(femur + tibia)
-    clear = (ahead >= 0) & _outside(robot, points)
+    lowest = points[:, 2:, 2].min(-1) + belly_depth(robot) - float(robot.foot_radius[leg]) - _CLEARANCE
+    distance = np.linalg.norm(points[:, 2:, :2] - robot.mount_position[leg, :2], axis=-1)
+    reach = g.femur * np.cos(femur) + g.tibia * np.cos(femur + tibia)
+    clear = (reach >= 0) & _outside_body(robot, points)
     if clear.any():
-        angles, lowest, out, points = angles[clear], lowest[clear], out[clear], points[clear]
-    deep = np.minimum(lowest, 0.0)
-    above = deep >= deep.max() - 1e-9
-    high = points[:, 2:, 2].max(-1) + belly_depth(robot)
-    cost = out.max(-1) ** 2 + high**2
-    order: Floats = angles[above][np.argsort(cost[above], kind="stable")]
-    return order
+        angles, lowest, distance, points = angles[clear], lowest[clear], distance[clear], points[clear]
+    depth = np.minimum(lowest, 0.0)
+    above = depth >= depth.max() - 1e-9
+    highest = points[:, 2:, 2].max(-1) + belly_depth(robot)
+    cost = distance.max(-1) ** 2 + highest**2
+    choices: Floats = angles[above][np.argsort(cost[above], kind="stable")]
+    return choices
 
 
-def _within(low: float, high: float) -> Floats:
-    """Return angles between the limits, not at them where the range is wide enough."""
-    inset = min(_FROM_LIMIT, (high - low) / 4)
+def _angle_grid(low: float, high: float) -> Floats:
+    """Return joint angles between the limits, inset where the range permits it."""
+    inset = min(_LIMIT_INSET, (high - low) / 4)
     return np.linspace(low + inset, high - inset, 2 + int((high - low) / _GRID))
 
 
-def _outside(robot: Robot, points: Floats) -> Any:
-    """Return for each ``(n, 4, 3)`` leg whether its tibia is outside the body's box."""
+def _outside_body(robot: Robot, points: Floats) -> Any:
+    """Return for each leg, shape (n, 4, 3), whether its tibia is outside the body's box."""
     if robot.body_size is None:
         return np.ones(len(points), dtype=bool)
-    share = np.linspace(0, 1, 9)[:, None, None]
-    tibia = points[None, :, 2] + share * (points[None, :, 3] - points[None, :, 2])
-    return (np.abs(tibia) > robot.body_size / 2 + _GAP).any(-1).all(0)
+    fractions = np.linspace(0, 1, _LINK_POINTS)[:, None, None]
+    tibia = points[None, :, 2] + fractions * (points[None, :, 3] - points[None, :, 2])
+    return (np.abs(tibia) > robot.body_size / 2 + _CLEARANCE).any(-1).all(0)

@@ -1,4 +1,4 @@
-"""Feet change their footholds in groups: as many at once as the rest can bear."""
+"""Change of footholds in groups of legs, with the body stationary."""
 
 from __future__ import annotations
 
@@ -17,82 +17,83 @@ __all__ = ["change_footholds"]
 Floats = np.ndarray[Any, np.dtype[np.float64]]
 Flags = np.ndarray[Any, np.dtype[np.bool_]]
 
-# Angles that differ by less than this are the same [rad]: a foot is then less than a nanometre off.
-_SAME = 1e-9
-_LEAST_FEET = 3
+# Smaller differences of joint angles are ignored [rad]: less than a nanometre at the foot.
+_TOLERANCE = 1e-9
+_MIN_STANCE_FEET = 3
 
 
-def change_footholds(draft: SequenceBuilder, angles: Floats, *, swing_height: float, least: float) -> None:
-    """Bring every leg to its angles of a new stance, the body held still and the other feet with it.
+def change_footholds(builder: SequenceBuilder, angles: Floats, *, swing_height: float, margin: float) -> None:
+    """Move all legs to a new stance with the body stationary.
 
-    Feet in the air are put down first; then tripods are lifted, every second leg of the ring, and single legs where a
-    tripod can't be.
+    Feet in the air are placed first. Then the tripods are moved, every second leg of the ring, and single legs where a
+    tripod cannot be lifted.
 
     Parameters
     ----------
-    draft : Draft
-        Where the robot is; takes the stages.
+    builder : SequenceBuilder
+        The robot in its current state; stages are added to it.
     angles : array, shape (legs, 3)
         Joint angles of the new stance, all feet on the ground [rad].
     swing_height : float
-        How high the feet are lifted [m].
-    least : float
-        The least stability margin while feet are in the air [m].
+        Swing height of the feet [m].
+    margin : float
+        Least stability margin while feet are in the air [m].
 
     Raises
     ------
     TarsusError
-        If a foot can't be moved; the message says why.
+        If a foot cannot be moved.
     """
-    left = np.abs(angles - draft.angles).max(-1) > _SAME
-    if (left & ~draft.contacts).any():
-        # They bear nothing: whatever holds the body goes on holding it.
-        _move(draft, left & ~draft.contacts, angles, swing_height=swing_height, least=0.0)
-        left &= np.abs(angles - draft.angles).max(-1) > _SAME
-    while left.any():
-        group = _next_group(draft, left, angles, swing_height=swing_height, least=least)
-        left = left & ~group
+    remaining = np.abs(angles - builder.angles).max(-1) > _TOLERANCE
+    if (remaining & ~builder.contacts).any():
+        # These legs bear no load, so the support of the body does not change.
+        _move(builder, remaining & ~builder.contacts, angles, swing_height=swing_height, margin=0.0)
+        remaining &= np.abs(angles - builder.angles).max(-1) > _TOLERANCE
+    while remaining.any():
+        group = _move_first_group(builder, remaining, angles, swing_height=swing_height, margin=margin)
+        remaining = remaining & ~group
 
 
-def _next_group(draft: SequenceBuilder, left: Flags, angles: Floats, *, swing_height: float, least: float) -> Flags:
-    """Move the first group that can be, and return it."""
-    rejected: list[TarsusError] = []
-    for group in _groups(draft, left):
+def _move_first_group(
+    builder: SequenceBuilder, remaining: Flags, angles: Floats, *, swing_height: float, margin: float
+) -> Flags:
+    """Move the first group of legs that can be lifted, and return it."""
+    errors: list[TarsusError] = []
+    for group in _groups(builder, remaining):
         try:
-            _move(draft, group, angles, swing_height=swing_height, least=least)
+            _move(builder, group, angles, swing_height=swing_height, margin=margin)
         except TarsusError as error:
-            rejected.append(error)
+            errors.append(error)
         else:
             return group
-    raise (
-        rejected[-1]
-        if rejected
-        else TarsusError(
-            f"only {int(draft.contacts.sum())} feet are on the ground; {_LEAST_FEET + 1} are needed to lift one of them"
-        )
+    if errors:
+        raise errors[-1]
+    raise TarsusError(
+        f"only {int(builder.contacts.sum())} feet are on the ground; lifting one of them requires at least "
+        f"{_MIN_STANCE_FEET + 1}"
     )
 
 
-def _groups(draft: SequenceBuilder, left: Flags) -> Iterator[Flags]:
-    """Yield the groups to try: tripods, then single legs, as many as leave three feet on the ground."""
-    legs = np.arange(left.size)
-    groups = [left & (legs % 2 == parity) for parity in (0, 1)]
-    groups += [legs == leg for leg in np.flatnonzero(left)]
-    return (group for group in groups if group.any() and (draft.contacts & ~group).sum() >= _LEAST_FEET)
+def _groups(builder: SequenceBuilder, remaining: Flags) -> Iterator[Flags]:
+    """Yield the groups to try, tripods before single legs, that leave three feet on the ground."""
+    legs = np.arange(remaining.size)
+    groups = [remaining & (legs % 2 == parity) for parity in (0, 1)]
+    groups += [legs == leg for leg in np.flatnonzero(remaining)]
+    return (group for group in groups if group.any() and (builder.contacts & ~group).sum() >= _MIN_STANCE_FEET)
 
 
-def _move(draft: SequenceBuilder, legs: Flags, angles: Floats, *, swing_height: float, least: float) -> None:
-    """Move the legs, by a swing of their feet where that is possible, else through the air by their joints."""
-    codes = [draft.robot.leg_codes[leg] for leg in np.flatnonzero(legs)]
+def _move(builder: SequenceBuilder, legs: Flags, angles: Floats, *, swing_height: float, margin: float) -> None:
+    """Move legs by a swing of their feet if possible, else along paths in joint space."""
+    codes = [builder.robot.leg_codes[leg] for leg in np.flatnonzero(legs)]
     name = f"place {' '.join(codes)}"
-    trial = draft.copy()
-    same_way = (branches(draft.robot, angles) == branches(draft.robot, draft.angles))[legs].all()
+    trial = builder.copy()
+    same_branch = (branches(builder.robot, angles) == branches(builder.robot, builder.angles))[legs].all()
     try:
-        if not same_way:
-            raise TarsusError(f"{name}: the knee has to bend the other way")
-        feet = draft.body @ forward_kinematics(draft.robot, angles)[:, 3]
-        trial.swing(name, legs, feet, swing_height=swing_height, least=least)
+        if not same_branch:
+            raise TarsusError(f"{name}: the knee must bend the other way")
+        feet = builder.body @ forward_kinematics(builder.robot, angles)[:, 3]
+        trial.swing(name, legs, feet, swing_height=swing_height, margin=margin)
     except TarsusError:
-        trial = draft.copy()
-        trial.fly(name, legs, np.where(legs[:, None], angles, draft.angles), landed=True, least=least)
-    draft.take(trial)
+        trial = builder.copy()
+        trial.move_legs(name, legs, np.where(legs[:, None], angles, builder.angles), landed=True, margin=margin)
+    builder.adopt(trial)

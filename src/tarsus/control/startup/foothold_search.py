@@ -1,4 +1,4 @@
-"""Where legs can put their feet down, or leave them, while the body goes from one pose to another."""
+"""Footholds that legs can keep while the body moves to a target, and the placing of feet on them."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from tarsus.control.startup.body_targets import BodyTarget, path_to
+from tarsus.control.startup.body_targets import BodyTarget, stage_to
 from tarsus.control.startup.builder import SequenceBuilder
 from tarsus.control.startup.folded_pose import folded_pose
 from tarsus.errors import TarsusError
@@ -18,84 +18,86 @@ __all__ = ["place_feet"]
 Floats = np.ndarray[Any, np.dtype[np.float64]]
 Flags = np.ndarray[Any, np.dtype[np.bool_]]
 
-# Of the way to the goal, at how many poses a foothold must be within reach.
+# Number of body poses on the path to the target at which a foothold must be within reach.
 _POSES = 9
-# Where footholds are looked for: shares of the leg's length out, and turns of the coxa [rad].
-_OUT = np.linspace(0.3, 0.95, 14)
-_TURNS = np.deg2rad(np.linspace(-45, 45, 13))
-# Of the footholds that would do, how many are tried, near ones and far ones.
+# Candidate footholds: distances as fractions of the leg length, and coxa angles [rad].
+_DISTANCES = np.linspace(0.3, 0.95, 14)
+_COXA_ANGLES = np.deg2rad(np.linspace(-45, 45, 13))
+# Number of reachable footholds to try for each leg, spread over near and far ones.
 _CHOICES = 6
 
 
 def place_feet(
-    draft: SequenceBuilder, goal: BodyTarget, stance: Floats, *, free: Flags, lift_first: Flags, least: float
+    builder: SequenceBuilder, target: BodyTarget, stance: Floats, *, free: Flags, blocking: Flags, margin: float
 ) -> None:
-    """Put the free legs down where they can stay on the body's way; then those that can't stay where they are.
+    """Place the free legs on footholds that they can keep while the body moves, then the legs that block the motion.
 
     Parameters
     ----------
-    draft : Draft
-        The robot as found; takes the stages.
-    goal : Goal
-        Where the body goes.
+    builder : SequenceBuilder
+        The robot in its initial state; stages are added to it.
+    target : BodyTarget
+        Pose that the body moves to afterwards.
     stance : array, shape (legs, 3)
-        Footholds in B that are wanted in the end [m].
-    free, lift_first : array of bool, shape (legs,)
-        The legs in the air, and those on the ground that must not stay as they are.
-    least : float
-        The least stability margin while one of the latter is lifted [m].
+        Preferred footholds in B [m].
+    free, blocking : array of bool, shape (legs,)
+        Legs in the air, and legs on the ground that cannot stay where they are.
+    margin : float
+        Least stability margin while a blocking leg is lifted [m].
     """
-    choices = _places(draft, goal, stance)
-    folded = folded_pose(draft.robot)
+    choices = _footholds(builder, target, stance)
+    folded = folded_pose(builder.robot)
     for leg in np.flatnonzero(free).tolist():
-        # A leg for which there is no place is drawn in, or stays in the air as it is.
-        if not _place(draft, leg, choices[leg]):
+        # A leg without a foothold is retracted, or else stays in the air as it is.
+        if not _place(builder, leg, choices[leg]):
             with contextlib.suppress(TarsusError):
-                _fly(draft, leg, folded[leg], "draw in", landed=False)
-    left = np.flatnonzero(lift_first).tolist()
-    while (placed := next((leg for leg in left if _place(draft, leg, choices[leg], least)), None)) is not None:
-        left.remove(placed)
-    for leg in left:
-        # What can't be lifted by itself comes off the ground with the body, held by the others, or the body can't move.
-        draft.let_go(leg)
+                _move_leg(builder, leg, folded[leg], "retract", landed=False)
+    remaining = np.flatnonzero(blocking).tolist()
+    while (placed := next((leg for leg in remaining if _place(builder, leg, choices[leg], margin)), None)) is not None:
+        remaining.remove(placed)
+    for leg in remaining:
+        # A leg that cannot be lifted by itself comes off the ground with the body, supported by the other legs.
+        builder.unload(leg)
 
 
-def _place(draft: SequenceBuilder, leg: int, choices: Floats, least: float = 0.0) -> bool:
-    """Put a foot down at the first of its footholds ``(n, 3)`` [rad] that it gets to; return whether there is one."""
+def _place(builder: SequenceBuilder, leg: int, choices: Floats, margin: float = 0.0) -> bool:
+    """Place a foot with the first reachable joint angles of shape (n, 3) [rad]; return whether one is reachable."""
     for angles in choices:
         with contextlib.suppress(TarsusError):
-            _fly(draft, leg, angles, "place", landed=True, least=least)
+            _move_leg(builder, leg, angles, "place", landed=True, margin=margin)
             return True
     return False
 
 
-def _fly(draft: SequenceBuilder, leg: int, angles: Floats, what: str, *, landed: bool, least: float = 0.0) -> None:
-    """Take one leg through the air to joint angles; where that can't be, leave the draft as it was."""
-    trial = draft.copy()
-    one = np.arange(draft.robot.legs) == leg
-    trial.let_go(leg)
-    target = np.where(one[:, None], angles, draft.angles)
-    trial.fly(f"{what} {draft.robot.leg_codes[leg]}", one, target, landed=landed, least=least)
-    draft.take(trial)
+def _move_leg(
+    builder: SequenceBuilder, leg: int, angles: Floats, verb: str, *, landed: bool, margin: float = 0.0
+) -> None:
+    """Move one leg through the air to joint angles; if this fails, the builder is unchanged."""
+    trial = builder.copy()
+    only = np.arange(builder.robot.legs) == leg
+    trial.unload(leg)
+    target = np.where(only[:, None], angles, builder.angles)
+    trial.move_legs(f"{verb} {builder.robot.leg_codes[leg]}", only, target, landed=landed, margin=margin)
+    builder.adopt(trial)
 
 
-def _places(draft: SequenceBuilder, goal: BodyTarget, stance: Floats) -> list[Floats]:
-    """Return for every leg the angles of some footholds it can keep, ``(n, 3)`` [rad], near the wanted one first."""
-    robot, g = draft.robot, draft.robot.geometry
-    reach = (g.coxa + g.femur + g.tibia) * _OUT[:, None, None]
-    yaw = robot.mount_yaw + _TURNS[:, None]
-    x, y = (robot.mount_position[:, axis] + reach * fn(yaw) for axis, fn in ((0, np.cos), (1, np.sin)))
-    spots = np.stack([x, y, np.full_like(x, -goal.body.position[2])], axis=-1).reshape(-1, robot.legs, 3)
-    spots = np.concatenate([(stance * [1, 1, 0] - [0, 0, goal.body.position[2]])[None], spots])
-    on_ground = goal.body @ spots
-    way = path_to(draft, goal, np.zeros(robot.legs, dtype=bool)).body_at(np.linspace(0, 1, _POSES))
-    feet = np.broadcast_to(on_ground[:, None], (len(spots), _POSES, robot.legs, 3))
-    solution = inverse_kinematics(robot, feet, way)
-    works = (np.asarray(solution.reach) == 0).all(1)
-    away = np.where(works, np.linalg.norm(spots - spots[0], axis=-1), np.inf)
-    order = np.argsort(away, axis=0)
+def _footholds(builder: SequenceBuilder, target: BodyTarget, stance: Floats) -> list[Floats]:
+    """Return for each leg the joint angles of reachable footholds, shape (n, 3) [rad], near the preferred one first."""
+    robot, g = builder.robot, builder.robot.geometry
+    distance = (g.coxa + g.femur + g.tibia) * _DISTANCES[:, None, None]
+    yaw = robot.mount_yaw + _COXA_ANGLES[:, None]
+    x, y = (robot.mount_position[:, axis] + distance * fn(yaw) for axis, fn in ((0, np.cos), (1, np.sin)))
+    height = target.body.position[2]
+    candidates = np.stack([x, y, np.full_like(x, -height)], axis=-1).reshape(-1, robot.legs, 3)
+    candidates = np.concatenate([(stance * [1, 1, 0] - [0, 0, height])[None], candidates])
+    path = stage_to(builder, target, np.zeros(robot.legs, dtype=bool)).body_at(np.linspace(0, 1, _POSES))
+    feet = np.broadcast_to((target.body @ candidates)[:, None], (len(candidates), _POSES, robot.legs, 3))
+    solution = inverse_kinematics(robot, feet, path)
+    reachable = (np.asarray(solution.reach) == 0).all(1)
+    offset = np.where(reachable, np.linalg.norm(candidates - candidates[0], axis=-1), np.inf)
+    order = np.argsort(offset, axis=0)
     chosen = []
     for leg in range(robot.legs):
-        good = order[: int(works[:, leg].sum()), leg]
+        good = order[: int(reachable[:, leg].sum()), leg]
         chosen.append(np.asarray(solution.angles)[good[:: max(len(good) // _CHOICES, 1)][:_CHOICES], 0, leg])
     return chosen

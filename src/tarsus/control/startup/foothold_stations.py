@@ -1,8 +1,8 @@
-"""How high the body can be pushed straight up from given footholds, and where to change them on the way.
+"""Body heights at which footholds must change during a vertical motion of the body.
 
-At every height, each leg reaches the ground in a band of distances straight out from its coxa axis. Footholds that are
-in all bands from one height to another carry the body all that way; where none are, the legs change footholds in
-between, as seldom as possible: from the end of the way backwards, each time as far as footholds reach.
+At each body height, each leg reaches the ground in a band of distances straight out from its coxa axis. Footholds that
+are in all bands from one height to another can be kept over that motion. Where none are, the legs change their
+footholds in between, as seldom as possible: planned backwards from the end, each time as far as footholds reach.
 """
 
 from __future__ import annotations
@@ -19,29 +19,48 @@ from tarsus.kinematics.stance import reachable_band
 from tarsus.kinematics.triangle import to_leg_frame
 from tarsus.robot.robot import Robot
 
-__all__ = ["FootholdStation", "foothold_distances", "footholds", "stations"]
+__all__ = ["FootholdStation", "foothold_distances", "foothold_stations", "footholds"]
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]
 
-# Spacing of the heights that are looked at, and how far from the ends of a band a foothold keeps [m].
-_STEP = 0.0025
+# Spacing of the body heights that are evaluated [m].
+_HEIGHT_STEP = 0.0025
+# Distance of footholds from the ends of a band [m].
 _INSET = 0.001
-# How far from the femur axis feet are put down beside a lying body, as a share of femur and tibia.
-_BESIDE = 0.1
-# What rounding may add to a distance [m].
-_ROUNDING = 1e-9
+# Least distance of a foot from the femur axis beside a lying body, as a fraction of femur and tibia.
+_MIN_DISTANCE_LYING = 0.1
+# Tolerance of distances [m].
+_TOLERANCE = 1e-9
 
 
 class FootholdStation(NamedTuple):
-    """A height of the body's origin [m], and the footholds from there on, as `foothold_distances` ``(legs,)`` [m]."""
+    """A body height and the footholds from there on.
+
+    Attributes
+    ----------
+    height : float
+        Body height [m].
+    distances : array, shape (legs,)
+        Footholds as `foothold_distances` [m].
+    """
 
     height: float
-    out: Floats
+    distances: Floats
 
 
 @dataclass(frozen=True, eq=False)
 class _Bands:
-    """The bands of distances ``(n, legs)`` [m] at heights ``(n,)`` [m], on the ground and for lifted feet alike."""
+    """Reachable bands at a sequence of body heights.
+
+    Attributes
+    ----------
+    heights : array, shape (n,)
+        Body heights [m].
+    near, far : array, shape (n, legs)
+        Ends of the bands on the ground [m].
+    near_lifted, far_lifted : array, shape (n, legs)
+        Ends of the bands that are reachable both on the ground and at swing height [m].
+    """
 
     heights: Floats
     near: Floats
@@ -51,110 +70,141 @@ class _Bands:
 
     @classmethod
     def of(cls, robot: Robot, heights: Floats, swing_height: float) -> Self:
-        near, far = _band(robot, -heights)
-        if heights[0] <= belly_depth(robot) + _ROUNDING:
-            # Beside the lying body: a foot right under its folded leg would have no way there through the air.
-            beside = robot.coxa + _BESIDE * (robot.femur + robot.tibia)
-            near[0] = np.where(beside <= far[0], np.maximum(near[0], beside), near[0])
-        near_lifted, far_lifted = _band(robot, swing_height - heights)
+        near, far = _inset_band(robot, -heights)
+        if heights[0] <= belly_depth(robot) + _TOLERANCE:
+            # A foothold right under the folded leg of a lying robot is not accessible through the air.
+            least = robot.coxa + _MIN_DISTANCE_LYING * (robot.femur + robot.tibia)
+            near[0] = np.where(least <= far[0], np.maximum(near[0], least), near[0])
+        near_lifted, far_lifted = _inset_band(robot, swing_height - heights)
         return cls(heights, near, far, np.fmax(near, near_lifted), np.fmin(far, far_lifted))
 
-    def reach_down(self, out: Floats, start: int) -> int:
-        """Return how far down the way, to which index, the footholds carry from `start`; `start` + 1 for not at all."""
-        within = (out >= self.near[: start + 1] - _ROUNDING) & (out <= self.far[: start + 1] + _ROUNDING)
+    def lowest_index(self, distances: Floats, start: int) -> int:
+        """Return the lowest index down to which footholds can be kept from `start`; `start` + 1 if not even there."""
+        near, far = self.near[: start + 1], self.far[: start + 1]
+        within = (distances >= near - _TOLERANCE) & (distances <= far + _TOLERANCE)
         failing = np.flatnonzero(~within.all(-1))
         return int(failing[-1]) + 1 if failing.size else 0
 
-    def change_at(self, index: int, out: Floats) -> tuple[int, Floats] | None:
-        """Return how far down other footholds carry from a change at `index`, and which; None if feet can't change."""
+    def change_at(self, index: int, distances: Floats) -> tuple[int, Floats] | None:
+        """Return the lowest index after a change of footholds at `index`, and the new footholds; None if impossible."""
         low, high = self.near_lifted[index], self.far_lifted[index]
-        if not ((out >= low - _ROUNDING) & (out <= high + _ROUNDING)).all():
+        if not ((distances >= low - _TOLERANCE) & (distances <= high + _TOLERANCE)).all():
             return None
-        for down in range(index, -1, -1):
-            lower, higher = np.maximum(low, self.near[down]), np.minimum(high, self.far[down])
-            if not (lower <= higher).all():
-                return down + 1, (low + high) / 2
-            low, high = lower, higher
+        for lower in range(index, -1, -1):
+            next_low, next_high = np.maximum(low, self.near[lower]), np.minimum(high, self.far[lower])
+            if not (next_low <= next_high).all():
+                return lower + 1, (low + high) / 2
+            low, high = next_low, next_high
         return 0, (low + high) / 2
 
 
-def _band(robot: Robot, height: Floats) -> tuple[Floats, Floats]:
-    """Return the bands, a little within their ends; empty where there is none."""
+def _inset_band(robot: Robot, height: Floats) -> tuple[Floats, Floats]:
+    """Return the bands, reduced at both ends; empty (inf, -inf) where the ground is out of reach."""
     near, far = (np.asarray(ends) for ends in reachable_band(robot, height))
     inset = np.minimum(_INSET, (far - near) / 10)
     return np.nan_to_num(near + inset, nan=np.inf), np.nan_to_num(far - inset, nan=-np.inf)
 
 
-def stations(
+def foothold_stations(
     robot: Robot, start: float, end: float, feet: Floats, *, swing_height: float
 ) -> tuple[FootholdStation, ...]:
-    """Return where the body is pushed straight up (or let down), and where the legs change their footholds.
+    """Return the body heights at which the footholds change on a vertical motion, with the new footholds.
 
     Parameters
     ----------
     robot : Robot
         A single robot.
     start, end : float
-        Heights of the body's origin over the ground [m].
+        Body heights at the start and at the end [m].
     feet : array, shape (legs, 3)
-        The footholds in B that it is to end on [m].
+        Footholds in B at the end [m].
     swing_height : float
-        How high a foot is lifted that changes its foothold [m].
+        Swing height of feet that change their foothold [m].
 
     Returns
     -------
-    tuple of Station
-        The first has the start's height; the last holds the footholds to end on. The body goes from each
-        station's height to that of the next, and from the last one's to the end.
+    tuple of FootholdStation
+        The first is at the start height; the last has the footholds of the end. The body moves from the height of each
+        station to that of the next one, and from the last one to the end.
 
     Raises
     ------
     UnreachableError
-        If there is no such way; the message says which leg ends it, at what height and by how much.
+        If there are no such stations: which leg fails, at what height and by how much.
     """
-    count = 2 + math.ceil(abs(end - start) / _STEP)
+    count = 2 + math.ceil(abs(end - start) / _HEIGHT_STEP)
     bands = _Bands.of(robot, np.linspace(start, end, count), swing_height)
-    out, index, way = foothold_distances(robot, feet), count - 1, []
+    distances, index, stations = foothold_distances(robot, feet), count - 1, []
     while True:
-        down = bands.reach_down(out, index)
-        if not down:
-            way.append(FootholdStation(start, out))
-            return tuple(way[::-1])
-        changes = [(change, at) for at in range(min(down, index), index + 1) if (change := bands.change_at(at, out))]
-        (reached, other), at = min(changes, key=lambda c: (c[0][0], c[1]), default=((down, out), index))
-        if reached >= down:
-            raise UnreachableError(_why(robot, bands, out, max(down - 1, 0)))
-        way.append(FootholdStation(float(bands.heights[at]), out))
-        out, index = other, at
+        lowest = bands.lowest_index(distances, index)
+        if not lowest:
+            stations.append(FootholdStation(start, distances))
+            return tuple(stations[::-1])
+        candidates = range(min(lowest, index), index + 1)
+        changes = [(change, at) for at in candidates if (change := bands.change_at(at, distances))]
+        (reached, other), at = min(changes, key=lambda c: (c[0][0], c[1]), default=((lowest, distances), index))
+        if reached >= lowest:
+            raise UnreachableError(_reason(robot, bands, distances, max(lowest - 1, 0)))
+        stations.append(FootholdStation(float(bands.heights[at]), distances))
+        distances, index = other, at
 
 
-def _why(robot: Robot, bands: _Bands, out: Floats, index: int) -> str:
-    """Say which leg can't be on its foothold at a height, and by how much."""
-    short = np.maximum(bands.near[index] - out, out - bands.far[index])
-    leg = int(np.argmax(short))
-    at = f"leg {robot.leg_names[leg]} can't stand {out[leg] * 1000:.1f} mm from its coxa axis"
-    height = f"with the body's origin {bands.heights[index] * 1000:.1f} mm up"
+def _reason(robot: Robot, bands: _Bands, distances: Floats, index: int) -> str:
+    """Return which leg cannot reach its foothold at a height, and by how much."""
+    excess = np.maximum(bands.near[index] - distances, distances - bands.far[index])
+    leg = int(np.argmax(excess))
+    text = f"at body height {bands.heights[index] * 1000:.1f} mm, leg {robot.leg_names[leg]} cannot reach the ground"
+    if not math.isfinite(excess[leg]):
+        return f"{text} at any distance, and no other footholds avoid this height"
     near, far = bands.near[index, leg] * 1000, bands.far[index, leg] * 1000
-    if not math.isfinite(short[leg]):
-        return f"{at} {height}: there it reaches the ground nowhere; and there is no other foothold on the way"
+    side = "near" if distances[leg] < bands.near[index, leg] else "far"
     return (
-        f"{at} {height}: {short[leg] * 1000:.1f} mm too {'near' if out[leg] < bands.near[index, leg] else 'far'}, it "
-        f"reaches from {near:.1f} to {far:.1f} mm there; and no foothold between leads past that height"
+        f"{text} {distances[leg] * 1000:.1f} mm from its coxa axis: {excess[leg] * 1000:.1f} mm too {side}, it reaches "
+        f"from {near:.1f} to {far:.1f} mm; no intermediate footholds lead past this height"
     )
 
 
 def foothold_distances(robot: Robot, feet: Floats) -> Floats:
-    """Return how far from its coxa axis each foot in B is along the plane of its leg, ``(legs,)`` [m]."""
+    """Return the distance of each foot from its coxa axis along the plane of the leg.
+
+    Parameters
+    ----------
+    robot : Robot
+        A single robot.
+    feet : array, shape (legs, 3)
+        Feet in B [m].
+
+    Returns
+    -------
+    array, shape (legs,)
+        Distances [m].
+    """
     g = robot.geometry
     x, y, _ = to_leg_frame(g, feet[:, 0], feet[:, 1], feet[:, 2])
-    found: Floats = np.sqrt(np.maximum(x * x + y * y - g.side2, 0.0))
-    return found
+    distances: Floats = np.sqrt(np.maximum(x * x + y * y - g.side2, 0.0))
+    return distances
 
 
-def footholds(robot: Robot, out: Floats, height: float) -> Floats:
-    """Return the feet in B, straight out at given `foothold_distances`, for a body height ``(legs, 3)`` [m]."""
+def footholds(robot: Robot, distances: Floats, height: float) -> Floats:
+    """Return the footholds straight out from the coxa axes.
+
+    Parameters
+    ----------
+    robot : Robot
+        A single robot.
+    distances : array, shape (legs,)
+        Distances as `foothold_distances` [m].
+    height : float
+        Body height [m].
+
+    Returns
+    -------
+    array, shape (legs, 3)
+        Footholds in B [m].
+    """
     g = robot.geometry
     coxa = np.clip(0.0, g.coxa_lower, g.coxa_upper)
-    x, y = out * np.cos(coxa) - g.side * np.sin(coxa), out * np.sin(coxa) + g.side * np.cos(coxa)
-    across = (g.mount_x + g.cos_yaw * x - g.sin_yaw * y, g.mount_y + g.sin_yaw * x + g.cos_yaw * y)
-    return np.stack([*across, np.full_like(x, -height)], axis=-1)
+    x = distances * np.cos(coxa) - g.side * np.sin(coxa)
+    y = distances * np.sin(coxa) + g.side * np.cos(coxa)
+    horizontal = (g.mount_x + g.cos_yaw * x - g.sin_yaw * y, g.mount_y + g.sin_yaw * x + g.cos_yaw * y)
+    return np.stack([*horizontal, np.full_like(x, -height)], axis=-1)

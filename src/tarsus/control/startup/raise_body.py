@@ -1,4 +1,4 @@
-"""Pushing a level body straight up and letting it down, feet still, and changing footholds in between."""
+"""Vertical motion of a level body over stationary feet, with changes of footholds in between."""
 
 from __future__ import annotations
 
@@ -11,7 +11,12 @@ import numpy as np
 from tarsus.control.startup.builder import SequenceBuilder
 from tarsus.control.startup.folded_pose import belly_depth
 from tarsus.control.startup.foothold_change import change_footholds
-from tarsus.control.startup.foothold_stations import FootholdStation, foothold_distances, footholds, stations
+from tarsus.control.startup.foothold_stations import (
+    FootholdStation,
+    foothold_distances,
+    foothold_stations,
+    footholds,
+)
 from tarsus.errors import UnreachableError
 from tarsus.kinematics.inverse import inverse_kinematics
 from tarsus.kinematics.pose import Pose
@@ -21,94 +26,103 @@ __all__ = ["lower_body", "raise_body"]
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]
 
-# Spacing of the body heights that are tried for advice [m].
+# Spacing of the body heights that are tried for the advice of an error message [m].
 _BODY_HEIGHT_STEP = 0.005
-# How far the angles of a stance may be off where its feet stand by other arithmetic [rad].
-_SAME = 1e-6
+# Tolerance of the joint angles of the final stance, which are computed in two ways [rad].
+_ANGLE_TOLERANCE = 1e-6
 
 
-def raise_body(draft: SequenceBuilder, feet: Floats, stance: Floats, *, swing_height: float, least: float) -> None:
-    """Bring a level body, lying or standing, straight up (or down) to a stance.
+def raise_body(builder: SequenceBuilder, feet: Floats, stance: Floats, *, swing_height: float, margin: float) -> None:
+    """Move a level body, lying or standing, vertically to a stance.
 
     Parameters
     ----------
-    draft : Draft
-        The robot, its legs folded where it lies; takes the stages.
-    feet, stance : array, shape (legs, 3)
-        Footholds of the stance in B [m], and its joint angles [rad].
+    builder : SequenceBuilder
+        The robot, with folded legs if it lies; stages are added to it.
+    feet : array, shape (legs, 3)
+        Footholds of the stance in B [m].
+    stance : array, shape (legs, 3)
+        Joint angles of the stance [rad].
     swing_height : float
-        How high feet are lifted that change their footholds [m].
-    least : float
-        The least stability margin meanwhile [m].
+        Swing height of feet that change their foothold [m].
+    margin : float
+        Least stability margin during changes of footholds [m].
 
     Raises
     ------
     TarsusError
-        If it can't be done: which leg, at what height, by how much, and what would work.
+        If the body cannot be raised: which leg, at what height, by how much, and what would work.
     """
     height = -float(feet[0, 2])
-    way = _way_up(draft, feet, height, swing_height)
-    for station, after in zip(way, [*(s.height for s in way[1:]), height], strict=True):
-        last = station is way[-1]
-        spots = feet * [1, 1, 0] if last else footholds(draft.robot, station.out, 0.0)
-        spots = spots - [0, 0, draft.height]
-        exact = last and draft.height == height
-        angles = stance if exact else inverse_kinematics(draft.robot, spots).require().angles
-        if draft.belly:
-            draft.fly("put the feet down", (draft.angles != angles).any(-1), angles, landed=True)
+    stations = _stations(builder, feet, height, swing_height)
+    for station, next_height in zip(stations, [*(s.height for s in stations[1:]), height], strict=True):
+        last = station is stations[-1]
+        spots = feet * [1, 1, 0] if last else footholds(builder.robot, station.distances, 0.0)
+        spots = spots - [0, 0, builder.height]
+        exact = last and builder.height == height
+        angles = stance if exact else inverse_kinematics(builder.robot, spots).require().angles
+        if builder.belly:
+            builder.move_legs("place feet", (builder.angles != angles).any(-1), angles, landed=True)
         else:
-            change_footholds(draft, angles, swing_height=swing_height, least=least)
-        if after != draft.height:
-            draft.move_body("push up" if after > draft.height else "let down", _at_height(draft.body, after))
-    off = float(np.abs(draft.angles - stance).max())
-    if off > _SAME:
-        raise UnreachableError(f"the stance is reached by other angles, {math.degrees(off):.3f} deg off")
-    draft.end_in(stance)
+            change_footholds(builder, angles, swing_height=swing_height, margin=margin)
+        if next_height != builder.height:
+            name = "raise body" if next_height > builder.height else "lower body"
+            builder.move_body(name, _at_height(builder.body, next_height))
+    error = float(np.abs(builder.angles - stance).max())
+    if error > _ANGLE_TOLERANCE:
+        raise UnreachableError(
+            f"the final joint angles differ from those of the stance by {math.degrees(error):.3f} deg"
+        )
+    builder.set_end_angles(stance)
 
 
-def _way_up(draft: SequenceBuilder, feet: Floats, height: float, swing_height: float) -> tuple[FootholdStation, ...]:
-    """Return the stations up to a height; where there are none, say which body heights would work."""
+def _stations(
+    builder: SequenceBuilder, feet: Floats, height: float, swing_height: float
+) -> tuple[FootholdStation, ...]:
+    """Return the stations up to a height; if there are none, say which body heights would work."""
+    robot, start = builder.robot, builder.height
     try:
-        return stations(draft.robot, draft.height, height, feet, swing_height=swing_height)
+        return foothold_stations(robot, start, height, feet, swing_height=swing_height)
     except UnreachableError as error:
-        works = []
-        for body_height in np.arange(draft.height, height, _BODY_HEIGHT_STEP):
+        feasible = []
+        for body_height in np.arange(start, height, _BODY_HEIGHT_STEP).tolist():
             with contextlib.suppress(UnreachableError):
-                other = default_stance(draft.robot, float(body_height), swing_height=swing_height)
-                stations(draft.robot, draft.height, float(body_height), other, swing_height=swing_height)
-                works.append(float(body_height))
-        advice = f"a body height of {max(works) * 1000:.1f} mm works" if works else "no lower body height works either"
-        raise UnreachableError(f"pushing the body up to {height * 1000:.1f} mm: {error}; {advice}") from None
+                other = default_stance(robot, body_height, swing_height=swing_height)
+                foothold_stations(robot, start, body_height, other, swing_height=swing_height)
+                feasible.append(body_height)
+        advice = "no lower body height works either"
+        if feasible:
+            advice = f"a body height of {max(feasible) * 1000:.1f} mm works"
+        raise UnreachableError(f"raising the body to {height * 1000:.1f} mm: {error}; {advice}") from None
 
 
-def lower_body(draft: SequenceBuilder, *, swing_height: float, least: float) -> None:
-    """Let a level body that stands on its feet down until its belly lies on the ground.
+def lower_body(builder: SequenceBuilder, *, swing_height: float, margin: float) -> None:
+    """Lower a level, standing body until it lies on the ground.
 
     Parameters
     ----------
-    draft : Draft
-        The robot; takes the stages.
+    builder : SequenceBuilder
+        The robot; stages are added to it.
     swing_height : float
-        How high feet are lifted that change their footholds [m].
-    least : float
-        The least stability margin meanwhile [m].
+        Swing height of feet that change their foothold [m].
+    margin : float
+        Least stability margin during changes of footholds [m].
 
     Raises
     ------
     TarsusError
-        If it can't be done: which leg, at what height, and by how much.
+        If the body cannot be lowered: which leg, at what height, and by how much.
     """
-    lying = belly_depth(draft.robot)
-    up = foothold_distances(draft.robot, draft.body.inverse() @ draft.feet)
-    way = stations(
-        draft.robot, lying, draft.height, footholds(draft.robot, up, draft.height), swing_height=swing_height
-    )
-    for station in way[::-1]:
-        spots = footholds(draft.robot, station.out, draft.height)
-        angles = inverse_kinematics(draft.robot, spots).require().angles
-        change_footholds(draft, angles, swing_height=swing_height, least=least)
-        draft.move_body("let down", _at_height(draft.body, station.height))
-    draft.lie()
+    robot, lowest = builder.robot, belly_depth(builder.robot)
+    distances = foothold_distances(robot, builder.body.inverse() @ builder.feet)
+    feet = footholds(robot, distances, builder.height)
+    stations = foothold_stations(robot, lowest, builder.height, feet, swing_height=swing_height)
+    for station in stations[::-1]:
+        spots = footholds(robot, station.distances, builder.height)
+        angles = inverse_kinematics(robot, spots).require().angles
+        change_footholds(builder, angles, swing_height=swing_height, margin=margin)
+        builder.move_body("lower body", _at_height(builder.body, station.height))
+    builder.set_lying()
 
 
 def _at_height(body: Pose, height: float) -> Pose:

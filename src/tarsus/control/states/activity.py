@@ -9,9 +9,8 @@ import numpy as np
 from tarsus.control.command import Command
 from tarsus.control.limitation import Limitation
 from tarsus.control.readings import SensorReadings
-from tarsus.control.sequence.player import SequencePlayer
-from tarsus.control.sequence.sequence import MotionSequence, SequenceSample
-from tarsus.control.startup.planner import fold, sit_down
+from tarsus.control.sequence import MotionSequence, SequencePlayer, SequenceSample
+from tarsus.control.startup import fold, sit_down
 from tarsus.control.states.robot_state import RobotState
 from tarsus.control.walk_controller import WalkController
 from tarsus.control.walk_state import WalkState
@@ -138,7 +137,7 @@ class Playing:
         """Continue to the end, or return to the start; the joints' accelerations stay within their limits."""
         if back != self.returning:
             self.returning = back
-            (self._player.go_back if back else self._player.resume)()
+            (self._player.reverse if back else self._player.resume)()
 
     def leads_to(self, goal: RobotState) -> bool:
         """Return whether the end of the sequence is on the way to a state that is wanted."""

@@ -1,0 +1,92 @@
+"""Motion of the body from its initial pose to a level one, standing or lying.
+
+Feet that bear load stay where they are while the body moves. A leg that cannot follow, or rests on its knee, is lifted
+first if the other legs can support the body without it. Legs in the air are placed on footholds that they can keep, so
+that they support the body too.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from tarsus.control.sequence.stage import GRID
+from tarsus.control.startup.body_targets import GROUND_TOLERANCE, BodyTarget, stage_to
+from tarsus.control.startup.builder import SequenceBuilder
+from tarsus.control.startup.checks import limit_excess
+from tarsus.control.startup.folded_pose import folded_pose, underside_points
+from tarsus.control.startup.foothold_search import place_feet
+from tarsus.kinematics.leg import forward_kinematics
+
+__all__ = ["level_body"]
+
+Floats = np.ndarray[Any, np.dtype[np.float64]]
+Flags = np.ndarray[Any, np.dtype[np.bool_]]
+
+# Tolerance of an angle beyond its limit [rad].
+_ANGLE_TOLERANCE = 1e-7
+# Feet below this height over the ground are kept at their place, as joint backlash can explain their height [m].
+_NEAR_GROUND = 0.005
+
+
+def level_body(builder: SequenceBuilder, target: BodyTarget, stance: Floats, *, margin: float) -> None:
+    """Move the body to a level pose with the loaded feet stationary.
+
+    Parameters
+    ----------
+    builder : SequenceBuilder
+        The robot in its initial state; stages are added to it.
+    target : BodyTarget
+        Pose of the body at the end.
+    stance : array, shape (legs, 3)
+        Preferred footholds in B [m].
+    margin : float
+        Least stability margin while loaded feet are lifted, or the initial margin if that is less [m].
+
+    Raises
+    ------
+    TarsusError
+        If the pose cannot be reached.
+    """
+    if builder.belly:
+        return
+    on_knee = _on_knee(builder)
+    follows = builder.contacts & ~on_knee & _can_follow(builder, target)
+    blocking = (builder.contacts | on_knee) & ~follows
+    free = ~builder.contacts & ~on_knee
+    near_ground = np.zeros_like(free)
+    if target.belly and not blocking.any():
+        near_ground = free & _can_follow(builder, target) & (builder.feet[:, 2] < _NEAR_GROUND)
+        free = free & ~near_ground
+        folded = np.where(free[:, None], folded_pose(builder.robot), builder.angles)
+        builder.move_legs("retract free legs", free, folded, landed=False)
+    else:
+        least = min(margin, builder.initial_margin)
+        place_feet(builder, target, stance, free=free, blocking=blocking, margin=least)
+    supports = _body_contacts(builder) if target.belly else np.zeros((0, 3))
+    name = "lie down" if target.belly else "level body"
+    builder.move_body(name, target.body, pivot=target.pivot, supports=supports, stationary=near_ground)
+    if target.belly:
+        builder.set_lying()
+
+
+def _on_knee(builder: SequenceBuilder) -> Flags:
+    """Return the legs whose knee is on the ground."""
+    points = builder.body @ forward_kinematics(builder.robot, builder.angles)
+    on_knee: Flags = points[:, 2, 2] < GROUND_TOLERANCE
+    return on_knee
+
+
+def _body_contacts(builder: SequenceBuilder) -> Floats:
+    """Return the points of the body on the ground, in G."""
+    points = builder.body @ underside_points(builder.robot)
+    contacts: Floats = points[points[:, 2] < GROUND_TOLERANCE]
+    return contacts
+
+
+def _can_follow(builder: SequenceBuilder, target: BodyTarget) -> Flags:
+    """Return the legs that can keep their feet in place while the body moves to the target."""
+    angles = stage_to(builder, target, np.ones(builder.robot.legs, dtype=bool)).angles_at(GRID)
+    excess_grows = np.diff(limit_excess(builder.robot, np.nan_to_num(angles)), axis=0) > _ANGLE_TOLERANCE
+    return np.array(~(np.isnan(angles).any((0, 2)) | excess_grows.any((0, 2))))
