@@ -141,7 +141,7 @@ def test_speed_is_continuous(seed):
         assert abs(feet.speeds[0] - before) <= most * dt
 
 
-def test_what_is_no_admittance_is_refused():
+def test_invalid_parameters_raise():
     good = {"mass": 1.0, "damping": 1.0, "stiffness": 1.0}
     for name in ("mass", "damping", "stiffness", "travel"):
         for value in (0.0, -1.0, math.nan, math.inf):
@@ -149,7 +149,7 @@ def test_what_is_no_admittance_is_refused():
                 Admittance(**(good | {name: value}))
     with pytest.raises(InputError, match=r"stiffness is 1e\+300 for a mass of 1e-300 kg.*increase the mass"):
         Admittance(mass=1e-300, damping=1.0, stiffness=1e300)
-    with pytest.raises(InputError, match=r"damping is 10.0 for a mass of 1e-06 kg, which makes 5e\+06 rad/s"):
+    with pytest.raises(InputError, match=r"damping is 10.0 for a mass of 1e-06 kg: 5e\+06 rad/s"):
         Admittance(mass=1e-6, damping=10.0, stiffness=1.0)
     weak = AdmittanceFilter(Admittance(mass=1e300, damping=1e-300, stiffness=1e-300), 1)
     assert weak.step([1.0], 1.0) == pytest.approx([0.0], abs=1e-15)

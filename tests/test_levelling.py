@@ -384,7 +384,7 @@ def test_modes():
     assert settle(levelling, **args) == Correction()
     with pytest.raises(UnknownNameError, match=r"no levelling mode is called 'flollow'\. Did you mean 'follow'"):
         levelling.mode = "flollow"
-    for name in ("carried", "gain", "max_tilt", "max_shift", "tilt_rate", "shift_rate", "frequency"):
+    for name in ("com_shift_ratio", "gain", "max_tilt", "max_shift", "tilt_rate", "shift_rate", "frequency"):
         with pytest.raises(InputError, match=f"{name} is 0; it must be a positive number"):
             Levelling("level", **{name: 0})
     for com in ((0.0, 0.0), (0.0, 0.0, math.nan)):

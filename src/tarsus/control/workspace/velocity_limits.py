@@ -1,4 +1,4 @@
-"""What the robot can do while it walks as it stands now: where its feet may be, and how fast it may move."""
+"""Velocity limits of a stance: the polygons in which its feet may be, and the twists that keep them there."""
 
 from __future__ import annotations
 
@@ -23,26 +23,26 @@ __all__ = ["VelocityLimits", "stance_overhang", "velocity_limits", "with_stroke_
 
 Floats = np.ndarray[Any, Any]
 
-# What is left between the fastest steady walk and the polygons.
-_RESERVE = 0.99
+# Fraction of the polygons that the fastest steady walk uses.
+_USED_FRACTION = 0.99
 
 
 @dataclass(frozen=True, eq=False)
 class VelocityLimits:
-    """Where the feet may be in all of some stands, and what twists that allows.
+    """Polygons in which the feet may be in each of some stances, and the twists that they allow.
 
     Attributes
     ----------
     bounds : array, shape (legs, 16)
-        Sides of the feet's polygons, from the heading frame's origin along `NORMALS` [m].
+        Sides of the feet's polygons, distances from the heading frame's origin along `NORMALS` [m].
     margins : array, shape (legs, 16)
-        How far a foot may go from its rest foothold along `NORMALS` [m]; negative where it can't even be there.
+        Distances from the rest footholds to the sides along `NORMALS` [m]; negative if a rest foothold is infeasible.
     rest : complex array, shape (legs,)
-        Rest footholds of the last stand [m].
+        Rest footholds of the last stance [m].
     balanced : bool
-        Whether the centre of mass stays over the feet that bear, while they are at their rest footholds.
+        Whether the centre of mass is inside the support polygons with the feet at their rest footholds.
     stroke, turning : float
-        The longest strokes, straight on and on the spot, for which the joints are fast enough [m].
+        Longest strokes that the joints are fast enough for, walking straight and turning on the spot [m].
     """
 
     bounds: Floats
@@ -59,16 +59,16 @@ class VelocityLimits:
 
     @property
     def limiting_leg(self) -> int:
-        """The leg with the least room."""
+        """Index of the leg with the smallest margin."""
         return int(self.margins.min(-1).argmin())
 
     def intersection(self, other: VelocityLimits) -> VelocityLimits:
-        """Return what is possible in both.
+        """Return the limits that meet both these and others.
 
         Parameters
         ----------
         other : VelocityLimits
-            The other.
+            The other limits.
         """
         return VelocityLimits(
             np.minimum(self.bounds, other.bounds),
@@ -82,160 +82,160 @@ class VelocityLimits:
     def feasible_fraction(
         self, twist: Floats, *, stance_time: float, duty_factor: float, hold: float = 0.0
     ) -> tuple[float, int]:
-        """Return how much of a twist the robot can walk at for good, and which leg stops it.
+        """Return the largest multiple of a twist that can be walked steadily, and the leg that limits it.
 
         Parameters
         ----------
         twist : array, shape (3,)
             Forward [m/s], left [m/s], turning [rad/s].
         stance_time : float
-            How long a foot stays on the ground [s].
+            Duration of a stance [s].
         duty_factor : float
             Duty factor.
         hold : float
-            How much longer than that it may have to wait there [s].
+            By how much a stance may be extended [s].
 
         Returns
         -------
-        share : float
-            From 0 up; above 1 where it could walk faster.
+        fraction : float
+            At least 0; above 1 if the robot could walk faster.
         leg : int
-            The leg that allows no more.
+            Index of the limiting leg.
         """
-        # Of a wish without measure, as much as can be reckoned with.
+        # Very large twists are scaled down so that squares do not overflow.
         scale = max(1.0, float(np.abs(twist).max()))
         forward, left, turn = (np.asarray(twist) / scale).tolist()
-        share = self._share_by_side(
-            complex(forward, left), turn, (stance_overhang(duty_factor) * stance_time + hold) / _RESERVE
+        fraction = self._fraction_by_side(
+            complex(forward, left), turn, (stance_overhang(duty_factor) * stance_time + hold) / _USED_FRACTION
         )
-        worst = int(share.argmin())
+        worst = int(fraction.argmin())
         straight, turning = math.hypot(forward, left), abs(turn)
-        fastest = 1 / max(self._strain(straight, turning, stance_time), _LEAST)
-        return min(float(share.flat[worst]), fastest) / scale, worst // len(NORMALS)
+        fastest = 1 / max(self._speed_usage(straight, turning, stance_time), _LEAST)
+        return min(float(fraction.flat[worst]), fastest) / scale, worst // len(NORMALS)
 
     def feasible_fractions(self, twists: Floats, *, stance_time: float, duty_factor: float) -> Floats:
-        """Return how much of each of some twists the robot can walk at for good, as `feasible_fraction`.
+        """Return the largest multiple of each of some twists that can be walked steadily.
 
         Parameters
         ----------
         twists : array, shape (n, 3)
-            Forward [m/s], left [m/s], turning [rad/s]; none is beyond all measure.
+            Forward [m/s], left [m/s], turning [rad/s]; not extremely large.
         stance_time : float
-            How long a foot stays on the ground [s].
+            Duration of a stance [s].
         duty_factor : float
             Duty factor.
 
         Returns
         -------
         array, shape (n,)
-            Shares from 0 up.
+            As in `feasible_fraction`.
         """
         straight, turn = twists[:, :1] + 1j * twists[:, 1:2], twists[:, 2:]
-        share = self._share_by_side(straight, turn, stance_overhang(duty_factor) * stance_time / _RESERVE).min(
-            axis=(-2, -1)
-        )
-        strain = self._strain(np.abs(straight), np.abs(turn), stance_time)[:, 0]
-        return np.asarray(np.minimum(share, 1 / np.maximum(strain, _LEAST)))
+        fraction = self._fraction_by_side(
+            straight, turn, stance_overhang(duty_factor) * stance_time / _USED_FRACTION
+        ).min(axis=(-2, -1))
+        usage = self._speed_usage(np.abs(straight), np.abs(turn), stance_time)[:, 0]
+        return np.asarray(np.minimum(fraction, 1 / np.maximum(usage, _LEAST)))
 
-    def _share_by_side(self, straight: Floats | complex, turn: Floats | float, ahead: float) -> Floats:
-        """Return how much of a twist each side allows ``(..., legs, 16)``, so many seconds ahead and back."""
-        # An arc to either side of the rest foothold: to the second order along and across the way, and less than that
-        # in truth, as sin x < x and 1 - cos x < x^2 / 2.
-        way = (straight + 1j * turn * self.rest) * ahead
-        along = np.abs((NORMALS_CONJUGATE * way[..., None]).real)
-        across = np.maximum((NORMALS_CONJUGATE * (0.5j * turn * ahead * way)[..., None]).real, 0.0)
+    def _fraction_by_side(self, straight: Floats | complex, turn: Floats | float, ahead: float) -> Floats:
+        """Return the multiple of a twist that each side allows ``(..., legs, 16)``, for a time ahead and back [s]."""
+        # An arc to either side of the rest foothold, to second order along and across: an upper bound, as sin x < x and
+        # 1 - cos x < x^2 / 2.
+        path = (straight + 1j * turn * self.rest) * ahead
+        along = np.abs((NORMALS_CONJUGATE * path[..., None]).real)
+        across = np.maximum((NORMALS_CONJUGATE * (0.5j * turn * ahead * path)[..., None]).real, 0.0)
         return _positive_root(across, along, np.maximum(self.margins, 0.0))
 
-    def _strain(self, straight: Any, turning: Any, stance_time: float) -> Any:
-        """Return how much of the joints' speed is taken: what straight on and turning ask of them adds up."""
+    def _speed_usage(self, straight: Any, turning: Any, stance_time: float) -> Any:
+        """Return the used fraction of the joints' speed, the sum of that for walking straight and for turning."""
         outermost = float(np.abs(self.rest).max())
         by_stroke, by_turning = (stance_time / max(longest, _LEAST) for longest in (self.stroke, self.turning))
         return straight * by_stroke + turning * outermost * by_turning
 
 
-# What may be divided by.
+# Lower bound of divisors.
 _LEAST = 1e-12
 
 
 def _positive_root(a: Floats, b: Floats, c: Floats) -> Floats:
-    """Return where ``a x^2 + b x = c``, of numbers that are not negative; very far out where both are 0."""
+    """Return the root of ``a x^2 + b x = c`` for non-negative numbers; a very large one where a and b are 0."""
     bounded = np.minimum(c, 1e3)
     return np.asarray(2 * bounded / np.maximum(b + np.sqrt(b * b + 4 * a * bounded), _LEAST))
 
 
 @functools.cache
 def stance_overhang(duty_factor: float) -> float:
-    """Return how far a foot is from its rest foothold at most in steady walking, over the stroke: 1/2 and a little.
+    """Return the greatest distance of a foot from its rest foothold in steady walking, over the stroke.
 
-    Until it gathers speed, a foot that is lifted stays behind.
+    It is a little more than 1/2: after lift-off a foot still falls behind until it is as fast as the body.
 
     Parameters
     ----------
     duty_factor : float
         Duty factor.
     """
-    share = np.linspace(0, 0.5, 51)
+    phase = np.linspace(0, 0.5, 51)
     ratio = (1 - duty_factor) / duty_factor
-    return float((0.5 + ratio * share - (1 + ratio) * ground_share(share)).max())
+    return float((0.5 + ratio * phase - (1 + ratio) * ground_share(phase)).max())
 
 
 def with_stroke_limits(limits: VelocityLimits, stroke: float, turning: float, *, duty_factor: float) -> VelocityLimits:
-    """Return the envelope for joints that allow no longer strokes.
+    """Return the limits for joints that are not fast enough for longer strokes.
 
     Parameters
     ----------
     limits : VelocityLimits
-        What the legs' reach allows.
+        Limits of the legs' reach.
     stroke, turning : float
-        The longest strokes straight on and on the spot [m].
+        Longest strokes walking straight and turning on the spot [m].
     duty_factor : float
         Duty factor.
     """
     at_rest = (NORMALS_CONJUGATE * limits.rest[:, None]).real
     bounds = np.minimum(limits.bounds, at_rest + stance_overhang(duty_factor) * max(stroke, turning))
-    # Legs that don't step are bounded by nothing here.
+    # Legs that do not step stay without bounds.
     bounds = np.where(np.isinf(limits.bounds), np.inf, bounds)
     return dataclasses.replace(limits, bounds=bounds, stroke=stroke, turning=turning)
 
 
 def velocity_limits(
     robot: Robot,
-    stands: Sequence[StanceGeometry],
+    stances: Sequence[StanceGeometry],
     sets: Floats,
     *,
     foot_distance: float,
     excluded: tuple[int, ...] = (),
 ) -> Incremental[VelocityLimits]:
-    """Work out what is possible in all of some stands, in parts.
+    """Compute the limits that hold in each of some stances, incrementally.
 
     Parameters
     ----------
     robot : Robot
         A single robot.
-    stands : sequence of Stand
-        At least one; the last is the one that stays.
+    stances : sequence of StanceGeometry
+        At least one; the last one is kept after a transition.
     sets : array of bool, shape (n, legs)
-        Feet that are down together.
+        Feet that are in stance together.
     foot_distance : float
         Least distance between two feet [m].
     excluded : tuple of int
-        Legs that don't step: where they are is not bounded here, but may shift the centre of mass.
+        Legs that do not step: their position is not bounded here, but may shift the centre of mass.
     """
     bounds = np.full((robot.legs, len(NORMALS)), np.inf)
-    room = np.full(bounds.shape, np.inf)
-    balance, balanced = StabilityCheck(robot, sets, excluded), True
-    for stand in stands:
-        sides = yield from foot_workspace(robot, stand, foot_distance=foot_distance)
-        centre, shift = balance.centre_of_mass(stand, sides)
+    margins = np.full(bounds.shape, np.inf)
+    check, balanced = StabilityCheck(robot, sets, excluded), True
+    for stance in stances:
+        sides = yield from foot_workspace(robot, stance, foot_distance=foot_distance)
+        centre, shift = check.centre_of_mass(stance, sides)
         yield
-        share = balance.safe_fraction(stand, sides, centre, shift)
-        at_rest = (NORMALS_CONJUGATE * stand.rest[:, None]).real
+        fraction = check.safe_fraction(stance, sides, centre, shift)
+        at_rest = (NORMALS_CONJUGATE * stance.rest[:, None]).real
         free = sides - at_rest
-        free = np.where(free > 0, free * share, free)
-        # Where a centre of mass stands outside, no step is safe.
-        free = free if share > 0 else np.minimum(free, -1e-3)
-        balanced = balanced and share > 0
-        bounds, room = np.minimum(bounds, at_rest + free), np.minimum(room, free)
+        free = np.where(free > 0, free * fraction, free)
+        # Where a centre of mass stances outside, no step is safe.
+        free = free if fraction > 0 else np.minimum(free, -1e-3)
+        balanced = balanced and fraction > 0
+        bounds, margins = np.minimum(bounds, at_rest + free), np.minimum(margins, free)
         yield
-    bounds[list(excluded)], room[list(excluded)] = np.inf, np.inf
-    return VelocityLimits(bounds, room, stands[-1].rest, balanced)
+    bounds[list(excluded)], margins[list(excluded)] = np.inf, np.inf
+    return VelocityLimits(bounds, margins, stances[-1].rest, balanced)
