@@ -1,6 +1,6 @@
-"""Convex polygons of the ground plane with sixteen sides of fixed directions, one for each foot.
+"""Convex polygons in the ground plane, one per foot, with sixteen sides of fixed directions.
 
-Points are complex numbers, x + iy. A polygon is how far out each of its sides is, along `NORMALS` from the origin.
+Points are complex numbers, x + iy. A polygon is given by the distances of its sides from the origin along `NORMALS`.
 """
 
 from __future__ import annotations
@@ -19,20 +19,20 @@ NORMALS: Floats = np.exp(2j * np.pi * np.arange(_SIDES) / _SIDES)
 NORMALS.setflags(write=False)
 
 NORMALS_CONJUGATE: Floats = NORMALS.conj()
-"""What a point is multiplied by for the real part to be how far out it is along each normal."""
+"""Factors with which the real part of a product is a point's coordinate along each normal."""
 NORMALS_CONJUGATE.setflags(write=False)
 
 _COSINE, _SINE = ((NORMALS_CONJUGATE[:, None] * NORMALS).view(float).reshape(_SIDES, _SIDES, 2)[..., i] for i in (0, 1))
 _SINE = np.where(np.abs(_SINE) < 1e-9, 0.0, _SINE)
 _DIVISOR = np.where(_SINE == 0, 1.0, _SINE)
-# Which sides cut a side off at its clockwise end, which at the other.
+# Which sides bound a side at its clockwise end, and which at the other.
 _BEFORE, _AFTER = np.where(_SINE < 0, 0.0, -np.inf), np.where(_SINE > 0, 0.0, np.inf)
-# What a corner may seem to be beyond another side from rounding [m].
+# Tolerance for corners that lie beyond another side by rounding [m].
 _ROUNDING = 1e-12
 
 
 def polygon_margin(bounds: Floats, inside: Floats) -> Floats:
-    """Return how far each side is from a point.
+    """Return the distance of each side from a point.
 
     Parameters
     ----------
@@ -50,7 +50,7 @@ def polygon_margin(bounds: Floats, inside: Floats) -> Floats:
 
 
 def polygon_radii(bounds: Floats, inside: Floats, directions: Floats) -> Floats:
-    """Return how far the polygons reach from a point inside along directions.
+    """Return the distance from a point inside to the boundary along directions.
 
     Parameters
     ----------
@@ -66,13 +66,13 @@ def polygon_radii(bounds: Floats, inside: Floats, directions: Floats) -> Floats:
     array, shape (legs, n)
         Distances [m].
     """
-    room = np.maximum(polygon_margin(bounds, inside), 0.0)
+    margins = np.maximum(polygon_margin(bounds, inside), 0.0)
     along = (NORMALS.conj()[:, None] * directions).real
-    return np.asarray(np.where(along > 1e-9, room[:, :, None] / np.maximum(along, 1e-9), np.inf).min(axis=1))
+    return np.asarray(np.where(along > 1e-9, margins[:, :, None] / np.maximum(along, 1e-9), np.inf).min(axis=1))
 
 
 def polygon_ends(bounds: Floats, inside: Floats) -> tuple[Floats, Floats]:
-    """Return the ends of the polygons' sides, seen from a point inside.
+    """Return the ends of the polygons' sides, relative to a point inside.
 
     Parameters
     ----------
@@ -84,12 +84,14 @@ def polygon_ends(bounds: Floats, inside: Floats) -> tuple[Floats, Floats]:
     Returns
     -------
     start, end : complex array, shape (legs, 16)
-        Each side's clockwise and counter-clockwise end [m]; 0 for a side that touches the polygon nowhere. The ends
-        alone, or the starts, are all the polygon's corners.
+        Clockwise and counter-clockwise end of each side [m]; 0 for a redundant side. All ends, or all starts, are the
+        polygon's corners.
     """
-    room = np.maximum(polygon_margin(bounds, inside), 0.0)
-    # Along the line of side k, from the foot of the perpendicular: where the line of side j cuts it off.
-    cut = (room[:, None, :] - room[:, :, None] * _COSINE) / _DIVISOR
+    margins = np.maximum(polygon_margin(bounds, inside), 0.0)
+    # Where the line of side j intersects that of side k, measured from the foot of the perpendicular.
+    cut = (margins[:, None, :] - margins[:, :, None] * _COSINE) / _DIVISOR
     start, end = (cut + _BEFORE).max(axis=-1), (cut + _AFTER).min(axis=-1)
-    touches = start <= end + _ROUNDING
-    return np.where(touches, (room + 1j * start) * NORMALS, 0.0), np.where(touches, (room + 1j * end) * NORMALS, 0.0)
+    on_boundary = start <= end + _ROUNDING
+    return np.where(on_boundary, (margins + 1j * start) * NORMALS, 0.0), np.where(
+        on_boundary, (margins + 1j * end) * NORMALS, 0.0
+    )

@@ -1,4 +1,4 @@
-"""That the robot can't tip over, wherever in their polygons the feet are."""
+"""Static stability: the centre of mass stays inside every support polygon for all positions of the feet."""
 
 from __future__ import annotations
 
@@ -20,24 +20,24 @@ __all__ = ["StabilityCheck", "margin_at_rest", "safe_fraction", "support_sets"]
 
 Floats = np.ndarray[Any, Any]
 
-_SHARES = np.array([*np.linspace(1.0, 0.1, 10), 0.06, 0.03])
-_LIKELY = 3
+_FRACTIONS = np.array([*np.linspace(1.0, 0.1, 10), 0.06, 0.03])
+_FIRST = 3
 
 
 def support_sets(gait: Gait, excluded: tuple[int, ...] = ()) -> Floats:
-    """Return which feet are down together, for each moment when few are.
+    """Return the sets of feet that are in stance together, at the times when fewest are.
 
     Parameters
     ----------
     gait : Gait
         The gait.
     excluded : tuple of int
-        Legs that don't step with it, and bear nothing.
+        Legs that do not step, and bear no load.
 
     Returns
     -------
     array of bool, shape (n, legs)
-        Sets of which none holds another: where these support the robot, all do.
+        Minimal sets: none contains another. Where these support the robot, all sets of the gait do.
     """
     return _support_sets(gait, tuple(excluded))
 
@@ -48,8 +48,8 @@ def _support_sets(gait: Gait, excluded: tuple[int, ...]) -> Floats:
     down = gait.phase(after)[2]
     down[:, list(excluded)] = False
     sets = np.unique(down, axis=0)
-    holds = (sets[:, None] >= sets[None]).all(-1) & ~np.eye(len(sets), dtype=bool)
-    sets = np.asarray(sets[~holds.any(1)])
+    contains = (sets[:, None] >= sets[None]).all(-1) & ~np.eye(len(sets), dtype=bool)
+    sets = np.asarray(sets[~contains.any(1)])
     sets.setflags(write=False)
     return sets
 
@@ -57,27 +57,27 @@ def _support_sets(gait: Gait, excluded: tuple[int, ...]) -> Floats:
 def safe_fraction(
     sets: Floats, bounds: Floats, rest: Floats, centre: complex, *, margin: float, shift: Floats | None = None
 ) -> float:
-    """Return by how much the polygons must shrink towards the rest footholds, so that no support tips over.
+    """Return the factor by which the foot polygons must shrink towards the rest footholds for static stability.
 
     Parameters
     ----------
     sets : array of bool, shape (n, legs)
-        Feet that are down together.
+        Feet that are in stance together.
     bounds : array, shape (legs, 16)
         The polygons' sides [m].
     rest : complex array, shape (legs,)
         Rest footholds [m].
     centre : complex
-        The projected centre of mass with the feet at rest [m].
+        Projection of the centre of mass with the feet at rest [m].
     margin : float
-        How far inside it must be at the least [m].
+        Least stability margin [m].
     shift : complex array, shape (legs, 16), optional
-        How far each leg shifts it by being at each corner of `polygon_ends` [m]; nowhere where left out.
+        Shift of the centre of mass by each leg at each corner of `polygon_ends` [m]; 0 if left out.
 
     Returns
     -------
     float
-        A share of the polygons' size; 0 where the robot tips over even with its feet at rest.
+        At most 1; 0 if the robot is unstable even with its feet at rest.
     """
     pairs = _edges_of(np.asarray(sets).tobytes(), sets.shape[1])
     if pairs is None:
@@ -86,134 +86,136 @@ def safe_fraction(
     shift = np.zeros(corners.shape, dtype=complex) if shift is None else shift
 
     def works(index: int) -> bool:
-        share = _SHARES[index]
-        return _least_margin(pairs, away[:, None] + share * corners, share * shift) >= margin
+        fraction = _FRACTIONS[index]
+        return _least_margin(pairs, away[:, None] + fraction * corners, fraction * shift) >= margin
 
-    # Most robots stand safely enough for one of the first; the less of a polygon, the safer.
-    for index in range(_LIKELY):
+    # One of the first fractions is feasible for most robots. Stability is monotonic, so the others are bisected.
+    for index in range(_FIRST):
         if works(index):
-            return float(_SHARES[index])
-    index = bisect_left(range(len(_SHARES)), True, lo=_LIKELY, key=works)
-    return float(_SHARES[index]) if index < len(_SHARES) else 0.0
+            return float(_FRACTIONS[index])
+    index = bisect_left(range(len(_FRACTIONS)), True, lo=_FIRST, key=works)
+    return float(_FRACTIONS[index]) if index < len(_FRACTIONS) else 0.0
 
 
 def margin_at_rest(sets: Floats, rest: Floats, centre: complex) -> float:
-    """Return how far inside every support a centre of mass is, with the feet at rest.
+    """Return the least stability margin over all sets, with the feet at rest.
 
     Parameters
     ----------
     sets : array of bool, shape (n, legs)
-        Feet that are down together.
+        Feet that are in stance together.
     rest : complex array, shape (legs,)
         Rest footholds [m].
     centre : complex
-        The projected centre of mass [m].
+        Projection of the centre of mass [m].
 
     Returns
     -------
     float
-        Negative outside; minus infinity where fewer than three feet are down [m].
+        Negative outside a support polygon; minus infinity with fewer than three feet in stance [m].
     """
     pairs = _edges_of(np.asarray(sets).tobytes(), sets.shape[1])
     return -math.inf if pairs is None else _least_margin(pairs, (rest - centre)[:, None], np.zeros((len(rest), 1)))
 
 
 def _least_margin(pairs: Floats, feet: Floats, shift: Floats) -> float:
-    """Return how far inside the nearest edge the centre of mass is, wherever the feet are.
+    """Return the least distance of the centre of mass inside any edge, over all positions of the feet.
 
-    Round the ring, the centre is to the left of every edge. How far, times the edge's length, is linear in either of
-    the edge's feet, and the length convex: what is worst is at corners. `feet` are these, seen from where the centre
-    of mass is with the feet at rest.
+    Counter-clockwise, the centre of mass is to the left of every edge. Its distance times the length of the edge is
+    linear in the position of either foot of the edge, and the length is convex: the minimum is at corners of the foot
+    polygons. `feet` are these corners, relative to the centre of mass with the feet at rest.
     """
     first, second = pairs
     start, end = feet[first][:, :, None], feet[second][:, None, :]
     along = end - start
-    # Times i, and of length 1.
+    # The inward unit normal.
     inward = along * (1j / np.maximum(np.abs(along), 1e-12))
     moved = shift[first][:, :, None] + shift[second][:, None, :]
-    # The other legs, down or in the air, shift the centre as far towards the edge as they can.
+    # All other legs, in stance or swing, shift the centre of mass as far towards the edge as they can.
     least = (NORMALS_CONJUGATE[:, None, None] * shift).real.min(axis=-1)
     others = (least.sum(axis=-1)[:, None] - least[:, first] - least[:, second]).T
     side = np.rint(np.arctan2(inward.imag, inward.real) * (len(NORMALS) / (2 * np.pi))).astype(int)
-    # The sides before the first, from the end.
+    # Negative indices count from the end.
     others = others[np.arange(len(first))[:, None, None], side]
     return float(((inward.conj() * (moved - start)).real + others).min())
 
 
 @functools.lru_cache(maxsize=64)
 def _edges_of(sets: bytes, legs: int) -> Floats | None:
-    """Return the edges ``(2, n)`` of all sets of feet, given as their bytes; None where one supports nothing."""
+    """Return the edges ``(2, n)`` of the support polygons of all sets, given as bytes; None if one has no polygon."""
     edges: set[tuple[int, int]] = set()
     for row in np.frombuffer(sets, dtype=bool).reshape(-1, legs):
         down = np.flatnonzero(row).tolist()
         if len(down) < 3:
             return None
-        # Each foot that is down with the next of them round the ring.
+        # Each stance foot with the next one around the body.
         edges.update(zip(down, down[1:] + down[:1], strict=True))
     return np.array(sorted(edges)).T
 
 
-# How far inside its support the centre of mass stays [m].
+# Least stability margin [m].
 _LEAST_MARGIN = 0.004
 
 
 class StabilityCheck:
-    """Keeps a robot that walks in some order of steps from tipping over.
+    """Checks the static stability of a robot that walks with a gait.
 
-    Where the robot's file gives no masses, its legs count as massless.
+    Without masses in the robot's file, its legs count as massless.
 
     Parameters
     ----------
     robot : Robot
         A single robot.
     sets : array of bool, shape (n, legs)
-        Feet that are down together.
+        Feet that are in stance together.
     excluded : tuple of int
-        Legs that don't step: wherever they hang about, they shift the centre of mass.
+        Legs that do not step, whose position shifts the centre of mass.
 
     Attributes
     ----------
     least_margin : float
-        How far inside its support the centre of mass stays [m].
+        Least stability margin that is safe [m].
     """
 
     def __init__(self, robot: Robot, sets: Floats, excluded: tuple[int, ...] = ()) -> None:
-        self._robot, self._sets, self._gone = robot, sets, list(excluded)
+        self._robot, self._sets, self._excluded = robot, sets, list(excluded)
         self.least_margin = _LEAST_MARGIN
-        # Shares of the whole that the legs' points and the body's centre weigh.
+        # Masses of the legs' points and first moment of the body, over the total mass.
         self._weights, self._body = np.zeros((robot.legs, 4)), np.asarray(robot.body_com)
         if robot.has_masses:
             total = total_mass(robot)
             self._weights = point_masses(np, robot) / total
             self._body = self._body * (robot.body_mass / total)
             reach = np.asarray(robot.coxa + robot.femur + robot.tibia) * np.asarray(robot.link_mass).sum(-1) / 4
-            self.least_margin += float(reach[self._gone].sum() / total)
+            self.least_margin += float(reach[self._excluded].sum() / total)
 
-    def safe_fraction(self, stand: StanceGeometry, sides: Floats, centre: complex, shift: Floats) -> float:
-        """Return by how much the feet's polygons must shrink towards the rest footholds, so that nothing tips over.
+    def safe_fraction(self, stance: StanceGeometry, sides: Floats, centre: complex, shift: Floats) -> float:
+        """Return the factor by which the foot polygons must shrink towards the rest footholds for static stability.
 
         Parameters
         ----------
-        stand : Stand
+        stance : StanceGeometry
             The body and the rest footholds.
         sides : array, shape (legs, 16)
             The polygons' sides [m].
-        centre, shift
-            From `centre_of_mass`.
+        centre : complex
+            Projection of the centre of mass, from `centre_of_mass` [m].
+        shift : complex array, shape (legs, 16)
+            Its shift by each leg at each corner, from `centre_of_mass` [m].
 
         Returns
         -------
         float
-            A share of the polygons' size; 0 where the robot tips over even with its feet at rest.
+            At most 1; 0 if the robot is unstable even with its feet at rest.
         """
-        return safe_fraction(self._sets, sides, stand.rest, centre, margin=self.least_margin, shift=shift)
+        return safe_fraction(self._sets, sides, stance.rest, centre, margin=self.least_margin, shift=shift)
 
-    def centre_of_mass(self, stand: StanceGeometry, sides: Floats) -> tuple[complex, Floats]:
-        """Return the projected centre of mass with the feet at rest, and its shift by each leg at each corner.
+    def centre_of_mass(self, stance: StanceGeometry, sides: Floats) -> tuple[complex, Floats]:
+        """Return the projection of the centre of mass with the feet at rest, and its shift by each leg.
 
         Parameters
         ----------
-        stand : Stand
+        stance : StanceGeometry
             The body and the rest footholds.
         sides : array, shape (legs, 16)
             The polygons' sides [m].
@@ -223,31 +225,31 @@ class StabilityCheck:
         centre : complex
             In the heading frame [m].
         shift : complex array, shape (legs, 16)
-            By each leg, at each corner of `polygon_ends` [m]; none by legs that don't step.
+            Shift by each leg at each corner of `polygon_ends` [m]; 0 for legs that do not step.
         """
-        # Every foot at rest first, then at one of its corners after the other.
-        corners = polygon_ends(sides, stand.rest)[1]
-        moments, centre = self._moments(stand, np.concatenate([np.zeros((1, len(corners))), corners.T]))
+        # First every foot at rest, then all feet at each of their corners.
+        corners = polygon_ends(sides, stance.rest)[1]
+        moments, centre = self._moments(stance, np.concatenate([np.zeros((1, len(corners))), corners.T]))
         shift = (moments[1:] - moments[0]).T
-        shift[self._gone] = 0.0
+        shift[self._excluded] = 0.0
         return centre, shift
 
-    def margin_at_rest(self, stand: StanceGeometry) -> float:
-        """Return how far inside its supports the centre of mass is with the feet at rest [m].
+    def margin_at_rest(self, stance: StanceGeometry) -> float:
+        """Return the least stability margin with the feet at rest [m].
 
         Parameters
         ----------
-        stand : Stand
+        stance : StanceGeometry
             The body and the rest footholds.
         """
-        return margin_at_rest(self._sets, stand.rest, self._moments(stand, np.zeros((1, len(stand.rest))))[1])
+        return margin_at_rest(self._sets, stance.rest, self._moments(stance, np.zeros((1, len(stance.rest))))[1])
 
-    def _moments(self, stand: StanceGeometry, out: Floats) -> tuple[Floats, complex]:
-        """Return what each leg adds to the centre of mass ``(n, legs)``, and where that is in the first row [m]."""
-        feet = stand.rest + out
-        solution = stand.solve(self._robot, feet.real, feet.imag, np.zeros((1, 1)))
+    def _moments(self, stance: StanceGeometry, out: Floats) -> tuple[Floats, complex]:
+        """Return each leg's contribution to the centre of mass ``(n, legs)``, and that centre for the first row [m]."""
+        feet = stance.rest + out
+        solution = stance.solve(self._robot, feet.real, feet.imag, np.zeros((1, 1)))
         points = forward_kinematics(self._robot, np.stack(solution[:3], axis=-1))
-        moments = (points * self._weights[..., None]).sum(axis=-2) @ stand.rotation.T
+        moments = (points * self._weights[..., None]).sum(axis=-2) @ stance.rotation.T
         moments = moments[..., 0] + 1j * moments[..., 1]
-        body = stand.rotation @ self._body + stand.position
+        body = stance.rotation @ self._body + stance.position
         return moments, complex(moments[0].sum() + complex(body[0], body[1]))

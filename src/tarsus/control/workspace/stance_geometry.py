@@ -1,6 +1,8 @@
-"""A body over the ground and its feet at rest, and how much is left to its legs.
+"""Stance geometry: the pose of the body over the ground and its rest footholds, and the joint margins of its legs.
 
-Points of the ground plane are complex numbers here, x + iy in the heading frame: turning is a product.
+Points of the ground plane are complex numbers, x + iy in the heading frame: a rotation is a product. A posture is an
+array: x, y, z [m], roll, pitch, yaw [rad] of the body in the heading frame, swing height [m], and optionally the six
+amplitudes of the sway.
 """
 
 from __future__ import annotations
@@ -31,20 +33,20 @@ __all__ = [
 
 Floats = np.ndarray[Any, Any]
 
-# How far inside every limit the walker keeps [rad], and how near to straight or folded it comes [rad].
+# Margin kept to every joint limit [rad], and least angle of the knee from straight or folded [rad].
 _LIMIT_MARGIN = 0.01
 _LEAST_BEND = 0.2
 
 
 class TerrainEstimate(NamedTuple):
-    """How the ground lies under a robot, as far as is known.
+    """Slope and unevenness of the ground that a stance must allow for.
 
     Attributes
     ----------
     slope : complex
-        How much it rises along x and y of the heading frame [m/m].
+        Rise along x and y of the heading frame [m/m].
     depth : float
-        How far below that feet may have to stand, in lifts.
+        How far below the plane feet may have to stand, in swing heights.
     """
 
     slope: complex = 0j
@@ -52,29 +54,29 @@ class TerrainEstimate(NamedTuple):
 
 
 RAISED_FRACTION = 0.5
-"""How much higher than it is expected the ground may be, over how much lower."""
+"""How far the ground may be above the plane, over how far it may be below."""
 
 LEVEL_TERRAIN = TerrainEstimate()
-"""Ground that is flat, level and where it is expected."""
+"""Flat and level ground at its expected height."""
 
 
 class StanceGeometry(NamedTuple):
-    """A body over the ground and its feet at rest, seen from the heading frame; heights are those over the ground.
+    """Body and rest footholds in the heading frame; heights are relative to the ground plane.
 
     Attributes
     ----------
     rest : complex array, shape (legs,)
         Rest footholds [m].
     rotation : array, shape (3, 3)
-        Of the body in the heading frame.
+        Rotation of the body in the heading frame.
     position : array, shape (3,)
         Of the body's origin [m].
     swing_height : float
-        How high a swinging foot rises [m].
+        Swing height [m].
     slope : complex
-        How much the ground rises along x and y [m/m].
+        Rise of the ground along x and y [m/m].
     depth : float
-        How far below the ground feet may have to stand [m].
+        How far below the ground plane feet may have to stand [m].
     """
 
     rest: Floats
@@ -85,26 +87,26 @@ class StanceGeometry(NamedTuple):
     depth: float = 0.0
 
     def solve(self, robot: Robot, x: Floats, y: Floats, z: Floats) -> Triangle:
-        """Return the joint angles for feet in the heading frame, each ``(..., legs)`` [m].
+        """Return the joint angles ``(..., legs)`` for feet in the heading frame.
 
         Parameters
         ----------
         robot : Robot
             A single robot.
         x, y, z : array, shape (..., legs)
-            The feet [m].
+            Positions of the feet, z over the ground plane [m].
         """
         g, p = robot.geometry, self.position
         in_leg = to_leg_frame(g, *self.to_body(x - p[0], y - p[1], z - p[2]))
         return solve_triangle(np, g, *in_leg, knee=1, sideways=bool(g.side.any()))
 
     def to_body(self, x: Floats, y: Floats, z: Floats) -> tuple[Floats, Floats, Floats]:
-        """Return x, y, z in B of vectors in the heading frame, each of any shape.
+        """Return the components in B of vectors in the heading frame.
 
         Parameters
         ----------
         x, y, z : array, shape (...)
-            The vectors; z is how much more they rise than the ground does [m].
+            Components, z relative to the ground plane [m].
         """
         r = self.rotation
         if self.slope:
@@ -114,45 +116,50 @@ class StanceGeometry(NamedTuple):
 
 
 def ground_rise(slope: complex, x: Any, y: Any) -> Any:
-    """Return how much the ground rises on the way to places [m].
+    """Return the height of a sloped plane through the origin at points [m].
 
     Parameters
     ----------
     slope : complex
-        How much it rises along x and y [m/m].
-    x, y : float or array
-        The places [m].
+        Rise along x and y [m/m].
+    x, y : float or array, shape (...)
+        Points [m].
     """
     return slope.real * x + slope.imag * y
 
 
 def joint_margin(geometry: LegGeometry, solution: Triangle) -> Floats:
-    """Return how far the nearest bound is, negative past it ``(..., legs)``; [rad], of lengths over the reach.
+    """Return the distance of each leg to its nearest bound, negative beyond it.
 
     Parameters
     ----------
     geometry : LegGeometry
         The legs.
     solution : Triangle
-        Their angles.
+        Their joint angles.
+
+    Returns
+    -------
+    array, shape (..., legs)
+        Joint limits and knee bend in [rad], reach in squared lengths over the square of the greatest.
     """
     g, s = geometry, solution
-    slack = np.minimum(s.coxa - g.coxa_lower, g.coxa_upper - s.coxa)
-    slack = np.minimum(slack, np.minimum(s.femur - g.femur_lower, g.femur_upper - s.femur))
-    slack = np.minimum(slack, np.minimum(s.tibia - g.tibia_lower, g.tibia_upper - s.tibia)) - _LIMIT_MARGIN
+    margin = np.minimum(s.coxa - g.coxa_lower, g.coxa_upper - s.coxa)
+    margin = np.minimum(margin, np.minimum(s.femur - g.femur_lower, g.femur_upper - s.femur))
+    margin = np.minimum(margin, np.minimum(s.tibia - g.tibia_lower, g.tibia_upper - s.tibia)) - _LIMIT_MARGIN
     bend = np.abs(s.tibia)
-    slack = np.minimum(slack, np.minimum(bend, np.pi - bend) - _LEAST_BEND)
+    margin = np.minimum(margin, np.minimum(bend, np.pi - bend) - _LEAST_BEND)
     across = np.minimum(np.minimum(s.far, s.near), s.beside) / g.farthest2
-    return np.asarray(np.minimum(slack, across))
+    return np.asarray(np.minimum(margin, across))
 
 
 Rows: TypeAlias = tuple[tuple[float, ...], ...]
 
 SWING_HEIGHT = 6
-"""Where the lift stands in the row."""
+"""Index of the swing height in a posture."""
 
-# How fast a sway may change the speed of the feet past the body [m/s^2], and how far from it they are [m].
-_SWAY_BEND, _ARM = 1.5, 0.3
+# Greatest acceleration of the feet relative to the body by its sway [m/s^2], and their distance from it [m].
+_SWAY_ACCELERATION, _ARM = 1.5, 0.3
 
 
 def rotation_rows(roll: float, pitch: float, yaw: float) -> Rows:
@@ -166,20 +173,20 @@ def rotation_rows(roll: float, pitch: float, yaw: float) -> Rows:
     )
 
 
-def stance_geometry_of(row: Floats, rest: Floats, terrain: TerrainEstimate = LEVEL_TERRAIN) -> StanceGeometry:
-    """Return the body and the feet at rest.
+def stance_geometry_of(posture: Floats, rest: Floats, terrain: TerrainEstimate = LEVEL_TERRAIN) -> StanceGeometry:
+    """Return the stance geometry of a posture.
 
     Parameters
     ----------
-    row : array, shape (7,) or more
-        The posture; a sway is not looked at.
+    posture : array, shape (7,) or more
+        The posture; its sway is ignored.
     rest : complex array, shape (legs,)
         Rest footholds in the heading frame [m].
-    terrain : Terrain
-        How the ground lies.
+    terrain : TerrainEstimate
+        Slope and unevenness of the ground.
     """
-    x, y, z, roll, pitch, yaw, swing_height = row[: SWING_HEIGHT + 1].tolist()
-    slope, position = terrain.slope, row[:3]
+    x, y, z, roll, pitch, yaw, swing_height = posture[: SWING_HEIGHT + 1].tolist()
+    slope, position = terrain.slope, posture[:3]
     if slope:
         position = np.array([x, y, z - ground_rise(slope, x, y)])
     return StanceGeometry(
@@ -187,42 +194,47 @@ def stance_geometry_of(row: Floats, rest: Floats, terrain: TerrainEstimate = LEV
     )
 
 
-def with_sway(row: Floats, cycles: float, beats: float) -> Floats:
-    """Return the posture ``(7,)`` at a moment of the sway.
+def with_sway(posture: Floats, cycles: float, beats: float) -> Floats:
+    """Return the posture with the sway's displacement added.
 
-    With every beat, as often as feet are lifted, the body goes once forward and up and pitches; with every cycle, once
-    sideways, rolls and yaws. At which moment of a step is left open.
+    x, z and pitch oscillate once per beat (the lift-off of a set of legs); y, roll and yaw once per gait cycle. Their
+    phase relative to the steps is not defined.
 
     Parameters
     ----------
-    row : array, shape (13,)
-        The posture.
+    posture : array, shape (13,)
+        Posture and amplitudes of the sway.
     cycles, beats : float
-        How many of each have been walked.
+        Number of gait cycles and beats walked.
+
+    Returns
+    -------
+    array, shape (7,)
+        The posture.
     """
-    amplitude = row[SWING_HEIGHT + 1 :]
+    amplitude = posture[SWING_HEIGHT + 1 :]
     if not amplitude.any():
-        return row[: SWING_HEIGHT + 1]
-    once, often = math.sin(2 * math.pi * cycles), math.sin(2 * math.pi * beats)
-    now: Floats = row[: SWING_HEIGHT + 1].copy()
-    now[:SWING_HEIGHT] += amplitude * np.array([often, once, often, once, often, once])
-    return now
+        return posture[: SWING_HEIGHT + 1]
+    per_cycle, per_beat = math.sin(2 * math.pi * cycles), math.sin(2 * math.pi * beats)
+    swayed: Floats = posture[: SWING_HEIGHT + 1].copy()
+    swayed[:SWING_HEIGHT] += amplitude * np.array([per_beat, per_cycle, per_beat, per_cycle, per_beat, per_cycle])
+    return swayed
 
 
 def sway_fraction(sway: Floats, frequency: float, beats: int) -> float:
-    """Return how much of a sway is slow enough for the joints to follow beside walking.
+    """Return the fraction of a sway that the joints can follow while walking.
 
     Parameters
     ----------
     sway : array, shape (6,)
         Amplitudes: x, y, z [m], roll, pitch, yaw [rad].
     frequency : float
-        Cycles a second [1/s].
+        Gait cycles per second [1/s].
     beats : int
-        How often in a cycle feet are lifted.
+        Number of beats per gait cycle.
     """
-    once = (2 * math.pi * frequency) ** 2
-    rates = np.array([beats**2, 1, beats**2, 1, beats**2, 1]) * once
+    square = (2 * math.pi * frequency) ** 2
+    rates = np.array([beats**2, 1, beats**2, 1, beats**2, 1]) * square
     arms = np.array([1.0, 1.0, 1.0, _ARM, _ARM, _ARM])
-    bend = float((np.abs(sway) * rates * arms).sum())
-    return min(1.0, _SWAY_BEND / max(bend, 1e-12))
+    acceleration = float((np.abs(sway) * rates * arms).sum())
+    return min(1.0, _SWAY_ACCELERATION / max(acceleration, 1e-12))

@@ -232,7 +232,7 @@ def velocity_limits(
         at_rest = (NORMALS_CONJUGATE * stance.rest[:, None]).real
         free = sides - at_rest
         free = np.where(free > 0, free * fraction, free)
-        # Where a centre of mass stances outside, no step is safe.
+        # With the centre of mass outside a support polygon, no step is safe.
         free = free if fraction > 0 else np.minimum(free, -1e-3)
         balanced = balanced and fraction > 0
         bounds, margins = np.minimum(bounds, at_rest + free), np.minimum(margins, free)
