@@ -66,7 +66,9 @@ class PersistentCommand:
         velocities = command.foot_velocities
         for leg in (*targets, *(velocities or {})):
             if leg not in range(self._robot.legs):
-                raise InputError(f"foot_target {leg!r}: the robot has the legs 0 to {self._robot.legs - 1}")
+                raise InputError(
+                    f"foot_targets: the robot has no leg {leg!r}; its legs are 0 to {self._robot.legs - 1}"
+                )
         return dataclasses.replace(
             self._full, twist=command.twist, foot_targets=targets or None, foot_velocities=velocities, **changes
         )

@@ -1,4 +1,4 @@
-"""Legs that leave the gait and are moved by hand: each foot goes where it is told, as far as its leg reaches."""
+"""Motion of a foot that is taken out of the gait: it follows its target with bounded bandwidth and speed."""
 
 from __future__ import annotations
 
@@ -18,135 +18,136 @@ __all__ = ["FootTargetMotion", "apply_foot_targets", "begin_foot_target", "best_
 
 Floats = np.ndarray[Any, Any]
 
-# How fast a foot follows what it is told [rad/s], and how fast it goes at the most [m/s].
+# Greatest bandwidth [rad/s] and speed [m/s] with which a foot follows its target.
 _BANDWIDTH, _SPEED = 5.0, 0.12
+# Fractions of a path that are tested for reach.
 _TRIED = np.arange(1, 17) / 16
 # Shifts of the body that are tried when legs leave the gait [m].
 _STEPS = np.arange(-4, 5) * 0.01
-_LEANS = (_STEPS[:, None] + 1j * _STEPS).ravel()
+_SHIFTS = (_STEPS[:, None] + 1j * _STEPS).ravel()
 
 
 class FootTargetMotion(NamedTuple):
-    """A foot that is moved by hand.
+    """State of a foot that is taken out of the gait.
 
     Attributes
     ----------
     position : CriticallyDamped
-        Where it is in the heading frame ``(3,)`` [m].
+        Its position in the heading frame ``(3,)`` [m].
     target : array, shape (3,)
-        Where it goes [m].
+        Its target in the heading frame [m].
     """
 
     position: CriticallyDamped
     target: Floats
 
     def step(self, dt: float) -> FootTargetMotion:
-        """Return the hand after a time.
+        """Return the motion after a time.
 
         Parameters
         ----------
         dt : float
             The time [s].
         """
-        way = float(np.abs(self.target - self.position.value).max())
-        # A lag whose bandwidth is 2 v over the way that is left comes to the speed v, and goes on at it.
-        bandwidth = min(_BANDWIDTH, 2 * _SPEED / max(way, 1e-9))
+        distance = float(np.abs(self.target - self.position.value).max())
+        # A critically damped filter with bandwidth 2 v / distance, renewed every tick, reaches speed v and keeps it.
+        bandwidth = min(_BANDWIDTH, 2 * _SPEED / max(distance, 1e-9))
         return self._replace(position=self.position.step(self.target, dt, bandwidth=bandwidth))
 
     def stopped(self) -> FootTargetMotion:
-        """Return the hand, on its way to rest near where it is."""
+        """Return the motion with a target at which it can stop."""
         return self._replace(target=self.position.value + 2 * self.position.rate / _BANDWIDTH)
 
 
-def begin_foot_target(now: GaitState, leg: int) -> FootTargetMotion:
-    """Return a leg's foot as a hand, which begins where it stands.
+def begin_foot_target(state: GaitState, leg: int) -> FootTargetMotion:
+    """Return the motion of a foot that leaves the gait, from its position and velocity in stance.
 
     Parameters
     ----------
-    now : Moment
-        The moment.
+    state : GaitState
+        The state of the walk.
     leg : int
-        The leg; its foot is on the ground.
+        Index of the leg; its foot is in stance.
     """
-    turn = cmath.exp(-1j * now.yaw)
-    seen = (complex(now.foot[leg]) - now.origin) * turn
-    vx, vy, wz = now.twist.value.tolist()
-    # On the ground, it goes past the body as fast as that walks.
-    past = -(complex(vx, vy) + 1j * wz * seen)
-    here = np.array([seen.real, seen.imag, float(now.ground_height[leg] - now.elevation.value[0])])
+    turn = cmath.exp(-1j * state.yaw)
+    in_heading = (complex(state.foot[leg]) - state.origin) * turn
+    vx, vy, wz = state.twist.value.tolist()
+    # A stance foot is at rest in G.
+    relative = -(complex(vx, vy) + 1j * wz * in_heading)
+    here = np.array([in_heading.real, in_heading.imag, float(state.ground_height[leg] - state.elevation.value[0])])
     return FootTargetMotion(
-        CriticallyDamped(here, np.array([past.real, past.imag, -float(now.elevation.rate[0])])), here
+        CriticallyDamped(here, np.array([relative.real, relative.imag, -float(state.elevation.rate[0])])), here
     )
 
 
-def apply_foot_targets(now: GaitState, foot_targets: dict[int, FootTargetMotion], swing_time: float) -> GaitState:
-    """Return the moment with the hands where they are; one that has been lifted to step is none any more.
+def apply_foot_targets(state: GaitState, motions: dict[int, FootTargetMotion], swing_time: float) -> GaitState:
+    """Return the state with the feet at the positions of their motions, except those that are in a swing again.
 
     Parameters
     ----------
-    now : Moment
-        The moment.
-    foot_targets : dict of leg to Hand
-        The hands.
+    state : GaitState
+        The state of the walk.
+    motions : dict of int to FootTargetMotion
+        The motions by leg.
     swing_time : float
-        How long a swing takes [s].
+        Duration of a swing [s].
     """
-    foot, ground, pace = now.foot.copy(), now.ground_height.copy(), now.swing_velocity.copy()
-    turn = cmath.exp(1j * now.yaw)
-    vx, vy, wz = now.twist.value.tolist()
-    for leg, foot_target in foot_targets.items():
-        if not now.down[leg]:
+    foot, ground, pace = state.foot.copy(), state.ground_height.copy(), state.swing_velocity.copy()
+    turn = cmath.exp(1j * state.yaw)
+    vx, vy, wz = state.twist.value.tolist()
+    for leg, motion in motions.items():
+        if not state.down[leg]:
             continue
-        x, y, z = foot_target.position.value.tolist()
-        dx, dy, _ = foot_target.position.rate.tolist()
-        seen = complex(x, y)
-        foot[leg], ground[leg] = now.origin + turn * seen, z + float(now.elevation.value[0])
-        pace[leg] = turn * (complex(dx, dy) + complex(vx, vy) + 1j * wz * seen) * swing_time
-    target = np.where(now.down, foot, now.foothold)
-    return now._replace(foot=foot, foothold=target, ground_height=ground, swing_velocity=pace)
+        x, y, z = motion.position.value.tolist()
+        dx, dy, _ = motion.position.rate.tolist()
+        in_heading = complex(x, y)
+        foot[leg], ground[leg] = state.origin + turn * in_heading, z + float(state.elevation.value[0])
+        pace[leg] = turn * (complex(dx, dy) + complex(vx, vy) + 1j * wz * in_heading) * swing_time
+    target = np.where(state.down, foot, state.foothold)
+    return state._replace(foot=foot, foothold=target, ground_height=ground, swing_velocity=pace)
 
 
 def best_body_shift(rest: Floats, centre: complex, sets: Floats) -> complex:
-    """Return where to shift the centre of mass so that it is as far inside every support as can be.
+    """Return the shift of the centre of mass with the greatest stability margin.
 
     Parameters
     ----------
     rest : complex array, shape (legs,)
-        The feet [m].
+        Rest footholds [m].
     centre : complex
-        The projected centre of mass [m].
+        Projection of the centre of mass [m].
     sets : array of bool, shape (n, legs)
-        Feet that are down together.
+        Feet that are in stance together.
 
     Returns
     -------
     complex
-        The shift, among those of whole steps in the least that does; 0 where none is better [m].
+        The best of the shifts that are tried; of similar ones the smallest [m].
     """
     feet = np.stack([rest.real, rest.imag], axis=-1)
-    away = np.array([[(centre + shift).real, (centre + shift).imag] for shift in _LEANS])
-    margins = hull_margin(feet, sets, away[:, None, :]).min(axis=-1)
-    # A shift costs reach: of two that are about as good, the smaller.
-    return complex(_LEANS[int(np.argmax(margins - np.abs(_LEANS) / 4))])
+    centres = np.array([[(centre + shift).real, (centre + shift).imag] for shift in _SHIFTS])
+    margins = hull_margin(feet, sets, centres[:, None, :]).min(axis=-1)
+    # A shift costs reach, which is weighed against the margin.
+    return complex(_SHIFTS[int(np.argmax(margins - np.abs(_SHIFTS) / 4))])
 
 
-def reachable_fraction(robot: Robot, postures: Sequence[Floats], leg: int, start: Floats, wished: Floats) -> float:
-    """Return how much of the straight way from one point to another a foot can go, in whichever of some postures.
+def reachable_fraction(robot: Robot, postures: Sequence[Floats], leg: int, start: Floats, end: Floats) -> float:
+    """Return the fraction of a straight path that a foot can follow in all of some postures.
 
     Parameters
     ----------
     robot : Robot
         A single robot.
     postures : sequence of array, shape (7,)
-        How the body may stand: see `tarsus.control.workspace.stance_geometry`.
+        Postures of the body: see `tarsus.control.workspace.stance_geometry`.
     leg : int
-        The leg.
-    start, wished : array, shape (3,)
-        In the heading frame [m].
+        Index of the leg.
+    start, end : array, shape (3,)
+        Ends of the path in the heading frame [m].
     """
     rows = np.array(postures)
     rotation = np.array([rotation_rows(*row) for row in rows[:, 3:SWING_HEIGHT].tolist()])[:, None, None]
-    stand = StanceGeometry(np.zeros(robot.legs, dtype=complex), rotation, rows[:, :3].T[..., None, None], 0.0)
-    points = (start + _TRIED[:, None] * (wished - start)).T[..., None] + np.zeros(robot.legs)
-    works = (joint_margin(robot.geometry, stand.solve(robot, *points))[..., leg] >= 0).all(axis=0)
+    stance = StanceGeometry(np.zeros(robot.legs, dtype=complex), rotation, rows[:, :3].T[..., None, None], 0.0)
+    points = (start + _TRIED[:, None] * (end - start)).T[..., None] + np.zeros(robot.legs)
+    works = (joint_margin(robot.geometry, stance.solve(robot, *points))[..., leg] >= 0).all(axis=0)
     return 1.0 if works.all() else float(_TRIED[int(np.argmin(works))] - _TRIED[0])

@@ -1,4 +1,4 @@
-"""All legs of a walk that are moved by hand: which there are, where they are told to go, and what stops them."""
+"""Foot targets: legs taken out of the gait whose feet follow commanded points or velocities."""
 
 from __future__ import annotations
 
@@ -19,158 +19,159 @@ Floats = np.ndarray[Any, Any]
 
 
 def excluded_legs(command: Command, before: tuple[int, ...], legs: int) -> tuple[int, ...]:
-    """Return which legs are to be out of the gait.
+    """Return the legs that are taken out of the gait.
 
     Parameters
     ----------
     command : Command
-        The wish.
+        The command.
     before : tuple of int
-        The legs that were to be out so far.
+        The legs taken out so far.
     legs : int
-        How many legs the robot has.
+        Number of legs.
 
     Raises
     ------
     InputError
-        If the command names a leg that there is not.
+        If the command names a leg that the robot does not have.
     """
     if not (command.foot_targets or command.foot_velocities):
         return before
-    out = set(before)
+    excluded = set(before)
     for leg, point in [*(command.foot_targets or {}).items(), *(command.foot_velocities or {}).items()]:
         if leg not in range(legs):
-            raise InputError(f"foot_target {leg!r}: the robot has the legs 0 to {legs - 1}")
-        (out.discard if point is None else out.add)(leg)
-    return tuple(sorted(out))
+            raise InputError(f"foot_targets: the robot has no leg {leg!r}; its legs are 0 to {legs - 1}")
+        (excluded.discard if point is None else excluded.add)(leg)
+    return tuple(sorted(excluded))
 
 
 class FootTargets:
-    """The hands of a walker.
+    """Motion of the feet that are taken out of the gait.
 
     Parameters
     ----------
     names : sequence of str
-        What the legs are called.
+        Names of the legs in limitations.
     """
 
     def __init__(self, names: Sequence[str]) -> None:
         self._names = names
-        self._foot_targets: dict[int, FootTargetMotion] = {}
-        self._out: tuple[int, ...] = ()
+        self._motions: dict[int, FootTargetMotion] = {}
+        self._excluded: tuple[int, ...] = ()
         self._points: dict[int, Sequence[float]] = {}
-        self._parts: dict[int, float] = {}
+        self._fractions: dict[int, float] = {}
 
     def __bool__(self) -> bool:
-        return bool(self._foot_targets)
+        return bool(self._motions)
 
     @property
     def legs(self) -> list[int]:
-        """The legs that don't bear: those that are out, and those on their way back, still in the air."""
-        return list(self._foot_targets)
+        """Legs that bear no load: those taken out of the gait, and those that return to it with their next step."""
+        return list(self._motions)
 
     @property
     def returning(self) -> bool:
-        """Whether a leg is on its way back."""
-        return len(self._foot_targets) > len(self._out)
+        """Whether a leg is returning to the gait."""
+        return len(self._motions) > len(self._excluded)
 
     @property
     def limitations(self) -> list[Limitation]:
         """Foot targets that are out of reach."""
         return [
             Limitation(
-                kind=LimitationKind.FOOT_TARGET, cause="out of reach", leg=self._names[leg], asked=1.0, granted=part
+                kind=LimitationKind.FOOT_TARGET, cause="out of reach", leg=self._names[leg], asked=1.0, granted=fraction
             )
-            for leg, part in self._parts.items()
-            if part < 1
+            for leg, fraction in self._fractions.items()
+            if fraction < 1
         ]
 
-    def set_legs(self, out: tuple[int, ...], now: GaitState) -> None:
-        """Make the legs that are out from now on hands; one that comes back stays in the air until its next step.
+    def set_legs(self, excluded: tuple[int, ...], state: GaitState) -> None:
+        """Set the legs that are taken out of the gait; a leg that returns stays in the air until its next step.
 
         Parameters
         ----------
-        out : tuple of int
+        excluded : tuple of int
             The legs.
-        now : Moment
-            Where their feet are.
+        state : GaitState
+            The state of the walk.
         """
-        stopped = {leg: foot_target.stopped() for leg, foot_target in self._foot_targets.items() if leg not in out}
-        self._foot_targets = stopped | {leg: self._foot_targets.get(leg) or begin_foot_target(now, leg) for leg in out}
-        self._out, self._parts = out, {}
+        stopped = {leg: motion.stopped() for leg, motion in self._motions.items() if leg not in excluded}
+        self._motions = stopped | {leg: self._motions.get(leg) or begin_foot_target(state, leg) for leg in excluded}
+        self._excluded, self._fractions = excluded, {}
 
     def set_targets(self, command: Command, dt: float, reachable: Callable[[int, Floats, Floats], float]) -> None:
-        """Set where the hands go: as far towards what is asked for as their legs reach.
+        """Set the targets of the feet, as far towards the commanded points as their legs reach.
 
         Parameters
         ----------
         command : Command
-            A point in it holds until there is another; a speed, as long as it is given.
+            A point in it holds until the next one; a velocity for this tick.
         dt : float
-            For how long [s].
+            Length of the tick [s].
         reachable : callable
-            How much of the way a leg's foot can go from one point to another.
+            Fraction of the path between two points that a leg's foot can follow, from leg, start and end.
         """
         if not (self._points or command.foot_targets or command.foot_velocities):
             return
-        speeds = command.foot_velocities or {}
-        asked = {**self._points, **(command.foot_targets or {})}
-        self._points = {leg: point for leg, point in asked.items() if point is not None and leg not in speeds}
-        for leg in self._out:
-            foot_target = self._foot_targets[leg]
-            here = foot_target.position.value
-            if leg in speeds:
-                wished = foot_target.target + np.array(speeds[leg]) * dt
+        velocities = command.foot_velocities or {}
+        points = {**self._points, **(command.foot_targets or {})}
+        self._points = {leg: point for leg, point in points.items() if point is not None and leg not in velocities}
+        for leg in self._excluded:
+            motion = self._motions[leg]
+            start = motion.position.value
+            if leg in velocities:
+                end = motion.target + np.array(velocities[leg]) * dt
             elif leg in self._points:
-                wished = np.array(self._points[leg])
+                end = np.array(self._points[leg])
             else:
                 continue
-            wished[2] = max(wished[2], 0.0)
-            part = self._parts[leg] = reachable(leg, here, wished)
-            self._foot_targets[leg] = foot_target._replace(target=here + part * (wished - here))
+            end[2] = max(end[2], 0.0)
+            fraction = self._fractions[leg] = reachable(leg, start, end)
+            self._motions[leg] = motion._replace(target=start + fraction * (end - start))
 
-    def apply(self, now: GaitState, time: float, *, swing_time: float) -> GaitState:
-        """Return a moment with the hands where they are after a time.
+    def apply(self, state: GaitState, time: float, *, swing_time: float) -> GaitState:
+        """Return the state with the feet taken out of the gait moved by a time.
 
         Parameters
         ----------
-        now : Moment
-            The moment, after that time.
+        state : GaitState
+            The state of the walk after that time.
         time : float
             The time [s].
         swing_time : float
-            How long a swing takes [s].
+            Duration of a swing [s].
         """
-        if not self._foot_targets:
-            return now
-        return apply_foot_targets(
-            now, {leg: foot_target.step(time) for leg, foot_target in self._foot_targets.items()}, swing_time
-        )
+        if not self._motions:
+            return state
+        return apply_foot_targets(state, {leg: motion.step(time) for leg, motion in self._motions.items()}, swing_time)
 
     def step(self, time: float, down: Floats) -> None:
-        """Go on by a time; a leg that has been lifted to step is a hand no more.
+        """Advance the motions by a time; a leg that steps again is removed.
 
         Parameters
         ----------
         time : float
             The time [s].
         down : array of bool, shape (legs,)
-            Which feet are not in a swing.
+            Feet that are not in a swing.
         """
-        if self._foot_targets:
-            self._foot_targets = {
-                leg: foot_target.step(time) for leg, foot_target in self._foot_targets.items() if down[leg]
-            }
+        if self._motions:
+            self._motions = {leg: motion.step(time) for leg, motion in self._motions.items() if down[leg]}
 
     def without_bounds(self, bounds: Floats) -> Floats:
-        """Return the feet's polygons without those of the hands, whose legs bound them by themselves.
+        """Return the polygons of the feet, unbounded for the feet that do not step.
 
         Parameters
         ----------
         bounds : array, shape (legs, 16)
             Sides of the polygons [m].
+
+        Returns
+        -------
+        array, shape (legs, 16)
+            The sides, infinite for those feet [m].
         """
-        if not self._foot_targets:
+        if not self._motions:
             return bounds
         free = bounds.copy()
         free[self.legs] = np.inf

@@ -1,4 +1,4 @@
-"""The joint angles of a moment of the walk, in plain numbers: what every tick needs."""
+"""Joint angles of a gait state, computed in plain numbers: the inverse kinematics of every tick."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ Floats = np.ndarray[Any, Any]
 
 
 class JointSolver:
-    """Solves the legs of one robot for moments of its walk.
+    """Computes the joint angles of one robot for the states of its walk.
 
     Parameters
     ----------
@@ -31,29 +31,34 @@ class JointSolver:
 
     def __init__(self, robot: Robot) -> None:
         self._robot = robot
-        self._quick = ScalarLegs(robot)
-        # Of a posture that stays, the body's rotation and place and the lift stay too.
+        self._scalar_legs = ScalarLegs(robot)
+        # Rotation, position and swing height are kept for as long as the posture stays the same object.
         self._posture: CriticallyDamped | None = None
         self._body: tuple[Rows, list[float], float] = (((),), [], 0.0)
 
-    def angles(self, now: GaitState) -> Floats:
-        """Return the joint angles ``(legs, 3)`` of a moment [rad].
+    def angles(self, state: GaitState) -> Floats:
+        """Return the joint angles of a state; for feet out of reach, those of the nearest reachable points.
 
         Parameters
         ----------
-        now : Moment
-            The moment.
+        state : GaitState
+            The state of the walk.
+
+        Returns
+        -------
+        array, shape (legs, 3)
+            Joint angles, read-only [rad].
         """
-        rotation, position, swing_height = self._body_at(now)
-        turn, origin = cmath.exp(-1j * now.yaw), now.origin
-        elevation = float(now.elevation.value[0])
+        rotation, position, swing_height = self._body_at(state)
+        turn, origin = cmath.exp(-1j * state.yaw), state.origin
+        elevation = float(state.elevation.value[0])
         feet = []
-        for foot, height, given in zip(
-            now.foot.tolist(), now.heights(swing_height), now.admittance_offset.value.tolist(), strict=True
+        for foot, height, offset in zip(
+            state.foot.tolist(), state.heights(swing_height), state.admittance_offset.value.tolist(), strict=True
         ):
-            seen = (foot - origin) * turn
-            feet.append((seen.real, seen.imag, height + given - elevation))
-        found = self._quick.angles(feet, rotation, position)
+            in_heading = (foot - origin) * turn
+            feet.append((in_heading.real, in_heading.imag, height + offset - elevation))
+        found = self._scalar_legs.angles(feet, rotation, position)
         if found is None:
             in_body = (np.array(feet) - position) @ np.array(rotation)
             angles = np.array(inverse_kinematics(self._robot, in_body).angles)
@@ -62,17 +67,17 @@ class JointSolver:
         angles.setflags(write=False)
         return angles
 
-    def _body_at(self, now: GaitState) -> tuple[Rows, list[float], float]:
-        if now.posture is not self._posture:
-            row = now.posture.value
-            x, y, z, roll, pitch, yaw, swing_height = with_sway(row, now.cycles, now.beats).tolist()
+    def _body_at(self, state: GaitState) -> tuple[Rows, list[float], float]:
+        if state.posture is not self._posture:
+            row = state.posture.value
+            x, y, z, roll, pitch, yaw, swing_height = with_sway(row, state.cycles, state.beats).tolist()
             self._body = rotation_rows(roll, pitch, yaw), [x, y, z], swing_height
-            self._posture = None if row[SWING_HEIGHT + 1 :].any() else now.posture
+            self._posture = None if row[SWING_HEIGHT + 1 :].any() else state.posture
         return self._body
 
 
 class ScalarLegs:
-    """The legs of one robot.
+    """Inverse kinematics of one robot in plain numbers, for legs that are plainly within reach and limits.
 
     Parameters
     ----------
@@ -92,21 +97,21 @@ class ScalarLegs:
     def angles(
         self, feet: Sequence[Sequence[float]], rotation: Sequence[Sequence[float]], position: Sequence[float]
     ) -> list[tuple[float, float, float]] | None:
-        """Return the joint angles; None where a leg is out of its reach or its limits.
+        """Return the joint angles; None if a leg is out of reach or joint limits.
 
         Parameters
         ----------
         feet : sequence of (x, y, z)
-            The feet, in any frame [m].
+            Feet in any frame [m].
         rotation : sequence of three rows
-            The body's in that frame.
+            Rotation of the body in that frame.
         position : (x, y, z)
-            Of the body's origin in that frame [m].
+            Position of the body's origin in that frame [m].
 
         Returns
         -------
         list of (coxa, femur, tibia), or None
-            Of each leg [rad].
+            Joint angles of each leg [rad].
         """
         (r00, r01, r02), (r10, r11, r12), (r20, r21, r22) = rotation
         px, py, pz = position

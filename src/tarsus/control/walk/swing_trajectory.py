@@ -1,8 +1,7 @@
 """Swing trajectories: the position over the ground, the height, and the stop after early ground contact.
 
-Progress is measured as the fraction of the swing that has passed, from 0 at lift-off to 1 at touchdown. Derivatives
-are by this fraction, so that they do not depend on how fast the swing is executed. Positions are complex numbers,
-x + iy in G.
+The swing phase goes from 0 at lift-off to 1 at touchdown. Derivatives are with respect to it, and so
+independent of the duration of the swing. Positions are complex numbers, x + iy in G.
 """
 
 from __future__ import annotations
@@ -23,11 +22,11 @@ def quintic(state: tuple[Any, Any, Any], target: Any, remaining: Any, fraction: 
     Parameters
     ----------
     state : tuple of (complex or array)
-        Position of the foot and its first and second derivative by the fraction of the swing [m].
+        Position of the foot and its first and second derivative by the swing phase [m].
     target : complex or array
         Where the swing ends [m].
     remaining : float or array
-        Fraction of the swing that remains, above 0.
+        Swing phase that remains, above 0.
     fraction : float or array
         How far to advance, as a fraction of what remains.
 
@@ -50,41 +49,41 @@ def quintic(state: tuple[Any, Any, Any], target: Any, remaining: Any, fraction: 
     )
 
 
-def swinging_height(fraction: float, *, start: float, ground: float, swing_height: float) -> float:
+def swinging_height(phase: float, *, start: float, ground: float, swing_height: float) -> float:
     """Return the height of a foot in an undisturbed swing [m].
 
     Parameters
     ----------
-    fraction : float
-        Fraction of the swing that has passed.
+    phase : float
+        Swing phase.
     start, ground : float
         Heights at lift-off and of the ground at the target [m].
     swing_height : float
         Greatest height above the line from the one to the other [m].
     """
-    return float(start + (ground - start) * ground_share(fraction) + swing_height * height_share(fraction))
+    return float(start + (ground - start) * ground_share(phase) + swing_height * height_share(phase))
 
 
 def stopping_height(
-    fraction: float, *, contact: float, duration: float, height: float, speed: float, ground: float
+    phase: float, *, contact: float, duration: float, height: float, speed: float, ground: float
 ) -> float:
     """Return the height of a foot that stops after early ground contact [m].
 
     Parameters
     ----------
-    fraction : float
-        Fraction of the swing that has passed.
+    phase : float
+        Swing phase.
     contact : float
-        Fraction at which the foot touched the ground.
+        Swing phase at which the foot touched the ground.
     duration : float
-        Duration of the stop, as a fraction of the swing; at the latest it ends with the swing.
+        Duration of the stop in swing phase; it ends with the swing at the latest.
     height, speed : float
-        Height at contact, and its derivative by the fraction of the swing [m].
+        Height at contact, and its derivative by the swing phase [m].
     ground : float
         Height at which the foot comes to rest [m].
     """
     duration = min(1 - contact, duration)
-    progress = min(max((fraction - contact) / duration, 0.0), 1.0)
+    progress = min(max((phase - contact) / duration, 0.0), 1.0)
     speed = speed * duration
     stopped: float = (
         height + speed * stopping_fraction(progress) + (ground - height - speed / 3) * ground_share(progress)

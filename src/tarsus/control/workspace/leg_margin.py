@@ -113,8 +113,9 @@ class LegMargin:
     def _joint_speed(self, s: Triangle) -> Floats:
         """Return the greatest joint speed over the speed of the foot [rad/m]."""
         # In its plane, the leg's Jacobian has the determinant femur tibia sin(tibia angle): twice the area of the
-        # triangle, which is half the root of `far near`. The sum of its squared elements is that of the squared distances
-        # from the foot to the femur axis and to the knee. Where the triangle does not close, the leg fails anyway.
+        # triangle, which is half the root of `far near`. The sum of its squared elements is that of the squared
+        # distances from the foot to the femur axis and to the knee. Where the triangle does not close, the
+        # leg fails anyway.
         g = self._g
         across = np.sqrt(np.maximum(s.far * s.near, 4e-18)) / 2
         in_plane = np.sqrt(g.farthest2 + g.tibia * g.tibia - s.far) / across
