@@ -1,8 +1,8 @@
-"""Moments of a live walk, standing or in the middle of it."""
+"""Gait states: standing, or at the beginning of a walk."""
 
 import numpy as np
 
-from sample_stances import envelope_of, posture_of, setup_of
+from sample_stances import posture_of, setup_of, velocity_limits_of
 from tarsus.control.walk.state import GaitState, StepInputs
 
 EARTH, FACING = 0.3 - 0.2j, 0.7
@@ -33,14 +33,14 @@ def step_inputs_of(setup, rest, twist, **changes):
 
 
 def begun(setup, rest):
-    """Standing, the clock at the moment when leg 0 lifts."""
+    """A standing state with the clock at the lift-off of leg 0."""
     offsets, duty_factor = np.asarray(setup.gait.offsets), setup.gait.duty_factor
     clock = float(offsets[0]) + duty_factor
     return moment_of(setup, rest, clock=clock, step_number=np.ceil(clock - offsets - duty_factor - 1e-9))
 
 
 def rest_of(name):
-    return envelope_of(name).rest
+    return velocity_limits_of(name).rest
 
 
 __all__ = ["EARTH", "FACING", "begun", "moment_of", "rest_of", "setup_of", "step_inputs_of"]

@@ -1,4 +1,4 @@
-"""Robots standing in postures, as the live walker's parts see them."""
+"""Robots in stances, with their workspaces, velocity limits and cycle times."""
 
 import functools
 
@@ -16,7 +16,7 @@ from tarsus.gait.setup import Setup
 from tarsus.kinematics.pose import Pose
 from tarsus.robot.joint_limits import joint_limits
 
-# Level; moved and turned in every way; leaning forwards and back.
+# Level, and two with translations and rotations.
 POSTURES = (
     (0.0,) * 6,
     (0.01, 0.01, 0.01, 0.05, -0.05, 0.1),
@@ -54,14 +54,14 @@ def polygons(name, body=POSTURES[0]):
 
 
 @functools.cache
-def envelope_of(name, gait="tripod", body=POSTURES[0]):
+def velocity_limits_of(name, gait="tripod", body=POSTURES[0]):
     setup = setup_of(name, gait)
     sets = support_sets(setup.gait)
     return complete(velocity_limits(setup.robot, [standing(setup, body)], sets, foot_distance=setup.foot_distance))
 
 
 @functools.cache
-def tempo_of(name, gait="tripod", cycle_time=None):
+def cycle_timing_of(name, gait="tripod", cycle_time=None):
     setup = setup_of(name, gait)
     speed, acceleration = joint_limits(setup.robot, None, None)
     return complete(
@@ -69,7 +69,7 @@ def tempo_of(name, gait="tripod", cycle_time=None):
             setup.robot,
             setup.gait,
             standing(setup),
-            envelope_of(name, gait),
+            velocity_limits_of(name, gait),
             speed=speed,
             acceleration=acceleration,
             cycle_time=cycle_time,

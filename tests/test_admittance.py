@@ -1,4 +1,4 @@
-"""Feet that give way against the matrix exponential and an integration; forces from torques against statics."""
+"""Admittance control against the matrix exponential and an independent integration."""
 
 import math
 
@@ -9,15 +9,8 @@ from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 
-from sample_robots import hexapod, random_hexapod, standing
 from tarsus.control.pose.admittance import Admittance, AdmittanceFilter
-from tarsus.control.sensing.foot_force import FootForceEstimator, balanced_forces, foot_forces_from_torques
 from tarsus.errors import InputError
-from tarsus.kinematics.leg import forward_kinematics, leg_jacobian
-from tarsus.kinematics.pose import Pose
-from tarsus.load.contact import contact_forces
-from tarsus.load.torque import joint_torques
-from tarsus.robot.robot import stack_robots
 
 PLAUSIBLE = {"mass": st.floats(0.05, 20), "damping": st.floats(0.1, 2000), "stiffness": st.floats(1, 1e5)}
 admittances = st.builds(Admittance, **PLAUSIBLE)
@@ -88,7 +81,7 @@ def energy(a, feet):
 
 @given(st.one_of(admittances, critical), st.integers(0, 2**32 - 1))
 def test_passive(a, seed):
-    """No more energy than the ground's force brings in; none grows without it."""
+    """The filter is passive: it returns no more energy than the force puts in."""
     rng = np.random.default_rng(seed)
     feet = AdmittanceFilter(a, 3)
     for i, dt in enumerate(10.0 ** rng.uniform(-4, 0, 60)):
@@ -114,7 +107,7 @@ def test_travel_is_bounded_for_any_force(a, seed):
         assert abs(feet.offsets[0]) == pytest.approx(a.travel, rel=1e-3)  # and no narrower than need be
 
 
-def test_a_force_that_stays_is_followed_by_its_spring():
+def test_a_constant_force_leads_to_the_deflection_of_the_spring():
     feet = AdmittanceFilter(Admittance(mass=1.0, damping=40.0, stiffness=400.0), 6)
     for _ in range(1000):
         got = feet.step((4.0, -2.0, None, math.nan, 1e9, -math.inf), 0.01)
@@ -129,7 +122,7 @@ def test_a_force_that_stays_is_followed_by_its_spring():
 
 @given(st.integers(0, 2**32 - 1))
 def test_speed_is_continuous(seed):
-    """Whatever the force does, the speed changes by no more than force and spring can make it."""
+    """For any force, the acceleration is bounded by force and spring."""
     rng = np.random.default_rng(seed)
     a = Admittance(mass=1.0, damping=40.0, stiffness=400.0)
     feet = AdmittanceFilter(a, 1)
@@ -153,86 +146,3 @@ def test_invalid_parameters_raise():
         Admittance(mass=1e-6, damping=10.0, stiffness=1.0)
     weak = AdmittanceFilter(Admittance(mass=1e300, damping=1e-300, stiffness=1e-300), 1)
     assert weak.step([1.0], 1.0) == pytest.approx([0.0], abs=1e-15)
-
-
-# Forces from torques.
-
-
-@given(st.integers(0, 2**32 - 1))
-def test_the_forces_that_made_the_torques_are_found_again(seed):
-    rng = np.random.default_rng(seed)
-    robot = random_hexapod(rng)
-    angles, forces = rng.uniform(-np.pi, np.pi, (6, 3)), rng.normal(size=(6, 3)) * 5
-    body = Pose.from_rpy(*rng.uniform(-0.5, 0.5, 2), rng.uniform(-3, 3))
-    torques, _ = joint_torques(robot, angles, body, np.ones(6, dtype=bool), forces=forces @ body.rotation.T)
-    found = foot_forces_from_torques(robot, angles, torques, up=tuple(body.rotation[2].tolist()))
-    jacobians = leg_jacobian(robot, angles)
-    for leg in range(6):
-        if found[leg] is not None:
-            np.testing.assert_allclose(found[leg], forces[leg], rtol=0, atol=1e-10)
-        else:  # there a torque's error makes a far greater one of the force than it would elsewhere
-            lengths = [robot.coxa[leg] + robot.femur[leg] + robot.tibia[leg], robot.femur[leg], robot.tibia[leg]]
-            assert np.linalg.svd(jacobians[leg] / lengths, compute_uv=False)[-1] < 0.11
-
-
-def test_singular_legs_and_unknown_torques_are_none():
-    robot, angles, torques = hexapod(), standing(), np.zeros((6, 3))
-    angles[1, 2] = 0.0  # straight
-    angles[2, 2] = math.pi  # folded
-    found = foot_forces_from_torques(robot, angles, torques)
-    assert [part is None for part in found] == [False, True, True, False, False, False]
-    # The foot under the coxa axis: no torque of the coxa tells of a force across.
-    reach = (0.068 + 0.098 * math.cos(2.0)) / 0.181
-    angles[4, 1:] = [2.0, math.pi - math.acos(reach) - 2.0]
-    assert abs(np.linalg.norm((forward_kinematics(robot, angles)[4, 3] - robot.mount_position[4])[:2])) < 1e-12
-    assert foot_forces_from_torques(robot, angles, torques)[4] is None
-    some = FootForceEstimator(robot).forces(angles.tolist(), [None, *torques.tolist()[1:]])
-    assert some[0] is some[1] is None
-    assert some[5] is not None
-
-
-def test_without_masses_the_links_are_weightless():
-    robot = hexapod(link_mass=None, body_mass=None)
-    forces = np.array([[0.3, -0.2, 5.0]] * 6)
-    torques = -np.einsum("lij,li->lj", leg_jacobian(robot, standing()), forces)
-    found = foot_forces_from_torques(robot, standing(), torques)
-    np.testing.assert_allclose(found, forces, rtol=0, atol=1e-12)
-
-
-def test_wrong_torques_are_refused():
-    robot, angles = hexapod(), standing()
-    with pytest.raises(InputError, match=r"torques has shape \(5, 3\); expected \(6, 3\)"):
-        foot_forces_from_torques(robot, angles, np.zeros((5, 3)))
-    with pytest.raises(InputError, match=r"angles has shape \(2, 6, 3\); expected \(6, 3\)"):
-        foot_forces_from_torques(robot, np.stack([angles, angles]), np.zeros((6, 3)))
-    with pytest.raises(InputError, match=r"torques\[0, 0\] is nan"):
-        foot_forces_from_torques(robot, angles, np.full((6, 3), np.nan))
-    with pytest.raises(InputError, match="batch of designs"):
-        FootForceEstimator(stack_robots([robot, robot]))
-
-
-@given(st.integers(0, 2**32 - 1), st.integers(3, 6))
-def test_balanced_forces_are_those_of_statics(seed, count):
-    """Against the solver of `load`: on level ground with the links weightless, wherever no foot would have to pull."""
-    rng = np.random.default_rng(seed)
-    robot = hexapod(link_mass=np.zeros((6, 3)), body_com=rng.uniform(-0.05, 0.05, 3))
-    angles = standing() + rng.uniform(-0.3, 0.3, (6, 3))
-    contacts = rng.permutation(np.arange(6) < count)
-    want = contact_forces(robot, angles, Pose(), contacts).forces[:, 2]
-    feet = forward_kinematics(robot, angles)[:, 3]
-    found = balanced_forces(feet.tolist(), contacts.tolist(), robot.body_com[:2].tolist(), 1.386 * 9.80665)
-    matrix = np.stack([np.ones(count), *feet[contacts, :2].T])
-    free = np.linalg.lstsq(matrix, 1.386 * 9.80665 * np.array([1, *robot.body_com[:2]]), rcond=None)[0]
-    np.testing.assert_allclose(np.array(found)[contacts], np.maximum(free, 0), rtol=0, atol=1e-9)
-    if free.min() > 1e-3:
-        np.testing.assert_allclose(found, want, rtol=0, atol=1e-6)
-    assert not np.array(found)[~contacts].any()
-
-
-def test_balanced_forces_where_statics_have_no_answer():
-    line = [[0.1, 0.0, 0.0], [-0.1, 0.0, 0.0], [0.3, 0.0, 0.0]]
-    assert balanced_forces(line, [False] * 3, (0.0, 0.0), 30.0) == (0.0, 0.0, 0.0)
-    assert balanced_forces(line, [True] * 3, (0.0, 0.0), 30.0) == pytest.approx((10.0,) * 3)
-    assert balanced_forces(line, [True, True, False], (0.05, 0.0), 30.0) == pytest.approx((15.0, 15.0, 0.0))
-    triangle = [[1.0, 0.0, 0.0], [-1.0, 1.0, 0.0], [-1.0, -1.0, 0.0]]
-    assert min(balanced_forces(triangle, [True] * 3, (3.0, 0.0), 30.0)) == 0.0

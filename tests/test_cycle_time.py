@@ -1,4 +1,4 @@
-"""How fast the legs may step, against finite differences of dense steady cycles."""
+"""Cycle times and strokes against finite differences of densely sampled steady cycles."""
 
 import itertools
 
@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from gait_robots import PRESETS, preset, ring
-from sample_stances import envelope_of, setup_of, standing, tempo_of
+from sample_stances import cycle_timing_of, setup_of, standing, velocity_limits_of
 from tarsus.control.incremental import complete
 from tarsus.control.workspace.cycle_time import SteadyCycle, cycle_timing
 from tarsus.control.workspace.velocity_limits import velocity_limits, with_stroke_limits
@@ -27,7 +27,7 @@ TWISTS = [
 
 
 def strain(setup, limits, twist, cycle_time):
-    """The greatest joint speed and acceleration over their limits in a steady cycle at the largest share of a twist."""
+    """Greatest joint speed and acceleration over their limits in a steady cycle at the feasible fraction of a twist."""
     share, _ = limits.feasible_fraction(np.array(twist), stance_time=1.0, duty_factor=setup.gait.duty_factor)
     phases, step = np.linspace(0, 1, 1201, retstep=True)
     feet, _ = cycle_feet(
@@ -43,13 +43,13 @@ def strain(setup, limits, twist, cycle_time):
 
 def limits_of(name, gait, found):
     return with_stroke_limits(
-        envelope_of(name, gait), found.stroke, found.turning, duty_factor=Gait.named(gait).duty_factor
+        velocity_limits_of(name, gait), found.stroke, found.turning, duty_factor=Gait.named(gait).duty_factor
     )
 
 
 @pytest.mark.parametrize(("name", "gait"), list(itertools.product(PRESETS, ["tripod", "ripple", "wave"])))
 def test_steady_walks_keep_within_the_joints_speed_and_acceleration(name, gait):
-    found = tempo_of(name, gait)
+    found = cycle_timing_of(name, gait)
     setup, limits = setup_of(name, gait), limits_of(name, gait, found)
     strains = np.array([strain(setup, limits, twist, found.cycle_time) for twist in TWISTS])
     assert strains.max() <= 1
@@ -59,7 +59,7 @@ def test_steady_walks_keep_within_the_joints_speed_and_acceleration(name, gait):
 
 @pytest.mark.parametrize("name", PRESETS)
 def test_in_a_given_cycle_time_the_strokes_are_as_long_as_the_joints_allow(name):
-    found = tempo_of(name, "tripod", 1.5 * tempo_of(name).shortest_cycle_time)
+    found = cycle_timing_of(name, "tripod", 1.5 * cycle_timing_of(name).shortest_cycle_time)
     assert found.cycle_time == pytest.approx(1.5 * found.shortest_cycle_time)
     limits = limits_of(name, "tripod", found)
     strains = [max(strain(setup_of(name), limits, twist, found.cycle_time)) for twist in TWISTS]
@@ -67,8 +67,8 @@ def test_in_a_given_cycle_time_the_strokes_are_as_long_as_the_joints_allow(name)
 
 
 @pytest.mark.parametrize("name", ["strider", "phantomx"])
-def test_a_cycle_too_short_to_lift_the_feet_is_made_longer(name):
-    asked = tempo_of(name, "tripod", 0.05)
+def test_too_short_a_cycle_time_is_increased(name):
+    asked = cycle_timing_of(name, "tripod", 0.05)
     assert asked.cycle_time == asked.shortest_cycle_time
     limits = limits_of(name, "tripod", asked)
     assert max(strain(setup_of(name), limits, (1.0, 0.0, 0.0), asked.cycle_time)) <= 1
@@ -76,22 +76,22 @@ def test_a_cycle_too_short_to_lift_the_feet_is_made_longer(name):
     assert min(asked.stroke, asked.turning) > 0.01
 
 
-def test_a_long_cycle_allows_all_that_the_legs_do():
-    found = tempo_of("strider", "tripod", 30.0)
+def test_a_long_cycle_time_is_limited_by_reach_only():
+    found = cycle_timing_of("strider", "tripod", 30.0)
     assert found.cycle_time == 30.0
     for twist in TWISTS[:-2]:
-        legs, _ = envelope_of("strider").feasible_fraction(np.array(twist), stance_time=1.0, duty_factor=0.5)
+        legs, _ = velocity_limits_of("strider").feasible_fraction(np.array(twist), stance_time=1.0, duty_factor=0.5)
         joints, _ = limits_of("strider", "tripod", found).feasible_fraction(
             np.array(twist), stance_time=1.0, duty_factor=0.5
         )
         assert joints == pytest.approx(legs)
 
 
-def test_left_out_the_cycle_time_is_the_one_that_gets_the_robot_farthest():
-    setup, free = setup_of("phantomx"), tempo_of("phantomx")
+def test_the_default_cycle_time_gives_the_fastest_walk():
+    setup, free = setup_of("phantomx"), cycle_timing_of("phantomx")
 
     def speed(cycle_time):
-        found = tempo_of("phantomx", "tripod", cycle_time)
+        found = cycle_timing_of("phantomx", "tripod", cycle_time)
         limits = limits_of("phantomx", "tripod", found)
         forward = np.array([1.0, 0.0, 0.0])
         return limits.feasible_fraction(
@@ -102,7 +102,7 @@ def test_left_out_the_cycle_time_is_the_one_that_gets_the_robot_farthest():
     assert best >= 0.99 * max(speed(part * free.cycle_time) for part in (0.8, 0.9, 1.1, 1.3, 1.8))
 
 
-def test_where_the_stance_is_the_shorter_part_its_speed_counts():
+def test_with_short_stances_the_speed_in_stance_counts():
     # Eight legs, five in the air in turn: a foot on the ground goes faster than one that swings.
     robot = ring(8)
     gait = Gait(3 / 8, tuple((3 * leg % 8) / 8 for leg in range(8)))
@@ -126,7 +126,7 @@ def test_slower_joints_step_slower():
                 setup.robot,
                 setup.gait,
                 standing(setup),
-                envelope_of("strider"),
+                velocity_limits_of("strider"),
                 speed=part * speed,
                 acceleration=part * part * acceleration,
             )
@@ -137,7 +137,7 @@ def test_slower_joints_step_slower():
     assert found(0.5).stroke == pytest.approx(found(1).stroke, rel=1e-9)
 
 
-def test_joint_limits_are_the_servos_no_load_speed():
+def test_default_joint_limits_are_no_load_speeds():
     robot = preset("phantomx")
     speed, acceleration = joint_limits(robot, None, None)
     assert speed.shape == acceleration.shape == (6, 3)
@@ -145,7 +145,7 @@ def test_joint_limits_are_the_servos_no_load_speed():
     np.testing.assert_allclose(acceleration, speed / 0.05)
 
 
-def test_joint_limits_without_servos_and_as_asked_for():
+def test_joint_limits_without_servos_and_as_given():
     bare = ring(6)
     np.testing.assert_array_equal(joint_limits(bare, None, None)[0], 5.0)
     speed, acceleration = joint_limits(bare, 3.0, None)
@@ -157,7 +157,7 @@ def test_joint_limits_without_servos_and_as_asked_for():
 
 
 @pytest.mark.parametrize("legs", [4, 6, 8])
-def test_the_more_legs_the_more_parts_the_work_is_done_in(legs):
+def test_more_legs_take_more_increments(legs):
     setup = setup_of(ring(legs), "wave")
     speed, acceleration = joint_limits(setup.robot, None, None)
     limits = complete(
@@ -168,7 +168,7 @@ def test_the_more_legs_the_more_parts_the_work_is_done_in(legs):
 
 
 @pytest.mark.parametrize(("duty_factor", "swing_height"), [(0.5, 0.03), (5 / 6, 0.1), (3 / 8, 0.0)])
-def test_the_cycle_in_complex_numbers_is_that_of_the_plan(duty_factor, swing_height):
+def test_the_complex_form_equals_the_planned_cycle(duty_factor, swing_height):
     moves = np.array([(0.1, 0.0, 0.0), (0.0, 0.0, 0.5), (-0.03, 0.07, -0.4), (0.0, 0.0, 0.0), (0.02, 0.01, 1e-9)])
     rest = np.array([0.2 + 0.1j, -0.1 + 0.25j, 0.0 - 0.3j])
     cycle = SteadyCycle(Gait(duty_factor, (0.0,) * 3), moves, swing_height)

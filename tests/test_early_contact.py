@@ -1,4 +1,4 @@
-"""Feet that meet ground early: that they stop as soon as their joints can, and no sooner."""
+"""Early contact: feet stop as soon as their joints can, within acceleration limits."""
 
 import numpy as np
 import pytest
@@ -16,7 +16,7 @@ DT = 5e-4
 
 
 def falling(name, share, frequency):
-    """In the middle of a walk, some feet in the last part of their swing."""
+    """A walking state with some feet in the last part of their swing."""
     setup, rest = setup_of(name), rest_of(name)
     inputs = step_inputs_of(setup, rest, (0.05, 0.02, 0.1), frequency=frequency)
     now = begun(setup, rest)
@@ -28,7 +28,7 @@ def falling(name, share, frequency):
 
 
 def met(setup, inputs, now):
-    """The moment in which all feet in the air have met the ground, and which of them can stop."""
+    """The state in which all swinging feet have early contact, and which of them can stop."""
     _, acceleration = joint_limits(setup.robot, None, None)
     rate = inputs.frequency / (1 - setup.gait.duty_factor - now.lift_delay)
     after = stop_on_contact(setup.robot, now, ~now.down, acceleration=acceleration, swing_rate=rate)
@@ -39,7 +39,7 @@ def met(setup, inputs, now):
 
 @pytest.mark.parametrize("share", [0.55, 0.75, 0.9])
 @pytest.mark.parametrize("name", PRESETS)
-def test_feet_stop_within_what_their_joints_can_do(name, share):
+def test_stops_keep_to_the_acceleration_limits(name, share):
     setup, inputs, now = falling(name, share, 0.8)
     after, stops = met(setup, inputs, now)
     assert stops.any()
@@ -62,7 +62,7 @@ def test_feet_stop_within_what_their_joints_can_do(name, share):
     assert (after.ground_height[stops] >= now.ground_height[stops] - 1e-9).all()
 
 
-def test_slow_feet_stop_at_once_fast_ones_take_longer_and_the_fastest_land_as_planned():
+def test_the_duration_of_a_stop_grows_with_speed_and_the_fastest_feet_do_not_stop():
     gives, sunk = [], []
     for frequency in (0.3, 0.8, 1.2, 3.0):
         setup, inputs, now = falling("strider", 0.75, frequency)
@@ -76,7 +76,7 @@ def test_slow_feet_stop_at_once_fast_ones_take_longer_and_the_fastest_land_as_pl
     assert sunk[2] > 1.2 * sunk[0]
 
 
-def test_harder_swings_take_longer():
+def test_demanding_swings_slow_scaled_time_down():
     setup, rest = setup_of("strider"), rest_of("strider")
     duty_factor = setup.gait.duty_factor
     swing = 1 - duty_factor

@@ -1,4 +1,4 @@
-"""Where each foot may be: what is promised of the polygons, by the public kinematics and by brute force."""
+"""Foot workspaces against the public kinematics and against brute force."""
 
 import itertools
 
@@ -20,7 +20,7 @@ every_stand = pytest.mark.parametrize(("name", "body"), list(itertools.product(P
 
 
 def corners_of(bounds, inside):
-    """Corners of each polygon by Qhull's half planes."""
+    """Corners of each polygon by Qhull's half-space intersection."""
     planes = np.stack([NORMALS.real, NORMALS.imag], axis=-1)
     found = []
     for sides, point in zip(bounds, inside, strict=True):
@@ -30,14 +30,14 @@ def corners_of(bounds, inside):
 
 
 def random_points(rng, corners, count):
-    """Points of the triangles between any three corners: most near the edge ``(count, legs)``."""
+    """Random points in triangles of corners, most of them near the edge ``(count, legs)``."""
     weights = rng.dirichlet(np.full(3, 0.3), size=(count, len(corners)))
     picked = np.stack([own[rng.integers(0, len(own), (count, 3))] for own in corners], axis=1)
     return (weights * picked).sum(axis=-1)
 
 
 @every_stand
-def test_every_foot_is_reached_wherever_in_its_polygon_it_is(name, body):
+def test_every_point_of_a_polygon_is_reachable(name, body):
     setup, bounds = setup_of(name), polygons(name, body)
     stand = standing(setup, body)
     points = random_points(np.random.default_rng(7), corners_of(bounds, stand.rest), 1500)
@@ -64,7 +64,7 @@ def test_feet_in_neighbouring_polygons_keep_their_distance(name, body):
 
 
 @pytest.mark.parametrize("name", PRESETS)
-def test_straight_in_and_out_a_foot_may_go_a_good_part_of_as_far_as_it_could(name):
+def test_polygons_cover_most_of_the_reach_inwards_and_outwards(name):
     setup, bounds = setup_of(name), polygons(name)
     stand = standing(setup)
     mount = setup.robot.geometry.mount_x + 1j * setup.robot.geometry.mount_y
@@ -99,13 +99,13 @@ def test_radii_end_on_the_nearest_side():
     np.testing.assert_allclose(over.max(axis=-1), 0, atol=1e-12)
 
 
-def test_the_inside_of_a_point_outside_is_negative_room():
+def test_the_margin_of_a_point_outside_is_negative():
     bounds = np.full((1, 16), 0.1)
     np.testing.assert_allclose(polygon_margin(bounds, np.array([0.3 + 0j])).min(), -0.2)
     assert polygon_radii(bounds, np.array([0.3 + 0j]), NORMALS).min() == 0
 
 
-def test_a_foot_out_of_reach_at_rest_has_a_side_short_of_it():
+def test_an_unreachable_rest_foothold_is_outside_its_polygon():
     setup = setup_of("strider")
     stand = standing(setup)
     away = stand._replace(rest=stand.rest * np.array([1, 1, 2.5, 1, 1, 1]))
@@ -115,7 +115,7 @@ def test_a_foot_out_of_reach_at_rest_has_a_side_short_of_it():
     assert (np.delete(room, 2) > 0).all()
 
 
-def test_feet_nearer_to_each_other_than_allowed_may_not_move_towards_each_other():
+def test_feet_that_are_too_close_may_not_approach_further():
     setup = setup_of("strider")
     stand = standing(setup)
     between = np.abs(stand.rest[0] - stand.rest[1])
@@ -144,7 +144,7 @@ def knee_heights(robot, angles, stand):
 
 
 @pytest.mark.parametrize("name", ["strider", "phantomx"])
-def test_slack_is_negative_wherever_inverse_kinematics_says_no(name):
+def test_the_leg_margin_is_negative_where_inverse_kinematics_fails(name):
     setup = setup_of(name)
     stand, rng = standing(setup), np.random.default_rng(5)
     points = stand.rest + rng.uniform(-0.3, 0.3, (4000, 6)) + 1j * rng.uniform(-0.3, 0.3, (4000, 6))
@@ -171,7 +171,7 @@ TERRAINS = [
 
 @pytest.mark.parametrize("case", range(len(TERRAINS)))
 @pytest.mark.parametrize("name", ["strider", "phantomx"])
-def test_polygons_on_a_slope_are_within_reach_above_it_on_it_and_below_it(name, case):
+def test_polygons_on_a_slope_are_reachable_above_on_and_below_it(name, case):
     setup = setup_of(name)
     terrain, body = TERRAINS[case]
     posture, rest = posture_of(setup, body), setup.rest[:, 0] + 1j * setup.rest[:, 1]
@@ -195,7 +195,7 @@ def test_polygons_on_a_slope_are_within_reach_above_it_on_it_and_below_it(name, 
     assert over.min() > 0
 
 
-def test_a_body_and_a_ground_that_lean_alike_stand_as_on_level_ground():
+def test_a_body_parallel_to_a_slope_has_the_polygons_of_level_ground():
     setup = setup_of("strider")
     angle = 0.2
     flat = standing(setup)
@@ -209,7 +209,7 @@ def test_a_body_and_a_ground_that_lean_alike_stand_as_on_level_ground():
     np.testing.assert_allclose(np.array(leaning[:3]), np.array(level[:3]), atol=1e-12)
 
 
-def test_the_work_is_done_in_parts():
+def test_it_is_computed_incrementally():
     setup = setup_of("strider")
     assert sum(1 for _ in foot_workspace(setup.robot, standing(setup), foot_distance=0.02)) >= 6
 

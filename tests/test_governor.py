@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
 from sample_gait_states import EARTH, FACING, moment_of
-from sample_stances import envelope_of, setup_of
+from sample_stances import setup_of, velocity_limits_of
 from tarsus.control.filters import CriticallyDamped
 from tarsus.control.walk.reference_governor import governed_twist, polygon_excess
 from tarsus.control.walk.state import integrate_twist
@@ -21,7 +21,7 @@ seeds = st.integers(0, 10**6)
 def situation(seed, name="strider"):
     """Feet anywhere about their rest footholds, moving anyhow; a current target and a wish."""
     rng = np.random.default_rng(seed)
-    setup, limits = setup_of(name), envelope_of(name)
+    setup, limits = setup_of(name), velocity_limits_of(name)
     rest = limits.rest
     foot = rest * np.exp(1j * rng.uniform(-0.15, 0.15, 6)) + rng.uniform(-0.02, 0.02, (2, 6)).T @ [1, 1j]
     twist = CriticallyDamped(rng.uniform(-1, 1, 3) * [0.1, 0.1, 0.6], rng.uniform(-1, 1, 3) * [0.2, 0.2, 1.0])
@@ -123,7 +123,7 @@ def test_a_wish_that_works_is_taken_whole():
 
 @pytest.mark.parametrize("heading", np.arange(8) * np.pi / 4)
 def test_a_foot_at_its_edge_allows_no_step_further_out(heading):
-    setup, limits = setup_of("strider"), envelope_of("strider")
+    setup, limits = setup_of("strider"), velocity_limits_of("strider")
     # Leg 1 is as far back, seen along the heading, as it may be: the body stands still.
     way = np.exp(1j * heading)
     foot = limits.rest.copy()
@@ -136,7 +136,7 @@ def test_a_foot_at_its_edge_allows_no_step_further_out(heading):
 
 
 def test_where_the_current_target_does_not_work_any_more_as_much_less_as_does():
-    setup, limits = setup_of("strider"), envelope_of("strider")
+    setup, limits = setup_of("strider"), velocity_limits_of("strider")
     now = moment_of(setup, limits.rest, twist=CriticallyDamped.still(np.array([0.3, 0.0, 0.0])))
     given_as = {"begins": np.zeros(6), "ends": np.full(6, STANCE), "bounds": limits.bounds, "bandwidth": BANDWIDTH}
     current = np.array([0.5, 0.0, 0.0])
@@ -151,7 +151,7 @@ def test_where_the_current_target_does_not_work_any_more_as_much_less_as_does():
 
 @pytest.mark.parametrize("current", [(0.5, 0.0, 0.0), (0.0, 0.0, 0.0), (-0.2, 0.0, 0.0)])
 def test_where_not_even_stopping_keeps_the_feet_inside_it_does_not_go_on_as_it_was(current):
-    setup, limits = setup_of("strider"), envelope_of("strider")
+    setup, limits = setup_of("strider"), velocity_limits_of("strider")
     now = moment_of(setup, limits.rest, twist=CriticallyDamped.still(np.array([3.0, 0.0, 0.0])))
     given_as = {"begins": np.zeros(6), "ends": np.full(6, STANCE), "bounds": limits.bounds, "bandwidth": BANDWIDTH}
     assert worst(now, np.zeros(3), given_as) > 0.1

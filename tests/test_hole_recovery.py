@@ -1,4 +1,4 @@
-"""Feet over a hole: when they are drawn back, and how they swing once more."""
+"""Hole recovery: which requests are tried, and the repeated swing. Slope limit."""
 
 import numpy as np
 
@@ -12,7 +12,7 @@ from tarsus.control.workspace.stance_geometry import LEVEL_TERRAIN, TerrainEstim
 ON, BACK, LEFT = (((x, y, 0.0), "so") for x, y in ((0.1, 0.0), (-0.05, 0.0), (0.0, 0.1)))
 
 
-def test_what_led_there_is_not_tried_again_and_anything_else_once():
+def test_the_request_that_led_to_a_hole_is_not_tried_again_others_once():
     retreat = HoleRecovery()
     assert not retreat.consider(ON, 0j)
     assert not retreat.consider(ON, 0j)
@@ -37,7 +37,7 @@ def test_what_led_there_is_not_tried_again_and_anything_else_once():
     assert retreat.consider(ON, 0.01j)
 
 
-def test_a_foot_swings_once_more_from_where_it_hangs_to_another_foothold():
+def test_a_foot_swings_again_to_another_foothold():
     setup, rest = setup_of("strider"), rest_of("strider")
     gait, hole = setup.gait, np.arange(6) == 2
     swing = 1 - gait.duty_factor
@@ -63,7 +63,7 @@ def test_a_foot_swings_once_more_from_where_it_hangs_to_another_foothold():
     assert landed.step_number[2] == now.step_number[2] + 1
 
 
-def test_a_hand_that_trembles_asks_for_the_same():
+def test_requests_within_input_noise_are_equal():
     retreat = HoleRecovery()
     assert not retreat.consider(ON, 0j)
     assert not retreat.consider(((0.105, 0.01, 0.01), "so"), 0j)
@@ -74,7 +74,7 @@ def test_a_hand_that_trembles_asks_for_the_same():
     assert still.consider(((5e-3, 0.0, 0.0), "so"), 0j)
 
 
-def test_too_steep_a_slope_is_left_the_way_that_did_not_lead_there():
+def test_the_slope_limit_refuses_twists_towards_infeasible_ground_only():
     steep, known = SlopeLimit(), TerrainEstimate(0.1 + 0j, 0.6)
     assert not steep.forbids((0.1, 0.0, 0.0), known)
     # Who stands was led there by nothing.

@@ -1,4 +1,4 @@
-"""The solver of the walk's moments against the inverse kinematics with arrays."""
+"""Joint solver against the public inverse kinematics."""
 
 import numpy as np
 import pytest
@@ -13,7 +13,7 @@ SWAY = (0.01, 0.005, 0.004, 0.02, -0.03, 0.05)
 
 
 def moment(name, *, sway=(0.0,) * 6, out=1.0):
-    """In the middle of a step: every other foot in the air, half a swing on."""
+    """A state with every other foot at 0.4 of its swing."""
     setup, rest = setup_of(name), out * rest_of(name)
     up = np.arange(len(rest)) % 2 == 0
     now = moment_of(setup, rest, down=~up, swing_phase=np.where(up, 0.4, 0.0), start_height=np.full(len(rest), 0.002))
@@ -41,20 +41,20 @@ def expected(setup, now, sway):
 
 @pytest.mark.parametrize("sway", [(0.0,) * 6, SWAY], ids=["still", "swaying"])
 @pytest.mark.parametrize("name", list_robots())
-def test_it_is_the_inverse_kinematics_of_the_moment(name, sway):
+def test_it_is_the_inverse_kinematics_of_the_state(name, sway):
     setup, now = moment(name, sway=sway)
     solver = JointSolver(setup.robot)
     found = expected(setup, now, sway)
     assert found.ok.all()
     for _ in range(2):
         np.testing.assert_allclose(solver.angles(now), found.angles, atol=1e-9)
-    # Of another posture, what it knows of the first is no more true.
+    # The pose kept for the first posture is not used for another.
     higher = now._replace(posture=CriticallyDamped.still(now.posture.value + np.eye(13)[2] * 0.002))
     found = expected(setup, higher, sway)
     np.testing.assert_allclose(solver.angles(higher), found.angles, atol=1e-9)
 
 
-def test_out_of_reach_it_gives_the_nearest():
+def test_out_of_reach_it_gives_the_nearest_reachable_point():
     setup, now = moment("strider", out=2.0)
     found = expected(setup, now, (0.0,) * 6)
     assert not found.ok.all()

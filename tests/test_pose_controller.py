@@ -1,4 +1,4 @@
-"""How the body is carried: where its posture goes, how fast, and its sway."""
+"""Pose controller: target posture, speed limits and sway."""
 
 import math
 
@@ -13,7 +13,7 @@ LEVEL = np.array([0.0, 0.0, 0.1, 0.0, 0.0, 0.0, 0.03])
 SWAY = (0.0, 0.01, 0.0, 0.02, 0.0, 0.0)
 
 
-def test_there_it_is_at_once_and_nothing_is_left_to_go():
+def test_a_reached_posture_has_no_distance_left():
     carriage = PoseController(LEVEL)
     assert carriage.reached(carriage.target)
     assert carriage.reached(carriage.target + 1e-4)
@@ -23,7 +23,7 @@ def test_there_it_is_at_once_and_nothing_is_left_to_go():
 @pytest.mark.parametrize(
     ("axis", "way", "fastest"), [(0, 0.05, 0.08), (2, -0.03, 0.08), (4, 0.4, 0.5), (5, -1.0, 0.5), (6, 0.06, 0.08)]
 )
-def test_the_body_is_no_faster_than_it_may(axis, way, fastest):
+def test_the_body_keeps_to_its_speed_limits(axis, way, fastest):
     carriage = PoseController(LEVEL)
     there = LEVEL.copy()
     there[axis] += way
@@ -37,7 +37,7 @@ def test_the_body_is_no_faster_than_it_may(axis, way, fastest):
     assert 0.3 * min(fastest, 4 * abs(way) / math.e) < max(speeds) <= fastest
 
 
-def test_a_sway_is_no_more_than_is_slow_enough_and_ends():
+def test_a_sway_is_limited_by_acceleration_and_ends():
     carriage = PoseController(LEVEL)
     carriage.set_sway(SWAY, frequency=2.0, beats=2)
     calm = sway_fraction(np.array(SWAY), 2.0, 2)

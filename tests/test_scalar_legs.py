@@ -1,4 +1,4 @@
-"""The inverse kinematics in plain numbers against the one with arrays."""
+"""Scalar inverse kinematics against the array version."""
 
 import numpy as np
 import pytest
@@ -10,7 +10,7 @@ UP = np.array([0, 0, 1.0])
 
 
 @pytest.mark.parametrize("name", list_robots())
-def test_it_agrees_with_the_arrays(name):
+def test_it_agrees_with_the_array_version(name):
     robot = load_robot(name)
     quick, rng = ScalarLegs(robot), np.random.default_rng(1)
     stance = default_stance(robot)
@@ -27,7 +27,7 @@ def test_it_agrees_with_the_arrays(name):
             np.testing.assert_allclose(found, expected.angles, atol=1e-9)
         else:
             rejected += 1
-            # It leaves to the arrays whatever isn't plainly within reach and limits.
+            # Cases at the bounds are left to the array version.
             plain = np.isclose(expected.angles, robot.limits[..., 0]) | np.isclose(
                 expected.angles, robot.limits[..., 1]
             )
@@ -37,20 +37,20 @@ def test_it_agrees_with_the_arrays(name):
 
 
 def _plain(robot, body, feet):
-    """Whether every foot is in front of its coxa axis: turned away, legs reach others."""
+    """Whether every foot is in front of its coxa axis."""
     seen = body.inverse() @ feet
     out = (seen - robot.mount_position)[:, :2]
     heading = np.stack([np.cos(robot.mount_yaw), np.sin(robot.mount_yaw)], -1)
     return bool(((out * heading).sum(-1) > 0).all())
 
 
-def test_a_foot_beside_the_legs_plane_is_refused():
+def test_a_foot_beside_the_leg_plane_has_no_solution():
     robot = load_robot("strider").replace(femur_axis_offset=np.tile([0.05, 0.0], (6, 1)))
     axis = np.asarray(robot.mount_position) + np.array([0.01, 0, -0.1])
     assert ScalarLegs(robot).angles(axis.tolist(), np.eye(3).tolist(), (0.0, 0.0, 0.0)) is None
 
 
-def test_folded_and_far_feet_are_refused():
+def test_feet_too_near_or_too_far_have_no_solution():
     robot = load_robot("strider")
     feet = default_stance(robot)
     for scale in (3.0, 0.4):

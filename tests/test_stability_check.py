@@ -1,4 +1,4 @@
-"""Where the centre of mass is while the feet are about their polygons, and by how much these must shrink for it."""
+"""Shift of the centre of mass by the legs, and the safe fraction of the foot polygons."""
 
 import numpy as np
 import pytest
@@ -13,7 +13,7 @@ from tarsus.kinematics.mass import centre_of_mass
 
 @pytest.mark.parametrize("body", POSTURES)
 @pytest.mark.parametrize("name", PRESETS)
-def test_each_legs_own_shift_adds_up_to_that_of_the_whole_robot(name, body):
+def test_shifts_of_single_legs_add_up_to_that_of_the_robot(name, body):
     setup, stand, sides = setup_of(name), standing(setup_of(name), body), polygons(name, body)
     centre, shift = StabilityCheck(setup.robot, support_sets(setup.gait)).centre_of_mass(stand, sides)
     corners = polygon_ends(sides, stand.rest)[1]
@@ -25,7 +25,7 @@ def test_each_legs_own_shift_adds_up_to_that_of_the_whole_robot(name, body):
     np.testing.assert_allclose(found, whole[:, 0] + 1j * whole[:, 1], atol=1e-12)
 
 
-def test_without_masses_nothing_shifts_the_bodys_own_centre():
+def test_without_masses_the_centre_of_mass_does_not_shift():
     setup = setup_of(ring(6, link_mass=None, body_mass=None))
     stand = standing(setup, POSTURES[1])
     bounds = 0.05 + (NORMALS.conj() * stand.rest[:, None]).real
@@ -35,7 +35,7 @@ def test_without_masses_nothing_shifts_the_bodys_own_centre():
     assert not shift.any()
 
 
-def test_legs_that_hang_about_anywhere_take_a_wider_margin_and_shift_nothing():
+def test_excluded_legs_widen_the_margin():
     setup, stand, sides = setup_of("strider"), standing(setup_of("strider")), polygons("strider")
     sets = support_sets(setup_of("strider", "wave").gait, (1, 4))
     usual, wider = StabilityCheck(setup.robot, sets), StabilityCheck(setup.robot, sets, (1, 4))
@@ -46,7 +46,7 @@ def test_legs_that_hang_about_anywhere_take_a_wider_margin_and_shift_nothing():
 
 
 @pytest.mark.parametrize("gait", GAITS)
-def test_the_safe_share_is_the_first_of_all_that_works(gait):
+def test_bisection_finds_the_first_safe_fraction(gait):
     rest = 0.2 * np.exp(1j * np.pi / 6 * np.array([1, 3, 5, 7, 9, 11]))
     sets = support_sets(setup_of("strider", gait).gait)
     found = {safe_fraction(sets, size + (NORMALS.conj() * rest[:, None]).real, rest, 0j, margin=0.0) for size in _SIZES}

@@ -1,4 +1,4 @@
-"""What the feet and their supports allow: every support holds, steady walks at the largest share work."""
+"""Velocity limits: support polygons hold, and steady walks at the feasible fraction of a twist are feasible."""
 
 import itertools
 import math
@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from scipy.spatial import ConvexHull
 
 from gait_robots import PRESETS, ring
-from sample_stances import POSTURES, envelope_of, feet_at, pose_of, setup_of, standing
+from sample_stances import POSTURES, feet_at, pose_of, setup_of, standing, velocity_limits_of
 from tarsus.control.incremental import complete
 from tarsus.control.workspace.polygon import NORMALS, polygon_ends, polygon_margin
 from tarsus.control.workspace.stability import safe_fraction, support_sets
@@ -30,8 +30,8 @@ TWISTS = [(1, 0, 0), (0, -1, 0), (0.7, 0.7, 0), (0, 0, 1), (0, 0, -1), (0.5, 0, 
 
 
 def steady(name, gait, twist):
-    """The feet of a steady cycle at the largest share of a twist ``(241, legs, 3)``, contacts and its stroke."""
-    setup, limits = setup_of(name, gait), envelope_of(name, gait)
+    """Feet of a steady cycle at the feasible fraction of a twist ``(241, legs, 3)``, contacts and stroke."""
+    setup, limits = setup_of(name, gait), velocity_limits_of(name, gait)
     share, _ = limits.feasible_fraction(
         np.array(twist, dtype=float), stance_time=1.0, duty_factor=setup.gait.duty_factor
     )
@@ -46,7 +46,7 @@ def steady(name, gait, twist):
 
 
 @pytest.mark.parametrize("name", GAITS)
-def test_support_sets_are_the_least_of_those_seen_in_a_cycle(name):
+def test_support_sets_are_the_minimal_sets_of_a_cycle(name):
     gait = Gait.named(name)
     seen = {tuple(row) for row in gait.phase((np.arange(3600) + 0.5) / 3600)[2].tolist()}
     sets = {tuple(row) for row in support_sets(gait).tolist()}
@@ -57,16 +57,16 @@ def test_support_sets_are_the_least_of_those_seen_in_a_cycle(name):
         assert any(b and not a for a, b in zip(one, other, strict=True))
 
 
-def test_legs_that_are_gone_bear_nothing():
+def test_excluded_legs_bear_no_load():
     sets = support_sets(Gait.named("wave"), (1,))
     assert not sets[:, 1].any()
     assert {row.sum() for row in sets} == {4}
 
 
 @pytest.mark.parametrize(("name", "body"), list(itertools.product(PRESETS, POSTURES)))
-def test_no_support_tips_over_wherever_in_their_polygons_the_feet_are(name, body):
+def test_the_robot_is_stable_for_all_foot_positions_in_the_polygons(name, body):
     for gait in ("tripod", "wave"):
-        setup, limits = setup_of(name, gait), envelope_of(name, gait, body)
+        setup, limits = setup_of(name, gait), velocity_limits_of(name, gait, body)
         stand, rng = standing(setup, body), np.random.default_rng(2)
         corners = stand.rest[:, None] + polygon_ends(limits.bounds, stand.rest)[1]
         points = np.take_along_axis(corners[None], rng.integers(0, 16, (400, 6, 1)), axis=-1)[..., 0]
@@ -76,7 +76,7 @@ def test_no_support_tips_over_wherever_in_their_polygons_the_feet_are(name, body
             assert margin.min() >= 0.002
 
 
-def test_the_safe_share_is_the_largest_step_that_works():
+def test_the_safe_fraction_is_the_largest_feasible_one():
     rest = 0.2 * np.exp(1j * np.pi / 6 * np.array([1, 3, 5, 7, 9, 11]))
     bounds = 0.12 + (NORMALS.conj() * rest[:, None]).real
     sets = support_sets(Gait.named("tripod"))
@@ -99,7 +99,7 @@ def test_the_safe_share_is_the_largest_step_that_works():
     assert least(share + 0.1) < 0
 
 
-def test_legs_that_shift_the_centre_of_mass_leave_less_share():
+def test_shifts_of_the_centre_of_mass_reduce_the_safe_fraction():
     rest = 0.2 * np.exp(1j * np.pi / 6 * np.array([1, 3, 5, 7, 9, 11]))
     bounds = 0.05 + (NORMALS.conj() * rest[:, None]).real
     sets = support_sets(Gait.named("tripod"))
@@ -108,14 +108,14 @@ def test_legs_that_shift_the_centre_of_mass_leave_less_share():
     assert 0 < safe_fraction(sets, bounds, rest, 0j, margin=0.0, shift=shift) < 1.0
 
 
-def test_what_tips_over_at_rest_has_no_safe_share():
+def test_the_safe_fraction_is_zero_if_unstable_at_rest():
     rest = 0.2 * np.exp(1j * np.pi / 6 * np.array([1, 3, 5, 7, 9, 11]))
     bounds = 0.05 + (NORMALS.conj() * rest[:, None]).real
     assert safe_fraction(support_sets(Gait.named("tripod")), bounds, rest, 0.15 + 0j, margin=0.0) == 0.0
 
 
 @pytest.mark.parametrize("size", [0.05, 0.0])
-def test_two_feet_support_nothing_not_even_where_they_have_no_room(size):
+def test_two_feet_have_no_support_polygon(size):
     rest = 0.2 * np.exp(1j * np.pi / 6 * np.array([1, 3, 5, 7, 9, 11]))
     bounds = size + (NORMALS.conj() * rest[:, None]).real
     sets = np.array([[True, False, False, True, False, False]])
@@ -126,8 +126,8 @@ def test_two_feet_support_nothing_not_even_where_they_have_no_room(size):
 
 
 @pytest.mark.parametrize(("name", "gait"), list(itertools.product(PRESETS, GAITS)))
-def test_steady_walks_at_the_largest_share_reach_their_feet_and_stand_safely(name, gait):
-    setup, limits = setup_of(name, gait), envelope_of(name, gait)
+def test_steady_walks_at_the_feasible_fraction_are_reachable_and_stable(name, gait):
+    setup, limits = setup_of(name, gait), velocity_limits_of(name, gait)
     stand = standing(setup)
     for twist in TWISTS:
         feet, down, _ = steady(name, gait, twist)
@@ -139,7 +139,7 @@ def test_steady_walks_at_the_largest_share_reach_their_feet_and_stand_safely(nam
         assert (on_ground.real - limits.bounds)[down].max() <= 0
 
 
-def test_the_largest_share_is_most_of_the_longest_stroke():
+def test_the_feasible_fraction_is_most_of_the_longest_stroke():
     # Measured on strider: 0.75 to 0.83 of it straight on, sideways and turning; 0.58 in the worst curve.
     setup = setup_of("strider")
     for twist in TWISTS:
@@ -150,8 +150,8 @@ def test_the_largest_share_is_most_of_the_longest_stroke():
 
 
 @given(st.tuples(st.floats(-1, 1), st.floats(-1, 1), st.floats(-5, 5)), st.floats(0.1, 10))
-def test_a_multiple_of_a_twist_has_that_much_less_share(twist, factor):
-    limits = envelope_of("phantomx")
+def test_the_feasible_fraction_is_inverse_to_the_size_of_the_twist(twist, factor):
+    limits = velocity_limits_of("phantomx")
     if max(map(abs, twist)) < 1e-3:
         twist = (0.1, 0.0, 0.0)
     share, _ = limits.feasible_fraction(np.array(twist), stance_time=0.5, duty_factor=0.5)
@@ -159,19 +159,19 @@ def test_a_multiple_of_a_twist_has_that_much_less_share(twist, factor):
     assert other * factor == pytest.approx(share, rel=1e-9)
 
 
-def test_a_twist_beyond_all_measure_is_cut_too():
-    limits = envelope_of("strider")
+def test_extremely_large_twists_are_limited():
+    limits = velocity_limits_of("strider")
     share, _ = limits.feasible_fraction(np.array([1e300, -1e300, 1e308]), stance_time=0.5, duty_factor=0.5)
     small, _ = limits.feasible_fraction(np.array([1e-8, -1e-8, 1.0]), stance_time=0.5, duty_factor=0.5)
     assert share * 1e308 == pytest.approx(small, rel=1e-9)
 
 
-def test_no_twist_at_all_is_never_too_much():
-    assert envelope_of("strider").feasible_fraction(np.zeros(3), stance_time=1.0, duty_factor=0.5)[0] > 1e6
+def test_a_zero_twist_is_feasible():
+    assert velocity_limits_of("strider").feasible_fraction(np.zeros(3), stance_time=1.0, duty_factor=0.5)[0] > 1e6
 
 
-def test_the_leg_with_the_least_room_is_the_one_that_stops_it():
-    limits = envelope_of("strider")
+def test_the_leg_with_the_smallest_margin_limits_the_twist():
+    limits = velocity_limits_of("strider")
     narrow = limits.margins.copy()
     narrow[4] *= 0.3
     found = VelocityLimits(limits.bounds, narrow, limits.rest)
@@ -181,8 +181,8 @@ def test_the_leg_with_the_least_room_is_the_one_that_stops_it():
     assert share < limits.feasible_fraction(np.array([0.1, 0.02, 0.0]), stance_time=1.0, duty_factor=0.5)[0]
 
 
-def test_joints_that_allow_so_long_a_stroke_allow_their_share_of_straight_and_turning_together():
-    limits = with_stroke_limits(envelope_of("strider"), 0.02, 0.01, duty_factor=0.5)
+def test_stroke_limits_bound_the_sum_of_straight_and_turning():
+    limits = with_stroke_limits(velocity_limits_of("strider"), 0.02, 0.01, duty_factor=0.5)
     outermost = np.abs(limits.rest).max()
     for forward, turn in ((0.1, 0.0), (0.0, 0.4), (0.06, 0.3)):
         share, _ = limits.feasible_fraction(np.array([forward, 0.0, turn]), stance_time=0.5, duty_factor=0.5)
@@ -193,7 +193,7 @@ def test_joints_that_allow_so_long_a_stroke_allow_their_share_of_straight_and_tu
 
 
 @pytest.mark.parametrize("duty_factor", [0.3, 0.5, 2 / 3, 5 / 6])
-def test_the_overhang_is_how_far_behind_a_foot_is_seen_in_a_steady_cycle(duty_factor):
+def test_the_overhang_is_the_greatest_lag_of_a_foot_in_a_steady_cycle(duty_factor):
     gait = Gait(duty_factor, (0.0,))
     feet, _ = cycle_feet(gait, np.zeros((1, 3)), (1.0, 0.0, 0.0), swing_height=0.02, phases=np.linspace(0, 1, 20001))
     farthest = np.abs(feet[..., 0]).max()
@@ -201,8 +201,8 @@ def test_the_overhang_is_how_far_behind_a_foot_is_seen_in_a_steady_cycle(duty_fa
     assert stance_overhang(duty_factor) > 0.5
 
 
-def test_capping_keeps_each_foot_within_the_longest_stroke_of_its_rest_foothold():
-    limits = envelope_of("strider")
+def test_stroke_limits_bound_the_distance_from_the_rest_foothold():
+    limits = velocity_limits_of("strider")
     less = with_stroke_limits(limits, 0.02, 0.03, duty_factor=0.5)
     room = polygon_margin(less.bounds, less.rest)
     np.testing.assert_allclose(
@@ -212,7 +212,7 @@ def test_capping_keeps_each_foot_within_the_longest_stroke_of_its_rest_foothold(
     np.testing.assert_array_equal(less.margins, limits.margins)
 
 
-def test_capping_leaves_legs_unbounded_that_do_not_step():
+def test_stroke_limits_leave_excluded_legs_unbounded():
     setup = setup_of("strider", "wave")
     sets = support_sets(setup.gait, (2,))
     found = complete(
@@ -223,10 +223,10 @@ def test_capping_leaves_legs_unbounded_that_do_not_step():
     assert np.isfinite(np.delete(less.bounds, 2, axis=0)).all()
 
 
-def test_what_is_possible_in_both_is_in_each():
+def test_the_intersection_is_feasible_in_both():
     one, other = (
-        envelope_of("strider"),
-        with_stroke_limits(envelope_of("strider", body=POSTURES[1]), 0.05, 0.04, duty_factor=0.5),
+        velocity_limits_of("strider"),
+        with_stroke_limits(velocity_limits_of("strider", body=POSTURES[1]), 0.05, 0.04, duty_factor=0.5),
     )
     both = one.intersection(other)
     for limits in (one, other):
@@ -238,10 +238,12 @@ def test_what_is_possible_in_both_is_in_each():
     at_once = complete(
         velocity_limits(setup_of("strider").robot, stands, sets, foot_distance=setup_of("strider").foot_distance)
     )
-    np.testing.assert_array_equal(at_once.bounds, one.intersection(envelope_of("strider", body=POSTURES[1])).bounds)
+    np.testing.assert_array_equal(
+        at_once.bounds, one.intersection(velocity_limits_of("strider", body=POSTURES[1])).bounds
+    )
 
 
-def test_a_body_that_stands_outside_its_support_has_no_room():
+def test_a_centre_of_mass_outside_its_support_polygon_is_infeasible():
     # Four legs in a wave: on three feet the middle of the body is on an edge.
     setup = setup_of(ring(4), "wave")
     found = complete(
@@ -252,8 +254,8 @@ def test_a_body_that_stands_outside_its_support_has_no_room():
     assert found.feasible_fraction(np.array([0.1, 0, 0]), stance_time=1.0, duty_factor=0.75)[0] == 0
 
 
-def test_polygons_that_shrink_for_support_stay_convex_and_hold_their_rest_footholds():
-    limits = envelope_of("freenove")
+def test_polygons_reduced_for_stability_stay_convex_around_their_rest_footholds():
+    limits = velocity_limits_of("freenove")
     for leg, ends in enumerate(polygon_ends(limits.bounds, limits.rest)[1]):
         corners = ends[ends != 0]
         hull = ConvexHull(np.stack([corners.real, corners.imag], axis=-1))
@@ -263,9 +265,9 @@ def test_polygons_that_shrink_for_support_stay_convex_and_hold_their_rest_footho
     assert feet_at(limits.rest).shape == (6, 3)
 
 
-def test_without_any_stroke_nothing_of_a_twist_works():
-    """Where a polygon has no room at all, the joints allow no stroke either."""
-    stuck = with_stroke_limits(envelope_of("strider"), 0.0, 0.0, duty_factor=0.5)
+def test_without_any_stroke_the_feasible_fraction_is_zero():
+    """A polygon without margin leaves no stroke for the joints either."""
+    stuck = with_stroke_limits(velocity_limits_of("strider"), 0.0, 0.0, duty_factor=0.5)
     for twist in ((0.1, 0.0, 0.0), (0.0, 0.0, 0.3)):
         share, _ = stuck.feasible_fraction(np.array(twist), stance_time=0.5, duty_factor=0.5)
         assert share == pytest.approx(0.0, abs=1e-9)
