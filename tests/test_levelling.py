@@ -18,7 +18,6 @@ from tarsus.kinematics.mass import centre_of_mass
 from tarsus.kinematics.pose import Pose
 
 PAGE = (Path(__file__).parents[1] / "docs" / "ground.md").read_text(encoding="utf-8")
-BEFORE = GroundPlane(1.0, 2.0, 3.0, 0.5, -0.25)
 HERE = CommandedAttitude()
 MOST_TILT, MOST_SHIFT = math.radians(20), 0.04
 
