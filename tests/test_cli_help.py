@@ -1,4 +1,4 @@
-"""Every command's help shows examples, and every example does what it says."""
+"""Help of every command, with examples that run."""
 
 import shlex
 import subprocess
@@ -32,7 +32,7 @@ EXAMPLES = sorted({example for command in COMMANDS.values() for example in examp
 
 
 @pytest.mark.parametrize("path", COMMANDS, ids=" ".join)
-def test_help_shows_the_examples(path):
+def test_help_shows_examples(path):
     result = run(*path, "--help")
     assert result.exit_code == 0
     examples = examples_of(COMMANDS[path])
@@ -43,7 +43,7 @@ def test_help_shows_the_examples(path):
 
 
 @pytest.mark.parametrize("path", [path for path, command in COMMANDS.items() if not hasattr(command, "commands")])
-def test_every_command_takes_json_and_tells_what_each_option_is(path):
+def test_every_command_has_json_and_documented_options(path):
     options = [option for option in COMMANDS[path].params if isinstance(option, click.Option)]
     assert "--json" in {flag for option in options for flag in option.opts}
     assert all(option.help for option in options)
@@ -64,24 +64,24 @@ def test_examples_run(example, tmp_path, monkeypatch):
             assert Path(words[words.index(option) + 1]).exists()
 
 
-def test_the_version():
+def test_version():
     assert run("--version").stdout == f"tarsus, version {__version__}\n"
 
 
-def test_without_a_command_the_help_is_shown():
+def test_help_without_a_command():
     result = run()
     assert result.exit_code == 2
     assert result.stderr.startswith("Usage: tarsus")
 
 
-def test_a_command_that_is_none_is_named():
+def test_unknown_command():
     result = run("wlak")
     assert result.exit_code == 2
     assert "wlak" in result.stderr
 
 
 @pytest.mark.parametrize("command", [[], ["walk"], ["robots", "list"]])
-def test_help_loads_nothing_heavy(command):
+def test_help_imports_nothing_heavy(command):
     code = (
         "import sys\nfrom tarsus.cli import main\n"
         f"try:\n    main({[*command, '--help']!r})\nexcept SystemExit as done:\n    assert not done.code\n"
@@ -91,7 +91,7 @@ def test_help_loads_nothing_heavy(command):
     assert answer.stdout.splitlines()[-1] == "[]"
 
 
-def test_the_installed_command_runs():
+def test_installed_command():
     script = Path(sys.executable).with_name("tarsus")
     answer = subprocess.run([script, "pose", "strider", "--pitch", "26"], capture_output=True, text=True, check=False)
     assert answer.returncode == 1
@@ -99,7 +99,7 @@ def test_the_installed_command_runs():
     assert answer.stderr == ""
 
 
-def test_a_reader_that_has_enough_is_no_error():
+def test_closed_pipe_is_no_error():
     script = Path(sys.executable).with_name("tarsus")
     with subprocess.Popen([script, "robots", "schema"], stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
         process.stdout.close()

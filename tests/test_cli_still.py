@@ -1,4 +1,4 @@
-"""`tarsus pose` and `tarsus rest`: the same numbers as from Python, and every way of giving angles."""
+"""`tarsus pose` and `tarsus rest`: numbers match Python; all formats of angles."""
 
 import json
 import math
@@ -40,7 +40,7 @@ def posed(roll=0.0, pitch=0.0, yaw=0.0, by=(0.0, 0.0, 0.0), body_height=110.0, k
         ("--z 300", {"by": (0, 0, 300)}),
     ],
 )
-def test_pose_gives_the_angles_of_inverse_kinematics(options, move):
+def test_pose_matches_inverse_kinematics(options, move):
     code, document = run_json("pose", "strider", *options.split())
     solution = posed(**move)
     np.testing.assert_allclose(document["angles_deg"], np.degrees(solution.angles), atol=1e-6)
@@ -50,24 +50,24 @@ def test_pose_gives_the_angles_of_inverse_kinematics(options, move):
     if not solution.ok:
         assert document["problems"][: (solution.reach != 0).sum()] == solution.explain().splitlines()
         start = Pose.from_rpy(position=(0, 0, 0.11))
-        share = reachable_share(STRIDER, solution.feet, start, solution.body)
-        assert document["share_that_works"] == pytest.approx(share, abs=1e-6)
+        fraction = reachable_share(STRIDER, solution.feet, start, solution.body)
+        assert document["feasible_fraction"] == pytest.approx(fraction, abs=1e-6)
 
 
-def test_the_share_that_works_works():
+def test_feasible_fraction_is_the_limit():
     _, document = run_json("pose", "strider", "--pitch", "26")
-    share = document["share_that_works"]
-    assert run("pose", "strider", "--pitch", f"{26 * share - 0.01:.3f}").exit_code == 0
-    assert run("pose", "strider", "--pitch", f"{26 * share + 0.01:.3f}").exit_code == 1
+    fraction = document["feasible_fraction"]
+    assert run("pose", "strider", "--pitch", f"{26 * fraction - 0.01:.3f}").exit_code == 0
+    assert run("pose", "strider", "--pitch", f"{26 * fraction + 0.01:.3f}").exit_code == 1
 
 
-def test_knees_down_are_knees_down():
+def test_knees_down():
     _, document = run_json("pose", "mithi", "--knee", "down")
     assert (np.array(document["angles_deg"])[:, 2] > 0).all()
-    assert document["share_that_works"] is None
+    assert document["feasible_fraction"] is None
 
 
-def test_pose_prints_the_angles_the_margin_and_the_verdict():
+def test_pose_output():
     good = run("pose", "strider", "--pitch", "5")
     assert good.exit_code == 0
     for angle in posed(pitch=5).angles[1]:
@@ -76,20 +76,20 @@ def test_pose_prints_the_angles_the_margin_and_the_verdict():
     bad = run("pose", "strider", "--pitch", "26")
     assert bad.exit_code == 1
     assert "FEMUR_LIMIT" in bad.stdout
-    assert "tips over" in bad.stdout
-    assert "% of this move works" in bad.stdout
-    assert "none, no leg stands" in run("pose", "strider", "--z", "300").stdout
+    assert "the robot tips" in bad.stdout
+    assert "% of this displacement" in bad.stdout
+    assert "none, no leg reaches its foothold" in run("pose", "strider", "--z", "300").stdout
     assert "assumed: the robot file gives no masses" in run("pose", "mithi").stdout
 
 
-def test_no_leg_has_no_margin_in_json():
+def test_no_margin_in_json_if_no_leg_reaches():
     _, document = run_json("pose", "strider", "--z", "300")
     assert document["margin_mm"] is None
     assert document["stands"] is False
 
 
 @pytest.mark.parametrize(
-    ("options", "code", "said"),
+    ("options", "code", "text"),
     [
         ("--pitch nan", 2, "'nan' is not a number"),
         ("--z 1e300", 2, "is not a number between"),
@@ -99,13 +99,13 @@ def test_no_leg_has_no_margin_in_json():
         ("--picture pose.nonsense", 2, "can't be written"),
     ],
 )
-def test_poses_asked_for_wrongly_are_told(options, code, said):
+def test_pose_errors(options, code, text):
     result = run("pose", "strider", *options.split())
     assert result.exit_code == code, result.output
-    assert said in result.stderr
+    assert text in result.stderr
 
 
-def test_poses_and_rests_are_drawn(tmp_path):
+def test_figures_of_pose_and_rest(tmp_path):
     result = run("pose", "strider", "--pitch", "26", "--picture", tmp_path / "pose.png")
     assert result.exit_code == 1
     assert f"wrote {tmp_path / 'pose.png'}" in result.stdout
@@ -120,7 +120,7 @@ def test_poses_and_rests_are_drawn(tmp_path):
 # Resting
 
 
-def test_angles_as_arguments_alike_and_from_files_are_the_same(tmp_path):
+def test_formats_of_angles_are_equivalent(tmp_path):
     numbers = [float(angle) for angle in EIGHTEEN]
     forms = {
         "flat.json": numbers,
@@ -140,7 +140,7 @@ def test_angles_as_arguments_alike_and_from_files_are_the_same(tmp_path):
     assert document["contacts"] == list(STRIDER.leg_codes)
 
 
-def test_what_pose_prints_can_be_laid_down(tmp_path):
+def test_output_of_pose_is_input_of_rest(tmp_path):
     file = tmp_path / "pose.json"
     file.write_text(run("pose", "strider", "--pitch", "5", "--json").stdout, encoding="utf-8")
     _, document = run_json("rest", "strider", "--file", file)
@@ -148,7 +148,7 @@ def test_what_pose_prints_can_be_laid_down(tmp_path):
     assert document["body"]["z_mm"] == pytest.approx(110, abs=1e-3)
 
 
-def test_rest_says_how_it_lies():
+def test_rest_output():
     result = run("rest", "strider", "--all", "0,80,0")
     assert result.exit_code == 0
     assert "lies on its belly" in result.stdout
@@ -157,20 +157,20 @@ def test_rest_says_how_it_lies():
     assert "assumed" in run("rest", "mithi", "--all", "0,40,-100").stdout
 
 
-def test_angles_out_of_limits_are_not_possible():
+def test_angles_outside_their_limits():
     result = run("rest", "strider", "--all", "0,-90,-60")
     assert result.exit_code == 1
-    assert "front left: the femur at -90 deg is out of its limits, -80 to 100" in result.stdout
+    assert "front left: femur angle -90 deg is outside its limits, -80 to 100 deg" in result.stdout
     code, document = run_json("rest", "strider", "--all", "0,-90,-60")
     assert code == 1
     assert len(document["problems"]) == 6
 
 
 @pytest.mark.parametrize(
-    ("args", "said"),
+    ("args", "text"),
     [
-        ([], "in one way"),
-        (["--all", "0,0,0", *EIGHTEEN], "in one way"),
+        ([], "either as arguments"),
+        (["--all", "0,0,0", *EIGHTEEN], "either as arguments"),
         (EIGHTEEN[:-1], "17 angles; strider needs 18"),
         ([*EIGHTEEN, "1"], "19 angles"),
         ([*EIGHTEEN[:-1], "nan"], "'nan' is not an angle"),
@@ -182,22 +182,22 @@ def test_angles_out_of_limits_are_not_possible():
         (["--file", "/"], "Is a directory"),
     ],
 )
-def test_angles_given_wrongly_are_told(args, said):
+def test_invalid_angles(args, text):
     result = run("rest", "strider", *args)
     assert result.exit_code == 2, result.output
-    assert said in result.stderr
+    assert text in result.stderr
     code, document = run_json("rest", "strider", *args)
     assert code == 2
-    assert said in document["error"]
+    assert text in document["error"]
 
 
 @pytest.mark.parametrize(
-    ("content", "said"),
+    ("content", "text"),
     [
-        (b"", "this is not JSON"),
-        (os.urandom(100), "this is not JSON"),
-        (b"\xff\xfe\x00", "this is not JSON"),
-        (b"[" * 100_000, "this is not JSON"),
+        (b"", "not valid JSON"),
+        (os.urandom(100), "not valid JSON"),
+        (b"\xff\xfe\x00", "not valid JSON"),
+        (b"[" * 100_000, "not valid JSON"),
         (b"[" + b"0," * 5_000_000 + b"0]", "larger than 1 MiB"),
         (b"7", "expected a list"),
         (b'{"angles": []}', "expected a list"),
@@ -212,10 +212,10 @@ def test_angles_given_wrongly_are_told(args, said):
     ],
     ids=range(15),
 )
-def test_files_of_angles_that_are_none_are_told(tmp_path, content, said):
+def test_invalid_angle_files(tmp_path, content, text):
     file = tmp_path / "angles.json"
     file.write_bytes(content)
     result = run("rest", "strider", "--file", file)
     assert result.exit_code == 2, result.output
-    assert said in result.stderr
+    assert text in result.stderr
     assert len(result.stderr) < 2000

@@ -1,4 +1,4 @@
-"""`tarsus walk`: what it says is what `plan_walk` says; what is not possible is refused with what would work."""
+"""`tarsus walk`: numbers match `plan_walk`; impossible walks are rejected with a feasible alternative."""
 
 import csv
 import json
@@ -19,7 +19,7 @@ STRIDER = load_robot("strider")
 
 
 def expected(motion):
-    """A motion's summary as JSON gives it back."""
+    """Summary of a motion after a JSON round trip."""
     plain = json.loads(json.dumps(walk_summary(motion), default=lambda value: value.tolist()))
     return json.loads(json.dumps(plain), parse_float=lambda text: round(float(text), 6))
 
@@ -49,28 +49,28 @@ def expected(motion):
         ("--distance 100 --speed 40", "tripod", straight_path(0.1), {"speed": 0.04}),
     ],
 )
-def test_the_numbers_are_those_of_the_same_walk_in_python(options, gait, path, more):
+def test_numbers_match_plan_walk(options, gait, path, more):
     code, document = run_json("walk", "strider", *options.split())
     assert document.pop("files") == []
     motion = plan_walk(STRIDER, Gait.named(gait), path, **more)
-    wanted = expected(motion)
+    reference = expected(motion)
     assert code == (0 if motion.ok else 1)
-    assert document.keys() == wanted.keys()
-    for key, value in wanted.items():
+    assert document.keys() == reference.keys()
+    for key, value in reference.items():
         if isinstance(value, float) or key in ("end", "least_margin"):
             assert document[key] == pytest.approx(value, abs=2e-6), key
         else:
             assert str(document[key])[:40] == str(value)[:40], key
 
 
-def test_the_default_is_half_a_metre_straight_ahead_with_the_robots_own_gait():
+def test_default_walk():
     code, document = run_json("walk", "phantomx")
     assert code == 0
     assert document["end"] == {"x_mm": 500, "y_mm": 0, "turned_deg": 0}
     assert document["gait"] == load_robot("phantomx").gait.name
 
 
-def test_it_prints_a_table_and_the_verdict():
+def test_table_and_verdict():
     result = run("walk", "strider", "--distance", "200")
     assert result.exit_code == 0
     assert result.stdout.strip().endswith("possible")
@@ -79,7 +79,7 @@ def test_it_prints_a_table_and_the_verdict():
     assert "wrote" not in result.stdout
 
 
-def test_out_gets_the_table_the_pictures_and_the_animation(tmp_path):
+def test_output_files(tmp_path):
     out = tmp_path / "deep" / "walk"
     options = "--distance 30 --stroke 20 --cycle 0.6 --rate 50"
     code, document = run_json("walk", "strider", *options.split(), "--out", out)
@@ -99,7 +99,7 @@ def test_out_gets_the_table_the_pictures_and_the_animation(tmp_path):
     assert (out / "walk.gif").stat().st_size < 3_000_000
 
 
-def test_without_the_animation_it_says_where_the_files_are(tmp_path):
+def test_output_files_without_animation(tmp_path):
     result = run("walk", "mithi", "--distance", "100", "--rate", "20", "--no-animation", "--out", tmp_path)
     assert result.exit_code == 0
     assert result.stderr == ""
@@ -108,7 +108,7 @@ def test_without_the_animation_it_says_where_the_files_are(tmp_path):
     assert not (tmp_path / "walk.gif").exists()
 
 
-def test_a_stroke_out_of_reach_is_refused_with_the_longest_that_works(tmp_path):
+def test_unreachable_stroke_gives_the_longest_feasible_one(tmp_path):
     code, document = run_json("walk", "strider", "--distance", "300", "--stroke", "400")
     assert code == 1
     assert document["exit_code"] == 1
@@ -124,7 +124,7 @@ def test_a_stroke_out_of_reach_is_refused_with_the_longest_that_works(tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
-def test_a_walk_that_is_too_fast_is_not_possible_and_says_why(tmp_path):
+def test_too_fast_walk(tmp_path):
     args = ("walk", "strider", "--distance", "100", "--speed", "900")
     code, document = run_json(*args, "--out", tmp_path, "--no-animation")
     assert code == 1
@@ -137,14 +137,14 @@ def test_a_walk_that_is_too_fast_is_not_possible_and_says_why(tmp_path):
     assert document["problems"][0] in result.stdout
 
 
-def test_feet_too_near_are_refused():
+def test_feet_too_close():
     result = run("walk", "strider", "--distance", "300", "--foot-distance", "220", "--stroke", "180")
     assert result.exit_code == 1
     assert "220.0 mm are asked for" in result.stderr
 
 
 @pytest.mark.parametrize(
-    ("options", "said"),
+    ("options", "text"),
     [
         ("--gait rippel", "Did you mean 'ripple'?"),
         ("--stroke -5", "stroke"),
@@ -158,8 +158,8 @@ def test_feet_too_near_are_refused():
         ("--curve 1e9", "at most"),
         ("--twist 1,2 --duration 3", "is not 3 numbers"),
         ("--twist 0,0,0 --duration 3", "goes nowhere"),
-        ("--twist 10,0,0", "go together"),
-        ("--duration 3", "go together"),
+        ("--twist 10,0,0", "must be given together"),
+        ("--duration 3", "must be given together"),
         ("--twist 10,0,0 --duration -1", "duration"),
         ("--centre 1,2", "--centre needs --curve"),
         ("--curve 10 --distance 100", "exclude each other"),
@@ -171,23 +171,23 @@ def test_feet_too_near_are_refused():
         ("--cycle -1", "cycle"),
         ("--swing-height -1", "swing_height"),
         ("--stroke 100 --speed 100 --cycle 9", "contradict"),
-        ("--out /dev/null/walk", "nothing can be written there"),
-        ("--out /proc", "nothing can be written there"),
+        ("--out /dev/null/walk", "is not writable"),
+        ("--out /proc", "is not writable"),
         ("--bogus", "No such option"),
     ],
 )
-def test_what_is_asked_for_wrongly_is_told_in_a_sentence(options, said):
+def test_usage_errors(options, text):
     result = run("walk", "strider", *options.split())
     assert result.exit_code == 2, result.output
-    assert said in result.stderr
+    assert text in result.stderr
     assert result.stdout == ""
     code, document = run_json("walk", "strider", *options.split())
     assert code == document["exit_code"] == 2
-    assert said in document["error"]
+    assert text in document["error"]
 
 
 @pytest.mark.parametrize(
-    ("options", "said"),
+    ("options", "text"),
     [
         ("--body-height 900", "nowhere reaches the ground"),
         ("--tilt 60,0", "can't step"),
@@ -195,13 +195,13 @@ def test_what_is_asked_for_wrongly_is_told_in_a_sentence(options, said):
         ("--body-height -500", "nowhere reaches the ground"),
     ],
 )
-def test_what_no_leg_can_do_is_not_possible(options, said):
+def test_impossible_walks(options, text):
     result = run("walk", "strider", *options.split())
     assert result.exit_code == 1, result.output
-    assert said in result.stderr
+    assert text in result.stderr
 
 
-def test_where_somebody_watches_there_is_a_bar_on_stderr(monkeypatch, tmp_path):
+def test_progress_bar_on_a_terminal(monkeypatch, tmp_path):
     args = ("walk", "strider", "--distance", "60", "--rate", "20", "--no-animation", "--out", tmp_path)
     monkeypatch.setenv("FORCE_COLOR", "1")
     monkeypatch.setenv("COLUMNS", "70")
@@ -211,7 +211,7 @@ def test_where_somebody_watches_there_is_a_bar_on_stderr(monkeypatch, tmp_path):
     assert "gait.png" in watched.stdout
 
 
-def test_a_gait_that_is_not_for_so_many_legs_is_refused(tmp_path):
+def test_gait_for_another_number_of_legs(tmp_path):
     text = load_robot("strider").to_dict()
     text["legs"] = [text["legs"][leg] for leg in (0, 2, 3, 5)]
     robot = type(STRIDER).from_dict(text)
@@ -221,7 +221,7 @@ def test_a_gait_that_is_not_for_so_many_legs_is_refused(tmp_path):
     assert "not for 4 legs" in result.stderr
 
 
-def test_a_table_that_can_not_be_written_is_told(tmp_path):
+def test_unwritable_table(tmp_path):
     (tmp_path / "walk.csv").mkdir()
     result = run("walk", "strider", "--distance", "100", "--out", tmp_path)
     assert result.exit_code == 2

@@ -48,14 +48,14 @@ def known_robots():
         motion = sample_motion(name, body_height=walk.motion.body_height + 0.03)
         high, standing = joint_loads(motion.robot, motion).factor, six_feet(name)
         thermal_load = (5 * walk.rms / walk.stall_torque).max()
-        cells = [
-            name,
-            outcome,
-            _worst(walk.factor),
-            class_of(walk.factor.min()),
-            f"{thermal_load:.0%}".replace("%", " %"),
+        cells = [name, outcome, _worst(walk.factor), class_of(walk.factor.min())]
+        cells += [
+            f"{thermal_load * 100:.0f} %",
+            _worst(high),
+            class_of(high.min()),
+            _worst(standing),
+            class_of(standing.min()),
         ]
-        cells += [_worst(high), class_of(high.min()), _worst(standing), class_of(standing.min())]
         lines.append(f"| {' | '.join(cells)} |")
     return lines
 

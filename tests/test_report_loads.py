@@ -1,4 +1,4 @@
-"""The pictures, tables and page of a walk's loads show the loads, and ask no other place for anything."""
+"""Figures, tables and the self-contained page of joint loads."""
 
 import base64
 import html
@@ -36,7 +36,7 @@ def bare():
 
 
 def speedless():
-    """The strider on servos whose speed is unknown."""
+    """The strider with servos of unknown no-load speed."""
     found = sample_loads()
     return joint_loads(found.robot.replace(servos=((Servo(name="slow", stall_torque=9.0),) * 3,) * 6), found.motion)
 
@@ -47,7 +47,7 @@ def summary_of(found):
 
 @pytest.mark.parametrize("plot", PLOTS)
 @pytest.mark.parametrize("found", [sample_loads, bare, speedless, lambda: sample_loads("burnt-5kg")])
-def test_nothing_is_cut_off_and_every_axis_has_its_unit(plot, found):
+def test_figures_fit_and_axes_have_units(plot, found):
     figure = plot(found())
     figure.canvas.draw()
     tight, size = figure.get_tightbbox(), figure.get_size_inches()
@@ -56,10 +56,10 @@ def test_nothing_is_cut_off_and_every_axis_has_its_unit(plot, found):
     assert tight.x1 <= size[0] + 0.01
     assert tight.y1 <= size[1] + 0.01
     for axes in figure.axes:
-        assert "(N m)" in axes.get_ylabel() or axes.get_ylabel() == "foot down"
+        assert "(N m)" in axes.get_ylabel() or axes.get_ylabel() == "contact"
 
 
-def test_the_torques_of_every_leg_are_drawn_thick_while_its_foot_is_down():
+def test_torques_are_drawn_thick_in_stance():
     found = sample_loads()
     figure = plot_torques(found)
     for joint in range(3):
@@ -70,26 +70,26 @@ def test_the_torques_of_every_leg_are_drawn_thick_while_its_foot_is_down():
             assert np.isnan(thick.get_ydata()[~down]).all()
 
 
-def test_limits_in_sight_are_lines_and_the_others_are_named():
+def test_visible_limits_are_drawn_and_others_listed():
     found = sample_loads()
     figure = plot_torques(found)
     stall = found.stall_torque[0, 0]
     assert servo_limits(found, 1) == [
         (f"stall {stall:.2f} N m", stall),
-        ("1/3: factor 3", stall / 3),
-        ("1/5: lasting", stall / 5),
+        ("1/3 (factor 3)", stall / 3),
+        ("1/5 (continuous)", stall / 5),
     ]
     heights = {float(line.get_ydata()[0]) for line in figure.axes[1].lines if len(line.get_ydata()) == 2}
     assert heights == {stall, stall / 3, stall / 5}
     coxa = [text.get_text() for text in figure.axes[0].texts]
-    assert any(text.startswith(f"far above: stall {stall:.2f} N m") for text in coxa)
+    assert any(text.startswith(f"beyond the axis: stall {stall:.2f} N m") for text in coxa)
     top = figure.axes[1].get_ylim()[1]
     assert top > max(stall, found.peak[:, 1].max())
     assert servo_limits(bare(), 1) == []
     assert any("no servo in the robot file" in text.get_text() for text in plot_torques(bare()).axes[1].texts)
 
 
-def test_the_weakest_servo_of_a_kind_is_the_one_drawn():
+def test_limits_are_those_of_the_weakest_servo():
     found = sample_loads()
     rows = [list(row) for row in found.robot.servos]
     rows[3][1] = Servo(name="weak", stall_torque=1.0, no_load_speed=4.0)
@@ -102,7 +102,7 @@ def test_the_weakest_servo_of_a_kind_is_the_one_drawn():
     np.testing.assert_allclose(line.get_ydata(), [1.0, 1.0, 0.0])
 
 
-def test_demand_is_torque_over_speed_in_its_direction():
+def test_torque_over_speed():
     found = sample_loads()
     axes = plot_torque_speed(found).axes[1]
     for leg, code in enumerate(found.robot.leg_codes):
@@ -112,29 +112,29 @@ def test_demand_is_torque_over_speed_in_its_direction():
         np.testing.assert_allclose(dots.get_xdata(), speed)
 
 
-def test_a_servo_without_speed_has_a_flat_line_and_is_said():
+def test_servo_with_unknown_no_load_speed():
     axes = plot_torque_speed(speedless()).axes[1]
-    assert axes.texts[-1].get_text() == "slow: speed unknown"
+    assert axes.texts[-1].get_text() == "slow: no-load speed unknown"
     assert not any(len(line.get_xdata()) == 3 for line in axes.lines)
     assert plot_torque_speed(bare()).axes[1].texts[-1].get_text() == "no servo in the robot file"
 
 
-# Numbers and words
+# Numbers and text
 
 
-@given(share=st.floats(0, 1))
-def test_a_bar_is_as_long_as_its_share(share):
-    bar = load_bar(share, width=10)
+@given(fraction=st.floats(0, 1))
+def test_bar_length(fraction):
+    bar = load_bar(fraction, width=10)
     eighths = sum(8 if c == "█" else " ▏▎▍▌▋▊▉".index(c) for c in bar)
-    assert eighths == math.ceil(share * 80)
+    assert eighths == math.ceil(fraction * 80)
 
 
-def test_a_bar_beyond_the_stall_says_so():
+def test_bar_above_stall():
     assert load_bar(1.2, width=4) == "███▶"
     assert load_bar(None) == ""
 
 
-def test_rows_are_the_summary():
+def test_load_rows():
     summary = summary_of(sample_loads())
     rows = load_rows(summary)
     assert len(rows) == 18
@@ -142,11 +142,11 @@ def test_rows_are_the_summary():
     assert rows[4][0] == "LM femur"
     assert rows[4][2] == f"{summary['joints'][4]['peak_nm']:.3f}"
     unknown = dict(zip(LOAD_COLUMNS, load_rows(summary_of(bare()))[4], strict=True))
-    assert (unknown["servo"], unknown["of stall"], unknown["factor"]) == ("none named", "", "")
-    assert (unknown["line used"], unknown["heat"]) == ("unknown", "unknown")
+    assert (unknown["servo"], unknown["of stall"], unknown["factor"]) == ("none", "", "")
+    assert (unknown["utilisation"], unknown["thermal"]) == ("unknown", "unknown")
 
 
-def test_the_worst_of_each_kind_is_the_one_with_the_least_factor():
+def test_worst_of_each_joint_has_the_smallest_factor():
     verdicts = joint_verdicts(sample_loads())
     for number, worst in enumerate(worst_of_each(verdicts)):
         assert worst.factor == min(verdict.factor for verdict in verdicts[number::3])
@@ -154,30 +154,30 @@ def test_the_worst_of_each_kind_is_the_one_with_the_least_factor():
     assert worst_of_each(nameless)[1].peak == max(verdict.peak for verdict in nameless[1::3])
 
 
-def test_what_lifts_off_or_tips_is_said():
+def test_lines_of_a_tipping_robot():
     found = sample_loads()
     off = summary_of(replace(found, margin=np.full_like(found.margin, -np.inf)))
-    assert "the robot lifts off the ground" in loads_lines(off)
+    assert "the robot loses contact" in loads_lines(off)
     tips = summary_of(replace(found, margin=np.full_like(found.margin, -0.0123)))
-    assert "the robot tips: its load is 12.3 mm outside its feet" in loads_lines(tips)
+    assert "the robot tips: the load is 12.3 mm outside the support polygon" in loads_lines(tips)
     assert str(loads_verdict(tips)).startswith("not carried: the robot tips")
 
 
-def test_joints_that_bear_nothing_are_good():
+def test_unloaded_joints_are_good():
     found = sample_loads()
     idle = summary_of(replace(found, torques=np.zeros_like(found.torques)))
     assert idle["class"] == "good"
     assert str(loads_verdict(idle)) == "good: LF coxa"
 
 
-def test_peaks_at_once_are_told_with_the_battery():
+def test_lines_with_current_and_battery_life():
     lines = loads_lines(loads_summary(sample_loads("burnt-5kg"), supply_load(sample_loads("burnt-5kg"), capacity=2.0)))
-    assert any(line.startswith("current: ") and "the battery lasts" in line for line in lines)
-    together = supply_load(sample_loads("burnt-5kg")).warning
-    assert (f"supply: {together}" in lines) == (together is not None)
+    assert any(line.startswith("current: ") and "battery life" in line for line in lines)
+    warning = supply_load(sample_loads("burnt-5kg")).warning
+    assert (f"supply: {warning}" in lines) == (warning is not None)
 
 
-def test_advice_says_which_way_a_length_helps():
+def test_length_advice():
     found = sample_loads()
     sizing = size_servos(found.robot, found)
     change = {
@@ -185,20 +185,20 @@ def test_advice_says_which_way_a_length_helps():
         "femur": np.array([0.0, 0.01, 0.0]),
         "tibia": np.array([0, 1.0, 5.0]),
     }
-    said = length_advice(replace(sizing, sensitivity=change))
-    assert said[0] == "coxa 10 mm longer: femur less by 0.080 N m, tibia less by 0.040 N m"
-    assert said[1] == "femur 10 mm shorter: hardly any change"
-    assert said[2] == "tibia 10 mm shorter: femur less by 0.010 N m, tibia less by 0.050 N m"
+    advice = length_advice(replace(sizing, sensitivity=change))
+    assert advice[0] == "coxa 10 mm longer: femur -0.080 N m, tibia -0.040 N m"
+    assert advice[1] == "femur 10 mm shorter: negligible change"
+    assert advice[2] == "tibia 10 mm shorter: femur -0.010 N m, tibia -0.050 N m"
     nan = {"coxa": np.full(3, np.nan)}
     assert length_advice(replace(sizing, sensitivity=nan)) == [
-        "coxa: its length can't be changed with the feet where they are, or it has none"
+        "coxa: no result, as a foot is out of reach with another length, or the length is 0"
     ]
 
 
 # The page
 
 
-def test_the_page_has_pictures_and_every_joint_and_asks_nobody(tmp_path):
+def test_page_is_self_contained_and_complete(tmp_path):
     found = sample_loads("burnt-mg996r", payload=0.2)
     summary = summary_of(found)
     files = write_loads(found, summary, tmp_path)
@@ -207,9 +207,9 @@ def test_the_page_has_pictures_and_every_joint_and_asks_nobody(tmp_path):
     assert "http" not in page
     assert "<script" not in page
     assert "@import" not in page
-    pictures = re.findall(r'src="data:image/png;base64,([^"]+)"', page)
-    assert len(pictures) == 2
-    for data, file in zip(pictures, files[1:3], strict=True):
+    figures = re.findall(r'src="data:image/png;base64,([^"]+)"', page)
+    assert len(figures) == 2
+    for data, file in zip(figures, files[1:3], strict=True):
         assert base64.b64decode(data) == file.read_bytes()
         with Image.open(BytesIO(base64.b64decode(data))) as picture:
             assert min(picture.size) > 400
@@ -219,11 +219,11 @@ def test_the_page_has_pictures_and_every_joint_and_asks_nobody(tmp_path):
     for line in loads_lines(summary):
         assert f"<li>{line}</li>" in text
     assert str(loads_verdict(summary)) in text
-    assert "with 0.2 kg of payload" in text
+    assert "payload 0.2 kg" in text
     assert 'class="verdict not-carried"' in page
 
 
-def test_names_from_files_are_escaped():
+def test_names_are_escaped():
     found = sample_loads()
     named = replace(found, robot=found.robot.replace(name="<b>&"))
     page = loads_page(summary_of(named), [])
@@ -231,4 +231,4 @@ def test_names_from_files_are_escaped():
     assert "&lt;b&gt;&amp;" in page
     assert 'class="verdict carried"' in page
     assert "with inertia" in page
-    assert "statics alone" in loads_page(summary_of(sample_loads(inertial=False)), [])
+    assert "quasi-static" in loads_page(summary_of(sample_loads(inertial=False)), [])

@@ -1,4 +1,4 @@
-"""What the commands print is what the Python functions say, in the units that the keys name."""
+"""Summaries and tables: numbers match the Python functions, in the units of the keys."""
 
 import io
 import math
@@ -25,9 +25,9 @@ from tarsus.robot.file import list_robots, load_robot
 from tarsus.robot.robot import GaitDefaults
 
 
-def text_of(part):
+def text_of(item):
     console = Console(width=200, file=io.StringIO())
-    console.print(part)
+    console.print(item)
     return console.file.getvalue()
 
 
@@ -39,7 +39,7 @@ def changed(motion, **changes):
 
 
 @pytest.mark.parametrize("kind", WALKS)
-def test_a_walks_numbers_are_the_motions(kind):
+def test_walk_summary(kind):
     motion = sample_walk(kind)
     summary = walk_summary(motion)
     assert summary["possible"] is motion.ok
@@ -52,61 +52,61 @@ def test_a_walks_numbers_are_the_motions(kind):
     assert summary["least_margin"]["mm"] == pytest.approx(motion.margin.min() * 1000)
     at = np.isclose(motion.time, summary["least_margin"]["at_s"])
     assert motion.margin[at] == pytest.approx(motion.margin.min())
-    near = summary["nearest_feet"]
-    assert near["mm"] == pytest.approx(motion.feet_apart.min() * 1000)
-    first, second = (motion.robot.leg_codes.index(code) for code in near["legs"])
-    feet = motion.feet[np.isclose(motion.time, near["at_s"])][0]
-    assert math.dist(feet[first], feet[second]) * 1000 == pytest.approx(near["mm"])
+    closest = summary["nearest_feet"]
+    assert closest["mm"] == pytest.approx(motion.feet_apart.min() * 1000)
+    first, second = (motion.robot.leg_codes.index(code) for code in closest["legs"])
+    feet = motion.feet[np.isclose(motion.time, closest["at_s"])][0]
+    assert math.dist(feet[first], feet[second]) * 1000 == pytest.approx(closest["mm"])
     for number_of, speed in enumerate(summary["joint_speed"].values()):
         assert speed["deg_s"] == pytest.approx(np.degrees(np.abs(motion.joint_speed[..., number_of]).max()))
 
 
-def test_the_share_of_the_servos_speed_is_of_the_leg_nearest_to_its_limit():
+def test_no_load_fraction_is_that_of_the_critical_leg():
     motion = sample_walk("too fast")
     for joint, speed in enumerate(walk_summary(motion)["joint_speed"].values()):
-        assert speed["share_of_no_load"] == pytest.approx(motion.speed_ratio[:, joint].max())
+        assert speed["no_load_fraction"] == pytest.approx(motion.speed_ratio[:, joint].max())
         assert speed["no_load_deg_s"] == pytest.approx(math.degrees(motion.robot.servos[0][joint].no_load_speed))
         assert speed["servo"] == "DS3225"
 
 
-def test_unknown_servos_have_no_share():
+def test_unknown_servos_have_no_no_load_fraction():
     summary = walk_summary(sample_walk("round"))
     for speed in summary["joint_speed"].values():
-        assert (speed["servo"], speed["no_load_deg_s"], speed["share_of_no_load"]) == (None, None, None)
-    assert "speed of the servo unknown" in text_of(walk_table(summary))
+        assert (speed["servo"], speed["no_load_deg_s"], speed["no_load_fraction"]) == (None, None, None)
+    assert "no-load speed unknown" in text_of(walk_table(summary))
 
 
-def test_turns_are_counted_whole():
+def test_yaw_counts_full_turns():
     motion = plan_walk(load_robot("strider"), Gait.named("tripod"), curved_path(math.radians(-400)), rate=20)
     assert walk_summary(motion)["end"]["turned_deg"] == pytest.approx(-400)
 
 
-def test_the_table_of_a_walk_has_its_numbers_and_its_verdict():
+def test_walk_table_and_verdict():
     summary = walk_summary(sample_walk("too fast"))
     text = text_of(walk_table(summary))
     for value in (
         f"{summary['stroke_mm']:.1f} mm at 900.0 mm/s",
         f"{summary['least_margin']['mm']:.1f} mm at",
-        "x 200.0 mm, y 0.0 mm, turned 0.0 deg",
-        "of what DS3225 does without load",
+        "x 200.0 mm, y 0.0 mm, yaw 0.0 deg",
+        "of the no-load speed of DS3225",
         summary["assumed"][0],
     ):
         assert value in text
-    said = text_of(verdict(summary))
-    assert said.startswith("not possible")
-    assert summary["problems"][0] in said
+    text = text_of(verdict(summary))
+    assert text.startswith("not possible")
+    assert summary["problems"][0] in text
     assert text_of(verdict({"possible": True, "problems": []})).strip() == "possible"
 
 
-def test_in_the_air_there_is_no_margin():
+def test_no_margin_without_a_foot_on_the_ground():
     motion = sample_walk("straight")
     flying = changed(motion, contacts=np.zeros_like(motion.contacts))
-    assert "no foot is on the ground" in text_of(walk_table(walk_summary(flying)))
+    assert "no foot on the ground" in text_of(walk_table(walk_summary(flying)))
 
 
-@pytest.mark.parametrize(("value", "said"), [(None, "unknown"), (1.25, "1.2 mm"), (-3.0, "-3.0 mm")])
-def test_a_number_has_its_unit_or_is_unknown(value, said):
-    assert number(value, "mm") == said
+@pytest.mark.parametrize(("value", "text"), [(None, "unknown"), (1.25, "1.2 mm"), (-3.0, "-3.0 mm")])
+def test_number_format(value, text):
+    assert number(value, "mm") == text
 
 
 # Standing
@@ -123,53 +123,53 @@ def standing(name, *, knee="up", **move):
     return Standing(solution=inverse_kinematics(robot, feet, body, knee=knee), start=start)
 
 
-def test_where_all_legs_reach_the_robot_stands():
-    stands = standing("strider", pitch=0.1)
-    summary = stands.summary()
+def test_standing_with_all_feet_on_their_footholds():
+    posed = standing("strider", pitch=0.1)
+    summary = posed.summary()
     assert summary["possible"]
     assert summary["problems"] == []
-    assert summary["share_that_works"] == 1.0
+    assert summary["feasible_fraction"] == 1.0
     assert set(summary["reach"]) == {"OK"}
-    np.testing.assert_allclose(np.radians(summary["angles_deg"]), stands.solution.angles)
+    np.testing.assert_allclose(np.radians(summary["angles_deg"]), posed.solution.angles)
     assert summary["body"]["pitch_deg"] == pytest.approx(math.degrees(0.1))
-    assert summary["margin_mm"] == pytest.approx(stands.margin * 1000)
+    assert summary["margin_mm"] == pytest.approx(posed.margin * 1000)
     assert summary["stands"]
 
 
-def test_legs_that_do_not_reach_are_in_the_air_and_the_others_may_still_hold_the_robot():
-    stands = standing("strider", roll=0.34)
-    summary = stands.summary()
+def test_legs_that_do_not_reach_are_in_the_air():
+    posed = standing("strider", roll=0.34)
+    summary = posed.summary()
     assert not summary["possible"]
-    assert 0 < stands.contacts.sum() < 6
-    assert len(summary["problems"]) >= (~stands.contacts).sum()
-    assert summary["stands"] == (stands.margin >= 0)
-    assert ("tips over" in summary["problems"][-1]) == (stands.margin < 0)
-    assert 0 < summary["share_that_works"] < 1
+    assert 0 < posed.contacts.sum() < 6
+    assert len(summary["problems"]) >= (~posed.contacts).sum()
+    assert summary["stands"] == (posed.margin >= 0)
+    assert ("tips" in summary["problems"][-1]) == (posed.margin < 0)
+    assert 0 < summary["feasible_fraction"] < 1
 
 
-def test_a_robot_that_tips_over_is_told_by_how_much():
-    stands = standing("strider", pitch=math.radians(26))
-    assert stands.margin < 0
-    assert stands.summary()["problems"][-1] == (
-        f"the robot tips over: its centre of mass is {-stands.margin * 1000:.1f} mm outside the feet that stand"
+def test_tipping_robot():
+    posed = standing("strider", pitch=math.radians(26))
+    assert posed.margin < 0
+    assert posed.summary()["problems"][-1] == (
+        f"the robot tips: its centre of mass is {-posed.margin * 1000:.1f} mm outside its support polygon"
     )
 
 
-def test_with_no_leg_in_reach_nothing_holds_it():
+def test_no_leg_reaches_its_foothold():
     summary = standing("strider", z=0.3).summary()
-    assert summary["problems"][-1] == "no leg reaches its foothold: nothing holds the robot"
+    assert summary["problems"][-1] == "no leg reaches its foothold"
     assert not summary["stands"]
 
 
-def test_a_body_below_the_ground_is_a_problem():
+def test_body_below_the_ground():
     problems = standing("strider", z=-0.090).summary()["problems"]
-    assert any(problem.startswith("the body's box is 5.0 mm below the ground") for problem in problems)
+    assert any(problem.startswith("the body box is 5.0 mm below the ground") for problem in problems)
     assert not any("box" in problem for problem in standing("phoenix", z=-0.05).summary()["problems"])
 
 
-def test_with_the_knees_down_no_share_is_worked_out():
+def test_no_feasible_fraction_with_knees_down():
     summary = standing("mithi", knee="down").summary()
-    assert summary["share_that_works"] is None
+    assert summary["feasible_fraction"] is None
     assert summary["knee"] == "down"
     assert summary["assumed"]
 
@@ -177,49 +177,51 @@ def test_with_the_knees_down_no_share_is_worked_out():
 # Resting
 
 
-def test_how_it_rests_is_what_resting_pose_says():
+def test_rest_summary():
     robot = load_robot("strider")
     angles = np.radians(np.tile([0.0, -30.0, -60.0], (6, 1)))
     angles[0] = np.radians([0, 60, -60])
     rest = resting_pose(robot, angles)
     summary = rest_summary(robot, angles, rest)
     assert summary["description"] == rest.describe()
-    assert summary["contacts"] == [code for code, down in zip(robot.leg_codes, rest.contacts, strict=True) if down]
+    assert summary["contacts"] == [
+        code for code, in_contact in zip(robot.leg_codes, rest.contacts, strict=True) if in_contact
+    ]
     assert summary["margin_mm"] == pytest.approx(float(rest.margin) * 1000)
     assert summary["body"]["z_mm"] == pytest.approx(rest.body.position[2] * 1000)
     np.testing.assert_allclose(
-        [summary["body"][f"{turn}_deg"] for turn in ("roll", "pitch", "yaw")], np.degrees(rest.body.rpy)
+        [summary["body"][f"{axis}_deg"] for axis in ("roll", "pitch", "yaw")], np.degrees(rest.body.rpy)
     )
     assert summary["possible"]
 
 
-def test_angles_out_of_their_limits_are_each_named():
+def test_angles_outside_their_limits():
     robot = load_robot("strider")
     angles = np.radians(np.tile([0.0, 40.0, -100.0], (6, 1)))
     angles[2, 0] = math.radians(61)
     angles[5, 2] = math.radians(-161)
     problems = rest_summary(robot, angles, resting_pose(robot, angles))["problems"]
     assert problems == [
-        "rear left: the coxa at 61 deg is out of its limits, -60 to 60",
-        "front right: the tibia at -161 deg is out of its limits, -160 to 10",
+        "rear left: coxa angle 61 deg is outside its limits, -60 to 60 deg",
+        "front right: tibia angle -161 deg is outside its limits, -160 to 10 deg",
     ]
 
 
-def test_an_angle_at_its_limit_is_within_it():
+def test_angle_at_its_limit_is_allowed():
     robot = load_robot("strider")
     summary = rest_summary(robot, robot.limits[..., 1], resting_pose(robot, robot.limits[..., 1]))
     assert summary["possible"]
 
 
-def test_a_robot_that_never_rests_is_not_possible():
+def test_no_stable_resting_pose():
     robot = load_robot("strider")
     angles = np.radians(np.tile([0.0, -30.0, -60.0], (6, 1)))
     angles[:3] = np.radians([0.0, 60.0, 0.0])
     summary = rest_summary(robot, angles, resting_pose(robot, angles, max_rolls=0))
-    assert summary["problems"] == ["the robot does not come to rest with these angles"]
+    assert summary["problems"] == ["the robot has no stable resting pose with these angles"]
 
 
-def test_angles_are_printed_with_two_digits_and_no_negative_zero():
+def test_angle_format():
     text = text_of(angle_table({"legs": ["LF"], "joints": ["a", "b", "c"], "angles_deg": [[-0.001, 12.345, -90.0]]}))
     assert text.split()[-4:] == ["LF", "0.00", f"{12.345:.2f}", "-90.00"]
 
@@ -228,7 +230,7 @@ def test_angles_are_printed_with_two_digits_and_no_negative_zero():
 
 
 @pytest.mark.parametrize("name", list_robots())
-def test_a_robots_summary_is_the_robots(name):
+def test_robot_summary(name):
     robot = load_robot(name)
     summary = robot_summary(robot)
     assert summary["coxa_mm"] == pytest.approx(robot.coxa[0] * 1000)
@@ -241,7 +243,7 @@ def test_a_robots_summary_is_the_robots(name):
     assert all(servo in text for servo in summary["servos"] or ["unknown"])
 
 
-def test_lengths_that_differ_are_all_told():
+def test_different_leg_lengths_are_listed():
     robot = load_robot("strider")
     longer = robot.replace(femur=np.linspace(0.09, 0.1, 6))
     assert robot_summary(longer)["femur_mm"] == pytest.approx(np.linspace(90, 100, 6))
@@ -249,16 +251,16 @@ def test_lengths_that_differ_are_all_told():
 
 
 @pytest.mark.parametrize("name", list_robots())
-def test_every_number_of_a_preset_has_its_source(name):
+def test_every_number_of_a_preset_has_a_source(name):
     robot = load_robot(name)
     for row in dimensions(robot):
         assert row["source"], row["key"]
         assert robot.sources[row["source_number"] - 1].source == row["source"]
         assert row["confidence"] in ("A", "A-", "B", "C", "guess")
-    assert "none named" not in text_of(source_table(dimensions(robot)))
+    assert "none" not in text_of(source_table(dimensions(robot)))
 
 
-def test_the_nearest_of_two_sources_is_named():
+def test_more_specific_source_is_used():
     rows = {row["key"]: row for row in dimensions(load_robot("phantomx"))}
     assert rows["leg.servo"]["note"] == "The repository does not name the servo."
     assert rows["body.size_mm"]["note"].startswith("Only the underside")
@@ -266,13 +268,13 @@ def test_the_nearest_of_two_sources_is_named():
     assert rows["gait.swing_height_mm"]["source_number"] == 4
 
 
-def test_numbers_without_a_source_say_so():
+def test_numbers_without_a_source():
     text = text_of(source_table(dimensions(ring_robot(6))))
-    assert "none named" in text
+    assert "none" in text
     assert "unknown" in text
 
 
-def test_a_check_says_what_a_file_lacks_and_what_that_costs():
+def test_check_lists_missing_values():
     robot = ring_robot(6)
     report = check_robot(robot)
     assert report["possible"]
@@ -285,7 +287,7 @@ def test_a_check_says_what_a_file_lacks_and_what_that_costs():
     assert check_robot(load_robot("strider"))["missing"] == []
 
 
-def test_a_check_names_servos_whose_speed_is_unknown():
+def test_check_lists_servos_with_unknown_speed():
     robot = load_robot("strider")
     from dataclasses import replace
 
@@ -295,20 +297,20 @@ def test_a_check_names_servos_whose_speed_is_unknown():
 
 
 @pytest.mark.parametrize(
-    ("gait", "said"),
+    ("gait", "text"),
     [
         (GaitDefaults(name="tetrapod"), "not for 4 legs"),
         (GaitDefaults(name="wave", body_height=0.5), "nowhere reaches the ground"),
     ],
 )
-def test_a_check_says_why_a_robot_can_not_walk(gait, said):
+def test_check_gives_the_reason_why_a_robot_cannot_walk(gait, text):
     report = check_robot(ring_robot(4).replace(gait=gait))
     assert not report["possible"]
-    assert said in report["problems"][0]
+    assert text in report["problems"][0]
     assert report["longest_stroke_mm"] is None
 
 
-def test_a_robot_that_can_not_step_is_found():
+def test_check_of_a_robot_that_cannot_step():
     robot = load_robot("strider")
     locked = np.array(robot.limits)
     locked[:, 1] = locked[:, 2] = np.radians([[-0.001, 0.001]])
@@ -316,7 +318,7 @@ def test_a_robot_that_can_not_step_is_found():
     assert not report["possible"]
 
 
-def test_straight_ahead_the_body_ends_where_it_was_sent():
+def test_end_position_of_a_sideways_walk():
     motion = plan_walk(load_robot("strider"), Gait.named("tripod"), straight_path(0.1, math.pi / 2), rate=20)
     end = walk_summary(motion)["end"]
     assert (end["x_mm"], end["y_mm"], end["turned_deg"]) == pytest.approx((0, 100, 0), abs=1e-9)

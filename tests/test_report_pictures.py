@@ -1,4 +1,4 @@
-"""The pictures of a walk show its numbers, labelled with units, and nothing of them is cut off."""
+"""Figures of a walk: data, labels with units, layout."""
 
 import subprocess
 import sys
@@ -15,12 +15,12 @@ from tarsus.kinematics.rest import resting_pose
 from tarsus.kinematics.stance import default_body_height, default_stance
 from tarsus.report.angles import plot_angles
 from tarsus.report.footpaths import footholds, plot_footpaths, walking_direction
-from tarsus.report.gait_diagram import plot_gait, rows_of_legs
+from tarsus.report.gait_diagram import diagram_rows, plot_gait
 from tarsus.report.ground import Ground
 from tarsus.report.sample import touching_points
 from tarsus.report.skeleton import plot_robot
 from tarsus.report.solid import body_outline, body_solid
-from tarsus.report.style import leg_colours, new_figure, save_figure, stance_spans, thinned
+from tarsus.report.style import decimation, leg_colours, new_figure, save_figure, stance_spans
 from tarsus.report.view import View
 from tarsus.robot.file import load_robot
 
@@ -38,12 +38,12 @@ def line(axes, label):
     return next(found for found in axes.lines if found.get_label() == label)
 
 
-# Every picture
+# All figures
 
 
 @pytest.mark.parametrize("kind", WALKS)
 @pytest.mark.parametrize("plot", PLOTS)
-def test_nothing_is_cut_off_and_every_axis_has_its_unit(plot, kind):
+def test_figures_fit_and_axes_have_units(plot, kind):
     figure = plot(sample_walk(kind))
     figure.canvas.draw()
     tight, size = figure.get_tightbbox(), figure.get_size_inches()
@@ -53,16 +53,16 @@ def test_nothing_is_cut_off_and_every_axis_has_its_unit(plot, kind):
     assert tight.y1 <= size[1] + 0.01
     for axes in figure.axes:
         assert axes.get_ylabel()
-        counted = axes.get_ylabel() in ("leg", "foot down")
+        counted = axes.get_ylabel() in ("leg", "contact")
         assert counted or any(unit in axes.get_ylabel() for unit in ("(mm)", "(°)"))
     assert any(unit in figure.axes[-1].get_xlabel() for unit in ("(s)", "(mm)"))
 
 
-def test_the_ground_of_a_picture_is_white():
+def test_background_is_white():
     assert to_hex(new_figure(width=2, height=1).get_facecolor()) == "#ffffff"
 
 
-def test_pictures_need_no_pyplot():
+def test_pyplot_is_not_imported():
     code = (
         "import sys, tarsus\n"
         "from tarsus.report.skeleton import plot_robot\n"
@@ -73,24 +73,24 @@ def test_pictures_need_no_pyplot():
     assert answer.stdout.split() == ["True", "False"]
 
 
-def test_a_picture_is_written_as_its_ending_says(tmp_path):
+def test_extension_determines_the_format(tmp_path):
     save_figure(plot_gait(sample_walk("straight")), tmp_path / "gait.svg")
     assert b"<svg" in (tmp_path / "gait.svg").read_bytes()
 
 
 @pytest.mark.parametrize("name", ["nowhere/gait.png", "gait.nonsense"])
-def test_a_picture_that_can_not_be_written_says_so(tmp_path, name):
+def test_unwritable_figure(tmp_path, name):
     with pytest.raises(InputError, match="can't be written"):
         save_figure(new_figure(width=1, height=1), tmp_path / name)
 
 
-def test_without_matplotlib_the_message_says_what_to_install(monkeypatch):
+def test_missing_matplotlib(monkeypatch):
     monkeypatch.setitem(sys.modules, "matplotlib.figure", None)
     with pytest.raises(TarsusError, match=r"pip install 'tarsus\[plots\]'"):
         plot_angles(sample_walk("straight"))
 
 
-def test_colours_are_cool_on_the_left_and_warm_on_the_right_and_all_different():
+def test_leg_colours():
     robot = load_robot("strider")
     colours = leg_colours(robot)
     assert len(set(colours)) == 6
@@ -104,7 +104,7 @@ def test_colours_are_cool_on_the_left_and_warm_on_the_right_and_all_different():
 # Joint angles
 
 
-def test_the_curves_are_the_angles_and_thick_in_stance():
+def test_angle_curves_are_thick_in_stance():
     motion = sample_walk("straight")
     figure = plot_angles(motion)
     for joint in range(3):
@@ -122,7 +122,7 @@ def test_the_curves_are_the_angles_and_thick_in_stance():
             np.testing.assert_allclose(thick.get_ydata()[shown], angles[shown])
 
 
-def test_a_limit_is_drawn_only_where_an_angle_comes_near():
+def test_limits_are_drawn_if_approached():
     motion = sample_walk("straight")
     assert not plot_angles(motion).axes[0].texts
     near = motion.robot.limits.copy()
@@ -138,7 +138,7 @@ def test_a_limit_is_drawn_only_where_an_angle_comes_near():
 
 
 @pytest.mark.parametrize("kind", ["straight", "round", "turning"])
-def test_trails_are_the_feet_and_dots_the_footholds(kind):
+def test_foot_paths_and_footholds(kind):
     motion = sample_walk(kind)
     top = plot_footpaths(motion).axes[0]
     for leg, code in enumerate(motion.robot.leg_codes):
@@ -152,7 +152,7 @@ def test_trails_are_the_feet_and_dots_the_footholds(kind):
     np.testing.assert_allclose(np.column_stack(line(top, "body").get_data()), motion.body.position[:, :2] * 1000)
 
 
-def test_a_foot_has_one_foothold_for_each_stance():
+def test_one_foothold_for_each_stance():
     motion = sample_walk("straight")
     for leg in range(6):
         assert len(footholds(motion, leg)) == len(stance_spans(motion, leg))
@@ -160,7 +160,7 @@ def test_a_foot_has_one_foothold_for_each_stance():
     assert lifted == motion.steps
 
 
-def test_the_body_is_outlined_at_its_start_and_its_end():
+def test_body_outline_at_start_and_end():
     motion = sample_walk("turning")
     top = plot_footpaths(motion).axes[0]
     for patch, moment in zip(top.patches[::2], (0, -1), strict=False):
@@ -168,11 +168,11 @@ def test_the_body_is_outlined_at_its_start_and_its_end():
         np.testing.assert_allclose(patch.get_xy()[: len(corners)], corners)
 
 
-def test_the_top_view_is_to_scale():
+def test_top_view_is_to_scale():
     assert plot_footpaths(sample_walk("round")).axes[0].get_aspect() == 1
 
 
-def test_the_side_view_looks_across_the_way():
+def test_side_view_is_along_the_walking_direction():
     straight, sideways, turning = (sample_walk(kind) for kind in ("straight", "sideways", "turning"))
     np.testing.assert_allclose(walking_direction(straight), [1, 0], atol=1e-12)
     np.testing.assert_allclose(walking_direction(sideways), [0.5, -np.sqrt(0.75)], atol=1e-12)
@@ -190,10 +190,10 @@ def test_the_side_view_looks_across_the_way():
 
 
 @pytest.mark.parametrize("kind", ["straight", "sideways", "eight legs"])
-def test_bars_are_the_stances(kind):
+def test_bars_are_stances(kind):
     motion = sample_walk(kind)
     above = plot_gait(motion).axes[0]
-    rows = rows_of_legs(motion.robot)
+    rows = diagram_rows(motion.robot)
     assert [label.get_text() for label in above.get_yticklabels()] == [motion.robot.leg_codes[leg] for leg in rows]
     for bars, leg in zip(above.collections, rows, strict=True):
         spans = [(path.vertices[:, 0].min(), np.ptp(path.vertices[:, 0])) for path in bars.get_paths()]
@@ -202,26 +202,26 @@ def test_bars_are_the_stances(kind):
         assert standing_time == pytest.approx(motion.contacts[:, leg].mean() * motion.duration, abs=0.2)
 
 
-def test_rows_are_the_left_side_then_the_right_each_from_the_front():
-    assert [load_robot("strider").leg_codes[leg] for leg in rows_of_legs(load_robot("strider"))] == [
+def test_order_of_the_rows():
+    assert [load_robot("strider").leg_codes[leg] for leg in diagram_rows(load_robot("strider"))] == [
         *("LF", "LM", "LR"),
         *("RF", "RM", "RR"),
     ]
 
 
-def test_the_margin_is_drawn_with_its_least():
+def test_minimum_of_the_margin_is_labelled():
     motion = sample_walk("tips over")
     below = plot_gait(motion).axes[1]
     np.testing.assert_allclose(below.lines[0].get_ydata(), motion.margin * 1000)
     (text,) = below.texts
     worst = int(np.argmin(motion.margin))
-    assert text.get_text() == f"least: {motion.margin[worst] * 1000:.1f} mm at {motion.time[worst]:.2f} s"
+    assert text.get_text() == f"minimum: {motion.margin[worst] * 1000:.1f} mm at {motion.time[worst]:.2f} s"
     low, high = below.get_ylim()
     assert low < motion.margin.min() * 1000 < 0
     assert high > motion.margin.max() * 1000
 
 
-def test_without_a_foot_on_the_ground_the_margin_has_a_gap():
+def test_margin_has_a_gap_without_a_foot_on_the_ground():
     motion = sample_walk("straight")
     fields = {name: getattr(motion, name) for name in motion.__dataclass_fields__}
     flying = type(motion)(**fields | {"contacts": np.zeros_like(motion.contacts)})
@@ -230,9 +230,9 @@ def test_without_a_foot_on_the_ground_the_margin_has_a_gap():
     assert not below.texts
 
 
-def test_a_long_motion_is_thinned_to_what_a_picture_can_show():
+def test_decimation_of_a_long_motion():
     motion = sample_walk("straight")
-    assert len(motion.time[thinned(motion)]) == len(motion.time)
+    assert len(motion.time[decimation(motion)]) == len(motion.time)
     fields = {name: getattr(motion, name) for name in motion.__dataclass_fields__}
     many = 60
     changes = {name: np.concatenate([fields[name]] * many) for name in ("feet", "contacts", "angles", "reach")}
@@ -240,14 +240,14 @@ def test_a_long_motion_is_thinned_to_what_a_picture_can_show():
     position = np.concatenate([motion.body.position] * many)
     changes["body"] = Pose(np.concatenate([motion.body.rotation] * many), position)
     long = type(motion)(**fields | changes)
-    assert 4000 <= len(long.time[thinned(long)]) <= 8000
+    assert 4000 <= len(long.time[decimation(long)]) <= 8000
 
 
 # The robot
 
 
 @pytest.mark.parametrize("name", ["strider", "phoenix", "mithi", "freenove"])
-def test_the_drawing_holds_every_link_where_the_view_projects_it(name):
+def test_links_are_drawn_at_their_projection(name):
     robot = load_robot(name)
     angles, body = standing(robot, pitch=0.05)
     view = View(azimuth=-40, elevation=35)
@@ -266,7 +266,7 @@ def test_the_drawing_holds_every_link_where_the_view_projects_it(name):
     assert {text.get_text() for text in [*axes.texts, *figure.texts]} >= {*robot.leg_codes, name}
 
 
-def test_feet_on_the_ground_are_filled_and_without_a_body_the_lowest_stands_on_it():
+def test_contact_feet_are_filled():
     robot = load_robot("strider")
     angles, _ = standing(robot)
     lifted = np.array(angles)
@@ -282,15 +282,15 @@ def test_feet_on_the_ground_are_filled_and_without_a_body_the_lowest_stands_on_i
     assert "one foot up" in {text.get_text() for text in axes.figure.texts}
 
 
-def test_in_the_air_there_is_no_margin_to_tell():
+def test_no_margin_without_ground_contact():
     robot = load_robot("strider")
     angles, body = standing(robot)
     axes = plot_robot(robot, angles, body=body, contacts=np.zeros(6, dtype=bool)).axes[0]
-    assert any("nothing on the ground" in text.get_text() for text in axes.figure.texts)
+    assert any("no ground contact" in text.get_text() for text in axes.figure.texts)
 
 
 @pytest.mark.parametrize("angles", [(0.0, 80.0, 0.0), (0.0, -30.0, -60.0)])
-def test_what_a_resting_robot_lies_on_holds_it_in_the_picture(angles):
+def test_support_of_a_resting_robot(angles):
     robot = load_robot("strider")
     radians = np.radians(np.tile(angles, (6, 1)))
     radians[0] = np.radians([0, 90, 0])
@@ -302,7 +302,7 @@ def test_what_a_resting_robot_lies_on_holds_it_in_the_picture(angles):
     assert any(f"margin {rest.margin * 1000:.1f} mm" in text.get_text() for text in figure.texts)
 
 
-def test_the_view_is_a_rotation_that_knows_what_is_near():
+def test_view_projection_and_depth():
     view = View(azimuth=-70, elevation=20)
     np.testing.assert_allclose(view.axes @ view.axes.T, np.eye(3), atol=1e-15)
     picture = np.array([[3.0, -2.0], [0.5, 7.0]])
@@ -314,7 +314,7 @@ def test_the_view_is_a_rotation_that_knows_what_is_near():
 
 
 @pytest.mark.parametrize("name", ["strider", "phoenix"])
-def test_faces_of_the_body_look_outwards(name):
+def test_body_faces_point_outwards(name):
     robot = load_robot(name)
     solid = body_solid(robot)
     middle = solid.corners.mean(0)
@@ -326,8 +326,8 @@ def test_faces_of_the_body_look_outwards(name):
 
 
 @pytest.mark.parametrize("width", [500.0, 50_000.0])
-def test_the_grid_covers_the_picture_and_never_has_too_many_lines(width):
-    axes = new_figure(width=3, height=2, by_hand=True).add_axes((0, 0, 1, 1))
+def test_grid_covers_the_view_with_a_bounded_number_of_lines(width):
+    axes = new_figure(width=3, height=2, manual_layout=True).add_axes((0, 0, 1, 1))
     axes.set_xlim(-width / 2, width / 2)
     axes.set_ylim(-width / 3, width / 3)
     Ground(axes, View()).update()

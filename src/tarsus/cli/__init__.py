@@ -1,14 +1,13 @@
-"""The command line: parse, call, print. One command a file; nothing heavy is imported before a command runs.
+"""Command line, with one module per command; heavy packages are imported only when a command runs.
 
-Exit codes: 0 where all that was asked for is possible, 1 where it isn't, 2 where it was asked for wrongly, 70 for a
-bug, 130 where it was interrupted.
+Exit codes: 0 if the request is possible, 1 if it is not, 2 for a usage error, 70 for a bug, 130 if interrupted.
 """
 
 from __future__ import annotations
 
 try:
     import click
-except ImportError:  # the package without its extra: say which
+except ImportError:  # installed without the extra
     raise SystemExit("the command line needs click and rich: pip install 'tarsus[cli]'") from None
 
 from tarsus import __version__
@@ -40,7 +39,7 @@ __all__ = ["main"]
 )
 @click.version_option(__version__, prog_name="tarsus")
 def main() -> None:
-    """Six-legged robots: from a robot file to joint angles, walks and pictures.
+    """Six-legged robots: from a robot file to joint angles, walks and servo loads.
 
     Lengths are in mm, angles in deg, times in s. x is forward, y left, z up; angles are counter-clockwise.
 

@@ -1,4 +1,4 @@
-"""Joint angles from the command line: as arguments, alike for every leg, or from a file."""
+"""Joint angles from the command line: as arguments, the same for every leg, or from a file."""
 
 from __future__ import annotations
 
@@ -16,60 +16,65 @@ __all__ = ["read_angles"]
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]
 
-_LARGEST = 2**20
-_MOST_DEGREES = 1e6
+_MAX_FILE_SIZE = 2**20
+_MAX_DEGREES = 1e6
 
 
 def read_angles(
-    robot: Robot, given: tuple[str, ...], *, alike: tuple[float, float, float] | None, file: Path | None
+    robot: Robot, arguments: tuple[str, ...], *, same_for_all: tuple[float, float, float] | None, file: Path | None
 ) -> Floats:
-    """Return the angles ``(legs, 3)`` [deg] that the options of `tarsus rest` give.
+    """Return the joint angles given to `tarsus rest`.
 
     Parameters
     ----------
     robot : Robot
-        Whose angles they are.
-    given : tuple of str
-        The arguments.
-    alike : tuple of float, optional
+        The robot.
+    arguments : tuple of str
+        Positional arguments of the command.
+    same_for_all : tuple of float, optional
         Three angles for every leg [deg].
     file : Path, optional
-        A JSON file.
+        JSON file with the angles.
+
+    Returns
+    -------
+    array, shape (legs, 3)
+        Joint angles [deg].
 
     Raises
     ------
     UsageError
-        If they are not exactly three finite angles for each leg, given in exactly one way.
+        If there are not exactly three finite angles for each leg, from exactly one source.
     """
-    if (bool(given) + (alike is not None) + (file is not None)) != 1:
-        raise click.UsageError("give the angles in one way: as arguments, with --all, or with --file")
-    if alike is not None:
-        return np.tile(np.array(alike), (robot.legs, 1))
-    values, where = (_from_file(file), f"{file}: ") if file is not None else (list(given), "")
-    numbers = [_number(value, where=where) for value in values]
-    needed = len(JOINTS) * robot.legs
-    if len(numbers) != needed:
+    if (bool(arguments) + (same_for_all is not None) + (file is not None)) != 1:
+        raise click.UsageError("give the angles either as arguments, with --all, or with --file")
+    if same_for_all is not None:
+        return np.tile(np.array(same_for_all), (robot.legs, 1))
+    values, prefix = (_from_file(file), f"{file}: ") if file is not None else (list(arguments), "")
+    numbers = [_number(value, prefix=prefix) for value in values]
+    required = len(JOINTS) * robot.legs
+    if len(numbers) != required:
         raise click.UsageError(
-            f"{where}{len(numbers)} angles; {robot.name} needs {needed}: coxa, femur, tibia of each of "
+            f"{prefix}{len(numbers)} angles; {robot.name} needs {required}: coxa, femur, tibia of "
             f"{', '.join(robot.leg_codes)}"
         )
     return np.array(numbers).reshape(robot.legs, 3)
 
 
-def _number(value: object, *, where: str) -> float:
+def _number(value: object, *, prefix: str) -> float:
     try:
         number = math.nan if isinstance(value, bool) or not isinstance(value, str | int | float) else float(value)
     except (ValueError, OverflowError):
         number = math.nan
-    if not abs(number) <= _MOST_DEGREES:
+    if not abs(number) <= _MAX_DEGREES:
         raise click.UsageError(
-            f"{where}{str(value)[:60]!r} is not an angle: a number of degrees between -1e6 and 1e6 is expected"
+            f"{prefix}{str(value)[:60]!r} is not an angle; expected a number between -1e6 and 1e6 [deg]"
         )
     return number
 
 
 def _from_file(file: Path) -> list[Any]:
-    """Return the values of a JSON file: a list, a list of lists, or an object with such a list."""
+    """Return the values of a JSON file with a list, a list of lists, or an object with such a list."""
     document = _document(file)
     if isinstance(document, dict):
         document = document.get("angles_deg")
@@ -81,12 +86,12 @@ def _from_file(file: Path) -> list[Any]:
 def _document(file: Path) -> Any:
     try:
         with file.open("rb") as stream:
-            content = stream.read(_LARGEST + 1)
+            content = stream.read(_MAX_FILE_SIZE + 1)
     except OSError as error:
-        raise click.UsageError(f"{file}: can't be read: {error.strerror}") from None
-    if len(content) > _LARGEST:
-        raise click.UsageError(f"{file}: larger than 1 MiB; a file of angles is short")
+        raise click.UsageError(f"{file} can't be read: {error.strerror}") from None
+    if len(content) > _MAX_FILE_SIZE:
+        raise click.UsageError(f"{file}: the file is larger than 1 MiB")
     try:
         return json.loads(content.decode("utf-8-sig"))
     except (ValueError, RecursionError) as error:
-        raise click.UsageError(f"{file}: this is not JSON: {error}") from None
+        raise click.UsageError(f"{file}: not valid JSON: {error}") from None

@@ -120,7 +120,7 @@ def _write(recording: Recording, out: Path, *, animation: bool, quiet: bool) -> 
     recording.to_csv(log)
     recording.motion.save(motion)
     save_figure(plot_timeline(recording), picture)
-    with progress_bar(wanted=not quiet) as progress:
+    with progress_bar(enabled=not quiet) as progress:
         return [log, motion, picture, *write_walk(recording.motion, out, animation=animation, progress=progress)]
 
 

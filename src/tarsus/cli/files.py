@@ -1,4 +1,4 @@
-"""The files of a walk: its table, its pictures, its animation."""
+"""Output files of a walk: table, figures, animation."""
 
 from __future__ import annotations
 
@@ -14,22 +14,22 @@ from tarsus.report.style import save_figure
 
 __all__ = ["write_walk"]
 
-_PICTURES = {"angles.png": plot_angles, "footpaths.png": plot_footpaths, "gait.png": plot_gait}
+_FIGURES = {"angles.png": plot_angles, "footpaths.png": plot_footpaths, "gait.png": plot_gait}
 
 
 def write_walk(motion: Motion, folder: Path, *, animation: bool, progress: Progress) -> list[Path]:
-    """Write a walk's files and return where they are.
+    """Write the files of a walk and return their paths.
 
     Parameters
     ----------
     motion : Motion
         The walk.
     folder : Path
-        A folder that is there.
+        Existing folder.
     animation : bool
-        Whether to write the animation too.
+        Whether to write the animation.
     progress : callable
-        Told what is being written.
+        Called with the name of the current file and the completed fraction.
 
     Raises
     ------
@@ -42,12 +42,12 @@ def write_walk(motion: Motion, folder: Path, *, animation: bool, progress: Progr
     progress("table", 0.0)
     motion.to_csv(table)
     written = [table]
-    for name, plot in _PICTURES.items():
+    for name, plot in _FIGURES.items():
         progress(name, 0.05 * len(written))
         save_figure(plot(motion), folder / name)
         written.append(folder / name)
     if animation:
-        film = folder / "walk.gif"
-        animate(motion, film, progress=lambda share: progress(film.name, 0.2 + 0.8 * share))
-        written.append(film)
+        gif = folder / "walk.gif"
+        animate(motion, gif, progress=lambda fraction: progress(gif.name, 0.2 + 0.8 * fraction))
+        written.append(gif)
     return written

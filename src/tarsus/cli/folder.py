@@ -1,4 +1,4 @@
-"""Folders that commands write to."""
+"""Output folders of commands."""
 
 from __future__ import annotations
 
@@ -11,21 +11,21 @@ __all__ = ["make_folder"]
 
 
 def make_folder(out: Path) -> None:
-    """Find out before the work, not after it, that nothing can be written.
+    """Create an output folder, and check that it is writable before any computation.
 
     Parameters
     ----------
     out : Path
-        What ``--out`` names.
+        Value of ``--out``.
 
     Raises
     ------
     UsageError
-        If it can't be made, or nothing can be written there.
+        If the folder can't be created or is not writable.
     """
     try:
         out.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryFile(dir=out):
             pass
     except OSError as error:
-        raise click.UsageError(f"--out {out}: nothing can be written there: {error.strerror}") from None
+        raise click.UsageError(f"--out {out} is not writable: {error.strerror}") from None

@@ -1,4 +1,4 @@
-"""The group of all commands: whatever goes wrong in one of them becomes one clear message and an exit code."""
+"""Command group that turns errors into one message and an exit code."""
 
 from __future__ import annotations
 
@@ -15,24 +15,24 @@ from tarsus.errors import InputError, StrokeError, TarsusError, UnknownNameError
 __all__ = ["TarsusGroup"]
 
 _EXTRAS = {"rich": "cli", "matplotlib": "plots", "PIL": "plots", "fastapi": "studio", "uvicorn": "studio"}
-_IMPOSSIBLE, _ASKED_WRONGLY, _BUG, _INTERRUPTED = 1, 2, 70, 130
+_IMPOSSIBLE, _USAGE, _BUG, _INTERRUPTED = 1, 2, 70, 130
 
 
 class TarsusGroup(click.Group):
-    """A group whose errors are messages: for people on stderr, with ``--json`` as one document on stdout."""
+    """Command group with errors as messages on stderr, or with ``--json`` as a document on stdout."""
 
     def main(self, args: Sequence[str] | None = None, *rest: Any, **extra: Any) -> NoReturn:
-        """Run a command, and exit."""
-        given = list(sys.argv[1:] if args is None else args)
-        # An option may be malformed before --json is parsed, so that it is looked for here.
-        as_json = "--json" in given
+        """Run a command and exit."""
+        arguments = list(sys.argv[1:] if args is None else args)
+        # An earlier option may be malformed, so that --json is not parsed; look for it here.
+        as_json = "--json" in arguments
         extra["standalone_mode"] = False
         try:
-            code = super().main(given, *rest, **extra)
+            code = super().main(arguments, *rest, **extra)
         except click.Abort:
             code = _INTERRUPTED
         except click.ClickException as error:
-            code = _ASKED_WRONGLY
+            code = _USAGE
             if as_json:
                 fail(error.format_message(), code=code, as_json=True)
             else:
@@ -40,23 +40,23 @@ class TarsusGroup(click.Group):
         except Exception as error:
             if os.environ.get("TARSUS_DEBUG"):
                 raise
-            message, code = _answer(error)
+            message, code = _message_and_code(error)
             fail(message, code=code, as_json=as_json, details=_details(error))
         sys.exit(code or 0)
 
 
-def _answer(error: Exception) -> tuple[str, int]:
-    """Return the message and the exit code."""
+def _message_and_code(error: Exception) -> tuple[str, int]:
+    """Return the message and the exit code of an error."""
     if isinstance(error, InputError | UnknownNameError):
-        return str(error), _ASKED_WRONGLY
+        return str(error), _USAGE
     if isinstance(error, TarsusError):
         return str(error), _IMPOSSIBLE
     if isinstance(error, ModuleNotFoundError) and error.name in _EXTRAS:
-        return f"this needs {error.name}: pip install 'tarsus[{_EXTRAS[error.name]}]'", _IMPOSSIBLE
+        return f"this command needs {error.name}: pip install 'tarsus[{_EXTRAS[error.name]}]'", _IMPOSSIBLE
     if isinstance(error, MemoryError):
-        return "not enough memory for so many samples: ask for a shorter walk or a lower --rate", _ASKED_WRONGLY
+        return "out of memory: choose a shorter walk or a lower --rate", _USAGE
     what = f"{type(error).__name__}: {error}"
-    return f"this is a bug in Tarsus, please report it: {what} (TARSUS_DEBUG=1 in the environment shows where)", _BUG
+    return f"bug in Tarsus, please report it: {what} (set TARSUS_DEBUG=1 for a traceback)", _BUG
 
 
 def _details(error: Exception) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""`tarsus loads`: what every joint bears through a walk, and whether its servo carries it."""
+"""`tarsus loads`: joint loads over a walk, with a verdict on the servos."""
 
 from __future__ import annotations
 
@@ -26,11 +26,16 @@ __all__ = ["loads"]
 )
 @robot_argument
 @walk_options
-@number_option("--payload", "KG", "What the body carries, at its origin.", default=0.0, show_default=True)
-@number_option("--supply", "V", "Voltage at the servos.  [default: that of their figures]")
-@click.option("--static", is_flag=True, help="Weights alone, without inertia.")
-@number_option("--capacity", "AH", "Of the battery: tells how long it lasts.")
-@click.option("--out", type=click.Path(path_type=Path), metavar="DIR", help="Write a table, pictures and a page here.")
+@number_option("--payload", "KG", "Payload at the body's origin.", default=0.0, show_default=True)
+@number_option("--supply", "V", "Supply voltage.  [default: that of the servo ratings]")
+@click.option("--static", is_flag=True, help="Quasi-static: without inertia.")
+@number_option("--capacity", "AH", "Battery capacity, to estimate the battery life.")
+@click.option(
+    "--out",
+    type=click.Path(path_type=Path),
+    metavar="DIR",
+    help="Write a table, figures and an HTML page to this folder.",
+)
 @json_option
 def loads(
     robot: str,
@@ -40,13 +45,13 @@ def loads(
     capacity: float | None,
     out: Path | None,
     as_json: bool,
-    **asked: Any,
+    **options: Any,
 ) -> int:
-    """Tell what every joint bears through a walk, and whether its servo carries it.
+    """Compute the joint loads over a walk, with a verdict on each servo.
 
     The factor is stall torque over peak torque: below 1 the robot cannot stand, below 1.5 its servos stall or burn,
-    below 3 it walks warm and without reserve. The exit code is 0 only if every factor is at least 1.5 and the robot
-    doesn't tip.
+    below 3 they run warm and have no reserve. The exit code is 0 only if every factor is at least 1.5 and the robot
+    does not tip.
     """
     from tarsus.cli.planning import plan
     from tarsus.load.loads import joint_loads
@@ -56,17 +61,17 @@ def loads(
 
     if out is not None:
         make_folder(out)
-    motion = plan(robot, asked)
-    found = joint_loads(motion.robot, motion, payload=payload, supply=supply, inertial=not static)
-    drawn = supply_load(found, capacity=capacity)
-    summary = loads_summary(found, drawn)
+    motion = plan(robot, options)
+    joint_load_results = joint_loads(motion.robot, motion, payload=payload, supply=supply, inertial=not static)
+    currents = supply_load(joint_load_results, capacity=capacity)
+    summary = loads_summary(joint_load_results, currents)
     if not as_json:
         show(loads_table(summary), *loads_lines(summary), loads_verdict(summary))
     files: list[Path] = []
     if out is not None:
         from tarsus.report.loads_files import write_loads
 
-        files = write_loads(found, summary, out)
+        files = write_loads(joint_load_results, summary, out)
     if as_json:
         print_json({**summary, "files": [str(file) for file in files]})
     for file in files if not as_json else ():

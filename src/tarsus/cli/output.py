@@ -1,4 +1,4 @@
-"""What commands print: a JSON document, tables, messages."""
+"""Output of commands: JSON documents, tables, messages."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _PIPE_WIDTH = 120
 
 
 def print_json(document: Any) -> None:
-    """Print one JSON document: numbers to a millionth, NaN and infinities as null."""
+    """Print a JSON document, with numbers to 6 decimal places, and NaN and infinities as null."""
     click.echo(json.dumps(_plain(document), indent=2, ensure_ascii=False))
 
 
@@ -32,13 +32,13 @@ def _plain(value: Any) -> Any:
     if hasattr(value, "tolist"):
         value = value.tolist()
     if isinstance(value, float):
-        # Adding zero makes -0.0 a plain 0.0.
+        # Adding zero turns -0.0 into 0.0.
         return round(value, 6) + 0.0 if math.isfinite(value) else None
     return value
 
 
 def fail(message: str, *, code: int, as_json: bool, details: dict[str, Any] | None = None) -> int:
-    """Print what went wrong, and return the exit code."""
+    """Print an error message and return the exit code."""
     if as_json:
         print_json({"error": message, "exit_code": code, **(details or {})})
     else:
@@ -46,37 +46,37 @@ def fail(message: str, *, code: int, as_json: bool, details: dict[str, Any] | No
     return code
 
 
-def show(*parts: RenderableType) -> None:
-    """Print tables and texts; not folded at 80 columns where nobody's terminal is."""
+def show(*items: RenderableType) -> None:
+    """Print tables and texts; output to a pipe is wider than 80 columns."""
     from rich.console import Console
     from rich.text import Text
 
     console = Console(highlight=False, markup=False, emoji=False)
     if not console.is_terminal and "COLUMNS" not in os.environ:
         console.width = _PIPE_WIDTH
-    for part in parts:
-        # Sentences are left for the terminal to fold: whoever copies or searches them finds them whole.
-        console.print(part, soft_wrap=isinstance(part, str | Text))
+    for item in items:
+        # The terminal folds sentences, so that they can be copied and searched.
+        console.print(item, soft_wrap=isinstance(item, str | Text))
 
 
 class Progress(Protocol):
-    """Told what is being done, and what share of it is done."""
+    """Callback for the current activity and the completed fraction."""
 
-    def __call__(self, doing: str, share: float, /) -> None:
-        """Show it."""
+    def __call__(self, activity: str, fraction: float, /) -> None:
+        """Show the progress."""
 
 
 @contextmanager
-def progress_bar(*, wanted: bool) -> Iterator[Progress]:
-    """Show a bar on stderr while something lasts, and leave nothing behind; none where nobody sees it."""
+def progress_bar(*, enabled: bool) -> Iterator[Progress]:
+    """Show a transient progress bar on stderr, if it is a terminal."""
     from rich.console import Console
 
     console = Console(stderr=True)
-    if not (wanted and console.is_terminal):
-        yield lambda _doing, _share: None
+    if not (enabled and console.is_terminal):
+        yield lambda _activity, _fraction: None
         return
     from rich.progress import Progress as Bar
 
     with Bar(console=console, transient=True) as bar:
         task = bar.add_task("", total=1.0)
-        yield lambda doing, share: bar.update(task, description=doing, completed=share)
+        yield lambda activity, fraction: bar.update(task, description=activity, completed=fraction)

@@ -1,4 +1,4 @@
-"""From the options of `tarsus walk`, in millimetres and degrees, to a motion."""
+"""Planning of a walk from command line options, in millimetres and degrees."""
 
 from __future__ import annotations
 
@@ -16,20 +16,20 @@ from tarsus.robot.file import load_robot
 __all__ = ["path_of", "plan"]
 
 _DISTANCE = 500.0
-# Options that say where to, with those that go with them.
-_WAYS = {"distance": ("heading",), "curve": ("centre",), "twist": ("duration",)}
+# Options that determine the path, with the options that depend on them.
+_PATH_OPTIONS = {"distance": ("heading",), "curve": ("centre",), "twist": ("duration",)}
 _LENGTHS = ("stroke", "speed", "body_height", "swing_height", "foot_distance")
 
 
-def plan(name: str, asked: dict[str, Any]) -> Motion:
-    """Return the walk that the options ask for.
+def plan(name: str, options: dict[str, Any]) -> Motion:
+    """Plan the walk given by the options.
 
     Parameters
     ----------
     name : str
-        The robot's name or file.
-    asked : dict
-        The options of `tarsus walk`, None where not given.
+        Name of the robot, or path of its file.
+    options : dict
+        Options of `tarsus walk`, None if not given.
 
     Raises
     ------
@@ -38,49 +38,51 @@ def plan(name: str, asked: dict[str, Any]) -> Motion:
     TarsusError
         If the robot, the gait or the walk is not possible.
     """
-    path = path_of(asked)
+    path = path_of(options)
     robot = load_robot(name)
-    gait = Gait.named(asked["gait"] or robot.gait.name, legs=robot.legs)
-    tilt = asked["tilt"] or (0.0, 0.0)
-    lengths: dict[str, Any] = {key: None if asked[key] is None else asked[key] / 1000 for key in _LENGTHS}
+    gait = Gait.named(options["gait"] or robot.gait.name, legs=robot.legs)
+    tilt = options["tilt"] or (0.0, 0.0)
+    lengths: dict[str, Any] = {key: None if options[key] is None else options[key] / 1000 for key in _LENGTHS}
     return plan_walk(
         robot,
         gait,
         path,
-        cycle_time=asked["cycle"],
+        cycle_time=options["cycle"],
         body_tilt=(math.radians(tilt[0]), math.radians(tilt[1])),
-        rate=asked["rate"],
+        rate=options["rate"],
         **lengths,
     )
 
 
-def path_of(asked: dict[str, Any]) -> BodyPath:
-    """Return the path that the options ask for.
+def path_of(options: dict[str, Any]) -> BodyPath:
+    """Return the body path given by the options.
 
     Parameters
     ----------
-    asked : dict
-        The options of `tarsus walk`, None where not given.
+    options : dict
+        Options of `tarsus walk`, None if not given.
 
     Raises
     ------
     UsageError
         If options contradict each other.
     InputError
-        If the path goes nowhere.
+        If the path has no length.
     """
-    ways = [way for way, with_it in _WAYS.items() if any(asked[key] is not None for key in (way, *with_it))]
-    if len(ways) > 1:
-        raise click.UsageError(f"--{ways[0]} and --{ways[1]}, with what goes with each, exclude each other")
-    if ways == ["curve"]:
-        if asked["curve"] is None:
-            raise click.UsageError("--centre needs --curve: by what angle to walk round it")
-        x, y = asked["centre"] or (0.0, 0.0)
-        return curved_path(math.radians(asked["curve"]), (x / 1000, y / 1000))
-    if ways == ["twist"]:
-        if asked["twist"] is None or asked["duration"] is None:
-            raise click.UsageError("--twist and --duration go together")
-        vx, vy, wz = asked["twist"]
-        return twist_path(vx / 1000, vy / 1000, math.radians(wz), asked["duration"])
-    distance = _DISTANCE if asked["distance"] is None else asked["distance"]
-    return straight_path(distance / 1000, math.radians(asked["heading"] or 0.0))
+    kinds = [
+        kind for kind, dependent in _PATH_OPTIONS.items() if any(options[key] is not None for key in (kind, *dependent))
+    ]
+    if len(kinds) > 1:
+        raise click.UsageError(f"--{kinds[0]} and --{kinds[1]}, with their dependent options, exclude each other")
+    if kinds == ["curve"]:
+        if options["curve"] is None:
+            raise click.UsageError("--centre needs --curve, the angle to walk around it")
+        x, y = options["centre"] or (0.0, 0.0)
+        return curved_path(math.radians(options["curve"]), (x / 1000, y / 1000))
+    if kinds == ["twist"]:
+        if options["twist"] is None or options["duration"] is None:
+            raise click.UsageError("--twist and --duration must be given together")
+        vx, vy, wz = options["twist"]
+        return twist_path(vx / 1000, vy / 1000, math.radians(wz), options["duration"])
+    distance = _DISTANCE if options["distance"] is None else options["distance"]
+    return straight_path(distance / 1000, math.radians(options["heading"] or 0.0))

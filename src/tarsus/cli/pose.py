@@ -1,4 +1,4 @@
-"""`tarsus pose`: move the body over feet that stand still."""
+"""`tarsus pose`: move the body over fixed feet."""
 
 from __future__ import annotations
 
@@ -27,27 +27,29 @@ __all__ = ["pose"]
 )
 @robot_argument
 @number_option("--x", "MM", "Move the body forward.", default=0.0)
-@number_option("--y", "MM", "Move it to the left.", default=0.0)
-@number_option("--z", "MM", "Move it up.", default=0.0)
-@number_option("--roll", "DEG", "Turn it about x: the left side up.", default=0.0)
-@number_option("--pitch", "DEG", "Turn it about y: the front down.", default=0.0)
-@number_option("--yaw", "DEG", "Turn it about z: to the left.", default=0.0)
-@number_option("--body-height", "MM", "Height of the body's origin before it is moved.  [default: the robot's own]")
-@click.option("--knee", type=click.Choice(["up", "down"]), default="up", show_default=True, help="Where the knees are.")
+@number_option("--y", "MM", "Move the body to the left.", default=0.0)
+@number_option("--z", "MM", "Move the body up.", default=0.0)
+@number_option("--roll", "DEG", "Roll: the left side up.", default=0.0)
+@number_option("--pitch", "DEG", "Pitch: the front down.", default=0.0)
+@number_option("--yaw", "DEG", "Yaw: to the left.", default=0.0)
+@number_option("--body-height", "MM", "Body height before the displacement.  [default: the robot's]")
 @click.option(
-    "--picture", type=click.Path(path_type=Path), metavar="FILE", help="Draw it to this file (png, svg, pdf)."
+    "--knee", type=click.Choice(["up", "down"]), default="up", show_default=True, help="Configuration of the knees."
+)
+@click.option(
+    "--picture", type=click.Path(path_type=Path), metavar="FILE", help="Draw the robot to this file (png, svg, pdf)."
 )
 @json_option
-def pose(robot: str, knee: Literal["up", "down"], picture: Path | None, as_json: bool, **move: Any) -> int:
-    """Move the body while the feet stand still: the joint angles, or why not.
+def pose(robot: str, knee: Literal["up", "down"], picture: Path | None, as_json: bool, **displacement: Any) -> int:
+    """Move the body while the feet stay on their rest footholds.
 
-    The feet stand where they stand at rest. A leg that can't reach its foothold is in the air; whether the others
-    hold the robot is for its centre of mass and their support polygon to say. The exit code is 0 only if all legs
-    reach and the robot stands.
+    Prints the joint angles. A leg that can't reach its foothold is in the air; the centre of mass and the support
+    polygon of the other feet determine whether the robot stands. The exit code is 0 only if all legs reach their
+    footholds and the robot stands.
     """
     from tarsus.report.tables import angle_table, number, verdict
 
-    standing = _standing(robot, knee, move)
+    standing = _standing(robot, knee, displacement)
     summary = standing.summary()
     if picture is not None:
         _draw(standing, picture)
@@ -55,18 +57,18 @@ def pose(robot: str, knee: Literal["up", "down"], picture: Path | None, as_json:
     if as_json:
         print_json(summary)
         return 0 if summary["possible"] else 1
-    margin = number(summary["margin_mm"], "mm") if standing.contacts.any() else "none, no leg stands"
+    margin = number(summary["margin_mm"], "mm") if standing.contacts.any() else "none, no leg reaches its foothold"
     show(angle_table(summary), f"stability margin: {margin}", *(f"assumed: {text}" for text in summary["assumed"]))
     show(verdict(summary))
-    share = summary["share_that_works"]
-    if not summary["possible"] and share is not None:
-        show(f"with every foot where it stands, {share * 100:.1f} % of this move works")
+    fraction = summary["feasible_fraction"]
+    if not summary["possible"] and fraction is not None:
+        show(f"feasible with every foot on its foothold: {fraction * 100:.1f} % of this displacement")
     if picture is not None:
         click.echo(f"wrote {picture}")
     return 0 if summary["possible"] else 1
 
 
-def _standing(name: str, knee: Literal["up", "down"], move: dict[str, Any]) -> Standing:
+def _standing(name: str, knee: Literal["up", "down"], displacement: dict[str, Any]) -> Standing:
     import numpy as np
 
     from tarsus.kinematics.inverse import inverse_kinematics
@@ -76,12 +78,12 @@ def _standing(name: str, knee: Literal["up", "down"], move: dict[str, Any]) -> S
     from tarsus.robot.file import load_robot
 
     robot = load_robot(name)
-    height = default_body_height(robot) if move["body_height"] is None else move["body_height"] / 1000
+    height = default_body_height(robot) if displacement["body_height"] is None else displacement["body_height"] / 1000
     feet = np.asarray(default_stance(robot, height)) + np.array([0.0, 0.0, height])
     start = Pose.from_rpy(position=(0.0, 0.0, height))
-    roll, pitch, yaw = np.radians([move["roll"], move["pitch"], move["yaw"]])
-    place = np.array([move["x"], move["y"], move["z"]]) / 1000 + start.position
-    body = Pose.from_rpy(roll, pitch, yaw, place)
+    roll, pitch, yaw = np.radians([displacement["roll"], displacement["pitch"], displacement["yaw"]])
+    position = np.array([displacement["x"], displacement["y"], displacement["z"]]) / 1000 + start.position
+    body = Pose.from_rpy(roll, pitch, yaw, position)
     return Standing(solution=inverse_kinematics(robot, feet, body, knee=knee), start=start)
 
 

@@ -1,4 +1,4 @@
-"""`tarsus rest`: how the robot lies or stands with given joint angles."""
+"""`tarsus rest`: resting pose for given joint angles."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 __all__ = ["rest"]
 
 
-# Angles are mostly negative, and must not be taken for options.
+# Angles are often negative, and must not be parsed as options.
 @click.command(
     context_settings={"ignore_unknown_options": True},
     epilog=examples(
@@ -28,25 +28,25 @@ __all__ = ["rest"]
 )
 @robot_argument
 @click.argument("angles", nargs=-1, metavar="[ANGLE]...")
-@click.option("--all", "alike", type=Numbers("C", "F", "T"), metavar="C,F,T", help="Every leg alike: three angles.")
-@click.option("--file", type=click.Path(path_type=Path), metavar="FILE", help="Read them from a JSON file.")
+@click.option("--all", "same_for_all", type=Numbers("C", "F", "T"), metavar="C,F,T", help="Three angles for every leg.")
+@click.option("--file", type=click.Path(path_type=Path), metavar="FILE", help="Read the angles from a JSON file.")
 @click.option(
-    "--picture", type=click.Path(path_type=Path), metavar="FILE", help="Draw it to this file (png, svg, pdf)."
+    "--picture", type=click.Path(path_type=Path), metavar="FILE", help="Draw the robot to this file (png, svg, pdf)."
 )
 @json_option
 def rest(
     robot: str,
     angles: tuple[str, ...],
-    alike: tuple[float, float, float] | None,
+    same_for_all: tuple[float, float, float] | None,
     file: Path | None,
     picture: Path | None,
     as_json: bool,
 ) -> int:
-    """Tell how the robot rests on flat ground with its joints held at ANGLES, in deg.
+    """Compute the resting pose on flat ground with the joints held at ANGLES, in deg.
 
-    Three angles for each leg (coxa, femur, tibia), the legs in their order. A JSON file holds them as a list, a list
-    of three for each leg, or under the key angles_deg: what tarsus pose --json prints. The exit code is 0 only if the
-    robot rests and no angle is out of its joint's limits.
+    Three angles for each leg (coxa, femur, tibia), in the order of the legs. A JSON file contains them as a list, as a
+    list of three for each leg, or under the key angles_deg, as printed by tarsus pose --json. The exit code is 0 only
+    if the robot has a stable resting pose and all angles are within the joint limits.
     """
     import numpy as np
 
@@ -57,7 +57,7 @@ def rest(
     from tarsus.robot.file import load_robot
 
     loaded = load_robot(robot)
-    radians = np.radians(read_angles(loaded, angles, alike=alike, file=file))
+    radians = np.radians(read_angles(loaded, angles, same_for_all=same_for_all, file=file))
     result = resting_pose(loaded, radians)
     summary = rest_summary(loaded, radians, result)
     if picture is not None:

@@ -1,4 +1,4 @@
-"""`tarsus servos`: whether a robot's servos do, and which ones would."""
+"""`tarsus servos`: servo sizing for a walk."""
 
 from __future__ import annotations
 
@@ -23,17 +23,17 @@ __all__ = ["servos"]
 )
 @robot_argument
 @walk_options
-@number_option("--factor", "N", "Stall torque over peak torque that is asked for.", default=3.0, show_default=True)
+@number_option("--factor", "N", "Required stall torque over peak torque.", default=3.0, show_default=True)
 @click.option(
     "--rule",
     type=click.Choice(["factor", "continuous"]),
     default="factor",
     show_default=True,
-    help="Ask for that factor, or for a lasting load of at most 1/5 of the stall torque.",
+    help="Require that factor, or an RMS torque of at most 1/5 of the stall torque.",
 )
-@number_option("--payload", "KG", "What the body carries, at its origin.", default=0.0, show_default=True)
-@number_option("--supply", "V", "Voltage at the servos.  [default: that of their figures]")
-@click.option("--static", is_flag=True, help="Weights alone, without inertia.")
+@number_option("--payload", "KG", "Payload at the body's origin.", default=0.0, show_default=True)
+@number_option("--supply", "V", "Supply voltage.  [default: that of the servo ratings]")
+@click.option("--static", is_flag=True, help="Quasi-static: without inertia.")
 @json_option
 def servos(
     robot: str,
@@ -43,12 +43,12 @@ def servos(
     supply: float | None,
     static: bool,
     as_json: bool,
-    **asked: Any,
+    **options: Any,
 ) -> int:
-    """Tell whether the servos of a robot carry it through a walk, and which ones would.
+    """Judge the robot's servos for a walk, and find sufficient ones in the catalogue.
 
-    Every servo of the catalogue is tried with its own mass. The exit code is 0 only if the present servos keep the
-    rule, are fast enough, and the robot doesn't tip.
+    Every servo of the catalogue is evaluated with its own mass. The exit code is 0 only if the robot's servos satisfy
+    the rule and are fast enough, and the robot does not tip.
     """
     from rich.text import Text
 
@@ -58,18 +58,18 @@ def servos(
     from tarsus.report.loads_summary import servos_summary
     from tarsus.report.loads_table import candidate_table, servo_lines
 
-    motion = plan(robot, asked)
-    found = joint_loads(motion.robot, motion, payload=payload, supply=supply, inertial=not static)
-    summary = servos_summary(size_servos(motion.robot, found, safety_factor=factor, rule=rule), found)
-    done = bool(summary["present_do"] and summary["balanced"])
+    motion = plan(robot, options)
+    loads = joint_loads(motion.robot, motion, payload=payload, supply=supply, inertial=not static)
+    summary = servos_summary(size_servos(motion.robot, loads, safety_factor=factor, rule=rule), loads)
+    sufficient = bool(summary["sufficient"] and summary["balanced"])
     if as_json:
         print_json(summary)
-        return 0 if done else 1
+        return 0 if sufficient else 1
     show(*(f"{row['leg']} {row['joint']} ({row['servo'] or 'no servo'}): {row['text']}" for row in summary["joints"]))
     table = candidate_table(summary)
-    show(table if table.row_count else "no servo of the catalogue would do in all joints")
+    show(table if table.row_count else "no servo of the catalogue is sufficient in all joints")
     show(*servo_lines(summary))
-    tips = "" if summary["balanced"] else "; and the robot tips"
-    words = "its servos do" if done else f"its servos don't do{tips}"
-    show(Text(words, style="bold green" if done else "bold red"))
-    return 0 if done else 1
+    tipping = "" if summary["balanced"] else "; the robot tips"
+    text = "the robot's servos are sufficient" if sufficient else f"the robot's servos are not sufficient{tipping}"
+    show(Text(text, style="bold green" if sufficient else "bold red"))
+    return 0 if sufficient else 1

@@ -1,4 +1,4 @@
-"""`tarsus studio`: the robot in the browser, live."""
+"""`tarsus studio`: interactive 3D view of a robot in the browser."""
 
 from __future__ import annotations
 
@@ -29,14 +29,17 @@ _PORT = 8600
     )
 )
 @click.argument("robot", metavar="[ROBOT]", default="strider")
+@click.option("--port", type=click.IntRange(0, 65535), help=f"Port; 0 for a free one.  [default: {_PORT}]")
 @click.option(
-    "--port", type=click.IntRange(0, 65535), help=f"Port to listen at; 0 takes a free one.  [default: {_PORT}]"
+    "--host",
+    default="127.0.0.1",
+    show_default=True,
+    help="Address to listen on; addresses other than loopback need a token.",
 )
-@click.option("--host", default="127.0.0.1", show_default=True, help="Address to listen at; others need a token.")
-@click.option("--public", is_flag=True, help="Let anybody in without a token, to the simulator and nothing else.")
-@click.option("--token", help="The token that visitors must know.  [default: a new one where --host needs one]")
-@click.option("--no-browser", is_flag=True, help="Print the link, and open no browser.")
-@click.option("--check", is_flag=True, help="Start, ask the server whether all is well, and stop.")
+@click.option("--public", is_flag=True, help="Serve without a token, restricted to the simulator.")
+@click.option("--token", help="Access token.  [default: a new one if --host needs one]")
+@click.option("--no-browser", is_flag=True, help="Print the link without opening a browser.")
+@click.option("--check", is_flag=True, help="Start the server, check that it responds, and stop.")
 @json_option
 def studio(
     robot: str,
@@ -48,24 +51,25 @@ def studio(
     check: bool,
     as_json: bool,
 ) -> int:
-    """Open the robot in the browser, to look at it and move it. Without --check it runs until Ctrl-C.
+    """Open the robot in the browser. Without --check the server runs until Ctrl-C.
 
-    Only this machine can come in, unless --host says otherwise; then visitors need the printed link, with its token.
+    The server accepts connections from this machine only, unless --host is given; then visitors need the printed link
+    with its token.
     """
     from tarsus.studio.server.serve import Serving
     from tarsus.studio.server.settings import Settings, is_loopback
 
     if public and token is not None:
-        raise click.UsageError("--public lets anybody in, --token only those who know it: give one of them")
+        raise click.UsageError("--public and --token exclude each other")
     if token is None and not public and not is_loopback(host):
         token = Settings.new_token()
-    # A check must not fail because a studio is running.
-    wanted = port if port is not None else 0 if check else _PORT
-    settings = Settings(host=host, port=wanted, public=public, token=token, start=_start(robot))
+    # A check must not fail because a studio is already running.
+    chosen_port = port if port is not None else 0 if check else _PORT
+    settings = Settings(host=host, port=chosen_port, public=public, token=token, start=_start(robot))
     serving = Serving(settings)
     if check:
         return _check(serving, as_json=as_json)
-    _tell(serving, as_json=as_json)
+    _announce(serving, as_json=as_json)
     if not no_browser and sys.stdout.isatty():
         click.launch(serving.url)
     serving.run()
@@ -82,12 +86,12 @@ def _start(robot: str) -> StudioState:
     return StudioState(robot=choice)
 
 
-def _tell(serving: Serving, *, as_json: bool) -> None:
+def _announce(serving: Serving, *, as_json: bool) -> None:
     if as_json:
         print_json({"url": serving.url})
         return
     click.echo(f"Tarsus Studio: {serving.url}")
-    click.echo("Ctrl-C ends it.")
+    click.echo("Press Ctrl-C to stop.")
 
 
 def _check(serving: Serving, *, as_json: bool) -> int:
@@ -96,6 +100,6 @@ def _check(serving: Serving, *, as_json: bool) -> int:
     if as_json:
         print_json({"url": serving.url, **health})
     else:
-        pages = "and has its pages" if health["pages"] else "but its pages are not built: run `make web`"
-        click.echo(f"the studio answers at {serving.url} {pages}")
+        pages = "with its pages" if health["pages"] else "but its pages are not built: run `make web`"
+        click.echo(f"the studio responds at {serving.url} {pages}")
     return 0 if health["status"] == "ok" else 1

@@ -1,4 +1,4 @@
-"""Values of options: finite numbers, and several of them with commas."""
+"""Types of command line options: finite numbers, and comma-separated numbers."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ else:  # older versions of click can't be subscripted
 
 __all__ = ["Numbers", "examples", "json_option", "number_option", "robot_argument"]
 
-# Far beyond any robot, and far from where squares overflow.
-_LARGEST = 1e9
+# Larger than any robot dimension, and far below the overflow of squares.
+_MAX_VALUE = 1e9
 _F = TypeVar("_F", bound=Callable[..., Any])
 
 
@@ -24,7 +24,7 @@ def _finite(text: str) -> float | None:
         value = float(text)
     except ValueError:
         return None
-    return value if abs(value) <= _LARGEST else None
+    return value if abs(value) <= _MAX_VALUE else None
 
 
 class Number(_ParamType):
@@ -33,7 +33,7 @@ class Number(_ParamType):
     name = "number"
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> float:
-        """Return the number; refuse NaN and infinities too."""
+        """Return the number; NaN and infinities are rejected."""
         number = _finite(str(value))
         if number is None:
             self.fail(f"{value!r} is not a number between -1e9 and 1e9", param, ctx)
@@ -41,7 +41,7 @@ class Number(_ParamType):
 
 
 class Numbers(_ParamType):
-    """So many finite numbers with commas between them."""
+    """A fixed number of finite, comma-separated numbers."""
 
     name = "numbers"
 
@@ -52,7 +52,7 @@ class Numbers(_ParamType):
         """Return the numbers."""
         if isinstance(value, tuple):
             return value
-        numbers = [_finite(part) for part in str(value).split(",")]
+        numbers = [_finite(text) for text in str(value).split(",")]
         if len(numbers) != len(self.names) or None in numbers:
             self.fail(
                 f"{value!r} is not {len(self.names)} numbers between -1e9 and 1e9, {','.join(self.names)}", param, ctx
@@ -61,7 +61,7 @@ class Numbers(_ParamType):
 
 
 def number_option(flag: str, unit: str, text: str, **more: Any) -> Callable[[_F], _F]:
-    """Return an option for a finite number; its unit stands in the help."""
+    """Return an option for a finite number, with its unit in the help."""
     return click.option(flag, type=Number(), metavar=unit, help=text, **more)
 
 
@@ -72,9 +72,9 @@ def robot_argument(function: _F) -> _F:
 
 def json_option(function: _F) -> _F:
     """Add the option ``--json``."""
-    return click.option("--json", "as_json", is_flag=True, help="Print one JSON document instead.")(function)
+    return click.option("--json", "as_json", is_flag=True, help="Print a JSON document.")(function)
 
 
 def examples(*lines: str) -> str:
-    """Return command lines as the end of a command's help: one a line, not folded."""
+    """Return example command lines for the end of a command's help, one per line."""
     return "\n".join(("\b", "Examples:", *(f"  {line}" for line in lines)))

@@ -1,4 +1,4 @@
-"""`tarsus walk`: plan a walk, tell how it goes, write its angles and pictures."""
+"""`tarsus walk`: plan a walk, print its numbers, write joint angles and figures."""
 
 from __future__ import annotations
 
@@ -32,17 +32,22 @@ __all__ = ["walk"]
 )
 @robot_argument
 @walk_options
-@click.option("--out", type=click.Path(path_type=Path), metavar="DIR", help="Write angles (CSV) and pictures here.")
-@click.option("--no-animation", is_flag=True, help="Leave out the animation (of the first 20 s at most).")
 @click.option(
-    "--html", type=click.Path(path_type=Path), metavar="FILE", help="Write a page that plays the walk in 3D, offline."
+    "--out", type=click.Path(path_type=Path), metavar="DIR", help="Write joint angles (CSV) and figures to this folder."
+)
+@click.option("--no-animation", is_flag=True, help="Do not write the animation (of the first 20 s at most).")
+@click.option(
+    "--html",
+    type=click.Path(path_type=Path),
+    metavar="FILE",
+    help="Write an offline HTML page that plays the walk in 3D.",
 )
 @json_option
-def walk(robot: str, out: Path | None, no_animation: bool, html: Path | None, as_json: bool, **asked: Any) -> int:
-    """Plan a walk and tell whether the robot can do it.
+def walk(robot: str, out: Path | None, no_animation: bool, html: Path | None, as_json: bool, **options: Any) -> int:
+    """Plan a walk and check whether the robot can execute it.
 
-    Straight ahead unless --curve or --twist says otherwise. What is left out is chosen so that it works, and named.
-    The exit code is 0 only if the whole walk is possible.
+    The path is straight unless --curve or --twist is given. Other parameters have feasible defaults, listed under
+    "assumed". The exit code is 0 only if the whole walk is possible.
     """
     from tarsus.cli.planning import plan
     from tarsus.report.tables import verdict, walk_table
@@ -50,7 +55,7 @@ def walk(robot: str, out: Path | None, no_animation: bool, html: Path | None, as
 
     if out is not None:
         make_folder(out)
-    motion = plan(robot, asked)
+    motion = plan(robot, options)
     summary = walk_summary(motion)
     if not as_json:
         show(walk_table(summary), verdict(summary))
@@ -68,7 +73,7 @@ def walk(robot: str, out: Path | None, no_animation: bool, html: Path | None, as
 def _write(motion: Motion, out: Path, *, animation: bool, quiet: bool) -> list[Path]:
     from tarsus.cli.files import write_walk
 
-    with progress_bar(wanted=not quiet) as progress:
+    with progress_bar(enabled=not quiet) as progress:
         return write_walk(motion, out, animation=animation, progress=progress)
 
 

@@ -1,1 +1,1 @@
-"""What is shown of it: tables, files, pictures."""
+"""Tables, files and figures of results."""

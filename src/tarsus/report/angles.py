@@ -1,4 +1,4 @@
-"""The joint angles over time, beside the limits that they come near to."""
+"""Figure of the joint angles over time, with the limits that they approach."""
 
 from __future__ import annotations
 
@@ -16,15 +16,15 @@ if TYPE_CHECKING:
 
 __all__ = ["plot_angles"]
 
-# A limit is drawn where an angle comes within this many degrees of it.
+# A limit is drawn if an angle comes within this distance of it [deg].
 _NEAR = 10.0
 
 
 def plot_angles(motion: Motion) -> Figure:
-    """Draw every joint angle over time: a panel for each joint, and below it when each foot is down.
+    """Draw the joint angles over time, with a panel for each joint and the contacts below.
 
-    Lines are thick while the foot is on the ground. A joint's limit is drawn where an angle comes within 10 degrees
-    of it, and names the legs that have it where not all do.
+    Lines are thick while the foot is on the ground. A joint limit is drawn if an angle comes within 10 degrees of it,
+    with the legs that have it unless all do.
 
     Parameters
     ----------
@@ -34,7 +34,7 @@ def plot_angles(motion: Motion) -> Figure:
     Returns
     -------
     Figure
-        To be saved by `tarsus.report.style.save_figure`, or shown in a notebook.
+        Figure to save with `tarsus.report.style.save_figure` or to show in a notebook.
 
     Raises
     ------
@@ -45,7 +45,7 @@ def plot_angles(motion: Motion) -> Figure:
         motion,
         np.degrees(motion.angles),
         unit="°",
-        title=f"{motion.robot.name}: joint angles, thick while the foot is down",
+        title=f"{motion.robot.name}: joint angles (thick: foot on the ground)",
     )
     for joint, axes in enumerate(panels):
         _draw_limits(axes, motion, joint)
@@ -53,7 +53,7 @@ def plot_angles(motion: Motion) -> Figure:
 
 
 def _draw_limits(axes: Axes, motion: Motion, joint: int) -> None:
-    """Draw each limit that an angle comes near to, once for all legs that share it."""
+    """Draw each limit that an angle approaches, once for all legs with that limit."""
     robot = motion.robot
     angles = np.degrees(motion.angles[:, :, joint])
     legs_at: dict[float, list[str]] = {}
@@ -63,9 +63,9 @@ def _draw_limits(axes: Axes, motion: Motion, joint: int) -> None:
                 legs_at.setdefault(limit, []).append(code)
     for limit, legs in legs_at.items():
         axes.axhline(limit, color=WARNING, linewidth=1.1, linestyle=(0, (6, 3)))
-        whose = "" if len(legs) == robot.legs else f" of {', '.join(legs)}"
+        suffix = "" if len(legs) == robot.legs else f" of {', '.join(legs)}"
         axes.annotate(
-            f"limit {limit:g}°{whose}",
+            f"limit {limit:g}°{suffix}",
             (1, limit),
             xycoords=("axes fraction", "data"),
             xytext=(-3, 2),

@@ -1,4 +1,4 @@
-"""A walk as a picture that moves: an animated GIF, in real time."""
+"""Animation of a walk: an animated GIF in real time."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ from tarsus.report.view import View
 if TYPE_CHECKING:
     from PIL.Image import Image
 
-__all__ = ["LONGEST", "animate", "frame_times"]
+__all__ = ["MAX_DURATION", "animate", "frame_times"]
 
-LONGEST = 20.0
-"""So much of a walk is shown [s]: a longer one would make a file that nobody opens."""
+MAX_DURATION = 20.0
+"""Longest part of a walk to animate [s]; longer animations would make very large files."""
 
 _VIEW = View()
 _COLOURS = 64
-# GIF counts time in hundredths of a second: 60 ms is 16.7 frames a second, 80 ms 12.5.
+# GIF frame durations are multiples of 10 ms: 60 ms is 16.7 frames per second, 80 ms 12.5.
 _FRAME_MS, _LONG_FRAME_MS = 60, 80
 _LONG = 8.0
 
@@ -33,30 +33,30 @@ def animate(
     motion: Motion,
     path: str | os.PathLike[str],
     *,
-    longest: float = LONGEST,
+    max_duration: float = MAX_DURATION,
     view: View = _VIEW,
     size: tuple[int, int] = (640, 500),
     progress: Callable[[float], None] | None = None,
 ) -> int:
     """Write a motion as an animated GIF in real time.
 
-    The picture follows the robot over a ground grid of 100 mm, and shows the feet that are down (filled), their
-    support polygon, the centre of mass over it, the time and the gait diagram.
+    The view follows the robot over a ground grid of 100 mm. It shows the feet on the ground (filled), the support
+    polygon, the centre of mass above it, the time and the gait diagram.
 
     Parameters
     ----------
     motion : Motion
         The motion.
     path : path
-        Where to write it.
-    longest : float
-        How much of the motion is shown, from its start [s].
+        Output file.
+    max_duration : float
+        Duration to show, from the start of the motion [s].
     view : View
-        From where it is looked at.
+        Direction of view.
     size : tuple of int
         Width and height [pixels].
     progress : callable, optional
-        Called after every frame with the share that is done, up to 1.
+        Called after every frame with the completed fraction, up to 1.
 
     Returns
     -------
@@ -66,21 +66,21 @@ def animate(
     Raises
     ------
     InputError
-        If the file can't be written, or `longest` is not positive.
+        If the file can't be written, or `max_duration` is not positive.
     TarsusError
         If matplotlib is not installed.
     """
-    times, duration = frame_times(motion, longest=longest)
+    times, duration = frame_times(motion, max_duration=max_duration)
     film = Film(motion, view=view, size=size)
     from PIL.Image import Dither
 
     frames: list[Image] = []
-    palette = _palette([film.frame(_sample_at(motion, share * float(times[-1]))) for share in (0.0, 0.3, 0.6)])
+    palette = _palette([film.frame(_sample_at(motion, fraction * float(times[-1]))) for fraction in (0.0, 0.3, 0.6)])
     for number, time in enumerate(times):
         frames.append(film.frame(_sample_at(motion, float(time))).quantize(palette=palette, dither=Dither.NONE))
         if progress is not None:
             progress((number + 1) / len(times))
-    # The last frame stays for a second, before the walk begins anew.
+    # The last frame stays for a second before the loop restarts.
     durations = [duration] * (len(frames) - 1) + [1000]
     try:
         frames[0].save(path, format="GIF", save_all=True, append_images=frames[1:], duration=durations, loop=0)
@@ -89,31 +89,31 @@ def animate(
     return len(frames)
 
 
-def frame_times(motion: Motion, *, longest: float = LONGEST) -> tuple[np.ndarray[Any, Any], int]:
-    """Return when the frames are, from the start [s], and how long each is shown [ms].
+def frame_times(motion: Motion, *, max_duration: float = MAX_DURATION) -> tuple[np.ndarray[Any, Any], int]:
+    """Return the times of the frames, from the start [s], and the duration of a frame [ms].
 
     Parameters
     ----------
     motion : Motion
         The motion.
-    longest : float
-        How much of it is shown [s].
+    max_duration : float
+        Duration to show [s].
 
     Raises
     ------
     InputError
-        If `longest` is not positive.
+        If `max_duration` is not positive.
     """
-    if not longest > 0:
-        raise InputError(f"longest is {longest} s; it must be greater than 0")
-    shown = min(motion.duration, longest)
+    if not max_duration > 0:
+        raise InputError(f"max_duration is {max_duration} s; it must be greater than 0")
+    shown = min(motion.duration, max_duration)
     duration = _FRAME_MS if shown <= _LONG else _LONG_FRAME_MS
     count = math.ceil(shown * 1000 / duration - 1e-9) + 1
     return np.minimum(np.arange(count) * duration / 1000, shown), duration
 
 
 def _palette(pictures: Sequence[Image]) -> Image:
-    """Return the colours of some frames, pure white first: the eye sees the least tint of a whole ground."""
+    """Return a palette from some frames, with pure white first: a tinted background would be visible."""
     from PIL import Image
 
     pixels = np.concatenate([np.asarray(picture).reshape(-1, 3) for picture in pictures])
@@ -125,5 +125,5 @@ def _palette(pictures: Sequence[Image]) -> Image:
 
 
 def _sample_at(motion: Motion, time: float) -> int:
-    # Frames may fall between samples: the next one is taken, at most one sample late.
+    # A frame between two samples shows the later one.
     return min(int(np.searchsorted(motion.time, time - 1e-9)), len(motion.time) - 1)

@@ -1,4 +1,4 @@
-"""The artists of one robot in a picture: made once, moved for every frame."""
+"""Matplotlib artists of a robot, created once and moved for every frame."""
 
 from __future__ import annotations
 
@@ -23,27 +23,27 @@ __all__ = ["RobotDrawing"]
 Floats = np.ndarray[Any, np.dtype[np.float64]]
 
 _STABLE, _BODY, _SHADOW = "#009E73", "#9aa7b5", "#d4d4d4"
-# Thickness of coxa, femur and tibia as shares of a whole leg's length.
+# Thickness of coxa, femur and tibia relative to the length of a leg.
 _THICKNESS = (0.062, 0.058, 0.036)
 _GROUND, _SOLID = 1.0, 10.0
-# Depths are spread over this much of matplotlib's drawing order to either side of the body's.
+# Range of matplotlib's zorder for the depths, on either side of the body's.
 _ORDER = 5.0
 _STEP = 1e-6
 
 
 class RobotDrawing:
-    """The robot in one picture; `update` moves it.
+    """Drawing of a robot; `update` moves it.
 
     Parameters
     ----------
     axes : Axes
-        Where; its unit is the millimetre in the picture, and its limits say how thick the links are.
+        Target axes, in millimetres of the projection; their limits determine the line widths of the links.
     robot : Robot
         A single robot.
     view : View
-        From where it is looked at.
+        Direction of view.
     names : bool
-        Whether the legs' names are written over them.
+        Whether to label the legs.
     """
 
     def __init__(self, axes: Axes, robot: Robot, *, view: View, names: bool = False) -> None:
@@ -54,7 +54,7 @@ class RobotDrawing:
         self._colours = leg_colours(robot)
         self._reach = float((robot.coxa + robot.femur + robot.tibia).max())
         point = self._points_per_metre()
-        self._width = [max(share * self._reach * point, 1.5) for share in _THICKNESS]
+        self._width = [max(fraction * self._reach * point, 1.5) for fraction in _THICKNESS]
         self._foot = max(2 * float(np.asarray(robot.foot_radius).max()) * point, 1.3 * self._width[2])
 
         def polygon(**style: Any) -> Polygon:
@@ -80,7 +80,7 @@ class RobotDrawing:
         self._names = [self._name(leg) for leg in range(robot.legs)] if names else []
 
     def _points_per_metre(self) -> float:
-        """Return how many typographic points a metre is wide in the picture."""
+        """Return the width of a metre in the figure, in points."""
         (left, right), box = self._axes.get_xlim(), self._axes.get_window_extent()
         return float(box.width / self._axes.figure.dpi * 72 / (right - left) * 1000)
 
@@ -117,65 +117,65 @@ class RobotDrawing:
         Parameters
         ----------
         sample : Sample
-            Where it is now.
+            State to draw.
         """
         self._update_body(sample)
         self._update_legs(sample)
         self._update_ground(sample)
 
-    def _flat(self, points: Floats) -> Floats:
+    def _project(self, points: Floats) -> Floats:
         return self._view.project(points * 1000)
 
-    def _order(self, points: Floats, sample: Sample) -> Floats:
-        """Return matplotlib's drawing order: nearer points later, the body's origin at `_SOLID`."""
+    def _zorder(self, points: Floats, sample: Sample) -> Floats:
+        """Return the zorder of points: nearer points are drawn later, the body's origin is at `_SOLID`."""
         depth = self._view.depth(points - np.asarray(sample.body.position))
-        order: Floats = _SOLID + _ORDER * np.clip(depth / (4 * self._reach), -0.99, 0.99)
-        return order
+        zorder: Floats = _SOLID + _ORDER * np.clip(depth / (4 * self._reach), -0.99, 0.99)
+        return zorder
 
     def _update_body(self, sample: Sample) -> None:
         corners = np.asarray(sample.body @ self._solid.corners)
-        flat = self._flat(corners)
+        projected = self._project(corners)
         for face, patch in zip(self._solid.faces, self._faces, strict=True):
             a, b, c = corners[list(face[:3])]
             normal = np.cross(b - a, c - b)
             normal = normal / np.linalg.norm(normal)
             patch.set_visible(bool(self._view.depth(normal) > 0))
-            patch.set_xy(flat[list(face)])
+            patch.set_xy(projected[list(face)])
             patch.set_facecolor(_shade(_BODY, 0.78 + 0.3 * normal[2] + 0.1 * normal[0]))
 
     def _update_legs(self, sample: Sample) -> None:
-        flat = self._flat(sample.points)
-        middles = self._order((sample.points[:, 1:] + sample.points[:, :-1]) / 2, sample)
-        # A coxa turns about its axis on the body: before or behind it is told by that alone, without flickering.
-        middles[:, 0] = self._order(sample.points[:, 0], sample)
+        projected = self._project(sample.points)
+        link_zorder = self._zorder((sample.points[:, 1:] + sample.points[:, :-1]) / 2, sample)
+        # The coxa axis is fixed to the body; ordering the coxa by it avoids flicker.
+        link_zorder[:, 0] = self._zorder(sample.points[:, 0], sample)
         for leg in range(self._robot.legs):
             for link in range(3):
-                x, y = flat[leg, link : link + 2].T
+                x, y = projected[leg, link : link + 2].T
                 for line, step in ((self._edges[leg][link], 0.0), (self._links[leg][link], _STEP)):
                     line.set_data(x, y)
-                    line.set_zorder(middles[leg, link] + step)
+                    line.set_zorder(link_zorder[leg, link] + step)
             for joint, dot in enumerate(self._joints[leg]):
-                dot.set_data(*flat[leg, joint : joint + 1].T)
-                dot.set_zorder(middles[leg, max(joint - 1, 0) : joint + 1].max() + 2 * _STEP)
-            self._feet[leg].set_data(*flat[leg, 3:].T)
-            self._feet[leg].set_zorder(middles[leg, 2] + 2 * _STEP)
+                dot.set_data(*projected[leg, joint : joint + 1].T)
+                dot.set_zorder(link_zorder[leg, max(joint - 1, 0) : joint + 1].max() + 2 * _STEP)
+            self._feet[leg].set_data(*projected[leg, 3:].T)
+            self._feet[leg].set_zorder(link_zorder[leg, 2] + 2 * _STEP)
             self._feet[leg].set_markerfacecolor(self._colours[leg] if sample.contacts[leg] else "white")
-        for name, leg_points in zip(self._names, flat, strict=False):
+        for name, leg_points in zip(self._names, projected, strict=False):
             name.xy = tuple(leg_points[np.argmax(leg_points[:, 1])])
 
     def _update_ground(self, sample: Sample) -> None:
         on_ground = np.array([1.0, 1.0, 0.0])
-        for line, leg in zip(self._shadows, self._flat(sample.points * on_ground), strict=True):
+        for line, leg in zip(self._shadows, self._project(sample.points * on_ground), strict=True):
             line.set_data(*leg.T)
         corners = np.asarray(sample.body @ self._solid.corners) * on_ground
-        around = support_polygon(corners, np.ones(len(corners), dtype=bool))
-        self._shadow.set_xy(self._flat(np.column_stack([around, np.zeros(len(around))])))
+        outline = support_polygon(corners, np.ones(len(corners), dtype=bool))
+        self._shadow.set_xy(self._project(np.column_stack([outline, np.zeros(len(outline))])))
         hull = support_polygon(sample.support, np.ones(len(sample.support), dtype=bool))
         self._support.set_visible(len(hull) > 1)
         if len(hull) > 1:
-            self._support.set_xy(self._flat(np.column_stack([hull, np.zeros(len(hull))])))
+            self._support.set_xy(self._project(np.column_stack([hull, np.zeros(len(hull))])))
         self._support.set_color(_STABLE if sample.margin >= 0 else WARNING)
-        com = self._flat(np.array([sample.com, sample.com * on_ground]))
+        com = self._project(np.array([sample.com, sample.com * on_ground]))
         self._plumb.set_data(*com.T)
         self._com.set_data(*com[:1].T)
         self._com.set_zorder(_SOLID + _ORDER)
@@ -185,5 +185,5 @@ class RobotDrawing:
 def _shade(colour: str, light: float) -> tuple[float, float, float]:
     from matplotlib.colors import to_rgb
 
-    red, green, blue = (min(1.0, max(0.0, part * light)) for part in to_rgb(colour))
+    red, green, blue = (min(1.0, max(0.0, channel * light)) for channel in to_rgb(colour))
     return red, green, blue

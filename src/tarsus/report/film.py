@@ -1,4 +1,4 @@
-"""The frames of an animation: one picture whose artists are moved."""
+"""Frames of an animation, rendered from one figure."""
 
 from __future__ import annotations
 
@@ -23,21 +23,21 @@ __all__ = ["Film"]
 
 
 class Film:
-    """One picture whose artists are moved from frame to frame.
+    """Renderer of the frames of an animation.
 
     Parameters
     ----------
     motion : Motion
         The motion.
     view : View
-        From where it is looked at.
+        Direction of view.
     size : tuple of int
         Width and height [pixels].
     """
 
     def __init__(self, motion: Motion, *, view: View, size: tuple[int, int]) -> None:
         dpi = 100
-        self.figure = new_figure(width=size[0] / dpi, height=size[1] / dpi, dpi=dpi, by_hand=True)
+        self.figure = new_figure(width=size[0] / dpi, height=size[1] / dpi, dpi=dpi, manual_layout=True)
         self._canvas = cast("Any", self.figure.canvas)  # FigureCanvasAgg, whose methods have no types
         self.motion, self._view = motion, view
         strip = min(0.021 * motion.robot.legs, 0.3)
@@ -45,11 +45,11 @@ class Film:
         self.strip = self.figure.add_axes((0.075, 0.105, 0.9, strip))
         every = max(1, len(motion.time) // 60)
         frame_axes(self.axes, [self._sample(i) for i in range(0, len(motion.time), every)], view=view)
-        self._home = view.project(self._sample(0).centre * 1000)
+        self._origin = view.project(self._sample(0).centre * 1000)
         self._limits = np.array([self.axes.get_xlim(), self.axes.get_ylim()])
         self._ground = Ground(self.axes, view)
         self.drawing = RobotDrawing(self.axes, motion.robot, view=view, names=True)
-        self.words = self.figure.text(0.015, 0.975, "", color=INK, fontsize=11, va="top")
+        self.caption = self.figure.text(0.015, 0.975, "", color=INK, fontsize=11, va="top")
         self._make_strip()
 
     def _make_strip(self) -> None:
@@ -58,35 +58,40 @@ class Film:
         self.strip.set_xlabel("time (s)", fontsize=8, labelpad=0)
         self.strip.tick_params(labelsize=7, length=2, pad=2)
         self.strip.spines[["top", "right"]].set_visible(False)
-        self._now = self.strip.axvline(0, color=INK, linewidth=1.6)
+        self._time_line = self.strip.axvline(0, color=INK, linewidth=1.6)
 
-    def _sample(self, moment: int) -> Sample:
+    def _sample(self, sample_index: int) -> Sample:
         motion = self.motion
         return sample_of(
-            motion.robot, motion.angles[moment], body=motion.body[moment], contacts=motion.contacts[moment]
+            motion.robot,
+            motion.angles[sample_index],
+            body=motion.body[sample_index],
+            contacts=motion.contacts[sample_index],
         )
 
-    def frame(self, moment: int) -> Image:
-        """Return the picture of one sample.
+    def frame(self, sample_index: int) -> Image:
+        """Render one sample.
 
         Parameters
         ----------
-        moment : int
-            Which sample of the motion.
+        sample_index : int
+            Index of the sample in the motion.
         """
         from PIL import Image
 
-        sample = self._sample(moment)
-        moved = self._view.project(sample.centre * 1000) - self._home
-        self.axes.set_xlim(self._limits[0] + moved[0])
-        self.axes.set_ylim(self._limits[1] + moved[1])
+        sample = self._sample(sample_index)
+        shift = self._view.project(sample.centre * 1000) - self._origin
+        self.axes.set_xlim(self._limits[0] + shift[0])
+        self.axes.set_ylim(self._limits[1] + shift[1])
         self._ground.update()
         self.drawing.update(sample)
-        time = float(self.motion.time[moment])
-        self._now.set_xdata([time, time])
-        down = int(sample.contacts.sum())
+        time = float(self.motion.time[sample_index])
+        self._time_line.set_xdata([time, time])
+        feet_down = int(sample.contacts.sum())
         margin = f"{sample.margin * 1000:.0f} mm" if math.isfinite(sample.margin) else "none"
         name, gait = self.motion.robot.name, self.motion.gait.name
-        self.words.set_text(f"{name}, {gait} gait\n{time:.2f} s   {down} feet down   stability margin {margin}")
+        self.caption.set_text(
+            f"{name}, {gait} gait\n{time:.2f} s   {feet_down} feet on the ground   stability margin {margin}"
+        )
         self._canvas.draw()
         return Image.fromarray(np.asarray(self._canvas.buffer_rgba())).convert("RGB")

@@ -1,4 +1,4 @@
-"""The gait diagram: which foot is down when, and how safely the robot stands meanwhile."""
+"""Gait diagram: contacts of each foot over time, with the stability margin."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tarsus.gait.motion import Motion
-from tarsus.report.style import INK, WARNING, leg_colours, new_figure, stance_spans, thinned, tidy_axes
+from tarsus.report.style import INK, WARNING, decimation, leg_colours, new_figure, stance_spans, tidy_axes
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -15,11 +15,11 @@ if TYPE_CHECKING:
 
     from tarsus.robot.robot import Robot
 
-__all__ = ["draw_stance", "plot_gait", "rows_of_legs"]
+__all__ = ["diagram_rows", "draw_stance", "plot_gait"]
 
 
 def plot_gait(motion: Motion) -> Figure:
-    """Draw the gait diagram, a bar for each stance, with the stability margin below it.
+    """Draw the gait diagram, with a bar for each stance and the stability margin below.
 
     Parameters
     ----------
@@ -29,7 +29,7 @@ def plot_gait(motion: Motion) -> Figure:
     Returns
     -------
     Figure
-        To be saved by `tarsus.report.style.save_figure`, or shown in a notebook.
+        Figure to save with `tarsus.report.style.save_figure` or to show in a notebook.
 
     Raises
     ------
@@ -44,13 +44,14 @@ def plot_gait(motion: Motion) -> Figure:
     _draw_margin(below, motion)
     below.set_xlim(0, motion.duration)
     gait = motion.gait
-    text = f"{motion.robot.name}: {gait.name} gait, duty factor {gait.duty_factor:.3g}, cycle {motion.cycle_time:.3g} s"
-    figure.suptitle(f"{text}. Bars: foot on the ground", x=0.01, ha="left", color=INK)
+    name = f"{motion.robot.name}: {gait.name} gait"
+    timing = f"duty factor {gait.duty_factor:.3g}, cycle time {motion.cycle_time:.3g} s"
+    figure.suptitle(f"{name}, {timing}. Bars: foot on the ground", x=0.01, ha="left", color=INK)
     return figure
 
 
-def rows_of_legs(robot: Robot) -> list[int]:
-    """Return the legs as a gait diagram lists them: the left side from front to rear, then the right side.
+def diagram_rows(robot: Robot) -> list[int]:
+    """Return the order of the legs in a gait diagram: the left side from front to rear, then the right side.
 
     Parameters
     ----------
@@ -62,16 +63,16 @@ def rows_of_legs(robot: Robot) -> list[int]:
 
 
 def draw_stance(axes: Axes, motion: Motion) -> None:
-    """Draw a row for each leg, with a bar while its foot is down.
+    """Draw a row for each leg, with a bar for each stance.
 
     Parameters
     ----------
     axes : Axes
-        Where; its x axis is time [s].
+        Target axes; the x axis is time [s].
     motion : Motion
         The motion.
     """
-    rows, colours = rows_of_legs(motion.robot), leg_colours(motion.robot)
+    rows, colours = diagram_rows(motion.robot), leg_colours(motion.robot)
     for row, leg in enumerate(rows):
         axes.broken_barh(stance_spans(motion, leg), (row - 0.38, 0.76), facecolor=colours[leg], linewidth=0)
     axes.set_yticks(range(len(rows)), [motion.robot.leg_codes[leg] for leg in rows], fontsize=8)
@@ -80,8 +81,8 @@ def draw_stance(axes: Axes, motion: Motion) -> None:
 
 
 def _draw_margin(axes: Axes, motion: Motion) -> None:
-    shown = thinned(motion)
-    # Without a foot on the ground the margin is minus infinity: a gap in the line.
+    shown = decimation(motion)
+    # Without a foot on the ground the margin is minus infinity, drawn as a gap.
     margin = np.where(np.isfinite(motion.margin), motion.margin, np.nan) * 1000
     axes.plot(motion.time[shown], margin[shown], color=INK, linewidth=1.5)
     axes.axhline(0, color=WARNING, linewidth=1.1, linestyle=(0, (6, 3)))
@@ -92,11 +93,11 @@ def _draw_margin(axes: Axes, motion: Motion) -> None:
     axes.plot(motion.time[worst], margin[worst], "o", color=INK, markersize=5)
     high = float(np.nanmax(margin))
     low, high = min(0.0, float(margin[worst])), max(high, 5.0)
-    # Room for the words below the least margin, wherever that is.
+    # Space for the label below the minimum.
     axes.set_ylim(low - 0.17 * (high - low), high + 0.1 * (high - low))
     late = motion.time[worst] > 0.7 * motion.duration
     axes.annotate(
-        f"least: {margin[worst]:.1f} mm at {motion.time[worst]:.2f} s",
+        f"minimum: {margin[worst]:.1f} mm at {motion.time[worst]:.2f} s",
         (float(motion.time[worst]), float(margin[worst])),
         xytext=(-8 if late else 8, -11),
         textcoords="offset points",

@@ -1,4 +1,4 @@
-"""The ground as a grid that fills the picture and stays where it is while the picture follows the robot."""
+"""Ground grid that fills the view and stays fixed while the view follows the robot."""
 
 from __future__ import annotations
 
@@ -16,19 +16,19 @@ __all__ = ["Ground"]
 Floats = np.ndarray[Any, np.dtype[np.float64]]
 
 _GRID_MM = 100.0
-_MOST_LINES = 80
+_MAX_LINES = 80
 _COLOUR = "#e3e3e3"
 
 
 class Ground:
-    """The grid of the ground in one picture.
+    """Grid on the ground.
 
     Parameters
     ----------
     axes : Axes
-        Where; its unit is the millimetre in the picture.
+        Target axes, in millimetres of the projection.
     view : View
-        From where it is looked at.
+        Direction of view.
     """
 
     def __init__(self, axes: Axes, view: View) -> None:
@@ -39,21 +39,21 @@ class Ground:
         axes.add_collection(self._lines, autolim=False)
 
     def update(self) -> None:
-        """Draw the lines that cross what the axes show now."""
+        """Draw the grid lines within the current limits of the axes."""
         (left, right), (low, high) = self._axes.get_xlim(), self._axes.get_ylim()
-        seen = self._view.ground_under(np.array([[left, low], [right, low], [right, high], [left, high]]))[:, :2]
-        self._lines.set_segments([self._view.project(line) for line in _grid(seen.min(0), seen.max(0))])
+        visible = self._view.ground_under(np.array([[left, low], [right, low], [right, high], [left, high]]))[:, :2]
+        self._lines.set_segments([self._view.project(line) for line in _grid(visible.min(0), visible.max(0))])
 
 
 def _grid(low: Floats, high: Floats) -> list[Floats]:
-    """Return the lines of the grid over a rectangle of the ground, wider apart where they would be too many."""
+    """Return the grid lines over a rectangle of the ground, with a wider spacing if there are too many."""
     step = _GRID_MM
-    while float((high - low).max()) / step > _MOST_LINES:
+    while float((high - low).max()) / step > _MAX_LINES:
         step *= 10
     lines = []
     for axis in (0, 1):
-        at = np.arange(np.ceil(low[axis] / step), np.floor(high[axis] / step) + 1) * step
-        for value in at:
+        positions = np.arange(np.ceil(low[axis] / step), np.floor(high[axis] / step) + 1) * step
+        for value in positions:
             line = np.zeros((2, 3))
             line[:, axis] = value
             line[:, 1 - axis] = low[1 - axis], high[1 - axis]

@@ -1,4 +1,4 @@
-"""Three panels over time, one for each kind of joint, with a line for every leg and the feet that are down below."""
+"""Figure with a panel over time for each of coxa, femur and tibia, and the contacts below."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import numpy as np
 
 from tarsus.gait.motion import Motion
 from tarsus.report.gait_diagram import draw_stance
-from tarsus.report.style import INK, leg_colours, new_figure, thinned, tidy_axes
+from tarsus.report.style import INK, decimation, leg_colours, new_figure, tidy_axes
 from tarsus.robot.robot import JOINTS
 
 if TYPE_CHECKING:
@@ -21,25 +21,25 @@ __all__ = ["joint_panels"]
 def joint_panels(
     motion: Motion, values: np.ndarray[Any, Any], *, unit: str, title: str
 ) -> tuple[Figure, tuple[Axes, ...]]:
-    """Draw a value of every joint over time, thick while the foot is down.
+    """Draw a quantity of every joint over time, with thick lines in stance.
 
     Parameters
     ----------
     motion : Motion
         The motion.
     values : array, shape (n, legs, 3)
-        What is drawn, in the unit named.
+        Quantity to draw.
     unit : str
-        Its unit.
+        Unit of the quantity.
     title : str
-        What is written above.
+        Title of the figure.
 
     Returns
     -------
     figure : Figure
         The figure.
     panels : tuple of Axes
-        Those of coxa, femur and tibia, to draw limits into.
+        Axes of coxa, femur and tibia.
 
     Raises
     ------
@@ -51,7 +51,7 @@ def joint_panels(
     for joint, name in enumerate(JOINTS):
         tidy_axes(axes[joint], y=f"{name} ({unit})")
         _draw_joint(axes[joint], motion, values[:, :, joint])
-    tidy_axes(axes[3], x="time (s)", y="foot down")
+    tidy_axes(axes[3], x="time (s)", y="contact")
     draw_stance(axes[3], motion)
     axes[3].set_xlim(0, motion.duration)
     handles, labels = axes[0].get_legend_handles_labels()
@@ -61,10 +61,10 @@ def joint_panels(
 
 
 def _draw_joint(axes: Axes, motion: Motion, values: np.ndarray[Any, Any]) -> None:
-    shown = thinned(motion)
+    shown = decimation(motion)
     time = motion.time[shown]
     for leg, colour in enumerate(leg_colours(motion.robot)):
         line = values[shown, leg]
         axes.plot(time, line, color=colour, linewidth=1.0)
-        standing = np.where(motion.contacts[shown, leg], line, np.nan)
-        axes.plot(time, standing, color=colour, linewidth=2.6, label=motion.robot.leg_codes[leg])
+        stance = np.where(motion.contacts[shown, leg], line, np.nan)
+        axes.plot(time, stance, color=colour, linewidth=2.6, label=motion.robot.leg_codes[leg])

@@ -1,4 +1,4 @@
-"""The files of a walk's loads: table, pictures, and one page with all of it."""
+"""Output files of joint loads: table, figures and an HTML page."""
 
 from __future__ import annotations
 
@@ -17,17 +17,17 @@ from tarsus.robot.robot import JOINTS
 __all__ = ["write_loads", "write_loads_csv"]
 
 
-def write_loads(found: JointLoads, summary: dict[str, Any], folder: Path) -> list[Path]:
-    """Write table, pictures and page, and return where they are.
+def write_loads(loads: JointLoads, summary: dict[str, Any], folder: Path) -> list[Path]:
+    """Write table, figures and page, and return their paths.
 
     Parameters
     ----------
-    found : Loads
-        The loads.
+    loads : JointLoads
+        Joint loads.
     summary : dict
-        From `tarsus.report.loads_summary.loads_summary`.
+        Summary from `tarsus.report.loads_summary.loads_summary`.
     folder : Path
-        A folder that is there.
+        Existing folder.
 
     Raises
     ------
@@ -36,34 +36,34 @@ def write_loads(found: JointLoads, summary: dict[str, Any], folder: Path) -> lis
     TarsusError
         If matplotlib is not installed.
     """
-    pictures = {"torques.png": plot_torques(found), "torque-speed.png": plot_torque_speed(found)}
+    figures = {"torques.png": plot_torques(loads), "torque-speed.png": plot_torque_speed(loads)}
     table, page = folder / "loads.csv", folder / "report.html"
-    write_loads_csv(found, table)
-    for name, figure in pictures.items():
+    write_loads_csv(loads, table)
+    for name, figure in figures.items():
         save_figure(figure, folder / name)
     try:
-        page.write_text(loads_page(summary, [folder / name for name in pictures]), encoding="utf-8")
+        page.write_text(loads_page(summary, [folder / name for name in figures]), encoding="utf-8")
     except OSError as error:
         raise InputError(f"{page} can't be written: {error.strerror or error}") from None
-    return [table, *(folder / name for name in pictures), page]
+    return [table, *(folder / name for name in figures), page]
 
 
-def write_loads_csv(found: JointLoads, path: Path) -> None:
-    """Write a row for each moment: torques, and the ground's forces.
+def write_loads_csv(loads: JointLoads, path: Path) -> None:
+    """Write a table with the joint torques and contact forces of each sample.
 
     Parameters
     ----------
-    found : Loads
-        The loads.
+    loads : JointLoads
+        Joint loads.
     path : Path
-        Where to write it.
+        Output file.
 
     Raises
     ------
     InputError
-        If it can't be written.
+        If the file can't be written.
     """
-    codes = found.robot.leg_codes
+    codes = loads.robot.leg_codes
     header = ["time_s", "margin_mm"]
     header += [f"{code}_{joint}_nm" for code in codes for joint in JOINTS]
     header += [f"{code}_f{axis}_n" for code in codes for axis in "xyz"]
@@ -71,10 +71,10 @@ def write_loads_csv(found: JointLoads, path: Path) -> None:
         with path.open("w", encoding="utf-8", newline="") as stream:
             table = csv.writer(stream)
             table.writerow(header)
-            rows = zip(found.motion.time, found.margin, found.torques, found.forces, strict=True)
+            rows = zip(loads.motion.time, loads.margin, loads.torques, loads.forces, strict=True)
             for time, margin, torques, forces in rows:
                 numbers = (*torques.ravel(), *forces.ravel())
-                # Adding zero makes -0.0 a plain 0.0.
+                # Adding zero turns -0.0 into 0.0.
                 table.writerow(
                     [f"{time:.6f}", f"{1000 * margin:.3f}", *(f"{round(float(v), 6) + 0.0:.6f}" for v in numbers)]
                 )

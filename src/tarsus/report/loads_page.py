@@ -1,4 +1,4 @@
-"""One page with a walk's loads: verdict, pictures, tables. It asks no other place for anything."""
+"""Self-contained HTML page of joint loads: verdict, figures, tables."""
 
 from __future__ import annotations
 
@@ -28,55 +28,55 @@ td.number { text-align: right; } td.bar { font-family: monospace; }
 
 _LEGEND = (
     "factor: stall torque over peak torque (below 1 cannot stand, below 1.5 stalls or burns, below 3 marginal). "
-    "line used: of the servo's line from stall torque to its speed without load. heat: root mean square torque "
-    "over a fifth of the stall torque, which a servo bears lastingly."
+    "utilisation: of the servo's torque-speed line, from stall torque to no-load speed. thermal: root mean square "
+    "torque over 1/5 of the stall torque, the limit of the continuous load."
 )
-_TITLES = {"torques": "Torque over the walk", "torque-speed": "Torque over speed"}
-_NUMBERS = {"peak N m", "RMS N m", "factor", "deg/s", "line used", "heat"}
+_TITLES = {"torques": "Torque over time", "torque-speed": "Torque over speed"}
+_NUMBERS = {"peak N m", "RMS N m", "factor", "deg/s", "utilisation", "thermal"}
 
 
-def loads_page(summary: dict[str, Any], pictures: Sequence[Path]) -> str:
-    """Return an HTML page with its pictures in it.
+def loads_page(summary: dict[str, Any], figures: Sequence[Path]) -> str:
+    """Return an HTML page with embedded figures.
 
     Parameters
     ----------
     summary : dict
-        From `tarsus.report.loads_summary.loads_summary`.
-    pictures : sequence of Path
+        Summary from `tarsus.report.loads_summary.loads_summary`.
+    figures : sequence of Path
         PNG files.
     """
-    title = f"{summary['robot']}: what its servos bear"
+    title = f"{summary['robot']}: joint loads"
     state = "carried" if summary["carried"] else "not-carried"
-    parts = [
+    sections = [
         f"<h1>{escape(title)}</h1>",
         f"<p>{escape(_walk(summary))}</p>",
         f'<p class="verdict {state}">{escape(str(loads_verdict(summary)))}</p>',
-        *(_picture(path) for path in pictures),
+        *(_figure(path) for path in figures),
         "<h2>Every joint</h2>",
         f'<div class="wide">{_table(summary)}</div>',
         f"<p>{escape(_LEGEND)}</p>",
-        "<h2>In words</h2>",
+        "<h2>Details</h2>",
         f"<ul>{''.join(f'<li>{escape(line)}</li>' for line in loads_lines(summary))}</ul>",
     ]
     return (
         '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
         '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
         f"<title>{escape(title)}</title>\n<style>{_STYLE}</style>\n</head>\n<body>\n"
-        + "\n".join(parts)
+        + "\n".join(sections)
         + "\n</body>\n</html>\n"
     )
 
 
 def _walk(summary: dict[str, Any]) -> str:
-    payload = f", with {summary['payload_kg']:g} kg of payload" if summary["payload_kg"] else ""
-    inertia = "with inertia" if summary["inertial"] else "statics alone"
+    payload = f", payload {summary['payload_kg']:g} kg" if summary["payload_kg"] else ""
+    inertia = "with inertia" if summary["inertial"] else "quasi-static"
     return (
-        f"{summary['gait']} gait, {summary['distance_m'] * 1000:.0f} mm at {summary['speed_mm_s']:.0f} mm/s, body "
-        f"{summary['body_height_mm']:.0f} mm over the ground{payload}; {inertia}."
+        f"{summary['gait']} gait, {summary['distance_m'] * 1000:.0f} mm at {summary['speed_mm_s']:.0f} mm/s, "
+        f"body height {summary['body_height_mm']:.0f} mm{payload}; {inertia}."
     )
 
 
-def _picture(path: Path) -> str:
+def _figure(path: Path) -> str:
     title = escape(_TITLES.get(path.stem, path.stem))
     data = base64.b64encode(path.read_bytes()).decode("ascii")
     return f'<h2>{title}</h2>\n<img alt="{title}" src="data:image/png;base64,{data}">'

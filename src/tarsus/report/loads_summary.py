@@ -1,4 +1,4 @@
-"""What a walk asks of the servos, in numbers: what `tarsus loads` and `tarsus servos` print and `--json` returns."""
+"""Numbers of joint loads and servo sizing, as printed by `tarsus loads` and `tarsus servos`."""
 
 from __future__ import annotations
 
@@ -15,49 +15,49 @@ from tarsus.robot.robot import JOINTS
 
 __all__ = ["length_advice", "loads_summary", "servos_summary", "worst_of_each"]
 
-# Changes of torque per length that are called none [N m/m].
-_NOTHING = 0.05
+# Changes of torque per length below this are not reported [N m/m].
+_NEGLIGIBLE = 0.05
 _STEP = 0.01
 
 
-def loads_summary(found: JointLoads, drawn: SupplyLoad) -> dict[str, Any]:
-    """Return loads, verdicts and currents as plain numbers with units in their keys; what is unknown is None.
+def loads_summary(loads: JointLoads, supply: SupplyLoad) -> dict[str, Any]:
+    """Return loads, verdicts and currents as plain numbers with units in the keys; None if unknown.
 
     Parameters
     ----------
-    found : Loads
-        What the joints bear.
-    drawn : Supply
-        The currents of the same loads.
+    loads : JointLoads
+        Joint loads.
+    supply : SupplyLoad
+        Supply current of the same loads.
     """
-    document = found.to_dict()
-    verdicts = joint_verdicts(found)
+    document = loads.to_dict()
+    verdicts = joint_verdicts(loads)
     for row, verdict in zip(document["joints"], verdicts, strict=True):
         row["class"] = verdict.class_name
         row["thermal_ratio"] = _number(verdict.thermal_ratio)
         row["text"] = verdict.text()
     return {
         **document,
-        "gait": found.motion.gait.name,
-        "speed_mm_s": found.motion.speed * 1000,
-        "body_height_mm": found.motion.body_height * 1000,
-        "stroke_mm": found.motion.stroke * 1000,
+        "gait": loads.motion.gait.name,
+        "speed_mm_s": loads.motion.speed * 1000,
+        "body_height_mm": loads.motion.body_height * 1000,
+        "stroke_mm": loads.motion.stroke * 1000,
         "worst": [f"{v.leg} {v.joint}" for v in worst_of_each(verdicts)],
         "class": min(verdicts, key=_rank).class_name,
-        "carried": found.balanced and all(verdict.factor >= BURNOUT_FACTOR for verdict in verdicts),
+        "carried": loads.balanced and all(verdict.factor >= BURNOUT_FACTOR for verdict in verdicts),
         "supply": {
-            "peak_a": drawn.peak_current,
-            "mean_a": drawn.mean_current,
-            "battery_min": None if drawn.battery_time is None else _number(drawn.battery_time / 60),
-            "stall_current_unknown": list(drawn.unknown),
-            "together": list(drawn.peak_legs),
-            "warning": drawn.warning,
+            "peak_a": supply.peak_current,
+            "mean_a": supply.mean_current,
+            "battery_min": None if supply.battery_time is None else _number(supply.battery_time / 60),
+            "stall_current_unknown": list(supply.unknown),
+            "peak_legs": list(supply.peak_legs),
+            "warning": supply.warning,
         },
     }
 
 
 def _rank(verdict: JointVerdict) -> float:
-    """Order by factor; what is unknown comes first."""
+    """Return the factor as a sort key, unknown factors first."""
     return -math.inf if math.isnan(verdict.factor) else verdict.factor
 
 
@@ -66,44 +66,46 @@ def _number(value: float) -> float | None:
 
 
 def worst_of_each(verdicts: tuple[JointVerdict, ...]) -> list[JointVerdict]:
-    """Return for each kind of joint the one with the least factor; among those without a servo, the greatest peak.
+    """Return the verdict with the smallest factor for each of coxa, femur and tibia.
+
+    Without a servo, it is the one with the largest peak torque.
 
     Parameters
     ----------
     verdicts : tuple of JointVerdict
-        Of all joints.
+        Verdicts on all joints.
     """
     return [min((v for v in verdicts if v.joint == joint), key=lambda v: (_rank(v), -v.peak)) for joint in JOINTS]
 
 
-def servos_summary(sizing: ServoSizing, found: JointLoads) -> dict[str, Any]:
-    """Return which servos would do as plain numbers with units in their keys; what is unknown is None.
+def servos_summary(sizing: ServoSizing, loads: JointLoads) -> dict[str, Any]:
+    """Return a servo sizing as plain numbers with units in the keys; None if unknown.
 
     Parameters
     ----------
     sizing : ServoSizing
-        What `size_servos` says.
-    found : Loads
-        Of what.
+        Result of `size_servos`.
+    loads : JointLoads
+        Joint loads of the sizing.
     """
     return {
-        "robot": found.robot.name,
-        "payload_kg": found.payload.mass,
+        "robot": loads.robot.name,
+        "payload_kg": loads.payload.mass,
         "rule": sizing.rule,
         "safety_factor": sizing.safety_factor,
-        "present_do": sizing.ok,
-        "balanced": found.balanced,
+        "sufficient": sizing.ok,
+        "balanced": loads.balanced,
         "joints": [_joint(verdict, sizing) for verdict in worst_of_each(sizing.verdicts)],
         "candidates": [_candidate(candidate) for candidate in sizing.candidates],
         "mixed": None if sizing.mixed is None else _candidate(sizing.mixed),
-        "payload_carried_kg": sizing.payload,
-        "payload_before_burning_kg": sizing.maximum_payload,
+        "largest_payload_kg": sizing.payload,
+        "maximum_payload_kg": sizing.maximum_payload,
         "lengths": {
             link: {joint: _number(float(v)) for joint, v in zip(JOINTS, row, strict=True)}
             for link, row in sizing.sensitivity.items()
         },
         "advice": length_advice(sizing),
-        "left_out": dict(sizing.excluded),
+        "excluded": dict(sizing.excluded),
         "assumed": list(sizing.assumed),
     }
 
@@ -119,7 +121,7 @@ def _joint(verdict: JointVerdict, sizing: ServoSizing) -> dict[str, Any]:
         "factor": _number(verdict.factor),
         "thermal_ratio": _number(verdict.thermal_ratio),
         "class": verdict.class_name,
-        "does": verdict.is_sufficient(sizing.rule),
+        "sufficient": verdict.is_sufficient(sizing.rule),
         "text": verdict.text(),
         "cause": verdict.cause,
     }
@@ -137,25 +139,25 @@ def _candidate(candidate: Candidate) -> dict[str, Any]:
 
 
 def length_advice(sizing: ServoSizing) -> list[str]:
-    """Say in words what 10 mm of each link would change, feet and body where they are.
+    """Describe the effect of 10 mm of each link length on the peak torques, for fixed feet and body poses.
 
     Parameters
     ----------
     sizing : ServoSizing
-        What `size_servos` says.
+        Result of `size_servos`.
     """
-    said = []
+    advice = []
     for link, row in sizing.sensitivity.items():
         if np.isnan(row).any():
-            said.append(f"{link}: its length can't be changed with the feet where they are, or it has none")
+            advice.append(f"{link}: no result, as a foot is out of reach with another length, or the length is 0")
             continue
-        # The greatest change first, and the way in which it is a relief.
+        # The direction in which the largest change reduces the torque.
         sign = 1 if float(row[int(np.argmax(np.abs(row)))]) < 0 else -1
         changes = [
-            f"{joint} {'less' if sign * change < 0 else 'more'} by {abs(change) * _STEP:.3f} N m"
+            f"{joint} {sign * change * _STEP:+.3f} N m"
             for joint, change in zip(JOINTS, row.tolist(), strict=True)
-            if abs(change) > _NOTHING
+            if abs(change) > _NEGLIGIBLE
         ]
         longer = "longer" if sign > 0 else "shorter"
-        said.append(f"{link} 10 mm {longer}: {', '.join(changes) or 'hardly any change'}")
-    return said
+        advice.append(f"{link} 10 mm {longer}: {', '.join(changes) or 'negligible change'}")
+    return advice

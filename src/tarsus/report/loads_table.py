@@ -1,4 +1,4 @@
-"""Loads and servos as tables for a terminal."""
+"""Terminal tables of joint loads and servo sizing."""
 
 from __future__ import annotations
 
@@ -14,61 +14,72 @@ if TYPE_CHECKING:
 
 __all__ = ["candidate_table", "load_bar", "load_rows", "loads_lines", "loads_table", "loads_verdict", "servo_lines"]
 
-LOAD_COLUMNS = ("joint", "servo", "peak N m", "RMS N m", "of stall", "factor", "class", "deg/s", "line used", "heat")
-"""Headings of the rows of `load_rows`; "line used" is of the torque-speed line, "heat" the RMS over 1/5 of stall."""
+LOAD_COLUMNS = (
+    "joint",
+    "servo",
+    "peak N m",
+    "RMS N m",
+    "of stall",
+    "factor",
+    "class",
+    "deg/s",
+    "utilisation",
+    "thermal",
+)
+"""Column headers of `load_rows`; "utilisation" is of the torque-speed line, "thermal" the RMS over 1/5 of stall."""
 
 _BAR = 10
 _EIGHTHS = " ▏▎▍▌▋▊▉█"
 
 
-def load_bar(share: float | None, *, width: int = _BAR) -> str:
-    """Return a bar for a share of the stall torque: full at the whole of it, with an arrow beyond; empty if unknown.
+def load_bar(fraction: float | None, *, width: int = _BAR) -> str:
+    """Return a text bar for a fraction of the stall torque: full at 1, with an arrow above; empty if unknown.
 
     Parameters
     ----------
-    share : float or None
-        The share.
+    fraction : float or None
+        The fraction.
     width : int
-        Characters of a full bar.
+        Length of a full bar [characters].
     """
-    if share is None:
+    if fraction is None:
         return ""
-    if share > 1:
+    if fraction > 1:
         return "█" * (width - 1) + "▶"
-    eighths = math.ceil(share * width * 8)
+    eighths = math.ceil(fraction * width * 8)
     return "█" * (eighths // 8) + _EIGHTHS[eighths % 8].strip()
 
 
 def load_rows(summary: dict[str, Any]) -> list[tuple[str, ...]]:
-    """Return a row of texts for each joint, under `LOAD_COLUMNS`.
+    """Return a row of text for each joint, with the columns `LOAD_COLUMNS`.
 
     Parameters
     ----------
     summary : dict
-        From `tarsus.report.loads_summary.loads_summary`.
+        Summary from `tarsus.report.loads_summary.loads_summary`.
     """
     rows: list[tuple[str, ...]] = []
     for joint in summary["joints"]:
         factor = joint["factor"]
-        share = None if joint["stall_nm"] is None else joint["peak_nm"] / joint["stall_nm"]
+        fraction = None if joint["stall_nm"] is None else joint["peak_nm"] / joint["stall_nm"]
         rows.append(
             (
                 f"{joint['leg']} {joint['joint']}",
-                joint["servo"] or "none named",
+                joint["servo"] or "none",
                 f"{joint['peak_nm']:.3f}",
                 f"{joint['rms_nm']:.3f}",
-                load_bar(share),
+                load_bar(fraction),
                 "" if factor is None else f"{factor:.2f}",
                 joint["class"],
                 f"{math.degrees(joint['peak_speed_rad_s']):.0f}",
-                _share(joint["utilisation"]),
-                _share(joint["thermal_ratio"]),
+                _percent(joint["utilisation"]),
+                _percent(joint["thermal_ratio"]),
             )
         )
     return rows
 
 
-def _share(value: float | None) -> str:
+def _percent(value: float | None) -> str:
     return "unknown" if value is None else f"{value * 100:.0f} %"
 
 
@@ -82,16 +93,16 @@ def _table(*columns: str) -> Table:
     return table
 
 
-_RIGHT = {"peak N m", "RMS N m", "factor", "deg/s", "line used", "heat", "18 servos", "servos weigh", "robot weighs"}
+_RIGHT = {"peak N m", "RMS N m", "factor", "deg/s", "utilisation", "thermal", "servo mass", "robot mass"}
 
 
 def loads_table(summary: dict[str, Any]) -> Table:
-    """Return what each joint bears, a row each.
+    """Return a table of the joint loads, with a row for each joint.
 
     Parameters
     ----------
     summary : dict
-        From `tarsus.report.loads_summary.loads_summary`.
+        Summary from `tarsus.report.loads_summary.loads_summary`.
     """
     table = _table(*LOAD_COLUMNS)
     for row in load_rows(summary):
@@ -101,41 +112,43 @@ def loads_table(summary: dict[str, Any]) -> Table:
 
 
 def loads_lines(summary: dict[str, Any]) -> list[str]:
-    """Return what is to be said beside the table: causes, supply, cost of transport, what is assumed.
+    """Return the lines below the table: verdicts and causes, supply, cost of transport, assumptions.
 
     Parameters
     ----------
     summary : dict
-        From `tarsus.report.loads_summary.loads_summary`.
+        Summary from `tarsus.report.loads_summary.loads_summary`.
     """
     by_name = {f"{joint['leg']} {joint['joint']}": joint for joint in summary["joints"]}
     lines = [f"{name}: {by_name[name]['text']}; peak {by_name[name]['peak_cause']}" for name in summary["worst"]]
-    drawn = summary["supply"]
-    if drawn["stall_current_unknown"]:
-        lines.append(f"current: unknown, for want of the stall current of {', '.join(drawn['stall_current_unknown'])}")
+    supply = summary["supply"]
+    if supply["stall_current_unknown"]:
+        lines.append(
+            f"current: unknown, as the stall current of {', '.join(supply['stall_current_unknown'])} is unknown"
+        )
     else:
-        battery = "" if drawn["battery_min"] is None else f"; the battery lasts {drawn['battery_min']:.0f} min"
-        lines.append(f"current: {drawn['mean_a']:.1f} A on average, {drawn['peak_a']:.1f} A at its peak{battery}")
-    if drawn["warning"]:
-        lines.append(f"supply: {drawn['warning']}")
+        battery = "" if supply["battery_min"] is None else f"; battery life {supply['battery_min']:.0f} min"
+        lines.append(f"current: mean {supply['mean_a']:.1f} A, peak {supply['peak_a']:.1f} A{battery}")
+    if supply["warning"]:
+        lines.append(f"supply: {supply['warning']}")
     lines.append(
-        f"cost of transport: {number(summary['cost_of_transport'], '', digits=2)} (mechanical; "
+        f"cost of transport: {number(summary['cost_of_transport'], '', digits=2)} (mechanical: "
         f"{summary['energy_j']:.2f} J over {summary['distance_m']:.3f} m)"
     )
     margin = summary["least_margin_mm"]
     if not summary["balanced"]:
-        how = "lifts off the ground" if margin is None else f"tips: its load is {-margin:.1f} mm outside its feet"
+        how = "loses contact" if margin is None else f"tips: the load is {-margin:.1f} mm outside the support polygon"
         lines.append(f"the robot {how}")
     return [*lines, *(f"assumed: {text}" for text in summary["assumed"])]
 
 
 def loads_verdict(summary: dict[str, Any]) -> RenderableType:
-    """Return whether the servos carry the robot.
+    """Return the verdict on the servos in a line.
 
     Parameters
     ----------
     summary : dict
-        From `tarsus.report.loads_summary.loads_summary`.
+        Summary from `tarsus.report.loads_summary.loads_summary`.
     """
     from rich.text import Text
 
@@ -144,32 +157,32 @@ def loads_verdict(summary: dict[str, Any]) -> RenderableType:
     )
     name = f"{worst['leg']} {worst['joint']}"
     if summary["class"] == "unknown":
-        return Text(f"not known: {name} has no servo in the robot file", style="bold yellow")
+        return Text(f"unknown: the robot file names no servo for {name}", style="bold yellow")
     if not summary["balanced"]:
-        return Text(f"not carried: the robot tips; servos: {summary['class']}, by {name}", style="bold red")
-    factor = "" if worst["factor"] is None else f" with factor {worst['factor']:.2f}"
+        return Text(f"not carried: the robot tips; servos: {summary['class']} ({name})", style="bold red")
+    factor = "" if worst["factor"] is None else f", safety factor {worst['factor']:.2f}"
     text = f"{summary['class']}: {name}{factor}"
     if not summary["carried"]:
-        return Text(f"{text}; at least {BURNOUT_FACTOR:g} is needed to last", style="bold red")
+        return Text(f"{text}; at least {BURNOUT_FACTOR:g} is required", style="bold red")
     return Text(text, style="bold green" if summary["class"] == "good" else "bold yellow")
 
 
 def candidate_table(summary: dict[str, Any]) -> Table:
-    """Return the servos that would do, a row each, the lightest first; the mixed choice last.
+    """Return a table of the sufficient servos, the lightest first; the mixed choice last.
 
     Parameters
     ----------
     summary : dict
-        From `tarsus.report.loads_summary.servos_summary`.
+        Summary from `tarsus.report.loads_summary.servos_summary`.
     """
-    table = _table("servos that would do", "factor", "heat", "servos weigh", "robot weighs")
+    table = _table("sufficient servos", "factor", "thermal", "servo mass", "robot mass")
     for candidate in [*summary["candidates"], *([summary["mixed"]] if summary["mixed"] else [])]:
         named = candidate["name"]
         name = f"coxa / femur / tibia: {named}" if " / " in named and candidate is summary["mixed"] else named
         table.add_row(
             name,
             "" if candidate["factor"] is None else f"{candidate['factor']:.2f}",
-            _share(candidate["thermal_ratio"]),
+            _percent(candidate["thermal_ratio"]),
             f"{candidate['servo_mass_kg']:.3f} kg",
             f"{candidate['robot_mass_kg']:.3f} kg",
         )
@@ -177,22 +190,22 @@ def candidate_table(summary: dict[str, Any]) -> Table:
 
 
 def servo_lines(summary: dict[str, Any]) -> list[str]:
-    """Return what is to be said beside the table: verdicts, payload, lengths, what was left out, what is assumed.
+    """Return the lines below the table: payload, link lengths, excluded servos, assumptions.
 
     Parameters
     ----------
     summary : dict
-        From `tarsus.report.loads_summary.servos_summary`.
+        Summary from `tarsus.report.loads_summary.servos_summary`.
     """
     lines = [f"payload: {_payload(summary)}"]
     lines += [f"length: {text}" for text in summary["advice"]]
-    lines += [f"not tried: {name}, as {reason}" for name, reason in summary["left_out"].items()]
+    lines += [f"excluded: {name}, as {reason}" for name, reason in summary["excluded"].items()]
     return [*lines, *(f"assumed: {text}" for text in summary["assumed"])]
 
 
 def _payload(summary: dict[str, Any]) -> str:
-    most, utmost = summary["payload_carried_kg"], summary["payload_before_burning_kg"]
-    if most is None:
-        return "unknown, as not all servos are named in the robot file"
-    asked = f"factor {summary['safety_factor']:g}" if summary["rule"] == "factor" else "the rule for lasting loads"
-    return f"{most:.2f} kg with {asked}, {utmost:.2f} kg before the servos stall or burn"
+    largest, maximum = summary["largest_payload_kg"], summary["maximum_payload_kg"]
+    if largest is None:
+        return "unknown, as the robot file does not name all servos"
+    rule = f"factor {summary['safety_factor']:g}" if summary["rule"] == "factor" else "the continuous load limit"
+    return f"{largest:.2f} kg with {rule}, at most {maximum:.2f} kg before servos stall or burn"

@@ -1,4 +1,4 @@
-"""The torque of every joint over time, against what its servo bears."""
+"""Figure of the joint torques over time, with the limits of the servos."""
 
 from __future__ import annotations
 
@@ -17,43 +17,43 @@ if TYPE_CHECKING:
 
 __all__ = ["plot_torques", "servo_limits"]
 
-# A limit is drawn where it is at most so many times as high as the greatest torque: else the torques were flat lines.
-_IN_SIGHT = 3.5
+# Limits are drawn up to this multiple of the peak torque, so that the torques remain readable.
+_VISIBLE_RATIO = 3.5
 
 
-def servo_limits(found: JointLoads, joint: int) -> list[tuple[str, float]]:
-    """Return the limits of a kind of joint's weakest servo, with their names [N m]; none where no servo is known.
+def servo_limits(loads: JointLoads, joint: int) -> list[tuple[str, float]]:
+    """Return name and torque of each limit of a joint's weakest servo [N m]; empty if no servo is known.
 
     Parameters
     ----------
-    found : Loads
-        The loads.
+    loads : JointLoads
+        Joint loads.
     joint : int
         0 coxa, 1 femur, 2 tibia.
     """
-    stall = found.stall_torque[:, joint]
+    stall = loads.stall_torque[:, joint]
     if np.isnan(stall).all():
         return []
     least = float(np.nanmin(stall))
     return [
         (f"stall {least:.2f} N m", least),
-        ("1/3: factor 3", least / SAFETY_FACTOR),
-        ("1/5: lasting", least * CONTINUOUS_FRACTION),
+        ("1/3 (factor 3)", least / SAFETY_FACTOR),
+        ("1/5 (continuous)", least * CONTINUOUS_FRACTION),
     ]
 
 
-def plot_torques(found: JointLoads) -> Figure:
-    """Draw how much torque every joint bears over time: a panel for each kind, and below it when each foot is down.
+def plot_torques(loads: JointLoads) -> Figure:
+    """Draw the absolute joint torques over time, with a panel for each of coxa, femur and tibia.
 
     Parameters
     ----------
-    found : Loads
-        The loads.
+    loads : JointLoads
+        Joint loads.
 
     Returns
     -------
     Figure
-        To be saved by `tarsus.report.style.save_figure`, or shown in a notebook.
+        Figure to save with `tarsus.report.style.save_figure` or to show in a notebook.
 
     Raises
     ------
@@ -61,25 +61,27 @@ def plot_torques(found: JointLoads) -> Figure:
         If matplotlib is not installed.
     """
     figure, panels = joint_panels(
-        found.motion,
-        np.abs(found.torques),
+        loads.motion,
+        np.abs(loads.torques),
         unit="N m",
-        title=f"{found.motion.robot.name}: torques, thick while the foot is down, and what the servos bear",
+        title=f"{loads.motion.robot.name}: joint torques (thick: foot on the ground) and servo limits",
     )
     for joint, axes in enumerate(panels):
-        _draw_limits(axes, found, joint)
+        _draw_limits(axes, loads, joint)
     return figure
 
 
-def _draw_limits(axes: Axes, found: JointLoads, joint: int) -> None:
-    """Draw the limits that are in sight, and name those that are not."""
-    greatest = float(found.peak[:, joint].max())
-    limits = servo_limits(found, joint)
-    in_sight = [(name, value) for name, value in limits if value <= _IN_SIGHT * greatest]
-    axes.set_ylim(0, 1.12 * max([greatest, *(value for _, value in in_sight)], default=1.0) or 1.0)
-    for name, value in in_sight:
-        whole = name.startswith("stall")
-        axes.axhline(value, color=WARNING, linewidth=1.4 if whole else 1.0, linestyle="-" if whole else (0, (6, 3)))
+def _draw_limits(axes: Axes, loads: JointLoads, joint: int) -> None:
+    """Draw the limits within the visible range, and list the others."""
+    peak = float(loads.peak[:, joint].max())
+    limits = servo_limits(loads, joint)
+    visible = [(name, value) for name, value in limits if value <= _VISIBLE_RATIO * peak]
+    axes.set_ylim(0, 1.12 * max([peak, *(value for _, value in visible)], default=1.0) or 1.0)
+    for name, value in visible:
+        is_stall = name.startswith("stall")
+        axes.axhline(
+            value, color=WARNING, linewidth=1.4 if is_stall else 1.0, linestyle="-" if is_stall else (0, (6, 3))
+        )
         axes.annotate(
             name,
             (1, value),
@@ -92,12 +94,12 @@ def _draw_limits(axes: Axes, found: JointLoads, joint: int) -> None:
             color=WARNING,
             path_effects=halo(),
         )
-    beyond = [
+    hidden = [
         f"{name} ({value:.2f} N m)" if "N m" not in name else name
         for name, value in limits
-        if (name, value) not in in_sight
+        if (name, value) not in visible
     ]
-    note = "no servo in the robot file" if not limits else f"far above: {', '.join(beyond)}" if beyond else ""
+    note = "no servo in the robot file" if not limits else f"beyond the axis: {', '.join(hidden)}" if hidden else ""
     axes.annotate(
         note,
         (0, 1),

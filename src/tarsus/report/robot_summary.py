@@ -1,4 +1,4 @@
-"""A robot in numbers: what `tarsus robots` prints and `--json` returns."""
+"""Numbers of a robot, as printed by `tarsus robots`."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ __all__ = ["Check", "check_robot", "dimensions", "robot_summary"]
 
 Check = dict[str, Any]
 
-_SAID = ("source", "confidence", "note")
+_SOURCE_FIELDS = ("source", "confidence", "note")
 
 
 def robot_summary(robot: Robot) -> dict[str, Any]:
-    """Return a robot in one line's worth of numbers, in the units that the keys name; None where unknown.
+    """Return the main numbers of a robot, with units in the keys; None if unknown.
 
     Parameters
     ----------
@@ -44,7 +44,7 @@ def robot_summary(robot: Robot) -> dict[str, Any]:
 
 
 def dimensions(robot: Robot) -> list[dict[str, Any]]:
-    """Return every number of a robot's file with where it comes from.
+    """Return every number of a robot file with its source.
 
     Parameters
     ----------
@@ -54,20 +54,24 @@ def dimensions(robot: Robot) -> list[dict[str, Any]]:
     Returns
     -------
     list of dict
-        In the file's order: key, value, the number of its source in the file (from 1), and that source's text,
-        confidence and note; None where the file names no source.
+        In the order of the file: key, value, number of the source in the file (from 1), and the text, confidence and
+        note of that source; None if the file names no source.
     """
     rows = []
-    for key, spoken_of, value in _keys(robot.to_dict()):
-        source = _source_of(spoken_of, robot.sources)
-        said = dict.fromkeys(_SAID) if source is None else {name: getattr(source, name) for name in _SAID}
-        place = None if source is None else robot.sources.index(source) + 1
-        rows.append({"key": key, "value": value, "source_number": place, **said})
+    for key, source_keys, value in _keys(robot.to_dict()):
+        source = _source_of(source_keys, robot.sources)
+        details = (
+            dict.fromkeys(_SOURCE_FIELDS)
+            if source is None
+            else {name: getattr(source, name) for name in _SOURCE_FIELDS}
+        )
+        number = None if source is None else robot.sources.index(source) + 1
+        rows.append({"key": key, "value": value, "source_number": number, **details})
     return rows
 
 
 def _keys(document: dict[str, Any]) -> Iterator[tuple[str, tuple[str, ...], Any]]:
-    """Go through the numbers of a robot file: key, the names under which a source may speak of it, value."""
+    """Yield the numbers of a robot file: key, the keys under which a source may list it, value."""
     for table in ("body", "leg", "gait"):
         for key, value in document.get(table, {}).items():
             yield f"{table}.{key}", (f"{table}.{key}", table), value
@@ -78,7 +82,7 @@ def _keys(document: dict[str, Any]) -> Iterator[tuple[str, tuple[str, ...], Any]
 
 
 def _source_of(names: tuple[str, ...], sources: tuple[Source, ...]) -> Source | None:
-    """Return the source that speaks of a key, by the first of its names that any source knows."""
+    """Return the source of a key, by the first of its names that a source lists."""
     for name in names:
         for source in sources:
             if any(of == name or of.startswith(f"{name}.") for of in source.of if "." in name or of == name):
@@ -87,7 +91,7 @@ def _source_of(names: tuple[str, ...], sources: tuple[Source, ...]) -> Source | 
 
 
 def check_robot(robot: Robot) -> Check:
-    """Return what a robot's file lacks, and whether the robot can walk as it is.
+    """Check what a robot file lacks, and whether the robot can walk.
 
     Parameters
     ----------
@@ -97,15 +101,17 @@ def check_robot(robot: Robot) -> Check:
     Returns
     -------
     dict
-        `problems`: why it can't walk, empty where it can; `missing`: what isn't known, and what that costs;
-        `longest_stroke_mm`: with its own gait, straight ahead, or None.
+        `problems`: why the robot can't walk, empty if it can; `missing`: unknown values and their consequences;
+        `longest_stroke_mm`: straight ahead with the robot's gait, or None.
     """
     problems: list[str] = []
     longest = None
     try:
         longest = max_stroke(robot, Gait.named(robot.gait.name, legs=robot.legs)) * 1000
         if longest == 0:
-            problems.append("the robot can't step: in its rest stance a leg can't be lifted, or two feet are too near")
+            problems.append(
+                "the longest stroke is 0: in the rest stance a leg can't be lifted, or two feet are too close"
+            )
     except (InputError, UnreachableError) as error:
         problems.append(str(error))
     return {
@@ -119,9 +125,9 @@ def check_robot(robot: Robot) -> Check:
 
 def _missing(robot: Robot) -> Iterator[str]:
     if robot.body_mass is None:
-        yield "body.mass_kg: without it, no torques, and the stability margin is that of the body's own centre"
+        yield "body.mass_kg: without it, no torques, and a stability margin of the body's centre"
     if robot.link_mass is None:
-        yield "leg.mass_kg: without it, no torques, and the links count as massless"
+        yield "leg.mass_kg: without it, no torques, and massless links"
     if robot.body_size is None:
         yield "body.size_mm: without it, the body is the flat polygon of the coxa axes"
     servos = [servo for row in robot.servos for servo in row]
@@ -131,6 +137,6 @@ def _missing(robot: Robot) -> Iterator[str]:
     for name in slow:
         yield f"no_load_rad_s of the servo {name}: without it, no verdict on joint speeds"
     if robot.gait.body_height is None:
-        yield f"gait.body_height_mm: {default_body_height(robot) * 1000:.0f} mm is taken, from the lengths of the legs"
+        yield f"gait.body_height_mm: {default_body_height(robot) * 1000:.0f} mm is assumed, from the leg lengths"
     if robot.gait.swing_height is None:
-        yield "gait.swing_height_mm: a quarter of the body height is taken"
+        yield "gait.swing_height_mm: 1/4 of the body height is assumed"

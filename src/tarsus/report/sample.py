@@ -1,4 +1,4 @@
-"""One moment of a robot, with all that a picture shows of it."""
+"""State of a robot to draw."""
 
 from __future__ import annotations
 
@@ -22,22 +22,22 @@ Floats = np.ndarray[Any, np.dtype[np.float64]]
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Sample:
-    """One moment to be drawn.
+    """State of a robot to draw.
 
     Attributes
     ----------
     points : array, shape (legs, 4, 3)
         Leg points in G [m].
     body : Pose
-        The body's place in G.
+        Pose of B in G.
     contacts : array of bool, shape (legs,)
         Which feet are on the ground.
     com : array, shape (3,)
         Centre of mass in G [m].
     support : array, shape (k, 3)
-        The points on the ground that hold it, in G [m]: mostly the feet that are down.
+        Points that touch the ground, in G [m]; usually the feet in contact.
     margin : float
-        How far inside their polygon the centre of mass is [m]; minus infinity where nothing holds it.
+        Distance of the centre of mass from the nearest edge of their polygon [m]; minus infinity without a point.
     """
 
     points: Floats
@@ -49,7 +49,7 @@ class Sample:
 
     @property
     def centre(self) -> Floats:
-        """The ground under the body's origin ``(3,)`` [m]."""
+        """Ground point below the body's origin ``(3,)`` [m]."""
         position = np.array(self.body.position)
         position[2] = 0.0
         return position
@@ -63,7 +63,7 @@ def sample_of(
     contacts: Sequence[bool] | np.ndarray[Any, Any] | None = None,
     support: Floats | None = None,
 ) -> Sample:
-    """Return what is to be drawn of one configuration.
+    """Return the state to draw for one configuration.
 
     Parameters
     ----------
@@ -72,11 +72,11 @@ def sample_of(
     angles : array, shape (legs, 3)
         Joint angles [rad].
     body : Pose, optional
-        The body's place in G; left out, level and so high that the lowest foot touches the ground.
+        Pose of B in G. Default: level, with the lowest foot on the ground.
     contacts : sequence of bool, optional
-        Which feet bear load; left out, those within a millimetre of the ground.
+        Which feet bear load. Default: those within 1 mm of the ground.
     support : array, shape (k, 3), optional
-        The points of G that hold the robot [m]; left out, the feet that bear load.
+        Points that support the robot, in G [m]. Default: the feet that bear load.
 
     Raises
     ------
@@ -87,36 +87,36 @@ def sample_of(
     if body is None:
         body = Pose.from_rpy(position=(0.0, 0.0, -float(points[:, 3, 2].min())))
     in_ground = np.asarray(body @ points)
-    down = in_ground[:, 3, 2] < 0.001 if contacts is None else np.asarray(contacts, dtype=bool)
+    in_contact = in_ground[:, 3, 2] < 0.001 if contacts is None else np.asarray(contacts, dtype=bool)
     com = np.asarray(body @ centre_of_mass(robot, angles, points=points))
-    held = in_ground[down, 3] if support is None else np.asarray(support)
+    support_points = in_ground[in_contact, 3] if support is None else np.asarray(support)
     return Sample(
         points=in_ground,
         body=body,
-        contacts=down,
+        contacts=in_contact,
         com=com,
-        support=held,
-        margin=float(hull_margin(held[:, :2], np.ones(len(held), dtype=bool), com[:2])),
+        support=support_points,
+        margin=float(hull_margin(support_points[:, :2], np.ones(len(support_points), dtype=bool), com[:2])),
     )
 
 
 def touching_points(rest: RestingPose, angles: Floats) -> Floats:
-    """Return the points of a resting robot that touch the ground.
+    """Return the points of a robot at rest that touch the ground.
 
     Parameters
     ----------
-    rest : Rest
-        How it rests; one configuration.
+    rest : RestingPose
+        Resting pose of one configuration.
     angles : array, shape (legs, 3)
-        Its joint angles [rad].
+        Joint angles [rad].
 
     Returns
     -------
     array, shape (k, 3)
-        In G [m].
+        Points in G [m].
     """
-    parts = [np.asarray(forward_kinematics(rest.robot, angles))[np.asarray(rest.leg_points_down)]]
+    points = [np.asarray(forward_kinematics(rest.robot, angles))[np.asarray(rest.leg_points_down)]]
     if rest.robot.body_size is not None:
-        parts.append((CORNERS * np.asarray(rest.robot.body_size))[np.asarray(rest.corners_down)])
-    touching: Floats = np.asarray(rest.body @ np.concatenate(parts))
+        points.append((CORNERS * np.asarray(rest.robot.body_size))[np.asarray(rest.corners_down)])
+    touching: Floats = np.asarray(rest.body @ np.concatenate(points))
     return touching

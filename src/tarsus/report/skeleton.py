@@ -1,4 +1,4 @@
-"""The robot as links, joints and body in an axonometric picture: for itself, and for every frame of an animation."""
+"""Axonometric figure of a robot with its links, joints and body."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def plot_robot(
     view: View = _VIEW,
     title: str = "",
 ) -> Figure:
-    """Draw the robot, its support polygon on the ground and its centre of mass over it.
+    """Draw the robot with its support polygon and its centre of mass.
 
     Parameters
     ----------
@@ -45,20 +45,20 @@ def plot_robot(
     angles : array, shape (legs, 3)
         Joint angles [rad].
     body : Pose, optional
-        The body's place in G; left out, level and so high that the lowest foot touches the ground.
+        Pose of B in G. Default: level, with the lowest foot on the ground.
     contacts : sequence of bool, optional
-        Which feet bear load; left out, those within a millimetre of the ground.
+        Which feet bear load. Default: those within 1 mm of the ground.
     support : array, shape (k, 3), optional
-        The points of G that hold the robot [m]; left out, the feet that bear load.
+        Points that support the robot, in G [m]. Default: the feet that bear load.
     view : View
-        From where it is looked at.
+        Direction of view.
     title : str
-        What is written above it; left out, the robot's name.
+        Title of the figure. Default: the name of the robot.
 
     Returns
     -------
     Figure
-        To be saved by `tarsus.report.style.save_figure`, or shown in a notebook.
+        Figure to save with `tarsus.report.style.save_figure` or to show in a notebook.
 
     Raises
     ------
@@ -68,36 +68,36 @@ def plot_robot(
         If matplotlib is not installed.
     """
     sample = sample_of(robot, angles, body=body, contacts=contacts, support=support)
-    figure = new_figure(width=7.2, height=5.2, by_hand=True)
+    figure = new_figure(width=7.2, height=5.2, manual_layout=True)
     axes = figure.add_axes((0.0, 0.06, 1.0, 0.86))
     frame_axes(axes, [sample], view=view)
     Ground(axes, view).update()
     RobotDrawing(axes, robot, view=view, names=True).update(sample)
-    stands = f"stability margin {sample.margin * 1000:.1f} mm" if len(sample.support) else "nothing on the ground"
+    stability = f"stability margin {sample.margin * 1000:.1f} mm" if len(sample.support) else "no ground contact"
     figure.text(0.015, 0.975, title or robot.name, color=INK, fontsize=12, va="top")
-    figure.text(0.015, 0.02, f"{stands}; grid 100 mm", color=INK, fontsize=9)
+    figure.text(0.015, 0.02, f"{stability}; grid 100 mm", color=INK, fontsize=9)
     return figure
 
 
 def frame_axes(axes: Axes, samples: Sequence[Sample], *, view: View) -> None:
-    """Make the axes so large that they show all the samples, each seen from over its own body.
+    """Set the limits of the axes so that they show all samples, each relative to its body.
 
     Parameters
     ----------
     axes : Axes
-        Where they are to be drawn; its unit will be the millimetre in the picture.
+        Target axes; their unit becomes the millimetre of the projection.
     samples : sequence of Sample
-        What is to be drawn.
+        States to draw.
     view : View
-        From where it is looked at.
+        Direction of view.
     """
-    around = [view.project((s.points - s.centre) * 1000).reshape(-1, 2) for s in samples]
-    low, high = np.min([a.min(0) for a in around], axis=0), np.max([a.max(0) for a in around], axis=0)
+    extents = [view.project((s.points - s.centre) * 1000).reshape(-1, 2) for s in samples]
+    low, high = np.min([a.min(0) for a in extents], axis=0), np.max([a.max(0) for a in extents], axis=0)
     middle = (low + high) / 2 + view.project(samples[0].centre * 1000)
     box = axes.get_window_extent()
-    needed = 1.16 * (high - low) + 20
-    # One millimetre is as long upwards as across.
-    scale = max(needed[0] / box.width, needed[1] / box.height)
+    required = 1.16 * (high - low) + 20
+    # Equal scale on both axes.
+    scale = max(required[0] / box.width, required[1] / box.height)
     half = scale * np.array([box.width, box.height]) / 2
     axes.set_xlim(middle[0] - half[0], middle[0] + half[0])
     axes.set_ylim(middle[1] - half[1], middle[1] + half[1])

@@ -1,4 +1,4 @@
-"""The body as a solid to draw: its box, or a plate as wide as the coxa axes."""
+"""Solid of the body to draw: its box, or a plate spanned by the coxa axes."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ __all__ = ["Solid", "body_outline", "body_solid"]
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]
 
-# A body without a box is drawn as a plate of this share of its length, so that it is seen at all.
+# Thickness of the plate of a body without a box, relative to its length.
 _THICKNESS = 0.06
 
 
@@ -25,9 +25,9 @@ class Solid:
     Attributes
     ----------
     corners : array, shape (2 n, 3)
-        In B [m]: the bottom counter-clockwise seen from above, then the top in the same order.
+        Corners in B [m]: the bottom counter-clockwise seen from above, then the top in the same order.
     faces : tuple of tuple of int
-        The corners of each face, counter-clockwise seen from outside: bottom, top, sides.
+        Corner indices of each face, counter-clockwise seen from outside: bottom, top, sides.
     """
 
     corners: Floats
@@ -35,7 +35,7 @@ class Solid:
 
 
 def body_outline(robot: Robot) -> Floats:
-    """Return the body's outline seen from above ``(n, 3)``, counter-clockwise, at the height of B's origin [m].
+    """Return the outline of the body from above ``(n, 3)``, counter-clockwise, at the height of B's origin [m].
 
     Parameters
     ----------
@@ -52,7 +52,7 @@ def body_outline(robot: Robot) -> Floats:
 
 
 def body_solid(robot: Robot) -> Solid:
-    """Return the body as a solid: the box of its file, or a thin plate with the coxa axes as corners.
+    """Return the solid of the body: the box of the robot file, or a thin plate with the coxa axes as corners.
 
     Parameters
     ----------

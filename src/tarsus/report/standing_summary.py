@@ -1,4 +1,4 @@
-"""A standing or a resting robot in numbers: what `tarsus pose` and `tarsus rest` print and `--json` returns."""
+"""Numbers of a standing or resting robot, as printed by `tarsus pose` and `tarsus rest`."""
 
 from __future__ import annotations
 
@@ -17,24 +17,24 @@ from tarsus.robot.robot import JOINTS, Robot
 
 __all__ = ["Standing", "rest_summary"]
 
-_MASSLESS = "the robot file gives no masses: the centre of mass is that of the body alone"
-# What rounding may add to an angle at its limit [deg].
-_SLACK = 1e-6
+_NO_MASSES = "the robot file gives no masses: the centre of mass is that of the body"
+# Rounding of an angle at its limit [deg].
+_ROUNDING = 1e-6
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Standing:
-    """A robot that stands on given footholds with its body moved: which legs reach, and whether they hold it.
+    """A robot on given footholds with a displaced body pose: reach of the legs, and stability.
 
-    A leg that doesn't reach its foothold is in the air; whether the others hold the robot is for the centre of mass
-    and their support polygon to say.
+    A leg that doesn't reach its foothold is in the air; the centre of mass and the support polygon of the others
+    determine the stability.
 
     Attributes
     ----------
     solution : IKSolution
-        Of one configuration, with the body's place.
+        Solution of one configuration, with the body pose.
     start : Pose
-        Where the body was before it was moved.
+        Body pose before the displacement.
     """
 
     solution: IKSolution
@@ -42,72 +42,72 @@ class Standing:
 
     @property
     def body(self) -> Pose:
-        """Where the body is moved to."""
+        """Displaced body pose."""
         return self.solution.body or Pose()
 
     @property
     def contacts(self) -> np.ndarray[Any, Any]:
-        """Which feet stand ``(legs,)``."""
+        """Which feet reach their footholds, array of bool ``(legs,)``."""
         reaches: np.ndarray[Any, Any] = np.asarray(self.solution.reach) == Reach.OK
         return reaches
 
     @property
     def margin(self) -> float:
-        """Stability margin of the legs that reach [m]; minus infinity where none does."""
+        """Stability margin on the legs that reach [m]; minus infinity if none does."""
         return float(stability_margin(self.solution.robot, self.solution.angles, self.body, self.contacts))
 
     @property
     def problems(self) -> list[str]:
-        """What is not possible, a line each; empty where all of it is."""
+        """Reasons why the pose is not possible; empty if it is."""
         problems = [] if bool(self.solution.ok) else self.solution.explain().splitlines()
         depth = self._body_depth()
         if depth > 1e-9:
-            problems.append(f"the body's box is {depth * 1000:.1f} mm below the ground: raise the body by as much")
+            problems.append(f"the body box is {depth * 1000:.1f} mm below the ground; raise the body by that distance")
         if not self.contacts.any():
-            problems.append("no leg reaches its foothold: nothing holds the robot")
+            problems.append("no leg reaches its foothold")
         elif self.margin < 0:
             problems.append(
-                f"the robot tips over: its centre of mass is {-self.margin * 1000:.1f} mm outside the feet that stand"
+                f"the robot tips: its centre of mass is {-self.margin * 1000:.1f} mm outside its support polygon"
             )
         return problems
 
     def _body_depth(self) -> float:
-        """Return how far the lowest corner of the body's box is below the ground [m]."""
+        """Return the depth of the lowest corner of the body box below the ground [m]."""
         size = self.solution.robot.body_size
         if size is None:
             return -math.inf
         return -float(np.asarray(self.body @ (CORNERS * np.asarray(size)))[:, 2].min())
 
     @property
-    def share(self) -> float | None:
-        """How much of the way from the start works; None with the knees down, for which it isn't worked out."""
+    def feasible_fraction(self) -> float | None:
+        """Feasible fraction of the displacement; None with the knees down, where it is not computed."""
         if self.solution.knee != "up":
             return None
         return reachable_share(self.solution.robot, self.solution.feet, self.start, self.body)
 
     def summary(self) -> dict[str, Any]:
-        """Return it in numbers, in the units that the keys name."""
+        """Return the numbers of the pose, with units in the keys."""
         robot, problems = self.solution.robot, self.problems
         reach = np.asarray(self.solution.reach)
         return {
             "robot": robot.name,
             "knee": self.solution.knee,
-            "body": _place(self.body),
+            "body": _pose_numbers(self.body),
             "legs": list(robot.leg_codes),
             "joints": list(JOINTS),
             "angles_deg": np.degrees(np.asarray(self.solution.angles)).tolist(),
             "reach": [Reach(int(code)).name for code in reach],
             "stands": self.margin >= 0,
             "margin_mm": self.margin * 1000,
-            "share_that_works": self.share,
+            "feasible_fraction": self.feasible_fraction,
             "possible": not problems,
             "problems": problems,
-            "assumed": [] if robot.has_masses else [_MASSLESS],
+            "assumed": [] if robot.has_masses else [_NO_MASSES],
         }
 
 
 def rest_summary(robot: Robot, angles: np.ndarray[Any, Any], rest: RestingPose) -> dict[str, Any]:
-    """Return in numbers how a robot rests, in the units that the keys name.
+    """Return the numbers of a resting pose, with units in the keys.
 
     Parameters
     ----------
@@ -115,17 +115,19 @@ def rest_summary(robot: Robot, angles: np.ndarray[Any, Any], rest: RestingPose) 
         A single robot.
     angles : array, shape (legs, 3)
         Joint angles [rad].
-    rest : Rest
-        What `resting_pose` says of them.
+    rest : RestingPose
+        Resting pose of these angles.
     """
     problems = _out_of_limits(robot, np.degrees(angles))
     if not bool(rest.stable):
-        problems.append("the robot does not come to rest with these angles")
+        problems.append("the robot has no stable resting pose with these angles")
     return {
         "robot": robot.name,
         "description": rest.describe(),
-        "body": _place(rest.body),
-        "contacts": [code for code, down in zip(robot.leg_codes, np.asarray(rest.contacts), strict=True) if down],
+        "body": _pose_numbers(rest.body),
+        "contacts": [
+            code for code, in_contact in zip(robot.leg_codes, np.asarray(rest.contacts), strict=True) if in_contact
+        ],
         "margin_mm": float(rest.margin) * 1000,
         "stable": bool(rest.stable),
         "rolls": int(rest.rolls),
@@ -134,11 +136,11 @@ def rest_summary(robot: Robot, angles: np.ndarray[Any, Any], rest: RestingPose) 
         "angles_deg": np.degrees(angles).tolist(),
         "possible": not problems,
         "problems": problems,
-        "assumed": [] if robot.has_masses else [_MASSLESS],
+        "assumed": [] if robot.has_masses else [_NO_MASSES],
     }
 
 
-def _place(body: Pose) -> dict[str, float]:
+def _pose_numbers(body: Pose) -> dict[str, float]:
     values = [*(np.asarray(body.position) * 1000), *np.degrees(np.asarray(body.rpy))]
     return dict(zip(("x_mm", "y_mm", "z_mm", "roll_deg", "pitch_deg", "yaw_deg"), map(float, values), strict=True))
 
@@ -149,6 +151,8 @@ def _out_of_limits(robot: Robot, degrees: np.ndarray[Any, Any]) -> list[str]:
     for leg, name in enumerate(robot.leg_names):
         for joint, joint_name in enumerate(JOINTS):
             angle, (low, high) = degrees[leg, joint], limits[leg, joint]
-            if not low - _SLACK <= angle <= high + _SLACK:
-                problems.append(f"{name}: the {joint_name} at {angle:g} deg is out of its limits, {low:g} to {high:g}")
+            if not low - _ROUNDING <= angle <= high + _ROUNDING:
+                problems.append(
+                    f"{name}: {joint_name} angle {angle:g} deg is outside its limits, {low:g} to {high:g} deg"
+                )
     return problems

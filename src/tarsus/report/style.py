@@ -1,7 +1,7 @@
-"""What the pictures have in common: a white figure, colours that the colour-blind can tell apart, files.
+"""Style of the figures: white background, colour-blind safe colours, output files.
 
-matplotlib is imported when a picture is made, not before, and without `pyplot`: no window, no state shared with the
-program that asks.
+matplotlib is imported when a figure is created, and without `pyplot`, so that no window opens and no global state is
+shared with the calling program.
 """
 
 from __future__ import annotations
@@ -24,12 +24,12 @@ __all__ = [
     "INK",
     "PALE",
     "WARNING",
+    "decimation",
     "halo",
     "leg_colours",
     "new_figure",
     "save_figure",
     "stance_spans",
-    "thinned",
     "tidy_axes",
 ]
 
@@ -37,19 +37,19 @@ INK = "#222222"
 """Text and outlines."""
 
 PALE = "#8a8a8a"
-"""What stays behind: grids, paths, notes."""
+"""Background elements: grids, paths, notes."""
 
 WARNING = "#b00020"
-"""Limits, and what is wrong."""
+"""Limits and faults."""
 
-# Okabe and Ito's colours (and two of Tol's for robots with more legs): cool ones left, warm ones right.
+# Colours of Okabe and Ito, and two of Tol for robots with more legs: cool on the left, warm on the right.
 _LEFT = ("#0072B2", "#56B4E9", "#009E73", "#332288")
 _RIGHT = ("#D55E00", "#E69F00", "#CC79A7", "#882255")
-_MOST_POINTS = 4000
+_MAX_POINTS = 4000
 
 
 def leg_colours(robot: Robot) -> list[str]:
-    """Return a colour for each leg: cool on the left, warm on the right, from front to rear.
+    """Return a colour for each leg, cool on the left and warm on the right.
 
     Parameters
     ----------
@@ -58,15 +58,15 @@ def leg_colours(robot: Robot) -> list[str]:
     """
     mounts = np.asarray(robot.mount_position)
     colours = [""] * robot.legs
-    for side, choice in ((mounts[:, 1] > 0, _LEFT), (mounts[:, 1] <= 0, _RIGHT)):
+    for side, palette in ((mounts[:, 1] > 0, _LEFT), (mounts[:, 1] <= 0, _RIGHT)):
         legs = sorted(np.flatnonzero(side), key=lambda leg: -mounts[leg, 0])
-        for place, leg in enumerate(legs):
-            colours[leg] = choice[place % len(choice)]
+        for index, leg in enumerate(legs):
+            colours[leg] = palette[index % len(palette)]
     return colours
 
 
-def new_figure(*, width: float, height: float, dpi: int = 130, by_hand: bool = False) -> Figure:
-    """Return an empty white figure that is drawn in memory.
+def new_figure(*, width: float, height: float, dpi: int = 130, manual_layout: bool = False) -> Figure:
+    """Return an empty white figure, rendered in memory.
 
     Parameters
     ----------
@@ -74,8 +74,8 @@ def new_figure(*, width: float, height: float, dpi: int = 130, by_hand: bool = F
         Size [inches].
     dpi : int
         Pixels per inch.
-    by_hand : bool
-        Whether axes are placed by hand; else so that no label is cut off.
+    manual_layout : bool
+        Whether the caller places the axes; else they are placed so that no label is cut off.
 
     Raises
     ------
@@ -86,22 +86,22 @@ def new_figure(*, width: float, height: float, dpi: int = 130, by_hand: bool = F
         from matplotlib.backends.backend_agg import FigureCanvasAgg
         from matplotlib.figure import Figure
     except ImportError:
-        raise TarsusError("pictures need matplotlib: pip install 'tarsus[plots]'") from None
-    layout: Literal["constrained"] | None = None if by_hand else "constrained"
+        raise TarsusError("figures need matplotlib: pip install 'tarsus[plots]'") from None
+    layout: Literal["constrained"] | None = None if manual_layout else "constrained"
     figure = Figure(figsize=(width, height), dpi=dpi, layout=layout, facecolor="white")
     FigureCanvasAgg(figure)
     return figure
 
 
 def tidy_axes(axes: Axes, *, x: str = "", y: str = "") -> None:
-    """Label the axes, with units, and leave out what frames them.
+    """Label the axes, with units, and remove the frame.
 
     Parameters
     ----------
     axes : Axes
         The axes.
     x, y : str
-        What they show, with the unit.
+        Axis labels, with units.
     """
     axes.set_facecolor("white")
     axes.set_xlabel(x, color=INK)
@@ -112,19 +112,19 @@ def tidy_axes(axes: Axes, *, x: str = "", y: str = "") -> None:
 
 
 def save_figure(figure: Figure, path: str | os.PathLike[str]) -> None:
-    """Write a figure to a file; its ending (png, svg, pdf) says which kind.
+    """Write a figure to a file; its extension (png, svg, pdf) determines the format.
 
     Parameters
     ----------
     figure : Figure
         The figure.
     path : path
-        Where to write it.
+        Output file.
 
     Raises
     ------
     InputError
-        If it can't be written, or matplotlib has no such kind of file.
+        If the file can't be written, or matplotlib does not support the format.
     """
     try:
         figure.savefig(path)
@@ -135,35 +135,35 @@ def save_figure(figure: Figure, path: str | os.PathLike[str]) -> None:
 
 
 def halo() -> list[Any]:
-    """Return the effect that keeps words legible over lines: a white rim."""
+    """Return the path effect of a white outline, which keeps text legible over lines."""
     from matplotlib.patheffects import withStroke
 
     return [withStroke(linewidth=2.5, foreground="white")]
 
 
-def thinned(motion: Motion) -> slice:
-    """Return which samples to draw: all, or so many of a long motion as a picture can show.
+def decimation(motion: Motion) -> slice:
+    """Return the slice of samples to draw: every n-th sample of a long motion.
 
     Parameters
     ----------
     motion : Motion
         The motion.
     """
-    return slice(None, None, max(1, len(motion.time) // _MOST_POINTS))
+    return slice(None, None, max(1, len(motion.time) // _MAX_POINTS))
 
 
 def stance_spans(motion: Motion, leg: int) -> list[tuple[float, float]]:
-    """Return when a foot is down, as (start, duration) [s].
+    """Return the stances of a foot as (start, duration) [s].
 
     Parameters
     ----------
     motion : Motion
         The motion.
     leg : int
-        Which leg.
+        Index of the leg.
     """
-    down: np.ndarray[Any, Any] = np.concatenate([[False], motion.contacts[:, leg], [False]])
-    edges = np.flatnonzero(down[1:] != down[:-1])
+    contact: np.ndarray[Any, Any] = np.concatenate([[False], motion.contacts[:, leg], [False]])
+    edges = np.flatnonzero(contact[1:] != contact[:-1])
     last = len(motion.time) - 1
     starts, ends = motion.time[edges[::2]], motion.time[np.minimum(edges[1::2], last)]
     return [(float(start), float(end - start)) for start, end in zip(starts, ends, strict=True)]

@@ -1,4 +1,4 @@
-"""Numbers as tables for a terminal."""
+"""Terminal tables."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ _UNKNOWN = "unknown"
 
 
 def number(value: float | None, unit: str, *, digits: int = 1) -> str:
-    """Return a number with its unit, or that it is unknown.
+    """Format a number with its unit, or "unknown".
 
     Parameters
     ----------
     value : float or None
         The number.
     unit : str
-        Its unit.
+        Unit.
     digits : int
-        Digits after the point.
+        Digits after the decimal point.
     """
     return _UNKNOWN if value is None else f"{value:.{digits}f} {unit}".rstrip()
 
@@ -39,28 +39,27 @@ def _table(*columns: str, header: bool = True) -> Table:
 
 
 def walk_table(summary: dict[str, Any]) -> Table:
-    """Return a walk's numbers as a table of two columns.
+    """Return the numbers of a walk as a table with two columns.
 
     Parameters
     ----------
     summary : dict
-        From `tarsus.report.walk_summary.walk_summary`.
+        Summary from `tarsus.report.walk_summary.walk_summary`.
     """
     end, margin, feet = summary["end"], summary["least_margin"], summary["nearest_feet"]
-    table = _table("what", "how much", header=False)
+    table = _table("quantity", "value", header=False)
     table.add_row("robot", summary["robot"])
-    table.add_row("gait", f"{summary['gait']}, each foot down for {summary['duty_factor'] * 100:.0f} % of the cycle")
-    table.add_row("ends at", f"x {end['x_mm']:.1f} mm, y {end['y_mm']:.1f} mm, turned {end['turned_deg']:.1f} deg")
+    table.add_row("gait", f"{summary['gait']}, duty factor {summary['duty_factor']:.3g}")
+    table.add_row("end", f"x {end['x_mm']:.1f} mm, y {end['y_mm']:.1f} mm, yaw {end['turned_deg']:.1f} deg")
     table.add_row("duration", f"{summary['duration_s']:.2f} s, {summary['steps']} steps")
     table.add_row("stroke", f"{summary['stroke_mm']:.1f} mm at {summary['speed_mm_s']:.1f} mm/s")
     table.add_row("cycle time", number(summary["cycle_time_s"], "s", digits=3))
-    table.add_row(
-        "body_height", f"{summary['body_height_mm']:.1f} mm, feet lifted by {summary['swing_height_mm']:.1f} mm"
-    )
+    table.add_row("body height", f"{summary['body_height_mm']:.1f} mm")
+    table.add_row("swing height", f"{summary['swing_height_mm']:.1f} mm")
     for joint, speed in summary["joint_speed"].items():
-        table.add_row(f"fastest {joint}", _joint_speed(speed))
-    table.add_row("least margin", _least_margin(margin))
-    table.add_row("nearest feet", f"{feet['mm']:.1f} mm, {' and '.join(feet['legs'])} at {feet['at_s']:.2f} s")
+        table.add_row(f"{joint} speed", _joint_speed(speed))
+    table.add_row("stability margin", _least_margin(margin))
+    table.add_row("foot distance", f"{feet['mm']:.1f} mm, {' and '.join(feet['legs'])} at {feet['at_s']:.2f} s")
     for assumed in summary["assumed"]:
         table.add_row("assumed", assumed)
     return table
@@ -68,24 +67,24 @@ def walk_table(summary: dict[str, Any]) -> Table:
 
 def _least_margin(margin: dict[str, Any]) -> str:
     if margin["mm"] == float("-inf"):
-        return f"none at {margin['at_s']:.2f} s: no foot is on the ground"
-    return f"{margin['mm']:.1f} mm at {margin['at_s']:.2f} s"
+        return f"none at {margin['at_s']:.2f} s: no foot on the ground"
+    return f"minimum {margin['mm']:.1f} mm at {margin['at_s']:.2f} s"
 
 
 def _joint_speed(speed: dict[str, Any]) -> str:
-    text = f"{speed['deg_s']:.0f} deg/s ({speed['leg']})"
-    if speed["share_of_no_load"] is None:
-        return f"{text}; speed of the servo unknown"
-    return f"{text}; {speed['share_of_no_load'] * 100:.0f} % of what {speed['servo']} does without load"
+    text = f"peak {speed['deg_s']:.0f} deg/s ({speed['leg']})"
+    if speed["no_load_fraction"] is None:
+        return f"{text}; no-load speed unknown"
+    return f"{text}; {speed['no_load_fraction'] * 100:.0f} % of the no-load speed of {speed['servo']}"
 
 
 def verdict(summary: dict[str, Any]) -> RenderableType:
-    """Return whether all of it is possible, and if not, why.
+    """Return whether the request is possible, with the problems if not.
 
     Parameters
     ----------
     summary : dict
-        With `possible` and `problems`.
+        Summary with `possible` and `problems`.
     """
     from rich.text import Text
 
@@ -98,12 +97,12 @@ def verdict(summary: dict[str, Any]) -> RenderableType:
 
 
 def angle_table(summary: dict[str, Any]) -> Table:
-    """Return the angles of every leg, and whether it reaches its foothold where that is known.
+    """Return a table of the joint angles, with the reach of each leg if known.
 
     Parameters
     ----------
     summary : dict
-        With `legs`, `joints`, `angles_deg` and perhaps `reach`.
+        Summary with `legs`, `joints`, `angles_deg` and optionally `reach`.
     """
     table = _table("leg", *(f"{joint} deg" for joint in summary["joints"]), *(["reach"] if "reach" in summary else []))
     for column in table.columns[1:4]:
@@ -115,12 +114,12 @@ def angle_table(summary: dict[str, Any]) -> Table:
 
 
 def robot_table(summaries: list[dict[str, Any]]) -> Table:
-    """Return robots with their sizes, masses and servos, a row each.
+    """Return a table of robots with sizes, masses and servos.
 
     Parameters
     ----------
     summaries : list of dict
-        From `tarsus.report.robot_summary.robot_summary`.
+        Summary from `tarsus.report.robot_summary.robot_summary`.
     """
     table = _table("robot", "legs", "coxa, femur, tibia mm", "body mm", "mass", "servos", "gait")
     for robot in summaries:
@@ -132,7 +131,7 @@ def robot_table(summaries: list[dict[str, Any]]) -> Table:
 
 
 def _value(value: Any) -> str:
-    """Return a value of a robot file as it would stand there."""
+    """Format a value as in a robot file."""
     if isinstance(value, dict):
         return ", ".join(f"{key} {_value(item)}" for key, item in value.items())
     if isinstance(value, list):
@@ -141,15 +140,15 @@ def _value(value: Any) -> str:
 
 
 def source_table(rows: list[dict[str, Any]]) -> Table:
-    """Return every number of a robot with the number of its source and how sure it is.
+    """Return a table of a robot's numbers with confidence and source.
 
     Parameters
     ----------
     rows : list of dict
-        From `tarsus.report.robot_summary.dimensions`.
+        Summary from `tarsus.report.robot_summary.dimensions`.
     """
-    table = _table("key", "value", "sure", "source")
+    table = _table("key", "value", "confidence", "source")
     for row in rows:
-        place = "none named" if row["source_number"] is None else f"({row['source_number']})"
-        table.add_row(row["key"], _value(row["value"]), row["confidence"] or _UNKNOWN, place)
+        source = "none" if row["source_number"] is None else f"({row['source_number']})"
+        table.add_row(row["key"], _value(row["value"]), row["confidence"] or _UNKNOWN, source)
     return table

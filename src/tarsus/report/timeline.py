@@ -1,4 +1,4 @@
-"""The timeline of a scenario: what the robot was told and what it did, one panel under the other."""
+"""Figure of a recording over time: commands, gait, speeds, body pose and stability margin."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import numpy as np
 
 from tarsus.control.loop.recording import Event, Recording
 from tarsus.report.gait_diagram import draw_stance
-from tarsus.report.style import INK, PALE, WARNING, leg_colours, new_figure, thinned, tidy_axes
+from tarsus.report.style import INK, PALE, WARNING, decimation, leg_colours, new_figure, tidy_axes
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -16,17 +16,17 @@ if TYPE_CHECKING:
 
 __all__ = ["plot_timeline"]
 
-_DONE, _OTHER = "#0072B2", "#D55E00"
+_ACTUAL, _OTHER = "#0072B2", "#D55E00"
 _SHADE, _LIMITED = "#e9e9e9", "#f6d58a"
-# Width of the panels [inches], and of a character of their labels in it.
-_WIDTH, _LETTER = 9.6, 0.062
-_LONGEST = 44
+# Width of the panels, and of a character of their labels [inches].
+_WIDTH, _CHARACTER_WIDTH = 9.6, 0.062
+_MAX_LABEL = 44
 
 
 def plot_timeline(recording: Recording) -> Figure:
-    """Draw commands, steps, speed asked for and walked, the body, and the stability margin over time.
+    """Draw commands, contacts, commanded and actual speed, the body pose, and the stability margin over time.
 
-    Where feet may give way, also how high those that bear are.
+    With admittance, the heights of the stance feet are drawn as well.
 
     Parameters
     ----------
@@ -36,7 +36,7 @@ def plot_timeline(recording: Recording) -> Figure:
     Returns
     -------
     Figure
-        To be saved by `tarsus.report.style.save_figure`, or shown in a notebook.
+        Figure to save with `tarsus.report.style.save_figure` or to show in a notebook.
 
     Raises
     ------
@@ -45,9 +45,9 @@ def plot_timeline(recording: Recording) -> Figure:
     """
     motion = recording.motion
     labels = _rows(recording)
-    told = 0.19 * (1 + max((row for _, row, _ in labels), default=0)) + 0.1
-    complies = recording.compliant
-    heights = [told, 0.24 * motion.robot.legs, 1.25, 1.0, 1.25, *([1.15] if complies else []), 1.15]
+    command_height = 0.19 * (1 + max((row for _, row, _ in labels), default=0)) + 0.1
+    compliant = recording.compliant
+    heights = [command_height, 0.24 * motion.robot.legs, 1.25, 1.0, 1.25, *([1.15] if compliant else []), 1.15]
     figure = new_figure(width=_WIDTH + 1, height=sum(heights) + 1.9)
     axes = figure.subplots(len(heights), 1, sharex=True, height_ratios=heights)
     for panel in axes:
@@ -58,12 +58,12 @@ def plot_timeline(recording: Recording) -> Figure:
     _draw_gaits(axes[1], recording)
     tidy_axes(axes[2], y="speed\n(mm/s)")
     _draw_speed(axes[2], recording)
-    tidy_axes(axes[3], y="turning\n(deg/s)")
+    tidy_axes(axes[3], y="yaw rate\n(deg/s)")
     _draw_commanded(axes[3], recording, np.degrees(recording.twist_commanded[:, 2]), np.degrees(recording.twist[:, 2]))
     tidy_axes(axes[4], y="body height\n(mm)")
     _draw_body(axes[4], recording)
-    if complies:
-        tidy_axes(axes[5], y="bearing feet\n(mm)")
+    if compliant:
+        tidy_axes(axes[5], y="stance feet\n(mm)")
         _draw_feet(axes[5], recording)
     tidy_axes(axes[-1], x="time (s)", y="stability\nmargin (mm)")
     _draw_margin(axes[-1], recording)
@@ -89,22 +89,22 @@ def _of(recording: Recording, *kinds: str) -> list[Event]:
 
 
 def _rows(recording: Recording) -> list[tuple[Event, int, str]]:
-    """Return the labels, each with the first row in which it has room."""
+    """Return the labels, each with the first row that has space for it."""
     scale = recording.motion.duration / _WIDTH
     ends: list[float] = []
-    found = []
+    labels = []
     for event in _of(recording, "command", "refused", "power"):
-        text = event.text if len(event.text) <= _LONGEST else event.text[: _LONGEST - 3] + "..."
-        width = (len(text) + 2) * _LETTER * scale
-        start = _left(event.time, width, recording.motion.duration)
+        text = event.text if len(event.text) <= _MAX_LABEL else event.text[: _MAX_LABEL - 3] + "..."
+        width = (len(text) + 2) * _CHARACTER_WIDTH * scale
+        start = _label_start(event.time, width, recording.motion.duration)
         row = next((row for row, end in enumerate(ends) if end <= start), len(ends))
         ends[row : row + 1] = [start + width]
-        found.append((event, row, text))
-    return found
+        labels.append((event, row, text))
+    return labels
 
 
-def _left(time: float, width: float, duration: float) -> float:
-    """Return where a label begins: at its moment, or before it where it would not fit."""
+def _label_start(time: float, width: float, duration: float) -> float:
+    """Return the start of a label: at the time of its event, or earlier if it would not fit."""
     return time if time + width <= duration else max(time - width, 0.0)
 
 
@@ -115,7 +115,9 @@ def _draw_commands(axes: Axes, labels: list[tuple[Event, int, str]]) -> None:
     scale = float(axes.get_xlim()[1]) / _WIDTH
     for event, row, text in labels:
         colour = WARNING if event.kind == "refused" else INK
-        right = _left(event.time, (len(text) + 2) * _LETTER * scale, float(axes.get_xlim()[1])) < event.time
+        right = (
+            _label_start(event.time, (len(text) + 2) * _CHARACTER_WIDTH * scale, float(axes.get_xlim()[1])) < event.time
+        )
         axes.plot([event.time] * 2, [row - 0.35, rows - 0.4], color=PALE, linewidth=0.6, linestyle=":")
         axes.plot([event.time] * 2, [row - 0.35, row + 0.35], color=colour, linewidth=1.6)
         axes.annotate(
@@ -132,7 +134,7 @@ def _draw_commands(axes: Axes, labels: list[tuple[Event, int, str]]) -> None:
 
 
 def _draw_gaits(axes: Axes, recording: Recording) -> None:
-    """Write each gait over the steps, from where it begins."""
+    """Label each gait above the contacts, at its start."""
     time, gaits = recording.motion.time, np.array(recording.gaits)
     changes = [0, *(1 + np.flatnonzero(gaits[1:] != gaits[:-1]))]
     top = axes.get_ylim()[1]
@@ -151,12 +153,12 @@ def _draw_gaits(axes: Axes, recording: Recording) -> None:
 
 
 def _draw_speed(axes: Axes, recording: Recording) -> None:
-    commanded, walked = (np.hypot(*twist[:, :2].T) * 1000 for twist in (recording.twist_commanded, recording.twist))
-    _draw_commanded(axes, recording, commanded, walked)
+    commanded, actual = (np.hypot(*twist[:, :2].T) * 1000 for twist in (recording.twist_commanded, recording.twist))
+    _draw_commanded(axes, recording, commanded, actual)
     for event in _of(recording, "limit"):
         axes.axvspan(event.time, event.until, color=_LIMITED, alpha=0.6, linewidth=0, zorder=0)
-    # A command far beyond what the robot can do would leave nothing to be seen of what it does.
-    high = max(float(walked.max()) * 1.6, 10.0)
+    # A command far above the limits would compress the actual speed to a flat line.
+    high = max(float(actual.max()) * 1.6, 10.0)
     if commanded.max() > high:
         axes.set_ylim(-0.05 * high, high)
         axes.annotate(
@@ -172,49 +174,49 @@ def _draw_speed(axes: Axes, recording: Recording) -> None:
         )
 
 
-def _draw_commanded(axes: Axes, recording: Recording, commanded: Any, walked: Any) -> None:
-    shown, time = thinned(recording.motion), recording.motion.time
+def _draw_commanded(axes: Axes, recording: Recording, commanded: Any, actual: Any) -> None:
+    shown, time = decimation(recording.motion), recording.motion.time
     axes.plot(time[shown], commanded[shown], color=PALE, linewidth=1.3, linestyle=(0, (4, 2)), label="commanded")
-    axes.plot(time[shown], walked[shown], color=_DONE, linewidth=1.6, label="walked")
+    axes.plot(time[shown], actual[shown], color=_ACTUAL, linewidth=1.6, label="actual")
     axes.legend(loc="upper left", fontsize=8, frameon=False, ncols=2, borderaxespad=0.1)
     low, high = axes.get_ylim()
-    # Room for the legend.
+    # Space for the legend.
     axes.set_ylim(low, high + 0.25 * (high - low))
 
 
 def _draw_body(axes: Axes, recording: Recording) -> None:
-    motion, shown = recording.motion, thinned(recording.motion)
+    motion, shown = recording.motion, decimation(recording.motion)
     axes.plot(motion.time[shown], motion.body.position[shown, 2] * 1000, color=INK, linewidth=1.5, label="height")
-    beside = axes.twinx()
-    beside.spines["top"].set_visible(False)
+    tilt_axes = axes.twinx()
+    tilt_axes.spines["top"].set_visible(False)
     roll, pitch, _ = np.degrees(motion.body.rpy).T
-    beside.plot(motion.time[shown], roll[shown], color=_DONE, linewidth=1.2, label="roll")
-    beside.plot(motion.time[shown], pitch[shown], color=_OTHER, linewidth=1.2, label="pitch")
-    most = max(float(np.abs([roll, pitch]).max()) * 1.4, 2.0)
-    beside.set_ylim(-most, most)
-    beside.set_ylabel("tilt (deg)", color=INK)
+    tilt_axes.plot(motion.time[shown], roll[shown], color=_ACTUAL, linewidth=1.2, label="roll")
+    tilt_axes.plot(motion.time[shown], pitch[shown], color=_OTHER, linewidth=1.2, label="pitch")
+    limit = max(float(np.abs([roll, pitch]).max()) * 1.4, 2.0)
+    tilt_axes.set_ylim(-limit, limit)
+    tilt_axes.set_ylabel("tilt (deg)", color=INK)
     low, high = axes.get_ylim()
     axes.set_ylim(low, high + 0.35 * (high - low))
-    lines = [*axes.get_lines(), *beside.get_lines()]
+    lines = [*axes.get_lines(), *tilt_axes.get_lines()]
     axes.legend(
         lines, ["height", "roll", "pitch"], loc="upper left", fontsize=8, frameon=False, ncols=3, borderaxespad=0.1
     )
 
 
 def _draw_feet(axes: Axes, recording: Recording) -> None:
-    """Draw how high each foot that bears is over the ground that the robot started on."""
-    motion, shown = recording.motion, thinned(recording.motion)
-    bears, colours = motion.contacts & recording.upright[:, None], leg_colours(motion.robot)
-    height = np.where(bears, motion.feet[..., 2] * 1000, np.nan)
+    """Draw the height of each stance foot over the ground at the start."""
+    motion, shown = recording.motion, decimation(recording.motion)
+    in_stance, colours = motion.contacts & recording.upright[:, None], leg_colours(motion.robot)
+    height = np.where(in_stance, motion.feet[..., 2] * 1000, np.nan)
     for leg, code in enumerate(motion.robot.leg_codes):
         axes.plot(motion.time[shown], height[shown, leg], color=colours[leg], linewidth=1.3, label=code)
-    most = max(float(np.nanmax(np.abs(height), initial=0.0)) * 1.2, 2.0)
-    axes.set_ylim(-most, 1.4 * most)
+    limit = max(float(np.nanmax(np.abs(height), initial=0.0)) * 1.2, 2.0)
+    axes.set_ylim(-limit, 1.4 * limit)
     axes.legend(loc="upper left", fontsize=8, frameon=False, ncols=motion.robot.legs, borderaxespad=0.1)
 
 
 def _draw_margin(axes: Axes, recording: Recording) -> None:
-    motion, shown = recording.motion, thinned(recording.motion)
+    motion, shown = recording.motion, decimation(recording.motion)
     usable = np.isfinite(motion.margin) & ~recording.belly
     margin = np.where(usable, motion.margin, np.nan) * 1000
     axes.plot(motion.time[shown], margin[shown], color=INK, linewidth=1.2)
@@ -227,7 +229,7 @@ def _draw_margin(axes: Axes, recording: Recording) -> None:
 
 
 def _shade(axes: Axes, recording: Recording) -> None:
-    """Shade when the robot lies, gets up or goes down."""
+    """Shade the times at which the robot does not stand on its feet."""
     lying: np.ndarray[Any, Any] = np.concatenate([[False], ~recording.upright, [False]])
     edges = np.flatnonzero(np.diff(lying.astype(int))).reshape(-1, 2)
     time = recording.motion.time

@@ -1,4 +1,4 @@
-"""An axonometric view: three dimensions drawn in two, without perspective, so that lengths stay comparable."""
+"""Axonometric (parallel) projection."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ Floats = np.ndarray[Any, np.dtype[np.float64]]
 
 @dataclass(frozen=True, kw_only=True)
 class View:
-    """From where the robot is looked at.
+    """Direction of view.
 
     Attributes
     ----------
     azimuth : float
-        Where the eye is, counter-clockwise from forward [deg]: -60 is before the robot's right side.
+        Azimuth of the eye, counter-clockwise from forward [deg]; -60 is in front of the robot's right side.
     elevation : float
-        How high above the horizon the eye is [deg].
+        Elevation of the eye [deg].
     """
 
     azimuth: float = -62.0
@@ -30,7 +30,7 @@ class View:
 
     @property
     def axes(self) -> Floats:
-        """Rows: the picture's right, its up, and towards the eye, as unit vectors of G."""
+        """Unit vectors of the view in G as rows: right, up, towards the eye."""
         a, e = math.radians(self.azimuth), math.radians(self.elevation)
         right = (-math.sin(a), math.cos(a), 0.0)
         up = (-math.sin(e) * math.cos(a), -math.sin(e) * math.sin(a), math.cos(e))
@@ -38,34 +38,34 @@ class View:
         return np.array([right, up, eye])
 
     def project(self, points: Floats) -> Floats:
-        """Return where points ``(..., 3)`` are in the picture ``(..., 2)``, in their own unit.
+        """Project points ``(..., 3)`` onto the picture plane ``(..., 2)``, in the same unit.
 
         Parameters
         ----------
         points : array, shape (..., 3)
-            Points of G.
+            Points in G.
         """
         projected: Floats = np.asarray(points) @ self.axes[:2].T
         return projected
 
     def depth(self, points: Floats) -> Floats:
-        """Return how near the eye points ``(..., 3)`` are ``(...)``, in their own unit: the greater hides the less.
+        """Return the depth of points ``(..., 3)`` towards the eye ``(...)``; points with a larger depth are in front.
 
         Parameters
         ----------
         points : array, shape (..., 3)
-            Points of G.
+            Points in G.
         """
         nearness: Floats = np.asarray(points) @ self.axes[2]
         return nearness
 
     def ground_under(self, picture: Floats) -> Floats:
-        """Return the points of the ground ``(..., 3)`` that are seen at points of the picture ``(..., 2)``.
+        """Return the ground points ``(..., 3)`` at points of the picture plane ``(..., 2)``.
 
         Parameters
         ----------
         picture : array, shape (..., 2)
-            Points of the picture.
+            Points of the picture plane.
         """
         on_ground: Floats = np.asarray(picture) @ np.linalg.inv(self.axes[:2, :2]).T
         return np.concatenate([on_ground, np.zeros((*on_ground.shape[:-1], 1))], axis=-1)

@@ -1,4 +1,4 @@
-"""A walk in numbers: what the command line prints and `--json` returns."""
+"""Numbers of a walk, as printed by `tarsus walk`."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ __all__ = ["walk_summary"]
 
 
 def walk_summary(motion: Motion) -> dict[str, Any]:
-    """Return a motion in numbers, in the units that the keys name.
+    """Return the numbers of a motion, with units in the keys.
 
     Parameters
     ----------
@@ -24,8 +24,8 @@ def walk_summary(motion: Motion) -> dict[str, Any]:
     Returns
     -------
     dict
-        Strings, numbers, lists and dicts; what is unknown is None. `speed_mm_s` and `stroke_mm` are those of the foot
-        that goes farthest past the body: on a straight walk, the body's.
+        Strings, numbers, lists and dicts; None if unknown. `speed_mm_s` and `stroke_mm` are those of the foot that
+        moves farthest relative to the body; on a straight walk those of the body.
     """
     worst = int(np.argmin(motion.margin))
     return {
@@ -50,39 +50,39 @@ def walk_summary(motion: Motion) -> dict[str, Any]:
 
 
 def _end(motion: Motion) -> dict[str, float]:
-    """Return where the body is in the end, and how far it has turned, whole turns included."""
+    """Return the final position of the body, and its total yaw, full turns included."""
     x, y = motion.body.position[-1, :2] * 1000
     yaw = np.unwrap(motion.body.rpy[:, 2])
     return {"x_mm": x, "y_mm": y, "turned_deg": math.degrees(yaw[-1] - yaw[0])}
 
 
 def _nearest_feet(motion: Motion) -> dict[str, Any]:
-    """Return which two feet come nearest to each other, when, and how near."""
-    moment = int(np.argmin(motion.feet_apart))
-    feet, codes = motion.feet[moment], motion.robot.leg_codes
-    apart = np.linalg.norm(feet[:, None] - feet, axis=-1) + np.diag(np.full(len(feet), np.inf))
-    pair = np.unravel_index(int(np.argmin(apart)), apart.shape)
+    """Return the smallest distance between two feet, with its time and legs."""
+    sample = int(np.argmin(motion.feet_apart))
+    feet, codes = motion.feet[sample], motion.robot.leg_codes
+    distance = np.linalg.norm(feet[:, None] - feet, axis=-1) + np.diag(np.full(len(feet), np.inf))
+    pair = np.unravel_index(int(np.argmin(distance)), distance.shape)
     return {
-        "mm": motion.feet_apart[moment] * 1000,
-        "at_s": motion.time[moment],
+        "mm": motion.feet_apart[sample] * 1000,
+        "at_s": motion.time[sample],
         "legs": [codes[int(leg)] for leg in pair],
         "least_allowed_mm": motion.foot_distance * 1000,
     }
 
 
 def _joint_speed(motion: Motion, joint: int) -> dict[str, Any]:
-    """Return one kind of joint's greatest speed, and what share of its servo's speed without load that is."""
+    """Return the peak speed of coxa, femur or tibia, and its ratio to the servo's no-load speed."""
     fastest = np.abs(motion.joint_speed[:, :, joint]).max(0)
     leg = int(np.argmax(fastest))
     ratio = motion.speed_ratio[:, joint]
-    # With different servos, the leg nearest to its servo's limit is not always the fastest.
-    tightest = leg if np.isnan(ratio).all() else int(np.nanargmax(ratio))
-    servo = motion.robot.servos[tightest][joint]
+    # With different servos, the leg with the largest ratio is not always the fastest.
+    critical = leg if np.isnan(ratio).all() else int(np.nanargmax(ratio))
+    servo = motion.robot.servos[critical][joint]
     limit = None if servo is None or servo.no_load_speed is None else math.degrees(servo.no_load_speed)
     return {
         "deg_s": math.degrees(fastest[leg]),
         "leg": motion.robot.leg_codes[leg],
         "servo": None if servo is None else servo.name,
         "no_load_deg_s": limit,
-        "share_of_no_load": None if limit is None else ratio[tightest],
+        "no_load_fraction": None if limit is None else ratio[critical],
     }

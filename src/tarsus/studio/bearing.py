@@ -148,15 +148,15 @@ def servos_message(found: JointLoads, options: LoadOptions, *, id: int) -> Servo
     return ServosMessage(
         type="servos",
         id=id,
-        present_do=summary["present_do"],
+        present_do=summary["sufficient"],
         balanced=summary["balanced"],
         worst=[f"{row['leg']} {row['joint']}: {row['text']}" for row in summary["joints"]],
         candidates=[_candidate(candidate) for candidate in summary["candidates"]],
         mixed=None if mixed is None else _candidate(mixed),
-        payload_kg=summary["payload_carried_kg"],
-        payload_before_burning_kg=summary["payload_before_burning_kg"],
+        payload_kg=summary["largest_payload_kg"],
+        payload_before_burning_kg=summary["maximum_payload_kg"],
         advice=summary["advice"],
-        left_out=summary["left_out"],
+        left_out=summary["excluded"],
         assumed=summary["assumed"],
     )
 

@@ -240,7 +240,7 @@ def _moment(found: dict[str, Any]) -> Moment:
 
 
 def _joint_speed(joint: str, found: dict[str, Any]) -> JointSpeed:
-    share = found["share_of_no_load"]
+    share = found["no_load_fraction"]
     return JointSpeed(
         joint=joint,  # type: ignore[arg-type] # one of the three
         deg_s=float(found["deg_s"]),

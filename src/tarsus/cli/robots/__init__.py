@@ -1,4 +1,4 @@
-"""`tarsus robots`: the robots there are, and robot files."""
+"""`tarsus robots`: bundled robots and robot files."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ __all__ = ["robots"]
     )
 )
 def robots() -> None:
-    """List robots, show where their numbers come from, start and check robot files."""
+    """List robots, show their dimensions and sources, create and check robot files."""
 
 
 for command in (list_all, show_robot, new, check, schema):

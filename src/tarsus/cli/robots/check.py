@@ -1,4 +1,4 @@
-"""`tarsus robots check`: whether a robot file is right, what it lacks, and whether the robot can walk."""
+"""`tarsus robots check`: validate a robot file."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ __all__ = ["check"]
 @click.argument("file")
 @json_option
 def check(file: str, as_json: bool) -> int:
-    """Check a robot file: all that is wrong in it, what it lacks, and whether the robot can walk.
+    """Check a robot file for errors and missing values, and whether the robot can walk.
 
-    The exit code is 0 only if nothing is wrong and the robot can walk; what is merely unknown is named.
+    The exit code is 0 only if the file has no errors and the robot can walk; missing optional values are listed.
     """
     from tarsus.report.robot_summary import check_robot
     from tarsus.robot.file import load_robot
@@ -47,10 +47,10 @@ def check(file: str, as_json: bool) -> int:
 def _print(file: str, report: dict[str, Any]) -> None:
     from tarsus.report.tables import number, robot_table, verdict
 
-    show(robot_table([report["robot"]]), f"{file}: nothing in it is wrong")
+    show(robot_table([report["robot"]]), f"{file}: no errors")
     for line in report["missing"]:
-        show(f"  unknown: {line}")
+        show(f"  missing: {line}")
     if report["possible"]:
         show(f"longest stroke straight ahead: {number(report['longest_stroke_mm'], 'mm')}")
     else:
-        show("walking is", verdict(report))
+        show("walking:", verdict(report))

@@ -1,4 +1,4 @@
-"""`tarsus robots list`: the robots that come with Tarsus."""
+"""`tarsus robots list`: list the bundled robots."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ __all__ = ["list_all"]
 )
 @json_option
 def list_all(as_json: bool) -> int:
-    """List the robots that come with Tarsus: sizes, masses, servos."""
+    """List the bundled robots with sizes, masses and servos."""
     from tarsus.report.robot_summary import robot_summary
     from tarsus.report.tables import robot_table
     from tarsus.robot.file import list_robots, load_robot

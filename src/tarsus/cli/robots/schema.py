@@ -1,4 +1,4 @@
-"""`tarsus robots schema`: the JSON schema of a robot file."""
+"""`tarsus robots schema`: print the JSON schema of robot files."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ __all__ = ["schema"]
         "tarsus robots schema",
     )
 )
-@click.option("--json", "as_json", is_flag=True, help="The schema is JSON in any case.")
+@click.option("--json", "as_json", is_flag=True, help="No effect: the schema is JSON.")
 def schema(as_json: bool) -> int:  # noqa: ARG001 - every command takes --json
-    """Print the JSON schema of a robot file, for editors that complete and check TOML."""
+    """Print the JSON schema of robot files, for editors with TOML completion and validation."""
     from tarsus.robot.file import robot_schema
 
-    # To the byte the file that comes with Tarsus.
+    # Identical to the bundled file.
     click.echo(json.dumps(robot_schema(), indent=2))
     return 0

@@ -1,4 +1,4 @@
-"""`tarsus robots show`: a robot's numbers, each with its source."""
+"""`tarsus robots show`: print a robot's numbers with their sources."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ __all__ = ["show_robot"]
 @robot_argument
 @json_option
 def show_robot(robot: str, as_json: bool) -> int:
-    """Show a robot's numbers, where each comes from, and how sure it is.
+    """Show a robot's numbers, each with its source and confidence.
 
-    How sure: A read in the primary file, B in a secondary copy, C general knowledge, or a guess.
+    Confidence: A from the primary file, B from a secondary copy, C general knowledge, or a guess.
     """
     from tarsus.report.robot_summary import dimensions, robot_summary
     from tarsus.report.tables import robot_table, source_table
@@ -33,7 +33,7 @@ def show_robot(robot: str, as_json: bool) -> int:
     if as_json:
         print_json({**robot_summary(loaded), "dimensions": rows})
         return 0
-    said = [f"{source.source}. {source.note}".strip() for source in loaded.sources]
+    descriptions = [f"{source.source}. {source.note}".strip() for source in loaded.sources]
     show(robot_table([robot_summary(loaded)]), source_table(rows))
-    show(*(f"({number}) {text}" for number, text in enumerate(said, start=1)))
+    show(*(f"({number}) {text}" for number, text in enumerate(descriptions, start=1)))
     return 0
