@@ -129,7 +129,7 @@ async def slide(socket: ClientConnection, seen: Seen, hertz: float) -> None:
 async def drive(socket: ClientConnection, seen: Seen, _hertz: float) -> None:
     """Drive, and count the frames that come."""
     await socket.send(json.dumps({"type": "drive", "id": 100, "on": True}))
-    await socket.send(json.dumps({"type": "wish", "id": 101, "velocity_mm_s": [60, 0], "turn_deg_s": 5}))
+    await socket.send(json.dumps({"type": "command", "id": 101, "velocity_mm_s": [60, 0], "turn_deg_s": 5}))
     end = time.perf_counter() + SECONDS
     while (left := end - time.perf_counter()) > 0:
         try:

@@ -19,6 +19,7 @@ pytest_plugins = "browser_fixtures"
 
 STRIDER = tarsus.load_robot("strider")
 FEET = STRIDER.leg_codes
+REQUESTS = ("standing", "lying", "folded")
 AXE = Path(__file__).parents[1] / "web" / "node_modules" / "axe-core" / "axe.min.js"
 
 
@@ -68,26 +69,82 @@ def test_all_is_reached_by_keyboard_alone(visitor):
     expect(visitor.page.get_by_role("heading", name="Body", exact=True)).to_be_visible()
 
 
-def test_it_is_driven_by_keys_and_stops_on_its_feet(visitor):
+def test_keys_drive_the_robot_and_it_stops_in_its_stance(visitor):
     visitor.open(StudioState(view="drive"))
-    expect(visitor.at("drive-facts")).to_contain_text("Forward0 mm/s")
+    expect(visitor.at("drive-facts")).to_contain_text("Forward speed0 mm/s")
+    expect(visitor.at("drive-state")).to_have_text("standing")
     stance = np.degrees(tarsus.WalkController(STRIDER).angles)
     assert shown_angles(visitor) == pytest.approx(stance, abs=0.02)
     visitor.page.locator("main h2").click()
     visitor.page.keyboard.down("w")
-    expect(visitor.at("drive-facts")).to_contain_text(re.compile(r"At x, y([6-9]\d|\d{3,}), "))
+    expect(visitor.at("drive-facts")).to_contain_text(re.compile(r"Position x, y([6-9]\d|\d{3,}), "))
     facts = visitor.facts("drive-facts")
-    assert 0 < number(facts["Forward"]) <= 120
-    assert facts["It is"] == "walking"
+    assert 0 < number(facts["Forward speed"]) <= 120
+    expect(visitor.at("drive-state")).to_have_text("walking")
     visitor.page.keyboard.up("w")
-    expect(visitor.at("drive-facts")).to_contain_text("It isstanding")
-    expect(visitor.at("drive-facts")).to_contain_text("Forward0 mm/s")
+    expect(visitor.at("drive-state")).to_have_text("standing")
+    expect(visitor.at("drive-facts")).to_contain_text("Forward speed0 mm/s")
     assert shown_angles(visitor) == pytest.approx(stance, abs=0.02)
     facts = visitor.facts("drive-facts")
-    assert facts["The guard stepped in"] == "0"
-    x, y = numbers(facts["At x, y"])
+    assert facts["Guard interventions"] == "0"
+    assert facts["Heading"] == "0°"
+    x, y = numbers(facts["Position x, y"])
     assert x > 60
     assert abs(y) <= 1
+
+
+def test_turning_changes_the_heading(visitor):
+    visitor.open(StudioState(view="drive"))
+    visitor.at("drive-facts").wait_for()
+    visitor.page.locator("main h2").click()
+    visitor.page.keyboard.down("e")
+    expect(visitor.at("drive-facts")).to_contain_text(re.compile(r"Heading([5-9]|\d{2,})° right"))
+    visitor.page.keyboard.up("e")
+    expect(visitor.at("drive-state")).to_have_text("standing")
+
+
+def test_the_robot_sits_down_folds_and_stands_up(visitor):
+    visitor.open(StudioState(view="drive"))
+    state, stand, sit, fold = map(visitor.at, ("drive-state", *(f"request-{name}" for name in REQUESTS)))
+    expect(state).to_have_text("standing")
+    expect(stand).to_be_disabled()
+    stance = shown_angles(visitor)
+    sit.click()
+    expect(sit).to_be_disabled()
+    expect(state).to_have_text("lying")
+    expect(visitor.at("chip-state")).to_have_text("lying")
+    expect(visitor.at("chip-margin")).to_have_text("body on the ground")
+    assert visitor.facts("drive-facts")["Stability margin"] == "body on the ground"
+
+    visitor.page.locator("main h2").click()
+    visitor.page.keyboard.down("w")
+    expect(visitor.at("drive-limitations")).to_contain_text("twist: 0")
+    expect(visitor.at("chip-limitations")).to_contain_text("1 limitation")
+    visitor.page.keyboard.up("w")
+    expect(visitor.at("drive-limitations")).to_have_count(0)
+
+    fold.click()
+    expect(state).to_have_text("folded")
+    expect(fold).to_be_disabled()
+    expect(sit).to_be_disabled()
+    expect(visitor.at("chip-feet")).to_have_text("0 feet down")
+    stand.click()
+    expect(state).to_have_text("standing")
+    expect(visitor.at("chip-margin")).to_contain_text("stable")
+    assert shown_angles(visitor) == pytest.approx(stance, abs=0.02)
+    assert visitor.facts("drive-facts")["Guard interventions"] == "0"
+
+
+def test_another_robot_starts_standing_with_its_own_settings(visitor):
+    visitor.open(StudioState(view="drive"))
+    visitor.at("request-lying").click()
+    visitor.type("drive-body-height", 120)
+    expect(visitor.at("drive-state")).to_have_text("lying")
+    visitor.at("robot-choice").select_option("phantomx")
+    expect(visitor.at("drive-state")).to_have_text("standing")
+    expect(visitor.at("request-lying")).to_be_enabled()
+    height = tarsus.default_body_height(tarsus.load_robot("phantomx")) * 1000
+    expect(visitor.at("drive-body-height-number")).to_have_value(f"{height:g}")
 
 
 def test_a_phone_is_enough(arrive):
@@ -118,9 +175,11 @@ def test_a_phone_is_enough(arrive):
     visitor.at("tab-drive").tap()
     visitor.at("drive-facts").wait_for()
     push(visitor, "stick-walk", 0.0, -0.9)
-    expect(visitor.at("drive-facts")).to_contain_text("It iswalking")
+    expect(visitor.at("drive-state")).to_have_text("walking")
     release(visitor)
-    expect(visitor.at("drive-facts")).to_contain_text("It isstanding")
+    expect(visitor.at("drive-state")).to_have_text("standing")
+    visitor.at("request-lying").tap()
+    expect(visitor.at("drive-state")).to_have_text("lying")
 
 
 def push(visitor, name, x, y):

@@ -202,13 +202,14 @@ plausible = st.one_of(
     st.fixed_dictionaries({"type": st.just("drive"), "on": st.booleans()}),
     st.fixed_dictionaries(
         {
-            "type": st.just("wish"),
+            "type": st.just("command"),
             "velocity_mm_s": st.tuples(moderate, moderate),
             "turn_deg_s": moderate,
             "gait": st.none() | st.sampled_from(["wave", "tripod", "none"]),
             "body_height_mm": st.none() | moderate,
             "swing_height_mm": maybe,
             "cycle_time_s": maybe,
+            "state": st.none() | st.sampled_from(["standing", "lying", "folded"]),
         }
     ),
 )

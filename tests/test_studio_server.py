@@ -145,7 +145,7 @@ def test_a_broken_connection_is_taken_up_where_it_was(serving):
 def test_driving_sends_frames_by_itself_until_it_is_ended(serving):
     with Visit(serving) as visit:
         number = visit.send("drive", on=True)
-        visit.send("wish", velocity_mm_s=[60, 0], turn_deg_s=5)
+        visit.send("command", velocity_mm_s=[60, 0], turn_deg_s=5)
         frames = []
         while len(frames) < 60:
             answer = visit.receive()
@@ -156,7 +156,7 @@ def test_driving_sends_frames_by_itself_until_it_is_ended(serving):
         assert all(after > before for before, after in itertools.pairwise(times))
         assert frames[-1]["mode"] == "walking"
         assert frames[-1]["position_mm"][0] > frames[0]["position_mm"][0]
-        refused = visit.ask("wish", velocity_mm_s=[0, 0], turn_deg_s=0, gait="gallop")
+        refused = visit.ask("command", velocity_mm_s=[0, 0], turn_deg_s=0, gait="gallop")
         assert any(answer["type"] == "error" and answer["kind"] == "unknown_name" for answer in refused)
         visit.ask("drive", on=False)
         assert [answer["type"] for answer in visit.ask("ping")] == ["done"]

@@ -72,7 +72,7 @@ export interface ChooseSource {
   source: SourceChoice;
 }
 
-/** What the live walker shall do from now on; null leaves a thing as it is. Answer: done. */
+/** A command to the live robot, which holds until the next; null leaves a quantity unchanged. Answer: done. */
 export interface Command {
   id: number;
   type: "command";
@@ -85,6 +85,8 @@ export interface Command {
   body_height_mm?: number | null;
   swing_height_mm?: number | null;
   cycle_time_s?: number | null;
+  /** Requested state. */
+  state?: "standing" | "lying" | "folded" | null;
 }
 
 /** A walk round a centre on the floor. */
@@ -146,26 +148,37 @@ export interface Drive {
   on: boolean;
 }
 
-/** The live walker now; sixty a second while driving. */
+/** State of the live robot after a tick; sent 60 times a second while driving. */
 export interface DriveFrame {
   id: number;
   type: "frame";
   time_s: number;
-  mode: string;
+  state: "lying" | "folded" | "rising" | "standing" | "walking" | "sitting" | "folding" | "fault";
+  /** Walk state, stage of rising, sitting or folding, or the state. */
+  activity: string;
+  /** State of the guard: passing, holding, sitting or recovering. */
+  guard: string;
   gait: string;
   position_mm: number[];
   rpy_deg: number[];
+  /** Yaw of the body in G, from -180 to 180. */
+  heading_deg: number;
   angles_deg: number[];
   contacts: string;
+  /** Whether the body rests on the ground. */
+  belly: boolean;
+  /** Null where no foot is on the ground, or the body is. */
   margin_mm: number | null;
-  /** (x, y) of the centre of mass over the ground in G. */
-  com_mm: number[];
-  /** What it does: forward, left [mm/s], turn [deg/s]. */
+  /** (x, y) of the centre of mass over the ground in G; null while the body rests on the ground. */
+  com_mm: number[] | null;
+  /** Present twist: forward, left [mm/s], turn [deg/s]. */
   twist: number[];
   /** Why the command is not met in full. */
-  limited: string[];
-  /** How often the guard stepped in. */
-  interventions: number;
+  limitations: string[];
+  /** Number of interventions of the guard since driving started. */
+  intervention_count: number;
+  /** The latest interventions, newest first, at most five. */
+  interventions: string[];
 }
 
 /** A line of a source document, with the live numbers in it. */

@@ -1,20 +1,21 @@
-"""Live walking: the walker that a visitor drives, with the guard behind it."""
+"""Live driving: the robot controller that a visitor commands, and its frames."""
 
 from __future__ import annotations
 
 import math
-from typing import Any
+from collections import deque
 
 import numpy as np
 
 from tarsus.control.command import Command
-from tarsus.control.safety import Guard, GuardBounds
-from tarsus.control.walk_controller import WalkController
+from tarsus.control.control_output import ControlOutput
+from tarsus.control.plant import IdealPlant
+from tarsus.control.robot_controller import RobotController
+from tarsus.control.robot_state import next_state, requested_state
 from tarsus.errors import TarsusError
 from tarsus.gait.gait import Gait
 from tarsus.kinematics.leg import forward_kinematics
 from tarsus.kinematics.mass import centre_of_mass
-from tarsus.kinematics.pose import Pose
 from tarsus.robot.robot import Robot
 from tarsus.studio.messages import client as ask
 from tarsus.studio.messages.moving import DriveFrame
@@ -23,39 +24,49 @@ from tarsus.studio.wire import degrees, flags, millimetres, or_null, plain
 
 __all__ = ["Driver"]
 
+# How many of the guard's interventions a frame lists.
+_LISTED = 5
+
 
 class Driver:
-    """A live walker, and what it is wished to do.
+    """A robot controller with an ideal plant, and the command that holds.
 
     Parameters
     ----------
     robot : Robot
-        A single robot.
+        A single robot; it stands at first.
     id : int
-        Of the message that began it: its frames bear it.
+        Id of the message that started driving; all frames carry it.
 
     Raises
     ------
     TarsusError
-        If the robot can't walk.
+        If the robot can't stand.
     """
 
     def __init__(self, robot: Robot, *, id: int) -> None:
         self.id = id
         self._robot = robot
-        self._controller = WalkController(robot)
-        controller = self._controller
-        bounds = GuardBounds.of(robot, speed=controller.joint_speed, acceleration=controller.joint_acceleration)
-        self._guard = Guard(robot, bounds=bounds, start=controller.angles)
-        self._command = self._granted = Command()
+        self._controller = RobotController(robot)
+        self._plant = IdealPlant(robot)
+        self._plant.start(self._controller.output)
+        self._command = self._accepted = Command()
+        self._interventions: deque[str] = deque(maxlen=_LISTED)
+        self._intervention_count = 0
+
+    @property
+    def is_planning(self) -> bool:
+        """Whether the next step may plan a change of state, which takes longer than a frame."""
+        state, requested = self._controller.output.state, self._command.state
+        return requested is not None and next_state(state, requested_state(requested)) is not None
 
     def command(self, message: ask.Command) -> None:
-        """Take a command; it holds until the next.
+        """Set the command; it holds until the next one.
 
         Parameters
         ----------
         message : Command
-            What the walker shall do.
+            The command as received.
 
         Raises
         ------
@@ -69,54 +80,65 @@ class Driver:
             body_height=_metres(message.body_height_mm),
             swing_height=_metres(message.swing_height_mm),
             cycle_time=message.cycle_time_s,
+            state=message.state,
         )
 
     def step(self, dt: float) -> DriveFrame:
-        """Go on by a time step.
+        """Advance by one tick.
 
         Parameters
         ----------
         dt : float
-            The time step [s].
+            Time since the last tick [s].
 
         Raises
         ------
         TarsusError
-            If the walker refuses the command; it goes on with the one before.
+            If the controller refuses the command; the last accepted one holds again.
         """
         controller = self._controller
+        readings = self._plant.step(controller.output, dt)
         try:
-            angles = controller.step(self._command, dt)
+            output = controller.step(self._command, dt, readings)
         except TarsusError:
-            self._command = self._granted
+            self._command = self._accepted
             raise
-        self._granted = self._command
-        body = controller.body
-        guarded = self._guard.check(angles, dt, controller.contacts, body)
-        return self._frame(np.asarray(guarded.angles), body)
+        self._accepted = self._command
+        self._intervention_count += len(output.interventions)
+        self._interventions.extendleft(intervention.text() for intervention in output.interventions)
+        return self._frame(output)
 
-    def _frame(self, angles: np.ndarray[Any, Any], body: Pose) -> DriveFrame:
-        controller = self._controller
-        points = forward_kinematics(self._robot, angles)
-        com = np.asarray(body @ np.asarray(centre_of_mass(self._robot, angles, points=points)))
-        margin = margin_of(np.asarray(body @ points[:, 3]), controller.contacts, com)
-        vx, vy, wz = controller.twist
+    def _frame(self, output: ControlOutput) -> DriveFrame:
+        margin, com = (None, None) if output.belly else self._stability(output)
+        vx, vy, wz = output.twist
         return DriveFrame(
             type="frame",
             id=self.id,
-            time_s=round(controller.time, 4),
-            mode=controller.walk_state.value,
-            gait=controller.gait.name,
-            position_mm=millimetres(body.position),
-            rpy_deg=degrees(body.rpy),
-            angles_deg=degrees(angles),
-            contacts=flags(controller.contacts),
-            margin_mm=or_null(margin * 1000, decimals=2),
-            com_mm=millimetres(com[:2]),
+            time_s=round(output.time, 4),
+            state=output.state.value,
+            activity=output.activity,
+            guard=output.guard,
+            gait=output.gait.name,
+            position_mm=millimetres(output.body.position),
+            rpy_deg=degrees(output.body.rpy),
+            heading_deg=round(math.degrees(output.heading), 3),
+            angles_deg=degrees(output.angles),
+            contacts=flags(output.contacts),
+            belly=output.belly,
+            margin_mm=margin,
+            com_mm=com,
             twist=plain([vx * 1000, vy * 1000, math.degrees(wz)]),
-            limited=[limitation.text() for limitation in controller.limitations],
-            interventions=sum(self._guard.counts.values()),
+            limitations=[limitation.text() for limitation in output.limitations],
+            intervention_count=self._intervention_count,
+            interventions=list(self._interventions),
         )
+
+    def _stability(self, output: ControlOutput) -> tuple[float | None, list[float]]:
+        """Return the static stability margin [mm] and the centre of mass projected onto the ground [mm]."""
+        points = forward_kinematics(self._robot, output.angles)
+        com = np.asarray(output.body @ np.asarray(centre_of_mass(self._robot, output.angles, points=points)))
+        margin = margin_of(np.asarray(output.body @ points[:, 3]), output.contacts, com)
+        return or_null(margin * 1000, decimals=2), millimetres(com[:2])
 
 
 def _metres(mm: float | None) -> float | None:

@@ -68,8 +68,13 @@ class Session:
 
     @property
     def driving(self) -> bool:
-        """Whether `frame` has something to give."""
+        """Whether a robot is being driven, so that `frame` returns frames."""
         return self._driver is not None
+
+    @property
+    def is_planning(self) -> bool:
+        """Whether the next frame may take longer, because a change of state has to be planned."""
+        return self._driver is not None and self._driver.is_planning
 
     def receive(self, text: str | bytes) -> list[ServerMessage]:
         """Answer a message as it comes over a wire.
@@ -106,18 +111,18 @@ class Session:
         return answers
 
     def frame(self, dt: float) -> DriveFrame | ErrorMessage | None:
-        """Return the live walker after another time step, or None where nobody drives.
+        """Return the live robot after another tick, or None if no robot is being driven.
 
         Parameters
         ----------
         dt : float
-            The time step [s].
+            Time since the last frame [s].
         """
         if self._driver is None:
             return None
         try:
             return self._driver.step(dt)
-        except Exception as error:  # as above; a command that is refused leaves the walker as it is
+        except Exception as error:  # as above; a refused command leaves the robot as it is
             answer = error_message(error, id=self._driver.id)
             if not isinstance(error, TarsusError):
                 self._driver = None

@@ -4,27 +4,30 @@ import { fixed } from "../controls/numbers";
 import type { Frame } from "../scene/frame";
 import { stage } from "../scene/stage";
 
-/** How often the numbers change [ms]: faster could not be read. */
-const EVERY = 120;
+/** Interval at which the texts are updated [ms]: faster changes could not be read. */
+const INTERVAL = 120;
 
 interface Status {
+  state: string | null;
+  belly: boolean;
+  limitations: number;
   margin: string;
-  stands: boolean;
+  stable: boolean;
   feet: string;
   troubled: number;
 }
 
-/** How it stands, in a few words over the picture. */
+/** State, stability and contacts of the robot, over the picture. */
 export function StatusChips() {
   const [status, setStatus] = useState<Status | null>(null);
   useEffect(() => {
     let timer: number | undefined;
-    const tell = () => {
+    const update = () => {
       timer = undefined;
       const next = stage.current && statusOf(stage.current);
       setStatus((before) => (JSON.stringify(before) === JSON.stringify(next) ? before : next));
     };
-    const stop = stage.watch(() => (timer ??= window.setTimeout(tell, EVERY)));
+    const stop = stage.watch(() => (timer ??= window.setTimeout(update, INTERVAL)));
     return () => {
       stop();
       window.clearTimeout(timer);
@@ -33,16 +36,32 @@ export function StatusChips() {
   if (!status) return <div className="chips" />;
   return (
     <div className="chips" data-testid="status">
-      <span className={`chip ${status.stands ? "good" : "bad"}`} data-testid="chip-margin">
-        {status.stands ? "✓ stable" : "⚠ falls"}
-        {status.margin && ` · ${status.margin}`}
-      </span>
+      {status.state !== null && (
+        <span className={`chip ${status.state === "fault" ? "bad" : ""}`} data-testid="chip-state">
+          {status.state}
+        </span>
+      )}
+      {status.belly ? (
+        <span className="chip" data-testid="chip-margin">
+          body on the ground
+        </span>
+      ) : (
+        <span className={`chip ${status.stable ? "good" : "bad"}`} data-testid="chip-margin">
+          {status.stable ? "✓ stable" : "⚠ unstable"}
+          {status.margin && ` · ${status.margin}`}
+        </span>
+      )}
       <span className="chip" data-testid="chip-feet">
         {status.feet}
       </span>
+      {status.limitations > 0 && (
+        <span className="chip warn" data-testid="chip-limitations">
+          △ {status.limitations === 1 ? "1 limitation" : `${status.limitations} limitations`}
+        </span>
+      )}
       {status.troubled > 0 && (
         <span className="chip bad" data-testid="chip-trouble">
-          ⚠ {status.troubled === 1 ? "1 leg can’t" : `${status.troubled} legs can’t`}
+          ⚠ {status.troubled === 1 ? "problem in 1 leg" : `problems in ${status.troubled} legs`}
         </span>
       )}
     </div>
@@ -52,8 +71,11 @@ export function StatusChips() {
 function statusOf(frame: Frame): Status {
   const down = frame.contacts.filter(Boolean).length;
   return {
+    state: frame.state,
+    belly: frame.belly,
+    limitations: frame.limitations,
     margin: frame.margin === null ? "" : `${fixed(frame.margin, 0)} mm`,
-    stands: frame.margin !== null && frame.margin >= 0,
+    stable: frame.margin !== null && frame.margin >= 0,
     feet: `${down} ${down === 1 ? "foot" : "feet"} down`,
     troubled: frame.trouble.filter(Boolean).length,
   };

@@ -31,6 +31,12 @@ export interface Frame {
   com: Vec3 | null;
   /** Distance of the projected centre of mass from the support polygon's edge [mm], negative outside. */
   margin: number | null;
+  /** State of a robot that is driven; null in the other views. */
+  state: string | null;
+  /** Whether the body of a robot that is driven rests on the ground: then it has no support polygon. */
+  belly: boolean;
+  /** Number of reasons why the command to a robot that is driven is not met in full. */
+  limitations: number;
   trouble: readonly (LegTrouble | null)[];
   /** Ground on foot: legs x 3 [N]. */
   forces: Float32Array | null;

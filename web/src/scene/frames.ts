@@ -37,6 +37,9 @@ export function frameOfPose(robot: RobotMessage, pose: PoseMessage): Frame {
     ]),
     com: triple(pose.com_mm, 0),
     margin: pose.margin_mm,
+    state: null,
+    belly: false,
+    limitations: 0,
     trouble: troubles(robot, pose),
     forces: pose.forces_n ? new Float32Array(pose.forces_n) : null,
     torques: pose.torques_nm ? new Float32Array(pose.torques_nm) : null,
@@ -87,6 +90,9 @@ export function frameOfWalk(
     support: null,
     com: [com[0] ?? 0, com[1] ?? 0, position[2]],
     margin: m !== null && n !== null ? m + (n - m) * t : m,
+    state: null,
+    belly: false,
+    limitations: 0,
     trouble: codeTroubles(walk.reach?.[i], legs),
     forces: loads ? mix(loads.forces_n, legs * 3) : null,
     torques: loads ? mix(loads.torques_nm, legs * 3) : null,
@@ -111,7 +117,7 @@ function codeTroubles(codes: string | undefined, legs: number): (LegTrouble | nu
   });
 }
 
-/** The live walker now. */
+/** The robot that is driven, after a tick. */
 export function frameOfDrive(robot: RobotMessage, drive: DriveFrame): Frame {
   const position = triple(drive.position_mm, 0);
   const rotation = rotationOf(drive.rpy_deg);
@@ -121,9 +127,12 @@ export function frameOfDrive(robot: RobotMessage, drive: DriveFrame): Frame {
     rotation,
     contacts: contactsOf(drive.contacts),
     touching: [],
-    support: null,
-    com: [drive.com_mm[0] ?? 0, drive.com_mm[1] ?? 0, position[2]],
+    support: drive.belly ? [] : null,
+    com: drive.com_mm && [drive.com_mm[0] ?? 0, drive.com_mm[1] ?? 0, position[2]],
     margin: drive.margin_mm,
+    state: drive.state,
+    belly: drive.belly,
+    limitations: drive.limitations.length,
     trouble: robot.leg_names.map(() => null),
     forces: null,
     torques: null,

@@ -164,7 +164,7 @@ class Drive(Message):
 
 
 class Command(Message):
-    """What the live walker shall do from now on; null leaves a thing as it is. Answer: done."""
+    """A command to the live robot, which holds until the next; null leaves a quantity unchanged. Answer: done."""
 
     type: Literal["command"]
     velocity_mm_s: tuple[Number, Number] = Field(description="Forward, left.")
@@ -176,6 +176,7 @@ class Command(Message):
     body_height_mm: Coordinate | None = None
     swing_height_mm: Positive | None = None
     cycle_time_s: Positive | None = None
+    state: Literal["standing", "lying", "folded"] | None = Field(default=None, description="Requested state.")
 
 
 class Undo(Message):

@@ -152,18 +152,25 @@ class ServosMessage(Message):
 
 
 class DriveFrame(Message):
-    """The live walker now; sixty a second while driving."""
+    """State of the live robot after a tick; sent 60 times a second while driving."""
 
     type: Literal["frame"]
     time_s: float
-    mode: str
+    state: Literal["lying", "folded", "rising", "standing", "walking", "sitting", "folding", "fault"]
+    activity: str = Field(description="Walk state, stage of rising, sitting or folding, or the state.")
+    guard: str = Field(description="State of the guard: passing, holding, sitting or recovering.")
     gait: str
     position_mm: list[float]
     rpy_deg: list[float]
+    heading_deg: float = Field(description="Yaw of the body in G, from -180 to 180.")
     angles_deg: list[float]
     contacts: str
-    margin_mm: float | None
-    com_mm: list[float] = Field(description="(x, y) of the centre of mass over the ground in G.")
-    twist: list[float] = Field(description="What it does: forward, left [mm/s], turn [deg/s].")
-    limited: list[str] = Field(description="Why the command is not met in full.")
-    interventions: int = Field(description="How often the guard stepped in.")
+    belly: bool = Field(description="Whether the body rests on the ground.")
+    margin_mm: float | None = Field(description="Null where no foot is on the ground, or the body is.")
+    com_mm: list[float] | None = Field(
+        description="(x, y) of the centre of mass over the ground in G; null while the body rests on the ground."
+    )
+    twist: list[float] = Field(description="Present twist: forward, left [mm/s], turn [deg/s].")
+    limitations: list[str] = Field(description="Why the command is not met in full.")
+    intervention_count: int = Field(description="Number of interventions of the guard since driving started.")
+    interventions: list[str] = Field(description="The latest interventions, newest first, at most five.")

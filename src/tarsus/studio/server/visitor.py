@@ -25,13 +25,14 @@ if TYPE_CHECKING:
     from pydantic import BaseModel
 
     from tarsus.studio.messages import ClientMessage
+    from tarsus.studio.messages.moving import DriveFrame
 
 __all__ = ["Visitor"]
 
 # What takes a millisecond or two: to hand it to a thread and back would cost as much again.
 _QUICK = (ask.Ping, ask.SetJoints, ask.Command)
 
-# A frame after a long wait makes no longer a step than this [s]: the walker is not made to leap.
+# Longest tick, however late a frame is [s]: a longer one would be a jump.
 _LONGEST_STEP = 0.05
 
 
@@ -132,9 +133,15 @@ class Visitor:
                 self._called.clear()
             if self._session.driving and _now() >= due:
                 now = _now()
-                frame = self._session.frame(min(now - last, _LONGEST_STEP)) if now > last else None
+                frame = await self._frame(min(now - last, _LONGEST_STEP)) if now > last else None
                 last, due = now, max(due + 1 / self._limits.frame_hz, now)
                 await self._send([] if frame is None else [frame])
+
+    async def _frame(self, dt: float) -> DriveFrame | ErrorMessage | None:
+        """Return the next frame; while one visitor's change of state is planned, the others' frames continue."""
+        if not self._session.is_planning:
+            return self._session.frame(dt)
+        return await asyncio.get_running_loop().run_in_executor(self._threads, self._session.frame, dt)
 
     async def _wait(self, seconds: float) -> None:
         """Wait for a message, but not past the next frame."""

@@ -1,9 +1,6 @@
 import { useState } from "react";
 
-import { Facts } from "../../controls/Facts";
 import { Failure } from "../../controls/Failure";
-import { Remarks } from "../../controls/Message";
-import { withUnit } from "../../controls/numbers";
 import { Select } from "../../controls/Select";
 import { Slider } from "../../controls/Slider";
 import { useStudio } from "../../state/store";
@@ -11,42 +8,60 @@ import { AngleTable } from "../AngleTable";
 import { useInputs } from "../useInputs";
 import { ViewHead } from "../ViewHead";
 import { BodyPose } from "./BodyPose";
+import { DriveFacts, DriveRemarks } from "./DriveFacts";
+import { stateText } from "./robotState";
+import { StateButtons } from "./StateButtons";
 import { Stick } from "./Stick";
 import { useDriving, type Settings } from "./useDriving";
 
-const BEGIN: Settings = {
+const DEFAULTS: Settings = {
   speed: 120,
   turn: 25,
   gait: null,
   bodyHeight: null,
   swingHeight: null,
   body: [0, 0, 0, 0, 0, 0],
+  state: "standing",
 };
 
-/** Drive the robot live. */
+/** Drive the robot live; another robot starts with the default settings. */
 export function DriveView() {
   const { robot } = useInputs();
+  return <DriveControls key={robot.name} />;
+}
+
+function DriveControls() {
+  const { robot } = useInputs();
   const drive = useStudio((studio) => studio.drive);
-  const [settings, setSettings] = useState<Settings>(BEGIN);
+  const [settings, setSettings] = useState<Settings>(DEFAULTS);
   const sticks = useDriving(settings);
   const set = (values: Partial<Settings>) => setSettings((before) => ({ ...before, ...values }));
   return (
     <div className="view">
       <ViewHead title="Drive">
-        Keys W, A, S, D walk and Q, E turn; or push the sticks, or a gamepad’s. Let go, and it stops on its
-        feet.
+        Keys W, A, S, D walk, Q and E turn; the sticks and a gamepad do the same. The robot stops when they
+        are released.
       </ViewHead>
       <Failure of={["drive", "command"]} />
+      <StateButtons
+        requested={settings.state}
+        present={drive?.state ?? "standing"}
+        onRequest={(state) => set({ state })}
+      />
+      <p className="state" role="status">
+        State: <strong data-testid="drive-state">{drive ? stateText(drive) : "–"}</strong>
+      </p>
       <div className="sticks">
         <figure>
-          <Stick label="Walk" testId="stick-walk" onPush={sticks.walk} />
+          <Stick label="Walk" testId="stick-walk" onDeflect={sticks.walk} />
           <figcaption>Walk</figcaption>
         </figure>
         <figure>
-          <Stick label="Turn" flat testId="stick-turn" onPush={(x) => sticks.turn(x)} />
+          <Stick label="Turn" flat testId="stick-turn" onDeflect={(x) => sticks.turn(x)} />
           <figcaption>Turn</figcaption>
         </figure>
       </div>
+      {drive && <DriveRemarks frame={drive} />}
       <fieldset>
         <Slider
           label="Top speed"
@@ -59,7 +74,7 @@ export function DriveView() {
           onChange={(speed) => set({ speed })}
         />
         <Slider
-          label="Top turn"
+          label="Top turn rate"
           value={settings.turn}
           min={5}
           max={60}
@@ -73,7 +88,7 @@ export function DriveView() {
           testId="drive-gait"
           value={settings.gait ?? ""}
           options={[
-            { value: "", label: `the robot’s own (${robot.gait})` },
+            { value: "", label: `robot default (${robot.gait})` },
             ...robot.gaits.map((name) => ({ value: name, label: name })),
           ]}
           onChange={(gait) => set({ gait: gait || robot.gait })}
@@ -85,7 +100,7 @@ export function DriveView() {
           max={Math.round(robot.body_height_mm * 1.6)}
           step={1}
           unit="mm"
-          testId="drive-bodyHeight"
+          testId="drive-body-height"
           onChange={(bodyHeight) => set({ bodyHeight })}
         />
         <Slider
@@ -95,32 +110,14 @@ export function DriveView() {
           max={80}
           step={1}
           unit="mm"
-          testId="drive-swingHeight"
+          testId="drive-swing-height"
           onChange={(swingHeight) => set({ swingHeight })}
         />
         <BodyPose body={settings.body} onChange={(body) => set({ body })} />
       </fieldset>
       {drive && (
         <>
-          <div aria-live="polite">
-            <Remarks kind="warn" items={drive.limited} testId="drive-limited" />
-          </div>
-          <Facts
-            testId="drive-facts"
-            rows={[
-              ["It is", drive.mode],
-              ["Gait", drive.gait],
-              ["Forward", withUnit(drive.twist[0], 0, "mm/s")],
-              ["Left", withUnit(drive.twist[1], 0, "mm/s")],
-              ["Turning left", withUnit(drive.twist[2], 1, "°/s")],
-              [
-                "At x, y",
-                `${withUnit(drive.position_mm[0], 0, "")}, ${withUnit(drive.position_mm[1], 0, "mm")}`,
-              ],
-              ["Margin of stability", withUnit(drive.margin_mm, 0, "mm")],
-              ["The guard stepped in", drive.interventions],
-            ]}
-          />
+          <DriveFacts frame={drive} />
           <AngleTable codes={robot.leg_codes} angles={drive.angles_deg} />
         </>
       )}

@@ -2,11 +2,11 @@ import { useRef, type KeyboardEvent, type PointerEvent } from "react";
 
 interface Props {
   label: string;
-  /** Only sideways: for turning. */
+  /** Moves sideways only, for turning. */
   flat?: boolean;
   testId: string;
-  /** x to the right, y upwards, both within a circle of radius one; zero when let go. */
-  onPush: (x: number, y: number) => void;
+  /** x to the right, y upwards, both within a circle of radius 1; zero when released. */
+  onDeflect: (x: number, y: number) => void;
 }
 
 const ARROWS: Record<string, readonly [number, number]> = {
@@ -16,15 +16,15 @@ const ARROWS: Record<string, readonly [number, number]> = {
   ArrowRight: [1, 0],
 };
 
-/** A stick for finger, mouse, or arrow keys while it has the focus. It comes back to the middle by itself. */
-export function Stick({ label, flat, testId, onPush }: Props) {
+/** A stick for finger, mouse, or arrow keys while it has the focus. It returns to the centre when released. */
+export function Stick({ label, flat, testId, onDeflect }: Props) {
   const base = useRef<HTMLDivElement>(null);
   const knob = useRef<HTMLDivElement>(null);
-  const held = useRef(new Set<string>());
+  const pressed = useRef(new Set<string>());
 
-  const put = (x: number, y: number) => {
+  const move = (x: number, y: number) => {
     if (knob.current) knob.current.style.transform = `translate(${x * 36}px, ${-y * 36}px)`;
-    onPush(x, y);
+    onDeflect(x, y);
   };
   const follow = (event: PointerEvent) => {
     const box = base.current?.getBoundingClientRect();
@@ -33,29 +33,29 @@ export function Stick({ label, flat, testId, onPush }: Props) {
     const x = (event.clientX - box.left - half) / half;
     const y = flat ? 0 : (box.top + box.height / 2 - event.clientY) / half;
     const length = Math.max(1, Math.hypot(x, y));
-    put(x / length, y / length);
+    move(x / length, y / length);
   };
   const keys = (event: KeyboardEvent, down: boolean) => {
     if (!ARROWS[event.key]) return;
     event.preventDefault();
-    if (down) held.current.add(event.key);
-    else held.current.delete(event.key);
-    const sum = [...held.current].reduce<readonly [number, number]>(
+    if (down) pressed.current.add(event.key);
+    else pressed.current.delete(event.key);
+    const sum = [...pressed.current].reduce<readonly [number, number]>(
       ([x, y], key) => [x + (ARROWS[key]?.[0] ?? 0), y + (ARROWS[key]?.[1] ?? 0)],
       [0, 0],
     );
     const length = Math.max(1, Math.hypot(...sum));
-    put(sum[0] / length, flat ? 0 : sum[1] / length);
+    move(sum[0] / length, flat ? 0 : sum[1] / length);
   };
   return (
-    // A stick has no role of its own; arrow keys and a name make it usable without a pointer.
+    // There is no ARIA role for a stick; arrow keys and a name make it usable without a pointer.
     // eslint-disable-next-line jsx-a11y/no-noninteractive-element-interactions
     <div
       ref={base}
       className={`stick${flat ? " flat" : ""}`}
       role="application"
       aria-roledescription="stick"
-      aria-label={`${label}. Arrow keys push it.`}
+      aria-label={`${label}: use the arrow keys`}
       // eslint-disable-next-line jsx-a11y/no-noninteractive-tabindex
       tabIndex={0}
       data-testid={testId}
@@ -64,13 +64,13 @@ export function Stick({ label, flat, testId, onPush }: Props) {
         follow(event);
       }}
       onPointerMove={follow}
-      onPointerUp={() => put(0, 0)}
-      onPointerCancel={() => put(0, 0)}
+      onPointerUp={() => move(0, 0)}
+      onPointerCancel={() => move(0, 0)}
       onKeyDown={(event) => keys(event, true)}
       onKeyUp={(event) => keys(event, false)}
       onBlur={() => {
-        held.current.clear();
-        put(0, 0);
+        pressed.current.clear();
+        move(0, 0);
       }}
     >
       <div ref={knob} className="knob" />

@@ -1,22 +1,33 @@
 import { useEffect, useRef } from "react";
 
 import { isTyping } from "../../app/useShortcuts";
+import type { Command } from "../../protocol";
 import { ask } from "../../state/session";
 import { useStudio } from "../../state/store";
-import { gamepadPush, isDriveKey, isStill, keyPush, STILL, sumOf, type Push } from "./push";
+import {
+  CENTRED,
+  gamepadDeflection,
+  isCentred,
+  isDriveKey,
+  keyDeflection,
+  sumOf,
+  type Deflection,
+} from "./deflection";
+import type { RequestedState } from "./robotState";
 
-/** How often a wish is sent while something is pushed [ms]. */
-const EVERY = 50;
+/** Interval at which commands are sent while a stick is deflected [ms]. */
+const INTERVAL = 50;
 
-/** Top speeds, and what is wished besides walking. */
+/** Top speeds, and what is commanded besides the twist. */
 export interface Settings {
   speed: number;
   turn: number;
   gait: string | null;
   bodyHeight: number | null;
   swingHeight: number | null;
-  /** x, y, z [mm], roll, pitch, yaw [deg] over the level body. */
+  /** x, y, z [mm], roll, pitch, yaw [deg] relative to the level body. */
   body: readonly [number, number, number, number, number, number];
+  state: RequestedState;
 }
 
 export interface Sticks {
@@ -24,20 +35,15 @@ export interface Sticks {
   turn: (x: number) => void;
 }
 
-/** Drive while the view is open: keys, sticks and gamepads together make the wish. */
+/** Drive the robot while the view is open: keys, sticks and gamepads together set the twist. */
 export function useDriving(settings: Settings): Sticks {
-  const held = useRef(new Set<string>());
-  const sticks = useRef<Push>(STILL);
+  const pressed = useRef(new Set<string>());
+  const sticks = useRef<Deflection>(CENTRED);
   const latest = useRef(settings);
   const robot = useStudio((studio) => studio.robot?.id);
   const open = useStudio((studio) => studio.link.kind === "open");
 
-  useEffect(() => {
-    latest.current = settings;
-    if (open) ask(commandOf(sumOf([keyPush(held.current), sticks.current]), settings));
-  }, [settings, open]);
-
-  // Neither the session after a broken connection nor another robot drives yet.
+  // A new session (after a broken connection) and another robot have to be started. Before the first command is sent.
   useEffect(() => {
     if (!open) return;
     ask({ type: "drive", on: true });
@@ -45,17 +51,22 @@ export function useDriving(settings: Settings): Sticks {
   }, [open, robot]);
 
   useEffect(() => {
-    const keys = held.current;
-    let still = true;
+    latest.current = settings;
+    if (open) ask(commandOf(sumOf([keyDeflection(pressed.current), sticks.current]), settings));
+  }, [settings, open, robot]);
+
+  useEffect(() => {
+    const keys = pressed.current;
+    let centred = true;
     const send = () => {
       const pads = navigator
         .getGamepads()
-        .flatMap((pad) => (pad?.mapping === "standard" ? [gamepadPush(pad.axes)] : []));
-      const push = sumOf([keyPush(keys), sticks.current, ...pads]);
-      // Standing still is said once.
-      if (isStill(push) && still) return;
-      still = isStill(push);
-      ask(commandOf(push, latest.current));
+        .flatMap((pad) => (pad?.mapping === "standard" ? [gamepadDeflection(pad.axes)] : []));
+      const deflection = sumOf([keyDeflection(keys), sticks.current, ...pads]);
+      // The command to stop is sent once.
+      if (isCentred(deflection) && centred) return;
+      centred = isCentred(deflection);
+      ask(commandOf(deflection, latest.current));
     };
     const down = (event: KeyboardEvent) => {
       if (!isDriveKey(event.key) || event.ctrlKey || event.metaKey || event.altKey || isTyping(event.target))
@@ -64,9 +75,9 @@ export function useDriving(settings: Settings): Sticks {
       keys.add(event.key.toLowerCase());
     };
     const up = (event: KeyboardEvent) => void keys.delete(event.key.toLowerCase());
-    // A key that is let go elsewhere is never told.
+    // The page gets no event for a key that is released in another window.
     const release = () => keys.clear();
-    const timer = window.setInterval(send, EVERY);
+    const timer = window.setInterval(send, INTERVAL);
     window.addEventListener("keydown", down);
     window.addEventListener("keyup", up);
     window.addEventListener("blur", release);
@@ -85,14 +96,18 @@ export function useDriving(settings: Settings): Sticks {
   };
 }
 
-function commandOf(push: Push, { speed, turn, gait, bodyHeight, swingHeight, body }: Settings) {
+function commandOf(
+  deflection: Deflection,
+  { speed, turn, gait, bodyHeight, swingHeight, body, state }: Settings,
+): Omit<Command, "id"> {
   return {
     type: "command",
-    velocity_mm_s: [push.forward * speed, push.left * speed] as [number, number],
-    turn_deg_s: push.turn * turn,
+    velocity_mm_s: [deflection.forward * speed, deflection.left * speed],
+    turn_deg_s: deflection.turn * turn,
     gait,
     body_height_mm: bodyHeight,
     swing_height_mm: swingHeight,
-    body: [...body] as [number, number, number, number, number, number],
-  } as const;
+    body: [...body],
+    state,
+  };
 }

@@ -1,0 +1,27 @@
+import type { DriveFrame } from "../protocol";
+
+/** A frame of driving for tests: a standing robot, with the given fields changed. */
+export function aDriveFrame(changes: Partial<DriveFrame> = {}): DriveFrame {
+  return {
+    id: 1,
+    type: "frame",
+    time_s: 1,
+    state: "standing",
+    activity: "standing",
+    guard: "passing",
+    gait: "tripod",
+    position_mm: [0, 0, 110],
+    rpy_deg: [0, 0, 0],
+    heading_deg: 0,
+    angles_deg: Array.from({ length: 18 }, () => 0),
+    contacts: "111111",
+    belly: false,
+    margin_mm: 50,
+    com_mm: [0, 0],
+    twist: [0, 0, 0],
+    limitations: [],
+    intervention_count: 0,
+    interventions: [],
+    ...changes,
+  };
+}
