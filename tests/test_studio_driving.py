@@ -9,7 +9,7 @@ from sample_studio import Asked, table
 from tarsus import centre_of_mass, list_robots, load_robot, stability_margin
 from tarsus.control.command import Command
 from tarsus.control.robot_controller import RobotController
-from tarsus.control.safety.interventions import Intervention
+from tarsus.control.safety.interventions import Intervention, InterventionKind
 
 DT = 1 / 60
 STOP = {"velocity_mm_s": [0, 0], "turn_deg_s": 0}
@@ -154,7 +154,7 @@ def test_interventions_of_the_guard_are_counted_and_listed(monkeypatch):
 
     def with_intervention(self, command, dt, readings=None):
         output = step(self, command, dt, readings)
-        found = Intervention("speed", "LF", "femur", 9.0, 8.0, float(next(number)))
+        found = Intervention(InterventionKind.JOINT_SPEED, "LF", "femur", 9.0, 8.0, float(next(number)))
         object.__setattr__(output, "interventions", (found,))
         return output
 

@@ -1,7 +1,7 @@
 import { retry } from "../state/session";
 import { useStudio } from "../state/store";
 
-/** Says that the connection is broken, and what becomes of it. */
+/** State of a connection that is not open, and a button to reconnect. */
 export function Banner() {
   const link = useStudio((studio) => studio.link);
   const known = useStudio((studio) => studio.robot !== null);
@@ -11,17 +11,17 @@ export function Banner() {
       {link.kind === "refused" && <span>{link.text}</span>}
       {link.kind === "lost" && (
         <>
-          <span>{link.text} Trying again; what you have set is kept.</span>
+          <span>{link.text} Reconnecting; your settings are kept.</span>
           <button type="button" className="button small" onClick={retry}>
-            Now
+            Reconnect now
           </button>
         </>
       )}
       {link.kind === "asleep" && (
         <>
-          <span>{link.text} What you have set is kept.</span>
+          <span>{link.text} Your settings are kept.</span>
           <button type="button" className="button small" onClick={retry}>
-            Go on
+            Reconnect
           </button>
         </>
       )}

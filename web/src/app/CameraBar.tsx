@@ -5,7 +5,7 @@ interface Props {
   onChoose: (camera: CameraName) => void;
 }
 
-/** Where the picture is seen from. Pressing the one that is on goes back to its place. */
+/** Choice of the camera. Pressing the active one resets its position. */
 export function CameraBar({ camera, onChoose }: Props) {
   return (
     <div className="segments cameras" role="group" aria-label="Camera">

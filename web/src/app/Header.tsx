@@ -6,7 +6,7 @@ import { copyLink } from "../state/share";
 import { useStudio } from "../state/store";
 import { toggleTheme, useTheme } from "./theme";
 
-/** Robot, undo and redo, and what takes the picture or the state away. */
+/** Choice of the robot, undo and redo, and export of link and picture. */
 export function Header() {
   const theme = useTheme((state) => state.theme);
   const undo = useStudio((studio) => studio.undo);
@@ -35,13 +35,13 @@ export function Header() {
       />
       <IconButton
         icon="link"
-        name="Copy a link to exactly this"
+        name="Copy a link to this state"
         testId="copy-link"
         onClick={() => void copyLink()}
       />
       <IconButton
         icon="camera"
-        name="Save the picture as PNG"
+        name="Save the 3D view as PNG"
         testId="save-png"
         onClick={() => void savePng()}
       />
@@ -60,7 +60,7 @@ function RobotChoice() {
   const robot = useStudio((studio) => studio.robot);
   if (!robots || !robot) return null;
   const options = robots.map((name) => ({ value: name, label: name }));
-  const own = robot.preset === null ? [{ value: "", label: `${robot.name} (own)` }] : [];
+  const own = robot.preset === null ? [{ value: "", label: `${robot.name} (custom)` }] : [];
   return (
     <Select
       label="Robot"
@@ -68,13 +68,13 @@ function RobotChoice() {
       testId="robot-choice"
       value={robot.preset ?? ""}
       options={[...own, ...options]}
-      onChange={(preset) => preset && takePreset(preset)}
+      onChange={(preset) => preset && selectPreset(preset)}
     />
   );
 }
 
-/** Another robot is of another size: the camera goes where it can be seen. */
-function takePreset(preset: string) {
+/** Select a preset and reset the camera, as robots differ in size. */
+function selectPreset(preset: string) {
   ask({ type: "robot", preset });
   look(null, { eye_mm: null, target_mm: null });
 }

@@ -17,17 +17,17 @@ import { useFraming, WALKING } from "./useFraming";
 import { useFloor } from "./useFloor";
 import { useShown } from "./useShown";
 
-const WORDS: Record<View, string> = {
-  joints: "The robot as it rests with these joint angles.",
-  body: "The robot with its body moved over its feet.",
-  walk: "The robot walking its planned walk.",
-  drive: "The robot as it is driven.",
-  loads: "The robot walking, with forces and torques.",
-  robot: "The robot as it is described.",
-  sources: "The robot whose numbers stand in the equations.",
+const DESCRIPTIONS: Record<View, string> = {
+  joints: "The robot at rest with these joint angles.",
+  body: "The robot with its body moved relative to its feet.",
+  walk: "The robot on its planned walk.",
+  drive: "The robot while it is driven.",
+  loads: "The robot on its planned walk, with forces and torques.",
+  robot: "The robot as its file describes it.",
+  sources: "The robot whose values are used in the equations.",
 };
 
-/** The picture that all views share, with what lies over it. */
+/** The 3D view, shared by all views, with its overlays. */
 export function PicturePane({ view }: { view: View }) {
   const robot = useStudio((studio) => studio.robot);
   const picture = useStudio((studio) => studio.state?.picture ?? null);
@@ -64,7 +64,7 @@ export function PicturePane({ view }: { view: View }) {
         forces={loaded}
         torques={loaded}
         names={!loaded}
-        description={WORDS[view]}
+        description={DESCRIPTIONS[view]}
         onFloor={onFloor}
         onRest={keepPlace}
       >
@@ -89,7 +89,7 @@ export function PicturePane({ view }: { view: View }) {
   );
 }
 
-/** Seen from where a hand put it, a camera is free; one that follows goes on following. */
+/** Store the position of the camera; a camera that the user has turned becomes the free one. */
 function keepPlace({ eye, target }: Place, turned: boolean) {
   look(null, { eye_mm: [...eye], target_mm: [...target], ...(turned ? { camera: "free" } : {}) });
 }
@@ -98,7 +98,7 @@ function Waiting() {
   const link = useStudio((studio) => studio.link);
   return (
     <p className="no-picture">
-      {link.kind === "connecting" || link.kind === "open" ? "The robot is coming …" : ""}
+      {link.kind === "connecting" || link.kind === "open" ? "Loading the robot …" : ""}
     </p>
   );
 }

@@ -8,11 +8,11 @@ import { SPEEDS, stepped, usePlayback } from "../state/playback";
 interface Props {
   duration: number;
   rate: number;
-  /** The time has come to rest [s]. */
+  /** Called with the time when it has stopped changing [s]. */
   onRest?: (time: number) => void;
 }
 
-/** Play, pause, step, scrub. The slider follows the picture without rendering anything. */
+/** Play, pause, step, scrub. The slider follows the playback without rendering a component. */
 export function PlayerBar({ duration, rate, onRest }: Props) {
   const playing = usePlayback((playback) => playback.playing);
   const speed = usePlayback((playback) => playback.speed);
@@ -45,14 +45,14 @@ export function PlayerBar({ duration, rate, onRest }: Props) {
   const step = (direction: 1 | -1) => stop(stepped(usePlayback.getState().time, direction, rate, duration));
   return (
     <div className="player" role="group" aria-label="Playback" data-testid="player">
-      <IconButton icon="back" name="One moment back" testId="step-back" onClick={() => step(-1)} />
+      <IconButton icon="back" name="One sample back" testId="step-back" onClick={() => step(-1)} />
       <IconButton
         icon={playing ? "pause" : "play"}
         name={playing ? "Pause" : "Play"}
         testId="play"
         onClick={toggle}
       />
-      <IconButton icon="forward" name="One moment on" testId="step-forward" onClick={() => step(1)} />
+      <IconButton icon="forward" name="One sample forward" testId="step-forward" onClick={() => step(1)} />
       <input
         ref={scrub}
         type="range"
@@ -69,7 +69,7 @@ export function PlayerBar({ duration, rate, onRest }: Props) {
         <span className="total"> of {fixed(duration, 2)} s</span>
       </span>
       <select
-        aria-label="Speed of the playback"
+        aria-label="Playback speed"
         data-testid="play-speed"
         value={speed}
         onChange={(event) => usePlayback.setState({ speed: Number(event.target.value) })}

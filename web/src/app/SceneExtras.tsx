@@ -14,7 +14,7 @@ interface Props {
   colours: readonly string[];
 }
 
-/** What only some views have in the picture: handles, a leg's zone, a curve's centre. */
+/** Parts of the scene that only some views show: handles, a leg's workspace, a curve's centre. */
 export function SceneExtras({ view, shape, palette, colours }: Props) {
   const leg = useStudio((studio) => studio.state?.picture.leg ?? null);
   const zone = useStudio((studio) => studio.zone);

@@ -7,7 +7,7 @@ import { TABS } from "./tabList";
 
 const STEPS: Record<string, number> = { ArrowDown: 1, ArrowRight: 1, ArrowUp: -1, ArrowLeft: -1 };
 
-/** The tabs of the views: arrow keys go from one to the next, as in any list of tabs. */
+/** Tabs of the views, with the usual arrow keys. */
 export function Tabs({ view }: { view: View }) {
   const list = useRef<HTMLDivElement>(null);
   const go = (to: View) => {
@@ -50,7 +50,7 @@ export function Tabs({ view }: { view: View }) {
   );
 }
 
-/** Who drives wants to see where to: the camera then goes with the robot. */
+/** Open a view; in Drive the camera follows the robot. */
 function openView(view: View) {
   look(view, view === "drive" ? { camera: "follow" } : {});
 }

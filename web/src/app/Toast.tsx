@@ -2,19 +2,19 @@ import { useEffect, useState } from "react";
 
 import { useStudio } from "../state/store";
 
-/** How long a passing message stays [ms]. */
-const STAY = 3500;
+/** Duration of a notification [ms]. */
+const DURATION = 3500;
 
-/** A passing message, said by screen readers too. */
+/** A notification that disappears by itself; screen readers announce it. */
 export function Toast() {
   const notice = useStudio((studio) => studio.notice);
-  const [gone, setGone] = useState(0);
+  const [expired, setExpired] = useState(0);
   useEffect(() => {
     if (!notice) return;
-    const timer = window.setTimeout(() => setGone(notice.key), STAY);
+    const timer = window.setTimeout(() => setExpired(notice.key), DURATION);
     return () => window.clearTimeout(timer);
   }, [notice]);
-  const shown = notice !== null && notice.key !== gone;
+  const shown = notice !== null && notice.key !== expired;
   return (
     <div role="status" aria-live="polite" data-testid="toast">
       {shown && <div className="toast">{notice.text}</div>}

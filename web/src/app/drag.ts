@@ -3,10 +3,10 @@ import type { DragEvent } from "../scene/Handles";
 import { ask, change } from "../state/session";
 import { useStudio } from "../state/store";
 
-/** The body's place when it was grabbed: what is dragged is added to it. */
+/** Position of the body at the start of the drag, to which the drag is added. */
 let before: { from: DragEvent["from"]; body: BodyState } | null = null;
 
-/** A foot or the body has been dragged: the server finds the joint angles. */
+/** Handle a drag of a foot or of the body: the server solves the inverse kinematics. */
 export function dragged({ grip, from, to, done }: DragEvent): void {
   if (grip !== "body") {
     ask({ type: "drag_foot", leg: grip, position_mm: [to[0], to[1], Math.max(0, to[2])], commit: done });

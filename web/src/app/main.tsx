@@ -13,7 +13,7 @@ import "./controls.css";
 import "./parts.css";
 import "uplot/dist/uPlot.min.css";
 
-// The world is z up, as the robot's frames are.
+// z up, as in the robot's frames.
 Object3D.DEFAULT_UP.set(0, 0, 1);
 
 beginTheme();

@@ -11,17 +11,17 @@ function chosen(): Theme | null {
     const kept = window.localStorage.getItem(KEY);
     return kept === "light" || kept === "dark" ? kept : null;
   } catch {
-    // Storage may be forbidden, as in a file that is opened from a disk.
+    // Storage may be forbidden, for example in a file opened from disk.
     return null;
   }
 }
 
-/** Light or dark: as the visitor chose, else as the system is. */
+/** Light or dark: the user's choice, else the system's. */
 export const useTheme = create<{ theme: Theme }>(() => ({
   theme: chosen() ?? (dark.matches ? "dark" : "light"),
 }));
 
-/** Follow the system until the visitor chooses. */
+/** Apply the system's theme until the user chooses one. */
 export function beginTheme(): void {
   const apply = ({ theme }: { theme: Theme }) => document.documentElement.setAttribute("data-theme", theme);
   apply(useTheme.getState());
@@ -37,7 +37,7 @@ export function toggleTheme(): void {
   try {
     window.localStorage.setItem(KEY, theme);
   } catch {
-    // Then the choice lasts as long as the page.
+    // The choice is then lost when the page is closed.
   }
 }
 

@@ -1,7 +1,7 @@
 import { change } from "../state/session";
 import { useStudio, type View } from "../state/store";
 
-/** What a click on the floor means: in the view Walk, the centre that a curve goes round. */
+/** Handler of clicks on the ground: in the view Walk it sets the centre of a curve. */
 export function useFloor(view: View): ((x: number, y: number) => void) | undefined {
   const curve = useStudio((studio) => studio.state?.walk.path.way === "curve");
   if (view !== "walk" || !curve) return undefined;

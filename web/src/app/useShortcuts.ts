@@ -2,7 +2,7 @@ import { useEffect } from "react";
 
 import { ask } from "../state/session";
 
-/** Undo and redo by the usual keys, unless text is being typed: there they are the browser's own. */
+/** Keyboard shortcuts of undo and redo, except in text fields, where the browser has its own. */
 export function useShortcuts(): void {
   useEffect(() => {
     const keys = (event: KeyboardEvent) => {
@@ -18,7 +18,7 @@ export function useShortcuts(): void {
   }, []);
 }
 
-/** Whether a key goes into a field of text. */
+/** Whether a key event goes to a text field. */
 export function isTyping(target: EventTarget | null): boolean {
   if (!(target instanceof HTMLElement)) return false;
   if (target instanceof HTMLTextAreaElement || target instanceof HTMLSelectElement) return true;

@@ -1,13 +1,13 @@
 import { useEffect } from "react";
 
 import { frameOfPose } from "../scene/frames";
-import { prefersStillness, stage } from "../scene/stage";
+import { prefersReducedMotion, stage } from "../scene/stage";
 import { playWalk } from "../scene/walking";
 import { usePlayback } from "../state/playback";
 import { useStudio, type View } from "../state/store";
 import { WALKING } from "./useFraming";
 
-/** Put on the stage what a view shows: a pose, or the walk at its time. Live frames come there by themselves. */
+/** Show the pose or the walk of a view in the scene. Frames of driving are shown by `state/driving`. */
 export function useShown(view: View): void {
   const robot = useStudio((studio) => studio.robot);
   const pose = useStudio(({ poses }) => poses[view] ?? poses.body ?? poses.joints ?? null);
@@ -33,12 +33,12 @@ export function useShown(view: View): void {
 
 let begun = false;
 
-/** The first walk begins to play by itself, unless a link says at which moment it rests, or motion is unwelcome. */
+/** Start the playback of the first walk, unless a link sets its time or the system asks for reduced motion. */
 function useFirstWalk(there: boolean): void {
   useEffect(() => {
     if (!there || begun) return;
     begun = true;
     const time = useStudio.getState().state?.picture.time_s ?? 0;
-    usePlayback.setState({ time, playing: time === 0 && !prefersStillness() });
+    usePlayback.setState({ time, playing: time === 0 && !prefersReducedMotion() });
   }, [there]);
 }

@@ -5,7 +5,7 @@ interface Props {
   onChange: (checked: boolean) => void;
 }
 
-/** Yes or no. */
+/** A checkbox with a label. */
 export function Check({ label, checked, testId, onChange }: Props) {
   return (
     <label className="check">

@@ -5,7 +5,7 @@ interface Props {
   testId?: string;
 }
 
-/** Names and values, side by side. */
+/** A list of names and values. */
 export function Facts({ rows, testId }: Props) {
   return (
     <dl className="facts" data-testid={testId}>

@@ -5,12 +5,12 @@ import { useStudio } from "../state/store";
 import { Message } from "./Message";
 
 interface Props {
-  /** Of which questions. */
+  /** Message types whose errors are shown. */
   of: readonly ClientType[];
   children?: ReactNode;
 }
 
-/** What the server refused, in its own words, and what would work. */
+/** Error messages of the server. */
 export function Failure({ of, children }: Props) {
   const failures = useStudio((studio) => studio.failures);
   const shown = of.flatMap((type) => failures[type] ?? []);

@@ -2,14 +2,14 @@ import { Icon, type IconName } from "./icons";
 
 interface Props {
   icon: IconName;
-  /** What it does: its name, and its tip. */
+  /** Accessible name and tooltip. */
   name: string;
   disabled?: boolean;
   testId?: string;
   onClick: () => void;
 }
 
-/** A button that is a drawing. */
+/** A button with an icon only. */
 export function IconButton({ icon, name, disabled, testId, onClick }: Props) {
   return (
     <button

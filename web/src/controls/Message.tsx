@@ -2,7 +2,7 @@ import type { ReactNode } from "react";
 
 interface Props {
   kind: "good" | "warn" | "bad" | "plain";
-  /** Whether a screen reader says it at once. */
+  /** Whether screen readers announce it immediately. */
   alert?: boolean;
   testId?: string;
   children: ReactNode;
@@ -10,7 +10,7 @@ interface Props {
 
 const MARKS = { good: "✓ ", warn: "△ ", bad: "⚠ ", plain: "" } as const;
 
-/** Something to be read; what it is shows in its mark too, not in its colour alone. */
+/** A message; a symbol shows its kind too, not the colour alone. */
 export function Message({ kind, alert, testId, children }: Props) {
   return (
     <div className={`message ${kind}`} role={alert ? "alert" : undefined} data-testid={testId}>
@@ -22,7 +22,7 @@ export function Message({ kind, alert, testId, children }: Props) {
   );
 }
 
-/** A list of remarks, or nothing. */
+/** A list of remarks; nothing where it is empty. */
 export function Remarks({
   kind,
   items,

@@ -10,26 +10,26 @@ interface Props {
   min?: number;
   max?: number;
   disabled?: boolean;
-  /** Show every digit: for what a file says, not for what a slider gave. */
+  /** Whether to show every digit, as for the values of a file. */
   exact?: boolean;
   placeholder?: string;
-  /** Names what says more about it, for screen readers. */
+  /** Id of the element that describes the input, for screen readers. */
   describedBy?: string;
   label?: string;
   testId?: string;
-  /** `commit` is false while it is being typed, and true when the field is left or Enter is pressed. */
+  /** `commit` is false while the user types, and true on Enter or when the field loses the focus. */
   onChange: (value: number, commit: boolean) => void;
-  /** The field was emptied; left out where it must not be empty. */
+  /** Called when the field has been emptied; left out where it must not be empty. */
   onEmpty?: () => void;
 }
 
-/** What is being typed. It stands while the value is what it was, or what was typed: undo, say, ends it. */
+/** Text being typed; discarded when the value is changed elsewhere, for example by undo. */
 interface Draft {
   text: string;
   stands: readonly (number | null)[];
 }
 
-/** A number to type. What is typed is taken when it is a number, and put right when the field is left. */
+/** A numeric text field. Valid numbers take effect while typing; the text is formatted when the focus leaves. */
 export function NumberInput(props: Props) {
   const {
     id,
@@ -47,12 +47,12 @@ export function NumberInput(props: Props) {
     onEmpty,
   } = props;
   const [draft, setDraft] = useState<Draft | null>(null);
-  // One digit more than the step has: enough to see that a value lies between two steps.
+  // One digit more than the step has shows values between two steps.
   const shown = value === null ? "" : String(Number(fixed(value, exact ? 6 : decimalsOf(step) + 1)));
 
   const isInside = (number: number) => number >= (min ?? -Infinity) && number <= (max ?? Infinity);
   const standing = draft?.stands.includes(value) ?? false;
-  // What was typed for another robot, say, is not meant for this one.
+  // Text typed for another robot, for example, does not apply.
   const input = useCommit((number) => standing && isInside(number) && onChange(number, true));
 
   const type = (text: string) => {

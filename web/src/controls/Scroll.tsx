@@ -1,6 +1,6 @@
 import { type ReactNode, useEffect, useRef, useState } from "react";
 
-/** A box that scrolls what is wider than it is, and can be reached by keyboard where it does. */
+/** A box that scrolls horizontally; it can be focused where its content is wider than the box. */
 export function Scroll({
   label,
   className = "",

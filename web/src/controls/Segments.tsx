@@ -8,7 +8,7 @@ interface Props<T extends string> {
   onChange: (value: T) => void;
 }
 
-/** One of a few, side by side: radio buttons in other clothes. */
+/** Radio buttons shown as a segmented control. */
 export function Segments<T extends string>({ label, value, options, testId, onChange }: Props<T>) {
   const name = useId();
   return (

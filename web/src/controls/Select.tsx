@@ -15,7 +15,7 @@ interface Props {
   onChange: (value: string) => void;
 }
 
-/** One of several, by the browser's own list. */
+/** A native drop-down list with a label. */
 export function Select({ label, value, options, quiet, testId, onChange }: Props) {
   const id = useId();
   return (

@@ -6,28 +6,28 @@ import { useCommit } from "./useCommit";
 
 interface Props {
   label: string;
-  /** Null where it is left to the server, and not known. */
+  /** Null where the server chooses it and has not sent it. */
   value: number | null;
   min: number;
   max: number;
   step: number;
   unit: string;
-  /** Bounds of what may be typed, where they are wider than the slider's. */
+  /** Bounds of typed values, where they are wider than those of the slider. */
   typedMin?: number;
   typedMax?: number;
-  /** The name for screen readers, where the label alone would not say enough. */
+  /** Accessible name, where the label alone is ambiguous. */
   name?: string;
   compact?: boolean;
   bad?: boolean;
   disabled?: boolean;
   testId?: string;
-  /** Whether the value is left to the server, and how to leave it to it; left out where it can't be. */
+  /** Whether the server chooses the value, and the function that makes it do so; left out where it can't. */
   auto?: boolean;
   onAuto?: () => void;
   onChange: (value: number, commit: boolean) => void;
 }
 
-/** A number to slide or to type, with its label and unit. */
+/** A slider and a numeric field for one value, with label and unit. */
 export function Slider(props: Props) {
   const { label, value, min, max, step, unit, name, compact, bad, disabled, testId, auto, onAuto, onChange } =
     props;

@@ -1,4 +1,4 @@
-/** Drawn for a field of 24 by 24, in strokes of the text's colour. */
+/** Paths on a 24 x 24 grid, stroked in the text colour. */
 const PATHS = {
   joints: "M5 19 9 9l8-2M9 9a2 2 0 1 0 .01 0M17 7a2 2 0 1 0 .01 0M5 19a1.5 1.5 0 1 0 .01 0",
   body: "M7 9h10l2 6H5zM12 2v5M10 4l2-2 2 2M12 17v5M10 20l2 2 2-2",
@@ -25,7 +25,7 @@ const PATHS = {
 
 export type IconName = keyof typeof PATHS;
 
-/** A drawing beside words; on its own the button around it needs a name. */
+/** A decorative icon; a button without text needs an accessible name. */
 export function Icon({ name }: { name: IconName }) {
   return (
     <svg

@@ -4,7 +4,7 @@ import { angleText } from "../views/angleText";
 import { decimalsOf, fixed, typedNumber, withUnit } from "./numbers";
 
 describe("numbers", () => {
-  it("have as many digits as their step", () => {
+  it("have as many decimals as their step", () => {
     expect([1, 5, 0.5, 0.25, 0.01, 100].map(decimalsOf)).toEqual([0, 0, 1, 2, 2, 0]);
   });
 
@@ -13,20 +13,20 @@ describe("numbers", () => {
     expect(fixed(-0.06, 1)).toBe("-0.1");
   });
 
-  it("are a dash where they are not known", () => {
+  it("are shown as a dash if unknown", () => {
     expect(withUnit(null, 1, "mm")).toBe("–");
     expect(withUnit(Infinity, 1, "mm")).toBe("–");
     expect(withUnit(12.345, 1, "mm")).toBe("12.3 mm");
   });
 
-  it("may be typed with a comma, and half a number is none", () => {
+  it("may be typed with a decimal comma; incomplete numbers are rejected", () => {
     expect(["1,5", " -3 ", ".5", "1e3", "−2"].map(typedNumber)).toEqual([1.5, -3, 0.5, 1000, -2]);
     expect(["", "-", "1,2,3", "abc", "Infinity", "1e999"].map(typedNumber)).toEqual(Array(6).fill(null));
   });
 });
 
 describe("the table of angles", () => {
-  it("pastes into a spreadsheet", () => {
+  it("is copied with tabs, as spreadsheets expect", () => {
     expect(angleText(["LF", "RF"], [1, 2, 3, 4, 5, -6.12345])).toBe(
       "leg\tcoxa_deg\tfemur_deg\ttibia_deg\nLF\t1.0000\t2.0000\t3.0000\nRF\t4.0000\t5.0000\t-6.1235",
     );

@@ -1,6 +1,6 @@
-/** Numbers as people read and type them. */
+/** Formatting and parsing of numbers. */
 
-/** How many digits after the point a step needs: 0.25 needs two. */
+/** Number of decimals that a step needs: 0.25 needs two. */
 export function decimalsOf(step: number): number {
   if (!(step > 0)) return 0;
   for (let digits = 0; digits < 6; digits++) {
@@ -10,19 +10,19 @@ export function decimalsOf(step: number): number {
   return 6;
 }
 
-/** A number with so many digits, without a trailing "-0". */
+/** A number with a fixed number of decimals; never "-0". */
 export function fixed(value: number, digits: number): string {
   const text = value.toFixed(digits);
   return Number(text) === 0 ? (0).toFixed(digits) : text;
 }
 
-/** A number with a unit, or a dash where it is not known. */
+/** A number with a unit, or a dash where it is unknown. */
 export function withUnit(value: number | null | undefined, digits: number, unit: string): string {
   if (value === null || value === undefined || !Number.isFinite(value)) return "–";
   return unit ? `${fixed(value, digits)} ${unit}` : fixed(value, digits);
 }
 
-/** What was typed as a number, a decimal comma included; null where it is none, or none yet. */
+/** Parse a typed number, with decimal point or comma; null where the text is not a complete number. */
 export function typedNumber(text: string): number | null {
   const plain = text.trim().replace(",", ".").replace("−", "-");
   if (!/^[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?$/i.test(plain)) return null;
@@ -30,7 +30,7 @@ export function typedNumber(text: string): number | null {
   return Number.isFinite(value) ? value : null;
 }
 
-/** A number kept between two. */
+/** A number clamped to a range. */
 export function clamp(value: number, low: number, high: number): number {
   return Math.min(high, Math.max(low, value));
 }

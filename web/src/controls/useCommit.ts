@@ -1,7 +1,7 @@
 import { useEffect, useRef, type RefObject } from "react";
 
 /**
- * Be told when an input comes to rest: the browser's own "change", which React's onChange is not (that one is "input").
+ * Call a function at the native "change" event of an input, that is, at the end of an edit: React's onChange is "input".
  */
 export function useCommit(onRest: (value: number) => void): RefObject<HTMLInputElement | null> {
   const input = useRef<HTMLInputElement>(null);

@@ -14,11 +14,11 @@ import { shapeOf } from "../scene/kinematics";
 import { legColours } from "../scene/palette";
 import { framing } from "../scene/framing";
 import { SceneCanvas } from "../scene/SceneCanvas";
-import { prefersStillness, stage } from "../scene/stage";
+import { prefersReducedMotion, stage } from "../scene/stage";
 import { playWalk } from "../scene/walking";
 import { usePlayback } from "../state/playback";
 
-/** A walk that plays by itself: the same picture as in the studio, and no server. */
+/** Playback of a walk without a server, with the 3D view of the studio. */
 export function Player({ data }: { data: PlayerData }) {
   const { robot, walk, loads } = data;
   const theme = useTheme((state) => state.theme);
@@ -32,13 +32,13 @@ export function Player({ data }: { data: PlayerData }) {
   const trails = useMemo(() => footTrails(robot, walk), [robot, walk]);
   const view = useMemo(
     () => framing(robot, camera === "follow" ? null : walk),
-    // Choosing the same camera again goes back to its place.
+    // Choosing the active camera again resets its position.
     // eslint-disable-next-line react-hooks/exhaustive-deps
     [robot, walk, camera === "follow", again],
   );
   useEffect(() => {
     stage.show(frameOfWalk(robot, walk, loads, 0), false);
-    usePlayback.setState({ playing: !prefersStillness() });
+    usePlayback.setState({ playing: !prefersReducedMotion() });
     return playWalk(robot, walk, loads);
   }, [robot, walk, loads]);
 

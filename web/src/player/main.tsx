@@ -13,7 +13,7 @@ import "./player.css";
 
 Object3D.DEFAULT_UP.set(0, 0, 1);
 
-/** The walk that Python put into the page. */
+/** The walk that Python has embedded in the page. */
 function heldData(): PlayerData | null {
   try {
     return JSON.parse(document.getElementById("motion")?.textContent ?? "") as PlayerData;
@@ -33,5 +33,5 @@ if (root && data) {
     </StrictMode>,
   );
 } else if (root) {
-  root.textContent = "There is no walk in this page.";
+  root.textContent = "This page contains no walk.";
 }

@@ -7,24 +7,24 @@ export interface Line {
   label: string;
   colour: string;
   values: ArrayLike<number>;
-  /** A limit: drawn dashed. */
+  /** A limit, drawn as a dashed line. */
   dashed?: boolean;
 }
 
 interface Props {
-  /** What it shows, and the most important number: said to screen readers in place of the plot. */
+  /** Content and most important value, read by screen readers instead of the plot. */
   summary: string;
   x: ArrayLike<number>;
   lines: readonly Line[];
   unit: string;
   height?: number;
-  /** A click at a time [s]. */
+  /** Called on a click, with the time [s]. */
   onPick?: (x: number) => void;
   /** Called with a function that moves the time mark, and with null at the end. */
   onMark?: (mark: ((x: number) => void) | null) => void;
 }
 
-/** Lines over time. uPlot draws on a canvas of its own: ten thousand moments cost nothing. */
+/** Lines over time, drawn by uPlot on a canvas, which is fast for ten thousand samples. */
 export function Plot({ summary, x, lines, unit, height = 150, onPick, onMark }: Props) {
   const box = useRef<HTMLDivElement>(null);
   const theme = useTheme((state) => state.theme);

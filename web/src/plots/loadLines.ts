@@ -1,7 +1,7 @@
 import type { LoadsMessage, RobotMessage, WalkMessage } from "../protocol";
 import type { Line } from "./Plot";
 
-/** One number of each moment: of a flat list of rows, the column `at`. */
+/** Column `at` of a flat list of rows. */
 export function column(list: ArrayLike<number>, width: number, at: number): Float64Array {
   const count = Math.floor(list.length / width);
   const values = new Float64Array(count);
@@ -9,7 +9,7 @@ export function column(list: ArrayLike<number>, width: number, at: number): Floa
   return values;
 }
 
-/** Times of a walk's moments [s]. */
+/** Times of a walk's samples [s]. */
 export function timesOf(walk: WalkMessage): Float64Array {
   return Float64Array.from({ length: walk.count }, (_, i) => i / walk.rate_hz);
 }
@@ -38,7 +38,7 @@ export function torqueLines(
     ["stall", stall],
     ["stall / safety factor", stall / safetyFactor],
   ] as const) {
-    // A limit far above the lines would press them flat.
+    // A limit far above the lines would compress them.
     if (!Number.isFinite(limit) || limit > 2.5 * most) continue;
     for (const sign of [1, -1]) {
       lines.push({

@@ -12,7 +12,7 @@ interface Props {
   palette: Palette;
 }
 
-/** Contact forces: what the ground does to each foot. The longest arrow is about half a leg. */
+/** Contact forces of the ground on the feet. The longest arrow is about half as long as a leg. */
 export function Arrows({ shape, palette }: Props) {
   const groups = useRef<(Group | null)[]>([]);
   const direction = useMemo(() => new Vector3(), []);

@@ -13,7 +13,7 @@ interface Props {
   palette: Palette;
 }
 
-/** The body: its box, the deck that carries the coxa axes, and a mark at the front. */
+/** The body: its box, the plate with the coxa axes, and a marker at the front. */
 export function BodyModel({ shape, thick, palette }: Props) {
   const group = useRef<Group>(null);
   useStage((frame) => {

@@ -7,7 +7,7 @@ import type { OrbitControls as Controls } from "three-stdlib";
 import { isFrom, placeCamera, type CameraName, type Place } from "./cameras";
 import type { Vec3 } from "./frame";
 import { FLIGHT, fly, type Flight } from "./flight";
-import { prefersStillness, stage } from "./stage";
+import { prefersReducedMotion, stage } from "./stage";
 import { onSteer, turnBy, LOWEST } from "./steer";
 
 export interface View {
@@ -17,15 +17,15 @@ export interface View {
 
 interface Props {
   camera: CameraName;
-  /** What should be seen; a new object makes the camera fly there, unless a hand has put it elsewhere. */
+  /** Region to show; a new object moves the camera there, unless the user has moved it. */
   view: View;
-  /** Where a hand has put the camera. */
+  /** Position of the camera as set by the user. */
   place: Place | null;
-  /** It has come to rest by hand; `turned` tells whether it still looks from where its name says. */
+  /** Called when the user has moved the camera; `turned`: whether its direction is no longer that of its name. */
   onRest: (place: Place, turned: boolean) => void;
 }
 
-/** The camera: flies to where its name says, follows the robot if asked, and turns by hand in between. */
+/** The camera: moves to the position that belongs to its name, follows the robot, and can be moved by the user. */
 export function CameraRig({ camera, view, place, onRest }: Props) {
   const controls = useRef<Controls>(null);
   const eyeNow = useThree((state) => state.camera);
@@ -40,9 +40,9 @@ export function CameraRig({ camera, view, place, onRest }: Props) {
     if (!(eyeNow instanceof PerspectiveCamera)) return;
     const goal = place ?? placeCamera(camera, view.target, view.radius, eyeNow.fov, eyeNow.aspect);
     const eye = new Vector3(...goal.eye);
-    const still = !begun.current || prefersStillness();
+    const still = !begun.current || prefersReducedMotion();
     begun.current = true;
-    // A hand that has just put it here must not be led back by a rounded number.
+    // The rounded position that the server returns must not move the camera again.
     if (place && eye.distanceTo(eyeNow.position) < 2) return;
     flight.current = { eye, target: new Vector3(...goal.target), lasts: still ? 0 : FLIGHT, from: null };
     seen.current = null;
@@ -100,7 +100,7 @@ export function CameraRig({ camera, view, place, onRest }: Props) {
         flight.current = null;
       }}
       onEnd={() => {
-        // A click that moves nothing must not end a flight.
+        // A click without a movement must not interrupt a camera transition.
         if (grabbed.current?.eye.equals(eyeNow.position)) flight.current = grabbed.current.flight;
         else rest();
         invalidate();
@@ -113,7 +113,7 @@ function rounded({ x, y, z }: Vector3): Vec3 {
   return [Math.round(x), Math.round(y), Math.round(z)];
 }
 
-/** Move eye and target as the body moves over the floor. */
+/** Move eye and target with the body. */
 function follow(orbit: Controls, eye: Vector3, seen: { current: Vector3 | null }) {
   const position = stage.current?.position;
   if (!position) return;

@@ -2,7 +2,7 @@ import { setLine, useLine } from "./lines";
 import type { Palette } from "./palette";
 import { useEffect } from "react";
 
-/** The centre about which a walk turns: a cross on the floor, and the arc's radius to where the body starts. */
+/** Centre of a curved walk: a cross on the ground, and the radius to the start of the path. */
 export function Centre({ at, palette }: { at: readonly [number, number]; palette: Palette }) {
   const spoke = useLine({ colour: palette.zone, width: 1.5, opacity: 0.7 });
   const [x, y] = at;

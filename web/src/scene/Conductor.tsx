@@ -3,11 +3,11 @@ import { useEffect } from "react";
 
 import { stage } from "./stage";
 
-/** Advances the stage before each frame, and asks for the next while something moves. */
+/** Advances the stage before each frame, and requests the next frame while something moves. */
 export function Conductor() {
   const invalidate = useThree((state) => state.invalidate);
   useFrame((_, dt) => {
-    // After a rest the clock has run on: that time was not shown.
+    // The time since the last frame includes the pause without frames.
     if (stage.advance(Math.min(dt, 0.05))) invalidate();
   }, -1);
   useEffect(() => invalidate());

@@ -5,10 +5,10 @@ import { footOf, type Frame, type Shape, type Vec3 } from "./frame";
 import type { Palette } from "./palette";
 import { useStage } from "./useStage";
 
-/** More points than any robot rests on at once. */
+/** Maximum number of contact points. */
 const MOST = 64;
 
-/** A ring on the floor wherever something touches it. */
+/** A ring around every contact point on the ground. */
 export function Contacts({ shape, palette }: { shape: Shape; palette: Palette }) {
   const rings = useMemo(() => {
     const radius = Math.max(8, shape.reach * 0.045);
@@ -29,7 +29,7 @@ export function Contacts({ shape, palette }: { shape: Shape; palette: Palette })
   );
 
   useStage((frame) => {
-    const points = touchesOf(frame).slice(0, MOST);
+    const points = contactPointsOf(frame).slice(0, MOST);
     points.forEach(([x, y], i) => {
       place.current.position.set(x, y, 0.9);
       place.current.updateMatrix();
@@ -41,7 +41,7 @@ export function Contacts({ shape, palette }: { shape: Shape; palette: Palette })
   return <primitive object={rings} />;
 }
 
-function touchesOf(frame: Frame): Vec3[] {
+function contactPointsOf(frame: Frame): Vec3[] {
   const feet = frame.contacts.flatMap((down, leg) => (down ? [footOf(frame, leg)] : []));
   return [...feet, ...frame.touching];
 }

@@ -6,7 +6,7 @@ import { setLine, useLine } from "./lines";
 import type { Palette } from "./palette";
 import { useStage } from "./useStage";
 
-/** Where a foot should be that can't get there, and how far it is from it. */
+/** Target positions of feet that are out of reach, and their distance from the feet. */
 export function Goals({ shape, palette }: { shape: Shape; palette: Palette }) {
   return shape.names.map((name, leg) => (
     <Goal

@@ -7,7 +7,7 @@ interface Props {
   colour: string;
 }
 
-/** Text lying on the floor, read from behind the robot (x away from the reader). */
+/** Text on the ground, to be read from behind the robot. */
 export function GridLabel({ text, at, colour }: Props) {
   const texture = useMemo(() => textTexture(text, colour), [text, colour]);
   useEffect(() => () => texture.dispose(), [texture]);
@@ -19,7 +19,7 @@ export function GridLabel({ text, at, colour }: Props) {
   );
 }
 
-// The page's own font on a canvas: a font for WebGL would have to be fetched.
+// Drawn on a canvas in the font of the page: a WebGL font would have to be downloaded.
 function textTexture(text: string, colour: string): CanvasTexture {
   const canvas = document.createElement("canvas");
   canvas.width = 256;

@@ -6,16 +6,16 @@ import { GridLabel } from "./GridLabel";
 import type { Palette } from "./palette";
 import { stage } from "./stage";
 
-/** Half of what is drawn of the endless floor [mm]. */
+/** Half the side length of the drawn part of the ground [mm]. */
 const HALF = 3000;
 const COARSE = 100;
 const FINE = 50;
 const PIECE = 500;
-/** Labels stand this far apart [mm], and so many on either side. */
+/** Distance between labels [mm], and number of labels on each side. */
 const LABELS = 200;
 const SIDE = 4;
 
-/** The floor: a grid of 50 and 100 mm with the coordinates written on it, under the robot wherever it goes. */
+/** The ground: a grid of 50 and 100 mm with coordinates, centred below the robot. */
 export function Ground({ palette }: { palette: Palette }) {
   const group = useRef<Group>(null);
   const [[cx, cy], setCentre] = useState<readonly [number, number]>([0, 0]);
@@ -73,7 +73,7 @@ function snap(value: number): number {
   return Math.round(value / LABELS) * LABELS;
 }
 
-/** The axes through the origin: where the walk began. */
+/** The axes through the origin, where the walk starts. */
 function Axis({ palette, along }: { palette: Palette; along: "x" | "y" }) {
   const isX = along === "x";
   return (
@@ -89,7 +89,7 @@ function gridLines(step: number, keep: (n: number) => boolean): BufferGeometry {
   for (let n = -HALF / step; n <= HALF / step; n++) {
     if (!keep(n)) continue;
     const at = n * step;
-    // In pieces: some drivers drop a line whole whose one end lies behind the camera.
+    // In segments: some drivers do not draw a line if one of its ends is behind the camera.
     for (let from = -HALF; from < HALF; from += PIECE) {
       const to = from + PIECE;
       numbers.push(at, from, 0, at, to, 0, from, at, 0, to, at, 0);

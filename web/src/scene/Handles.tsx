@@ -2,21 +2,21 @@ import { useThree, type ThreeEvent } from "@react-three/fiber";
 import { useEffect, useRef, useState } from "react";
 import { Vector3, type Mesh, type Plane } from "three";
 
-import { dragPlane, meet } from "./dragging";
+import { dragPlane, intersection } from "./dragging";
 import { footOf, type Frame, type Shape, type Vec3 } from "./frame";
 import type { Palette } from "./palette";
 import { stage } from "./stage";
 import { useStage } from "./useStage";
 
-/** What is dragged: a leg's foot, or the body. */
+/** Index of the leg whose foot is dragged, or the body. */
 export type Grip = number | "body";
 
 export interface DragEvent {
   grip: Grip;
-  /** Where the thing was when it was grabbed, and where it should be now [mm]. */
+  /** Position at the start of the drag, and now [mm]. */
   from: Vec3;
   to: Vec3;
-  /** Whether it has been let go. */
+  /** Whether the drag has ended. */
   done: boolean;
 }
 
@@ -27,7 +27,7 @@ interface Props {
   onDrag: (event: DragEvent) => void;
 }
 
-/** Feet and body that can be grabbed, by mouse or finger. By keyboard the same is done in the panel. */
+/** Handles to drag feet and body by mouse or finger. The panel offers the same by keyboard. */
 export function Handles({ shape, palette, body, onDrag }: Props) {
   const grips: Grip[] = [...shape.names.map((_, leg) => leg), ...(body ? (["body"] as const) : [])];
   return (
@@ -43,7 +43,7 @@ function placeOf(frame: Frame, grip: Grip): Vec3 {
   return grip === "body" ? frame.position : footOf(frame, grip);
 }
 
-/** A finger needs so much more room than a mouse. */
+/** Factor by which handles are larger for a finger than for a mouse. */
 const FINGER = 1.8;
 
 interface HandleProps extends Omit<Props, "body"> {
@@ -78,7 +78,7 @@ function Handle({ grip, shape, palette, onDrag }: HandleProps) {
     const from = placeOf(stage.current, grip);
     const look = event.camera.getWorldDirection(new Vector3());
     const plane = dragPlane(from, [look.x, look.y, look.z], event.shiftKey);
-    const hit = meet(event.ray, plane) ?? from;
+    const hit = intersection(event.ray, plane) ?? from;
     drag.current = { plane, from, offset: [from[0] - hit[0], from[1] - hit[1], from[2] - hit[2]] };
     (event.target as Element).setPointerCapture(event.pointerId);
     if (controls) controls.enabled = false;
@@ -88,7 +88,7 @@ function Handle({ grip, shape, palette, onDrag }: HandleProps) {
     if (!drag.current) return;
     event.stopPropagation();
     const { plane, from, offset } = drag.current;
-    const hit = meet(event.ray, plane);
+    const hit = intersection(event.ray, plane);
     if (hit) onDrag({ grip, from, to: [hit[0] + offset[0], hit[1] + offset[1], hit[2] + offset[2]], done });
     if (!done) return;
     drag.current = null;

@@ -20,7 +20,7 @@ interface Props {
   palette: Palette;
 }
 
-/** A leg: three links between four points; the foot in the leg's colour. */
+/** A leg: three links between four points, and the foot in the leg's colour. */
 export function LegModel({ leg, colour, footRadius, thick, palette }: Props) {
   const links = [useRef<Mesh>(null), useRef<Mesh>(null), useRef<Mesh>(null)] as const;
   const joints = [useRef<Group>(null), useRef<Group>(null), useRef<Group>(null)] as const;
@@ -33,7 +33,7 @@ export function LegModel({ leg, colour, footRadius, thick, palette }: Props) {
     foot.current?.position.set(...pointOf(frame, leg, 3));
   });
 
-  // Tapered towards the foot, as printed and milled legs are.
+  // Tapered towards the foot, like printed and milled legs.
   const widths = [
     [1, 1],
     [0.95, 1],
@@ -72,7 +72,7 @@ function placeLink(ref: RefObject<Mesh | null>, frame: Frame, leg: number, i: nu
   to.set(...pointOf(frame, leg, i + 1));
   along.subVectors(to, from);
   const length = along.length();
-  // A coxa of length zero is not there to be seen.
+  // A coxa of length zero is not drawn.
   mesh.visible = length > 0.01;
   if (!mesh.visible) return;
   mesh.position.addVectors(from, to).multiplyScalar(0.5);
@@ -81,7 +81,7 @@ function placeLink(ref: RefObject<Mesh | null>, frame: Frame, leg: number, i: nu
   (mesh.material as MeshStandardMaterial).color.set(colour);
 }
 
-/** Joints lie along their axes: the coxa's is the body's upright, the others' is across the leg. */
+/** Joints are cylinders along their axes: the body's z axis for the coxa, across the leg for the others. */
 function placeJoint(ref: RefObject<Group | null>, frame: Frame, leg: number, i: number) {
   const group = ref.current;
   if (!group) return;

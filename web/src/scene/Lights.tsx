@@ -4,7 +4,7 @@ import type { DirectionalLight } from "three";
 import type { Palette } from "./palette";
 import { useStage } from "./useStage";
 
-/** Sun and sky. The sun goes where the robot goes, so that its shadow is always sharp. */
+/** Directional and ambient light. The directional light moves with the robot, for a sharp shadow. */
 export function Lights({ palette, reach }: { palette: Palette; reach: number }) {
   const sun = useRef<DirectionalLight>(null);
   const half = reach * 2.2;

@@ -4,11 +4,11 @@ import { footOf, type Frame } from "./frame";
 import { makeLine, setLine } from "./lines";
 import { useStage } from "./useStage";
 
-/** So many places of each foot are kept, this far apart [mm]. */
+/** Number of stored positions of each foot, and the distance between them [mm]. */
 const MOST = 240;
 const APART = 3;
 
-/** Where the feet have just been, while driving. */
+/** Recent paths of the feet while driving. */
 export function LiveTrails({ colours }: { colours: readonly string[] }) {
   const lines = useMemo(
     () => colours.map((colour) => makeLine({ colour, width: 2, opacity: 0.7 })),
@@ -40,13 +40,13 @@ export function LiveTrails({ colours }: { colours: readonly string[] }) {
   );
 }
 
-// Always as many points: so the line is written in place, and never made anew.
+// A constant number of points, so that the line is updated in place.
 function filledWith(frame: Frame, leg: number): Float32Array {
   const foot = footOf(frame, leg);
   return new Float32Array(MOST * 3).map((_, i) => foot[i % 3] ?? 0);
 }
 
-/** Add the foot's place where it has moved; returns whether it has. */
+/** Append the position of the foot if it has moved; returns whether it has. */
 function follow(trail: Float32Array, frame: Frame, leg: number): boolean {
   const foot = footOf(frame, leg);
   const end = trail.length - 3;
@@ -56,7 +56,7 @@ function follow(trail: Float32Array, frame: Frame, leg: number): boolean {
     foot[2] - (trail[end + 2] ?? 0),
   );
   if (gap < APART) return false;
-  // A leap is no step: the robot was put elsewhere.
+  // A jump is not a step: the robot has been reset.
   if (gap > 40 * APART) trail.set(filledWith(frame, leg));
   trail.copyWithin(0, 3);
   trail.set(foot, end);

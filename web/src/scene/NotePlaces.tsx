@@ -5,12 +5,12 @@ import { Vector3 } from "three";
 import { pointOf, type Frame, type Vec3 } from "./frame";
 import { stage } from "./stage";
 
-/** How far over a knee its note stands [mm]. */
+/** Height of a label above the knee [mm]. */
 const OVER = 34;
-/** How near to the picture's edge a note may come [px]. */
+/** Minimum distance of a label from the edge of the 3D view [px]. */
 const EDGE = 4;
 
-/** Moves the notes to where their things are in the picture, in the frame in which these are drawn. */
+/** Moves the labels with the objects that they belong to, in the same frame. */
 export function NotePlaces({ layer }: { layer: RefObject<HTMLDivElement | null> }) {
   const at = useMemo(() => new Vector3(), []);
   useFrame(({ camera, size }) => {
@@ -31,7 +31,7 @@ export function NotePlaces({ layer }: { layer: RefObject<HTMLDivElement | null> 
   return null;
 }
 
-/** Centred on its thing; at the picture's edge as far inside as it takes to be read whole. */
+/** Centred on its object, but fully inside the 3D view. */
 function across(x: number, width: number): string {
   const left = `${x.toFixed(1)}px - 50%`;
   if (x < 0 || x > width) return `calc(${left})`;

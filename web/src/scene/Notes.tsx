@@ -7,14 +7,14 @@ interface Props {
   layer: RefObject<HTMLDivElement | null>;
   shape: Shape;
   colours: readonly string[];
-  /** Whether each leg bears its short name. */
+  /** Whether to show the short names of the legs. */
   names: boolean;
 }
 
 /**
- * What is written over the picture: the legs' names, why a leg can't, and the margin of stability.
+ * Labels over the 3D view: names of the legs, problems of legs, and the stability margin.
  *
- * The panel says the same in whole sentences, so screen readers are spared it here. `NotePlaces` moves the notes.
+ * Hidden from screen readers, as the panel has the same in sentences. `NotePlaces` moves the labels.
  */
 export function Notes({ layer, shape, colours, names }: Props) {
   const [troubles, setTroubles] = useState<readonly (LegTrouble | null)[]>([]);

@@ -4,7 +4,7 @@ interface State {
   failed: string | null;
 }
 
-/** Keeps the page alive where the picture can't be drawn: a browser without WebGL still has all the numbers. */
+/** Error boundary of the 3D view: without WebGL, the rest of the page still works. */
 export class PictureGuard extends Component<{ children: ReactNode }, State> {
   override state: State = { failed: canDraw() ? null : "WebGL is off" };
 
@@ -17,7 +17,7 @@ export class PictureGuard extends Component<{ children: ReactNode }, State> {
     if (failed === null) return this.props.children;
     return (
       <p className="no-picture" role="status" data-testid="no-picture">
-        This browser can’t draw in 3D ({failed}). All numbers are in the panel.
+        The 3D view is not available in this browser ({failed}). The panel has all values.
       </p>
     );
   }
@@ -26,7 +26,7 @@ export class PictureGuard extends Component<{ children: ReactNode }, State> {
 function canDraw(): boolean {
   const canvas = document.createElement("canvas");
   const context = canvas.getContext("webgl2");
-  // Browsers give a page only so many contexts; this one is not needed any more.
+  // The number of WebGL contexts of a page is limited: release this one.
   context?.getExtension("WEBGL_lose_context")?.loseContext();
   return context !== null;
 }

@@ -9,9 +9,9 @@ interface Props {
   palette: Palette;
 }
 
-/** The robot, drawn from the points of its legs: no mesh of a maker is needed. */
+/** The robot, drawn from the points of its legs; no meshes are needed. */
 export function Robot({ shape, colours, palette }: Props) {
-  // Thin enough not to hide the angles, thick enough to be touched.
+  // Thin enough to see the angles, thick enough to be selected.
   const thick = Math.min(14, Math.max(4, shape.reach * 0.028));
   return (
     <group name="robot">

@@ -32,17 +32,17 @@ export interface SceneProps {
   forces?: boolean;
   torques?: boolean;
   names?: boolean;
-  /** Said to screen readers in place of the picture. */
+  /** Description for screen readers. */
   description: string;
   onRest?: (place: Place, turned: boolean) => void;
-  /** A click on the floor [mm]; left out where it means nothing. */
+  /** Called on a click on the ground [mm]; left out where clicks have no effect. */
   onFloor?: (x: number, y: number) => void;
   children?: ReactNode;
 }
 
 const nothing = () => undefined;
 
-/** The picture: one canvas that all views share, and the player as well. */
+/** The 3D view: one canvas shared by all views; also used by the player. */
 export function SceneCanvas(props: SceneProps) {
   return (
     <PictureGuard>
@@ -70,13 +70,13 @@ function Scene(props: SceneProps) {
     if (steer(event.key)) event.preventDefault();
   };
   return (
-    // Arrow keys turn the picture and + and - come closer: so it must be reachable by keyboard.
+    // Focusable: arrow keys turn the camera, + and - zoom.
     // eslint-disable-next-line jsx-a11y/no-noninteractive-element-interactions
     <div
       className="scene"
       role="application"
-      aria-roledescription="3D picture"
-      aria-label={`${props.description} Arrow keys turn the picture, plus and minus come closer and go away.`}
+      aria-roledescription="3D view"
+      aria-label={`${props.description} Arrow keys turn the camera, plus and minus zoom.`}
       data-testid="scene"
       // eslint-disable-next-line jsx-a11y/no-noninteractive-tabindex
       tabIndex={0}

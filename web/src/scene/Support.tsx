@@ -7,11 +7,11 @@ import { footOf, type Frame } from "./frame";
 import { convexHull, nearestOnEdge, type Point2 } from "./polygon";
 import { useStage } from "./useStage";
 
-/** Height over the ground at which flat things are drawn, so that they don't flicker in it [mm]. */
+/** Height above the ground at which flat objects are drawn, to avoid z-fighting [mm]. */
 const OVER = 0.6;
 const MOST = 16;
 
-/** Support polygon, the projected centre of mass and the shortest way from it to the polygon's edge. */
+/** Support polygon, projected centre of mass, and the shortest line from it to the edge of the polygon. */
 export function Support({ palette }: { palette: Palette }) {
   const edge = useLine({ colour: palette.support, width: 2.5 });
   const badEdge = useLine({ colour: palette.unstable, width: 2.5 });
@@ -76,7 +76,7 @@ function supportOf(frame: Frame): Point2[] {
   return convexHull(feet).slice(0, MOST);
 }
 
-/** A fan of triangles, written in place: a new buffer a frame would only be garbage. */
+/** Write a triangle fan into the existing buffer, so that frames allocate nothing. */
 function fillFan(geometry: BufferGeometry, hull: readonly Point2[]) {
   const position = geometry.getAttribute("position");
   const corners = hull.slice(2).flatMap((_, i) => [hull[0], hull[i + 1], hull[i + 2]]);

@@ -11,10 +11,10 @@ interface Props {
   palette: Palette;
 }
 
-/** Share of the stall torque from which a servo should not be used for long, and from which it stops. */
+/** Fraction of the stall torque above which a servo overheats in continuous use, and above which it stalls. */
 export const LASTING = 0.5;
 
-/** At each joint a bar: how much of its servo's stall torque it needs. The frame is the whole of it. */
+/** A bar at each joint: torque as a fraction of the stall torque, which is the length of the frame. */
 export function TorqueBars({ shape, palette }: Props) {
   return (
     <group name="torque-bars">

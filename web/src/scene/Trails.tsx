@@ -3,12 +3,12 @@ import { useEffect } from "react";
 import { setLine, useLine } from "./lines";
 
 interface Props {
-  /** For each leg, points x, y, z in turn [mm]. */
+  /** For each leg, x, y, z of all points [mm]. */
   paths: readonly ArrayLike<number>[];
   colours: readonly string[];
 }
 
-/** Where each foot goes, in the leg's colour. */
+/** Path of each foot, in the leg's colour. */
 export function Trails({ paths, colours }: Props) {
   return (
     <group>

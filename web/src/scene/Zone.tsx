@@ -6,13 +6,13 @@ import type { Palette } from "./palette";
 import { useStage } from "./useStage";
 
 interface Props {
-  /** Outlines in the body frame, x, y, z in turn [mm]. */
+  /** Outlines in the body frame, x, y, z of all points [mm]. */
   ground: readonly number[];
   plane: readonly number[];
   palette: Palette;
 }
 
-/** What a leg reaches: on the ground, and in its own plane. Both move with the body. */
+/** Workspace of a leg: on the ground, and in the plane of the leg. Both move with the body. */
 export function Zone({ ground, plane, palette }: Props) {
   const group = useRef<Group>(null);
   useStage((frame) => {
@@ -31,7 +31,7 @@ interface OutlineProps {
   flat: readonly number[];
   palette: Palette;
   opacity: number;
-  /** Whether it lies on the floor; else it stands upright. */
+  /** Whether it is on the ground; else it is vertical. */
   flatten?: boolean;
 }
 
@@ -51,7 +51,7 @@ function Outline({ flat, palette, opacity, flatten = false }: OutlineProps) {
   );
 }
 
-/** Triangles that fill an outline, found in the plane in which it lies. */
+/** Triangulation of an outline in its plane. */
 function filled(flat: readonly number[], flatten: boolean): BufferGeometry {
   const geometry = new BufferGeometry();
   const points = Array.from({ length: flat.length / 3 }, (_, i) => flat.slice(i * 3, i * 3 + 3));
@@ -63,7 +63,7 @@ function filled(flat: readonly number[], flatten: boolean): BufferGeometry {
   return geometry;
 }
 
-/** How far a point of an upright outline lies along its trace on the floor. */
+/** Horizontal coordinate of a point of a vertical outline. */
 function outward(points: readonly (readonly number[])[], x: number, y: number): number {
   const [x0 = 0, y0 = 0] = points[0] ?? [];
   const far = points.reduce<readonly number[]>(

@@ -2,12 +2,12 @@ import { Plane, Vector3, type Ray } from "three";
 
 import type { Vec3 } from "./frame";
 
-/** Steeper than this, a look goes down on the floor: things are then dragged over it [sine of the angle]. */
+/** Sine of the camera's elevation above which objects are dragged horizontally. */
 const STEEP = 0.45;
 
 /**
- * The plane in which a thing is dragged: level if the camera looks down on it, upright and facing the camera if the
- * camera looks from the side. Shift takes the other one.
+ * The plane in which an object is dragged: horizontal if the camera looks from above, vertical and facing the camera
+ * if it looks from the side. Shift selects the other one.
  */
 export function dragPlane(at: Vec3, look: Vec3, other: boolean): Plane {
   const level = Math.abs(look[2]) > STEEP !== other;
@@ -16,8 +16,8 @@ export function dragPlane(at: Vec3, look: Vec3, other: boolean): Plane {
   return new Plane().setFromNormalAndCoplanarPoint(normal, new Vector3(...at));
 }
 
-/** Where a ray meets a plane, or null where it runs along it or away from it. */
-export function meet(ray: Ray, plane: Plane): Vec3 | null {
+/** Intersection of a ray and a plane, or null if there is none. */
+export function intersection(ray: Ray, plane: Plane): Vec3 | null {
   const point = ray.intersectPlane(plane, new Vector3());
   return point ? [point.x, point.y, point.z] : null;
 }

@@ -1,9 +1,9 @@
 import type { Vector3 } from "three";
 
-/** Time a camera takes to fly to its place [s]. */
+/** Duration of a camera transition [s]. */
 export const FLIGHT = 0.35;
 
-/** On the way to a place; `from` is filled in by the first frame, which may come late. */
+/** A camera transition; `from` is set by the first frame, which may be late. */
 export interface Flight {
   eye: Vector3;
   target: Vector3;
@@ -12,13 +12,13 @@ export interface Flight {
   from: { eye: Vector3; target: Vector3; at: number } | null;
 }
 
-/** Go on with a flight by the clock, however slowly frames come; returns whether it has arrived. */
+/** Advance a transition to the present time; returns whether it is complete. */
 export function fly(flight: Flight, eye: Vector3, target: Vector3): boolean {
   const now = performance.now() / 1000;
   flight.from ??= { eye: eye.clone(), target: target.clone(), at: now };
-  const share = flight.lasts > 0 ? Math.min(1, (now - flight.from.at) / flight.lasts) : 1;
-  const eased = share * share * (3 - 2 * share);
+  const fraction = flight.lasts > 0 ? Math.min(1, (now - flight.from.at) / flight.lasts) : 1;
+  const eased = fraction * fraction * (3 - 2 * fraction);
   eye.lerpVectors(flight.from.eye, flight.eye, eased);
   target.lerpVectors(flight.from.target, flight.target, eased);
-  return share === 1;
+  return fraction === 1;
 }

@@ -1,19 +1,19 @@
-/** What the picture shows at one moment, in the ground frame: x forward, y left, z up; mm. */
+/** Content of the scene at one time, in the ground frame: x forward, y left, z up; mm. */
 
 export type Vec3 = readonly [number, number, number];
-/** x, y, z, w, as three.js orders them. */
+/** x, y, z, w, the order of three.js. */
 export type Quaternion = readonly [number, number, number, number];
 
 /** Points of a leg: coxa axis, femur axis, knee, foot. */
 export const POINTS = 4;
 
-/** Why a leg does not do what is asked. */
+/** Why the request for a leg is not met. */
 export interface LegTrouble {
-  /** A few words that fit beside the leg, such as "12 mm too far". */
+  /** Label beside the leg, such as "12 mm too far". */
   short: string;
   /** The whole explanation, with numbers. */
   text: string;
-  /** Where the foot should be [mm], where it can't get there. */
+  /** Target position of a foot that is out of reach [mm]. */
   goal: Vec3 | null;
 }
 
@@ -23,11 +23,11 @@ export interface Frame {
   position: Vec3;
   rotation: Quaternion;
   contacts: readonly boolean[];
-  /** Whatever touches the ground besides feet: points of the legs [mm]. */
+  /** Points of the legs, other than feet, that touch the ground [mm]. */
   touching: readonly Vec3[];
-  /** Corners of the support polygon (x, y) [mm]; null: that of the feet that stand. */
+  /** Corners of the support polygon (x, y) [mm]; null: that of the feet in contact. */
   support: readonly (readonly [number, number])[] | null;
-  /** Centre of mass [mm]; only its projection is shown. */
+  /** Centre of mass [mm]; only its projection onto the ground is shown. */
   com: Vec3 | null;
   /** Distance of the projected centre of mass from the support polygon's edge [mm], negative outside. */
   margin: number | null;
@@ -44,7 +44,7 @@ export interface Frame {
   torques: Float32Array | null;
 }
 
-/** What stays while the robot moves: its shape. */
+/** Dimensions of the robot. */
 export interface Shape {
   names: readonly string[];
   /** Two letters a leg, such as LF. */
@@ -54,9 +54,9 @@ export interface Shape {
   /** Box of the body [mm], or null where the robot gives none. */
   size: Vec3 | null;
   footRadius: readonly number[];
-  /** Greatest length of a leg [mm]: sets how large things are drawn. */
+  /** Length of the longest leg [mm]: the scale of what is drawn. */
   reach: number;
-  /** Legs x (coxa, femur, tibia): what the servos can exert at most [N m]. */
+  /** Legs x (coxa, femur, tibia): stall torque [N m]. */
   stall: readonly (number | null)[];
 }
 
@@ -85,7 +85,7 @@ export function quaternionOf(roll: number, pitch: number, yaw: number): Quaterni
   ];
 }
 
-/** A vector turned by a quaternion. */
+/** A vector rotated by a quaternion. */
 export function turn([x, y, z, w]: Quaternion, [vx, vy, vz]: Vec3): Vec3 {
   const tx = 2 * (y * vz - z * vy);
   const ty = 2 * (z * vx - x * vz);
@@ -93,7 +93,7 @@ export function turn([x, y, z, w]: Quaternion, [vx, vy, vz]: Vec3): Vec3 {
   return [vx + w * tx + y * tz - z * ty, vy + w * ty + z * tx - x * tz, vz + w * tz + x * ty - y * tx];
 }
 
-/** The shorter way from one rotation to another, at share t. */
+/** Interpolate between two rotations along the shorter path, at fraction t. */
 export function blendRotation(a: Quaternion, b: Quaternion, t: number): Quaternion {
   const sign = a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3] < 0 ? -1 : 1;
   const q = [0, 1, 2, 3].map((i) => (a[i] ?? 0) * (1 - t) + sign * t * (b[i] ?? 0));
@@ -110,8 +110,8 @@ function blendVec(a: Vec3, b: Vec3, t: number): Vec3 {
 }
 
 /**
- * The picture between two: positions and forces in between, everything that is either-or from the second.
- * Between neighbouring samples the links' lengths change by less than a pixel.
+ * Interpolate between two frames: positions and forces linearly, everything discrete from the second one.
+ * Between neighbouring samples the lengths of the links change by less than a pixel.
  */
 export function blend(a: Frame, b: Frame, t: number): Frame {
   if (t >= 1 || a.points.length !== b.points.length) return b;
@@ -127,7 +127,7 @@ export function blend(a: Frame, b: Frame, t: number): Frame {
   };
 }
 
-/** Greatest distance between the points of two pictures [mm]. */
+/** Greatest difference between the coordinates of two frames [mm]. */
 export function distance(a: Frame, b: Frame): number {
   if (a.points.length !== b.points.length) return Infinity;
   return a.points.reduce((most, value, i) => Math.max(most, Math.abs(value - (b.points[i] ?? 0))), 0);

@@ -2,7 +2,7 @@ import type { DriveFrame, LoadsMessage, PoseMessage, RobotMessage, WalkMessage }
 import { POINTS, quaternionOf, type Frame, type LegTrouble } from "./frame";
 import { legPoints, rotationOf, triple } from "./kinematics";
 
-const WORDS: Record<string, string> = {
+const REACH_TEXTS: Record<string, string> = {
   TOO_FAR: "too far",
   TOO_NEAR: "too near",
   COXA_LIMIT: "coxa at its limit",
@@ -10,14 +10,14 @@ const WORDS: Record<string, string> = {
   TIBIA_LIMIT: "tibia at its limit",
   BELOW_GROUND: "below ground",
 };
-/** Codes of Reach, as the server numbers them in a walk. */
+/** Names of the codes of Reach in a walk. */
 const CODES = ["OK", "TOO_FAR", "TOO_NEAR", "COXA_LIMIT", "FEMUR_LIMIT", "TIBIA_LIMIT", "BELOW_GROUND"];
 
 export function contactsOf(text: string): boolean[] {
   return Array.from(text, (mark) => mark === "1");
 }
 
-/** How the robot stands or rests. */
+/** The robot standing or at rest. */
 export function frameOfPose(robot: RobotMessage, pose: PoseMessage): Frame {
   const position = triple(pose.position_mm, 0);
   const rotation = rotationOf(pose.rpy_deg);
@@ -27,7 +27,7 @@ export function frameOfPose(robot: RobotMessage, pose: PoseMessage): Frame {
     position,
     rotation,
     contacts: contactsOf(pose.contacts),
-    // Every fourth point is a foot, and shown as one.
+    // Every fourth point is a foot, which `contacts` shows.
     touching: contactsOf(pose.points_down).flatMap((down, i) =>
       down && i % POINTS !== 3 ? [triple(points, i)] : [],
     ),
@@ -52,7 +52,7 @@ function troubles(robot: RobotMessage, pose: PoseMessage): (LegTrouble | null)[]
     if (problem) {
       const miss = `${problem.miss_mm.toFixed(problem.miss_mm < 10 ? 1 : 0)} mm`;
       return {
-        short: `${WORDS[problem.reach] ?? problem.reach}: ${miss}`,
+        short: `${REACH_TEXTS[problem.reach] ?? problem.reach}: ${miss}`,
         text: problem.text,
         goal: triple(pose.feet_mm, leg),
       };
@@ -64,7 +64,7 @@ function troubles(robot: RobotMessage, pose: PoseMessage): (LegTrouble | null)[]
   });
 }
 
-/** A walk at a time [s], between its samples where it falls there; with loads also forces and torques. */
+/** A walk at a time [s], interpolated between its samples; with loads also forces and torques. */
 export function frameOfWalk(
   robot: RobotMessage,
   walk: WalkMessage,
@@ -99,7 +99,7 @@ export function frameOfWalk(
   };
 }
 
-/** Row between two rows of a flat list, at share t. */
+/** Interpolate between two rows of a flat list, at fraction t. */
 function between(list: readonly number[], width: number, i: number, k: number, t: number): Float32Array {
   const row = new Float32Array(width);
   for (let n = 0; n < width; n++) {
@@ -112,7 +112,7 @@ function between(list: readonly number[], width: number, i: number, k: number, t
 function codeTroubles(codes: string | undefined, legs: number): (LegTrouble | null)[] {
   return Array.from({ length: legs }, (_, leg) => {
     const code = CODES[Number(codes?.[leg] ?? 0)] ?? "OK";
-    const words = WORDS[code];
+    const words = REACH_TEXTS[code];
     return words ? { short: words, text: words, goal: null } : null;
   });
 }

@@ -2,7 +2,7 @@ import type { RobotMessage, WalkMessage } from "../protocol";
 import type { View } from "./CameraRig";
 import { extentOf } from "./trails";
 
-/** What the camera should see: the robot where it stands, or all of its walk. */
+/** Region that the camera shows: the robot in its stance, or its whole walk. */
 export function framing(robot: RobotMessage, walk: WalkMessage | null): View {
   const reach = reachOf(robot);
   const extent = walk && extentOf(walk);
@@ -10,7 +10,7 @@ export function framing(robot: RobotMessage, walk: WalkMessage | null): View {
   return { target: [x, y, reach * 0.2], radius: reach + (extent?.radius ?? 0) * 0.7 };
 }
 
-/** How far from the body's middle the standing robot reaches, with some air about it [mm]. */
+/** Radius of the standing robot about the centre of its body, with a margin [mm]. */
 export function reachOf(robot: RobotMessage): number {
   const feet = robot.stance_mm ?? robot.mount_mm;
   let far = 0;

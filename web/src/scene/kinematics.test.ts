@@ -11,7 +11,7 @@ const robot = aRobot();
 const STRAIGHT = robot.leg_names.flatMap(() => [0, 0, 0]);
 
 describe("points of a leg", () => {
-  it("lie straight out and level with all angles zero", () => {
+  it("are in a horizontal line outward if all angles are zero", () => {
     const [mount, axis, knee, foot] = pointsInBody(robot, STRAIGHT, 1);
     expect(mount).toEqual([0, 86, 0]);
     [68, 68 + 98, 68 + 98 + 181].forEach((far, i) => {
@@ -22,7 +22,7 @@ describe("points of a leg", () => {
     });
   });
 
-  it("keep the links' lengths at any angles, wherever the body is", () => {
+  it("keep the lengths of the links for any angles and body pose", () => {
     const angles = STRAIGHT.map((_, i) => ((i * 37) % 110) - 55);
     const points = legPoints(robot, angles, [10, -20, 130], quaternionOf(12, -7, 33));
     for (let leg = 0; leg < 6; leg++) {
@@ -34,7 +34,7 @@ describe("points of a leg", () => {
     }
   });
 
-  it("turn the femur axis' offset with the coxa", () => {
+  it("rotate the offset of the femur axis with the coxa", () => {
     const offset = { ...robot, femur_axis_offset_mm: robot.leg_names.flatMap(() => [5, 3]) };
     const [, axis] = pointsInBody(offset, [90, 0, 0], 0);
     // The leg points at 30 deg; turned by 90 it points at 120, and its left is at 210.
@@ -47,7 +47,7 @@ describe("points of a leg", () => {
     expect(axis[2]).toBeCloseTo(3, 9);
   });
 
-  it("lift the foot where femur and tibia are positive", () => {
+  it("raise the foot for positive femur and tibia angles", () => {
     expect(pointsInBody(robot, [0, 30, 0], 0)[3][2]).toBeCloseTo(279 * Math.sin(Math.PI / 6), 6);
     expect(pointsInBody(robot, [0, 0, 90], 0)[3][2]).toBeCloseTo(181, 6);
   });
@@ -62,10 +62,12 @@ describe("rotations", () => {
       [x, [0, 1, 0]],
       [y, [0, 0, 1]],
       [z, [1, 0, 0]],
-    ].forEach(([got, wanted]) => got?.forEach((value, i) => expect(value).toBeCloseTo(wanted?.[i] ?? 0, 9)));
+    ].forEach(([got, expected]) =>
+      got?.forEach((value, i) => expect(value).toBeCloseTo(expected?.[i] ?? 0, 9)),
+    );
   });
 
-  it("sink the front for a positive pitch", () => {
+  it("lower the front for a positive pitch", () => {
     expect(turn(quaternionOf(0, 10, 0), [1, 0, 0])[2]).toBeLessThan(0);
   });
 });
@@ -73,18 +75,18 @@ describe("rotations", () => {
 describe("a walk", () => {
   const walk = aWalk();
 
-  it("is its samples at their times, and lies between them in between", () => {
+  it("equals its samples at their times, and is interpolated between them", () => {
     expect(frameOfWalk(robot, walk, null, 0).position[0]).toBe(0);
     expect(frameOfWalk(robot, walk, null, 0.1).position[0]).toBeCloseTo(10, 4);
     expect(frameOfWalk(robot, walk, null, 0.125).position[0]).toBeCloseTo(12.5, 4);
   });
 
-  it("stays at its ends before and after", () => {
+  it("is constant before its start and after its end", () => {
     expect(frameOfWalk(robot, walk, null, -1).position[0]).toBe(0);
     expect(frameOfWalk(robot, walk, null, 99).position[0]).toBeCloseTo(20, 4);
   });
 
-  it("says which leg can't, by the codes of its samples", () => {
+  it("names the legs out of reach, by the codes of its samples", () => {
     const stuck = { ...walk, reach: ["000000", "010000", "000000"] };
     expect(frameOfWalk(robot, stuck, null, 0.1).trouble.map((one) => one?.short ?? "")).toEqual([
       "",
@@ -96,7 +98,7 @@ describe("a walk", () => {
     ]);
   });
 
-  it("leaves a trail where the feet were", () => {
+  it("has the paths of its feet", () => {
     const trails = footTrails(robot, walk);
     const foot = footOf(frameOfWalk(robot, walk, null, 0.2), 3);
     expect(trails).toHaveLength(6);

@@ -59,7 +59,7 @@ export function pointsInBody(
   return [mount, axis, knee, foot];
 }
 
-/** What of the robot the picture needs. */
+/** Dimensions that the scene needs. */
 export function shapeOf(robot: RobotMessage): Shape {
   const legs = robot.leg_names.map((_, leg) => leg);
   const size = robot.body_size_mm;
@@ -78,7 +78,7 @@ export function shapeOf(robot: RobotMessage): Shape {
   };
 }
 
-/** The i-th three numbers of a flat list. */
+/** The i-th triple of a flat list. */
 export function triple(list: ArrayLike<number>, i: number): Vec3 {
   return [list[i * 3] ?? 0, list[i * 3 + 1] ?? 0, list[i * 3 + 2] ?? 0];
 }

@@ -9,11 +9,11 @@ export interface LineLook {
   /** Width [pixels]. */
   width: number;
   opacity?: number;
-  /** Drawn over everything else. */
+  /** Whether it is drawn over everything else. */
   onTop?: boolean;
 }
 
-/** A line wide enough to be seen: WebGL's own are one pixel wide everywhere. */
+/** A line with a width: WebGL's own lines are one pixel wide. */
 export function makeLine(look: LineLook): Line2 {
   const material = new LineMaterial({
     color: look.colour,
@@ -30,8 +30,8 @@ export function makeLine(look: LineLook): Line2 {
 }
 
 /**
- * Give a line its points (x, y, z in turn). The same number of points is written in place; another number needs a
- * new geometry, as a fat line's buffers can't grow.
+ * Set the points of a line (x, y, z of each). An unchanged number of points is written in place; another number needs
+ * a new geometry, as the buffers can't grow.
  */
 export function setLine(line: Line2, flat: ArrayLike<number>): void {
   const count = flat.length / 3;
@@ -51,7 +51,7 @@ export function setLine(line: Line2, flat: ArrayLike<number>): void {
   start.data.needsUpdate = true;
 }
 
-/** A fat line that lives as long as the component, in the looks it has now. */
+/** A line for the lifetime of the component. */
 export function useLine({ colour, width, opacity = 1, onTop = false }: LineLook): Line2 {
   const line = useMemo(() => makeLine({ colour, width, opacity, onTop }), [colour, width, opacity, onTop]);
   useEffect(

@@ -1,4 +1,4 @@
-/** Colours of the frame. CSS has its own in theme.css; WebGL can't read those. */
+/** Colours of the scene. Those of the page are in theme.css, which WebGL can't read. */
 export interface Palette {
   background: string;
   ground: string;
@@ -68,11 +68,11 @@ export const DARK: Palette = {
   sky: 1.1,
 };
 
-// Okabe and Ito's colours, as in the figures: cool ones left, warm ones right, from front to rear.
+// Colours of Okabe and Ito, as in the figures: cool on the left, warm on the right, from front to rear.
 const LEFT = ["#0072B2", "#56B4E9", "#009E73", "#332288"];
 const RIGHT = ["#D55E00", "#E69F00", "#CC79A7", "#882255"];
 
-/** A colour for each leg, from where the legs are mounted ([x, y, z] in mm, y to the left). */
+/** A colour for each leg, by the position of its mount ([x, y, z] in mm, y to the left). */
 export function legColours(mounts: readonly (readonly number[])[]): string[] {
   const colours = mounts.map(() => "");
   for (const [choice, isSide] of [

@@ -2,7 +2,7 @@ import { Ray, Vector3 } from "three";
 import { describe, expect, it } from "vitest";
 
 import { CAMERAS, distanceFor, isFrom, placeCamera } from "./cameras";
-import { dragPlane, meet } from "./dragging";
+import { dragPlane, intersection } from "./dragging";
 import { blend, blendRotation, quaternionOf, turn, type Frame } from "./frame";
 
 function aFrame(x: number): Frame {
@@ -24,8 +24,8 @@ function aFrame(x: number): Frame {
   };
 }
 
-describe("between two frames", () => {
-  it("positions lie in between, contacts are the second's", () => {
+describe("interpolation between frames", () => {
+  it("interpolates positions and takes contacts from the second", () => {
     const middle = blend(aFrame(0), aFrame(10), 0.25);
     expect(middle.points[0]).toBeCloseTo(2.5);
     expect(middle.position[0]).toBeCloseTo(2.5);
@@ -33,12 +33,12 @@ describe("between two frames", () => {
     expect(middle.contacts).toEqual([true]);
   });
 
-  it("a robot of another number of legs comes at once", () => {
+  it("does not interpolate between numbers of legs", () => {
     const other = { ...aFrame(10), points: new Float32Array(24) };
     expect(blend(aFrame(0), other, 0.1)).toBe(other);
   });
 
-  it("a rotation takes the shorter way", () => {
+  it("rotates along the shorter path", () => {
     const [x, y] = turn(blendRotation(quaternionOf(0, 0, 170), quaternionOf(0, 0, -170), 0.5), [1, 0, 0]);
     expect(x).toBeCloseTo(-1, 6);
     expect(y).toBeCloseTo(0, 6);
@@ -46,7 +46,7 @@ describe("between two frames", () => {
 });
 
 describe("cameras", () => {
-  it("stand where their names say, and know it", () => {
+  it("have the direction of their names", () => {
     for (const { name } of CAMERAS) {
       const place = placeCamera(name, [100, 50, 20], 300, 32, 1.5);
       expect(place.target).toEqual([100, 50, 20]);
@@ -55,7 +55,7 @@ describe("cameras", () => {
     expect(isFrom("top", placeCamera("side", [0, 0, 0], 300, 32, 1.5))).toBe(false);
   });
 
-  it("stand farther off where the picture is narrow", () => {
+  it("are farther away in a narrow view", () => {
     expect(distanceFor(300, 32, 0.5)).toBeGreaterThan(1.5 * distanceFor(300, 32, 1));
     expect(distanceFor(300, 32, 2)).toBe(distanceFor(300, 32, 1));
   });
@@ -64,21 +64,25 @@ describe("cameras", () => {
 describe("dragging", () => {
   const ray = new Ray(new Vector3(-100, 0, 100), new Vector3(1, 0, -1).normalize());
 
-  it("goes over the floor seen from above, and upright seen from the side", () => {
+  it("is horizontal seen from above, and vertical seen from the side", () => {
     expect(dragPlane([0, 0, 40], [0.7, 0, -0.7], false).normal.toArray()).toEqual([0, 0, 1]);
     expect(dragPlane([0, 0, 40], [1, 0, -0.1], false).normal.toArray()).toEqual([1, 0, 0]);
   });
 
-  it("takes the other plane if asked", () => {
+  it("uses the other plane with Shift", () => {
     expect(dragPlane([0, 0, 40], [0.7, 0, -0.7], true).normal.toArray()).toEqual([1, 0, 0]);
   });
 
-  it("keeps the height at which a thing was grabbed", () => {
-    expect(meet(ray, dragPlane([0, 0, 40], [0.7, 0, -0.7], false))).toEqual([-40, 0, expect.closeTo(40)]);
+  it("keeps the height of the handle", () => {
+    expect(intersection(ray, dragPlane([0, 0, 40], [0.7, 0, -0.7], false))).toEqual([
+      -40,
+      0,
+      expect.closeTo(40),
+    ]);
   });
 
-  it("knows that a ray may miss", () => {
+  it("has no intersection with a parallel ray", () => {
     const level = new Ray(new Vector3(0, 0, 100), new Vector3(1, 0, 0));
-    expect(meet(level, dragPlane([0, 0, 40], [0.7, 0, -0.7], false))).toBeNull();
+    expect(intersection(level, dragPlane([0, 0, 40], [0.7, 0, -0.7], false))).toBeNull();
   });
 });

@@ -1,6 +1,6 @@
 import { saveBlob } from "../state/files";
 
-/** Save what the canvas shows now, with what is written over it. */
+/** Save the canvas with its labels. */
 export async function savePng(): Promise<void> {
   const scene = document.querySelector<HTMLElement>(".scene");
   const drawn = scene?.querySelector("canvas");
@@ -19,7 +19,7 @@ export async function savePng(): Promise<void> {
   if (blob) saveBlob("tarsus.png", blob);
 }
 
-/** Draw a note as the page shows it: its plate, its dot, its words. */
+/** Draw a label like the page does: background, dot, text. */
 function drawNote(pen: CanvasRenderingContext2D, note: HTMLElement, origin: DOMRect): void {
   const box = note.getBoundingClientRect();
   const style = getComputedStyle(note);

@@ -10,12 +10,12 @@ const SQUARE: Point2[] = [
 ];
 
 describe("convex hull", () => {
-  it("leaves out what lies inside or on an edge, and goes round counter-clockwise", () => {
+  it("omits points inside or on an edge, and is counter-clockwise", () => {
     const hull = convexHull([[1, 1], [1, 0], ...SQUARE]);
     expect(hull).toEqual(SQUARE);
   });
 
-  it("holds all of many points", () => {
+  it("contains all points", () => {
     const points = Array.from({ length: 60 }, (_, i): Point2 => [
       Math.sin(i * 12.9) * 50,
       Math.cos(i * 7.7) * 30,
@@ -35,7 +35,7 @@ describe("nearest point of an edge", () => {
     expect(nearestOnEdge(SQUARE, [1.5, 0.9])).toEqual([2, 0.9]);
   });
 
-  it("is a corner for points beyond it", () => {
+  it("is a corner for points beyond the edge", () => {
     expect(nearestOnEdge(SQUARE, [5, 5])).toEqual([2, 2]);
   });
 });

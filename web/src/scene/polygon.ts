@@ -1,8 +1,8 @@
-/** Plane geometry of the frame. */
+/** Plane geometry. */
 
 export type Point2 = readonly [number, number];
 
-/** Convex hull, counter-clockwise (Andrew's monotone chain). Fewer than three points come back as they are. */
+/** Convex hull, counter-clockwise (Andrew's monotone chain). Fewer than three points are returned unchanged. */
 export function convexHull(points: readonly Point2[]): Point2[] {
   const sorted = [...points].sort((a, b) => a[0] - b[0] || a[1] - b[1]);
   if (sorted.length < 3) return sorted;
@@ -22,7 +22,7 @@ function turns(a: Point2 | undefined, b: Point2 | undefined, c: Point2): number 
   return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
 }
 
-/** The point of a polygon's edge that is nearest to a point. */
+/** The point on the boundary of a polygon nearest to a point. */
 export function nearestOnEdge(polygon: readonly Point2[], point: Point2): Point2 {
   let nearest: Point2 = polygon[0] ?? point;
   let least = Infinity;

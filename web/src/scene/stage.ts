@@ -2,14 +2,14 @@ import { invalidate } from "@react-three/fiber";
 
 import { blend, distance, type Frame } from "./frame";
 
-/** Time in which the picture comes 63 % closer to where it should be [s]. */
-const FOLLOWING = 0.03;
-/** Closer than this, the picture is where it should be [mm]. */
-const CLOSE = 0.05;
+/** Time constant of the smoothing [s]. */
+const TIME_CONSTANT = 0.03;
+/** Distance below which the target is reached [mm]. */
+const TOLERANCE = 0.05;
 
 /**
- * What the canvas draws, kept outside React: 60 frames a second must not render a component.
- * Answers of the server are targets; what is drawn follows them within a few hundredths of a second.
+ * The frame that the canvas draws, kept outside React: 60 frames a second must not render components.
+ * Answers of the server are targets, which the drawn frame follows with a short time constant.
  */
 class Stage {
   current: Frame | null = null;
@@ -17,14 +17,14 @@ class Stage {
   private clock: ((dt: number) => Frame | null) | null = null;
   private readonly watchers = new Set<(frame: Frame) => void>();
 
-  /** Move to a frame, smoothly unless told otherwise. */
+  /** Set the target frame; without smoothing it is drawn immediately. */
   show(frame: Frame, smooth = true): void {
     this.target = frame;
-    if (!smooth || !this.current || prefersStillness()) this.current = frame;
+    if (!smooth || !this.current || prefersReducedMotion()) this.current = frame;
     invalidate();
   }
 
-  /** Let a clock give the frames from now on (a walk that plays), until it gives null; returns how to stop it. */
+  /** Take frames from a clock (the playback of a walk) until it returns null; returns a function that stops it. */
   play(clock: (dt: number) => Frame | null): () => void {
     this.clock = clock;
     invalidate();
@@ -33,7 +33,7 @@ class Stage {
     };
   }
 
-  /** Be told every frame that is drawn; returns how to stop. */
+  /** Call a function with every drawn frame; returns a function that stops this. */
   watch(watcher: (frame: Frame) => void): () => void {
     this.watchers.add(watcher);
     return () => this.watchers.delete(watcher);
@@ -55,13 +55,13 @@ class Stage {
     }
     const { current, target } = this;
     if (!current || !target || current === target) return false;
-    const next = blend(current, target, 1 - Math.exp(-dt / FOLLOWING));
-    this.current = distance(next, target) < CLOSE ? target : next;
+    const next = blend(current, target, 1 - Math.exp(-dt / TIME_CONSTANT));
+    this.current = distance(next, target) < TOLERANCE ? target : next;
     return true;
   }
 }
 
-export function prefersStillness(): boolean {
+export function prefersReducedMotion(): boolean {
   return window.matchMedia("(prefers-reduced-motion: reduce)").matches;
 }
 

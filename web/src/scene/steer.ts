@@ -1,27 +1,27 @@
 import { Spherical, type Vector3 } from "three";
 
-/** Turning the picture by keyboard: the camera rig takes these turns at its next frame. */
+/** A rotation of the camera by keyboard, applied by the camera rig in its next frame. */
 export interface Turn {
-  /** About the upright, and up or down [rad]; nearer by a factor. */
-  round: number;
-  over: number;
-  nearer: number;
+  /** Changes of azimuth and polar angle [rad], and factor of the distance. */
+  azimuth: number;
+  polar: number;
+  distance: number;
 }
 
 const STEP = Math.PI / 24;
 const TURNS: Record<string, Turn> = {
-  ArrowLeft: { round: STEP, over: 0, nearer: 1 },
-  ArrowRight: { round: -STEP, over: 0, nearer: 1 },
-  ArrowUp: { round: 0, over: -STEP, nearer: 1 },
-  ArrowDown: { round: 0, over: STEP, nearer: 1 },
-  "+": { round: 0, over: 0, nearer: 0.9 },
-  "=": { round: 0, over: 0, nearer: 0.9 },
-  "-": { round: 0, over: 0, nearer: 1 / 0.9 },
+  ArrowLeft: { azimuth: STEP, polar: 0, distance: 1 },
+  ArrowRight: { azimuth: -STEP, polar: 0, distance: 1 },
+  ArrowUp: { azimuth: 0, polar: -STEP, distance: 1 },
+  ArrowDown: { azimuth: 0, polar: STEP, distance: 1 },
+  "+": { azimuth: 0, polar: 0, distance: 0.9 },
+  "=": { azimuth: 0, polar: 0, distance: 0.9 },
+  "-": { azimuth: 0, polar: 0, distance: 1 / 0.9 },
 };
 
 let listener: ((turn: Turn) => void) | null = null;
 
-/** Turn by a key; returns whether the key means a turn. */
+/** Handle a key; returns whether it turns the camera. */
 export function steer(key: string): boolean {
   const turn = TURNS[key];
   if (!turn || !listener) return false;
@@ -29,7 +29,7 @@ export function steer(key: string): boolean {
   return true;
 }
 
-/** Take the turns from now on; returns how to stop. */
+/** Set the handler of rotations; returns a function that removes it. */
 export function onSteer(take: (turn: Turn) => void): () => void {
   listener = take;
   return () => {
@@ -37,17 +37,17 @@ export function onSteer(take: (turn: Turn) => void): () => void {
   };
 }
 
-/** How far down one may look along the floor [rad from the upright]. */
+/** Greatest polar angle of the camera [rad from the vertical]. */
 export const LOWEST = Math.PI * 0.497;
 
-/** Move the eye round what it looks at. */
-export function turnBy({ round, over, nearer }: Turn, eye: Vector3, target: Vector3) {
+/** Rotate the camera about its target. */
+export function turnBy({ azimuth, polar, distance }: Turn, eye: Vector3, target: Vector3) {
   const offset = eye.clone().sub(target);
-  // three's spherical angles have y up: z, x, y of ours.
+  // The spherical coordinates of three.js have y up.
   const angles = new Spherical().setFromCartesianCoords(offset.y, offset.z, offset.x);
-  angles.theta += round;
-  angles.phi = Math.min(LOWEST, Math.max(0.001, angles.phi + over));
-  angles.radius *= nearer;
+  angles.theta += azimuth;
+  angles.phi = Math.min(LOWEST, Math.max(0.001, angles.phi + polar));
+  angles.radius *= distance;
   offset.setFromSpherical(angles);
   eye.set(offset.z, offset.x, offset.y).add(target);
 }

@@ -3,7 +3,7 @@ import type { Vec3 } from "./frame";
 import { frameOfWalk } from "./frames";
 import { triple } from "./kinematics";
 
-/** Where each foot goes over a walk: for each leg x, y, z in turn [mm]; at most `most` points each. */
+/** Path of each foot over a walk: x, y, z of at most `most` points for each leg [mm]. */
 export function footTrails(robot: RobotMessage, walk: WalkMessage, most = 600): Float32Array[] {
   const every = Math.max(1, Math.ceil(walk.count / most));
   const samples = Array.from({ length: Math.ceil(walk.count / every) }, (_, n) => n * every);
@@ -16,7 +16,7 @@ export function footTrails(robot: RobotMessage, walk: WalkMessage, most = 600): 
   return trails;
 }
 
-/** A circle on the floor that holds all of a walk: its middle and its radius [mm]. */
+/** Circle on the ground that contains the walk: centre and radius [mm]. */
 export function extentOf(walk: WalkMessage): { middle: Vec3; radius: number } {
   const xs: number[] = [];
   const ys: number[] = [];
@@ -29,7 +29,7 @@ export function extentOf(walk: WalkMessage): { middle: Vec3; radius: number } {
   return { middle: [(x0 + x1) / 2, (y0 + y1) / 2, 0], radius: Math.hypot(x1 - x0, y1 - y0) / 2 };
 }
 
-/** How long a walk plays [s]: from its first moment to its last. */
+/** Duration of a walk from its first to its last sample [s]. */
 export function lengthOf(walk: WalkMessage | null): number {
   return walk ? (walk.count - 1) / walk.rate_hz : 0;
 }

@@ -3,7 +3,7 @@ import { useEffect, useRef } from "react";
 import type { Frame } from "./frame";
 import { stage } from "./stage";
 
-/** Call a function with every picture that is drawn, without rendering the component. */
+/** Call a function with every drawn frame, without rendering the component. */
 export function useStage(apply: (frame: Frame) => void): void {
   const latest = useRef(apply);
   useEffect(() => {

@@ -4,7 +4,7 @@ import { frameOfWalk } from "./frames";
 import { lengthOf } from "./trails";
 import { stage } from "./stage";
 
-/** Let a walk be on the stage, at the time of the playback; returns how to end it. */
+/** Show a walk at the time of the playback; returns a function that ends this. */
 export function playWalk(robot: RobotMessage, walk: WalkMessage, loads: LoadsMessage | null): () => void {
   const duration = lengthOf(walk);
   const frameNow = () => frameOfWalk(robot, walk, loads, usePlayback.getState().time);

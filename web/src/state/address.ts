@@ -1,19 +1,19 @@
 import { SOCKET } from "../protocol";
 
-/** What the page's address says: the token of the server's link, and the state that a shared link restores. */
+/** Content of the page's URL: the token of the server, and the state of a shared link. */
 export interface Address {
   token: string | null;
   state: string | null;
 }
 
-/** Read an address. The state stands behind the #, so that no server's log ever sees it. */
+/** Parse a URL. The state is in the fragment, which browsers do not send to servers. */
 export function readAddress(href: string): Address {
   const url = new URL(href);
   const hash = new URLSearchParams(url.hash.slice(1));
   return { token: url.searchParams.get("token"), state: hash.get("s") };
 }
 
-/** The address that restores a state. A token is left out of it unless asked for: it is a key, not part of the state. */
+/** The URL that restores a state; without the token unless asked for, as it is a secret. */
 export function writeAddress(href: string, state: string | null, keepToken: boolean): string {
   const url = new URL(href);
   if (!keepToken) url.searchParams.delete("token");
@@ -21,7 +21,7 @@ export function writeAddress(href: string, state: string | null, keepToken: bool
   return url.href;
 }
 
-/** Where the socket is, seen from the page. */
+/** URL of the socket on the page's host. */
 export function socketAddress(href: string): string {
   const page = new URL(href);
   const url = new URL(SOCKET, page);

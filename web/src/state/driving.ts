@@ -3,17 +3,17 @@ import { frameOfDrive } from "../scene/frames";
 import { stage } from "../scene/stage";
 import { useStudio } from "./store";
 
-/** How often words and numbers change while driving [ms]. */
-const WORDS = 120;
-let told = 0;
+/** Interval at which texts and numbers are updated while driving [ms]. */
+const PANEL_INTERVAL = 120;
+let shownAt = 0;
 
-/** Show a frame of the live walker: the picture at once, the numbers a few times a second. */
+/** Show a frame of the driven robot: the 3D view for every frame, the panel at a lower rate. */
 export function showDriveFrame(frame: DriveFrame): void {
   const { robot, state } = useStudio.getState();
   if (!robot || state?.view !== "drive") return;
   stage.show(frameOfDrive(robot, frame));
   const now = performance.now();
-  if (now - told < WORDS) return;
-  told = now;
+  if (now - shownAt < PANEL_INTERVAL) return;
+  shownAt = now;
   useStudio.setState({ drive: frame });
 }

@@ -1,4 +1,4 @@
-/** Give the visitor a file. */
+/** Download a blob as a file. */
 export function saveBlob(name: string, blob: Blob): void {
   const address = URL.createObjectURL(blob);
   const anchor = document.createElement("a");

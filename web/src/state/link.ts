@@ -7,30 +7,29 @@ export type LinkStatus =
   | { kind: "connecting" }
   | { kind: "open" }
   | { kind: "lost"; text: string; attempt: number }
-  /** Ended as nobody was there; comes back when somebody is. */
+  /** Ended after a time without messages; reconnects at the next input. */
   | { kind: "asleep"; text: string }
   | { kind: "refused"; text: string };
 
 export interface LinkEvents {
   status: (status: LinkStatus) => void;
-  /** An answer, with the type of the question where it is known. */
+  /** A message of the server, with the type of the request that it answers, where known. */
   message: (message: ServerMessage, asked: ClientType | null) => void;
-  /** The state to go on with after the connection broke. */
+  /** State to restore after a lost connection. */
   state: () => string | null;
 }
 
-/** Why no further try makes sense. */
+/** Reasons not to reconnect. */
 const FINAL: Partial<Record<number, string>> = {
-  [CLOSED.TOKEN]:
-    "This page needs the token of the server's link: open it by the link that the server printed.",
+  [CLOSED.TOKEN]: "A token is required: open the link that the server printed.",
 };
 const REASONS: Partial<Record<number, string>> = {
-  [CLOSED.RATE]: "The server was asked too much at once.",
-  [CLOSED.FULL]: "The server has as many visitors as it takes.",
+  [CLOSED.RATE]: "Too many messages were sent to the server.",
+  [CLOSED.FULL]: "The server has reached its number of sessions.",
   [CLOSED.LARGE]: "The last message was too large for the server.",
 };
 
-/** The connection to the server: says hello with the state, sends what waits, comes back by itself. */
+/** Connection to the server: sends the state at the start, sends queued messages, reconnects by itself. */
 export class Link {
   private socket: WebSocket | null = null;
   private attempt = 0;
@@ -54,7 +53,7 @@ export class Link {
     socket.onclose = (event) => this.closed(event.code);
   }
 
-  /** Send a message, now or soon; returns whether there is a connection to send it by. */
+  /** Queue a message; returns whether there is a connection. */
   send(draft: Draft): boolean {
     if (this.socket?.readyState !== WebSocket.OPEN) return false;
     this.outbox.put(draft);
@@ -88,17 +87,17 @@ export class Link {
       return;
     }
     if (code === CLOSED.IDLE) {
-      // To connect again by itself would keep a session that nobody uses.
-      this.events.status({ kind: "asleep", text: "The session has ended, as nothing was done for long." });
+      // Reconnecting here would keep an unused session open.
+      this.events.status({ kind: "asleep", text: "The session has ended after a long time without input." });
       return;
     }
-    const text = REASONS[code] ?? "The connection to the server is broken.";
+    const text = REASONS[code] ?? "The connection to the server is lost.";
     this.events.status({ kind: "lost", text, attempt: this.attempt });
     this.timer = window.setTimeout(() => this.open(), backoff(this.attempt));
     this.attempt += 1;
   }
 
-  /** Try at once, as the visitor is there and waits. */
+  /** Reconnect immediately. */
   retry(): void {
     if (this.socket) return;
     this.attempt = 0;

@@ -1,4 +1,4 @@
 import { create } from "zustand";
 
-/** What the picture shows besides; a matter of taste, so no part of the state that a link restores. */
+/** Display options, which are not part of the state of a link. */
 export const useOptions = create<{ forces: boolean }>(() => ({ forces: false }));

@@ -18,7 +18,7 @@ const angleOf = (message: ClientMessage | undefined) =>
   message?.type === "joints" ? message.joints.angles_deg?.[0] : undefined;
 
 describe("outbox", () => {
-  it("has one message of a type under way, and sends the newest of those that waited", () => {
+  it("has one message of a type in flight, and then sends the newest of the queued ones", () => {
     const { sent, outbox } = anOutbox();
     outbox.put(joints(1));
     outbox.pump(0);
@@ -30,7 +30,7 @@ describe("outbox", () => {
     expect(sent.map(angleOf)).toEqual([1, 4]);
   });
 
-  it("keeps a step of undo when a newer message takes the place of its own", () => {
+  it("keeps a commit if a newer message replaces it", () => {
     const { sent, outbox } = anOutbox();
     outbox.put(joints(1));
     outbox.pump(0);
@@ -41,7 +41,7 @@ describe("outbox", () => {
     expect(sent[1]).toMatchObject({ commit: true, joints: { angles_deg: [3] } });
   });
 
-  it("spaces messages of a type, and says when to try again", () => {
+  it("limits the rate of each type, and returns when to try again", () => {
     const { sent, outbox } = anOutbox();
     outbox.put(joints(1));
     outbox.pump(0);
@@ -53,7 +53,7 @@ describe("outbox", () => {
     expect(sent).toHaveLength(2);
   });
 
-  it("sends every undo, in turn", () => {
+  it("sends every undo, in order", () => {
     const { sent, outbox } = anOutbox();
     [1, 2, 3].forEach(() => outbox.put({ type: "undo" }));
     for (let i = 0; i < 3; i++) {
@@ -63,7 +63,7 @@ describe("outbox", () => {
     }
   });
 
-  it("lets undo overtake nothing that was decided before, and nothing overtake undo", () => {
+  it("keeps the order of commits and undo", () => {
     const { sent, outbox } = anOutbox();
     outbox.put(joints(1));
     outbox.pump(0);
@@ -82,7 +82,7 @@ describe("outbox", () => {
     expect(sent.slice(3).map(({ type }) => type)).toEqual(["undo", "body"]);
   });
 
-  it("keeps the order of what was decided when it could not be sent", () => {
+  it("keeps the order of commits that could not be sent", () => {
     const sent: ClientMessage[] = [];
     let open = false;
     const outbox = new Outbox((message) => open && sent.push(message) > 0);
@@ -95,7 +95,7 @@ describe("outbox", () => {
     expect(sent.map(({ type }) => type)).toEqual(["joints", "undo"]);
   });
 
-  it("lets moves of one slider wait while another's go", () => {
+  it("sends changes of one slider while those of another are queued", () => {
     const { sent, outbox } = anOutbox();
     outbox.put(joints(1));
     outbox.pump(0);
@@ -106,7 +106,7 @@ describe("outbox", () => {
     expect(sent.map(({ type }) => type)).toEqual(["joints", "body", "zone"]);
   });
 
-  it("lets one type pass another", () => {
+  it("does not order messages of independent types", () => {
     const { sent, outbox } = anOutbox();
     outbox.put(joints(1));
     outbox.put({ type: "zone", leg: 2 });
@@ -114,7 +114,7 @@ describe("outbox", () => {
     expect(sent.map(({ type }) => type)).toEqual(["joints", "zone"]);
   });
 
-  it("gives every message an id of its own, also after the connection broke", () => {
+  it("gives every message its own id, also after a lost connection", () => {
     const { sent, outbox } = anOutbox();
     outbox.put(joints(1));
     outbox.pump(0);
@@ -124,7 +124,7 @@ describe("outbox", () => {
     expect(new Set(sent.map(({ id }) => id)).size).toBe(2);
   });
 
-  it("keeps what could not be sent", () => {
+  it("keeps messages that could not be sent", () => {
     const sent: ClientMessage[] = [];
     let open = false;
     const outbox = new Outbox((message) => open && sent.push(message) > 0);
@@ -135,7 +135,7 @@ describe("outbox", () => {
     expect(sent.map(angleOf)).toEqual([1]);
   });
 
-  it("knows what was sent after a message", () => {
+  it("knows whether a type was sent after a message", () => {
     const { sent, outbox } = anOutbox();
     outbox.put({ type: "undo" });
     outbox.pump(0);
@@ -148,7 +148,7 @@ describe("outbox", () => {
     expect(outbox.isNewer("undo", sent[1]?.id ?? -1)).toBe(false);
   });
 
-  it("knows of which type an answer is, until it is settled", () => {
+  it("knows the type of a request until it is settled", () => {
     const { sent, outbox } = anOutbox();
     outbox.put(joints(1));
     expect(outbox.isBusy("joints")).toBe(true);

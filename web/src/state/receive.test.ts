@@ -29,44 +29,48 @@ const error = (id: number): ErrorMessage => ({
   longest_stroke_mm: 90,
 });
 
-describe("what the page knows", () => {
-  it("keeps the state's text when an answer does not change it", () => {
+describe("messages of the server", () => {
+  it("keep the text of the state if it is unchanged", () => {
     expect(after(EMPTY, [done(1, "abc"), "view"], [done(2), "walk"]).stateText).toBe("abc");
   });
 
-  it("keeps a refusal until the same is asked with success", () => {
+  it("keep an error until a message of its type succeeds", () => {
     const refused = after(EMPTY, [error(1), "walk"], [done(1), "walk"]);
     expect(refused.failures.walk?.text).toBe("too long");
     expect(after(refused, [done(2), "zone"]).failures.walk?.text).toBe("too long");
     expect(after(refused, [done(3), "walk"]).failures.walk).toBeUndefined();
   });
 
-  it("does not lead the visitor back to a view that was left since", () => {
+  it("do not return to a view that was left meanwhile", () => {
     const here = { view: "body", walk: { swing_height_mm: 1 } } as Studio["state"];
-    const told = { type: "state", id: 4, state: { view: "robot", walk: { swing_height_mm: 2 } } } as ServerMessage;
+    const sent = {
+      type: "state",
+      id: 4,
+      state: { view: "robot", walk: { swing_height_mm: 2 } },
+    } as ServerMessage;
     const studio = { ...EMPTY, state: here };
-    expect(received(studio, told, "document", (type) => type === "view").state).toMatchObject({
+    expect(received(studio, sent, "document", (type) => type === "view").state).toMatchObject({
       view: "body",
       walk: { swing_height_mm: 2 },
     });
-    expect(received(studio, told, "document").state?.view).toBe("robot");
+    expect(received(studio, sent, "document").state?.view).toBe("robot");
   });
 
-  it("puts what a view can't show beside that view's inputs", () => {
+  it("show the errors of a view beside its inputs", () => {
     const state = { view: "walk" } as Studio["state"];
     const opened = after({ ...EMPTY, state }, [error(1), "view"], [done(1), "view"], [done(2), "view"]);
     expect(opened.failures.walk?.text).toBe("too long");
     expect(after(opened, [aWalk(), "walk"]).failures.walk).toBeUndefined();
   });
 
-  it("keeps the refusal of a robot file beside the file", () => {
+  it("show errors of a robot file beside the file", () => {
     const state = { view: "walk" } as Studio["state"];
     const refused = after({ ...EMPTY, state, robot: aRobot() }, [error(5), "toml"], [done(5), "toml"]);
     expect(refused.failures.toml?.text).toBe("too long");
     expect(refused.failures.walk).toBeUndefined();
   });
 
-  it("forgets another robot's walk, unless it came anew with this one", () => {
+  it("discard the walk of another robot, unless the new robot came with one", () => {
     const robot = { ...aRobot(), id: 7 };
     const walking: Studio = { ...EMPTY, walk: aWalk() };
     expect(after(walking, [robot, "document"], [done(7), "document"]).walk).toBeNull();
@@ -74,7 +78,7 @@ describe("what the page knows", () => {
     expect(after(walking, [robot, "document"], [anew, "document"], [done(7), "document"]).walk).toBe(anew);
   });
 
-  it("forgets a walk's loads when another walk comes", () => {
+  it("discard the loads of the previous walk", () => {
     const studio = { ...EMPTY, loads: { id: 1 } as Studio["loads"] };
     expect(after(studio, [aWalk(), "walk"]).loads).toBeNull();
   });

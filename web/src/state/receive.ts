@@ -3,9 +3,9 @@ import type { ClientType } from "./outbox";
 import type { Studio, View } from "./store";
 
 /**
- * What a message of the server changes of what the page knows.
+ * Changes of the store by a message of the server.
  *
- * `isNewer` tells of which types the visitor has sent something after the question that is answered here.
+ * `isNewer`: whether a message of a type was sent after the request that is answered.
  */
 export function received(
   studio: Studio,
@@ -19,7 +19,7 @@ export function received(
     case "robot":
       return { robot: message };
     case "state":
-      // What was refused before is of inputs that are no longer there.
+      // Earlier errors belong to inputs that have been replaced.
       return { state: keepingNewer(message.state, studio.state, isNewer), failures: {} };
     case "pose":
       return { poses: { ...studio.poses, [message.view]: message } };
@@ -43,22 +43,22 @@ export function received(
   }
 }
 
-/** The server's state, but for what the visitor has changed since it was asked. */
+/** The state of the server, with the parts that the user has changed since the request. */
 function keepingNewer(
-  told: StudioState,
+  sent: StudioState,
   here: StudioState | null,
   isNewer: (type: ClientType) => boolean,
 ): StudioState {
-  if (!here) return told;
+  if (!here) return sent;
   const kept: Partial<StudioState> = isNewer("view") ? { view: here.view, picture: here.picture } : {};
   for (const part of ["joints", "body", "walk", "loads", "source"] as const) {
     if (isNewer(part)) Object.assign(kept, { [part]: here[part] });
   }
-  return { ...told, ...kept };
+  return { ...sent, ...kept };
 }
 
-/** The question that a view's inputs ask. */
-const QUESTIONS: Partial<Record<View, ClientType>> = {
+/** Message type of the inputs of each view. */
+const REQUESTS: Partial<Record<View, ClientType>> = {
   joints: "joints",
   body: "body",
   walk: "walk",
@@ -67,12 +67,12 @@ const QUESTIONS: Partial<Record<View, ClientType>> = {
   sources: "source",
 };
 
-/** A refusal belongs beside the inputs that it speaks of. */
+/** Store an error for the inputs that caused it. */
 function refused(studio: Studio, error: ErrorMessage, asked: ClientType | null): Partial<Studio> {
-  // The robot or the view came, but what the view shows of it is not possible.
+  // The robot or the view was changed, but its content is not possible.
   const ofView = asked === "view" || (error.id !== null && studio.robot?.id === error.id);
   const view = studio.state?.view;
-  const about = ofView && view ? (QUESTIONS[view] ?? asked) : asked;
+  const about = ofView && view ? (REQUESTS[view] ?? asked) : asked;
   return about ? { failures: { ...studio.failures, [about]: error } } : {};
 }
 
@@ -81,7 +81,7 @@ type Done = Extract<ServerMessage, { type: "done" }>;
 function finished(studio: Studio, done: Done, asked: ClientType | null): Partial<Studio> {
   const changes: Partial<Studio> = { undo: done.undo, redo: done.redo };
   if (done.state !== null) changes.stateText = done.state;
-  // What was worked out for another robot, and did not come anew with this one, would be wrong for it.
+  // Results for another robot are discarded, unless they were sent again with this one.
   if (studio.robot?.id === done.id) {
     const old = (answer: { id: number } | null) => answer !== null && answer.id !== done.id;
     if (old(studio.walk)) changes.walk = null;
@@ -93,7 +93,7 @@ function finished(studio: Studio, done: Done, asked: ClientType | null): Partial
   if (asked) {
     changes.busy = { ...studio.busy, [asked]: false };
     const failure = studio.failures[asked];
-    // A failure is of this question if it bears its id; else it is of an earlier one, which has now been put right.
+    // An error with another id belongs to an earlier request, which this one has corrected.
     if (failure && failure.id !== done.id) changes.failures = { ...studio.failures, [asked]: undefined };
   }
   return changes;

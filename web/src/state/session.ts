@@ -8,14 +8,14 @@ import { received } from "./receive";
 import { notify, useStudio } from "./store";
 import { Unkept, withPart, type Settable } from "./unkept";
 
-/** How long after a change the address bar takes it over [ms]: browsers allow about a hundred changes in half a minute. */
+/** Delay after which the URL is updated [ms]: browsers allow about 100 changes in 30 s. */
 const ADDRESS_DELAY = 600;
 
 const unkept = new Unkept();
-/** Whether the session that is open has said what it knows. */
+/** Whether the open session has sent its state. */
 let greeted = false;
-/** What a visitor asks for by hand, and must be told when it can't be. */
-const SAID: ReadonlySet<ClientType> = new Set([
+/** Types whose failure to be sent is reported to the user. */
+const REPORTED: ReadonlySet<ClientType> = new Set([
   "undo",
   "redo",
   "robot",
@@ -34,7 +34,7 @@ const link = new Link({
   state: () => useStudio.getState().stateText ?? readAddress(window.location.href).state,
 });
 
-/** Connect, and follow links to other states that are opened in this page. */
+/** Connect, and handle changes of the fragment of the URL. */
 export function begin(): void {
   link.open();
   for (const sign of ["pointerdown", "keydown"]) {
@@ -46,7 +46,7 @@ export function begin(): void {
   });
 }
 
-/** Connect again at once. */
+/** Reconnect immediately. */
 export function retry(): void {
   link.retry();
 }
@@ -55,7 +55,7 @@ export function retry(): void {
 export function ask(draft: Draft): void {
   unkept.add(draft);
   if (!link.send(draft)) {
-    if (SAID.has(draft.type)) notify("Not connected: this can't be done now");
+    if (REPORTED.has(draft.type)) notify("Not connected to the server");
     return;
   }
   if (useStudio.getState().busy[draft.type] !== true && link.isBusy(draft.type)) {
@@ -71,7 +71,7 @@ function sendUnkept(): void {
 }
 
 /**
- * Change a part of the state: shown at once, and sent. `commit` is false while a slider or a mouse still moves.
+ * Change a part of the state: shown immediately, and sent. `commit` is false during a movement of slider or mouse.
  */
 export function change<K extends Settable>(part: K, values: Partial<StudioState[K]>, commit = true): void {
   const { state } = useStudio.getState();
@@ -81,7 +81,7 @@ export function change<K extends Settable>(part: K, values: Partial<StudioState[
   ask({ type: part, [part]: next, commit } as unknown as Draft);
 }
 
-/** Go to a view, or look at it differently. */
+/** Change the view, or the camera and time of the 3D view. */
 export function look(view: StudioState["view"] | null, picture: Partial<StudioState["picture"]> = {}): void {
   const { state } = useStudio.getState();
   if (!state) return;
@@ -101,7 +101,7 @@ function receive(message: ServerMessage, asked: ClientType | null): void {
   useStudio.setState((studio) =>
     received(studio, message, asked, (type) => id !== null && link.isNewer(type, id)),
   );
-  // Only a session that was open all the time knows what was set in it.
+  // A session that has just been opened does not have the latest settings.
   if (message.type === "state" && greeted) unkept.forget();
   if (message.type !== "done") return;
   if (!greeted) sendUnkept();

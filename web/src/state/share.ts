@@ -3,21 +3,18 @@ import { usePlayback } from "./playback";
 import { look } from "./session";
 import { notify, useStudio } from "./store";
 
-/** Copy the link that restores exactly this. */
+/** Copy a link to the present state. */
 export async function copyLink(): Promise<void> {
   await keepMoment();
   const { stateText, welcome } = useStudio.getState();
-  // Whoever gets the link of a public server needs no token; of another, the link alone must not open it.
+  // The token is not part of the link: it must not be passed on by accident.
   const href = writeAddress(window.location.href, stateText, false);
   window.history.replaceState(null, "", writeAddress(window.location.href, stateText, true));
   const token = welcome && !welcome.public && window.location.search.includes("token=");
-  await copyText(
-    href,
-    token ? "Link copied, without this server's token" : "Link copied: it restores exactly this",
-  );
+  await copyText(href, token ? "Link copied, without the token of this server" : "Link to this state copied");
 }
 
-/** Copy a text, and say so; where the clipboard is closed to pages, show it for copying by hand. */
+/** Copy a text and notify; without access to the clipboard, show it in a dialog. */
 export async function copyText(text: string, said: string): Promise<void> {
   try {
     await navigator.clipboard.writeText(text);
@@ -27,10 +24,10 @@ export async function copyText(text: string, said: string): Promise<void> {
   }
 }
 
-/** How long to wait for the server to take in what is looked at [ms]. */
+/** Maximum time to wait for the answer of the server [ms]. */
 const PATIENCE = 1000;
 
-/** Put the moment of the walk that is shown into the state, and wait for the state's new text. */
+/** Put the time of the playback into the state, and wait for its new text. */
 async function keepMoment(): Promise<void> {
   look(null, { time_s: Math.round(usePlayback.getState().time * 1000) / 1000 });
   if (!isBusy()) return;

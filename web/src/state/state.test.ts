@@ -5,22 +5,22 @@ import { backoff } from "./backoff";
 import { advanced, stepped } from "./playback";
 
 describe("address", () => {
-  it("holds the state behind the #, and comes back", () => {
+  it("has the state in its fragment", () => {
     const href = writeAddress("http://127.0.0.1:8600/?token=abc", "1.q64_-AA", true);
     expect(href).toBe("http://127.0.0.1:8600/?token=abc#s=1.q64_-AA");
     expect(readAddress(href)).toEqual({ token: "abc", state: "1.q64_-AA" });
   });
 
-  it("can be given away without the token", () => {
+  it("leaves out the token", () => {
     expect(writeAddress("http://h/?token=abc#s=old", "new", false)).toBe("http://h/#s=new");
   });
 
-  it("has no state at first", () => {
+  it("may be without a state", () => {
     expect(readAddress("http://h/").state).toBeNull();
     expect(writeAddress("http://h/#s=x", null, true)).toBe("http://h/");
   });
 
-  it("leads to the socket on the page's own host, with its token and none of its state", () => {
+  it("gives the socket on the page's host, with the token and without the state", () => {
     expect(socketAddress("http://h:1/?token=a%20b#s=x")).toBe("ws://h:1/session/1?token=a+b");
     expect(socketAddress("https://h/")).toBe("wss://h/session/1");
   });
@@ -32,7 +32,7 @@ describe("backoff", () => {
     expect(waits).toEqual([400, 800, 1600, 3200, 15_000]);
   });
 
-  it("spreads visitors out, by a quarter either way", () => {
+  it("varies by a quarter in either direction", () => {
     expect(backoff(0, () => 0)).toBe(300);
     expect(backoff(0, () => 1)).toBe(500);
   });
@@ -45,7 +45,7 @@ describe("playback", () => {
     expect(advanced(playback, 0.25, 10).time).toBeCloseTo(1.5);
   });
 
-  it("begins anew in a loop, else stops at the end", () => {
+  it("restarts in a loop, else stops at the end", () => {
     const looped = advanced({ ...playback, time: 9.9 }, 0.1, 10);
     expect(looped.time).toBeCloseTo(0.1);
     expect(looped.playing).toBe(true);
@@ -55,7 +55,7 @@ describe("playback", () => {
     });
   });
 
-  it("steps on the walk's own grid", () => {
+  it("steps from sample to sample", () => {
     expect(stepped(0.1, 1, 100, 5)).toBeCloseTo(0.11);
     expect(stepped(0.105, 1, 100, 5)).toBeCloseTo(0.11);
     expect(stepped(0.105, -1, 100, 5)).toBeCloseTo(0.1);

@@ -18,31 +18,31 @@ import type { ClientType } from "./outbox";
 
 export type View = StudioState["view"];
 
-/** All that the page knows. What comes sixty times a second is not here but on the stage. */
+/** State of the page. Frames at 60 Hz are in the stage instead. */
 export interface Studio {
   link: LinkStatus;
   welcome: Welcome | null;
   robot: RobotMessage | null;
-  /** The visitor's inputs; ahead of the server's while a message is under way. */
+  /** Inputs of the user; ahead of the server's while a message is in flight. */
   state: StudioState | null;
-  /** The same as the server's short text. */
+  /** State of the server as the text of a link. */
   stateText: string | null;
   undo: boolean;
   redo: boolean;
   poses: Partial<Record<View, PoseMessage>>;
   walk: WalkMessage | null;
-  /** Of that walk; null where it was not worked out yet. */
+  /** Loads of that walk; null where they are not computed yet. */
   loads: LoadsMessage | null;
   servos: ServosMessage | null;
   zone: ZoneMessage | null;
   source: SourceMessage | null;
-  /** The live walker, a few times a second: for words and numbers, not for the picture. */
+  /** A recent frame of the driven robot, for the panel; the 3D view has its own. */
   drive: DriveFrame | null;
-  /** What was refused, by the type of the question; gone when the same is asked with success. */
+  /** Errors by the type of the request; removed when a request of the type succeeds. */
   failures: Partial<Record<ClientType, ErrorMessage>>;
-  /** What is being worked on. */
+  /** Types with a request in progress. */
   busy: Partial<Record<ClientType, boolean>>;
-  /** A short message that passes, for eyes and screen readers. */
+  /** A notification that disappears by itself. */
   notice: { text: string; key: number } | null;
 }
 
@@ -66,7 +66,7 @@ export const useStudio = create<Studio>(() => ({
   notice: null,
 }));
 
-/** Say something in passing. */
+/** Show a notification. */
 export function notify(text: string): void {
   useStudio.setState((studio) => ({ notice: { text, key: (studio.notice?.key ?? 0) + 1 } }));
 }

@@ -1,7 +1,7 @@
 import type { StudioState } from "../protocol";
 import type { ClientType, Draft } from "./outbox";
 
-/** The parts of the state that are set by a message of their own name. */
+/** Parts of the state that are set by a message of the same name. */
 export type Settable = "joints" | "body" | "walk" | "loads" | "source";
 const SETTABLE: ReadonlySet<string> = new Set<Settable>(["joints", "body", "walk", "loads", "source"]);
 
@@ -10,8 +10,8 @@ export function isSettable(type: ClientType): type is Settable {
 }
 
 /**
- * What the visitor has set that is not in the state's text yet: as it was sent without an answer, while a slider
- * moved, or without a connection. A new session hears of it.
+ * Changes that the text of the state does not contain yet: sent but not answered, made during the movement of a
+ * slider, or without a connection. They are sent to a new session.
  */
 export class Unkept {
   private readonly drafts = new Map<Settable, Draft>();
@@ -20,17 +20,17 @@ export class Unkept {
     if (isSettable(draft.type)) this.drafts.set(draft.type, draft);
   }
 
-  /** The state's text now holds it. */
+  /** The text of the state contains this part now. */
   kept(type: ClientType): void {
     if (isSettable(type)) this.drafts.delete(type);
   }
 
-  /** Another state has taken the place of all that was set. */
+  /** The state has been replaced. */
   forget(): void {
     this.drafts.clear();
   }
 
-  /** What to tell a new session: steps of undo each, as nothing moves any more. */
+  /** The messages for a new session, each with a commit, as no movement is in progress. */
   take(): Draft[] {
     const all = [...this.drafts.values()].map((draft) => ({ ...draft, commit: true }) as Draft);
     this.drafts.clear();
@@ -38,7 +38,7 @@ export class Unkept {
   }
 }
 
-/** A state with the part that a message sets. */
+/** The state after a message. */
 export function withPart(state: StudioState, draft: Draft): StudioState {
   return isSettable(draft.type)
     ? { ...state, [draft.type]: (draft as unknown as StudioState)[draft.type] }

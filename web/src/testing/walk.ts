@@ -1,9 +1,9 @@
 import type { WalkMessage } from "../protocol";
 
-/** A walk for tests: three samples, 10 mm and 0.1 s apart, the legs straight out. */
+/** A walk for tests: three samples, 10 mm and 0.1 s apart. */
 export function aWalk(): WalkMessage {
   const samples = [0, 1, 2];
-  const moment = { mm: 0, at_s: 0 };
+  const least = { mm: 0, at_s: 0 };
   return {
     id: 1,
     type: "walk",
@@ -28,8 +28,8 @@ export function aWalk(): WalkMessage {
     longest_stroke_mm: 100,
     end: { x_mm: 20, y_mm: 0, turned_deg: 0 },
     joint_speed: [],
-    least_margin: moment,
-    nearest_feet: moment,
+    least_margin: least,
+    nearest_feet: least,
     nearest_legs: [],
     possible: true,
     problems: [],

@@ -8,11 +8,11 @@ interface Props {
   /** Legs x (coxa, femur, tibia) [deg]. */
   angles: ArrayLike<number>;
   open?: boolean;
-  /** Of which moment [s]. */
+  /** Time of the angles [s]. */
   at?: number;
 }
 
-/** The joint angles as a table to read and to copy. */
+/** Table of the joint angles, with a button to copy it. */
 export function AngleTable({ codes, angles, open, at }: Props) {
   return (
     <details open={open}>

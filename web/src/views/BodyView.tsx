@@ -22,7 +22,7 @@ const SLIDERS: readonly { key: Key; label: string; span: number; step: number; u
   { key: "pitch_deg", label: "Pitch (front down)", span: 35, step: 0.5, unit: "°" },
   { key: "yaw_deg", label: "Yaw (turn left)", span: 50, step: 0.5, unit: "°" },
 ];
-const HOME: Partial<BodyState> = {
+const RESET: Partial<BodyState> = {
   x_mm: 0,
   y_mm: 0,
   z_mm: 0,
@@ -32,7 +32,7 @@ const HOME: Partial<BodyState> = {
   feet_mm: null,
 };
 
-/** Inverse kinematics: the body moves, the feet stay. */
+/** Inverse kinematics: the body moves, the feet stay on the ground. */
 export function BodyView() {
   const { robot, state } = useInputs();
   const pose = useStudio((studio) => studio.poses.body);
@@ -41,18 +41,18 @@ export function BodyView() {
   return (
     <div className="view">
       <ViewHead title="Body">
-        Move and turn the body; the feet stay where they are. Body and feet can also be dragged in the
-        picture; hold Shift to drag upwards.
+        Move and rotate the body relative to the feet. Body and feet can also be dragged in the 3D view; with
+        Shift, vertically.
       </ViewHead>
       <Failure of={["body", "drag_foot"]} />
       {pose && <Standing pose={pose} />}
       {pose?.share != null && pose.share < 1 && (
-        <p className="hint" data-testid="share">
-          {Math.floor(pose.share * 100)} % of this way works.
+        <p className="hint" data-testid="feasible-fraction">
+          {Math.floor(pose.share * 100)} % of this movement is possible.
         </p>
       )}
       <fieldset>
-        <legend>Body over its feet</legend>
+        <legend>Body pose</legend>
         {SLIDERS.map(({ key, label, span, step, unit }) => (
           <Slider
             key={key}
@@ -69,8 +69,8 @@ export function BodyView() {
           />
         ))}
         <div className="row">
-          <button type="button" className="button" data-testid="body-home" onClick={() => set(HOME)}>
-            <Icon name="reset" /> Back to rest
+          <button type="button" className="button" data-testid="body-home" onClick={() => set(RESET)}>
+            <Icon name="reset" /> Reset
           </button>
         </div>
       </fieldset>
@@ -84,7 +84,7 @@ export function BodyView() {
           typedMax={10_000}
           step={1}
           unit="mm"
-          testId="body-clearance"
+          testId="body-height"
           auto={body.body_height_mm === null}
           onAuto={() => set({ body_height_mm: null })}
           onChange={(value, commit) => set({ body_height_mm: value }, commit)}

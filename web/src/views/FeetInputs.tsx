@@ -9,7 +9,7 @@ import { useInputs } from "./useInputs";
 
 const AXES = ["x", "y", "z"] as const;
 
-/** Where the feet stand, as numbers: what dragging does, by keyboard. */
+/** Numeric inputs of the footholds. */
 export function FeetInputs({ pose }: { pose: PoseMessage }) {
   const { robot, state } = useInputs();
   const id = useId();
@@ -20,11 +20,11 @@ export function FeetInputs({ pose }: { pose: PoseMessage }) {
   };
   return (
     <details>
-      <summary>Feet</summary>
+      <summary>Footholds</summary>
       <div className="inside">
         <div className="scroll">
           <table className="inputs">
-            <caption className="hidden-text">Where the feet should be, in mm</caption>
+            <caption className="hidden-text">Footholds in mm</caption>
             <thead>
               <tr>
                 <th scope="col">Leg</th>
@@ -64,7 +64,7 @@ export function FeetInputs({ pose }: { pose: PoseMessage }) {
             disabled={state.body.feet_mm === null}
             onClick={() => change("body", { feet_mm: null })}
           >
-            <Icon name="reset" /> Rest footholds
+            <Icon name="reset" /> Default footholds
           </button>
         </div>
       </div>

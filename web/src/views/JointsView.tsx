@@ -13,7 +13,7 @@ import { ViewHead } from "./ViewHead";
 import { ZoneChoice } from "./ZoneChoice";
 import { JOINTS } from "./angleText";
 
-/** Forward kinematics: eighteen angles in, how the robot rests out. */
+/** Forward kinematics: from the joint angles to the resting pose of the robot. */
 export function JointsView() {
   const { robot, state } = useInputs();
   const pose = useStudio((studio) => studio.poses.joints);
@@ -29,7 +29,7 @@ export function JointsView() {
   return (
     <div className="view">
       <ViewHead title="Joints">
-        Turn any joint; the robot rests on the ground as it would. Feet can be dragged.
+        Set any joint angle; the resting pose on the ground is computed. Feet can be dragged in the 3D view.
       </ViewHead>
       <Failure of={["joints", "drag_foot"]} />
       {pose && <Standing pose={pose} />}
@@ -40,7 +40,7 @@ export function JointsView() {
           data-testid="rest-stance"
           onClick={() => change("joints", { angles_deg: null })}
         >
-          <Icon name="reset" /> Rest stance
+          <Icon name="reset" /> Default stance
         </button>
         <button
           type="button"
@@ -48,7 +48,7 @@ export function JointsView() {
           data-testid="download-angles"
           onClick={() => ask({ type: "download", what: "angles" })}
         >
-          <Icon name="save" /> Angles
+          <Icon name="save" /> Export angles
         </button>
       </div>
       {robot.leg_names.map((name, leg) => (

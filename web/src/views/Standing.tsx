@@ -6,10 +6,10 @@ import type { PoseMessage } from "../protocol";
 import { contactsOf } from "../scene/frames";
 import { useOptions } from "../state/options";
 
-/** How the robot stands: the verdict in words, what is wrong, and the numbers. */
+/** The standing or resting robot: result in words, problems, and values. */
 export function Standing({ pose }: { pose: PoseMessage }) {
-  // A leg that can\'t reach may be told twice: of the leg, and of the robot.
-  const wrong = [
+  // A leg out of reach may be reported twice: for the leg, and for the robot.
+  const problems = [
     ...new Set([
       ...pose.legs.map((leg) => leg.text),
       ...pose.limits.map((limit) => limit.text),
@@ -26,7 +26,7 @@ export function Standing({ pose }: { pose: PoseMessage }) {
         <Message kind={pose.stable ? "good" : "bad"} testId="standing">
           <span className="lines">{pose.text}</span>
         </Message>
-        <Remarks kind="bad" items={wrong} testId="problems" />
+        <Remarks kind="bad" items={problems} testId="problems" />
       </div>
       {pose.forces_n && (
         <Check
@@ -39,9 +39,9 @@ export function Standing({ pose }: { pose: PoseMessage }) {
       <Facts
         testId="standing-facts"
         rows={[
-          ["Margin of stability", withUnit(pose.margin_mm, 1, "mm")],
+          ["Stability margin", withUnit(pose.margin_mm, 1, "mm")],
           ["Feet on the ground", feet],
-          ["Body at x, y, z", `${x.toFixed(1)}, ${y.toFixed(1)}, ${z.toFixed(1)} mm`],
+          ["Body position x, y, z", `${x.toFixed(1)}, ${y.toFixed(1)}, ${z.toFixed(1)} mm`],
           ["Roll, pitch", `${roll.toFixed(1)}, ${pitch.toFixed(1)}°`],
         ]}
       />

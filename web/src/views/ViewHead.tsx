@@ -1,6 +1,6 @@
 import type { ReactNode } from "react";
 
-/** Name of a view, and what it is for in one sentence. */
+/** Title and description of a view. */
 export function ViewHead({ title, children }: { title: string; children: ReactNode }) {
   return (
     <div className="view-head">

@@ -19,7 +19,7 @@ const VIEWS: Record<View, () => ReactNode> = {
   sources: SourcesView,
 };
 
-/** The panel beside the picture: inputs and numbers of the view. */
+/** The panel beside the 3D view: inputs and values of the view. */
 export function ViewPanel({ view }: { view: View }) {
   const ready = useStudio((studio) => studio.robot !== null && studio.state !== null);
   const link = useStudio((studio) => studio.link);

@@ -6,13 +6,13 @@ import { ask, look } from "../state/session";
 import { useStudio } from "../state/store";
 import { useInputs } from "./useInputs";
 
-/** Choose the leg whose reachable zone is drawn. */
+/** Choice of the leg whose workspace is shown. */
 export function ZoneChoice() {
   const { robot, state } = useInputs();
   const zone = useStudio((studio) => studio.zone);
   const pose = useStudio((studio) => studio.poses[state.view]);
   const { leg } = state.picture;
-  // The zone depends on how the body stands.
+  // The workspace depends on the body pose.
   useEffect(() => {
     if (leg !== null && leg < robot.leg_names.length) ask({ type: "zone", leg });
   }, [leg, pose, robot]);
@@ -20,7 +20,7 @@ export function ZoneChoice() {
   return (
     <div className="field">
       <Select
-        label="Show what a leg can reach"
+        label="Show workspace of leg"
         testId="zone-leg"
         value={leg === null ? "" : String(leg)}
         options={[
@@ -35,8 +35,8 @@ export function ZoneChoice() {
       {shown && (
         <p className="hint" data-testid="zone-text">
           {shown.farthest_mm === null
-            ? "With the body as it is, this leg reaches nothing on the ground."
-            : `Straight out on the ground: ${withUnit(shown.nearest_mm, 0, "")} to ${withUnit(shown.farthest_mm, 0, "mm")} from its coxa axis.`}
+            ? "With this body pose, the leg reaches no point on the ground."
+            : `On the ground, straight outward: ${withUnit(shown.nearest_mm, 0, "")} to ${withUnit(shown.farthest_mm, 0, "mm")} from its coxa axis.`}
         </p>
       )}
     </div>

@@ -16,7 +16,7 @@ interface Props {
   onChange: (body: Settings["body"]) => void;
 }
 
-/** How the body is held while it stands and walks. */
+/** Body pose while standing and walking, relative to the level body. */
 export function BodyPose({ body, onChange }: Props) {
   const put = (index: number, value: number) => {
     const next: [number, number, number, number, number, number] = [...body];
@@ -25,7 +25,7 @@ export function BodyPose({ body, onChange }: Props) {
   };
   return (
     <details>
-      <summary>Body</summary>
+      <summary>Body pose</summary>
       <div className="inside">
         {ROWS.map(([label, span, step, unit], i) => (
           <Slider
@@ -43,7 +43,7 @@ export function BodyPose({ body, onChange }: Props) {
         ))}
         <div className="row">
           <button type="button" className="button small" onClick={() => onChange([0, 0, 0, 0, 0, 0])}>
-            <Icon name="reset" /> Level
+            <Icon name="reset" /> Reset
           </button>
         </div>
       </div>

@@ -5,12 +5,12 @@ import { change } from "../../state/session";
 import { useInputs } from "../useInputs";
 
 const AXES = [
-  ["Payload forward", 0],
-  ["Payload to the left", 1],
-  ["Payload up", 2],
+  ["Payload x (forward)", 0],
+  ["Payload y (left)", 1],
+  ["Payload z (up)", 2],
 ] as const;
 
-/** What is carried, and by what the servos are judged. */
+/** Payload, supply, and the criterion for the servos. */
 export function LoadInputs() {
   const { state } = useInputs();
   const { loads } = state;
@@ -40,30 +40,30 @@ export function LoadInputs() {
         onChange={(safety_factor, commit) => change("loads", { safety_factor }, commit)}
       />
       <div className="row">
-        <span>Judge by</span>
+        <span>Criterion</span>
         <Segments
-          label="Judge by"
+          label="Criterion"
           testId="rule"
           value={loads.rule}
           options={[
-            { value: "factor", label: "peak", hint: "The peak torque against the stall torque" },
+            { value: "factor", label: "peak torque", hint: "Peak torque relative to the stall torque" },
             {
               value: "continuous",
-              label: "lasting load",
-              hint: "The lasting load against a fifth of the stall torque",
+              label: "continuous",
+              hint: "RMS torque relative to a fifth of the stall torque",
             },
           ]}
           onChange={(rule) => change("loads", { rule })}
         />
       </div>
       <Check
-        label="Count inertia"
+        label="Include inertia"
         testId="inertial"
         checked={loads.inertial}
         onChange={(inertial) => change("loads", { inertial })}
       />
       <details>
-        <summary>Where it is carried, supply, battery</summary>
+        <summary>Payload position, supply, battery</summary>
         <div className="inside">
           {AXES.map(([label, axis]) => (
             <Slider

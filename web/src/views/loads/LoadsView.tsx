@@ -9,17 +9,17 @@ import { ServoChoice } from "./ServoChoice";
 import { TorqueGrid } from "./TorqueGrid";
 import { TorquePlots } from "./TorquePlots";
 
-/** What the walk asks of the joints, and whether the servos bear it. */
+/** Joint torques of the walk, and whether the servos provide them. */
 export function LoadsView() {
   const loads = useStudio((studio) => studio.loads);
   const busy = useStudio((studio) => studio.busy.loads === true || studio.busy.view === true);
   return (
     <div className="view">
       <ViewHead title="Loads">
-        The torques of the walk, from the forces at its feet; arrows are what the ground does to each foot.
+        Joint torques of the walk, from the contact forces at the feet, which the arrows show.
       </ViewHead>
       <Failure of={["walk", "loads"]} />
-      {loads ? <Verdict loads={loads} /> : <p className="busy">{busy ? "Working the torques out …" : ""}</p>}
+      {loads ? <Verdict loads={loads} /> : <p className="busy">{busy ? "Computing torques …" : ""}</p>}
       {loads && <TorqueGrid loads={loads} />}
       {loads && <TorquePlots loads={loads} />}
       <LoadInputs />
@@ -50,13 +50,13 @@ function Verdict({ loads }: { loads: LoadsMessage }) {
       </Message>
       <Remarks kind="warn" items={loads.supply_warning === null ? [] : [loads.supply_warning]} />
       {!loads.balanced && (
-        <Remarks kind="warn" items={["At some moments no upright forces hold the balance."]} />
+        <Remarks kind="warn" items={["At some times vertical contact forces can’t balance the robot."]} />
       )}
     </>
   );
 }
 
-/** What is said of a joint that is called such as "LM femur". */
+/** Verdict on a joint with a name such as "LM femur". */
 function textOf(loads: LoadsMessage, joint: string): string {
   return loads.joints.find((one) => `${one.leg} ${one.joint}` === joint)?.text ?? "";
 }

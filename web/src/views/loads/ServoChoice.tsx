@@ -8,13 +8,13 @@ import { withServos } from "../robot/document";
 import { setDocument } from "../robot/setDocument";
 import { useInputs } from "../useInputs";
 
-/** Which servos would do: asked for, as it takes a second or two. */
+/** Servo sizing; on request, as it takes a second or two. */
 export function ServoChoice() {
   const servos = useStudio((studio) => studio.servos);
   const busy = useStudio((studio) => studio.busy.servos === true);
   return (
     <fieldset>
-      <legend>Servos</legend>
+      <legend>Servo sizing</legend>
       <div className="row">
         <button
           type="button"
@@ -23,7 +23,7 @@ export function ServoChoice() {
           disabled={busy}
           onClick={() => ask({ type: "servos" })}
         >
-          {busy ? "Trying every servo …" : "Which servos would do?"}
+          {busy ? "Evaluating all servos …" : "Find suitable servos"}
         </button>
       </div>
       <Failure of={["servos"]} />
@@ -38,7 +38,7 @@ function Answer({ servos }: { servos: ServosMessage }) {
   return (
     <div className="field" data-testid="servo-answer">
       <Message kind={servos.present_do ? "good" : "bad"}>
-        {servos.present_do ? "The present servos do." : "The present servos do not do."}
+        {servos.present_do ? "The present servos are sufficient." : "The present servos are not sufficient."}
       </Message>
       {servos.payload_kg !== null && (
         <p className="hint">
@@ -51,11 +51,11 @@ function Answer({ servos }: { servos: ServosMessage }) {
       {all.length > 0 ? (
         <Candidates all={all} />
       ) : (
-        <Remarks kind="warn" items={["No servo of the catalogue would do."]} />
+        <Remarks kind="warn" items={["No servo in the catalogue is sufficient."]} />
       )}
       {servos.advice.length > 0 && (
         <details>
-          <summary>What would take load off them</summary>
+          <summary>How to reduce the loads</summary>
           <div className="inside">
             <ul>
               {servos.advice.map((line) => (
@@ -77,14 +77,14 @@ function Candidates({ all }: { all: readonly Candidate[] }) {
   return (
     <div className="scroll">
       <table>
-        <caption className="hidden-text">Servos that would do, the lightest first</caption>
+        <caption className="hidden-text">Suitable servos, lightest first</caption>
         <thead>
           <tr>
             <th scope="col">Servo</th>
             <th scope="col">factor</th>
             <th scope="col">robot</th>
             <th scope="col">
-              <span className="hidden-text">Fit</span>
+              <span className="hidden-text">Install</span>
             </th>
           </tr>
         </thead>
@@ -100,7 +100,7 @@ function Candidates({ all }: { all: readonly Candidate[] }) {
                 <button
                   type="button"
                   className="button small"
-                  aria-label={`Fit ${one.name}`}
+                  aria-label={`Install ${one.name}`}
                   onClick={() => setDocument(withServos(robot.document, one.coxa, one.femur, one.tibia))}
                 >
                   Fit

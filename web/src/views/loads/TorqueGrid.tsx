@@ -6,7 +6,7 @@ import { stage } from "../../scene/stage";
 import { useInputs } from "../useInputs";
 import { JOINTS } from "../angleText";
 
-/** A bar for each joint: its peak over the walk, and a mark at what it bears now, both against the stall torque. */
+/** A bar for each joint: peak torque over the walk, and present torque, relative to the stall torque. */
 export function TorqueGrid({ loads }: { loads: LoadsMessage }) {
   const { robot } = useInputs();
   const marks = useRef<(HTMLElement | null)[]>([]);
@@ -23,7 +23,7 @@ export function TorqueGrid({ loads }: { loads: LoadsMessage }) {
   );
   return (
     <table className="torques" data-testid="torques">
-      <caption>Peak torque, and how often the stall torque holds it</caption>
+      <caption>Peak torque and safety factor</caption>
       <thead>
         <tr>
           <th scope="col">Leg</th>

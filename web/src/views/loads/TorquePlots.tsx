@@ -15,7 +15,7 @@ import { JOINTS } from "../angleText";
 
 type Joint = (typeof JOINTS)[number];
 
-/** Torques over the walk, one kind of joint at a time, with the servos' limits. A click goes to that moment. */
+/** Torques over the walk for one kind of joint, with the limits of the servos. A click sets the playback time. */
 export function TorquePlots({ loads }: { loads: LoadsMessage }) {
   const { robot, state } = useInputs();
   const walk = useStudio((studio) => studio.walk);
@@ -60,7 +60,7 @@ export function TorquePlots({ loads }: { loads: LoadsMessage }) {
       </div>
       {x.length === lines[0]?.values.length && (
         <Plot
-          summary={`Torques of the ${joint} joints over the walk. The greatest is ${fixed(peak, 2)} N m.`}
+          summary={`Torques of the ${joint} joints over the walk. Maximum: ${fixed(peak, 2)} N m.`}
           x={x}
           lines={lines}
           unit="N m"

@@ -8,7 +8,7 @@ import type { NumberField } from "./fields";
 import { setDocument } from "./setDocument";
 import { SourceMark } from "./SourceMark";
 
-/** One number of the robot file: with its unit, how sure it is, and what is wrong with it. */
+/** A value of the robot file, with unit, confidence and errors. */
 export function DocumentField({ field }: { field: NumberField }) {
   const { robot } = useInputs();
   const id = useId();
@@ -44,7 +44,7 @@ export function DocumentField({ field }: { field: NumberField }) {
   );
 }
 
-/** What the server found wrong with a field's key. */
+/** Error of the server for the key of a field. */
 function useProblem({ path }: NumberField): string | null {
   const problems = useStudio((studio) => studio.failures.document?.problems);
   const text = pathText(path);

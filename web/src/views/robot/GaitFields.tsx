@@ -5,7 +5,7 @@ import { DocumentField } from "./DocumentField";
 import { GAIT } from "./fields";
 import { setDocument } from "./setDocument";
 
-/** The robot's own gait, clearance and lift. */
+/** Default gait, body height and swing height of the robot. */
 export function GaitFields() {
   const { robot } = useInputs();
   return (

@@ -5,7 +5,7 @@ import { useInputs } from "../useInputs";
 import { DocumentField } from "./DocumentField";
 import { mountFields, ownFields } from "./fields";
 
-/** One leg's entry in the file: where it is mounted, and what it has otherwise than the others. */
+/** Entry of one leg in the file: its mount, and values that differ from the other legs. */
 export function MountFields() {
   const { robot } = useInputs();
   const [chosen, setChosen] = useState(0);

@@ -7,7 +7,7 @@ import { useInputs } from "../useInputs";
 import { withValue } from "./document";
 import { setDocument } from "./setDocument";
 
-/** Name, and the file itself: load by button or by dropping it anywhere on the page, save. */
+/** Name of the robot, and import and export of its file. */
 export function RobotFiles() {
   const { robot } = useInputs();
   const id = useId();
@@ -37,7 +37,7 @@ export function RobotFiles() {
           data-testid="load-toml"
           onClick={() => input.current?.click()}
         >
-          Load a robot file …
+          Import robot file …
         </button>
         <button
           type="button"
@@ -45,7 +45,7 @@ export function RobotFiles() {
           data-testid="save-toml"
           onClick={() => ask({ type: "download", what: "toml" })}
         >
-          <Icon name="save" /> Save it
+          <Icon name="save" /> Export robot file
         </button>
       </div>
       <p className="hint">Or drop a .toml file anywhere on this page.</p>
@@ -67,7 +67,7 @@ export function RobotFiles() {
   );
 }
 
-/** Take files that are dropped on the page; returns whether one is held over it. */
+/** Handle files dropped on the page; returns whether one is dragged over it. */
 function useDrop(): boolean {
   const [over, setOver] = useState(false);
   useEffect(() => {
@@ -99,7 +99,7 @@ function useDrop(): boolean {
 async function load(file: File): Promise<void> {
   const most = Math.min(200_000, useStudio.getState().welcome?.bounds.message_bytes ?? 200_000);
   if (file.size > most) {
-    notify(`${file.name} has ${file.size} bytes; a robot file may have ${most}`);
+    notify(`${file.name} has ${file.size} bytes; the limit is ${most}`);
     return;
   }
   ask({ type: "toml", text: await file.text(), commit: true });

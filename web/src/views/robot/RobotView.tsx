@@ -16,7 +16,7 @@ import { RobotFiles } from "./RobotFiles";
 import { ServoFields } from "./ServoFields";
 import { setDocument } from "./setDocument";
 
-/** The robot itself: everything that its file says, to be read and changed. */
+/** Display and editing of all values of the robot file. */
 export function RobotView() {
   const { robot } = useInputs();
   const { document } = robot;
@@ -33,7 +33,7 @@ export function RobotView() {
         rows={[
           ["Name", robot.name],
           ["Legs", robot.leg_names.length],
-          ["Mass in all", withUnit(robot.mass_kg, 3, "kg")],
+          ["Total mass", withUnit(robot.mass_kg, 3, "kg")],
           ["Longest stroke", withUnit(robot.longest_stroke_mm, 1, "mm")],
         ]}
       />
@@ -62,7 +62,7 @@ export function RobotView() {
           <DocumentField key={field.label} field={field} />
         ))}
       </Group>
-      <Group title="Where the legs are mounted">
+      <Group title="Leg mounts">
         <MountFields />
       </Group>
       <Group title="Joint limits">
@@ -79,11 +79,11 @@ export function RobotView() {
       <Group title="Servos">
         <ServoFields />
       </Group>
-      <Group title="How it walks unless told otherwise">
+      <Group title="Default gait">
         <GaitFields />
       </Group>
       {robot.missing.length > 0 && (
-        <Group title="What the file does not say">
+        <Group title="Missing values">
           <ul>
             {robot.missing.map((line) => (
               <li key={line}>{line}</li>

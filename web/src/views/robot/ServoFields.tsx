@@ -10,7 +10,7 @@ import { JOINTS } from "../angleText";
 export function ServoFields() {
   const { robot } = useInputs();
   const catalogue = useStudio((studio) => studio.welcome?.servos) ?? [];
-  // Those of the first leg stand for all: a choice here is for all legs.
+  // The servos of the first leg are shown: a choice here applies to all legs.
   const now = JOINTS.map((_, i) => robot.servos[i] ?? "");
   const choose = (joint: number, name: string) => {
     const [coxa = name, femur = name, tibia = name] = now.map((servo, i) =>

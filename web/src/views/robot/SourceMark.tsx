@@ -9,7 +9,7 @@ const WORDS: Record<string, string> = {
   guess: "a guess",
 };
 
-/** How sure a number of the robot file is; more in its tip. */
+/** Confidence of a value of the robot file, with its source in the tooltip. */
 export function SourceMark({ path }: { path: KeyPath }) {
   const { robot } = useInputs();
   const text = pathText(path.filter((key) => typeof key === "string"));

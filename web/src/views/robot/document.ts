@@ -1,22 +1,22 @@
 import type { RobotFile } from "../../protocol";
 
-/** Where a value stands in a robot file: keys of tables, and places in lists. */
+/** Path of a value in a robot file: keys of tables and indices of lists. */
 export type KeyPath = readonly (string | number)[];
 
 type Tree = Record<string | number, unknown>;
 
-/** The value at a path, or undefined where the file does not give it. */
+/** The value at a path, or undefined if it is missing. */
 export function valueAt(document: RobotFile, path: KeyPath): unknown {
   return path.reduce<unknown>((at, key) => (isTree(at) ? at[key] : undefined), document);
 }
 
-/** The number at a path, or null where there is none. */
+/** The number at a path, or null if it is missing. */
 export function numberAt(document: RobotFile, path: KeyPath): number | null {
   const value = valueAt(document, path);
   return typeof value === "number" ? value : null;
 }
 
-/** The document with a value put in; tables on the way are made, and lists begin as `list` says. */
+/** Copy of the document with a value set; missing tables are created, missing lists start as `list`. */
 export function withValue(
   document: RobotFile,
   path: KeyPath,
@@ -38,14 +38,14 @@ function put(at: unknown, [key, ...rest]: KeyPath, value: unknown, list: readonl
   return copy;
 }
 
-/** The document without a key: what is left out takes the file's defaults. Empty tables go too. */
+/** Copy of the document without a key and without empty tables; missing values have their defaults. */
 export function withoutKey(document: RobotFile, path: KeyPath): RobotFile {
   return (drop(document, path) ?? {}) as RobotFile;
 }
 
 function drop(at: unknown, [key, ...rest]: KeyPath): unknown {
   if (!isTree(at) || key === undefined) return at;
-  // One number can't be missing from a list: then all of it is.
+  // A list is removed as a whole, as it can't lack one number.
   if (typeof rest[0] === "number" && rest.length === 1) return drop(at, [key]);
   const inner = rest.length > 0 ? drop(at[key], rest) : undefined;
   if (Array.isArray(at)) return at.map((entry: unknown, i) => (i === key ? inner : entry));
@@ -58,7 +58,7 @@ function isTree(value: unknown): value is Tree {
   return typeof value === "object" && value !== null;
 }
 
-/** A path as error messages write it: legs[2].position_mm. */
+/** A path as in error messages: legs[2].position_mm. */
 export function pathText(path: KeyPath): string {
   return path.reduce<string>(
     (text, key) => (typeof key === "number" ? `${text}[${key}]` : text ? `${text}.${key}` : key),
@@ -66,7 +66,7 @@ export function pathText(path: KeyPath): string {
   );
 }
 
-/** The document with these servos in all legs. */
+/** Copy of the document with these servos in all legs. */
 export function withServos(document: RobotFile, coxa: string, femur: string, tibia: string): RobotFile {
   const servo = coxa === femur && femur === tibia ? coxa : { coxa, femur, tibia };
   const bare = document.legs.reduce<RobotFile>(

@@ -1,14 +1,14 @@
 import type { KeyPath } from "./document";
 import { JOINTS } from "../angleText";
 
-/** A number of the robot file, as the form shows it. */
+/** Form field of a number of the robot file. */
 export interface NumberField {
   path: KeyPath;
   label: string;
   unit: string;
   step: number;
   min?: number;
-  /** What a list that is not in the file begins with. */
+  /** Initial value of a list that is missing in the file. */
   list?: readonly number[];
 }
 
@@ -29,7 +29,7 @@ export const LEG_MORE: readonly NumberField[] = [
     list: [0, 0],
   },
   { path: ["leg", "femur_axis_offset_mm", 1], label: "Femur axis up", unit: "mm", step: 1, list: [0, 0] },
-  { path: ["leg", "foot_radius_mm"], label: "Foot’s radius", unit: "mm", step: 0.5, min: 0 },
+  { path: ["leg", "foot_radius_mm"], label: "Foot radius", unit: "mm", step: 0.5, min: 0 },
 ];
 
 export const BODY: readonly NumberField[] = [
@@ -52,8 +52,13 @@ export const BODY: readonly NumberField[] = [
 ];
 
 export const MASSES: readonly NumberField[] = JOINTS.flatMap((joint) => [
-  { path: ["leg", "mass_kg", joint], label: `Mass of the ${joint}`, unit: "kg", step: 0.005, min: 0 },
-  { path: ["leg", "com_mm", joint], label: `${title(joint)}: centre from its joint`, unit: "mm", step: 1 },
+  { path: ["leg", "mass_kg", joint], label: `Mass of ${joint}`, unit: "kg", step: 0.005, min: 0 },
+  {
+    path: ["leg", "com_mm", joint],
+    label: `${title(joint)}: centre of mass from its joint`,
+    unit: "mm",
+    step: 1,
+  },
 ]);
 
 export const LIMITS: readonly { joint: string; low: NumberField; high: NumberField }[] = JOINTS.map(
@@ -75,7 +80,7 @@ export const GAIT: readonly NumberField[] = [
   { path: ["gait", "swing_height_mm"], label: "Swing height", unit: "mm", step: 1, min: 0.001 },
 ];
 
-/** The fields of one leg's own entry. */
+/** Form fields of the entry of one leg. */
 export function mountFields(leg: number): readonly NumberField[] {
   return [
     ...AXES.map((axis, i) => ({
@@ -85,15 +90,15 @@ export function mountFields(leg: number): readonly NumberField[] {
       step: 1,
       list: [0, 0, 0],
     })),
-    { path: ["legs", leg, "yaw_deg"], label: "Points to (90 is left)", unit: "°", step: 1, min: -360 },
+    { path: ["legs", leg, "yaw_deg"], label: "Yaw (90° is left)", unit: "°", step: 1, min: -360 },
   ];
 }
 
-/** What one leg may have otherwise than the others. */
+/** Form fields of values that may differ between legs. */
 export function ownFields(leg: number): readonly NumberField[] {
   return LENGTHS.map(({ path, label, unit, step, min }) => ({
     path: ["legs", leg, ...path.slice(1)],
-    label: `${label} of its own`,
+    label: `${label} of this leg`,
     unit,
     step,
     min,

@@ -2,7 +2,7 @@ import type { RobotFile } from "../../protocol";
 import { ask } from "../../state/session";
 import { useStudio } from "../../state/store";
 
-/** Take a robot by the keys of its file: shown in the inputs at once, drawn when the server has checked it. */
+/** Change the robot file: the inputs show it immediately, the 3D view after the server has checked it. */
 export function setDocument(document: RobotFile, commit = true): void {
   const { robot } = useStudio.getState();
   if (!robot) return;

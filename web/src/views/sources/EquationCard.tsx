@@ -4,7 +4,7 @@ import type { Equation } from "../../protocol";
 import { digitsOf } from "./digits";
 import { Maths } from "./Maths";
 
-/** One line of a document: its formula, the numbers in it, what comes out, and what it is called here. */
+/** An equation of a document: formula, values, result, and the name in Tarsus. */
 export function EquationCard({ equation }: { equation: Equation }) {
   const { symbol, formula, numbers, value, unit, ours, note } = equation;
   return (
@@ -19,8 +19,10 @@ export function EquationCard({ equation }: { equation: Equation }) {
       </Scroll>
       {(ours ?? equation.printed_value ?? note) && (
         <p className="hint">
-          {ours && <>Here: {ours}. </>}
-          {equation.printed_value && <>The document prints {equation.printed_value} for its own robot. </>}
+          {ours && <>In Tarsus: {ours}. </>}
+          {equation.printed_value && (
+            <>Value printed in the document for its robot: {equation.printed_value}. </>
+          )}
           {note}
         </p>
       )}

@@ -2,7 +2,7 @@ import { withUnit } from "../../controls/numbers";
 import type { Erratum } from "../../protocol";
 import { Maths } from "./Maths";
 
-/** A mistake: as printed, as it should be, and what each makes of the live numbers. */
+/** An erratum: printed and corrected formula, and the results of both. */
 export function ErratumCard({ erratum }: { erratum: Erratum }) {
   const { unit } = erratum;
   return (
@@ -13,7 +13,7 @@ export function ErratumCard({ erratum }: { erratum: Erratum }) {
           {erratum.printed_formula ? <Maths node={erratum.printed_formula} block /> : erratum.printed}
           {erratum.printed_value !== null && <output>{withUnit(erratum.printed_value, 2, unit)}</output>}
         </dd>
-        <dt>Right</dt>
+        <dt>Corrected</dt>
         <dd className="scroll">
           {erratum.right_formula ? <Maths node={erratum.right_formula} block /> : erratum.right}
           {erratum.right_value !== null && <output>{withUnit(erratum.right_value, 2, unit)}</output>}

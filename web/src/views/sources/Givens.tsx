@@ -3,7 +3,7 @@ import type { Equation } from "../../protocol";
 import { digitsOf } from "./digits";
 import { Maths } from "./Maths";
 
-/** What a document takes as given: symbol, what it is, and this robot's number. */
+/** Given quantities of a document: symbol, quantity, and value for this robot. */
 export function Givens({ equations }: { equations: readonly Equation[] }) {
   if (equations.length === 0) return null;
   return (
@@ -12,7 +12,7 @@ export function Givens({ equations }: { equations: readonly Equation[] }) {
       <thead className="hidden-text">
         <tr>
           <th scope="col">Symbol</th>
-          <th scope="col">What it is</th>
+          <th scope="col">Quantity</th>
           <th scope="col">Value</th>
         </tr>
       </thead>

@@ -2,7 +2,7 @@ import { createElement, type ReactNode } from "react";
 
 import type { MathNode } from "../../protocol";
 
-/** A formula, by the browser's own MathML: read by screen readers too. */
+/** A formula in MathML, which screen readers read too. */
 export function Maths({ node, block }: { node: MathNode; block?: boolean }) {
   return createElement("math", { display: block ? "block" : "inline" }, element(node, 0));
 }

@@ -19,7 +19,7 @@ const DOCUMENTS: readonly { value: DocumentNumber; label: string }[] = [
   { value: "004", label: "004 – torques and inverse kinematics" },
 ];
 
-/** The source documents' equations, with the numbers of this robot in this pose. */
+/** Equations of the source documents, with the values of this robot and pose. */
 export function SourcesView() {
   const { robot, state } = useInputs();
   const source = useStudio((studio) => studio.source);
@@ -28,7 +28,7 @@ export function SourcesView() {
   return (
     <div className="view">
       <ViewHead title="Sources">
-        What the source documents say, with this robot’s numbers in the pose of the view Body filled in.
+        Equations of the source documents, with the values of this robot in the pose of the view Body.
       </ViewHead>
       <Select
         label="Document"
@@ -70,7 +70,7 @@ function Document({ source }: { source: SourceMessage }) {
       </ol>
       {source.errata.length > 0 && (
         <>
-          <h3>Mistakes in the document</h3>
+          <h3>Errata</h3>
           <ul className="equations">
             {source.errata.map((erratum) => (
               <li key={erratum.printed}>

@@ -1,4 +1,4 @@
-/** How many digits after the point a unit's numbers are shown with. */
+/** Number of decimals for each unit. */
 export function digitsOf(unit: string): number {
   return unit === "mm" || unit === "deg" || unit === "°" ? 2 : 4;
 }

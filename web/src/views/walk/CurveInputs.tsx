@@ -1,13 +1,13 @@
 import { Slider } from "../../controls/Slider";
 import type { PathProps } from "./paths";
 
-/** Round which centre, and by how much. */
+/** Angle and centre of a curve. */
 export function CurveInputs({ path, set }: PathProps<"curve">) {
   const [x, y] = path.centre_mm;
   return (
     <>
       <Slider
-        label="Turn by (negative: clockwise)"
+        label="Angle (positive: left)"
         value={path.angle_deg}
         min={-360}
         max={360}
@@ -18,9 +18,9 @@ export function CurveInputs({ path, set }: PathProps<"curve">) {
         testId="curve-angle"
         onChange={(angle_deg, commit) => set({ ...path, angle_deg }, commit)}
       />
-      <p className="hint">The centre: click on the floor, or set it here.</p>
+      <p className="hint">Click on the ground to set the centre, or enter it here.</p>
       <Slider
-        label="Centre forward"
+        label="Centre x (forward)"
         value={x}
         min={-1000}
         max={1000}
@@ -32,7 +32,7 @@ export function CurveInputs({ path, set }: PathProps<"curve">) {
         onChange={(next, commit) => set({ ...path, centre_mm: [next, y] }, commit)}
       />
       <Slider
-        label="Centre to the left"
+        label="Centre y (left)"
         value={y}
         min={-1000}
         max={1000}

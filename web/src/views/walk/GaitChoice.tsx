@@ -4,7 +4,7 @@ import { change } from "../../state/session";
 import { useStudio } from "../../state/store";
 import { useInputs } from "../useInputs";
 
-/** The gait: the robot's own, a named one, or one of one's own. */
+/** The gait: the default of the robot, a named one, or a custom one. */
 export function GaitChoice() {
   const { robot, state } = useInputs();
   const walk = useStudio((studio) => studio.walk);
@@ -23,9 +23,9 @@ export function GaitChoice() {
         testId="gait"
         value={own ? "own" : typeof gait === "string" ? gait : ""}
         options={[
-          { value: "", label: `the robot’s own (${robot.gait})` },
+          { value: "", label: `robot default (${robot.gait})` },
           ...robot.gaits.map((name) => ({ value: name, label: name })),
-          { value: "own", label: "one of my own …" },
+          { value: "own", label: "custom …" },
         ]}
         onChange={choose}
       />
@@ -48,7 +48,7 @@ export function GaitChoice() {
               key={code}
               compact
               label={code}
-              name={`${robot.leg_names[leg] ?? ""}: touches down at`}
+              name={`${robot.leg_names[leg] ?? ""}: touch-down phase`}
               value={own.offsets[leg] ?? 0}
               min={0}
               max={1}

@@ -12,7 +12,7 @@ const ROW = 16;
 const LEFT = 30;
 const WIDTH = 360;
 
-/** When each foot is down, over the whole walk. A click goes to that moment. */
+/** Gait diagram: stance of each foot over the whole walk. A click sets the playback time. */
 export function GaitDiagram({ walk }: { walk: WalkMessage }) {
   const { robot } = useInputs();
   const mark = useRef<SVGLineElement>(null);
@@ -37,12 +37,12 @@ export function GaitDiagram({ walk }: { walk: WalkMessage }) {
 
   return (
     <figure className="gait-diagram">
-      <figcaption>When each foot is down</figcaption>
+      <figcaption>Gait diagram: stance of each foot</figcaption>
       {/* The scrubber does the same by keyboard. */}
       <svg
         viewBox={`0 0 ${WIDTH} ${height}`}
         role="img"
-        aria-label={`${walk.gait}: each foot is down for ${Math.round(walk.duty_factor * 100)} % of a cycle.`}
+        aria-label={`${walk.gait}: each foot is in stance for ${Math.round(walk.duty_factor * 100)} % of a cycle.`}
         data-testid="gait-diagram"
         onClick={(event) => {
           const box = event.currentTarget.getBoundingClientRect();

@@ -6,7 +6,7 @@ import { pathOf, type Path } from "./paths";
 import { StraightInputs } from "./StraightInputs";
 import { TwistInputs } from "./TwistInputs";
 
-/** Where the body goes: straight, round a centre, or at a constant twist. */
+/** Path of the body: straight, around a centre, or with a constant twist. */
 export function PathInputs() {
   const { state } = useInputs();
   const { path } = state.walk;
@@ -21,8 +21,8 @@ export function PathInputs() {
           value={path.way}
           options={[
             { value: "straight", label: "Straight" },
-            { value: "curve", label: "Round a centre" },
-            { value: "twist", label: "Steady twist" },
+            { value: "curve", label: "Curve" },
+            { value: "twist", label: "Constant twist" },
           ]}
           onChange={(way) => set(pathOf(way))}
         />

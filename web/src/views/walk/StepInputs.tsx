@@ -9,7 +9,7 @@ type Key = "stroke_mm" | "speed_mm_s" | "body_height_mm" | "swing_height_mm";
 interface Row {
   key: Key;
   label: string;
-  taken: (walk: WalkMessage) => number;
+  chosen: (walk: WalkMessage) => number;
   max: number;
   typedMax: number;
   step: number;
@@ -20,7 +20,7 @@ const ROWS: readonly Row[] = [
   {
     key: "speed_mm_s",
     label: "Speed",
-    taken: (walk) => walk.speed_mm_s,
+    chosen: (walk) => walk.speed_mm_s,
     max: 300,
     typedMax: 5000,
     step: 1,
@@ -29,7 +29,7 @@ const ROWS: readonly Row[] = [
   {
     key: "stroke_mm",
     label: "Stroke",
-    taken: (walk) => walk.stroke_mm,
+    chosen: (walk) => walk.stroke_mm,
     max: 200,
     typedMax: 5000,
     step: 1,
@@ -38,7 +38,7 @@ const ROWS: readonly Row[] = [
   {
     key: "swing_height_mm",
     label: "Swing height",
-    taken: (walk) => walk.swing_height_mm,
+    chosen: (walk) => walk.swing_height_mm,
     max: 100,
     typedMax: 2000,
     step: 1,
@@ -47,7 +47,7 @@ const ROWS: readonly Row[] = [
   {
     key: "body_height_mm",
     label: "Body height",
-    taken: (walk) => walk.body_height_mm,
+    chosen: (walk) => walk.body_height_mm,
     max: 220,
     typedMax: 5000,
     step: 1,
@@ -55,20 +55,20 @@ const ROWS: readonly Row[] = [
   },
 ];
 
-/** How it steps. What is left to the plan shows what the plan took. */
+/** Parameters of the steps. Automatic values show what the plan has chosen. */
 export function StepInputs() {
   const { state } = useInputs();
   const walk = useStudio((studio) => studio.walk);
   return (
     <fieldset>
       <legend>Steps</legend>
-      {ROWS.map(({ key, label, taken, max, typedMax, step, unit }) => {
+      {ROWS.map(({ key, label, chosen, max, typedMax, step, unit }) => {
         const value = state.walk[key];
         return (
           <Slider
             key={key}
             label={label}
-            value={value ?? (walk ? taken(walk) : null)}
+            value={value ?? (walk ? chosen(walk) : null)}
             min={0}
             max={max}
             typedMax={typedMax}
@@ -82,7 +82,7 @@ export function StepInputs() {
         );
       })}
       <details>
-        <summary>Tilt, cycle, stance</summary>
+        <summary>Tilt, cycle time, stance width</summary>
         <div className="inside">
           {(["roll_deg", "pitch_deg"] as const).map((key) => (
             <Slider
@@ -113,7 +113,7 @@ export function StepInputs() {
             onChange={(next, commit) => change("walk", { cycle_time_s: next }, commit)}
           />
           <Slider
-            label="Feet from coxa axes"
+            label="Foot distance from coxa axis"
             value={state.walk.foot_distance_mm}
             min={0}
             max={400}

@@ -1,7 +1,7 @@
 import { Slider } from "../../controls/Slider";
 import type { PathProps } from "./paths";
 
-/** How far, and which way. */
+/** Distance and direction of a straight walk. */
 export function StraightInputs({ path, set }: PathProps<"straight">) {
   return (
     <>

@@ -1,13 +1,13 @@
 import { Slider } from "../../controls/Slider";
 import type { PathProps } from "./paths";
 
-/** How fast in each direction, and how long. */
+/** Twist and duration. */
 export function TwistInputs({ path, set }: PathProps<"twist">) {
   const [vx, vy] = path.velocity_mm_s;
   return (
     <>
       <Slider
-        label="Forward"
+        label="Forward speed"
         value={vx}
         min={-200}
         max={200}
@@ -19,7 +19,7 @@ export function TwistInputs({ path, set }: PathProps<"twist">) {
         onChange={(next, commit) => set({ ...path, velocity_mm_s: [next, vy] }, commit)}
       />
       <Slider
-        label="Left"
+        label="Left speed"
         value={vy}
         min={-200}
         max={200}
@@ -31,7 +31,7 @@ export function TwistInputs({ path, set }: PathProps<"twist">) {
         onChange={(next, commit) => set({ ...path, velocity_mm_s: [vx, next] }, commit)}
       />
       <Slider
-        label="Turning left"
+        label="Left turn rate"
         value={path.turn_deg_s}
         min={-60}
         max={60}
@@ -43,7 +43,7 @@ export function TwistInputs({ path, set }: PathProps<"twist">) {
         onChange={(turn_deg_s, commit) => set({ ...path, turn_deg_s }, commit)}
       />
       <Slider
-        label="For"
+        label="Duration"
         value={path.duration_s}
         min={1}
         max={30}

@@ -5,7 +5,7 @@ import { usePlayback } from "../../state/playback";
 import { AngleTable } from "../AngleTable";
 import { useInputs } from "../useInputs";
 
-/** The joint angles at the moment that is shown; they change while it rests, and four times a second while it plays. */
+/** Joint angles at the playback time, updated four times a second. */
 export function WalkAngles({ walk }: { walk: WalkMessage }) {
   const { robot } = useInputs();
   const [sample, setSample] = useState(0);

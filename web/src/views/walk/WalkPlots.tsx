@@ -15,7 +15,7 @@ import { useInputs } from "../useInputs";
 const KINDS = [...JOINTS, "margin"] as const;
 type Kind = (typeof KINDS)[number];
 
-/** Joint angles and the margin of stability over the walk. A click goes to that moment. */
+/** Joint angles and stability margin over the walk. A click sets the playback time. */
 export function WalkPlots({ walk }: { walk: WalkMessage }) {
   const { robot } = useInputs();
   const theme = useTheme((one) => one.theme);
@@ -27,11 +27,11 @@ export function WalkPlots({ walk }: { walk: WalkMessage }) {
   const unit = kind === "margin" ? "mm" : "°";
   return (
     <details>
-      <summary>Angles and margin over time</summary>
+      <summary>Joint angles and stability margin over time</summary>
       <div className="inside">
         <div className="row">
           <Segments
-            label="What is plotted"
+            label="Quantity"
             testId="walk-plot"
             value={kind}
             options={KINDS.map((name) => ({ value: name, label: name }))}
@@ -73,6 +73,6 @@ function summaryOf(kind: Kind, lines: readonly Line[], unit: string): string {
   const values = lines.flatMap((line) => Array.from(line.values)).filter(Number.isFinite);
   const low = values.reduce((least, value) => Math.min(least, value), Infinity);
   const high = values.reduce((most, value) => Math.max(most, value), -Infinity);
-  const what = kind === "margin" ? "Margin of stability" : `Angles of the ${kind} joints`;
+  const what = kind === "margin" ? "Stability margin" : `Angles of the ${kind} joints`;
   return `${what} over the walk, from ${fixed(low, 1)} to ${fixed(high, 1)} ${unit}.`;
 }

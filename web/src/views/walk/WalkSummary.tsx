@@ -3,31 +3,34 @@ import { Message, Remarks } from "../../controls/Message";
 import { withUnit } from "../../controls/numbers";
 import type { WalkMessage } from "../../protocol";
 
-/** What the plan says of the walk. */
+/** Summary of the planned walk. */
 export function WalkSummary({ walk }: { walk: WalkMessage }) {
   const { end, least_margin: margin } = walk;
   return (
     <>
       <Message kind={walk.possible ? "good" : "bad"} testId="walk-verdict">
-        {walk.possible ? "Every foot reaches all of its way." : "This walk does not work."}
+        {walk.possible ? "All foot trajectories are reachable." : "This walk is not possible."}
       </Message>
       <Remarks kind="warn" items={walk.problems} testId="walk-problems" />
       <Facts
         testId="walk-facts"
         rows={[
-          ["Takes", withUnit(walk.duration_s, 2, "s")],
+          ["Duration", withUnit(walk.duration_s, 2, "s")],
           ["Steps", walk.steps],
           ["Stroke", withUnit(walk.stroke_mm, 1, "mm")],
           ["Longest stroke", withUnit(walk.longest_stroke_mm, 1, "mm")],
           ["Speed", withUnit(walk.speed_mm_s, 1, "mm/s")],
-          ["Ends at x, y", `${end.x_mm.toFixed(1)}, ${end.y_mm.toFixed(1)} mm`],
-          ["Turned by", withUnit(end.turned_deg, 1, "°")],
-          ["Least margin", `${withUnit(margin.mm, 1, "mm")} at ${withUnit(margin.at_s, 2, "s")}`],
-          ["Nearest feet", `${withUnit(walk.nearest_feet.mm, 0, "mm")} (${walk.nearest_legs.join(", ")})`],
+          ["End position x, y", `${end.x_mm.toFixed(1)}, ${end.y_mm.toFixed(1)} mm`],
+          ["End heading", withUnit(end.turned_deg, 1, "°")],
+          ["Least stability margin", `${withUnit(margin.mm, 1, "mm")} at ${withUnit(margin.at_s, 2, "s")}`],
+          [
+            "Least foot distance",
+            `${withUnit(walk.nearest_feet.mm, 0, "mm")} (${walk.nearest_legs.join(", ")})`,
+          ],
           ...walk.joint_speed.map(
             (speed) =>
               [
-                `Fastest ${speed.joint}`,
+                `Max. speed of ${speed.joint}`,
                 `${withUnit(speed.deg_s, 0, "°/s")}${speed.share_of_no_load === null ? "" : ` (${Math.round(speed.share_of_no_load * 100)} % of no-load)`}`,
               ] as const,
           ),
@@ -35,7 +38,7 @@ export function WalkSummary({ walk }: { walk: WalkMessage }) {
       />
       {walk.assumed.length > 0 && (
         <details>
-          <summary>What the plan assumed</summary>
+          <summary>Assumptions of the plan</summary>
           <div className="inside">
             <ul>
               {walk.assumed.map((line) => (

@@ -12,7 +12,7 @@ import { WalkAngles } from "./WalkAngles";
 import { WalkPlots } from "./WalkPlots";
 import { WalkSummary } from "./WalkSummary";
 
-/** Plan a walk, and see it walked. */
+/** Plan a walk and play it. */
 export function WalkView() {
   const { state } = useInputs();
   const walk = useStudio((studio) => studio.walk);
@@ -21,9 +21,7 @@ export function WalkView() {
   const longest = failure?.longest_stroke_mm ?? null;
   return (
     <div className="view">
-      <ViewHead title="Walk">
-        Plan a walk: the whole of it is worked out, then it plays here without the server.
-      </ViewHead>
+      <ViewHead title="Walk">Plan a complete walk, which is then played back in the browser.</ViewHead>
       <Failure of={["walk"]}>
         <div className="row">
           {longest !== null && (
@@ -32,11 +30,11 @@ export function WalkView() {
               className="button small"
               onClick={() => change("walk", { stroke_mm: Math.floor(longest * 10) / 10 })}
             >
-              Take {Math.floor(longest * 10) / 10} mm
+              Use {Math.floor(longest * 10) / 10} mm
             </button>
           )}
           <button type="button" className="button small" onClick={() => change("walk", { strict: false })}>
-            Show it all the same
+            Show it anyway
           </button>
         </div>
       </Failure>
@@ -50,7 +48,7 @@ export function WalkView() {
       {walk && <GaitDiagram walk={walk} />}
       {walk && <WalkPlots walk={walk} />}
       <fieldset>
-        <legend>Take it away</legend>
+        <legend>Export</legend>
         <div className="row">
           {(["csv", "html"] as const).map((what) => (
             <button
@@ -61,7 +59,7 @@ export function WalkView() {
               disabled={!walk}
               onClick={() => ask({ type: "download", what })}
             >
-              <Icon name="save" /> {what === "csv" ? "CSV of the walk" : "HTML that plays it"}
+              <Icon name="save" /> {what === "csv" ? "CSV table" : "HTML page with playback"}
             </button>
           ))}
         </div>
@@ -70,7 +68,7 @@ export function WalkView() {
       {!state.walk.strict && (
         <div className="row">
           <button type="button" className="button small" onClick={() => change("walk", { strict: true })}>
-            Refuse walks that don’t work
+            Reject impossible walks
           </button>
         </div>
       )}

@@ -1,16 +1,16 @@
 import type { WalkOptions } from "../../protocol";
 
 export type Path = WalkOptions["path"];
-export type Way = Path["way"];
+export type PathKind = Path["way"];
 
-/** What the inputs of a kind of path take. */
-export interface PathProps<W extends Way> {
+/** Props of the inputs of a kind of path. */
+export interface PathProps<W extends PathKind> {
   path: Extract<Path, { way: W }>;
   set: (path: Path, commit?: boolean) => void;
 }
 
-/** A path to begin with, of each kind. */
-export function pathOf(way: Way): Path {
+/** Default path of each kind. */
+export function pathOf(way: PathKind): Path {
   switch (way) {
     case "straight":
       return { way, distance_mm: 500, heading_deg: 0 };

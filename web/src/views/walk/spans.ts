@@ -1,6 +1,6 @@
 import type { WalkMessage } from "../../protocol";
 
-/** When a foot is down, as pairs of start and end [s]. */
+/** Stance intervals of a foot as pairs of start and end [s]. */
 export function stanceSpans(
   walk: Pick<WalkMessage, "contacts" | "rate_hz">,
   leg: number,
@@ -12,7 +12,7 @@ export function stanceSpans(
   for (let i = 0; i <= last; i++) {
     if (!isDown(i)) continue;
     if (i === 0 || !isDown(i - 1)) start = i;
-    // A stance lasts until the first sample in the air; one that is never left, until the end.
+    // A stance ends with the first sample in the air, or with the walk.
     if (i === last || !isDown(i + 1))
       spans.push([start / walk.rate_hz, Math.min(i + 1, last) / walk.rate_hz]);
   }
