@@ -35,7 +35,7 @@ def main() -> None:
     strider = tarsus.load_robot("strider")
     tripod = tarsus.Gait.named("tripod")
     walk = tarsus.plan_walk(strider, tripod, tarsus.straight_path(1.0))
-    animate(walk, FIGURES / "walk.gif", longest=6.0)
+    animate(walk, FIGURES / "walk.gif", max_duration=6.0)
     save_figure(plot_angles(walk), FIGURES / "angles.png")
     save_figure(plot_gait(walk), FIGURES / "gait.png")
     curve = tarsus.plan_walk(strider, tarsus.Gait.named("ripple"), tarsus.curved_path(np.pi / 2, (0, 0.4)))

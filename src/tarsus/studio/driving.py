@@ -11,7 +11,7 @@ from tarsus.control.command import Command
 from tarsus.control.control_output import ControlOutput
 from tarsus.control.plant import IdealPlant
 from tarsus.control.robot_controller import RobotController
-from tarsus.control.robot_state import next_state, requested_state
+from tarsus.control.states.robot_state import next_state, requested_state
 from tarsus.errors import TarsusError
 from tarsus.gait.gait import Gait
 from tarsus.kinematics.leg import forward_kinematics

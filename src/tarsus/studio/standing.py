@@ -162,7 +162,7 @@ def standing_message(standing: OnFootholds, *, id: int, view: View) -> PoseMessa
         limits=[],
         text=_text(robot, contacts, margin),
         problems=problems,
-        share=standing.share if problems else 1.0,
+        share=standing.feasible_fraction if problems else 1.0,
     )
 
 
