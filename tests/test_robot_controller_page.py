@@ -6,6 +6,7 @@ import io
 import re
 from pathlib import Path
 
+import tarsus
 from tarsus.control.command import Command
 from tarsus.control.control_output import ControlOutput
 from tarsus.control.plant import Plant
@@ -32,3 +33,13 @@ def test_the_tables_have_every_field_and_method():
     plants = PAGE.partition("## Plants")[2]
     methods = {name for name in vars(Plant) if not name.startswith("_") and callable(getattr(Plant, name))}
     assert methods == set(re.findall(r"^\| `(\w+)\(", plants, re.MULTILINE))
+
+
+def test_the_page_on_a_tick_names_files_that_exist_and_every_limiter():
+    page = (Path(__file__).parents[1] / "docs" / "life-of-a-tick.md").read_text(encoding="utf-8")
+    control = Path(tarsus.__file__).parent / "control"
+    named = {name.removeprefix("control/") for name in re.findall(r"`((?:\w+/)*\w+\.py)`", page)}
+    table = page.partition("## Limiters")[2]
+    limiters = set(re.findall(r"^\| `(\w+\.py)`", table, re.MULTILINE))
+    assert limiters == {path.name for path in (control / "limiter").glob("*.py")} - {"__init__.py", "protocol.py"}
+    assert {name for name in named - limiters if not (control / name).is_file()} == set()
