@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from gait_robots import PRESETS, preset
 from tarsus.control.sequence.sequence_limits import sequence_limits
 from tarsus.control.startup.folded_pose import belly_depth, folded_pose, underside_points
+from tarsus.control.startup.foothold_change import change_footholds
 from tarsus.control.startup.foothold_stations import foothold_stations
 from tarsus.control.startup.initial_state import initial_state
 from tarsus.control.startup.planner import fold, sit_down, stand_up
@@ -341,6 +342,24 @@ def test_a_height_out_of_all_reach_is_reported():
     feet = default_stance(robot, 0.11)
     with pytest.raises(UnreachableError, match=r"at body height .* mm, leg .* cannot reach the ground at any distance"):
         foothold_stations(robot, 0.025, 0.5, feet, swing_height=0.03)
+
+
+def test_the_error_says_if_no_lower_height_works():
+    robot = preset("strider")
+    builder = initial_state(robot, folded_pose(robot), sequence_limits(robot))
+    feet = default_stance(robot, 0.11) * [2, 2, 1]
+    with pytest.raises(UnreachableError, match=r"raising the body to 110.0 mm: .*; no lower body height works either"):
+        raise_body(builder, feet, stance_angles(robot), swing_height=10.0, margin=0.01)
+
+
+def test_with_three_feet_on_the_ground_none_is_lifted():
+    robot = preset("strider")
+    builder = initial_state(robot, stance_angles(robot), sequence_limits(robot))
+    for leg in (0, 2, 4):
+        builder.unload(leg)
+    turned = stance_angles(robot) + 0.1 * np.array([[0], [1], [0], [1], [0], [1]])
+    with pytest.raises(TarsusError, match=r"only 3 feet are on the ground; .* requires at least 4"):
+        change_footholds(builder, turned, swing_height=0.03, margin=0.0)
 
 
 def test_a_final_stance_with_other_angles_is_rejected():

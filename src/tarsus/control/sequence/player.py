@@ -149,17 +149,17 @@ class SequencePlayer:
     def _rate_change(self, dt: float) -> float:
         """Return the greatest change of the rate within `dt` towards its target."""
         stage, fraction = self.sequence.stage_at(self._time)
-        wanted = min(max(self._target_rate - self._rate, -dt / _RAMP), dt / _RAMP)
+        change = min(max(self._target_rate - self._rate, -dt / _RAMP), dt / _RAMP)
         if not stage.duration:
-            return wanted
+            return change
         first, second = (_interpolate(values, fraction) for values in self._tables[id(stage)][1:])
         speed = first / stage.duration
         curvature = second / stage.duration**2 * self._rate**2
         bound = _ACCELERATION_FRACTION * self.sequence.joint_limits.acceleration
         # For every joint |curvature + speed * change / dt| <= bound; no change always satisfies this.
         with np.errstate(divide="ignore"):
-            slope = (bound - np.sign(wanted) * np.sign(speed) * curvature) / np.abs(speed)
-        return math.copysign(min(abs(wanted), max(float(slope.min()), 0.0) * dt), wanted)
+            slope = (bound - np.sign(change) * np.sign(speed) * curvature) / np.abs(speed)
+        return math.copysign(min(abs(change), max(float(slope.min()), 0.0) * dt), change)
 
 
 def _interpolate(values: Floats, fraction: float) -> Floats:
