@@ -1,11 +1,11 @@
-// The inverse kinematics of `tarsus.inverse_kinematics` as a C loop: what the NumPy code is measured against.
+// The inverse kinematics of `tarsus.inverse_kinematics` as a C loop, the reference of the benchmarks.
 //
-// Feet in, angles and reach codes out, in Tarsus' own layouts: feet (robots, legs, 3), angles (robots, legs, 3),
-// codes (robots, legs). Per leg 3 atan2 and 2 sqrt; legs that can't reach are done again with the plane turned away
-// and, failing that, with the nearest reachable point. For femur axes without sideways offset.
+// Input feet (robots, legs, 3); output angles (robots, legs, 3) and reach codes (robots, legs), in the layouts of Tarsus.
+// Per leg 3 atan2 and 2 sqrt; legs that can't reach are solved again with the leg's plane reversed and, failing that, for
+// the nearest reachable point. For femur axes without sideways offset.
 //
-// Robots are worked through in small blocks, leg by leg, so that the compiler turns each inner loop into vector code
-// (with the vector mathematics library of glibc where there is one).
+// Robots are processed in small blocks, leg by leg, so that the compiler vectorises each inner loop (with the vector
+// mathematics library of glibc where available).
 
 #include <math.h>
 #include <stdint.h>

@@ -1,4 +1,4 @@
-"""Rows on loads: all torques of a walk, and a cycle of many designs against Python loops over them."""
+"""Benchmarks of joint loads: torques of a walk, and gait cycles of a batch of designs against Python loops."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from functools import partial
 from typing import Any
 
-# Before NumPy is loaded: this one chooses the number of threads.
+# Must be imported before NumPy: it sets the number of threads.
 from measure import Row, medians  # isort: split
 
 import numpy as np
@@ -17,38 +17,38 @@ from tarsus import (
     Pose,
     Robot,
     cycle_feet,
+    cycle_torques,
     default_body_height,
     default_stance,
     inverse_kinematics,
+    joint_loads,
+    joint_torques,
     plan_walk,
     straight_path,
 )
-from tarsus.load.cycle_torques import cycle_torques
-from tarsus.load.loads import joint_loads
-from tarsus.load.torque import joint_torques
 
 __all__ = ["load_rows"]
 
 DESIGNS, PHASES = 10_000, 32
 LOOPED = 50
-"""So many designs go through the loops, whose times are then taken in proportion."""
+"""Number of designs in the loops; their times are scaled to the batch."""
 
 STROKE = 0.06
-TIMES_A_LOOP = 50
+MIN_SPEED_UP = 50
 
 
 def load_rows(robot: Robot) -> Iterator[Row]:
-    """Loads: a walk, a batch of designs."""
+    """Measure joint loads of a walk and of a batch of designs."""
     yield from walk_rows(robot)
     yield from cycle_rows(robot)
 
 
 def walk_rows(robot: Robot) -> Iterator[Row]:
-    """All torques of a walk of 1 m at 100 Hz, the planning apart."""
+    """Measure the loads of a walk of 1 m at 100 Hz, without planning."""
     walk = plan_walk(robot, Gait.named("tripod"), straight_path(1.0))
     contestants = {
-        name: partial(worked_out, robot, walk, inertial=inertial)
-        for name, inertial in (("with inertia", True), ("statics alone", False))
+        name: partial(peak_torques, robot, walk, inertial=inertial)
+        for name, inertial in (("with inertia", True), ("quasi-static", False))
     }
     for name, seconds in medians(contestants).items():
         yield Row(
@@ -59,37 +59,37 @@ def walk_rows(robot: Robot) -> Iterator[Row]:
         )
 
 
-def worked_out(robot: Robot, walk: Any, *, inertial: bool) -> object:
-    """Return the peaks, so that nothing is left for later."""
+def peak_torques(robot: Robot, walk: Any, *, inertial: bool) -> object:
+    """Return the peak torques, so that nothing is evaluated lazily."""
     return joint_loads(robot, walk, inertial=inertial).peak
 
 
 def designs_of(robot: Robot) -> Robot:
-    """Return designs with other lengths."""
+    """Return designs with random link lengths."""
     scale = np.random.default_rng(4).uniform(0.95, 1.05, (3, DESIGNS, 1))
     return robot.replace(**{name: getattr(robot, name) * scale[i] for i, name in enumerate(("coxa", "femur", "tibia"))})
 
 
 def by_steps(robot: Robot, gait: Gait, swing_height: float) -> object:
-    """Return one design's torques by the functions for any pose: what a loop would call without `cycle_torques`."""
+    """Return the torques of a design with the general functions, without `cycle_torques`."""
     body_height = default_body_height(robot)
     rest = default_stance(robot, body_height, swing_height=swing_height)
-    moments = np.arange(PHASES) / PHASES
-    feet, contacts = cycle_feet(gait, rest, (STROKE, 0.0, 0.0), swing_height=np.asarray(swing_height), phases=moments)
+    phases = np.arange(PHASES) / PHASES
+    feet, contacts = cycle_feet(gait, rest, (STROKE, 0.0, 0.0), swing_height=np.asarray(swing_height), phases=phases)
     body = Pose(position=(0, 0, body_height))
     angles = inverse_kinematics(robot, feet + np.array([0, 0, body_height]), body).angles
     return joint_torques(robot, angles, body, contacts)
 
 
 def cycle_rows(robot: Robot) -> Iterator[Row]:
-    """A tripod cycle of many designs in one call, against Python loops over single designs."""
-    gait, swing_height, together = Gait.named("tripod"), 0.03, designs_of(robot)
-    singles = [together.item((i,)) for i in range(LOOPED)]
+    """Measure a tripod cycle of a batch of designs in one call, against Python loops."""
+    gait, swing_height, batch = Gait.named("tripod"), 0.03, designs_of(robot)
+    singles = [batch.item((i,)) for i in range(LOOPED)]
     for single in singles:
-        _ = single.geometry  # worked out once for a design, whoever asks
+        _ = single.geometry  # cached by every design
     times = medians(
         {
-            "batch": lambda: cycle_torques(together, gait, stroke=STROKE, swing_height=swing_height, phases=PHASES),
+            "batch": lambda: cycle_torques(batch, gait, stroke=STROKE, swing_height=swing_height, phases=PHASES),
             "alone": lambda: [
                 cycle_torques(one, gait, stroke=STROKE, swing_height=swing_height, phases=PHASES) for one in singles
             ],
@@ -98,21 +98,21 @@ def cycle_rows(robot: Robot) -> Iterator[Row]:
         rounds=7,
     )
     each = {name: seconds / (DESIGNS if name == "batch" else LOOPED) for name, seconds in times.items()}
-    for name, loop in (("alone", "the same function"), ("steps", "the functions for any pose")):
+    for name, loop in (("alone", "the same function"), ("steps", "the general functions")):
         ratio = each[name] / each["batch"]
         yield Row(
             what=f"torques of {DESIGNS} designs x {PHASES} phases of a tripod cycle, one call",
             measured=f"{1 / each['batch']:.0f} designs/s",
             compared=f"a loop with {loop}: {1 / each[name]:.0f} designs/s; {ratio:.0f} times as fast",
-            target=f">= {TIMES_A_LOOP} times a loop",
-            met=ratio >= TIMES_A_LOOP,
+            target=f">= {MIN_SPEED_UP} times a loop",
+            met=ratio >= MIN_SPEED_UP,
         )
     if importlib.util.find_spec("jax") is not None:
-        yield jitted_row(robot, together, gait, swing_height, each["batch"])
+        yield jitted_row(robot, batch, gait, swing_height, each["batch"])
 
 
-def jitted_row(robot: Robot, together: Robot, gait: Gait, swing_height: float, numpy_time: float) -> Row:
-    """The same through `jax.jit` on the same core."""
+def jitted_row(robot: Robot, batch: Robot, gait: Gait, swing_height: float, numpy_time: float) -> Row:
+    """Measure the same with `jax.jit` on the same core."""
     import jax
 
     jax.config.update("jax_enable_x64", True)
@@ -122,7 +122,7 @@ def jitted_row(robot: Robot, together: Robot, gait: Gait, swing_height: float, n
         return cycle_torques(design, gait, stroke=STROKE, swing_height=swing_height, phases=PHASES).torques
 
     compiled = jax.jit(torques)
-    arrays = [jax.numpy.asarray(getattr(together, name)) for name in ("coxa", "femur", "tibia")]
+    arrays = [jax.numpy.asarray(getattr(batch, name)) for name in ("coxa", "femur", "tibia")]
     seconds = medians({"jit": lambda: compiled(*arrays).block_until_ready()}, rounds=3)["jit"] / DESIGNS
     return Row(
         what=f"torques of {DESIGNS} designs x {PHASES} phases of a tripod cycle, jax.jit",

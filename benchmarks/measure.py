@@ -1,4 +1,4 @@
-"""Timing that is fair: one core, the processor's time, contestants taking turns within one run, medians."""
+"""Fair timing: one core, processor time, alternating contestants, medians."""
 
 from __future__ import annotations
 
@@ -12,27 +12,27 @@ from dataclasses import dataclass
 
 __all__ = ["Row", "medians", "peak_bytes", "start_time", "use_one_core"]
 
-# A mathematics library reads these when it is loaded, so they are set before any is.
+# Mathematics libraries read these variables when they are loaded.
 for _library in ("OMP", "OPENBLAS", "MKL"):
     os.environ[f"{_library}_NUM_THREADS"] = "1"
 
 
 @dataclass(frozen=True, kw_only=True)
 class Row:
-    """A line of the table.
+    """A row of the table.
 
     Attributes
     ----------
     what : str
-        What was measured.
+        Quantity.
     measured : str
-        The median, with its unit.
+        Median, with its unit.
     compared : str
-        What it is compared with, and the ratio.
+        Reference value, and the ratio.
     target : str
-        What was asked for; empty where nothing was.
+        Target; empty if there is none.
     met : bool or None
-        Whether the target was met; None where there is none, or nothing could be measured.
+        Whether the target is met; None without a target or a measurement.
     """
 
     what: str
@@ -48,7 +48,7 @@ class Row:
 
 
 def use_one_core() -> None:
-    """Keep this process and its children on one core, where the system can."""
+    """Restrict this process and its children to one core, if the system supports it."""
     if hasattr(os, "sched_setaffinity"):
         os.sched_setaffinity(0, {max(os.sched_getaffinity(0))})
 
@@ -60,25 +60,25 @@ def medians(
     loops: int = 1,
     clock: Callable[[], float] = time.process_time,
 ) -> dict[str, float]:
-    """Return each contestant's median time [s] over rounds in which all take turns, the order changing each round.
+    """Return each contestant's median time [s] over rounds in which all run in alternating order.
 
     Parameters
     ----------
     contestants : mapping of str to callable
-        What to time; each is called once before the clock starts.
+        Functions to time; each is called once before the first measurement.
     rounds : int
-        How many rounds.
+        Number of rounds.
     loops : int
-        Calls in a row that make one measurement, for what takes microseconds.
+        Number of consecutive calls per measurement, for functions that take microseconds.
     clock : callable
-        What tells the time: by default the processor's time, which other processes on the core do not add to.
+        Clock. Default: processor time, which excludes other processes on the core.
     """
     times: dict[str, list[float]] = {name: [] for name in contestants}
     for call in contestants.values():
         call()
     names = list(contestants)
-    for turn in range(rounds):
-        shift = turn % len(names)
+    for index in range(rounds):
+        shift = index % len(names)
         for name in names[shift:] + names[:shift]:
             call = contestants[name]
             start = clock()
@@ -89,7 +89,7 @@ def medians(
 
 
 def peak_bytes(call: Callable[[], object]) -> int:
-    """Return the most memory that a call holds above what was there before [bytes]."""
+    """Return the peak memory of a call, above that before the call [bytes]."""
     tracemalloc.start()
     try:
         call()
@@ -99,7 +99,7 @@ def peak_bytes(call: Callable[[], object]) -> int:
 
 
 def start_time(arguments: Sequence[str], *, rounds: int = 9) -> float:
-    """Return the median time that a command takes from start to end, on the wall's clock [s]."""
+    """Return the median wall-clock time of a command [s]."""
     return medians(
         {"command": lambda: subprocess.run(arguments, check=True, stdout=subprocess.DEVNULL)},
         rounds=rounds,

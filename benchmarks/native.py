@@ -1,4 +1,4 @@
-"""The C loop that the NumPy code is measured against: `leg.c`, compiled on the spot."""
+"""The C reference of the benchmarks: `leg.c`, compiled on demand."""
 
 from __future__ import annotations
 
@@ -21,20 +21,22 @@ _DOUBLES = ctypes.POINTER(ctypes.c_double)
 
 
 class CLoop:
-    """The inverse kinematics of one robot in C; its outputs are allocated once.
+    """Inverse kinematics of one robot in C, with preallocated outputs.
 
     Attributes
     ----------
     vectors : tuple of str
-        The vector functions of the mathematics library that the compiler's code calls; empty where it found none.
-    angles, codes : array
-        What the last call wrote: ``(robots, legs, 3)`` [rad] and ``(robots, legs)``.
+        Vector functions of the mathematics library that the compiled code calls; empty if there are none.
+    angles : array, shape (robots, legs, 3)
+        Joint angles of the last call [rad].
+    codes : array, shape (robots, legs)
+        Reach codes of the last call.
     """
 
     def __init__(self, library: Path, robot: Robot, robots: int) -> None:
         g = robot.geometry
         if robot.legs != 6 or robot.batch_shape or g.side.any() or np.ptp(g.up):
-            raise ValueError("the C loop is for six legs whose femur axes have no sideways offset")
+            raise ValueError("the C loop needs six legs without a sideways offset of the femur axes")
         columns = [g.mount_x, g.mount_y, g.mount_z + g.up, g.cos_yaw, g.sin_yaw, g.coxa, g.femur, g.tibia]
         columns += [g.farthest2, g.nearest2, g.sum2, g.difference2]
         columns += [g.coxa_lower, g.femur_lower, g.tibia_lower, g.coxa_upper, g.femur_upper, g.tibia_upper]
@@ -49,20 +51,20 @@ class CLoop:
 
     @classmethod
     def compiled(cls, robot: Robot, robots: int) -> Self | None:
-        """Compile the loop; None where there is no gcc."""
+        """Compile the loop; None if gcc is not installed."""
         gcc = shutil.which("gcc")
         if gcc is None:
             return None
         library = _HERE / "build" / "leg.so"
         library.parent.mkdir(exist_ok=True)
         command = [gcc, *FLAGS, "-shared", "-fPIC", str(_HERE / "leg.c"), "-o", str(library)]
-        # glibc has its vector functions in a library of its own, which other systems lack.
+        # glibc has its vector functions in a separate library, which other systems lack.
         if subprocess.run([*command, "-lmvec", "-lm"], check=False, capture_output=True).returncode:
             subprocess.run([*command, "-lm"], check=True)
         return cls(library, robot, robots)
 
     def __call__(self, feet: np.ndarray[Any, Any], body: Pose | None = None) -> None:
-        """Solve for feet ``(robots, legs, 3)``, in G where body poses ``(robots,)`` are given."""
+        """Solve for feet ``(robots, legs, 3)`` in B, or in G if body poses ``(robots,)`` are given."""
         rotation, position = (None, None) if body is None else (_pointer(body.rotation), _pointer(body.position))
         self._function(
             _pointer(self._constants),
@@ -78,7 +80,7 @@ class CLoop:
 
 def _pointer(array: np.ndarray[Any, Any]) -> Any:
     if array.dtype != np.float64 or not array.flags.c_contiguous:
-        raise ValueError("the C loop takes contiguous arrays of doubles")
+        raise ValueError("the C loop needs contiguous arrays of doubles")
     return array.ctypes.data_as(_DOUBLES)
 
 

@@ -13,7 +13,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any, TypeAlias
 
-# Before NumPy is loaded: this one chooses the core and the number of threads.
+# Must be imported before NumPy: it sets the core and the number of threads.
 from measure import Row, medians, peak_bytes, start_time, use_one_core  # isort: split
 
 import numpy as np
@@ -32,7 +32,7 @@ from tarsus import (
     plan_walk,
     straight_path,
 )
-from walker import walker_rows
+from walk_controller import controller_rows
 
 FloatArray: TypeAlias = np.ndarray[Any, np.dtype[np.float64]]
 
@@ -40,89 +40,89 @@ ROBOTS = 100_000
 """Robots in a batch: 600,000 legs."""
 
 DESIGNS, POSES = 1000, 32
-CLEARANCE = 0.11
-OF_C = 0.15
-"""What share of the C loop's speed is asked for."""
+BODY_HEIGHT = 0.11
+MIN_C_RATIO = 0.15
+"""Required speed relative to the C loop."""
 
-SCATTERED = 0.001
-"""A share of legs out of reach that leaves hardly any block of a batch without one."""
+SCATTERED_FRACTION = 0.001
+"""Fraction of legs out of reach that affects almost every block of a batch."""
 
 AGREEMENT = 1e-9
-"""How far the angles of the two implementations may differ [rad]."""
+"""Tolerated difference between the angles of the two implementations [rad]."""
 
 TABLE = Path(__file__).parent.parent / "docs" / "benchmarks.md"
 
 
 def footholds(robot: Robot, rng: np.random.Generator) -> FloatArray:
-    """Return feet in B about a stance, all of them within reach with the body tilted by 5 degrees about each axis."""
+    """Return random feet in B around a stance, within reach for body tilts of up to 5 degrees about each axis."""
     spread = rng.uniform((-0.02, -0.02, 0.0), (0.02, 0.02, 0.01), (ROBOTS, robot.legs, 3))
-    return np.asarray(default_stance(robot, CLEARANCE, swing_height=0.05) + spread)
+    return np.asarray(default_stance(robot, BODY_HEIGHT, swing_height=0.05) + spread)
 
 
 def tilted(degrees: float, rng: np.random.Generator) -> Pose:
-    """Return body poses turned at random by up to `degrees` about each axis, and moved by up to 10 mm."""
+    """Return random body poses, rotated by up to `degrees` about each axis and shifted by up to 10 mm."""
     roll, pitch, yaw = rng.uniform(-1, 1, (3, ROBOTS)) * math.radians(degrees)
-    middle = np.array([0, 0, CLEARANCE])
-    return Pose.from_rpy(roll, pitch, yaw, rng.uniform(-0.01, 0.01, (ROBOTS, 3)) + middle)
+    centre = np.array([0, 0, BODY_HEIGHT])
+    return Pose.from_rpy(roll, pitch, yaw, rng.uniform(-0.01, 0.01, (ROBOTS, 3)) + centre)
 
 
 def batches(robot: Robot) -> Iterator[tuple[str, FloatArray, Pose | None, float]]:
-    """Yield the batches that both implementations solve: what they are, feet, body, the share that is out of reach."""
+    """Yield the batches for both implementations: name, feet, body, fraction of legs out of reach."""
     rng = np.random.default_rng(1)
     feet = footholds(robot, rng)
     yield "feet in B", feet, None, 0.0
     for degrees in (2, 5):
-        yield f"body poses, up to {degrees} deg", feet + np.array([0, 0, CLEARANCE]), tilted(degrees, rng), 0.0
+        yield f"body poses, up to {degrees} deg", feet + np.array([0, 0, BODY_HEIGHT]), tilted(degrees, rng), 0.0
     g = robot.geometry
     outward = np.stack([g.cos_yaw, g.sin_yaw, np.zeros(robot.legs)], axis=-1)
-    for share in (SCATTERED, 0.1):
-        away = np.where(rng.random((ROBOTS, robot.legs, 1)) < share, 0.3, 0.0) * outward
-        yield f"feet in B, {share:.1%} out of reach", feet + away, None, share
+    for fraction in (SCATTERED_FRACTION, 0.1):
+        offset = np.where(rng.random((ROBOTS, robot.legs, 1)) < fraction, 0.3, 0.0) * outward
+        yield f"feet in B, {fraction:.1%} out of reach", feet + offset, None, fraction
 
 
 def require_agreement(c_loop: CLoop, robot: Robot, feet: FloatArray, body: Pose | None, out_of_reach: float) -> None:
-    """Refuse to time two implementations that differ, or a batch that is not what it says it is."""
+    """Check that both implementations agree, and that the fraction of legs out of reach is as stated."""
     solution = inverse_kinematics(robot, feet, body)
     c_loop(feet, body)
-    apart = float(np.abs(solution.angles - c_loop.angles).max())
+    difference = float(np.abs(solution.angles - c_loop.angles).max())
     codes = int((solution.reach != c_loop.codes).sum())
-    if apart > AGREEMENT or codes:
-        raise SystemExit(f"the C loop and Tarsus differ by up to {apart:.3g} rad, and in {codes} reach codes")
-    share = float((c_loop.codes != 0).mean())
-    if not math.isclose(share, out_of_reach, rel_tol=0.1):
-        raise SystemExit(f"{share:.2%} of the legs are out of reach where {out_of_reach:.2%} should be")
+    if difference > AGREEMENT or codes:
+        raise SystemExit(f"the C loop and Tarsus differ by up to {difference:.3g} rad, and in {codes} reach codes")
+    fraction = float((c_loop.codes != 0).mean())
+    if not math.isclose(fraction, out_of_reach, rel_tol=0.1):
+        raise SystemExit(f"{fraction:.2%} of the legs are out of reach; expected {out_of_reach:.2%}")
 
 
 def inverse_rows(robot: Robot, c_loop: CLoop | None) -> Iterator[Row]:
-    """Whole-robot inverse kinematics with verdicts, against a C loop."""
+    """Measure whole-robot inverse kinematics with reach codes against a C loop."""
     for name, feet, body, out_of_reach in batches(robot):
         contestants: dict[str, Callable[[], object]] = {"tarsus": partial(inverse_kinematics, robot, feet, body)}
         if c_loop is not None:
             require_agreement(c_loop, robot, feet, body, out_of_reach)
             contestants["c"] = partial(c_loop, feet, body)
         times = medians(contestants, rounds=15)
-        compared, met = "no gcc here: not compared", None
+        compared, met = "gcc is not installed: not compared", None
         if "c" in times:
             ratio = times["c"] / times["tarsus"]
-            compared, met = f"C: {speed(times['c'])}; {ratio:.2f} of it", ratio >= OF_C
+            compared, met = f"C: {speed(times['c'])}; {ratio:.2f} of it", ratio >= MIN_C_RATIO
         yield Row(
-            what=f"inverse kinematics with verdicts, {name}",
+            what=f"inverse kinematics with reach codes, {name}",
             measured=speed(times["tarsus"]),
             compared=compared,
-            target=f">= {OF_C} of C",
+            target=f">= {MIN_C_RATIO} of C",
             met=met,
         )
 
 
 def speed(seconds: float, legs: int = 6 * ROBOTS) -> str:
-    """Return how many legs a second that is."""
+    """Format a speed in legs per second."""
     return f"{legs / seconds / 1e6:.1f} M legs/s"
 
 
 def single_rows(robot: Robot) -> Iterator[Row]:
-    """One robot, as in a control loop."""
-    feet = default_stance(robot, CLEARANCE) * (1, 1, 0)
-    body = Pose.from_rpy(0.03, -0.02, 0.1, (0.005, 0.0, CLEARANCE))
+    """Measure a single robot, as in a control loop."""
+    feet = default_stance(robot, BODY_HEIGHT) * (1, 1, 0)
+    body = Pose.from_rpy(0.03, -0.02, 0.1, (0.005, 0.0, BODY_HEIGHT))
     angles = inverse_kinematics(robot, feet, body).require().angles
     times = medians(
         {
@@ -131,36 +131,36 @@ def single_rows(robot: Robot) -> Iterator[Row]:
         },
         loops=300,
     )
-    for (name, seconds), most in zip(times.items(), (60, 30), strict=True):
+    for (name, seconds), limit in zip(times.items(), (60, 30), strict=True):
         yield Row(
-            what=f"{name} of one robot{', with a body pose' if most == 60 else ''}",
+            what=f"{name} of one robot{', with a body pose' if limit == 60 else ''}",
             measured=f"{seconds * 1e6:.0f} us",
-            target=f"<= {most} us",
-            met=seconds * 1e6 <= most,
+            target=f"<= {limit} us",
+            met=seconds * 1e6 <= limit,
         )
 
 
 def memory_rows(robot: Robot) -> Iterator[Row]:
-    """The most memory held while a batch is solved, against what goes in and comes out."""
+    """Measure the peak memory of solving a batch, relative to input and output."""
     for name, feet, body, out_of_reach in batches(robot):
-        if out_of_reach == SCATTERED or name.endswith("2 deg"):
-            continue  # the same again
+        if out_of_reach == SCATTERED_FRACTION or name.endswith("2 deg"):
+            continue  # same memory as another batch
         solution = inverse_kinematics(robot, feet, body)
-        given = feet.nbytes + (0 if body is None else body.rotation.nbytes + body.position.nbytes)
-        needed = given + solution.angles.nbytes + solution.reach.nbytes
+        input_bytes = feet.nbytes + (0 if body is None else body.rotation.nbytes + body.position.nbytes)
+        minimum_bytes = input_bytes + solution.angles.nbytes + solution.reach.nbytes
         del solution
-        held = given + peak_bytes(partial(inverse_kinematics, robot, feet, body))
+        peak = input_bytes + peak_bytes(partial(inverse_kinematics, robot, feet, body))
         yield Row(
             what=f"memory for 600,000 legs, {name}",
-            measured=f"{held / 2**20:.0f} MiB",
-            compared=f"input and output: {needed / 2**20:.0f} MiB; {held / needed:.2f} times",
+            measured=f"{peak / 2**20:.0f} MiB",
+            compared=f"input and output: {minimum_bytes / 2**20:.0f} MiB; {peak / minimum_bytes:.2f} times",
             target="< 5 times",
-            met=held < 5 * needed,
+            met=peak < 5 * minimum_bytes,
         )
 
 
 def forward_rows(robot: Robot) -> Iterator[Row]:
-    """Forward kinematics, and both through `jax.jit` on the same core."""
+    """Measure forward kinematics, and forward and inverse kinematics with `jax.jit` on the same core."""
     feet = footholds(robot, np.random.default_rng(2))
     angles = inverse_kinematics(robot, feet).require().angles
     times = medians({"fk": lambda: forward_kinematics(robot, angles)})
@@ -182,7 +182,7 @@ def forward_rows(robot: Robot) -> Iterator[Row]:
             "fk": lambda: forward_kinematics(robot, angles),
         }
     )
-    for name, what in (("ik", "inverse kinematics with verdicts"), ("fk", "forward kinematics")):
+    for name, what in (("ik", "inverse kinematics with reach codes"), ("fk", "forward kinematics")):
         yield Row(
             what=f"{what}, jax.jit, 600,000 legs",
             measured=speed(times[f"jax {name}"]),
@@ -191,16 +191,16 @@ def forward_rows(robot: Robot) -> Iterator[Row]:
 
 
 def design_rows(robot: Robot) -> Iterator[Row]:
-    """Many designs at once, against a Python loop over them."""
+    """Measure a batch of designs against a Python loop."""
     rng = np.random.default_rng(3)
     scale = rng.uniform(0.95, 1.05, (3, DESIGNS, 1))
     lengths = {name: getattr(robot, name) * scale[i] for i, name in enumerate(("coxa", "femur", "tibia"))}
-    together = robot.replace(**{name: length[:, None] for name, length in lengths.items()})
+    batch = robot.replace(**{name: length[:, None] for name, length in lengths.items()})
     designs = [robot.replace(**{name: length[i] for name, length in lengths.items()}) for i in range(DESIGNS)]
     feet = footholds(robot, rng)[:POSES]
     times = medians(
         {
-            "one call": lambda: inverse_kinematics(together, feet),
+            "one call": lambda: inverse_kinematics(batch, feet),
             "loop": lambda: [inverse_kinematics(design, feet) for design in designs],
         }
     )
@@ -213,10 +213,10 @@ def design_rows(robot: Robot) -> Iterator[Row]:
 
 
 def walk_rows(robot: Robot) -> Iterator[Row]:
-    """A walk of 1 m, sampled at 100 Hz."""
+    """Measure the planning of a walk of 1 m at 100 Hz."""
     gait, path = Gait.named("tripod"), straight_path(1.0)
-    samples = {name: len(plan_walk(robot, gait, path, **given).time) for name, given in WALKS}
-    times = medians({name: partial(plan_walk, robot, gait, path, **given) for name, given in WALKS})
+    samples = {name: len(plan_walk(robot, gait, path, **input_bytes).time) for name, input_bytes in WALKS}
+    times = medians({name: partial(plan_walk, robot, gait, path, **input_bytes) for name, input_bytes in WALKS})
     for name, seconds in times.items():
         yield Row(
             what=f"planning a walk of 1 m at 100 Hz, {name} ({samples[name]} samples)",
@@ -228,12 +228,12 @@ def walk_rows(robot: Robot) -> Iterator[Row]:
 
 WALKS: tuple[tuple[str, dict[str, Any]], ...] = (
     ("stroke given", {"stroke": 0.05}),
-    ("stroke and pace left to the plan", {}),
+    ("stroke and cycle time by default", {}),
 )
 
 
 def start_rows() -> Iterator[Row]:
-    """How long it takes until something happens."""
+    """Measure start times of commands."""
     command = shutil.which("tarsus", path=str(Path(sys.executable).parent))
     commands: list[tuple[str, Sequence[str] | None]] = [
         ("import tarsus", (sys.executable, "-c", "import tarsus")),
@@ -250,7 +250,7 @@ def start_rows() -> Iterator[Row]:
 def rows(robot: Robot, c_loop: CLoop | None) -> Iterator[Row]:
     """Measure everything."""
     yield from inverse_rows(robot, c_loop)
-    for group in (single_rows, memory_rows, forward_rows, design_rows, walk_rows, load_rows, walker_rows):
+    for group in (single_rows, memory_rows, forward_rows, design_rows, walk_rows, load_rows, controller_rows):
         yield from group(robot)
     yield from start_rows()
     yield from studio_rows()
@@ -258,25 +258,25 @@ def rows(robot: Robot, c_loop: CLoop | None) -> Iterator[Row]:
 
 WRITTEN = (
     "Written by `python benchmarks/run.py --write`; [how it is measured](../benchmarks/README.md). "
-    "The numbers of another machine differ; the ratios less so."
+    "Absolute numbers depend on the machine, ratios less so."
 )
-HEADINGS = ("what", "median", "compared", "target", "")
+HEADINGS = ("quantity", "median", "comparison", "target", "")
 
 
 def cells(row: Row) -> tuple[str, ...]:
-    """Return a row's columns."""
+    """Return the columns of a row."""
     return row.what, row.measured, row.compared, row.target, row.verdict
 
 
-def circumstances(c_loop: CLoop | None) -> str:
-    """Say under what the numbers came about."""
+def caption_of(c_loop: CLoop | None) -> str:
+    """Return the caption: machine, versions, compiler."""
     compiled = "no gcc, so no C loop"
     if c_loop is not None:
         how = f"vectorised, with {', '.join(c_loop.vectors)}" if c_loop.vectors else "without vector functions"
         compiled = f"C: gcc {' '.join(FLAGS)}, {how}"
     return (
-        f"One core of the machine it ran on ({platform.machine()}), Python {platform.python_version()}, "
-        f"NumPy {np.__version__}; {compiled}. Batches are of 600,000 legs: 100,000 robots."
+        f"One core ({platform.machine()}), Python {platform.python_version()}, "
+        f"NumPy {np.__version__}; {compiled}. Batches have 600,000 legs: 100,000 robots."
     )
 
 
@@ -288,7 +288,7 @@ def show(table: Sequence[Row], caption: str) -> None:
     shown = Table(*HEADINGS, title="Tarsus", caption=caption)
     for row in table:
         shown.add_row(*cells(row), style="red" if row.met is False else None)
-    # A pipe has no width; the table keeps its lines whole there.
+    # Use a fixed width for a pipe, so that lines are not folded.
     Console(width=None if sys.stdout.isatty() else 170).print(shown)
 
 
@@ -309,14 +309,14 @@ def write(table: Sequence[Row], caption: str) -> None:
 
 
 def main() -> None:
-    """Measure, print, and write where asked to."""
+    """Measure, print, and optionally write the table."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--write", action="store_true", help=f"write the table to {TABLE.parent.name}/{TABLE.name}")
     options = parser.parse_args()
     use_one_core()
     robot = load_robot("strider")
     c_loop = CLoop.compiled(robot, ROBOTS)
-    table, caption = list(rows(robot, c_loop)), circumstances(c_loop)
+    table, caption = list(rows(robot, c_loop)), caption_of(c_loop)
     show(table, caption)
     if options.write:
         write(table, caption)

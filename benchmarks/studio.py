@@ -1,4 +1,4 @@
-"""Rows on the studio: updates a second to one visitor and to twenty, from a slider to its picture, and their cost."""
+"""Benchmarks of the studio: update rates, latencies and server load for one visitor and for twenty."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-# Before NumPy is loaded: this one chooses the number of threads.
+# Must be imported before NumPy: it sets the number of threads.
 from measure import Row  # isort: split
 
 from websockets.asyncio.client import ClientConnection, connect
@@ -25,27 +25,27 @@ from tarsus.studio.messages import SOCKET
 __all__ = ["studio_rows"]
 
 SECONDS = 5.0
-"""How long each row is measured."""
+"""Duration of each measurement."""
 
 VISITORS = 20
 ONE_HZ, EACH_HZ = 60.0, 30.0
 LATENCY = 0.05
-ALMOST = 0.97
-"""Share of the updates asked for that counts as all of them: a clock's tick at either end."""
+RATE_TOLERANCE = 0.97
+"""Fraction of the requested updates that meets the target, for rounding at the start and the end."""
 
 
 @dataclass
-class Seen:
-    """What one visitor saw.
+class VisitorStatistics:
+    """Statistics of a visitor.
 
     Attributes
     ----------
     updates : int
-        Poses or frames that came.
+        Number of poses or frames received.
     latencies : list of float
-        From a slider's message to the pose that answers it [s].
+        Times from a slider's message to the pose that answers it [s].
     received : int
-        Bytes.
+        Number of bytes received.
     """
 
     updates: int = 0
@@ -55,7 +55,7 @@ class Seen:
 
 @contextmanager
 def server() -> Iterator[tuple[str, int]]:
-    """Run a studio in a process of its own; give its address and the process."""
+    """Run a studio in a separate process; yield its address and process id."""
     command = Path(sys.executable).with_name("tarsus")
     with all_cores():
         process = subprocess.Popen(
@@ -72,20 +72,20 @@ def server() -> Iterator[tuple[str, int]]:
 
 @contextmanager
 def all_cores() -> Iterator[None]:
-    """Lift the rule that a benchmark keeps to one core: a server and its visitors are several processes."""
+    """Allow all cores, for a server and its visitors in several processes."""
     if not hasattr(os, "sched_setaffinity"):
         yield
         return
-    kept = os.sched_getaffinity(0)
+    previous = os.sched_getaffinity(0)
     os.sched_setaffinity(0, range(os.cpu_count() or 1))
     try:
         yield
     finally:
-        os.sched_setaffinity(0, kept)
+        os.sched_setaffinity(0, previous)
 
 
 def processor_time(pid: int) -> float | None:
-    """Return the processor's time that a process has used [s], where the system tells."""
+    """Return the processor time of a process [s]; None if the system does not provide it."""
     try:
         fields = Path(f"/proc/{pid}/stat").read_text(encoding="ascii").rpartition(")")[2].split()
     except OSError:
@@ -94,7 +94,7 @@ def processor_time(pid: int) -> float | None:
 
 
 async def ask(socket: ClientConnection, number: int, **message: Any) -> None:
-    """Say something, and wait until it is answered."""
+    """Send a request and wait for its answer."""
     await socket.send(json.dumps({"id": number, **message}))
     while True:
         answer = json.loads(await socket.recv())
@@ -102,19 +102,19 @@ async def ask(socket: ClientConnection, number: int, **message: Any) -> None:
             return
 
 
-async def slide(socket: ClientConnection, seen: Seen, hertz: float) -> None:
-    """Move a slider, steadily, and note when each picture comes."""
+async def slide(socket: ClientConnection, visitor: VisitorStatistics, hertz: float) -> None:
+    """Move a slider at a constant rate, and record the arrival of each pose."""
     sent: dict[int, float] = {}
 
-    async def look() -> None:
+    async def receive() -> None:
         async for text in socket:
-            seen.received += len(text)
+            visitor.received += len(text)
             answer = json.loads(text)
             if answer["type"] == "pose" and answer["id"] in sent:
-                seen.updates += 1
-                seen.latencies.append(time.perf_counter() - sent.pop(answer["id"]))
+                visitor.updates += 1
+                visitor.latencies.append(time.perf_counter() - sent.pop(answer["id"]))
 
-    looking = asyncio.create_task(look())
+    receiving = asyncio.create_task(receive())
     start = time.perf_counter()
     for number in range(int(SECONDS * hertz)):
         await asyncio.sleep(start + number / hertz - time.perf_counter())
@@ -123,80 +123,80 @@ async def slide(socket: ClientConnection, seen: Seen, hertz: float) -> None:
         sent[100 + number] = time.perf_counter()
         await socket.send(json.dumps(message))
     await asyncio.sleep(0.2)
-    looking.cancel()
+    receiving.cancel()
 
 
-async def drive(socket: ClientConnection, seen: Seen, _hertz: float) -> None:
-    """Drive, and count the frames that come."""
+async def drive(socket: ClientConnection, visitor: VisitorStatistics, _hertz: float) -> None:
+    """Drive, and count the received frames."""
     await socket.send(json.dumps({"type": "drive", "id": 100, "on": True}))
     await socket.send(json.dumps({"type": "command", "id": 101, "velocity_mm_s": [60, 0], "turn_deg_s": 5}))
     end = time.perf_counter() + SECONDS
-    while (left := end - time.perf_counter()) > 0:
+    while (remaining := end - time.perf_counter()) > 0:
         try:
-            text = await asyncio.wait_for(socket.recv(), left)
+            text = await asyncio.wait_for(socket.recv(), remaining)
         except TimeoutError:
             return
-        seen.received += len(text)
-        seen.updates += '"type":"frame"' in str(text)
+        visitor.received += len(text)
+        visitor.updates += '"type":"frame"' in str(text)
 
 
-Visiting = Callable[[ClientConnection, Seen, float], Awaitable[None]]
+Visit = Callable[[ClientConnection, VisitorStatistics, float], Awaitable[None]]
 
 
-async def visited(url: str, visiting: Visiting, visitors: int, hertz: float) -> list[Seen]:
-    """Have so many visitors at a time do the same; return what each saw."""
+async def visit_all(url: str, visit: Visit, visitors: int, hertz: float) -> list[VisitorStatistics]:
+    """Run several visitors concurrently, and return the statistics of each."""
 
-    async def one(seen: Seen, wait: float) -> Seen:
+    async def one(visitor: VisitorStatistics, wait: float) -> VisitorStatistics:
         async with connect(f"{url}{SOCKET}", max_size=None, compression=None) as socket:
             await ask(socket, 1, type="hello")
             await ask(socket, 2, type="view", view="joints")
-            await everybody.wait()
-            # Visitors don't move in step.
+            await start_barrier.wait()
+            # Visitors send at different times.
             await asyncio.sleep(wait)
-            await visiting(socket, seen, hertz)
-        return seen
+            await visit(socket, visitor, hertz)
+        return visitor
 
-    everybody = asyncio.Barrier(visitors)
-    return await asyncio.gather(*(one(Seen(), number / visitors / hertz) for number in range(visitors)))
+    start_barrier = asyncio.Barrier(visitors)
+    return await asyncio.gather(*(one(VisitorStatistics(), number / visitors / hertz) for number in range(visitors)))
 
 
-def measured(url: str, pid: int, visiting: Visiting, visitors: int, hertz: float) -> tuple[list[Seen], str]:
-    """Return what the visitors saw, and what it cost the server in words."""
+def measured(url: str, pid: int, visit: Visit, visitors: int, hertz: float) -> tuple[list[VisitorStatistics], str]:
+    """Return the statistics of the visitors, and the server load as text."""
     with all_cores():
         before = processor_time(pid)
         start = time.perf_counter()
-        seen = asyncio.run(visited(url, visiting, visitors, hertz))
-        took, after = time.perf_counter() - start, processor_time(pid)
-    kilobytes = statistics.median(one.received for one in seen) / SECONDS / 1000
-    cost = "" if before is None or after is None else f"server {(after - before) / took * 100:.0f} % of a core, "
-    return seen, f"{cost}{kilobytes:.0f} kB/s each"
+        all_visitors = asyncio.run(visit_all(url, visit, visitors, hertz))
+        duration, after = time.perf_counter() - start, processor_time(pid)
+    kilobytes = statistics.median(one.received for one in all_visitors) / SECONDS / 1000
+    cost = "" if before is None or after is None else f"server {(after - before) / duration * 100:.0f} % of a core, "
+    return all_visitors, f"{cost}{kilobytes:.0f} kB/s each"
 
 
 def studio_rows() -> Iterator[Row]:
-    """Measure a studio in a process of its own, as its visitors see it."""
-    cases: list[tuple[str, Visiting, int, float]] = [
+    """Measure a studio in a separate process from its visitors."""
+    cases: list[tuple[str, Visit, int, float]] = [
         ("one visitor moves a slider", slide, 1, ONE_HZ),
         (f"{VISITORS} visitors move sliders", slide, VISITORS, EACH_HZ),
         ("one visitor drives", drive, 1, ONE_HZ),
         (f"{VISITORS} visitors drive", drive, VISITORS, EACH_HZ),
     ]
     with server() as (url, pid):
-        for what, visiting, visitors, hertz in cases:
-            seen, cost = measured(url, pid, visiting, visitors, hertz)
-            least = min(one.updates for one in seen) / SECONDS
+        for what, visit, visitors, hertz in cases:
+            all_visitors, cost = measured(url, pid, visit, visitors, hertz)
+            lowest = min(one.updates for one in all_visitors) / SECONDS
             yield Row(
-                what=f"studio: {what}, updates a second",
-                measured=f"{least:.0f} to the one that gets fewest" if visitors > 1 else f"{least:.0f}",
+                what=f"studio: {what}, updates per second",
+                measured=f"{lowest:.0f} (slowest visitor)" if visitors > 1 else f"{lowest:.0f}",
                 compared=cost,
                 target=f">= {hertz:.0f}",
-                met=least >= ALMOST * hertz,
+                met=lowest >= RATE_TOLERANCE * hertz,
             )
-            latencies = sorted(latency for one in seen for latency in one.latencies)
+            latencies = sorted(latency for one in all_visitors for latency in one.latencies)
             if latencies:
                 high = latencies[int(0.99 * (len(latencies) - 1))]
                 yield Row(
                     what=f"studio: {what}, from the slider to its pose",
-                    measured=f"{statistics.median(latencies) * 1e3:.0f} ms; 99 of 100 within {high * 1e3:.0f} ms",
+                    measured=f"{statistics.median(latencies) * 1e3:.0f} ms; 99 %: {high * 1e3:.0f} ms",
                     target=f"< {LATENCY * 1e3:.0f} ms",
                     met=high < LATENCY,
                 )

@@ -701,10 +701,10 @@ PAGE = (ROOT / "docs" / "walking-live.md").read_text(encoding="utf-8")
 
 
 def benchmark():
-    """`benchmarks/walker.py`, which writes the table of top speeds."""
+    """`benchmarks/walk_controller.py`, which writes the table of top speeds."""
     sys.path.insert(0, str(ROOT / "benchmarks"))
     try:
-        return importlib.import_module("walker")
+        return importlib.import_module("walk_controller")
     finally:
         sys.path.pop(0)
 
@@ -721,7 +721,7 @@ def test_the_pages_top_speeds_are_those_reached(name, gait):
     (shown,) = re.findall(rf"^\| {name} \| {gait} \|(.*)\|$", PAGE, flags=re.MULTILINE)
     cells = [float(cell) for cell in shown.split("|")]
     reached = [benchmark().top_speed(preset(name), gait, direction) for direction in benchmark().DIRECTIONS]
-    reached.append(benchmark().top_speed(preset(name), gait, "forward", feeling=True))
+    reached.append(benchmark().top_speed(preset(name), gait, "forward", with_contacts=True))
     np.testing.assert_allclose(cells, [controller(name, gait).cycle_time, *reached], atol=0.0051)
 
 

@@ -24,7 +24,7 @@ _DEFAULT_ROBOT = "strider"
 
 @click.command(
     epilog=examples(
-        'tarsus drive --dry "at 0 s: walk 0.1 m/s; at 3 s: gait wave; at 6 s: stop"',
+        'tarsus drive --dry "at 0 s: walk 0.05 m/s; at 3 s: gait wave; at 6 s: stop"',
         'tarsus drive --dry "at 0 s: walk 60 mm/s turn 10 deg/s" --robot phantomx --rate 50 --json',
         'tarsus drive --dry "at 0 s: body pitch 5 deg; at 1 s: sit" --out driven --no-animation',
     )

@@ -1,4 +1,4 @@
-"""Rows on the live walker: a tick while the commands change, the guard's check, planning to stand up; top speeds."""
+"""Benchmarks of the walk controller: ticks with changing commands, guard, planning of rising; top speeds."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-# Before NumPy is loaded: this one chooses the number of threads.
+# Must be imported before NumPy: it sets the number of threads.
 from measure import Row, medians  # isort: split
 
 import numpy as np
@@ -23,27 +23,27 @@ from tarsus.control.safety import Guard
 from tarsus.control.startup import folded_pose, stand_up
 from tarsus.control.walk_controller import WalkController
 
-__all__ = ["speed_table", "top_speed", "walker_rows"]
+__all__ = ["controller_rows", "speed_table", "top_speed"]
 
 TICKS = 100_000
 RUNS = 5
-"""The same ticks so often, the same to the bit: what a tick takes each time is its own, what it takes once isn't."""
+"""Number of identical runs; a tick counts with its minimum, which excludes interference from other processes."""
 DT = 0.02
-ROUGH_TICKS, ROUGH, TOUCH = 20_000, 0.004, 1e-4
-"""Ticks on rough ground, how rough it is, and how near to it a foot touches [m]."""
-NEW_WISH = 50
-"""A new twist so many ticks after the last; every fifth time, how to walk changes too."""
+ROUGH_TICKS, ROUGHNESS, CONTACT_TOLERANCE = 20_000, 0.004, 1e-4
+"""Number of ticks on rough ground, its standard deviation [m], and the distance at which a foot has contact [m]."""
+COMMAND_INTERVAL = 50
+"""Ticks between changes of the twist; every fifth change also changes gait, body pose or other parameters."""
 
 MEDIAN, WORST = 150e-6, 1e-3
 DIRECTIONS = {"forward": (1.0, 0.0, 0.0), "sideways": (0.0, 1.0, 0.0), "turning": (0.0, 0.0, 1.0)}
 PAGE = Path(__file__).parent.parent / "docs" / "walking-live.md"
 BEGIN, END = "<!-- top speeds -->", "<!-- end -->"
-FAR = 10.0
-"""More than any robot can do [m/s], [rad/s]."""
+EXCESSIVE_SPEED = 10.0
+"""Commanded speed above the limits of every robot [m/s], [rad/s]."""
 
 
-def walker_rows(robot: Robot) -> Iterator[Row]:
-    """One robot that is walked live."""
+def controller_rows(robot: Robot) -> Iterator[Row]:
+    """Measure the walk controller."""
     yield from tick_rows(robot)
     yield from rough_rows(robot)
     yield from guard_rows(robot)
@@ -52,7 +52,7 @@ def walker_rows(robot: Robot) -> Iterator[Row]:
 
 @contextmanager
 def control_loop() -> Iterator[None]:
-    """Keep the garbage collector out, as a control loop does: what exists is frozen, and nothing is looked for."""
+    """Disable the garbage collector, as in a control loop."""
     gc.collect()
     gc.freeze()
     gc.disable()
@@ -64,7 +64,7 @@ def control_loop() -> Iterator[None]:
 
 
 def commands(rng: np.random.Generator, controller: WalkController) -> Iterator[Command]:
-    """Yield commands that change everything in turn."""
+    """Yield commands that change each parameter in turn."""
     body_height, swing_height = float(controller.body.position[2]), controller.robot.gait.swing_height or 0.03
     changes: tuple[Callable[[], dict[str, Any]], ...] = (
         lambda: {"gait": str(rng.choice(list(GAITS)))},
@@ -83,14 +83,14 @@ def commands(rng: np.random.Generator, controller: WalkController) -> Iterator[C
 
 
 def ticks(robot: Robot, count: int) -> np.ndarray[Any, Any]:
-    """Return how long each of so many ticks takes [s], on the processor's clock."""
+    """Return the processor time of each of a number of ticks [s]."""
     controller = WalkController(robot, Gait.named("tripod"))
-    asked = commands(np.random.default_rng(4), controller)
-    times, command = np.empty(count), next(asked)
+    command_stream = commands(np.random.default_rng(4), controller)
+    times, command = np.empty(count), next(command_stream)
     with control_loop():
         for tick in range(count):
-            if tick % NEW_WISH == NEW_WISH - 1:
-                command = next(asked)
+            if tick % COMMAND_INTERVAL == COMMAND_INTERVAL - 1:
+                command = next(command_stream)
             start = time.thread_time_ns()
             controller.step(command, DT)
             times[tick] = (time.thread_time_ns() - start) * 1e-9
@@ -98,24 +98,24 @@ def ticks(robot: Robot, count: int) -> np.ndarray[Any, Any]:
 
 
 def tick_rows(robot: Robot) -> Iterator[Row]:
-    """Every tick of a walk in which the commands change."""
+    """Measure the ticks of a walk with changing commands."""
     runs = np.array([ticks(robot, TICKS) for _ in range(RUNS)])
     times = runs.min(axis=0)
     what = (
-        f"a tick of the live walker, {TICKS:,} of them, a new wish every {NEW_WISH}, each from the best of {RUNS} runs"
+        f"tick of the walk controller, {TICKS:,} ticks, a new command every {COMMAND_INTERVAL}, minimum of {RUNS} runs"
     )
     median, worst = float(np.median(times)), float(times.max())
     single = ", ".join(f"{np.median(run) * 1e6:.0f}" for run in runs)
     yield Row(
         what=f"{what}: median",
         measured=f"{median * 1e6:.0f} us",
-        compared=f"in single runs {single} us",
+        compared=f"single runs: {single} us",
         target=f"<= {MEDIAN * 1e6:.0f} us",
         met=median <= MEDIAN,
     )
     over = ", ".join(str(int((run > WORST).sum())) for run in runs)
     yield Row(
-        what="the same: worst",
+        what=f"{what}: worst",
         measured=f"{worst * 1e6:.0f} us",
         compared=f"over {WORST * 1e3:.0f} ms in single runs: {over}; 99.9 %: {np.quantile(times, 0.999) * 1e6:.0f} us",
         target=f"<= {WORST * 1e6:.0f} us",
@@ -124,57 +124,59 @@ def tick_rows(robot: Robot) -> Iterator[Row]:
 
 
 def rough_rows(robot: Robot) -> Iterator[Row]:
-    """Every tick of a walk over rough ground, which the feet feel, the body held level."""
+    """Measure the ticks of a walk over rough ground, with contacts and levelling."""
     rng, controller = np.random.default_rng(4), WalkController(robot, Gait.named("tripod"), levelling="level")
     times, command, ground = np.empty(ROUGH_TICKS), (0.0, 0.0, 0.0), np.zeros(robot.legs)
     with control_loop():
         for tick in range(ROUGH_TICKS):
-            if tick % NEW_WISH == 0:
+            if tick % COMMAND_INTERVAL == 0:
                 forward, left, turning = (rng.uniform(-1, 1, 3) * (0.3, 0.3, 1.0)).tolist()
-                command, ground = (forward, left, turning), rng.normal(size=robot.legs) * ROUGH
-            readings = SensorReadings(contacts=estimate(controller, ground), attitude=(0.0, 0.0))
+                command, ground = (forward, left, turning), rng.normal(size=robot.legs) * ROUGHNESS
+            readings = SensorReadings(contacts=contacts_on(controller, ground), attitude=(0.0, 0.0))
             start = time.thread_time_ns()
             controller.step(command, DT, readings=readings)
             times[tick] = (time.thread_time_ns() - start) * 1e-9
     yield Row(
-        what=f"a tick on ground {ROUGH * 1e3:.0f} mm rough, felt, {ROUGH_TICKS:,} of them: median",
+        what=f"tick on ground {ROUGHNESS * 1e3:.0f} mm rough, with contacts, {ROUGH_TICKS:,} ticks: median",
         measured=f"{np.median(times) * 1e6:.0f} us",
         compared=f"99.9 %: {np.quantile(times, 0.999) * 1e6:.0f} us",
     )
 
 
-def estimate(controller: WalkController, ground: Any) -> tuple[bool, ...]:
-    """Return which feet touch a ground that is so high under each [m]."""
-    return tuple((controller.feet[:, 2] <= ground + TOUCH).tolist())
+def contacts_on(controller: WalkController, ground: Any) -> tuple[bool, ...]:
+    """Return which feet touch a ground of the given height under each [m]."""
+    return tuple((controller.feet[:, 2] <= ground + CONTACT_TOLERANCE).tolist())
 
 
 def guard_rows(robot: Robot) -> Iterator[Row]:
-    """The guard's check of a tick, with contacts and the body."""
+    """Measure the guard's check of a tick, with contacts and body pose."""
     controller = WalkController(robot, Gait.named("tripod"))
-    seen = [(controller.step((0.1, 0.0, 0.2), DT), controller.contacts, controller.body) for _ in range(500)]
+    outputs = [(controller.step((0.1, 0.0, 0.2), DT), controller.contacts, controller.body) for _ in range(500)]
     guard = Guard(robot)
-    for angles, contacts, body in seen:
+    for angles, contacts, body in outputs:
         guard.check(angles, DT, contacts, body)
-    angles, contacts, body = seen[-1]
+    angles, contacts, body = outputs[-1]
     seconds = medians({"check": lambda: guard.check(angles, DT, contacts, body)}, loops=300)["check"]
-    yield Row(what="the guard's check of a tick", measured=f"{seconds * 1e6:.0f} us")
+    yield Row(what="guard's check of a tick", measured=f"{seconds * 1e6:.0f} us")
 
 
 def rise_rows(robot: Robot) -> Iterator[Row]:
-    """Planning to stand up from the folded pose."""
+    """Measure the planning of rising from the folded pose."""
     angles = folded_pose(robot)
     seconds = medians({"rise": lambda: stand_up(robot, angles)}, rounds=5)["rise"]
-    yield Row(what="planning to stand up from the folded pose", measured=f"{seconds * 1e3:.0f} ms")
+    yield Row(what="planning of rising from the folded pose", measured=f"{seconds * 1e3:.0f} ms")
 
 
-def top_speed(robot: Robot, gait: str, direction: str, *, feeling: bool = False) -> float:
-    """Return the speed that a robot reaches when more is asked of it [m/s], [rad/s]; on level ground, felt or not."""
+def top_speed(robot: Robot, gait: str, direction: str, *, with_contacts: bool = False) -> float:
+    """Return the top speed of a robot on level ground, with contact readings or without [m/s], [rad/s]."""
     controller = WalkController(robot, Gait.named(gait))
-    twist = [FAR * speed for speed in DIRECTIONS[direction]]
+    twist = [EXCESSIVE_SPEED * speed for speed in DIRECTIONS[direction]]
 
     def walk(ticks: int) -> None:
         for _ in range(ticks):
-            controller.step(twist, DT, readings=SensorReadings(contacts=estimate(controller, 0.0)) if feeling else None)
+            controller.step(
+                twist, DT, readings=SensorReadings(contacts=contacts_on(controller, 0.0)) if with_contacts else None
+            )
 
     walk(math.ceil(6 * controller.cycle_time / DT))
     before, begun = controller.place, controller.time
@@ -184,9 +186,9 @@ def top_speed(robot: Robot, gait: str, direction: str, *, feeling: bool = False)
 
 
 def speed_table() -> str:
-    """Return the top speeds of every preset and gait, as the page on live walking shows them."""
+    """Return the table of top speeds of every preset and gait."""
     lines = [
-        "| robot | gait | cycle (s) | forward (m/s) | sideways (m/s) | turning (rad/s) | forward, feeling (m/s) |",
+        "| robot | gait | cycle (s) | forward (m/s) | sideways (m/s) | turning (rad/s) | forward, with contacts (m/s) |",
         "|---|---|---|---|---|---|---|",
     ]
     for name in list_robots():
@@ -194,13 +196,13 @@ def speed_table() -> str:
         for gait in GAITS:
             cycle = WalkController(robot, Gait.named(gait)).cycle_time
             reached = " | ".join(f"{top_speed(robot, gait, direction):.3f}" for direction in DIRECTIONS)
-            feeling = top_speed(robot, gait, "forward", feeling=True)
-            lines.append(f"| {name} | {gait} | {cycle:.2f} | {reached} | {feeling:.3f} |")
+            with_contacts = top_speed(robot, gait, "forward", with_contacts=True)
+            lines.append(f"| {name} | {gait} | {cycle:.2f} | {reached} | {with_contacts:.3f} |")
     return "\n".join(lines)
 
 
 def write_speeds() -> None:
-    """Write the table of top speeds to the page on live walking."""
+    """Write the table of top speeds to docs/walking-live.md."""
     text = PAGE.read_text(encoding="utf-8")
     begin, end = text.index(BEGIN) + len(BEGIN), text.index(END)
     PAGE.write_text(f"{text[:begin]}\n{speed_table()}\n{text[end:]}", encoding="utf-8")
@@ -210,5 +212,5 @@ if __name__ == "__main__":
     if "--write" in sys.argv[1:]:
         write_speeds()
     else:
-        for row in walker_rows(load_robot("strider")):
+        for row in controller_rows(load_robot("strider")):
             print(row.what, "|", row.measured, "|", row.compared, "|", row.target, "|", row.verdict)
