@@ -187,8 +187,9 @@ def top_speed(robot: Robot, gait: str, direction: str, *, with_contacts: bool = 
 
 def speed_table() -> str:
     """Return the table of top speeds of every preset and gait."""
+    columns = ("forward (m/s)", "sideways (m/s)", "turning (rad/s)", "forward, with contacts (m/s)")
     lines = [
-        "| robot | gait | cycle (s) | forward (m/s) | sideways (m/s) | turning (rad/s) | forward, with contacts (m/s) |",
+        f"| robot | gait | cycle (s) | {' | '.join(columns)} |",
         "|---|---|---|---|---|---|---|",
     ]
     for name in list_robots():

@@ -446,7 +446,7 @@ def test_the_timeline_shows_every_command_and_phase(tmp_path):
 def test_the_timeline_shows_how_high_bearing_feet_are_where_they_may_give_way():
     found = run_scenario(Scenario.load(next(path for path in SCENARIOS if path.stem == "soft-foot")))
     figure = plot_timeline(found)
-    (panel,) = (axes for axes in figure.axes if axes.get_ylabel().startswith("bearing feet"))
+    (panel,) = (axes for axes in figure.axes if axes.get_ylabel().startswith("stance feet"))
     highest = max(
         np.nanmax(line.get_ydata()) for line in panel.lines if line.get_label() in found.motion.robot.leg_codes
     )
