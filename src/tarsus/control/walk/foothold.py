@@ -1,4 +1,4 @@
-"""Where feet are to be put down: so that the body has their rest footholds in the middle of their stance."""
+"""Foothold prediction: a foot is placed where the body will have its rest foothold in the middle of the stance."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ __all__ = ["FootholdPredictor", "final_footholds"]
 
 Floats = np.ndarray[Any, Any]
 
-# Below this speed [m/s] of the feet past the body, a robot told to stand is taken to be stopping: it steps to rest.
-_CREEPING = 0.01
-# What a share of 1 may be missed by from rounding.
+# Below this twist [m/s, rad/s] a stopping robot steps to its final rest footholds.
+_FINAL_SPEED = 0.01
+# Tolerance of fractions near 1.
 _ROUNDING = 1e-9
 
 
 def final_footholds(now: GaitState, *, rest: Floats, bandwidth: float) -> Floats | None:
-    """Return where the feet rest once a robot that stops stands.
+    """Return the rest footholds in G at which a stopping robot will stand.
 
     Parameters
     ----------
@@ -31,14 +31,14 @@ def final_footholds(now: GaitState, *, rest: Floats, bandwidth: float) -> Floats
     rest : complex array, shape (legs,)
         Rest footholds in the heading frame [m].
     bandwidth : float
-        Bandwidth with which the twist dies down [rad/s].
+        Bandwidth with which the twist decays [rad/s].
 
     Returns
     -------
     complex array, shape (legs,), or None
-        In G [m]; None while the robot is still fast.
+        Footholds in G [m]; None while the robot is too fast.
     """
-    if max(map(abs, now.twist.value.tolist())) >= _CREEPING:
+    if max(map(abs, now.twist.value.tolist())) >= _FINAL_SPEED:
         return None
     w = bandwidth
     origin, yaw = integrate_twist(now.origin, now.yaw, ((2 * now.twist.value + now.twist.rate / w) / w).tolist())
@@ -47,16 +47,16 @@ def final_footholds(now: GaitState, *, rest: Floats, bandwidth: float) -> Floats
 
 
 class FootholdPredictor(NamedTuple):
-    """What the footholds of a moment depend on, in plain numbers.
+    """Predicts footholds from the motion of the heading frame, in plain numbers.
 
     Attributes
     ----------
     origin, turn : complex
-        The heading frame's origin in G [m]; its turn, ``exp(i yaw)``.
+        Origin of the heading frame in G [m]; its rotation ``exp(i yaw)``.
     value, rate : list of float
-        Its twist [m/s, m/s, rad/s], and how fast that changes.
+        Its twist [m/s, m/s, rad/s], and the rate of change of the twist.
     bandwidth : float
-        How fast the change dies down [rad/s].
+        Bandwidth with which that rate decays [rad/s].
     """
 
     origin: complex
@@ -67,45 +67,45 @@ class FootholdPredictor(NamedTuple):
 
     @classmethod
     def of(cls, now: GaitState, inputs: StepInputs) -> FootholdPredictor:
-        """Return that of a moment.
+        """Return the predictor for a state.
 
         Parameters
         ----------
-        now : Moment
-            The moment.
-        inputs : Course
-            What the robot is doing.
+        now : GaitState
+            The gait state.
+        inputs : StepInputs
+            Inputs of the step.
         """
         turn = cmath.exp(1j * now.yaw)
         return cls(now.origin, turn, now.twist.value.tolist(), now.twist.rate.tolist(), inputs.bandwidth)
 
-    def foothold(self, rest: complex, room: Floats, until: float, middle: float) -> complex:
-        """Return where a foot is to be put down in G [m].
+    def foothold(self, rest: complex, bounds: Floats, touchdown: float, mid_stance: float) -> complex:
+        """Return the foothold of a foot in G [m].
 
         Parameters
         ----------
         rest : complex
             Its rest foothold in the heading frame [m].
-        room : array, shape (16,)
-            How far from that it may be put down, along each side's normal [m].
-        until, middle : float
-            How long it is until it touches down, and until the middle of its stance [s].
+        bounds : array, shape (16,)
+            Greatest distance from the rest foothold along each of `NORMALS` [m].
+        touchdown, mid_stance : float
+            Time until touchdown, and until the middle of the stance [s].
         """
-        way, facing = self._body(middle)
-        place = way + facing * rest
-        # Where the body turns or slows down, that may be farther out than the foot may be put down.
-        way, facing = self._body(until)
-        out = (place - way) * facing.conjugate() - rest
+        position, rotation = self._body(mid_stance)
+        foothold = position + rotation * rest
+        # While the body turns or slows down, this may be outside the bounds at touchdown.
+        position, rotation = self._body(touchdown)
+        out = (foothold - position) * rotation.conjugate() - rest
         along = (NORMALS_CONJUGATE * out).real
-        share = float((room / np.maximum(along, 1e-12)).min())
-        if share < 1 - _ROUNDING:
-            place = way + facing * (rest + share * out)
-        return self.origin + self.turn * place
+        fraction = float((bounds / np.maximum(along, 1e-12)).min())
+        if fraction < 1 - _ROUNDING:
+            foothold = position + rotation * (rest + fraction * out)
+        return self.origin + self.turn * foothold
 
     def _body(self, ahead: float) -> tuple[complex, complex]:
-        """Return where the body will be, and where it will face, seen from where it is."""
+        """Return position and rotation of the heading frame after a time, relative to the present ones."""
         w = self.bandwidth
-        slowing = (1 - math.exp(-w * ahead) * (1 + w * ahead)) / (w * w)
+        decayed = (1 - math.exp(-w * ahead) * (1 + w * ahead)) / (w * w)
         (x, y, angle), (ax, ay, turn) = self.value, self.rate
-        angle = angle * ahead + turn * slowing
-        return complex(x * ahead + ax * slowing, y * ahead + ay * slowing) * chord_factor(angle), cmath.exp(1j * angle)
+        angle = angle * ahead + turn * decayed
+        return complex(x * ahead + ax * decayed, y * ahead + ay * decayed) * chord_factor(angle), cmath.exp(1j * angle)
