@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
-from typing import Any, TypeAlias
+from typing import Any, NamedTuple, TypeAlias
 
 __all__ = ["CHANNELS", "SensorReadings", "ValidReadings", "Vector"]
 
@@ -68,8 +68,7 @@ CHANNELS = tuple(field.name for field in fields(SensorReadings) if field.name !=
 """Names of all channels, as used for ages."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ValidReadings:
+class ValidReadings(NamedTuple):
     """Readings that passed validation, as plain Python values: None for a channel, or one leg of it, that did not.
 
     Attributes
