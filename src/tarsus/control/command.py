@@ -1,4 +1,4 @@
-"""What the live walker is asked for."""
+"""Commands: what the robot is asked to do."""
 
 from __future__ import annotations
 
@@ -13,35 +13,36 @@ from tarsus.errors import InputError
 __all__ = ["BODY_AXES", "Command", "finite_numbers"]
 
 BODY_AXES = ("x", "y", "z", "roll", "pitch", "yaw")
-"""The six ways in which the body can be moved over its feet."""
+"""The six axes of a body pose."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Command:
-    """What the robot should do; what is None stays as it is.
+    """What the robot is commanded to do; what is None stays as it is.
 
     Attributes
     ----------
     twist : (vx, vy, wz)
-        Speed forward and to the left [m/s], turning speed counter-clockwise [rad/s].
+        Twist: forward, left [m/s], turning counter-clockwise [rad/s].
     body : (x, y, z, roll, pitch, yaw), optional
-        How the body is moved [m] and turned [rad] against standing level over its feet at its body height.
+        Body pose [m], [rad] against level over the feet at the body height.
     gait : str or Gait, optional
-        The order of steps.
+        The order of the steps.
     body_height : float, optional
         Height of the body's origin over the ground [m].
     swing_height : float, optional
-        How high a swinging foot rises [m].
+        Height of a swinging foot over its foothold [m].
     stance_width : float, optional
-        How much farther out than usual the feet rest, away from each coxa axis [m].
+        Distance that the feet rest farther out than by default, away from each coxa axis [m].
     cycle_time : float or "auto", optional
-        Duration of a cycle [s]; "auto" for the one that gets the robot farthest.
+        Duration of a cycle [s]; "auto" for the one with the highest top speed.
     sway : (x, y, z, roll, pitch, yaw), optional
-        Amplitude of a rhythmic motion of the body with the steps [m], [rad].
+        Amplitudes of a sway of the body with the steps [m], [rad].
     foot_targets : mapping of leg to (x, y, z) or None, optional
-        Legs that leave the gait, and where their feet go, in the heading frame [m]; None for a leg that comes back.
+        Legs to take out of the gait, and the targets of their feet in the heading frame [m]; None for a leg to return
+        to the gait.
     foot_velocities : mapping of leg to (x, y, z), optional
-        How fast the feet of such legs go from where they are instead, in the heading frame [m/s].
+        Velocities of the feet of such legs instead, in the heading frame [m/s].
     state : RobotState or str, optional
         The state that is wanted, standing, lying or folded: for a `RobotController`.
     """
@@ -74,7 +75,7 @@ class Command:
 
     @property
     def only_twist(self) -> bool:
-        """Whether all but the twist stays as it is."""
+        """Whether everything but the twist stays as it is."""
         others = (
             self.body,
             self.gait,
@@ -91,7 +92,7 @@ _NOTHING = (None,) * 7
 
 
 def _by_leg(name: str, given: Any, *, back: bool) -> dict[int, tuple[float, ...] | None]:
-    """Return what is given for each leg; with `back`, it may be None."""
+    """Return the values by leg; with `back`, a value may be None."""
     if not isinstance(given, Mapping):
         raise InputError(f"the command's {name} is {given!r}; it must be a mapping of legs to x, y, z")
     found: dict[int, tuple[float, ...] | None] = {}
@@ -105,24 +106,24 @@ def _by_leg(name: str, given: Any, *, back: bool) -> dict[int, tuple[float, ...]
 
 
 def finite_numbers(name: str, values: Sequence[float], axes: Sequence[str], *, most: float = 1e3) -> tuple[float, ...]:
-    """Return so many finite numbers.
+    """Return values as finite floats, one for each axis.
 
     Parameters
     ----------
     name : str
-        What they are, for the message.
+        Name of the values, for the message.
     values : sequence of float
         The numbers.
     axes : sequence of str
-        What each is called.
+        Names of the axes.
     most : float
-        What none is greater than, whatever its sign: no length of a robot [m], no time of a step [s] is greater than
-        1000, and the squares of what is may overflow.
+        Greatest absolute value: no length of a robot [m] and no cycle time [s] is greater than 1000, and the squares
+        of greater values may overflow.
 
     Raises
     ------
     InputError
-        If they are something else.
+        If there are more or fewer, or one is no finite number within the bound.
     """
     single = len(axes) == 1
     try:

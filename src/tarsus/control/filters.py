@@ -1,9 +1,9 @@
-"""The critically damped lag: what smooths every wish before the robot follows it.
+"""Filters that smooth every command before the robot follows it: the critically damped filter, and a rate limit.
 
-``value'' = w^2 (target - value) - 2 w value'``, of bandwidth `w`. Its impulse response ``w^2 t exp(-w t)`` is
-nowhere negative and has the integral 1: the value is at any time a weighted mean of the targets so far, so that it
-stays in every convex set that these lie in, and never overshoots. Between targets on opposite ends of a range of
-half-width `V` its rate stays within ``2 V w / e``, and the rate's rate within ``2 (1 + exp(-2)) V w^2``. The step is
+The critically damped filter is ``value'' = w^2 (target - value) - 2 w value'``, of bandwidth `w`. Its impulse response
+``w^2 t exp(-w t)`` is never negative and has the integral 1: the value is a weighted mean of the targets so far. It
+stays in every convex set that contains them, and never overshoots. Between targets on opposite ends of a range of
+half-width `V` its rate stays within ``2 V w / e``, and its second derivative within ``2 (1 + exp(-2)) V w^2``. A step is
 the exact solution for a constant target, whatever its length.
 """
 
@@ -26,9 +26,9 @@ class CriticallyDamped(NamedTuple):
     Attributes
     ----------
     value : array
-        Where it is.
+        The value.
     rate : array
-        How fast it changes [1/s].
+        Its derivative [1/s].
     """
 
     value: np.ndarray[Any, Any]
@@ -36,7 +36,7 @@ class CriticallyDamped(NamedTuple):
 
     @classmethod
     def still(cls, value: np.ndarray[Any, Any]) -> CriticallyDamped:
-        """Return a lag at rest at a value.
+        """Return a filter at rest at a value.
 
         Parameters
         ----------
@@ -46,16 +46,16 @@ class CriticallyDamped(NamedTuple):
         return cls(value, np.zeros_like(value))
 
     def step(self, target: np.ndarray[Any, Any], dt: float, *, bandwidth: float) -> CriticallyDamped:
-        """Return the lag after a time with a constant target.
+        """Return the filter after a time with a constant target.
 
         Parameters
         ----------
         target : array
-            What it follows.
+            The target.
         dt : float
             The time [s].
         bandwidth : float
-            How fast it follows [rad/s].
+            The bandwidth [rad/s].
         """
         decay = math.exp(-bandwidth * dt)
         gap = self.value - target
@@ -63,20 +63,22 @@ class CriticallyDamped(NamedTuple):
         moved = gap + slope * dt
         return CriticallyDamped(target + moved * decay, (slope - bandwidth * moved) * decay)
 
-    def go(self, target: np.ndarray[Any, Any], dt: float, *, bandwidth: float) -> tuple[CriticallyDamped, list[float]]:
-        """Return the lag after a time with a constant target, and its travel; for a few numbers, in plain ones.
+    def step_with_integral(
+        self, target: np.ndarray[Any, Any], dt: float, *, bandwidth: float
+    ) -> tuple[CriticallyDamped, list[float]]:
+        """Return the filter after a time with a constant target, and the value's integral; in floats, for few values.
 
         Parameters
         ----------
         target : array, shape (n,)
-            What it follows.
+            The target.
         dt : float
             The time [s].
         bandwidth : float
-            How fast it follows [rad/s].
+            The bandwidth [rad/s].
         """
         w, decay = bandwidth, math.exp(-bandwidth * dt)
-        values, rates, travels = [], [], []
+        values, rates, integrals = [], [], []
         for goal, value, rate in zip(target.tolist(), self.value.tolist(), self.rate.tolist(), strict=True):
             gap = value - goal
             slope = rate + w * gap
@@ -84,20 +86,20 @@ class CriticallyDamped(NamedTuple):
             values.append(goal + moved * decay)
             rates.append((slope - w * moved) * decay)
             # The differential equation, integrated.
-            travels.append(goal * dt - (rates[-1] - rate + 2 * w * (values[-1] - value)) / (w * w))
-        return CriticallyDamped(np.array(values), np.array(rates)), travels
+            integrals.append(goal * dt - (rates[-1] - rate + 2 * w * (values[-1] - value)) / (w * w))
+        return CriticallyDamped(np.array(values), np.array(rates)), integrals
 
-    def travel(self, target: np.ndarray[Any, Any], time: float, *, bandwidth: float) -> np.ndarray[Any, Any]:
-        """Return the value's integral over a time from now, with a constant target.
+    def integral(self, target: np.ndarray[Any, Any], time: float, *, bandwidth: float) -> np.ndarray[Any, Any]:
+        """Return the value's integral over a time, with a constant target.
 
         Parameters
         ----------
         target : array
-            What it follows.
+            The target.
         time : float
             The time [s].
         bandwidth : float
-            How fast it follows [rad/s].
+            The bandwidth [rad/s].
         """
         of_target, of_value, of_rate = integral_factors(time, bandwidth=bandwidth)
         total: np.ndarray[Any, Any] = target * of_target + self.value * of_value + self.rate * of_rate
@@ -105,14 +107,14 @@ class CriticallyDamped(NamedTuple):
 
 
 def integral_factors(time: Any, *, bandwidth: float) -> tuple[Any, Any, Any]:
-    """Return what target, value and rate each add to the value's integral over a time.
+    """Return the factors of target, value and rate in the value's integral over a time.
 
     Parameters
     ----------
     time : float or array
         The time [s].
     bandwidth : float
-        How fast the lag follows [rad/s].
+        The bandwidth [rad/s].
 
     Returns
     -------
@@ -126,31 +128,30 @@ def integral_factors(time: Any, *, bandwidth: float) -> tuple[Any, Any, Any]:
     return time - of_value, of_value, of_rate
 
 
-# Below this the way to a goal of zero is over [the numbers' unit].
+# Values and rates below this are 0 [unit of the values].
 _NOTHING = 1e-12
 
 
 class RateLimitedFilter:
-    """A pair of numbers on its way to a goal: within a circle, never faster than a rate, with a continuous rate.
+    """A pair of values that approaches a target: within a circle, no faster than a rate, with a continuous rate.
 
-    A point runs to the goal in a straight line at most at the given rate; what is given out follows the point as a
-    critically damped system of second order, exactly, since the point moves linearly within a tick. Its response
-    is positive and of gain 1, so that it inherits the point's bounds: the same circle, the same rate.
+    A point moves to the target in a straight line at most at the given rate; the values follow the point through a
+    critically damped filter, exactly, since the point moves linearly within a tick. As the filter's response is
+    positive with gain 1, the values have the point's bounds: the same circle, the same rate.
 
     Parameters
     ----------
     radius : float
-        Farthest from (0, 0).
+        Greatest distance from (0, 0).
     rate : float
         Greatest change per second.
     frequency : float
-        Of the system of second order [rad/s]; the greatest change of the rate is ``2 / e * frequency * rate`` per
-        second and number.
+        Bandwidth of the filter [rad/s]; the rate changes by at most ``2 / e * frequency * rate`` per second and value.
 
     Attributes
     ----------
     values : (float, float)
-        Where it is.
+        The values.
     """
 
     def __init__(self, radius: float, *, rate: float, frequency: float) -> None:
@@ -159,19 +160,19 @@ class RateLimitedFilter:
         self._speeds = (0.0, 0.0)
         self._point = (0.0, 0.0)
 
-    def step(self, goal: tuple[float, float], dt: float) -> tuple[float, float]:
-        """Return where it is after a tick.
+    def step(self, target: tuple[float, float], dt: float) -> tuple[float, float]:
+        """Return the values after a tick.
 
         Parameters
         ----------
-        goal : (float, float)
-            Where to go; the nearest place within the circle counts. Not finite: (0, 0).
+        target : (float, float)
+            The target; the nearest point within the circle counts. Not finite: (0, 0).
         dt : float
-            Length of the tick [s]; nothing moves unless it is finite and positive.
+            Length of the tick [s]; the values stay unless it is finite and positive.
         """
         if not 0.0 < dt < math.inf:
             return self.values
-        start, end = self._point, self._run(goal, dt)
+        start, end = self._point, self._moved(target, dt)
         self._point = end
         keep = math.exp(-self.frequency * dt)
         x, v = _follow(start[0], end[0], self.values[0], self._speeds[0], self.frequency, dt, keep)
@@ -181,19 +182,19 @@ class RateLimitedFilter:
         self.values, self._speeds = (x, y), (v, w)
         return self.values
 
-    def _run(self, goal: tuple[float, float], dt: float) -> tuple[float, float]:
-        """Return where the point gets in a tick."""
-        x, y = goal
+    def _moved(self, target: tuple[float, float], dt: float) -> tuple[float, float]:
+        """Return the point after a tick."""
+        x, y = target
         far = math.hypot(x, y)
         if not far < math.inf:
             x = y = 0.0
         elif far > self.radius:
             x, y = x * self.radius / far, y * self.radius / far
         dx, dy = x - self._point[0], y - self._point[1]
-        way, most = math.hypot(dx, dy), self.rate * dt
-        if way <= most:
+        distance, most = math.hypot(dx, dy), self.rate * dt
+        if distance <= most:
             return x, y
-        return self._point[0] + dx * most / way, self._point[1] + dy * most / way
+        return self._point[0] + dx * most / distance, self._point[1] + dy * most / distance
 
 
 def _follow(
@@ -202,7 +203,7 @@ def _follow(
     """Return value and speed of ``x'' = w^2 (p - x) - 2 w x'`` after a tick in which p goes from start to end."""
     rate = (end - start) / dt
     lag = 2.0 * rate / frequency
-    # Against the steady motion behind a moving point, what is left fades as (away + turn t) e^-wt.
+    # The deviation from the steady motion behind a moving point fades as (away + turn t) e^-wt.
     away = value - start + lag
     turn = speed - rate + frequency * away
     return end - lag + (away + turn * dt) * keep, rate + (turn - frequency * (away + turn * dt)) * keep

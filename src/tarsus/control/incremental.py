@@ -1,4 +1,4 @@
-"""Work in parts: what a control loop can't wait for at once, it does one part of a tick."""
+"""Incremental computations: generators that do one stage per tick."""
 
 from __future__ import annotations
 
@@ -9,16 +9,16 @@ __all__ = ["Incremental", "complete"]
 
 _T = TypeVar("_T")
 Incremental: TypeAlias = Generator[None, None, _T]
-"""A piece of work in parts."""
+"""A computation in stages; it yields after each stage and returns its result."""
 
 
 def complete(work: Incremental[_T]) -> _T:
-    """Do a piece of work at once.
+    """Run all stages of a computation, and return its result.
 
     Parameters
     ----------
     work : generator
-        The parts.
+        The computation.
     """
     while True:
         try:

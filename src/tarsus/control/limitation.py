@@ -67,8 +67,9 @@ class Cause(NamedTuple):
 
     def text(self) -> str:
         """Return it as a line of text."""
-        where = f"{self.leg}: " if self.leg else ""
-        return f"{where}{self.reason}{_margin_text(self.margin, self.least_margin)}"
+        return ": ".join(part for part in (self.leg, self.reason) if part) + _margin_text(
+            self.margin, self.least_margin
+        )
 
     def limitation(self, kind: LimitationKind, *, asked: float = _NONE, granted: float = _NONE) -> Limitation:
         """Return the limitation that this causes.

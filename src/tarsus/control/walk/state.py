@@ -1,6 +1,6 @@
-"""The walking robot at one moment, and what it is doing: all that the future of the walk depends on.
+"""The gait state of a walking robot, and the inputs of the stepper: all that determines the further walk.
 
-Points of the ground plane are complex numbers here, x + iy; a turn by an angle is a product with ``exp(i angle)``.
+Points of the ground plane are complex numbers, x + iy; a rotation by an angle is a product with ``exp(i angle)``.
 """
 
 from __future__ import annotations
@@ -31,63 +31,63 @@ __all__ = [
 Floats = np.ndarray[Any, Any]
 
 PHASE_TOLERANCE = 1e-9
-"""What counts as the same moment [cycles]."""
+"""Differences of the clock below this are rounding [cycles]."""
 
 POSITION_TOLERANCE = 1e-6
-"""A foot this near to its rest foothold is there [m]."""
+"""A foot this close to its rest foothold is at it [m]."""
 
 ZERO_ELEVATION = np.zeros(1)
-"""Where the heading frame is as long as nothing is felt of the ground [m]."""
+"""Elevation of the heading frame without feedback from the ground [m]."""
 
 EARLY_STOP_FRACTION = 0.0625
-"""Within which share of the swing a foot that has met the ground comes to rest on it at the earliest."""
+"""Shortest part of the swing, as a fraction, in which a foot stops after early contact."""
 
 
 class GaitState(NamedTuple):
-    """Everything that the future of the walk depends on; each array ``(legs,)`` unless said otherwise.
+    """The state of walking, as far as the stepper determines it.
 
     Attributes
     ----------
     clock : float
         Time in cycles.
-    number : array
-        The step that each leg is in, or swings out of: touchdown at ``offset + number``.
-    down : array of bool
+    step_number : array, shape (legs,)
+        The step that each leg is in, or swings out of: touchdown at ``offset + step_number`` on the clock.
+    down : array of bool, shape (legs,)
         Whether the foot is on the ground.
-    share : array
-        Share of the swing that is over.
-    foot, target : complex array
+    swing_phase : array, shape (legs,)
+        Fraction of the swing that is over.
+    foot, foothold : complex array, shape (legs,)
         Where the feet are, and where they are or will be put down, in G [m].
-    pace, bend : complex array
-        First and second derivative of a swinging foot's way by its share [m].
-    ground, start_height : array
-        Height of the ground that each foot is on or bound for, and where its swing began [m].
-    lift_part : array
-        How much of the lift its swing takes.
-    met : array
-        Share of the swing at which the foot met ground that was not expected yet; infinite where it did not.
-    give : array
-        Within which share of the swing it comes to rest on that.
-    met_height, met_speed : array
-        Where that was [m], and how the height changed with the swing's share [m].
+    swing_velocity, swing_acceleration : complex array, shape (legs,)
+        First and second derivative of a swinging foot's position by its swing phase [m].
+    ground_height, start_height : array, shape (legs,)
+        Height of the ground at each foothold, and of the foot at its lift-off, in G [m].
+    height_factor : array, shape (legs,)
+        Fraction of the swing height that the swing has.
+    contact_phase : array, shape (legs,)
+        Swing phase of an early contact; infinite without one.
+    stop_phase : array, shape (legs,)
+        Fraction of the swing in which the foot stops after an early contact.
+    contact_height, contact_speed : array, shape (legs,)
+        Height of the foot at an early contact [m], and its derivative by the swing phase [m].
     origin : complex
-        The heading frame's origin in G [m].
+        Origin of the heading frame in G [m].
     yaw : float
-        Where it faces [rad].
-    elevation : CriticallyDamped
-        How high it is over G's origin ``(1,)`` [m].
+        Direction of the heading frame [rad].
     twist : CriticallyDamped
-        Its speed ``(3,)``: forward, left [m/s], turning [rad/s].
+        Twist of the heading frame, shape (3,): forward, left [m/s], turning [rad/s].
     posture : CriticallyDamped
-        The body over the heading frame: see `tarsus.control.workspace.stance_geometry`.
+        Body pose in the heading frame, shape (13,): see `tarsus.control.workspace.stance_geometry`.
+    lift_delay : array, shape (legs,)
+        Delay of each foot's lift-off, by which its swing is shorter [cycles].
     rhythm : CriticallyDamped
-        How fast `cycles` and `beats` grow ``(2,)`` [1/s].
-    give_way : CriticallyDamped
-        How far each foot on the ground has given way upwards ``(legs,)`` [m].
-    late : array
-        How much later than it was to each foot was lifted [cycles]; its swing is shorter by that.
+        Rates of `cycles` and `beats`, shape (2,) [1/s].
+    elevation : CriticallyDamped
+        Height of the heading frame over G's origin, shape (1,) [m].
+    admittance_offset : CriticallyDamped
+        Upward offset of each foot on the ground, shape (legs,) [m].
     cycles, beats : float
-        How many cycles and how many beats of the gait have been walked: what the body sways by.
+        Cycles and beats of the gait so far: the phases of the body's sway.
     """
 
     clock: float
@@ -118,7 +118,7 @@ class GaitState(NamedTuple):
 
     @classmethod
     def standing(cls, rest: Floats, posture: Floats) -> GaitState:
-        """Return a robot that stands with its feet at rest, its heading frame at G's.
+        """Return the state of a robot that stands with its feet at rest, its heading frame at G.
 
         Parameters
         ----------
@@ -155,7 +155,7 @@ class GaitState(NamedTuple):
         )
 
     def swings(self, duty_factor: float) -> Floats:
-        """Return how long each foot swings ``(legs,)``, those on the ground for as long as is planned [cycles].
+        """Return the duration of each foot's swing: array, shape (legs,); for feet on the ground, as planned [cycles].
 
         Parameters
         ----------
@@ -165,22 +165,22 @@ class GaitState(NamedTuple):
         return np.asarray(1 - duty_factor - np.where(self.down, 0.0, self.lift_delay))
 
     def height(self, swing_height: float) -> Floats:
-        """Return the feet's heights in G [m].
+        """Return the heights of the feet in G: array, shape (legs,) [m].
 
         Parameters
         ----------
         swing_height : float
-            How high a swinging foot rises [m].
+            Height of a swinging foot over its foothold [m].
         """
         return np.array(self.heights(swing_height))
 
     def heights(self, swing_height: float) -> list[float]:
-        """Return the same in plain numbers.
+        """Return the heights of the feet in G as a list of floats [m].
 
         Parameters
         ----------
         swing_height : float
-            How high a swinging foot rises [m].
+            Height of a swinging foot over its foothold [m].
         """
         heights: list[float] = self.ground_height.tolist()
         for leg, down in enumerate(self.down.tolist()):
@@ -209,40 +209,41 @@ class GaitState(NamedTuple):
 
 
 class StepInputs(NamedTuple):
-    """What the robot is doing: constant for a tick.
+    """Inputs of the stepper, constant for a tick.
 
     Attributes
     ----------
     gait : Gait
         Order of the steps.
     frequency : float
-        Cycles a second [1/s].
-    twist, posture : array
-        What twist and posture follow.
+        Cycles per second; 0 for a standing robot [1/s].
+    twist, posture : array, shape (3,) and (13,)
+        Targets of the twist and of the posture.
     bandwidth, posture_bandwidth : float
-        How fast they follow [rad/s].
-    steps, lands : array of bool, shape (legs,)
-        Which legs may lift, and which put their feet down at the end of their swing.
+        Bandwidths of their filters [rad/s].
+    may_lift, may_land : array of bool, shape (legs,)
+        Which feet may lift off, and which may touch down at the end of their swing.
     rest : complex array, shape (legs,)
         Rest footholds in the heading frame [m].
-    room : array, shape (legs, 16)
-        How far from these the feet may be put down, along each of `NORMALS` [m].
-    give_way : array, shape (legs,)
-        How far each foot is to give way [m].
-    holds : bool
-        Whether all feet that are down wait, and lift later than they were to.
+    placement_bounds : array, shape (legs, 16)
+        Distance from its rest foothold at which each foot may be put down, along each of `NORMALS` [m].
+    admittance_offset : array, shape (legs,)
+        Target of each foot's admittance offset [m].
+    hold_feet : bool
+        Whether no foot lifts off.
     beats : int
-        How often in a cycle feet are lifted.
-    sways : bool
-        Whether the body sways with them, and the sway's rhythm has to go on.
-    ground : GroundPlane
-        Where the ground is expected.
-    lowest, highest : array, shape (legs,)
-        How low each foot may be put down at the lowest, and from how high it may be lifted by all of the lift [m].
+        How many times per cycle feet lift off.
+    swaying : bool
+        Whether the body sways.
+    ground_plane : GroundPlane
+        The expected ground.
+    lowest_ground, highest_ground : array, shape (legs,)
+        Lowest height at which each foot may be put down, and the greatest from which it may lift by the whole swing
+        height [m].
     elevation : array, shape (1,)
-        How high the heading frame is to be [m].
+        Target of the heading frame's elevation [m].
     elevation_bandwidth : float
-        How fast it follows that [rad/s].
+        Bandwidth of its filter [rad/s].
     """
 
     gait: Gait
@@ -267,7 +268,7 @@ class StepInputs(NamedTuple):
 
 
 def chord_factor(angle: Any) -> Any:
-    """Return ``(exp(i angle) - 1) / (i angle)``: how a way bends that turns by an angle.
+    """Return ``(exp(i angle) - 1) / (i angle)``: chord over arc length of a path that turns by an angle.
 
     Parameters
     ----------
@@ -282,6 +283,6 @@ def chord_factor(angle: Any) -> Any:
 
 
 def integrate_twist(origin: complex, yaw: float, travel: Sequence[float]) -> tuple[complex, float]:
-    """Return where the heading frame is after a travel (x, y, angle), the exponential of its displacement."""
+    """Return the heading frame after a travel (x, y, angle): the exponential map of a twist times its duration."""
     x, y, angle = travel
     return origin + cmath.exp(1j * yaw) * complex(x, y) * chord_factor(angle), yaw + angle

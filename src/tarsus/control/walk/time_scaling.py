@@ -1,4 +1,4 @@
-"""The walker's own time: it runs slower wherever the joints could not keep up."""
+"""Time scaling: the walk advances more slowly wherever the joints could not follow it."""
 
 from __future__ import annotations
 
@@ -13,27 +13,27 @@ __all__ = ["STOP_DURATION", "TimeScaling"]
 Floats = np.ndarray[Any, Any]
 _T = TypeVar("_T")
 
-# How fast its rate may rise, how fast it falls on rough ways, and how fast to a stop [1/s].
-_CHANGE, _CALMING, _STOP = 3.0, 5.0, 10.0
+# How fast the rate may rise, how fast it falls ahead of high accelerations, and how fast to a stop [1/s].
+_RISE, _FALL, _STOP = 3.0, 5.0, 10.0
 STOP_DURATION = 0.5 / _STOP
-"""How far its own time goes until it has come to a stop [s]."""
+"""Time of the walk that passes until it has stopped [s]."""
 
-# How often a tick is tried, at another rate each time, and what of the joints' speed and acceleration it may come to.
-_TRIES, _KEPT = 5, 0.98
-# From which share of the joints' acceleration on to look ahead, what share to aim at then, and how far to look [s].
-_STRAINED, _CALM, _AHEAD = 0.5, 0.75, 0.02
+# Number of rates that are tried in a tick, and the fraction of the joints' speed and acceleration that is used.
+_TRIES, _USED = 5, 0.98
+# Fraction of the joints' acceleration from which on to look ahead, the one to aim at then, and how far to look [s].
+_HIGH, _AIM, _AHEAD = 0.5, 0.75, 0.02
 
 
 class TimeScaling:
-    """Goes on by as much of each tick as the joints' speed and acceleration allow.
+    """Advances the walk by as much of each tick as the joints' speed and acceleration allow.
 
-    The feet's ways stay what they are; only how fast they are gone changes. So a foot that stands stays where it is,
-    and the order of the steps too.
+    The trajectories stay the same; only the rate at which they are followed changes. So a standing foot stays where it
+    is, and the order of the steps is kept.
 
     Parameters
     ----------
     angles : array, shape (legs, 3)
-        Joint angles to begin with, at rest [rad].
+        Joint angles at the start, at rest [rad].
     speed, acceleration : array, shape (legs, 3)
         Greatest of each joint [rad/s], [rad/s^2].
 
@@ -42,82 +42,82 @@ class TimeScaling:
     angles : array, shape (legs, 3)
         The joint angles [rad].
     rate : float
-        How fast its own time runs, at most 1.
+        Rate of the walk's time, 0 to 1.
     """
 
     def __init__(self, angles: Floats, speed: Floats, acceleration: Floats) -> None:
         self.angles = angles
         self.rate = 1.0
         self._speed, self._acceleration = speed, acceleration
-        self._joint_rate = np.zeros_like(angles)
+        self._speeds = np.zeros_like(angles)
         self._last_dt = 0.01
-        self._strain = 0.0
+        self._used = 0.0
 
     def advance(
         self,
-        move: Callable[[float], _T],
+        integrate: Callable[[float], _T],
         solve: Callable[[_T], Floats],
         dt: float,
         *,
         stop: bool,
         fastest: float = 1.0,
     ) -> _T:
-        """Return where the walk is after a tick.
+        """Return the state of the walk after a tick.
 
         Parameters
         ----------
-        move : callable
-            From a time of its own [s] to where the walk is then.
+        integrate : callable
+            Returns the state after a time of the walk [s].
         solve : callable
-            From there to the joint angles ``(legs, 3)`` [rad].
+            Returns the joint angles of a state: array, shape (legs, 3) [rad].
         dt : float
-            The tick [s].
+            Length of the tick [s].
         stop : bool
-            Whether to come to a stop.
+            Whether the walk stops.
         fastest : float
-            At which rate it is to run at most; it slows down to that as on rough ways.
+            Greatest rate; the walk slows down to it gradually.
         """
-        rate = max(self.rate - _STOP * dt, 0.0) if stop else min(1.0, self.rate + _CHANGE * dt)
-        if self._strain > _STRAINED:
-            fastest = min(fastest, self._calm_rate(move, solve))
-        rate = min(rate, max(fastest, self.rate - _CALMING * dt))
+        rate = max(self.rate - _STOP * dt, 0.0) if stop else min(1.0, self.rate + _RISE * dt)
+        if self._used > _HIGH:
+            fastest = min(fastest, self._relaxed_rate(integrate, solve))
+        rate = min(rate, max(fastest, self.rate - _FALL * dt))
         between = (dt + self._last_dt) / 2
-        after = move(dt * rate)
+        after = integrate(dt * rate)
         angles = solve(after)
-        turned, strain, works = self._taken(angles, dt, between)
+        speeds, used, works = self._demand(angles, dt, between)
         for _ in range(_TRIES):
-            # Where it was to run slower, that may be too sudden.
-            other = rate if works else self._other(turned, rate, between)
+            # Slowing down may be too sudden, too.
+            other = rate if works else self._other_rate(speeds, rate, between)
             if other == rate:
                 break
             rate = other
-            after = move(dt * rate)
+            after = integrate(dt * rate)
             angles = solve(after)
-            turned, strain, works = self._taken(angles, dt, between)
-        self._strain = strain
-        self.angles, self._joint_rate, self.rate, self._last_dt = angles, turned, rate, dt
+            speeds, used, works = self._demand(angles, dt, between)
+        self._used = used
+        self.angles, self._speeds, self.rate, self._last_dt = angles, speeds, rate, dt
         return after
 
-    def _taken(self, angles: Floats, dt: float, between: float) -> tuple[Floats, float, bool]:
-        """Return the joints' speed, what share of their acceleration they take, and whether both are kept."""
-        turned = (angles - self.angles) / dt
-        strain = float((np.abs(turned - self._joint_rate) / self._acceleration).max()) / between
-        works = strain <= _KEPT and float((np.abs(turned) / self._speed).max()) <= _KEPT
-        return turned, strain, works
+    def _demand(self, angles: Floats, dt: float, between: float) -> tuple[Floats, float, bool]:
+        """Return the joints' speeds, the fraction of their acceleration that is used, and whether both are kept."""
+        speeds = (angles - self.angles) / dt
+        used = float((np.abs(speeds - self._speeds) / self._acceleration).max()) / between
+        works = used <= _USED and float((np.abs(speeds) / self._speed).max()) <= _USED
+        return speeds, used, works
 
-    def _calm_rate(self, move: Callable[[float], _T], solve: Callable[[_T], Floats]) -> float:
-        """Return at which rate the joints keep well within their acceleration on the next bit of the way."""
-        first, second = solve(move(_AHEAD)), solve(move(2 * _AHEAD))
-        bend = np.abs(second - 2 * first + self.angles) / (_AHEAD * _AHEAD)
-        return math.sqrt(_CALM / max(float((bend / self._acceleration).max()), _CALM))
+    def _relaxed_rate(self, integrate: Callable[[float], _T], solve: Callable[[_T], Floats]) -> float:
+        """Return the rate at which the joints keep well within their acceleration for the next moments."""
+        first, second = solve(integrate(_AHEAD)), solve(integrate(2 * _AHEAD))
+        acceleration = np.abs(second - 2 * first + self.angles) / (_AHEAD * _AHEAD)
+        return math.sqrt(_AIM / max(float((acceleration / self._acceleration).max()), _AIM))
 
-    def _other(self, turned: Floats, rate: float, dt: float) -> float:
-        """Return at which rate the joints keep within speed and acceleration, or come nearest to that."""
-        if rate == 0:  # too sudden a stop
+    def _other_rate(self, speeds: Floats, rate: float, dt: float) -> float:
+        """Return a rate at which the joints keep within speed and acceleration, or come closest to that."""
+        if rate == 0:  # the stop is too sudden
             return self.rate / 2
-        speed, reach = _KEPT * self._speed, _KEPT * self._acceleration * dt
-        size = np.maximum(np.abs(turned), 1e-12)
-        was = self._joint_rate * np.sign(turned)
+        speed, reach = _USED * self._speed, _USED * self._acceleration * dt
+        size = np.maximum(np.abs(speeds), 1e-12)
+        was = self._speeds * np.sign(speeds)
         highest = float((np.minimum(speed, was + reach) / size).min())
         lowest = float(((was - reach) / size).max())
         if highest < lowest:

@@ -128,7 +128,7 @@ class Trace:
 
 def beyond(controller: WalkController) -> float:
     """How far the foot on the ground that is farthest out is beyond its polygon [m]."""
-    now, bounds = controller._now, controller._footholds.bounds
+    now, bounds = controller._tick.gait, controller._walk.transitions.footholds.bounds
     seen = (now.foot - now.origin) * np.exp(-1j * now.yaw)
     return float(((seen[:, None] * NORMALS.conj()).real - bounds)[now.down].max())
 

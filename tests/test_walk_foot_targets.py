@@ -8,7 +8,7 @@ from tarsus.control.command import Command
 from tarsus.control.limitation import Limitation
 from tarsus.control.walk_controller import WalkController
 from tarsus.errors import InputError
-from walker_machine import Trace
+from walk_trace import Trace
 
 DT = 0.01
 

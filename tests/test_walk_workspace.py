@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from tarsus import Command, Gait, WalkController, list_robots, load_robot
-from walker_machine import beyond
+from walk_trace import beyond
 
 GAITS = ("tripod", "ripple", "wave", "tetrapod")
 DT = 0.02

@@ -1,4 +1,4 @@
-"""How much of the way to a posture works, against what is worked out in full there and shortly after."""
+"""The feasible fraction of a path between stances, against the full workspace there and shortly after."""
 
 import numpy as np
 import pytest
@@ -8,11 +8,10 @@ from sample_stances import feet_at, pose_of, posture_of, setup_of
 from tarsus.control.incremental import complete
 from tarsus.control.transition.feasible_fraction import (
     StanceTarget,
-    balanced_fraction,
     first_increment,
-    largest_fraction,
-    limiting_cause,
+    reach_cause,
 )
+from tarsus.control.transition.stages import balanced_fraction, reachable_fraction
 from tarsus.control.workspace.foot_workspace import foot_workspace, rest_margin
 from tarsus.control.workspace.polygon import NORMALS
 from tarsus.control.workspace.stability import StabilityCheck, support_sets
@@ -20,7 +19,7 @@ from tarsus.gait.gait import Gait
 from tarsus.kinematics.inverse import inverse_kinematics
 from tarsus.kinematics.stability import stability_margin
 
-WISHES = [
+BODIES = [
     (0.3, 0.0, 0.0, 0.0, 0.0, 0.0),
     (0.0, -0.2, 0.0, 0.0, 0.0, 0.3),
     (0.0, 0.0, 0.25, 0.0, 0.0, 0.0),
@@ -37,77 +36,76 @@ def ends(name, body):
 
 
 def room(setup, posed):
-    """The least room of each leg, from its whole polygon."""
+    """The least margin of each leg, from its whole polygon."""
     bounds = complete(foot_workspace(setup.robot, posed.stand, foot_distance=setup.foot_distance))
     return (bounds - (NORMALS.conj() * posed.rest[:, None]).real).min(axis=-1)
 
 
-@pytest.mark.parametrize("body", WISHES)
+@pytest.mark.parametrize("body", BODIES)
 @pytest.mark.parametrize("name", PRESETS)
-def test_there_every_leg_has_room_and_a_thousandth_of_the_way_farther_the_named_one_has_none(name, body):
-    setup, now, wished = ends(name, body)
-    share, why = complete(largest_fraction(setup.robot, now, wished))
+def test_every_leg_has_room_at_the_fraction_and_the_named_one_has_none_a_thousandth_farther(name, body):
+    setup, now, target = ends(name, body)
+    share, cause = complete(reachable_fraction(setup.robot, now, target))
     assert 0 < share < 1
-    assert (room(setup, now.towards(wished, share)) >= 0).all()
-    farther = room(setup, now.towards(wished, share + 1e-3))
-    assert farther[[name in why for name in setup.robot.leg_names]].max() < 0
+    assert (room(setup, now.towards(target, share)) >= 0).all()
+    farther = room(setup, now.towards(target, share + 1e-3))
+    assert farther[[name == cause.leg for name in setup.robot.leg_names]].max() < 0
 
 
-def test_what_works_whole_is_stopped_by_nothing():
-    setup, now, wished = ends("strider", (0.01, -0.01, 0.01, 0.02, 0.02, 0.05))
-    assert complete(largest_fraction(setup.robot, now, wished)) == (1.0, "")
+def test_a_path_that_is_feasible_as_a_whole_has_no_cause():
+    setup, now, target = ends("strider", (0.01, -0.01, 0.01, 0.02, 0.02, 0.05))
+    assert complete(reachable_fraction(setup.robot, now, target)) == (1.0, None)
 
 
-def test_from_out_of_reach_farther_out_nothing_works():
-    setup, now, wished = ends("strider", (0.0, 0.0, 0.3, 0.0, 0.0, 0.0))
-    farther = now.towards(wished, 1.5)
-    share, why = complete(largest_fraction(setup.robot, wished, farther))
+def test_nothing_of_a_path_out_of_reach_is_feasible():
+    setup, now, target = ends("strider", (0.0, 0.0, 0.3, 0.0, 0.0, 0.0))
+    farther = now.towards(target, 1.5)
+    share, cause = complete(reachable_fraction(setup.robot, target, farther))
     assert share == 0
-    assert "comes to the end of its reach" in why
+    assert cause.reason == "end of the leg's reach"
 
 
-def test_a_knee_that_comes_to_the_ground_is_called_that():
+def test_the_cause_tells_a_knee_on_the_ground_from_the_end_of_reach():
     # Leaning far to one side, the legs there are bent enough, but their knees are low.
-    setup, now, wished = ends("freenove", WISHES[4])
-    stops = [complete(largest_fraction(setup_of(name).robot, *ends(name, WISHES[4])[1:]))[1] for name in PRESETS]
-    assert any(why.startswith("the knee of") and why.endswith("comes to the ground") for why in stops)
-    assert any(why.endswith("comes to the end of its reach") for why in stops)
-    share, _ = complete(largest_fraction(setup.robot, now, wished))
-    there = now.towards(wished, share + 1e-3).stand
+    setup, now, target = ends("freenove", BODIES[4])
+    stops = [complete(reachable_fraction(setup_of(name).robot, *ends(name, BODIES[4])[1:]))[1] for name in PRESETS]
+    assert {cause.reason for cause in stops} == {"the knee touches the ground", "end of the leg's reach"}
+    share, _ = complete(reachable_fraction(setup.robot, now, target))
+    there = now.towards(target, share + 1e-3).stand
     assert (rest_margin(setup.robot, there, knees=False) >= rest_margin(setup.robot, there)).all()
-    assert any(leg in limiting_cause(setup.robot, there) for leg in setup.robot.leg_names)
+    assert reach_cause(setup.robot, there).leg in setup.robot.leg_names
 
 
 @pytest.mark.parametrize("gait", ["tripod", "wave"])
 @pytest.mark.parametrize("name", PRESETS)
-def test_as_far_as_the_balance_lets_it_the_body_stands_well_inside_its_supports(name, gait):
-    setup, now, wished = ends(name, (0.4, 0.1, 0.0, 0.0, 0.0, 0.0))
+def test_at_the_balanced_fraction_the_body_has_stability_margin_to_spare(name, gait):
+    setup, now, target = ends(name, (0.4, 0.1, 0.0, 0.0, 0.0, 0.0))
     sets = support_sets(Gait.named(gait))
     balance = StabilityCheck(setup.robot, sets)
-    share = complete(balanced_fraction(balance, now, wished, 1.0))
+    share = complete(balanced_fraction(balance, now, target, 1.0))
     assert 0 < share < 1
-    margins = [balance.margin_at_rest(now.towards(wished, share + more).stand) for more in (0.0, 1e-3)]
+    margins = [balance.margin_at_rest(now.towards(target, share + more).stand) for more in (0.0, 1e-3)]
     assert margins[0] >= balance.least_margin
     assert margins[1] < margins[0]
 
 
 @pytest.mark.parametrize("name", PRESETS)
 def test_the_margin_at_rest_is_that_of_the_body_on_its_feet(name):
-    setup, now, wished = ends(name, (0.02, -0.01, 0.005, 0.05, -0.03, 0.1))
+    setup, now, target = ends(name, (0.02, -0.01, 0.005, 0.05, -0.03, 0.1))
     for gait in ("tripod", "wave"):
         sets = support_sets(Gait.named(gait))
-        stand = now.towards(wished, 1.0).stand
+        stand = now.towards(target, 1.0).stand
         feet = feet_at(stand.rest)
         angles = inverse_kinematics(setup.robot, feet, pose_of(stand)).angles
         expected = min(stability_margin(setup.robot, angles, pose_of(stand), down) for down in sets)
         assert StabilityCheck(setup.robot, sets).margin_at_rest(stand) == pytest.approx(float(expected), abs=1e-12)
 
 
-def test_a_step_is_as_long_as_the_feet_may_go_and_reach_at_once():
-    setup, now, wished = ends("strider", (0.01, 0.0, 0.0, 0.0, 0.0, 0.0))
-    assert first_increment(setup.robot, now, wished, 0.7) == 0.7
+def test_the_first_increment_is_as_long_as_one_step_and_in_reach():
+    setup, now, target = ends("strider", (0.01, 0.0, 0.0, 0.0, 0.0, 0.0))
+    assert first_increment(setup.robot, now, target, 0.7) == 0.7
     for far in (0.02, 0.05, 0.2):
-        goal = StanceTarget(wished.posture, now.rest * (1 + far / np.abs(now.rest)))
+        goal = StanceTarget(target.posture, now.rest * (1 + far / np.abs(now.rest)))
         part = first_increment(setup.robot, now, goal, 1.0)
         assert part * far <= 0.03 + 1e-12
         # A sixteenth more would be too far.

@@ -1,4 +1,4 @@
-"""Working out how to go over to another posture, order of steps or pace: what works of it, and what is said."""
+"""Planning of stance transitions: what of a command is feasible, and which limitations are reported."""
 
 import dataclasses
 import functools
@@ -11,9 +11,11 @@ from hypothesis import strategies as st
 from gait_robots import PRESETS, ring
 from sample_stances import feet_at, pose_of, posture_of, setup_of
 from tarsus.control.incremental import complete
-from tarsus.control.limitation import Limitation, LimitationKind
+from tarsus.control.limitation import Cause, Limitation, LimitationKind
+from tarsus.control.transition.feasible_fraction import TIPPING, StanceTarget
 from tarsus.control.transition.parameters import WalkParameters
-from tarsus.control.transition.planner import StanceTransition, plan_transition
+from tarsus.control.transition.planner import TransitionPlanner
+from tarsus.control.transition.stance_transition import StanceTransition
 from tarsus.control.workspace.stance_geometry import SWING_HEIGHT, rotation_rows, stance_geometry_of
 from tarsus.errors import UnreachableError
 from tarsus.gait.gait import GAITS, Gait
@@ -23,7 +25,7 @@ from tarsus.kinematics.stance import default_stance
 from tarsus.robot.joint_limits import joint_limits
 
 
-def manner_of(setup, **changes):
+def parameters_of(setup, **changes):
     values = {
         "gait": setup.gait,
         "body": (0.0,) * 6,
@@ -35,21 +37,23 @@ def manner_of(setup, **changes):
     return WalkParameters(**{**values, **changes})
 
 
-def worked_out(setup, parameters, now=None, rest=None, **options):
+def planned(setup, parameters, now=None, rest=None, **options):
     speed, acceleration = joint_limits(setup.robot, None, None)
-    distance = {"speed": speed, "acceleration": acceleration, "foot_distance": setup.foot_distance}
-    return complete(plan_transition(setup.robot, parameters, now, rest, **distance, **options))
+    bounds = {"speed": speed, "acceleration": acceleration}
+    planner = TransitionPlanner(setup.robot, **bounds, foot_distance=setup.foot_distance)
+    present = None if now is None else StanceTarget(now, rest, parameters.terrain)
+    return complete(planner.plan(parameters, present, **options))
 
 
 @functools.cache
 def start(name, gait="tripod"):
     setup = setup_of(name, gait)
-    return worked_out(setup, manner_of(setup))
+    return planned(setup, parameters_of(setup))
 
 
 def from_start(name, **changes):
     setup, first = setup_of(name), start(name)
-    return worked_out(setup, manner_of(setup, **changes), first.posture, first.rest)
+    return planned(setup, parameters_of(setup, **changes), first.posture, first.rest)
 
 
 def reached(setup, posture, rest):
@@ -64,30 +68,30 @@ def test_every_preset_stands_and_walks_in_every_gait_as_it_is(name):
     for gait in GAITS:
         setup, found = setup_of(name, gait), start(name, gait)
         assert isinstance(found, StanceTransition)
-        assert found.whole
+        assert found.complete
         assert found.limitations == ()
         np.testing.assert_allclose(found.posture, posture_of(setup))
         stance = default_stance(setup.robot, setup.body_height, swing_height=setup.swing_height)
         np.testing.assert_allclose(found.rest, stance[:, 0] + 1j * stance[:, 1])
-        assert found.there is found.way is found.stepping
-        assert found.there.feasible
-        assert min(found.there.stroke, found.there.turning) > 0
+        assert found.final_limits is found.path_limits is found.stepping_limits
+        assert found.final_limits.feasible
+        assert min(found.final_limits.stroke, found.final_limits.turning) > 0
 
 
 @pytest.mark.parametrize("name", PRESETS)
 def test_small_changes_work_whole_and_on_all_the_way(name):
     found = from_start(name, body=(0.002, -0.002, 0.003, 0.01, -0.01, 0.01))
     assert isinstance(found, StanceTransition)
-    assert found.whole
+    assert found.complete
     assert found.limitations == ()
     setup, first = setup_of(name), start(name)
     np.testing.assert_allclose(found.posture[:2], (0.002, -0.002))
     assert found.posture[2] == pytest.approx(setup.body_height + 0.003)
     for part in np.linspace(0, 1, 5):
         assert reached(setup, first.posture + part * (found.posture - first.posture), found.rest)
-    for limits in (found.there, found.way, found.stepping):
+    for limits in (found.final_limits, found.path_limits, found.stepping_limits):
         assert limits.feasible
-    assert (found.way.bounds <= np.minimum(found.there.bounds, found.stepping.bounds)).all()
+    assert (found.path_limits.bounds <= np.minimum(found.final_limits.bounds, found.stepping_limits.bounds)).all()
 
 
 @pytest.mark.parametrize("name", ["strider", "phantomx", "phoenix"])
@@ -97,15 +101,15 @@ def test_of_too_far_a_move_the_largest_part_is_gone_step_by_step(name, axis):
     body = tuple((0.3 if axis < 3 else 1.2) * (i == axis) for i in range(6))
     posture, rest, said = first.posture, first.rest, None
     for _ in range(24):
-        found = worked_out(setup, manner_of(setup, body=body), posture, rest)
-        if isinstance(found, str):
-            said = found
+        found = planned(setup, parameters_of(setup, body=body), posture, rest)
+        if isinstance(found, Cause):
+            said = found.text()
             break
         assert reached(setup, found.posture, found.rest)
         excluded = (found.posture - posture)[axis]
         assert excluded >= 0
         posture, rest = found.posture, found.rest
-        if found.whole:
+        if found.complete:
             said = " ".join(map(Limitation.text, found.limitations))
             break
     assert said is not None
@@ -117,7 +121,7 @@ def test_of_too_far_a_move_the_largest_part_is_gone_step_by_step(name, axis):
 def test_feet_are_not_moved_far_at_once():
     found = from_start("strider", stance_width=0.05)
     assert isinstance(found, StanceTransition)
-    assert not found.whole
+    assert not found.complete
     assert 0 < np.abs(found.rest - start("strider").rest).max() <= 0.03 + 1e-12
     # As the body still is, the feet reach their new places.
     assert reached(setup_of("strider"), start("strider").posture, found.rest)
@@ -137,9 +141,9 @@ def test_a_height_from_which_no_leg_reaches_is_gone_towards_as_far_as_one_does()
     assert setup.body_height < found.posture[2] < 0.5
     assert reached(setup, found.posture, found.rest)
     with pytest.raises(UnreachableError):
-        worked_out(setup, manner_of(setup, body_height=0.5))
+        planned(setup, parameters_of(setup, body_height=0.5))
     with pytest.raises(UnreachableError, match="no leg reaches the ground at body height 500000"):
-        worked_out(setup, manner_of(setup, body_height=500.0), first.posture, first.rest)
+        planned(setup, parameters_of(setup, body_height=500.0), first.posture, first.rest)
 
 
 def test_a_short_cycle_is_made_longer_and_that_is_said():
@@ -153,51 +157,51 @@ def test_a_short_cycle_is_made_longer_and_that_is_said():
 def test_another_order_of_steps_leaves_the_robot_standing_as_it_is():
     setup, first = setup_of("strider"), start("strider")
     moved = first.posture + np.array([0.01, 0, 0, 0, 0, 0.05, 0])
-    parameters = manner_of(setup, gait=Gait.named("wave"))
-    found = worked_out(setup, parameters, moved, first.rest, stay=True)
+    parameters = parameters_of(setup, gait=Gait.named("wave"))
+    found = planned(setup, parameters, moved, first.rest, stay=True)
     np.testing.assert_array_equal(found.posture, moved)
     np.testing.assert_array_equal(found.rest, first.rest)
     assert found.parameters is parameters
-    assert found.there is found.way
+    assert found.final_limits is found.path_limits
 
 
 def test_legs_that_are_gone_bound_nothing():
     setup, first = setup_of("strider"), start("strider")
     # The body leans already to the side that has three legs left.
     lean = (0.0, -0.06, 0.0, 0.0, 0.0, 0.0)
-    parameters = manner_of(setup, gait=Gait.named("wave"), excluded=(1,), correction=lean)
-    found = worked_out(setup, parameters, posture_of(setup, lean), first.rest)
+    parameters = parameters_of(setup, gait=Gait.named("wave"), excluded=(1,), correction=lean)
+    found = planned(setup, parameters, posture_of(setup, lean), first.rest)
     assert isinstance(found, StanceTransition)
-    assert np.isinf(found.there.bounds[1]).all()
-    assert np.isfinite(np.delete(found.there.bounds, 1, axis=0)).all()
+    assert np.isinf(found.final_limits.bounds[1]).all()
+    assert np.isfinite(np.delete(found.final_limits.bounds, 1, axis=0)).all()
 
 
 def test_a_robot_that_would_tip_over_is_refused():
     setup, first = setup_of("strider"), start("strider")
     # Two legs in the air at a time, and two more that don't step.
-    parameters = manner_of(setup, gait=Gait.named("ripple"), excluded=(0, 1))
-    found = worked_out(setup, parameters, first.posture, first.rest)
-    assert found == "body: the robot would tip over"
+    parameters = parameters_of(setup, gait=Gait.named("ripple"), excluded=(0, 1))
+    found = planned(setup, parameters, first.posture, first.rest)
+    assert found == TIPPING
 
 
 def test_a_wish_that_the_balance_bounds_is_gone_as_far_as_it_lets_and_that_is_said():
     setup, first = setup_of("mithi"), start("mithi")
-    forward = manner_of(setup, body=(0.3, 0.0, 0.0, 0.0, 0.0, 0.0))
-    found = worked_out(setup, forward, first.posture, first.rest)
-    assert found.whole
+    forward = parameters_of(setup, body=(0.3, 0.0, 0.0, 0.0, 0.0, 0.0))
+    found = planned(setup, forward, first.posture, first.rest)
+    assert found.complete
     assert [limitation.key for limitation in found.limitations] == [("body", "the robot would tip over", "", "")]
-    assert found.there.balanced
+    assert found.final_limits.balanced
     # A little farther it would: from there, nothing of the command works.
     beyond = found.posture + np.array([0.01, 0, 0, 0, 0, 0, 0])
-    assert worked_out(setup, forward, beyond, first.rest) == "body: the robot would tip over"
+    assert planned(setup, forward, beyond, first.rest) == TIPPING
 
 
 def test_a_robot_that_cannot_stand_and_step_at_all_is_refused_at_once():
     setup = setup_of(ring(4), "wave")
     # On three of four feet the middle of the body is on an edge.
-    assert worked_out(setup, manner_of(setup)) == "body: the robot would tip over"
+    assert planned(setup, parameters_of(setup)) == TIPPING
     low = setup_of("strider")
-    assert "comes to the end of its reach" in worked_out(low, manner_of(low, stance_width=0.3))
+    assert planned(low, parameters_of(low, stance_width=0.3)).reason == "end of the leg's reach"
 
 
 def test_of_a_wish_whose_sway_goes_too_far_a_part_is_gone_or_the_sway_is_blamed():
@@ -205,31 +209,30 @@ def test_of_a_wish_whose_sway_goes_too_far_a_part_is_gone_or_the_sway_is_blamed(
     assert isinstance(found, StanceTransition)
     assert 0 < found.posture[0] <= 0.03
     found = from_start("phantomx", sway=(0.0, 0.0, 0.2, 0.0, 0.0, 0.0))
-    assert found.startswith("body: ")
-    assert found.endswith("comes to the end of its reach as the body sways")
+    assert found.reason == "end of the leg's reach as the body sways"
 
 
 def test_from_a_posture_out_of_reach_nothing_works():
     setup, first = setup_of("strider"), start("strider")
     away = first.posture + np.array([0, 0, 0.3, 0, 0, 0, 0])
-    parameters = manner_of(setup, body=(0, 0, 0.4, 0, 0, 0))
-    found = worked_out(setup, parameters, away, first.rest)
-    assert isinstance(found, str)
-    assert "comes to the end of its reach" in found
+    parameters = parameters_of(setup, body=(0, 0, 0.4, 0, 0, 0))
+    found = planned(setup, parameters, away, first.rest)
+    assert isinstance(found, Cause)
+    assert found.reason == "end of the leg's reach"
 
 
 def test_a_body_that_sways_has_less_room():
     still, swaying = start("strider"), from_start("strider", sway=(0.0, 0.02, 0.0, 0.05, 0.0, 0.0))
-    assert swaying.there.feasible
-    assert (swaying.there.bounds <= still.there.bounds + 1e-9).mean() > 0.8
-    assert swaying.there.margins.sum() < still.there.margins.sum()
+    assert swaying.final_limits.feasible
+    assert (swaying.final_limits.bounds <= still.final_limits.bounds + 1e-9).mean() > 0.8
+    assert swaying.final_limits.margins.sum() < still.final_limits.margins.sum()
 
 
 def test_a_correction_for_the_ground_is_added_to_the_body():
     setup = setup_of("strider")
-    parameters = manner_of(setup, body=(0.01,) * 6, correction=(0.0, 0.01, 0.02, 0.0, 0.1, 0.0))
-    assert parameters.stance == pytest.approx((0.01, 0.02, 0.03, 0.01, 0.11, 0.01))
-    assert dataclasses.replace(parameters, correction=(0.0,) * 6).stance == parameters.body
+    parameters = parameters_of(setup, body=(0.01,) * 6, correction=(0.0, 0.01, 0.02, 0.0, 0.1, 0.0))
+    assert parameters.corrected_body == pytest.approx((0.01, 0.02, 0.03, 0.01, 0.11, 0.01))
+    assert dataclasses.replace(parameters, correction=(0.0,) * 6).corrected_body == parameters.body
 
 
 @settings(max_examples=12)
@@ -240,8 +243,8 @@ def test_whatever_is_wished_for_what_comes_of_it_is_reached(body, body_height, s
         found = from_start("phantomx", body=body, body_height=body_height, swing_height=swing_height)
     except UnreachableError:
         return
-    if isinstance(found, str):
-        assert any(reason in found for reason in (*setup.robot.leg_names, "tip over"))
+    if isinstance(found, Cause):
+        assert found.leg in setup.robot.leg_names or found == TIPPING or found.reason.startswith(TIPPING.reason)
         return
     assert reached(setup, found.posture, found.rest)
     assert reached(setup, start("phantomx").posture, found.rest)
@@ -260,14 +263,14 @@ def test_a_step_that_could_not_be_taken_on_the_way_is_refused():
     setup, first = setup_of("strider"), start("strider")
     # Where the body is to go the robot may lift what it has left; where it is now, it would tip over.
     lean = (0.0, -0.06, 0.0, 0.0, 0.0, 0.0)
-    parameters = manner_of(setup, gait=Gait.named("wave"), excluded=(1,), correction=lean)
-    found = worked_out(setup, parameters, first.posture, first.rest)
-    assert found == "body: on the way there the robot would tip over"
+    parameters = parameters_of(setup, gait=Gait.named("wave"), excluded=(1,), correction=lean)
+    found = planned(setup, parameters, first.posture, first.rest)
+    assert found.reason == "the robot would tip over on the way"
 
 
 def test_of_rest_footholds_far_out_of_reach_a_first_step_is_taken():
     setup, first = setup_of("strider"), start("strider")
-    found = worked_out(setup, manner_of(setup, stance_width=0.8), first.posture, first.rest)
+    found = planned(setup, parameters_of(setup, stance_width=0.8), first.posture, first.rest)
     assert isinstance(found, StanceTransition)
-    assert not found.whole
+    assert not found.complete
     assert 0 < np.abs(found.rest - first.rest).max() <= 0.03 + 1e-12

@@ -10,7 +10,7 @@ from tarsus.control.pose.admittance import Admittance
 from tarsus.control.readings import SensorReadings
 from tarsus.control.walk_controller import WalkController
 from tarsus.gait.gait import Gait
-from walker_machine import GAITS, Trace, beyond
+from walk_trace import GAITS, Trace, beyond
 
 GIVING = Admittance(mass=1.0, damping=60.0, stiffness=400.0, travel=0.01)
 TOUCH = 1e-4
@@ -187,7 +187,7 @@ def test_a_leg_that_was_a_hand_is_put_down_on_the_ground(levelling, feeling):
         }.get(tick, twist)
         trace.step(command, 0.025, readings=SensorReadings(contacts=touching(controller, 0.0)) if feeling else None)
         assert tick != 499 or controller.feet[0, 2] == pytest.approx(0.06, abs=1e-3)
-    assert not controller._foot_targets
+    assert not controller._walk.foot_targets
     trace.assert_sound(flat=False)
     assert np.abs(trace.feet[-1, :, 2][trace.contacts[-1]]).max() < 1e-4
 

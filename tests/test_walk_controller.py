@@ -17,7 +17,7 @@ import pytest
 
 from gait_robots import PRESETS, preset, ring
 from tarsus.control.command import Command
-from tarsus.control.limitation import Limitation
+from tarsus.control.limitation import Limitation, LimitationKind
 from tarsus.control.readings import SensorReadings
 from tarsus.control.safety import Guard
 from tarsus.control.walk_controller import WalkController
@@ -28,7 +28,7 @@ from tarsus.gait.plan import plan_walk
 from tarsus.kinematics.inverse import inverse_kinematics
 from tarsus.kinematics.leg import forward_kinematics
 from tarsus.kinematics.pose import Pose
-from walker_machine import GAITS, Trace, drive
+from walk_trace import GAITS, Trace, drive
 
 DIRECTIONS = {"forward": (1, 0, 0), "left": (0, 1, 0), "turning": (0, 0, 1), "all": (-0.6, 0.4, 1.5)}
 STOP = (0.0, 0.0, 0.0)
@@ -405,8 +405,10 @@ def test_what_cannot_be_is_refused_by_name_and_walking_goes_on():
     w = controller("strider")
     trace = Trace(w).run((0.1, 0, 0), 1)
     trace.run(Command(twist=(0.1, 0, 0), body_height=5.0), 3)
-    (reason,) = map(Limitation.text, w.limitations)
-    assert "no leg reaches the ground at body height 5000.0 mm" in reason
+    (limitation,) = w.limitations
+    assert limitation.kind is LimitationKind.BODY_HEIGHT
+    assert limitation.asked == 5.0
+    assert limitation.granted == pytest.approx(w.body.position[2], abs=1e-3)
     assert w.walk_state == "walking"
     trace.run(Command(twist=(0.1, 0, 0), body_height=0.11), 3).assert_sound()
     assert w.limitations == ()
@@ -468,7 +470,7 @@ def test_a_leg_that_the_gait_cannot_do_without_stays_and_the_margin_is_said():
     trace = Trace(w).run(Command(twist=(0.05, 0, 0), foot_targets={0: w.feet[0] + [0, 0, 0.05]}), 10)
     trace.assert_sound()
     (reason,) = map(Limitation.text, w.limitations)
-    assert re.search(r"foot_target: without front left the tripod would stand -?\d+ mm inside its support", reason)
+    assert re.search(r"front left: not enough support in the tripod gait without this leg, \d+ mm outside its", reason)
     assert trace.contacts[-60:, 0].any()
 
 
@@ -535,7 +537,7 @@ def digest(seed):
 
 
 def test_the_same_stream_gives_the_same_angles_to_the_bit():
-    script = "import test_walker; print(test_walker.digest(5))"
+    script = "import test_walk_controller; print(test_walk_controller.digest(5))"
     command = [sys.executable, "-c", script]
     # Another process, another order of whatever is hashed.
     environment = os.environ | {"PYTHONHASHSEED": "7", "PYTHONPATH": os.pathsep.join(sys.path)}
@@ -618,7 +620,9 @@ def test_what_is_no_wish_is_refused_and_changes_nothing(bad):
 
 
 def test_a_robot_that_could_not_step_as_it_stands_is_refused_with_the_reason():
-    with pytest.raises(UnreachableError, match=r"can't walk so: body: the knee of front left comes to the ground"):
+    with pytest.raises(
+        UnreachableError, match=r"can't stand and step in this stance: front left: the knee touches the ground"
+    ):
         controller("strider", body_height=-0.05)
 
 

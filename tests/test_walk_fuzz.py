@@ -12,7 +12,7 @@ from tarsus.control.pose.admittance import Admittance
 from tarsus.control.readings import SensorReadings
 from tarsus.control.walk_controller import WalkController
 from tarsus.gait.gait import Gait
-from walker_machine import GAITS, LONGEST_TICK, Trace, drive
+from walk_trace import GAITS, LONGEST_TICK, Trace, drive
 
 SECONDS = 40.0
 GIVING = Admittance(mass=1.0, damping=40.0, stiffness=400.0)

@@ -1,0 +1,120 @@
+"""The limiter protocols: how limiters combine, and what each of them decides."""
+
+import numpy as np
+import pytest
+
+from tarsus import Gait, load_robot
+from tarsus.control.command import Command
+from tarsus.control.limitation import Limitation, LimitationKind
+from tarsus.control.limiter.pending_transition import PendingTransitionLimiter
+from tarsus.control.limiter.protocol import RateGrant, TwistGrant, TwistRequest, granted_rate, granted_twist
+from tarsus.control.limiter.reference_governor import GovernorLimiter
+from tarsus.control.tick.limit import rate_limiters, twist_limiters
+from tarsus.control.walk_controller import WalkController
+
+DT = 0.02
+LIMITATION = Limitation(kind=LimitationKind.TWIST, cause="test", asked=1.0, granted=0.5)
+
+
+class Half:
+    """Allows half of the twist, and of the rate."""
+
+    def limit(self, _, grant):
+        if isinstance(grant, RateGrant):
+            return grant._replace(rate=min(grant.rate, 0.5))
+        return grant.at_most(0.5, LIMITATION)
+
+
+class Third:
+    """Allows a third."""
+
+    def limit(self, _, grant):
+        return grant.at_most(1 / 3)
+
+
+def request(controller, twist):
+    return TwistRequest(twist, DT, controller._tick.gait, controller._tick.twist)
+
+
+def walking(*commands, seconds=3.0, **options):
+    controller = WalkController(load_robot("strider"), Gait.named("tripod"), **options)
+    for command in commands:
+        for _ in range(round(seconds / DT)):
+            controller.step(command, DT)
+    return controller
+
+
+def test_the_smallest_fraction_counts_and_all_limitations():
+    controller = walking()
+    grant = granted_twist([Half(), Third(), Half()], request(controller, (0.3, 0.0, 0.6)))
+    assert grant.fraction == 1 / 3
+    assert grant.limitations == (LIMITATION, LIMITATION)
+    assert grant.target is None
+    assert grant.scaled((0.3, 0.0, 0.6)) == pytest.approx([0.1, 0.0, 0.2])
+    assert granted_twist([], request(controller, (0.3, 0.0, 0.6))) == TwistGrant()
+    assert granted_rate([Half()], controller._tick.gait) == RateGrant(0.5)
+
+
+def test_a_further_limiter_is_one_more_item_in_the_list():
+    controller = WalkController(load_robot("strider"), Gait.named("tripod"))
+    controller._twist_limiters.insert(0, Half())
+    for _ in range(200):
+        controller.step((0.1, 0.0, 0.0), DT)
+    np.testing.assert_allclose(controller.twist, (0.05, 0.0, 0.0), atol=1e-9)
+    assert controller.limitations == (LIMITATION,)
+
+
+def test_a_further_rate_limiter_slows_the_walk_down():
+    fast, slow = (WalkController(load_robot("strider"), Gait.named("tripod")) for _ in range(2))
+    slow._rate_limiters.append(Half())
+    for _ in range(200):
+        fast.step((0.1, 0.0, 0.0), DT)
+        slow.step((0.1, 0.0, 0.0), DT)
+    assert slow.place[0] == pytest.approx(fast.place[0] / 2, rel=0.1)
+
+
+def test_without_feedback_and_transitions_only_workspace_and_governor_limit():
+    controller = walking((0.1, 0.0, 0.0))
+    asked = request(controller, (0.1, 0.0, 0.0))
+    for limiter in twist_limiters(controller._walk)[:-1]:
+        assert limiter.limit(asked, TwistGrant()) == TwistGrant()
+    for limiter in rate_limiters(controller._walk):
+        assert limiter.limit(asked.state, RateGrant()) == RateGrant()
+    fast = granted_twist(twist_limiters(controller._walk), request(controller, (3.0, 0.0, 0.0)))
+    assert fast.fraction == pytest.approx(controller.top_speed((3.0, 0.0, 0.0)))
+    (limitation,) = fast.limitations
+    assert limitation.granted == fast.fraction
+    assert limitation.leg in controller.robot.leg_names
+
+
+def test_the_governor_keeps_a_target_that_another_limiter_set():
+    controller = walking((0.1, 0.0, 0.0))
+    kept = TwistGrant(target=np.array([0.0, 0.0, 0.1]))
+    governor = GovernorLimiter(controller._walk.transitions, controller._walk.terrain)
+    assert governor.limit(request(controller, (0.1, 0.0, 0.0)), kept) is kept
+
+
+class Waiting:
+    """A transition that can't begin."""
+
+    waiting = True
+
+
+def test_a_transition_that_waits_slows_the_walk_down_and_is_reported_when_it_lasts():
+    controller, transitions = walking(), Waiting()
+    limiter = PendingTransitionLimiter(transitions)
+    fractions = [limiter.limit(request(controller, (0.1, 0.0, 0.0)), TwistGrant()) for _ in range(200)]
+    assert fractions[49].fraction == pytest.approx(np.exp(-1.0))
+    assert fractions[49].limitations == ()
+    (limitation,) = fractions[-1].limitations
+    assert limitation.granted == fractions[-1].fraction < 0.05
+    assert limiter.limit(request(controller, (0.0, 0.0, 0.0)), TwistGrant()).limitations == ()
+    transitions.waiting = False
+    assert limiter.limit(request(controller, (0.1, 0.0, 0.0)), TwistGrant()) == TwistGrant()
+
+
+def test_the_walk_slows_down_for_another_gait_no_more_than_needed():
+    controller = walking((0.2, 0.0, 0.0), Command(twist=(0.2, 0.0, 0.0), gait="wave"), seconds=6.0)
+    assert controller.gait.name == "wave"
+    (limitation,) = controller.limitations
+    assert limitation.kind is LimitationKind.TWIST
