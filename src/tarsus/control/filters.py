@@ -3,7 +3,7 @@
 The critically damped filter is ``value'' = w^2 (target - value) - 2 w value'``, of bandwidth `w`. Its impulse response
 ``w^2 t exp(-w t)`` is never negative and has the integral 1: the value is a weighted mean of the targets so far. It
 stays in every convex set that contains them, and never overshoots. Between targets on opposite ends of a range of
-half-width `V` its rate stays within ``2 V w / e``, and its second derivative within ``2 (1 + exp(-2)) V w^2``. A step is
+half-width `V` its rate stays within ``2 V w / e``, its second derivative within ``2 (1 + exp(-2)) V w^2``. A step is
 the exact solution for a constant target, whatever its length.
 """
 
