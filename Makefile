@@ -24,7 +24,7 @@ types: $(VENV)/.dev
 	$(BIN)/mypy
 
 tests: $(VENV)/.dev web browser
-	$(BIN)/python -m pytest -n auto --cov --cov-report=
+	$(BIN)/python -m pytest -n auto --dist worksteal --cov --cov-report=
 	$(BIN)/coverage report
 	$(BIN)/coverage report --fail-under=100 --include='src/tarsus/errors.py,src/tarsus/arrays.py,src/tarsus/blocks.py,src/tarsus/robot/*,src/tarsus/kinematics/*,src/tarsus/gait/*,src/tarsus/control/*,src/tarsus/load/*,src/tarsus/load/handbook/*'
 

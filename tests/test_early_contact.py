@@ -37,6 +37,7 @@ def met(setup, inputs, now):
     return after, stops
 
 
+@pytest.mark.lengthy
 @pytest.mark.parametrize("share", [0.55, 0.75, 0.9])
 @pytest.mark.parametrize("name", PRESETS)
 def test_stops_keep_to_the_acceleration_limits(name, share):

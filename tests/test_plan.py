@@ -94,6 +94,7 @@ def test_the_default_walk_of_every_preset_works(robot):
     assert motion.swing_height == robot.gait.swing_height
 
 
+@pytest.mark.lengthy
 @pytest.mark.parametrize("cycle_time", [0.37, 0.5, 1.0, 1.37])
 @pytest.mark.parametrize("rate", [100.0, 97.0, 50.0, 100 / 3, 20.0])
 @pytest.mark.parametrize("name", GAITS)

@@ -58,6 +58,7 @@ def test_the_scenarios_have_every_command():
     assert {type(command) for command in (*EVERY_COMMAND.commands, *PUSHED.commands)} == set(COMMANDS.values())
 
 
+@pytest.mark.lengthy
 @pytest.mark.parametrize("name", list_robots())
 def test_every_command_runs_clean_through_the_guard_on_every_robot(name):
     found = run_scenario(EVERY_COMMAND, robot=name)
@@ -85,6 +86,7 @@ def test_every_command_runs_clean_through_the_guard_on_every_robot(name):
     assert slips.max() < 1e-4
 
 
+@pytest.mark.lengthy
 @pytest.mark.parametrize("name", [name for name in list_robots() if load_robot(name).has_masses])
 def test_feet_of_every_robot_give_way_clean_through_the_guard(name):
     found = run_scenario(PUSHED, robot=name)
@@ -127,6 +129,7 @@ def test_a_foot_gives_way_by_the_force_over_its_stiffness():
     assert np.abs(reached - found.motion.feet).max() < 1e-9
 
 
+@pytest.mark.lengthy
 @pytest.mark.parametrize("speed", [(0.02, 0.0, 0.0), (0.0, -0.01, 0.015), (-0.01, 0.02, -0.01)])
 def test_a_hand_moves_at_its_speed_until_another_command(speed):
     vx, vy, vz = (f"{name} {1000 * value:g} mm/s" for name, value in zip(("vx", "vy", "vz"), speed, strict=True))
@@ -416,6 +419,7 @@ def test_forces_are_the_weight_and_what_is_set():
     assert (tripod["forces"][1::2] == 0).all()
 
 
+@pytest.mark.lengthy
 @pytest.mark.parametrize("path", SCENARIOS, ids=lambda path: path.stem)
 def test_the_examples_run(path):
     scenario = Scenario.load(path)

@@ -15,6 +15,7 @@ FOUND = (
 )
 
 
+@pytest.mark.lengthy
 @pytest.mark.parametrize("timeline", FOUND)
 @pytest.mark.parametrize("levelling", ["level", "follow"])
 def test_the_guard_has_nothing_to_do(timeline, levelling):

@@ -41,6 +41,7 @@ def works(robot, gait, direction, *, stroke, cycles, of, **more):
     return not any(problem.startswith(IMPOSSIBLE) for problem in motion.problems)
 
 
+@pytest.mark.lengthy
 @pytest.mark.parametrize("direction", DIRECTIONS)
 @pytest.mark.parametrize("name", GAITS)
 @pytest.mark.parametrize("robot", PRESETS)
@@ -62,6 +63,7 @@ def test_at_the_longest_stroke_every_walk_works_and_beyond_it_none_is_accepted(r
     assert f"{longest * 1000:.1f} mm" in str(refused.value)
 
 
+@pytest.mark.lengthy
 @pytest.mark.parametrize(("robot", "name"), [("strider", "tripod"), ("phantomx", "wave"), ("phoenix", "ripple")])
 @pytest.mark.parametrize("direction", ["forward", "curve", "turn"])
 def test_the_longest_stroke_is_what_bisection_over_whole_walks_finds(robot, name, direction):
@@ -109,6 +111,7 @@ def scan(robot, gait, heading, body_height, swing_height):
     return strokes[int(np.argmin(works)) - 1] if not works[0] or not works.all() else strokes[-1]
 
 
+@pytest.mark.lengthy
 @pytest.mark.parametrize("heading", [0.0, 0.9, math.pi / 2])
 @pytest.mark.parametrize("robot", ["strider", "ch3r", "makeyourpet", "phantomx-mk2"])
 def test_the_longest_stroke_against_an_independent_scan_of_the_steady_cycle(robot, heading):

@@ -88,6 +88,7 @@ def assert_planned(w, twist, **given):
     assert np.ptp(walked, axis=0).max() > 0.1
 
 
+@pytest.mark.lengthy
 @pytest.mark.parametrize("gait", GAITS)
 @pytest.mark.parametrize("name", PRESETS)
 def test_a_constant_twist_gives_the_planned_walks_cycle(name, gait):
@@ -151,6 +152,7 @@ def test_standing_still_is_still(name):
     assert w.time == pytest.approx(1.5)
 
 
+@pytest.mark.lengthy
 @pytest.mark.parametrize("gait", GAITS)
 @pytest.mark.parametrize("name", PRESETS)
 def test_a_robot_that_stops_puts_every_foot_to_its_rest_foothold(name, gait):
@@ -185,10 +187,13 @@ def test_it_starts_again_from_where_it_stopped():
     trace.assert_sound()
 
 
+@pytest.mark.lengthy
 @pytest.mark.parametrize("gait", GAITS)
 @pytest.mark.parametrize("name", PRESETS)
 def test_at_full_speed_from_standing_and_back(name, gait):
-    for direction in ((1, 0, 0), (-1, 0, -4), (0, 1, 0), (0, 0, 4)):
+    # Robots and gaits share the directions out; the fuzzed streams go on in all others.
+    even = (PRESETS.index(name) + GAITS.index(gait)) % 2 == 0
+    for direction in ((1, 0, 0), (0, 0, 4)) if even else ((-1, 0, -4), (0, 1, 0)):
         w = controller(name, gait)
         trace = Trace(w).run(10 * np.array(direction), 3 * w.cycle_time, 0.05)
         stopped(trace, tick=0.05).assert_sound()
@@ -236,6 +241,7 @@ def test_what_is_wished_within_reach_is_what_is_walked():
     np.testing.assert_allclose(np.subtract(w.place, before), (ahead.real, ahead.imag, turn), atol=1e-9)
 
 
+@pytest.mark.lengthy
 @pytest.mark.parametrize("direction", ["forward", "turning"])
 @pytest.mark.parametrize("name", ["strider", "phantomx"])
 def test_top_speeds_are_reached_within_the_joints_limits(name, direction):
@@ -254,6 +260,7 @@ def test_top_speeds_are_reached_within_the_joints_limits(name, direction):
 # Changing one's mind.
 
 
+@pytest.mark.lengthy
 @pytest.mark.parametrize("name", ["strider", "phantomx", "ch3r"])
 @pytest.mark.parametrize("gaits", list(itertools.permutations(GAITS, 2)), ids="-".join)
 def test_the_gait_changes_on_the_move_without_a_missing_support(name, gaits):
@@ -291,6 +298,7 @@ def aside_near_the_ground(trace, height=0.001):
     return found
 
 
+@pytest.mark.lengthy
 @pytest.mark.parametrize("gait", GAITS)
 @pytest.mark.parametrize("direction", DIRECTIONS.values(), ids=DIRECTIONS)
 def test_reversing_drags_no_foot(gait, direction):
@@ -357,6 +365,7 @@ def test_what_a_wish_leaves_out_stays_as_it_is():
         assert (first == second).all()
 
 
+@pytest.mark.lengthy
 @pytest.mark.parametrize("name", ["strider", "phantomx"])
 @pytest.mark.parametrize("axis", range(6), ids=("x", "y", "z", "roll", "pitch", "yaw"))
 def test_the_body_goes_as_far_as_all_legs_reach_and_says_which_one_stops_it(name, axis):
@@ -546,22 +555,23 @@ def test_the_same_stream_gives_the_same_angles_to_the_bit():
     assert digest(6) != digest(5)
 
 
+@pytest.mark.no_cover
 def test_memory_does_not_grow():
     """One number kept a tick would show, and an object kept for each change of how it walks."""
     w = controller("strider")
     commands = [Command(twist=(0.1, 0, 0.2), gait=gait, body=(0, 0, z, 0, 0, 0)) for gait in GAITS for z in (0.0, 0.01)]
 
     def kept():
-        """Walk for six minutes, and count what is there afterwards: objects that hold others, and blocks of memory."""
-        for command in commands * 2:
-            for _ in range(600):
+        """Walk for two minutes, and count what is there afterwards: objects that hold others, and blocks of memory."""
+        for command in commands:
+            for _ in range(300):
                 w.step(command, 0.05)
         gc.collect()
         return np.array([len(gc.get_objects()), sys.getallocatedblocks()])
 
     kept()
     objects, blocks = -kept() + kept()
-    # Twelve changes of at least five objects each; caches of NumPy's own fill by a few dozen blocks.
+    # Eight changes of at least five objects each; caches of NumPy's own fill by a few dozen blocks.
     assert objects < 30
     assert blocks < 200
 
@@ -667,6 +677,7 @@ def test_a_robot_that_cannot_walk_so_is_refused():
 # With the guard behind it, and on other legs.
 
 
+@pytest.mark.lengthy
 @pytest.mark.parametrize("name", PRESETS)
 def test_the_guard_lets_clean_walks_through(name):
     w = controller(name)
@@ -720,6 +731,7 @@ def test_the_pages_example_runs(capsys):
     assert capsys.readouterr().out == shown
 
 
+@pytest.mark.lengthy
 @pytest.mark.parametrize(("name", "gait"), [("strider", "tripod"), ("phantomx", "tripod"), ("ch3r", "wave")])
 def test_the_pages_top_speeds_are_those_reached(name, gait):
     (shown,) = re.findall(rf"^\| {name} \| {gait} \|(.*)\|$", PAGE, flags=re.MULTILINE)

@@ -14,6 +14,9 @@ from tarsus.control.walk_controller import WalkController
 from tarsus.gait.gait import Gait
 from walk_trace import GAITS, LONGEST_TICK, Trace, drive
 
+# Coverage is measured by the other tests: tracing would nearly double the time of these.
+pytestmark = [pytest.mark.lengthy, pytest.mark.no_cover]
+
 SECONDS = 40.0
 GIVING = Admittance(mass=1.0, damping=40.0, stiffness=400.0)
 

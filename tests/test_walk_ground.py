@@ -137,6 +137,7 @@ def test_without_masses_nothing_is_known_of_forces():
     np.testing.assert_allclose(controller.feet[:, 2], 0.0, atol=1e-12)
 
 
+@pytest.mark.lengthy
 @pytest.mark.parametrize("name", list_robots())
 def test_feet_that_meet_steps_early_keep_every_joint_within_its_acceleration(name):
     controller = WalkController(load_robot(name), Gait.named("tripod"))

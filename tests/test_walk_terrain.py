@@ -42,6 +42,7 @@ def climb(controller, slope, seconds, *, along=0, dt=0.02):
     return trace, hill
 
 
+@pytest.mark.lengthy
 @pytest.mark.parametrize("along", [0, 1])
 @pytest.mark.parametrize("levelling", [None, "level", "follow"])
 @pytest.mark.parametrize("slope", [0.1, -0.1])
@@ -60,6 +61,7 @@ def test_it_walks_up_and_down_hills_as_high_over_the_ground_as_before(slope, lev
     assert tilt[along] == pytest.approx(0.0, abs=0.02)
 
 
+@pytest.mark.lengthy
 @pytest.mark.parametrize("name", PRESETS)
 def test_every_robot_climbs_where_it_follows_the_slope(name):
     controller = WalkController(preset(name), Gait.named("tripod"), levelling="follow")
@@ -94,7 +96,8 @@ def rough(name, seed, *, seconds=20.0):
 
 # Before feet stopped as gently as their joints can, stood on slopes and waited within their polygons, every other of
 # these broke something: 2.2 times the acceleration of a joint, feet 6 mm beyond their polygons.
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.lengthy
+@pytest.mark.parametrize("seed", range(3))
 @pytest.mark.parametrize("name", PRESETS)
 def test_ground_that_changes_all_the_time_keeps_the_invariants(name, seed):
     # A foot that is stopped by the ground stands where it is stopped.
@@ -146,6 +149,7 @@ def tick_over_the_drop(trace, command, ticks):
         trace.step(command, 0.02, readings=SensorReadings(contacts=touching(trace.controller, ground)))
 
 
+@pytest.mark.lengthy
 @pytest.mark.parametrize("gait", GAITS)
 @pytest.mark.parametrize("name", ["strider", "phantomx"])
 def test_a_foot_over_a_drop_is_drawn_back_when_the_robot_is_told_to_go_back(name, gait):
@@ -216,6 +220,7 @@ def test_where_it_gets_too_steep_the_robot_stops_says_so_and_can_turn_back():
     trace.assert_sound(flat=False)
 
 
+@pytest.mark.lengthy
 @pytest.mark.parametrize("height", [0.015, 0.03])
 @pytest.mark.parametrize("name", PRESETS)
 def test_stairs(name, height):
@@ -228,6 +233,7 @@ def test_stairs(name, height):
     trace.assert_sound(flat=False)
 
 
+@pytest.mark.lengthy
 @pytest.mark.parametrize("name", ["strider", "mithi", "phantomx"])
 @pytest.mark.parametrize("acceleration", [5.0, 20.0])
 def test_slow_joints_look_for_ground_as_slowly_as_they_can(name, acceleration):
