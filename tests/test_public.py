@@ -4,8 +4,10 @@ import ast
 import importlib
 import inspect
 import pkgutil
+import re
 import subprocess
 import sys
+from enum import Enum
 from pathlib import Path
 
 import pytest
@@ -38,6 +40,46 @@ def test_every_public_name_is_there_and_documented(name):
     assert value is getattr(importlib.import_module(tarsus._HOME_OF[name]), name)
     if callable(value):
         assert inspect.getdoc(value)
+
+
+def public_callables():
+    """Public functions and classes, and the public methods of the classes, by their dotted names."""
+    for name in sorted(set(tarsus.__all__) - {"__version__"}):
+        value = getattr(tarsus, name)
+        if not callable(value) or (inspect.isclass(value) and issubclass(value, BaseException | Enum)):
+            continue
+        yield name, value
+        for method, found in vars(value).items() if inspect.isclass(value) else ():
+            function = getattr(found, "__func__", found)
+            if inspect.isfunction(function) and not method.startswith("_"):
+                yield f"{name}.{method}", function
+
+
+def documented_types(doc):
+    """The names that a NumPy docstring documents, with the line that states the type."""
+    lines = doc.splitlines()
+    entries = [line for line in lines if re.match(r"\*{0,2}\w+(, \*{0,2}\w+)* : ", line)]
+    return {name.strip(" *"): line for line in entries for name in line.partition(" : ")[0].split(",")}
+
+
+PUBLIC = dict(public_callables())
+
+
+@pytest.mark.parametrize("name", PUBLIC)
+def test_every_public_callable_documents_its_parameters_and_their_shapes(name):
+    value = PUBLIC[name]
+    doc = inspect.getdoc(value)
+    assert doc
+    assert doc.split("\n\n")[0].endswith((".", ":"))
+    documented = documented_types(doc)
+    unshaped = [line for line in documented.values() if re.search(r"\barrays?\b", line) and "shape" not in line]
+    assert unshaped == []
+    kinds = (inspect.Parameter.VAR_POSITIONAL, inspect.Parameter.VAR_KEYWORD)
+    parameters = [p.name for p in inspect.signature(value).parameters.values() if p.kind not in kinds]
+    parameters = [name for name in parameters if name not in ("self", "cls")]
+    # The summary may be enough for a single parameter.
+    if documented or len(parameters) > 1:
+        assert set(parameters) <= set(documented)
 
 
 @pytest.mark.parametrize("module", MODULES)

@@ -188,6 +188,7 @@ def test_it_stands_up_from_most_random_angles():
     assert count >= 12
 
 
+@pytest.mark.lengthy
 @pytest.mark.parametrize("name", PRESETS)
 def test_it_rises_vertically_from_the_folded_pose(name):
     robot = preset(name)
@@ -201,6 +202,7 @@ def test_it_rises_vertically_from_the_folded_pose(name):
     check_rest(robot, sequence, times, samples)
 
 
+@pytest.mark.lengthy
 @pytest.mark.parametrize("name", PRESETS)
 def test_sitting_down_reverses_standing_up(name):
     robot = preset(name)
@@ -218,6 +220,7 @@ def test_sitting_down_reverses_standing_up(name):
     assert folded.at(folded.duration).belly
 
 
+@pytest.mark.lengthy
 @pytest.mark.parametrize("name", PRESETS)
 def test_it_changes_footholds_within_the_margin_on_the_way_to_a_great_height(name):
     robot = preset(name)
@@ -239,6 +242,7 @@ def test_it_changes_footholds_within_the_margin_on_the_way_to_a_great_height(nam
     assert down.at(down.duration).body.position[2] == pytest.approx(belly_depth(robot), abs=1e-9)
 
 
+@pytest.mark.lengthy
 @pytest.mark.parametrize("name", PRESETS)
 def test_a_standing_robot_moves_its_feet_in_tripods(name):
     robot = preset(name)

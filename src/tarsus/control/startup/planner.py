@@ -60,9 +60,9 @@ def stand_up(
     margin : float
         Least stability margin during changes of footholds; for feet loaded in the initial state, at most the initial
         stability margin [m].
-    joint_speed, joint_acceleration : array, optional
-        Greatest joint speed [rad/s] and acceleration [rad/s^2], as a number or in shape (3,) or (legs, 3); by default
-        half the servo's no-load speed, reached within 0.05 s.
+    joint_speed, joint_acceleration : float or array, shape (3,) or (legs, 3), optional
+        Greatest joint speed [rad/s] and acceleration [rad/s^2]; by default half the servo's no-load
+        speed, reached within 0.05 s.
 
     Returns
     -------
@@ -122,9 +122,9 @@ def sit_down(
         Swing height of feet that change their foothold [m]; by default that of the robot.
     margin : float
         Least stability margin during changes of footholds [m].
-    joint_speed, joint_acceleration : array, optional
-        Greatest joint speed [rad/s] and acceleration [rad/s^2], as a number or in shape (3,) or (legs, 3); by default
-        half the servo's no-load speed, reached within 0.05 s.
+    joint_speed, joint_acceleration : float or array, shape (3,) or (legs, 3), optional
+        Greatest joint speed [rad/s] and acceleration [rad/s^2]; by default half the servo's no-load
+        speed, reached within 0.05 s.
 
     Returns
     -------
@@ -171,9 +171,9 @@ def fold(
         A single robot.
     angles : array, shape (legs, 3)
         Measured joint angles with which the robot rests on its belly [rad].
-    joint_speed, joint_acceleration : array, optional
-        Greatest joint speed [rad/s] and acceleration [rad/s^2], as a number or in shape (3,) or (legs, 3); by default
-        half the servo's no-load speed, reached within 0.05 s.
+    joint_speed, joint_acceleration : float or array, shape (3,) or (legs, 3), optional
+        Greatest joint speed [rad/s] and acceleration [rad/s^2]; by default half the servo's no-load
+        speed, reached within 0.05 s.
 
     Raises
     ------
