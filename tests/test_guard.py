@@ -22,6 +22,7 @@ from tarsus.kinematics.mass import centre_of_mass
 from tarsus.kinematics.pose import Pose
 
 
+@pytest.mark.lengthy
 @pytest.mark.parametrize("gait", GAITS)
 @pytest.mark.parametrize("name", PRESETS)
 def test_a_valid_walk_passes_unchanged(name, gait):
