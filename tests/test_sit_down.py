@@ -22,7 +22,6 @@ def sit(name, index, *, attitude=True, ticks=1200, **changes):
     return guard, outputs, [output for output in outputs if output.state == "sitting"]
 
 
-@pytest.mark.lengthy
 @pytest.mark.parametrize("index", [0, 60])
 @pytest.mark.parametrize("name", PRESETS)
 def test_it_sits_down_with_stationary_feet(name, index):
