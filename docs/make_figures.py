@@ -17,8 +17,8 @@ from tarsus.report.gait_diagram import plot_gait
 from tarsus.report.skeleton import plot_robot
 from tarsus.report.style import save_figure
 from tarsus.report.timeline import plot_timeline
+from tarsus.scenario.file import load_scenario
 from tarsus.scenario.runner import run_scenario
-from tarsus.scenario.scenario import Scenario
 
 FIGURES = Path(__file__).parent / "figures"
 
@@ -44,7 +44,7 @@ def main() -> None:
         robot = tarsus.load_robot(name)
         angles, body = standing(robot)
         save_figure(plot_robot(robot, angles, body=body), FIGURES / f"robot-{name}.png")
-    day = Scenario.load(FIGURES.parents[1] / "examples" / "whole-day.toml")
+    day = load_scenario(FIGURES.parents[1] / "examples" / "whole-day.toml")
     save_figure(plot_timeline(run_scenario(day)), FIGURES / "timeline.png")
     save_figure(plot_hill(), FIGURES / "hill.png")
     save_figure(plot_states(), FIGURES / "states.png")

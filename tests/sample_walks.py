@@ -6,8 +6,7 @@ from functools import cache
 from tarsus.gait.gait import Gait
 from tarsus.gait.path import curved_path, straight_path
 from tarsus.gait.plan import plan_walk
-from tarsus.robot.file import load_robot
-from tarsus.robot.robot import Robot
+from tarsus.robot.file import load_robot, robot_from_dict
 
 
 def ring_robot(legs):
@@ -19,7 +18,7 @@ def ring_robot(legs):
         entries.append({"name": f"leg {leg}", "position_mm": [x, y, 0], "yaw_deg": yaw})
     limits = {"coxa": [-25, 25], "femur": [-80, 85], "tibia": [-150, 0]}
     leg = {"coxa_mm": 30, "femur_mm": 60, "tibia_mm": 100, "limits_deg": limits}
-    return Robot.from_dict({"name": f"ring {legs}", "leg": leg, "legs": entries})
+    return robot_from_dict({"name": f"ring {legs}", "leg": leg, "legs": entries})
 
 
 @cache

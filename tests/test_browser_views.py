@@ -11,6 +11,7 @@ from playwright.sync_api import expect
 import tarsus
 from browser import number, numbers
 from tarsus.load.handbook.method import handbook
+from tarsus.robot.file import robot_from_dict, robot_to_dict
 from tarsus.studio.messages.state import BodyState, RobotChoice, SourceChoice, StudioState
 
 pytest_plugins = "browser_fixtures"
@@ -170,12 +171,12 @@ def test_a_field_of_the_robot_changes_the_robot(visitor):
     visitor.open(StudioState(view="robot"))
     visitor.unfold()
     visitor.type("robot-tibia", 200)
-    expect(visitor.at("doc-body.mass_kg")).to_have_value(f"{STRIDER.to_dict()['body']['mass_kg']:g}")
+    expect(visitor.at("doc-body.mass_kg")).to_have_value(f"{robot_to_dict(STRIDER)['body']['mass_kg']:g}")
     visitor.at("doc-body.mass_kg").fill("2.5")
     visitor.at("doc-body.mass_kg").press("Enter")
-    document = STRIDER.to_dict()
+    document = robot_to_dict(STRIDER)
     document["leg"]["tibia_mm"], document["body"]["mass_kg"] = 200, 2.5
-    robot = tarsus.Robot.from_dict(document)
+    robot = robot_from_dict(document)
     expect(visitor.at("robot-facts")).to_contain_text(f"Mass in all{total_mass(robot):.3f} kg")
     longest = tarsus.max_stroke(robot, tarsus.Gait.named(robot.gait.name), 0.0) * 1000
     assert number(visitor.facts("robot-facts")["Longest stroke"]) == pytest.approx(longest, abs=0.06)

@@ -6,7 +6,8 @@ import json
 import pytest
 
 from sample_commands import run, run_json
-from tarsus.gait.motion import Motion
+from tarsus.gait.storage import load_motion
+from tarsus.scenario.file import save_scenario, scenario_from_text
 from tarsus.scenario.runner import run_scenario
 from tarsus.scenario.scenario import Scenario
 from tarsus.scenario.summary import drive_summary
@@ -17,7 +18,7 @@ TIMELINE = "at 0 s: walk 40 mm/s; at 1 s: gait ripple; at 4 s: stop"
 def test_the_numbers_are_those_of_the_same_scenario_in_python():
     code, document = run_json("drive", "--dry", TIMELINE, "--robot", "phantomx", "--rate", "50")
     assert code == 0
-    recording = run_scenario(Scenario.from_text(TIMELINE, rate=50.0), robot="phantomx")
+    recording = run_scenario(scenario_from_text(TIMELINE, rate=50.0), robot="phantomx")
     wanted = json.loads(json.dumps(drive_summary(recording), default=float))
     assert document.pop("files") == []
     bears = document.pop("loads")
@@ -39,8 +40,8 @@ def test_it_prints_a_table_and_the_verdict():
 
 def test_out_gets_tables_motion_and_pictures(tmp_path):
     path = tmp_path / "short.toml"
-    scenario = Scenario.from_text("at 0 s: walk 30 mm/s", duration=0.6, rate=50.0, robot="mithi", name="short")
-    scenario.save(path)
+    scenario = scenario_from_text("at 0 s: walk 30 mm/s", duration=0.6, rate=50.0, robot="mithi", name="short")
+    save_scenario(scenario, path)
     out = tmp_path / "deep" / "driven"
     code, document = run_json("drive", "--dry", path, "--out", out)
     assert code == 0
@@ -50,7 +51,7 @@ def test_out_gets_tables_motion_and_pictures(tmp_path):
     assert document["files"] == [str(out / name) for name in names]
     assert all((out / name).stat().st_size > 500 for name in names)
     recording = run_scenario(scenario)
-    assert (Motion.load(out / "motion.npz").angles == recording.motion.angles).all()
+    assert (load_motion(out / "motion.npz").angles == recording.motion.angles).all()
     with open(out / "log.csv", encoding="utf-8") as file:
         assert len(list(csv.reader(file))) == 1 + len(recording.motion.time)
 
@@ -96,7 +97,7 @@ def test_a_command_that_is_not_met_in_full_is_said_and_is_exit_code_1(timeline, 
 
 def test_a_robot_that_never_stands_has_no_margin_and_no_loads(tmp_path):
     path = tmp_path / "lies.toml"
-    Scenario(start="folded", duration=0.3).save(path)
+    save_scenario(Scenario(start="folded", duration=0.3), path)
     result = run("drive", "--dry", path)
     assert result.exit_code == 0
     assert "never off the ground" in result.stdout

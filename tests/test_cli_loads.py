@@ -14,7 +14,7 @@ from tarsus.gait.plan import plan_walk
 from tarsus.load.loads import joint_loads
 from tarsus.load.sizing import size_servos
 from tarsus.report.loads_summary import servos_summary
-from tarsus.robot.file import load_robot
+from tarsus.robot.file import load_robot, save_robot
 
 SHORT = ("--distance", "150", "--rate", "40")
 
@@ -92,7 +92,7 @@ def test_current_and_battery_life():
 
 
 def test_robot_without_servos(tmp_path):
-    load_robot("strider").replace(servos=()).save(tmp_path / "bare.toml")
+    save_robot(load_robot("strider").replace(servos=()), tmp_path / "bare.toml")
     result = run("loads", tmp_path / "bare.toml", *SHORT, "--out", tmp_path / "out")
     assert result.exit_code == 1
     assert "unknown: the robot file names no servo for " in result.stdout
@@ -105,7 +105,7 @@ def test_robot_without_servos(tmp_path):
 
 
 def test_tipping_robot(tmp_path):
-    load_robot("strider").replace(body_com=np.array([0.4, 0.0, 0.0])).save(tmp_path / "nose.toml")
+    save_robot(load_robot("strider").replace(body_com=np.array([0.4, 0.0, 0.0])), tmp_path / "nose.toml")
     result = run("loads", tmp_path / "nose.toml", *SHORT)
     assert result.exit_code == 1
     assert "the robot tips: the load is " in result.stdout

@@ -17,6 +17,7 @@ from tarsus.load.payload import Payload
 from tarsus.load.servo_limits import at_supply, utilisation
 from tarsus.load.verdict import BURNOUT_FACTOR, joint_verdicts
 from tarsus.robot.catalogue import load_servo
+from tarsus.robot.file import robot_from_dict, robot_to_dict
 from tarsus.robot.robot import JOINTS
 from tarsus.robot.servo import Servo
 
@@ -209,7 +210,7 @@ def test_invalid_supply_voltage(supply):
 
 def test_motion_with_another_number_of_legs():
     robot = sample_motion().robot
-    four = robot.from_dict({**robot.to_dict(), "legs": [robot.to_dict()["legs"][i] for i in (0, 2, 3, 5)]})
+    four = robot_from_dict({**robot_to_dict(robot), "legs": [robot_to_dict(robot)["legs"][i] for i in (0, 2, 3, 5)]})
     with pytest.raises(InputError, match="the motion has 6 legs, robot 'strider' has 4"):
         joint_loads(four, sample_motion())
 

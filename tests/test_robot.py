@@ -7,7 +7,10 @@ import numpy as np
 import pytest
 
 from tarsus.errors import InputError, MissingDataError, UnknownNameError
-from tarsus.robot import JOINTS, GaitDefaults, LegGeometry, Robot, Servo, Source, load_robot, stack_robots
+from tarsus.robot.file import load_robot, robot_from_dict, robot_to_dict, save_robot
+from tarsus.robot.geometry import LegGeometry
+from tarsus.robot.robot import JOINTS, GaitDefaults, Robot, Source, stack_robots
+from tarsus.robot.servo import Servo
 
 LEGS = ("front left", "middle left", "rear left", "rear right", "middle right", "front right")
 NEEDED = {
@@ -222,8 +225,8 @@ def test_one_design_of_a_batch():
 
 def test_a_preset_survives_its_dict_and_a_file(tmp_path):
     robot = load_robot("strider")
-    assert Robot.from_dict(robot.to_dict()) == robot
-    robot.save(tmp_path / "strider.toml")
+    assert robot_from_dict(robot_to_dict(robot)) == robot
+    save_robot(robot, tmp_path / "strider.toml")
     assert load_robot(tmp_path / "strider.toml") == robot
 
 

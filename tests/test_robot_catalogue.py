@@ -8,7 +8,7 @@ import pytest
 
 import tarsus.robot.catalogue as catalogue
 from tarsus.errors import UnknownNameError
-from tarsus.robot import list_servos, load_servo, servo_catalogue
+from tarsus.robot.catalogue import list_servos, load_servo, servo_catalogue
 from tarsus.robot.schema import ServoFigures
 
 CSV = Path(catalogue.__file__).with_name("servos.csv")

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 import tarsus.robot.file as robot_file
-from tarsus.robot import list_robots, load_robot, load_servo
+from tarsus.robot.catalogue import load_servo
+from tarsus.robot.file import list_robots, load_robot
 
 PRESETS = Path(robot_file.__file__).parent / "presets"
 NAMES = ("ch3r", "freenove", "makeyourpet", "mithi", "phantomx", "phantomx-mk2", "phoenix", "strider")

@@ -13,8 +13,8 @@ from tarsus.control.readings import SensorReadings
 from tarsus.control.robot_controller import RobotController
 from tarsus.errors import InputError
 from tarsus.robot.file import load_robot
+from tarsus.scenario.file import scenario_from_text
 from tarsus.scenario.runner import run_scenario
-from tarsus.scenario.scenario import Scenario
 
 STRIDER = load_robot("strider")
 FORWARD = (0.05, 0.0, 0.0)
@@ -91,12 +91,12 @@ def test_the_plant_is_stopped_when_something_fails():
 
 
 def test_scenarios_run_on_any_plant():
-    scenario = Scenario.from_text("at 0 s: walk 50 mm/s; at 1 s: stop", robot="strider")
+    scenario = scenario_from_text("at 0 s: walk 50 mm/s; at 1 s: stop", robot="strider")
     lagging, ideal = run_scenario(scenario, plant=LaggingPlant(STRIDER)), run_scenario(scenario)
     assert (lagging.motion.angles == ideal.motion.angles).all()
     assert (lagging.measured_angles[50] != ideal.measured_angles[50]).any()
     with pytest.raises(InputError, match=r"at 1 s: ground RF 3 mm: only an ideal plant .* leave .* a LaggingPlant"):
-        run_scenario(Scenario.from_text("at 1 s: ground RF 3 mm"), plant=LaggingPlant(STRIDER))
+        run_scenario(scenario_from_text("at 1 s: ground RF 3 mm"), plant=LaggingPlant(STRIDER))
 
 
 def test_commands_hold_until_the_next_and_the_run_ends_at_rest():

@@ -17,15 +17,16 @@ from tarsus.control.safety import GuardOutput, Intervention
 from tarsus.control.walk_controller import WalkController
 from tarsus.errors import InputError, UnknownNameError
 from tarsus.gait.gait import Gait
-from tarsus.gait.motion import Motion
+from tarsus.gait.storage import load_motion, save_motion
 from tarsus.kinematics.leg import forward_kinematics
 from tarsus.kinematics.mass import total_mass
 from tarsus.kinematics.pose import Pose
 from tarsus.load.loads import joint_loads
 from tarsus.report.style import save_figure
 from tarsus.report.timeline import plot_timeline
-from tarsus.robot.file import list_robots, load_robot
+from tarsus.robot.file import list_robots, load_robot, robot_from_dict, robot_to_dict
 from tarsus.scenario.commands import COMMANDS
+from tarsus.scenario.file import load_scenario, scenario_from_text
 from tarsus.scenario.runner import run_scenario
 from tarsus.scenario.scenario import Scenario
 from tarsus.scenario.summary import drive_summary
@@ -34,7 +35,7 @@ EXAMPLES = sorted((Path(__file__).parents[1] / "examples").glob("*.toml"))
 SCENARIOS = [path for path in EXAMPLES if "timeline" in path.read_text() or "[[at]]" in path.read_text()]
 
 SOFT = Admittance(mass=1.0, damping=60.0, stiffness=400.0, travel=0.008)
-EVERY_COMMAND = Scenario.from_text(
+EVERY_COMMAND = scenario_from_text(
     """
     at 0.2 s: stand_up
     at 2.5 s: walk 40 mm/s; gait wave; ground RF 0 mm
@@ -49,7 +50,7 @@ EVERY_COMMAND = Scenario.from_text(
     start="folded",
     admittance=SOFT,
 )
-PUSHED = Scenario.from_text(
+PUSHED = scenario_from_text(
     "at 0.5 s: force RF 2 N; at 1.5 s: force RF -1 N; force LM 1 N; at 2.5 s: sit", admittance=SOFT
 )
 
@@ -97,7 +98,7 @@ def test_feet_of_every_robot_give_way_clean_through_the_guard(name):
 
 def test_feet_that_give_way_walk_on_without_a_jump():
     text = "at 0 s: walk 80 mm/s; force RF 2 N; force LM -2 N; at 4 s: stop"
-    found = run_scenario(Scenario.from_text(text, duration=8.0, admittance=SOFT), robot="strider")
+    found = run_scenario(scenario_from_text(text, duration=8.0, admittance=SOFT), robot="strider")
     assert found.ok, found.events
     # The ground stays where it is, however feet give way on it.
     assert np.abs(found.motion.feet[..., 2])[found.motion.contacts].max() < 0.008
@@ -107,7 +108,7 @@ def test_feet_that_give_way_walk_on_without_a_jump():
 def test_a_foot_gives_way_by_the_force_over_its_stiffness():
     text = "at 0 s: force RF 2 N; force LM -1 N; at 3 s: force RF 0 N; force LM 1e3 N; "
     text += "at 6 s: force LM 0 N; force RF 3.5 N"
-    found = run_scenario(Scenario.from_text(text, duration=9.0, admittance=SOFT), robot="strider", guard=False)
+    found = run_scenario(scenario_from_text(text, duration=9.0, admittance=SOFT), robot="strider", guard=False)
     heights = found.motion.feet[..., 2]
     right, left = load_robot("strider").leg_codes.index("RF"), load_robot("strider").leg_codes.index("LM")
     others = np.delete(heights, (right, left), axis=1)
@@ -137,7 +138,7 @@ def test_a_hand_moves_at_its_speed_until_another_command(speed):
         "at 0 s: gait wave; foot_target RF x 250 mm y -200 mm z 60 mm; "
         f"at 8 s: foot_velocity RF {vx} {vy} {vz}; at 10.5 s: foot_velocity RF; at 14 s: foot_release RF"
     )
-    found = run_scenario(Scenario.from_text(text), robot="strider")
+    found = run_scenario(scenario_from_text(text), robot="strider")
     assert found.ok
     foot, time = found.motion.feet[:, found.robot.leg_codes.index("RF")], found.motion.time
     # It stands, so that the heading frame is the ground's.
@@ -154,7 +155,7 @@ def test_a_hand_at_a_speed_goes_on_to_the_end_of_its_reach_and_a_point_ends_it()
         "at 0 s: gait wave; foot_target RF x 250 mm y -200 mm z 60 mm; at 7 s: foot_velocity RF vx 50 mm/s; "
         "at 11 s: foot_target RF x 250 mm y -200 mm z 50 mm"
     )
-    found = run_scenario(Scenario.from_text(text, duration=15.0), robot="strider")
+    found = run_scenario(scenario_from_text(text, duration=15.0), robot="strider")
     # At the edge it comes and goes from tick to tick, and is told once.
     (limit,) = (event for event in found.events if event.kind == "limit")
     assert "front right: out of reach" in limit.text
@@ -167,7 +168,7 @@ def test_a_hand_at_a_speed_goes_on_to_the_end_of_its_reach_and_a_point_ends_it()
 
 def test_a_hand_at_a_speed_is_put_down_where_the_robot_sits_down():
     text = "at 0 s: gait wave; foot_velocity RF vz 20 mm/s; at 5 s: sit; at 6 s: foot_release RF"
-    found = run_scenario(Scenario.from_text(text, duration=10.0), robot="strider")
+    found = run_scenario(scenario_from_text(text, duration=10.0), robot="strider")
     assert found.ok, found.problems
     assert not found.motion.contacts[found.motion.time < 5.0].all()
     assert found.states[-1] == "lying"
@@ -175,7 +176,7 @@ def test_a_hand_at_a_speed_is_put_down_where_the_robot_sits_down():
 
 def test_the_cycle_time_goes_back_to_auto():
     text = "at 0 s: walk 30 mm/s; at 1 s: cycle_time 1.6 s; at 5 s: cycle_time auto; at 10 s: stop"
-    found = run_scenario(Scenario.from_text(text), robot="strider")
+    found = run_scenario(scenario_from_text(text), robot="strider")
     before, own, after = (found.cycle_times[np.searchsorted(found.motion.time, at)] for at in (0.9, 4.9, 9.9))
     assert own == pytest.approx(1.6)
     assert after == before
@@ -185,7 +186,7 @@ def test_the_cycle_time_goes_back_to_auto():
 
 def test_it_is_what_the_walker_gives():
     text = "at 0 s: walk vx 50 mm/s turn 5 deg/s; swing_height 20 mm; at 1 s: gait ripple; body z 5 mm; at 2.5 s: stop"
-    found = run_scenario(Scenario.from_text(text, duration=4.0, rate=50.0), robot="strider")
+    found = run_scenario(scenario_from_text(text, duration=4.0, rate=50.0), robot="strider")
     controller = WalkController(load_robot("strider"), Gait.named("tripod", legs=6))
     sticky = {"swing_height": 0.02}
     twist = (0.05, 0.0, math.radians(5))
@@ -206,7 +207,7 @@ def test_it_is_what_the_walker_gives():
 
 
 def test_the_same_scenario_gives_the_same_to_the_bit_and_a_seed_is_used():
-    scenario = Scenario.from_text("at 0 s: walk 50 mm/s", duration=2.0, jitter=0.004, seed=7, robot="phantomx")
+    scenario = scenario_from_text("at 0 s: walk 50 mm/s", duration=2.0, jitter=0.004, seed=7, robot="phantomx")
     one, two = run_scenario(scenario), run_scenario(scenario)
     other = run_scenario(dataclasses.replace(scenario, seed=8))
     assert one.motion.angles.tobytes() == two.motion.angles.tobytes()
@@ -218,7 +219,7 @@ def test_the_same_scenario_gives_the_same_to_the_bit_and_a_seed_is_used():
 
 
 def test_commands_are_given_at_the_first_tick_at_or_after_their_time():
-    found = run_scenario(Scenario.from_text("at 0.1 s: walk 10 mm/s; at 0.255 s: stop", duration=0.5), robot="strider")
+    found = run_scenario(scenario_from_text("at 0.1 s: walk 10 mm/s; at 0.255 s: stop", duration=0.5), robot="strider")
     asked = found.motion.time[1:][found.twist_commanded[1:, 0] > 0]
     assert asked[0] == pytest.approx(0.11)
     assert asked[-1] == pytest.approx(0.26)
@@ -226,16 +227,16 @@ def test_commands_are_given_at_the_first_tick_at_or_after_their_time():
 
 
 def test_without_a_duration_it_ends_when_what_was_begun_is_over():
-    walking = run_scenario(Scenario.from_text("at 1 s: walk 20 mm/s"), robot="strider")
+    walking = run_scenario(scenario_from_text("at 1 s: walk 20 mm/s"), robot="strider")
     assert walking.motion.duration == pytest.approx(3.0)
-    stopped = run_scenario(Scenario.from_text("at 0 s: walk 20 mm/s; at 2 s: stop"), robot="strider")
+    stopped = run_scenario(scenario_from_text("at 0 s: walk 20 mm/s; at 2 s: stop"), robot="strider")
     assert stopped.activities[-1] == "standing"
     assert run_scenario(Scenario(), robot="strider").motion.duration == pytest.approx(2.0)
 
 
 def test_what_can_not_be_now_is_refused_and_said():
     text = "at 0 s: stand_up; power_off; sit; sit; power_off; at 5 s: stand_up"
-    found = run_scenario(Scenario.from_text(text), robot="strider")
+    found = run_scenario(scenario_from_text(text), robot="strider")
     (refused,) = (event.text for event in found.events if event.kind == "refused")
     assert refused == "power_off: the robot stands; it must lie on its belly before the joints are released"
     assert [event.text[:15] for event in found.events if event.kind == "power"] == ["joints released"]
@@ -245,7 +246,7 @@ def test_what_can_not_be_now_is_refused_and_said():
 
 
 def test_a_robot_that_stands_sits_down_before_it_folds():
-    found = run_scenario(Scenario.from_text("at 0 s: fold"), robot="strider")
+    found = run_scenario(scenario_from_text("at 0 s: fold"), robot="strider")
     assert found.ok
     assert list(dict.fromkeys(found.states)) == ["standing", "sitting", "lying", "folding", "folded"]
 
@@ -255,7 +256,7 @@ def test_a_robot_that_can_not_get_up_says_why(monkeypatch):
         raise InputError("no way up")
 
     monkeypatch.setattr(robot_controller, "stand_up", refuse)
-    found = run_scenario(Scenario.from_text("at 0 s: stand_up", start="sitting"), robot="strider")
+    found = run_scenario(scenario_from_text("at 0 s: stand_up", start="sitting"), robot="strider")
     assert found.problems[0] == "at 0.01 s stand_up: rising is not possible: no way up"
     assert found.standing == ()
     assert drive_summary(found)["least_margin"] is None
@@ -263,7 +264,7 @@ def test_a_robot_that_can_not_get_up_says_why(monkeypatch):
 
 def test_it_gets_up_where_it_has_sat_down():
     text = "at 0 s: walk vx 60 mm/s turn 20 deg/s; at 3 s: sit; walk 30 mm/s; at 6 s: stand_up; at 9 s: stop"
-    found = run_scenario(Scenario.from_text(text), robot="strider")
+    found = run_scenario(scenario_from_text(text), robot="strider")
     assert found.ok
     assert len(found.standing) == 2
     motion = found.motion
@@ -279,7 +280,7 @@ def test_it_gets_up_where_it_has_sat_down():
 
 def test_limits_are_told_once_with_their_time():
     found = run_scenario(
-        Scenario.from_text("at 0.5 s: walk 3 m/s; at 2 s: walk 10 mm/s", duration=3.0), robot="strider"
+        scenario_from_text("at 0.5 s: walk 3 m/s; at 2 s: walk 10 mm/s", duration=3.0), robot="strider"
     )
     (limit,) = (event for event in found.events if event.kind == "limit")
     assert limit.text.startswith("twist: ")
@@ -307,7 +308,7 @@ class Rejecting:
 
 def test_while_the_guard_holds_the_walker_waits_and_what_is_sent_is_recorded(monkeypatch):
     monkeypatch.setattr(robot_controller, "Guard", Rejecting)
-    found = run_scenario(Scenario.from_text("at 0 s: walk 60 mm/s", duration=1.5), robot="strider")
+    found = run_scenario(scenario_from_text("at 0 s: walk 60 mm/s", duration=1.5), robot="strider")
     assert found.interventions == {"speed": 1}
     (event,) = (event for event in found.events if event.kind == "guard")
     assert event.text.startswith("speed: LF coxa")
@@ -319,7 +320,7 @@ def test_while_the_guard_holds_the_walker_waits_and_what_is_sent_is_recorded(mon
     assert (found.motion.body.position[31:61] == found.motion.body.position[30]).all()
     reached = found.motion.body @ forward_kinematics(found.robot, found.motion.angles)[..., 3, :]
     assert np.abs(reached - found.motion.feet).max() < 1e-9
-    free = run_scenario(Scenario.from_text("at 0 s: walk 60 mm/s", duration=1.5), robot="strider", guard=False)
+    free = run_scenario(scenario_from_text("at 0 s: walk 60 mm/s", duration=1.5), robot="strider", guard=False)
     assert free.guard == ()
     assert (free.motion.angles[:30] == found.motion.angles[:30]).all()
     # The guard here held 30 ticks; from then on all is as without it, but later by these.
@@ -339,7 +340,7 @@ def test_while_the_guard_holds_the_walker_waits_and_what_is_sent_is_recorded(mon
 )
 def test_what_a_robot_can_not_be_told_is_refused_before_the_start(text, robot, error, wanted):
     with pytest.raises(error, match=wanted):
-        run_scenario(Scenario.from_text(text), robot=robot)
+        run_scenario(scenario_from_text(text), robot=robot)
 
 
 def test_without_masses_no_force_is_felt():
@@ -349,16 +350,16 @@ def test_without_masses_no_force_is_felt():
 
 
 def test_a_gait_for_six_legs_is_refused_for_four():
-    document = load_robot("strider").to_dict()
+    document = robot_to_dict(load_robot("strider"))
     document["legs"] = [document["legs"][leg] for leg in (0, 2, 3, 5)]
-    four = type(load_robot("strider")).from_dict(document)
+    four = robot_from_dict(document)
     with pytest.raises(InputError, match=r"at 2 s: .*4 legs"):
-        run_scenario(Scenario.from_text("at 2 s: gait ripple", gait="wave"), robot=four)
+        run_scenario(scenario_from_text("at 2 s: gait ripple", gait="wave"), robot=four)
 
 
 def test_loads_of_what_stood():
     found = run_scenario(
-        Scenario.from_text("at 0 s: stand_up; at 2 s: walk 50 mm/s; at 4 s: sit", start="sitting"), robot="strider"
+        scenario_from_text("at 0 s: stand_up; at 2 s: walk 50 mm/s; at 4 s: sit", start="sitting"), robot="strider"
     )
     (standing,) = found.standing
     bears = joint_loads(found.robot, standing)
@@ -367,9 +368,9 @@ def test_loads_of_what_stood():
 
 
 def test_a_motion_of_it_is_saved_and_comes_back(tmp_path):
-    found = run_scenario(Scenario.from_text("at 0 s: walk 50 mm/s", duration=1.0), robot="strider")
-    found.motion.save(tmp_path / "motion.npz")
-    back = Motion.load(tmp_path / "motion.npz")
+    found = run_scenario(scenario_from_text("at 0 s: walk 50 mm/s", duration=1.0), robot="strider")
+    save_motion(found.motion, tmp_path / "motion.npz")
+    back = load_motion(tmp_path / "motion.npz")
     assert (back.angles == found.motion.angles).all()
     assert found.motion.speed == pytest.approx(np.linalg.norm(found.twist[:, :2], axis=1).max())
     assert found.standing == (found.motion,)
@@ -377,7 +378,7 @@ def test_a_motion_of_it_is_saved_and_comes_back(tmp_path):
 
 def test_the_log_is_a_table_of_every_tick(tmp_path):
     found = run_scenario(
-        Scenario.from_text("at 0.5 s: walk vx 50 mm/s turn 5 deg/s", duration=1.0), robot="strider", guard=False
+        scenario_from_text("at 0.5 s: walk vx 50 mm/s turn 5 deg/s", duration=1.0), robot="strider", guard=False
     )
     found.to_csv(tmp_path / "log.csv")
     with open(tmp_path / "log.csv", encoding="utf-8") as file:
@@ -422,7 +423,7 @@ def test_forces_are_the_weight_and_what_is_set():
 @pytest.mark.lengthy
 @pytest.mark.parametrize("path", SCENARIOS, ids=lambda path: path.stem)
 def test_the_examples_run(path):
-    scenario = Scenario.load(path)
+    scenario = load_scenario(path)
     found = run_scenario(scenario)
     assert found.ok, found.problems
     assert not found.interventions
@@ -436,7 +437,7 @@ def test_there_are_examples():
 def test_the_timeline_shows_every_command_and_phase(tmp_path):
     text = "at 0 s: power_off; stand_up; at 2 s: walk 5 m/s; gait wave; "
     text += "at 3 s: foot_target LM x 0.123456 mm y 200.123456 mm z 40.456 mm"
-    found = run_scenario(Scenario.from_text(text, start="sitting", duration=4.0, name="a try"), robot="strider")
+    found = run_scenario(scenario_from_text(text, start="sitting", duration=4.0, name="a try"), robot="strider")
     figure = plot_timeline(found)
     words = {text.get_text() for axes in figure.axes for text in axes.texts}
     assert {"stand_up", "gait wave", "tripod"} <= words
@@ -448,7 +449,7 @@ def test_the_timeline_shows_every_command_and_phase(tmp_path):
 
 
 def test_the_timeline_shows_how_high_bearing_feet_are_where_they_may_give_way():
-    found = run_scenario(Scenario.load(next(path for path in SCENARIOS if path.stem == "soft-foot")))
+    found = run_scenario(load_scenario(next(path for path in SCENARIOS if path.stem == "soft-foot")))
     figure = plot_timeline(found)
     (panel,) = (axes for axes in figure.axes if axes.get_ylabel().startswith("stance feet"))
     highest = max(
@@ -460,14 +461,14 @@ def test_the_timeline_shows_how_high_bearing_feet_are_where_they_may_give_way():
 
 
 def test_the_timeline_of_a_robot_that_never_stands_and_of_one_without_a_guard():
-    lying = run_scenario(Scenario.from_text("at 0 s: sit", start="sitting", duration=0.5), robot="strider", guard=False)
+    lying = run_scenario(scenario_from_text("at 0 s: sit", start="sitting", duration=0.5), robot="strider", guard=False)
     assert isinstance(lying, Recording)
     assert "no guard" in plot_timeline(lying).get_suptitle()
 
 
 def test_the_summary_is_of_the_motion():
     found = run_scenario(
-        Scenario.from_text("at 0.5 s: walk 50 mm/s; at 3 s: walk turn 10 deg/s; at 5 s: stop"), robot="strider"
+        scenario_from_text("at 0.5 s: walk 50 mm/s; at 3 s: walk turn 10 deg/s; at 5 s: stop"), robot="strider"
     )
     summary = drive_summary(found)
     motion = found.motion

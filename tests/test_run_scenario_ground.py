@@ -2,8 +2,8 @@
 
 import pytest
 
+from tarsus.scenario.file import scenario_from_text
 from tarsus.scenario.runner import run_scenario
-from tarsus.scenario.scenario import Scenario
 
 FOUND = (
     "at 0 s: walk 40 mm/s; ground RF -3 mm",
@@ -19,6 +19,6 @@ FOUND = (
 @pytest.mark.parametrize("timeline", FOUND)
 @pytest.mark.parametrize("levelling", ["level", "follow"])
 def test_the_guard_has_nothing_to_do(timeline, levelling):
-    recording = run_scenario(Scenario.from_text(timeline, duration=8.0, levelling=levelling), robot="strider")
+    recording = run_scenario(scenario_from_text(timeline, duration=8.0, levelling=levelling), robot="strider")
     assert recording.ok, recording.problems
     assert not recording.interventions

@@ -10,9 +10,9 @@ import pytest
 from gait_robots import PRESETS, preset, ring
 from tarsus.errors import InputError, RobotFileError
 from tarsus.gait.gait import Gait
-from tarsus.gait.motion import Motion
 from tarsus.gait.path import curved_path, straight_path
 from tarsus.gait.plan import plan_walk
+from tarsus.gait.storage import load_motion, motion_to_csv, motion_to_dataset, save_motion
 from tarsus.kinematics.reach import Reach
 
 ARRAYS = ("time", "feet", "contacts", "angles", "reach")
@@ -31,7 +31,7 @@ def read_csv(path):
 
 def test_csv_has_the_motion_in_mm_and_degrees(tmp_path):
     motion = walk()
-    motion.to_csv(tmp_path / "walk.csv")
+    motion_to_csv(motion, tmp_path / "walk.csv")
     rows = read_csv(tmp_path / "walk.csv")
     assert len(rows) == motion.time.size
 
@@ -61,7 +61,7 @@ def test_csv_has_the_motion_in_mm_and_degrees(tmp_path):
 
 def test_csv_names_the_reach_codes_and_writes_no_minus_zero(tmp_path):
     motion = walk(stroke=0.4, strict=False)
-    motion.to_csv(str(tmp_path / "walk.csv"))
+    motion_to_csv(motion, str(tmp_path / "walk.csv"))
     rows = read_csv(tmp_path / "walk.csv")
     for leg, code in enumerate(motion.robot.leg_codes):
         assert [Reach[row[f"{code}_reach"]] for row in rows] == motion.reach[:, leg].tolist()
@@ -71,15 +71,16 @@ def test_csv_names_the_reach_codes_and_writes_no_minus_zero(tmp_path):
 def test_csv_columns_of_legs_without_short_names(tmp_path):
     names = ("one", "two", "the third leg", "four")
     robot = ring(4, leg_names=names)
-    plan_walk(robot, Gait.named("wave", legs=4), straight_path(0.05), rate=30).to_csv(tmp_path / "walk.csv")
+    motion = plan_walk(robot, Gait.named("wave", legs=4), straight_path(0.05), rate=30)
+    motion_to_csv(motion, tmp_path / "walk.csv")
     assert "the_third_leg_coxa_deg" in read_csv(tmp_path / "walk.csv")[0]
 
 
 @pytest.mark.parametrize("robot", PRESETS)
 def test_loading_gives_the_same_motion_to_the_bit(robot, tmp_path):
     motion = walk(robot, stroke=0.03)
-    motion.save(tmp_path / "walk.npz")
-    again = Motion.load(tmp_path / "walk.npz")
+    save_motion(motion, tmp_path / "walk.npz")
+    again = load_motion(tmp_path / "walk.npz")
     for name in ARRAYS:
         np.testing.assert_array_equal(getattr(again, name), getattr(motion, name), strict=True)
     np.testing.assert_array_equal(again.body.rotation, motion.body.rotation, strict=True)
@@ -88,8 +89,8 @@ def test_loading_gives_the_same_motion_to_the_bit(robot, tmp_path):
         assert getattr(again, name) == getattr(motion, name)
     assert (again.robot, again.gait, again.assumed) == (motion.robot, motion.gait, motion.assumed)
     assert again.problems == motion.problems
-    again.save(tmp_path / "again.npz")
-    assert Motion.load(tmp_path / "again.npz").robot == motion.robot
+    save_motion(again, tmp_path / "again.npz")
+    assert load_motion(tmp_path / "again.npz").robot == motion.robot
 
 
 def test_a_motion_planned_with_numpy_s_numbers_is_saved_as_well(tmp_path):
@@ -103,24 +104,24 @@ def test_a_motion_planned_with_numpy_s_numbers_is_saved_as_well(tmp_path):
         body_height=np.float32(0.11),
         foot_distance=np.float32(0.02),
     )
-    motion.save(tmp_path / "walk.npz")
-    assert Motion.load(tmp_path / "walk.npz").stroke == motion.stroke
+    save_motion(motion, tmp_path / "walk.npz")
+    assert load_motion(tmp_path / "walk.npz").stroke == motion.stroke
 
 
 def test_saving_where_nothing_can_be_written_is_refused(tmp_path):
     motion = walk()
-    for write in (motion.save, motion.to_csv):
+    for write in (save_motion, motion_to_csv):
         with pytest.raises(InputError, match="can't be written: No such file"):
-            write(tmp_path / "nowhere" / "walk")
+            write(motion, tmp_path / "nowhere" / "walk")
         with pytest.raises(InputError, match="can't be written: Is a directory"):
-            write(tmp_path)
+            write(motion, tmp_path)
 
 
 def test_a_file_that_is_not_there_or_no_motion_is_refused(tmp_path):
     with pytest.raises(InputError, match="can't be read: No such file"):
-        Motion.load(tmp_path / "walk.npz")
+        load_motion(tmp_path / "walk.npz")
     with pytest.raises(InputError, match="can't be read: Is a directory"):
-        Motion.load(tmp_path)
+        load_motion(tmp_path)
     for name, content in {
         "empty": b"",
         "text": b"time_s,LF_coxa_deg\n0,1\n",
@@ -130,17 +131,17 @@ def test_a_file_that_is_not_there_or_no_motion_is_refused(tmp_path):
         path = tmp_path / name
         path.write_bytes(content)
         with pytest.raises(InputError, match="is not a motion that Tarsus saved"):
-            Motion.load(path)
+            load_motion(path)
     np.save(tmp_path / "array.npy", np.zeros(3))
     np.savez(tmp_path / "arrays.npz", feet=np.zeros(3))
     for name in ("array.npy", "arrays.npz"):
         with pytest.raises(InputError, match="is not a motion that Tarsus saved"):
-            Motion.load(tmp_path / name)
+            load_motion(tmp_path / name)
 
 
 def rewritten(motion, path, *, about=None, **arrays):
     """Save a motion, then change something in its file."""
-    motion.save(path)
+    save_motion(motion, path)
     with np.load(path) as file:
         content = dict(file)
     told = json.loads(str(content["about"])) | (about or {})
@@ -150,41 +151,41 @@ def rewritten(motion, path, *, about=None, **arrays):
 def test_another_format_is_refused_by_its_name(tmp_path):
     rewritten(walk(), tmp_path / "walk.npz", about={"format": "tarsus motion 2"})
     with pytest.raises(InputError, match="is of the format 'tarsus motion 2'; this version reads 'tarsus motion 1'"):
-        Motion.load(tmp_path / "walk.npz")
+        load_motion(tmp_path / "walk.npz")
 
 
 def test_what_does_not_fit_is_refused(tmp_path):
     motion, path = walk(), tmp_path / "walk.npz"
     rewritten(motion, path, feet=motion.feet[:-1])
     with pytest.raises(InputError, match="a motion's feet has shape"):
-        Motion.load(path)
+        load_motion(path)
     rewritten(motion, path, about={"stroke": "long"})
     with pytest.raises(InputError, match="is not a motion that Tarsus saved"):
-        Motion.load(path)
+        load_motion(path)
     rewritten(motion, path, about={"gait": {"duty_factor": 2.0, "offsets": [0.0]}})
     with pytest.raises(InputError, match=r"duty is 2\.0"):
-        Motion.load(path)
+        load_motion(path)
     rewritten(motion, path, about={"robot": 'name = "x"\n'})
     with pytest.raises(RobotFileError, match="the robot in "):
-        Motion.load(path)
+        load_motion(path)
 
 
 def test_a_damaged_file_is_refused_whatever_is_damaged(tmp_path):
     """Zip, deflate, NumPy's headers and JSON fail in ways of their own: all come out as one error, or do no harm."""
     motion, path = walk(rate=10), tmp_path / "walk.npz"
-    motion.save(path)
+    save_motion(motion, path)
     content = path.read_bytes()
     for end in range(0, len(content), len(content) // 60):
         path.write_bytes(content[:end])
         with pytest.raises(InputError, match="is not a motion that Tarsus saved"):
-            Motion.load(path)
+            load_motion(path)
     refused = 0
     for place in range(0, len(content), max(len(content) // 400, 1)):
         damaged = bytearray(content)
         damaged[place] ^= 0x55
         path.write_bytes(damaged)
         try:
-            again = Motion.load(path)
+            again = load_motion(path)
         except InputError:
             refused += 1
         else:
@@ -194,7 +195,7 @@ def test_a_damaged_file_is_refused_whatever_is_damaged(tmp_path):
 
 
 def test_the_file_is_a_plain_zip_of_arrays_without_pickles(tmp_path):
-    walk().save(tmp_path / "walk.any")
+    save_motion(walk(), tmp_path / "walk.any")
     with zipfile.ZipFile(tmp_path / "walk.any") as file:
         assert {name.removesuffix(".npy") for name in file.namelist()} == {*ARRAYS, "about", "rotation", "position"}
     with np.load(tmp_path / "walk.any", allow_pickle=False) as file:
@@ -203,7 +204,7 @@ def test_the_file_is_a_plain_zip_of_arrays_without_pickles(tmp_path):
 
 def test_the_data_set_is_labelled_and_equal():
     motion = walk()
-    data = motion.to_dataset()
+    data = motion_to_dataset(motion)
     assert dict(data.sizes) == {"time": motion.time.size, "leg": 6, "joint": 3, "axis": 3, "body_axis": 3}
     for name, values in {
         "angles": motion.angles,
@@ -227,10 +228,10 @@ def test_the_data_set_is_labelled_and_equal():
 def test_without_xarray_the_error_says_what_to_install(monkeypatch):
     monkeypatch.setitem(sys.modules, "xarray", None)
     with pytest.raises(InputError, match=r"needs xarray: pip install 'tarsus\[data\]'"):
-        walk().to_dataset()
+        motion_to_dataset(walk())
 
 
 def test_a_motion_of_changed_values_is_saved_with_them(tmp_path):
     motion = dataclasses.replace(walk(), assumed=("a thing", "ünicode"))
-    motion.save(tmp_path / "walk.npz")
-    assert Motion.load(tmp_path / "walk.npz").assumed == ("a thing", "ünicode")
+    save_motion(motion, tmp_path / "walk.npz")
+    assert load_motion(tmp_path / "walk.npz").assumed == ("a thing", "ünicode")

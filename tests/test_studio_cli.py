@@ -12,6 +12,7 @@ import pytest
 
 from sample_commands import run
 from tarsus import Gait, TarsusError, load_robot, plan_walk, straight_path
+from tarsus.robot.file import save_robot
 from tarsus.studio import player
 from tarsus.studio.player import player_data, player_page
 from tarsus.studio.server.serve import Serving
@@ -75,7 +76,7 @@ def test_a_taken_port_is_told():
 
 
 def test_a_robot_file_is_what_the_studio_begins_with(tmp_path):
-    load_robot("strider").replace(name="mine").save(tmp_path / "mine.toml")
+    save_robot(load_robot("strider").replace(name="mine"), tmp_path / "mine.toml")
     assert run("studio", str(tmp_path / "mine.toml"), "--check").exit_code == 0
 
 

@@ -10,6 +10,7 @@ from tarsus import centre_of_mass, list_robots, load_robot, stability_margin
 from tarsus.control.command import Command
 from tarsus.control.robot_controller import RobotController
 from tarsus.control.safety.interventions import Intervention, InterventionKind
+from tarsus.robot.file import robot_to_dict
 
 DT = 1 / 60
 STOP = {"velocity_mm_s": [0, 0], "turn_deg_s": 0}
@@ -180,7 +181,7 @@ def test_driving_ends_with_another_robot_view_or_state(kind, more):
 
 def test_a_robot_that_can_not_stand_can_not_be_driven():
     asked = Asked()
-    document = load_robot("strider").to_dict()
+    document = robot_to_dict(load_robot("strider"))
     document["gait"]["body_height_mm"] = 400
     asked.all("document", document=document)
     assert asked.error("drive", on=True)["kind"] == "unreachable"

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 from sample_studio import Asked
 from tarsus import load_robot
+from tarsus.robot.file import robot_to_dict
 from tarsus.studio.messages import client as ask
 from tarsus.studio.reading import read
 from tarsus.studio.server.inbox import Inbox
@@ -17,7 +18,7 @@ from tarsus.studio.server.rate import Rate
 from tarsus.studio.session import Session
 from tarsus.studio.state_text import state_of, text_of
 
-STRIDER = load_robot("strider").to_dict()
+STRIDER = robot_to_dict(load_robot("strider"))
 
 wild_numbers = st.one_of(
     st.floats(allow_nan=True, allow_infinity=True),

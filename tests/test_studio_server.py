@@ -16,6 +16,7 @@ from websockets.exceptions import ConnectionClosed, InvalidStatus
 from websockets.sync.client import connect
 
 from tarsus import InputError, load_robot
+from tarsus.robot.file import robot_to_dict
 from tarsus.studio.messages import CLOSED, SOCKET
 from tarsus.studio.messages.state import RobotChoice, StudioState
 from tarsus.studio.server.guard import HEADERS
@@ -395,7 +396,7 @@ def test_a_public_server_tells_so_and_any_host_name_will_do(pages):
 
 def test_a_session_begins_with_the_robot_of_the_command_line():
     robot = load_robot("strider").replace(name="mine")
-    start = StudioState(robot=RobotChoice(preset=None, document=robot.to_dict()))
+    start = StudioState(robot=RobotChoice(preset=None, document=robot_to_dict(robot)))
     with served(start=start) as server, Visit(server) as visit:
         assert visit.ask("hello")[1]["name"] == "mine"
 

@@ -33,8 +33,9 @@ from tarsus import (
     twist_path,
 )
 from tarsus.gait.path import curved_path
+from tarsus.gait.storage import motion_to_csv
 from tarsus.report.walk_summary import walk_summary
-from tarsus.robot.file import robot_from_text
+from tarsus.robot.file import robot_from_text, robot_to_dict, save_robot
 from tarsus.studio.messages.state import RobotChoice, StudioState
 from tarsus.studio.session import Session
 from tarsus.studio.state_text import state_of
@@ -68,7 +69,7 @@ def test_the_robot_is_told_so_that_forward_kinematics_can_be_done_with_it(name):
     told = asked("robot", "robot", preset=name)
     robot = load_robot(name)
     assert told["name"] == name == told["preset"]
-    assert told["document"] == robot.to_dict()
+    assert told["document"] == robot_to_dict(robot)
     angles = np.random.default_rng(1).uniform(-1, 1, (robot.legs, 3))
     assert by_the_formula(told, angles) == pytest.approx(forward_kinematics(robot, angles) * 1000, abs=0.03)
     assert table(told["limits_deg"], 3, 2) == pytest.approx(np.degrees(robot.limits), abs=DEG)
@@ -381,7 +382,7 @@ def test_servos_are_those_of_size_servos(ask):
 
 def test_a_document_changes_the_robot_and_keeps_the_pose(ask):
     ask.all("joints", joints={"angles_deg": [0, 30, -100] * 6})
-    document = STRIDER.to_dict()
+    document = robot_to_dict(STRIDER)
     document["leg"]["femur_mm"] = 110
     robot, state, *_ = ask.all("document", document=document)
     assert robot["femur_mm"] == [110.0] * 6
@@ -392,7 +393,7 @@ def test_a_document_changes_the_robot_and_keeps_the_pose(ask):
 
 
 def test_what_is_wrong_in_a_document_is_told_by_its_key(ask):
-    document = STRIDER.to_dict()
+    document = robot_to_dict(STRIDER)
     document["leg"]["femur_mm"] = -3
     document["legs"][2]["yaw"] = 3
     error = ask.error("document", document=document)
@@ -404,13 +405,13 @@ def test_what_is_wrong_in_a_document_is_told_by_its_key(ask):
         {"name": f"leg {i}", "position_mm": [300 * math.cos(t), 300 * math.sin(t), 0], "yaw_deg": 0}
         for i, t in enumerate(turns)
     ]
-    many = {**STRIDER.to_dict(), "legs": legs}
+    many = {**robot_to_dict(STRIDER), "legs": legs}
     assert "has 13 legs; the studio takes at most 12" in ask.error("document", document=many)["text"]
 
 
 def test_a_document_too_large_is_refused(ask):
     sources = [{"of": ["gait"], "source": "x" * 1000, "confidence": "guess"}] * 70
-    error = ask.error("document", document={**STRIDER.to_dict(), "sources": sources})
+    error = ask.error("document", document={**robot_to_dict(STRIDER), "sources": sources})
     assert "at most 65536" in error["text"]
 
 
@@ -426,7 +427,7 @@ def test_toml_in_and_out(ask):
 
 
 def test_a_robot_that_cannot_stand_is_shown_all_the_same(ask):
-    document = STRIDER.to_dict()
+    document = robot_to_dict(STRIDER)
     document["gait"]["body_height_mm"] = 500
     answers = ask.all("document", document=document)
     assert [answer["type"] for answer in answers] == ["robot", "state", "error", "pose", "done"]
@@ -437,7 +438,7 @@ def test_a_robot_that_cannot_stand_is_shown_all_the_same(ask):
 
 
 def test_a_preset_of_another_number_of_legs_begins_anew(ask):
-    document = STRIDER.to_dict()
+    document = robot_to_dict(STRIDER)
     document["legs"] = document["legs"][:5]
     ask.all("joints", joints={"angles_deg": [0, 30, -100] * 6})
     ask.all("drag_foot", leg=5, position_mm=[100, -200, 0])
@@ -452,7 +453,7 @@ def test_a_preset_of_another_number_of_legs_begins_anew(ask):
 
 
 def test_presets_are_names_and_never_files(ask, tmp_path):
-    STRIDER.save(tmp_path / "mine.toml")
+    save_robot(STRIDER, tmp_path / "mine.toml")
     assert ask.error("robot", preset=str(tmp_path / "mine.toml"))["kind"] == "unknown_name"
     assert "Did you mean 'phantomx'" in ask.error("robot", preset="phantom")["text"]
 
@@ -531,7 +532,7 @@ def test_a_damaged_link_is_told_and_the_studio_opens_all_the_same():
 
 def test_downloads_are_what_the_api_writes(ask, tmp_path):
     motion = plan_walk(STRIDER, Gait.named("tripod"), straight_path(0.5))
-    motion.to_csv(tmp_path / "walk.csv")
+    motion_to_csv(motion, tmp_path / "walk.csv")
     file = ask("download", "file", what="csv")
     assert (file["name"], file["mime"]) == ("strider-walk.csv", "text/csv")
     assert file["text"].encode() == (tmp_path / "walk.csv").read_bytes()
@@ -544,7 +545,7 @@ def test_downloads_are_what_the_api_writes(ask, tmp_path):
 
 
 def test_a_robot_of_ones_own_is_there_from_the_start():
-    document = STRIDER.replace(name="mine").to_dict()
+    document = robot_to_dict(STRIDER.replace(name="mine"))
     asked = Asked(Session(StudioState(robot=RobotChoice(preset=None, document=document))))
     robot = asked("hello", "robot")
     assert robot["name"] == "mine"
@@ -553,7 +554,7 @@ def test_a_robot_of_ones_own_is_there_from_the_start():
 
 
 def test_what_is_of_another_leg_is_left_out(ask):
-    document = STRIDER.to_dict()
+    document = robot_to_dict(STRIDER)
     document["legs"] = document["legs"][:5]
     ask.all("view", view="body", picture={**PICTURE, "leg": 5})
     assert ask("document", "state", document=document)["state"]["picture"]["leg"] is None

@@ -15,6 +15,7 @@ from hypothesis import strategies as st
 from sample_studio import Asked
 from tarsus import inverse_kinematics, list_robots, load_robot
 from tarsus.load.handbook.method import handbook
+from tarsus.robot.file import robot_to_dict
 from tarsus.studio.messages.state import BodyState
 from tarsus.studio.poses import standing
 from tarsus.studio.sources.document import Step
@@ -64,7 +65,7 @@ def test_what_a_document_does_not_know_of_is_told():
     robot = load_robot("strider")
     offset = robot.replace(femur_axis_offset=np.tile([0.02, 0.0], (6, 1)), name="offset")
     asked = Asked()
-    asked.all("document", document=offset.to_dict())
+    asked.all("document", document=robot_to_dict(offset))
     told = asked("source", "source", source={"number": "000", "leg": 0})
     assert "20.0 mm beside its coxa axis" in told["about"]
     assert any(equation["note"] and equation["note"].startswith("Tarsus has coxa") for equation in told["equations"])

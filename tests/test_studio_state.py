@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, invariant, precondition, rule
 
 from tarsus import InputError, list_robots, load_robot
+from tarsus.robot.file import robot_to_dict
 from tarsus.studio.history import History
 from tarsus.studio.messages.state import (
     BodyState,
@@ -31,7 +32,7 @@ states = st.builds(
     StudioState,
     view=st.sampled_from(["joints", "body", "walk", "drive", "loads", "robot", "sources"]),
     robot=st.sampled_from([RobotChoice(preset=name) for name in list_robots()])
-    | st.just(RobotChoice(preset=None, document=load_robot("strider").to_dict())),
+    | st.just(RobotChoice(preset=None, document=robot_to_dict(load_robot("strider")))),
     joints=st.builds(JointsState, angles_deg=st.none() | st.tuples(*[numbers] * 18)),
     body=st.builds(BodyState, x_mm=numbers, yaw_deg=numbers, knee=st.sampled_from(["up", "down"])),
     walk=st.builds(
@@ -64,7 +65,7 @@ def test_a_plain_state_is_short():
     assert len(text_of(StudioState())) < 12
     posed = StudioState(view="joints", joints=JointsState(angles_deg=(0.0, 36.137594, -123.231111) * 6))
     assert len(text_of(posed)) < 150
-    own = StudioState(robot=RobotChoice(preset=None, document=load_robot("phantomx").to_dict()))
+    own = StudioState(robot=RobotChoice(preset=None, document=robot_to_dict(load_robot("phantomx"))))
     assert len(text_of(own)) < 2500
 
 

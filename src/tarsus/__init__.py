@@ -45,6 +45,7 @@ if TYPE_CHECKING:
     from tarsus.gait.motion import Motion
     from tarsus.gait.path import BodyPath, curved_path, straight_path, twist_path
     from tarsus.gait.plan import plan_walk
+    from tarsus.gait.storage import load_motion, motion_to_csv, motion_to_dataset, save_motion
     from tarsus.gait.stroke import max_stroke
     from tarsus.kinematics.body import coxa_frames, reachable_share
     from tarsus.kinematics.inverse import inverse_kinematics
@@ -75,9 +76,17 @@ if TYPE_CHECKING:
     from tarsus.report.skeleton import plot_robot
     from tarsus.report.timeline import plot_timeline
     from tarsus.robot.catalogue import list_servos, load_servo
-    from tarsus.robot.file import list_robots, load_robot, robot_schema
+    from tarsus.robot.file import list_robots, load_robot, robot_from_dict, robot_to_dict, save_robot
     from tarsus.robot.robot import JOINTS, GaitDefaults, Robot, Source, stack_robots
+    from tarsus.robot.schema import robot_schema
     from tarsus.robot.servo import Servo
+    from tarsus.scenario.file import (
+        load_scenario,
+        save_scenario,
+        scenario_from_dict,
+        scenario_from_text,
+        scenario_to_dict,
+    )
     from tarsus.scenario.runner import run_scenario
     from tarsus.scenario.scenario import Scenario
 
@@ -117,6 +126,7 @@ _HOMES = {
     "tarsus.gait.motion": ("Motion",),
     "tarsus.gait.path": ("BodyPath", "curved_path", "straight_path", "twist_path"),
     "tarsus.gait.plan": ("plan_walk",),
+    "tarsus.gait.storage": ("load_motion", "motion_to_csv", "motion_to_dataset", "save_motion"),
     "tarsus.gait.stroke": ("max_stroke",),
     "tarsus.kinematics.body": ("coxa_frames", "reachable_share"),
     "tarsus.kinematics.inverse": ("inverse_kinematics",),
@@ -147,9 +157,13 @@ _HOMES = {
     "tarsus.report.skeleton": ("plot_robot",),
     "tarsus.report.timeline": ("plot_timeline",),
     "tarsus.robot.catalogue": ("list_servos", "load_servo"),
-    "tarsus.robot.file": ("list_robots", "load_robot", "robot_schema"),
+    "tarsus.robot.file": ("list_robots", "load_robot", "robot_from_dict", "robot_to_dict", "save_robot"),
     "tarsus.robot.robot": ("JOINTS", "GaitDefaults", "Robot", "Source", "stack_robots"),
+    "tarsus.robot.schema": ("robot_schema",),
     "tarsus.robot.servo": ("Servo",),
+    "tarsus.scenario.file": (
+        *("load_scenario", "save_scenario", "scenario_from_dict", "scenario_from_text", "scenario_to_dict"),
+    ),
 }
 _HOME_OF = {name: module for module, names in _HOMES.items() for name in names}
 
@@ -227,9 +241,13 @@ __all__ = [
     "leg_jacobian",
     "list_robots",
     "list_servos",
+    "load_motion",
     "load_robot",
+    "load_scenario",
     "load_servo",
     "max_stroke",
+    "motion_to_csv",
+    "motion_to_dataset",
     "motion_torques",
     "plan_walk",
     "plot_angles",
@@ -241,9 +259,17 @@ __all__ = [
     "reachable_band",
     "reachable_share",
     "resting_pose",
+    "robot_from_dict",
     "robot_schema",
+    "robot_to_dict",
     "run",
     "run_scenario",
+    "save_motion",
+    "save_robot",
+    "save_scenario",
+    "scenario_from_dict",
+    "scenario_from_text",
+    "scenario_to_dict",
     "sit_down",
     "size_servos",
     "stability_margin",

@@ -80,11 +80,11 @@ def _scenario(text: str, rate: float | None) -> Any:
     """Return the scenario of a file, or of a timeline."""
     import dataclasses
 
-    from tarsus.scenario.scenario import Scenario
+    from tarsus.scenario.file import load_scenario, scenario_from_text
 
     # A file name is not expected to begin with "at ".
     is_timeline = text.lstrip().startswith("at ") and not Path(text).is_file()
-    found = Scenario.from_text(text) if is_timeline else Scenario.load(text)
+    found = scenario_from_text(text) if is_timeline else load_scenario(text)
     return found if rate is None else dataclasses.replace(found, rate=rate)
 
 
@@ -113,12 +113,13 @@ def _load_numbers(found: JointLoads | None) -> dict[str, Any] | None:
 
 def _write(recording: Recording, out: Path, *, animation: bool, quiet: bool) -> list[Path]:
     from tarsus.cli.files import write_walk
+    from tarsus.gait.storage import save_motion
     from tarsus.report.style import save_figure
     from tarsus.report.timeline import plot_timeline
 
     log, motion, picture = out / "log.csv", out / "motion.npz", out / "timeline.png"
     recording.to_csv(log)
-    recording.motion.save(motion)
+    save_motion(recording.motion, motion)
     save_figure(plot_timeline(recording), picture)
     with progress_bar(enabled=not quiet) as progress:
         return [log, motion, picture, *write_walk(recording.motion, out, animation=animation, progress=progress)]

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from tarsus.cli.output import Progress
 from tarsus.gait.motion import Motion
+from tarsus.gait.storage import motion_to_csv
 from tarsus.report.angles import plot_angles
 from tarsus.report.animation import animate
 from tarsus.report.footpaths import plot_footpaths
@@ -40,7 +41,7 @@ def write_walk(motion: Motion, folder: Path, *, animation: bool, progress: Progr
     """
     table = folder / "walk.csv"
     progress("table", 0.0)
-    motion.to_csv(table)
+    motion_to_csv(motion, table)
     written = [table]
     for name, plot in _FIGURES.items():
         progress(name, 0.05 * len(written))

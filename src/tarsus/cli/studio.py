@@ -77,11 +77,11 @@ def studio(
 
 
 def _start(robot: str) -> StudioState:
-    from tarsus.robot.file import load_robot
+    from tarsus.robot.file import load_robot, robot_to_dict
     from tarsus.studio.messages.state import StudioState
     from tarsus.studio.robots import choice_of_document, robot_of
 
-    choice = choice_of_document(load_robot(robot).to_dict())
+    choice = choice_of_document(robot_to_dict(load_robot(robot)))
     robot_of(choice)
     return StudioState(robot=choice)
 

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import math
-import os
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -20,9 +19,6 @@ from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.reach import IKSolution, Reach
 from tarsus.kinematics.stability import stability_margin
 from tarsus.robot.robot import JOINTS, Robot
-
-if TYPE_CHECKING:
-    import xarray
 
 __all__ = ["Motion"]
 
@@ -207,61 +203,3 @@ class Motion:
             reach=np.where(np.arange(self.robot.legs) == leg, self.reach[moment], Reach.OK),
         )
         return f"out of reach: at {self.time[moment]:.2f} s {solution.explain()}"
-
-    def to_csv(self, path: str | os.PathLike[str]) -> None:
-        """Write a table: a row for each moment, angles in degrees, lengths in mm.
-
-        Parameters
-        ----------
-        path : path
-            Where to write it.
-
-        Raises
-        ------
-        InputError
-            If it can't be written.
-        """
-        from tarsus.gait.storage import write_csv
-
-        write_csv(self, path)
-
-    def to_dataset(self) -> xarray.Dataset:
-        """Return the motion as a labelled `xarray.Dataset` in SI units (needs the extra ``data``)."""
-        from tarsus.gait.storage import to_dataset
-
-        return to_dataset(self)
-
-    def save(self, path: str | os.PathLike[str]) -> None:
-        """Write the motion, robot and all, to one compressed file (``.npz``).
-
-        Parameters
-        ----------
-        path : path
-            Where to write it.
-
-        Raises
-        ------
-        InputError
-            If it can't be written.
-        """
-        from tarsus.gait.storage import save_motion
-
-        save_motion(self, path)
-
-    @classmethod
-    def load(cls, path: str | os.PathLike[str]) -> Motion:
-        """Read a motion that `save` wrote.
-
-        Parameters
-        ----------
-        path : path
-            Where it is.
-
-        Raises
-        ------
-        InputError
-            If the file is not there, or is not a motion.
-        """
-        from tarsus.gait.storage import load_motion
-
-        return load_motion(path, kind=cls)

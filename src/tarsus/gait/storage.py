@@ -1,4 +1,4 @@
-"""Motions as files: a table for everybody, a labelled data set, and a file that gives the same motion back."""
+"""Motions as files: a CSV table, a labelled data set, and a file that holds the whole motion."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ import numpy as np
 
 from tarsus.errors import InputError, TarsusError
 from tarsus.gait.gait import Gait
+from tarsus.gait.motion import Motion
 from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.reach import Reach
 from tarsus.robot.file import robot_from_text, robot_text
@@ -20,9 +21,7 @@ from tarsus.robot.robot import JOINTS
 if TYPE_CHECKING:
     import xarray
 
-    from tarsus.gait.motion import Motion
-
-__all__ = ["load_motion", "save_motion", "to_dataset", "write_csv"]
+__all__ = ["load_motion", "motion_to_csv", "motion_to_dataset", "save_motion"]
 
 _ARRAYS = ("time", "feet", "contacts", "angles", "reach")
 _NUMBERS = ("cycle_time", "stroke", "speed", "body_height", "swing_height", "foot_distance")
@@ -48,8 +47,21 @@ def csv_columns(motion: Motion) -> dict[str, np.ndarray[Any, Any]]:
     return {name.replace(" ", "_"): column for name, column in table.items()}
 
 
-def write_csv(motion: Motion, path: str | os.PathLike[str]) -> None:
-    """Write a motion's table (see `Motion.to_csv`)."""
+def motion_to_csv(motion: Motion, path: str | os.PathLike[str]) -> None:
+    """Write a motion as a table: a row for each sample, angles in degrees, lengths in mm.
+
+    Parameters
+    ----------
+    motion : Motion
+        The motion.
+    path : path
+        Where to write it.
+
+    Raises
+    ------
+    InputError
+        If it can't be written.
+    """
     table = csv_columns(motion)
     columns = [_formatted(column) for column in table.values()]
     try:
@@ -68,12 +80,23 @@ def _formatted(column: np.ndarray[Any, Any]) -> list[str]:
     return [f"{value + 0.0:.6f}" for value in np.round(column, 6).tolist()]
 
 
-def to_dataset(motion: Motion) -> xarray.Dataset:
-    """Return a motion as a labelled data set (see `Motion.to_dataset`)."""
+def motion_to_dataset(motion: Motion) -> xarray.Dataset:
+    """Return a motion as a labelled `xarray.Dataset` in SI units (needs the extra ``data``).
+
+    Parameters
+    ----------
+    motion : Motion
+        The motion.
+
+    Raises
+    ------
+    InputError
+        If xarray is not installed.
+    """
     try:
         import xarray
     except ImportError:
-        raise InputError("Motion.to_dataset needs xarray: pip install 'tarsus[data]'") from None
+        raise InputError("motion_to_dataset needs xarray: pip install 'tarsus[data]'") from None
     per_leg = ("time", "leg")
     return xarray.Dataset(
         {
@@ -101,7 +124,20 @@ def to_dataset(motion: Motion) -> xarray.Dataset:
 
 
 def save_motion(motion: Motion, path: str | os.PathLike[str]) -> None:
-    """Write a motion to a file (see `Motion.save`)."""
+    """Write a motion and its robot to one compressed file (``.npz``); `load_motion` reads it.
+
+    Parameters
+    ----------
+    motion : Motion
+        The motion.
+    path : path
+        Where to write it.
+
+    Raises
+    ------
+    InputError
+        If it can't be written.
+    """
     about = {
         "format": _FORMAT,
         "robot": robot_text(motion.robot),
@@ -123,8 +159,19 @@ def save_motion(motion: Motion, path: str | os.PathLike[str]) -> None:
         raise InputError(f"{path} can't be written: {error.strerror}") from None
 
 
-def load_motion(path: str | os.PathLike[str], *, kind: type[Motion]) -> Motion:
-    """Read a motion of a kind from a file (see `Motion.load`)."""
+def load_motion(path: str | os.PathLike[str]) -> Motion:
+    """Read a motion that `save_motion` wrote.
+
+    Parameters
+    ----------
+    path : path
+        Where it is.
+
+    Raises
+    ------
+    InputError
+        If the file does not exist, or is not a motion.
+    """
     where = Path(path)
     try:
         with open(where, "rb") as raw, np.load(raw, allow_pickle=False) as file:
@@ -132,7 +179,7 @@ def load_motion(path: str | os.PathLike[str], *, kind: type[Motion]) -> Motion:
             if about["format"] != _FORMAT:
                 raise InputError(f"{where} is of the format {about['format']!r}; this version reads {_FORMAT!r}")
             numbers: dict[str, Any] = {name: float(about[name]) for name in _NUMBERS}
-            return kind(
+            return Motion(
                 robot=robot_from_text(about["robot"], where=f"the robot in {where}"),
                 gait=Gait(**about["gait"]),
                 body=Pose(file["rotation"], file["position"]),

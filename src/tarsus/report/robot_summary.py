@@ -12,6 +12,7 @@ from tarsus.gait.gait import Gait
 from tarsus.gait.stroke import max_stroke
 from tarsus.kinematics.mass import total_mass
 from tarsus.kinematics.stance import default_body_height
+from tarsus.robot.file import robot_to_dict
 from tarsus.robot.robot import JOINTS, Robot, Source
 
 __all__ = ["Check", "check_robot", "dimensions", "robot_summary"]
@@ -58,7 +59,7 @@ def dimensions(robot: Robot) -> list[dict[str, Any]]:
         note of that source; None if the file names no source.
     """
     rows = []
-    for key, source_keys, value in _keys(robot.to_dict()):
+    for key, source_keys, value in _keys(robot_to_dict(robot)):
         source = _source_of(source_keys, robot.sources)
         details = (
             dict.fromkeys(_SOURCE_FIELDS)

@@ -4,24 +4,30 @@ from __future__ import annotations
 
 import os
 import re
+import tomllib
+from collections.abc import Mapping
 from decimal import Decimal
 from functools import cache
 from pathlib import Path
 from typing import Any
 
+from pydantic import ValidationError
+
 from tarsus.errors import RobotFileError, nearest_name
+from tarsus.robot.build import build_robot
 from tarsus.robot.document import decimal_document, plain
+from tarsus.robot.problems import problems_of
 from tarsus.robot.robot import Robot
+from tarsus.robot.schema import RobotFile
 from tarsus.robot.writer import toml_string, toml_text
 
 __all__ = [
-    "document_of",
     "list_robots",
     "load_robot",
-    "robot_from_document",
+    "robot_from_dict",
     "robot_from_text",
-    "robot_schema",
     "robot_text",
+    "robot_to_dict",
     "save_robot",
     "template_text",
 ]
@@ -61,14 +67,21 @@ def _load_preset(name: str) -> Robot:
     return robot_from_text(_read(path), where=name)
 
 
-def robot_from_document(document: dict[str, Any], *, where: str) -> Robot:
-    """Build a robot from the keys of a robot file (see `Robot.from_dict`)."""
-    from pydantic import ValidationError
+def robot_from_dict(document: Mapping[str, Any], *, where: str = "robot") -> Robot:
+    """Build a robot from the keys of a robot file.
 
-    from tarsus.robot.build import build_robot
-    from tarsus.robot.problems import problems_of
-    from tarsus.robot.schema import RobotFile
+    Parameters
+    ----------
+    document : mapping
+        The file's tables and keys, in mm, degrees and kg.
+    where : str
+        Name of the document in messages.
 
+    Raises
+    ------
+    RobotFileError
+        If something in it is wrong; each line of the message names a key, its value and what is allowed.
+    """
     try:
         file = RobotFile.model_validate(document)
     except ValidationError as error:
@@ -76,8 +89,19 @@ def robot_from_document(document: dict[str, Any], *, where: str) -> Robot:
     return build_robot(file, where=where)
 
 
-def document_of(robot: Robot) -> dict[str, Any]:
-    """Return the keys of a robot's file, in mm, degrees and kg (see `Robot.to_dict`)."""
+def robot_to_dict(robot: Robot) -> dict[str, Any]:
+    """Return the keys of a robot file, in mm, degrees and kg; `robot_from_dict` builds the same robot from them.
+
+    Parameters
+    ----------
+    robot : Robot
+        A single robot.
+
+    Raises
+    ------
+    RobotFileError
+        If the robot is a batch of designs.
+    """
     document: dict[str, Any] = plain(decimal_document(robot))
     return document
 
@@ -97,7 +121,7 @@ def robot_text(robot: Robot) -> str:
     """
     document = decimal_document(robot)
     # What can't be loaded is not written: a robot made in Python may have a joint or a name that no file may have.
-    robot_from_document(document, where=f"robot {robot.name!r} as a file")
+    robot_from_dict(document, where=f"robot {robot.name!r} as a file")
     return toml_text(document)
 
 
@@ -116,23 +140,29 @@ def robot_from_text(text: str, *, where: str) -> Robot:
     RobotFileError
         If something in it is wrong.
     """
-    return robot_from_document(_parse(text, where=where), where=where)
+    return robot_from_dict(_parse(text, where=where), where=where)
 
 
 def save_robot(robot: Robot, path: str | os.PathLike[str]) -> None:
-    """Write a robot's file (see `Robot.save`)."""
+    """Write a robot file; `load_robot` reads the same robot back, to the bit.
+
+    Parameters
+    ----------
+    robot : Robot
+        A single robot.
+    path : path
+        Where to write it.
+
+    Raises
+    ------
+    RobotFileError
+        If it can't be written, or the robot is a batch of designs or has a value that no robot file may have.
+    """
     text = robot_text(robot)
     try:
         Path(path).write_bytes(text.encode())
     except (OSError, ValueError) as error:
         raise RobotFileError(str(path), [f"can't be written: {_reason(error)}"]) from None
-
-
-def robot_schema() -> dict[str, Any]:
-    """Return the JSON schema of a robot file, for editors that complete and check TOML."""
-    from tarsus.robot.schema import robot_schema
-
-    return robot_schema()
 
 
 def template_text(name: str) -> str:
@@ -178,12 +208,10 @@ def _no_such_robot(name: str) -> str:
 
 
 def _reason(error: OSError | ValueError) -> str:
-    return (error.strerror or "it is no file") if isinstance(error, OSError) else "this is no path"
+    return (error.strerror or "is not a regular file") if isinstance(error, OSError) else "this is no path"
 
 
 def _parse(text: str, *, where: str) -> dict[str, Any]:
-    import tomllib
-
     try:
         return tomllib.loads(text, parse_float=Decimal)
     except tomllib.TOMLDecodeError as error:

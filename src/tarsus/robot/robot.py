@@ -6,7 +6,6 @@ import dataclasses
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from os import PathLike
 from typing import Any, Self
 
 import numpy as np
@@ -240,49 +239,6 @@ class Robot:
                 array = np.asarray(value)
                 changes[name] = np.broadcast_to(array, (*batch, *array.shape[array.ndim - len(tail) :]))[index]
         return self.replace(**changes)
-
-    @classmethod
-    def from_dict(cls, document: dict[str, Any], *, where: str = "robot") -> Robot:
-        """Build a robot from the keys of a robot file.
-
-        Parameters
-        ----------
-        document : dict
-            The file's tables and keys, in mm, degrees and kg.
-        where : str
-            What to call it in messages.
-
-        Raises
-        ------
-        RobotFileError
-            If something in it is wrong; the message names key, value and what is allowed.
-        """
-        from tarsus.robot.file import robot_from_document
-
-        return robot_from_document(document, where=where)
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return the keys of a robot file, in mm, degrees and kg: what `from_dict` takes."""
-        from tarsus.robot.file import document_of
-
-        return document_of(self)
-
-    def save(self, path: str | PathLike[str]) -> None:
-        """Write the robot file; loading it gives the same robot to the bit.
-
-        Parameters
-        ----------
-        path : path
-            Where to write it.
-
-        Raises
-        ------
-        RobotFileError
-            If it can't be written, or the robot is a batch of designs.
-        """
-        from tarsus.robot.file import save_robot
-
-        save_robot(self, path)
 
 
 def stack_robots(robots: Sequence[Robot]) -> Robot:

@@ -43,6 +43,9 @@ UNITS: Mapping[str, Unit] = MappingProxyType(
         "deg": Unit("deg", {"deg": Decimal(1)}, radians, degrees),
         "deg_s": Unit("deg/s", {"deg/s": Decimal(1)}, radians, degrees),
         "s": Unit("s", {"s": Decimal(1), "ms": Decimal("0.001")}, float, to_decimal),
+        "ms": Unit("ms", {"ms": Decimal(1)}, from_milli, to_milli),
+        "hz": Unit("Hz", {"Hz": Decimal(1)}, float, to_decimal),
+        "": Unit("", {}, int, Decimal),
         "n": Unit("N", {"N": Decimal(1)}, float, to_decimal),
         "kg": Unit("kg", {"kg": Decimal(1)}, float, to_decimal),
         "ns_m": Unit("N s/m", {"N s/m": Decimal(1)}, float, to_decimal),
@@ -83,7 +86,7 @@ class Quantity:
     @property
     def key(self) -> str:
         """Its key in a file, such as ``vx_mm_s``."""
-        return f"{self.name}_{self.unit}"
+        return f"{self.name}_{self.unit}" if self.unit else self.name
 
     @property
     def shown(self) -> str:
@@ -141,4 +144,5 @@ def require_quantity(what: str, value: object, wanted: Quantity) -> None:
     number = UNITS[wanted.unit].from_si(float(value))
     low, high, shown = wanted.low, wanted.high, wanted.shown
     if not to_decimal(low) <= number <= to_decimal(high):
-        raise InputError(f"{what} is {float(number):g} {shown}; it must be from {low:g} to {high:g} {shown}")
+        unit = f" {shown}" if shown else ""
+        raise InputError(f"{what} is {float(number):g}{unit}; it must be from {low:g} to {high:g}{unit}")

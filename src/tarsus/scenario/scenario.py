@@ -2,26 +2,17 @@
 
 from __future__ import annotations
 
-import math
-import os
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Any, Self
 
 from tarsus.control.pose.admittance import Admittance
 from tarsus.errors import InputError, UnknownNameError
 from tarsus.scenario.quantities import require_quantity
-from tarsus.scenario.settings import ADMITTANCE
-from tarsus.scenario.timed_command import GAIT_NAMES, LATEST, TimedCommand
+from tarsus.scenario.settings import ADMITTANCE, LEVELLINGS, NUMBERS, STARTS
+from tarsus.scenario.timed_command import GAIT_NAMES, TimedCommand
 from tarsus.scenario.wording import command_text, time_text
 
-__all__ = ["LEVELLINGS", "LONGEST_TICK", "STARTS", "Scenario"]
-
-STARTS = ("standing", "sitting", "folded")
-"""How the robot may be found."""
-
-LEVELLINGS = ("level", "follow")
-"""What the body may do on ground that is not level."""
+__all__ = ["LONGEST_TICK", "Scenario"]
 
 LONGEST_TICK = 0.05
 """The longest tick [s]: of a longer one the walker walks no more than this."""
@@ -106,10 +97,10 @@ class Scenario:
             require_quantity(f"a scenario's admittance: {each.name}", getattr(admittance, each.name), each)
 
     def _check_numbers(self) -> None:
-        for name, low, high, unit in _BOUNDS:
-            value = getattr(self, name)
-            if value is not None and not (math.isfinite(value) and low <= value <= high):
-                raise InputError(f"a scenario's {name} is {value:g}{unit}; it must be from {low:g} to {high:g}{unit}")
+        for each in NUMBERS:
+            value = getattr(self, each.name)
+            if value is not None:
+                require_quantity(f"a scenario's {each.name}", value, each)
         tick = 1 / self.rate
         if self.jitter >= tick:
             raise InputError(f"jitter is {self.jitter:g} s; it must be less than a tick, {tick:g} s")
@@ -137,92 +128,3 @@ class Scenario:
                 lines.append(f"at {time_text(command.at)}: {text}")
             last = command.at
         return "\n".join(lines)
-
-    @classmethod
-    def from_text(cls, timeline: str, **settings: Any) -> Self:
-        """Build a scenario from a timeline in the short text form.
-
-        Parameters
-        ----------
-        timeline : str
-            Such as ``"at 2 s: walk 0.1 m/s; at 5 s: gait wave"``.
-        **settings
-            Attributes but `commands`.
-
-        Raises
-        ------
-        InputError
-            If something in it is wrong; a line of the message for each.
-        """
-        from tarsus.scenario.file import commands_of_text
-
-        return cls(commands_of_text(timeline), **settings)
-
-    @classmethod
-    def from_dict(cls, document: Mapping[str, Any]) -> Self:
-        """Build a scenario from the keys of a scenario file.
-
-        Parameters
-        ----------
-        document : mapping
-            The keys, in mm, degrees and seconds.
-
-        Raises
-        ------
-        InputError
-            If something in it is wrong; a line of the message for each.
-        """
-        from tarsus.scenario.file import scenario_of
-
-        return cls(**scenario_of(dict(document), where="the scenario"))
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return the keys of the scenario's file, in mm, degrees and seconds."""
-        from tarsus.scenario.file import document_of
-
-        return document_of(self)
-
-    @classmethod
-    def load(cls, path: str | os.PathLike[str]) -> Self:
-        """Read a scenario file (TOML).
-
-        Parameters
-        ----------
-        path : path
-            Where it is.
-
-        Raises
-        ------
-        InputError
-            If it can't be read, or something in it is wrong; a line of the message for each.
-        """
-        from tarsus.scenario.file import read_scenario
-
-        return cls(**read_scenario(path))
-
-    def save(self, path: str | os.PathLike[str]) -> None:
-        """Write the scenario's file (TOML); `load` gives the same scenario back, to the bit.
-
-        Parameters
-        ----------
-        path : path
-            Where to write it.
-
-        Raises
-        ------
-        InputError
-            If it can't be written.
-        """
-        from tarsus.scenario.file import write_scenario
-
-        write_scenario(self, path)
-
-
-_BOUNDS = (
-    ("rate", 20.0, 1000.0, " Hz"),
-    ("jitter", 0.0, 0.025, " s"),
-    ("seed", 0, 2**53, ""),
-    ("duration", 0.1, LATEST, " s"),
-    ("body_height", 1e-6, 1.0, " m"),
-    ("swing_height", 0.0, 1.0, " m"),
-)

@@ -13,15 +13,11 @@ from tarsus.robot.fields import Choice, Number, Numbers, Text, refuse
 from tarsus.scenario.commands import COMMANDS, MoveBody, Sway, Tilt, Walk
 from tarsus.scenario.leg_tables import LEG_TABLES, LegTable
 from tarsus.scenario.quantities import Quantity
-from tarsus.scenario.scenario import LEVELLINGS, STARTS
-from tarsus.scenario.settings import ADMITTANCE
+from tarsus.scenario.settings import ADMITTANCE, LEVELLINGS, NUMBERS, STARTS
 from tarsus.scenario.timed_command import GAIT_NAMES, LATEST, TimedCommand, quantities
 from tarsus.scenario.wording import Value, takes
 
-__all__ = ["RATES", "SCALARS", "TABLES", "WORDS", "At", "GivingWay", "ScenarioFile"]
-
-RATES = (20.0, 1000.0)
-"""The least and the greatest rate [1/s]."""
+__all__ = ["SCALARS", "TABLES", "WORDS", "At", "GivingWay", "ScenarioFile"]
 
 TABLES: tuple[type[TimedCommand], ...] = (Walk, MoveBody, Sway, Tilt)
 """Commands that are a table of numbers under their word."""
@@ -127,30 +123,26 @@ GivingWay = cast("type[Table]", create_model("GivingWay", __base__=Table, __doc_
 """How feet give way to the forces on them."""
 
 
-class ScenarioFile(Table):
-    """A scenario."""
+_SETTINGS: dict[str, Any] = {
+    "name": (Annotated[str, Text(empty=True)], Field(default="", description="Name.")),
+    "robot": (
+        Annotated[str | None, Text()],
+        Field(default=None, description="Name of a robot, or path of a robot file."),
+    ),
+    "start": (Annotated[str | None, Choice(STARTS)], Field(default=None, description="Initial state of the robot.")),
+    "gait": (Annotated[str | None, Choice(GAIT_NAMES)], Field(default=None, description="Gait at the start.")),
+    **{each.key: _number(each) for each in NUMBERS},
+    "levelling": (
+        Annotated[str | None, Choice(LEVELLINGS)],
+        Field(default=None, description="Body attitude on ground that is not level: level, or parallel to it."),
+    ),
+    "admittance": (
+        GivingWay | None,
+        Field(default=None, description="Compliance of the feet; left out, the feet are rigid."),
+    ),
+    "timeline": (Annotated[str | None, _Lines()], Field(default=None, description="Commands as text.")),
+    "at": (list[At], Field(default=[], description="Commands as tables.")),  # type: ignore[valid-type]
+}
 
-    name: Annotated[str, Text(empty=True)] = Field(default="", description="What it is called.")
-    robot: Annotated[str, Text()] | None = Field(default=None, description="A robot's name, or the path of its file.")
-    rate_hz: Annotated[Decimal, Number(*RATES, "Hz")] | None = Field(default=None, description="Ticks per second.")
-    jitter_ms: Annotated[Decimal, Number(0, 25, "ms")] | None = Field(
-        default=None, description="By how much a tick may be longer or shorter, at random [ms]."
-    )
-    seed: Annotated[Decimal, Number(0, 2**53, "")] | None = Field(default=None, description="Of what is random.")
-    start: Annotated[str, Choice(STARTS)] | None = Field(default=None, description="How the robot is found.")
-    duration_s: Annotated[Decimal, Number(0.1, LATEST, "s")] | None = Field(default=None, description="How long [s].")
-    gait: Annotated[str, Choice(GAIT_NAMES)] | None = Field(default=None, description="The gait it starts with.")
-    body_height_mm: Annotated[Decimal, Number(0.001, 1000, "mm")] | None = Field(
-        default=None, description="Height of the body's origin at the start [mm]."
-    )
-    swing_height_mm: Annotated[Decimal, Number(0, 1000, "mm")] | None = Field(
-        default=None, description="Lift of swinging feet at the start [mm]."
-    )
-    levelling: Annotated[str, Choice(LEVELLINGS)] | None = Field(
-        default=None, description="Whether the body stays level on ground that is not, or follows it."
-    )
-    admittance: GivingWay | None = Field(  # type: ignore[valid-type]
-        default=None, description="How feet give way to the forces on them; without it they don't."
-    )
-    timeline: Annotated[str, _Lines()] | None = Field(default=None, description="Commands as text.")
-    at: list[At] = Field(default=[], description="Commands as tables.")  # type: ignore[valid-type]
+ScenarioFile = cast("type[Table]", create_model("ScenarioFile", __base__=Table, __doc__="A scenario.", **_SETTINGS))
+"""A scenario file."""

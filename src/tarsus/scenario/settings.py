@@ -1,4 +1,4 @@
-"""What a scenario sets before it begins: the keys in its file, and the way from there to SI and back."""
+"""Settings of a scenario: their keys, units and bounds, and their conversion from the file to SI and back."""
 
 from __future__ import annotations
 
@@ -8,19 +8,35 @@ from types import MappingProxyType
 from typing import Any, NamedTuple
 
 from tarsus.control.pose.admittance import Admittance
-from tarsus.robot.units import from_milli, to_decimal, to_milli
 from tarsus.scenario.quantities import UNITS, Quantity
+from tarsus.scenario.timed_command import LATEST
 
-__all__ = ["ADMITTANCE", "SETTINGS", "Setting", "settings_of"]
+__all__ = ["ADMITTANCE", "LEVELLINGS", "NUMBERS", "SETTINGS", "STARTS", "Setting", "settings_of"]
 
-# Within these bounds no admittance is too fast to be one.
+STARTS = ("standing", "sitting", "folded")
+"""Initial states of the robot."""
+
+LEVELLINGS = ("level", "follow")
+"""Body attitudes on ground that is not level: level, or parallel to the ground."""
+
+NUMBERS = (
+    Quantity("rate", "hz", 20, 1000, "control rate"),
+    Quantity("jitter", "ms", 0, 25, "largest random deviation of a tick's duration"),
+    Quantity("seed", "", 0, 2**53, "seed of the random numbers"),
+    Quantity("duration", "s", 0.1, LATEST, "duration"),
+    Quantity("body_height", "mm", 0.001, 1000, "height of the body's origin above the ground at the start"),
+    Quantity("swing_height", "mm", 0, 1000, "swing height at the start"),
+)
+"""Settings that are one number."""
+
+# Within these bounds the admittance's time constants are slower than the control loop.
 ADMITTANCE = (
     Quantity("mass", "kg", 0.1, 1000, "virtual mass of a foot", needed=True),
-    Quantity("damping", "ns_m", 0.001, 100_000, "its virtual damper", needed=True),
-    Quantity("stiffness", "n_m", 0.1, 1_000_000, "its virtual spring", needed=True),
-    Quantity("travel", "mm", 0.1, 100, "how far it gives way at the most"),
+    Quantity("damping", "ns_m", 0.001, 100_000, "virtual damping of a foot", needed=True),
+    Quantity("stiffness", "n_m", 0.1, 1_000_000, "virtual stiffness of a foot", needed=True),
+    Quantity("travel", "mm", 0.1, 100, "largest displacement of a foot"),
 )
-"""The numbers of how feet give way."""
+"""Parameters of the admittance."""
 
 
 def _admittance(table: Any) -> Admittance:
@@ -33,14 +49,14 @@ def _admittance_keys(admittance: Admittance) -> dict[str, Decimal]:
 
 
 class Setting(NamedTuple):
-    """How a setting is written.
+    """How a setting is stored in a file.
 
     Attributes
     ----------
     key : str
-        Its key.
+        Key in the file.
     read, write : callable
-        The way from its value in the file to SI, and back.
+        Conversion from the value in the file to SI, and back.
     """
 
     key: str
@@ -48,23 +64,18 @@ class Setting(NamedTuple):
     write: Callable[[Any], Any]
 
 
+def _numeric(each: Quantity) -> Setting:
+    return Setting(each.key, UNITS[each.unit].to_si, UNITS[each.unit].from_si)
+
+
 SETTINGS: Mapping[str, Setting] = MappingProxyType(
     {
-        "name": Setting("name", str, str),
-        "robot": Setting("robot", str, str),
-        "rate": Setting("rate_hz", float, to_decimal),
-        "jitter": Setting("jitter_ms", from_milli, to_milli),
-        "seed": Setting("seed", int, Decimal),
-        "start": Setting("start", str, str),
-        "duration": Setting("duration_s", float, to_decimal),
-        "gait": Setting("gait", str, str),
-        "body_height": Setting("body_height_mm", from_milli, to_milli),
-        "swing_height": Setting("swing_height_mm", from_milli, to_milli),
-        "levelling": Setting("levelling", str, str),
+        **{name: Setting(name, str, str) for name in ("name", "robot", "start", "gait", "levelling")},
+        **{each.name: _numeric(each) for each in NUMBERS},
         "admittance": Setting("admittance", _admittance, _admittance_keys),
     }
 )
-"""Every attribute of a scenario but its commands."""
+"""All attributes of a scenario except its commands."""
 
 
 def settings_of(file: Any) -> dict[str, Any]:

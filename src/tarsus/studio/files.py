@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from tarsus.gait.motion import Motion
+from tarsus.gait.storage import motion_to_csv
 from tarsus.robot.file import robot_text
 from tarsus.robot.robot import JOINTS, Robot
 from tarsus.studio.messages.plain import FileMessage
@@ -52,7 +53,7 @@ def file_name(robot: Robot, what: str, ending: str) -> str:
 
 
 def walk_csv(motion: Motion) -> str:
-    """Return a walk's table: what `Motion.to_csv` writes.
+    """Return a walk's table: what `motion_to_csv` writes.
 
     Parameters
     ----------
@@ -61,7 +62,7 @@ def walk_csv(motion: Motion) -> str:
     """
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "walk.csv"
-        motion.to_csv(path)
+        motion_to_csv(motion, path)
         return path.read_bytes().decode()
 
 

@@ -15,7 +15,7 @@ from tarsus.kinematics.mass import total_mass
 from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.stance import default_body_height, default_stance
 from tarsus.report.robot_summary import check_robot, dimensions
-from tarsus.robot.file import list_robots, load_robot, robot_from_text
+from tarsus.robot.file import list_robots, load_robot, robot_from_dict, robot_from_text, robot_to_dict
 from tarsus.robot.robot import Robot
 from tarsus.studio.messages.state import RobotChoice
 from tarsus.studio.messages.still import Dimension, RobotMessage
@@ -72,7 +72,7 @@ def choice_of_text(text: str, *, where: str) -> RobotChoice:
     RobotFileError
         If something in it is wrong.
     """
-    return choice_of_document(robot_from_text(text, where=where).to_dict())
+    return choice_of_document(robot_to_dict(robot_from_text(text, where=where)))
 
 
 def choice_of_document(document: dict[str, Any]) -> RobotChoice:
@@ -84,7 +84,7 @@ def choice_of_document(document: dict[str, Any]) -> RobotChoice:
         Keys of a robot file; checked only by `robot_of`.
     """
     name = document.get("name")
-    if isinstance(name, str) and name in list_robots() and load_robot(name).to_dict() == document:
+    if isinstance(name, str) and name in list_robots() and robot_to_dict(load_robot(name)) == document:
         return RobotChoice(preset=name)
     return RobotChoice(preset=None, document=document)
 
@@ -108,7 +108,7 @@ def robot_of(choice: RobotChoice) -> Robot:
         size = len(json.dumps(choice.document))
         if size > _LARGEST:
             raise InputError(f"the robot's document has {size} characters as JSON; the studio keeps at most {_LARGEST}")
-        robot = Robot.from_dict(choice.document, where="the robot")
+        robot = robot_from_dict(choice.document, where="the robot")
     elif choice.preset is not None:
         robot = load_robot(str(choice_of_preset(choice.preset).preset))
     else:
@@ -193,7 +193,7 @@ def robot_message(robot: Robot, choice: RobotChoice, *, id: int) -> RobotMessage
         stance_mm=None if stance is None else millimetres(stance[0]),
         stance_angles_deg=None if stance is None else degrees(stance[1]),
         longest_stroke_mm=check["longest_stroke_mm"],
-        document=robot.to_dict(),
+        document=robot_to_dict(robot),
         dimensions=[_dimension(row) for row in dimensions(robot)],
         missing=check["missing"],
         problems=check["problems"],

@@ -9,7 +9,8 @@ from tarsus import __version__
 from tarsus.errors import TarsusError
 from tarsus.gait.gait import GAITS
 from tarsus.robot.catalogue import list_servos
-from tarsus.robot.file import list_robots, robot_schema
+from tarsus.robot.file import list_robots
+from tarsus.robot.schema import robot_schema
 from tarsus.studio.driving import Driver
 from tarsus.studio.failure import error_message
 from tarsus.studio.history import History

@@ -19,7 +19,7 @@ __all__ = ["schema"]
 @click.option("--json", "as_json", is_flag=True, help="No effect: the schema is JSON.")
 def schema(as_json: bool) -> int:  # noqa: ARG001 - every command takes --json
     """Print the JSON schema of robot files, for editors with TOML completion and validation."""
-    from tarsus.robot.file import robot_schema
+    from tarsus.robot.schema import robot_schema
 
     # Identical to the bundled file.
     click.echo(json.dumps(robot_schema(), indent=2))
