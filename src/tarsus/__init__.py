@@ -53,8 +53,9 @@ if TYPE_CHECKING:
     from tarsus.kinematics.mass import centre_of_mass, total_mass
     from tarsus.kinematics.polygon import support_polygon
     from tarsus.kinematics.pose import Pose
-    from tarsus.kinematics.reach import IKSolution, Reach
+    from tarsus.kinematics.reach import Reach
     from tarsus.kinematics.rest import RestingPose, resting_pose
+    from tarsus.kinematics.solution import IKSolution
     from tarsus.kinematics.stability import stability_margin
     from tarsus.kinematics.stance import default_body_height, default_stance, reachable_band
     from tarsus.load.contact import ContactForces, contact_forces
@@ -134,7 +135,8 @@ _HOMES = {
     "tarsus.kinematics.mass": ("centre_of_mass", "total_mass"),
     "tarsus.kinematics.polygon": ("support_polygon",),
     "tarsus.kinematics.pose": ("Pose",),
-    "tarsus.kinematics.reach": ("IKSolution", "Reach"),
+    "tarsus.kinematics.reach": ("Reach",),
+    "tarsus.kinematics.solution": ("IKSolution",),
     "tarsus.kinematics.rest": ("RestingPose", "resting_pose"),
     "tarsus.kinematics.stability": ("stability_margin",),
     "tarsus.kinematics.stance": ("default_body_height", "default_stance", "reachable_band"),

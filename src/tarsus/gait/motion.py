@@ -16,7 +16,8 @@ from tarsus.gait.gait import Gait
 from tarsus.gait.spacing import feet_distance
 from tarsus.kinematics.leg import forward_kinematics
 from tarsus.kinematics.pose import Pose
-from tarsus.kinematics.reach import IKSolution, Reach
+from tarsus.kinematics.reach import Reach
+from tarsus.kinematics.solution import IKSolution
 from tarsus.kinematics.stability import stability_margin
 from tarsus.robot.robot import JOINTS, Robot
 

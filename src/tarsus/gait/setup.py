@@ -15,7 +15,7 @@ from tarsus.gait.cycle import tilted_body
 from tarsus.gait.gait import Gait
 from tarsus.gait.spacing import default_foot_distance
 from tarsus.kinematics.inverse import inverse_kinematics
-from tarsus.kinematics.reach import IKSolution
+from tarsus.kinematics.solution import IKSolution
 from tarsus.kinematics.stance import default_body_height, default_stance
 from tarsus.robot.robot import Robot
 

@@ -16,7 +16,7 @@ from tarsus.gait.gait import Gait
 from tarsus.gait.path import BodyPath
 from tarsus.gait.setup import Setup
 from tarsus.gait.spacing import passing_distance
-from tarsus.kinematics.reach import IKSolution
+from tarsus.kinematics.solution import IKSolution
 from tarsus.robot.robot import Robot
 
 __all__ = ["longest_stroke", "max_stroke", "steady_solution", "stroke_verdict", "unit_twist"]

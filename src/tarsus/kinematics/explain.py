@@ -1,26 +1,24 @@
-"""In words and numbers: why a leg can't have its foot where it should be, and what it could do instead."""
+"""Explains why a leg can't reach its foot, by how much, and which foot or body height works."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Self
+from typing import Any, Literal, Self
 
 import numpy as np
 
-from tarsus.kinematics.inverse import inverse_kinematics
+from tarsus.arrays import Array
+from tarsus.kinematics.batch_solver import solve_legs
 from tarsus.kinematics.leg import forward_kinematics
 from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.reach import Reach
 from tarsus.kinematics.triangle import solve_triangle, to_leg_frame
 from tarsus.robot.robot import JOINTS, Robot
 
-if TYPE_CHECKING:
-    from tarsus.kinematics.reach import IKSolution
-
 __all__ = ["explain_leg"]
 
-_STEP = 1e-4  # metres: the steps in which raised bodies are told
+_STEP = 1e-4  # resolution of the body height that works [m]
 _TRIES = 64
 _OF_LEGS = (
     *("mount_position", "mount_yaw", "coxa", "femur", "tibia", "femur_axis_offset"),
@@ -28,49 +26,69 @@ _OF_LEGS = (
 )
 
 
-def explain_leg(solution: IKSolution, index: tuple[int, ...]) -> str:
-    """Return a line on one leg that fails.
+def explain_leg(
+    robot: Robot,
+    feet: Array,
+    body: Pose | None,
+    knee: Literal["up", "down"],
+    angles: Array,
+    reach: Array,
+    *,
+    index: tuple[int, ...],
+) -> str:
+    """Return a line on one leg that fails: which, why, by how much, and the nearest that works.
 
     Parameters
     ----------
-    solution : IKSolution
-        The solution.
+    robot, feet, body, knee, angles, reach
+        As in `IKSolution`.
     index : tuple of int
-        Where in `solution.reach` the leg is.
+        Index of the leg in `reach`.
     """
     *batch, leg = index
-    one = _Leg.of(solution, tuple(batch), leg)
-    code = Reach(int(np.asarray(solution.reach)[index]))
+    one = _Leg.of(robot, feet, body, knee, angles, reach, batch=tuple(batch), leg=leg)
+    code = Reach(int(np.asarray(reach)[index]))
     where = f"{batch} " if batch else ""
-    return f"{where}{solution.robot.leg_names[leg]}: {code.name}: {one.why(code)}. {one.what_works(code)}"
+    return f"{where}{robot.leg_names[leg]}: {code.name}: {one.why(code)}. {one.what_works(code)}"
 
 
 @dataclass(frozen=True, eq=False)
 class _Leg:
-    """One leg of a solution, alone on its body, as plain numbers; points in the frame that the feet were given in."""
+    """One leg of a solution as plain numbers; points in the frame in which the feet were given."""
 
     robot: Robot
-    knee: Any
-    wanted: np.ndarray[Any, Any]
+    knee: int
+    target: np.ndarray[Any, Any]
     body: Pose | None
     points: np.ndarray[Any, Any]
     in_leg: tuple[float, float, float]
 
     @classmethod
-    def of(cls, solution: IKSolution, batch: tuple[int, ...], leg: int) -> Self:
-        whole = np.asarray(solution.reach).shape[:-1]
-        robot = _alone(solution.robot.item(batch, of=whole), leg)
-        wanted = np.broadcast_to(np.asarray(solution.feet), np.shape(solution.angles))[batch][[leg]]
-        points = forward_kinematics(robot, np.asarray(solution.angles)[batch][[leg]])
-        body, in_body = None, wanted
-        if solution.body is not None:
-            pose = solution.body
-            rotation = np.broadcast_to(np.asarray(pose.rotation), (*whole, 3, 3))[batch]
-            position = np.broadcast_to(np.asarray(pose.position), (*whole, 3))[batch]
-            body = Pose(rotation, position)
-            points, in_body = body @ points, body.inverse() @ wanted
+    def of(
+        cls,
+        robot: Robot,
+        feet: Array,
+        body: Pose | None,
+        knee: str,
+        angles: Array,
+        reach: Array,
+        *,
+        batch: tuple[int, ...],
+        leg: int,
+    ) -> Self:
+        whole = np.asarray(reach).shape[:-1]
+        robot = _one_leg(robot.item(batch, of=whole), leg)
+        target = np.broadcast_to(np.asarray(feet), np.shape(angles))[batch][[leg]]
+        points = forward_kinematics(robot, np.asarray(angles)[batch][[leg]])
+        pose, in_body = None, target
+        if body is not None:
+            rotation = np.broadcast_to(np.asarray(body.rotation), (*whole, 3, 3))[batch]
+            position = np.broadcast_to(np.asarray(body.position), (*whole, 3))[batch]
+            pose = Pose(rotation, position)
+            points, in_body = pose @ points, pose.inverse() @ target
         x, y, z = to_leg_frame(robot.geometry, in_body[:, 0], in_body[:, 1], in_body[:, 2])
-        return cls(robot, solution.knee, wanted[0], body, points[0], (float(x[0]), float(y[0]), float(z[0])))
+        branch = 1 if knee == "up" else -1
+        return cls(robot, branch, target[0], pose, points[0], (float(x[0]), float(y[0]), float(z[0])))
 
     def why(self, code: Reach) -> str:
         """Return what is wrong, the number against its bound."""
@@ -87,7 +105,7 @@ class _Leg:
         if code is Reach.BELOW_GROUND and self.body is not None:
             return self._raised(self.body)
         x, y, z = np.round(self.points[3] * 1000, 1) + 0.0  # no -0.0
-        miss = math.dist(self.points[3], self.wanted) * 1000
+        miss = math.dist(self.points[3], self.target) * 1000
         return f"Nearest that works: the foot at ({x:.1f}, {y:.1f}, {z:.1f}) mm, {miss:.1f} mm away"
 
     def _raised(self, body: Pose) -> str:
@@ -99,15 +117,15 @@ class _Leg:
         coarse = math.ceil(most / _TRIES)
         end = self._first_above(body, np.arange(coarse, most + coarse, coarse))[0]
         rise, code = self._first_above(body, np.arange(end - coarse + 1, end + 1))
-        told = f"{rise * _STEP * 1000:.1f} mm"
+        distance = f"{rise * _STEP * 1000:.1f} mm"
         if code is Reach.OK:
-            return f"Raise the body by {told}"
-        return f"With the body raised by {told} it is above, but the foot is out of reach ({code.name})"
+            return f"Raise the body by {distance}"
+        return f"Raised by {distance}, the body is high enough, but the foot is out of reach ({code.name})"
 
     def _first_above(self, body: Pose, steps: np.ndarray[Any, Any]) -> tuple[int, Reach]:
         """Return the first rise, in steps, at which the leg is above the ground, and its code there."""
         higher = Pose(body.rotation, body.position + steps[:, None] * np.array([0.0, 0.0, _STEP]))
-        reach = inverse_kinematics(self.robot, self.wanted[None], higher, knee=self.knee).reach[:, 0]
+        reach = solve_legs(self.robot, self.target[None], higher, knee=self.knee)[1][:, 0]
         first = int(np.argmax(reach != Reach.BELOW_GROUND))
         return int(steps[first]), Reach(int(reach[first]))
 
@@ -136,8 +154,7 @@ class _Leg:
 
     def _why_limit(self, code: Reach) -> str:
         joint = int(code) - int(Reach.COXA_LIMIT)
-        knee = 1 if self.knee == "up" else -1
-        triangle = solve_triangle(np, self.robot.geometry, *np.array(self.in_leg)[:, None], knee=knee)
+        triangle = solve_triangle(np, self.robot.geometry, *np.array(self.in_leg)[:, None], knee=self.knee)
         angle = math.degrees(float(triangle[joint][0]))
         low, high = (math.degrees(v) for v in self.robot.limits[0, joint])
         above, below = (angle - high) % 360.0, (low - angle) % 360.0
@@ -152,7 +169,7 @@ class _Leg:
         )
 
 
-def _alone(robot: Robot, leg: int) -> Robot:
+def _one_leg(robot: Robot, leg: int) -> Robot:
     """Return the robot with one leg only."""
     own = slice(leg, leg + 1)
     arrays = {name: getattr(robot, name)[own] for name in _OF_LEGS if getattr(robot, name) is not None}

@@ -11,8 +11,7 @@ from tarsus.arrays import Array, Namespace
 from tarsus.blocks import Index, columns
 from tarsus.kinematics.leg import point_parts
 from tarsus.kinematics.pose import Pose
-from tarsus.kinematics.reach import Reach
-from tarsus.kinematics.verdict import LENGTH_TOLERANCE, mark
+from tarsus.kinematics.reach import LENGTH_TOLERANCE, Reach, mark
 from tarsus.robot.geometry import LegGeometry
 
 __all__ = ["BodyPlace", "mark_below_ground", "points_in_body", "surely_above"]

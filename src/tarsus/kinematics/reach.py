@@ -1,29 +1,27 @@
-"""Whether a leg reaches its foot; if not, why, by how much, and what is nearest."""
+"""Reach codes: whether a leg reaches its foot within its joint limits, and if not, why."""
 
 from __future__ import annotations
 
 import enum
-from dataclasses import dataclass
-from functools import cached_property
-from typing import Self
 
-import numpy as np
+from tarsus.arrays import Array, Namespace
+from tarsus.kinematics.triangle import Triangle
+from tarsus.robot.geometry import LegGeometry
 
-from tarsus.arrays import Array, namespace
-from tarsus.errors import UnreachableError
-from tarsus.kinematics.pose import Pose
-from tarsus.robot.robot import Robot
+__all__ = ["ANGLE_TOLERANCE", "LENGTH_TOLERANCE", "Reach", "all_within", "mark", "reach_codes"]
 
-__all__ = ["IKSolution", "Reach"]
+LENGTH_TOLERANCE = 1e-13
+"""Tolerance for rounding of a distance [m]: a foot no farther than this out of reach counts as reached."""
 
-_MOST_LINES = 12
+ANGLE_TOLERANCE = 1e-9
+"""Tolerance for rounding of an angle [rad]: a joint no farther than this beyond its limit counts as within it."""
 
 
 class Reach(enum.IntEnum):
-    """Why a leg can't have its foot where it should be.
+    """Whether a leg reaches its foot, and if not, why.
 
-    Of several reasons: a coxa axis below the ground comes first, then the distance, then the limit of the innermost
-    joint, then a femur axis or knee below the ground.
+    Of several reasons, the first in this order: coxa axis below the ground, distance, limit of the innermost joint,
+    femur axis or knee below the ground.
     """
 
     OK = 0
@@ -35,59 +33,37 @@ class Reach(enum.IntEnum):
     BELOW_GROUND = 6
 
 
-@dataclass(frozen=True, eq=False, kw_only=True)
-class IKSolution:
-    """Joint angles for wanted feet, and a verdict on every leg.
+def reach_codes(xp: Namespace, geometry: LegGeometry, solution: Triangle) -> Array:
+    """Return the reach code of every leg."""
+    g = geometry
+    codes = xp.zeros(solution.coxa.shape, dtype=xp.int8)
+    limits = (
+        (solution.tibia, g.tibia_lower, g.tibia_upper, Reach.TIBIA_LIMIT),
+        (solution.femur, g.femur_lower, g.femur_upper, Reach.FEMUR_LIMIT),
+        (solution.coxa, g.coxa_lower, g.coxa_upper, Reach.COXA_LIMIT),
+    )
+    for angle, lower, upper, code in limits:
+        broken = (angle < lower - ANGLE_TOLERANCE) | (angle > upper + ANGLE_TOLERANCE)
+        codes = mark(xp, codes, broken, code)
+    # A distance off by the tolerance is a square off by twice the tolerance times that distance.
+    slack = 2 * LENGTH_TOLERANCE
+    codes = mark(xp, codes, solution.near < -slack * xp.abs(g.femur - g.tibia), Reach.TOO_NEAR)
+    codes = mark(xp, codes, solution.far < -slack * (g.femur + g.tibia), Reach.TOO_FAR)
+    # Beside the leg's plane there is no triangle that could be too long.
+    return mark(xp, codes, solution.beside < -slack * xp.abs(g.side), Reach.TOO_NEAR)
 
-    Attributes
-    ----------
-    robot : Robot
-        The robot, or a batch of designs.
-    feet : array, shape (..., legs, 3)
-        Where the feet should be, in G where `body` is given, else in B [m].
-    body : Pose or None
-        The body's place in G.
-    knee : str
-        ``"up"`` or ``"down"``.
-    angles : array, shape (..., legs, 3)
-        Joint angles [rad]; of the nearest reachable point where the foot can't be reached.
-    reach : array of int8, shape (..., legs)
-        Codes of `Reach`; 0 is OK.
-    """
 
-    robot: Robot
-    feet: Array
-    body: Pose | None
-    knee: str
-    angles: Array
-    reach: Array
+def mark(xp: Namespace, codes: Array, broken: Array, code: Reach) -> Array:
+    """Return the codes with those of the broken legs replaced."""
+    return xp.where(broken, xp.asarray(int(code), dtype=xp.int8), codes)
 
-    @cached_property
-    def ok(self) -> Array:
-        """Whether every leg reaches its foot ``(...)``."""
-        return namespace(self.reach).all(self.reach == 0, axis=-1)
 
-    def require(self) -> Self:
-        """Return the solution itself.
-
-        Raises
-        ------
-        UnreachableError
-            If a leg can't reach its foot; the message is `explain`'s.
-        """
-        if not bool(np.all(np.asarray(self.reach) == 0)):
-            raise UnreachableError(self.explain())
-        return self
-
-    def explain(self) -> str:
-        """Return a line for every leg that can't reach: which, why, by how much, and the nearest that works."""
-        from tarsus.kinematics.explain import explain_leg  # which solves again, and so comes after this module
-
-        reach = np.asarray(self.reach)
-        failing = np.argwhere(reach != 0)
-        if not len(failing):
-            return "every leg reaches its foot"
-        lines = [explain_leg(self, tuple(int(i) for i in index)) for index in failing[:_MOST_LINES]]
-        if len(failing) > _MOST_LINES:
-            lines.append(f"... and {len(failing) - _MOST_LINES} more of {reach.size} legs")
-        return "\n".join(lines)
+def all_within(geometry: LegGeometry, solution: Triangle) -> bool:
+    """Return whether every NumPy leg is within reach and limits: the common case, told in a few passes."""
+    g, s = geometry, solution
+    # Not in place: designs that differ in their limits alone make each of these wider than the one before.
+    broken = (s.far < 0) | (s.near < 0) | (s.beside < 0)
+    broken = broken | (s.coxa < g.coxa_lower) | (s.coxa > g.coxa_upper)
+    broken = broken | (s.femur < g.femur_lower) | (s.femur > g.femur_upper)
+    broken = broken | (s.tibia < g.tibia_lower) | (s.tibia > g.tibia_upper)
+    return not broken.any()

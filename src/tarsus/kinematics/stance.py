@@ -9,8 +9,8 @@ import numpy as np
 from tarsus.arrays import Array, Namespace, as_floats, is_traced, namespace, require_finite, root, stack_last
 from tarsus.errors import UnreachableError
 from tarsus.kinematics.nearest import tibia_bend, tibia_branch
+from tarsus.kinematics.reach import ANGLE_TOLERANCE
 from tarsus.kinematics.triangle import direction
-from tarsus.kinematics.verdict import ANGLE_TOLERANCE
 from tarsus.robot.geometry import LegGeometry
 from tarsus.robot.robot import Robot
 

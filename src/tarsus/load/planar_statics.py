@@ -14,8 +14,8 @@ import numpy as np
 from tarsus.arrays import Array, Namespace, only_where_needed, root
 from tarsus.kinematics.ground import BodyPlace, mark_below_ground, surely_above
 from tarsus.kinematics.polygon import margin_and_nearest
+from tarsus.kinematics.reach import all_within, reach_codes
 from tarsus.kinematics.triangle import Triangle, solve_triangle, to_leg_frame
-from tarsus.kinematics.verdict import all_within, reach_codes
 from tarsus.load.load_distribution import load_fractions
 from tarsus.robot.geometry import LegGeometry
 

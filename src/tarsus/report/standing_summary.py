@@ -10,8 +10,9 @@ import numpy as np
 
 from tarsus.kinematics.body import reachable_share
 from tarsus.kinematics.pose import Pose
-from tarsus.kinematics.reach import IKSolution, Reach
+from tarsus.kinematics.reach import Reach
 from tarsus.kinematics.rest import CORNERS, RestingPose
+from tarsus.kinematics.solution import IKSolution
 from tarsus.kinematics.stability import stability_margin
 from tarsus.robot.robot import JOINTS, Robot
 

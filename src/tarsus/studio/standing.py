@@ -8,7 +8,6 @@ from typing import Any, Self
 
 import numpy as np
 
-from tarsus.kinematics.explain import explain_leg
 from tarsus.kinematics.leg import forward_kinematics
 from tarsus.kinematics.mass import centre_of_mass
 from tarsus.kinematics.polygon import support_polygon
@@ -183,7 +182,7 @@ def _leg_problems(standing: OnFootholds, miss: np.ndarray[Any, Any]) -> list[Leg
             leg=int(leg),
             reach=Reach(int(reach[leg])).name,  # type: ignore[arg-type] # every code but OK is one of the names
             miss_mm=or_null(float(np.linalg.norm(miss[leg])) * 1000) or 0.0,
-            text=explain_leg(standing.solution, (int(leg),)),
+            text=standing.solution.explain_leg((int(leg),)),
         )
         for leg in np.flatnonzero(reach)
     ]

@@ -18,7 +18,7 @@ from tarsus.gait.branch import branches
 from tarsus.kinematics.inverse import inverse_kinematics
 from tarsus.kinematics.leg import forward_kinematics
 from tarsus.kinematics.pose import Pose
-from tarsus.kinematics.reach import IKSolution
+from tarsus.kinematics.solution import IKSolution
 from tarsus.robot.robot import Robot
 from tarsus.studio.messages.still import ZoneMessage
 from tarsus.studio.wire import millimetres, or_null

@@ -16,7 +16,7 @@ import math
 
 from tarsus.control.safety.bounds import GuardBounds
 from tarsus.control.safety.interventions import InterventionKind, Violation
-from tarsus.kinematics.verdict import ANGLE_TOLERANCE
+from tarsus.kinematics.reach import ANGLE_TOLERANCE
 
 __all__ = ["ROUNDING", "JointMonitor", "stoppable_speed"]
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from tarsus import Pose, default_stance, inverse_kinematics, list_robots, load_robot
-from tarsus.control.walk.joint_solver import ScalarLegs
+from tarsus.kinematics.scalar_solver import ScalarSolver
 
 UP = np.array([0, 0, 1.0])
 
@@ -12,7 +12,7 @@ UP = np.array([0, 0, 1.0])
 @pytest.mark.parametrize("name", list_robots())
 def test_it_agrees_with_the_array_version(name):
     robot = load_robot(name)
-    quick, rng = ScalarLegs(robot), np.random.default_rng(1)
+    quick, rng = ScalarSolver(robot), np.random.default_rng(1)
     stance = default_stance(robot)
     solved = rejected = 0
     for _ in range(300):
@@ -47,11 +47,11 @@ def _plain(robot, body, feet):
 def test_a_foot_beside_the_leg_plane_has_no_solution():
     robot = load_robot("strider").replace(femur_axis_offset=np.tile([0.05, 0.0], (6, 1)))
     axis = np.asarray(robot.mount_position) + np.array([0.01, 0, -0.1])
-    assert ScalarLegs(robot).angles(axis.tolist(), np.eye(3).tolist(), (0.0, 0.0, 0.0)) is None
+    assert ScalarSolver(robot).angles(axis.tolist(), np.eye(3).tolist(), (0.0, 0.0, 0.0)) is None
 
 
 def test_feet_too_near_or_too_far_have_no_solution():
     robot = load_robot("strider")
     feet = default_stance(robot)
     for scale in (3.0, 0.4):
-        assert ScalarLegs(robot).angles((feet * scale).tolist(), np.eye(3).tolist(), (0.0, 0.0, 0.0)) is None
+        assert ScalarSolver(robot).angles((feet * scale).tolist(), np.eye(3).tolist(), (0.0, 0.0, 0.0)) is None

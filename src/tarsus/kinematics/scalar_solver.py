@@ -1,0 +1,76 @@
+"""Closed-form inverse kinematics of one robot in plain floats: for a control loop, where array calls cost more."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import atan2, sqrt
+
+from tarsus.robot.robot import Robot
+
+__all__ = ["ScalarSolver"]
+
+
+class ScalarSolver:
+    """Inverse kinematics of the legs of one robot, knee up.
+
+    Parameters
+    ----------
+    robot : Robot
+        A single robot.
+    """
+
+    def __init__(self, robot: Robot) -> None:
+        g = robot.geometry
+        columns = (
+            *(g.mount_x, g.mount_y, g.mount_z + g.up, g.cos_yaw, g.sin_yaw, g.coxa, g.side, g.side2),
+            *(g.farthest2, g.nearest2, g.sum2, g.difference2),
+            *(g.coxa_lower, g.coxa_upper, g.femur_lower, g.femur_upper, g.tibia_lower, g.tibia_upper),
+        )
+        self._legs = list(zip(*(column.tolist() for column in columns), strict=True))
+
+    def angles(
+        self, feet: Sequence[Sequence[float]], rotation: Sequence[Sequence[float]], position: Sequence[float]
+    ) -> list[tuple[float, float, float]] | None:
+        """Return the joint angles; None if a leg is out of reach or beyond a joint limit.
+
+        Parameters
+        ----------
+        feet : sequence of (x, y, z)
+            The feet, in any frame [m].
+        rotation : sequence of three rows
+            Rotation of the body in that frame.
+        position : (x, y, z)
+            Position of the body's origin in that frame [m].
+
+        Returns
+        -------
+        list of (coxa, femur, tibia), or None
+            Joint angles of each leg [rad].
+        """
+        (r00, r01, r02), (r10, r11, r12), (r20, r21, r22) = rotation
+        px, py, pz = position
+        found = []
+        for (fx, fy, fz), leg in zip(feet, self._legs, strict=True):
+            (mx, my, mz, cos, sin, coxa, side, side2, farthest2, nearest2, sum2, difference2, *limits) = leg
+            dx, dy, dz = fx - px, fy - py, fz - pz
+            bx, by = dx * r00 + dy * r10 + dz * r20 - mx, dx * r01 + dy * r11 + dz * r21 - my
+            z = dx * r02 + dy * r12 + dz * r22 - mz
+            x, y = cos * bx + sin * by, cos * by - sin * bx
+            beside = x * x + y * y - side2
+            if beside < 0:
+                return None
+            along = sqrt(beside)
+            r = along - coxa
+            distance2 = r * r + z * z
+            far, near = farthest2 - distance2, distance2 - nearest2
+            if far < 0 or near < 0:
+                return None
+            bend, base = sqrt(far * near), distance2 + difference2
+            q0 = atan2(y * along - x * side, x * along + y * side)
+            q1 = atan2(z * base + r * bend, r * base - z * bend)
+            q2 = -atan2(bend, distance2 - sum2)
+            l0, u0, l1, u1, l2, u2 = limits
+            if not (l0 <= q0 <= u0 and l1 <= q1 <= u1 and l2 <= q2 <= u2):
+                return None
+            found.append((q0, q1, q2))
+        return found

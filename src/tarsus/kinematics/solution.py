@@ -1,0 +1,85 @@
+"""The result of inverse kinematics: joint angles, reach codes, and an explanation of each leg that fails."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Literal, Self
+
+import numpy as np
+
+from tarsus.arrays import Array, namespace
+from tarsus.errors import UnreachableError
+from tarsus.kinematics.explain import explain_leg
+from tarsus.kinematics.pose import Pose
+from tarsus.robot.robot import Robot
+
+__all__ = ["IKSolution"]
+
+_MOST_LINES = 12
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class IKSolution:
+    """Joint angles that put the feet where they should be, with a reach code for every leg.
+
+    Attributes
+    ----------
+    robot : Robot
+        The robot, or a batch of designs.
+    feet : array, shape (..., legs, 3)
+        Where the feet should be, in G where `body` is given, else in B [m].
+    body : Pose or None
+        The body's place in G.
+    knee : str
+        ``"up"`` or ``"down"``.
+    angles : array, shape (..., legs, 3)
+        Joint angles [rad]; of the nearest reachable point where the foot can't be reached.
+    reach : array of int8, shape (..., legs)
+        Codes of `Reach`; 0 is OK.
+    """
+
+    robot: Robot
+    feet: Array
+    body: Pose | None
+    knee: Literal["up", "down"]
+    angles: Array
+    reach: Array
+
+    @cached_property
+    def ok(self) -> Array:
+        """Whether every leg reaches its foot ``(...)``."""
+        return namespace(self.reach).all(self.reach == 0, axis=-1)
+
+    def require(self) -> Self:
+        """Return the solution itself.
+
+        Raises
+        ------
+        UnreachableError
+            If a leg can't reach its foot; the message is `explain`'s.
+        """
+        if not bool(np.all(np.asarray(self.reach) == 0)):
+            raise UnreachableError(self.explain())
+        return self
+
+    def explain(self) -> str:
+        """Return a line for every leg that fails: which, why, by how much, and the nearest that works."""
+        reach = np.asarray(self.reach)
+        failing = np.argwhere(reach != 0)
+        if not len(failing):
+            return "every leg reaches its foot"
+        lines = [self.explain_leg(tuple(int(i) for i in index)) for index in failing[:_MOST_LINES]]
+        if len(failing) > _MOST_LINES:
+            lines.append(f"... and {len(failing) - _MOST_LINES} more of {reach.size} legs")
+        return "\n".join(lines)
+
+    def explain_leg(self, index: tuple[int, ...]) -> str:
+        """Return the line on one leg that fails.
+
+        Parameters
+        ----------
+        index : tuple of int
+            Index of the leg in `reach`.
+        """
+        return explain_leg(self.robot, self.feet, self.body, self.knee, self.angles, self.reach, index=index)
