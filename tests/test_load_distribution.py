@@ -8,7 +8,8 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from tarsus.load.load_distribution import load_fractions
+from tarsus.kinematics.polygon import margin_and_nearest
+from tarsus.load.load_distribution import load_fractions, single_pose_fractions
 
 
 def exhaustive(x, y, down):
@@ -66,6 +67,20 @@ def test_equilibrium_with_least_squares(kind):
     np.testing.assert_allclose([(shares * x).sum(0), (shares * y).sum(0)], 0, rtol=0, atol=1e-12)
     best = np.stack([exhaustive(x[:, j], y[:, j], down[:, j]) for j in range(150)], axis=-1)
     np.testing.assert_allclose(shares, best, rtol=0, atol=1e-9)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_single_pose_equals_the_batch(kind):
+    x, y, down = feet_around_the_load(np.random.default_rng(10 + KINDS.index(kind)), 300, kind)
+    fractions, margins = load_fractions(np, x, y, down), margin_and_nearest(np, x, y, down)[0]
+    direct = 0
+    for j in range(300):
+        found = single_pose_fractions(list(zip(x[:, j].tolist(), y[:, j].tolist(), strict=True)), down[:, j].tolist())
+        if found is not None:
+            direct += 1
+            np.testing.assert_allclose(found[0], fractions[:, j], rtol=0, atol=1e-12)
+            assert found[1] == pytest.approx(margins[j], rel=0, abs=1e-15)
+    assert (direct > 0) == (kind in ("plain", "grid", "pairs"))
 
 
 @pytest.mark.parametrize("seed", range(4))

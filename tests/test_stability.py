@@ -10,9 +10,10 @@ from scipy.spatial import ConvexHull
 from sample_robots import hexapod, random_hexapod, standing
 from tarsus.errors import InputError
 from tarsus.kinematics import polygon
+from tarsus.kinematics.convex_hull import origin_margin
 from tarsus.kinematics.leg import forward_kinematics
 from tarsus.kinematics.mass import centre_of_mass
-from tarsus.kinematics.polygon import hull_margin, support_polygon
+from tarsus.kinematics.polygon import hull_margin, margin_and_nearest, support_polygon
 from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.stability import stability_margin
 from tarsus.robot.robot import stack_robots
@@ -62,8 +63,18 @@ def test_margin_of_degenerate_points(data):
     points = np.array(data.draw(st.lists(st.tuples(coordinate, coordinate), min_size=n, max_size=n)), dtype=float)
     mask = np.array(data.draw(st.lists(st.booleans(), min_size=n, max_size=n)))
     p = np.array(data.draw(st.tuples(coordinate, coordinate)), dtype=float)
-    margin = hull_margin(points, mask, p)
-    assert margin == pytest.approx(margin_by_walking_round(points[mask], p), abs=1e-12)
+    expected = pytest.approx(margin_by_walking_round(points[mask], p), abs=1e-12)
+    assert hull_margin(points, mask, p) == expected
+    assert hull_margin(points[None], mask, p)[0] == expected
+
+
+@given(st.integers(0, 2**32 - 1))
+def test_the_nearest_point_of_a_single_pose_equals_the_batch(seed):
+    rng = np.random.default_rng(seed)
+    points, counts = rng.normal(0.3, 1.0, (6, 2)), rng.random(6) < 0.6
+    counts[rng.integers(6)] = True
+    batch = margin_and_nearest(np, *points.T[:, :, None], counts[:, None])
+    np.testing.assert_allclose(origin_margin(points[counts].tolist()), np.array(batch)[:, 0], rtol=0, atol=1e-14)
 
 
 def test_margin_by_hand():

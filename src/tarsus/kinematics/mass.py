@@ -6,7 +6,10 @@ from tarsus.arrays import Array, Namespace, as_array, as_floats, broadcast_shape
 from tarsus.kinematics.leg import forward_kinematics
 from tarsus.robot.robot import Robot
 
-__all__ = ["centre_of_mass", "point_masses", "total_mass"]
+__all__ = ["STANDARD_GRAVITY", "centre_of_mass", "point_masses", "total_mass"]
+
+STANDARD_GRAVITY = 9.80665
+"""Standard gravity (ISO 80000-3) [m/s^2]."""
 
 
 def total_mass(robot: Robot) -> Array:

@@ -17,6 +17,7 @@ from tarsus.arrays import (
 )
 from tarsus.blocks import Index, batch_blocks
 from tarsus.errors import InputError
+from tarsus.kinematics.convex_hull import hull_corners, origin_margin
 from tarsus.kinematics.pairs import Pairs, columns_of
 
 __all__ = ["as_mask", "hull_margin", "margin_and_nearest", "support_polygon"]
@@ -69,6 +70,8 @@ def hull_margin(points: Array, mask: Array, point: Array) -> Array:
     batch = broadcast_shapes("points, mask and point", *shapes)
     if n == 0:
         return xp.full(batch, -xp.inf, dtype=points.dtype)
+    if xp is np and not batch:
+        return np.float64(origin_margin((points[mask] - point).tolist())[0])
     if xp is not np:
         return xp.reshape(_margin(xp, points, mask, point, batch, ()), batch)
     margin = np.empty(batch)
@@ -167,10 +170,6 @@ def support_polygon(feet_xy: Array, contacts: Array) -> Array:
     ------
     InputError
         If a shape is wrong, a value is NaN or infinite, or `contacts` is not of booleans.
-
-    Notes
-    -----
-    Andrew's monotone chain (A. M. Andrew, Information Processing Letters 9, 1979).
     """
     feet = as_floats(np, feet_xy, name="feet_xy")
     down = as_mask(np, contacts, name="contacts")
@@ -178,19 +177,4 @@ def support_polygon(feet_xy: Array, contacts: Array) -> Array:
         raise InputError(f"feet_xy has shape {feet.shape}; expected (n, 2) or (n, 3): one configuration, no batch")
     require_shape("contacts", down, feet.shape[:1])
     require_finite("feet_xy", feet)
-    corners = sorted({(float(x), float(y)) for x, y in feet[down, :2]})
-    if len(corners) > 2:
-        corners = _half_hull(corners)[:-1] + _half_hull(corners[::-1])[:-1]
-    return np.asarray(corners, dtype=np.float64).reshape(-1, 2)
-
-
-def _half_hull(ordered: list[tuple[float, float]]) -> list[tuple[float, float]]:
-    chain: list[tuple[float, float]] = []
-    for x, y in ordered:
-        while len(chain) > 1:
-            (ax, ay), (bx, by) = chain[-2:]
-            if (bx - ax) * (y - ay) - (by - ay) * (x - ax) > 0:
-                break
-            chain.pop()
-        chain.append((x, y))
-    return chain
+    return np.asarray(hull_corners(feet[down, :2].tolist()), dtype=np.float64).reshape(-1, 2)

@@ -23,18 +23,22 @@ from tarsus.arrays import (
 from tarsus.blocks import Index, batch_blocks
 from tarsus.errors import InputError
 from tarsus.kinematics.leg import forward_kinematics
-from tarsus.kinematics.mass import centre_of_mass, total_mass
+from tarsus.kinematics.mass import STANDARD_GRAVITY, centre_of_mass, total_mass
 from tarsus.kinematics.pairs import columns_of
 from tarsus.kinematics.polygon import as_mask, margin_and_nearest
 from tarsus.kinematics.pose import Pose
-from tarsus.load.load_distribution import load_fractions
+from tarsus.load.load_distribution import load_fractions, single_pose_fractions
 from tarsus.load.payload import Payload, as_payload
 from tarsus.robot.robot import Robot
 
 __all__ = ["GRAVITY", "ContactForces", "contact_forces"]
 
-GRAVITY = (0.0, 0.0, -9.80665)
+GRAVITY = (0.0, 0.0, -STANDARD_GRAVITY)
 """Standard gravity in the ground frame [m/s^2]."""
+
+# Axes that `upward` returns for it: up, forward, left.
+_STANDARD_AXES = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
+_STANDARD_AXES.setflags(write=False)
 
 _ROUNDING = 1e-12  # of the margin of a load on the edge of the support polygon [m]
 _BLOCK = 1024  # samples in a block, so that the pairs of their feet fit in the second-level cache
@@ -184,6 +188,8 @@ def upward(gravity: Sequence[float]) -> tuple[float, np.ndarray[Any, Any]]:
     InputError
         If gravity is not three finite numbers, or is 0.
     """
+    if gravity is GRAVITY:
+        return STANDARD_GRAVITY, _STANDARD_AXES
     vector = as_floats(np, gravity, name="gravity")
     require_finite("gravity", vector)
     if vector.shape != (3,) or not vector.any():
@@ -221,6 +227,8 @@ def distribute_load(xp: Namespace, feet: Array, contacts: Array, batch: tuple[in
         Point of the support polygon nearest to the load [m]; the origin if the load is inside.
     """
     legs = feet.shape[-2]
+    if xp is np and not batch and (single := single_pose_fractions(feet.tolist(), contacts.tolist())) is not None:
+        return np.array(single[0]), np.float64(single[1]), np.zeros(2)
     if xp is not np:
         rows = _distribute_block(xp, feet, contacts, batch, ())
     else:

@@ -14,10 +14,9 @@ from tarsus.errors import InputError
 from tarsus.gait.cycle import cycle_feet
 from tarsus.gait.gait import Gait
 from tarsus.kinematics.inverse import inverse_kinematics
-from tarsus.kinematics.mass import point_masses, total_mass
+from tarsus.kinematics.mass import STANDARD_GRAVITY, point_masses, total_mass
 from tarsus.kinematics.pairs import columns_of
 from tarsus.kinematics.pose import Pose
-from tarsus.load.contact import GRAVITY
 from tarsus.load.payload import Payload
 from tarsus.load.planar_statics import (
     Block,
@@ -174,8 +173,8 @@ class CycleSweep:
             normal_forces.append(xp.stack([rows.get(leg, zeros) for leg in range(self.robot.legs)]))
             balanced.append(xp.reshape(block_balanced, (len(phases), -1)))
         order = xp.asarray(np.argsort(np.concatenate([phases for _, phases in self.cycle.groups])))
-        normal_force = xp.take(xp.concat(normal_forces, axis=1), order, axis=1) * (block.mass * -GRAVITY[2])
-        femur, tibia = torques_in_plane(block, plane, normal_force, -GRAVITY[2])
+        normal_force = xp.take(xp.concat(normal_forces, axis=1), order, axis=1) * (block.mass * STANDARD_GRAVITY)
+        femur, tibia = torques_in_plane(block, plane, normal_force, STANDARD_GRAVITY)
         return femur, tibia, normal_force, xp.take(xp.concat(balanced, axis=0), order, axis=0)
 
     def select(self, where: tuple[np.ndarray[Any, Any], ...]) -> CycleSweep:

@@ -16,19 +16,23 @@ both directions, which conditions nearly collinear feet well; collinear feet hav
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
 
 from tarsus.arrays import Array, Namespace, is_traced, root
+from tarsus.kinematics.convex_hull import origin_margin
+from tarsus.kinematics.planar_moments import PlanarMoments
 from tarsus.load.foot_spread import FLAT, Spread, Triple, evaluate_plane
 
-__all__ = ["load_fractions"]
+__all__ = ["load_fractions", "single_pose_fractions"]
 
 _MAX_ITERATIONS = 40
 _REFINEMENTS = 2
 _ROUNDING = 1e-14  # of a fraction, or of a relative change of one
+_LEAST_FRACTION = 1e-6  # on a foot that certainly bears
+_LEAST_SPREAD = 1e-4  # relative determinant above which the normal equations are accurate to 12 digits
 
 
 def load_fractions(xp: Namespace, x: Array, y: Array, down: Array) -> Array:
@@ -63,6 +67,39 @@ def load_fractions(xp: Namespace, x: Array, y: Array, down: Array) -> Array:
     elif is_traced(unsettled) or bool(xp.any(unsettled)):
         bearing = _find_bearing(xp, x, y, down, dual)
     return _fractions_of(xp, x, y, bearing)
+
+
+def single_pose_fractions(
+    feet: Sequence[tuple[float, float]], contacts: Sequence[bool]
+) -> tuple[list[float], float] | None:
+    """Return the fraction of a load on each foot and its margin for a single pose, computed in plain floats.
+
+    Parameters
+    ----------
+    feet : sequence of (x, y)
+        Feet relative to the point where the load acts [m].
+    contacts : sequence of bool
+        Which feet are on the ground.
+
+    Returns
+    -------
+    (list of float, float) or None
+        Fractions, 0 for feet off the ground, and the distance of the load from the nearest edge of the support polygon
+        [m]. None unless the feet span an area and all of them certainly bear: use `load_fractions` then.
+    """
+    down = [foot for foot, touches in zip(feet, contacts, strict=True) if touches]
+    count = len(down)
+    mean_x, mean_y = sum(x for x, _ in down) / count, sum(y for _, y in down) / count
+    arms = [(x - mean_x, y - mean_y) for x, y in down]
+    moments = PlanarMoments(sum(u * u for u, _ in arms), sum(u * v for u, v in arms), sum(v * v for _, v in arms))
+    if not moments.span_area(_LEAST_SPREAD):
+        return None
+    a, b = moments.slopes(-mean_x, -mean_y, determinant=moments.determinant)
+    bearing = [1 / count + a * u + b * v for u, v in arms]
+    if min(bearing) < _LEAST_FRACTION:
+        return None
+    fractions = iter(bearing)
+    return [next(fractions) if touches else 0.0 for touches in contacts], origin_margin(down)[0]
 
 
 def _normalised(xp: Namespace, x: Array, y: Array, down: Array) -> tuple[Array, Array]:

@@ -13,6 +13,7 @@ import numpy as np
 
 from tarsus.arrays import Array, Namespace, only_where_needed, root
 from tarsus.kinematics.ground import BodyPlace, mark_below_ground, surely_above
+from tarsus.kinematics.planar_moments import PlanarMoments
 from tarsus.kinematics.polygon import margin_and_nearest
 from tarsus.kinematics.reach import all_within, reach_codes
 from tarsus.kinematics.triangle import Triangle, solve_triangle, to_leg_frame
@@ -187,11 +188,9 @@ def _least_squares_fractions(xp: Namespace, x: Array, y: Array) -> tuple[Array, 
     feet = x.shape[0]
     mid_x, mid_y = xp.sum(x, axis=0) / feet, xp.sum(y, axis=0) / feet
     u, v = x - mid_x, y - mid_y
-    uu, uv, vv = xp.sum(u * u, axis=0), xp.sum(u * v, axis=0), xp.sum(v * v, axis=0)
-    area = uu * vv - uv * uv
-    spans_area = area > _COLLINEAR * (uu + vv) ** 2
-    area = xp.where(spans_area, area, 1.0)
-    along_x, along_y = (uv * mid_y - vv * mid_x) / area, (uv * mid_x - uu * mid_y) / area
+    moments = PlanarMoments(xp.sum(u * u, axis=0), xp.sum(u * v, axis=0), xp.sum(v * v, axis=0))
+    spans_area = moments.span_area(_COLLINEAR)
+    along_x, along_y = moments.slopes(-mid_x, -mid_y, determinant=xp.where(spans_area, moments.determinant, 1.0))
     return 1 / feet + along_x * u + along_y * v, spans_area
 
 

@@ -16,10 +16,10 @@ from tarsus.errors import TarsusError
 from tarsus.gait.gait import Gait
 from tarsus.kinematics.leg import forward_kinematics
 from tarsus.kinematics.mass import centre_of_mass
+from tarsus.kinematics.stability import stability_margin
 from tarsus.robot.robot import Robot
 from tarsus.studio.messages import client as ask
 from tarsus.studio.messages.moving import DriveFrame
-from tarsus.studio.statics import margin_of
 from tarsus.studio.wire import degrees, flags, millimetres, or_null, plain
 
 __all__ = ["Driver"]
@@ -137,7 +137,7 @@ class Driver:
         """Return the static stability margin [mm] and the centre of mass projected onto the ground [mm]."""
         points = forward_kinematics(self._robot, output.angles)
         com = np.asarray(output.body @ np.asarray(centre_of_mass(self._robot, output.angles, points=points)))
-        margin = margin_of(np.asarray(output.body @ points[:, 3]), output.contacts, com)
+        margin = float(stability_margin(self._robot, output.angles, output.body, output.contacts, points=points))
         return or_null(margin * 1000, decimals=2), millimetres(com[:2])
 
 

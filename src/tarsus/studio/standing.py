@@ -14,11 +14,11 @@ from tarsus.kinematics.polygon import support_polygon
 from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.reach import Reach
 from tarsus.kinematics.rest import CORNERS, RestingPose
+from tarsus.load.torque import joint_torques
 from tarsus.report.standing_summary import Standing, rest_summary
 from tarsus.robot.robot import JOINTS, Robot
 from tarsus.studio.messages.state import View
 from tarsus.studio.messages.still import BrokenLimit, LegProblem, PoseMessage
-from tarsus.studio.statics import torques_and_forces
 from tarsus.studio.wire import degrees, flags, millimetres, or_null, plain
 
 __all__ = ["OnFootholds", "broken_limits", "resting_message", "standing_message"]
@@ -62,8 +62,7 @@ class _Placed:
         """Return the forces on the feet and the joints' torques, where the feet alone hold the robot."""
         if not (balanced and self.robot.has_masses and self.contacts.sum() >= _LEAST_FEET):
             return None, None
-        feet = self.points[:, 3]
-        torques, forces = torques_and_forces(self.robot, self.angles, self.body, self.contacts, feet=feet, com=self.com)
+        torques, forces = joint_torques(self.robot, self.angles, self.body, self.contacts)
         return plain(forces), plain(torques)
 
 

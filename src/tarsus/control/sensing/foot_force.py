@@ -20,17 +20,17 @@ from tarsus.arrays import Array, as_floats, require_finite
 from tarsus.control.readings import Vector
 from tarsus.errors import InputError
 from tarsus.kinematics.leg import checked_angles
-from tarsus.kinematics.mass import point_masses
+from tarsus.kinematics.mass import STANDARD_GRAVITY, point_masses
+from tarsus.kinematics.planar_moments import PlanarMoments
 from tarsus.robot.robot import Robot
 
-__all__ = ["STANDARD_GRAVITY", "FootForceEstimator", "balanced_forces", "foot_forces_from_torques"]
-
-STANDARD_GRAVITY = 9.80665
-"""[m/s^2]"""
+__all__ = ["FootForceEstimator", "balanced_forces", "foot_forces_from_torques"]
 
 # A leg counts as singular where the sine of its tibia angle, or the distance of its foot from the coxa axis over the
 # length of the leg, is below this: errors of the torques would be magnified twentyfold.
 _SINGULAR = 0.05
+# Relative determinant below which feet count as on a line.
+_LEAST_SPREAD = 1e-6
 
 
 class FootForceEstimator:
@@ -181,14 +181,15 @@ def balanced_forces(
         return (0.0,) * len(feet)
     count = len(down)
     mean_x, mean_y = sum(f[0] for f in down) / count, sum(f[1] for f in down) / count
-    xx = sum((f[0] - mean_x) ** 2 for f in down)
-    yy = sum((f[1] - mean_y) ** 2 for f in down)
-    xy = sum((f[0] - mean_x) * (f[1] - mean_y) for f in down)
+    moments = PlanarMoments(
+        xx=sum((f[0] - mean_x) ** 2 for f in down),
+        xy=sum((f[0] - mean_x) * (f[1] - mean_y) for f in down),
+        yy=sum((f[1] - mean_y) ** 2 for f in down),
+    )
     off_x, off_y = weight * (centre[0] - mean_x), weight * (centre[1] - mean_y)
-    determinant = xx * yy - xy * xy
-    determined = determinant > 1e-6 * (xx + yy) ** 2
-    a = (yy * off_x - xy * off_y) / determinant if determined else 0.0
-    b = (xx * off_y - xy * off_x) / determinant if determined else 0.0
+    a = b = 0.0
+    if moments.span_area(_LEAST_SPREAD):
+        a, b = moments.slopes(off_x, off_y, determinant=moments.determinant)
     return tuple(
         max(weight / count + a * (foot[0] - mean_x) + b * (foot[1] - mean_y), 0.0) if touch else 0.0
         for foot, touch in zip(feet, contacts, strict=True)

@@ -9,6 +9,7 @@ import numpy as np
 
 from tarsus.arrays import Array, broadcast_shapes, require_shape
 from tarsus.errors import InputError
+from tarsus.kinematics.planar_moments import PlanarMoments
 from tarsus.kinematics.polygon import as_mask
 
 __all__ = ["FLAT", "GroundPlane", "ground_plane"]
@@ -111,10 +112,10 @@ def _fit_one(feet: list[list[float]], contacts: list[bool], previous: GroundPlan
         x, y, z = foot[0] - mean_x, foot[1] - mean_y, foot[2] - mean_z
         xx, xy, yy = xx + x * x, xy + x * y, yy + y * y
         xz, yz = xz + x * z, yz + y * z
-    area = xx * yy - xy * xy
-    if area <= _NARROW * (xx + yy) ** 2:
+    moments = PlanarMoments(xx, xy, yy)
+    if not moments.span_area(_NARROW):
         return GroundPlane(mean_x, mean_y, mean_z, previous.slope_x, previous.slope_y)
-    return GroundPlane(mean_x, mean_y, mean_z, (yy * xz - xy * yz) / area, (xx * yz - xy * xz) / area)
+    return GroundPlane(mean_x, mean_y, mean_z, *moments.slopes(xz, yz, determinant=moments.determinant))
 
 
 def _fit_batch(feet: np.ndarray[Any, Any], contacts: np.ndarray[Any, Any], previous: GroundPlane) -> GroundPlane:
@@ -126,16 +127,16 @@ def _fit_batch(feet: np.ndarray[Any, Any], contacts: np.ndarray[Any, Any], previ
     mean = feet.sum(-2) / np.maximum(count, 1)[..., None]
     x, y, z = np.moveaxis(np.where(contacts[..., None], feet - mean[..., None, :], 0.0), -1, 0)
     xx, xy, yy, xz, yz = ((a * b).sum(-1) for a, b in ((x, x), (x, y), (y, y), (x, z), (y, z)))
-    area = xx * yy - xy * xy
-    plane = area > _NARROW * (xx + yy) ** 2
-    area = np.where(plane, area, 1.0)
+    moments = PlanarMoments(xx, xy, yy)
+    plane = moments.span_area(_NARROW)
+    slope_x, slope_y = moments.slopes(xz, yz, determinant=np.where(plane, moments.determinant, 1.0))
     down = count > 0
     return GroundPlane(
         np.where(down, mean[..., 0], previous.x),
         np.where(down, mean[..., 1], previous.y),
         np.where(down, mean[..., 2], previous.z),
-        np.where(plane, (yy * xz - xy * yz) / area, previous.slope_x),
-        np.where(plane, (xx * yz - xy * xz) / area, previous.slope_y),
+        np.where(plane, slope_x, previous.slope_x),
+        np.where(plane, slope_y, previous.slope_y),
     )
 
 

@@ -7,11 +7,10 @@ from typing import Any
 
 from tarsus.control.readings import CHANNELS, SensorReadings, ValidReadings
 from tarsus.control.sensing.body_channels import AngularRateChannel, AttitudeChannel
-from tarsus.control.sensing.foot_force import STANDARD_GRAVITY
 from tarsus.control.sensing.leg_channels import ContactChannel, Range, VectorChannel
 from tarsus.control.sensing.plain_values import as_number
 from tarsus.errors import InputError
-from tarsus.kinematics.mass import total_mass
+from tarsus.kinematics.mass import STANDARD_GRAVITY, total_mass
 from tarsus.robot.robot import Robot
 
 __all__ = ["ReadingsValidator"]

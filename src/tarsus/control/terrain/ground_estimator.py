@@ -11,10 +11,10 @@ from tarsus.control.pose.admittance import Admittance, AdmittanceFilter
 from tarsus.control.pose.attitude import CommandedAttitude, rotate_z, slope_along
 from tarsus.control.pose.levelling import Correction, Levelling, LevellingMode, com_shift_ratio
 from tarsus.control.readings import SensorReadings, ValidReadings, Vector
-from tarsus.control.sensing.foot_force import STANDARD_GRAVITY, FootForceEstimator, balanced_forces
+from tarsus.control.sensing.foot_force import FootForceEstimator, balanced_forces
 from tarsus.control.sensing.ground_plane import FLAT, GroundPlane, ground_plane
 from tarsus.control.sensing.validation import ReadingsValidator
-from tarsus.kinematics.mass import centre_of_mass, total_mass
+from tarsus.kinematics.mass import STANDARD_GRAVITY, centre_of_mass, total_mass
 from tarsus.robot.robot import Robot
 
 __all__ = ["GroundEstimate", "GroundEstimator"]

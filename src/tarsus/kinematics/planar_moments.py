@@ -1,0 +1,60 @@
+"""Least squares of a plane through points: two unknown slopes, solved from the second moments of the points."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from tarsus.arrays import Array
+
+__all__ = ["PlanarMoments"]
+
+
+class PlanarMoments(NamedTuple):
+    """Second moments of points in the plane about their mean: floats, or arrays ``(...)``.
+
+    Attributes
+    ----------
+    xx, xy, yy : float or array, shape (...)
+        Sums of ``(x - x_mean)^2``, ``(x - x_mean)(y - y_mean)`` and ``(y - y_mean)^2`` [m^2].
+    """
+
+    xx: Array
+    xy: Array
+    yy: Array
+
+    @property
+    def determinant(self) -> Array:
+        """Determinant ``(...)`` of the normal equations; 0 where the points are on a line [m^4]."""
+        return self.xx * self.yy - self.xy * self.xy
+
+    def span_area(self, least: float) -> Array:
+        """Return whether the points are not on a line.
+
+        Parameters
+        ----------
+        least : float
+            Least determinant, relative to the square of ``xx + yy``; 0.25 where the points spread alike both ways.
+
+        Returns
+        -------
+        bool or array of bool, shape (...)
+        """
+        return self.determinant > least * (self.xx + self.yy) ** 2
+
+    def slopes(self, xz: Array, yz: Array, *, determinant: Array) -> tuple[Array, Array]:
+        """Solve the normal equations ``[[xx, xy], [xy, yy]] @ (a, b) = (xz, yz)`` by Cramer's rule.
+
+        Parameters
+        ----------
+        xz, yz : float or array, shape (...)
+            Right-hand sides: of a plane ``z = z_mean + a (x - x_mean) + b (y - y_mean)`` fitted to heights, the sums
+            of ``(x - x_mean)(z - z_mean)`` and ``(y - y_mean)(z - z_mean)``.
+        determinant : float or array, shape (...)
+            `determinant`, or any other number where the points are on a line and the result is not used.
+
+        Returns
+        -------
+        a, b : float or array, shape (...)
+            Slopes along x and y.
+        """
+        return (self.yy * xz - self.xy * yz) / determinant, (self.xx * yz - self.xy * xz) / determinant
