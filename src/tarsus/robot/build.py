@@ -11,7 +11,7 @@ import numpy as np
 
 from tarsus.errors import RobotFileError
 from tarsus.robot.catalogue import load_servo, servo_of
-from tarsus.robot.problems import key_of
+from tarsus.robot.document_problems import key_of
 from tarsus.robot.robot import JOINTS, GaitDefaults, Robot, Source
 from tarsus.robot.schema import JointTable, Leg, LegEntry, RobotFile, ServoFigures
 from tarsus.robot.servo import Servo

@@ -19,6 +19,7 @@ __all__ = [
     "TAGS",
     "Body",
     "Gait",
+    "JointServos",
     "JointTable",
     "Leg",
     "LegEntry",

@@ -105,7 +105,7 @@ class _Lines:
 
 
 _AT: dict[str, Any] = {
-    "time_s": (Annotated[Decimal, Number(0, LATEST, "s")], Field(description="When [s].")),
+    "time_s": (Annotated[Decimal, Number(0, LATEST, "s")], Field(description="Time of the commands [s].")),
     "do": (Annotated[str | None, Choice(WORDS)], Field(default=None, description="What takes no numbers.")),
     "gait": (Annotated[str | None, Choice(GAIT_NAMES)], Field(default=None, description="Another gait.")),
     **{kind.word: (_table(kind) | None, None) for kind in TABLES},

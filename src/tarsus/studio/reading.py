@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from pydantic import ValidationError
 from pydantic_core import from_json
 
+from tarsus.robot.document_problems import key_of
 from tarsus.studio.failure import malformed
 from tarsus.studio.messages import client_message
 from tarsus.studio.messages.plain import ErrorMessage
@@ -50,10 +51,6 @@ def _id_of(text: str | bytes) -> int | None:
 
 def _words(error: ValidationError) -> str:
     found = error.errors(include_url=False, include_input=False, include_context=False)
-    lines = [f"{_where(line['loc'])}: {line['msg']}" for line in found[:_MOST_TOLD]]
+    lines = [f"{key_of(line['loc']) or 'the message'}: {line['msg']}" for line in found[:_MOST_TOLD]]
     more = f" (and {len(found) - _MOST_TOLD} more)" if len(found) > _MOST_TOLD else ""
     return f"this is no message of the studio: {'; '.join(lines)}{more}"
-
-
-def _where(location: tuple[Any, ...]) -> str:
-    return ".".join(str(part)[:60] for part in location) or "all of it"

@@ -13,6 +13,7 @@ import zlib
 from pydantic import ValidationError
 
 from tarsus.errors import InputError
+from tarsus.robot.document_problems import key_of
 from tarsus.studio.messages.state import StudioState
 
 __all__ = ["state_of", "text_of"]
@@ -71,6 +72,5 @@ def state_of(text: str) -> StudioState:
 def _reason(error: Exception) -> str:
     if isinstance(error, ValidationError):
         first = error.errors(include_url=False, include_input=False)[0]
-        where = ".".join(str(part) for part in first["loc"]) or "the state"
-        return f"{where}: {first['msg'].lower()}"
+        return f"{key_of(first['loc']) or 'the state'}: {first['msg'].lower()}"
     return "it is not the text that was copied"
