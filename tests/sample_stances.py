@@ -12,7 +12,7 @@ from tarsus.control.workspace.stability import support_sets
 from tarsus.control.workspace.stance_geometry import stance_geometry_of
 from tarsus.control.workspace.velocity_limits import velocity_limits
 from tarsus.gait.gait import Gait
-from tarsus.gait.setup import Setup
+from tarsus.gait.walk_setup import WalkSetup
 from tarsus.kinematics.pose import Pose
 from tarsus.robot.joint_limits import joint_limits
 
@@ -28,7 +28,7 @@ POSTURES = (
 def setup_of(robot, gait="tripod"):
     robot = preset(robot) if isinstance(robot, str) else robot
     gait = Gait.named(gait, legs=robot.legs) if isinstance(gait, str) else gait
-    return Setup.of(robot, gait, body_height=None, swing_height=None, body_tilt=(0.0, 0.0), foot_distance=None)
+    return WalkSetup.of(robot, gait, body_height=None, swing_height=None, body_tilt=(0.0, 0.0), foot_distance=None)
 
 
 def posture_of(setup, body=POSTURES[0]):

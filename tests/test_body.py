@@ -5,7 +5,7 @@ from hypothesis import given, settings
 
 from robots import plain_hexapod, random_angles, random_robot, seeds
 from tarsus.errors import InputError
-from tarsus.kinematics.body import coxa_frames, reachable_share
+from tarsus.kinematics.body import coxa_frames, reachable_fraction
 from tarsus.kinematics.inverse import inverse_kinematics
 from tarsus.kinematics.leg import forward_kinematics
 from tarsus.kinematics.pose import Pose
@@ -57,7 +57,7 @@ def test_the_share_is_where_a_foot_is_first_left_behind(seed):
     robot = plain_hexapod()
     feet, start = standing(robot)
     goal = Pose.from_rpy(*rng.uniform(-0.5, 0.5, 3), start.position + rng.uniform(-0.15, 0.15, 3))
-    share = reachable_share(robot, feet, start, goal)
+    share = reachable_fraction(robot, feet, start, goal)
 
     def between(shares):
         shares = np.asarray(shares)
@@ -76,10 +76,10 @@ def test_the_whole_way_is_one_and_none_of_it_is_nought():
     feet, start = standing(robot)
     higher = Pose(np.eye(3), start.position + np.array([0, 0, 0.01]))
     far = Pose(np.eye(3), [5, 0, 0.1])
-    assert reachable_share(robot, feet, start, higher) == 1.0
-    assert reachable_share(robot, feet, start, start) == 1.0
-    assert reachable_share(robot, feet, far, start) == 0.0
-    assert 0 < reachable_share(robot, feet, start, far) < 0.1
+    assert reachable_fraction(robot, feet, start, higher) == 1.0
+    assert reachable_fraction(robot, feet, start, start) == 1.0
+    assert reachable_fraction(robot, feet, far, start) == 0.0
+    assert 0 < reachable_fraction(robot, feet, start, far) < 0.1
 
 
 def test_upwards_the_share_is_that_of_the_straight_leg():
@@ -88,7 +88,7 @@ def test_upwards_the_share_is_that_of_the_straight_leg():
     out = np.hypot(*feet[0, :2]) - 0.086 - 0.068
     highest = np.sqrt((0.098 + 0.181) ** 2 - out**2)
     goal = Pose(np.eye(3), [0, 0, 1.0])
-    share = reachable_share(robot, feet, start, goal)
+    share = reachable_fraction(robot, feet, start, goal)
     assert abs(start.position[2] + share * (1 - start.position[2]) - highest) <= 1e-12
 
 
@@ -97,7 +97,7 @@ def test_a_turn_goes_the_shorter_way_round():
     feet, level = standing(robot)
     start, goal = Pose.from_rpy(yaw=3.1, position=level.position), Pose.from_rpy(yaw=-3.1, position=level.position)
     feet = Pose.from_rpy(yaw=3.1) @ feet
-    assert reachable_share(robot, feet, start, goal) == 1.0
+    assert reachable_fraction(robot, feet, start, goal) == 1.0
 
 
 def test_a_start_at_the_very_edge_counts_as_reached_or_not_but_no_more():
@@ -107,7 +107,7 @@ def test_a_start_at_the_very_edge_counts_as_reached_or_not_but_no_more():
     q[:, 1] = robot.limits[:, 1, 1]
     start = Pose.from_rpy(0.1, 0.2, 0.3, [0, 0, 1])
     goal = Pose.from_rpy(0.1, 0.2, 0.3, [0, 0, 0.5])
-    assert reachable_share(robot, start @ forward_kinematics(robot, q)[:, 3], start, goal) <= 1e-6
+    assert reachable_fraction(robot, start @ forward_kinematics(robot, q)[:, 3], start, goal) <= 1e-6
 
 
 @pytest.mark.parametrize("wrong", ["robot", "feet", "start", "goal"])
@@ -118,10 +118,10 @@ def test_batches_are_refused(wrong):
     given_ = {"robot": robot, "feet": feet, "start": start, "goal": start}
     given_ |= {wrong: {"robot": stack_robots([robot] * 2), "feet": feet[None], "start": poses, "goal": poses}[wrong]}
     with pytest.raises(InputError, match="a single robot, one foot a leg, and single poses"):
-        reachable_share(**given_)
+        reachable_fraction(**given_)
 
 
 def test_what_is_wrong_with_the_feet_is_said():
     robot = plain_hexapod()
     with pytest.raises(InputError, match=r"feet has shape \(5, 3\)"):
-        reachable_share(robot, np.zeros((5, 3)), Pose(), Pose())
+        reachable_fraction(robot, np.zeros((5, 3)), Pose(), Pose())

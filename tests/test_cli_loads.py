@@ -191,7 +191,7 @@ def test_continuous_rule():
         ("--supply 0", "supply is 0"),
         ("--payload many", "'many' is not a number"),
         ("--gait rippel", "Did you mean 'ripple'?"),
-        ("--distance 0", "goes nowhere"),
+        ("--distance 0", "has no length"),
     ],
 )
 def test_usage_errors(command, options, text):

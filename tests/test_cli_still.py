@@ -9,7 +9,6 @@ import pytest
 from PIL import Image
 
 from sample_commands import run, run_json
-from tarsus.kinematics.body import reachable_share
 from tarsus.kinematics.inverse import inverse_kinematics
 from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.rest import resting_pose
@@ -50,7 +49,7 @@ def test_pose_matches_inverse_kinematics(options, move):
     if not solution.ok:
         assert document["problems"][: (solution.reach != 0).sum()] == solution.explain().splitlines()
         start = Pose.from_rpy(position=(0, 0, 0.11))
-        fraction = reachable_share(STRIDER, solution.feet, start, solution.body)
+        fraction = reachable_fraction(STRIDER, solution.feet, start, solution.body)
         assert document["feasible_fraction"] == pytest.approx(fraction, abs=1e-6)
 
 

@@ -45,7 +45,7 @@ def reference(gait, rest, twist, swing_height, phase):
 
 @pytest.mark.parametrize("name", GAITS)
 @pytest.mark.parametrize("twist", TWISTS)
-def test_the_cycle_is_what_the_definition_gives_leg_by_leg(name, twist):
+def test_the_cycle_follows_its_definition_leg_by_leg(name, twist):
     gait, rest = Gait.named(name), rest_of()
     phases = (np.arange(8) + 0.41) / 8
     feet, contacts = cycle_feet(gait, rest, twist, swing_height=0.03, phases=phases)
@@ -78,7 +78,7 @@ def test_a_straight_stroke_goes_from_half_a_stroke_ahead_to_half_a_stroke_behind
 
 
 @pytest.mark.parametrize("centre", [(0.0, 0.0), (0.0, 0.4), (0.0, -0.15), (0.3, 0.2), (-1.0, 5.0)])
-def test_a_curve_s_stances_are_arcs_about_its_centre_all_by_the_angle_of_source_001(centre):
+def test_stances_of_a_curve_are_arcs_by_the_angle_of_source_001(centre):
     """Source 001: the foot farthest from the centre makes the stroke P, every foot turns by T = P / max(CP)."""
     gait, rest, stroke = Gait.named("wave"), rest_of(), 0.05
     twist = unit_twist(rest, curved_path(1.0, centre).displacement) * stroke
@@ -101,7 +101,7 @@ def test_a_curve_s_stances_are_arcs_about_its_centre_all_by_the_angle_of_source_
 
 @pytest.mark.parametrize("twist", TWISTS)
 @pytest.mark.parametrize("duty_factor", [0.3, 0.5, 0.8, 0.95])
-def test_the_cycle_closes_and_has_no_step_in_it(twist, duty_factor):
+def test_the_cycle_is_closed_and_continuous(twist, duty_factor):
     gait = Gait(duty_factor, tuple(np.arange(6) / 6.3))
     rest = rest_of()
     first, _ = cycle_feet(gait, rest, twist, swing_height=0.03, phases=np.array([0.137]))
@@ -114,14 +114,14 @@ def test_the_cycle_closes_and_has_no_step_in_it(twist, duty_factor):
     assert np.linalg.norm(np.diff(feet, axis=0), axis=-1).max() < fastest / moments
 
 
-def test_swinging_feet_reach_the_lift_and_none_goes_below_the_ground():
+def test_swinging_feet_reach_the_swing_height_and_stay_above_the_ground():
     feet, contacts = cycle_feet(Gait.named("ripple"), rest_of(), (0.06, 0, 0), swing_height=0.03, phases=PHASES)
     assert feet[..., 2].min() == 0
     assert (feet[..., 2][contacts] == 0).all()
     np.testing.assert_allclose(feet[..., 2].max(0), 0.03, rtol=2e-3)
 
 
-def test_a_batch_is_its_loop():
+def test_a_batch_equals_its_loop():
     gait = Gait.named("ripple")
     rests = np.stack([rest_of(name) for name in PRESETS])[:, None]
     twists = np.array(TWISTS)
@@ -138,7 +138,7 @@ def test_a_batch_is_its_loop():
 
 @pytest.mark.parametrize("library", [jnp, array_api_strict], ids=["jax", "strict"])
 @pytest.mark.parametrize("given", ["rest", "twist", "swing_height", "phases"])
-def test_whichever_argument_is_of_another_library_the_result_is_the_same(library, given):
+def test_any_argument_may_be_of_another_library(library, given):
     gait = Gait.named("tetrapod")
     args = {"rest": rest_of(), "twist": np.array(TWISTS), "swing_height": np.asarray(0.02), "phases": PHASES}
     expected, down = cycle_feet(
@@ -177,7 +177,7 @@ def test_feet_are_differentiable_in_the_stroke_under_jit():
     st.floats(-0.6, 0.6),
     st.integers(0, 2**32 - 1),
 )
-def test_seen_from_a_tilted_body_the_ground_is_source_001_s_plane(x, y, yaw, body_height, roll, pitch, seed):
+def test_the_ground_relative_to_a_tilted_body_is_the_plane_of_source_001(x, y, yaw, body_height, roll, pitch, seed):
     """``z = -G + x tan(..) + y tan(..)``, corrected: slopes by the right-hand rule, G measured along the body's z."""
     body = tilted_body(np.array([x, y, yaw]), body_height=np.asarray(body_height), body_tilt=(roll, pitch))
     ground = np.random.default_rng(seed).uniform(-2, 2, (6, 3)) * [1, 1, 0]

@@ -7,7 +7,7 @@ from sample_gait_states import EARTH, FACING, moment_of, rest_of, setup_of
 from tarsus import Pose, inverse_kinematics, list_robots
 from tarsus.control.filters import CriticallyDamped
 from tarsus.control.walk.joint_solver import JointSolver
-from tarsus.gait.swing import ground_share, height_share
+from tarsus.gait.swing import horizontal_profile, vertical_profile
 
 SWAY = (0.01, 0.005, 0.004, 0.02, -0.03, 0.05)
 
@@ -33,7 +33,7 @@ def expected(setup, now, sway):
     dx, dy, dz, dr, dp, dw = np.array(sway) * [often, once, often, once, often, once]
     heading = Pose.from_rpy(0, 0, FACING, (EARTH.real, EARTH.imag, 0.3))
     body = heading @ Pose.from_rpy(roll + dr, pitch + dp, yaw + dw, (x + dx, y + dy, z + dz))
-    swinging = 0.002 * (1 - ground_share(now.swing_phase)) + swing_height * height_share(now.swing_phase)
+    swinging = 0.002 * (1 - horizontal_profile(now.swing_phase)) + swing_height * vertical_profile(now.swing_phase)
     height = 0.3 + np.where(now.down, 0.0, swinging) + now.admittance_offset.value
     feet = np.stack([now.foot.real, now.foot.imag, height], axis=-1)
     return inverse_kinematics(setup.robot, body.inverse() @ feet)

@@ -59,7 +59,7 @@ def standing(n):
     return np.tile(inverse_kinematics(robot, default_stance(robot, 0.08)).angles, (n, 1, 1))
 
 
-def test_a_good_walk_has_no_problems():
+def test_a_feasible_walk_has_no_problems():
     motion = walk()
     assert motion.ok
     assert motion.problems == ()
@@ -77,7 +77,7 @@ def test_arrays_are_copied_in_and_locked():
         motion.stroke = 1.0
 
 
-def test_margin_is_the_distance_to_the_nearest_edge_of_the_feet_that_are_down():
+def test_margin_is_the_distance_to_the_nearest_edge_of_the_support_polygon():
     """Reference: the edges of the ring of feet in contact, walked through one by one."""
     motion = walk(path=curved_path(0.9, (0.1, 0.3)))
     com = motion.body @ np.asarray(centre_of_mass(motion.robot, motion.angles))
@@ -90,7 +90,7 @@ def test_margin_is_the_distance_to_the_nearest_edge_of_the_feet_that_are_down():
         assert motion.margin[k] == pytest.approx(min(distances), abs=1e-9)
 
 
-def test_joint_speeds_are_the_angles_derivatives_to_second_order():
+def test_joint_speed_is_the_derivative_of_the_angles_to_second_order():
     def worst(rate):
         coarse = walk(rate=rate, cycle_time=1.0)
         fine = walk(rate=rate * 16, cycle_time=1.0)
@@ -103,7 +103,7 @@ def test_joint_speeds_are_the_angles_derivatives_to_second_order():
     assert np.log2(errors[1] / errors[2]) == pytest.approx(2, abs=0.4)
 
 
-def test_speed_ratio_is_over_each_servo_s_own_speed_and_nan_where_unknown():
+def test_speed_ratio_is_relative_to_each_servo_and_nan_where_unknown():
     motion = walk()
     limit = motion.robot.servos[2][1].no_load_speed
     assert motion.speed_ratio[2, 1] == pytest.approx(np.abs(motion.joint_speed[:, 2, 1]).max() / limit)
@@ -129,11 +129,11 @@ def test_steps_and_duration():
     assert stepping(standing(4)).steps == 0
 
 
-def test_feet_apart_is_the_distance_of_the_nearest_two():
+def test_least_foot_distance_is_that_of_the_two_closest_feet():
     motion = walk()
     for k in (0, 40, -1):
         feet = motion.feet[k]
-        assert motion.feet_apart[k] == pytest.approx(
+        assert motion.least_foot_distance[k] == pytest.approx(
             min(math.dist(feet[i], feet[j]) for i in range(6) for j in range(i)), rel=1e-12
         )
 
@@ -141,7 +141,7 @@ def test_feet_apart_is_the_distance_of_the_nearest_two():
 # Every kind of problem
 
 
-def test_out_of_reach_tells_moment_leg_and_reason():
+def test_out_of_reach_names_time_leg_and_reason():
     motion = walk(stroke=0.3, path=straight_path(1.5), strict=False)
     reached = motion.body @ forward_kinematics(motion.robot, motion.angles)[..., 3, :]
     miss = np.linalg.norm(reached - motion.feet, axis=-1)
@@ -153,18 +153,18 @@ def test_out_of_reach_tells_moment_leg_and_reason():
     assert not motion.ok
 
 
-def test_three_left_legs_in_the_air_tip_over():
+def test_with_three_left_legs_in_the_air_the_robot_tips_over():
     motion = walk(Gait(0.5, (0.0, 0.0, 0.0, 0.5, 0.5, 0.5)), strict=False)
     (problem,) = motion.problems
     worst = int(np.argmin(motion.margin))
     assert problem == (
         f"tips over: at {motion.time[worst]:.2f} s the centre of mass is {-motion.margin[worst] * 1000:.1f} mm outside "
-        "the feet that are down"
+        "the support polygon"
     )
     assert motion.margin[worst] < -0.05
 
 
-def test_with_no_foot_on_the_ground_it_falls():
+def test_with_no_foot_on_the_ground_the_robot_tips_over():
     motion = walk(Gait(0.4, (0.0,) * 6))
     assert motion.contacts.sum(-1).min() == 0
     (problem,) = motion.problems
@@ -172,26 +172,29 @@ def test_with_no_foot_on_the_ground_it_falls():
     assert problem.endswith("s no foot is on the ground")
 
 
-def test_feet_too_near_tells_which_and_how_near():
+def test_feet_too_close_names_legs_and_distance():
     motion = walk(foot_distance=0.28, strict=False)
     (problem,) = motion.problems
-    near = int(np.argmin(motion.feet_apart))
-    assert problem.startswith(f"feet too near: at {motion.time[near]:.2f} s ")
-    assert f" are {motion.feet_apart[near] * 1000:.1f} mm apart, at least 280.0 mm are asked for" in problem
+    near = int(np.argmin(motion.least_foot_distance))
+    assert problem.startswith(f"feet too close: at {motion.time[near]:.2f} s ")
+    assert (
+        f" are {motion.least_foot_distance[near] * 1000:.1f} mm apart, less than the foot_distance of 280.0 mm"
+        in problem
+    )
 
 
-def test_too_fast_tells_the_joint_and_a_cycle_time_that_works():
+def test_too_fast_names_the_joint_and_a_feasible_cycle_time():
     motion = walk(cycle_time=0.5, rate=200)
     (problem,) = motion.problems
     assert problem.startswith("too fast: the tibia of ")
-    assert "its servo DS3225 does 462 without load" in problem
-    longer = float(problem.split("a cycle of ")[1].split(" s")[0])
+    assert "its servo DS3225 reaches 462 deg/s without load" in problem
+    longer = float(problem.split("a cycle time of ")[1].split(" s")[0])
     assert longer == pytest.approx(0.5 * motion.speed_ratio.max(), abs=0.006)
     assert walk(cycle_time=longer * 1.01, rate=200).ok
     assert kinds(walk(cycle_time=longer * 0.97, rate=200)) == ["too fast"]
 
 
-def test_a_leg_that_goes_over_to_another_branch_jumps():
+def test_a_leg_that_changes_its_branch_jumps():
     angles = standing(6)
     angles[3:, 4] = [0.0, 2.6, 0.1]
     motion = stepping(angles)
@@ -199,18 +202,18 @@ def test_a_leg_that_goes_over_to_another_branch_jumps():
     change = np.degrees(np.abs(angles[3, 4] - angles[2, 4]))
     joint = ("coxa", "femur", "tibia")[int(change.argmax())]
     assert motion.problems[0] == (
-        f"jumps: at 0.20 s the {joint} of 4L would have to turn {change.max():.0f} deg at once, to another way to "
-        "reach the same foot"
+        f"jumps: at 0.20 s the {joint} of 4L would turn {change.max():.0f} deg within one sample, to another "
+        "inverse-kinematics branch"
     )
 
 
-def test_a_knee_that_goes_through_straight_slowly_does_not_jump():
+def test_a_knee_that_passes_straight_slowly_does_not_jump():
     angles = standing(60)
     angles[:, :, 2] = np.linspace(-0.5, 0.4, 60)[:, None]
     assert kinds(stepping(angles)) == []
 
 
-def test_every_kind_at_once_comes_in_order():
+def test_problems_of_every_kind_are_in_order():
     one_sided = Gait(0.5, (0.0, 0.0, 0.0, 0.5, 0.5, 0.5))
     motion = walk(
         one_sided,
@@ -221,14 +224,14 @@ def test_every_kind_at_once_comes_in_order():
         foot_distance=0.4,
         strict=False,
     )
-    assert kinds(motion) == ["out of reach", "tips over", "feet too near", "too fast"]
+    assert kinds(motion) == ["out of reach", "tips over", "feet too close", "too fast"]
 
 
 # What doesn't fit together
 
 
 @pytest.mark.parametrize("name", ["feet", "contacts", "angles", "reach"])
-def test_arrays_must_fit_together(name):
+def test_inconsistent_arrays_are_refused(name):
     motion = stepping(standing(4))
     with pytest.raises(InputError, match=f"a motion's {name} has shape"):
         dataclasses.replace(motion, **{name: getattr(motion, name)[1:]})
@@ -236,14 +239,14 @@ def test_arrays_must_fit_together(name):
         dataclasses.replace(motion, **{name: getattr(motion, name)[:, 1:]})
 
 
-def test_times_bodies_and_gaits_must_fit():
+def test_inconsistent_times_bodies_and_gaits_are_refused():
     motion = stepping(standing(4))
     with pytest.raises(InputError, match=r"a motion's time has shape \(2, 2\)"):
         dataclasses.replace(motion, time=motion.time.reshape(2, 2))
     for time in ([0.0, 0.1, 0.1, 0.3], [0.0, 0.2, 0.1, 0.3], [0.0, np.nan, 0.2, 0.3]):
-        with pytest.raises(InputError, match="each later than the one before"):
+        with pytest.raises(InputError, match="at increasing times"):
             dataclasses.replace(motion, time=np.array(time))
-    with pytest.raises(InputError, match="two moments or more"):
+    with pytest.raises(InputError, match="two samples or more"):
         stepping(standing(1))
     with pytest.raises(InputError, match=r"a motion's body has batch axes \(\); expected \(4,\)"):
         dataclasses.replace(motion, body=Pose())
@@ -252,7 +255,7 @@ def test_times_bodies_and_gaits_must_fit():
 
 
 @given(st.integers(2, 30), st.integers(0, 2**32 - 1))
-def test_the_verdict_of_any_angles_is_told_without_nan(n, seed):
+def test_problems_of_any_angles_contain_no_nan(n, seed):
     rng = np.random.default_rng(seed)
     angles = standing(n) + rng.normal(size=(n, 6, 3)) * 0.3
     motion = stepping(angles, contacts=rng.random((n, 6)) < 0.6, foot_distance=0.05)

@@ -10,7 +10,15 @@ from hypothesis import strategies as st
 from scipy.linalg import expm
 
 from tarsus.errors import InputError
-from tarsus.gait.path import BodyPath, carry, carry_back, curved_path, exponential, straight_path, twist_path
+from tarsus.gait.path import (
+    BodyPath,
+    curved_path,
+    exponential_map,
+    ground_to_heading,
+    heading_to_ground,
+    straight_path,
+    twist_path,
+)
 
 numbers = st.floats(-20, 20)
 small = st.floats(-1e-6, 1e-6)
@@ -28,41 +36,42 @@ def matrix(place):
 
 
 @given(numbers, numbers, angles, st.floats(-2, 3))
-def test_exponential_is_the_matrix_exponential_of_the_twist(x, y, yaw, share):
-    place = exponential((x, y, yaw), np.array(share))
+def test_exponential_map_is_the_matrix_exponential_of_the_twist(x, y, yaw, share):
+    place = exponential_map((x, y, yaw), np.array(share))
     np.testing.assert_allclose(matrix(place), expm(share * se2(x, y, yaw)), atol=3e-12)
     assert place[2] == yaw * share
 
 
 @given(numbers, numbers, angles)
-def test_a_path_s_velocity_is_its_twist_in_the_body_s_frame(x, y, yaw):
+def test_the_velocity_of_a_path_is_its_twist_in_the_heading_frame(x, y, yaw):
     path = BodyPath((x + 1, y, yaw))
     step = 1e-6
-    before, here, after = path.place(np.array([0.4 - step, 0.4, 0.4 + step]))
+    before, here, after = path.planar_pose(np.array([0.4 - step, 0.4, 0.4 + step]))
     seen = np.linalg.inv(matrix(here)) @ ((matrix(after) - matrix(before)) / (2 * step))
     np.testing.assert_allclose(seen, se2(x + 1, y, yaw), atol=1e-4)
 
 
 @given(numbers, numbers, angles, st.integers(0, 2**32 - 1))
-def test_carry_is_the_place_s_matrix_and_carry_back_its_inverse(x, y, yaw, seed):
+def test_heading_to_ground_is_a_rigid_transform_and_ground_to_heading_its_inverse(x, y, yaw, seed):
     points = np.random.default_rng(seed).uniform(-1, 1, (4, 3))
-    carried = carry(np.array([x, y, yaw]), points)
+    carried = heading_to_ground(np.array([x, y, yaw]), points)
     flat = np.column_stack([points[:, :2], np.ones(4)]) @ matrix((x, y, yaw)).T
     np.testing.assert_allclose(carried[:, :2], flat[:, :2], atol=1e-13)
     np.testing.assert_array_equal(carried[:, 2], points[:, 2])
-    np.testing.assert_allclose(carry_back(np.array([x, y, yaw]), carried), points, atol=1e-13)
+    np.testing.assert_allclose(ground_to_heading(np.array([x, y, yaw]), carried), points, atol=1e-13)
 
 
-def test_carry_takes_batches_of_places_and_of_points():
+def test_heading_to_ground_broadcasts_poses_and_points():
     rng = np.random.default_rng(1)
     places, points = rng.normal(size=(5, 1, 3)), rng.normal(size=(2, 6, 3))
-    whole = carry(places, points)
+    whole = heading_to_ground(places, points)
     assert whole.shape == (5, 2, 6, 3)
     for i in range(5):
         for j in range(2):
-            np.testing.assert_array_equal(whole[i, j], carry(places[i, 0], points[j]))
+            np.testing.assert_array_equal(whole[i, j], heading_to_ground(places[i, 0], points[j]))
             np.testing.assert_array_equal(
-                carry_back(places, whole)[i, j], carry_back(places[i, 0], carry(places[i, 0], points[j]))
+                ground_to_heading(places, whole)[i, j],
+                ground_to_heading(places[i, 0], heading_to_ground(places[i, 0], points[j])),
             )
 
 
@@ -71,11 +80,15 @@ def test_every_array_library_gives_the_same(library):
     rng = np.random.default_rng(2)
     shares, points = rng.uniform(-1, 1, 7), rng.normal(size=(7, 4, 3))
     for displacement in ((1.0, -2.0, 0.7), (1.0, -2.0, 0.0), (0.1, 0.2, 1e-9)):
-        place = exponential(displacement, shares)
-        other = exponential(displacement, library.asarray(shares))
+        place = exponential_map(displacement, shares)
+        other = exponential_map(displacement, library.asarray(shares))
         np.testing.assert_allclose(np.asarray(other), place, atol=1e-14)
-        np.testing.assert_allclose(np.asarray(carry(other, points)), carry(place, points), atol=1e-14)
-        np.testing.assert_allclose(np.asarray(carry_back(other, points)), carry_back(place, points), atol=1e-14)
+        np.testing.assert_allclose(
+            np.asarray(heading_to_ground(other, points)), heading_to_ground(place, points), atol=1e-14
+        )
+        np.testing.assert_allclose(
+            np.asarray(ground_to_heading(other, points)), ground_to_heading(place, points), atol=1e-14
+        )
         np.testing.assert_allclose(
             np.asarray(BodyPath(displacement).travel(library.asarray(points))),
             BodyPath(displacement).travel(points),
@@ -84,9 +97,9 @@ def test_every_array_library_gives_the_same(library):
 
 
 @pytest.mark.parametrize("yaw", [0.0, 1e-9, 0.5, -3.0])
-def test_the_exponential_s_derivatives_are_finite_and_right_at_any_angle(yaw):
+def test_derivatives_of_the_exponential_map_are_correct_at_any_angle(yaw):
     def place(twist):
-        return exponential(twist, jnp.asarray(0.6))
+        return exponential_map(twist, jnp.asarray(0.6))
 
     twist = jnp.asarray([0.3, -0.2, yaw])
     step = 1e-6
@@ -95,9 +108,9 @@ def test_the_exponential_s_derivatives_are_finite_and_right_at_any_angle(yaw):
 
 
 @given(st.floats(0.001, 30), st.floats(-7, 7))
-def test_a_straight_path_goes_its_distance_in_its_heading_and_does_not_turn(distance, heading):
+def test_a_straight_path_has_its_distance_and_heading_without_turning(distance, heading):
     path = straight_path(distance, heading)
-    x, y, yaw = path.place(np.array(1.0))
+    x, y, yaw = path.planar_pose(np.array(1.0))
     assert math.hypot(x, y) == pytest.approx(distance, rel=1e-14)
     assert math.remainder(math.atan2(y, x) - heading, math.tau) == pytest.approx(0, abs=1e-12)
     assert yaw == 0
@@ -107,21 +120,21 @@ def test_a_straight_path_goes_its_distance_in_its_heading_and_does_not_turn(dist
 @given(st.floats(0.01, 12), st.sampled_from([-1, 1]), numbers, numbers, st.floats(0, 1))
 def test_a_curved_path_keeps_its_distance_to_the_centre_and_turns_by_its_angle(angle, sign, x, y, share):
     path = curved_path(sign * angle, (x, y))
-    place = path.place(np.array(share))
+    place = path.planar_pose(np.array(share))
     assert math.dist(place[:2], (x, y)) == pytest.approx(math.hypot(x, y), abs=1e-11)
     assert place[2] == pytest.approx(sign * angle * share)
     assert path.angle == sign * angle
-    seen = carry_back(place, np.array([[x, y, 0.0]]))
+    seen = ground_to_heading(place, np.array([[x, y, 0.0]]))
     np.testing.assert_allclose(seen[0, :2], (x, y), atol=1e-11)
 
 
 def test_turning_on_the_spot_is_a_curve_about_the_origin():
     np.testing.assert_array_equal(
-        curved_path(1.2).place(np.array([0.0, 0.5, 1.0])), [[0, 0, 0], [0, 0, 0.6], [0, 0, 1.2]]
+        curved_path(1.2).planar_pose(np.array([0.0, 0.5, 1.0])), [[0, 0, 0], [0, 0, 0.6], [0, 0, 1.2]]
     )
 
 
-def test_a_twist_path_is_its_speeds_for_its_duration():
+def test_a_twist_path_has_its_twist_for_its_duration():
     path = twist_path(0.1, -0.05, 0.3, 4.0)
     assert path.displacement == pytest.approx((0.4, -0.2, 1.2))
     assert path.duration == 4.0
@@ -129,15 +142,15 @@ def test_a_twist_path_is_its_speeds_for_its_duration():
     place, n = np.eye(3), 40_000
     for _ in range(n):
         place = place @ (np.eye(3) + se2(0.1, -0.05, 0.3) * (4.0 / n))
-    np.testing.assert_allclose(matrix(path.place(np.array(1.0))), place, atol=2e-5)
+    np.testing.assert_allclose(matrix(path.planar_pose(np.array(1.0))), place, atol=2e-5)
 
 
 @given(numbers, numbers, angles, st.integers(0, 2**32 - 1))
-def test_travel_is_the_length_of_the_foot_s_track_past_the_body(x, y, yaw, seed):
+def test_travel_is_the_length_of_the_foot_track_relative_to_the_body(x, y, yaw, seed):
     path = BodyPath((x + 0.5, y, yaw))
     feet = np.random.default_rng(seed).uniform(-0.3, 0.3, (6, 3))
     n = 2000
-    track = carry_back(path.place(np.linspace(0, 1, n + 1)), feet)
+    track = ground_to_heading(path.planar_pose(np.linspace(0, 1, n + 1)), feet)
     length = np.linalg.norm(np.diff(track, axis=0), axis=-1).sum(0)
     np.testing.assert_allclose(path.travel(feet), length, rtol=1e-4, atol=1e-9)
 
@@ -153,8 +166,8 @@ def test_a_displacement_must_be_three_finite_numbers(values):
 @pytest.mark.parametrize(
     "make", [lambda: straight_path(0.0), lambda: curved_path(0.0, (1, 2)), lambda: BodyPath((0, 0, 0))]
 )
-def test_a_path_must_go_somewhere(make):
-    with pytest.raises(InputError, match="goes nowhere"):
+def test_a_path_without_length_is_refused(make):
+    with pytest.raises(InputError, match="has no length"):
         make()
 
 
@@ -176,5 +189,5 @@ def test_arguments_that_are_not_finite_are_refused():
             twist_path(1.0, 0, 0, duration)
         with pytest.raises(InputError, match="duration is"):
             BodyPath((1.0, 0.0, 0.0), duration=duration)
-    with pytest.raises(InputError, match="goes nowhere"):
+    with pytest.raises(InputError, match="has no length"):
         twist_path(0, 0, 0, 1.0)

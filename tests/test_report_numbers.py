@@ -53,7 +53,7 @@ def test_walk_summary(kind):
     at = np.isclose(motion.time, summary["least_margin"]["at_s"])
     assert motion.margin[at] == pytest.approx(motion.margin.min())
     closest = summary["nearest_feet"]
-    assert closest["mm"] == pytest.approx(motion.feet_apart.min() * 1000)
+    assert closest["mm"] == pytest.approx(motion.least_foot_distance.min() * 1000)
     first, second = (motion.robot.leg_codes.index(code) for code in closest["legs"])
     feet = motion.feet[np.isclose(motion.time, closest["at_s"])][0]
     assert math.dist(feet[first], feet[second]) * 1000 == pytest.approx(closest["mm"])

@@ -17,7 +17,7 @@ from tarsus.control.startup.initial_state import initial_state
 from tarsus.control.startup.planner import fold, sit_down, stand_up
 from tarsus.control.startup.raise_body import raise_body
 from tarsus.errors import InputError, TarsusError, UnreachableError
-from tarsus.gait.setup import default_swing_height
+from tarsus.gait.walk_setup import default_swing_height
 from tarsus.kinematics.inverse import inverse_kinematics
 from tarsus.kinematics.leg import forward_kinematics
 from tarsus.kinematics.mass import centre_of_mass

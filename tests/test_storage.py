@@ -29,7 +29,7 @@ def read_csv(path):
         return list(csv.DictReader(file))
 
 
-def test_csv_has_the_motion_in_mm_and_degrees(tmp_path):
+def test_csv_contains_the_motion_in_mm_and_degrees(tmp_path):
     motion = walk()
     motion_to_csv(motion, tmp_path / "walk.csv")
     rows = read_csv(tmp_path / "walk.csv")
@@ -93,7 +93,7 @@ def test_loading_gives_the_same_motion_to_the_bit(robot, tmp_path):
     assert load_motion(tmp_path / "again.npz").robot == motion.robot
 
 
-def test_a_motion_planned_with_numpy_s_numbers_is_saved_as_well(tmp_path):
+def test_a_motion_planned_with_numpy_numbers_can_be_saved(tmp_path):
     motion = plan_walk(
         preset("strider"),
         Gait(np.float32(0.5), np.arange(6) % 2 / 2),
@@ -108,7 +108,7 @@ def test_a_motion_planned_with_numpy_s_numbers_is_saved_as_well(tmp_path):
     assert load_motion(tmp_path / "walk.npz").stroke == motion.stroke
 
 
-def test_saving_where_nothing_can_be_written_is_refused(tmp_path):
+def test_saving_to_an_invalid_path_is_refused(tmp_path):
     motion = walk()
     for write in (save_motion, motion_to_csv):
         with pytest.raises(InputError, match="can't be written: No such file"):
@@ -117,7 +117,7 @@ def test_saving_where_nothing_can_be_written_is_refused(tmp_path):
             write(motion, tmp_path)
 
 
-def test_a_file_that_is_not_there_or_no_motion_is_refused(tmp_path):
+def test_a_missing_or_invalid_file_is_refused(tmp_path):
     with pytest.raises(InputError, match="can't be read: No such file"):
         load_motion(tmp_path / "walk.npz")
     with pytest.raises(InputError, match="can't be read: Is a directory"):
@@ -130,12 +130,12 @@ def test_a_file_that_is_not_there_or_no_motion_is_refused(tmp_path):
     }.items():
         path = tmp_path / name
         path.write_bytes(content)
-        with pytest.raises(InputError, match="is not a motion that Tarsus saved"):
+        with pytest.raises(InputError, match="is not a motion file of Tarsus"):
             load_motion(path)
     np.save(tmp_path / "array.npy", np.zeros(3))
     np.savez(tmp_path / "arrays.npz", feet=np.zeros(3))
     for name in ("array.npy", "arrays.npz"):
-        with pytest.raises(InputError, match="is not a motion that Tarsus saved"):
+        with pytest.raises(InputError, match="is not a motion file of Tarsus"):
             load_motion(tmp_path / name)
 
 
@@ -150,20 +150,20 @@ def rewritten(motion, path, *, about=None, **arrays):
 
 def test_another_format_is_refused_by_its_name(tmp_path):
     rewritten(walk(), tmp_path / "walk.npz", about={"format": "tarsus motion 2"})
-    with pytest.raises(InputError, match="is of the format 'tarsus motion 2'; this version reads 'tarsus motion 1'"):
+    with pytest.raises(InputError, match="has the format 'tarsus motion 2'; this version reads 'tarsus motion 1'"):
         load_motion(tmp_path / "walk.npz")
 
 
-def test_what_does_not_fit_is_refused(tmp_path):
+def test_inconsistent_contents_are_refused(tmp_path):
     motion, path = walk(), tmp_path / "walk.npz"
     rewritten(motion, path, feet=motion.feet[:-1])
     with pytest.raises(InputError, match="a motion's feet has shape"):
         load_motion(path)
     rewritten(motion, path, about={"stroke": "long"})
-    with pytest.raises(InputError, match="is not a motion that Tarsus saved"):
+    with pytest.raises(InputError, match="is not a motion file of Tarsus"):
         load_motion(path)
     rewritten(motion, path, about={"gait": {"duty_factor": 2.0, "offsets": [0.0]}})
-    with pytest.raises(InputError, match=r"duty is 2\.0"):
+    with pytest.raises(InputError, match=r"duty_factor is 2\.0"):
         load_motion(path)
     rewritten(motion, path, about={"robot": 'name = "x"\n'})
     with pytest.raises(RobotFileError, match="the robot in "):
@@ -177,7 +177,7 @@ def test_a_damaged_file_is_refused_whatever_is_damaged(tmp_path):
     content = path.read_bytes()
     for end in range(0, len(content), len(content) // 60):
         path.write_bytes(content[:end])
-        with pytest.raises(InputError, match="is not a motion that Tarsus saved"):
+        with pytest.raises(InputError, match="is not a motion file of Tarsus"):
             load_motion(path)
     refused = 0
     for place in range(0, len(content), max(len(content) // 400, 1)):

@@ -10,9 +10,9 @@ from tarsus.gait.excursion import extreme_excursions, walk_excursions
 from tarsus.gait.gait import GAITS, Gait
 from tarsus.gait.path import BodyPath, curved_path, straight_path
 from tarsus.gait.plan import plan_walk
-from tarsus.gait.setup import default_swing_height
 from tarsus.gait.spacing import default_foot_distance, feet_distance, passing_distance
 from tarsus.gait.stroke import max_stroke, unit_twist
+from tarsus.gait.walk_setup import default_swing_height
 from tarsus.kinematics.inverse import inverse_kinematics
 from tarsus.kinematics.leg import forward_kinematics
 from tarsus.kinematics.stance import default_stance
@@ -25,17 +25,17 @@ DIRECTIONS = {
     "tight": (0.3, -1.0, -6.0),
     "turn": (0.0, 0.0, 1.0),
 }
-IMPOSSIBLE = ("out of reach", "jumps", "feet too near")
+IMPOSSIBLE = ("out of reach", "jumps", "feet too close")
 
 
 def walk_of(robot, gait, direction, *, stroke, cycles):
-    """A path of so many cycles of cruise at the stroke."""
+    """A path of a number of cycles at cruising speed."""
     rest = default_stance(robot, swing_height=default_swing_height(robot))
     return BodyPath(tuple(unit_twist(rest, direction) * stroke / gait.duty_factor * cycles))
 
 
 def works(robot, gait, direction, *, stroke, cycles, of, **more):
-    """Whether a walk is possible, told from its samples alone."""
+    """Whether a walk is possible, from its samples alone."""
     path = walk_of(robot, gait, direction, stroke=of, cycles=cycles)
     motion = plan_walk(robot, gait, path, stroke=stroke, cycle_time=1.0, rate=150, strict=False, **more)
     return not any(problem.startswith(IMPOSSIBLE) for problem in motion.problems)
@@ -45,7 +45,7 @@ def works(robot, gait, direction, *, stroke, cycles, of, **more):
 @pytest.mark.parametrize("direction", DIRECTIONS)
 @pytest.mark.parametrize("name", GAITS)
 @pytest.mark.parametrize("robot", PRESETS)
-def test_at_the_longest_stroke_every_walk_works_and_beyond_it_none_is_accepted(robot, name, direction):
+def test_walks_are_possible_up_to_the_longest_stroke_and_refused_beyond(robot, name, direction):
     robot, gait, direction = preset(robot), Gait.named(name), DIRECTIONS[direction]
     longest = max_stroke(robot, gait, direction)
     assert longest > 0.02
@@ -66,7 +66,7 @@ def test_at_the_longest_stroke_every_walk_works_and_beyond_it_none_is_accepted(r
 @pytest.mark.lengthy
 @pytest.mark.parametrize(("robot", "name"), [("strider", "tripod"), ("phantomx", "wave"), ("phoenix", "ripple")])
 @pytest.mark.parametrize("direction", ["forward", "curve", "turn"])
-def test_the_longest_stroke_is_what_bisection_over_whole_walks_finds(robot, name, direction):
+def test_the_longest_stroke_equals_a_bisection_over_whole_walks(robot, name, direction):
     """Over walks of several lengths, the shortest limit: never less than `max_stroke`, at most 2 per cent more."""
     robot, gait, direction = preset(robot), Gait.named(name), DIRECTIONS[direction]
     longest = max_stroke(robot, gait, direction)
@@ -82,7 +82,7 @@ def test_the_longest_stroke_is_what_bisection_over_whole_walks_finds(robot, name
 
 
 @pytest.mark.parametrize("robot", PRESETS)
-def test_every_shorter_stroke_works(robot):
+def test_every_shorter_stroke_is_possible(robot):
     robot, gait = preset(robot), Gait.named("tripod")
     for direction in DIRECTIONS.values():
         longest = max_stroke(robot, gait, direction)
@@ -115,13 +115,13 @@ def scan(robot, gait, heading, body_height, swing_height):
 @pytest.mark.parametrize("heading", [0.0, 0.9, math.pi / 2])
 @pytest.mark.parametrize("robot", ["strider", "ch3r", "makeyourpet", "phantomx-mk2"])
 def test_the_longest_stroke_against_an_independent_scan_of_the_steady_cycle(robot, heading):
-    """Start and stop hang over farther than the steady cycle that is scanned: at most 5 per cent of the stroke."""
+    """Excursions during start and stop exceed those of the steady cycle scanned: at most 5 per cent of the stroke."""
     robot, gait = preset(robot), Gait.named("tetrapod")
     steady = scan(robot, gait, heading, robot.gait.body_height, robot.gait.swing_height)
     assert 0.95 * steady <= max_stroke(robot, gait, heading) <= steady + 1e-3
 
 
-def test_one_leg_decides_and_only_in_the_directions_in_which_it_is_the_worst():
+def test_the_worst_leg_of_a_direction_limits_the_stroke():
     robot, gait = ring(6), Gait.named("tripod")
     limits = np.array(robot.limits)
     limits[1, 0] = [-0.2, 0.2]
@@ -135,7 +135,7 @@ def test_one_leg_decides_and_only_in_the_directions_in_which_it_is_the_worst():
     assert 1.6 * half < max_stroke(stiff, gait, 0.0) < 2 * half
 
 
-def test_a_heading_is_a_twist_and_a_twist_s_length_makes_no_difference():
+def test_headings_and_twists_of_any_size_are_equivalent():
     robot, gait = preset("strider"), Gait.named("ripple")
     expected = max_stroke(robot, gait, (math.cos(0.4), math.sin(0.4), 0.0))
     assert max_stroke(robot, gait, 0.4) == expected
@@ -144,14 +144,14 @@ def test_a_heading_is_a_twist_and_a_twist_s_length_makes_no_difference():
     assert max_stroke(robot, gait, (1e-200, 0, 0)) == max_stroke(robot, gait, (1e200, 0, 0)) == max_stroke(robot, gait)
 
 
-def test_a_symmetric_robot_s_strokes_are_symmetric():
+def test_strokes_of_a_symmetric_robot_are_symmetric():
     robot, gait = preset("strider"), Gait.named("wave")
     assert max_stroke(robot, gait, math.pi) == pytest.approx(max_stroke(robot, gait, 0.0), rel=2e-3)
     assert max_stroke(robot, gait, 0.5) == pytest.approx(max_stroke(robot, gait, -0.5), rel=2e-3)
     assert max_stroke(robot, gait, (1, 0, 3)) == pytest.approx(max_stroke(robot, gait, (1, 0, -3)), rel=2e-3)
 
 
-def test_a_higher_lift_a_tilt_and_a_wider_distance_shorten_it():
+def test_swing_height_tilt_and_foot_distance_shorten_the_stroke():
     robot, gait = preset("strider"), Gait.named("tripod")
     usual = max_stroke(robot, gait)
     assert max_stroke(robot, gait, swing_height=0.09) < usual
@@ -160,18 +160,18 @@ def test_a_higher_lift_a_tilt_and_a_wider_distance_shorten_it():
     apart = float(feet_distance(rest)[0])
     near = max_stroke(robot, gait, foot_distance=0.9 * apart)
     assert 0 < near < usual
-    with pytest.raises(CollisionError, match="keeps them apart"):
+    with pytest.raises(CollisionError, match="are possible"):
         plan_walk(robot, gait, straight_path(1.0), stroke=1.03 * near, cycle_time=1.0, foot_distance=0.9 * apart)
     plan_walk(robot, gait, straight_path(1.0), stroke=0.999 * near, cycle_time=1.0, foot_distance=0.9 * apart)
 
 
-def test_none_where_not_even_stepping_on_the_spot_works():
+def test_the_stroke_is_0_where_stepping_on_the_spot_is_impossible():
     robot, gait = preset("strider"), Gait.named("tripod")
     assert max_stroke(robot, gait, foot_distance=1.0) == 0
     assert max_stroke(robot, gait, body_tilt=(0.9, 0.0)) == 0
 
 
-def test_legs_round_one_axis_may_turn_as_far_as_it_is_looked():
+def test_the_search_ends_at_its_upper_bound():
     """With every coxa axis in the origin, turning on the spot only turns coxas: no stroke fails that is tried."""
     wide = np.array(ring(6).limits)
     wide[:, 0] = [-math.pi, math.pi]
@@ -189,8 +189,8 @@ def test_robots_with_other_numbers_of_legs(legs):
         assert works(robot, gait, direction, stroke=0.999 * longest, cycles=2.3, of=longest)
 
 
-def test_no_leg_is_let_behind_its_coxa_axis():
-    """mithi has no limits: it could reach behind its coxa axes, with a jump of half a turn on the way."""
+def test_no_foot_moves_behind_its_coxa_axis():
+    """mithi has no limits: it could reach behind its coxa axes, with a jump of half a turn."""
     robot, gait = preset("mithi"), Gait.named("tripod")
     for direction in ((0, 0, 1), (0, 1, 1), (0.9, 0.5, 0)):
         longest = max_stroke(robot, gait, direction)
@@ -203,7 +203,7 @@ def test_no_leg_is_let_behind_its_coxa_axis():
 
 @pytest.mark.parametrize("duty_factor", [0.3, 0.5, 2 / 3, 0.95])
 @pytest.mark.parametrize("curved", [False, True])
-def test_no_foot_of_any_walk_is_farther_from_rest_than_the_extremes(duty_factor, curved):
+def test_no_walk_exceeds_the_extreme_excursions(duty_factor, curved):
     """Against walks with other lengths and offsets than those that the extremes were picked from."""
     extremes = extreme_excursions(duty_factor, curved=curved)
     levels = np.unique(extremes.up.round(12))
@@ -216,7 +216,7 @@ def test_no_foot_of_any_walk_is_farther_from_rest_than_the_extremes(duty_factor,
         assert np.abs(walk.offset[~air]).max() <= 0.5 + 1e-9
 
 
-def test_where_the_feet_of_excursions_are():
+def test_feet_of_excursions():
     rest = default_stance(preset("strider"), swing_height=0.03) * [1, 1, 0]
     moments = walk_excursions(Gait.named("tripod"))
     feet = moments.feet(rest, np.array([[0.1, 0.0, 0.0], [0.0, 0.2, 0.0]]), 0.03)
@@ -229,7 +229,7 @@ def test_where_the_feet_of_excursions_are():
     )
 
 
-def test_branches_tell_the_facing_and_the_knee():
+def test_branches_distinguish_facing_and_knee():
     robot = ring(4)
     angles = np.deg2rad([[[0, 30, -60], [0, 30, 40], [0, 130, 60], [0, 100, -10]]] * 2)
     np.testing.assert_array_equal(
@@ -237,21 +237,21 @@ def test_branches_tell_the_facing_and_the_knee():
     )
 
 
-def test_default_lift_and_foot_distance():
+def test_default_swing_height_and_foot_distance():
     robot = preset("strider")
     assert default_swing_height(robot) == robot.gait.swing_height
     assert default_foot_distance(robot) == 2 * float(np.max(robot.foot_radius)) + 0.01
     assert default_swing_height(ring(6)) == pytest.approx((0.12 - 0.04) / 4)
 
 
-def test_feet_distance_names_the_nearest_two():
+def test_feet_distance_returns_the_closest_pair():
     feet = np.array([[0, 0, 0], [1, 0, 0], [1, 0.1, 0.2], [5, 5, 5.0]])
     distance, pair = feet_distance(np.stack([feet, feet[::-1]]))
     np.testing.assert_allclose(distance, math.hypot(0.1, 0.2))
     np.testing.assert_array_equal(pair, [[1, 2], [1, 2]])
 
 
-def test_feet_that_pass_each_other_between_two_moments_are_seen():
+def test_feet_that_pass_each_other_between_samples_are_found():
     start = np.array([[0.0, 0, 0], [1.0, 0.03, 0], [9, 9, 0]])
     feet = np.stack([start, [[1.0, 0, 0], [0.0, 0.03, 0], [9, 9, 0]], [[1.0, 0, 0], [0.0, 0.03, 0], [9, 9, 0]]])
     distance, pair = passing_distance(feet)
@@ -263,7 +263,7 @@ def test_feet_that_pass_each_other_between_two_moments_are_seen():
     assert passing_distance(moves)[0][0] == pytest.approx(feet_distance(fine)[0].min(), abs=1e-5)
 
 
-def test_what_is_refused():
+def test_invalid_arguments_are_refused():
     robot, gait = preset("strider"), Gait.named("tripod")
     with pytest.raises(InputError, match="single robot, not for a batch"):
         max_stroke(stack_robots([robot, robot]), gait)
@@ -272,7 +272,7 @@ def test_what_is_refused():
     with pytest.raises(UnreachableError, match="body heights between"):
         max_stroke(robot, gait, body_height=0.5)
     for direction in (math.nan, math.inf, (math.nan, 0, 1), (0, 0, 0), (1, 2)):
-        with pytest.raises(InputError, match=r"finite|goes nowhere"):
+        with pytest.raises(InputError, match=r"finite|has no length"):
             max_stroke(robot, gait, direction)
     for bad in (math.nan, math.inf, -math.inf, 1e300):
         with pytest.raises(InputError, match="body_height is"):
@@ -286,7 +286,7 @@ def test_what_is_refused():
             max_stroke(robot, gait, body_tilt=bad)
 
 
-def test_a_curve_s_stroke_is_that_of_the_foot_farthest_from_the_centre():
+def test_the_stroke_of_a_curve_is_that_of_the_outermost_foot():
     rest = default_stance(preset("strider"), swing_height=0.03)
     for centre in ((0.0, 0.0), (0.0, 0.5), (0.2, -0.1)):
         twist = unit_twist(rest, curved_path(2.0, centre).displacement)

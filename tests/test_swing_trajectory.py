@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tarsus.control.walk.swing_trajectory import quintic, stopping_fraction, stopping_height, swinging_height
-from tarsus.gait.swing import swing
+from tarsus.gait.swing import swing_position
 
 number = st.floats(-1, 1)
 state = st.tuples(number, number, number)
@@ -29,7 +29,7 @@ def test_advancing_in_two_steps_equals_one(start, target, remaining, fraction):
 
 def test_from_rest_it_is_the_planned_swing():
     fractions = np.linspace(0, 1, 11)
-    planned = swing(np.array([0.1, -0.2, 0.01]), np.array([0.25, -0.1, 0.03]), fractions, 0.04)
+    planned = swing_position(np.array([0.1, -0.2, 0.01]), np.array([0.25, -0.1, 0.03]), fractions, 0.04)
     found = quintic((complex(0.1, -0.2), 0j, 0j), complex(0.25, -0.1), 1.0, fractions)[0]
     np.testing.assert_allclose(found, planned[:, 0] + 1j * planned[:, 1], atol=1e-15)
     heights = [swinging_height(x, start=0.01, ground=0.03, swing_height=0.04) for x in fractions.tolist()]

@@ -47,7 +47,7 @@ if TYPE_CHECKING:
     from tarsus.gait.plan import plan_walk
     from tarsus.gait.storage import load_motion, motion_to_csv, motion_to_dataset, save_motion
     from tarsus.gait.stroke import max_stroke
-    from tarsus.kinematics.body import coxa_frames, reachable_share
+    from tarsus.kinematics.body import coxa_frames, reachable_fraction
     from tarsus.kinematics.inverse import inverse_kinematics
     from tarsus.kinematics.leg import forward_kinematics, leg_jacobian
     from tarsus.kinematics.mass import centre_of_mass, total_mass
@@ -129,7 +129,7 @@ _HOMES = {
     "tarsus.gait.plan": ("plan_walk",),
     "tarsus.gait.storage": ("load_motion", "motion_to_csv", "motion_to_dataset", "save_motion"),
     "tarsus.gait.stroke": ("max_stroke",),
-    "tarsus.kinematics.body": ("coxa_frames", "reachable_share"),
+    "tarsus.kinematics.body": ("coxa_frames", "reachable_fraction"),
     "tarsus.kinematics.inverse": ("inverse_kinematics",),
     "tarsus.kinematics.leg": ("forward_kinematics", "leg_jacobian"),
     "tarsus.kinematics.mass": ("centre_of_mass", "total_mass"),
@@ -259,7 +259,7 @@ __all__ = [
     "plot_timeline",
     "power_off_order",
     "reachable_band",
-    "reachable_share",
+    "reachable_fraction",
     "resting_pose",
     "robot_from_dict",
     "robot_schema",

@@ -23,7 +23,7 @@ from tarsus.control.states.robot_state import RobotState, next_state, requested_
 from tarsus.control.walk_controller import WalkController
 from tarsus.errors import TarsusError
 from tarsus.gait.gait import Gait
-from tarsus.gait.setup import require_number
+from tarsus.gait.walk_setup import require_number
 from tarsus.kinematics.leg import forward_kinematics
 from tarsus.kinematics.pose import Pose
 from tarsus.robot.robot import Robot

@@ -24,7 +24,7 @@ from tarsus.control.tick.state import TickState
 from tarsus.control.walk.ground_pose import body_pose, foot_positions
 from tarsus.control.walk_state import WalkState
 from tarsus.gait.gait import Gait
-from tarsus.gait.setup import require_number
+from tarsus.gait.walk_setup import require_number
 from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.stability import stability_margin
 from tarsus.robot.robot import Robot

@@ -1,1 +1,1 @@
-"""How the robot walks."""
+"""Gaits, paths and planned motions: pure functions without state."""

@@ -1,4 +1,4 @@
-"""Whether a leg keeps to one of the ways in which it can reach a foot: going over to another is a jump."""
+"""Inverse-kinematics branch of each leg: a leg that changes branch within a motion jumps."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ __all__ = ["branches"]
 
 
 def branches(robot: Robot, angles: Array) -> np.ndarray[Any, Any]:
-    """Return by which solution of the inverse kinematics each leg stands.
+    """Return the branch of the inverse kinematics of each leg.
 
     Parameters
     ----------
@@ -25,9 +25,9 @@ def branches(robot: Robot, angles: Array) -> np.ndarray[Any, Any]:
     Returns
     -------
     array of bool, shape (..., legs, 2)
-        Whether the foot is behind the coxa axis (reached with the leg's plane turned away), and whether the knee is
-        bent upwards.
+        Whether the foot is behind the coxa axis (the leg's plane faces away from it), and whether the tibia is bent
+        upwards.
     """
     femur, tibia = np.asarray(angles)[..., 1], np.asarray(angles)[..., 2]
-    out = robot.coxa + robot.femur * np.cos(femur) + robot.tibia * np.cos(femur + tibia)
-    return np.stack([out < 0, tibia > 0], axis=-1)
+    reach = robot.coxa + robot.femur * np.cos(femur) + robot.tibia * np.cos(femur + tibia)
+    return np.stack([reach < 0, tibia > 0], axis=-1)

@@ -1,4 +1,4 @@
-"""How far from their rest footholds feet get in a walk, start and stop included, whatever its length."""
+"""Largest excursions of the feet from their rest footholds in a walk of any length, start and stop included."""
 
 from __future__ import annotations
 
@@ -9,36 +9,37 @@ import numpy as np
 
 from tarsus.arrays import Array
 from tarsus.gait.gait import Gait
-from tarsus.gait.path import carry, exponential
-from tarsus.gait.swing import ground_share, height_share
-from tarsus.gait.timing import BodyClock, Steps, least_step_share, plan_steps
+from tarsus.gait.path import exponential_map, heading_to_ground
+from tarsus.gait.swing import horizontal_profile, vertical_profile
+from tarsus.gait.timing import BodyClock, Steps, least_step_fraction, plan_steps
 
-__all__ = ["MOMENTS_OF_SWING", "Excursions", "extreme_excursions", "walk_excursions"]
+__all__ = ["SWING_SAMPLES", "Excursions", "extreme_excursions", "walk_excursions"]
 
 _OFFSETS = 24
-_SHARES = np.linspace(0.0, 1.0, 49)
-# Cruising time between start and stop [cycles] with which no step both starts and stops; shorter walks, and those of
-# another number of cycles, get no farther from rest (measured: by 0.001 of a stroke).
+_PHASES = np.linspace(0.0, 1.0, 49)
+# Cruising time between start and stop [cycles] beyond which no step belongs to both. In shorter walks the excursions
+# are at most 0.001 of a stroke larger (measured).
 _CRUISE = 2.0
 _CRUISES_OF_WALKS = (0.0, 0.75, 1.5, 2.0, 2.25)
 _STANCE = np.linspace(-0.5, 0.5, 9)
 _INWARD = (0.0, 0.1, 0.3, 1.0)
 
-MOMENTS_OF_SWING = 24
-"""Moments of every swing at which feet are looked at for how near they come to each other."""
+SWING_SAMPLES = 24
+"""Samples per swing at which the distance between feet is checked."""
 
 
 class Excursions(NamedTuple):
-    """Moments of feet: arrays ``(k, legs)``, or ``(k, 1)`` where any leg may come by them.
+    """Foot positions within a walk, relative to the body, in units of stroke and swing height.
 
     Attributes
     ----------
-    last, following : array
-        Where the body has the last and the next foothold at rest, less where it is, in strokes along the path.
-    along : array
-        Share of the way over the ground from the one to the other.
-    up : array
-        Height over the lift.
+    last, following : array, shape (k, legs) or (k, 1)
+        Displacement of the previous and of the next foothold from the rest foothold, in strokes along the path;
+        ``(k, 1)`` if valid for every leg.
+    along : array, shape (k, legs) or (k, 1)
+        Fraction of the horizontal distance from the previous to the next foothold.
+    up : array, shape (k, legs) or (k, 1)
+        Height as a fraction of the swing height.
     """
 
     last: np.ndarray[Any, Any]
@@ -48,12 +49,12 @@ class Excursions(NamedTuple):
 
     @classmethod
     def joined(cls, *parts: Excursions) -> Excursions:
-        """Join the moments of several."""
+        """Concatenate several sets of positions."""
         return cls(*(np.concatenate(columns) for columns in zip(*parts, strict=True)))
 
     @property
     def offset(self) -> np.ndarray[Any, Any]:
-        """Place along a straight path, from the rest foothold, in strokes."""
+        """Displacement from the rest foothold along a straight path ``(k, legs)``, in strokes."""
         return np.asarray(self.last + (self.following - self.last) * self.along)
 
     def feet(self, rest: Array, twist: Array, swing_height: float) -> np.ndarray[Any, Any]:
@@ -64,9 +65,9 @@ class Excursions(NamedTuple):
         rest : array, shape (legs, 3)
             Rest footholds [m].
         twist : array, shape (..., 3)
-            What the body moves in one stance time: forward [m], left [m], yaw [rad].
+            Displacement of the body in one stance time: forward [m], left [m], yaw [rad].
         swing_height : float
-            Lift [m].
+            Swing height [m].
 
         Returns
         -------
@@ -75,8 +76,8 @@ class Excursions(NamedTuple):
         """
         displacement = [np.asarray(twist)[..., i, None, None] for i in range(3)]
         each = np.asarray(rest)[:, None, :]
-        start = carry(exponential(displacement, self.last), each)[..., 0, :]
-        end = carry(exponential(displacement, self.following), each)[..., 0, :]
+        start = heading_to_ground(exponential_map(displacement, self.last), each)[..., 0, :]
+        end = heading_to_ground(exponential_map(displacement, self.following), each)[..., 0, :]
         feet = start + (end - start) * self.along[..., None]
         feet[..., 2] += self.up * swing_height
         return np.asarray(feet)
@@ -84,13 +85,12 @@ class Excursions(NamedTuple):
 
 @functools.lru_cache(maxsize=64)
 def extreme_excursions(duty_factor: float, *, curved: bool) -> Excursions:
-    """Return the moments ``(k, 1)`` at which a foot is farthest from its track, of all walks with a duty factor.
+    """Return the extreme foot positions ``(k, 1)`` of all walks with a duty factor.
 
-    A step while the body gathers speed is shorter than one in cruise, so that the foot hangs over farther before it
-    lands; how far depends on when in the cycle the leg starts, and on how long the walk is. Of all steps of all
-    such walks these are, at every height of the foot, the farthest ahead or behind; with them one steady cycle.
-    Round a centre the swings cut across the arc, the deeper the longer the step: of a curved walk these are also the
-    farthest in directions between ahead or behind and inwards.
+    While the body accelerates, a step is shorter than at cruising speed and the foot exceeds the excursion of a steady
+    step before it lands; by how much depends on the offset of the leg and on the length of the walk. The result holds,
+    for every height of the foot, the positions farthest ahead and behind in all steps of all such walks, and one steady
+    cycle. On a curved walk the swings cut across the arc, so positions farthest inwards are included too.
 
     Parameters
     ----------
@@ -100,15 +100,15 @@ def extreme_excursions(duty_factor: float, *, curved: bool) -> Excursions:
         Whether the walk turns.
     """
     every = _swings(duty_factor)
-    ahead = every.offset.reshape(-1, len(_SHARES))
+    ahead = every.offset.reshape(-1, len(_PHASES))
     length = (every.following - every.last).reshape(ahead.shape)
     picked = np.unique(
         [
-            (side * ahead + inward * length)[:, moment].argmax() * len(_SHARES) + moment
-            for moment, share in enumerate(_SHARES)
+            (side * ahead + inward * length)[:, sample].argmax() * len(_PHASES) + sample
+            for sample, phase in enumerate(_PHASES)
             for side in (-1, 1)
-            # A foot that rises hangs behind, one that sinks ahead.
-            if (share - 0.5) * side >= 0
+            # A rising foot is behind the middle of its step, a sinking one ahead.
+            if (phase - 0.5) * side >= 0
             for inward in (_INWARD if curved else _INWARD[:1])
         ]
     )
@@ -119,7 +119,7 @@ def extreme_excursions(duty_factor: float, *, curved: bool) -> Excursions:
 
 @functools.lru_cache(maxsize=64)
 def walk_excursions(gait: Gait) -> Excursions:
-    """Return the moments ``(k, legs)`` of whole short walks, every leg at the same moment.
+    """Return the foot positions ``(k, legs)`` of whole short walks, all legs at the same time.
 
     Parameters
     ----------
@@ -130,37 +130,39 @@ def walk_excursions(gait: Gait) -> Excursions:
 
 
 def _steady_swing(duty_factor: float) -> Excursions:
-    """Return one swing in cruise."""
-    share = _SHARES[::2, None]
-    since = 0.5 + share * (1 - duty_factor) / duty_factor
-    return Excursions(-since, 1 / duty_factor - since, ground_share(share), height_share(share))
+    """Return one swing at cruising speed."""
+    phase = _PHASES[::2, None]
+    since_mid_stance = 0.5 + phase * (1 - duty_factor) / duty_factor
+    along, up = horizontal_profile(phase), vertical_profile(phase)
+    return Excursions(-since_mid_stance, 1 / duty_factor - since_mid_stance, along, up)
 
 
 def _swings(duty_factor: float) -> Excursions:
-    """Return all swings of a walk, of legs that start anywhere in the cycle."""
+    """Return all swings of a walk, for legs with any offset."""
     gait = Gait(duty_factor, tuple(np.arange(_OFFSETS) / _OFFSETS))
     steps, strokes = _walk_steps(gait, _CRUISE)
     number = np.arange(-2, int(_CRUISE) + 3)[:, None]
-    last, following = steps.foothold_share(number), steps.foothold_share(number + 1)
+    last, following = steps.foothold_fraction(number), steps.foothold_fraction(number + 1)
     lift_off = number + np.asarray(gait.offsets) + duty_factor
     moves = last != following
-    body = steps.clock.share(lift_off[moves][:, None] + _SHARES * (1 - duty_factor))
-    start, end = ((share[moves][:, None] - body) * strokes for share in (last, following))
-    along, up = ground_share(_SHARES) + 0 * body, height_share(_SHARES) + 0 * body
+    body = steps.clock.fraction(lift_off[moves][:, None] + _PHASES * (1 - duty_factor))
+    start, end = ((foothold[moves][:, None] - body) * strokes for foothold in (last, following))
+    along, up = horizontal_profile(_PHASES) + 0 * body, vertical_profile(_PHASES) + 0 * body
     return Excursions(*(column.reshape(-1, 1) for column in (start, end, along, up)))
 
 
 def _walk(gait: Gait, cruise: float) -> Excursions:
-    """Return a walk with so many cycles of cruise."""
+    """Return the foot positions of a walk that cruises for a number of cycles."""
     steps, strokes = _walk_steps(gait, cruise)
-    time = np.arange(steps.start, steps.end, (1 - gait.duty_factor) / MOMENTS_OF_SWING)
-    last, following, swung, _ = steps.at(time)
-    body = steps.clock.share(time)[:, None]
-    return Excursions((last - body) * strokes, (following - body) * strokes, ground_share(swung), height_share(swung))
+    time = np.arange(steps.start, steps.end, (1 - gait.duty_factor) / SWING_SAMPLES)
+    last, following, swing_phase, _ = steps.at(time)
+    body = steps.clock.fraction(time)[:, None]
+    along, up = horizontal_profile(swing_phase), vertical_profile(swing_phase)
+    return Excursions((last - body) * strokes, (following - body) * strokes, along, up)
 
 
 def _walk_steps(gait: Gait, cruise: float) -> tuple[Steps, float]:
-    """Return the steps of a walk with so many cycles of cruise, a second each, and its length in strokes."""
+    """Return the steps of a walk that cruises for a number of cycles of 1 s, and its length in strokes."""
     clock = BodyClock(rate=1 / (1 + cruise), ramp=1.0, cruise=cruise)
     strokes = (1 + cruise) / gait.duty_factor
-    return plan_steps(gait, clock, cycle_time=1.0, least_step=least_step_share(strokes)), strokes
+    return plan_steps(gait, clock, cycle_time=1.0, least_step=least_step_fraction(strokes)), strokes

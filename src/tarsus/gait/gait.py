@@ -1,4 +1,4 @@
-"""In which order the legs step: duty factor and offsets, in the words of the literature."""
+"""Gaits: duty factor and offsets of the legs."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ __all__ = ["GAITS", "Gait"]
 
 
 def _tripod(legs: int) -> tuple[float, tuple[float, ...]]:
-    """Even legs against odd legs."""
+    """Even and odd legs alternate."""
     return 1 / 2, tuple(0.5 * (leg % 2) for leg in range(legs))
 
 
@@ -44,8 +44,8 @@ _NAMED: dict[str, Callable[[int], tuple[float, tuple[float, ...]]]] = {
 }
 _ALIASES = {"amble": "tetrapod"}
 
-# What counts as the same moment, in cycles.
-_MOMENT = 1e-9
+# Tolerance of equal phases [cycles].
+_ROUNDING = 1e-9
 
 GAITS = tuple(_NAMED)
 """Names of the gaits that `Gait.named` knows."""
@@ -53,16 +53,16 @@ GAITS = tuple(_NAMED)
 
 @dataclass(frozen=True)
 class Gait:
-    """A periodic order of steps.
+    """A periodic sequence of steps.
 
     Attributes
     ----------
     duty_factor : float
-        Duty factor: the share of the cycle that a foot is on the ground.
+        Fraction of the cycle for which a foot is on the ground.
     offsets : tuple of float
-        For each leg, the share of the cycle at which its foot touches down, in [0, 1).
+        For each leg, the phase of the cycle at which its foot touches down, in [0, 1).
     name : str
-        What it is called.
+        Name.
     """
 
     duty_factor: float
@@ -74,12 +74,12 @@ class Gait:
             object.__setattr__(self, "duty_factor", float(self.duty_factor))
             object.__setattr__(self, "offsets", tuple(float(offset) for offset in self.offsets))
         except (TypeError, ValueError) as error:
-            raise InputError(f"gait {self.name!r}: duty and offsets must be numbers: {error}") from None
+            raise InputError(f"gait {self.name!r}: duty_factor and offsets must be numbers: {error}") from None
         if not self.offsets:
-            raise InputError(f"gait {self.name!r} has no legs: offsets must be one for each leg")
+            raise InputError(f"gait {self.name!r}: offsets is empty; it must have one value for each leg")
         if not 0 < self.duty_factor < 1:
             raise InputError(
-                f"gait {self.name!r}: duty is {self.duty_factor}; it must be between 0 and 1, both excluded"
+                f"gait {self.name!r}: duty_factor is {self.duty_factor}; it must be greater than 0 and less than 1"
             )
         for leg, offset in enumerate(self.offsets):
             if not 0 <= offset < 1:
@@ -87,29 +87,29 @@ class Gait:
 
     @classmethod
     def named(cls, name: str, *, legs: int = 6) -> Self:
-        """Return a gait of the literature.
+        """Return one of the standard gaits.
 
         Parameters
         ----------
         name : str
-            ``"tripod"`` (duty 1/2), ``"tetrapod"`` (2/3, also called amble), ``"ripple"`` (2/3) or ``"wave"``
+            ``"tripod"`` (duty factor 1/2), ``"tetrapod"`` (2/3, also called amble), ``"ripple"`` (2/3) or ``"wave"``
             ((legs - 1)/legs: 5/6 for six). Source 004's "ripple", with five feet down, is the wave.
         legs : int
-            Number of legs: tetrapod and ripple are for six, tripod for an even number of at least six.
+            Number of legs: tetrapod and ripple require six, tripod an even number of at least six, wave at least four.
 
         Raises
         ------
         UnknownNameError
             If there is no such gait.
         InputError
-            If the gait is not for that many legs.
+            If the gait does not exist for that number of legs.
         """
         key = _ALIASES.get(str(name).lower(), str(name).lower())
         if key not in _NAMED:
             raise UnknownNameError.of("gait", str(name), (*_NAMED, *_ALIASES))
         fits = {"tripod": legs >= 6 and legs % 2 == 0, "wave": legs >= 4}.get(key, legs == 6)
         if not fits:
-            raise InputError(f"the {key} gait is not for {legs} legs; the wave gait is for any number from 4")
+            raise InputError(f"the {key} gait does not exist for {legs} legs; the wave gait does for 4 or more")
         duty_factor, offsets = _NAMED[key](legs)
         return cls(duty_factor=duty_factor, offsets=offsets, name=key)
 
@@ -120,16 +120,16 @@ class Gait:
 
     @property
     def fewest_feet_down(self) -> int:
-        """The least number of feet that are on the ground at any moment of the cycle."""
-        # It falls only at lift-offs; a moment after each tells all there is.
-        after = np.asarray(self.offsets) + self.duty_factor + 2 * _MOMENT
+        """Least number of feet on the ground during the cycle."""
+        # The number decreases only at lift-offs.
+        after = np.asarray(self.offsets) + self.duty_factor + 2 * _ROUNDING
         return int(self.phase(after)[2].sum(-1).min())
 
     def phase(self, clock: Array) -> tuple[Array, Array, Array]:
-        """Return which step each leg is in, how far, and whether its foot is down.
+        """Return the step, the phase and the contact of each leg.
 
-        At the moment of a touchdown or a lift-off the foot counts as down: where one foot takes over from another,
-        rounding never leaves both in the air.
+        At touchdown and at lift-off a foot counts as on the ground, so that rounding never leaves two feet in the air
+        of which one lifts off as the other touches down.
 
         Parameters
         ----------
@@ -139,21 +139,21 @@ class Gait:
         Returns
         -------
         step : array, shape (..., legs)
-            Number of the step, a whole number; it begins with the touchdown.
+            Number of the step, a whole number; a step begins with the touchdown.
         phase : array, shape (..., legs)
-            Share of the step's cycle that is over, in [0, 1).
+            Time since the touchdown in cycles, in [0, 1).
         stance : array of bool, shape (..., legs)
-            Whether the foot is on the ground: while the phase is below the duty factor.
+            Whether the foot is on the ground: the phase is at most the duty factor.
         """
         xp = namespace(clock)
         since = xp.asarray(clock)[..., None] - xp.asarray(self.offsets)
-        step = xp.floor(since + _MOMENT)
+        step = xp.floor(since + _ROUNDING)
         phase = since - step
         phase = xp.where(phase < 0, xp.zeros_like(phase), phase)
-        return step, phase, phase <= self.duty_factor + _MOMENT
+        return step, phase, phase <= self.duty_factor + _ROUNDING
 
     def require_legs(self, legs: int) -> None:
-        """Refuse a robot with another number of legs.
+        """Refuse a robot with a different number of legs.
 
         Parameters
         ----------
@@ -163,7 +163,7 @@ class Gait:
         Raises
         ------
         InputError
-            If the gait is for another number.
+            If the numbers differ.
         """
         if self.legs != legs:
             raise InputError(f"gait {self.name!r} is for {self.legs} legs, the robot has {legs}")

@@ -1,4 +1,4 @@
-"""A motion: the body, the feet and the joints over time, with a verdict."""
+"""A motion: body, feet and joint angles over time, and what of it is not possible."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ __all__ = ["Motion"]
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]
 
-# A leg that goes over to another way to reach its foot, and a joint with it by more than this, jumps [rad].
+# Change of an angle from one sample to the next, with a change of branch, above which a leg jumps [rad].
 _JUMP = 0.1
 
 
@@ -36,13 +36,13 @@ class Motion:
     Attributes
     ----------
     robot : Robot
-        Whose motion it is.
+        The robot.
     gait : Gait
-        The order of its steps.
+        Its gait.
     time : array, shape (n,)
-        Moments, from 0 [s].
+        Times of the samples, from 0 [s].
     body : Pose
-        Places of B in G, ``(n,)``.
+        Poses of B in G, with batch axes ``(n,)``.
     feet : array, shape (n, legs, 3)
         Feet in G [m].
     contacts : array of bool, shape (n, legs)
@@ -52,12 +52,12 @@ class Motion:
     reach : array of int8, shape (n, legs)
         Codes of `Reach`.
     cycle_time, stroke, speed : float
-        Duration of a cycle [s]; stroke of the foot that goes farthest [m]; its speed past the body while cruising
-        [m/s], on a straight walk the body's speed.
+        Duration of a cycle [s]; stroke of the outermost foot [m]; its speed relative to the body while cruising [m/s],
+        on a straight walk the speed of the body.
     body_height, swing_height, foot_distance : float
-        Height of the body's origin, lift of the swinging feet, least distance between feet that was asked for [m].
+        Height of the body's origin above the ground, swing height, least distance between feet allowed [m].
     assumed : tuple of str
-        What was not given and had to be assumed.
+        Assumptions where neither the caller nor the robot file gave a value.
     """
 
     robot: Robot
@@ -84,7 +84,7 @@ class Motion:
         self._check_shapes()
 
     def _check_shapes(self) -> None:
-        """Refuse arrays that don't fit together."""
+        """Refuse arrays of inconsistent shapes."""
         n, legs = self.time.size, self.robot.legs
         self.gait.require_legs(legs)
         shapes = {"time": (n,), "feet": (n, legs, 3), "contacts": (n, legs), "angles": (n, legs, 3), "reach": (n, legs)}
@@ -94,49 +94,49 @@ class Motion:
         if self.body.batch_shape != (n,):
             raise InputError(f"a motion's body has batch axes {self.body.batch_shape}; expected {(n,)}")
         if n < 2 or not (np.diff(self.time) > 0).all():
-            raise InputError("a motion needs two moments or more, each later than the one before")
+            raise InputError("a motion needs two samples or more, at increasing times")
 
     @cached_property
     def margin(self) -> Floats:
-        """Static stability margin at every moment ``(n,)`` [m]."""
+        """Static stability margin at every sample ``(n,)`` [m]."""
         return np.asarray(stability_margin(self.robot, self.angles, self.body, self.contacts))
 
     @cached_property
     def joint_speed(self) -> Floats:
-        """Speed of every joint at every moment ``(n, legs, 3)`` [rad/s], by central differences."""
+        """Velocity of every joint at every sample ``(n, legs, 3)`` [rad/s], by central differences."""
         speed: Floats = np.gradient(self.angles, self.time, axis=0)
         return speed
 
     @cached_property
-    def feet_apart(self) -> Floats:
-        """Distance between the two nearest feet at every moment ``(n,)`` [m]."""
+    def least_foot_distance(self) -> Floats:
+        """Distance between the two closest feet at every sample ``(n,)`` [m]."""
         return feet_distance(self.feet)[0]
 
     @property
     def duration(self) -> float:
-        """How long it takes [s]."""
+        """Duration [s]."""
         return float(self.time[-1])
 
     @property
     def steps(self) -> int:
-        """How many times a foot is lifted."""
+        """Number of lift-offs."""
         return int((self.contacts[:-1] & ~self.contacts[1:]).sum())
 
     @cached_property
     def speed_ratio(self) -> Floats:
-        """Largest speed of each joint over its servo's no-load speed ``(legs, 3)``; NaN where that is unknown."""
+        """Greatest speed of each joint over the no-load speed of its servo ``(legs, 3)``; NaN where that is unknown."""
         limits = [[math.nan if s is None else s.no_load_speed or math.nan for s in leg] for leg in self.robot.servos]
         fastest: Floats = np.abs(self.joint_speed).max(0)
         return np.asarray(fastest / np.array(limits))
 
     @cached_property
     def problems(self) -> tuple[str, ...]:
-        """What of it is not possible, a line for each kind with its first or worst moment; empty where all of it is."""
+        """What is not possible, a line for each kind of problem with its first or worst sample; empty if none."""
         return tuple(self._problems())
 
     @property
     def ok(self) -> bool:
-        """Whether all of it is possible: reach without jumps, balance, distance between the feet, joint speeds."""
+        """Whether the motion is possible: reach, branch, stability, distance between feet, joint speeds."""
         return not self.problems
 
     def _problems(self) -> Iterator[str]:
@@ -144,20 +144,20 @@ class Motion:
             yield self._why_unreachable()
         yield from self._jumps()
         yield from self._tips_over()
-        yield from self._feet_too_near()
+        yield from self._feet_too_close()
         yield from self._too_fast()
 
     def _jumps(self) -> Iterator[str]:
-        """Tell where a leg goes over to another way to reach its foot, as inverse kinematics may have it."""
+        """Yield the largest jump of a leg that changes its inverse-kinematics branch."""
         side = branches(self.robot, self.angles)
         change = np.abs(np.diff(self.angles, axis=0))
         change *= (side[1:] != side[:-1]).any(-1)[..., None]
-        moment, leg, joint = np.unravel_index(int(np.argmax(change)), change.shape)
-        if change[moment, leg, joint] > _JUMP:
-            turn = math.degrees(change[moment, leg, joint])
+        sample, leg, joint = np.unravel_index(int(np.argmax(change)), change.shape)
+        if change[sample, leg, joint] > _JUMP:
+            turn = math.degrees(change[sample, leg, joint])
             yield (
-                f"jumps: at {self.time[moment]:.2f} s the {JOINTS[joint]} of {self.robot.leg_codes[leg]} would have to "
-                f"turn {turn:.0f} deg at once, to another way to reach the same foot"
+                f"jumps: at {self.time[sample]:.2f} s the {JOINTS[joint]} of {self.robot.leg_codes[leg]} would turn "
+                f"{turn:.0f} deg within one sample, to another inverse-kinematics branch"
             )
 
     def _tips_over(self) -> Iterator[str]:
@@ -166,16 +166,16 @@ class Motion:
         if not self.contacts[worst].any():
             yield f"{at} no foot is on the ground"
         elif self.margin[worst] < 0:
-            yield f"{at} the centre of mass is {-self.margin[worst] * 1000:.1f} mm outside the feet that are down"
+            yield f"{at} the centre of mass is {-self.margin[worst] * 1000:.1f} mm outside the support polygon"
 
-    def _feet_too_near(self) -> Iterator[str]:
+    def _feet_too_close(self) -> Iterator[str]:
         distance, pair = feet_distance(self.feet)
         near = int(np.argmin(distance))
         if distance[near] < self.foot_distance - 1e-9:
             legs = " and ".join(self.robot.leg_codes[i] for i in pair[near])
             yield (
-                f"feet too near: at {self.time[near]:.2f} s {legs} are {distance[near] * 1000:.1f} mm apart, "
-                f"at least {self.foot_distance * 1000:.1f} mm are asked for"
+                f"feet too close: at {self.time[near]:.2f} s {legs} are {distance[near] * 1000:.1f} mm apart, "
+                f"less than the foot_distance of {self.foot_distance * 1000:.1f} mm"
             )
 
     def _too_fast(self) -> Iterator[str]:
@@ -185,22 +185,22 @@ class Motion:
         if ratio[leg, joint] > 1 and servo is not None and servo.no_load_speed is not None:
             needed = math.degrees(ratio[leg, joint] * servo.no_load_speed)
             yield (
-                f"too fast: the {JOINTS[joint]} of {self.robot.leg_codes[leg]} would have to turn at "
-                f"{needed:.0f} deg/s, its servo {servo.name} does {math.degrees(servo.no_load_speed):.0f} "
-                f"without load; a cycle of {self.cycle_time * ratio[leg, joint]:.2f} s or longer works"
+                f"too fast: the {JOINTS[joint]} of {self.robot.leg_codes[leg]} would turn at {needed:.0f} deg/s, "
+                f"its servo {servo.name} reaches {math.degrees(servo.no_load_speed):.0f} deg/s without load; "
+                f"a cycle time of {self.cycle_time * ratio[leg, joint]:.2f} s or longer is possible"
             )
 
     def _why_unreachable(self) -> str:
         failing = self.reach != Reach.OK
         reached = self.body @ forward_kinematics(self.robot, self.angles)[..., 3, :]
         miss = np.linalg.norm(reached - self.feet, axis=-1)
-        moment, leg = np.unravel_index(int(np.argmax(np.where(failing, miss, -1.0))), miss.shape)
+        sample, leg = np.unravel_index(int(np.argmax(np.where(failing, miss, -1.0))), miss.shape)
         solution = IKSolution(
             robot=self.robot,
-            feet=self.feet[moment],
-            body=self.body[int(moment)],
+            feet=self.feet[sample],
+            body=self.body[int(sample)],
             knee="up",
-            angles=self.angles[moment],
-            reach=np.where(np.arange(self.robot.legs) == leg, self.reach[moment], Reach.OK),
+            angles=self.angles[sample],
+            reach=np.where(np.arange(self.robot.legs) == leg, self.reach[sample], Reach.OK),
         )
-        return f"out of reach: at {self.time[moment]:.2f} s {solution.explain()}"
+        return f"out of reach: at {self.time[sample]:.2f} s {solution.explain()}"

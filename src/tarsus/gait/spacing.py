@@ -1,4 +1,4 @@
-"""How near the feet come to each other."""
+"""Distances between feet."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ __all__ = ["default_foot_distance", "feet_distance", "passing_distance"]
 
 
 def default_foot_distance(robot: Robot) -> float:
-    """Return the least distance between the centres of two feet that a walk must keep: two radii and 10 mm [m].
+    """Return the default least distance between the centres of two feet: two foot radii and 10 mm [m].
 
     Parameters
     ----------
@@ -24,54 +24,53 @@ def default_foot_distance(robot: Robot) -> float:
 
 
 def feet_distance(feet: Array) -> tuple[np.ndarray[Any, Any], np.ndarray[Any, Any]]:
-    """Return the least distance between any two feet, and which two.
+    """Return the least distance between two feet, and their legs.
 
     Parameters
     ----------
     feet : array, shape (..., legs, 3)
-        The feet [m].
+        Feet [m].
 
     Returns
     -------
     distance : array, shape (...)
-        Between the two nearest feet [m].
+        Distance between the two closest feet [m].
     pair : array of int, shape (..., 2)
-        Which legs they belong to.
+        Their legs.
     """
     feet = np.asarray(feet)
     first, second = np.triu_indices(feet.shape[-2], k=1)
-    apart = feet[..., first, :] - feet[..., second, :]
-    distance2 = (apart * apart).sum(-1)
+    difference = feet[..., first, :] - feet[..., second, :]
+    distance2 = (difference * difference).sum(-1)
     nearest = distance2.argmin(-1)
     pair = np.stack([first[nearest], second[nearest]], axis=-1)
     return np.sqrt(distance2.min(-1)), pair
 
 
 def passing_distance(feet: Array) -> tuple[np.ndarray[Any, Any], np.ndarray[Any, Any]]:
-    """Return the least distance between any two feet from each moment to the next, and which two.
+    """Return the least distance between two feet from each sample to the next, and their legs.
 
-    From one moment to the next every foot is taken to go straight: fast feet that pass each other between two moments
-    are seen.
+    Feet are interpolated linearly between samples, so that fast feet that pass each other between two are found.
 
     Parameters
     ----------
     feet : array, shape (..., n, legs, 3)
-        The feet at `n` moments one after the other [m].
+        Feet at `n` successive samples [m].
 
     Returns
     -------
     distance : array, shape (..., n - 1)
-        Between the two nearest feet [m].
+        Distance between the two closest feet [m].
     pair : array of int, shape (..., n - 1, 2)
-        Which legs they belong to.
+        Their legs.
     """
     feet = np.asarray(feet)
     first, second = np.triu_indices(feet.shape[-2], k=1)
-    apart = feet[..., first, :] - feet[..., second, :]
-    start, way = apart[..., :-1, :, :], np.diff(apart, axis=-3)
-    length2 = (way * way).sum(-1)
-    share = np.clip(-(start * way).sum(-1) / np.where(length2 > 0, length2, 1.0), 0, 1)
-    nearest = start + share[..., None] * way
+    difference = feet[..., first, :] - feet[..., second, :]
+    start, change = difference[..., :-1, :, :], np.diff(difference, axis=-3)
+    length2 = (change * change).sum(-1)
+    fraction = np.clip(-(start * change).sum(-1) / np.where(length2 > 0, length2, 1.0), 0, 1)
+    nearest = start + fraction[..., None] * change
     distance2 = (nearest * nearest).sum(-1)
     at = distance2.argmin(-1)
     return np.sqrt(distance2.min(-1)), np.stack([first[at], second[at]], axis=-1)

@@ -74,7 +74,7 @@ def motion_to_csv(motion: Motion, path: str | os.PathLike[str]) -> None:
 
 
 def _formatted(column: np.ndarray[Any, Any]) -> list[str]:
-    """Write numbers to a micrometre or a microdegree: finer than any robot, and no noise behind it."""
+    """Format numbers to a nanometre or a microdegree, without digits of rounding noise."""
     if column.dtype.kind != "f":
         return [str(value) for value in column.tolist()]
     return [f"{value + 0.0:.6f}" for value in np.round(column, 6).tolist()]
@@ -177,7 +177,7 @@ def load_motion(path: str | os.PathLike[str]) -> Motion:
         with open(where, "rb") as raw, np.load(raw, allow_pickle=False) as file:
             about = json.loads(str(file["about"]))
             if about["format"] != _FORMAT:
-                raise InputError(f"{where} is of the format {about['format']!r}; this version reads {_FORMAT!r}")
+                raise InputError(f"{where} has the format {about['format']!r}; this version reads {_FORMAT!r}")
             numbers: dict[str, Any] = {name: float(about[name]) for name in _NUMBERS}
             return Motion(
                 robot=robot_from_text(about["robot"], where=f"the robot in {where}"),
@@ -191,5 +191,5 @@ def load_motion(path: str | os.PathLike[str]) -> Motion:
         raise InputError(f"{where} can't be read: {error.strerror or error}") from None
     except TarsusError:
         raise
-    except Exception as error:  # in a damaged file zipfile, zlib, NumPy's header parser and json fail each in its ways
-        raise InputError(f"{where} is not a motion that Tarsus saved: {error}") from None
+    except Exception as error:  # zipfile, zlib, NumPy and json raise various errors on damaged files
+        raise InputError(f"{where} is not a motion file of Tarsus: {error}") from None

@@ -1,44 +1,44 @@
-"""How a foot swings from one foothold to the next."""
+"""Swing trajectory of a foot from one foothold to the next."""
 
 from __future__ import annotations
 
 from tarsus.arrays import Array, as_array, namespace, stack_last
 
-__all__ = ["ground_share", "height_share", "swing"]
+__all__ = ["horizontal_profile", "swing_position", "vertical_profile"]
 
 
-def ground_share(share: Array) -> Array:
-    """Return the share of the way over the ground after a share of the swing: ``10 s^3 - 15 s^4 + 6 s^5``."""
-    return share * share * share * (10 - 15 * share + 6 * share * share)
+def horizontal_profile(phase: Array) -> Array:
+    """Return the fraction ``(...)`` of the horizontal distance at a swing phase: ``10 s^3 - 15 s^4 + 6 s^5``."""
+    return phase * phase * phase * (10 - 15 * phase + 6 * phase * phase)
 
 
-def height_share(share: Array) -> Array:
-    """Return the height over the lift after a share of the swing: ``64 s^3 (1 - s)^3``, 1 in the middle."""
-    return (4 * share * (1 - share)) ** 3
+def vertical_profile(phase: Array) -> Array:
+    """Return the fraction ``(...)`` of the swing height at a swing phase: ``64 s^3 (1 - s)^3``, 1 at mid-swing."""
+    return (4 * phase * (1 - phase)) ** 3
 
 
-def swing(start: Array, end: Array, share: Array, swing_height: Array) -> Array:
-    """Return where a swinging foot is, in the ground frame.
+def swing_position(start: Array, end: Array, phase: Array, swing_height: Array) -> Array:
+    """Return the position of a swinging foot in the ground frame.
 
-    Over the ground, the quintic ``10 s^3 - 15 s^4 + 6 s^5``: its velocity and acceleration are 0 at both ends, so that
-    the foot leaves and meets the ground without scuffing. Upwards, ``64 s^3 (1 - s)^3``, with the same property.
+    Horizontally, the quintic ``10 s^3 - 15 s^4 + 6 s^5``, with zero velocity and acceleration at both ends, so that the
+    foot does not scuff at lift-off and touchdown. Vertically, ``64 s^3 (1 - s)^3``, with the same property.
 
     Parameters
     ----------
     start, end : array, shape (..., 3)
         Footholds in G [m].
-    share : array, shape (...)
-        Share of the swing, 0 to 1.
+    phase : array, shape (...)
+        Phase of the swing, 0 to 1.
     swing_height : array, shape (...)
-        Greatest height above the straight line [m].
+        Greatest height above the line between the footholds [m].
 
     Returns
     -------
     array, shape (..., 3)
-        Points in G [m].
+        Feet in G [m].
     """
-    xp = namespace(start, end, share, swing_height)
-    start, end, share = as_array(xp, start), as_array(xp, end), as_array(xp, share)
-    along, up = ground_share(share), as_array(xp, swing_height) * height_share(share)
+    xp = namespace(start, end, phase, swing_height)
+    start, end, phase = as_array(xp, start), as_array(xp, end), as_array(xp, phase)
+    along, up = horizontal_profile(phase), as_array(xp, swing_height) * vertical_profile(phase)
     parts = [start[..., i] + (end[..., i] - start[..., i]) * along for i in range(3)]
     return stack_last(xp, (parts[0], parts[1], parts[2] + up))

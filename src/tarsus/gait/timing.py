@@ -1,4 +1,4 @@
-"""When what happens in a walk: the body's smooth start and stop, and each leg's steps."""
+"""Timing of a walk: start and stop of the body, and the steps of each leg."""
 
 from __future__ import annotations
 
@@ -11,26 +11,26 @@ import numpy as np
 from tarsus.arrays import Array
 from tarsus.gait.gait import Gait
 
-__all__ = ["BodyClock", "Steps", "least_step_share", "plan_steps"]
+__all__ = ["BodyClock", "Steps", "least_step_fraction", "plan_steps"]
 
-# Steps shorter than this share of a stroke are not worth lifting a foot for; nor is more than this of a path left out.
+# Shortest step, as a fraction of a stroke; at most this fraction of a path is omitted for it.
 _LEAST_STEP = 0.05
-_MOST_LEFT_OUT = 0.25
+_MOST_OMITTED = 0.25
 
 
-def least_step_share(strokes: float) -> float:
-    """Return the share of a path of so many strokes that is not worth a step."""
-    return min(_LEAST_STEP / strokes, _MOST_LEFT_OUT)
+def least_step_fraction(strokes: float) -> float:
+    """Return the shortest step on a path of a number of strokes, as a fraction of the path."""
+    return min(_LEAST_STEP / strokes, _MOST_OMITTED)
 
 
 @dataclass(frozen=True)
 class BodyClock:
-    """How far along its path the body is at a time: a smooth ramp, cruising, a smooth ramp.
+    """Progress of the body along its path over time: a smooth ramp, cruising, a smooth ramp.
 
     Attributes
     ----------
     rate : float
-        Share of the path per second while cruising [1/s].
+        Fraction of the path per second while cruising [1/s].
     ramp : float
         Duration of each ramp [s].
     cruise : float
@@ -43,12 +43,12 @@ class BodyClock:
 
     @classmethod
     def of(cls, *, rate: float, ramp: float) -> BodyClock:
-        """Fit the ramps into the path; a path shorter than two ramps is walked more slowly.
+        """Fit the ramps into the path; on a path shorter than two ramps the rate is reduced.
 
         Parameters
         ----------
         rate : float
-            Wanted share of the path per second [1/s].
+            Fraction of the path per second while cruising [1/s].
         ramp : float
             Duration of each ramp [s].
         """
@@ -57,27 +57,29 @@ class BodyClock:
 
     @property
     def duration(self) -> float:
-        """From the body's start to its stop [s]."""
+        """Time from the start of the body to its stop [s]."""
         return 2 * self.ramp + self.cruise
 
-    def share(self, time: Array) -> np.ndarray[Any, Any]:
-        """Return the share of the path at times: 0 before the start, 1 after the stop.
+    def fraction(self, time: Array) -> np.ndarray[Any, Any]:
+        """Return the fraction of the path ``(...)`` at times: 0 before the start, 1 after the stop.
 
-        In a ramp the speed follows the quintic ``10 s^3 - 15 s^4 + 6 s^5``, whose integral never exceeds half the
-        way at cruising speed: so no stance of a starting or stopping walk exceeds half a stroke on either side.
+        In a ramp the speed follows the quintic ``10 s^3 - 15 s^4 + 6 s^5``. Its integral is at most half the distance
+        at cruising speed, so that no stance during start or stop exceeds half a stroke on either side.
 
         Parameters
         ----------
         time : array, shape (...)
-            Times since the body's start [s].
+            Times since the start of the body [s].
         """
         time = np.asarray(time, dtype=float)
         early = self._ramped(np.clip(time, 0, self.ramp))
         late = self._ramped(np.clip(self.duration - time, 0, self.ramp))
         cruising = np.clip(time - self.ramp, 0, self.cruise) * self.rate
         half = self.rate * self.ramp / 2
-        share = np.where(time < self.ramp, early, np.where(time < self.ramp + self.cruise, half + cruising, 1 - late))
-        return np.asarray(np.where(time <= 0, 0.0, np.where(time >= self.duration, 1.0, share)))
+        fraction = np.where(
+            time < self.ramp, early, np.where(time < self.ramp + self.cruise, half + cruising, 1 - late)
+        )
+        return np.asarray(np.where(time <= 0, 0.0, np.where(time >= self.duration, 1.0, fraction)))
 
     def _ramped(self, time: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
         s = time / self.ramp
@@ -86,23 +88,23 @@ class BodyClock:
 
 @dataclass(frozen=True)
 class Steps:
-    """When each leg steps, and where along the path its footholds are.
+    """Times of the steps of each leg, and its footholds as fractions of the path.
 
-    Every foothold is where the body's middle stance has the leg's rest foothold. Before the first step and after
-    the last a leg stands.
+    Every foothold is the leg's rest foothold at the body's pose at mid-stance. Before its first step and after its last
+    one a leg stands.
 
     Attributes
     ----------
     gait : Gait
         Duty factor and offsets.
     clock : BodyClock
-        How the body moves; time 0 is the body's start.
+        Progress of the body; time 0 is its start.
     cycle_time : float
         Duration of a cycle [s].
     least_step : float
-        Footholds nearer than this share of the path to its start or end are there.
+        Footholds closer than this fraction of the path to its start or end are placed there.
     start, end : float
-        First lift-off (or the body's start), and last touchdown (or its stop) [s].
+        First lift-off or start of the body, last touchdown or stop of the body [s].
     """
 
     gait: Gait
@@ -112,34 +114,34 @@ class Steps:
     start: float
     end: float
 
-    def foothold_share(self, step: Array) -> np.ndarray[Any, Any]:
-        """Return where along the path the footholds of steps ``(..., legs)`` are, as shares."""
+    def foothold_fraction(self, step: Array) -> np.ndarray[Any, Any]:
+        """Return the footholds of steps ``(..., legs)`` as fractions of the path ``(..., legs)``."""
         middle = (np.asarray(step) + np.asarray(self.gait.offsets) + self.gait.duty_factor / 2) * self.cycle_time
-        share = self.clock.share(middle)
-        return np.where(share < self.least_step, 0.0, np.where(share > 1 - self.least_step, 1.0, share))
+        fraction = self.clock.fraction(middle)
+        return np.where(fraction < self.least_step, 0.0, np.where(fraction > 1 - self.least_step, 1.0, fraction))
 
     def at(self, time: Array) -> tuple[np.ndarray[Any, Any], ...]:
-        """Return where each leg is in its steps.
+        """Return the state of each leg's step.
 
         Parameters
         ----------
         time : array, shape (n,)
-            Times since the body's start [s].
+            Times since the start of the body [s].
 
         Returns
         -------
         last, following : array, shape (n, legs)
-            The last foothold and the next, as shares of the path.
-        swung : array, shape (n, legs)
-            How far the foot has swung from one to the other, 0 to 1; 0 in stance.
+            The previous foothold and the next one, as fractions of the path.
+        swing_phase : array, shape (n, legs)
+            Phase of the swing from one to the other, 0 to 1; 0 in stance.
         stance : array of bool, shape (n, legs)
-            Whether the foot is on the ground; it stays there where the next foothold is the last.
+            Whether the foot is on the ground; it stays there where the next foothold is the previous one.
         """
         step, phase, stance = self.gait.phase(np.asarray(time) / self.cycle_time)
-        last, following = self.foothold_share(step), self.foothold_share(step + 1)
+        last, following = self.foothold_fraction(step), self.foothold_fraction(step + 1)
         stance = stance | (last == following)
-        swung = np.where(stance, 0.0, (phase - self.gait.duty_factor) / (1 - self.gait.duty_factor))
-        return last, following, swung, stance
+        swing_phase = np.where(stance, 0.0, (phase - self.gait.duty_factor) / (1 - self.gait.duty_factor))
+        return last, following, swing_phase, stance
 
 
 def plan_steps(gait: Gait, clock: BodyClock, *, cycle_time: float, least_step: float) -> Steps:
@@ -150,15 +152,15 @@ def plan_steps(gait: Gait, clock: BodyClock, *, cycle_time: float, least_step: f
     gait : Gait
         Duty factor and offsets.
     clock : BodyClock
-        How the body moves.
+        Progress of the body.
     cycle_time : float
         Duration of a cycle [s].
     least_step : float
-        Share of the path that is no step: footholds nearer than that to its start or end are there.
+        Shortest step as a fraction of the path: footholds closer than this to its start or end are placed there.
     """
     steps = Steps(gait, clock, cycle_time, least_step, start=0.0, end=clock.duration)
     numbers = np.arange(-3, math.ceil(clock.duration / cycle_time) + 3)[:, None]
-    moves = steps.foothold_share(numbers) != steps.foothold_share(numbers + 1)
+    moves = steps.foothold_fraction(numbers) != steps.foothold_fraction(numbers + 1)
     lift_off = (numbers + np.asarray(gait.offsets) + gait.duty_factor) * cycle_time
     touchdown = (numbers + 1 + np.asarray(gait.offsets)) * cycle_time
     start = min(0.0, float(lift_off[moves].min()))

@@ -12,7 +12,7 @@ from tarsus.kinematics.inverse import inverse_kinematics
 from tarsus.kinematics.pose import Pose
 from tarsus.robot.robot import Robot
 
-__all__ = ["coxa_frames", "reachable_share"]
+__all__ = ["coxa_frames", "reachable_fraction"]
 
 # The way is looked at in 32 steps, then the step where a foot first stays behind in 32 again, and so on.
 _STEPS = 32
@@ -44,7 +44,7 @@ def coxa_frames(robot: Robot) -> Pose:
     return Pose(rotation, stack_last(xp, (g.mount_x, g.mount_y, g.mount_z)))
 
 
-def reachable_share(robot: Robot, feet: Array, start: Pose, goal: Pose) -> float:
+def reachable_fraction(robot: Robot, feet: Array, start: Pose, goal: Pose) -> float:
     """Return how much of the way from one body pose to another all feet can stay where they stand.
 
     Position, roll, pitch and yaw change in proportion, each angle the shorter way round.
@@ -69,7 +69,7 @@ def reachable_share(robot: Robot, feet: Array, start: Pose, goal: Pose) -> float
         If robot or poses are batches, or the feet have another shape, or are not finite.
     """
     if robot.batch_shape or start.batch_shape or goal.batch_shape or np.ndim(feet) != 2:
-        raise InputError("reachable_share takes a single robot, one foot a leg, and single poses")
+        raise InputError("reachable_fraction takes a single robot, one foot a leg, and single poses")
     rpy, position = np.asarray(start.rpy), np.asarray(start.position)
     turn, move = np.asarray(goal.rpy) - rpy, np.asarray(goal.position) - position
     turn -= 2 * np.pi * np.round(turn / (2 * np.pi))

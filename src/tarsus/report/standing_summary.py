@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from tarsus.kinematics.body import reachable_share
+from tarsus.kinematics.body import reachable_fraction
 from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.reach import Reach
 from tarsus.kinematics.rest import CORNERS, RestingPose
@@ -84,7 +84,7 @@ class Standing:
         """Feasible fraction of the displacement; None with the knees down, where it is not computed."""
         if self.solution.knee != "up":
             return None
-        return reachable_share(self.solution.robot, self.solution.feet, self.start, self.body)
+        return reachable_fraction(self.solution.robot, self.solution.feet, self.start, self.body)
 
     def summary(self) -> dict[str, Any]:
         """Return the numbers of the pose, with units in the keys."""

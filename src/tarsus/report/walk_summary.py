@@ -58,12 +58,12 @@ def _end(motion: Motion) -> dict[str, float]:
 
 def _nearest_feet(motion: Motion) -> dict[str, Any]:
     """Return the smallest distance between two feet, with its time and legs."""
-    sample = int(np.argmin(motion.feet_apart))
+    sample = int(np.argmin(motion.least_foot_distance))
     feet, codes = motion.feet[sample], motion.robot.leg_codes
     distance = np.linalg.norm(feet[:, None] - feet, axis=-1) + np.diag(np.full(len(feet), np.inf))
     pair = np.unravel_index(int(np.argmin(distance)), distance.shape)
     return {
-        "mm": motion.feet_apart[sample] * 1000,
+        "mm": motion.least_foot_distance[sample] * 1000,
         "at_s": motion.time[sample],
         "legs": [codes[int(leg)] for leg in pair],
         "least_allowed_mm": motion.foot_distance * 1000,

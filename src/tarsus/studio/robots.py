@@ -9,7 +9,7 @@ import numpy as np
 
 from tarsus.errors import InputError, UnknownNameError, UnreachableError
 from tarsus.gait.gait import GAITS, Gait
-from tarsus.gait.setup import default_swing_height
+from tarsus.gait.walk_setup import default_swing_height
 from tarsus.kinematics.inverse import inverse_kinematics
 from tarsus.kinematics.mass import total_mass
 from tarsus.kinematics.pose import Pose

@@ -14,8 +14,8 @@ from tarsus.gait.motion import Motion
 from tarsus.gait.pace import choose_pace
 from tarsus.gait.path import BodyPath, curved_path, straight_path, twist_path
 from tarsus.gait.plan import plan_walk
-from tarsus.gait.setup import Setup, require_number
 from tarsus.gait.stroke import longest_stroke
+from tarsus.gait.walk_setup import WalkSetup, require_number
 from tarsus.kinematics.mass import centre_of_mass
 from tarsus.report.walk_summary import walk_summary
 from tarsus.robot.robot import JOINTS, Robot
@@ -103,8 +103,8 @@ def _metres(mm: float | None) -> float | None:
     return None if mm is None else mm / 1000
 
 
-def _setup_of(robot: Robot, options: WalkOptions) -> Setup:
-    return Setup.of(robot, gait_of(robot, options.gait), **_Options.of(options).heights)
+def _setup_of(robot: Robot, options: WalkOptions) -> WalkSetup:
+    return WalkSetup.of(robot, gait_of(robot, options.gait), **_Options.of(options).heights)
 
 
 def plan(robot: Robot, options: WalkOptions) -> Motion:
@@ -156,7 +156,9 @@ def fewer_for_more_legs(samples: int, robot: Robot) -> int:
     return int(samples * min(1.0, (_USUAL_LEGS / robot.legs) ** 2))
 
 
-def _refuse_long(robot: Robot, setup: Setup, path: BodyPath, *, stroke: float, cycle_time: float, rate: float) -> None:
+def _refuse_long(
+    robot: Robot, setup: WalkSetup, path: BodyPath, *, stroke: float, cycle_time: float, rate: float
+) -> None:
     most = fewer_for_more_legs(MOST_SAMPLES, robot)
     travel = float(path.travel(setup.rest).max())
     seconds = (travel / stroke * setup.gait.duty_factor + 2) * cycle_time

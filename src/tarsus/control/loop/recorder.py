@@ -15,8 +15,8 @@ from tarsus.control.readings import SensorReadings
 from tarsus.control.robot_controller import RobotController
 from tarsus.control.states.robot_state import RobotState
 from tarsus.gait.motion import Motion
-from tarsus.gait.setup import Setup
 from tarsus.gait.spacing import default_foot_distance
+from tarsus.gait.walk_setup import WalkSetup
 from tarsus.kinematics.leg import forward_kinematics
 from tarsus.kinematics.pose import Pose
 
@@ -202,7 +202,7 @@ class Recorder:
         if held.any():
             feet[held] = (body @ forward_kinematics(robot, angles)[..., 3, :])[held]
         heights = {"body_height": controller.body_height, "swing_height": controller.swing_height}
-        setup = Setup.of(robot, outputs[0].gait, body_tilt=(0.0, 0.0), foot_distance=None, **heights)
+        setup = WalkSetup.of(robot, outputs[0].gait, body_tilt=(0.0, 0.0), foot_distance=None, **heights)
         passing = _foot_speeds(twist, setup.rest)
         fastest = int(passing.max(1).argmax())
         output, speed = outputs[fastest], float(passing[fastest].max())

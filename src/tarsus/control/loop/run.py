@@ -14,7 +14,7 @@ from tarsus.control.loop.recording import Recording
 from tarsus.control.plant import Plant
 from tarsus.control.robot_controller import RobotController
 from tarsus.errors import InputError
-from tarsus.gait.setup import require_number
+from tarsus.gait.walk_setup import require_number
 
 __all__ = ["CommandSource", "TimedCommands", "run"]
 

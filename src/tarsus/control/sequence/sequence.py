@@ -13,7 +13,7 @@ from tarsus.control.sequence.stage import Stage
 from tarsus.errors import InputError
 from tarsus.gait.gait import Gait
 from tarsus.gait.motion import Motion
-from tarsus.gait.setup import require_number
+from tarsus.gait.walk_setup import require_number
 from tarsus.kinematics.leg import forward_kinematics
 from tarsus.kinematics.pose import Pose
 from tarsus.robot.joint_limits import JointLimits

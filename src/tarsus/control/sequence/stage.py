@@ -15,7 +15,7 @@ from typing import Any, NamedTuple, Self
 
 import numpy as np
 
-from tarsus.gait.swing import ground_share, height_share
+from tarsus.gait.swing import horizontal_profile, vertical_profile
 from tarsus.kinematics.ground import points_in_body
 from tarsus.kinematics.leg import forward_kinematics
 from tarsus.kinematics.pose import Pose
@@ -182,7 +182,7 @@ class Stage:
         Pose
             A batch of shape (n,).
         """
-        progress = ground_share(fractions)[:, None]
+        progress = horizontal_profile(fractions)[:, None]
         axis, angle = self._rotation
         if not angle:
             return Pose(self.start.rotation, self.start.position + progress * (self.end.position - self.start.position))
@@ -206,10 +206,10 @@ class Stage:
         array, shape (n, legs, 3)
             Feet in G [m].
         """
-        progress = ground_share(fractions)[:, None, None]
+        progress = horizontal_profile(fractions)[:, None, None]
         feet: Floats = self.feet + progress * (self.feet_end - self.feet)
         moves = (self.feet != self.feet_end).any(-1)
-        feet[..., 2] += self.swing_height * height_share(fractions)[:, None] * moves
+        feet[..., 2] += self.swing_height * vertical_profile(fractions)[:, None] * moves
         return feet
 
     def angles_at(self, fractions: Floats) -> Floats:
@@ -225,7 +225,7 @@ class Stage:
         array, shape (n, legs, 3)
             Joint angles [rad].
         """
-        angles: Floats = self.angles + ground_share(fractions)[:, None, None] * (self.angles_end - self.angles)
+        angles: Floats = self.angles + horizontal_profile(fractions)[:, None, None] * (self.angles_end - self.angles)
         if self.cartesian.any():
             solved = self._solve(fractions)
             angles[:, self.cartesian] = solved[:, self.cartesian]

@@ -10,7 +10,7 @@ import numpy as np
 from tarsus.control.walk.state import EARLY_STOP_FRACTION, GaitState, chord_factor
 from tarsus.control.walk.swing_trajectory import quintic, stopping_fraction
 from tarsus.control.workspace.stance_geometry import SWING_HEIGHT, stance_geometry_of, with_sway
-from tarsus.gait.swing import ground_share
+from tarsus.gait.swing import horizontal_profile
 from tarsus.robot.robot import Robot
 
 __all__ = ["relaxed_rate", "stop_on_contact"]
@@ -91,7 +91,7 @@ def _joint_acceleration(
     swing = (state.foot, state.swing_velocity, state.swing_acceleration)
     foot, _, _ = quintic(swing, state.foot + state.swing_velocity * duration / 3, duration, progress)
     offset = state.admittance_offset.value - state.elevation.value
-    z = height + offset + speed * duration * stopping_fraction(progress) + sink[:, None] * ground_share(progress)
+    z = height + offset + speed * duration * stopping_fraction(progress) + sink[:, None] * horizontal_profile(progress)
     forward, left, turning = state.twist.value.tolist()
     travelled = complex(forward, left) * time * chord_factor(turning * time)
     in_heading = ((foot - state.origin) * np.exp(-1j * state.yaw) - travelled) * np.exp(-1j * turning * time)

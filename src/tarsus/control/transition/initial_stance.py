@@ -10,13 +10,13 @@ from tarsus.control.transition.parameters import WalkParameters
 from tarsus.control.transition.planner import TransitionPlanner
 from tarsus.control.transition.stance_transition import StanceTransition
 from tarsus.errors import InputError, UnreachableError
-from tarsus.gait.setup import Setup, require_number
+from tarsus.gait.walk_setup import WalkSetup, require_number
 
 __all__ = ["initial_stance"]
 
 
 def initial_stance(
-    planner: TransitionPlanner, setup: Setup, *, stance_width: float, cycle_time: float | None
+    planner: TransitionPlanner, setup: WalkSetup, *, stance_width: float, cycle_time: float | None
 ) -> StanceTransition:
     """Return the stance that a setup asks for.
 
@@ -24,7 +24,7 @@ def initial_stance(
     ----------
     planner : TransitionPlanner
         Plans for the robot of the setup.
-    setup : Setup
+    setup : WalkSetup
         Robot, gait and heights.
     stance_width : float
         Distance that the feet rest farther out than by default [m].

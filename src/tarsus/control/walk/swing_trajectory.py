@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from tarsus.gait.swing import ground_share, height_share
+from tarsus.gait.swing import horizontal_profile, vertical_profile
 
 __all__ = ["quintic", "stopping_fraction", "stopping_height", "swinging_height"]
 
@@ -61,7 +61,7 @@ def swinging_height(phase: float, *, start: float, ground: float, swing_height: 
     swing_height : float
         Greatest height above the line from the one to the other [m].
     """
-    return float(start + (ground - start) * ground_share(phase) + swing_height * height_share(phase))
+    return float(start + (ground - start) * horizontal_profile(phase) + swing_height * vertical_profile(phase))
 
 
 def stopping_height(
@@ -86,7 +86,7 @@ def stopping_height(
     progress = min(max((phase - contact) / duration, 0.0), 1.0)
     speed = speed * duration
     stopped: float = (
-        height + speed * stopping_fraction(progress) + (ground - height - speed / 3) * ground_share(progress)
+        height + speed * stopping_fraction(progress) + (ground - height - speed / 3) * horizontal_profile(progress)
     )
     return stopped
 

@@ -10,7 +10,7 @@ from tarsus.control.incremental import Incremental
 from tarsus.control.workspace.stance_geometry import StanceGeometry
 from tarsus.control.workspace.velocity_limits import VelocityLimits
 from tarsus.gait.gait import Gait
-from tarsus.gait.swing import ground_share, height_share
+from tarsus.gait.swing import horizontal_profile, vertical_profile
 from tarsus.robot.robot import Robot
 
 __all__ = ["CycleTiming", "SteadyCycle", "cycle_timing"]
@@ -159,9 +159,9 @@ class SteadyCycle:
         self.phases = np.linspace(begin, 1.02, round(_SAMPLES * (1.02 - begin) / (1.04 - gait.duty_factor)))
         _, phase, contacts = Gait(gait.duty_factor, (0.0,)).phase(self.phases)
         swing_phase = np.where(contacts, 0.0, (phase - gait.duty_factor) / (1 - gait.duty_factor))
-        self.height = swing_height * height_share(swing_phase)
+        self.height = swing_height * vertical_profile(swing_phase)
         # As in `cycle_feet`, with shape (samples, moves): as complex numbers, positions are linear in rest footholds.
-        along = ground_share(swing_phase)
+        along = horizontal_profile(swing_phase)
         there, turned_there = _moved(moves, 1 / gait.duty_factor)
         since_middle = phase / gait.duty_factor - 0.5
         here, turned = _moved(moves, since_middle)

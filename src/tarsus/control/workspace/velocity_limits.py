@@ -16,7 +16,7 @@ from tarsus.control.workspace.foot_workspace import foot_workspace
 from tarsus.control.workspace.polygon import NORMALS, NORMALS_CONJUGATE
 from tarsus.control.workspace.stability import StabilityCheck
 from tarsus.control.workspace.stance_geometry import StanceGeometry
-from tarsus.gait.swing import ground_share
+from tarsus.gait.swing import horizontal_profile
 from tarsus.robot.robot import Robot
 
 __all__ = ["VelocityLimits", "stance_overhang", "velocity_limits", "with_stroke_limits"]
@@ -176,7 +176,7 @@ def stance_overhang(duty_factor: float) -> float:
     """
     phase = np.linspace(0, 0.5, 51)
     ratio = (1 - duty_factor) / duty_factor
-    return float((0.5 + ratio * phase - (1 + ratio) * ground_share(phase)).max())
+    return float((0.5 + ratio * phase - (1 + ratio) * horizontal_profile(phase)).max())
 
 
 def with_stroke_limits(limits: VelocityLimits, stroke: float, turning: float, *, duty_factor: float) -> VelocityLimits:

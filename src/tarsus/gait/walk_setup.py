@@ -1,4 +1,4 @@
-"""What a walk is set up with besides its path and pace: robot, gait, heights, tilt; checked, nothing left open."""
+"""WalkSetup of a walk, except its path and pace: robot, gait, heights and tilt, checked and completed."""
 
 from __future__ import annotations
 
@@ -19,16 +19,14 @@ from tarsus.kinematics.solution import IKSolution
 from tarsus.kinematics.stance import default_body_height, default_stance
 from tarsus.robot.robot import Robot
 
-__all__ = ["Setup", "default_swing_height", "require_number"]
+__all__ = ["WalkSetup", "default_swing_height", "require_number"]
 
-# No length of a walk's step is greater [m]: what is, is a slip, and its square may overflow.
+# Upper bound of lengths [m], so that their squares do not overflow.
 _MOST = 1e3
 
 
 def default_swing_height(robot: Robot) -> float:
-    """Return how high a swinging foot is lifted unless told otherwise [m].
-
-    The robot file's `swing_height_mm`; where it has none, a quarter of the body height.
+    """Return the default swing height [m]: that of the robot file, else a quarter of the default body height.
 
     Parameters
     ----------
@@ -50,23 +48,23 @@ _UNITS = {
 
 
 def require_number(name: str, value: float, *, zero: bool, most: float = math.inf) -> float:
-    """Return a number that is not negative, as a float.
+    """Return a finite number that is not negative as a float.
 
     Parameters
     ----------
     name : str
-        What it is, for the message.
+        Its name in messages.
     value : float
         The number.
     zero : bool
         Whether it may be 0.
     most : float
-        The greatest that it may be.
+        Its upper bound.
 
     Raises
     ------
     InputError
-        If it is something else.
+        If it is not a number, or out of range.
     """
     try:
         number = float(value)
@@ -83,21 +81,21 @@ def require_number(name: str, value: float, *, zero: bool, most: float = math.in
 
 
 @dataclass(frozen=True)
-class Setup:
-    """A robot and how it is to walk, complete but for path and pace.
+class WalkSetup:
+    """A robot and the settings of its walk, except path and pace.
 
     Attributes
     ----------
     robot : Robot
         A single robot.
     gait : Gait
-        For that many legs.
+        A gait for the robot's number of legs.
     rest : array, shape (legs, 3)
         Rest footholds in the body's heading frame on the ground [m].
     body_height, swing_height : float
-        Height of the body's origin, lift of the swinging feet [m].
+        Height of the body's origin above the ground, swing height [m].
     body_tilt : (roll, pitch)
-        Tilt of the body against the ground [rad].
+        Tilt of the body relative to the ground [rad].
     foot_distance : float
         Least distance between two feet [m].
     """
@@ -121,19 +119,19 @@ class Setup:
         body_tilt: Sequence[float],
         foot_distance: float | None,
     ) -> Self:
-        """Check what is given, and take the robot's own values for what is not.
+        """Check the settings given, and complete them with the robot's defaults.
 
         Parameters
         ----------
-        robot, gait, body height, lift, body_tilt, foot_distance
-            As the attributes; None for the robot's own.
+        robot, gait, body_height, swing_height, body_tilt, foot_distance
+            As the attributes; None for the robot's default.
 
         Raises
         ------
         InputError
-            If the robot is a batch, the gait is for another number of legs, or a number is out of its range.
+            If the robot is a batch, the gait is for another number of legs, or a number is out of range.
         UnreachableError
-            If a leg reaches the ground nowhere at that body height.
+            If a leg does not reach the ground at that body height.
         """
         if robot.batch_shape:
             raise InputError(f"a walk is planned for a single robot, not for a batch {robot.batch_shape} of designs")
@@ -147,7 +145,7 @@ class Setup:
         distance = default_foot_distance(robot) if foot_distance is None else foot_distance
         height = default_body_height(robot) if body_height is None else body_height
         if not abs(height) <= _MOST:
-            raise InputError(f"body height is {height} m; it must be a finite number, at most {_MOST:g}")
+            raise InputError(f"body_height is {height} m; it must be a finite number, at most {_MOST:g} m")
         stance = default_stance(robot, height, swing_height=swing_height)
         return cls(
             robot=robot,
@@ -160,37 +158,37 @@ class Setup:
         )
 
     def assumed(self, body_height: float | None, swing_height: float | None) -> list[str]:
-        """Say what neither the caller nor the robot file gives.
+        """Return what neither the caller nor the robot file gives, a line for each assumption.
 
         Parameters
         ----------
         body_height, swing_height : float, optional
-            What the caller gave.
+            Arguments of the caller.
         """
         assumed = []
         if body_height is None and self.robot.gait.body_height is None:
-            assumed.append(f"body height {self.body_height * 1000:.0f} mm: from the lengths of femur and tibia")
+            assumed.append(f"body height {self.body_height * 1000:.0f} mm: derived from femur and tibia")
         if swing_height is None and self.robot.gait.swing_height is None:
-            assumed.append(f"lift {self.swing_height * 1000:.0f} mm: a quarter of the body height")
+            assumed.append(f"swing height {self.swing_height * 1000:.0f} mm: a quarter of the body height")
         if not self.robot.has_masses:
             assumed.append(
                 "the robot file gives no masses: the stability margin is that of the body's centre of mass, "
-                "the links counted as massless"
+                "with massless links"
             )
         return assumed
 
-    def solve(self, feet: Array, place: Array | None = None) -> IKSolution:
-        """Return the joint angles for feet on the ground.
+    def solve(self, feet: Array, planar_pose: Array | None = None) -> IKSolution:
+        """Return the inverse kinematics of feet relative to the ground.
 
         Parameters
         ----------
         feet : array, shape (..., legs, 3)
-            In G; where `place` is left out, in the heading frame [m].
-        place : array, shape (..., 3), optional
-            The body's places on the ground: x [m], y [m] and yaw [rad].
+            Feet in G; without `planar_pose`, in the heading frame [m].
+        planar_pose : array, shape (..., 3), optional
+            Poses of the body in the ground plane: x [m], y [m] and yaw [rad].
         """
-        at = np.zeros(3) if place is None else place
-        body = tilted_body(at, body_height=np.asarray(self.body_height), body_tilt=self.body_tilt)
+        pose = np.zeros(3) if planar_pose is None else planar_pose
+        body = tilted_body(pose, body_height=np.asarray(self.body_height), body_tilt=self.body_tilt)
         return inverse_kinematics(self.robot, feet, body)
 
 
