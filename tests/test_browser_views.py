@@ -64,7 +64,7 @@ def test_a_joint_beyond_its_limit_is_told_by_how_much(visitor):
     visitor.open(StudioState(view="joints"))
     highest = np.degrees(STRIDER.limits[0, 1, 1])
     visitor.type("joint-LF-femur", highest + 12)
-    expect(visitor.at("problems")).to_contain_text(f"its highest angle is {highest:.1f}: 12.0 deg too far")
+    expect(visitor.at("problems")).to_contain_text(f"12.0 deg above its upper limit of {highest:.1f} deg")
     expect(visitor.at("joint-LF-femur")).to_have_attribute("aria-invalid", "true")
 
 

@@ -99,7 +99,7 @@ def test_check_of_a_robot_that_cannot_walk(tmp_path):
     file.write_text(template_text("mine").replace("body_height_mm = 80", "body_height_mm = 900"), encoding="utf-8")
     result = run("robots", "check", file)
     assert result.exit_code == 1
-    assert "nowhere reaches the ground" in result.stdout
+    assert "does not reach the ground" in result.stdout
 
 
 def test_schema_is_the_bundled_file():

@@ -9,6 +9,7 @@ import pytest
 from PIL import Image
 
 from sample_commands import run, run_json
+from tarsus.kinematics.body import reachable_fraction
 from tarsus.kinematics.inverse import inverse_kinematics
 from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.rest import resting_pose
@@ -93,7 +94,7 @@ def test_no_margin_in_json_if_no_leg_reaches():
         ("--pitch nan", 2, "'nan' is not a number"),
         ("--z 1e300", 2, "is not a number between"),
         ("--knee sideways", 2, "'sideways' is not one of"),
-        ("--body-height 900", 1, "nowhere reaches the ground"),
+        ("--body-height 900", 1, "does not reach the ground"),
         ("--picture /dev/null/pose.png", 2, "can't be written"),
         ("--picture pose.nonsense", 2, "can't be written"),
     ],

@@ -170,7 +170,7 @@ def test_feet_too_close():
         ("--rate 0", "rate"),
         ("--cycle -1", "cycle"),
         ("--swing-height -1", "swing_height"),
-        ("--stroke 100 --speed 100 --cycle 9", "contradict"),
+        ("--stroke 100 --speed 100 --cycle 9", "inconsistent"),
         ("--out /dev/null/walk", "is not writable"),
         ("--out /proc", "is not writable"),
         ("--bogus", "No such option"),
@@ -189,10 +189,10 @@ def test_usage_errors(options, text):
 @pytest.mark.parametrize(
     ("options", "text"),
     [
-        ("--body-height 900", "nowhere reaches the ground"),
-        ("--tilt 60,0", "can't step"),
+        ("--body-height 900", "does not reach the ground"),
+        ("--tilt 60,0", "stepping on the spot is impossible"),
         ("--swing-height 400", "lifted"),
-        ("--body-height -500", "nowhere reaches the ground"),
+        ("--body-height -500", "does not reach the ground"),
     ],
 )
 def test_impossible_walks(options, text):
@@ -218,7 +218,7 @@ def test_gait_for_another_number_of_legs(tmp_path):
     save_robot(robot, tmp_path / "four.toml")
     result = run("walk", tmp_path / "four.toml", "--gait", "ripple")
     assert result.exit_code == 2
-    assert "not for 4 legs" in result.stderr
+    assert "does not exist for 4 legs" in result.stderr
 
 
 def test_unwritable_table(tmp_path):

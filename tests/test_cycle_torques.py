@@ -271,5 +271,5 @@ def test_invalid_arguments(changes, text):
 def test_missing_masses_and_unreachable_ground():
     with pytest.raises(MissingDataError, match="mass_kg"):
         cycle_torques(robot_of("strider").replace(body_mass=None), TRIPOD, stroke=0.05)
-    with pytest.raises(UnreachableError, match="nowhere reaches the ground"):
+    with pytest.raises(UnreachableError, match="does not reach the ground"):
         cycle_torques(robot_of("strider"), TRIPOD, stroke=0.05, body_height=2.0)

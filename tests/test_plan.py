@@ -392,11 +392,11 @@ def test_extreme_sizes_are_refused():
         ({"stroke": 1e4}, "stroke is 10000 m; it must be at most 1000 m"),
         ({"speed": 1e300, "cycle_time": 1e300}, "stroke is inf"),
         ({"speed": 1e-300, "cycle_time": 1e-300}, "a swing takes|stroke is 0"),
-        ({"speed": 1e-9, "cycle_time": 1.0}, "at most 2000000 are planned at once"),
+        ({"speed": 1e-9, "cycle_time": 1.0}, "at most 2000000 samples"),
         ({"stroke": 0.05, "speed": 1e-308}, "at most 2000000"),
         ({"stroke": 0.05, "speed": 1e308}, "a swing takes"),
         ({"stroke": 0.05, "cycle_time": 1.0, "rate": 1e9}, "at most 2000000"),
-        ({"stroke": 0.05, "cycle_time": 1.0, "rate": 1.5}, "a swing takes 0.5 s.*at least 2 are needed"),
+        ({"stroke": 0.05, "cycle_time": 1.0, "rate": 1.5}, "a swing takes 0.5 s.*at least 2 Hz"),
         ({"swing_height": 1e6}, "swing_height is"),
     ):
         with pytest.raises(InputError, match=match):
@@ -470,17 +470,17 @@ def test_close_feet_are_refused_with_legs_distance_and_time(rate):
     free = plan_walk(robot, Gait.named("ripple"), path, stroke=0.12, cycle_time=1.0, rate=2000)
     distance, pair = feet_distance(free.feet)
     closest = distance.min()
-    moments = np.flatnonzero(distance < closest + 1e-5)
+    closest_samples = np.flatnonzero(distance < closest + 1e-5)
     with pytest.raises(CollisionError) as refused:
         plan_walk(
             robot, Gait.named("ripple"), path, stroke=0.12, cycle_time=1.0, rate=rate, foot_distance=closest + 0.001
         )
     text = str(refused.value)
-    near = float(text.split("as near as ")[1].split(" mm", maxsplit=1)[0]) / 1000
-    when = float(text.split(" mm at ")[1].split(" s", maxsplit=1)[0])
-    # Really the closest moment, whatever the rate: to the tenth of a millimetre that is printed, and half of one more.
+    near = float(text.split(" are ")[1].split(" mm", maxsplit=1)[0]) / 1000
+    when = float(text.split(" mm apart at ")[1].split(" s", maxsplit=1)[0])
+    # The true minimum at any rate, to the tenth of a millimetre that is printed and half of one more.
     assert near == pytest.approx(closest, abs=1.5e-4)
-    assert np.abs(free.time[moments] - when).min() < 0.03
+    assert np.abs(free.time[closest_samples] - when).min() < 0.03
     legs = {" and ".join(robot.leg_codes[i] for i in pair[k]) for k in np.flatnonzero(distance < closest + 2e-4)}
     assert any(f"the feet of {two} are" in text for two in legs)
     plan_walk(robot, Gait.named("ripple"), path, stroke=0.12, cycle_time=1.0, rate=rate, foot_distance=closest - 0.001)

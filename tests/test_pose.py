@@ -204,7 +204,7 @@ def test_gradients_pass_through_poses():
     "wrong", [2 * np.eye(3), np.diag([1.0, 1.0, -1.0]), np.diag([2.0, 0.5, 1.0]), np.zeros((3, 3))]
 )
 def test_what_stretches_or_mirrors_is_no_pose(wrong):
-    with pytest.raises(InputError, match="rotation is no rotation matrix"):
+    with pytest.raises(InputError, match="rotation is not a rotation matrix"):
         Pose(np.stack([np.eye(3), wrong]), np.zeros(3))
 
 

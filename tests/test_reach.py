@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from robots import plain_hexapod, random_angles, random_robot, seeds
 from tarsus.errors import UnreachableError
-from tarsus.kinematics.ground import BodyPlace, surely_above
+from tarsus.kinematics.ground import PoseComponents, certainly_above_ground
 from tarsus.kinematics.inverse import inverse_kinematics
 from tarsus.kinematics.leg import forward_kinematics
 from tarsus.kinematics.pose import Pose
@@ -130,8 +130,10 @@ def test_the_quick_bound_never_hides_a_buried_point(seed):
         # At the very height where the lowest point touches the ground, and a little below.
         for depth in (0.0, 1e-9, 0.01):
             placed = Pose(body.rotation, body.position - [0, 0, lowest + depth])
-            assert not surely_above(robot.geometry, q[:, 1], BodyPlace.of(np, placed)) or depth == 0.0
-        found += surely_above(robot.geometry, q[:, 1], BodyPlace.of(np, Pose(body.rotation, [0, 0, 1.0])))
+            assert not certainly_above_ground(robot.geometry, q[:, 1], PoseComponents.of(np, placed)) or depth == 0.0
+        found += certainly_above_ground(
+            robot.geometry, q[:, 1], PoseComponents.of(np, Pose(body.rotation, [0, 0, 1.0]))
+        )
     assert found > 0
 
 
@@ -149,7 +151,7 @@ def test_the_quick_bound_never_hides_a_buried_point(seed):
 )
 def test_the_quick_bound_by_cases(body, femur, sure):
     g = plain_hexapod().geometry
-    assert surely_above(g, np.array(femur)[:, None], BodyPlace.of(np, body)) is sure
+    assert certainly_above_ground(g, np.array(femur)[:, None], PoseComponents.of(np, body)) is sure
 
 
 def test_an_axis_below_ground_overrides_whatever_else_is_wrong():
@@ -232,20 +234,20 @@ def test_every_reason_in_words():
     )
     feet = [[0.4, 0, 0], [0.068, 0, 0], [0.1, 0.2, -0.1], [0.15, 0, -0.1], [0.1, 0, -0.1], [0.2, 0, -0.1]]
     lines = inverse_kinematics(robot, np.array(feet)).explain().splitlines()
-    assert [line.split(". Nearest that works: ")[0] for line in lines] == [
+    assert [line.split(". Nearest reachable: ")[0] for line in lines] == [
         (
-            "LF: TOO_FAR: the foot is 332.0 mm from the femur axis, and femur and tibia together reach 279.0 mm: "
+            "LF: TOO_FAR: the foot is 332.0 mm from the femur axis, and femur and tibia are 279.0 mm long: "
             "53.0 mm too far"
         ),
         (
-            "LM: TOO_NEAR: the foot is 0.0 mm from the femur axis, and the folded leg can't come nearer than 83.0 mm: "
+            "LM: TOO_NEAR: the foot is 0.0 mm from the femur axis, and the folded leg reaches no nearer than 83.0 mm: "
             "83.0 mm too near"
         ),
-        "LR: COXA_LIMIT: the coxa would have to be at 63.4 deg, its highest angle is 60.0: 3.4 deg too far",
-        "RR: FEMUR_LIMIT: the femur would have to be at 54.1 deg, its highest angle is 54.0: 0.1 deg too far",
-        "RM: TIBIA_LIMIT: the tibia would have to be at -152.1 deg, its lowest angle is -150.0: 2.1 deg too far",
+        "LR: COXA_LIMIT: the coxa angle would be 63.4 deg, 3.4 deg above its upper limit of 60.0 deg",
+        "RR: FEMUR_LIMIT: the femur angle would be 54.1 deg, 0.1 deg above its upper limit of 54.0 deg",
+        "RM: TIBIA_LIMIT: the tibia angle would be -152.1 deg, 2.1 deg below its lower limit of -150.0 deg",
     ]
-    assert lines[0].endswith(". Nearest that works: the foot at (347.0, 0.0, 0.0) mm, 53.0 mm away")
+    assert lines[0].endswith(". Nearest reachable: the foot at (347.0, 0.0, 0.0) mm, 53.0 mm away")
     assert "-0.0" not in "".join(lines)
 
 
@@ -258,17 +260,20 @@ def test_a_sideways_offset_keeps_the_foot_away_from_the_coxa_axis():
     )
     line = inverse_kinematics(robot, np.tile([0.005, 0, -0.15], (6, 1))).explain().splitlines()[0]
     assert line.startswith(
-        "LF: TOO_NEAR: the foot is 5.0 mm from the coxa axis, and the femur axis' sideways offset keeps it at least "
-        "20.0 mm away: 15.0 mm too near. Nearest that works: "
+        "LF: TOO_NEAR: the foot is 5.0 mm from the coxa axis, less than the sideways offset of the femur axis, 20.0 mm: "
+        "15.0 mm too near. Nearest reachable: "
     )
     assert line.endswith(", 15.0 mm away")
 
 
-def test_angles_over_a_limit_are_told_the_shorter_way_round():
+def test_excess_over_a_limit_is_measured_in_the_shorter_direction():
     robot = plain_hexapod(mount_yaw=np.zeros(6), mount_position=np.zeros((6, 3)))
     robot = robot.replace(limits=np.tile(np.deg2rad([[100, 170], [-80, 80], [-160, 0]]), (6, 1, 1)))
     feet = np.tile([0.2 * np.cos(np.deg2rad(175)), -0.2 * np.sin(np.deg2rad(175)), -0.1], (6, 1))
-    assert "at 185.0 deg, its highest angle is 170.0: 15.0 deg too far" in inverse_kinematics(robot, feet).explain()
+    assert (
+        "angle would be 185.0 deg, 15.0 deg above its upper limit of 170.0 deg"
+        in inverse_kinematics(robot, feet).explain()
+    )
 
 
 def test_require_returns_the_solution_or_raises_its_explanation():

@@ -242,7 +242,7 @@ def test_a_tall_body_falls_to_the_side_of_its_weight(push, face, angles):
         link_mass=None,
     )
     rest = resting_pose(robot, standing())
-    assert rest.describe() == f"lies on its {face}; margin 50.0 mm (masses unknown: that of the body's own centre)"
+    assert rest.describe() == f"lies on its {face}; margin 50.0 mm (masses unknown: margin of the centre of the body)"
     np.testing.assert_allclose(rest.body.rpy, np.deg2rad(angles), atol=1e-9)
     assert rest.body.position[2] == pytest.approx(0.05)
     assert rest.corners_down.sum() == 4
@@ -320,7 +320,7 @@ def test_over_the_edge_of_a_polygon_with_an_area_it_rests_with_margin_zero():
     assert rest.rolls == 0
     assert rest.margin == pytest.approx(0, abs=1e-15)
     assert rest.describe() == (
-        "stands on 3 feet: a, b, d; margin 0.0 mm (masses unknown: that of the body's own centre)"
+        "stands on 3 feet: a, b, d; margin 0.0 mm (masses unknown: margin of the centre of the body)"
     )
 
 

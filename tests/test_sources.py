@@ -669,7 +669,7 @@ def test_003_no_solution_where_a_joint_is_out_of_its_range() -> None:
     )[:, 3]
     solution = inverse_kinematics(robot, over)
     assert (solution.reach == Reach.COXA_LIMIT).all()
-    assert "its highest angle is 60.0" in solution.explain()
+    assert "upper limit of 60.0 deg" in solution.explain()
 
 
 def test_003_no_solution_where_too_few_legs_reach_the_ground() -> None:

@@ -133,13 +133,13 @@ def test_the_default_clearance_is_the_files_or_from_the_lengths():
     assert np.array_equal(default_stance(robot), default_stance(robot, default_body_height(robot)))
 
 
-def test_the_error_names_the_leg_and_the_clearances_that_work():
+def test_the_error_names_the_leg_and_the_possible_body_heights():
     robot = plain_hexapod(tibia=np.array([0.181, 0.181, 0.12, 0.181, 0.181, 0.181]))
     with pytest.raises(UnreachableError) as caught:
         default_stance(robot, 0.25)
     text = str(caught.value)
     assert text.startswith(
-        "body height 250.0 mm: leg LR nowhere reaches the ground within its joint limits; all legs do at"
+        "body height 250.0 mm: leg LR does not reach the ground within its joint limits; all legs do at"
     )
     low, high, nearest = (float(v) / 1000 for v in re.findall(r"(-?\d+\.\d) (?:and|mm$|mm,)", text))
     # The femur at its -80 deg and the tibia upright: 98 sin 80 deg + 120 = 216.51 mm; up, less than 218 mm, in line.

@@ -1,1 +1,1 @@
-"""Where the robot's points are."""
+"""Kinematics: leg points, inverse kinematics, support polygon, resting pose."""

@@ -14,7 +14,7 @@ from tarsus.arrays import (
     stack_last,
 )
 from tarsus.blocks import BLOCK, SMALL, batch_blocks, block_shape, columns
-from tarsus.kinematics.ground import BodyPlace, mark_below_ground, points_in_body, surely_above
+from tarsus.kinematics.ground import PoseComponents, certainly_above_ground, mark_below_ground, points_in_body
 from tarsus.kinematics.nearest import nearest_angles
 from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.reach import LENGTH_TOLERANCE, Reach, all_within, reach_codes
@@ -24,12 +24,12 @@ from tarsus.robot.robot import Robot
 
 __all__ = ["solve_legs"]
 
-# Legs tried again at a time; each has ten candidates.
+# Legs per block of the second pass; each has ten candidates.
 _AGAIN = BLOCK // 8
 
 
 def solve_legs(robot: Robot, feet: Array, body: Pose | None, *, knee: int) -> tuple[Array, Array]:
-    """Return the joint angles that put the feet where they should be, and the reach code of every leg.
+    """Return the joint angles for given feet, and the reach code of every leg.
 
     Parameters
     ----------
@@ -62,13 +62,13 @@ def solve_legs(robot: Robot, feet: Array, body: Pose | None, *, knee: int) -> tu
 
 
 def _solve_everywhere(xp: Namespace, robot: Robot, feet: Array, body: Pose | None, knee: int) -> tuple[Array, Array]:
-    """Solve without branching on values, as `jax.jit` needs it."""
+    """Solve without branches on values, for `jax.jit`."""
     g = robot.geometry.to(xp)
-    offset = robot.femur_axis_offset[..., 0]  # not the geometry's, which is traced as soon as any of its numbers is
+    offset = robot.femur_axis_offset[..., 0]  # the geometry is traced as a whole as soon as one of its arrays is
     sideways = is_traced(offset) or bool(namespace(offset).any(offset != 0))
     feet = xp.astype(feet, xp.result_type(feet, *g))
     x, y, z = feet[..., 0], feet[..., 1], feet[..., 2]
-    place = None if body is None else BodyPlace.of(xp, body)
+    place = None if body is None else PoseComponents.of(xp, body)
     if place is not None:
         x, y, z = place.into_body(x, y, z)
     x, y, z = to_leg_frame(g, x, y, z)
@@ -88,10 +88,10 @@ def _solve_everywhere(xp: Namespace, robot: Robot, feet: Array, body: Pose | Non
 def _solve_first(
     robot: Robot, feet: Array, body: Pose | None, knee: int, batch: tuple[int, ...]
 ) -> tuple[Array, Array]:
-    """Solve NumPy legs with their planes turned towards their feet; many in blocks that fit the cache."""
+    """Solve NumPy legs with their planes facing their feet; large batches in blocks that fit the cache."""
     sideways = bool(robot.geometry.side.any())
     if feet.size <= SMALL and batch == feet.shape[:-2] and not robot.batch_shape:
-        place = None if body is None else BodyPlace.of(np, body)
+        place = None if body is None else PoseComponents.of(np, body)
         points = feet if body is None else points_in_body(body, feet)
         x, y, z = points[..., 0], points[..., 1], points[..., 2]
         *joints, codes = _first_tries(robot.geometry, x, y, z, place, knee=knee, sideways=sideways)
@@ -100,7 +100,7 @@ def _solve_first(
     same = robot.geometry if robot.batch_shape else robot.geometry.take((), ())
     for index in batch_blocks(batch, max(BLOCK // robot.legs, 1)):
         block = block_shape(batch, index)
-        place = None if body is None else BodyPlace.of_block(body, index, block)
+        place = None if body is None else PoseComponents.of_block(body, index, block)
         g = robot.geometry.take(index, block) if robot.batch_shape else same
         x, y, z = columns(feet, index, block, tail=2)
         if place is not None:
@@ -114,28 +114,28 @@ def _solve_first(
 
 
 def _first_tries(
-    g: LegGeometry, x: Array, y: Array, z: Array, body: BodyPlace | None, *, knee: int, sideways: bool
+    g: LegGeometry, x: Array, y: Array, z: Array, body: PoseComponents | None, *, knee: int, sideways: bool
 ) -> tuple[Array, ...]:
-    """Solve NumPy legs in any layout, their feet in B, with their planes turned towards them."""
+    """Solve NumPy legs in any layout, with feet in B and the legs' planes facing them."""
     solution = solve_triangle(np, g, *to_leg_frame(g, x, y, z), knee=knee, sideways=sideways)
     joints = solution[:3]
     within = all_within(g, solution)
     codes = np.zeros(solution.far.shape, dtype=np.int8) if within else reach_codes(np, g, solution)
-    if body is not None and not surely_above(g, solution.femur, body):
-        # Of the legs that are to be tried again, nothing is known yet.
+    if body is not None and not certainly_above_ground(g, solution.femur, body):
+        # Legs that go through the second pass are checked there.
         codes = np.where(codes == 0, mark_below_ground(np, g, joints, codes, body), codes)
     return *joints, codes
 
 
 def _try_again(robot: Robot, feet: Array, body: Pose | None, knee: int, angles: Array, reach: Array) -> None:
-    """Solve the NumPy legs that the first pass could not, and write them into its results."""
+    """Solve the NumPy legs that failed in the first pass, and write them into its results."""
     legs = reach.shape
     failed = np.nonzero((reach != 0) & (reach != Reach.BELOW_GROUND))
     sideways = bool(robot.geometry.side.any())
     for start in range(0, len(failed[0]), _AGAIN):
         where = tuple(indices[start : start + _AGAIN] for indices in failed)
         g = robot.geometry.pick(where, legs)
-        place = None if body is None else BodyPlace.of_picked(body, where[:-1], legs[:-1])
+        place = None if body is None else PoseComponents.of_picked(body, where[:-1], legs[:-1])
         x, y, z = np.broadcast_to(feet, angles.shape)[where].T
         if place is not None:
             x, y, z = place.into_body(x, y, z)
@@ -149,12 +149,12 @@ def _try_again(robot: Robot, feet: Array, body: Pose | None, knee: int, angles: 
 def _second_tries(
     xp: Namespace, g: LegGeometry, x: Array, y: Array, z: Array, codes: Array, *, knee: int, sideways: bool
 ) -> tuple[Array, ...]:
-    """Solve the legs that can't reach their foot turned towards it: turned away, or as near as they get."""
+    """Solve legs that failed in the first pass: facing away from the foot, or at the nearest reachable point."""
     away = solve_triangle(xp, g, x, y, z, knee=knee, facing=-1, sideways=sideways)
     turned = reach_codes(xp, g, away) == 0
     miss2, *nearest = nearest_angles(xp, g, x, y, z, knee=knee, sideways=sideways)
-    # Where a joint's angle makes no difference (a foot on its axis) or little (a straight leg), the first solution may
-    # be out of the limits, and yet an angle within them reaches the foot.
+    # Where a joint angle has no effect (foot on its axis) or little (straight leg), the first solution may violate the
+    # limits although an angle within them reaches the foot.
     solved = turned | (miss2 <= LENGTH_TOLERANCE * LENGTH_TOLERANCE)
     joints = (xp.where(turned, second, last) for second, last in zip(away[:3], nearest, strict=True))
     return *joints, xp.where(solved, xp.zeros_like(codes), codes)

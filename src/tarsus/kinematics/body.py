@@ -1,4 +1,4 @@
-"""The frames: leg, body, ground; and how far the body can be moved with the feet still."""
+"""Coxa frames, and how far the body can move while the feet stay on their footholds."""
 
 from __future__ import annotations
 
@@ -14,17 +14,17 @@ from tarsus.robot.robot import Robot
 
 __all__ = ["coxa_frames", "reachable_fraction"]
 
-# The way is looked at in 32 steps, then the step where a foot first stays behind in 32 again, and so on.
+# The motion is sampled in 32 steps; the first step with an unreachable foot is subdivided again, 8 times in all.
 _STEPS = 32
 _ROUNDS = 8
 
 
 def coxa_frames(robot: Robot) -> Pose:
-    """Return the place of every leg's coxa frame C in the body frame: ``T_body_coxa``.
+    """Return the pose of every leg's coxa frame C in the body frame: ``T_body_coxa``.
 
-    C has its origin on the coxa axis, x outward along the leg's mounting yaw, z up. ``coxa_frames(robot) @ feet``
-    carries one point of each leg's own frame into B, ``coxa_frames(robot).inverse() @ feet`` back (sources 000, 001
-    and 004 each do this with the attachment points' coordinates).
+    C has its origin on the coxa axis, x outward along the leg's mounting yaw, z up. ``coxa_frames(robot) @ points``
+    transforms one point of each leg from its coxa frame to B, ``coxa_frames(robot).inverse() @ points`` back (sources
+    000, 001 and 004 do so with the coordinates of the attachment points).
 
     Parameters
     ----------
@@ -45,48 +45,48 @@ def coxa_frames(robot: Robot) -> Pose:
 
 
 def reachable_fraction(robot: Robot, feet: Array, start: Pose, goal: Pose) -> float:
-    """Return how much of the way from one body pose to another all feet can stay where they stand.
+    """Return the fraction of a motion between two body poses during which all feet reach their footholds.
 
-    Position, roll, pitch and yaw change in proportion, each angle the shorter way round.
+    Position, roll, pitch and yaw are interpolated linearly, each angle in the direction of the smaller change.
 
     Parameters
     ----------
     robot : Robot
         A single robot.
     feet : array, shape (legs, 3)
-        Where the feet stand in G [m].
+        Footholds in G [m].
     start, goal : Pose
-        The body's places in G; single poses.
+        Poses of B in G; single poses.
 
     Returns
     -------
     float
-        0 where the start itself can't be reached, 1 where the whole way can.
+        0 where the start is not possible, 1 where the whole motion is.
 
     Raises
     ------
     InputError
-        If robot or poses are batches, or the feet have another shape, or are not finite.
+        If the robot or a pose is a batch, or the feet have the wrong shape or are not finite.
     """
     if robot.batch_shape or start.batch_shape or goal.batch_shape or np.ndim(feet) != 2:
-        raise InputError("reachable_fraction takes a single robot, one foot a leg, and single poses")
+        raise InputError("reachable_fraction takes a single robot, feet of shape (legs, 3) and single poses")
     rpy, position = np.asarray(start.rpy), np.asarray(start.position)
     turn, move = np.asarray(goal.rpy) - rpy, np.asarray(goal.position) - position
     turn -= 2 * np.pi * np.round(turn / (2 * np.pi))
 
-    def reached(shares: np.ndarray[Any, Any]) -> Array:
-        roll, pitch, yaw = rpy[:, None] + turn[:, None] * shares
-        body = Pose.from_rpy(roll, pitch, yaw, position + shares[:, None] * move)
+    def reached(fractions: np.ndarray[Any, Any]) -> Array:
+        roll, pitch, yaw = rpy[:, None] + turn[:, None] * fractions
+        body = Pose.from_rpy(roll, pitch, yaw, position + fractions[:, None] * move)
         return np.asarray(inverse_kinematics(robot, feet, body).ok)
 
     low, high = 0.0, 1.0
     for _ in range(_ROUNDS):
-        shares = np.linspace(low, high, _STEPS + 1)
-        ok = reached(shares)
+        fractions = np.linspace(low, high, _STEPS + 1)
+        ok = reached(fractions)
         if ok.all():
             return high
         first = int(np.argmin(ok))
         if not first:
             return low
-        low, high = float(shares[first - 1]), float(shares[first])
+        low, high = float(fractions[first - 1]), float(fractions[first])
     return low

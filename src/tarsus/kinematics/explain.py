@@ -91,7 +91,7 @@ class _Leg:
         return cls(robot, branch, target[0], pose, points[0], (float(x[0]), float(y[0]), float(z[0])))
 
     def why(self, code: Reach) -> str:
-        """Return what is wrong, the number against its bound."""
+        """Return the reason, with the number and its bound."""
         if code is Reach.BELOW_GROUND:
             lowest = int(np.argmin(self.points[:3, 2]))
             point, depth = ("coxa axis", "femur axis", "knee")[lowest], -float(self.points[lowest, 2])
@@ -101,17 +101,17 @@ class _Leg:
         return self._why_limit(code)
 
     def what_works(self, code: Reach) -> str:
-        """Return the nearest thing that works."""
+        """Return the nearest foot that is reachable, or the body height that is possible."""
         if code is Reach.BELOW_GROUND and self.body is not None:
-            return self._raised(self.body)
+            return self._raise_body(self.body)
         x, y, z = np.round(self.points[3] * 1000, 1) + 0.0  # no -0.0
         miss = math.dist(self.points[3], self.target) * 1000
-        return f"Nearest that works: the foot at ({x:.1f}, {y:.1f}, {z:.1f}) mm, {miss:.1f} mm away"
+        return f"Nearest reachable: the foot at ({x:.1f}, {y:.1f}, {z:.1f}) mm, {miss:.1f} mm away"
 
-    def _raised(self, body: Pose) -> str:
-        """Return how far the body must be raised, the feet where they are, for the leg to be above the ground."""
+    def _raise_body(self, body: Pose) -> str:
+        """Return by how much the body must be raised, with the feet unchanged, for the leg to be above the ground."""
         g = self.robot.geometry
-        # No point of the leg but the foot is farther than this from the coxa axis.
+        # All points of the leg except the foot are within this distance of the coxa axis.
         span = g.coxa + np.abs(g.side) + np.abs(g.up) + g.femur
         most = math.ceil((float(span[0]) - float(self.points[0, 2])) / _STEP) + 1
         coarse = math.ceil(most / _TRIES)
@@ -123,7 +123,7 @@ class _Leg:
         return f"Raised by {distance}, the body is high enough, but the foot is out of reach ({code.name})"
 
     def _first_above(self, body: Pose, steps: np.ndarray[Any, Any]) -> tuple[int, Reach]:
-        """Return the first rise, in steps, at which the leg is above the ground, and its code there."""
+        """Return the least rise, in steps, at which the leg is above the ground, and its reach code there."""
         higher = Pose(body.rotation, body.position + steps[:, None] * np.array([0.0, 0.0, _STEP]))
         reach = solve_legs(self.robot, self.target[None], higher, knee=self.knee)[1][:, 0]
         first = int(np.argmax(reach != Reach.BELOW_GROUND))
@@ -132,23 +132,23 @@ class _Leg:
     def _why_distance(self, code: Reach) -> str:
         g = self.robot.geometry
         x, y, z = self.in_leg
-        side, beside = abs(float(g.side[0])) * 1000, math.hypot(x, y) * 1000
-        if beside < side:
+        side, radius = abs(float(g.side[0])) * 1000, math.hypot(x, y) * 1000
+        if radius < side:
             return (
-                f"the foot is {beside:.1f} mm from the coxa axis, and the femur axis' sideways offset keeps it at "
-                f"least {side:.1f} mm away: {side - beside:.1f} mm too near"
+                f"the foot is {radius:.1f} mm from the coxa axis, less than the sideways offset of the femur axis, "
+                f"{side:.1f} mm: {side - radius:.1f} mm too near"
             )
         r = math.sqrt(max(x * x + y * y - float(g.side2[0]), 0.0)) - float(g.coxa[0])
         distance = math.hypot(r, z) * 1000
         femur, tibia = float(g.femur[0]) * 1000, float(g.tibia[0]) * 1000
         if code is Reach.TOO_FAR:
             return (
-                f"the foot is {distance:.1f} mm from the femur axis, and femur and tibia together reach "
-                f"{femur + tibia:.1f} mm: {distance - femur - tibia:.1f} mm too far"
+                f"the foot is {distance:.1f} mm from the femur axis, and femur and tibia are "
+                f"{femur + tibia:.1f} mm long: {distance - femur - tibia:.1f} mm too far"
             )
         folded = abs(femur - tibia)
         return (
-            f"the foot is {distance:.1f} mm from the femur axis, and the folded leg can't come nearer than "
+            f"the foot is {distance:.1f} mm from the femur axis, and the folded leg reaches no nearer than "
             f"{folded:.1f} mm: {folded - distance:.1f} mm too near"
         )
 
@@ -160,12 +160,12 @@ class _Leg:
         above, below = (angle - high) % 360.0, (low - angle) % 360.0
         if above < below:
             return (
-                f"the {JOINTS[joint]} would have to be at {high + above:.1f} deg, its highest angle is {high:.1f}: "
-                f"{above:.1f} deg too far"
+                f"the {JOINTS[joint]} angle would be {high + above:.1f} deg, {above:.1f} deg above its upper limit of "
+                f"{high:.1f} deg"
             )
         return (
-            f"the {JOINTS[joint]} would have to be at {low - below:.1f} deg, its lowest angle is {low:.1f}: "
-            f"{below:.1f} deg too far"
+            f"the {JOINTS[joint]} angle would be {low - below:.1f} deg, {below:.1f} deg below its lower limit of "
+            f"{low:.1f} deg"
         )
 
 

@@ -1,4 +1,4 @@
-"""A body's place over the ground, and which legs dip below it."""
+"""Legs below the ground for a pose of the body."""
 
 from __future__ import annotations
 
@@ -14,18 +14,18 @@ from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.reach import LENGTH_TOLERANCE, Reach, mark
 from tarsus.robot.geometry import LegGeometry
 
-__all__ = ["BodyPlace", "mark_below_ground", "points_in_body", "surely_above"]
+__all__ = ["PoseComponents", "certainly_above_ground", "mark_below_ground", "points_in_body"]
 
 
-class BodyPlace(NamedTuple):
-    """A body's pose taken apart, in a layout that fits the geometry's: ``rotation[row][column]`` and position."""
+class PoseComponents(NamedTuple):
+    """A pose as its components ``rotation[row][column]`` and ``position[axis]``, in the layout of the leg geometry."""
 
     rotation: tuple[tuple[Array, ...], ...]
     position: tuple[Array, ...]
 
     @classmethod
     def of_block(cls, body: Pose, index: Index, block: tuple[int, ...]) -> Self:
-        """Take apart what belongs to a block of the batch, as columns (see `tarsus.blocks.columns`)."""
+        """Return the components of a block of the batch, as columns (see `tarsus.blocks.columns`)."""
         rotation, position = (
             columns(body.rotation, index, block, tail=2),
             columns(body.position, index, block, tail=1),
@@ -34,7 +34,7 @@ class BodyPlace(NamedTuple):
 
     @classmethod
     def of_picked(cls, body: Pose, where: tuple[Array, ...], batch: tuple[int, ...]) -> Self:
-        """Take apart the NumPy poses of single legs; `where` counts along the batch axes."""
+        """Return the components of the NumPy poses at indices `where` along the batch axes."""
         rotation = np.broadcast_to(body.rotation, (*batch, 3, 3))[where]
         position = np.broadcast_to(body.position, (*batch, 3))[where]
         rows = tuple(tuple(rotation[..., i, j] for j in range(3)) for i in range(3))
@@ -42,41 +42,41 @@ class BodyPlace(NamedTuple):
 
     @classmethod
     def of(cls, xp: Namespace, body: Pose) -> Self:
-        """Take a pose apart as ``(..., 1)``, the last axis standing for the legs."""
+        """Return the components as ``(..., 1)``; the last axis broadcasts with the legs."""
         rotation, position = xp.asarray(body.rotation)[..., None], xp.asarray(body.position)[..., None]
         elements = tuple(tuple(rotation[..., i, j, :] for j in range(3)) for i in range(3))
         return cls(elements, tuple(position[..., i, :] for i in range(3)))
 
     def into_body(self, x: Array, y: Array, z: Array) -> tuple[Array, ...]:
-        """Carry points of G into B."""
+        """Transform points from G to B."""
         (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = self.rotation
         x, y, z = x - self.position[0], y - self.position[1], z - self.position[2]
         return xx * x + yx * y + zx * z, xy * x + yy * y + zy * z, xz * x + yz * y + zz * z
 
     def height(self, x: Array, y: Array, z: Array) -> Array:
-        """Return the height over the ground of points of B."""
+        """Return the height above the ground of points in B."""
         zx, zy, zz = self.rotation[2]
         return zx * x + zy * y + zz * z + self.position[2]
 
 
 def points_in_body(body: Pose, points: Array) -> Array:
-    """Carry NumPy points ``(..., k, 3)`` of G into B as `BodyPlace.into_body` does, to the bit, in half the calls."""
-    rotation, away = body.rotation[..., None, :, :], points - body.position[..., None, :]
-    carried = away[..., 0:1] * rotation[..., 0, :] + away[..., 1:2] * rotation[..., 1, :]
-    return carried + away[..., 2:3] * rotation[..., 2, :]
+    """Transform NumPy points ``(..., k, 3)`` from G to B: as `PoseComponents.into_body` does, to the bit."""
+    rotation, offset = body.rotation[..., None, :, :], points - body.position[..., None, :]
+    in_body = offset[..., 0:1] * rotation[..., 0, :] + offset[..., 1:2] * rotation[..., 1, :]
+    return in_body + offset[..., 2:3] * rotation[..., 2, :]
 
 
 def mark_below_ground(
-    xp: Namespace, geometry: LegGeometry, joints: tuple[Array, ...], codes: Array, body: BodyPlace
+    xp: Namespace, geometry: LegGeometry, joints: tuple[Array, ...], codes: Array, body: PoseComponents
 ) -> Array:
-    """Mark the legs whose coxa axis is below the ground, and those within reach whose femur axis or knee is."""
+    """Mark legs whose coxa axis is below the ground, and legs within reach whose femur axis or knee is."""
     parts = point_parts(xp, geometry, *joints)
     attachment, axis, knee = (body.height(*parts[i : i + 3]) < -LENGTH_TOLERANCE for i in (0, 3, 6))
     return mark(xp, codes, attachment | ((codes == 0) & (axis | knee)), Reach.BELOW_GROUND)
 
 
-def surely_above(geometry: LegGeometry, femur: Array, body: BodyPlace) -> bool:
-    """Return whether all bodies are so high that no point of a NumPy leg but the foot can be below the ground."""
+def certainly_above_ground(geometry: LegGeometry, femur: Array, body: PoseComponents) -> bool:
+    """Return whether all bodies are so high that no point of a NumPy leg except the foot can be below the ground."""
     g = geometry
     zx, zy, zz = body.rotation[2]
     if not femur.size:
@@ -84,9 +84,9 @@ def surely_above(geometry: LegGeometry, femur: Array, body: BodyPlace) -> bool:
     if zz.min() < 0:
         return False
     lean = math.sqrt(float((zx * zx + zy * zy).max()))
-    # Between -pi/2 and pi the sine is least at the lowest angle, or positive.
+    # Between -pi/2 and pi the sine has its minimum at the least angle, or is positive.
     low = max(-float(femur.min()), 0.0)
     drop = math.sin(low) if low < math.pi / 2 and float(femur.max()) < math.pi else 1.0
-    # A point above B's origin counts as level with it: a tilted body brings it down by an unknown share of its height.
+    # A point above B's origin counts as level with it: tilting the body lowers it by an unknown amount.
     lowest = lean * g.knee_span + np.maximum(drop * g.femur + g.axis_depth, 0.0)
     return bool(body.position[2].min() > lowest.max())

@@ -19,31 +19,31 @@ __all__ = ["inverse_kinematics"]
 def inverse_kinematics(
     robot: Robot, feet: Array, body: Pose | None = None, *, knee: Literal["up", "down"] = "up"
 ) -> IKSolution:
-    """Return the joint angles that put the feet where they should be, and which of them can't be there.
+    """Return the joint angles for given feet, and which feet are out of reach.
 
     Parameters
     ----------
     robot : Robot
         The robot, or a batch of designs.
     feet : array, shape (..., legs, 3)
-        Where the feet should be: in the ground frame G where `body` is given, else in the body frame B [m].
+        Feet: in the ground frame G where `body` is given, else in the body frame B [m].
     body : Pose, optional
-        The body's place in G. Left out, nothing is below ground.
+        Pose of B in G. Without it, no point counts as below the ground.
     knee : {"up", "down"}
-        Which of the two solutions: the tibia bent down or up from the femur, so that the knee is above or below
-        the line from the femur axis to a foot in front of it. A leg whose limits allow only the other one takes that.
+        Knee branch: the tibia bent down or up relative to the femur, so that the knee is above or below the line from
+        the femur axis to a foot in front of it. A leg whose limits allow only the other branch uses that one.
 
     Returns
     -------
     IKSolution
-        Angles, reach codes, and what explains them. Where a foot can't be reached, the angles are those of the
-        nearest point that the leg reaches within its limits, with that knee. A foot that the leg can't reach with
-        its plane turned towards it, but can with the plane turned away (a foot behind the coxa axis), is reached so.
+        Angles, reach codes and their explanation. For a foot out of reach, the angles are those of the nearest point
+        reachable within the joint limits in that knee branch. A foot that is reachable only with the leg's plane facing
+        away from it (a foot behind the coxa axis) is reached that way.
 
     Raises
     ------
     InputError
-        If the feet have another shape, or are not finite; or if `knee` is neither of its two values.
+        If the feet have the wrong shape or are not finite, or `knee` has another value.
     """
     if knee not in ("up", "down"):
         raise InputError(f"knee is {knee!r}; it can be 'up' or 'down'")
@@ -56,7 +56,7 @@ def inverse_kinematics(
 
 
 def _locked_copy(feet: Array) -> Array:
-    """Return a locked copy of what the caller may write to."""
+    """Return a locked copy of a NumPy array, which the caller may write to."""
     if isinstance(feet, np.ndarray):
         feet = feet.copy()
         feet.setflags(write=False)

@@ -1,13 +1,13 @@
-"""Where the points of the legs are for given joint angles, and how they move with them.
+"""Forward kinematics of the legs: positions of their points, and the Jacobian of the foot.
 
-In the leg's own plane, with `r` outward and `z` up from the femur axis (source 002's two equations, signs as in
-this project: femur and tibia positive lift the foot)::
+In the leg's plane, with `r` outward and `z` up from the femur axis (the two equations of source 002, with the signs
+of this project: positive femur and tibia angles lift the foot)::
 
     r = femur cos(q_femur) + tibia cos(q_femur + q_tibia)
     z = femur sin(q_femur) + tibia sin(q_femur + q_tibia)
 
-The plane stands at `coxa` from the coxa axis, offset by source 001's `Dec_Y2` (sideways) and `Dec_Z2` (up), and
-turns with the coxa joint about the vertical.
+The femur axis is at distance `coxa` from the coxa axis, offset by source 001's `Dec_Y2` (sideways) and `Dec_Z2` (up),
+and the plane turns with the coxa joint about the vertical.
 """
 
 from __future__ import annotations
@@ -52,13 +52,13 @@ def forward_kinematics(robot: Robot, angles: Array) -> Array:
     Raises
     ------
     InputError
-        If the angles have another shape, or are not finite.
+        If the angles have the wrong shape or are not finite.
     """
     return _by_blocks(point_parts, robot, angles, (4, 3))
 
 
 def leg_jacobian(robot: Robot, angles: Array) -> Array:
-    """Return how each foot moves in the body frame with its leg's joint angles.
+    """Return the Jacobian of each foot in the body frame with respect to its joint angles.
 
     Parameters
     ----------
@@ -75,13 +75,13 @@ def leg_jacobian(robot: Robot, angles: Array) -> Array:
     Raises
     ------
     InputError
-        If the angles have another shape, or are not finite.
+        If the angles have the wrong shape or are not finite.
     """
     return _by_blocks(_jacobian_parts, robot, angles, (3, 3))
 
 
 def checked_angles(robot: Robot, angles: Array) -> tuple[Namespace, Array]:
-    """Return the namespace and the angles as floats, refusing what is not ``(..., legs, 3)`` finite numbers."""
+    """Return the namespace and the angles as floats, refusing anything but finite numbers ``(..., legs, 3)``."""
     xp = namespace(angles, robot.geometry.coxa)
     q = as_floats(xp, angles, name="angles")
     require_shape("angles", q, (robot.legs, 3))
@@ -98,7 +98,7 @@ def _by_blocks(
     angles: Array,
     tail: tuple[int, int],
 ) -> Array:
-    """Run a kernel over the batch, in blocks that fit the cache where the arrays are NumPy's."""
+    """Apply a kernel to the batch; NumPy arrays in blocks that fit the cache."""
     xp, q = checked_angles(robot, angles)
     geometry = robot.geometry.to(xp)
     batch = broadcast_shapes("the robot and the angles", robot.batch_shape, q.shape[:-2])
@@ -119,7 +119,7 @@ def _by_blocks(
 
 
 def _sines(xp: Namespace, g: LegGeometry, coxa: Array, femur: Array, tibia: Array) -> Parts:
-    """Cosines and sines of the leg plane's heading in B, of the femur's and of the tibia's slope."""
+    """Return cosines and sines of the heading of the leg's plane in B, and of the slopes of femur and tibia."""
     coxa_cos, coxa_sin = xp.cos(coxa), xp.sin(coxa)
     heading_cos = g.cos_yaw * coxa_cos - g.sin_yaw * coxa_sin
     heading_sin = g.sin_yaw * coxa_cos + g.cos_yaw * coxa_sin
@@ -128,7 +128,7 @@ def _sines(xp: Namespace, g: LegGeometry, coxa: Array, femur: Array, tibia: Arra
 
 
 def point_parts(xp: Namespace, g: LegGeometry, coxa: Array, femur: Array, tibia: Array) -> Parts:
-    """Return x, y, z in B of coxa axis, femur axis, knee and foot, in any layout that fits the geometry's."""
+    """Return x, y, z in B of coxa axis, femur axis, knee and foot, in any layout that broadcasts with the geometry."""
     heading_cos, heading_sin, femur_cos, femur_sin, tibia_cos, tibia_sin = _sines(xp, g, coxa, femur, tibia)
     zero = xp.zeros_like(heading_cos)
     knee_r = g.coxa + g.femur * femur_cos
@@ -148,7 +148,7 @@ def _jacobian_parts(xp: Namespace, g: LegGeometry, coxa: Array, femur: Array, ti
     tibia_r, tibia_z = g.tibia * tibia_cos, g.tibia * tibia_sin
     leg_r, leg_z = g.femur * femur_cos + tibia_r, g.femur * femur_sin + tibia_z
     foot_r = g.coxa + leg_r
-    # About a joint axis, the foot moves perpendicularly to its arm: outward by -z, upward by +r.
+    # A joint moves the foot perpendicularly to its lever arm (r, z): outward by -z, upward by +r.
     return (
         *(-foot_r * heading_sin - g.side * heading_cos, -leg_z * heading_cos, -tibia_z * heading_cos),
         *(foot_r * heading_cos - g.side * heading_sin, -leg_z * heading_sin, -tibia_z * heading_sin),

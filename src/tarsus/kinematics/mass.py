@@ -1,4 +1,4 @@
-"""Where the robot's centre of mass is: body and links together."""
+"""Mass and centre of mass of the robot: body and links."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ STANDARD_GRAVITY = 9.80665
 
 
 def total_mass(robot: Robot) -> Array:
-    """Return what the robot weighs: its body and all its links.
+    """Return the mass of the robot: its body and all its links.
 
     Parameters
     ----------
@@ -39,11 +39,11 @@ def total_mass(robot: Robot) -> Array:
 def centre_of_mass(robot: Robot, angles: Array, *, points: Array | None = None) -> Array:
     """Return the centre of mass of body and links.
 
-    Each link's mass acts at the distance ``link_com`` from its inner joint, on the straight line to the next
-    point of the leg; where coxa axis and femur axis coincide, the coxa link's acts there.
+    The mass of each link is at the distance ``link_com`` from its inner joint, on the line to the next leg point; where
+    coxa axis and femur axis coincide, the mass of the coxa is there.
 
-    Where the robot's file gives no masses, the links count as massless and the result is the body's own centre:
-    an assumption that whoever shows the result has to state (``robot.has_masses`` tells).
+    Without masses in the robot file, the links count as massless and the result is the centre of mass of the body: an
+    assumption to be stated with the result (see ``robot.has_masses``).
 
     Parameters
     ----------
@@ -52,7 +52,7 @@ def centre_of_mass(robot: Robot, angles: Array, *, points: Array | None = None) 
     angles : array, shape (..., legs, 3)
         Joint angles [rad].
     points : array, shape (..., legs, 4, 3), optional
-        The leg points of `forward_kinematics`, where they are known already; `angles` is then not looked at.
+        Result of `forward_kinematics`, where it is known already; `angles` is then ignored.
 
     Returns
     -------
@@ -62,12 +62,12 @@ def centre_of_mass(robot: Robot, angles: Array, *, points: Array | None = None) 
     Raises
     ------
     InputError
-        If the angles have the wrong shape, or are NaN or infinite.
+        If the angles have the wrong shape or are not finite.
 
     Notes
     -----
-    The mean of the positions weighted by the masses. On a straight link, a mass at the share s of its length
-    acts as (1 - s) of it at the inner and s of it at the outer end, so the whole is one weighted sum of points.
+    The mean of the positions weighted by the masses. A mass at the fraction s of the length of a link is equivalent to
+    (1 - s) of it at the inner end and s of it at the outer end, so that the result is one weighted sum of leg points.
     """
     points = forward_kinematics(robot, angles) if points is None else points
     xp = namespace(points, robot.body_com, robot.body_mass, robot.link_mass, robot.link_com)
@@ -85,28 +85,28 @@ def centre_of_mass(robot: Robot, angles: Array, *, points: Array | None = None) 
 
 
 def point_masses(xp: Namespace, robot: Robot) -> Array:
-    """Share the links' masses out to the leg points: same weight, same centre of mass for any joint angles.
+    """Return point masses at the leg points that are equivalent to the links: same mass, same centre of mass.
 
     Parameters
     ----------
     xp : namespace
         The array library.
     robot : Robot
-        The robot, or a batch of designs; its masses must be known.
+        The robot, or a batch of designs, with known masses.
 
     Returns
     -------
     array, shape (..., legs, 4)
-        Masses at coxa axis, femur axis, knee and foot [kg]; negative where a centre of mass is beyond its link.
+        Masses at coxa axis, femur axis, knee and foot [kg]; negative for a centre of mass beyond its link.
     """
     legs = robot.geometry.to(xp)
     coxa2 = legs.coxa * legs.coxa + legs.side2 + legs.up * legs.up
-    # A root has no derivative at zero: it is taken of 1 there, and the share set to 0 afterwards.
+    # The square root has no derivative at 0: it is taken of 1 there, and the fraction is set to 0.
     has_coxa = coxa2 > 0
     coxa = xp.where(has_coxa, xp.sqrt(xp.where(has_coxa, coxa2, xp.ones_like(coxa2))), xp.asarray(xp.inf))
-    share = as_array(xp, robot.link_com) / stack_last(xp, (coxa, legs.femur, legs.tibia))
+    fraction = as_array(xp, robot.link_com) / stack_last(xp, (coxa, legs.femur, legs.tibia))
     mass = as_array(xp, robot.link_mass)
-    outer = mass * share
+    outer = mass * fraction
     inner = mass - outer
     none = xp.zeros_like(outer[..., :1])
     return xp.concat((inner, none), axis=-1) + xp.concat((none, outer), axis=-1)

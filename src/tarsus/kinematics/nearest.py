@@ -1,13 +1,13 @@
-"""The nearest point that a leg can reach, joint limits included.
+"""Nearest point that a leg reaches within its joint limits.
 
-In the leg's plane the reachable points are the image of a box of femur and tibia angles; its boundary lies on five
-kinds of arcs: femur at a limit, tibia at a limit, and the straight or folded leg (which are limits too once the tibia
-is kept in one knee branch). The nearest point of an arc is where the ray from its centre meets it, or its nearer end:
-so the nearest point of the whole is the best of a few candidates, exactly.
+In the leg's plane the reachable points are the image of a rectangle of femur and tibia angles. Its boundary consists of
+arcs of five kinds: femur at either limit, tibia at either limit, and the straight or folded leg (also limits, as the
+tibia stays in one knee branch). The nearest point of an arc is its intersection with the ray from its centre, or its
+nearer end. The nearest reachable point is therefore exactly the best of a few candidates.
 
-The plane itself is turned towards the target, away from it, or to a limit of the coxa: exactly, where the femur axis
-is not offset sideways. Where it is, the best turn depends on how far out the foot gets and the other way round, and
-both are corrected in turn, from several starts.
+The plane faces the target, faces away from it, or is at a coxa limit: exactly so without a sideways offset of the femur
+axis. With an offset, the best coxa angle depends on the radius of the foot and vice versa; both are corrected
+alternately, from several initial values.
 """
 
 from __future__ import annotations
@@ -21,27 +21,27 @@ from tarsus.robot.geometry import LegGeometry
 __all__ = ["clip_angle", "nearest_angles", "tibia_bend", "tibia_branch"]
 
 _TURN = 2 * math.pi
-# By how many times its computed correction the turn is changed, one correction after the other: the corrections
-# shrink slowly where the target is near the coxa axis. A change that leads away from the target is not kept.
-_STRIDES = (1.0, 2.0, 6.0)
+# Step sizes, in multiples of the computed correction of the coxa angle: corrections converge slowly where the target is
+# near the coxa axis. A step that increases the distance to the target is rejected.
+_STEP_SIZES = (1.0, 2.0, 6.0)
 _ROUNDS = 8
-_ENOUGH = 1e-15
+_CONVERGED = 1e-15
 
 
 def wrap(xp: Namespace, angle: Array) -> Array:
-    """Return the angle in -pi..pi."""
+    """Return the equivalent angle in -pi..pi."""
     return angle - _TURN * xp.round(angle / _TURN)
 
 
 def clip_angle(xp: Namespace, angle: Array, lower: Array, upper: Array) -> Array:
-    """Return the angle where it lies between its limits, else the limit nearer round the circle."""
+    """Return the angle if it is within its limits, else the limit nearer on the circle."""
     below, above = xp.abs(wrap(xp, lower - angle)), xp.abs(wrap(xp, angle - upper))
     nearer = xp.where(below < above, lower, upper)
     return xp.where((angle >= lower) & (angle <= upper), angle, nearer)
 
 
 def tibia_branch(xp: Namespace, geometry: LegGeometry, *, knee: int) -> tuple[Array, Array]:
-    """Return the tibia's limits within one knee branch; the limits as they are where none of it is in that branch."""
+    """Return the tibia limits restricted to a knee branch; unrestricted where no angle is in that branch."""
     lower, upper = geometry.tibia_lower, geometry.tibia_upper
     zero = xp.zeros_like(lower)
     if knee > 0:
@@ -50,7 +50,7 @@ def tibia_branch(xp: Namespace, geometry: LegGeometry, *, knee: int) -> tuple[Ar
 
 
 def tibia_bend(xp: Namespace, geometry: LegGeometry, *, knee: int) -> Array:
-    """Return the sign of the tibia's angles in a knee branch; the other sign where the limits allow none of it."""
+    """Return the sign of the tibia angles in a knee branch; the opposite sign where the limits exclude that branch."""
     one = xp.ones_like(geometry.tibia_lower)
     if knee > 0:
         return xp.where(geometry.tibia_lower > 0, one, -one)
@@ -60,7 +60,7 @@ def tibia_bend(xp: Namespace, geometry: LegGeometry, *, knee: int) -> Array:
 def nearest_angles(
     xp: Namespace, geometry: LegGeometry, x: Array, y: Array, z: Array, *, knee: int, sideways: bool
 ) -> tuple[Array, ...]:
-    """Return how near a foot comes to a point of the leg frame (squared [m^2]), and the joint angles for it.
+    """Return the squared distance from a target to the nearest reachable point [m^2], and its joint angles [rad].
 
     Parameters
     ----------
@@ -90,25 +90,25 @@ def nearest_angles(
     tracks = tuple(xp.stack((a, b[4, ...], b[5, ...])) for a, b in zip(first, found, strict=True))
 
     def correct(tracks: tuple[Array, ...]) -> tuple[Array, ...]:
-        for stride in _STRIDES:
+        for step_size in _STEP_SIZES:
             foot_r = g.coxa + g.femur * xp.cos(tracks[2]) + g.tibia * xp.cos(tracks[2] + tracks[3])
-            right = bearing - direction(xp, g.side + xp.zeros_like(foot_r), foot_r)
-            turns = wrap(xp, tracks[1] + stride * wrap(xp, right - tracks[1]))
+            better = bearing - direction(xp, g.side + xp.zeros_like(foot_r), foot_r)
+            turns = wrap(xp, tracks[1] + step_size * wrap(xp, better - tracks[1]))
             found = _in_planes(xp, g, x, y, z, clip_angle(xp, turns, lower, upper), knee=knee)
             tracks = _better(xp, tracks, found)
         return tracks
 
-    return _best(xp, improve(correct, tracks, times=_ROUNDS, enough=_ENOUGH))
+    return _best(xp, improve(correct, tracks, times=_ROUNDS, enough=_CONVERGED))
 
 
 def _best(xp: Namespace, candidates: tuple[Array, ...]) -> tuple[Array, ...]:
-    """Return, leg by leg, the best of candidates stacked along the first axis."""
+    """Return for each leg the best of the candidates stacked along the first axis."""
     first = xp.argmin(candidates[0], axis=0, keepdims=True)
     return tuple(xp.take_along_axis(values, first, axis=0)[0, ...] for values in candidates)
 
 
 def _better(xp: Namespace, best: tuple[Array, ...], other: tuple[Array, ...]) -> tuple[Array, ...]:
-    """Keep, leg by leg, the candidate (squared distance, angles...) whose distance is the smaller."""
+    """Return for each leg the candidate (squared distance, angles...) with the smaller distance."""
     closer = other[0] < best[0]
     return tuple(xp.where(closer, new, old) for new, old in zip(other, best, strict=True))
 
@@ -116,7 +116,7 @@ def _better(xp: Namespace, best: tuple[Array, ...], other: tuple[Array, ...]) ->
 def _in_planes(
     xp: Namespace, geometry: LegGeometry, x: Array, y: Array, z: Array, coxa: Array, *, knee: int
 ) -> tuple[Array, ...]:
-    """Return squared distance and angles of the nearest points with the plane at each of the turns ``(turns, ...)``."""
+    """Return squared distance and angles of the nearest points for each of the coxa angles ``(k, ...)``."""
     g = geometry
     cos, sin = xp.cos(coxa), xp.sin(coxa)
     r, off = x * cos + y * sin - g.coxa, y * cos - x * sin - g.side
@@ -133,7 +133,7 @@ def _in_planes(
 def _candidates(
     xp: Namespace, geometry: LegGeometry, r: Array, z: Array, bent: Array, straight: Array, bend: Array
 ) -> tuple[Array, Array]:
-    """Return the femur and tibia angles of the five candidates ``(5, ...)``, limits not yet kept."""
+    """Return the femur and tibia angles of the five candidates ``(5, ...)``, before the limits are applied."""
     g = geometry
     zero = xp.zeros_like(r)
     distance2 = r * r + z * z

@@ -1,9 +1,9 @@
-"""The segments between all pairs of a few points in the plane: all that is needed to measure their convex hull.
+"""Segments between all pairs of a few points in the plane, for measures of their convex hull.
 
-Every measure is a bound over all pairs, with neither a sorted hull nor a tolerance, so that it can be batched and
-differentiated, and points that coincide or lie on a line need no case of their own.
+Every measure is an extremum over all pairs, without sorting and tolerances. It can be batched and differentiated, and
+coincident or collinear points need no special case.
 
-Points or pairs lead in the arrays and the batch follows: sums over a few points then run along contiguous memory.
+The axis of points or pairs precedes the batch, so that reductions run along contiguous memory.
 """
 
 from __future__ import annotations
@@ -21,10 +21,18 @@ __all__ = ["Pairs", "columns_of"]
 
 
 class Pairs(NamedTuple):
-    """The segments between all points of a set, seen from the origin.
+    """Segments between all pairs of points of a set.
 
-    `x` and `y` are the points ``(n, batch)``, `start_x` and `start_y` where a segment starts ``(pairs, batch)``,
-    `along_x` and `along_y` how it goes on from there, and `length` how long it is.
+    Attributes
+    ----------
+    x, y : array, shape (n, batch)
+        The points [m].
+    start_x, start_y : array, shape (pairs, batch)
+        Start of each segment [m].
+    along_x, along_y : array, shape (pairs, batch)
+        Vector from the start of each segment to its end [m].
+    length : array, shape (pairs, batch)
+        Length of each segment [m].
     """
 
     x: Array
@@ -37,23 +45,23 @@ class Pairs(NamedTuple):
 
     @classmethod
     def of(cls, xp: Namespace, x: Array, y: Array) -> Self:
-        """Join the points ``(n, batch)`` in pairs; a single point makes a pair with itself."""
+        """Return the segments of points ``(n, batch)``; a single point is paired with itself."""
         first, second = (xp.asarray(index) for index in _pair_indices(x.shape[0]))
         start_x, start_y = xp.take(x, first, axis=0), xp.take(y, first, axis=0)
         along_x, along_y = xp.take(x, second, axis=0) - start_x, xp.take(y, second, axis=0) - start_y
         return cls(x, y, start_x, start_y, along_x, along_y, root(xp, along_x * along_x + along_y * along_y))
 
     def normals(self, xp: Namespace) -> tuple[Array, Array]:
-        """Return unit vectors across the segments; zero where a segment has no length."""
+        """Return unit normals of the segments ``(pairs, batch)``; zero where a segment has no length."""
         length = xp.where(self.length > 0, self.length, 1.0)
         return self.along_y / length, -self.along_x / length
 
     def depth_and_width(self, xp: Namespace) -> tuple[Array, Array]:
-        """Return how deep the origin lies in the hull, and how wide the hull is where it is narrowest.
+        """Return the depth of the origin in the hull ``(batch,)`` and the least width of the hull ``(batch,)`` [m].
 
-        The depth is the least height of a supporting line over the origin, taken over the directions across all
-        pairs. The least of all directions is the one across the nearest edge of the hull, and the edges are among
-        the pairs: so it is exact where it is positive, which it is inside and nowhere else. The width likewise.
+        The depth is the least distance of a supporting line from the origin over the normals of all pairs. The minimum
+        over all directions is attained at the normal of the nearest edge, and the edges are among the pairs: the depth
+        is exact where it is positive, which is inside the hull only. The same holds for the width.
         """
         real = self.length > 0
         across_x, across_y = self.normals(xp)
@@ -65,15 +73,15 @@ class Pairs(NamedTuple):
         return xp.where(spread, depth, 0.0), xp.where(spread, width, 0.0)
 
     def nearest(self, xp: Namespace) -> tuple[Array, Array, Array]:
-        """Return the point of each segment nearest to the origin: x, y, and the share of the way along."""
+        """Return the nearest point of each segment to the origin: x, y and fraction along it ``(pairs, batch)``."""
         length2 = self.along_x * self.along_x + self.along_y * self.along_y
         length2 = xp.where(length2 > 0, length2, 1.0)
-        share = xp.clip(-(self.start_x * self.along_x + self.start_y * self.along_y) / length2, 0.0, 1.0)
-        return self.start_x + share * self.along_x, self.start_y + share * self.along_y, share
+        fraction = xp.clip(-(self.start_x * self.along_x + self.start_y * self.along_y) / length2, 0.0, 1.0)
+        return self.start_x + fraction * self.along_x, self.start_y + fraction * self.along_y, fraction
 
 
 def columns_of(xp: Namespace, array: Array, batch: tuple[int, ...], index: Index, *, tail: int) -> Array:
-    """Return a block of `array` with the last `tail` axes in reverse order in front and the batch flat behind.
+    """Return a block of `array` with its last `tail` axes first, in reverse order, and a flat batch axis last.
 
     Parameters
     ----------
@@ -82,9 +90,9 @@ def columns_of(xp: Namespace, array: Array, batch: tuple[int, ...], index: Index
     array : array
         Batch axes, then `tail` more.
     batch : tuple of int
-        The batch axes it broadcasts to.
+        The batch axes to which it broadcasts.
     index : tuple of slice
-        The block; arrays of other libraries than NumPy are taken whole.
+        The block; ignored for arrays of libraries other than NumPy.
     tail : int
         How many of the last axes are not batch axes.
     """

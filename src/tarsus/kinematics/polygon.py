@@ -1,4 +1,4 @@
-"""The convex polygon of a few points in the plane: how far inside it a point lies, and its corners."""
+"""Convex hull of a few points in the plane: margin of a point in it, and its corners."""
 
 from __future__ import annotations
 
@@ -22,37 +22,37 @@ from tarsus.kinematics.pairs import Pairs, columns_of
 
 __all__ = ["as_mask", "hull_margin", "margin_and_nearest", "support_polygon"]
 
-_WORK = 1 << 17  # numbers in the largest array of a block: as many as a core's second-level cache holds
+_WORK = 1 << 17  # numbers in the largest array of a block, to fit in the second-level cache
 
 
 def hull_margin(points: Array, mask: Array, point: Array) -> Array:
-    """Return how far inside the convex hull of some points another point lies.
+    """Return the margin of a point in the convex hull of some points.
 
     Parameters
     ----------
     points : array, shape (..., n, 2)
-        The points in the plane [m].
+        Points in the plane [m].
     mask : array of bool, shape (..., n)
-        Which of them count.
+        Which of them are used.
     point : array, shape (..., 2)
-        The point asked about [m].
+        The point whose margin is returned [m].
 
     Returns
     -------
     array, shape (...)
-        Distance to the nearest edge of the hull where the point is inside; minus the distance to the hull where
-        it is outside [m]. One point, two, or several on a line have no inside: the margin is zero or negative.
-        Where no point counts, minus infinity.
+        Distance to the nearest edge where the point is inside the hull; minus the distance to the hull where it is
+        outside [m]. The hull of collinear points has no interior: the margin is 0 or negative. Minus infinity without
+        points.
 
     Raises
     ------
     InputError
-        If a shape is wrong, a value is NaN or infinite, or the mask is not of booleans.
+        If a shape is wrong, a value is not finite, or the mask is not of booleans.
 
     Notes
     -----
-    Inside, ``min_u max_i u . (p_i - p)`` over the directions u across the pairs; outside, the least distance to
-    the segments of all pairs, which lie in the hull and have its edges among them.
+    Inside, ``min_u max_i u . (p_i - p)`` over the normals u of all pairs; outside, the least distance to the segments
+    of all pairs, which are within the hull and include its edges.
     """
     xp = namespace(points, mask, point)
     points = as_floats(xp, points, name="points")
@@ -90,16 +90,16 @@ def as_mask(xp: Namespace, mask: Array, *, name: str) -> Array:
     mask : array of bool
         Any shape.
     name : str
-        What it is, for the message.
+        Its name in messages.
 
     Raises
     ------
     InputError
-        If it holds anything but booleans: a 2 or a NaN would have no meaning.
+        If it is not of booleans.
     """
     mask = as_array(xp, mask)
     if not xp.isdtype(mask.dtype, "bool"):
-        raise InputError(f"{name} holds {mask.dtype} values; expected booleans, True where a point counts")
+        raise InputError(f"{name} holds {mask.dtype} values; expected booleans")
     return mask
 
 
@@ -111,7 +111,7 @@ def _margin(xp: Namespace, points: Array, mask: Array, point: Array, batch: tupl
 
 
 def margin_and_nearest(xp: Namespace, x: Array, y: Array, counts: Array) -> tuple[Array, Array, Array]:
-    """Return the origin's margin in the hull of points, and the hull's point nearest to it.
+    """Return the margin of the origin in the convex hull of points, and the point of the hull nearest to it.
 
     Parameters
     ----------
@@ -120,12 +120,12 @@ def margin_and_nearest(xp: Namespace, x: Array, y: Array, counts: Array) -> tupl
     x, y : array, shape (n, batch)
         The points [m].
     counts : array of bool, shape (n, batch)
-        Which of them count.
+        Which of them are used.
 
     Returns
     -------
     margin, nearest_x, nearest_y : array, shape (batch,)
-        As in `hull_margin` [m]; the nearest point is the origin itself where that is inside [m].
+        Margin as in `hull_margin` [m]; nearest point, which is the origin where that is inside [m].
     """
     x, y = _gathered(xp, x, counts), _gathered(xp, y, counts)
     pairs = Pairs.of(xp, x, y)
@@ -136,8 +136,8 @@ def margin_and_nearest(xp: Namespace, x: Array, y: Array, counts: Array) -> tupl
     gap = root(xp, xp.min(gap2, axis=0))
     margin = xp.where(xp.any(counts, axis=0), xp.where(depth > 0, depth, -gap), -xp.inf)
     inside = depth > 0
-    here = [xp.take_along_axis(near, closest, axis=0)[0, ...] for near in (near_x, near_y)]
-    return margin, *(xp.where(inside, xp.zeros_like(near), near) for near in here)
+    on_hull = [xp.take_along_axis(near, closest, axis=0)[0, ...] for near in (near_x, near_y)]
+    return margin, *(xp.where(inside, xp.zeros_like(near), near) for near in on_hull)
 
 
 def _split(coordinates: Array) -> tuple[Array, Array]:
@@ -145,36 +145,36 @@ def _split(coordinates: Array) -> tuple[Array, Array]:
 
 
 def _gathered(xp: Namespace, values: Array, counts: Array) -> Array:
-    """Put each point that doesn't count where one is that does: the hull stays, and needs no mask any more."""
+    """Replace unused points by a used one, so that the hull needs no mask."""
     first = xp.argmax(xp.astype(counts, xp.int8), axis=0)[None, ...]
     return xp.where(counts, values, xp.take_along_axis(values, first, axis=0))
 
 
 def support_polygon(feet_xy: Array, contacts: Array) -> Array:
-    """Return the corners of the convex hull of the feet in contact, for a picture.
+    """Return the corners of the support polygon: the convex hull of the feet in contact.
 
     Parameters
     ----------
     feet_xy : array, shape (n, 2) or (n, 3)
-        Where the feet are [m]; a height is left out of account.
+        Feet [m]; heights are ignored.
     contacts : array of bool, shape (n,)
         Which of them are on the ground.
 
     Returns
     -------
     array, shape (corners, 2)
-        The corners counter-clockwise from the one with the least x (and of those with the least y) [m], none
-        of them between two others on a line; two, one or none where the feet span no area.
+        Corners counter-clockwise, starting at the least x (then y) [m], without corners between two others on a line.
+        Two, one or none where the feet span no area.
 
     Raises
     ------
     InputError
-        If a shape is wrong, a value is NaN or infinite, or `contacts` is not of booleans.
+        If a shape is wrong, a value is not finite, or `contacts` is not of booleans.
     """
     feet = as_floats(np, feet_xy, name="feet_xy")
     down = as_mask(np, contacts, name="contacts")
     if feet.ndim != 2 or feet.shape[1] not in (2, 3):
-        raise InputError(f"feet_xy has shape {feet.shape}; expected (n, 2) or (n, 3): one configuration, no batch")
+        raise InputError(f"feet_xy has shape {feet.shape}; expected (n, 2) or (n, 3), without batch axes")
     require_shape("contacts", down, feet.shape[:1])
     require_finite("feet_xy", feet)
     return np.asarray(hull_corners(feet[down, :2].tolist()), dtype=np.float64).reshape(-1, 2)

@@ -1,4 +1,4 @@
-"""A rigid body's place: rotation and position, one or a batch."""
+"""Poses of rigid bodies: rotation and position, single or in a batch."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ __all__ = ["Pose", "rpy_from_rotation"]
 
 
 def _locked(array: Array) -> Array:
-    """Copy a NumPy array and lock it; arrays of other libraries can't be written to or are not ours to lock."""
+    """Copy and lock a NumPy array; arrays of other libraries are immutable or can't be locked."""
     if isinstance(array, np.ndarray) and (array.flags.writeable or _is_writeable(array.base)):
         array = array.copy()
         array.setflags(write=False)
@@ -33,12 +33,12 @@ def _locked(array: Array) -> Array:
 
 
 def _is_writeable(base: object) -> bool:
-    """Return whether a locked array's numbers can change all the same, being a view of these."""
+    """Return whether the base of a locked view can be written to."""
     return base is not None and not (isinstance(base, np.ndarray) and not base.flags.writeable)
 
 
 def _require_rotation(xp: Namespace, rotation: Array) -> None:
-    """Refuse matrices that stretch, shear or mirror; traced ones can't be looked at and pass."""
+    """Refuse matrices that are not rotations; traced ones can't be checked."""
     if is_traced(rotation):
         return
     first, second, third = (tuple(rotation[..., i, j] for j in range(3)) for i in range(3))
@@ -48,17 +48,17 @@ def _require_rotation(xp: Namespace, rotation: Array) -> None:
         + first[1] * (second[2] * third[0] - second[0] * third[2])
         + first[2] * (second[0] * third[1] - second[1] * third[0])
     )
-    # Of all matrices whose elements' squares add up to 3, rotations alone have the determinant 1.
-    off = xp.maximum(xp.abs(size2 - 3), xp.abs(volume - 1))
-    if bool(xp.any(off > _STRETCH)):
+    # Among matrices with a squared Frobenius norm of 3, only rotations have determinant 1.
+    error = xp.maximum(xp.abs(size2 - 3), xp.abs(volume - 1))
+    if bool(xp.any(error > _TOLERANCE)):
         raise InputError(
-            f"rotation is no rotation matrix: its determinant and its squares' sum are off 1 and 3 by up to "
-            f"{float(xp.max(off)):.3g}; at most {_STRETCH:g} is taken for rounding"
+            f"rotation is not a rotation matrix: determinant and squared norm deviate from 1 and 3 by up to "
+            f"{float(xp.max(error)):.3g}; at most {_TOLERANCE:g} is allowed"
         )
 
 
-# How far determinant and squares may be off by rounding: wide enough for single precision.
-_STRETCH = 1e-4
+# Largest deviation of determinant and squared norm, for single precision too.
+_TOLERANCE = 1e-4
 
 _IDENTITY = _locked(np.eye(3))
 _ORIGIN = _locked(np.zeros(3))
@@ -66,14 +66,14 @@ _ORIGIN = _locked(np.zeros(3))
 
 @dataclass(frozen=True, eq=False)
 class Pose:
-    """The place of one frame in another: ``T_to_from @ points_in_from`` gives points in the frame `to`.
+    """Pose of a frame in another one: ``T_to_from @ points_in_from`` gives points in the frame `to`.
 
     Attributes
     ----------
     rotation : array, shape (..., 3, 3)
         Rotation matrices.
     position : array, shape (..., 3)
-        Where the origin is [m].
+        Position of the origin [m].
     """
 
     rotation: Array = field(default_factory=lambda: _IDENTITY)
@@ -105,14 +105,14 @@ class Pose:
         Parameters
         ----------
         roll, pitch, yaw : array, shape (...)
-            Turns about x, y and z [rad].
+            Rotations about x, y and z [rad].
         position : array, shape (..., 3)
-            Where the origin is [m].
+            Position of the origin [m].
 
         Raises
         ------
         InputError
-            If a value is NaN or infinite, or the shapes don't broadcast.
+            If a value is not finite, or the shapes don't broadcast.
         """
         xp = namespace(roll, pitch, yaw, position)
         angles = [as_floats(xp, a, name=n) for a, n in ((roll, "roll"), (pitch, "pitch"), (yaw, "yaw"))]
@@ -127,7 +127,7 @@ class Pose:
         )
         flat = stack_last(xp, tuple(entry for row in rows for entry in row))
         rotation = xp.reshape(flat, (*flat.shape[:-1], 3, 3))
-        # What cosines and sines make is a rotation; looking whether it is would take as long as making it.
+        # The matrix is a rotation by construction; checking would take as long as building it.
         pose = cls(position=position)
         if rotation.ndim > 2 and pose.position.ndim > 1:
             broadcast_shapes("a pose", rotation.shape[:-2], pose.position.shape[:-1])
@@ -136,7 +136,7 @@ class Pose:
 
     @property
     def batch_shape(self) -> tuple[int, ...]:
-        """Batch axes that rotation and position have together."""
+        """Broadcast batch axes of rotation and position."""
         return broadcast_shapes("a pose", self.rotation.shape[:-2], self.position.shape[:-1])
 
     @overload
@@ -144,25 +144,25 @@ class Pose:
     @overload
     def __matmul__(self, other: Array) -> Array: ...
     def __matmul__(self, other: Any) -> Any:
-        """Carry points over, or chain poses.
+        """Transform points, or compose poses.
 
         Parameters
         ----------
         other : Pose or array, shape (..., 3)
-            A pose; or points, whose leading axes are the pose's batch axes, with any more axes between them and
-            the last: a single pose carries ``(3,)``, ``(legs, 3)`` and ``(legs, 4, 3)``; ``n`` poses carry
+            A pose; or points, whose leading axes are the batch axes of the pose, with any number of axes between them
+            and the last: a single pose transforms ``(3,)``, ``(legs, 3)`` and ``(legs, 4, 3)``; ``n`` poses transform
             ``(n, legs, 3)``.
 
         Raises
         ------
         InputError
-            If the points are not finite, or their axes don't fit the pose's.
+            If the points are not finite, or their axes don't broadcast with those of the pose.
         """
         if isinstance(other, Pose):
             xp = namespace(self.rotation, other.rotation, other.position)
             return Pose(
                 xp.matmul(xp.asarray(self.rotation), xp.asarray(other.rotation)),
-                self._carry(other.position[..., None, :])[..., 0, :],
+                self._transform(other.position[..., None, :])[..., 0, :],
             )
         xp = namespace(other, self.rotation, self.position)
         points = as_floats(xp, other, name="points")
@@ -172,19 +172,19 @@ class Pose:
         between = max(points.ndim - 1 - len(batch), 0)
         broadcast_shapes("the pose and the points", batch, points.shape[: points.ndim - 1 - between])
         if between == 0:
-            return self._carry(points[..., None, :])[..., 0, :]
+            return self._transform(points[..., None, :])[..., 0, :]
         leading, middle = points.shape[: points.ndim - 1 - between], points.shape[points.ndim - 1 - between : -1]
-        carried = self._carry(xp.reshape(points, (*leading, math.prod(middle), 3)))
-        return xp.reshape(carried, (*carried.shape[:-2], *middle, 3))
+        transformed = self._transform(xp.reshape(points, (*leading, math.prod(middle), 3)))
+        return xp.reshape(transformed, (*transformed.shape[:-2], *middle, 3))
 
-    def _carry(self, points: Array) -> Array:
-        """Carry points ``(..., k, 3)`` whose leading axes broadcast with the batch axes."""
+    def _transform(self, points: Array) -> Array:
+        """Transform points ``(..., k, 3)`` whose leading axes broadcast with the batch axes."""
         xp = namespace(points, self.rotation, self.position)
         rotation, position = xp.asarray(self.rotation), xp.asarray(self.position)
         return xp.matmul(xp.asarray(points), xp.matrix_transpose(rotation)) + position[..., None, :]
 
     def inverse(self) -> Pose:
-        """Return the pose that undoes this one: ``T_from_to`` of ``T_to_from``."""
+        """Return the inverse pose: ``T_from_to`` of ``T_to_from``."""
         xp = namespace(self.rotation, self.position)
         back = xp.matrix_transpose(xp.asarray(self.rotation))
         return Pose(back, -xp.matmul(back, xp.asarray(self.position)[..., None])[..., 0])
@@ -194,7 +194,7 @@ class Pose:
         xp = namespace(self.rotation, self.position)
         batch = self.batch_shape
         if not batch:
-            raise InputError("this is a single pose; it has no batch axis to take an item from")
+            raise InputError("a single pose has no batch axes to index")
         rotation = xp.broadcast_to(xp.asarray(self.rotation), (*batch, 3, 3))
         position = xp.broadcast_to(xp.asarray(self.position), (*batch, 3))
         index = index if isinstance(index, tuple) else (index,)
@@ -219,8 +219,8 @@ def rpy_from_rotation(rotation: Array) -> Array:
     Returns
     -------
     array, shape (..., 3)
-        Roll, pitch, yaw [rad]; pitch in -pi/2..pi/2. At pitch +-pi/2, where only the sum of roll and yaw is
-        determined, whatever rounding leaves of them.
+        Roll, pitch, yaw [rad]; pitch in -pi/2..pi/2. At pitch +-pi/2 only the sum or difference of roll and yaw is
+        determined; their values are arbitrary.
     """
     xp = namespace(rotation)
     r = as_floats(xp, rotation, name="rotation")

@@ -34,7 +34,7 @@ class Reach(enum.IntEnum):
 
 
 def reach_codes(xp: Namespace, geometry: LegGeometry, solution: Triangle) -> Array:
-    """Return the reach code of every leg."""
+    """Return the reach code of every leg ``(..., legs)``."""
     g = geometry
     codes = xp.zeros(solution.coxa.shape, dtype=xp.int8)
     limits = (
@@ -43,27 +43,27 @@ def reach_codes(xp: Namespace, geometry: LegGeometry, solution: Triangle) -> Arr
         (solution.coxa, g.coxa_lower, g.coxa_upper, Reach.COXA_LIMIT),
     )
     for angle, lower, upper, code in limits:
-        broken = (angle < lower - ANGLE_TOLERANCE) | (angle > upper + ANGLE_TOLERANCE)
-        codes = mark(xp, codes, broken, code)
-    # A distance off by the tolerance is a square off by twice the tolerance times that distance.
-    slack = 2 * LENGTH_TOLERANCE
-    codes = mark(xp, codes, solution.near < -slack * xp.abs(g.femur - g.tibia), Reach.TOO_NEAR)
-    codes = mark(xp, codes, solution.far < -slack * (g.femur + g.tibia), Reach.TOO_FAR)
-    # Beside the leg's plane there is no triangle that could be too long.
-    return mark(xp, codes, solution.beside < -slack * xp.abs(g.side), Reach.TOO_NEAR)
+        violated = (angle < lower - ANGLE_TOLERANCE) | (angle > upper + ANGLE_TOLERANCE)
+        codes = mark(xp, codes, violated, code)
+    # An error of the tolerance in a distance is twice the tolerance times that distance in its square.
+    tolerance = 2 * LENGTH_TOLERANCE
+    codes = mark(xp, codes, solution.near < -tolerance * xp.abs(g.femur - g.tibia), Reach.TOO_NEAR)
+    codes = mark(xp, codes, solution.far < -tolerance * (g.femur + g.tibia), Reach.TOO_FAR)
+    # Where the leg's plane can't contain the foot, its distance from the femur axis is meaningless.
+    return mark(xp, codes, solution.beside < -tolerance * xp.abs(g.side), Reach.TOO_NEAR)
 
 
-def mark(xp: Namespace, codes: Array, broken: Array, code: Reach) -> Array:
-    """Return the codes with those of the broken legs replaced."""
-    return xp.where(broken, xp.asarray(int(code), dtype=xp.int8), codes)
+def mark(xp: Namespace, codes: Array, failing: Array, code: Reach) -> Array:
+    """Return the codes ``(..., legs)`` with those of the failing legs replaced."""
+    return xp.where(failing, xp.asarray(int(code), dtype=xp.int8), codes)
 
 
 def all_within(geometry: LegGeometry, solution: Triangle) -> bool:
-    """Return whether every NumPy leg is within reach and limits: the common case, told in a few passes."""
+    """Return whether every NumPy leg is within reach and limits: the common case, in a few passes."""
     g, s = geometry, solution
-    # Not in place: designs that differ in their limits alone make each of these wider than the one before.
-    broken = (s.far < 0) | (s.near < 0) | (s.beside < 0)
-    broken = broken | (s.coxa < g.coxa_lower) | (s.coxa > g.coxa_upper)
-    broken = broken | (s.femur < g.femur_lower) | (s.femur > g.femur_upper)
-    broken = broken | (s.tibia < g.tibia_lower) | (s.tibia > g.tibia_upper)
-    return not broken.any()
+    # Not in place: for designs that differ in their limits, each of these may have a larger shape than the last.
+    failing = (s.far < 0) | (s.near < 0) | (s.beside < 0)
+    failing = failing | (s.coxa < g.coxa_lower) | (s.coxa > g.coxa_upper)
+    failing = failing | (s.femur < g.femur_lower) | (s.femur > g.femur_upper)
+    failing = failing | (s.tibia < g.tibia_lower) | (s.tibia > g.tibia_upper)
+    return not failing.any()

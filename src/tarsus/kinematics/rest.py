@@ -1,4 +1,4 @@
-"""How the robot rests on flat ground, whatever its joint angles."""
+"""Resting pose of the robot on flat ground for given joint angles."""
 
 from __future__ import annotations
 
@@ -21,32 +21,32 @@ from tarsus.robot.robot import Robot
 __all__ = ["RestingPose", "resting_pose"]
 
 CORNERS = np.array(list(itertools.product((-0.5, 0.5), repeat=3)))
-"""The corners of a body's box in the order of `Rest.corners_down`, as shares of its size: x varies slowest."""
+"""Corners of the body's box in units of its size, in the order of `RestingPose.corners_down`: x varies slowest."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class RestingPose:
-    """How a robot rests on flat ground, one configuration or a batch.
+    """How a robot rests on flat ground, for one configuration or a batch.
 
     Attributes
     ----------
     robot : Robot
         The robot, or the batch of designs.
     body : Pose
-        Where B is in G: yaw 0, over G's origin. At pitch +-90 degrees, where yaw and roll are one, roll 0.
+        Pose of B in G, with yaw 0, above G's origin. At a pitch of +-90 deg, roll is 0.
     contacts : array of bool, shape (..., legs)
-        The feet that touch the ground.
+        Feet on the ground.
     leg_points_down : array of bool, shape (..., legs, 4)
-        The leg points that touch: coxa axis, femur axis, knee, foot.
+        Leg points on the ground: coxa axis, femur axis, knee, foot.
     corners_down : array of bool, shape (..., 8)
-        The corners of the body's box that touch, in the order of `CORNERS`; ``(..., 0)`` where it has no box.
+        Corners of the body's box on the ground, in the order of `CORNERS`; ``(..., 0)`` without a box.
     margin : array, shape (...)
-        How far inside the polygon of all points that touch the centre of mass is [m].
+        Margin of the centre of mass in the convex hull of all contact points [m].
     stable : array of bool, shape (...)
-        Whether it rests; False where it was still rolling after `max_rolls`, or where the centre of mass that its
-        file gives lies outside the robot, so that nothing holds it.
+        Whether it rests. False where it was still rolling after `max_rolls`, or where the centre of mass of the robot
+        file is outside the robot, so that no pose is stable.
     rolls : array of int, shape (...)
-        How often it rolled on from one set of contacts to the next.
+        Number of rolls from one set of contacts to the next.
     """
 
     robot: Robot
@@ -59,7 +59,7 @@ class RestingPose:
     rolls: Array
 
     def describe(self) -> str:
-        """Return in words how the robot rests.
+        """Return a sentence on how the robot rests.
 
         Raises
         ------
@@ -68,15 +68,15 @@ class RestingPose:
         """
         if self.margin.ndim:
             raise InputError(
-                f"describe() speaks of one configuration; this is a batch of shape {tuple(self.margin.shape)}"
+                f"describe() needs a single configuration; this is a batch of shape {tuple(self.margin.shape)}"
             )
-        where = self._where(np.asarray(self.leg_points_down))
+        contacts = self._describe_contacts(np.asarray(self.leg_points_down))
         if not bool(self.stable):
-            return f"does not come to rest; after {int(self.rolls)} rolls it {where}"
-        massless = "" if self.robot.has_masses else " (masses unknown: that of the body's own centre)"
-        return f"{where}; margin {1000 * float(self.margin):.1f} mm{massless}"
+            return f"does not come to rest; after {int(self.rolls)} rolls it {contacts}"
+        massless = "" if self.robot.has_masses else " (masses unknown: margin of the centre of the body)"
+        return f"{contacts}; margin {1000 * float(self.margin):.1f} mm{massless}"
 
-    def _where(self, down: Array) -> str:
+    def _describe_contacts(self, down: Array) -> str:
         names = [_short(name) for name in self.robot.leg_names]
         parts = []
         for point, part in ((3, "foot"), (2, "knee"), (1, "femur axis")):
@@ -91,7 +91,7 @@ class RestingPose:
         return f"stands on {len(feet)} {'foot' if len(feet) == 1 else 'feet'}: {', '.join(feet)}"
 
     def _face(self) -> str:
-        """Name the side of the body that looks down most."""
+        """Return the side of the body that faces down."""
         up = np.asarray(self.body.rotation)[2]
         axis = int(np.argmax(np.abs(up)))
         return _FACES[axis][int(up[axis] > 0)]
@@ -108,48 +108,46 @@ def _short(name: str) -> str:
 
 
 def resting_pose(robot: Robot, angles: Array, *, max_rolls: int = 64) -> RestingPose:
-    """Return how the robot rests on flat ground with its joints held at the given angles.
+    """Return the pose in which the robot rests on flat ground with its joints held at the given angles.
 
-    It is let down upright, B's z up, until something touches, and rolls slowly from contact to contact until its
-    centre of mass is held: on its feet, a knee, its belly, side or back. What can touch are the points of the
-    legs (the foot a point) and the corners of the body's box, centred on B's origin; without ``body_size``, the
-    coxa axes are the body. Points less than a nanometre above the ground touch it (in single precision, less
-    than eight micrometres).
+    The robot is lowered upright, B's z up, until it touches the ground, and rolls quasi-statically from contact to
+    contact until its centre of mass is supported: on its feet, a knee, its belly, side or back. Contact points are the
+    leg points (the foot as a point) and the corners of the body's box, centred on B's origin; without ``body_size``,
+    the coxa axes stand for the body. Points less than 1 nm above the ground are in contact (8 um in single precision).
 
-    Balanced on one point, it falls forward (along B's x, seen from above); on an edge, to the forward side of it,
-    or to the left where the edge leads forward. With the centre of mass just over the edge of a polygon that has
-    an area, it rests with margin 0.
+    Balanced on a point, it tips forward (along B's x, seen from above); on an edge, to its forward side, or to the left
+    where the edge is parallel to x. With the centre of mass exactly above the edge of a polygon with an area, it rests
+    with margin 0.
 
     Parameters
     ----------
     robot : Robot
-        The robot, or a batch of designs; where its file gives no masses, see `centre_of_mass`.
+        The robot, or a batch of designs; without masses, see `centre_of_mass`.
     angles : array, shape (..., legs, 3)
         Joint angles [rad].
     max_rolls : int
-        After how many rolls it is given up, and `Rest.stable` is False. 0 tells whether it rests as let down.
+        Most rolls; after that `RestingPose.stable` is False. 0 tests whether the robot rests as lowered.
 
     Returns
     -------
-    Rest
-        Pose of the body, what touches, and how safely it lies.
+    RestingPose
+        Pose of the body, contacts and margin.
 
     Raises
     ------
     InputError
-        If the angles have the wrong shape, are NaN or infinite, or are being traced by JAX; if `max_rolls` is
-        negative.
+        If the angles have the wrong shape, are not finite or are traced by JAX, or `max_rolls` is negative.
 
     Notes
     -----
-    The steepest descent of the centre of mass, followed exactly: see `tarsus.kinematics.roll`.
+    Follows the steepest descent of the centre of mass exactly: see `tarsus.kinematics.roll`.
     """
     if max_rolls < 0:
         raise InputError(f"max_rolls is {max_rolls}; it must not be negative")
     points = forward_kinematics(robot, angles)
     com = centre_of_mass(robot, angles, points=points)
     if any(is_traced(array) for array in (points, com, robot.body_size)):
-        raise InputError("resting_pose can't be traced: how often a robot rolls depends on the values; call it outside")
+        raise InputError("resting_pose can't be traced: the number of rolls depends on the values; call it outside jit")
     xp = namespace(points, com, robot.body_size)
     points, com = as_array(xp, points), as_array(xp, com)
     cloud = [xp.reshape(points, (*points.shape[:-3], 4 * robot.legs, 3))]

@@ -1,12 +1,11 @@
-"""How a rigid body of points rolls on flat ground until it rests.
+"""Quasi-static rolling of a rigid body of points on flat ground until it rests.
 
-The height of the centre of mass c over the ground is ``H(up) = max_i up . (c - p_i)`` over the points p_i, for the
-direction `up` in the body. A body that rolls slowly follows the steepest descent of H over the sphere of all
-directions. It does so in great circles: about the point of the contact polygon that is nearest to the projected
-centre of mass, be it a corner, inside an edge, or on the edge of a face, until the next point touches. So the way
-is followed exactly, from touch to touch, whatever the contacts are.
+The height of the centre of mass c above the ground is ``H(up) = max_i up . (c - p_i)`` over the points p_i, for the
+direction `up` in the body. A body that rolls slowly follows the steepest descent of H on the sphere of directions, in
+arcs of great circles: it turns about the point of the contact polygon nearest to the projected centre of mass until the
+next point touches the ground. The descent is followed exactly, from contact to contact.
 
-Points lead in the arrays, ``(points, batch)``: sums over a few points then run along contiguous memory.
+The axis of points precedes the batch, ``(points, batch)``, so that reductions run along contiguous memory.
 """
 
 from __future__ import annotations
@@ -18,18 +17,30 @@ from tarsus.kinematics.pairs import Pairs
 
 __all__ = ["Settled", "rotation_rows", "settle"]
 
-_TOUCH = 1e-9  # [m] far above the rounding of a dozen rolls (1e-14), far below what could be built
-_ALONG = 1e-9  # slope of an edge's normal below which the edge leads forward, its sideways slip being rounding
-_LEVEL = 1e-12  # cosine of the pitch below which roll and yaw can't be told apart
+_TOUCH = 1e-9  # height below which a point is in contact [m]; the rounding of a dozen rolls is 1e-14
+_ALONG = 1e-9  # x of an edge's normal below which the edge counts as parallel to x
+_LEVEL = 1e-12  # cosine of the pitch below which roll and yaw are not separable
 
 Vector = tuple[Array, Array, Array]
 
 
 class Settled(NamedTuple):
-    """How bodies rest: arrays ``(batch,)``, but `up` ``(batch,)`` thrice and `down` ``(points, batch)``.
+    """How bodies rest.
 
-    `up` is the ground's z in the body, `height` that of the body's origin over the ground [m], `down` the points
-    that touch, `margin` how far the centre of mass is inside their polygon [m], `rolls` how often it rolled.
+    Attributes
+    ----------
+    up : three arrays, shape (batch,)
+        The ground's z axis in the body.
+    height : array, shape (batch,)
+        Height of the body's origin above the ground [m].
+    down : array of bool, shape (points, batch)
+        Points in contact.
+    margin : array, shape (batch,)
+        Margin of the centre of mass in the hull of these points [m].
+    stable : array of bool, shape (batch,)
+        Whether the body rests.
+    rolls : array of int, shape (batch,)
+        Number of rolls.
     """
 
     up: Vector
@@ -41,7 +52,7 @@ class Settled(NamedTuple):
 
 
 class _Stance(NamedTuple):
-    """Where everything is, seen from over the ground with the centre of mass projected into the origin."""
+    """Positions of the points relative to the ground, with the projected centre of mass as the origin."""
 
     rows: tuple[Vector, Vector, Vector]
     x: Array
@@ -52,7 +63,7 @@ class _Stance(NamedTuple):
 
 
 class _Balance(NamedTuple):
-    """How the centre of mass lies over the contacts: and if it is not held, about what and whither it rolls."""
+    """Margin of the centre of mass over the contacts; if not stable, pivot and direction of the roll."""
 
     margin: Array
     stable: Array
@@ -63,23 +74,23 @@ class _Balance(NamedTuple):
 
 
 def settle(xp: Namespace, points: Vector, com: Vector, *, max_rolls: int) -> Settled:
-    """Let bodies down upright and let them roll until they rest.
+    """Lower bodies upright and let them roll until they rest.
 
     Parameters
     ----------
     xp : namespace
         The array library.
     points : three arrays, shape (points, batch)
-        Coordinates of each body's points, in the body [m].
+        Coordinates of the points in the body [m].
     com : three arrays, shape (batch,)
-        Coordinates of its centre of mass [m].
+        Coordinates of the centre of mass in the body [m].
     max_rolls : int
-        How often it may roll before it is given up.
+        Most rolls.
 
     Returns
     -------
     Settled
-        How they rest, or lie after the last roll.
+        State at rest, or after the last roll.
     """
     touch = max(_TOUCH, 64 * float(xp.finfo(com[0].dtype).eps))
     up = (xp.zeros_like(com[0]), xp.zeros_like(com[0]), xp.ones_like(com[0]))
@@ -103,7 +114,7 @@ def settle(xp: Namespace, points: Vector, com: Vector, *, max_rolls: int) -> Set
 
 
 def rotation_rows(xp: Namespace, up: Vector) -> tuple[Vector, Vector, Vector]:
-    """Return the rows of the rotation of yaw 0 that has `up` upright; at pitch +-90 degrees the one of roll 0."""
+    """Return the rows of the rotation of yaw 0 that turns `up` to z; at a pitch of +-90 deg, that of roll 0."""
     cos_pitch = xp.sqrt(up[1] * up[1] + up[2] * up[2])
     level = cos_pitch > _LEVEL
     divisor = xp.where(level, cos_pitch, 1.0)
@@ -131,20 +142,20 @@ def _stance(xp: Namespace, up: Vector, points: Vector, com: Vector, touch: float
 def _balance(xp: Namespace, stance: _Stance, touch: float) -> _Balance:
     pairs = _contact_pairs(xp, stance)
     depth, width = pairs.depth_and_width(xp)
-    near_x, near_y, share = pairs.nearest(xp)
+    near_x, near_y, fraction = pairs.nearest(xp)
     nearest = xp.argmin(near_x * near_x + near_y * near_y, axis=0)
-    near_x, near_y, share, length = (_pick(xp, v, nearest) for v in (near_x, near_y, share, pairs.length))
+    near_x, near_y, fraction, length = (_pick(xp, v, nearest) for v in (near_x, near_y, fraction, pairs.length))
     gap = root(xp, near_x * near_x + near_y * near_y)
     margin = xp.where(depth > 0, depth, -gap)
 
     across = pairs.normals(xp)
-    # The exact normal of an edge, not the offset's direction: of a tiny offset that is rounding.
+    # The normal of the edge is exact; the direction of a tiny offset is dominated by rounding.
     edge_x, edge_y = (_pick(xp, v, nearest) for v in across)
     side = xp.where(edge_x * near_x + edge_y * near_y > 0, -1.0, xp.ones_like(near_x))
-    on_edge = (share > 0) & (share < 1) & (length > 0)
-    apart = xp.where(gap > 0, gap, 1.0)
-    toward_x = xp.where(on_edge, side * edge_x, -near_x / apart)
-    toward_y = xp.where(on_edge, side * edge_y, -near_y / apart)
+    on_edge = (fraction > 0) & (fraction < 1) & (length > 0)
+    distance = xp.where(gap > 0, gap, 1.0)
+    toward_x = xp.where(on_edge, side * edge_x, -near_x / distance)
+    toward_y = xp.where(on_edge, side * edge_y, -near_y / distance)
 
     balanced = gap <= touch
     if bool(xp.any(balanced)):
@@ -154,7 +165,7 @@ def _balance(xp: Namespace, stance: _Stance, touch: float) -> _Balance:
 
 
 def _fall(xp: Namespace, pairs: Pairs, across: tuple[Array, Array], touch: float) -> tuple[Array, Array]:
-    """Whither a body falls that is balanced on a point or an edge: forward; left, where the edge leads forward."""
+    """Return the direction in which a body balanced on a point or an edge tips: forward, or left if parallel to x."""
     longest = xp.argmax(pairs.length, axis=0)
     x, y, length = (_pick(xp, v, longest) for v in (*across, pairs.length))
     sign = xp.where(xp.where(xp.abs(x) > _ALONG, x, y) < 0, -1.0, xp.ones_like(x))
@@ -163,7 +174,7 @@ def _fall(xp: Namespace, pairs: Pairs, across: tuple[Array, Array], touch: float
 
 
 def _contact_pairs(xp: Namespace, stance: _Stance) -> Pairs:
-    """Join the points that touch; the lowest point stands in where a body has fewer than others of its batch."""
+    """Return the segments of the contact points, padded with the lowest point where a body has fewer than others."""
     counts = xp.sum(xp.astype(stance.down, xp.int32), axis=0)
     most = int(xp.max(counts)) if counts.shape[0] else 1
     order = xp.argsort(stance.height, axis=0)[:most, ...]
@@ -173,17 +184,17 @@ def _contact_pairs(xp: Namespace, stance: _Stance) -> Pairs:
 
 
 def _pick(xp: Namespace, values: Array, which: Array) -> Array:
-    # Of a single body, a tenth of the time.
+    # For a single body, in a tenth of the time.
     if which.shape == (1,):
         return values[int(which[0]), ...]
     return xp.take_along_axis(values, which[None, ...], axis=0)[0, ...]
 
 
 def _roll(xp: Namespace, stance: _Stance, balance: _Balance) -> tuple[Vector, Array]:
-    """Roll until the next point touches: `up` after it, and which bodies rolled.
+    """Roll until the next point touches the ground: return `up` afterwards, and which bodies rolled.
 
-    A point at the height h, the distance u ahead of the axis, comes down after the angle ``atan2(h, u)``: the
-    first to do so is the one with the greatest ``u / h``, the angle's cotangent.
+    A point at height h, at distance u ahead of the pivot, touches after the angle ``atan2(h, u)``: the first to do so
+    has the greatest cotangent ``u / h``.
     """
     ahead = balance.toward_x * (stance.x - balance.pivot_x) + balance.toward_y * (stance.y - balance.pivot_y)
     cotangents = xp.where(stance.down, -xp.inf, ahead / xp.where(stance.down, 1.0, stance.height))

@@ -21,18 +21,18 @@ _MOST_LINES = 12
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class IKSolution:
-    """Joint angles that put the feet where they should be, with a reach code for every leg.
+    """Joint angles for given feet, with a reach code for every leg.
 
     Attributes
     ----------
     robot : Robot
         The robot, or a batch of designs.
     feet : array, shape (..., legs, 3)
-        Where the feet should be, in G where `body` is given, else in B [m].
+        The feet given, in G where `body` is given, else in B [m].
     body : Pose or None
-        The body's place in G.
-    knee : str
-        ``"up"`` or ``"down"``.
+        Pose of B in G.
+    knee : {"up", "down"}
+        Knee branch.
     angles : array, shape (..., legs, 3)
         Joint angles [rad]; of the nearest reachable point where the foot can't be reached.
     reach : array of int8, shape (..., legs)
@@ -48,7 +48,7 @@ class IKSolution:
 
     @cached_property
     def ok(self) -> Array:
-        """Whether every leg reaches its foot ``(...)``."""
+        """Whether all legs reach their feet ``(...)``."""
         return namespace(self.reach).all(self.reach == 0, axis=-1)
 
     def require(self) -> Self:
@@ -57,14 +57,14 @@ class IKSolution:
         Raises
         ------
         UnreachableError
-            If a leg can't reach its foot; the message is `explain`'s.
+            If a leg does not reach its foot; the message is that of `explain`.
         """
         if not bool(np.all(np.asarray(self.reach) == 0)):
             raise UnreachableError(self.explain())
         return self
 
     def explain(self) -> str:
-        """Return a line for every leg that fails: which, why, by how much, and the nearest that works."""
+        """Return a line for every leg that fails: which, why, by how much, and the nearest foot that is reachable."""
         reach = np.asarray(self.reach)
         failing = np.argwhere(reach != 0)
         if not len(failing):

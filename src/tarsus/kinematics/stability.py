@@ -1,4 +1,4 @@
-"""How safely the robot stands: the static stability margin."""
+"""Static stability margin of the robot."""
 
 from __future__ import annotations
 
@@ -18,32 +18,31 @@ def stability_margin(robot: Robot, angles: Array, body: Pose, contacts: Array, *
     Parameters
     ----------
     robot : Robot
-        The robot, or a batch of designs; where its file gives no masses, see `centre_of_mass`.
+        The robot, or a batch of designs; without masses, see `centre_of_mass`.
     angles : array, shape (..., legs, 3)
         Joint angles [rad].
     body : Pose
-        The pose of B in G, one or a batch.
+        Pose of B in G, single or in a batch.
     contacts : array of bool, shape (..., legs)
-        Which feet bear load.
+        Which feet are on the ground.
     points : array, shape (..., legs, 4, 3), optional
-        The leg points of `forward_kinematics`, where they are known already; `angles` is then not looked at.
+        Result of `forward_kinematics`, where it is known already; `angles` is then ignored.
 
     Returns
     -------
     array, shape (...)
-        Distance on the ground from the projected centre of mass to the nearest edge of the polygon of the feet
-        in contact [m]; negative, the distance to the polygon, where the centre is outside it; minus infinity
-        where no foot is in contact.
+        Distance from the projected centre of mass to the nearest edge of the support polygon [m]; minus the distance to
+        the polygon where the centre of mass is outside it; minus infinity without contacts.
 
     Raises
     ------
     InputError
-        If a shape is wrong, an angle is NaN or infinite, or `contacts` is not of booleans.
+        If a shape is wrong, an angle is not finite, or `contacts` is not of booleans.
 
     Notes
     -----
     R. B. McGhee and A. A. Frank, "On the stability properties of quadruped creeping gaits", Mathematical
-    Biosciences 3 (1968). Where the body is over the ground cancels; only how it is turned counts.
+    Biosciences 3 (1968). The result depends on the rotation of the body only, not on its position.
     """
     points = forward_kinematics(robot, angles) if points is None else points
     com = centre_of_mass(robot, angles, points=points)

@@ -1,4 +1,4 @@
-"""Where a leg's foot stands at rest: in the middle of what it can reach at the ground's height (source 001)."""
+"""Rest footholds: the middle of the range that each leg reaches on the ground (source 001)."""
 
 from __future__ import annotations
 
@@ -18,15 +18,15 @@ __all__ = ["default_body_height", "default_stance", "reachable_band", "stance_or
 
 
 def default_body_height(robot: Robot) -> Array:
-    """Return the height of the body's origin over the ground that the robot walks at unless told otherwise [m].
+    """Return the default height of the body's origin above the ground [m].
 
-    The robot file's `body_height_mm`; where it has none, the least height at which a leg's upright tibia hangs from a
-    femur raised by 30 degrees, but at least half the tibia below the femur axis.
+    That of the robot file; else the least height of all legs with a vertical tibia and the femur at 30 deg, but at
+    least half the tibia below the femur axis.
 
     Parameters
     ----------
     robot : Robot
-        The robot; of a batch of designs, the least body height of all.
+        The robot; for a batch of designs, the least body height of all is returned.
     """
     if robot.gait.body_height is not None:
         return robot.gait.body_height
@@ -38,11 +38,11 @@ def default_body_height(robot: Robot) -> Array:
 
 
 def reachable_band(robot: Robot, height: Array) -> tuple[Array, Array]:
-    """Return the least and greatest distance at which each foot can stand straight out from its coxa axis.
+    """Return the least and greatest distance from the coxa axis at which each foot can stand in the leg's plane.
 
-    Source 001's `x_min` and `x_max`, with the joint limits: the ends are where femur or tibia come to a limit, or the
-    leg is straight or folded. Where the reachable distances fall apart into several bands, the widest. The coxa
-    is at 0, or at the limit nearest to 0; the knee is up.
+    Source 001's `x_min` and `x_max` with the joint limits: at the ends, femur or tibia are at a limit, or the leg is
+    straight or folded. Of several separate bands, the widest. The coxa is at 0, or at the limit nearest to 0; the knee
+    is up.
 
     Parameters
     ----------
@@ -54,7 +54,7 @@ def reachable_band(robot: Robot, height: Array) -> tuple[Array, Array]:
     Returns
     -------
     nearest, farthest : array, shape (..., legs)
-        Distances from the coxa axis along the leg's plane [m]. Both NaN where the height can't be reached.
+        Distances from the coxa axis in the leg's plane [m]; NaN where the height is out of reach.
 
     Raises
     ------
@@ -78,7 +78,7 @@ def reachable_band(robot: Robot, height: Array) -> tuple[Array, Array]:
         start = xp.where(is_open & ~was_open, low, start)
         wider = is_open & (high - start > best_end - best_start)
         best_start, best_end = xp.where(wider, start, best_start), xp.where(wider, high, best_end)
-        # A gap of no width between two equal ends doesn't part a band.
+        # A gap of zero width between two equal ends does not divide a band.
         was_open = is_open | (was_open & (high <= low))
     none = best_end <= best_start
     nan = xp.full_like(best_start, xp.nan)
@@ -86,7 +86,7 @@ def reachable_band(robot: Robot, height: Array) -> tuple[Array, Array]:
 
 
 def _band_ends(xp: Namespace, g: LegGeometry, z: Array) -> list[Array]:
-    """Distances from the femur axis at which a joint is at a limit; none is behind the coxa axis."""
+    """Return the distances from the femur axis at which a joint is at a limit, none of them behind the coxa axis."""
     behind = -g.coxa + xp.zeros_like(z)
     ends = [behind]
     for tibia in tibia_branch(xp, g, knee=1):
@@ -113,32 +113,32 @@ def _in_limits(xp: Namespace, g: LegGeometry, r: Array, z: Array) -> Array:
 
 
 def default_stance(robot: Robot, body_height: Array | None = None, *, swing_height: Array = 0.0) -> Array:
-    """Return where the feet stand at rest, in the body frame.
+    """Return the rest footholds in the body frame.
 
-    Straight out from each coxa axis (or as near to that as its limits allow), in the middle of the reachable band:
-    source 001's ``x_min + (x_max - x_min) / 2``. For a walk, of what is reachable on the ground and lifted alike: a
-    leg that stands where it can't be lifted can't step.
+    With the coxa at 0 (or at the limit nearest to 0), in the middle of the reachable band: source 001's
+    ``x_min + (x_max - x_min) / 2``. With a swing height, of the intersection of the bands on the ground and at the
+    swing height, so that every leg can step.
 
     Parameters
     ----------
     robot : Robot
         The robot, or a batch of designs.
     body_height : array, shape (...), optional
-        Height of the body's origin over the ground [m]; `default_body_height` where left out.
+        Height of the body's origin above the ground [m]. Default: `default_body_height`.
     swing_height : array, shape (...)
-        How far above the ground a foot must be able to rise [m].
+        Height above the ground to which each foot can be lifted [m].
 
     Returns
     -------
     array, shape (..., legs, 3)
-        Footholds in B [m]; their height is the negative of the body height.
+        Footholds in B [m]; z is the negative of the body height.
 
     Raises
     ------
     InputError
-        If the body height is not a finite number.
+        If the body height or the swing height is not a finite number.
     UnreachableError
-        If a leg reaches the ground nowhere at that body height; the message says which body heights work.
+        If a leg does not reach the ground at that body height; the message gives the body heights that are possible.
     """
     height = default_body_height(robot) if body_height is None else body_height
     feet = stance_or_nan(robot, height, swing_height=swing_height)
@@ -150,26 +150,26 @@ def default_stance(robot: Robot, body_height: Array | None = None, *, swing_heig
 
 
 def stance_or_nan(robot: Robot, body_height: Array, *, swing_height: Array = 0.0) -> Array:
-    """Return what `default_stance` does, NaN where it raises that a leg reaches the ground nowhere.
+    """Return the rest footholds as `default_stance` does, with NaN for legs that do not reach the ground.
 
     Parameters
     ----------
     robot : Robot
         The robot, or a batch of designs.
     body_height : array, shape (...)
-        Height of the body's origin over the ground [m].
+        Height of the body's origin above the ground [m].
     swing_height : array, shape (...)
-        How far above the ground a foot must be able to rise [m].
+        Height above the ground to which each foot can be lifted [m].
 
     Returns
     -------
     array, shape (..., legs, 3)
-        Footholds in B [m]; x and y of a leg that has none are NaN.
+        Footholds in B [m]; x and y are NaN for a leg without one.
 
     Raises
     ------
     InputError
-        If the body height or the lift is not a finite number.
+        If the body height or the swing height is not a finite number.
     """
     g = robot.geometry
     xp = namespace(body_height, swing_height, *g)
@@ -187,9 +187,9 @@ def stance_or_nan(robot: Robot, body_height: Array, *, swing_height: Array = 0.0
 
 
 def _middle(xp: Namespace, robot: Robot, height: Array, swing_height: Array) -> Array:
-    """Return the middle of what each foot reaches on the ground and lifted; NaN where there is nothing."""
+    """Return the middle of the band that each foot reaches on the ground and lifted; NaN where it is empty."""
     height, swing_height = height + xp.zeros_like(swing_height), swing_height + xp.zeros_like(height)
-    # The two heights come before the axes of a batch of designs.
+    # The axis of the two heights precedes those of a batch of designs.
     shape = (1,) * (len(robot.batch_shape) - height.ndim) + height.shape
     low, high = reachable_band(robot, xp.stack([xp.reshape(z, shape) for z in (height, height + swing_height)]))
     nearest, farthest = xp.maximum(low[0, ...], low[1, ...]), xp.minimum(high[0, ...], high[1, ...])
@@ -199,25 +199,25 @@ def _middle(xp: Namespace, robot: Robot, height: Array, swing_height: Array) -> 
 def _why_no_stance(
     robot: Robot, body_height: np.ndarray[Any, Any], swing_height: np.ndarray[Any, Any], missing: np.ndarray[Any, Any]
 ) -> str:
-    """Say which leg has no foothold, and at which body heights all legs of that design have one."""
+    """Return which leg has no foothold, and the body heights at which all legs of that design have one."""
     *batch, leg = (int(i) for i in np.argwhere(missing)[0])
     where, whole = tuple(batch), missing.shape[:-1]
-    wanted, rise = (float(np.broadcast_to(values, whole)[where]) * 1000 for values in (body_height, swing_height))
-    lifted = f" and can be lifted {rise:.1f} mm" if rise else ""
+    height, rise = (float(np.broadcast_to(values, whole)[where]) * 1000 for values in (body_height, swing_height))
+    lifted = f" with a swing height of {rise:.1f} mm" if rise else ""
     text = (
-        f"{f'{batch} ' if batch else ''}body height {wanted:.1f} mm: leg {robot.leg_names[leg]} nowhere reaches the "
+        f"{f'{batch} ' if batch else ''}body height {height:.1f} mm: leg {robot.leg_names[leg]} does not reach the "
         f"ground{lifted} within its joint limits"
     )
     one = robot.item(where, of=whole)
     g = one.geometry
     reach = float((g.femur + g.tibia).max() + np.abs(g.mount_z + g.up).max())
-    # In tenths of a millimetre, so that the body heights work as they are written.
+    # In tenths of a millimetre, so that the body heights are possible as printed.
     steps = np.arange(-np.ceil(reach * 1e4), np.ceil(reach * 1e4) + 1)
-    works = steps[~np.isnan(_middle(np, one, -steps / 1e4, np.asarray(rise / 1000))).any(-1)] / 10
-    if not len(works):
+    possible = steps[~np.isnan(_middle(np, one, -steps / 1e4, np.asarray(rise / 1000))).any(-1)] / 10
+    if not len(possible):
         return f"{text}, and there is no body height at which all legs do"
-    nearest = works[np.argmin(np.abs(works - wanted))]
+    nearest = possible[np.argmin(np.abs(possible - height))]
     return (
-        f"{text}; all legs do at body heights between {works.min():.1f} and {works.max():.1f} mm, "
-        f"nearest to it at {nearest:.1f} mm"
+        f"{text}; all legs do at body heights between {possible.min():.1f} and {possible.max():.1f} mm, "
+        f"the nearest is {nearest:.1f} mm"
     )

@@ -1,14 +1,14 @@
-"""The closed form of one leg's inverse kinematics: the triangle of femur, tibia and the line to the foot.
+"""Closed-form inverse kinematics of a leg: the triangle of femur, tibia and the line to the foot.
 
-With `r`, `z` the foot seen from the femur axis, `d^2 = r^2 + z^2`, and the two products
+With `r`, `z` the foot relative to the femur axis, `d^2 = r^2 + z^2`, and
 
     far = (femur + tibia)^2 - d^2        near = d^2 - (femur - tibia)^2
 
-the tibia's angle is ``atan2(sqrt(far near), d^2 - femur^2 - tibia^2)`` and the femur's is the direction of the
-foot plus ``atan2(sqrt(far near), d^2 + femur^2 - tibia^2)``: the law of cosines of sources 000 to 004 with the sine
-beside the cosine. Near the straight or folded leg a rounded position tells either angle to half the digits only; but
-both come from the same root, so that their errors cancel and the foot keeps all its digits. Those of two arc cosines
-don't cancel: at a bend of 1e-7 rad the foot is 2.5e-10 m off.
+the tibia angle is ``atan2(sqrt(far near), d^2 - femur^2 - tibia^2)`` and the femur angle is the direction of the foot
+plus ``atan2(sqrt(far near), d^2 + femur^2 - tibia^2)``: the law of cosines of sources 000 to 004 with sine and cosine.
+Near the straight or folded leg, a rounded position determines either angle to half the digits only; as both angles come
+from the same root, their errors cancel and the foot is accurate. Errors of two arc cosines do not cancel: with the
+tibia at 1e-7 rad the foot is off by 2.5e-10 m.
 """
 
 from __future__ import annotations
@@ -24,10 +24,15 @@ __all__ = ["Triangle", "direction", "solve_triangle", "to_leg_frame"]
 
 
 class Triangle(NamedTuple):
-    """Joint angles [rad], and the three quantities [m^2] whose signs tell whether the triangle closes.
+    """Joint angles, and three quantities whose signs tell whether the triangle exists.
 
-    `far` is negative where the foot is too far; `near` where it is too near the femur axis; `beside` where it is
-    nearer to the coxa axis than the femur axis' sideways offset lets the leg's plane come.
+    Attributes
+    ----------
+    coxa, femur, tibia : array, shape (..., legs)
+        Joint angles [rad].
+    far, near, beside : array, shape (..., legs)
+        Negative where the foot is too far from the femur axis, too near to it, or nearer to the coxa axis than the
+        sideways offset of the femur axis [m^2].
     """
 
     coxa: Array
@@ -46,7 +51,7 @@ def direction(xp: Namespace, y: Array, x: Array) -> Array:
 
 
 def to_leg_frame(geometry: LegGeometry, x: Array, y: Array, z: Array) -> tuple[Array, Array, Array]:
-    """Carry points of the body frame into the coxa frame, raised to the height of the femur axis."""
+    """Transform points from the body frame to the coxa frame, raised to the height of the femur axis."""
     g = geometry
     x, y = x - g.mount_x, y - g.mount_y
     return g.cos_yaw * x + g.sin_yaw * y, g.cos_yaw * y - g.sin_yaw * x, z - (g.mount_z + g.up)
@@ -74,15 +79,15 @@ def solve_triangle(
     x, y, z : array, shape (..., legs)
         The foot, from `to_leg_frame` [m].
     knee : int
-        1 for the solution with the knee above the line from femur axis to foot, -1 for the one below.
+        Knee branch: 1 with the knee above the line from femur axis to foot, -1 below.
     facing : int
-        1 for the leg's plane turned towards the foot, -1 for turned away, the foot reached behind the coxa axis.
+        1 with the leg's plane facing the foot, -1 facing away from it, the foot behind the coxa axis.
     sideways : bool
-        Whether any femur axis is offset sideways; where none is, a sixth of the work can be left out.
+        Whether any femur axis has a sideways offset; without one, a sixth of the computation is skipped.
     """
     g = geometry
-    across2 = x * x + y * y
-    beside = across2 - g.side2 if sideways else across2
+    radius2 = x * x + y * y
+    beside = radius2 - g.side2 if sideways else radius2
     along = root(xp, beside) if facing > 0 else -root(xp, beside)
     ahead, aside = (x * along + y * g.side, y * along - x * g.side) if sideways else (facing * x, facing * y)
     r = along - g.coxa

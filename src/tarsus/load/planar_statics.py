@@ -12,7 +12,7 @@ from typing import NamedTuple, TypeAlias
 import numpy as np
 
 from tarsus.arrays import Array, Namespace, only_where_needed, root
-from tarsus.kinematics.ground import BodyPlace, mark_below_ground, surely_above
+from tarsus.kinematics.ground import PoseComponents, certainly_above_ground, mark_below_ground
 from tarsus.kinematics.planar_moments import PlanarMoments
 from tarsus.kinematics.polygon import margin_and_nearest
 from tarsus.kinematics.reach import all_within, reach_codes
@@ -96,8 +96,8 @@ def solve_block(block: Block, offsets: Array) -> tuple[Triangle, Array, LegPlane
     within = all_within(g, triangle)
     codes = np.zeros(triangle.far.shape, dtype=np.int8) if within else reach_codes(np, g, triangle)
     zero, one = np.zeros(1), np.ones(1)
-    body = BodyPlace(((one, zero, zero), (zero, one, zero), (zero, zero, one)), (zero, zero, block.body_height))
-    if not surely_above(g, triangle.femur, body):
+    body = PoseComponents(((one, zero, zero), (zero, one, zero), (zero, zero, one)), (zero, zero, block.body_height))
+    if not certainly_above_ground(g, triangle.femur, body):
         codes = mark_below_ground(np, g, triangle[:3], codes, body)
     plane, singular = plane_by_foot(g, triangle, x, y, z, sideways=sideways)
     return triangle, ~((codes != 0) | singular).any((0, 1)), plane

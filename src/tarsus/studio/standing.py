@@ -215,8 +215,8 @@ def _broken(leg: int, joint: int, angle: float, low: float, high: float) -> Brok
         angle_deg=round(angle, 3),
         low_deg=round(low, 3),
         high_deg=round(high, 3),
-        text=f"the {name} is at {angle:.1f} deg, its {'highest' if above else 'lowest'} angle is {bound:.1f}: "
-        f"{math.fabs(beyond):.1f} deg too far",
+        text=f"the {name} angle is {angle:.1f} deg, {math.fabs(beyond):.1f} deg "
+        f"{'above its upper' if above else 'below its lower'} limit of {bound:.1f} deg",
     )
 
 

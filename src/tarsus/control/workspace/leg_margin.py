@@ -152,7 +152,7 @@ def _over_ground(stance: StanceGeometry) -> tuple[Floats, float]:
 def _lowest_femur(g: LegGeometry, up: Floats, above: float) -> float:
     """Return the femur angle above which no femur axis or knee of a stance can be below the ground [rad].
 
-    The inverse of the bound in `surely_above`.
+    The inverse of the bound in `certainly_above_ground`.
     """
     x, y, z = up.tolist()
     clearance = above - math.hypot(x, y) * g.knee_span
