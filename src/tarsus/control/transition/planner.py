@@ -14,9 +14,10 @@ from tarsus.control.transition.shortfalls import stance_limitations
 from tarsus.control.transition.stages import balanced_fraction, reachable_fraction
 from tarsus.control.transition.stance_transition import StanceTransition
 from tarsus.control.transition.target_stance import sway_extremes, target_stance
-from tarsus.control.workspace.cycle_time import CycleTiming, cycle_timing
+from tarsus.control.transition.workspace_stages import cycle_timing, velocity_limits
+from tarsus.control.workspace.cycle_time import CycleTiming
 from tarsus.control.workspace.stability import StabilityCheck, support_sets
-from tarsus.control.workspace.velocity_limits import VelocityLimits, velocity_limits, with_stroke_limits
+from tarsus.control.workspace.velocity_limits import VelocityLimits, with_stroke_limits
 from tarsus.robot.robot import Robot
 
 __all__ = ["TransitionPlanner"]

@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from tarsus.control.incremental import Incremental
 from tarsus.control.workspace.stance_geometry import StanceGeometry
 from tarsus.control.workspace.velocity_limits import VelocityLimits
 from tarsus.gait.gait import Gait
 from tarsus.gait.swing import horizontal_profile, vertical_profile
 from tarsus.robot.robot import Robot
 
-__all__ = ["CycleTiming", "SteadyCycle", "cycle_timing"]
+__all__ = ["CycleTiming", "CycleTimingSearch", "SteadyCycle"]
 
 Floats = np.ndarray[Any, Any]
 
@@ -50,17 +50,8 @@ class CycleTiming(NamedTuple):
     shortest_cycle_time: float
 
 
-def cycle_timing(
-    robot: Robot,
-    gait: Gait,
-    stance: StanceGeometry,
-    limits: VelocityLimits,
-    *,
-    speed: Floats,
-    acceleration: Floats,
-    cycle_time: float | None = None,
-) -> Incremental[CycleTiming]:
-    """Compute the cycle time that the joints can follow, incrementally.
+class CycleTimingSearch:
+    """Search for the cycle time that the joints can follow: `examine` every block of motions, then take the `timing`.
 
     Parameters
     ----------
@@ -74,45 +65,80 @@ def cycle_timing(
         Polygons of the feet.
     speed, acceleration : array, shape (legs, 3)
         Limits of the joints [rad/s], [rad/s^2].
-    cycle_time : float, optional
-        Commanded duration of a cycle [s]; left out, the one of the fastest walk: a shorter one is limited by the
-        joints to shorter strokes, a longer one by the reach of the legs.
+
+    Attributes
+    ----------
+    blocks : int
+        Number of blocks of like cost.
     """
-    # Motions of the body during one stance: none, and fractions of the longest that the legs reach.
-    farthest = limits.feasible_fractions(_TWISTS, stance_time=1.0, duty_factor=gait.duty_factor)[:, None] * _TWISTS
-    stroke = np.abs(farthest[:, :1] + 1j * farthest[:, 1:2] + 1j * farthest[:, 2:] * limits.rest).max(-1)
-    moves = np.concatenate([np.zeros((1, 3)), (_SIZES[1:, None, None] * farthest).reshape(-1, 3)])
-    cycle = SteadyCycle(gait, moves, stance.swing_height)
-    block = max(_BLOCK // (robot.legs * len(cycle.shift)), 1)
-    times = []
-    for first in range(0, len(moves), block):
-        times.append(cycle.shortest_times(robot, stance, slice(first, first + block), speed, acceleration))
-        # The first and the last increment also contain other work.
-        if len(times) % 3 == 1:
-            yield
-    # (sizes, twists): the shortest cycle for each size of each stroke.
-    shortest = np.empty((len(_SIZES), len(_TWISTS)))
-    shortest[0], shortest[1:] = times[0][0], np.concatenate(times)[1:].reshape(len(_SIZES) - 1, -1)
-    shortest = np.maximum.accumulate(shortest, axis=0)
-    # With less than a good fraction of the stroke, the robot would hardly advance.
-    least = _CYCLE_TIME_MARGIN * float(
-        np.array([np.interp(_LEAST_SIZE, _SIZES, column) for column in shortest.T]).max()
-    )
-    if cycle_time is None:
-        tried = least * _TRIED
-        straight = _sizes(shortest[:, :_STRAIGHT], tried)
-        # Optimised for walking straight, the most frequent command.
-        far = np.minimum(
-            straight[:, 0] * stroke[0], _cap(straight, tried[:, None] / shortest[-1, :_STRAIGHT], stroke[:_STRAIGHT])
+
+    def __init__(
+        self,
+        robot: Robot,
+        gait: Gait,
+        stance: StanceGeometry,
+        limits: VelocityLimits,
+        *,
+        speed: Floats,
+        acceleration: Floats,
+    ) -> None:
+        self._robot, self._stance, self._speed, self._acceleration = robot, stance, speed, acceleration
+        # Motions of the body during one stance: none, and fractions of the longest that the legs reach.
+        farthest = limits.feasible_fractions(_TWISTS, stance_time=1.0, duty_factor=gait.duty_factor)[:, None] * _TWISTS
+        self._stroke = np.abs(farthest[:, :1] + 1j * farthest[:, 1:2] + 1j * farthest[:, 2:] * limits.rest).max(-1)
+        moves = np.concatenate([np.zeros((1, 3)), (_SIZES[1:, None, None] * farthest).reshape(-1, 3)])
+        self._cycle = SteadyCycle(gait, moves, stance.swing_height)
+        self._block = max(_BLOCK // (robot.legs * len(self._cycle.shift)), 1)
+        self.blocks = math.ceil(len(moves) / self._block)
+        self._times: list[Floats] = []
+
+    def examine(self, block: int) -> None:
+        """Find the shortest cycles of a block of motions; blocks in their order.
+
+        Parameters
+        ----------
+        block : int
+            Number of the block.
+        """
+        part = slice(block * self._block, (block + 1) * self._block)
+        times = self._cycle.shortest_times(self._robot, self._stance, part, self._speed, self._acceleration)
+        self._times.append(times)
+
+    def timing(self, cycle_time: float | None) -> CycleTiming:
+        """Return the timing, once every block is examined.
+
+        Parameters
+        ----------
+        cycle_time : float or None
+            Commanded duration of a cycle [s]; None for the one of the fastest walk: a shorter one is limited by the
+            joints to shorter strokes, a longer one by the reach of the legs.
+        """
+        stroke = self._stroke
+        # (sizes, twists): the shortest cycle for each size of each stroke.
+        shortest = np.empty((len(_SIZES), len(_TWISTS)))
+        shortest[0] = self._times[0][0]
+        shortest[1:] = np.concatenate(self._times)[1:].reshape(len(_SIZES) - 1, -1)
+        shortest = np.maximum.accumulate(shortest, axis=0)
+        # With less than a good fraction of the stroke, the robot would hardly advance.
+        least = _CYCLE_TIME_MARGIN * float(
+            np.array([np.interp(_LEAST_SIZE, _SIZES, column) for column in shortest.T]).max()
         )
-        cycle_time = float(tried[int((far / tried).argmax())])
-    cycle_time = max(cycle_time, least)
-    sizes = _sizes(shortest, cycle_time)
-    spare = cycle_time / shortest[-1]
-    straight_on, on_the_spot = (
-        float(_cap(sizes[part], spare[part], stroke[part])) for part in (slice(_STRAIGHT), slice(_STRAIGHT, None))
-    )
-    return CycleTiming(cycle_time, straight_on, on_the_spot, least)
+        if cycle_time is None:
+            tried = least * _TRIED
+            straight = _sizes(shortest[:, :_STRAIGHT], tried)
+            # Optimised for walking straight, the most frequent command.
+            far = np.minimum(
+                straight[:, 0] * stroke[0],
+                _cap(straight, tried[:, None] / shortest[-1, :_STRAIGHT], stroke[:_STRAIGHT]),
+            )
+            cycle_time = float(tried[int((far / tried).argmax())])
+        cycle_time = max(cycle_time, least)
+        sizes = _sizes(shortest, cycle_time)
+        spare = cycle_time / shortest[-1]
+        straight_on, on_the_spot = (
+            float(_cap(sizes[part], spare[part], stroke[part])) for part in (slice(_STRAIGHT), slice(_STRAIGHT, None))
+        )
+        return CycleTiming(cycle_time, straight_on, on_the_spot, least)
 
 
 def _cap(sizes: Floats, spare: Floats, stroke: Floats) -> Floats:

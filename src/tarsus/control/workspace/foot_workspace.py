@@ -14,31 +14,34 @@ from typing import Any
 
 import numpy as np
 
-from tarsus.control.incremental import Incremental
 from tarsus.control.workspace.leg_margin import RESERVED_MARGIN, LegMargin
 from tarsus.control.workspace.polygon import NORMALS, NORMALS_CONJUGATE, polygon_ends
 from tarsus.control.workspace.stance_geometry import StanceGeometry
 from tarsus.robot.robot import Robot
 
-__all__ = ["foot_workspace", "rest_margin"]
+__all__ = ["PASSES", "FootWorkspaceSearch", "rest_margin"]
 
 Floats = np.ndarray[Any, Any]
 
 _RAYS, _SIDES, _RINGS, _FINE = 24, len(NORMALS), 8, 5
-# Rings, and points on the edges, that are evaluated in one increment.
-_INNER, _POINTS = 5, 600
+# Number of inner rings.
+_INNER = 5
 _DIRECTIONS = np.exp(2j * np.pi * np.arange(_RAYS) / _RAYS)
-# Greatest number of passes that move sides inwards, the points tested on each side, and the fractions of the distance
-# from the rest foothold to them that are tested.
-_PASSES = 6
+PASSES = 6
+"""Greatest number of passes that move sides inwards."""
+
+# The points tested on each side, and the fractions of the distance from the rest foothold to them that are tested.
 _ALONG = np.array([1, 2, 3])[:, None] / 3
 _FRACTIONS = np.array([0.3, 0.6, 0.8, 0.92, 1.0])[:, None, None]
 # Sides are moved by this fraction more than needed, so that the next corners are inside; tolerance of fractions.
 _EXTRA, _TOLERANCE = 0.01, 1e-9
 
 
-def foot_workspace(robot: Robot, stance: StanceGeometry, *, foot_distance: float) -> Incremental[Floats]:
-    """Compute the sides of each foot's polygon for one stance, in increments of similar cost.
+class FootWorkspaceSearch:
+    """Search for the sides of each foot's polygon in one stance, in stages of similar cost.
+
+    The stages in order: `sample_inner`, `sample_outer`, `refine`; then up to `PASSES` times `test_edge`, `sample_edge`
+    where that says so, and `move_inwards` until it has nothing to do.
 
     Parameters
     ----------
@@ -49,43 +52,57 @@ def foot_workspace(robot: Robot, stance: StanceGeometry, *, foot_distance: float
     foot_distance : float
         Least distance between two feet [m].
 
-    Returns
-    -------
-    array, shape (legs, 16)
+    Attributes
+    ----------
+    bounds : array, shape (legs, 16)
         Distances of the sides from the heading frame's origin along `NORMALS` [m]. If a foot cannot be at its rest
         foothold, a side lies before that foothold.
+    edge_points : int
+        Number of points that `test_edge` examines.
     """
-    margin, spacing = LegMargin(robot, stance), _FootSpacing(stance.rest, foot_distance)
-    rays = np.arange(_RINGS + 1)[:, None, None] * _ring(robot)
-    inner = margin(rays[:_INNER] * _DIRECTIONS[:, None])
-    yield
-    outer = margin(rays[_INNER:] * _DIRECTIONS[:, None])
-    coarse = _first_zero(rays, np.concatenate([inner, outer]), interpolation=0.0)
-    yield
-    # Refined between the last feasible and the first infeasible ring.
-    rays = coarse + np.arange(_FINE + 1)[:, None, None] * (_ring(robot) / _FINE)
-    reach = _first_zero(rays, margin(rays * _DIRECTIONS[:, None]), interpolation=1.0) - RESERVED_MARGIN
-    bounds = _sides(stance.rest, np.minimum(reach, spacing(_DIRECTIONS[:, None])))
-    yield
-    tested, points = 0, len(_ALONG) * _SIDES * robot.legs
-    for _ in range(_PASSES):
-        edge = _edge(bounds, stance.rest)
-        fraction = spacing(edge)
-        tested += points
-        if (margin(edge) < 0).any():
-            yield
-            fraction = np.minimum(fraction, _first_zero(_FRACTIONS, margin(_FRACTIONS * edge), interpolation=1.0))
-            tested = _POINTS
-        short = fraction < 1 - _TOLERANCE
+
+    def __init__(self, robot: Robot, stance: StanceGeometry, *, foot_distance: float) -> None:
+        self._margin, self._spacing = LegMargin(robot, stance), _FootSpacing(stance.rest, foot_distance)
+        self._rest, self._step = stance.rest, _ring(robot)
+        self._rays: Floats = np.arange(_RINGS + 1)[:, None, None] * self._step
+        self._inner = self._edge = self._fraction = self._coarse = np.zeros(0)
+        self.bounds: Floats = np.zeros((robot.legs, _SIDES))
+        self.edge_points = len(_ALONG) * _SIDES * robot.legs
+
+    def sample_inner(self) -> None:
+        """Sample the inner rings."""
+        self._inner = self._margin(self._rays[:_INNER] * _DIRECTIONS[:, None])
+
+    def sample_outer(self) -> None:
+        """Sample the outer rings, and find the last feasible one on each ray."""
+        outer = self._margin(self._rays[_INNER:] * _DIRECTIONS[:, None])
+        self._coarse = _first_zero(self._rays, np.concatenate([self._inner, outer]), interpolation=0.0)
+
+    def refine(self) -> None:
+        """Sample between the last feasible and the first infeasible ring, and draw the sides."""
+        rays = self._coarse + np.arange(_FINE + 1)[:, None, None] * (self._step / _FINE)
+        reach = _first_zero(rays, self._margin(rays * _DIRECTIONS[:, None]), interpolation=1.0) - RESERVED_MARGIN
+        self.bounds = _sides(self._rest, np.minimum(reach, self._spacing(_DIRECTIONS[:, None])))
+
+    def test_edge(self) -> bool:
+        """Test the edges of the polygons, and return whether a leg can't reach somewhere on them."""
+        self._edge = _edge(self.bounds, self._rest)
+        self._fraction = self._spacing(self._edge)
+        return bool((self._margin(self._edge) < 0).any())
+
+    def sample_edge(self) -> None:
+        """Sample the rays to the edges, for how far each leg reaches."""
+        reached = _first_zero(_FRACTIONS, self._margin(_FRACTIONS * self._edge), interpolation=1.0)
+        self._fraction = np.minimum(self._fraction, reached)
+
+    def move_inwards(self) -> bool:
+        """Move the sides inwards that are out of reach, and return whether there were any."""
+        short = self._fraction < 1 - _TOLERANCE
         if not short.any():
-            break
-        bounds = _moved_inwards(bounds, stance.rest, edge, np.where(short, fraction - _EXTRA, np.inf))
-        if tested + points > _POINTS:
-            yield
-            tested = 0
-    if tested + points > _POINTS:
-        yield
-    return bounds
+            return False
+        inwards = np.where(short, self._fraction - _EXTRA, np.inf)
+        self.bounds = _moved_inwards(self.bounds, self._rest, self._edge, inwards)
+        return True
 
 
 def rest_margin(robot: Robot, stance: StanceGeometry, *, knees: bool = True) -> Floats:
@@ -103,7 +120,7 @@ def rest_margin(robot: Robot, stance: StanceGeometry, *, knees: bool = True) -> 
     Returns
     -------
     array, shape (legs,)
-        Distances [m]; where negative, a side of the `foot_workspace` lies before the rest foothold.
+        Distances [m]; where negative, a side of the `FootWorkspaceSearch` lies before the rest foothold.
     """
     rays = np.arange(2)[:, None, None] * (_ring(robot) / _FINE)
     out = np.concatenate([[0j], rays[1, 0] * _DIRECTIONS])[:, None]

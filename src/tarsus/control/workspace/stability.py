@@ -173,12 +173,14 @@ class StabilityCheck:
 
     Attributes
     ----------
+    excluded : list of int
+        Legs that do not step.
     least_margin : float
         Least stability margin that is safe [m].
     """
 
     def __init__(self, robot: Robot, sets: Floats, excluded: tuple[int, ...] = ()) -> None:
-        self._robot, self._sets, self._excluded = robot, sets, list(excluded)
+        self._robot, self._sets, self.excluded = robot, sets, list(excluded)
         self.least_margin = _LEAST_MARGIN
         # Masses of the legs' points and first moment of the body, over the total mass.
         self._weights, self._body = np.zeros((robot.legs, 4)), np.asarray(robot.body_com)
@@ -187,7 +189,7 @@ class StabilityCheck:
             self._weights = point_masses(np, robot) / total
             self._body = self._body * (robot.body_mass / total)
             reach = np.asarray(robot.coxa + robot.femur + robot.tibia) * np.asarray(robot.link_mass).sum(-1) / 4
-            self.least_margin += float(reach[self._excluded].sum() / total)
+            self.least_margin += float(reach[self.excluded].sum() / total)
 
     def safe_fraction(self, stance: StanceGeometry, sides: Floats, centre: complex, shift: Floats) -> float:
         """Return the factor by which the foot polygons must shrink towards the rest footholds for static stability.
@@ -231,7 +233,7 @@ class StabilityCheck:
         corners = polygon_ends(sides, stance.rest)[1]
         moments, centre = self._moments(stance, np.concatenate([np.zeros((1, len(corners))), corners.T]))
         shift = (moments[1:] - moments[0]).T
-        shift[self._excluded] = 0.0
+        shift[self.excluded] = 0.0
         return centre, shift
 
     def margin_at_rest(self, stance: StanceGeometry) -> float:

@@ -5,21 +5,17 @@ from __future__ import annotations
 import dataclasses
 import functools
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from tarsus.control.incremental import Incremental
-from tarsus.control.workspace.foot_workspace import foot_workspace
 from tarsus.control.workspace.polygon import NORMALS, NORMALS_CONJUGATE
 from tarsus.control.workspace.stability import StabilityCheck
 from tarsus.control.workspace.stance_geometry import StanceGeometry
 from tarsus.gait.swing import horizontal_profile
-from tarsus.robot.robot import Robot
 
-__all__ = ["VelocityLimits", "stance_overhang", "velocity_limits", "with_stroke_limits"]
+__all__ = ["VelocityLimits", "stance_limits", "stance_overhang", "with_stroke_limits"]
 
 Floats = np.ndarray[Any, Any]
 
@@ -198,44 +194,25 @@ def with_stroke_limits(limits: VelocityLimits, stroke: float, turning: float, *,
     return dataclasses.replace(limits, bounds=bounds, stroke=stroke, turning=turning)
 
 
-def velocity_limits(
-    robot: Robot,
-    stances: Sequence[StanceGeometry],
-    sets: Floats,
-    *,
-    foot_distance: float,
-    excluded: tuple[int, ...] = (),
-) -> Incremental[VelocityLimits]:
-    """Compute the limits that hold in each of some stances, incrementally.
+def stance_limits(check: StabilityCheck, stance: StanceGeometry, sides: Floats, fraction: float) -> VelocityLimits:
+    """Return the limits in one stance.
 
     Parameters
     ----------
-    robot : Robot
-        A single robot.
-    stances : sequence of StanceGeometry
-        At least one; the last one is kept after a transition.
-    sets : array of bool, shape (n, legs)
-        Feet that are in stance together.
-    foot_distance : float
-        Least distance between two feet [m].
-    excluded : tuple of int
-        Legs that do not step: their position is not bounded here, but may shift the centre of mass.
+    check : StabilityCheck
+        The check against tipping over; legs that it excludes are not bounded.
+    stance : StanceGeometry
+        Body and rest footholds.
+    sides : array, shape (legs, 16)
+        Sides of the feet's polygons [m].
+    fraction : float
+        Fraction of the polygons' size in which no support tips over.
     """
-    bounds = np.full((robot.legs, len(NORMALS)), np.inf)
-    margins = np.full(bounds.shape, np.inf)
-    check, balanced = StabilityCheck(robot, sets, excluded), True
-    for stance in stances:
-        sides = yield from foot_workspace(robot, stance, foot_distance=foot_distance)
-        centre, shift = check.centre_of_mass(stance, sides)
-        yield
-        fraction = check.safe_fraction(stance, sides, centre, shift)
-        at_rest = (NORMALS_CONJUGATE * stance.rest[:, None]).real
-        free = sides - at_rest
-        free = np.where(free > 0, free * fraction, free)
-        # With the centre of mass outside a support polygon, no step is safe.
-        free = free if fraction > 0 else np.minimum(free, -1e-3)
-        balanced = balanced and fraction > 0
-        bounds, margins = np.minimum(bounds, at_rest + free), np.minimum(margins, free)
-        yield
-    bounds[list(excluded)], margins[list(excluded)] = np.inf, np.inf
-    return VelocityLimits(bounds, margins, stances[-1].rest, balanced)
+    at_rest = (NORMALS_CONJUGATE * stance.rest[:, None]).real
+    free = sides - at_rest
+    free = np.where(free > 0, free * fraction, free)
+    # With the centre of mass outside a support polygon, no step is safe.
+    free = free if fraction > 0 else np.minimum(free, -1e-3)
+    bounds = at_rest + free
+    bounds[check.excluded], free[check.excluded] = np.inf, np.inf
+    return VelocityLimits(bounds, free, stance.rest, fraction > 0)
