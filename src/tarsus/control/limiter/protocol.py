@@ -68,6 +68,8 @@ class TwistGrant(NamedTuple):
         limitation : Limitation, optional
             What to report.
         """
+        if limitation is None and fraction >= self.fraction:
+            return self
         limitations = self.limitations if limitation is None else (*self.limitations, limitation)
         return TwistGrant(min(self.fraction, fraction), self.target, limitations)
 
@@ -123,6 +125,9 @@ class RateLimiter(Protocol):
         ...
 
 
+_WHOLE_TWIST, _FULL_RATE = TwistGrant(), RateGrant()
+
+
 def granted_twist(limiters: Sequence[TwistLimiter], request: TwistRequest) -> TwistGrant:
     """Return what all twist limiters leave of a commanded twist.
 
@@ -133,7 +138,7 @@ def granted_twist(limiters: Sequence[TwistLimiter], request: TwistRequest) -> Tw
     request : TwistRequest
         The commanded twist, and what decides on it.
     """
-    grant = TwistGrant()
+    grant = _WHOLE_TWIST
     for limiter in limiters:
         grant = limiter.limit(request, grant)
     return grant
@@ -149,7 +154,7 @@ def granted_rate(limiters: Sequence[RateLimiter], state: GaitState) -> RateGrant
     state : GaitState
         The gait state at the start of the tick.
     """
-    grant = RateGrant()
+    grant = _FULL_RATE
     for limiter in limiters:
         grant = limiter.limit(state, grant)
     return grant

@@ -36,7 +36,7 @@ class GovernorLimiter:
         transitions, command = self._transitions, grant.scaled(request.twist)
         # In steady walking nothing changes; before, feet may be put down where the target leaves them no margin.
         if command == request.target.tolist() and self._is_steady(request, command):
-            return grant._replace(target=request.target)
+            return TwistGrant(grant.fraction, request.target, grant.limitations)
         begins, ends = transitions.stance_intervals(request.state, self._terrain.hold_time)
         target = governed_twist(
             request.state,
@@ -47,7 +47,7 @@ class GovernorLimiter:
             bounds=transitions.bounds,
             bandwidth=transitions.bandwidth,
         )
-        return grant._replace(target=target)
+        return TwistGrant(grant.fraction, target, grant.limitations)
 
     def _is_steady(self, request: TwistRequest, twist: list[float]) -> bool:
         """Return whether the robot walks at the twist and at its cycle time."""

@@ -50,6 +50,10 @@ class WalkComponents:
         Solves gait states for joint angles.
     time_scaling : TimeScaling
         The joint angles, and the rate of the walk's time.
+    every_leg : array of bool, shape (legs,)
+        True for each leg.
+    no_offset : array, shape (legs,)
+        Zero for each leg [m].
     """
 
     robot: Robot
@@ -61,6 +65,8 @@ class WalkComponents:
     terrain: TerrainAdaptation
     solver: JointSolver
     time_scaling: TimeScaling
+    every_leg: Floats
+    no_offset: Floats
 
     def standing_feet(self, state: GaitState) -> Floats:
         """Return which feet are on the ground: array of bool, shape (legs,).
@@ -137,5 +143,7 @@ class WalkComponents:
             terrain=terrain,
             solver=solver,
             time_scaling=time_scaling,
+            every_leg=np.ones(robot.legs, dtype=bool),
+            no_offset=np.zeros(robot.legs),
         )
         return components, state

@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-import numpy as np
-
 from tarsus.control.limiter.protocol import RateLimiter, granted_rate
 from tarsus.control.tick.components import WalkComponents
 from tarsus.control.tick.state import TickState
@@ -52,12 +50,12 @@ def _step_inputs(walk: WalkComponents, tick: TickState, dt: float) -> StepInputs
     transitions, terrain = walk.transitions, walk.terrain
     timing, pose, current = transitions.timing, transitions.pose, transitions.current
     pose.set_sway(_NO_MOTION if standing else current.parameters.sway, frequency=timing.frequency, beats=timing.beats)
-    every = np.ones_like(state.down)
+    every = walk.every_leg
     may_lift, may_land, hold_feet = every, every, transitions.changes_gait
     if walk.foot_targets:
         may_lift = every.copy()
         may_lift[list(current.parameters.excluded)] = False
-    ground: dict[str, Any] = {"admittance_offset": np.zeros(len(every))}
+    ground: dict[str, Any] = {"admittance_offset": walk.no_offset}
     if terrain.estimate is not None:
         phase = state.swing_phase + dt * timing.frequency / state.swings(timing.gait.duty_factor)
         may_land, waits = terrain.may_land(state, phase >= 1.0 - PHASE_TOLERANCE)
@@ -83,12 +81,13 @@ def _step_inputs(walk: WalkComponents, tick: TickState, dt: float) -> StepInputs
 
 def _finished(walk: WalkComponents, tick: TickState, state: GaitState, dt: float) -> TickState:
     """Return the state, once steps, transitions and searches that end with the tick have ended."""
-    landed = state.down & ~tick.gait.down
-    if landed.any():
+    landed = None if state.down is tick.gait.down else state.down & ~tick.gait.down
+    if landed is not None and landed.any():
         walk.terrain.feet_landed(landed)
-    state = walk.transitions.finish(state, landed, dt)
+        walk.transitions.footholds.feet_landed(landed)
+    state = walk.transitions.finish(state, dt)
     if tick.standing:
-        return tick._replace(gait=state)
+        return TickState(state, tick.twist, tick.walk_state, tick.limitations)
     follows_twist = any(tick.twist.tolist())
     still = not (follows_twist or any(state.twist.value.tolist())) and bool(state.down.all())
     following = next_walk_state(
@@ -98,4 +97,4 @@ def _finished(walk: WalkComponents, tick: TickState, state: GaitState, dt: float
         changes_gait=walk.transitions.changes_gait,
         searches=bool(walk.terrain.searches),
     )
-    return tick._replace(gait=state, walk_state=following)
+    return TickState(state, tick.twist, following, tick.limitations)

@@ -70,10 +70,9 @@ def limited(
     state = transitions.timing.with_first_lift(tick.gait, 0) if tick.standing else tick.gait
     grant = granted_twist(limiters, TwistRequest(tuple(command.twist), dt, state, tick.twist))
     if tick.standing and not any(grant.scaled(command.twist)) and transitions.at_rest(tick.gait):
-        return tick._replace(limitations=grant.limitations)
+        return TickState(tick.gait, tick.twist, tick.walk_state, grant.limitations)
     assert grant.target is not None  # the governor sets it
-    after = tick._replace(gait=state, twist=grant.target, limitations=grant.limitations)
-    if not tick.standing:
-        return after
-    following = next_walk_state(tick.walk_state, follows_twist=bool(grant.target.any()), at_rest=False)
-    return after._replace(walk_state=following)
+    following = tick.walk_state
+    if tick.standing:
+        following = next_walk_state(following, follows_twist=bool(grant.target.any()), at_rest=False)
+    return TickState(state, grant.target, following, grant.limitations)

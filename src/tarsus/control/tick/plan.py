@@ -57,7 +57,10 @@ def planned(
     situation = WalkSituation(tick.gait, tick.twist, tick.standing, walk.terrain.hold_time)
     state = walk.transitions.advance(partial(_plan_transition, walk, body), situation)
     again = _recovered(walk, state, command) if walk.terrain.searches else None
-    tick = tick._replace(gait=state) if again is None else tick._replace(gait=again, twist=np.zeros(3))
+    if again is not None:
+        tick = tick._replace(gait=again, twist=np.zeros(3))
+    elif state is not tick.gait:
+        tick = tick._replace(gait=state)
     _set_foot_targets(walk, tick.gait, command, dt)
     return tick
 

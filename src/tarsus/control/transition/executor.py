@@ -260,15 +260,13 @@ class TransitionExecutor:
 
     # After a tick.
 
-    def finish(self, state: GaitState, landed: Floats, dt: float) -> GaitState:
+    def finish(self, state: GaitState, dt: float) -> GaitState:
         """Complete what is complete after a tick.
 
         Parameters
         ----------
         state : GaitState
             The gait state after the tick.
-        landed : array of bool, shape (legs,)
-            The feet that landed in it.
         dt : float
             Length of the tick [s].
 
@@ -277,12 +275,12 @@ class TransitionExecutor:
         GaitState
             The gait state; its clock is set where another gait begins.
         """
-        if landed.any():
-            self.footholds.feet_landed(landed)
         settled = self.is_settled(state)
         if not self.changes_gait:
-            goal = 1 / self.current.cycle_timing.cycle_time
-            self.timing = self.timing.approach(goal if settled else min(goal, self.timing.frequency), dt)
+            goal, present = 1 / self.current.cycle_timing.cycle_time, self.timing.frequency
+            goal = goal if settled else min(goal, present)
+            if goal != present:
+                self.timing = self.timing.approach(goal, dt)
         elif state.down.all() and self._active is not None:
             state = self._start_gait(self._active, self._first_leg, state)
         if settled and self.footholds.limits is not self.current.final_limits:
