@@ -1,4 +1,4 @@
-"""Draw the pictures of the documents anew: `make figures`."""
+"""Draw the figures of the documentation: `make figures`."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ def main() -> None:
     save_figure(
         plot_robot(strider, limp, body=rest.body, contacts=rest.contacts, title=rest.describe()), FIGURES / "rest.png"
     )
-    print(f"drew {len(list(FIGURES.glob('*')))} pictures into {FIGURES}")
+    print(f"drew {len(list(FIGURES.glob("*")))} figures into {FIGURES}")
 
 
 if __name__ == "__main__":
