@@ -1,8 +1,8 @@
-"""The import graph where import-linter's contracts say nothing of it: cycles, deferred imports, sizes, the guard.
+"""The import graph where import-linter's contracts say nothing of it: cycles, deferred imports, sizes.
 
-The order of the layers and that siblings form no cycle are contracts in `pyproject.toml`. Here and there every import
-counts, also one inside a function or under `TYPE_CHECKING`: deferring an import hides a cycle, it does not remove it.
-Only the table of public names in `tarsus/__init__.py` is exempt, as it refers to every layer.
+The order of the layers, siblings without cycles and the guard's independence are contracts in `pyproject.toml`. Here
+and there every import counts, also one inside a function or under `TYPE_CHECKING`: deferring an import hides a cycle,
+it does not remove it. Only the table of public names in `tarsus/__init__.py` is exempt, as it refers to every layer.
 """
 
 import ast
@@ -19,8 +19,6 @@ import tarsus
 
 ROOT = Path(tarsus.__file__).parent
 MOST_MODULES, MOST_LINES = 12, 300
-SAFETY = "tarsus.control.safety"
-USERS_OF_SAFETY = {"tarsus", "tarsus.control.control_output", "tarsus.control.robot_controller"}
 
 
 @dataclass(frozen=True)
@@ -135,18 +133,3 @@ def test_folders_and_modules_of_control_stay_small(folder):
     assert len(modules_in(folder)) <= MOST_MODULES
     lines = {path.name: len(path.read_text(encoding="utf-8").splitlines()) for path in folder.glob("*.py")}
     assert {name: count for name, count in lines.items() if count > MOST_LINES} == {}
-
-
-def test_the_guard_is_independent_of_the_rest_of_control():
-    inside = {one for one in INSIDE if one.importer.startswith(SAFETY)}
-    borrowed = [one for one in inside if layer_of(one.imported) == "control" and not one.imported.startswith(SAFETY)]
-    assert [str(one) for one in borrowed] == []
-
-
-def test_only_the_robot_controller_uses_the_guard():
-    users = {
-        one.importer
-        for one in chain(*IMPORTS.values())
-        if one.imported.startswith(SAFETY) and not one.importer.startswith(SAFETY)
-    }
-    assert users <= USERS_OF_SAFETY

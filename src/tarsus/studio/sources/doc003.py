@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from tarsus.kinematics.pose import Pose
 from tarsus.studio.sources.document import Document, Given, Slip, Step
 
 __all__ = ["DOCUMENT"]
@@ -69,7 +70,5 @@ DOCUMENT = Document(
 
 def _middle(roll: float, pitch: float, yaw: float) -> float:
     """Return the middle entry of roll times pitch times yaw, the yaw first."""
-    from tarsus.kinematics.pose import Pose
-
     turned = Pose.from_rpy(roll=roll) @ Pose.from_rpy(pitch=pitch) @ Pose.from_rpy(yaw=yaw)
     return float(turned.rotation[1, 1])

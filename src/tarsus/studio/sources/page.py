@@ -9,6 +9,7 @@ import numpy as np
 
 from tarsus.studio.messages.plain import Equation, Erratum, MathNode, SourceMessage
 from tarsus.studio.messages.state import SourceChoice
+from tarsus.studio.sources import doc000, doc001, doc002, doc003, doc004
 from tarsus.studio.sources.document import Document, Given, Line, Slip
 from tarsus.studio.sources.errata import Row, errata
 from tarsus.studio.sources.expression import Expression, Quantity, symbol_node
@@ -20,13 +21,9 @@ from tarsus.studio.wire import or_null
 __all__ = ["DOCUMENTS", "source_message"]
 
 
-def _documents() -> dict[str, Document]:
-    from tarsus.studio.sources import doc000, doc001, doc002, doc003, doc004
-
-    return {module.DOCUMENT.number: module.DOCUMENT for module in (doc000, doc001, doc002, doc003, doc004)}
-
-
-DOCUMENTS = _documents()
+DOCUMENTS: dict[str, Document] = {
+    module.DOCUMENT.number: module.DOCUMENT for module in (doc000, doc001, doc002, doc003, doc004)
+}
 """The five documents, by their numbers."""
 
 _SIDEWAYS = "this robot's femur axis lies {:.1f} mm beside its coxa axis, of which the document does not know"
