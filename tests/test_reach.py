@@ -260,8 +260,8 @@ def test_a_sideways_offset_keeps_the_foot_away_from_the_coxa_axis():
     )
     line = inverse_kinematics(robot, np.tile([0.005, 0, -0.15], (6, 1))).explain().splitlines()[0]
     assert line.startswith(
-        "LF: TOO_NEAR: the foot is 5.0 mm from the coxa axis, less than the sideways offset of the femur axis, 20.0 mm:"
-        " 15.0 mm too near. Nearest reachable: "
+        "LF: TOO_NEAR: the foot is 5.0 mm from the coxa axis, less than the sideways offset of the femur axis, 20.0 mm: "
+        "15.0 mm too near. Nearest reachable: "
     )
     assert line.endswith(", 15.0 mm away")
 

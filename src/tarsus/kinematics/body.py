@@ -45,7 +45,7 @@ def coxa_frames(robot: Robot) -> Pose:
 
 
 def reachable_fraction(robot: Robot, feet: Array, start: Pose, goal: Pose) -> float:
-    """Return how much of the way from one body pose to another all feet can stay where they stand.
+    """Return the fraction of a motion between two body poses during which all feet reach their footholds.
 
     Position, roll, pitch and yaw are interpolated linearly, each angle in the direction of the smaller change.
 
@@ -69,7 +69,7 @@ def reachable_fraction(robot: Robot, feet: Array, start: Pose, goal: Pose) -> fl
         If the robot or a pose is a batch, or the feet have the wrong shape or are not finite.
     """
     if robot.batch_shape or start.batch_shape or goal.batch_shape or np.ndim(feet) != 2:
-        raise InputError("reachable_fraction takes a single robot, one foot a leg, and single poses")
+        raise InputError("reachable_fraction takes a single robot, feet of shape (legs, 3) and single poses")
     rpy, position = np.asarray(start.rpy), np.asarray(start.position)
     turn, move = np.asarray(goal.rpy) - rpy, np.asarray(goal.position) - position
     turn -= 2 * np.pi * np.round(turn / (2 * np.pi))
