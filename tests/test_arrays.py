@@ -169,4 +169,4 @@ def test_broadcast_shapes():
     assert arrays.broadcast_shapes("a and b", (4, 1), (3,)) == (4, 3)
     with pytest.raises(InputError) as caught:
         arrays.broadcast_shapes("the robot and the feet", (4,), (3,))
-    assert str(caught.value) == "the batch axes of the robot and the feet don't fit together: (4,) and (3,)"
+    assert str(caught.value) == "the batch axes of the robot and the feet don't broadcast: (4,) and (3,)"

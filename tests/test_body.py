@@ -117,7 +117,7 @@ def test_batches_are_refused(wrong):
     poses = Pose(np.eye(3), np.zeros((2, 3)))
     given_ = {"robot": robot, "feet": feet, "start": start, "goal": start}
     given_ |= {wrong: {"robot": stack_robots([robot] * 2), "feet": feet[None], "start": poses, "goal": poses}[wrong]}
-    with pytest.raises(InputError, match="a single robot, one foot a leg, and single poses"):
+    with pytest.raises(InputError, match="a single robot, feet of shape \\(legs, 3\\) and single poses"):
         reachable_fraction(**given_)
 
 

@@ -128,8 +128,8 @@ def files(tmp_path):
         ("empty.toml", "the file is empty"),
         ("binary.toml", "not UTF-8"),
         ("huge.toml", "larger than 1 MiB"),
-        ("prose.toml", "not TOML"),
-        ("folder.toml", "this is a folder"),
+        ("prose.toml", "not valid TOML"),
+        ("folder.toml", "is a folder"),
     ],
 )
 @pytest.mark.parametrize(

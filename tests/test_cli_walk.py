@@ -157,7 +157,7 @@ def test_feet_too_close():
         ("--distance 1e300", "is not a number between"),
         ("--curve 1e9", "at most"),
         ("--twist 1,2 --duration 3", "is not 3 numbers"),
-        ("--twist 0,0,0 --duration 3", "goes nowhere"),
+        ("--twist 0,0,0 --duration 3", "has no length"),
         ("--twist 10,0,0", "must be given together"),
         ("--duration 3", "must be given together"),
         ("--twist 10,0,0 --duration -1", "duration"),
@@ -191,7 +191,7 @@ def test_usage_errors(options, text):
     [
         ("--body-height 900", "does not reach the ground"),
         ("--tilt 60,0", "stepping on the spot is impossible"),
-        ("--swing-height 400", "lifted"),
+        ("--swing-height 400", "with a swing height of 400.0 mm"),
         ("--body-height -500", "does not reach the ground"),
     ],
 )

@@ -256,7 +256,7 @@ def test_stacked_robots():
         ({"heading": math.inf}, "heading is inf"),
         ({"stroke": math.nan}, "stroke is nan"),
         ({"swing_height": math.inf}, "swing_height is inf"),
-        ({"stroke": np.zeros(2), "body_height": np.full(3, 0.1)}, "don't fit together"),
+        ({"stroke": np.zeros(2), "body_height": np.full(3, 0.1)}, "don't broadcast"),
         ({"gait": Gait.named("wave", legs=8)}, "is for 8 legs"),
         ({"gait": Gait(duty_factor=0.4, offsets=(0.0, 0.5) * 3)}, "no foot is on the ground at phase 0.4"),
         ({"payload": -1.0}, "payload"),

@@ -476,7 +476,7 @@ def test_gradients_with_respect_to_a_length_are_the_finite_differences():
 
 @pytest.mark.parametrize(("offset", "equal"), [(0.0, True), (0.01, False)])
 def test_gradients_are_finite_at_singular_and_unreachable_points_too(offset, equal, monkeypatch):
-    monkeypatch.setattr("tarsus.kinematics.nearest._STRIDES", (1.0,))  # one correction compiles in a third of the time
+    monkeypatch.setattr("tarsus.kinematics.nearest._STEP_SIZES", (1.0,))  # compiles in a third of the time
     robot = plain_hexapod(
         femur_axis_offset=np.tile([offset, 0], (6, 1)), **({"tibia": np.full(6, 0.098)} if equal else {})
     )
@@ -523,9 +523,7 @@ def test_a_wrong_knee_is_refused(knee):
 @pytest.mark.parametrize("xp", [np, jnp])
 def test_batches_that_do_not_fit_are_named(xp):
     feet, body = xp.zeros((3, 6, 3)), Pose(np.eye(3), np.zeros((4, 3)))
-    with pytest.raises(
-        InputError, match=r"the robot, the feet and the body's poses don't fit together: \(\) and \(3,\)"
-    ):
+    with pytest.raises(InputError, match=r"the robot, the feet and the body's poses don't broadcast: \(\) and \(3,\)"):
         inverse_kinematics(plain_hexapod(), feet, body)
 
 

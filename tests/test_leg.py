@@ -203,7 +203,7 @@ def test_what_is_wrong_is_said(compute, angles, message):
 def test_batches_that_do_not_fit_are_named():
     robot = stack_robots([plain_hexapod()] * 4)
     for xp in (np, jnp):
-        with pytest.raises(InputError, match=r"the robot and the angles don't fit together: \(4,\) and \(3,\)"):
+        with pytest.raises(InputError, match=r"the robot and the angles don't broadcast: \(4,\) and \(3,\)"):
             forward_kinematics(robot, xp.zeros((3, 6, 3)))
 
 

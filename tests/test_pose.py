@@ -97,7 +97,7 @@ def test_the_leading_axes_of_points_are_the_poses_batch_axes(batch, points, expe
 
 @pytest.mark.parametrize(("batch", "points"), [((5,), (6, 3)), ((5,), (6, 5, 3)), ((4, 5), (5, 6, 3))])
 def test_points_that_do_not_fit_the_batch_are_refused(batch, points):
-    with pytest.raises(InputError, match="the batch axes of the pose and the points don't fit together"):
+    with pytest.raises(InputError, match="the batch axes of the pose and the points don't broadcast"):
         random_pose(np.random.default_rng(1), batch) @ np.zeros(points)
 
 
@@ -105,7 +105,7 @@ def test_position_and_rotation_broadcast():
     pose = Pose(np.eye(3), np.zeros((7, 3)))
     assert pose.batch_shape == (7,)
     assert Pose().batch_shape == ()
-    with pytest.raises(InputError, match=r"a pose don't fit together: \(2,\) and \(3,\)"):
+    with pytest.raises(InputError, match=r"a pose don't broadcast: \(2,\) and \(3,\)"):
         Pose(np.tile(np.eye(3), (2, 1, 1)), np.zeros((3, 3)))
 
 
@@ -119,7 +119,7 @@ def test_items_of_a_batch():
     assert poses[..., 0].batch_shape == (4,)
     level = Pose(np.eye(3), np.arange(12.0).reshape(4, 3))
     assert np.array_equal(level[2].rotation, np.eye(3))
-    with pytest.raises(InputError, match="this is a single pose"):
+    with pytest.raises(InputError, match="a single pose has no batch axes"):
         Pose()[0]
 
 
@@ -134,7 +134,7 @@ def test_items_of_a_batch():
         (lambda: Pose.from_rpy(roll=np.nan), "roll is nan"),
         (lambda: Pose.from_rpy(pitch=[0, np.inf]), r"pitch\[1\] is inf"),
         (lambda: Pose.from_rpy(yaw=1j), "yaw: expected an array of real numbers"),
-        (lambda: Pose.from_rpy([0, 0], [0, 0, 0]), "the batch axes of roll, pitch and yaw don't fit together"),
+        (lambda: Pose.from_rpy([0, 0], [0, 0, 0]), "the batch axes of roll, pitch and yaw don't broadcast"),
         (lambda: Pose() @ np.zeros(4), r"points has shape \(4,\)"),
         (lambda: Pose() @ "points", "points: expected an array of real numbers"),
         (lambda: Pose() @ [0, 0, np.nan], r"points\[2\] is nan"),

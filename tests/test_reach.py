@@ -168,7 +168,7 @@ def number(pattern, text):
 
 @pytest.mark.parametrize("with_body", [False, True])
 @given(seed=seeds())
-def test_what_is_said_is_so(with_body, seed):
+def test_explanations_are_correct(with_body, seed):
     """Every number of every line, against distances and angles worked out anew; the point named is reached."""
     rng = np.random.default_rng(seed)
     robot = random_robot(rng)
@@ -192,8 +192,8 @@ def test_what_is_said_is_so(with_body, seed):
             assert abs(number(r"is ([\d.]+) mm below the ground", line) - depth) <= 0.051
             check_raise(robot, feet, body, leg, line)
             continue
-        told = np.array([float(v) for v in re.search(r"at \((.*?)\) mm", line).group(1).split(", ")])
-        assert np.abs(told - points[leg, 3] * 1000).max() <= 0.051
+        printed = np.array([float(v) for v in re.search(r"at \((.*?)\) mm", line).group(1).split(", ")])
+        assert np.abs(printed - points[leg, 3] * 1000).max() <= 0.051
         assert (
             abs(number(r"\) mm, ([\d.]+) mm away", line) - np.linalg.norm(points[leg, 3] - feet[leg]) * 1000) <= 0.051
         )
@@ -206,16 +206,16 @@ def test_what_is_said_is_so(with_body, seed):
         else:
             joint = code - Reach.COXA_LIMIT
             assert line.split("the ")[1].startswith(("coxa", "femur", "tibia")[joint])
-            over = number(r": ([\d.]+) deg too far", line)
-            wanted, bound = number(r"be at (-?[\d.]+) deg", line), number(r"est angle is (-?[\d.]+)", line)
-            end = np.rad2deg(robot.limits[leg, joint])[0 if "lowest" in line else 1]
+            excess_deg = number(r", ([\d.]+) deg (?:above|below) its", line)
+            angle, bound = number(r"would be (-?[\d.]+) deg", line), number(r"limit of (-?[\d.]+)", line)
+            end = np.rad2deg(robot.limits[leg, joint])[0 if "below its lower" in line else 1]
             assert abs(bound - end) <= 0.051
-            assert abs(abs(wanted - bound) - over) <= 0.11
-            assert wanted < bound if "lowest" in line else wanted > bound
+            assert abs(abs(angle - bound) - excess_deg) <= 0.11
+            assert angle <= bound if "below its lower" in line else angle >= bound
 
 
 def check_raise(robot, feet, body, leg, line):
-    """Raised as told, the leg is above the ground, with the verdict told; raised by 0.2 mm less, it is not."""
+    """Raised by the distance printed, the leg is above the ground; raised by 0.2 mm less, it is not."""
     rise = np.array([0, 0, number(r"by ([\d.]+) mm", line) / 1000])
     higher = inverse_kinematics(robot, feet, Pose(body.rotation, body.position + rise))
     verdict = Reach(int(higher.reach[leg]))
@@ -260,8 +260,8 @@ def test_a_sideways_offset_keeps_the_foot_away_from_the_coxa_axis():
     )
     line = inverse_kinematics(robot, np.tile([0.005, 0, -0.15], (6, 1))).explain().splitlines()[0]
     assert line.startswith(
-        "LF: TOO_NEAR: the foot is 5.0 mm from the coxa axis, less than the sideways offset of the femur axis, 20.0 mm: "
-        "15.0 mm too near. Nearest reachable: "
+        "LF: TOO_NEAR: the foot is 5.0 mm from the coxa axis, less than the sideways offset of the femur axis, "
+        "20.0 mm: 15.0 mm too near. Nearest reachable: "
     )
     assert line.endswith(", 15.0 mm away")
 

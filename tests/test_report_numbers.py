@@ -299,7 +299,7 @@ def test_check_lists_servos_with_unknown_speed():
 @pytest.mark.parametrize(
     ("gait", "text"),
     [
-        (GaitDefaults(name="tetrapod"), "not for 4 legs"),
+        (GaitDefaults(name="tetrapod"), "does not exist for 4 legs"),
         (GaitDefaults(name="wave", body_height=0.5), "does not reach the ground"),
     ],
 )

@@ -94,7 +94,7 @@ MISTAKES = [
     (("leg", "tibia_mm"), ..., "leg.tibia_mm: missing; every leg needs it, in [leg] for all legs alike or"),
     (("leg", "mass_kg"), 0.2, "leg.mass_kg = 0.2: must be a table of keys"),
     (("leg", "mass_kg", "femur"), -0.1, "leg.mass_kg.femur = -0.1: must be from 0 to 10000 kg"),
-    (("leg", "mass_kg", "femur"), ..., "leg.mass_kg.femur: missing; give the mass of every link of every leg"),
+    (("leg", "mass_kg", "femur"), ..., "leg.mass_kg.femur: missing; give the masses of all links of all legs"),
     (("leg", "limits_deg", "coxa"), ..., "leg.limits_deg.coxa: missing; every leg needs it"),
     (("leg", "limits_deg", "coxa"), [60, -60], "leg.limits_deg.coxa = [60, -60]: the limits are reversed"),
     (("leg", "limits_deg", "coxa"), [-181, 0], "the first number must be from -180 to 180 deg"),
@@ -112,28 +112,28 @@ MISTAKES = [
     (("body", "com_mm"), [[1], NAN, 0, 0, 0, 0, 0], "= [[...], nan, 0, 0, 0, 0, ...]: must be a list of 3"),
     (("body", "size_mm"), [1, 0, 1], "body.size_mm = [1, 0, 1]: the second number must be from 0.001"),
     (("body",), [], "body = []: must be a table of keys"),
-    (("name",), ..., "name: missing; what the robot is called"),
+    (("name",), ..., "name: missing; name of the robot"),
     (("name",), 5, 'name = 5: must be text in quotes, such as "front left"'),
     (("name",), "", 'name = "": must not be empty'),
     (("name",), "x" * 1001, "must be no longer than 1000 characters, and has 1001"),
-    (("name",), "\ud800", "it holds half of a character"),
+    (("name",), "\ud800", "it contains an unpaired surrogate"),
     (("gait", "name"), "tripd", 'gait.name = "tripd": must be one of tripod, tetrapod, amble, ripple, wave; did you'),
     (("gait", "name"), 3, "gait.name = 3: must be one of tripod, tetrapod, amble, ripple, wave"),
     (("gait", "swing_height_mm"), 0, "gait.swing_height_mm = 0: must be from 0.001 to 10000 mm"),
     (("leg", "servo"), "MG-996", "leg.servo = \"MG-996\": the catalogue has no such servo; did you mean 'MG996R'?"),
     (("leg", "servo"), 996, "leg.servo = 996: must be the name of a servo, a table {"),
     (("leg", "servo"), {"coxa": 996}, "leg.servo.coxa = 996: must be the name of a servo, or a table with"),
-    (("leg", "servo"), {"coxa": {"name": "a"}}, "leg.servo.coxa.stall_torque_nm: missing; torque at which it stops"),
+    (("leg", "servo"), {"coxa": {"name": "a"}}, "leg.servo.coxa.stall_torque_nm: missing; stall torque [N m]"),
     (("leg", "servo"), {"coxa": "AX-12A", "knee": "AX-12A"}, "leg.servo.knee: unknown key; known here: coxa,"),
     (("leg", "servo"), {"name": "a", "stall_torque_nm": 1, "mass_kg": 1}, "leg.servo.mass_kg: "),
     (("legs",), ..., "legs: missing; the legs, counter-clockwise from the front left"),
     (("legs",), {"name": "a"}, "legs: must be a list of tables, each under [[legs]]"),
     (("legs", 2), "rear", 'legs[2] = "rear": must be a table of keys'),
-    (("legs", 2, "yaw_deg"), ..., "legs[2].yaw_deg: missing; where the leg points: 0 is forward, 90 is left [deg]"),
+    (("legs", 2, "yaw_deg"), ..., "legs[2].yaw_deg: missing; direction of the leg: 0 is forward, 90 is left [deg]"),
     (("legs", 2, "yaw_deg"), 361, "legs[2].yaw_deg = 361: must be from -360 to 360 deg"),
     (("legs", 2, "position_mm"), [NAN, 0, 0], "legs[2].position_mm = [nan, 0, 0]: the first number must be a finite"),
-    (("legs", 2, "name"), "front left", 'legs[2].name = "front left": legs[0] is called that too'),
-    (("legs", 2, "position_mm"), [0, 86.5, 0], "in the same place as legs[1] (0.5 mm apart; at least 1 mm)"),
+    (("legs", 2, "name"), "front left", 'legs[2].name = "front left": legs[0] has the same name'),
+    (("legs", 2, "position_mm"), [0, 86.5, 0], "0.5 mm from legs[1]; it must be at least 1 mm"),
     (("sources", 0, "of"), "leg", 'sources[0].of = "leg": must be a list'),
     (("sources", 0, "confidence"), "sure", 'sources[0].confidence = "sure": must be one of A, A-, B, C, guess'),
     (("sources",), "me", 'sources = "me": must be a list of tables, each under [[sources]]'),
@@ -150,9 +150,9 @@ def test_a_mistake_is_refused_with_key_value_and_what_is_allowed(key, value, lin
 @pytest.mark.parametrize(
     ("figures", "line"),
     [
-        ({"supply_min_v": 5}, "supply_min_v and supply_max_v go together"),
-        ({"supply_max_v": 5}, "supply_min_v and supply_max_v go together"),
-        ({"supply_min_v": 6, "supply_max_v": 5}, "supply_min_v is 6 V, more than supply_max_v, 5 V"),
+        ({"supply_min_v": 5}, "supply_min_v and supply_max_v: give both or neither"),
+        ({"supply_max_v": 5}, "supply_min_v and supply_max_v: give both or neither"),
+        ({"supply_min_v": 6, "supply_max_v": 5}, "supply_min_v is 6 V, greater than supply_max_v, 5 V"),
     ],
 )
 def test_a_servo_has_both_ends_of_its_supply_or_none(figures, line):
@@ -324,15 +324,15 @@ def test_a_servo_with_its_own_figures():
         (b"", "the file is empty"),
         (b" \n\t\n", "the file is empty"),
         (b"\xef\xbb\xbf", "the file is empty"),
-        (b"name = 'x'\n\xff\xfe", "byte 11 is not UTF-8: this is no text file"),
-        (b"name 'x'", "line 1, column 6: this is not TOML: expected '=' after a key in a key/value pair; in: name 'x'"),
+        (b"name = 'x'\n\xff\xfe", "byte 11 is not UTF-8; a robot file is a text file"),
+        (b"name 'x'", "line 1, column 6: not valid TOML: expected '=' after a key in a key/value pair; in: name 'x'"),
         (b"a = 1\n" + b"b" * 100 + b"\n", "in: " + "b" * 57 + "..."),
-        (b"a = [1\n\n", "line 2, at the end: this is not TOML: unclosed array"),
+        (b"a = [1\n\n", "line 2, at the end: not valid TOML: unclosed array"),
         (b"a = 1\na = 2", "cannot overwrite a value"),
         (b"a = " + b"[" * 100_000, "nested too deeply"),
         (b"a = " + b"{b=" * 100_000, "nested too deeply"),
-        (b"a = " + b"9" * 5000, "a number has more digits, or a larger exponent"),
-        (b"a = 1e99999999999999999999", "a number has more digits, or a larger exponent"),
+        (b"a = " + b"9" * 5000, "a number has too many digits or too large an exponent"),
+        (b"a = 1e99999999999999999999", "a number has too many digits or too large an exponent"),
         (b"#" * (2**20 + 1), "larger than 1 MiB"),
         (b"x = 1", "x: unknown key"),
     ],
@@ -360,18 +360,18 @@ def test_a_file_may_start_with_the_mark_of_windows_editors_and_end_its_lines_lik
 
 
 def test_an_unknown_name_suggests_the_nearest():
-    with pytest.raises(RobotFileError, match=r"no such file, and no robot of that name\. Did you mean 'strider'\?"):
+    with pytest.raises(RobotFileError, match=r"no preset robot of that name\. Did you mean 'strider'\?"):
         load_robot("stridr")
-    with pytest.raises(RobotFileError, match=r"of that name\. Robots there are: ch3r, freenove"):
+    with pytest.raises(RobotFileError, match=r"of that name\. Presets: ch3r, freenove"):
         load_robot("/nowhere/to/be/found.toml")
 
 
 @pytest.mark.parametrize(
     ("name", "line"),
     [
-        ("", "this is a folder"),
+        ("", "is a folder"),
         ("file/my.toml", "can't be read: Not a directory"),
-        ("a\0b", "can't be read: this is no"),
+        ("a\0b", "can't be read: is not a valid path"),
     ],
 )
 def test_a_path_that_is_none_is_refused(tmp_path, monkeypatch, name, line):
@@ -541,7 +541,7 @@ def test_what_differs_stands_with_each_leg_and_the_rest_once():
 def test_a_batch_of_designs_has_no_file(tmp_path):
     batch = stack_robots([load_robot("strider")] * 2)
     for attempt in (lambda: robot_to_dict(batch), lambda: save_robot(batch, tmp_path / "x.toml")):
-        with pytest.raises(RobotFileError, match=r"robot 'strider': .*\n  a batch of designs \(2,\) has no robot file"):
+        with pytest.raises(RobotFileError, match=r"robot 'strider': .*\n  a batch of designs \(2,\) can't"):
             attempt()
     assert list(tmp_path.iterdir()) == []
 
@@ -552,7 +552,7 @@ def test_a_batch_of_designs_has_no_file(tmp_path):
         ({"gait": GaitDefaults(name="gallop")}, 'gait.name = "gallop": must be one of'),
         ({"femur": np.full(6, 11.0)}, "leg.femur_mm = 11000: must be from"),
         ({"mount_yaw": np.linspace(0, 7, 6)}, "legs[5].yaw_deg = 401"),
-        ({"leg_names": ("a",) * 6}, "is called that too"),
+        ({"leg_names": ("a",) * 6}, "has the same name"),
         ({"servos": ((Servo(name="x", stall_torque=NAN),) * 3,) * 6}, "leg.servo.stall_torque_nm = nan"),
     ],
 )

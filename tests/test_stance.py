@@ -121,7 +121,7 @@ def test_a_coxa_that_can_not_point_straight_out_stands_at_its_limit():
     assert np.abs(angles[:, 0] - np.deg2rad([20, 20, 20, -25, -25, -25])).max() <= 1e-12
 
 
-def test_the_default_clearance_is_the_files_or_from_the_lengths():
+def test_the_default_body_height_is_that_of_the_file_or_from_the_lengths():
     robot = plain_hexapod()
     assert default_body_height(robot) == pytest.approx(0.181 - 0.098 / 2, abs=1e-15)
     short = robot.replace(tibia=np.full(6, 0.08))
@@ -152,33 +152,33 @@ def test_the_error_names_the_leg_and_the_possible_body_heights():
 
 
 @given(robot=robots(), body_height=st.floats(-1, 1), swing_height=st.sampled_from([0.0, 0.03]))
-def test_every_clearance_that_an_error_names_works(robot, body_height, swing_height):
+def test_every_body_height_that_an_error_names_is_possible(robot, body_height, swing_height):
     try:
         default_stance(robot, body_height, swing_height=swing_height)
     except UnreachableError as error:
         text = str(error)
-        assert ("and can be lifted 30.0 mm" in text) == (swing_height > 0)
+        assert ("with a swing height of 30.0 mm" in text) == (swing_height > 0)
         if "there is no body height" in text:
             for height in np.linspace(-0.5, 0.5, 5):
                 with pytest.raises(UnreachableError):
                     default_stance(robot, height, swing_height=swing_height)
             return
-        named = re.search(r"between (-?[\d.]+) and (-?[\d.]+) mm, nearest to it at (-?[\d.]+) mm$", text).groups()
+        named = re.search(r"between (-?[\d.]+) and (-?[\d.]+) mm, the nearest is (-?[\d.]+) mm$", text).groups()
         for works in named:
             assert np.isfinite(default_stance(robot, float(works) / 1000, swing_height=swing_height)).all()
 
 
-def test_where_no_clearance_works_that_is_said():
+def test_an_error_says_where_no_body_height_is_possible():
     limits = np.array(plain_hexapod().limits)
     limits[0, 1:] = np.deg2rad([[80, 90], [-20, 0]])
     limits[3, 1:] = np.deg2rad([[-80, -70], [-20, 0]])
-    with pytest.raises(UnreachableError, match=r"there is no body_height at which all legs do$"):
+    with pytest.raises(UnreachableError, match=r"there is no body height at which all legs do$"):
         default_stance(plain_hexapod(limits=limits), 0.1)
 
 
-def test_in_a_batch_the_failing_clearance_and_design_are_named():
+def test_in_a_batch_the_error_names_body_height_and_design():
     robot = plain_hexapod()
-    with pytest.raises(UnreachableError, match=r"^\[2\] body height 900.0 mm: leg LF .*nearest to it at 277.5 mm$"):
+    with pytest.raises(UnreachableError, match=r"^\[2\] body height 900.0 mm: leg LF .*the nearest is 277.5 mm$"):
         default_stance(robot, np.array([0.05, 0.11, 0.9]))
     short = robot.replace(tibia=np.full(6, 0.03))
     with pytest.raises(UnreachableError, match=r"^\[1\] body height 150.0 mm: leg LF .*between .* and 126.5 mm"):

@@ -1,13 +1,13 @@
-"""Tarsus: the toolkit for six-legged robots, from a robot file to joint angles, walks, torques and servos.
+"""Tarsus: a toolkit for six-legged robots, from a robot file to joint angles, walks, torques and servos.
 
-Everything public is here::
+All public names are here::
 
     import tarsus
 
     robot = tarsus.load_robot("strider")
     walk = tarsus.plan_walk(robot, tarsus.Gait.named("tripod"), tarsus.straight_path(1.0))
 
-Inside, all is SI: metres, radians, seconds, kilograms. Files and the command line speak millimetres and degrees.
+Units in Python are SI: metres, radians, seconds, kilograms. Files and the command line use millimetres and degrees.
 """
 
 from __future__ import annotations

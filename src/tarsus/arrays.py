@@ -1,7 +1,7 @@
-"""Arrays of any kind: one code for NumPy, JAX and whatever else follows the array API standard.
+"""Array functions for NumPy, JAX and other libraries that follow the array API standard.
 
-NumPy arrays take the short way, without a detour through `array_api_compat`: one robot's inverse kinematics
-is a few dozen calls of about a microsecond each, and finding the namespace anew in each would double that.
+NumPy arrays bypass `array_api_compat`: the inverse kinematics of one robot is a few dozen calls of about a microsecond
+each, and a search for the namespace in each of them would double that.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ Namespace: TypeAlias = Any
 
 
 def namespace(*arrays: Array) -> Namespace:
-    """Return the namespace in which `arrays` are computed: NumPy, unless one of them is of another library.
+    """Return the namespace of `arrays`: NumPy, unless one of them belongs to another library.
 
     Parameters
     ----------
@@ -47,13 +47,13 @@ def namespace(*arrays: Array) -> Namespace:
         return np
     import array_api_compat
 
-    # What else has a shape (a table of pandas, an array of xarray) is taken as NumPy takes it.
+    # Other objects with a shape (pandas, xarray) are converted by NumPy.
     others = [a for a in others if array_api_compat.is_array_api_obj(a)]
     return array_api_compat.array_namespace(*others) if others else np
 
 
 def as_array(xp: Namespace, values: Array) -> Array:
-    """Return `values` as an array of the namespace `xp`, without a copy where it is one already.
+    """Return `values` as an array of the namespace `xp`, without a copy if it is one already.
 
     Parameters
     ----------
@@ -77,7 +77,7 @@ def as_floats(xp: Namespace, values: Array, *, name: str) -> Array:
     values : array
         Any shape, real numbers.
     name : str
-        What the values are, for the message.
+        Name of the values in messages.
 
     Raises
     ------
@@ -115,19 +115,19 @@ def is_traced(array: Array) -> bool:
 
 
 def require_finite(name: str, array: Array) -> None:
-    """Refuse NaN and infinities; values that are being traced can't be looked at and pass.
+    """Refuse NaN and infinities; traced values can't be checked.
 
     Parameters
     ----------
     name : str
-        What the array is, for the message.
+        Name of the array in messages.
     array : array
         Any shape.
 
     Raises
     ------
     InputError
-        If an element is NaN or infinite; the message says which.
+        If an element is not finite; the message gives its index.
     """
     if is_traced(array):
         return
@@ -150,11 +150,11 @@ def require_shape(name: str, array: Array, tail: tuple[int, ...]) -> None:
     Parameters
     ----------
     name : str
-        What the array is, for the message.
+        Name of the array in messages.
     array : array
         Any shape.
     tail : tuple of int
-        The lengths that the last axes must have.
+        Required lengths of the last axes.
 
     Raises
     ------
@@ -169,16 +169,16 @@ def require_shape(name: str, array: Array, tail: tuple[int, ...]) -> None:
 def only_where_needed(
     needed: Array, compute: Callable[[], tuple[Array, ...]], otherwise: tuple[Array, ...]
 ) -> tuple[Array, ...]:
-    """Return what `compute` returns where it is needed, else `otherwise`; under `jax.jit`, decided as the code runs.
+    """Return the result of `compute` if it is needed, else `otherwise`; under `jax.jit`, decided at run time.
 
     Parameters
     ----------
     needed : array, shape ()
         Whether to compute.
     compute : callable
-        Takes nothing; returns arrays shaped as those of `otherwise`.
+        Takes no arguments; returns arrays of the shapes of those in `otherwise`.
     otherwise : tuple of array
-        What to return without computing.
+        Result where it is not needed.
     """
     if is_traced(needed):
         chosen: tuple[Array, ...] = sys.modules["jax"].lax.cond(needed, compute, lambda: otherwise)
@@ -189,43 +189,43 @@ def only_where_needed(
 def improve(
     step: Callable[[tuple[Array, ...]], tuple[Array, ...]], state: tuple[Array, ...], *, times: int, enough: float
 ) -> tuple[Array, ...]:
-    """Return the state after some steps, each of which lowers its first array or leaves it as it is.
+    """Return the state after several steps, each of which does not increase its first array.
 
-    An element stays as it is once a step has lowered it by too little, whatever becomes of its neighbours. Under
-    `jax.jit` the steps are compiled as a loop.
+    An element is final once a step has decreased it by too little, independently of the other elements. Under `jax.jit`
+    the steps are compiled as a loop.
 
     Parameters
     ----------
     step : callable
-        Takes a state; returns the next, shaped as the last.
+        Takes a state and returns the next one, of the same shapes.
     state : tuple of array
-        The state at the beginning; all of one shape.
+        Initial state; arrays of one shape.
     times : int
-        Most steps.
+        Greatest number of steps.
     enough : float
-        An element is done when a step lowers it by no more than this.
+        An element is final when a step decreases it by no more than this.
     """
     xp = namespace(*state)
 
-    def move(going: Array, state: tuple[Array, ...]) -> tuple[Array, tuple[Array, ...]]:
-        moved = step(state)
-        more = going & (state[0] - moved[0] > enough)
-        return more, tuple(xp.where(going, new, old) for new, old in zip(moved, state, strict=True))
+    def advance(active: Array, state: tuple[Array, ...]) -> tuple[Array, tuple[Array, ...]]:
+        following = step(state)
+        still_active = active & (state[0] - following[0] > enough)
+        return still_active, tuple(xp.where(active, new, old) for new, old in zip(following, state, strict=True))
 
-    going = xp.ones(state[0].shape, dtype=xp.bool)
+    active = xp.ones(state[0].shape, dtype=xp.bool)
     if any(is_traced(part) for part in state):
         lax = sys.modules["jax"].lax
-        final: tuple[Array, ...] = lax.scan(lambda s, _: (move(*s), None), (going, state), length=times)[0][1]
+        final: tuple[Array, ...] = lax.scan(lambda s, _: (advance(*s), None), (active, state), length=times)[0][1]
         return final
     for _ in range(times):
-        going, state = move(going, state)
-        if not bool(xp.any(going)):
+        active, state = advance(active, state)
+        if not bool(xp.any(active)):
             break
     return state
 
 
 def root(xp: Namespace, square: Array) -> Array:
-    """Return the square root: 0 for negative numbers, and with a gradient that stays finite at 0, where it has none.
+    """Return the square root, 0 for negative numbers, with a finite gradient at 0.
 
     Parameters
     ----------
@@ -241,7 +241,7 @@ def root(xp: Namespace, square: Array) -> Array:
 
 
 def stack_last(xp: Namespace, parts: tuple[Array, ...]) -> Array:
-    """Join equally shaped arrays along a new last axis (what `stack(parts, axis=-1)` does, faster for NumPy).
+    """Stack arrays along a new last axis, as `stack(parts, axis=-1)` does, but faster for NumPy.
 
     Parameters
     ----------
@@ -260,12 +260,12 @@ def stack_last(xp: Namespace, parts: tuple[Array, ...]) -> Array:
 
 
 def broadcast_shapes(what: str, *shapes: tuple[int, ...]) -> tuple[int, ...]:
-    """Return the shape that batch shapes have together.
+    """Return the broadcast shape of batch shapes.
 
     Parameters
     ----------
     what : str
-        Whose batch axes these are, for the message.
+        Whose batch axes these are, for messages.
     *shapes : tuple of int
         Batch shapes.
 
@@ -275,10 +275,10 @@ def broadcast_shapes(what: str, *shapes: tuple[int, ...]) -> tuple[int, ...]:
         If they don't broadcast.
     """
     different = set(shapes) - {()}
-    if len(different) < 2:  # the common case, without NumPy's microseconds
+    if len(different) < 2:  # the common case, without the overhead of NumPy
         return different.pop() if different else ()
     try:
         return np.broadcast_shapes(*shapes)
     except ValueError:
         listed = " and ".join(str(tuple(shape)) for shape in shapes)
-        raise InputError(f"the batch axes of {what} don't fit together: {listed}") from None
+        raise InputError(f"the batch axes of {what} don't broadcast: {listed}") from None

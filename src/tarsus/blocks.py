@@ -1,4 +1,4 @@
-"""Large NumPy batches are worked through in blocks that fit the cache, their items side by side."""
+"""Blocks of large NumPy batches that fit in the cache, with contiguous items."""
 
 from __future__ import annotations
 
@@ -15,21 +15,21 @@ __all__ = ["BLOCK", "SMALL", "Index", "batch_blocks", "block_shape", "columns"]
 Index: TypeAlias = tuple[slice, ...]
 
 BLOCK = 32768
-"""Legs worked through at a time: a dozen arrays of this many doubles stay in the cache, and calls are few."""
+"""Legs per block: a dozen arrays of this many doubles fit in the cache, and the number of calls is small."""
 
 SMALL = 1024
-"""Numbers in an array below which cutting it into blocks costs more than it saves."""
+"""Size of an array below which blocks cost more than they save."""
 
 
 def batch_blocks(shape: tuple[int, ...], size: int) -> Iterator[Index]:
-    """Cut a batch into blocks of at most `size` items, yielding the index of each.
+    """Yield the indices of blocks of a batch of at most `size` items each.
 
     Parameters
     ----------
     shape : tuple of int
         The batch axes.
     size : int
-        Most items in a block; at least 1.
+        Greatest number of items in a block; at least 1.
     """
     if math.prod(shape) <= size:
         yield (slice(None),) * len(shape)
@@ -59,10 +59,10 @@ def block_shape(shape: tuple[int, ...], index: Index) -> tuple[int, ...]:
 
 
 def columns(array: Array, index: Index, block: tuple[int, ...], *, tail: int) -> Array:
-    """Return what a block needs of a NumPy array, transposed: the block's items side by side in the last axis.
+    """Return the part of a NumPy array that belongs to a block, transposed so that the block is the last axis.
 
-    An operation on ``(legs, block)`` runs over thousands of neighbouring numbers at a time; on ``(block, legs)``,
-    with the robot's numbers ``(legs,)`` broadcast, only over the legs: measured, a third of the speed.
+    An operation on ``(legs, block)`` runs over thousands of contiguous numbers; on ``(block, legs)``, with values of
+    the robot ``(legs,)`` broadcast, over the legs only: a third of the speed (measured).
 
     Parameters
     ----------
@@ -71,15 +71,14 @@ def columns(array: Array, index: Index, block: tuple[int, ...], *, tail: int) ->
     index : tuple of slice
         The block, from `batch_blocks`.
     block : tuple of int
-        The block's shape.
+        Shape of the block.
     tail : int
-        How many of the last axes are not batch axes.
+        Number of last axes that are not batch axes.
 
     Returns
     -------
     array
-        The last axes in reverse order, then one of the block's length, or of 1 where the array is the same
-        throughout.
+        The last axes in reverse order, then an axis of the length of the block, or of 1 where the array is constant.
     """
     own = array.ndim - tail
     rest = array.shape[own:]

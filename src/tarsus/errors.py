@@ -1,17 +1,17 @@
-"""Every error that Tarsus raises on purpose.
+"""Errors that Tarsus raises deliberately.
 
 ::
 
     TarsusError
-    ├── RobotFileError      a robot file can't be read, or something in it is wrong
+    ├── RobotFileError      a robot file can't be read or written, or something in it is wrong
     ├── UnknownNameError    no robot, servo, gait or leg has that name
-    ├── InputError          an argument has the wrong shape, is NaN, is out of its range (also a ValueError)
-    ├── MissingDataError    the robot file lacks what the calculation needs
-    ├── UnreachableError    a foot can't be where it is asked to be
-    │   └── StrokeError     the stroke leaves the workspace; `.longest` is the longest that works
-    └── CollisionError      two feet would come nearer to each other than allowed
+    ├── InputError          an argument has the wrong shape, is not finite or is out of range (also a ValueError)
+    ├── MissingDataError    the robot file lacks data that a computation needs
+    ├── UnreachableError    a foot is out of reach
+    │   └── StrokeError     the stroke leaves the workspace; `.longest` is the longest possible
+    └── CollisionError      two feet come closer to each other than allowed
 
-A message says what is wrong, where, the number against its bound, and what would work.
+A message says what is wrong, where, the number and its bound, and what is possible.
 """
 
 from __future__ import annotations
@@ -34,16 +34,16 @@ __all__ = [
 
 
 class TarsusError(Exception):
-    """Base of all errors that Tarsus raises on purpose."""
+    """Base of all errors that Tarsus raises deliberately."""
 
 
 class RobotFileError(TarsusError):
-    """A robot file can't be read, or something in it is wrong.
+    """A robot file can't be read or written, or something in it is wrong.
 
     Attributes
     ----------
     problems : tuple of str
-        One line for each thing that is wrong.
+        One line for each problem.
     """
 
     def __init__(self, where: str, problems: Sequence[str]) -> None:
@@ -57,12 +57,12 @@ class UnknownNameError(TarsusError):
 
     @classmethod
     def of(cls, kind: str, name: str, known: Iterable[str]) -> Self:
-        """Build the message that lists the known names and suggests the nearest.
+        """Return the error whose message lists the known names and suggests the nearest one.
 
         Parameters
         ----------
         kind : str
-            What was looked for, such as ``"gait"``.
+            What was searched, such as ``"gait"``.
         name : str
             The name that was not found.
         known : iterable of str
@@ -75,15 +75,15 @@ class UnknownNameError(TarsusError):
 
 
 class InputError(TarsusError, ValueError):
-    """An argument has the wrong shape, is NaN or infinite, or is out of its range."""
+    """An argument has the wrong shape, is not finite, or is out of range."""
 
 
 class MissingDataError(TarsusError):
-    """The robot file lacks what the calculation needs."""
+    """The robot file lacks data that a computation needs."""
 
 
 class UnreachableError(TarsusError):
-    """A foot can't be where it is asked to be."""
+    """A foot is out of reach."""
 
 
 class StrokeError(UnreachableError):
@@ -92,7 +92,7 @@ class StrokeError(UnreachableError):
     Attributes
     ----------
     longest : float
-        The longest stroke that works [m]; 0 where none does.
+        The longest stroke possible [m]; 0 if none is.
     """
 
     def __init__(self, message: str, longest: float) -> None:
@@ -101,11 +101,11 @@ class StrokeError(UnreachableError):
 
 
 class CollisionError(TarsusError):
-    """Two feet would come nearer to each other than allowed."""
+    """Two feet come closer to each other than allowed."""
 
 
 def nearest_name(name: str, known: Iterable[str]) -> str | None:
-    """Return the known name that is spelt most like `name`, or None where none is near.
+    """Return the known name that is most similar to `name`, or None if none is similar.
 
     Parameters
     ----------

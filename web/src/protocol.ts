@@ -790,38 +790,38 @@ export type ServerMessage =
 
 /** A legged robot for Tarsus: millimetres, degrees, kilograms; x forward, y left, z up. */
 export interface RobotFile {
-  /** What the robot is called. */
+  /** Name of the robot. */
   name: string;
   body?: FileBody;
   leg?: FileLeg;
   /** The legs, counter-clockwise from the front left. */
   legs: FileLegEntry[];
   gait?: FileGait;
-  /** Where the numbers of this file come from. */
+  /** Sources of the numbers in this file. */
   sources?: FileSourceEntry[];
 }
 
 /** The body, without the legs. */
 export interface FileBody {
-  /** Mass, with battery and electronics [kg]. */
+  /** Mass, including battery and electronics [kg]. */
   mass_kg?: number;
   /** Centre of mass: x forward, y left, z up [mm]. */
   com_mm?: number[];
-  /** Length, width and height of its box [mm]; left out: the flat polygon of the coxa axes. */
+  /** Length, width and height of its box [mm]. Default: the flat polygon of the coxa axes. */
   size_mm?: number[];
 }
 
-/** How this robot walks unless told otherwise. */
+/** Default settings of the robot's walks. */
 export interface FileGait {
   /** The gait. */
   name?: "tripod" | "tetrapod" | "amble" | "ripple" | "wave";
-  /** Height of the body's origin over the ground [mm]. */
+  /** Height of the body's origin above the ground [mm]. */
   body_height_mm?: number;
-  /** How high a swinging foot is lifted [mm]. */
+  /** Swing height [mm]. */
   swing_height_mm?: number;
 }
 
-/** Where the links' centres of mass are, along the link from its inner joint [mm]; left out: the middle. */
+/** Centres of mass of the links, along the link from its inner joint [mm]. Default: the middle. */
 export interface FileJointCentres {
   coxa?: number;
   femur?: number;
@@ -829,10 +829,10 @@ export interface FileJointCentres {
 }
 
 /**
- * Lowest and highest angle of each joint [deg].
+ * Lower and upper limit of each joint [deg].
  *
- * All zero: the leg straight out, level. Coxa positive: counter-clockwise seen from above. Femur and tibia positive:
- * the foot goes up. So a standing leg, knee up, has a positive femur and a negative tibia.
+ * At zero the leg is straight and level. Coxa positive: counter-clockwise seen from above. Femur and tibia positive:
+ * the foot moves up. A standing leg, knee up, has a positive femur and a negative tibia angle.
  */
 export interface FileJointLimits {
   coxa?: number[];
@@ -840,21 +840,21 @@ export interface FileJointLimits {
   tibia?: number[];
 }
 
-/** Masses of the links, servos included [kg]. All three, or leave the table out where they are unknown. */
+/** Masses of the links, servos included [kg]. Give all three, or omit the table where they are unknown. */
 export interface FileJointMasses {
   coxa?: number;
   femur?: number;
   tibia?: number;
 }
 
-/** The servo of each joint: a name in the catalogue, or a table with the servo's own figures. */
+/** The servo of each joint: a name in the catalogue, or a table with the data of the servo. */
 export interface FileJointServos {
   coxa?: string | FileServoFigures;
   femur?: string | FileServoFigures;
   tibia?: string | FileServoFigures;
 }
 
-/** What every leg has alike. */
+/** Values shared by all legs. */
 export interface FileLeg {
   /** Coxa axis to femur axis, outward [mm]. */
   coxa_mm?: number;
@@ -862,18 +862,18 @@ export interface FileLeg {
   femur_mm?: number;
   /** Knee to foot [mm]. */
   tibia_mm?: number;
-  /** How far the femur axis lies beside and above the coxa axis: [sideways, vertical] [mm]. */
+  /** Offset of the femur axis from the coxa axis: [sideways, vertical] [mm]. */
   femur_axis_offset_mm?: number[];
   mass_kg?: FileJointMasses;
   com_mm?: FileJointCentres;
   limits_deg?: FileJointLimits;
-  /** A servo of the catalogue, one for each joint, or a table with the servo's own figures. */
+  /** A servo of the catalogue, one for each joint, or a table with the data of the servo. */
   servo?: string | FileServoFigures | FileJointServos;
-  /** Radius of the foot's ball [mm]. */
+  /** Radius of the spherical foot [mm]. */
   foot_radius_mm?: number;
 }
 
-/** One leg: its name and place, and whatever of [leg] is different for it. */
+/** One leg: its name and position, and values that differ from [leg]. */
 export interface FileLegEntry {
   /** Coxa axis to femur axis, outward [mm]. */
   coxa_mm?: number;
@@ -881,71 +881,71 @@ export interface FileLegEntry {
   femur_mm?: number;
   /** Knee to foot [mm]. */
   tibia_mm?: number;
-  /** How far the femur axis lies beside and above the coxa axis: [sideways, vertical] [mm]. */
+  /** Offset of the femur axis from the coxa axis: [sideways, vertical] [mm]. */
   femur_axis_offset_mm?: number[];
   mass_kg?: FileJointMasses;
   com_mm?: FileJointCentres;
   limits_deg?: FileJointLimits;
-  /** A servo of the catalogue, one for each joint, or a table with the servo's own figures. */
+  /** A servo of the catalogue, one for each joint, or a table with the data of the servo. */
   servo?: string | FileServoFigures | FileJointServos;
-  /** Radius of the foot's ball [mm]. */
+  /** Radius of the spherical foot [mm]. */
   foot_radius_mm?: number;
-  /** What the leg is called, such as front left. */
+  /** Name of the leg, such as front left. */
   name: string;
-  /** Where the coxa axis is: x forward, y left, z up [mm]. */
+  /** Position of the coxa axis: x forward, y left, z up [mm]. */
   position_mm: number[];
-  /** Where the leg points: 0 is forward, 90 is left [deg]. */
+  /** Direction of the leg: 0 is forward, 90 is left [deg]. */
   yaw_deg: number;
 }
 
-/** A servo's own figures, for one that the catalogue does not have. */
+/** Data of a servo that is not in the catalogue. */
 export interface FileServoFigures {
-  /** The model. */
+  /** Name of the model. */
   name: string;
-  /** Torque at which it stops [N m]; kg.cm times 0.0980665. */
+  /** Stall torque [N m]; kg.cm times 0.0980665. */
   stall_torque_nm: number;
-  /** Supply for the stall torque [V]. */
+  /** Supply voltage of the stall torque [V]. */
   torque_at_v?: number;
-  /** Torque that the maker rates for lasting use [N m]. */
+  /** Rated continuous torque [N m]. */
   rated_torque_nm?: number;
-  /** Speed without load [rad/s]; 1.047 divided by the seconds for 60 deg. */
+  /** No-load speed [rad/s]; 1.047 divided by the seconds for 60 deg. */
   no_load_rad_s?: number;
-  /** Supply for the speed [V]. */
+  /** Supply voltage of the no-load speed [V]. */
   speed_at_v?: number;
-  /** Current when stalled [A]. */
+  /** Stall current [A]. */
   stall_current_a?: number;
   /** Mass [g]. */
   mass_g?: number;
-  /** Lowest supply [V]; together with supply_max_v. */
+  /** Least supply voltage [V]; requires supply_max_v. */
   supply_min_v?: number;
-  /** Highest supply [V]; together with supply_min_v. */
+  /** Greatest supply voltage [V]; requires supply_min_v. */
   supply_max_v?: number;
   /** Range of the output shaft [deg]. */
   travel_deg?: number;
-  /** Who makes it. */
+  /** Manufacturer. */
   maker?: string;
-  /** How it is commanded. */
+  /** Command interface. */
   control?: string;
-  /** Of what its gears are. */
+  /** Gear material. */
   gear?: string;
-  /** What it reports. */
+  /** Feedback. */
   feedback?: string;
-  /** How sure the figures are. */
+  /** Confidence of the data. */
   confidence?: string;
-  /** Where the figures come from. */
+  /** Source of the data. */
   source?: string;
-  /** What else is known. */
+  /** Remarks. */
   note?: string;
 }
 
-/** Where numbers of this file come from, and how sure they are. */
+/** Source of numbers in this file, and their confidence. */
 export interface FileSourceEntry {
-  /** The keys it speaks of, such as leg.coxa_mm. */
+  /** The keys concerned, such as leg.coxa_mm. */
   of: string[];
-  /** Where they were found. */
+  /** Where the numbers were found. */
   source: string;
-  /** How sure: A read in the primary file, B in a secondary copy, C general knowledge, or guess. */
+  /** Confidence: A from the primary source, B from a secondary copy, C general knowledge, or guess. */
   confidence: "A" | "A-" | "B" | "C" | "guess";
-  /** What else is known. */
+  /** Remarks. */
   note?: string;
 }

@@ -1,4 +1,4 @@
-"""What a robot file says beside the robot itself: how it likes to walk, and where its numbers come from."""
+"""Gait defaults of a robot file, and the sources of its numbers."""
 
 from __future__ import annotations
 
@@ -9,16 +9,16 @@ __all__ = ["GaitDefaults", "Source"]
 
 @dataclass(frozen=True, kw_only=True)
 class GaitDefaults:
-    """How this robot walks unless told otherwise.
+    """Default settings of the robot's walks.
 
     Attributes
     ----------
     name : str
-        The gait's name.
+        Name of the gait.
     body_height : float or None
-        Height of the body's origin over the ground [m]; None for a height worked out from the legs.
+        Height of the body's origin above the ground [m]; None for a height derived from the legs.
     swing_height : float or None
-        How high a swinging foot is lifted [m]; None for a share of the body height.
+        Swing height [m]; None for a fraction of the body height.
     """
 
     name: str = "tripod"
@@ -28,19 +28,19 @@ class GaitDefaults:
 
 @dataclass(frozen=True, kw_only=True)
 class Source:
-    """Where numbers of a robot file come from, and how sure they are.
+    """Source of numbers in a robot file, and their confidence.
 
     Attributes
     ----------
     of : tuple of str
-        The keys it speaks of, such as ``"leg.coxa_mm"``.
+        The keys concerned, such as ``"leg.coxa_mm"``.
     source : str
-        Where they were found.
+        Where the numbers were found.
     confidence : str
-        ``"A"`` read in the primary file, ``"B"`` in a secondary copy, ``"C"`` mostly general knowledge,
-        ``"guess"`` a guess of this project.
+        ``"A"`` from the primary source, ``"B"`` from a secondary copy, ``"C"`` mostly general knowledge,
+        ``"guess"`` an estimate of this project.
     note : str
-        What else is known.
+        Remarks.
     """
 
     of: tuple[str, ...]

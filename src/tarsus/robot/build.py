@@ -1,4 +1,4 @@
-"""From a checked robot file to a robot: each leg's keys over those of all legs, and what no single key can tell."""
+"""Builds the robot from a checked robot file: merges the keys of each leg, and checks relations between keys."""
 
 from __future__ import annotations
 
@@ -19,17 +19,17 @@ from tarsus.robot.units import from_milli, radians
 
 __all__ = ["build_robot"]
 
-# A leg's keys with the joints' tables spread out: ``"limits_deg.coxa"``.
+# The keys of a leg with the tables of its joints flattened: ``"limits_deg.coxa"``.
 _Flat: TypeAlias = dict[str, Any]
 _NEEDED = ("coxa_mm", "femur_mm", "tibia_mm", *(f"limits_deg.{joint}" for joint in JOINTS))
 _MASSES = tuple(f"mass_kg.{joint}" for joint in JOINTS)
-_SAME_PLACE_MM = 1.0
+_LEAST_DISTANCE_MM = 1.0
 
 
 def build_robot(file: RobotFile, *, where: str) -> Robot:
-    """Build the robot that a checked file describes; refuse one that is incomplete or contradicts itself."""
-    shared = _spread(file.leg)
-    legs = [shared | _spread(entry) for entry in file.legs]
+    """Build the robot of a checked file; refuse one that is incomplete or inconsistent."""
+    shared = _flatten(file.leg)
+    legs = [shared | _flatten(entry) for entry in file.legs]
     problems = [*_missing(legs), *_same_name(file.legs), *_places(file.legs)]
     if problems:
         raise RobotFileError(where, problems)
@@ -53,8 +53,8 @@ def build_robot(file: RobotFile, *, where: str) -> Robot:
     )
 
 
-def _spread(keys: Leg) -> _Flat:
-    """Return a leg's keys with the joints' tables spread out, so that they merge joint by joint."""
+def _flatten(keys: Leg) -> _Flat:
+    """Return the keys of a leg with the tables of its joints flattened, to be merged joint by joint."""
     flat: _Flat = {}
     for key in Leg.model_fields:
         value = getattr(keys, key)
@@ -72,12 +72,12 @@ def _missing(legs: Sequence[_Flat]) -> list[str]:
     masses_known = any(key in leg for key in _MASSES for leg in legs)
     problems = []
     for key in (*_NEEDED, *(_MASSES if masses_known else ())):
-        lacking = [i for i, leg in enumerate(legs) if key not in leg]
-        hint = "give the mass of every link of every leg, or of none" if key in _MASSES else "every leg needs it"
-        if len(lacking) == len(legs):
+        without = [i for i, leg in enumerate(legs) if key not in leg]
+        hint = "give the masses of all links of all legs, or of none" if key in _MASSES else "every leg needs it"
+        if len(without) == len(legs):
             problems.append(f"leg.{key}: missing; {hint}, in [leg] for all legs alike or in each [[legs]]")
         else:
-            problems += [f"legs[{i}].{key}: missing; {hint}, here or in [leg]" for i in lacking]
+            problems += [f"legs[{i}].{key}: missing; {hint}, here or in [leg]" for i in without]
     return problems
 
 
@@ -87,35 +87,35 @@ def _same_name(entries: Sequence[LegEntry]) -> list[str]:
     for i, entry in enumerate(entries):
         if entry.name in first:
             problems.append(
-                f'{key_of(("legs", i, "name"))} = "{entry.name}": legs[{first[entry.name]}] is called that too'
+                f'{key_of(("legs", i, "name"))} = "{entry.name}": legs[{first[entry.name]}] has the same name'
             )
         first.setdefault(entry.name, i)
     return problems
 
 
 def _places(entries: Sequence[LegEntry]) -> list[str]:
-    """Refuse legs in one place, and legs that do not follow each other round the body."""
+    """Refuse legs at the same position, and legs out of counter-clockwise order."""
     points = np.array([[float(x) for x in entry.position_mm] for entry in entries])
     problems = []
     for i in range(len(points)):
         for j in range(i):
-            if (apart := math.dist(points[i], points[j])) < _SAME_PLACE_MM:
+            if (distance := math.dist(points[i], points[j])) < _LEAST_DISTANCE_MM:
                 problems.append(
-                    f"legs[{i}].position_mm = {points[i].tolist()}: in the same place as legs[{j}] "
-                    f"({apart:g} mm apart; at least {_SAME_PLACE_MM:g} mm)"
+                    f"legs[{i}].position_mm = {points[i].tolist()}: {distance:g} mm from legs[{j}]; "
+                    f"it must be at least {_LEAST_DISTANCE_MM:g} mm"
                 )
     return problems or _out_of_order(entries, points)
 
 
 def _out_of_order(entries: Sequence[LegEntry], points: np.ndarray[Any, Any]) -> list[str]:
     x, y, _ = (points - points.mean(axis=0)).T
-    # The rounding makes a leg straight ahead the first, whichever side of zero its y was rounded to.
+    # Rounding puts a leg straight ahead first, whatever the sign of its y.
     angles = np.round(np.degrees(np.arctan2(y, x)), 9) % 360
     order = np.argsort(angles, kind="stable")
     if (order == np.arange(len(order))).all():
         return []
-    wanted = ", ".join(f'"{entries[i].name}"' for i in order)
-    return [f"legs: they must go round the body counter-clockwise from the front left; in that order: {wanted}"]
+    expected = ", ".join(f'"{entries[i].name}"' for i in order)
+    return [f"legs: they must be listed counter-clockwise from the front left: {expected}"]
 
 
 def _leg_arrays(legs: Sequence[_Flat]) -> dict[str, Any]:

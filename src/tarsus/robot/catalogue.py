@@ -1,6 +1,6 @@
-"""The servo catalogue: figures of real servos, each with its source and how sure it is.
+"""The servo catalogue: data of real servos, each with its source and confidence.
 
-The table is ``servos.csv`` beside this module. An empty field is unknown, never zero.
+The table is ``servos.csv`` next to this module. An empty field is unknown, never zero.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ __all__ = ["figures_of", "list_servos", "load_servo", "servo_catalogue", "servo_
 
 _CSV = Path(__file__).with_name("servos.csv")
 
-# A servo's figures: the key, in the catalogue and in a robot file, its attribute, and the way there and back.
+# Data of a servo: key in the catalogue and in robot files, attribute of `Servo`, conversion to it and back.
 _FIGURES: dict[str, tuple[str, Callable[[Decimal], float], Callable[[float], Decimal]]] = {
     "stall_torque_nm": ("stall_torque", float, to_decimal),
     "torque_at_v": ("torque_at", float, to_decimal),
@@ -47,7 +47,7 @@ def load_servo(name: str) -> Servo:
     Parameters
     ----------
     name : str
-        One of `list_servos`, in capitals or not.
+        One of `list_servos`, case-insensitive.
 
     Raises
     ------
@@ -62,7 +62,7 @@ def load_servo(name: str) -> Servo:
 
 @cache
 def servo_catalogue() -> Mapping[str, Servo]:
-    """Return the catalogue: every servo under its name, in the table's order."""
+    """Return the catalogue: servos by name, in the order of the table."""
     with _CSV.open(encoding="utf-8", newline="") as table:
         rows = list(csv.DictReader(table))
     return MappingProxyType({row["name"]: servo_of({k: v or None for k, v in row.items()}) for row in rows})
@@ -74,7 +74,7 @@ def _by_lower_name() -> dict[str, Servo]:
 
 
 def servo_of(figures: Mapping[str, Any]) -> Servo:
-    """Return the servo with these figures: decimals or their text under keys with units; None where unknown."""
+    """Return the servo with these data: decimals, or their text, under keys with units; None where unknown."""
     values: dict[str, Any] = {"name": figures["name"]}
     for key, (attribute, convert, _) in _FIGURES.items():
         if figures[key] is not None:
@@ -86,7 +86,7 @@ def servo_of(figures: Mapping[str, Any]) -> Servo:
 
 
 def figures_of(servo: Servo) -> dict[str, Decimal | str]:
-    """Return a servo's known figures under keys with units: what `servo_of` takes, less the unknown."""
+    """Return the known data of a servo under keys with units, as `servo_of` takes them."""
     figures: dict[str, Decimal | str] = {"name": servo.name}
     for key, (attribute, _, convert) in _FIGURES.items():
         if getattr(servo, attribute) is not None:

@@ -1,4 +1,4 @@
-"""From a robot to the keys of a robot file: what all legs share under `leg`, the rest with each leg."""
+"""Keys of a robot file for a robot: values that all legs share under `leg`, the others with each leg."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ _Flat: TypeAlias = dict[str, Any]
 
 
 def decimal_document(robot: Robot) -> dict[str, Any]:
-    """Return the robot's tables and keys, every number a decimal that reads back to the same bits."""
+    """Return the tables and keys of the robot; numbers are decimals that read back to the same bits."""
     if robot.batch_shape:
         raise RobotFileError(
             f"robot {robot.name!r}",
-            [f"a batch of designs {robot.batch_shape} has no robot file; choose one design of it first"],
+            [f"a batch of designs {robot.batch_shape} can't be a robot file; choose one design with robot.item(...)"],
         )
     legs = [_leg(robot, i) for i in range(robot.legs)]
     shared = {key: value for key, value in legs[0].items() if all(_alike(leg.get(key), value) for leg in legs)}
@@ -55,7 +55,7 @@ def plain(value: Any) -> Any:
 
 
 def _leg(robot: Robot, i: int) -> _Flat:
-    """Return one leg's keys with the joints' tables spread out."""
+    """Return the keys of a leg with the tables of its joints flattened."""
     flat: _Flat = {
         "coxa_mm": to_milli(_floats(robot.coxa)[i]),
         "femur_mm": to_milli(_floats(robot.femur)[i]),
@@ -77,7 +77,7 @@ def _leg(robot: Robot, i: int) -> _Flat:
 
 
 def _centres(robot: Robot, i: int) -> _Flat:
-    """Return where the links' centres of mass are, but for those in the middle, which needs no saying."""
+    """Return the centres of mass of the links, except those at the middle, which is the default."""
     centres = {}
     for joint, centre in zip(JOINTS, _floats(robot.link_com)[i], strict=True):
         if not _alike(centre, _floats(getattr(robot, joint))[i] / 2):
@@ -86,7 +86,7 @@ def _centres(robot: Robot, i: int) -> _Flat:
 
 
 def _gather(flat: _Flat) -> dict[str, Any]:
-    """Return spread-out keys as tables; one servo for all three joints needs no table."""
+    """Return flattened keys as tables; the same servo in all three joints is not a table."""
     tables: dict[str, Any] = {}
     for key, value in flat.items():
         name, _, joint = key.partition(".")
@@ -133,12 +133,12 @@ def _without_empty_note(source: dict[str, Any]) -> dict[str, Any]:
 
 
 def _servo(servo: Servo) -> str | dict[str, Any]:
-    """Return the servo's name where the catalogue has these very figures, its figures otherwise."""
+    """Return the name of a servo whose data equal those of the catalogue, else its data."""
     return servo.name if servo_catalogue().get(servo.name) == servo else figures_of(servo)
 
 
 def _alike(a: object, b: object) -> bool:
-    # As text, because -0 equals 0 and is another double.
+    # As text: -0.0 equals 0.0, but is another double.
     return repr(a) == repr(b)
 
 

@@ -1,7 +1,7 @@
-"""What may stand at a key of a robot file: each kind checks a value, words the refusal and describes itself.
+"""Kinds of values in robot and scenario files: each checks a value, words its error and describes itself.
 
-The check raises one kind of pydantic error whose text is the whole message, so that nothing of pydantic's own
-wording reaches a maker; the description goes into the JSON schema that editors use.
+A check raises one type of pydantic error, whose text is the complete message; the description goes into the JSON schema
+that editors use.
 """
 
 from __future__ import annotations
@@ -22,23 +22,23 @@ from tarsus.robot.units import to_decimal
 __all__ = ["REFUSED", "Choice", "Number", "Numbers", "ServoName", "Text", "refuse"]
 
 REFUSED = "tarsus"
-"""The pydantic error type of every refusal that is worded here."""
+"""Type of the pydantic errors raised here."""
 
 _LONGEST_TEXT = 1000
 _ORDINALS = ("first", "second", "third")
 
 
 def refuse(why: str) -> PydanticCustomError:
-    """Return the error that carries `why` as its whole message."""
+    """Return the pydantic error whose complete message is `why`."""
     return PydanticCustomError(REFUSED, "{why}", {"why": why})
 
 
 class _Kind(ABC):
-    """Something that checks one value; pydantic calls `check` and asks `describe` for the JSON schema."""
+    """A kind of value; pydantic calls `check` for validation and `describe` for the JSON schema."""
 
     @abstractmethod
     def check(self, value: object) -> Any:
-        """Return the value as the robot is built from it; refuse what may not stand there."""
+        """Return the value for building the robot; raise an error if it is not allowed."""
 
     @abstractmethod
     def describe(self) -> dict[str, Any]:
@@ -61,11 +61,11 @@ class Number(_Kind):
 
     @property
     def allowed(self) -> str:
-        """The range in words."""
+        """The range as text."""
         return f"from {self.low:g} to {self.high:g} {self.unit}"
 
     def check(self, value: object) -> Decimal:
-        """Return the value as the decimal that the file shows."""
+        """Return the value as the decimal written in the file."""
         number = _decimal(_unwrap(value))
         if number is None:
             raise refuse(f"must be a number {self.allowed}")
@@ -82,7 +82,7 @@ class Number(_Kind):
 
 @dataclass(frozen=True)
 class Numbers(_Kind):
-    """A list of `count` numbers, each as `each` allows; with `ordered`, none less than the one before."""
+    """A list of `count` numbers of the kind `each`; with `ordered`, in ascending order."""
 
     count: int
     each: Number
@@ -103,7 +103,7 @@ class Numbers(_Kind):
             except PydanticCustomError as error:
                 raise refuse(f"the {ordinal} number {error.message()}") from None
         if self.ordered and sorted(numbers) != numbers:
-            raise refuse("the limits are reversed: the lowest comes first, then the highest")
+            raise refuse("the limits are reversed; the lower limit comes first")
         return tuple(numbers)
 
     def describe(self) -> dict[str, Any]:
@@ -114,7 +114,7 @@ class Numbers(_Kind):
 
 @dataclass(frozen=True)
 class Text(_Kind):
-    """A string that is not empty, unless `empty` allows it."""
+    """A string, not empty unless `empty` allows it."""
 
     empty: bool = False
 
@@ -127,7 +127,7 @@ class Text(_Kind):
         if not value and not self.empty:
             raise refuse("must not be empty")
         if not value.isascii() and any(0xD800 <= ord(character) <= 0xDFFF for character in value):
-            raise refuse("must be text that can be written to a file; it holds half of a character")
+            raise refuse("must be valid Unicode text; it contains an unpaired surrogate")
         return value
 
     def describe(self) -> dict[str, Any]:
@@ -154,14 +154,14 @@ class Choice(_Kind):
 
 @dataclass(frozen=True)
 class ServoName(_Kind):
-    """The name of a servo of the catalogue, in capitals or not."""
+    """The name of a servo in the catalogue, case-insensitive."""
 
     def check(self, value: object) -> str:
         """Return the name."""
         name, known = str(value), list_servos()
         if name.lower() in {each.lower() for each in known}:
             return name
-        raise refuse(f"the catalogue has no such servo{_hint(name, known)} It has {', '.join(known)}")
+        raise refuse(f"the catalogue has no such servo{_hint(name, known)} Known: {', '.join(known)}")
 
     def describe(self) -> dict[str, Any]:
         """Return the JSON schema."""
@@ -174,16 +174,16 @@ def _hint(value: object, options: tuple[str, ...]) -> str:
 
 
 def _unwrap(value: object) -> object:
-    """Return NumPy's numbers and arrays as Python's: a document made in Python may hold them."""
+    """Return NumPy numbers and arrays, which a document built in Python may contain, as Python values."""
     return value.tolist() if isinstance(value, np.ndarray | np.generic) else value
 
 
 def _decimal(value: object) -> Decimal | None:
-    """Return a number as a decimal; None for what is no number, bools included."""
+    """Return a number as a decimal; None for anything else, including bools."""
     if isinstance(value, bool):
         return None
     if isinstance(value, int):
-        # An integer of a million digits, as 0x... may be, would take minutes to turn into a decimal.
+        # An integer of a million digits (0x...) would take minutes to convert.
         return Decimal(value) if value.bit_length() <= 64 else Decimal(10**20).copy_sign(-1 if value < 0 else 1)
     if isinstance(value, float):
         return to_decimal(value) if math.isfinite(value) else Decimal("NaN")

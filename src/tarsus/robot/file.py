@@ -1,4 +1,4 @@
-"""Robot files: reading, writing, and the presets that come with Tarsus."""
+"""Robot files: reading, writing, and the presets of Tarsus."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ _LARGEST = 2**20
 
 
 def list_robots() -> tuple[str, ...]:
-    """Return the names of the robots that come with Tarsus."""
+    """Return the names of the preset robots."""
     return tuple(sorted(path.stem for path in (_HERE / "presets").glob("*.toml")))
 
 
@@ -52,8 +52,8 @@ def load_robot(name_or_path: str | os.PathLike[str]) -> Robot:
     Raises
     ------
     RobotFileError
-        If there is no such robot, or its file can't be read, or something in it is wrong; each line of the message
-        names a key, its value and what is allowed.
+        If there is no such robot, its file can't be read, or something in it is wrong; each line of the message names a
+        key, its value and what is allowed.
     """
     if name_or_path in list_robots():
         return _load_preset(str(name_or_path))
@@ -107,7 +107,7 @@ def robot_to_dict(robot: Robot) -> dict[str, Any]:
 
 
 def robot_text(robot: Robot) -> str:
-    """Return the text of a robot's file; `robot_from_text` gives the same robot back, to the bit.
+    """Return the text of a robot file; `robot_from_text` reads the same robot back, to the bit.
 
     Parameters
     ----------
@@ -117,23 +117,23 @@ def robot_text(robot: Robot) -> str:
     Raises
     ------
     RobotFileError
-        If no file can hold the robot: it is a batch of designs, or has a value that no file may have.
+        If the robot is a batch of designs, or has a value that no robot file may have.
     """
     document = decimal_document(robot)
-    # What can't be loaded is not written: a robot made in Python may have a joint or a name that no file may have.
+    # A robot built in Python may have values that no robot file may have: it is not written.
     robot_from_dict(document, where=f"robot {robot.name!r} as a file")
     return toml_text(document)
 
 
 def robot_from_text(text: str, *, where: str) -> Robot:
-    """Return the robot that a robot file's text describes.
+    """Build a robot from the text of a robot file.
 
     Parameters
     ----------
     text : str
-        The file's text.
+        Text of the file.
     where : str
-        What to call it in messages.
+        Name of the file in messages.
 
     Raises
     ------
@@ -166,12 +166,12 @@ def save_robot(robot: Robot, path: str | os.PathLike[str]) -> None:
 
 
 def template_text(name: str) -> str:
-    """Return a commented robot file to start from: a plain symmetric hexapod.
+    """Return the commented robot file of a plain symmetric hexapod, as a template.
 
     Parameters
     ----------
     name : str
-        What the robot is to be called.
+        Name of the robot.
     """
     text = (_HERE / "template.toml").read_text(encoding="utf-8")
     return text.replace('"my hexapod"', toml_string(name), 1)
@@ -180,7 +180,7 @@ def template_text(name: str) -> str:
 def _read(path: Path) -> str:
     where = str(path)
     if path.is_dir():
-        raise RobotFileError(where, ["this is a folder; a robot file is a TOML file"])
+        raise RobotFileError(where, ["is a folder; a robot file is a TOML file"])
     try:
         with path.open("rb") as file:
             content = file.read(_LARGEST + 1)
@@ -189,12 +189,12 @@ def _read(path: Path) -> str:
     except (OSError, ValueError) as error:
         raise RobotFileError(where, [f"can't be read: {_reason(error)}"]) from None
     if len(content) > _LARGEST:
-        raise RobotFileError(where, ["larger than 1 MiB; a robot file is a few kilobytes of text"])
+        raise RobotFileError(where, ["is larger than 1 MiB; a robot file has a few kilobytes"])
     try:
-        # Windows editors put a mark before UTF-8 text.
+        # Windows editors write a byte order mark.
         text = content.decode("utf-8-sig")
     except UnicodeDecodeError as error:
-        raise RobotFileError(where, [f"byte {error.start} is not UTF-8: this is no text file"]) from None
+        raise RobotFileError(where, [f"byte {error.start} is not UTF-8; a robot file is a text file"]) from None
     if not text.strip():
         raise RobotFileError(where, ["the file is empty; a robot file needs at least name, [leg] and [[legs]]"])
     return text
@@ -204,11 +204,11 @@ def _no_such_robot(name: str) -> str:
     known = list_robots()
     nearest = nearest_name(name.removesuffix(".toml"), known)
     hint = f" Did you mean {nearest!r}?" if nearest else ""
-    return f"no such file, and no robot of that name.{hint} Robots there are: {', '.join(known)}"
+    return f"no such file, and no preset robot of that name.{hint} Presets: {', '.join(known)}"
 
 
 def _reason(error: OSError | ValueError) -> str:
-    return (error.strerror or "is not a regular file") if isinstance(error, OSError) else "this is no path"
+    return (error.strerror or "is not a regular file") if isinstance(error, OSError) else "is not a valid path"
 
 
 def _parse(text: str, *, where: str) -> dict[str, Any]:
@@ -217,21 +217,21 @@ def _parse(text: str, *, where: str) -> dict[str, Any]:
     except tomllib.TOMLDecodeError as error:
         problem = _not_toml(str(error), text)
     except RecursionError:
-        problem = "lists or tables are nested too deeply; a robot file needs three levels"
+        problem = "lists or tables are nested too deeply; a robot file has three levels at most"
     except (ValueError, ArithmeticError):
-        problem = "a number has more digits, or a larger exponent, than any number of a robot"
+        problem = "a number has too many digits or too large an exponent"
     raise RobotFileError(where, [problem])
 
 
 def _not_toml(message: str, text: str) -> str:
-    """Word a finding of the TOML parser, with the line it speaks of."""
+    """Return the message on an error of the TOML parser, with its line."""
     reason, _, place = message.rpartition(" (at ")
     reason = reason[:1].lower() + reason[1:]
     found = re.fullmatch(r"line (\d+), column (\d+)\)", place)
     lines = text.splitlines() or [""]
     if found is None:
-        return f"line {len(lines)}, at the end: this is not TOML: {reason}"
+        return f"line {len(lines)}, at the end: not valid TOML: {reason}"
     number, column = int(found[1]), int(found[2])
     line = text.split("\n")[number - 1].strip()
     shown = line if len(line) <= 60 else line[:57] + "..."
-    return f"line {number}, column {column}: this is not TOML: {reason}; in: {shown}"
+    return f"line {number}, column {column}: not valid TOML: {reason}; in: {shown}"

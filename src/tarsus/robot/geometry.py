@@ -1,4 +1,4 @@
-"""The constants that every leg's kinematics starts from, worked out once for a robot."""
+"""Constants of the legs' kinematics, computed once for a robot."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ __all__ = ["LegGeometry"]
 
 
 class LegGeometry(NamedTuple):
-    """Lengths, mounts and limits of the legs, each ``(..., legs)`` [m, rad], and what follows from them.
+    """Lengths, mounts and limits of the legs, and quantities derived from them, of shape ``(..., legs)`` [m, rad].
 
-    `side` and `up` are the femur axis' offsets from the coxa axis, sideways and vertical (the first is `coxa`).
-    `farthest2` and `nearest2` are the squares of the longest and shortest distance from femur axis to foot,
-    `sum2` and `difference2` are ``femur^2 +- tibia^2``. `knee_span` is how far from B's vertical axis a knee can
-    get, `axis_depth` the most that a coxa or femur axis lies below B's origin.
+    `side` and `up` are the sideways and vertical offsets of the femur axis from the coxa axis (the outward one is
+    `coxa`). `farthest2` and `nearest2` are the squares of the greatest and least distance from femur axis to foot,
+    `sum2` and `difference2` are ``femur^2 +- tibia^2``. `knee_span` is the greatest distance of a knee from B's z axis,
+    `axis_depth` the greatest depth of coxa or femur axis below B's origin.
     """
 
     cos_yaw: Array
@@ -58,7 +58,7 @@ class LegGeometry(NamedTuple):
         femur_axis_offset: Array,
         limits: Array,
     ) -> Self:
-        """Work the constants out from a robot's arrays (shapes as in `Robot`)."""
+        """Compute the constants from the arrays of a robot (shapes as in `Robot`)."""
         side, up = femur_axis_offset[..., 0], femur_axis_offset[..., 1]
         x, y, z = mount_position[..., 0], mount_position[..., 1], mount_position[..., 2]
         return cls(
@@ -88,17 +88,17 @@ class LegGeometry(NamedTuple):
         )
 
     def to(self, xp: Namespace) -> LegGeometry:
-        """Return the same numbers as arrays of the namespace `xp`."""
+        """Return the constants as arrays of the namespace `xp`."""
         if xp is np:
             return self
         return LegGeometry(*(as_array(xp, values) for values in self))
 
     def take(self, index: Index, block: tuple[int, ...]) -> LegGeometry:
-        """Return the part that belongs to a block of the batch, as columns (see `tarsus.blocks.columns`)."""
+        """Return the constants of a block of the batch, as columns (see `tarsus.blocks.columns`)."""
         return LegGeometry(*(columns(values, index, block, tail=1) for values in self))
 
     def pick(self, where: tuple[Array, ...], shape: tuple[int, ...]) -> LegGeometry:
-        """Return the numbers of single NumPy legs as ``(picked,)``; `where` counts along the axes of `shape`."""
+        """Return the constants of single NumPy legs ``(k,)`` at indices `where` along the axes of `shape`."""
         return LegGeometry(
             *(values[where[-1]] if values.ndim == 1 else np.broadcast_to(values, shape)[where] for values in self)
         )

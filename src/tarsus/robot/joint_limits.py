@@ -13,7 +13,7 @@ __all__ = ["STOPPING_TIME", "UNKNOWN_SPEED", "JointLimits", "joint_limits", "ser
 Floats = np.ndarray[Any, np.dtype[np.float64]]
 
 UNKNOWN_SPEED = 5.0
-"""Speed limit of a joint whose servo, or its speed, is unknown [rad/s]: 60 deg in 0.21 s, a slow hobby servo."""
+"""Speed limit of a joint whose servo, or its speed, is unknown [rad/s]: 60 deg in 0.21 s, as of a slow hobby servo."""
 
 STOPPING_TIME = 0.05
 """Time in which a joint reaches its speed limit from rest, or stops from there, by default [s]."""

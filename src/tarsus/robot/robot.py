@@ -1,4 +1,4 @@
-"""What the robot is: a value of arrays in SI units, one robot or a batch of designs."""
+"""The robot: a value of arrays in SI units, a single robot or a batch of designs."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from typing import Any, Self
 import numpy as np
 
 from tarsus.arrays import Array, broadcast_shapes, namespace
-from tarsus.errors import InputError, MissingDataError, UnknownNameError
+from tarsus.errors import InputError, MissingDataError
 from tarsus.robot.about import GaitDefaults, Source
 from tarsus.robot.geometry import LegGeometry
 from tarsus.robot.servo import Servo
@@ -24,27 +24,27 @@ __all__ = ["JOINTS", "GaitDefaults", "Robot", "Source", "stack_robots"]
 class Robot:
     """A legged robot, or a batch of designs: every array may have leading batch axes, which broadcast.
 
-    Arrays given as NumPy arrays or sequences are copied in and locked; arrays of other libraries are kept as
-    they are, so that a design can be differentiated (``robot.replace(femur=traced_array)``).
+    NumPy arrays and sequences are copied and locked; arrays of other libraries are kept, so that a design can be
+    differentiated (``robot.replace(femur=traced_array)``).
 
     Attributes
     ----------
     name : str
-        What the robot is called.
+        Name of the robot.
     leg_names : tuple of str
-        The legs in the ring's order, counter-clockwise from the front left.
+        Names of the legs, counter-clockwise from the front left.
     mount_position : array, shape (..., legs, 3)
-        Where the coxa axes are in the body frame B [m].
+        Positions of the coxa axes in the body frame B [m].
     mount_yaw : array, shape (..., legs)
-        Direction of each leg in B, counter-clockwise from forward [rad].
+        Direction of each leg in B, counter-clockwise from x [rad].
     coxa, femur, tibia : array, shape (..., legs)
         Lengths of the links [m].
     femur_axis_offset : array, shape (..., legs, 2)
         Offset of the femur axis from the coxa axis, sideways and vertical [m].
     limits : array, shape (..., legs, 3, 2)
-        Lowest and highest angle of each joint [rad].
+        Lower and upper limit of each joint [rad].
     foot_radius : array, shape (..., legs)
-        Radius of the foot's ball, for pictures and for the least distance between feet [m].
+        Radius of the spherical foot, for pictures and for the least distance between feet [m].
     link_com : array, shape (..., legs, 3)
         Distance of each link's centre of mass from its inner joint, along the link [m].
     link_mass : array, shape (..., legs, 3), or None
@@ -58,9 +58,9 @@ class Robot:
     servos : tuple of tuple of (Servo or None)
         The servo of each leg's joints, ``servos[leg][joint]``; None where unknown.
     gait : GaitDefaults
-        How it walks unless told otherwise.
+        Default settings of its walks.
     sources : tuple of Source
-        Where its numbers come from.
+        Sources of its numbers.
     """
 
     name: str
@@ -101,7 +101,7 @@ class Robot:
         servos = tuple(tuple(row) for row in self.servos) or ((None,) * 3,) * self.legs
         object.__setattr__(self, "servos", servos)
         if [len(row) for row in servos] != [3] * self.legs:
-            raise InputError(f"{self.name}: servos must be three, or None, for each of the {self.legs} legs")
+            raise InputError(f"{self.name}: servos must have three entries for each of the {self.legs} legs")
         _ = self.batch_shape  # refuses batch axes that don't broadcast
 
     def _lock(self, name: str, value: Array) -> None:
@@ -130,14 +130,14 @@ class Robot:
 
     @cached_property
     def leg_codes(self) -> tuple[str, ...]:
-        """Short names of the legs: ``"front left"`` is ``LF``; the names themselves where that is not unique."""
+        """Short names of the legs: ``LF`` for ``"front left"``; the full names where these are not unique."""
         words = [name.split() for name in self.leg_names]
         codes = tuple((w[1][0] + w[0][0]).upper() if len(w) == 2 else "" for w in words)
         return codes if all(codes) and len(set(codes)) == self.legs else self.leg_names
 
     @cached_property
     def batch_shape(self) -> tuple[int, ...]:
-        """Batch axes that the robot's arrays have together; empty for a single robot."""
+        """Broadcast batch axes of the robot's arrays; empty for a single robot."""
         shapes = []
         for name, tail in TAILS.items():
             value = getattr(self, name)
@@ -169,7 +169,7 @@ class Robot:
         return self.body_mass is not None and self.link_mass is not None
 
     def require_masses(self) -> None:
-        """Ask for the masses where they are missing.
+        """Refuse a robot without masses.
 
         Raises
         ------
@@ -184,28 +184,11 @@ class Robot:
         if missing:
             raise MissingDataError(
                 f"robot {self.name!r}: {' and '.join(missing)} missing from its file; "
-                "add what the body and each link weigh, servos included"
+                "add the masses of the body and of each link, servos included"
             )
 
-    def leg_index(self, name: str) -> int:
-        """Return the number of the leg of that name.
-
-        Parameters
-        ----------
-        name : str
-            One of `leg_names`.
-
-        Raises
-        ------
-        UnknownNameError
-            If no leg has that name.
-        """
-        if name not in self.leg_names:
-            raise UnknownNameError.of("leg", name, self.leg_names)
-        return self.leg_names.index(name)
-
     def replace(self, **changes: Any) -> Self:
-        """Return the robot with some of its attributes changed.
+        """Return a copy of the robot with some attributes changed.
 
         Parameters
         ----------
@@ -215,19 +198,19 @@ class Robot:
         Raises
         ------
         InputError
-            If a new value has the wrong shape or range.
+            If a new value has the wrong shape or is out of range.
         """
         return dataclasses.replace(self, **changes)
 
     def item(self, index: tuple[int, ...], *, of: tuple[int, ...] | None = None) -> Self:
-        """Return one design of the batch, as NumPy arrays.
+        """Return a single design of the batch, with NumPy arrays.
 
         Parameters
         ----------
         index : tuple of int
-            Which, along every batch axis.
+            Index along each batch axis.
         of : tuple of int, optional
-            The batch axes that `index` counts along, where the robot's broadcast to more; its own by default.
+            Batch axes of `index`, to which those of the robot broadcast. Default: those of the robot.
         """
         batch = self.batch_shape if of is None else of
         if not self.batch_shape and isinstance(self.femur, np.ndarray):
@@ -242,20 +225,20 @@ class Robot:
 
 
 def stack_robots(robots: Sequence[Robot]) -> Robot:
-    """Join robots of the same make into one batch of designs along a new first axis.
+    """Stack robots into a batch of designs along a new first axis.
 
     Parameters
     ----------
     robots : sequence of Robot
-        At least one; all with the same legs, and masses known for all or for none.
+        At least one; all with the same number of legs, and masses known for all or for none.
 
     Raises
     ------
     InputError
-        If there is none, or they differ in legs or in what is known.
+        If there is none, or they differ in the shapes or presence of arrays.
     """
     if not robots:
-        raise InputError("stack_robots: there is no robot to stack")
+        raise InputError("stack_robots: the sequence of robots is empty")
     first = robots[0]
     changes: dict[str, Array] = {}
     for name in TAILS:

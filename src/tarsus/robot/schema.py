@@ -1,8 +1,4 @@
-"""The robot file's tables and keys, as pydantic models.
-
-Importing this module imports pydantic, which takes longer than the rest of Tarsus together; so it is imported only
-where a file is read.
-"""
+"""Tables and keys of robot files, as pydantic models."""
 
 from __future__ import annotations
 
@@ -32,7 +28,7 @@ __all__ = [
 GAIT_NAMES = ("tripod", "tetrapod", "amble", "ripple", "wave")
 """Names that `[gait] name` may have."""
 
-# Below a micrometre or a milligram a number is a slip, and a length could round to zero in metres.
+# Lengths below 1 um and masses below 1 mg are typing errors, and would lose digits in SI units.
 Length: TypeAlias = Annotated[Decimal, Number(0.001, 10_000, "mm")]
 LengthOrZero: TypeAlias = Annotated[Decimal, Number(0, 10_000, "mm")]
 Coordinate: TypeAlias = Annotated[Decimal, Number(-10_000, 10_000, "mm")]
@@ -49,7 +45,7 @@ Remark: TypeAlias = Annotated[str, Text(empty=True)]
 
 
 class Table(BaseModel):
-    """Any table of the file: a key that it does not know is refused."""
+    """A table of the file; unknown keys are refused."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
@@ -59,7 +55,7 @@ class JointTable(Table):
 
 
 class JointMasses(JointTable):
-    """Masses of the links, servos included [kg]. All three, or leave the table out where they are unknown."""
+    """Masses of the links, servos included [kg]. Give all three, or omit the table where they are unknown."""
 
     coxa: MassOrZero | None = None
     femur: MassOrZero | None = None
@@ -67,7 +63,7 @@ class JointMasses(JointTable):
 
 
 class JointCentres(JointTable):
-    """Where the links' centres of mass are, along the link from its inner joint [mm]; left out: the middle."""
+    """Centres of mass of the links, along the link from its inner joint [mm]. Default: the middle."""
 
     coxa: Coordinate | None = None
     femur: Coordinate | None = None
@@ -75,10 +71,10 @@ class JointCentres(JointTable):
 
 
 class JointLimits(JointTable):
-    """Lowest and highest angle of each joint [deg].
+    """Lower and upper limit of each joint [deg].
 
-    All zero: the leg straight out, level. Coxa positive: counter-clockwise seen from above. Femur and tibia positive:
-    the foot goes up. So a standing leg, knee up, has a positive femur and a negative tibia.
+    At zero the leg is straight and level. Coxa positive: counter-clockwise seen from above. Femur and tibia positive:
+    the foot moves up. A standing leg, knee up, has a positive femur and a negative tibia angle.
     """
 
     coxa: Range | None = None
@@ -87,46 +83,44 @@ class JointLimits(JointTable):
 
 
 class ServoFigures(Table):
-    """A servo's own figures, for one that the catalogue does not have."""
+    """Data of a servo that is not in the catalogue."""
 
-    name: Name = Field(description="The model.")
-    stall_torque_nm: Torque = Field(description="Torque at which it stops [N m]; kg.cm times 0.0980665.")
-    torque_at_v: Volts | None = Field(default=None, description="Supply for the stall torque [V].")
-    rated_torque_nm: Torque | None = Field(
-        default=None, description="Torque that the maker rates for lasting use [N m]."
-    )
+    name: Name = Field(description="Name of the model.")
+    stall_torque_nm: Torque = Field(description="Stall torque [N m]; kg.cm times 0.0980665.")
+    torque_at_v: Volts | None = Field(default=None, description="Supply voltage of the stall torque [V].")
+    rated_torque_nm: Torque | None = Field(default=None, description="Rated continuous torque [N m].")
     no_load_rad_s: Annotated[Decimal, Number(0, 10_000, "rad/s")] | None = Field(
-        default=None, description="Speed without load [rad/s]; 1.047 divided by the seconds for 60 deg."
+        default=None, description="No-load speed [rad/s]; 1.047 divided by the seconds for 60 deg."
     )
-    speed_at_v: Volts | None = Field(default=None, description="Supply for the speed [V].")
+    speed_at_v: Volts | None = Field(default=None, description="Supply voltage of the no-load speed [V].")
     stall_current_a: Annotated[Decimal, Number(0, 1000, "A")] | None = Field(
-        default=None, description="Current when stalled [A]."
+        default=None, description="Stall current [A]."
     )
     mass_g: Annotated[Decimal, Number(0, 100_000, "g")] | None = Field(default=None, description="Mass [g].")
-    supply_min_v: Volts | None = Field(default=None, description="Lowest supply [V]; together with supply_max_v.")
-    supply_max_v: Volts | None = Field(default=None, description="Highest supply [V]; together with supply_min_v.")
+    supply_min_v: Volts | None = Field(default=None, description="Least supply voltage [V]; requires supply_max_v.")
+    supply_max_v: Volts | None = Field(default=None, description="Greatest supply voltage [V]; requires supply_min_v.")
     travel_deg: Annotated[Decimal, Number(0, 36_000, "deg")] | None = Field(
         default=None, description="Range of the output shaft [deg]."
     )
-    maker: Remark = Field(default="", description="Who makes it.")
-    control: Remark = Field(default="", description="How it is commanded.")
-    gear: Remark = Field(default="", description="Of what its gears are.")
-    feedback: Remark = Field(default="", description="What it reports.")
-    confidence: Remark = Field(default="", description="How sure the figures are.")
-    source: Remark = Field(default="", description="Where the figures come from.")
-    note: Remark = Field(default="", description="What else is known.")
+    maker: Remark = Field(default="", description="Manufacturer.")
+    control: Remark = Field(default="", description="Command interface.")
+    gear: Remark = Field(default="", description="Gear material.")
+    feedback: Remark = Field(default="", description="Feedback.")
+    confidence: Remark = Field(default="", description="Confidence of the data.")
+    source: Remark = Field(default="", description="Source of the data.")
+    note: Remark = Field(default="", description="Remarks.")
 
     @model_validator(mode="after")
     def _supply_has_two_ends(self) -> ServoFigures:
         lowest, highest = self.supply_min_v, self.supply_max_v
         if (lowest is None) != (highest is None):
-            raise refuse("supply_min_v and supply_max_v go together: give both or neither")
+            raise refuse("supply_min_v and supply_max_v: give both or neither")
         if lowest is not None and highest is not None and lowest > highest:
-            raise refuse(f"supply_min_v is {lowest} V, more than supply_max_v, {highest} V")
+            raise refuse(f"supply_min_v is {lowest} V, greater than supply_max_v, {highest} V")
         return self
 
 
-# Tags tell pydantic which kind of servo entry it reads; they turn up in the paths of its errors.
+# Tags of the kinds of servo entries; pydantic inserts them into the paths of its errors.
 JOINTS_TAG, _FIGURES_TAG, _NAME_TAG = TAGS = ("(joints)", "(figures)", "(name)")
 
 
@@ -147,13 +141,13 @@ OneServo: TypeAlias = Annotated[
     Discriminator(
         _kind_of_one,
         custom_error_type=REFUSED,
-        custom_error_message="must be the name of a servo, or a table with the servo's own figures",
+        custom_error_message="must be the name of a servo, or a table with the data of the servo",
     ),
 ]
 
 
 class JointServos(JointTable):
-    """The servo of each joint: a name in the catalogue, or a table with the servo's own figures."""
+    """The servo of each joint: a name in the catalogue, or a table with the data of the servo."""
 
     coxa: OneServo | None = None
     femur: OneServo | None = None
@@ -169,83 +163,85 @@ AnyServo: TypeAlias = Annotated[
         custom_error_type=REFUSED,
         custom_error_message=(
             "must be the name of a servo, a table { coxa = ..., femur = ..., tibia = ... }, "
-            "or a table with the servo's own figures"
+            "or a table with the data of the servo"
         ),
     ),
 ]
 
 
 class Leg(Table):
-    """What every leg has alike."""
+    """Values shared by all legs."""
 
     coxa_mm: LengthOrZero | None = Field(default=None, description="Coxa axis to femur axis, outward [mm].")
     femur_mm: Length | None = Field(default=None, description="Femur axis to knee [mm].")
     tibia_mm: Length | None = Field(default=None, description="Knee to foot [mm].")
     femur_axis_offset_mm: Offset | None = Field(
         default=None,
-        description="How far the femur axis lies beside and above the coxa axis: [sideways, vertical] [mm].",
+        description="Offset of the femur axis from the coxa axis: [sideways, vertical] [mm].",
     )
     mass_kg: JointMasses | None = None
     com_mm: JointCentres | None = None
     limits_deg: JointLimits | None = None
     servo: AnyServo | None = Field(
         default=None,
-        description="A servo of the catalogue, one for each joint, or a table with the servo's own figures.",
+        description="A servo of the catalogue, one for each joint, or a table with the data of the servo.",
     )
-    foot_radius_mm: LengthOrZero | None = Field(default=None, description="Radius of the foot's ball [mm].")
+    foot_radius_mm: LengthOrZero | None = Field(default=None, description="Radius of the spherical foot [mm].")
 
 
 class LegEntry(Leg):
-    """One leg: its name and place, and whatever of [leg] is different for it."""
+    """One leg: its name and position, and values that differ from [leg]."""
 
-    name: Name = Field(description="What the leg is called, such as front left.")
-    position_mm: Point = Field(description="Where the coxa axis is: x forward, y left, z up [mm].")
+    name: Name = Field(description="Name of the leg, such as front left.")
+    position_mm: Point = Field(description="Position of the coxa axis: x forward, y left, z up [mm].")
     yaw_deg: Annotated[Decimal, Number(-360, 360, "deg")] = Field(
-        description="Where the leg points: 0 is forward, 90 is left [deg]."
+        description="Direction of the leg: 0 is forward, 90 is left [deg]."
     )
 
 
 class Body(Table):
     """The body, without the legs."""
 
-    mass_kg: Mass | None = Field(default=None, description="Mass, with battery and electronics [kg].")
+    mass_kg: Mass | None = Field(default=None, description="Mass, including battery and electronics [kg].")
     com_mm: Point | None = Field(default=None, description="Centre of mass: x forward, y left, z up [mm].")
     size_mm: Size | None = Field(
         default=None,
-        description="Length, width and height of its box [mm]; left out: the flat polygon of the coxa axes.",
+        description="Length, width and height of its box [mm]. Default: the flat polygon of the coxa axes.",
     )
 
 
 class Gait(Table):
-    """How this robot walks unless told otherwise."""
+    """Default settings of the robot's walks."""
 
     name: Annotated[str, Choice(GAIT_NAMES)] = Field(default="tripod", description="The gait.")
-    body_height_mm: Length | None = Field(default=None, description="Height of the body's origin over the ground [mm].")
-    swing_height_mm: Length | None = Field(default=None, description="How high a swinging foot is lifted [mm].")
+    body_height_mm: Length | None = Field(
+        default=None, description="Height of the body's origin above the ground [mm]."
+    )
+    swing_height_mm: Length | None = Field(default=None, description="Swing height [mm].")
 
 
 class SourceEntry(Table):
-    """Where numbers of this file come from, and how sure they are."""
+    """Source of numbers in this file, and their confidence."""
 
-    of: list[Name] = Field(description="The keys it speaks of, such as leg.coxa_mm.")
-    source: Name = Field(description="Where they were found.")
+    of: list[Name] = Field(description="The keys concerned, such as leg.coxa_mm.")
+    source: Name = Field(description="Where the numbers were found.")
     confidence: Annotated[str, Choice(("A", "A-", "B", "C", "guess"))] = Field(
-        description="How sure: A read in the primary file, B in a secondary copy, C general knowledge, or guess."
+        description="Confidence: A from the primary source, B from a secondary copy, C general knowledge, or guess."
     )
-    note: Remark = Field(default="", description="What else is known.")
+    note: Remark = Field(default="", description="Remarks.")
 
 
 class RobotFile(Table):
     """A legged robot for Tarsus: millimetres, degrees, kilograms; x forward, y left, z up."""
 
-    name: Name = Field(description="What the robot is called.")
+    name: Name = Field(description="Name of the robot.")
     body: Body = Body()
     leg: Leg = Leg()
     legs: list[LegEntry] = Field(
         min_length=4, max_length=100, description="The legs, counter-clockwise from the front left."
     )
     gait: Gait = Gait()
-    sources: list[SourceEntry] = Field(default=[], description="Where the numbers of this file come from.")
+    sources: list[SourceEntry] = Field(default=[], description="Sources of the numbers in this file.")
 
 
 def robot_schema() -> dict[str, Any]:
@@ -255,7 +251,7 @@ def robot_schema() -> dict[str, Any]:
 
 
 def _tidy(node: Any) -> Any:
-    """Leave out what means nothing in TOML: null, which it does not have, and titles made from the keys."""
+    """Remove what has no meaning in TOML: null, and titles derived from the keys."""
     if isinstance(node, list):
         return [_tidy(item) for item in node]
     if not isinstance(node, dict):

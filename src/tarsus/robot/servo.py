@@ -1,4 +1,4 @@
-"""A servo: what a joint's motor can do, as its maker or a measurement says."""
+"""Servos: data of a model from its maker or from measurements."""
 
 from __future__ import annotations
 
@@ -9,35 +9,34 @@ __all__ = ["Servo"]
 
 @dataclass(frozen=True, kw_only=True)
 class Servo:
-    """One model of servo; what its source does not give is None.
+    """A servo model; data that its source does not give are None.
 
     Attributes
     ----------
     name : str
-        The model, as in the catalogue.
+        Name of the model, as in the catalogue.
     stall_torque : float
-        Torque at which it stops [N m], at `torque_at` volts.
+        Stall torque [N m] at a supply of `torque_at`.
     torque_at : float or None
-        Supply for the stall torque [V].
+        Supply voltage of the stall torque [V].
     no_load_speed : float or None
-        Speed without load [rad/s], at `speed_at` volts.
+        No-load speed [rad/s] at a supply of `speed_at`.
     speed_at : float or None
-        Supply for the speed [V].
+        Supply voltage of the no-load speed [V].
     stall_current : float or None
-        Current when stalled [A].
+        Stall current [A].
     rated_torque : float or None
-        Torque that the maker rates for lasting use [N m].
+        Rated continuous torque [N m].
     mass : float or None
         Mass [kg].
     supply : tuple of float or None
-        Lowest and highest supply [V].
+        Least and greatest supply voltage [V].
     travel : float or None
         Range of the output shaft [rad].
     maker, control, gear, feedback : str
-        Who makes it, how it is commanded, of what its gears are, what it reports.
+        Manufacturer, command interface, gear material, feedback.
     confidence, source, note : str
-        How sure the numbers are (A read at the maker, B read in a secondary copy, C mostly general knowledge),
-        where they come from, and what is known beside them.
+        Confidence (A from the manufacturer, B from a secondary copy, C mostly general knowledge), source and remarks.
     """
 
     name: str

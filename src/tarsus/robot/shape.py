@@ -1,4 +1,4 @@
-"""The arrays that make up a robot: their axes, and what their numbers may be."""
+"""Shapes and ranges of the arrays of a robot."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ __all__ = ["JOINTS", "OPTIONAL", "TAILS", "locked"]
 JOINTS = ("coxa", "femur", "tibia")
 """The joints of a leg, in the order of the last axis of an array of joint angles."""
 
-# The axes of each array that follow its batch axes; "legs" stands for the number of legs.
+# Axes of each array after its batch axes; "legs" stands for the number of legs.
 TAILS: dict[str, tuple[str | int, ...]] = {
     "mount_position": ("legs", 3),
     "mount_yaw": ("legs",),
@@ -32,29 +32,29 @@ TAILS: dict[str, tuple[str | int, ...]] = {
 }
 OPTIONAL = ("link_mass", "body_mass", "body_size")
 _POSITIVE = ("femur", "tibia", "body_mass", "body_size")
-# What rounding may add to half a turn [rad].
+# Tolerance of +-180 deg [rad].
 _ROUNDING = 1e-9
 _NOT_NEGATIVE = ("coxa", "foot_radius", "link_mass")
 
 
 def locked(name: str, value: Array, *, legs: int, robot: str) -> Array:
-    """Copy a NumPy value and lock it, having checked its shape and range; arrays of other libraries stay as they are.
+    """Check a value; return NumPy arrays as a locked copy, and arrays of other libraries as they are.
 
     Parameters
     ----------
     name : str
         One of `TAILS`.
     value : array
-        Its value.
+        The value.
     legs : int
         Number of legs.
     robot : str
-        The robot's name, for the message.
+        Name of the robot in messages.
 
     Raises
     ------
     InputError
-        If its shape is wrong, or a number is not finite or out of its range.
+        If its shape is wrong, or a number is not finite or out of range.
     """
     if isinstance(value, np.ndarray | np.generic) or not hasattr(value, "shape"):
         try:
@@ -72,15 +72,15 @@ def locked(name: str, value: Array, *, legs: int, robot: str) -> Array:
 
 def _check_range(name: str, value: np.ndarray[Any, Any], *, robot: str) -> None:
     if not np.isfinite(value).all():
-        raise InputError(f"{robot}: {name} holds a value that is not a finite number")
+        raise InputError(f"{robot}: {name} contains a value that is not a finite number")
     lowest = float(value.min()) if value.size else np.inf
     if name in _POSITIVE and lowest <= 0:
         raise InputError(f"{robot}: {name} is {lowest:g}; it must be greater than 0")
     if name in _NOT_NEGATIVE and lowest < 0:
         raise InputError(f"{robot}: {name} is {lowest:g}; it must not be negative")
     if name == "limits" and (value[..., 0] > value[..., 1]).any():
-        raise InputError(f"{robot}: limits: a lowest angle is greater than its highest")
+        raise InputError(f"{robot}: limits: a lower limit is greater than its upper limit")
     if name == "limits" and value.size and np.abs(value).max() > np.pi + _ROUNDING:
         raise InputError(
-            f"{robot}: limits reach to {np.degrees(np.abs(value).max()):.1f} deg; they must be from -180 to 180 deg"
+            f"{robot}: limits reach {np.degrees(np.abs(value).max()):.1f} deg; they must be from -180 to 180 deg"
         )

@@ -1,7 +1,7 @@
-"""From a file's millimetres, grams and degrees to SI and back, without losing a bit.
+"""Conversion of millimetres, grams and degrees in files to SI and back, exact to the bit.
 
-A file's numbers are decimals. Worked out as decimals and rounded once, 68 mm is the double nearest to 0.068 m
-and comes back as 68; ``68 / 1000 * 1000`` in doubles would not always.
+Numbers in files are decimals. Computed as decimals and rounded once, 68 mm is the double nearest to 0.068 m and
+converts back to 68; ``68 / 1000 * 1000`` in doubles does not in general.
 """
 
 from __future__ import annotations
@@ -10,8 +10,8 @@ from decimal import Context, Decimal
 
 __all__ = ["degrees", "from_milli", "radians", "to_decimal", "to_milli"]
 
-# Far more digits than a double's 17, so that each conversion is rounded once, at its end; and no traps,
-# whatever the decimal settings of the program that imports us.
+# More digits than the 17 of a double, so that each conversion is rounded once, at its end; no traps, whatever
+# the decimal context of the calling program.
 _CONTEXT = Context(prec=60, traps=[])
 _PI = Decimal("3.14159265358979323846264338327950288419716939937510582097494459")
 _DIGITS_OF_A_DOUBLE = 17
@@ -23,12 +23,12 @@ def to_decimal(value: float) -> Decimal:
 
 
 def from_milli(value: Decimal) -> float:
-    """Return a thousandth: mm as m, g as kg."""
+    """Return a thousandth: mm to m, g to kg."""
     return float(_CONTEXT.scaleb(value, -3))
 
 
 def to_milli(value: float) -> Decimal:
-    """Return a thousandfold: m as mm, kg as g; `from_milli` gives the same double back."""
+    """Return a thousandfold: m to mm, kg to g; `from_milli` returns the same double."""
     return _CONTEXT.scaleb(to_decimal(value), 3)
 
 
@@ -38,10 +38,10 @@ def radians(value: Decimal) -> float:
 
 
 def degrees(value: float) -> Decimal:
-    """Return the shortest decimal of degrees that `radians` turns into the same double."""
+    """Return the shortest decimal of degrees that `radians` converts to the same double."""
     if value == 0:
         return to_decimal(value)
     exact = _CONTEXT.divide(_CONTEXT.multiply(Decimal(value), Decimal(180)), _PI)
-    # The last of them always does: half a unit of a 17th digit is less than half the distance between doubles.
+    # 17 digits always suffice: half a unit of the 17th is less than half the distance between doubles.
     roundings = (Context(prec=digits, traps=[]).plus(exact) for digits in range(1, _DIGITS_OF_A_DOUBLE + 1))
     return next(rounded for rounded in roundings if radians(rounded) == value)

@@ -1,6 +1,6 @@
-"""A robot's document as TOML laid out like a hand-written robot file: a table for a header, small tables in a line.
+"""TOML writer with the layout of a robot file: a header for each table, inner tables and lists on one line.
 
-Numbers are decimals and stay the digits they are; general TOML writers put every number of a list on a line of its own.
+Decimals are written with exactly their digits. General TOML writers put every number of a list on a separate line.
 """
 
 from __future__ import annotations
@@ -29,12 +29,12 @@ def toml_text(document: dict[str, Any]) -> str:
 
 def toml_string(text: str) -> str:
     """Return a string in quotes, with TOML's escapes."""
-    # JSON's escapes are TOML's, but for DEL, which TOML wants escaped and JSON leaves.
+    # Escapes of JSON and TOML are the same, except DEL, which TOML requires to be escaped.
     return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
 
 
 def toml_number(value: Decimal) -> str:
-    """Return a number with every digit it has, and no more zeros than it needs."""
+    """Return a number with all its digits and without redundant zeros."""
     if value.is_zero():
         return "-0.0" if value.is_signed() else "0"
     text = format(value, "f")
