@@ -11,17 +11,17 @@ from tarsus import arrays
 from tarsus.errors import InputError
 
 
-def test_numpy_and_what_has_no_namespace_is_computed_with_numpy():
+def test_values_without_a_namespace_use_numpy():
     assert arrays.namespace() is np
     assert arrays.namespace(1.0, [1, 2], np.float64(3), np.zeros(2)) is np
 
 
-def test_the_namespace_is_that_of_the_array_that_is_not_numpys():
+def test_the_namespace_is_that_of_the_other_library():
     assert arrays.namespace(np.zeros(2), jnp.zeros(2)) is jnp
     assert arrays.namespace(array_api_strict.zeros(2), np.zeros(2)).__name__ == "array_api_strict"
 
 
-def test_a_table_with_a_shape_of_its_own_is_computed_with_numpy():
+def test_other_objects_with_a_shape_use_numpy():
     class Table:
         shape = (2,)
 
@@ -33,7 +33,7 @@ def test_a_table_with_a_shape_of_its_own_is_computed_with_numpy():
 
 
 @pytest.mark.parametrize("xp", [np, jnp, array_api_strict])
-def test_as_array_converts_once_and_never_copies_its_own(xp):
+def test_as_array_copies_only_where_necessary(xp):
     own = xp.asarray([1.0, 2.0])
     assert arrays.as_array(xp, own) is own
     other = arrays.as_array(xp, [1.0, 2.0])
@@ -43,7 +43,7 @@ def test_as_array_converts_once_and_never_copies_its_own(xp):
 
 @pytest.mark.parametrize("xp", [np, jnp, array_api_strict])
 @pytest.mark.parametrize("values", [[1, 2], [True, False], [1.5, -2.0]])
-def test_as_floats_takes_every_kind_of_real_number(xp, values):
+def test_as_floats_accepts_every_kind_of_real_number(xp, values):
     found = arrays.as_floats(xp, xp.asarray(values), name="v")
     assert found.dtype == xp.float64
     assert [float(v) for v in found] == [float(v) for v in values]
@@ -58,7 +58,7 @@ def test_as_floats_keeps_the_width_of_other_libraries():
     assert arrays.as_floats(jnp, jnp.zeros(2, dtype=jnp.float32), name="v").dtype == jnp.float32
 
 
-def test_as_floats_does_not_copy_what_is_right_already():
+def test_as_floats_does_not_copy_floats():
     values = np.zeros(3)
     assert arrays.as_floats(np, values, name="v") is values
 
@@ -67,7 +67,7 @@ def test_as_floats_does_not_copy_what_is_right_already():
     "wrong",
     ["text", ["1.0", "2.0"], np.array(["1.0"]), [1j], np.array([1 + 0j]), None, [None], [[1.0], [1.0, 2.0]], object()],
 )
-def test_as_floats_refuses_what_is_no_real_number(wrong):
+def test_as_floats_refuses_other_values(wrong):
     with pytest.raises(InputError, match=r"^heights: expected an array of real numbers, got "):
         arrays.as_floats(np, wrong, name="heights")
 
@@ -78,7 +78,7 @@ def test_as_floats_refuses_complex_numbers_of_any_library(xp):
         arrays.as_floats(xp, xp.asarray([1j]), name="heights")
 
 
-def test_traced_values_are_told_from_concrete_ones(monkeypatch):
+def test_traced_and_concrete_values_are_distinguished(monkeypatch):
     seen = []
     jax.jit(lambda x: seen.append(arrays.is_traced(x)) or x)(1.0)
     assert seen == [True]
@@ -90,7 +90,7 @@ def test_traced_values_are_told_from_concrete_ones(monkeypatch):
 
 @pytest.mark.parametrize("xp", [np, jnp, array_api_strict])
 @pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf])
-def test_require_finite_says_where_and_how_many(xp, bad):
+def test_require_finite_names_index_and_count(xp, bad):
     values = np.zeros((2, 3))
     values[1, 2] = bad
     with pytest.raises(InputError) as caught:
@@ -104,7 +104,7 @@ def test_require_finite_of_a_single_number():
         arrays.require_finite("height", np.asarray(math.nan))
 
 
-def test_require_finite_lets_pass_what_can_not_be_looked_at():
+def test_require_finite_accepts_traced_values():
     def f(x):
         arrays.require_finite("x", x)
         return x
@@ -132,13 +132,13 @@ def test_only_where_needed_computes_only_where_needed():
     assert arrays.only_where_needed(np.bool_(True), compute, (2,)) == (1,)
 
 
-def test_only_where_needed_is_decided_as_jitted_code_runs():
+def test_only_where_needed_is_decided_at_run_time_under_jit():
     f = jax.jit(lambda x: arrays.only_where_needed(x > 0, lambda: (x * 2,), (x * 3,))[0])
     assert float(f(1.0)) == 2.0
     assert float(f(-1.0)) == -3.0
 
 
-def test_improve_steps_alike_traced_or_not():
+def test_improve_gives_the_same_result_traced_or_not():
     def halve(x):
         return arrays.improve(lambda state: (state[0] / 2, state[1] + 1), (x, 0 * x), times=4, enough=0.0)
 
@@ -146,7 +146,7 @@ def test_improve_steps_alike_traced_or_not():
     assert [float(v) for v in jax.jit(halve)(8.0)] == [0.5, 4.0]
 
 
-def test_improve_ends_for_each_element_when_a_step_brings_it_no_more_than_enough():
+def test_improve_ends_for_each_element_separately():
     steps = []
 
     def step(state):

@@ -52,7 +52,7 @@ def standing(robot, height=0.1):
 
 @settings(max_examples=25)
 @given(seed=seeds())
-def test_the_share_is_where_a_foot_is_first_left_behind(seed):
+def test_the_fraction_is_where_a_foot_first_becomes_unreachable(seed):
     rng = np.random.default_rng(seed)
     robot = plain_hexapod()
     feet, start = standing(robot)
@@ -71,7 +71,7 @@ def test_the_share_is_where_a_foot_is_first_left_behind(seed):
         assert not between([min(share + 1e-9, 1.0)]).any()
 
 
-def test_the_whole_way_is_one_and_none_of_it_is_nought():
+def test_the_fraction_is_0_or_1_at_the_extremes():
     robot = plain_hexapod()
     feet, start = standing(robot)
     higher = Pose(np.eye(3), start.position + np.array([0, 0, 0.01]))
@@ -82,7 +82,7 @@ def test_the_whole_way_is_one_and_none_of_it_is_nought():
     assert 0 < reachable_fraction(robot, feet, start, far) < 0.1
 
 
-def test_upwards_the_share_is_that_of_the_straight_leg():
+def test_upwards_the_fraction_is_that_of_the_straight_leg():
     robot = plain_hexapod(limits=np.tile([[-2, 2], [-1.5, 1.5], [-3, 0]], (6, 1, 1)))
     feet, start = standing(robot)
     out = np.hypot(*feet[0, :2]) - 0.086 - 0.068
@@ -92,7 +92,7 @@ def test_upwards_the_share_is_that_of_the_straight_leg():
     assert abs(start.position[2] + share * (1 - start.position[2]) - highest) <= 1e-12
 
 
-def test_a_turn_goes_the_shorter_way_round():
+def test_angles_change_in_the_shorter_direction():
     robot = plain_hexapod()
     feet, level = standing(robot)
     start, goal = Pose.from_rpy(yaw=3.1, position=level.position), Pose.from_rpy(yaw=-3.1, position=level.position)
@@ -100,7 +100,7 @@ def test_a_turn_goes_the_shorter_way_round():
     assert reachable_fraction(robot, feet, start, goal) == 1.0
 
 
-def test_a_start_at_the_very_edge_counts_as_reached_or_not_but_no_more():
+def test_a_start_on_the_edge_of_the_workspace():
     """The start's own matrix and the one from its angles differ by rounding; neither gives more than the way allows."""
     robot = plain_hexapod()
     q = random_angles(np.random.default_rng(2), robot)
@@ -121,7 +121,7 @@ def test_batches_are_refused(wrong):
         reachable_fraction(**given_)
 
 
-def test_what_is_wrong_with_the_feet_is_said():
+def test_invalid_feet_are_refused():
     robot = plain_hexapod()
     with pytest.raises(InputError, match=r"feet has shape \(5, 3\)"):
         reachable_fraction(robot, np.zeros((5, 3)), Pose(), Pose())

@@ -48,7 +48,7 @@ def test_an_unknown_name_lists_the_known_and_suggests_the_nearest():
     assert str(error) == ("no gait is called 'Tripd'. Did you mean 'tripod'? There are: tripod, tetrapod, ripple, wave")
 
 
-def test_an_unknown_name_like_no_other_gets_no_suggestion():
+def test_a_dissimilar_name_gets_no_suggestion():
     assert str(UnknownNameError.of("gait", "zzz", GAITS)) == (
         "no gait is called 'zzz'. There are: tripod, tetrapod, ripple, wave"
     )

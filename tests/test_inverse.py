@@ -67,7 +67,7 @@ def test_every_foot_that_angles_within_the_limits_reach_is_reached(draw, with_bo
 @pytest.mark.parametrize("knee", KNEES)
 @pytest.mark.parametrize("draw", [random_angles, edge_angles])
 @pytest.mark.parametrize("name", list_robots())
-def test_every_preset_reaches_all_that_its_limits_allow(name, draw, knee):
+def test_every_preset_reaches_its_whole_workspace(name, draw, knee):
     rng = np.random.default_rng(9)
     robot = load_robot(name)
     feet = feet_of(robot, draw(rng, in_branch(robot, knee), (2000,)))
@@ -79,7 +79,7 @@ def test_every_preset_reaches_all_that_its_limits_allow(name, draw, knee):
 
 
 @given(seed=seeds(), equal=st.booleans())
-def test_anywhere_within_whole_turns_both_knees_reach(seed, equal):
+def test_without_limits_both_knee_branches_reach(seed, equal):
     rng = np.random.default_rng(seed)
     robot = random_robot(rng, limits="full", equal=equal)
     feet = feet_of(robot, random_angles(rng, robot, (50,)))
@@ -91,7 +91,7 @@ def test_anywhere_within_whole_turns_both_knees_reach(seed, equal):
 
 
 @given(seed=seeds(), equal=st.booleans())
-def test_the_angles_come_back(seed, equal):
+def test_angles_are_reproduced(seed, equal):
     """IK(FK(q)) = q to 1e-10 rad, the knee up, the foot in front of the coxa axis by a millimetre or more.
 
     Within 1 mrad of the straight or folded leg the foot's position, itself rounded to 1e-16 m, no longer tells
@@ -163,7 +163,7 @@ def by_arc_cosines(robot, r, z):
 
 @pytest.mark.parametrize(("from_end", "bound"), [(1e-1, 2e-14), (1e-3, 2e-12), (1e-5, 2e-10), (1e-7, 2e-8)])
 @pytest.mark.parametrize("folded", [False, True])
-def test_near_straight_and_folded_the_angles_are_as_true_as_the_position_tells(folded, from_end, bound):
+def test_accuracy_near_the_straight_and_folded_leg(folded, from_end, bound):
     """Against 50 digits for the very same foot.
 
     The angles are off by 1e-15 rad over the bend, which is what the rounding of a foot's position makes of them in any
@@ -212,7 +212,7 @@ def within_limits(robot, angles):
 
 @pytest.mark.parametrize("knee", KNEES)
 @given(robot=robots(), seed=seeds())
-def test_the_angles_are_within_the_limits_wherever_the_foot_is_asked_to_be(knee, robot, seed):
+def test_angles_are_always_within_the_limits(knee, robot, seed):
     rng = np.random.default_rng(seed)
     feet = rng.uniform(-1, 1, (60, robot.legs, 3)) * 10 ** rng.uniform(-12, 4, (60, 1, 1))
     feet[0] = robot.mount_position
@@ -223,7 +223,7 @@ def test_the_angles_are_within_the_limits_wherever_the_foot_is_asked_to_be(knee,
 @pytest.mark.parametrize("knee", KNEES)
 @pytest.mark.parametrize("sideways", [0.0, 0.02])
 @pytest.mark.parametrize("shift", [0.0, 1.0, -1.5])
-def test_at_singular_points_an_angle_within_the_limits_is_taken(knee, sideways, shift):
+def test_at_singular_points_an_angle_within_the_limits_is_chosen(knee, sideways, shift):
     """On the coxa axis any coxa angle will do, on the femur axis of a leg that folds any femur angle."""
     limits = np.tile(np.deg2rad([[-40, 40], [-40, 40], [-180, 180]]), (6, 1, 1))
     limits[:, :2] += shift
@@ -263,7 +263,7 @@ def test_a_foot_on_the_coxa_axis_is_within_reach_whatever_the_coxas_limits(shift
 
 @pytest.mark.parametrize("size", [0.0, 1e-15, 1e-12, 1e-9, 1e-7, 1e-4])
 @pytest.mark.parametrize("what", ["femur axis", "coxa axis"])
-def test_a_foot_that_is_too_near_by_little_is_not_passed_as_reached(size, what):
+def test_a_foot_slightly_too_near_is_not_reached(size, what):
     """Femur and tibia that differ by `size`, or an offset of `size`: that is the miss, told from 1e-13 m on."""
     changes = {"tibia": np.full(6, 0.098 + size)} if what == "femur axis" else {}
     limits = np.tile([[-1, 1], [-np.pi, np.pi], [-np.pi, np.pi]], (6, 1, 1))
@@ -275,7 +275,7 @@ def test_a_foot_that_is_too_near_by_little_is_not_passed_as_reached(size, what):
     assert solution.reach.tolist() == [0 if size < 1e-13 else Reach.TOO_NEAR] * 6
 
 
-def test_a_leg_that_only_bends_the_other_way_does_so():
+def test_a_leg_limited_to_the_other_branch_uses_it():
     limits = np.tile(np.deg2rad([[-60, 60], [-90, 90], [10, 150]]), (6, 1, 1))
     robot = plain_hexapod(limits=limits)
     q = random_angles(np.random.default_rng(1), robot, (50,))
@@ -310,7 +310,7 @@ def test_a_foot_behind_the_coxa_axis_is_reached_backwards():
         (4, (BLOCK // 4 + 3,)),
     ],
 )
-def test_a_batch_is_its_loop(batch, legs, with_body):
+def test_a_batch_equals_its_loop(batch, legs, with_body):
     rng = np.random.default_rng(legs)
     robot = random_robot(rng, legs=legs)
     feet = feet_of(robot, random_angles(rng, robot, batch)) + rng.normal(0, 0.003, (*batch, legs, 3))
@@ -412,7 +412,7 @@ def assert_alike(found, expected, *, sideways):
 
 
 @pytest.mark.parametrize(("xp", "sideways"), [(jnp, 0.0), (array_api_strict, 0.0), (array_api_strict, 0.02)])
-def test_other_libraries_give_numpys_numbers(xp, sideways):
+def test_other_libraries_agree_with_numpy(xp, sideways):
     robot, feet, body = mixed_case(np.random.default_rng(5), sideways=sideways)
     theirs = Pose(xp.asarray(np.asarray(body.rotation)), xp.asarray(np.asarray(body.position)))
     found = inverse_kinematics(robot, xp.asarray(feet), theirs)
@@ -426,7 +426,7 @@ def test_other_libraries_give_numpys_numbers(xp, sideways):
 
 
 @pytest.mark.parametrize("sideways", [0.0, 0.02])
-def test_jit_and_vmap_give_numpys_numbers(sideways):
+def test_jit_and_vmap_agree_with_numpy(sideways):
     robot, feet, body = mixed_case(np.random.default_rng(6), sideways=sideways)
 
     def one(feet, rotation, position):
@@ -445,7 +445,7 @@ def test_single_precision_passes_through_jax():
     assert np.abs(np.asarray(found) - inverse_kinematics(robot, feet).angles).max() <= 1e-12
 
 
-def test_the_gradient_with_respect_to_the_feet_undoes_the_jacobian():
+def test_the_gradient_with_respect_to_the_feet_is_the_inverse_jacobian():
     robot = random_robot(np.random.default_rng(7), limits="up")
     q = np.tile([0.1, 0.5, -1.4], (6, 1))
     feet = jnp.asarray(feet_of(robot, q))
@@ -508,7 +508,7 @@ def test_gradients_are_finite_at_singular_and_unreachable_points_too(offset, equ
         (None, "feet: expected an array of real numbers"),
     ],
 )
-def test_what_is_wrong_is_said(feet, message):
+def test_invalid_arguments_are_refused(feet, message):
     with pytest.raises(InputError, match=message):
         inverse_kinematics(plain_hexapod(), feet)
 
@@ -521,7 +521,7 @@ def test_a_wrong_knee_is_refused(knee):
 
 
 @pytest.mark.parametrize("xp", [np, jnp])
-def test_batches_that_do_not_fit_are_named(xp):
+def test_batches_that_do_not_broadcast_are_named(xp):
     feet, body = xp.zeros((3, 6, 3)), Pose(np.eye(3), np.zeros((4, 3)))
     with pytest.raises(InputError, match=r"the robot, the feet and the body's poses don't broadcast: \(\) and \(3,\)"):
         inverse_kinematics(plain_hexapod(), feet, body)
@@ -529,7 +529,7 @@ def test_batches_that_do_not_fit_are_named(xp):
 
 @given(batch=st.sampled_from([(), (400,)]), kind=st.sampled_from([np.int64, np.float32, np.float64]))
 @settings(max_examples=6)
-def test_input_of_any_kind_is_taken_left_alone_and_not_held(batch, kind):
+def test_any_kind_of_input_is_accepted_not_modified_and_not_kept(batch, kind):
     robot = plain_hexapod()
     feet = np.full((*batch, 6, 3), 1, dtype=kind)
     feet[..., :3, :] = 0

@@ -35,7 +35,7 @@ def random_angles(robot, rng, tibia):
 
 
 @pytest.mark.parametrize("name", tarsus.list_robots())
-def test_the_angles_of_a_bent_leg_come_back_to_1e_10(name):
+def test_angles_of_a_bent_leg_are_reproduced_to_1e_10(name):
     rng = np.random.default_rng(1)
     robot = preset_without_limits(name)
     off, ahead = off_and_ahead(robot, random_angles(robot, rng, -rng.uniform(1e-3, 2.0, (SAMPLES, robot.legs))))
@@ -44,7 +44,7 @@ def test_the_angles_of_a_bent_leg_come_back_to_1e_10(name):
 
 
 @pytest.mark.parametrize("name", tarsus.list_robots())
-def test_within_a_milliradian_of_the_straight_leg_they_come_back_to_1e_7(name):
+def test_angles_near_the_straight_leg_are_reproduced_to_1e_7(name):
     rng = np.random.default_rng(2)
     robot = preset_without_limits(name)
     bend = 10.0 ** rng.uniform(-9, -3, (SAMPLES, robot.legs))
@@ -54,7 +54,7 @@ def test_within_a_milliradian_of_the_straight_leg_they_come_back_to_1e_7(name):
 
 
 @pytest.mark.parametrize("name", sorted(set(tarsus.list_robots()) - {"ch3r", "mithi"}))
-def test_within_a_milliradian_of_the_folded_leg_they_come_back_to_1e_7(name):
+def test_angles_near_the_folded_leg_are_reproduced_to_1e_7(name):
     """Folded, ch3r's foot is behind the coxa axis and mithi's on the femur axis: there no position tells the angles."""
     rng = np.random.default_rng(3)
     robot = preset_without_limits(name)

@@ -41,7 +41,7 @@ def pinocchio_model(robot):
 
 @settings(max_examples=25)
 @given(robot=robots(), seed=seeds())
-def test_points_and_jacobian_are_pinocchios(robot, seed):
+def test_points_and_jacobian_agree_with_pinocchio(robot, seed):
     rng = np.random.default_rng(seed)
     model, frames = pinocchio_model(robot)
     data = model.createData()
@@ -70,7 +70,7 @@ def test_the_jacobian_is_the_finite_difference(robot, seed):
         assert np.abs(found[..., joint] - (ends[0] - ends[1]) / (2 * step)).max() <= 1e-9
 
 
-def test_the_jacobian_is_jaxs():
+def test_the_jacobian_agrees_with_jax():
     robot = random_robot(np.random.default_rng(1))
     q = random_angles(np.random.default_rng(2), robot)
     full = jax.jacobian(lambda q: forward_kinematics(robot, q)[:, 3])(jnp.asarray(q))
@@ -101,7 +101,7 @@ def test_positive_angles_turn_counter_clockwise_and_lift(joint, moved):
 @pytest.mark.parametrize("compute", [forward_kinematics, leg_jacobian])
 @pytest.mark.parametrize("legs", [4, 5, 6, 8])
 @pytest.mark.parametrize("batch", [(7,), (3, 5), (0,), (0, 2), (BLOCK // 4 + 3,), (2, BLOCK // 8 + 5)])
-def test_a_batch_is_its_loop(compute, legs, batch):
+def test_a_batch_equals_its_loop(compute, legs, batch):
     rng = np.random.default_rng(legs)
     robot = random_robot(rng, legs=legs)
     q = rng.uniform(-np.pi, np.pi, (*batch, legs, 3))
@@ -155,7 +155,7 @@ def test_designs_that_differ_in_one_number(xp, compute):
 
 @pytest.mark.parametrize("xp", [jnp, array_api_strict])
 @pytest.mark.parametrize("compute", [forward_kinematics, leg_jacobian])
-def test_other_libraries_give_numpys_numbers(xp, compute):
+def test_other_libraries_agree_with_numpy(xp, compute):
     rng = np.random.default_rng(6)
     robot = random_robot(rng)
     q = rng.uniform(-np.pi, np.pi, (9, 6, 3))
@@ -164,7 +164,7 @@ def test_other_libraries_give_numpys_numbers(xp, compute):
     assert np.abs(np.asarray(found) - compute(robot, q)).max() <= 1e-15
 
 
-def test_jit_and_vmap_give_numpys_numbers():
+def test_jit_and_vmap_agree_with_numpy():
     rng = np.random.default_rng(7)
     robot = random_robot(rng)
     q = rng.uniform(-np.pi, np.pi, (9, 6, 3))
@@ -195,12 +195,12 @@ def test_the_gradient_with_respect_to_a_length_is_the_finite_difference():
         (np.zeros((6, 3)) * 1j, "angles: expected an array of real numbers, got complex128"),
     ],
 )
-def test_what_is_wrong_is_said(compute, angles, message):
+def test_invalid_arguments_are_refused(compute, angles, message):
     with pytest.raises(InputError, match=message):
         compute(plain_hexapod(), angles)
 
 
-def test_batches_that_do_not_fit_are_named():
+def test_batches_that_do_not_broadcast_are_named():
     robot = stack_robots([plain_hexapod()] * 4)
     for xp in (np, jnp):
         with pytest.raises(InputError, match=r"the robot and the angles don't broadcast: \(4,\) and \(3,\)"):
@@ -209,7 +209,7 @@ def test_batches_that_do_not_fit_are_named():
 
 @given(batch=st.sampled_from([(), (400,)]), kind=st.sampled_from([np.int64, np.float32]))
 @settings(max_examples=4)
-def test_input_of_any_kind_is_taken_and_left_alone(batch, kind):
+def test_any_kind_of_input_is_accepted_and_not_modified(batch, kind):
     robot = plain_hexapod()
     q = np.ones((*batch, 6, 3), dtype=kind)
     before = q.copy()

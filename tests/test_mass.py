@@ -44,7 +44,7 @@ def test_a_coxa_link_without_length_acts_at_the_coxa_axis():
 
 
 @pytest.mark.parametrize("missing", ["body_mass", "link_mass"])
-def test_without_masses_the_links_weigh_nothing(missing):
+def test_without_masses_the_links_are_massless(missing):
     robot = hexapod(body_com=[0.01, 0.02, 0.03], **{missing: None})
     com = centre_of_mass(robot, np.zeros((4, 1, 6, 3)))
     np.testing.assert_array_equal(com, np.broadcast_to([0.01, 0.02, 0.03], (4, 1, 3)))
@@ -62,7 +62,7 @@ def test_batch_equals_loop():
     np.testing.assert_allclose(total_mass(stack_robots(robots)), [total_mass(r) for r in robots], rtol=1e-14)
 
 
-def test_known_points_are_taken():
+def test_known_points_are_used():
     robot = random_hexapod(np.random.default_rng(2))
     points = forward_kinematics(robot, standing())
     np.testing.assert_array_equal(centre_of_mass(robot, None, points=points), centre_of_mass(robot, standing()))

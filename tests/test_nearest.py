@@ -121,7 +121,7 @@ def test_the_nearest_point_is_itself_reached(seed):
 
 
 @pytest.mark.parametrize("stretch", [1.001, 2, 1e6])
-def test_far_out_the_leg_points_straight_at_the_foot(stretch):
+def test_the_leg_points_at_a_distant_foot(stretch):
     robot = plain_hexapod()
     direction = np.array([0.8, 0.36, -0.48])
     axis = forward_kinematics(robot, np.zeros((6, 3)))[:, 1]
@@ -132,7 +132,7 @@ def test_far_out_the_leg_points_straight_at_the_foot(stretch):
     assert np.abs(q - [0, -np.arctan2(0.48, 0.88), 0]).max() <= 1e-7
 
 
-def test_angles_beyond_the_limits_go_to_the_limit_nearer_round_the_circle():
+def test_angles_beyond_the_limits_are_clipped_to_the_nearer_limit():
     lower, upper = np.array(-1.0), np.array(2.0)
     angles = np.array([-3.0, -2.6, -1.1, -1.0, 0.0, 2.0, 2.1, 3.0])
     # The gap between the limits is centred on -2.64, where an angle is as far from either.
@@ -151,14 +151,14 @@ def test_angles_are_wrapped_into_one_turn():
     ("limits", "up", "down"),
     [((-2, 1), (-2, 0, -1), (0, 1, 1)), ((-2, -1), (-2, -1, -1), (-2, -1, -1)), ((1, 2), (1, 2, 1), (1, 2, 1))],
 )
-def test_a_knee_branch_is_what_the_limits_leave_of_it_or_the_other(limits, up, down):
+def test_knee_branches_are_restricted_by_the_limits(limits, up, down):
     robot = plain_hexapod(limits=np.tile([(-1, 1), (-1, 1), limits], (6, 1, 1)))
     for knee, (low, high, sign) in ((1, up), (-1, down)):
         found = (*tibia_branch(np, robot.geometry, knee=knee), tibia_bend(np, robot.geometry, knee=knee))
         assert [set(v.tolist()) for v in found] == [{low}, {high}, {sign}]
 
 
-def test_turning_freely_comes_as_near_as_the_best_of_many_fixed_turns():
+def test_the_best_coxa_angle_equals_the_best_of_many():
     """Near the coxa axis, where turn and distance settle slowest: against 2 x 181 legs whose coxas can't turn."""
     rng = np.random.default_rng(1)
     robot = random_robot(rng, legs=300, sideways=0.03, limits="full")

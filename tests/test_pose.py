@@ -25,13 +25,13 @@ def carried(pose, points):
 
 
 @given(roll=angles, pitch=angles, yaw=angles)
-def test_roll_pitch_yaw_is_scipys_rotation_about_z_then_y_then_x(roll, pitch, yaw):
+def test_roll_pitch_yaw_agree_with_scipy(roll, pitch, yaw):
     expected = Rotation.from_euler("ZYX", [yaw, pitch, roll]).as_matrix()
     assert np.abs(Pose.from_rpy(roll, pitch, yaw).rotation - expected).max() <= 1e-15
 
 
 @given(roll=angles, pitch=st.floats(-1.57, 1.57), yaw=angles)
-def test_roll_pitch_yaw_come_back(roll, pitch, yaw):
+def test_roll_pitch_yaw_are_reproduced(roll, pitch, yaw):
     # At pitch 1.57, 0.8 mrad from where roll and yaw are one, the cosine costs three digits.
     found = Pose.from_rpy(roll, pitch, yaw).rpy
     turn = np.angle(np.exp(1j * (found - [roll, pitch, yaw])))
@@ -39,13 +39,13 @@ def test_roll_pitch_yaw_come_back(roll, pitch, yaw):
 
 
 @pytest.mark.parametrize("pitch", [np.pi / 2, -np.pi / 2])
-def test_at_the_pole_the_rotation_still_comes_back(pitch):
+def test_at_pitch_90_degrees_the_rotation_is_reproduced(pitch):
     rotation = Pose.from_rpy(0.3, pitch, 0.4).rotation
     assert np.abs(Pose.from_rpy(*rpy_from_rotation(rotation)).rotation - rotation).max() <= 1e-15
 
 
 @given(seed=seeds())
-def test_chains_and_inverses_are_those_of_scipy(seed):
+def test_composition_and_inverse_agree_with_scipy(seed):
     rng = np.random.default_rng(seed)
     a, b = random_pose(rng), random_pose(rng, (4,))
     chained = a @ b
@@ -60,7 +60,7 @@ def test_chains_and_inverses_are_those_of_scipy(seed):
 
 
 @given(seed=seeds())
-def test_chaining_carries_points_as_one_after_the_other(seed):
+def test_composition_transforms_points_successively(seed):
     rng = np.random.default_rng(seed)
     a, b, points = random_pose(rng, (5, 3)), random_pose(rng, (5, 1)), rng.uniform(-1, 1, (5, 3, 7, 3))
     assert np.abs((a @ b) @ points - a @ (b @ points)).max() <= 1e-14
@@ -96,7 +96,7 @@ def test_the_leading_axes_of_points_are_the_poses_batch_axes(batch, points, expe
 
 
 @pytest.mark.parametrize(("batch", "points"), [((5,), (6, 3)), ((5,), (6, 5, 3)), ((4, 5), (5, 6, 3))])
-def test_points_that_do_not_fit_the_batch_are_refused(batch, points):
+def test_points_that_do_not_broadcast_are_refused(batch, points):
     with pytest.raises(InputError, match="the batch axes of the pose and the points don't broadcast"):
         random_pose(np.random.default_rng(1), batch) @ np.zeros(points)
 
@@ -140,7 +140,7 @@ def test_items_of_a_batch():
         (lambda: Pose() @ [0, 0, np.nan], r"points\[2\] is nan"),
     ],
 )
-def test_what_is_wrong_is_said(make, message):
+def test_invalid_arguments_are_refused(make, message):
     with pytest.raises(InputError, match=message):
         make()
 
@@ -168,14 +168,14 @@ def test_locked_arrays_are_shared_not_copied():
     assert pose.inverse().inverse().rotation.base is pose.rotation
 
 
-def test_numbers_of_any_kind_are_taken():
+def test_any_kind_of_numbers_is_accepted():
     pose = Pose(np.eye(3, dtype=int), [1, 2, 3])
     assert (pose @ [1, 1, 1]).tolist() == [2.0, 3.0, 4.0]
     assert (pose @ np.ones(3, dtype=np.float32)).dtype == np.float64
 
 
 @pytest.mark.parametrize("xp", [jnp, array_api_strict])
-def test_other_libraries_give_numpys_numbers(xp):
+def test_other_libraries_agree_with_numpy(xp):
     rng = np.random.default_rng(3)
     rpy, position, points = rng.uniform(-1, 1, (4, 3)), rng.uniform(-1, 1, (4, 3)), rng.uniform(-1, 1, (4, 6, 3))
 
@@ -203,11 +203,11 @@ def test_gradients_pass_through_poses():
 @pytest.mark.parametrize(
     "wrong", [2 * np.eye(3), np.diag([1.0, 1.0, -1.0]), np.diag([2.0, 0.5, 1.0]), np.zeros((3, 3))]
 )
-def test_what_stretches_or_mirrors_is_no_pose(wrong):
+def test_matrices_that_scale_or_mirror_are_refused(wrong):
     with pytest.raises(InputError, match="rotation is not a rotation matrix"):
         Pose(np.stack([np.eye(3), wrong]), np.zeros(3))
 
 
-def test_a_rotation_in_single_precision_is_one():
+def test_a_rotation_in_single_precision_is_accepted():
     rotation = np.asarray(Pose.from_rpy(0.3, -0.7, 2.0).rotation, dtype=np.float32)
     assert np.allclose(Pose(rotation, np.zeros(3)).rotation, rotation)

@@ -60,7 +60,7 @@ def ways(robot, leg, foot, knee):
 @pytest.mark.parametrize("knee", ["up", "down"])
 @given(seed=seeds())
 @example(seed=10000)  # a foot beside the leg's plane and far away
-def test_the_verdict_is_the_textbooks(knee, seed):
+def test_reach_codes_agree_with_the_textbook(knee, seed):
     rng = np.random.default_rng(seed)
     robot = random_robot(rng)
     limits = np.array(robot.limits)
@@ -76,7 +76,7 @@ def test_the_verdict_is_the_textbooks(knee, seed):
         assert solution.reach[leg] == expected
 
 
-def test_the_textbook_sees_every_verdict():
+def test_the_comparison_covers_every_code():
     """The comparison above meets each of the codes that it speaks of."""
     seen = set()
     for seed in range(40):
@@ -93,7 +93,7 @@ def low_body(rng, batch=()):
 
 
 @given(seed=seeds())
-def test_below_ground_is_told_from_the_points_themselves(seed):
+def test_below_ground_agrees_with_the_points(seed):
     rng = np.random.default_rng(seed)
     robot = random_robot(rng)
     body = low_body(rng, (40,))
@@ -113,7 +113,7 @@ def test_below_ground_is_told_from_the_points_themselves(seed):
 
 
 @pytest.mark.parametrize("seed", range(10))
-def test_the_quick_bound_never_hides_a_buried_point(seed):
+def test_the_quick_bound_is_conservative(seed):
     """What is surely above by the bound is above by the points, for mounts above B's origin and steep tilts too."""
     rng = np.random.default_rng(seed)
     robot = random_robot(rng)
@@ -226,7 +226,7 @@ def check_raise(robot, feet, body, leg, line):
     assert lower.reach[leg] == Reach.BELOW_GROUND
 
 
-def test_every_reason_in_words():
+def test_every_reason_has_a_message():
     robot = plain_hexapod(
         mount_yaw=np.zeros(6),
         mount_position=np.zeros((6, 3)),
@@ -311,7 +311,7 @@ def test_in_a_batch_the_sample_is_named_and_long_lists_are_cut(xp):
 
 @settings(max_examples=10)
 @given(knee=st.sampled_from(["up", "down"]), seed=seeds())
-def test_explaining_changes_nothing(knee, seed):
+def test_explaining_has_no_side_effects(knee, seed):
     rng = np.random.default_rng(seed)
     robot = random_robot(rng)
     solution = inverse_kinematics(robot, rng.uniform(-0.4, 0.4, (3, 6, 3)), low_body(rng, (3,)), knee=knee)

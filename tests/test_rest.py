@@ -89,7 +89,7 @@ def test_it_rests_on_a_face_of_the_hull(seed, box):
 
 
 @pytest.mark.parametrize("seed", range(6))
-def test_near_a_stance_it_rests_on_the_face_below_the_centre(seed):
+def test_near_a_stance_it_rests_on_the_face_below_the_centre_of_mass(seed):
     """From the face that a plumb line from the centre pierces, over the edges that the centre is beyond."""
     rng = np.random.default_rng(seed)
     robot = random_hexapod(rng)
@@ -115,7 +115,7 @@ def test_near_a_stance_it_rests_on_the_face_below_the_centre(seed):
         np.testing.assert_allclose(resting_pose(robot, angles).body.rotation[2], -normals[face], atol=1e-9)
 
 
-def test_it_goes_the_way_of_the_steepest_descent():
+def test_it_follows_the_steepest_descent():
     """The same way in twenty thousand small steps down the slope of the centre's height, with no idea of contacts."""
     rng = np.random.default_rng(11)
     robot = random_hexapod(rng)
@@ -136,7 +136,7 @@ def test_it_goes_the_way_of_the_steepest_descent():
 
 
 @pytest.mark.parametrize("box", [True, False])
-def test_the_centre_never_rises(box):
+def test_the_centre_of_mass_never_rises(box):
     rng = np.random.default_rng(12)
     robot = random_hexapod(rng, box=box)
     angles = rng.uniform(-np.pi, np.pi, (300, 6, 3))
@@ -231,7 +231,7 @@ def test_on_the_belly_and_feet():
         ([0, -0.08, 0], "right side", [90, 0, 0]),
     ],
 )
-def test_a_tall_body_falls_to_the_side_of_its_weight(push, face, angles):
+def test_a_tall_body_tips_to_the_side_of_its_centre_of_mass(push, face, angles):
     """No legs to speak of; the corners of the box are what it lies on."""
     size = np.array([0.1, 0.1, 0.3])
     robot = hexapod(
@@ -301,7 +301,7 @@ LEVEL, DOWN, STILT = [0, 0, 0], [0, -90, 0], [0, -60, 0]
         ([45, 135, 225, -45], [LEVEL, STILT, LEVEL, STILT], (-1, 1, 0)),  # on the other: forward, to the left
     ],
 )
-def test_which_way_a_balanced_robot_falls(yaws, angles, rpy_signs):
+def test_the_direction_in_which_a_balanced_robot_tips(yaws, angles, rpy_signs):
     robot, angles = four_legged(yaws, angles)
     upright = resting_pose(robot, angles, max_rolls=0)
     assert not upright.stable
@@ -324,7 +324,7 @@ def test_over_the_edge_of_a_polygon_with_an_area_it_rests_with_margin_zero():
     )
 
 
-def test_nothing_holds_a_centre_of_mass_outside_the_robot():
+def test_a_centre_of_mass_outside_the_robot_is_never_stable():
     robot, angles = four_legged([0, 90, 180, -90], [LEVEL] * 4, body_com=[1.0, 0, 0])
     rest = resting_pose(robot, angles)
     assert not rest.stable
@@ -396,7 +396,7 @@ def test_in_single_precision_nearly_level_feet_touch_together():
     assert double.down.sum() == 3
 
 
-def test_refuses_what_makes_no_sense():
+def test_invalid_arguments_are_refused():
     robot, angles = hexapod(), standing()
     with pytest.raises(InputError, match="max_rolls is -1; it must not be negative"):
         resting_pose(robot, angles, max_rolls=-1)

@@ -29,7 +29,7 @@ def six(**changes):
     return Robot(**{**NEEDED, **changes})
 
 
-def test_what_is_left_out_is_filled_in_or_unknown():
+def test_omitted_values_are_defaults_or_unknown():
     robot = six()
     assert robot.legs == 6
     assert robot.batch_shape == ()
@@ -54,7 +54,7 @@ def test_arrays_are_copied_in_and_locked():
         robot.femur[0] = 1
 
 
-def test_arrays_of_other_libraries_stay_what_they_are():
+def test_arrays_of_other_libraries_are_kept():
     femur = jnp.full(6, 0.08)
     robot = six(femur=femur)
     assert robot.femur is femur
@@ -88,7 +88,7 @@ def test_wrong_shapes_and_ranges_are_refused(changes, message):
         six(**changes)
 
 
-def test_no_designs_at_all_are_a_batch_too():
+def test_an_empty_batch_of_designs():
     assert six(femur=np.ones((0, 6))).batch_shape == (0,)
 
 
@@ -119,7 +119,7 @@ def test_replacing_checks_again():
         robot.replace(femur=np.full(6, -1.0))
 
 
-def test_masses_are_asked_for_where_they_are_missing():
+def test_missing_masses_are_refused_where_required():
     assert six(body_mass=1.0, link_mass=np.ones((6, 3))).has_masses
     six(body_mass=1.0, link_mass=np.ones((6, 3))).require_masses()
     for changes, missing in [
@@ -154,7 +154,7 @@ def test_robots_are_stacked_along_a_new_first_axis():
     assert stack_robots([both, both]).batch_shape == (2, 2)
 
 
-def test_what_does_not_stack_is_refused():
+def test_robots_that_differ_in_shape_are_not_stacked():
     with pytest.raises(InputError, match="the sequence of robots is empty"):
         stack_robots([])
     with pytest.raises(InputError, match="body_mass is known for some of the robots and unknown for others"):
@@ -163,7 +163,7 @@ def test_what_does_not_stack_is_refused():
         stack_robots([six(), six(femur=np.ones((2, 6)))])
 
 
-def test_the_geometry_is_worked_out_once_from_the_robot_s_numbers():
+def test_the_geometry_is_computed_once():
     robot = six(femur_axis_offset=np.broadcast_to([0.01, -0.02], (6, 2)))
     geometry = robot.geometry
     assert geometry is robot.geometry
@@ -189,13 +189,13 @@ def test_the_geometry_moves_to_another_library():
         np.testing.assert_array_equal(np.asarray(theirs), mine)
 
 
-def test_the_geometry_of_picked_legs_is_theirs():
+def test_the_geometry_of_single_legs():
     picked = six().geometry.pick((np.array([0, 1]), np.array([0, 5])), (2, 6))
     assert isinstance(picked, LegGeometry)
     np.testing.assert_array_equal(picked.mount_x, [0, 15])
 
 
-def test_the_geometry_of_a_block_has_its_items_side_by_side():
+def test_the_geometry_of_a_block_is_transposed():
     geometry = six(femur=np.arange(1.0, 31.0).reshape(5, 6)).geometry
     part = geometry.take((slice(1, 3),), (2,))
     np.testing.assert_array_equal(part.femur, geometry.femur[1:3].T)

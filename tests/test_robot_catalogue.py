@@ -21,12 +21,12 @@ def test_every_row_is_in_the_catalogue_once():
     assert len({name.lower() for name in list_servos()}) == len(ROWS) == 31
 
 
-def test_the_columns_are_those_that_a_robot_file_takes():
+def test_the_columns_are_the_keys_of_robot_files():
     assert list(ROWS[0]) == sorted(ServoFigures.model_fields, key=list(ROWS[0]).index)
 
 
 @pytest.mark.parametrize("row", ROWS, ids=[row["name"] for row in ROWS])
-def test_a_row_is_sound_and_sourced(row):
+def test_every_row_is_plausible_and_has_a_source(row):
     servo = load_servo(row["name"])
     assert servo.source
     assert servo.confidence in ("A", "B", "C")
@@ -45,7 +45,7 @@ def test_a_row_is_sound_and_sourced(row):
     assert {key for key, value in row.items() if value} == figures.keys()
 
 
-def test_the_figures_are_in_si_units():
+def test_data_are_in_si_units():
     servo = load_servo("MG996R")
     assert servo.stall_torque == 1.079
     assert servo.torque_at == 6.0
@@ -71,11 +71,11 @@ def test_the_figures_are_in_si_units():
         ("Savox SC-1258TG", "travel", None),
     ],
 )
-def test_known_and_unknown_figures(name, attribute, value):
+def test_known_and_unknown_data(name, attribute, value):
     assert getattr(load_servo(name), attribute) == value
 
 
-def test_names_may_be_in_capitals_or_not():
+def test_names_are_case_insensitive():
     assert load_servo("ax-12a") is load_servo("AX-12A") is servo_catalogue()["AX-12A"]
 
 
@@ -85,7 +85,7 @@ def test_an_unknown_name_suggests_the_nearest_and_lists_all():
     assert all(name in str(caught.value) for name in list_servos())
 
 
-def test_the_catalogue_is_read_once_and_can_not_be_changed():
+def test_the_catalogue_is_read_once_and_immutable():
     assert servo_catalogue() is servo_catalogue()
     with pytest.raises(TypeError):
         servo_catalogue()["AX-12A"] = None

@@ -142,7 +142,7 @@ MISTAKES = [
 
 
 @pytest.mark.parametrize(("key", "value", "line"), MISTAKES, ids=range(len(MISTAKES)))
-def test_a_mistake_is_refused_with_key_value_and_what_is_allowed(key, value, line):
+def test_errors_name_key_value_and_what_is_allowed(key, value, line):
     (problem,) = problems(changed(key, value))
     assert line in problem
 
@@ -160,7 +160,7 @@ def test_a_servo_has_both_ends_of_its_supply_or_none(figures, line):
     assert problem == f"leg.servo: {line}" + (": give both or neither" if "go together" in line else "")
 
 
-def test_all_mistakes_come_in_one_error():
+def test_all_problems_are_in_one_error():
     document = changed(("leg", "coxa_mm"), -1)
     document["leg"]["femr_mm"] = 3
     document["legs"][3]["yaw_deg"] = NAN
@@ -169,7 +169,7 @@ def test_all_mistakes_come_in_one_error():
 
 
 @pytest.mark.parametrize("document", [5, [], "strider", None])
-def test_what_is_no_document_is_refused(document):
+def test_values_that_are_not_documents_are_refused(document):
     (problem,) = problems(document)
     assert "must be a table of keys" in problem
 
@@ -181,7 +181,7 @@ def test_too_few_and_too_many_legs_are_refused(count, wanted):
     assert f"{count} entries; there must be {wanted}" in problem
 
 
-def test_legs_that_do_not_go_round_the_body_are_told_their_order():
+def test_legs_out_of_order_are_refused_with_the_expected_order():
     document = strider()
     right_order = [leg["name"] for leg in document["legs"]]
     for legs in (document["legs"][::-1], document["legs"][1:] + document["legs"][:1]):
@@ -199,7 +199,7 @@ def test_a_leg_straight_ahead_may_be_the_first():
     np.testing.assert_allclose(robot.mount_position[0], [0.1, 0, 0], atol=1e-12)
 
 
-def test_a_key_missing_for_one_leg_only_is_asked_for_there():
+def test_a_key_missing_for_one_leg_names_that_leg():
     document = strider()
     del document["leg"]["femur_mm"]
     for i in (0, 1, 2, 4, 5):
@@ -207,7 +207,7 @@ def test_a_key_missing_for_one_leg_only_is_asked_for_there():
     assert problems(document) == ("legs[3].femur_mm: missing; every leg needs it, here or in [leg]",)
 
 
-def test_a_leg_overrides_single_joints_of_what_all_legs_have():
+def test_a_leg_overrides_single_joints_of_the_shared_values():
     document = strider()
     document["legs"][1] |= {
         "tibia_mm": 150,
@@ -230,7 +230,7 @@ def test_a_leg_overrides_single_joints_of_what_all_legs_have():
     np.testing.assert_array_equal(robot.femur_axis_offset[:2], [[0, 0], [0.001, -0.002]])
 
 
-def test_what_may_be_left_out_is_unknown_or_plain():
+def test_optional_keys_are_unknown_or_default():
     document = strider()
     for key in ("body", "gait", "sources"):
         del document[key]
@@ -264,11 +264,11 @@ def test_masses_known_for_some_legs_only_are_refused():
 
 
 @pytest.mark.parametrize("name", GAIT_NAMES)
-def test_every_gait_name_is_taken(name):
+def test_every_gait_name_is_accepted(name):
     assert robot_from_dict(changed(("gait", "name"), name)).gait.name == name
 
 
-def test_a_document_may_hold_numpy_numbers():
+def test_a_document_may_contain_numpy_numbers():
     document = strider()
     document["leg"]["coxa_mm"] = np.int64(68)
     document["leg"]["femur_mm"] = np.float64(98)
@@ -277,7 +277,7 @@ def test_a_document_may_hold_numpy_numbers():
     assert "must be a number" in problems(changed(("leg", "coxa_mm"), np.True_))[0]
 
 
-def test_a_servo_with_its_own_figures():
+def test_a_servo_that_is_not_in_the_catalogue():
     figures = {
         "name": "mine",
         "stall_torque_nm": 2.5,
@@ -337,7 +337,7 @@ def test_a_servo_with_its_own_figures():
         (b"x = 1", "x: unknown key"),
     ],
 )
-def test_a_file_that_is_none_is_refused_in_words(tmp_path, content, line):
+def test_invalid_files_are_refused_with_a_reason(tmp_path, content, line):
     path = tmp_path / "my.toml"
     path.write_bytes(content)
     with pytest.raises(RobotFileError) as caught:
@@ -346,14 +346,14 @@ def test_a_file_that_is_none_is_refused_in_words(tmp_path, content, line):
     assert any(line in problem for problem in caught.value.problems)
 
 
-def test_a_file_of_just_a_mebibyte_is_read(tmp_path):
+def test_a_file_of_exactly_one_mebibyte_is_read(tmp_path):
     path = tmp_path / "my.toml"
     text = template_text("big") + "#"
     path.write_text(text + "x" * (2**20 - len(text)))
     assert load_robot(path).name == "big"
 
 
-def test_a_file_may_start_with_the_mark_of_windows_editors_and_end_its_lines_like_them(tmp_path):
+def test_byte_order_mark_and_windows_line_ends_are_accepted(tmp_path):
     path = tmp_path / "my.toml"
     path.write_bytes(b"\xef\xbb\xbf" + template_text("mine").replace("\n", "\r\n").encode())
     assert load_robot(str(path)).name == "mine"
@@ -374,14 +374,14 @@ def test_an_unknown_name_suggests_the_nearest():
         ("a\0b", "can't be read: is not a valid path"),
     ],
 )
-def test_a_path_that_is_none_is_refused(tmp_path, monkeypatch, name, line):
+def test_an_invalid_path_is_refused(tmp_path, monkeypatch, name, line):
     monkeypatch.chdir(tmp_path)
     Path("file").touch()
     with pytest.raises(RobotFileError, match=line):
         load_robot(name)
 
 
-def test_a_file_that_may_not_be_read_is_refused(tmp_path, monkeypatch):
+def test_a_file_without_read_permission_is_refused(tmp_path, monkeypatch):
     def locked(*_, **__):
         raise PermissionError(13, "Permission denied")
 
@@ -488,7 +488,7 @@ def robots(draw):
 
 @settings(max_examples=60, deadline=None, suppress_health_check=list(HealthCheck))
 @given(robot=robots())
-def test_any_robot_comes_back_from_its_file_to_the_bit(tmp_path_factory, robot):
+def test_saving_and_loading_is_exact_to_the_bit(tmp_path_factory, robot):
     path = tmp_path_factory.getbasetemp() / "robot.toml"
     save_robot(robot, path)
     assert_same_bits(load_robot(path), robot)
@@ -496,14 +496,14 @@ def test_any_robot_comes_back_from_its_file_to_the_bit(tmp_path_factory, robot):
 
 
 @pytest.mark.parametrize("name", list_robots())
-def test_a_robot_from_a_file_comes_back_from_its_dict_to_the_bit(name, tmp_path):
+def test_conversion_to_a_dict_is_exact_to_the_bit(name, tmp_path):
     robot = load_robot(name)
     assert_same_bits(robot_from_dict(json.loads(json.dumps(robot_to_dict(robot)))), robot)
     save_robot(robot, tmp_path / "robot.toml")
     assert_same_bits(load_robot(tmp_path / "robot.toml"), robot)
 
 
-def test_a_saved_file_reads_like_one_written_by_hand(tmp_path):
+def test_a_saved_file_has_the_layout_of_a_hand_written_one(tmp_path):
     robot = load_robot("phoenix").replace(body_com=[0.0, -0.0, 1e-15], sources=())
     save_robot(robot, tmp_path / "robot.toml")
     text = (tmp_path / "robot.toml").read_text(encoding="utf-8")
@@ -530,7 +530,7 @@ limits_deg = { coxa = [-74, 58] }
     assert text.endswith('[gait]\nname = "tripod"\nbody_height_mm = 60\nswing_height_mm = 40\n')
 
 
-def test_what_differs_stands_with_each_leg_and_the_rest_once():
+def test_shared_values_are_written_once():
     robot = load_robot("phantomx-mk2")
     document = robot_to_dict(robot)
     assert document["leg"]["limits_deg"].keys() == {"femur", "tibia"}
@@ -538,7 +538,7 @@ def test_what_differs_stands_with_each_leg_and_the_rest_once():
     assert document["legs"][1]["limits_deg"] == {"coxa": [-100, 100]}
 
 
-def test_a_batch_of_designs_has_no_file(tmp_path):
+def test_a_batch_of_designs_is_not_written(tmp_path):
     batch = stack_robots([load_robot("strider")] * 2)
     for attempt in (lambda: robot_to_dict(batch), lambda: save_robot(batch, tmp_path / "x.toml")):
         with pytest.raises(RobotFileError, match=r"robot 'strider': .*\n  a batch of designs \(2,\) can't"):
@@ -556,7 +556,7 @@ def test_a_batch_of_designs_has_no_file(tmp_path):
         ({"servos": ((Servo(name="x", stall_torque=NAN),) * 3,) * 6}, "leg.servo.stall_torque_nm = nan"),
     ],
 )
-def test_a_robot_that_no_file_may_hold_is_not_written(tmp_path, changes, line):
+def test_a_robot_with_values_that_no_file_may_have_is_not_written(tmp_path, changes, line):
     path = tmp_path / "x.toml"
     with pytest.raises(RobotFileError) as caught:
         save_robot(load_robot("strider").replace(**changes), path)
@@ -566,13 +566,13 @@ def test_a_robot_that_no_file_may_hold_is_not_written(tmp_path, changes, line):
 
 
 @pytest.mark.parametrize("name", ["no/such/folder.toml", "", "a\0b"])
-def test_a_place_where_nothing_can_be_written_is_refused(tmp_path, monkeypatch, name):
+def test_an_unwritable_path_is_refused(tmp_path, monkeypatch, name):
     monkeypatch.chdir(tmp_path)
     with pytest.raises(RobotFileError, match="can't be written: "):
         save_robot(load_robot("strider"), name)
 
 
-def test_an_operating_system_error_without_words_still_gets_some(tmp_path, monkeypatch):
+def test_an_operating_system_error_without_a_message(tmp_path, monkeypatch):
     def fail(*_):
         raise OSError
 
@@ -599,7 +599,7 @@ def assert_loads_or_is_refused_in_words(load):
 @given(content=st.binary(max_size=300) | st.text(max_size=300).map(str.encode))
 @example(content=b"\x00")
 @example(content=b"legs = [[]]")
-def test_random_bytes_are_refused_in_words(tmp_path_factory, content):
+def test_random_bytes_are_refused_with_a_reason(tmp_path_factory, content):
     path = tmp_path_factory.getbasetemp() / "bytes.toml"
     path.write_bytes(content)
     with pytest.raises(RobotFileError) as caught:
@@ -634,7 +634,7 @@ PIECES = [
     length=st.integers(0, 30),
     piece=st.sampled_from(PIECES) | st.text(max_size=5),
 )
-def test_a_mutated_preset_loads_or_is_refused_in_words(tmp_path_factory, name, place, length, piece):
+def test_a_mutated_preset_loads_or_is_refused_with_a_reason(tmp_path_factory, name, place, length, piece):
     text = (HERE / "presets" / f"{name}.toml").read_text(encoding="utf-8")
     start = int(place * len(text))
     path = tmp_path_factory.getbasetemp() / "mutant.toml"
@@ -669,7 +669,7 @@ KEYS = [
 
 @settings(max_examples=200, deadline=None)
 @given(key=st.sampled_from(KEYS), value=ANYTHING)
-def test_any_value_at_any_key_loads_or_is_refused_in_words(key, value):
+def test_any_value_at_any_key_loads_or_is_refused_with_a_reason(key, value):
     document = strider()
     document["leg"]["servo"] = {"coxa": "DS3225"}
     table = document
@@ -683,7 +683,7 @@ def test_any_value_at_any_key_loads_or_is_refused_in_words(key, value):
 
 
 @given(value=floats(-1e4, 1e4))
-def test_thousandths_go_both_ways_to_the_bit(value):
+def test_conversion_of_thousandths_is_exact_to_the_bit(value):
     assert from_milli(to_milli(value)) == value
     assert np.signbit(from_milli(to_milli(value))) == np.signbit(value)
 
@@ -691,7 +691,7 @@ def test_thousandths_go_both_ways_to_the_bit(value):
 @given(value=floats(-650, 650))
 @example(value=5e-324)
 @example(value=np.pi)
-def test_angles_go_both_ways_to_the_bit(value):
+def test_conversion_of_angles_is_exact_to_the_bit(value):
     with localcontext(prec=3):  # the program that uses Tarsus may compute with fewer digits
         assert radians(degrees(value)) == value
 
@@ -739,7 +739,7 @@ def test_an_angle_of_seventeen_digits_has_no_shorter_form():
         ("1E+4", "10000"),
     ],
 )
-def test_numbers_are_written_with_the_digits_they_have(value, text):
+def test_numbers_are_written_with_all_their_digits(value, text):
     assert toml_number(Decimal(value)) == text
 
 
@@ -766,12 +766,12 @@ def test_the_template_loads_under_any_name(tmp_path_factory, name):
 # The schema
 
 
-def test_the_published_schema_is_the_one_that_the_models_give():
+def test_the_published_schema_is_up_to_date():
     published = (HERE / "robot.schema.json").read_text(encoding="utf-8")
     assert published == json.dumps(robot_schema(), indent=2) + "\n"
 
 
-def test_the_schema_is_one_and_says_what_every_key_is():
+def test_the_schema_is_valid_and_describes_every_key():
     schema = robot_schema()
     jsonschema.Draft202012Validator.check_schema(schema)
     assert "null" not in json.dumps(schema)
@@ -784,7 +784,7 @@ def test_the_schema_is_one_and_says_what_every_key_is():
 
 
 @pytest.mark.parametrize("name", list_robots())
-def test_the_schema_takes_every_preset(name):
+def test_the_schema_accepts_every_preset(name):
     text = (HERE / "presets" / f"{name}.toml").read_text(encoding="utf-8")
     assert text.startswith("#:schema ../robot.schema.json\n")
     jsonschema.validate(tomllib.loads(text), robot_schema())
@@ -810,6 +810,6 @@ def test_the_schema_refuses_what_the_loader_refuses(key, value):
     problems(changed(key, value))
 
 
-def test_the_heavy_packages_wait_until_a_file_is_read():
+def test_heavy_packages_are_not_imported_before_a_file_is_read():
     code = "import sys, tarsus.robot; sys.exit('pydantic' in sys.modules or 'tomllib' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], env=os.environ, check=False).returncode == 0

@@ -46,7 +46,7 @@ def knee_up(robot, leg, reach, depth):
     return math.atan2(-depth, reach) - math.atan2(tibia * math.sin(bend), femur + tibia * math.cos(bend)), bend
 
 
-def test_there_are_these_eight():
+def test_the_presets_are_these_eight():
     assert list_robots() == NAMES
 
 
@@ -69,14 +69,14 @@ def test_every_number_has_a_source(name):
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_what_only_this_project_says_is_called_a_guess(name):
+def test_estimates_of_this_project_are_marked_as_guesses(name):
     for source in load_robot(name).sources:
         if source.source == "this project":
             assert source.confidence == "guess"
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_legs_are_in_the_ring_and_the_robot_is_its_own_mirror_image(name):
+def test_legs_are_in_order_and_mirror_symmetric(name):
     robot = load_robot(name)
     assert robot.leg_names == LEGS
     np.testing.assert_array_equal(robot.mount_position[MIRROR] * [1, -1, 1], robot.mount_position)
@@ -88,7 +88,7 @@ def test_legs_are_in_the_ring_and_the_robot_is_its_own_mirror_image(name):
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_it_can_stand_with_its_knees_up_inside_its_limits(name):
+def test_every_preset_can_stand_with_its_knees_up(name):
     robot = load_robot(name)
     margin = math.radians(10)
     for leg in range(robot.legs):
@@ -110,13 +110,13 @@ def test_it_can_stand_with_its_knees_up_inside_its_limits(name):
 @pytest.mark.parametrize(
     ("name", "total"), [("strider", 3.066), ("phantomx", 3.216268), ("ch3r", 2.09), ("makeyourpet", 2.25)]
 )
-def test_masses_add_up_to_the_source_s_total(name, total):
+def test_masses_add_up_to_the_total_of_the_source(name, total):
     robot = load_robot(name)
     assert robot.body_mass + robot.link_mass.sum() == pytest.approx(total, abs=1e-9)
 
 
 @pytest.mark.parametrize("name", ["freenove", "mithi", "phantomx-mk2", "phoenix"])
-def test_unknown_masses_are_not_made_up(name):
+def test_unknown_masses_stay_unknown(name):
     robot = load_robot(name)
     assert robot.body_mass is None
     assert robot.link_mass is None
@@ -133,16 +133,16 @@ def test_unknown_masses_are_not_made_up(name):
         ("makeyourpet", "MG996R"),
     ],
 )
-def test_servos_are_those_of_the_catalogue(name, servo):
+def test_servos_are_in_the_catalogue(name, servo):
     assert load_robot(name).servos == ((load_servo(servo),) * 3,) * 6
 
 
 @pytest.mark.parametrize("name", ["freenove", "mithi"])
-def test_unknown_servos_are_not_made_up(name):
+def test_unknown_servos_stay_unknown(name):
     assert load_robot(name).servos == ((None,) * 3,) * 6
 
 
-def test_strider_has_its_source_s_numbers():
+def test_strider_has_the_numbers_of_its_source():
     robot = load_robot("strider")
     np.testing.assert_allclose(np.hypot(*robot.mount_position.T[:2]), 0.086, atol=1e-6)
     np.testing.assert_allclose(np.rad2deg(robot.mount_yaw), [30, 90, 150, -150, -90, -30])
@@ -152,7 +152,7 @@ def test_strider_has_its_source_s_numbers():
     assert (robot.gait.body_height, robot.gait.swing_height) == (0.11, 0.03)
 
 
-def test_phantomx_follows_from_its_maker_s_model():
+def test_phantomx_follows_from_the_model_of_its_maker():
     robot = load_robot("phantomx")
     knee, foot = np.array([60, -15]), np.array([95, -90])
     femur_up, foot_up = np.degrees(np.arctan2(knee[1], knee[0])), np.degrees(np.arctan2(foot[1], foot[0]))
@@ -177,7 +177,7 @@ def test_phantomx_follows_from_its_maker_s_model():
         ("phantomx-mk2", (-100, 100), -3.5, (-102, 67), 46.3),
     ],
 )
-def test_limits_of_the_phoenix_code_are_turned_into_ours(name, femur_there, femur_horn, tibia_there, tibia_horn):
+def test_limits_of_the_phoenix_code_are_converted(name, femur_there, femur_horn, tibia_there, tibia_horn):
     limits = np.degrees(load_robot(name).limits[0])
     # There: femur = horn - elevation; tibia = angle at the knee - 90 - horn, which is 180 for a straight leg.
     np.testing.assert_allclose(limits[1], [femur_horn - femur_there[1], femur_horn - femur_there[0]], atol=1e-9)
@@ -194,7 +194,7 @@ def test_makeyourpet_follows_from_its_model():
 @pytest.mark.parametrize(
     "path", [*PRESETS.glob("*.toml"), PRESETS.parent / "template.toml"], ids=lambda path: path.stem
 )
-def test_every_file_says_its_units_and_explains_itself(path):
+def test_every_file_states_its_units_and_sources(path):
     text = path.read_text(encoding="utf-8")
     comments = re.findall(r"#\s.*", text)
     assert len(comments) >= 2

@@ -44,7 +44,7 @@ def _plain(robot, body, feet):
     return bool(((out * heading).sum(-1) > 0).all())
 
 
-def test_a_foot_beside_the_leg_plane_has_no_solution():
+def test_a_foot_within_the_sideways_offset_has_no_solution():
     robot = load_robot("strider").replace(femur_axis_offset=np.tile([0.05, 0.0], (6, 1)))
     axis = np.asarray(robot.mount_position) + np.array([0.01, 0, -0.1])
     assert ScalarSolver(robot).angles(axis.tolist(), np.eye(3).tolist(), (0.0, 0.0, 0.0)) is None

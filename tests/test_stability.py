@@ -102,7 +102,7 @@ def test_margin_in_blocks_equals_loop(monkeypatch):
     np.testing.assert_allclose(shared, [hull_margin(points[0, 0], m, p[0, 0]) for m in mask], rtol=0, atol=1e-14)
 
 
-def test_margin_refuses_what_makes_no_sense():
+def test_margin_refuses_invalid_arguments():
     points, mask = np.zeros((6, 2)), np.ones(6, dtype=bool)
     with pytest.raises(InputError, match=r"points has shape \(2,\); expected \(..., n, 2\)"):
         hull_margin(np.zeros(2), mask, [0, 0])
@@ -163,7 +163,7 @@ def test_a_symmetric_stance():
     assert stability_margin(robot, standing(), Pose(), ~everything) == -np.inf
 
 
-def test_every_foot_counts_where_the_tilted_body_carries_it():
+def test_feet_of_a_tilted_body_are_projected_vertically():
     rng = np.random.default_rng(6)
     robot = random_hexapod(rng)
     angles = rng.uniform(-0.8, 0.8, (30, 6, 3))
@@ -199,7 +199,7 @@ def test_batch_axes_broadcast_and_equal_a_loop():
     np.testing.assert_allclose(moved, np.full(5, still), rtol=0, atol=1e-14)
 
 
-def test_known_points_are_taken_and_nonsense_is_refused():
+def test_known_points_are_used_and_invalid_ones_refused():
     robot = hexapod()
     points = forward_kinematics(robot, standing())
     down = np.ones(6, dtype=bool)
@@ -224,7 +224,7 @@ def tilted():
     return robot, angles, Pose.from_rpy(0.1, -0.05, 0.3), rng.random((40, 6)) < 0.6
 
 
-def test_the_array_api_alone_suffices(tilted):
+def test_the_array_api_standard_suffices(tilted):
     xp, (robot, angles, body, contacts) = array_api_strict, tilted
     want = stability_margin(robot, angles, body, contacts)
     margin = stability_margin(robot, xp.asarray(angles), body, xp.asarray(contacts))

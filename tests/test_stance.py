@@ -88,7 +88,7 @@ def test_a_leg_that_only_bends_upwards_has_the_band_of_its_mirror_image():
 
 
 @given(robot=robots(), height=st.floats(0.02, 0.25), swing_height=st.sampled_from([0.0, 0.02]))
-def test_every_default_foothold_is_reached_straight_out_and_lifted(robot, height, swing_height):
+def test_every_default_foothold_is_reached_on_the_ground_and_lifted(robot, height, swing_height):
     try:
         feet = default_stance(robot, height, swing_height=swing_height)
     except UnreachableError:
@@ -113,7 +113,7 @@ def test_a_default_foothold_is_in_the_middle_of_its_band(robot, height):
     assert np.abs(far - np.hypot((nearest + farthest) / 2, robot.femur_axis_offset[:, 0])).max() <= 1e-15
 
 
-def test_a_coxa_that_can_not_point_straight_out_stands_at_its_limit():
+def test_a_coxa_whose_limits_exclude_0_stands_at_its_limit():
     limits = np.tile(np.deg2rad([[20, 60], [-80, 100], [-160, 10]]), (6, 1, 1))
     limits[3:, 0] = np.deg2rad([-60, -25])
     robot = plain_hexapod(limits=limits, femur_axis_offset=np.tile([0.01, 0], (6, 1)))
@@ -185,7 +185,7 @@ def test_in_a_batch_the_error_names_body_height_and_design():
         default_stance(stack_robots([robot, short]), 0.15)
 
 
-def test_a_batch_is_its_loop():
+def test_a_batch_equals_its_loop():
     rng = np.random.default_rng(1)
     designs = [random_robot(rng) for _ in range(50)]
     heights = np.linspace(-0.1, 0.02, 7)
@@ -205,7 +205,7 @@ def test_a_batch_is_its_loop():
 
 
 @pytest.mark.parametrize("part", ["coxa", "femur", "tibia", "mount_position", "limits", "femur_axis_offset"])
-def test_a_batch_in_one_part_alone_is_its_loop(part):
+def test_a_batch_in_one_argument_equals_its_loop(part):
     robot = random_robot(np.random.default_rng(3))
     shares = np.linspace(0.98, 1.02, 5)
     values = np.asarray(getattr(robot, part))
@@ -225,7 +225,7 @@ def test_a_batch_in_one_part_alone_is_its_loop(part):
 
 
 @pytest.mark.parametrize("xp", [jnp, array_api_strict])
-def test_other_libraries_give_numpys_numbers(xp):
+def test_other_libraries_agree_with_numpy(xp):
     robot = random_robot(np.random.default_rng(2))
     heights = np.linspace(-0.2, 0.1, 20)
     for found, expected in zip(reachable_band(robot, xp.asarray(heights)), reachable_band(robot, heights), strict=True):
@@ -233,7 +233,7 @@ def test_other_libraries_give_numpys_numbers(xp):
         assert np.allclose(np.asarray(found), expected, rtol=0, atol=1e-15, equal_nan=True)
 
 
-def test_under_jit_the_stance_is_numpys_and_nan_where_there_is_none():
+def test_under_jit_the_stance_agrees_with_numpy_and_is_nan_without_a_foothold():
     robot = plain_hexapod()
     stance = jax.jit(lambda body_height: default_stance(robot, body_height, swing_height=0.03))
     assert np.abs(np.asarray(stance(0.11)) - default_stance(robot, 0.11, swing_height=0.03)).max() <= 1e-15
@@ -266,6 +266,6 @@ def test_the_gradient_with_respect_to_a_length_is_the_finite_difference():
         (lambda r: reachable_band(r, 1j), "height: expected an array of real numbers"),
     ],
 )
-def test_what_is_wrong_is_said(call, message):
+def test_invalid_arguments_are_refused(call, message):
     with pytest.raises(InputError, match=message):
         call(plain_hexapod())

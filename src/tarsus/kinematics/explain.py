@@ -1,4 +1,4 @@
-"""Explains why a leg can't reach its foot, by how much, and which foot or body height works."""
+"""Explains why a leg can't reach its foot, by how much, and which foot or body height is possible."""
 
 from __future__ import annotations
 
