@@ -14,7 +14,6 @@ from tarsus.control.workspace.polygon import NORMALS, NORMALS_CONJUGATE
 from tarsus.control.workspace.stability import StabilityCheck
 from tarsus.control.workspace.stance_geometry import StanceGeometry
 from tarsus.gait.swing import horizontal_profile
-from tarsus.robot.robot import Robot
 
 __all__ = ["VelocityLimits", "stance_limits", "stance_overhang", "with_stroke_limits"]
 
