@@ -20,7 +20,7 @@ FLAGS = ("--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu
 
 _UP, _DOWN = (0.0, 85.0, -100.0), (0.0, 45.0, -127.0)
 _LIFTED = _UP + _DOWN * 3 + (10.0, 70.0, -127.0) + _DOWN
-_CURVE = WalkOptions(gait="ripple", path=Curve(way="curve", angle_deg=70.0, centre_mm=(0.0, 500.0)))
+_CURVE = WalkOptions(gait="ripple", path=Curve(kind="curve", angle_deg=70.0, centre_mm=(0.0, 500.0)))
 STATES = (
     StudioState(view="joints", joints=JointsState(angles_deg=_LIFTED)),
     StudioState(view="body", body=BodyState(x_mm=15.0, y_mm=-110.0, z_mm=-35.0, roll_deg=-6.0), picture=Picture(leg=1)),

@@ -50,7 +50,7 @@ def test_the_angles_are_copied_as_a_spreadsheet_pastes_them(visitor):
 
 
 def test_the_walks_csv_is_that_of_python(visitor, tmp_path):
-    visitor.open(StudioState(view="walk", walk=WalkOptions(gait="wave", path=Curve(way="curve", angle_deg=40.0))))
+    visitor.open(StudioState(view="walk", walk=WalkOptions(gait="wave", path=Curve(kind="curve", angle_deg=40.0))))
     visitor.at("walk-facts").wait_for()
     motion = tarsus.plan_walk(
         STRIDER, tarsus.Gait.named("wave"), tarsus.curved_path(np.radians(40), (0.0, 0.0)), rate=100.0
@@ -122,7 +122,7 @@ def test_a_link_restores_exactly_the_state(visitor, arrive):
     expect(other.at("standing-facts")).to_contain_text("-3.5, 0.0°")
     expect(other.at("body-z_mm-number")).to_have_value("17")
     expect(other.at("camera-top")).to_have_attribute("aria-pressed", "true")
-    expect(other.at("zone-leg")).to_have_value("2")
+    expect(other.at("workspace-leg")).to_have_value("2")
     assert other.facts("standing-facts") == visitor.facts("standing-facts") == before
 
 

@@ -12,7 +12,7 @@ from sample_studio import Asked
 from tarsus import load_robot
 from tarsus.robot.file import robot_to_dict
 from tarsus.studio.messages import client as ask
-from tarsus.studio.reading import read
+from tarsus.studio.parsing import read
 from tarsus.studio.server.inbox import Inbox
 from tarsus.studio.server.rate import Rate
 from tarsus.studio.session import Session
@@ -123,13 +123,13 @@ walks = st.fixed_dictionaries(
             {"duty_factor": st.floats(0, 1.2), "offsets": st.lists(st.floats(-1, 2), min_size=5, max_size=7)}
         ),
         "path": st.one_of(
-            st.fixed_dictionaries({"way": st.just("straight"), "distance_mm": moderate, "heading_deg": moderate}),
+            st.fixed_dictionaries({"kind": st.just("straight"), "distance_mm": moderate, "heading_deg": moderate}),
             st.fixed_dictionaries(
-                {"way": st.just("curve"), "angle_deg": moderate, "centre_mm": st.tuples(moderate, moderate)}
+                {"kind": st.just("curve"), "angle_deg": moderate, "centre_mm": st.tuples(moderate, moderate)}
             ),
             st.fixed_dictionaries(
                 {
-                    "way": st.just("twist"),
+                    "kind": st.just("twist"),
                     "velocity_mm_s": st.tuples(moderate, moderate),
                     "turn_deg_s": moderate,
                     "duration_s": st.floats(0, 10),
@@ -198,7 +198,7 @@ plausible = st.one_of(
         }
     ),
     st.fixed_dictionaries({"type": st.sampled_from(["undo", "redo", "ping"])}),
-    st.fixed_dictionaries({"type": st.just("zone"), "leg": st.integers(0, 7)}),
+    st.fixed_dictionaries({"type": st.just("workspace"), "leg": st.integers(0, 7)}),
     st.fixed_dictionaries({"type": st.just("download"), "what": st.sampled_from(["csv", "toml", "angles"])}),
     st.fixed_dictionaries({"type": st.just("drive"), "on": st.booleans()}),
     st.fixed_dictionaries(
@@ -263,7 +263,7 @@ def waiting(inbox):
 
 def test_the_newest_of_a_kind_takes_the_place_of_the_older():
     inbox = Inbox(32)
-    dropped = [inbox.push(m) for m in (joints(1), message("zone", 2, leg=0), joints(3), joints(4))]
+    dropped = [inbox.push(m) for m in (joints(1), message("workspace", 2, leg=0), joints(3), joints(4))]
     assert [[done.id for done in each] for each in dropped] == [[], [], [1], [3]]
     assert all(done.dropped for each in dropped for done in each)
     assert [m.id for m in waiting(inbox)] == [2, 4]

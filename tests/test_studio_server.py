@@ -19,7 +19,7 @@ from tarsus import InputError, load_robot
 from tarsus.robot.file import robot_to_dict
 from tarsus.studio.messages import CLOSED, SOCKET
 from tarsus.studio.messages.state import RobotChoice, StudioState
-from tarsus.studio.server.guard import HEADERS
+from tarsus.studio.server.access import HEADERS
 from tarsus.studio.server.pages import Pages
 from tarsus.studio.server.serve import Serving
 from tarsus.studio.server.settings import Limits, Settings, is_loopback

@@ -172,7 +172,7 @@ def test_body_moves_over_still_feet(ask, body_height):
     torques, forces = joint_torques(STRIDER, solution.angles, body, np.ones(6, dtype=bool))
     assert told["torques_nm"] == pytest.approx(torques.ravel(), abs=1e-4)
     assert table(told["forces_n"], 3)[:, 2].sum() == pytest.approx(forces[:, 2].sum(), abs=1e-3)
-    assert (told["legs"], told["problems"], told["share"]) == ([], [], 1.0)
+    assert (told["legs"], told["problems"], told["feasible_fraction"]) == ([], [], 1.0)
 
 
 def test_a_leg_that_cannot_reach_says_why_and_by_how_much(ask):
@@ -186,8 +186,8 @@ def test_a_leg_that_cannot_reach_says_why_and_by_how_much(ask):
     for leg in told["legs"]:
         assert f"{leg['miss_mm']:.1f} mm away" in leg["text"]
         assert told["contacts"][leg["leg"]] == "0"
-    assert 0 < told["share"] < 1
-    there = {"pitch_deg": 25 * told["share"] - 1e-3}
+    assert 0 < told["feasible_fraction"] < 1
+    there = {"pitch_deg": 25 * told["feasible_fraction"] - 1e-3}
     assert ask("body", "pose", body=there)["legs"] == []
 
 
@@ -227,18 +227,18 @@ WALKS = [
     ({}, lambda r: plan_walk(r, Gait.named("tripod"), straight_path(0.5))),
     (
         {"gait": "wave", "body_height_mm": 120, "swing_height_mm": 25,
-         "path": {"way": "curve", "angle_deg": 60, "centre_mm": [0, 300]}},
+         "path": {"kind": "curve", "angle_deg": 60, "centre_mm": [0, 300]}},
         lambda r: plan_walk(
             r, Gait.named("wave"), curved_path(math.radians(60), (0, 0.3)), body_height=0.12, swing_height=0.025
         ),
     ),
     (
         {"gait": "ripple", "rate_hz": 50,
-         "path": {"way": "twist", "velocity_mm_s": [30, 10], "turn_deg_s": 8, "duration_s": 3}},
+         "path": {"kind": "twist", "velocity_mm_s": [30, 10], "turn_deg_s": 8, "duration_s": 3}},
         lambda r: plan_walk(r, Gait.named("ripple"), twist_path(0.03, 0.01, math.radians(8), 3), rate=50),
     ),
     (
-        {"path": {"way": "straight", "distance_mm": 300, "heading_deg": 90}, "stroke_mm": 50, "cycle_time_s": 1.5,
+        {"path": {"kind": "straight", "distance_mm": 300, "heading_deg": 90}, "stroke_mm": 50, "cycle_time_s": 1.5,
          "roll_deg": 2, "pitch_deg": 3, "foot_distance_mm": 30},
         lambda r: plan_walk(
             r, Gait.named("tripod"), straight_path(0.3, math.pi / 2), stroke=0.05, cycle_time=1.5,
@@ -307,10 +307,10 @@ def test_a_walk_that_does_not_work_is_refused_with_what_would(ask):
 @pytest.mark.parametrize(
     "options",
     [
-        {"path": {"way": "straight", "distance_mm": 99_000, "heading_deg": 0}},
+        {"path": {"kind": "straight", "distance_mm": 99_000, "heading_deg": 0}},
         {"rate_hz": 1e5},
         {"cycle_time_s": 1e4},
-        {"path": {"way": "curve", "angle_deg": 3600, "centre_mm": [0, 90_000]}, "stroke_mm": 1},
+        {"path": {"kind": "curve", "angle_deg": 3600, "centre_mm": [0, 90_000]}, "stroke_mm": 1},
     ],
 )
 def test_a_walk_of_too_many_samples_is_refused_with_the_number(ask, options):
@@ -366,7 +366,7 @@ def test_loads_out_of_range_are_refused(ask, loading):
 def test_servos_are_those_of_size_servos(ask):
     ask.all(
         "walk",
-        walk={"gait": "wave", "body_height_mm": 130, "path": {"way": "straight", "distance_mm": 150, "heading_deg": 0}},
+        walk={"gait": "wave", "body_height_mm": 130, "path": {"kind": "straight", "distance_mm": 150, "heading_deg": 0}},
     )
     ask.all("loads", loads={"safety_factor": 2.5})
     told = ask("servos", "servos")

@@ -38,10 +38,10 @@ states = st.builds(
     walk=st.builds(
         WalkOptions,
         gait=st.sampled_from([None, "wave", OwnGait(duty_factor=0.6, offsets=(0.1,) * 6)]),
-        path=st.builds(Curve, way=st.just("curve"), angle_deg=numbers)
+        path=st.builds(Curve, kind=st.just("curve"), angle_deg=numbers)
         | st.builds(
             Twist,
-            way=st.just("twist"),
+            kind=st.just("twist"),
             velocity_mm_s=st.tuples(numbers, numbers),
             turn_deg_s=numbers,
             duration_s=st.floats(0, 10),

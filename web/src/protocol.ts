@@ -91,7 +91,7 @@ export interface Command {
 
 /** A walk round a centre on the floor. */
 export interface Curve {
-  way: "curve";
+  kind: "curve";
   /** Negative is clockwise. */
   angle_deg: number;
   centre_mm: [number, number];
@@ -332,12 +332,6 @@ export interface MathNode {
   children: MathNode[];
 }
 
-/** A length and when it is so. */
-export interface Moment {
-  mm: number | null;
-  at_s: number;
-}
-
 /** Take the state that a text holds. Answers: robot, state, what the view shows. */
 export interface OpenState {
   id: number;
@@ -414,8 +408,8 @@ export interface PoseMessage {
   /** How it stands, in words. */
   text: string;
   problems: string[];
-  /** How much of the body's way works, from 0 to 1. */
-  share: number | null;
+  /** How far towards the requested body pose is possible, 0 to 1. */
+  feasible_fraction: number | null;
 }
 
 /** One thing that is wrong in a robot file. */
@@ -583,9 +577,9 @@ export interface SetWalk {
 }
 
 /** Tell what a leg reaches with the body as it is. Answer: zone. */
-export interface ShowZone {
+export interface ShowWorkspace {
   id: number;
-  type: "zone";
+  type: "workspace";
   leg: number;
 }
 
@@ -622,7 +616,7 @@ export interface StateMessage {
 
 /** A straight walk. */
 export interface Straight {
-  way: "straight";
+  kind: "straight";
   distance_mm: number;
   /** From the front; 90 is to the left. */
   heading_deg: number;
@@ -640,9 +634,15 @@ export interface StudioState {
   picture: Picture;
 }
 
+/** A length and when it is so. */
+export interface TimedLength {
+  mm: number | null;
+  at_s: number;
+}
+
 /** A walk at a constant twist. */
 export interface Twist {
-  way: "twist";
+  kind: "twist";
   velocity_mm_s: [number, number];
   turn_deg_s: number;
   duration_s: number;
@@ -694,8 +694,8 @@ export interface WalkMessage {
   longest_stroke_mm: number | null;
   end: WalkEnd;
   joint_speed: JointSpeed[];
-  least_margin: Moment;
-  nearest_feet: Moment;
+  least_margin: TimedLength;
+  nearest_feet: TimedLength;
   nearest_legs: string[];
   possible: boolean;
   problems: string[];
@@ -738,9 +738,9 @@ export interface Welcome {
 }
 
 /** What a leg reaches, as closed outlines in B: they move with the body. Empty where it reaches nothing there. */
-export interface ZoneMessage {
+export interface WorkspaceMessage {
   id: number;
-  type: "zone";
+  type: "workspace";
   leg: number;
   /** Points (x, y, z) of the outline on the ground. */
   ground_mm: number[];
@@ -764,7 +764,7 @@ export type ClientMessage =
   | SetWalk
   | SetLoads
   | SizeServos
-  | ShowZone
+  | ShowWorkspace
   | ChooseSource
   | Drive
   | Command
@@ -778,7 +778,7 @@ export type ServerMessage =
   | RobotMessage
   | StateMessage
   | PoseMessage
-  | ZoneMessage
+  | WorkspaceMessage
   | WalkMessage
   | LoadsMessage
   | ServosMessage

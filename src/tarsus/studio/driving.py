@@ -19,8 +19,8 @@ from tarsus.kinematics.mass import centre_of_mass
 from tarsus.kinematics.stability import stability_margin
 from tarsus.robot.robot import Robot
 from tarsus.studio.messages import client as ask
-from tarsus.studio.messages.moving import DriveFrame
-from tarsus.studio.wire import degrees, flags, millimetres, or_null, plain
+from tarsus.studio.messages.motion import DriveFrame
+from tarsus.studio.encoding import degrees, flags, millimetres, or_null, plain
 
 __all__ = ["Driver"]
 

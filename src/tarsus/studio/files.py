@@ -14,7 +14,7 @@ from tarsus.gait.motion import Motion
 from tarsus.gait.storage import motion_to_csv
 from tarsus.robot.file import robot_text
 from tarsus.robot.robot import JOINTS, Robot
-from tarsus.studio.messages.plain import FileMessage
+from tarsus.studio.messages.general import FileMessage
 
 __all__ = ["angles_csv", "file_name", "text_file", "toml_of", "walk_csv"]
 

@@ -6,9 +6,9 @@ from pathlib import Path
 
 from tarsus.errors import InputError, TarsusError
 from tarsus.gait.motion import Motion
-from tarsus.studio.bearing import loads_message, loads_of
-from tarsus.studio.messages.moving import LoadsMessage
-from tarsus.studio.messages.plain import PlayerData
+from tarsus.studio.loads import loads_message, loads_of
+from tarsus.studio.messages.motion import LoadsMessage
+from tarsus.studio.messages.general import PlayerData
 from tarsus.studio.messages.state import LoadOptions, RobotChoice
 from tarsus.studio.robots import robot_message
 from tarsus.studio.walks import MOST_SAMPLES, walk_message

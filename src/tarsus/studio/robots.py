@@ -18,8 +18,8 @@ from tarsus.report.robot_summary import check_robot, dimensions
 from tarsus.robot.file import list_robots, load_robot, robot_from_dict, robot_from_text, robot_to_dict
 from tarsus.robot.robot import Robot
 from tarsus.studio.messages.state import RobotChoice
-from tarsus.studio.messages.still import Dimension, RobotMessage
-from tarsus.studio.wire import degrees, millimetres, or_null
+from tarsus.studio.messages.pose import Dimension, RobotMessage
+from tarsus.studio.encoding import degrees, millimetres, or_null
 
 __all__ = [
     "MOST_LEGS",

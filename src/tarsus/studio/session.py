@@ -12,15 +12,15 @@ from tarsus.robot.catalogue import list_servos
 from tarsus.robot.file import list_robots
 from tarsus.robot.schema import robot_schema
 from tarsus.studio.driving import Driver
-from tarsus.studio.failure import error_message
+from tarsus.studio.error_messages import error_message
 from tarsus.studio.history import History
 from tarsus.studio.messages import client as ask
-from tarsus.studio.messages.moving import DriveFrame
-from tarsus.studio.messages.plain import Done, ErrorMessage
+from tarsus.studio.messages.motion import DriveFrame
+from tarsus.studio.messages.general import Done, ErrorMessage
 from tarsus.studio.messages.state import BodyState, JointsState, RobotChoice, StudioState, WalkOptions
-from tarsus.studio.messages.still import Bounds, StateMessage, Welcome
+from tarsus.studio.messages.pose import Bounds, StateMessage, Welcome
 from tarsus.studio.poses import drag_foothold, drag_joints
-from tarsus.studio.reading import read
+from tarsus.studio.parsing import read
 from tarsus.studio.robots import choice_of_document, choice_of_preset, choice_of_text, robot_message
 from tarsus.studio.state_text import state_of, text_of
 from tarsus.studio.views import Views, fitted
@@ -139,13 +139,13 @@ class Session:
 
     def _everything(self, state: StudioState, *, id: int) -> Answers:
         """Give the robot, the state, and what its view shows."""
-        yield robot_message(self._views.desk.robot(state), state.robot, id=id)
+        yield robot_message(self._views.results.robot(state), state.robot, id=id)
         yield StateMessage(type="state", id=id, state=state)
         yield from self._views.shown(state, id=id)
 
     def _take(self, state: StudioState, *, id: int, commit: bool) -> Answers:
         """Go over to a state, after all of it was worked out."""
-        state = fitted(state, self._views.desk.robot(state))
+        state = fitted(state, self._views.results.robot(state))
         answers = list(self._everything(state, id=id))
         self._driver = None
         self._history.change(state, commit=commit)
@@ -167,7 +167,7 @@ class Session:
         if message.state is not None:
             try:
                 state = state_of(message.state)
-                state = fitted(state, self._views.desk.robot(state))
+                state = fitted(state, self._views.results.robot(state))
             except Exception as error:  # a link of long ago: told, and the studio opens all the same
                 yield error_message(error, id=message.id)
                 state = self.state
@@ -220,7 +220,7 @@ class Session:
         yield from answers
 
     def _drag(self, message: ask.DragFoot) -> Answers:
-        robot, state = self._views.desk.robot(self.state), self.state
+        robot, state = self._views.results.robot(self.state), self.state
         change: dict[str, Any]
         if state.view == "joints":
             change = {"joints": drag_joints(robot, state.joints, message.leg, message.position_mm)}
@@ -258,8 +258,8 @@ class Session:
     def _servos(self, message: ask.SizeServos) -> Answers:
         yield self._views.servos(self.state, id=message.id)
 
-    def _zone(self, message: ask.ShowZone) -> Answers:
-        yield self._views.zone(self.state, message.leg, id=message.id)
+    def _workspace(self, message: ask.ShowWorkspace) -> Answers:
+        yield self._views.workspace(self.state, message.leg, id=message.id)
 
     def _source(self, message: ask.ChooseSource) -> Answers:
         state = self.state.model_copy(update={"source": message.source})
@@ -268,7 +268,7 @@ class Session:
         yield answer
 
     def _drive(self, message: ask.Drive) -> Answers:
-        self._driver = Driver(self._views.desk.robot(self.state), id=message.id) if message.on else None
+        self._driver = Driver(self._views.results.robot(self.state), id=message.id) if message.on else None
         yield from ()
 
     def _command(self, message: ask.Command) -> Answers:
@@ -304,7 +304,7 @@ _HANDLERS: dict[type[Any], Callable[[Session, Any], Answers]] = {
     ask.SetWalk: Session._walk,
     ask.SetLoads: Session._loads,
     ask.SizeServos: Session._servos,
-    ask.ShowZone: Session._zone,
+    ask.ShowWorkspace: Session._workspace,
     ask.ChooseSource: Session._source,
     ask.Drive: Session._drive,
     ask.Command: Session._command,

@@ -18,8 +18,8 @@ from tarsus.load.torque import joint_torques
 from tarsus.report.standing_summary import Standing, rest_summary
 from tarsus.robot.robot import JOINTS, Robot
 from tarsus.studio.messages.state import View
-from tarsus.studio.messages.still import BrokenLimit, LegProblem, PoseMessage
-from tarsus.studio.wire import degrees, flags, millimetres, or_null, plain
+from tarsus.studio.messages.pose import BrokenLimit, LegProblem, PoseMessage
+from tarsus.studio.encoding import degrees, flags, millimetres, or_null, plain
 
 __all__ = ["OnFootholds", "broken_limits", "resting_message", "standing_message"]
 
@@ -115,7 +115,7 @@ def resting_message(
         limits=broken_limits(robot, angles),
         text=summary["description"],
         problems=summary["problems"],
-        share=None,
+        feasible_fraction=None,
     )
 
 
@@ -160,7 +160,7 @@ def standing_message(standing: OnFootholds, *, id: int, view: View) -> PoseMessa
         limits=[],
         text=_text(robot, contacts, margin),
         problems=problems,
-        share=standing.feasible_fraction if problems else 1.0,
+        feasible_fraction=standing.feasible_fraction if problems else 1.0,
     )
 
 

@@ -6,20 +6,20 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, TypeAlias
 
 from tarsus.errors import TarsusError, UnreachableError
-from tarsus.studio.bearing import loads_message, servos_message
-from tarsus.studio.desk import Desk
-from tarsus.studio.failure import error_message
+from tarsus.studio.loads import loads_message, servos_message
+from tarsus.studio.results import Results
+from tarsus.studio.error_messages import error_message
 from tarsus.studio.files import angles_csv, file_name, text_file, toml_of, walk_csv
-from tarsus.studio.messages.moving import LoadsMessage, ServosMessage, WalkMessage
-from tarsus.studio.messages.plain import FileMessage, SourceMessage
+from tarsus.studio.messages.motion import LoadsMessage, ServosMessage, WalkMessage
+from tarsus.studio.messages.general import FileMessage, SourceMessage
 from tarsus.studio.messages.state import BodyState, JointsState, OwnGait, StudioState
-from tarsus.studio.messages.still import PoseMessage, ZoneMessage
+from tarsus.studio.messages.pose import PoseMessage, WorkspaceMessage
 from tarsus.studio.player import player_data, player_page
 from tarsus.studio.poses import require_leg
 from tarsus.studio.sources.page import source_message
 from tarsus.studio.standing import resting_message, standing_message
 from tarsus.studio.walks import walk_message
-from tarsus.studio.zone import zone_message
+from tarsus.studio.leg_workspace import workspace_message
 
 if TYPE_CHECKING:
     from tarsus.gait.motion import Motion
@@ -60,7 +60,7 @@ class Views:
     """Works the messages out; what was worked out before is not worked out again."""
 
     def __init__(self) -> None:
-        self.desk = Desk()
+        self.results = Results()
         self._sent: Motion | None = None
 
     def shown(self, state: StudioState, *, id: int) -> Answers:
@@ -89,60 +89,60 @@ class Views:
     def pose(self, state: StudioState, *, id: int) -> PoseMessage:
         """Return the pose that the state's view shows."""
         if state.view == "joints":
-            pose = self.desk.resting(state)
-            return resting_message(self.desk.robot(state), pose.angles, pose.rest, id=id, view="joints")
+            pose = self.results.resting(state)
+            return resting_message(self.results.robot(state), pose.angles, pose.rest, id=id, view="joints")
         if state.view in ("body", "sources"):
-            return standing_message(self.desk.standing(state), id=id, view=state.view)
+            return standing_message(self.results.standing(state), id=id, view=state.view)
         return self._as_it_stands(state, id=id)
 
     def _as_it_stands(self, state: StudioState, *, id: int) -> PoseMessage:
         """Return the rest stance; of a robot that can't stand, how it rests with its legs straight out."""
         plain = state.model_copy(update={"body": BodyState(), "joints": JointsState()})
         try:
-            return standing_message(self.desk.standing(plain), id=id, view=state.view)
+            return standing_message(self.results.standing(plain), id=id, view=state.view)
         except UnreachableError:
-            pose = self.desk.resting(plain)
-            return resting_message(self.desk.robot(state), pose.angles, pose.rest, id=id, view=state.view)
+            pose = self.results.resting(plain)
+            return resting_message(self.results.robot(state), pose.angles, pose.rest, id=id, view=state.view)
 
     def walk(self, state: StudioState, *, id: int) -> WalkMessage:
         """Return the walk."""
-        motion = self.desk.walk(state)
-        message = walk_message(motion, longest=self.desk.longest(state), id=id)
+        motion = self.results.walk(state)
+        message = walk_message(motion, longest=self.results.longest(state), id=id)
         self._sent = motion
         return message
 
     def has_sent_walk(self, state: StudioState) -> bool:
         """Return whether the state's walk is the one that was sent last."""
-        return self.desk.walk(state) is self._sent
+        return self.results.walk(state) is self._sent
 
     def loads(self, state: StudioState, *, id: int) -> LoadsMessage:
         """Return what the walk asks of the joints."""
-        return loads_message(self.desk.loads(state), state.loads, id=id)
+        return loads_message(self.results.loads(state), state.loads, id=id)
 
     def servos(self, state: StudioState, *, id: int) -> ServosMessage:
         """Return which servos would do."""
-        return servos_message(self.desk.loads(state), state.loads, id=id)
+        return servos_message(self.results.loads(state), state.loads, id=id)
 
-    def zone(self, state: StudioState, leg: int, *, id: int) -> ZoneMessage:
+    def workspace(self, state: StudioState, leg: int, *, id: int) -> WorkspaceMessage:
         """Return what a leg reaches with the body as the view shows it."""
-        robot = self.desk.robot(state)
+        robot = self.results.robot(state)
         require_leg(robot, leg)
-        body, angles = self.desk.shown(state)
-        return zone_message(robot, leg, body, float(angles[leg, 0]), id=id)
+        body, angles = self.results.shown(state)
+        return workspace_message(robot, leg, body, float(angles[leg, 0]), id=id)
 
     def source(self, state: StudioState, *, id: int) -> SourceMessage:
         """Return a source document with the numbers of the view Body's pose."""
-        require_leg(self.desk.robot(state), state.source.leg)
-        return source_message(self.desk.standing(state), state.source, id=id)
+        require_leg(self.results.robot(state), state.source.leg)
+        return source_message(self.results.standing(state), state.source, id=id)
 
     def file(self, state: StudioState, what: str, *, id: int) -> FileMessage:
         """Return a file to save."""
-        robot = self.desk.robot(state)
+        robot = self.results.robot(state)
         if what == "toml":
             return text_file(file_name(robot, "", "toml"), toml_of(robot), id=id)
         if what == "angles":
-            return text_file(file_name(robot, "angles", "csv"), angles_csv(robot, self.desk.shown(state)[1]), id=id)
-        motion = self.desk.walk(state)
+            return text_file(file_name(robot, "angles", "csv"), angles_csv(robot, self.results.shown(state)[1]), id=id)
+        motion = self.results.walk(state)
         if what == "csv":
             return text_file(file_name(robot, "walk", "csv"), walk_csv(motion), id=id)
         data = player_data(motion, choice=state.robot, options=state.loads)

@@ -19,9 +19,9 @@ from tarsus.gait.walk_setup import WalkSetup, require_number
 from tarsus.kinematics.mass import centre_of_mass
 from tarsus.report.walk_summary import walk_summary
 from tarsus.robot.robot import JOINTS, Robot
-from tarsus.studio.messages.moving import JointSpeed, Moment, WalkEnd, WalkMessage
+from tarsus.studio.messages.motion import JointSpeed, TimedLength, WalkEnd, WalkMessage
 from tarsus.studio.messages.state import Curve, OwnGait, Straight, WalkOptions
-from tarsus.studio.wire import degrees, millimetres, or_null, rows_of_flags
+from tarsus.studio.encoding import degrees, millimetres, or_null, rows_of_flags
 
 __all__ = ["MOST_SAMPLES", "fewer_for_more_legs", "gait_of", "longest", "path_of", "plan", "walk_message"]
 
@@ -66,13 +66,13 @@ def path_of(options: WalkOptions) -> BodyPath:
     InputError
         If it goes nowhere.
     """
-    way = options.path
-    if isinstance(way, Straight):
-        return straight_path(way.distance_mm / 1000, math.radians(way.heading_deg))
-    if isinstance(way, Curve):
-        return curved_path(math.radians(way.angle_deg), (way.centre_mm[0] / 1000, way.centre_mm[1] / 1000))
-    vx, vy = way.velocity_mm_s
-    return twist_path(vx / 1000, vy / 1000, math.radians(way.turn_deg_s), way.duration_s)
+    path = options.path
+    if isinstance(path, Straight):
+        return straight_path(path.distance_mm / 1000, math.radians(path.heading_deg))
+    if isinstance(path, Curve):
+        return curved_path(math.radians(path.angle_deg), (path.centre_mm[0] / 1000, path.centre_mm[1] / 1000))
+    vx, vy = path.velocity_mm_s
+    return twist_path(vx / 1000, vy / 1000, math.radians(path.turn_deg_s), path.duration_s)
 
 
 @dataclass(frozen=True)
@@ -228,8 +228,8 @@ def walk_message(motion: Motion, *, longest: float | None, id: int) -> WalkMessa
         longest_stroke_mm=None if longest is None else longest * 1000,
         end=WalkEnd(**{key: float(value) for key, value in summary["end"].items()}),
         joint_speed=[_joint_speed(joint, summary["joint_speed"][joint]) for joint in JOINTS],
-        least_margin=_moment(summary["least_margin"]),
-        nearest_feet=_moment(summary["nearest_feet"]),
+        least_margin=_timed_length(summary["least_margin"]),
+        nearest_feet=_timed_length(summary["nearest_feet"]),
         nearest_legs=summary["nearest_feet"]["legs"],
         possible=summary["possible"],
         problems=summary["problems"],
@@ -237,8 +237,8 @@ def walk_message(motion: Motion, *, longest: float | None, id: int) -> WalkMessa
     )
 
 
-def _moment(found: dict[str, Any]) -> Moment:
-    return Moment(mm=or_null(found["mm"]), at_s=float(found["at_s"]))
+def _timed_length(found: dict[str, Any]) -> TimedLength:
+    return TimedLength(mm=or_null(found["mm"]), at_s=float(found["at_s"]))
 
 
 def _joint_speed(joint: str, found: dict[str, Any]) -> JointSpeed:

@@ -2,7 +2,7 @@ import { IconButton } from "../controls/IconButton";
 import { Select } from "../controls/Select";
 import { savePng } from "../scene/png";
 import { ask, look } from "../state/session";
-import { copyLink } from "../state/share";
+import { copyLink } from "../state/copyLink";
 import { useStudio } from "../state/store";
 import { toggleTheme, useTheme } from "./theme";
 

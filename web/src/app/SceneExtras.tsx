@@ -3,7 +3,7 @@ import type { Shape } from "../scene/frame";
 import { Handles } from "../scene/Handles";
 import { LiveTrails } from "../scene/LiveTrails";
 import type { Palette } from "../scene/palette";
-import { Zone } from "../scene/Zone";
+import { Workspace } from "../scene/Workspace";
 import { useStudio, type View } from "../state/store";
 import { dragged } from "./drag";
 
@@ -17,17 +17,17 @@ interface Props {
 /** Parts of the scene that only some views show: handles, a leg's workspace, a curve's centre. */
 export function SceneExtras({ view, shape, palette, colours }: Props) {
   const leg = useStudio((studio) => studio.state?.picture.leg ?? null);
-  const zone = useStudio((studio) => studio.zone);
+  const workspace = useStudio((studio) => studio.workspace);
   const path = useStudio((studio) => studio.state?.walk.path);
   const posing = view === "joints" || view === "body";
   return (
     <>
       {posing && <Handles shape={shape} palette={palette} body={view === "body"} onDrag={dragged} />}
-      {posing && zone?.leg === leg && (
-        <Zone ground={zone.ground_mm} plane={zone.plane_mm} palette={palette} />
+      {posing && workspace?.leg === leg && (
+        <Workspace ground={workspace.ground_mm} plane={workspace.plane_mm} palette={palette} />
       )}
       {view === "drive" && <LiveTrails colours={colours} />}
-      {view === "walk" && path?.way === "curve" && <Centre at={path.centre_mm} palette={palette} />}
+      {view === "walk" && path?.kind === "curve" && <Centre at={path.centre_mm} palette={palette} />}
     </>
   );
 }

@@ -42,7 +42,7 @@ export function BodyModel({ shape, thick, palette }: Props) {
           <meshStandardMaterial color={palette.body} roughness={0.6} metalness={0.1} />
         </RoundedBox>
       )}
-      {/* An arrowhead on the top says which way is forward. */}
+      {/* An arrowhead on the top shows the forward direction. */}
       <mesh position={[front * 0.55, 0, top + 1]} rotation={[0, 0, -Math.PI / 2]} scale={[1, 1.3, 0.12]}>
         <coneGeometry args={[thick * 1.6, thick * 3, 3]} />
         <meshBasicMaterial color={palette.mark} />

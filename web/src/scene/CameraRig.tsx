@@ -6,9 +6,9 @@ import type { OrbitControls as Controls } from "three-stdlib";
 
 import { isFrom, placeCamera, type CameraName, type Place } from "./cameras";
 import type { Vec3 } from "./frame";
-import { FLIGHT, fly, type Flight } from "./flight";
+import { TRANSITION_TIME, fly, type CameraTransition } from "./cameraTransition";
 import { prefersReducedMotion, stage } from "./stage";
-import { onSteer, turnBy, LOWEST } from "./steer";
+import { onSteer, turnBy, LOWEST } from "./cameraKeys";
 
 export interface View {
   target: Vec3;
@@ -30,8 +30,8 @@ export function CameraRig({ camera, view, place, onRest }: Props) {
   const controls = useRef<Controls>(null);
   const eyeNow = useThree((state) => state.camera);
   const invalidate = useThree((state) => state.invalidate);
-  const flight = useRef<Flight | null>(null);
-  const grabbed = useRef<{ eye: Vector3; flight: Flight | null } | null>(null);
+  const transition = useRef<CameraTransition | null>(null);
+  const grabbed = useRef<{ eye: Vector3; transition: CameraTransition | null } | null>(null);
   const seen = useRef<Vector3 | null>(null);
   const begun = useRef(false);
   const [eyeKey, targetKey] = [place?.eye.join(), place?.target.join()];
@@ -44,7 +44,12 @@ export function CameraRig({ camera, view, place, onRest }: Props) {
     begun.current = true;
     // The rounded position that the server returns must not move the camera again.
     if (place && eye.distanceTo(eyeNow.position) < 2) return;
-    flight.current = { eye, target: new Vector3(...goal.target), lasts: still ? 0 : FLIGHT, from: null };
+    transition.current = {
+      eye,
+      target: new Vector3(...goal.target),
+      lasts: still ? 0 : TRANSITION_TIME,
+      from: null,
+    };
     seen.current = null;
     invalidate();
     // eslint-disable-next-line react-hooks/exhaustive-deps
@@ -66,7 +71,7 @@ export function CameraRig({ camera, view, place, onRest }: Props) {
       onSteer((turn) => {
         const orbit = controls.current;
         if (!orbit) return;
-        flight.current = null;
+        transition.current = null;
         turnBy(turn, eyeNow.position, orbit.target);
         orbit.update();
         latestRest.current();
@@ -78,8 +83,8 @@ export function CameraRig({ camera, view, place, onRest }: Props) {
   useFrame(() => {
     const orbit = controls.current;
     if (!orbit) return;
-    if (flight.current) {
-      if (fly(flight.current, eyeNow.position, orbit.target)) flight.current = null;
+    if (transition.current) {
+      if (fly(transition.current, eyeNow.position, orbit.target)) transition.current = null;
       orbit.update();
       invalidate();
     } else if (camera === "follow") {
@@ -96,12 +101,12 @@ export function CameraRig({ camera, view, place, onRest }: Props) {
       maxDistance={6000}
       maxPolarAngle={LOWEST}
       onStart={() => {
-        grabbed.current = { eye: eyeNow.position.clone(), flight: flight.current };
-        flight.current = null;
+        grabbed.current = { eye: eyeNow.position.clone(), transition: transition.current };
+        transition.current = null;
       }}
       onEnd={() => {
         // A click without a movement must not interrupt a camera transition.
-        if (grabbed.current?.eye.equals(eyeNow.position)) flight.current = grabbed.current.flight;
+        if (grabbed.current?.eye.equals(eyeNow.position)) transition.current = grabbed.current.transition;
         else rest();
         invalidate();
       }}

@@ -109,7 +109,12 @@ function Handle({ grip, shape, palette, onDrag }: HandleProps) {
       onPointerUp={(event) => move(event, true)}
     >
       <sphereGeometry args={[radius, 20, 14]} />
-      <meshBasicMaterial color={palette.zone} transparent opacity={hot ? 0.45 : 0.14} depthWrite={false} />
+      <meshBasicMaterial
+        color={palette.workspace}
+        transparent
+        opacity={hot ? 0.45 : 0.14}
+        depthWrite={false}
+      />
     </mesh>
   );
 }

@@ -5,18 +5,18 @@ import { useRef, type KeyboardEvent, type ReactNode } from "react";
 import { Arrows } from "./Arrows";
 import { CameraRig, type View } from "./CameraRig";
 import type { CameraName, Place } from "./cameras";
-import { Conductor } from "./Conductor";
+import { FrameLoop } from "./FrameLoop";
 import { Contacts } from "./Contacts";
 import type { Shape } from "./frame";
-import { Goals } from "./Goals";
+import { FootTargets } from "./FootTargets";
 import { Ground } from "./Ground";
 import { Lights } from "./Lights";
-import { NotePlaces } from "./NotePlaces";
-import { Notes } from "./Notes";
+import { LabelPositions } from "./LabelPositions";
+import { Labels } from "./Labels";
 import type { Palette } from "./palette";
-import { PictureGuard } from "./PictureGuard";
+import { SceneErrorBoundary } from "./SceneErrorBoundary";
 import { Robot } from "./Robot";
-import { steer } from "./steer";
+import { steer } from "./cameraKeys";
 import { Support } from "./Support";
 import { TorqueBars } from "./TorqueBars";
 import { Trails } from "./Trails";
@@ -45,9 +45,9 @@ const nothing = () => undefined;
 /** The 3D view: one canvas shared by all views; also used by the player. */
 export function SceneCanvas(props: SceneProps) {
   return (
-    <PictureGuard>
+    <SceneErrorBoundary>
       <Scene {...props} />
-    </PictureGuard>
+    </SceneErrorBoundary>
   );
 }
 
@@ -91,7 +91,7 @@ function Scene(props: SceneProps) {
       >
         <color attach="background" args={[palette.background]} />
         <fog attach="fog" args={[palette.background, view.radius * 6 + 1200, view.radius * 10 + 3600]} />
-        <Conductor />
+        <FrameLoop />
         <Lights palette={palette} reach={shape.reach} />
         <Ground palette={palette} />
         {onFloor && (
@@ -110,14 +110,14 @@ function Scene(props: SceneProps) {
         <Contacts shape={shape} palette={palette} />
         {trails && <Trails paths={trails} colours={colours} />}
         <Robot shape={shape} colours={colours} palette={palette} />
-        <Goals shape={shape} palette={palette} />
+        <FootTargets shape={shape} palette={palette} />
         {forces && <Arrows shape={shape} palette={palette} />}
         {torques && <TorqueBars shape={shape} palette={palette} />}
         {props.children}
         <CameraRig camera={camera} view={view} place={place} onRest={props.onRest ?? nothing} />
-        <NotePlaces layer={notes} />
+        <LabelPositions layer={notes} />
       </Canvas>
-      <Notes layer={notes} shape={shape} colours={colours} names={names ?? true} />
+      <Labels layer={notes} shape={shape} colours={colours} names={names ?? true} />
     </div>
   );
 }

@@ -40,10 +40,10 @@ function Bar({ leg, joint, shape, palette }: Props & { leg: number; joint: numbe
     if (torque === undefined || stall === null) return;
     const [x, y, z] = pointOf(frame, leg, joint);
     group.current.position.set(x, y, z + shape.reach * 0.13);
-    const share = Math.min(1, Math.abs(torque) / stall);
-    bar.current.scale.set(1, Math.max(share, 0.01) * height, 1);
-    bar.current.position.set(0, (share * height - height) / 2, 0.3);
-    const colour = share >= 1 ? palette.trouble : share > LASTING ? palette.mark : palette.support;
+    const fraction = Math.min(1, Math.abs(torque) / stall);
+    bar.current.scale.set(1, Math.max(fraction, 0.01) * height, 1);
+    bar.current.position.set(0, (fraction * height - height) / 2, 0.3);
+    const colour = fraction >= 1 ? palette.trouble : fraction > LASTING ? palette.mark : palette.support;
     (bar.current.material as MeshBasicMaterial).color.set(colour);
   });
 

@@ -15,7 +15,7 @@ export interface Palette {
   unstable: string;
   trouble: string;
   force: string;
-  zone: string;
+  workspace: string;
   mark: string;
   shadow: number;
   sun: number;
@@ -38,7 +38,7 @@ export const LIGHT: Palette = {
   unstable: "#c4202f",
   trouble: "#d01c2c",
   force: "#7a3fb0",
-  zone: "#0b6e8f",
+  workspace: "#0b6e8f",
   mark: "#ffb000",
   shadow: 0.28,
   sun: 2.4,
@@ -61,7 +61,7 @@ export const DARK: Palette = {
   unstable: "#ff6b74",
   trouble: "#ff5a63",
   force: "#c39bf0",
-  zone: "#4cc2e0",
+  workspace: "#4cc2e0",
   mark: "#ffc24d",
   shadow: 0.55,
   sun: 2.0,

@@ -101,17 +101,17 @@ describe("outbox", () => {
     outbox.pump(0);
     outbox.put(joints(2));
     outbox.put({ type: "body", body: {} as never, commit: false });
-    outbox.put({ type: "zone", leg: 2 });
+    outbox.put({ type: "workspace", leg: 2 });
     outbox.pump(1);
-    expect(sent.map(({ type }) => type)).toEqual(["joints", "body", "zone"]);
+    expect(sent.map(({ type }) => type)).toEqual(["joints", "body", "workspace"]);
   });
 
   it("does not order messages of independent types", () => {
     const { sent, outbox } = anOutbox();
     outbox.put(joints(1));
-    outbox.put({ type: "zone", leg: 2 });
+    outbox.put({ type: "workspace", leg: 2 });
     outbox.pump(0);
-    expect(sent.map(({ type }) => type)).toEqual(["joints", "zone"]);
+    expect(sent.map(({ type }) => type)).toEqual(["joints", "workspace"]);
   });
 
   it("gives every message its own id, also after a lost connection", () => {

@@ -11,7 +11,7 @@ const NEVER_MERGED: ReadonlySet<ClientType> = new Set(["undo", "redo", "download
 /** Types whose answers need not be awaited. */
 const UNTRACKED: ReadonlySet<ClientType> = new Set(["ping", "hello"]);
 /** Types whose order relative to others does not matter. */
-const UNORDERED: ReadonlySet<ClientType> = new Set(["ping", "hello", "command", "zone"]);
+const UNORDERED: ReadonlySet<ClientType> = new Set(["ping", "hello", "command", "workspace"]);
 /** Minimum interval between messages of a type [ms]: about one frame of the display. */
 const MIN_INTERVAL = 15;
 

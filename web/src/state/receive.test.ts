@@ -37,7 +37,7 @@ describe("messages of the server", () => {
   it("keep an error until a message of its type succeeds", () => {
     const refused = after(EMPTY, [error(1), "walk"], [done(1), "walk"]);
     expect(refused.failures.walk?.text).toBe("too long");
-    expect(after(refused, [done(2), "zone"]).failures.walk?.text).toBe("too long");
+    expect(after(refused, [done(2), "workspace"]).failures.walk?.text).toBe("too long");
     expect(after(refused, [done(3), "walk"]).failures.walk).toBeUndefined();
   });
 

@@ -29,8 +29,8 @@ export function received(
       return { loads: message, failures: { ...studio.failures, loads: undefined } };
     case "servos":
       return { servos: message };
-    case "zone":
-      return { zone: message };
+    case "workspace":
+      return { workspace: message };
     case "source":
       return { source: message };
     case "error":
@@ -86,7 +86,7 @@ function finished(studio: Studio, done: Done, asked: ClientType | null): Partial
     const old = (answer: { id: number } | null) => answer !== null && answer.id !== done.id;
     if (old(studio.walk)) changes.walk = null;
     if (old(studio.loads)) changes.loads = null;
-    if (old(studio.zone)) changes.zone = null;
+    if (old(studio.workspace)) changes.workspace = null;
     changes.servos = null;
     changes.poses = Object.fromEntries(Object.entries(studio.poses).filter(([, pose]) => !old(pose)));
   }

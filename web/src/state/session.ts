@@ -6,12 +6,12 @@ import { Link } from "./link";
 import type { ClientType, Draft } from "./outbox";
 import { received } from "./receive";
 import { notify, useStudio } from "./store";
-import { Unkept, withPart, type Settable } from "./unkept";
+import { Unsaved, withPart, type Settable } from "./unsaved";
 
 /** Delay after which the URL is updated [ms]: browsers allow about 100 changes in 30 s. */
 const ADDRESS_DELAY = 600;
 
-const unkept = new Unkept();
+const unsaved = new Unsaved();
 /** Whether the open session has sent its state. */
 let greeted = false;
 /** Types whose failure to be sent is reported to the user. */
@@ -53,7 +53,7 @@ export function retry(): void {
 
 /** Send a message; its answers change the store. */
 export function ask(draft: Draft): void {
-  unkept.add(draft);
+  unsaved.add(draft);
   if (!link.send(draft)) {
     if (REPORTED.has(draft.type)) notify("Not connected to the server");
     return;
@@ -63,8 +63,8 @@ export function ask(draft: Draft): void {
   }
 }
 
-function sendUnkept(): void {
-  for (const draft of unkept.take()) {
+function sendUnsaved(): void {
+  for (const draft of unsaved.take()) {
     useStudio.setState(({ state }) => ({ state: state && withPart(state, draft) }));
     ask(draft);
   }
@@ -102,12 +102,12 @@ function receive(message: ServerMessage, asked: ClientType | null): void {
     received(studio, message, asked, (type) => id !== null && link.isNewer(type, id)),
   );
   // A session that has just been opened does not have the latest settings.
-  if (message.type === "state" && greeted) unkept.forget();
+  if (message.type === "state" && greeted) unsaved.forget();
   if (message.type !== "done") return;
-  if (!greeted) sendUnkept();
+  if (!greeted) sendUnsaved();
   greeted = true;
   if (message.state === null) return;
-  if (asked && id !== null && !link.isNewer(asked, id)) unkept.kept(asked);
+  if (asked && id !== null && !link.isNewer(asked, id)) unsaved.kept(asked);
   writeSoon();
 }
 

@@ -11,7 +11,7 @@ import type {
   StudioState,
   WalkMessage,
   Welcome,
-  ZoneMessage,
+  WorkspaceMessage,
 } from "../protocol";
 import type { LinkStatus } from "./link";
 import type { ClientType } from "./outbox";
@@ -34,7 +34,7 @@ export interface Studio {
   /** Loads of that walk; null where they are not computed yet. */
   loads: LoadsMessage | null;
   servos: ServosMessage | null;
-  zone: ZoneMessage | null;
+  workspace: WorkspaceMessage | null;
   source: SourceMessage | null;
   /** A recent frame of the driven robot, for the panel; the 3D view has its own. */
   drive: DriveFrame | null;
@@ -58,7 +58,7 @@ export const useStudio = create<Studio>(() => ({
   walk: null,
   loads: null,
   servos: null,
-  zone: null,
+  workspace: null,
   source: null,
   drive: null,
   failures: {},

@@ -1,6 +1,6 @@
 import { Icon } from "../controls/icons";
 import { fixed } from "../controls/numbers";
-import { copyText } from "../state/share";
+import { copyText } from "../state/copyLink";
 import { angleText, JOINTS } from "./angleText";
 
 interface Props {

@@ -10,7 +10,7 @@ import { FeetInputs } from "./FeetInputs";
 import { Standing } from "./Standing";
 import { useInputs } from "./useInputs";
 import { ViewHead } from "./ViewHead";
-import { ZoneChoice } from "./ZoneChoice";
+import { WorkspaceChoice } from "./WorkspaceChoice";
 
 type Key = "x_mm" | "y_mm" | "z_mm" | "roll_deg" | "pitch_deg" | "yaw_deg";
 
@@ -46,9 +46,9 @@ export function BodyView() {
       </ViewHead>
       <Failure of={["body", "drag_foot"]} />
       {pose && <Standing pose={pose} />}
-      {pose?.share != null && pose.share < 1 && (
+      {pose?.feasible_fraction != null && pose.feasible_fraction < 1 && (
         <p className="hint" data-testid="feasible-fraction">
-          {Math.floor(pose.share * 100)} % of this movement is possible.
+          {Math.floor(pose.feasible_fraction * 100)} % of this movement is possible.
         </p>
       )}
       <fieldset>
@@ -104,7 +104,7 @@ export function BodyView() {
         </div>
       </fieldset>
       {pose && <FeetInputs pose={pose} />}
-      <ZoneChoice />
+      <WorkspaceChoice />
       {pose && <AngleTable codes={robot.leg_codes} angles={pose.angles_deg} />}
     </div>
   );

@@ -10,7 +10,7 @@ import { AngleTable } from "./AngleTable";
 import { Standing } from "./Standing";
 import { useInputs } from "./useInputs";
 import { ViewHead } from "./ViewHead";
-import { ZoneChoice } from "./ZoneChoice";
+import { WorkspaceChoice } from "./WorkspaceChoice";
 import { JOINTS } from "./angleText";
 
 /** Forward kinematics: from the joint angles to the resting pose of the robot. */
@@ -71,7 +71,7 @@ export function JointsView() {
           ))}
         </fieldset>
       ))}
-      <ZoneChoice />
+      <WorkspaceChoice />
       <AngleTable codes={robot.leg_codes} angles={angles} />
     </div>
   );

@@ -7,9 +7,9 @@ from typing import Annotated, TypeAlias
 from pydantic import Field, TypeAdapter
 
 from tarsus.studio.messages.client import ClientMessage
-from tarsus.studio.messages.moving import DriveFrame, LoadsMessage, ServosMessage, WalkMessage
-from tarsus.studio.messages.plain import Done, ErrorMessage, FileMessage, SourceMessage
-from tarsus.studio.messages.still import PoseMessage, RobotMessage, StateMessage, Welcome, ZoneMessage
+from tarsus.studio.messages.motion import DriveFrame, LoadsMessage, ServosMessage, WalkMessage
+from tarsus.studio.messages.general import Done, ErrorMessage, FileMessage, SourceMessage
+from tarsus.studio.messages.pose import PoseMessage, RobotMessage, StateMessage, Welcome, WorkspaceMessage
 
 __all__ = ["CLOSED", "SOCKET", "ClientMessage", "ServerMessage", "client_message"]
 
@@ -30,7 +30,7 @@ ServerMessage: TypeAlias = Annotated[
     | RobotMessage
     | StateMessage
     | PoseMessage
-    | ZoneMessage
+    | WorkspaceMessage
     | WalkMessage
     | LoadsMessage
     | ServosMessage

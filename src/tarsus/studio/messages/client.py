@@ -40,7 +40,7 @@ __all__ = [
     "SetToml",
     "SetView",
     "SetWalk",
-    "ShowZone",
+    "ShowWorkspace",
     "SizeServos",
     "Undo",
 ]
@@ -142,10 +142,10 @@ class SizeServos(Message):
     type: Literal["servos"]
 
 
-class ShowZone(Message):
+class ShowWorkspace(Message):
     """Tell what a leg reaches with the body as it is. Answer: zone."""
 
-    type: Literal["zone"]
+    type: Literal["workspace"]
     leg: Leg
 
 
@@ -218,7 +218,7 @@ ClientMessage: TypeAlias = Annotated[
     | SetWalk
     | SetLoads
     | SizeServos
-    | ShowZone
+    | ShowWorkspace
     | ChooseSource
     | Drive
     | Command

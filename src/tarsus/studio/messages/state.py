@@ -61,7 +61,7 @@ class BodyState(Part):
 class Straight(Part):
     """A straight walk."""
 
-    way: Literal["straight"] = "straight"
+    kind: Literal["straight"] = "straight"
     distance_mm: Coordinate = 500.0
     heading_deg: Angle = Field(default=0.0, description="From the front; 90 is to the left.")
 
@@ -69,7 +69,7 @@ class Straight(Part):
 class Curve(Part):
     """A walk round a centre on the floor."""
 
-    way: Literal["curve"]
+    kind: Literal["curve"]
     angle_deg: Angle = Field(description="Negative is clockwise.")
     centre_mm: tuple[Coordinate, Coordinate] = (0.0, 0.0)
 
@@ -77,13 +77,13 @@ class Curve(Part):
 class Twist(Part):
     """A walk at a constant twist."""
 
-    way: Literal["twist"]
+    kind: Literal["twist"]
     velocity_mm_s: tuple[Number, Number]
     turn_deg_s: Angle
     duration_s: Positive
 
 
-Way: TypeAlias = Annotated[Straight | Curve | Twist, Field(discriminator="way")]
+Path: TypeAlias = Annotated[Straight | Curve | Twist, Field(discriminator="kind")]
 
 
 class OwnGait(Part):
@@ -99,7 +99,7 @@ class WalkOptions(Part):
     """The view Walk: every option of `plan_walk`; null leaves it to the plan, which then says what it took."""
 
     gait: Name | OwnGait | None = Field(default=None, description="Null for the robot's own.")
-    path: Way = Straight()
+    path: Path = Straight()
     stroke_mm: Positive | None = None
     speed_mm_s: Positive | None = None
     cycle_time_s: Positive | None = None

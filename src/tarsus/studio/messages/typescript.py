@@ -12,7 +12,7 @@ from pydantic.json_schema import models_json_schema
 
 from tarsus.robot.schema import RobotFile, robot_schema
 from tarsus.studio.messages import CLOSED, SOCKET, ClientMessage, ServerMessage
-from tarsus.studio.messages.plain import PlayerData
+from tarsus.studio.messages.general import PlayerData
 
 __all__ = ["typescript"]
 

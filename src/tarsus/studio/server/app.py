@@ -11,7 +11,7 @@ from fastapi import FastAPI, Request, Response, WebSocket
 
 from tarsus import __version__
 from tarsus.studio.messages import CLOSED, SOCKET
-from tarsus.studio.server.guard import Guard
+from tarsus.studio.server.access import AccessControl
 from tarsus.studio.server.pages import Pages
 from tarsus.studio.server.settings import Settings
 from tarsus.studio.server.visitor import Visitor
@@ -64,4 +64,4 @@ def studio_app(settings: Settings, *, pages: Pages | None = None) -> ASGIApp:
         finally:
             here.discard(socket)
 
-    return Guard(app, settings)
+    return AccessControl(app, settings)

@@ -6,7 +6,7 @@ from collections import deque
 from typing import TYPE_CHECKING, Any
 
 from tarsus.studio.messages import client as ask
-from tarsus.studio.messages.plain import Done
+from tarsus.studio.messages.general import Done
 
 if TYPE_CHECKING:
     from tarsus.studio.messages import ClientMessage
@@ -16,7 +16,7 @@ __all__ = ["Inbox"]
 # Of these only the newest counts: each tells the whole of its part of the state, or asks for what would be outdated.
 _NEWEST = (
     *(ask.SetJoints, ask.SetBody, ask.DragFoot, ask.SetWalk, ask.SetLoads, ask.SetDocument, ask.ChooseSource),
-    *(ask.SizeServos, ask.ShowZone, ask.Command),
+    *(ask.SizeServos, ask.ShowWorkspace, ask.Command),
 )
 
 

@@ -15,7 +15,7 @@ import uvicorn
 
 from tarsus.errors import InputError
 from tarsus.studio.server.app import studio_app
-from tarsus.studio.server.gathered import GatheredProtocol
+from tarsus.studio.server.batched_transport import BatchedProtocol
 from tarsus.studio.server.pages import Pages
 from tarsus.studio.server.settings import Settings
 
@@ -44,7 +44,7 @@ class Serving:
         limits = settings.limits
         config = uvicorn.Config(
             studio_app(self.settings, pages=pages),
-            ws=GatheredProtocol,
+            ws=BatchedProtocol,
             ws_max_size=limits.message_bytes,
             # On this machine compressing costs more than it saves.
             ws_per_message_deflate=not settings.loopback,

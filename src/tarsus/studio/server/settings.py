@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 
 from tarsus.errors import InputError
 from tarsus.studio.messages.state import StudioState
-from tarsus.studio.messages.still import Bounds
+from tarsus.studio.messages.pose import Bounds
 from tarsus.studio.walks import MOST_SAMPLES
 
 __all__ = ["Limits", "Settings", "is_loopback"]

@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING
 
 from starlette.websockets import WebSocketDisconnect
 
-from tarsus.studio.failure import malformed
+from tarsus.studio.error_messages import malformed
 from tarsus.studio.messages import CLOSED
 from tarsus.studio.messages import client as ask
-from tarsus.studio.messages.plain import Done, ErrorMessage
-from tarsus.studio.reading import read
+from tarsus.studio.messages.general import Done, ErrorMessage
+from tarsus.studio.parsing import read
 from tarsus.studio.server.inbox import Inbox
 from tarsus.studio.server.rate import Rate
 from tarsus.studio.server.settings import Settings
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from pydantic import BaseModel
 
     from tarsus.studio.messages import ClientMessage
-    from tarsus.studio.messages.moving import DriveFrame
+    from tarsus.studio.messages.motion import DriveFrame
 
 __all__ = ["Visitor"]
 

@@ -15,7 +15,7 @@ from typing import TypeAlias
 
 import numpy as np
 
-from tarsus.studio.messages.plain import MathNode
+from tarsus.studio.messages.general import MathNode
 
 __all__ = ["FUNCTIONS", "UNITS", "Expression", "Quantity", "symbol_node"]
 

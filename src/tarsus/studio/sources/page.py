@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from tarsus.studio.messages.plain import Equation, Erratum, MathNode, SourceMessage
+from tarsus.studio.messages.general import Equation, Erratum, MathNode, SourceMessage
 from tarsus.studio.messages.state import SourceChoice
 from tarsus.studio.sources import doc000, doc001, doc002, doc003, doc004
 from tarsus.studio.sources.document import Document, Given, Line, Slip
@@ -16,7 +16,7 @@ from tarsus.studio.sources.expression import Expression, Quantity, symbol_node
 from tarsus.studio.sources.live import Live
 from tarsus.studio.sources.torques import torque_equations, torque_slips
 from tarsus.studio.standing import OnFootholds
-from tarsus.studio.wire import or_null
+from tarsus.studio.encoding import or_null
 
 __all__ = ["DOCUMENTS", "source_message"]
 

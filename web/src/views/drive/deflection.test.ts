@@ -16,7 +16,7 @@ describe("keys", () => {
 });
 
 describe("sticks", () => {
-  it("have a dead zone, from whose edge the deflection grows continuously", () => {
+  it("have a dead workspace, from whose edge the deflection grows continuously", () => {
     expect(stickDeflection(0.1, -0.05)).toEqual({ x: 0, y: 0 });
     expect(stickDeflection(0.121, 0).x).toBeLessThan(0.01);
     expect(stickDeflection(1, 0).x).toBeCloseTo(1);

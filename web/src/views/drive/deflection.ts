@@ -7,10 +7,10 @@ export interface Deflection {
 
 export const CENTRED: Deflection = { forward: 0, left: 0, turn: 0 };
 
-/** Radius of a stick's dead zone, as a fraction of its range: sticks do not return exactly to the centre. */
+/** Radius of a stick's dead workspace, as a fraction of its range: sticks do not return exactly to the centre. */
 const DEAD_ZONE = 0.12;
 
-/** Deflection of a stick at a position within its circle; it grows from 0 at the edge of the dead zone. */
+/** Deflection of a stick at a position within its circle; it grows from 0 at the edge of the dead workspace. */
 export function stickDeflection(x: number, y: number): { x: number; y: number } {
   const length = Math.hypot(x, y);
   if (length <= DEAD_ZONE) return { x: 0, y: 0 };

@@ -63,7 +63,7 @@ export function TorqueGrid({ loads }: { loads: LoadsMessage }) {
 const SIGNS: Record<string, string> = { good: "✓", marginal: "△", unknown: "?" };
 
 function Bar({ load, onMark }: { load: JointLoad; onMark: (mark: HTMLElement | null) => void }) {
-  const share = load.stall_nm ? Math.min(1, load.peak_nm / load.stall_nm) : 0;
+  const fraction = load.stall_nm ? Math.min(1, load.peak_nm / load.stall_nm) : 0;
   const kind = load.grade === "good" ? "good" : load.grade === "marginal" ? "warn" : "bad";
   return (
     <div className="torque">
@@ -76,7 +76,7 @@ function Bar({ load, onMark }: { load: JointLoad; onMark: (mark: HTMLElement | n
         </small>
       </span>
       <div className="bar" aria-hidden="true">
-        <i className={kind} style={{ width: `${share * 100}%` }} />
+        <i className={kind} style={{ width: `${fraction * 100}%` }} />
         <b ref={onMark} />
       </div>
     </div>

@@ -17,19 +17,19 @@ export function PathInputs() {
       <div className="row">
         <Segments
           label="Kind of path"
-          testId="way"
-          value={path.way}
+          testId="path-kind"
+          value={path.kind}
           options={[
             { value: "straight", label: "Straight" },
             { value: "curve", label: "Curve" },
             { value: "twist", label: "Constant twist" },
           ]}
-          onChange={(way) => set(pathOf(way))}
+          onChange={(kind) => set(pathOf(kind))}
         />
       </div>
-      {path.way === "straight" && <StraightInputs path={path} set={set} />}
-      {path.way === "curve" && <CurveInputs path={path} set={set} />}
-      {path.way === "twist" && <TwistInputs path={path} set={set} />}
+      {path.kind === "straight" && <StraightInputs path={path} set={set} />}
+      {path.kind === "curve" && <CurveInputs path={path} set={set} />}
+      {path.kind === "twist" && <TwistInputs path={path} set={set} />}
     </fieldset>
   );
 }

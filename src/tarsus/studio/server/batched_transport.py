@@ -11,10 +11,10 @@ from typing import Any
 
 from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIOProtocol
 
-__all__ = ["GatheredProtocol"]
+__all__ = ["BatchedProtocol"]
 
 
-class _Gathered:
+class _BatchedTransport:
     """A transport that keeps what is written until the event loop's next turn."""
 
     def __init__(self, transport: asyncio.Transport, loop: asyncio.AbstractEventLoop) -> None:
@@ -42,10 +42,10 @@ class _Gathered:
             self._transport.write(b"".join(parts))
 
 
-class GatheredProtocol(WebSocketsSansIOProtocol):
+class BatchedProtocol(WebSocketsSansIOProtocol):
     """Uvicorn's WebSocket on such a transport."""
 
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
         """Begin a connection."""
-        gathered: Any = _Gathered(transport, self.loop)  # type: ignore[arg-type] # a stream's is one to write to
-        super().connection_made(gathered)
+        batched: Any = _BatchedTransport(transport, self.loop)  # type: ignore[arg-type] # a stream's is one to write to
+        super().connection_made(batched)

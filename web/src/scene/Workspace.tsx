@@ -13,14 +13,14 @@ interface Props {
 }
 
 /** Workspace of a leg: on the ground, and in the plane of the leg. Both move with the body. */
-export function Zone({ ground, plane, palette }: Props) {
+export function Workspace({ ground, plane, palette }: Props) {
   const group = useRef<Group>(null);
   useStage((frame) => {
     group.current?.position.set(...frame.position);
     group.current?.quaternion.set(...frame.rotation);
   });
   return (
-    <group ref={group} name="zone">
+    <group ref={group} name="workspace">
       <Outline flat={ground} palette={palette} opacity={0.2} flatten />
       <Outline flat={plane} palette={palette} opacity={0.1} />
     </group>
@@ -36,7 +36,7 @@ interface OutlineProps {
 }
 
 function Outline({ flat, palette, opacity, flatten = false }: OutlineProps) {
-  const line = useLine({ colour: palette.zone, width: 2 });
+  const line = useLine({ colour: palette.workspace, width: 2 });
   const closed = useMemo(() => [...flat, ...flat.slice(0, 3)], [flat]);
   useEffect(() => setLine(line, flat.length ? closed : []), [line, closed, flat]);
   const geometry = useMemo(() => filled(flat, flatten), [flat, flatten]);
@@ -44,7 +44,13 @@ function Outline({ flat, palette, opacity, flatten = false }: OutlineProps) {
   return (
     <group>
       <mesh geometry={geometry} renderOrder={1}>
-        <meshBasicMaterial color={palette.zone} transparent opacity={opacity} depthWrite={false} side={2} />
+        <meshBasicMaterial
+          color={palette.workspace}
+          transparent
+          opacity={opacity}
+          depthWrite={false}
+          side={2}
+        />
       </mesh>
       <primitive object={line} />
     </group>

@@ -6,7 +6,7 @@ import pytest
 from sample_studio import Asked, table
 from tarsus import Pose, default_body_height, inverse_kinematics, list_robots, load_robot, reachable_band
 from tarsus.gait.branch import branches
-from tarsus.studio.zone import ground_band, ground_outline, plane_outline
+from tarsus.studio.leg_workspace import ground_band, ground_outline, plane_outline
 
 TILTED = Pose.from_rpy(0.08, -0.05, 0.4, (0.03, -0.02, 0.12))
 
@@ -78,17 +78,17 @@ def test_the_zone_is_told_for_the_body_that_is_shown():
     ask = Asked()
     ask.all("view", view="body")
     ask.all("body", body={"z_mm": 20, "pitch_deg": 5})
-    told = ask("zone", "zone", leg=2)
+    told = ask("workspace", "workspace", leg=2)
     robot = load_robot("strider")
     body = Pose.from_rpy(pitch=np.radians(5), position=(0, 0, default_body_height(robot) + 0.02))
     assert table(told["ground_mm"], 3) == pytest.approx(ground_outline(robot, 2, body).closed * 1000, abs=0.006)
     assert told["farthest_mm"] == pytest.approx(ground_band(robot, 2, body)[1] * 1000, abs=1e-3)
     assert len(told["plane_mm"]) > 100
     ask.all("view", view="walk")
-    walking = ask("zone", "zone", leg=2)
+    walking = ask("workspace", "workspace", leg=2)
     assert table(walking["ground_mm"], 3) == pytest.approx(
         ground_outline(robot, 2, level(robot)).closed * 1000, abs=0.006
     )
     ask.all("view", view="joints")
-    assert ask("zone", "zone", leg=2)["leg"] == 2
-    assert "legs 0 to 5" in ask.error("zone", leg=6)["text"]
+    assert ask("workspace", "workspace", leg=2)["leg"] == 2
+    assert "legs 0 to 5" in ask.error("workspace", leg=6)["text"]

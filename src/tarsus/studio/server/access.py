@@ -12,7 +12,7 @@ from tarsus.studio.server.settings import Settings, is_loopback
 if TYPE_CHECKING:
     from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-__all__ = ["HEADERS", "Guard"]
+__all__ = ["HEADERS", "AccessControl"]
 
 HEADERS = {
     "content-security-policy": "; ".join(
@@ -42,7 +42,7 @@ HEADERS = {
 _OPEN = frozenset({"/health"})
 
 
-class Guard:
+class AccessControl:
     """Refuses what comes from elsewhere or without the token, before anything else sees it.
 
     Parameters

@@ -11,19 +11,19 @@ from tarsus.gait.motion import Motion
 from tarsus.kinematics.pose import Pose
 from tarsus.load.loads import JointLoads
 from tarsus.robot.robot import Robot
-from tarsus.studio.bearing import loads_of
+from tarsus.studio.loads import loads_of
 from tarsus.studio.messages.state import StudioState
 from tarsus.studio.poses import Resting, resting, standing
 from tarsus.studio.robots import robot_of
 from tarsus.studio.standing import OnFootholds
 from tarsus.studio.walks import longest, plan
 
-__all__ = ["Desk"]
+__all__ = ["Results"]
 
 _T = TypeVar("_T")
 
 
-class Desk:
+class Results:
     """Works things out of a state, and keeps the last of each kind."""
 
     def __init__(self) -> None:

@@ -7,7 +7,7 @@ import type { Palette } from "./palette";
 import { useStage } from "./useStage";
 
 /** Target positions of feet that are out of reach, and their distance from the feet. */
-export function Goals({ shape, palette }: { shape: Shape; palette: Palette }) {
+export function FootTargets({ shape, palette }: { shape: Shape; palette: Palette }) {
   return shape.names.map((name, leg) => (
     <Goal
       key={name}

@@ -18,7 +18,7 @@ __all__ = [
     "RobotMessage",
     "StateMessage",
     "Welcome",
-    "ZoneMessage",
+    "WorkspaceMessage",
 ]
 
 Schema = Annotated[dict[str, Any], Field(json_schema_extra={"ts": "Record<string, unknown>"})]
@@ -145,13 +145,13 @@ class PoseMessage(Message):
     limits: list[BrokenLimit]
     text: str = Field(description="How it stands, in words.")
     problems: list[str]
-    share: float | None = Field(description="How much of the body's way works, from 0 to 1.")
+    feasible_fraction: float | None = Field(description="How far towards the requested body pose is possible, 0 to 1.")
 
 
-class ZoneMessage(Message):
+class WorkspaceMessage(Message):
     """What a leg reaches, as closed outlines in B: they move with the body. Empty where it reaches nothing there."""
 
-    type: Literal["zone"]
+    type: Literal["workspace"]
     leg: int
     ground_mm: list[float] = Field(description="Points (x, y, z) of the outline on the ground.")
     plane_mm: list[float] = Field(description="Points (x, y, z) of the outline in the leg's present plane.")

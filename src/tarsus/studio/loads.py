@@ -13,10 +13,10 @@ from tarsus.load.sizing import size_servos
 from tarsus.load.supply import supply_load
 from tarsus.load.verdict import joint_verdicts
 from tarsus.report.loads_summary import loads_summary, servos_summary
-from tarsus.studio.messages.moving import Candidate, JointLoad, LoadsMessage, ServosMessage
+from tarsus.studio.messages.motion import Candidate, JointLoad, LoadsMessage, ServosMessage
 from tarsus.studio.messages.state import LoadOptions
 from tarsus.studio.walks import fewer_for_more_legs
-from tarsus.studio.wire import or_null, plain
+from tarsus.studio.encoding import or_null, plain
 
 __all__ = ["loads_message", "loads_of", "servos_message"]
 

@@ -14,14 +14,14 @@ __all__ = [
     "JointLoad",
     "JointSpeed",
     "LoadsMessage",
-    "Moment",
+    "TimedLength",
     "ServosMessage",
     "WalkEnd",
     "WalkMessage",
 ]
 
 
-class Moment(Part):
+class TimedLength(Part):
     """A length and when it is so."""
 
     mm: float | None
@@ -72,8 +72,8 @@ class WalkMessage(Message):
     longest_stroke_mm: float | None
     end: WalkEnd
     joint_speed: list[JointSpeed]
-    least_margin: Moment
-    nearest_feet: Moment
+    least_margin: TimedLength
+    nearest_feet: TimedLength
     nearest_legs: list[str]
     possible: bool
     problems: list[str]

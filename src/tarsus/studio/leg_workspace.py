@@ -20,10 +20,10 @@ from tarsus.kinematics.leg import forward_kinematics
 from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.solution import IKSolution
 from tarsus.robot.robot import Robot
-from tarsus.studio.messages.still import ZoneMessage
-from tarsus.studio.wire import millimetres, or_null
+from tarsus.studio.messages.pose import WorkspaceMessage
+from tarsus.studio.encoding import millimetres, or_null
 
-__all__ = ["Outline", "ground_band", "ground_outline", "plane_outline", "zone_message"]
+__all__ = ["Outline", "ground_band", "ground_outline", "plane_outline", "workspace_message"]
 
 Floats: TypeAlias = np.ndarray[Any, np.dtype[np.float64]]
 Points: TypeAlias = Callable[[Floats, Floats], Floats]
@@ -227,7 +227,7 @@ def _bands(plane: _Plane, turns: Floats) -> tuple[Floats, Floats]:
     return inside[0], inside[1]
 
 
-def zone_message(robot: Robot, leg: int, body: Pose, coxa: float, *, id: int) -> ZoneMessage:
+def workspace_message(robot: Robot, leg: int, body: Pose, coxa: float, *, id: int) -> WorkspaceMessage:
     """Return what a leg reaches with the body at a place.
 
     Parameters
@@ -244,8 +244,8 @@ def zone_message(robot: Robot, leg: int, body: Pose, coxa: float, *, id: int) ->
         Of the message that is answered.
     """
     nearest, farthest = ground_band(robot, leg, body)
-    return ZoneMessage(
-        type="zone",
+    return WorkspaceMessage(
+        type="workspace",
         id=id,
         leg=leg,
         ground_mm=millimetres(ground_outline(robot, leg, body).closed),

@@ -7,8 +7,8 @@ from typing import Literal
 from pydantic import Field
 
 from tarsus.studio.messages.base import Message, Part
-from tarsus.studio.messages.moving import LoadsMessage, WalkMessage
-from tarsus.studio.messages.still import RobotMessage
+from tarsus.studio.messages.motion import LoadsMessage, WalkMessage
+from tarsus.studio.messages.pose import RobotMessage
 
 __all__ = [
     "Done",

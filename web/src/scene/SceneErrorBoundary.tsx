@@ -5,7 +5,7 @@ interface State {
 }
 
 /** Error boundary of the 3D view: without WebGL, the rest of the page still works. */
-export class PictureGuard extends Component<{ children: ReactNode }, State> {
+export class SceneErrorBoundary extends Component<{ children: ReactNode }, State> {
   override state: State = { failed: canDraw() ? null : "WebGL is off" };
 
   static getDerivedStateFromError(error: unknown): State {

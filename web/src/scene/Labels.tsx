@@ -14,9 +14,9 @@ interface Props {
 /**
  * Labels over the 3D view: names of the legs, problems of legs, and the stability margin.
  *
- * Hidden from screen readers, as the panel has the same in sentences. `NotePlaces` moves the labels.
+ * Hidden from screen readers, as the panel has the same in sentences. `LabelPositions` moves the labels.
  */
-export function Notes({ layer, shape, colours, names }: Props) {
+export function Labels({ layer, shape, colours, names }: Props) {
   const [troubles, setTroubles] = useState<readonly (LegTrouble | null)[]>([]);
   useEffect(
     () =>

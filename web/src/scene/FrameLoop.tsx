@@ -4,7 +4,7 @@ import { useEffect } from "react";
 import { stage } from "./stage";
 
 /** Advances the stage before each frame, and requests the next frame while something moves. */
-export function Conductor() {
+export function FrameLoop() {
   const invalidate = useThree((state) => state.invalidate);
   useFrame((_, dt) => {
     // The time since the last frame includes the pause without frames.

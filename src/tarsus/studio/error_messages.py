@@ -16,7 +16,7 @@ from tarsus.errors import (
     UnknownNameError,
     UnreachableError,
 )
-from tarsus.studio.messages.plain import ErrorMessage, Problem
+from tarsus.studio.messages.general import ErrorMessage, Problem
 
 __all__ = ["error_message", "malformed"]
 

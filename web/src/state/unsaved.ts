@@ -13,7 +13,7 @@ export function isSettable(type: ClientType): type is Settable {
  * Changes that the text of the state does not contain yet: sent but not answered, made during the movement of a
  * slider, or without a connection. They are sent to a new session.
  */
-export class Unkept {
+export class Unsaved {
   private readonly drafts = new Map<Settable, Draft>();
 
   add(draft: Draft): void {

@@ -5,7 +5,7 @@ import { notify, useStudio } from "./store";
 
 /** Copy a link to the present state. */
 export async function copyLink(): Promise<void> {
-  await keepMoment();
+  await storeTime();
   const { stateText, welcome } = useStudio.getState();
   // The token is not part of the link: it must not be passed on by accident.
   const href = writeAddress(window.location.href, stateText, false);
@@ -28,7 +28,7 @@ export async function copyText(text: string, said: string): Promise<void> {
 const PATIENCE = 1000;
 
 /** Put the time of the playback into the state, and wait for its new text. */
-async function keepMoment(): Promise<void> {
+async function storeTime(): Promise<void> {
   look(null, { time_s: Math.round(usePlayback.getState().time * 1000) / 1000 });
   if (!isBusy()) return;
   await new Promise<void>((resolve) => {

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 from pydantic import ValidationError
 from pydantic_core import from_json
 
+from tarsus.studio.error_messages import malformed
 from tarsus.robot.document_problems import key_of
-from tarsus.studio.failure import malformed
 from tarsus.studio.messages import client_message
-from tarsus.studio.messages.plain import ErrorMessage
+from tarsus.studio.messages.general import ErrorMessage
 
 if TYPE_CHECKING:
     from tarsus.studio.messages import ClientMessage

@@ -11,7 +11,7 @@ const OVER = 34;
 const EDGE = 4;
 
 /** Moves the labels with the objects that they belong to, in the same frame. */
-export function NotePlaces({ layer }: { layer: RefObject<HTMLDivElement | null> }) {
+export function LabelPositions({ layer }: { layer: RefObject<HTMLDivElement | null> }) {
   const at = useMemo(() => new Vector3(), []);
   useFrame(({ camera, size }) => {
     const notes = layer.current?.children;
