@@ -1,4 +1,4 @@
-"""docs/studio.md says what is so."""
+"""docs/studio.md agrees with the code."""
 
 import re
 from pathlib import Path
@@ -20,13 +20,13 @@ def row(name):
 
 def test_the_limits_are_those_of_the_code():
     limits = Limits()
-    assert row("sessions at a time").startswith(f"{limits.sessions};")
+    assert row("simultaneous sessions").startswith(f"{limits.sessions};")
     messages = row("messages")
     assert messages.startswith(f"{limits.messages_per_s:g} messages".split()[0])
-    assert f"{limits.waiting} waiting; {limits.message_bytes // 1024} KiB each" in messages
-    assert row("malformed or refused messages").startswith(f"{limits.malformed} in a row")
-    assert row("silence").startswith(f"{limits.idle_s / 3600:g} hour")
-    assert row("a planned walk").startswith(f"{MOST_SAMPLES:,} samples")
+    assert f"{limits.waiting} queued; {limits.message_bytes // 1024} KiB each" in messages
+    assert row("malformed or rejected messages").startswith(f"{limits.malformed} in a row")
+    assert row("time without messages").startswith(f"{limits.idle_s / 3600:g} hour")
+    assert row("planned walk").startswith(f"{MOST_SAMPLES:,} samples")
     assert row("legs").startswith(f"{MOST_LEGS};")
 
 
@@ -35,7 +35,7 @@ def test_the_socket_and_its_codes_are_those_of_the_code():
     assert set(re.findall(r"^\| (\d{4}) \|", PAGE, flags=re.MULTILINE)) == {str(code) for code, _ in CLOSED.values()}
 
 
-def test_every_file_that_is_named_is_there():
+def test_all_named_files_exist():
     named = re.findall(r"`([a-z_]+\.py)`", PAGE)
     here = {path.name for path in (ROOT / "src" / "tarsus" / "studio").rglob("*.py")} | {"hatch_build.py"}
     assert len(named) > 15
@@ -49,6 +49,6 @@ def test_the_example_runs(capsys):
 
 
 @pytest.mark.parametrize("target", ["studio", "web", "protocol"])
-def test_every_make_target_that_is_named_is_there(target):
+def test_all_named_make_targets_exist(target):
     assert f"make {target}" in PAGE
     assert re.search(rf"^{target}:", (ROOT / "Makefile").read_text(encoding="utf-8"), flags=re.MULTILINE)

@@ -366,7 +366,11 @@ def test_loads_out_of_range_are_refused(ask, loading):
 def test_servos_are_those_of_size_servos(ask):
     ask.all(
         "walk",
-        walk={"gait": "wave", "body_height_mm": 130, "path": {"kind": "straight", "distance_mm": 150, "heading_deg": 0}},
+        walk={
+            "gait": "wave",
+            "body_height_mm": 130,
+            "path": {"kind": "straight", "distance_mm": 150, "heading_deg": 0},
+        },
     )
     ask.all("loads", loads={"safety_factor": 2.5})
     told = ask("servos", "servos")

@@ -1,23 +1,23 @@
-// Written by `make protocol` from src/tarsus/studio/messages. Change that, not this.
+// Written by `make protocol` from src/tarsus/studio/messages. Do not edit.
 
-/** Path of the socket on the page's own host. */
+/** Path of the socket on the page's host. */
 export const SOCKET = "/session/1";
 
 /** Codes with which the server closes the socket. */
 export const CLOSED = {
-  /** Wrong token, or none: the page must be opened by the link that the server printed. */
+  /** Missing or wrong token: open the link that the server printed. */
   TOKEN: 4401,
-  /** Nothing was said for too long. To connect again is fine. */
+  /** No message for too long; clients may reconnect. */
   IDLE: 4408,
-  /** Too many messages, or malformed ones, one after the other. */
+  /** Too many messages, or too many malformed ones. */
   RATE: 4429,
-  /** The server has as many sessions as it takes. To try again later is fine. */
+  /** The server has reached its number of sessions; clients may retry later. */
   FULL: 4503,
   /** A message was larger than `bounds.message_bytes`. */
   LARGE: 1009,
 } as const;
 
-/** The view Body: how far the body is moved and turned over its feet, and where those are if they were dragged. */
+/** The view Body: body pose relative to the feet, and footholds that were dragged. */
 export interface BodyState {
   x_mm: number;
   y_mm: number;
@@ -25,19 +25,19 @@ export interface BodyState {
   roll_deg: number;
   pitch_deg: number;
   yaw_deg: number;
-  /** Null for the robot's own. */
+  /** Null for the default of the robot. */
   body_height_mm: number | null;
   knee: "up" | "down";
-  /** Legs x (x, y, z) in G; null for the rest stance. */
+  /** Legs x (x, y, z) in G; null for the default stance. */
   feet_mm: number[] | null;
 }
 
-/** What this server takes at most; a client that keeps to it is never refused. */
+/** Limits of the server; clients that respect them are never rejected. */
 export interface Bounds {
   message_bytes: number;
   messages_per_s: number;
   plan_samples: number;
-  /** A session that says nothing for so long is ended; 0 where it never is. */
+  /** Time without messages after which a session ends; 0 for no limit. */
   idle_s: number;
 }
 
@@ -51,7 +51,7 @@ export interface BrokenLimit {
   text: string;
 }
 
-/** Servos of the catalogue that would do. */
+/** Suitable servos of the catalogue. */
 export interface Candidate {
   name: string;
   coxa: string;
@@ -63,10 +63,10 @@ export interface Candidate {
   robot_mass_kg: number;
 }
 
-/** Show a source document's equations with the live numbers. Answer: source. */
+/** Show the equations of a source document with live values. Answer: source. */
 export interface ChooseSource {
   id: number;
-  /** Whether undo shall come back to what is here now. */
+  /** Whether undo returns to the state after this change. */
   commit?: boolean;
   type: "source";
   source: SourceChoice;
@@ -79,7 +79,7 @@ export interface Command {
   /** Forward, left. */
   velocity_mm_s: [number, number];
   turn_deg_s: number;
-  /** x, y, z [mm], roll, pitch, yaw [deg] against the level body. */
+  /** x, y, z [mm], roll, pitch, yaw [deg] relative to the level body. */
   body?: [number, number, number, number, number, number] | null;
   gait?: string | null;
   body_height_mm?: number | null;
@@ -89,7 +89,7 @@ export interface Command {
   state?: "standing" | "lying" | "folded" | null;
 }
 
-/** A walk round a centre on the floor. */
+/** A walk around a centre on the ground. */
 export interface Curve {
   kind: "curve";
   /** Negative is clockwise. */
@@ -97,7 +97,7 @@ export interface Curve {
   centre_mm: [number, number];
 }
 
-/** One number of the robot file, and where it comes from. */
+/** A value of the robot file, with its source. */
 export interface Dimension {
   key: string;
   value: unknown;
@@ -110,16 +110,16 @@ export interface Dimension {
 export interface Done {
   type: "done";
   id: number | null;
-  /** Whether a newer message of the same type took its place. */
+  /** Whether a newer message of the same type replaced it. */
   dropped: boolean;
   /** Whether there is something to undo. */
   undo: boolean;
   redo: boolean;
-  /** The state as a short URL-safe text; null: unchanged. */
+  /** State as URL-safe text; null if unchanged. */
   state: string | null;
 }
 
-/** Ask for a file. Answer: file. */
+/** Export a file. Answer: file. */
 export interface Download {
   id: number;
   type: "download";
@@ -127,13 +127,13 @@ export interface Download {
 }
 
 /**
- * Put one foot elsewhere: in the view Joints that leg's angles follow, else its foothold.
+ * Move one foot: in the view Joints by changing the joint angles, else the foothold.
  *
- * Answers: pose, and with `commit` the state before it.
+ * Answers: pose; with `commit`, state before it.
  */
 export interface DragFoot {
   id: number;
-  /** Whether undo shall come back to what is here now. */
+  /** Whether undo returns to the state after this change. */
   commit?: boolean;
   type: "drag_foot";
   leg: number;
@@ -141,7 +141,7 @@ export interface DragFoot {
   position_mm: [number, number, number];
 }
 
-/** Begin or end live walking. While it is on, frames come by themselves, with this message's id. */
+/** Start or stop driving. While it is on, frames are sent with the id of this message. */
 export interface Drive {
   id: number;
   type: "drive";
@@ -181,27 +181,27 @@ export interface DriveFrame {
   interventions: string[];
 }
 
-/** A line of a source document, with the live numbers in it. */
+/** An equation of a source document with live values. */
 export interface Equation {
   key: string;
   name: string;
   symbol: MathNode;
-  /** Null where the number is given. */
+  /** Null for a given quantity. */
   formula: MathNode | null;
-  /** The formula with the numbers filled in. */
+  /** The formula with the values substituted. */
   numbers: MathNode | null;
-  /** All of it in one line of text. */
+  /** The whole equation as text. */
   plain: string;
   value: number | null;
   unit: string;
-  /** The same in Tarsus' own words, such as coxa or tibia + 90 deg. */
+  /** The same quantity in Tarsus, such as coxa or tibia + 90 deg. */
   ours: string | null;
-  /** What the document prints for its own robot. */
+  /** Value printed in the document for its robot. */
   printed_value: string | null;
   note: string | null;
 }
 
-/** A mistake in a document, and what it would make of the live numbers. */
+/** An erratum of a document, with the results of both formulas. */
 export interface Erratum {
   printed: string;
   right: string;
@@ -213,10 +213,10 @@ export interface Erratum {
   unit: string;
 }
 
-/** What was asked for is not possible; the state is what it was. */
+/** A request is not possible; the state is unchanged. */
 export interface ErrorMessage {
   type: "error";
-  /** Null where the message was so malformed that its id is unknown. */
+  /** Null if the id of a malformed message is unknown. */
   id: number | null;
   kind: "message" | "limit" | "input" | "unknown_name" | "robot_file" | "missing_data" | "unreachable" | "stroke" | "collision" | "unavailable" | "internal";
   text: string;
@@ -224,7 +224,7 @@ export interface ErrorMessage {
   longest_stroke_mm: number | null;
 }
 
-/** A file to save. */
+/** An exported file. */
 export interface FileMessage {
   id: number;
   type: "file";
@@ -233,15 +233,15 @@ export interface FileMessage {
   text: string;
 }
 
-/** The first message. Answers: welcome, then all that `open` answers. */
+/** The first message. Answers: welcome, and the answers to `open`. */
 export interface Hello {
   id: number;
   type: "hello";
-  /** The state to go on with; null begins anew. */
+  /** State to restore; null for the default. */
   state?: string | null;
 }
 
-/** What one joint bears over the walk. */
+/** Loads of one joint over the walk. */
 export interface JointLoad {
   leg: string;
   joint: "coxa" | "femur" | "tibia";
@@ -261,7 +261,7 @@ export interface JointLoad {
   text: string;
 }
 
-/** The greatest speed of one kind of joint. */
+/** Greatest speed of one kind of joint. */
 export interface JointSpeed {
   joint: "coxa" | "femur" | "tibia";
   deg_s: number;
@@ -271,26 +271,26 @@ export interface JointSpeed {
   share_of_no_load: number | null;
 }
 
-/** The view Joints: legs x (coxa, femur, tibia); null for those of the rest stance. */
+/** The view Joints: legs x (coxa, femur, tibia); null for the default stance. */
 export interface JointsState {
   angles_deg: number[] | null;
 }
 
-/** Why a leg can't have its foot where it should be. */
+/** A foot that does not reach its target. */
 export interface LegProblem {
   leg: number;
   reach: "TOO_FAR" | "TOO_NEAR" | "COXA_LIMIT" | "FEMUR_LIMIT" | "TIBIA_LIMIT" | "BELOW_GROUND";
-  /** How far the foot is from where it should be. */
+  /** Distance of the foot from its target. */
   miss_mm: number;
   text: string;
 }
 
-/** The view Loads, on top of the walk's options. */
+/** The view Loads, in addition to the options of the walk. */
 export interface LoadOptions {
   payload_kg: number;
   /** In the body frame B. */
   payload_at_mm: [number, number, number];
-  /** Null for that of the servos' figures. */
+  /** Null for the voltage of the servo data. */
   supply_v: number | null;
   inertial: boolean;
   /** Of the battery. */
@@ -299,7 +299,7 @@ export interface LoadOptions {
   rule: "factor" | "continuous";
 }
 
-/** What the joints bear at the moments of the walk that was sent last. */
+/** Joint loads at the samples of the walk that was sent last. */
 export interface LoadsMessage {
   id: number;
   type: "loads";
@@ -307,9 +307,9 @@ export interface LoadsMessage {
   torques_nm: number[];
   /** n x legs x (x, y, z), ground on foot in G. */
   forces_n: number[];
-  /** Leg by leg. */
+  /** In the order of the legs. */
   joints: JointLoad[];
-  /** The worst coxa, femur and tibia. */
+  /** Names of the most loaded coxa, femur and tibia. */
   worst: string[];
   grade: string;
   carried: boolean;
@@ -325,56 +325,56 @@ export interface LoadsMessage {
   assumed: string[];
 }
 
-/** A piece of presentation MathML: a tag, and either text or children. */
+/** An element of presentation MathML: a tag, and either text or children. */
 export interface MathNode {
   tag: "mrow" | "mi" | "mn" | "mo" | "mtext" | "mfrac" | "msup" | "msub" | "msqrt";
   text: string | null;
   children: MathNode[];
 }
 
-/** Take the state that a text holds. Answers: robot, state, what the view shows. */
+/** Restore a state from its text. Answers: robot, state, content of the view. */
 export interface OpenState {
   id: number;
-  /** Whether undo shall come back to what is here now. */
+  /** Whether undo returns to the state after this change. */
   commit?: boolean;
   type: "open";
   state: string;
 }
 
-/** A gait without a name. */
+/** A custom gait. */
 export interface OwnGait {
-  /** Share of the cycle that a foot is down. */
+  /** Stance time as a fraction of the cycle time. */
   duty_factor: number;
-  /** When in the cycle each leg touches down, from 0 to 1. */
+  /** Phase of the touch-down of each leg, from 0 to 1. */
   offsets: number[];
 }
 
-/** How it is looked at: the server keeps it for the link, and makes nothing of it. */
+/** Camera and time of the 3D view, which the server stores for links only. */
 export interface Picture {
   camera: "free" | "follow" | "top" | "side" | "front";
   eye_mm: [number, number, number] | null;
   target_mm: [number, number, number] | null;
-  /** Moment of the walk that is shown. */
+  /** Playback time. */
   time_s: number;
-  /** The leg whose reachable zone is shown. */
+  /** Leg whose workspace is shown. */
   leg: number | null;
 }
 
-/** Nothing, to keep an idle session. Answer: done. */
+/** No operation; keeps an idle session open. Answer: done. */
 export interface Ping {
   id: number;
   type: "ping";
 }
 
-/** What the self-contained page of a walk holds, as JSON in its element `#motion`. */
+/** Data of the offline player, as JSON in its element `#motion`. */
 export interface PlayerData {
   robot: RobotMessage;
   walk: WalkMessage;
-  /** Null where the robot's masses are unknown. */
+  /** Null if the masses of the robot are unknown. */
   loads: LoadsMessage | null;
 }
 
-/** The robot standing or resting. */
+/** The standing or resting robot. */
 export interface PoseMessage {
   id: number;
   type: "pose";
@@ -382,57 +382,57 @@ export interface PoseMessage {
   /** Of B in G. */
   position_mm: number[];
   rpy_deg: number[];
-  /** Legs x (coxa, femur, tibia); the nearest where a leg can't reach. */
+  /** Legs x (coxa, femur, tibia); the nearest solution for a leg out of reach. */
   angles_deg: number[];
-  /** Legs x (x, y, z) in G: where the feet should be. */
+  /** Legs x (x, y, z) in G: targets of the feet. */
   feet_mm: number[];
-  /** A character a leg, 1 where the foot stands. */
+  /** A character per leg, 1 for a foot in contact. */
   contacts: string;
-  /** Legs x (coxa axis, femur axis, knee, foot), 1 where one touches the ground. */
+  /** Legs x (coxa axis, femur axis, knee, foot), 1 for points on the ground. */
   points_down: string;
-  /** How many corners of the body's box touch the ground. */
+  /** Number of corners of the body's box on the ground. */
   corners_down: number;
-  /** Null where nothing stands. */
+  /** Null without contacts. */
   margin_mm: number | null;
   stable: boolean;
   /** Centre of mass in G. */
   com_mm: number[];
-  /** Corners (x, y) of the polygon of all that touches. */
+  /** Corners (x, y) of the support polygon of all contact points. */
   support_mm: number[];
-  /** Legs x (x, y, z), ground on foot; null where undetermined. */
+  /** Legs x (x, y, z), ground on foot; null if undetermined. */
   forces_n: number[] | null;
-  /** Legs x (coxa, femur, tibia); null where undetermined. */
+  /** Legs x (coxa, femur, tibia); null if undetermined. */
   torques_nm: number[] | null;
   legs: LegProblem[];
   limits: BrokenLimit[];
-  /** How it stands, in words. */
+  /** Description of the pose. */
   text: string;
   problems: string[];
   /** How far towards the requested body pose is possible, 0 to 1. */
   feasible_fraction: number | null;
 }
 
-/** One thing that is wrong in a robot file. */
+/** A problem in a robot file. */
 export interface Problem {
-  /** Path of the key, such as legs[2].position_mm; null where there is none. */
+  /** Path of the key, such as legs[2].position_mm; null if the problem has no key. */
   key: string | null;
   text: string;
 }
 
-/** Take an undo back. Answers: as for undo. */
+/** Revert an undo. Answers: as for undo. */
 export interface Redo {
   id: number;
   type: "redo";
 }
 
-/** Which robot: a preset by its name, or a robot of one's own by the keys of its file. */
+/** Choice of the robot: a preset by its name, or a custom robot by the keys of its file. */
 export interface RobotChoice {
   preset: string | null;
   document: RobotFile | null;
 }
 
 /**
- * The robot, sent once: all that forward kinematics needs.
+ * The robot, sent once, with everything that forward kinematics needs.
  *
  * The points of a leg in B, with c, f, t for its angles: the coxa axis is at ``mount``. From there the femur axis is
  * ``coxa`` outward and ``femur_axis_offset`` to the left of outward and up. The knee is ``femur (cos f outward +
@@ -444,7 +444,7 @@ export interface RobotMessage {
   id: number;
   type: "robot";
   name: string;
-  /** The preset's name while nothing of it is changed. */
+  /** Name of the preset, if it is unchanged. */
   preset: string | null;
   leg_names: string[];
   /** Short names: LF, LM, LR, RR, RM, RF. */
@@ -470,34 +470,34 @@ export interface RobotMessage {
   body_height_mm: number;
   swing_height_mm: number;
   gait: string;
-  /** Those that a robot of so many legs has. */
+  /** Gaits for this number of legs. */
   gaits: string[];
-  /** Rest footholds in G, body over the origin; null: none. */
+  /** Footholds of the default stance in G, body over the origin; null if there is none. */
   stance_mm: number[] | null;
   stance_angles_deg: number[] | null;
-  /** Straight ahead with its own gait. */
+  /** Straight ahead with the default gait. */
   longest_stroke_mm: number | null;
   document: RobotFile;
   dimensions: Dimension[];
-  /** What the file does not say, and what that costs. */
+  /** Values that the file lacks, and the consequences. */
   missing: string[];
-  /** Why the robot can't walk; empty where it can. */
+  /** Why the robot can't walk; empty if it can. */
   problems: string[];
 }
 
-/** Which servos would do. */
+/** Result of the servo sizing. */
 export interface ServosMessage {
   id: number;
   type: "servos";
   present_do: boolean;
   balanced: boolean;
-  /** A line on the worst coxa, femur and tibia of the present servos. */
+  /** Verdicts on the most loaded coxa, femur and tibia with the present servos. */
   worst: string[];
-  /** The same servo in all joints, the lightest first. */
+  /** The same servo in all joints, lightest first. */
   candidates: Candidate[];
-  /** The lightest for each kind of joint. */
+  /** The lightest servo for each kind of joint. */
   mixed: Candidate | null;
-  /** The heaviest that the present servos carry. */
+  /** Greatest payload of the present servos. */
   payload_kg: number | null;
   payload_before_burning_kg: number | null;
   advice: string[];
@@ -505,61 +505,61 @@ export interface ServosMessage {
   assumed: string[];
 }
 
-/** Move the body over its feet. Answer: pose. */
+/** Set the body pose relative to the feet. Answer: pose. */
 export interface SetBody {
   id: number;
-  /** Whether undo shall come back to what is here now. */
+  /** Whether undo returns to the state after this change. */
   commit?: boolean;
   type: "body";
   body: BodyState;
 }
 
-/** Take a robot by the keys of its file; poses and walk stay. Answers: robot, state, what the view shows. */
+/** Change the robot by the keys of its file; poses and walk are kept. Answers: robot, state, content of the view. */
 export interface SetDocument {
   id: number;
-  /** Whether undo shall come back to what is here now. */
+  /** Whether undo returns to the state after this change. */
   commit?: boolean;
   type: "document";
   document: RobotFile;
 }
 
-/** Turn joints; the robot rests as it would. Answer: pose. */
+/** Set joint angles; the resting pose follows. Answer: pose. */
 export interface SetJoints {
   id: number;
-  /** Whether undo shall come back to what is here now. */
+  /** Whether undo returns to the state after this change. */
   commit?: boolean;
   type: "joints";
   joints: JointsState;
 }
 
-/** Work out what the walk asks of the joints. Answer: loads, with walk where it was not sent since it changed. */
+/** Compute the joint loads of the walk. Answer: loads; walk before it if the walk has changed since it was sent. */
 export interface SetLoads {
   id: number;
-  /** Whether undo shall come back to what is here now. */
+  /** Whether undo returns to the state after this change. */
   commit?: boolean;
   type: "loads";
   loads: LoadOptions;
 }
 
-/** Take a preset; poses and walk begin anew. Answers: robot, state, what the view shows. */
+/** Select a preset, and reset poses and walk. Answers: robot, state, content of the view. */
 export interface SetRobot {
   id: number;
-  /** Whether undo shall come back to what is here now. */
+  /** Whether undo returns to the state after this change. */
   commit?: boolean;
   type: "robot";
   preset: string;
 }
 
-/** Take a robot by the text of its file. Answers: robot, state, what the view shows. */
+/** Change the robot by the text of its file. Answers: robot, state, content of the view. */
 export interface SetToml {
   id: number;
-  /** Whether undo shall come back to what is here now. */
+  /** Whether undo returns to the state after this change. */
   commit?: boolean;
   type: "toml";
   text: string;
 }
 
-/** Go to a view, or look at it differently; no step of undo. Answers, where the view changes: what it shows. */
+/** Change the view or the camera, which is not an undo step. Answers, if the view changes: its content. */
 export interface SetView {
   id: number;
   type: "view";
@@ -570,26 +570,26 @@ export interface SetView {
 /** Plan a walk. Answer: walk; in the view Loads also loads. */
 export interface SetWalk {
   id: number;
-  /** Whether undo shall come back to what is here now. */
+  /** Whether undo returns to the state after this change. */
   commit?: boolean;
   type: "walk";
   walk: WalkOptions;
 }
 
-/** Tell what a leg reaches with the body as it is. Answer: zone. */
+/** Compute the workspace of a leg for the present body pose. Answer: workspace. */
 export interface ShowWorkspace {
   id: number;
   type: "workspace";
   leg: number;
 }
 
-/** Choose servos for the walk and the payload; takes a second or two. Answer: servos. */
+/** Size servos for the walk and the payload, which takes a second or two. Answer: servos. */
 export interface SizeServos {
   id: number;
   type: "servos";
 }
 
-/** The view Sources: which document, filled in with which leg's numbers. */
+/** The view Sources: the document, and the leg whose values are used. */
 export interface SourceChoice {
   number: "000" | "001" | "002" | "003" | "004";
   leg: number;
@@ -607,7 +607,7 @@ export interface SourceMessage {
   errata: Erratum[];
 }
 
-/** The state after something else than the client's own inputs changed it: all inputs take these values. */
+/** The state after a change that is not from the inputs of the client, which take these values. */
 export interface StateMessage {
   id: number;
   type: "state";
@@ -618,11 +618,11 @@ export interface StateMessage {
 export interface Straight {
   kind: "straight";
   distance_mm: number;
-  /** From the front; 90 is to the left. */
+  /** Direction, 90 is to the left. */
   heading_deg: number;
 }
 
-/** The whole state of a visitor's studio. */
+/** The whole state of a session. */
 export interface StudioState {
   view: "joints" | "body" | "walk" | "drive" | "loads" | "robot" | "sources";
   robot: RobotChoice;
@@ -634,13 +634,13 @@ export interface StudioState {
   picture: Picture;
 }
 
-/** A length and when it is so. */
+/** A length and its time. */
 export interface TimedLength {
   mm: number | null;
   at_s: number;
 }
 
-/** A walk at a constant twist. */
+/** A walk with a constant twist. */
 export interface Twist {
   kind: "twist";
   velocity_mm_s: [number, number];
@@ -648,37 +648,37 @@ export interface Twist {
   duration_s: number;
 }
 
-/** Go back to the commit before. Answers: robot where it changed, state, what the view shows. */
+/** Return to the previous commit. Answers: robot, state, content of the view. */
 export interface Undo {
   id: number;
   type: "undo";
 }
 
-/** Where the body is in the end. */
+/** Final position and heading of the body. */
 export interface WalkEnd {
   x_mm: number;
   y_mm: number;
   turned_deg: number;
 }
 
-/** A whole walk, for playing without a round trip. Moments are `rate_hz` apart, the first at 0 s. */
+/** A complete walk, for playback in the browser: `rate_hz` samples per second, from 0 s. */
 export interface WalkMessage {
   id: number;
   type: "walk";
   rate_hz: number;
-  /** How many moments: n. */
+  /** Number of samples n. */
   count: number;
   /** n x (x, y, z) of B in G. */
   position_mm: number[];
-  /** n x (roll, pitch, yaw), yaw without jumps. */
+  /** n x (roll, pitch, yaw), yaw unwrapped. */
   rpy_deg: number[];
   /** n x legs x (coxa, femur, tibia). */
   angles_deg: number[];
-  /** n texts, a character a leg, 1 where the foot stands. */
+  /** n texts, a character per leg, 1 for a foot in contact. */
   contacts: string[];
-  /** n texts, a code of Reach a leg; null where all reach. */
+  /** n texts, a code of Reach per leg; null if all feet are reachable. */
   reach: string[] | null;
-  /** n; null where no foot stands. */
+  /** n; null without a foot in contact. */
   margin_mm: (number | null)[];
   /** n x (x, y) of the centre of mass over the ground in G. */
   com_mm: number[];
@@ -702,9 +702,9 @@ export interface WalkMessage {
   assumed: string[];
 }
 
-/** The view Walk: every option of `plan_walk`; null leaves it to the plan, which then says what it took. */
+/** The view Walk: the options of `plan_walk`; for null, the plan chooses a value and reports it. */
 export interface WalkOptions {
-  /** Null for the robot's own. */
+  /** Null for the default of the robot. */
   gait: string | OwnGait | null;
   path: Straight | Curve | Twist;
   stroke_mm: number | null;
@@ -716,11 +716,11 @@ export interface WalkOptions {
   pitch_deg: number;
   foot_distance_mm: number | null;
   rate_hz: number;
-  /** Refuse what does not work; if false, show it with its problems. */
+  /** Whether impossible walks are rejected; if false, they are shown with their problems. */
   strict: boolean;
 }
 
-/** The first answer: what there is here. */
+/** The first answer: presets, gaits, servos, and limits. */
 export interface Welcome {
   id: number;
   type: "welcome";
@@ -728,25 +728,25 @@ export interface Welcome {
   /** Names of the presets. */
   robots: string[];
   gaits: string[];
-  /** Names in the catalogue. */
+  /** Names in the servo catalogue. */
   servos: string[];
-  /** Whether this is a public server: the simulator, and nothing else. */
+  /** Whether this is a public server, without access to hardware. */
   public: boolean;
   bounds: Bounds;
   /** JSON schema of a robot file: descriptions and bounds of its keys. */
   robot_schema: Record<string, unknown>;
 }
 
-/** What a leg reaches, as closed outlines in B: they move with the body. Empty where it reaches nothing there. */
+/** Workspace of a leg as closed outlines in B, which move with the body; empty if it has none there. */
 export interface WorkspaceMessage {
   id: number;
   type: "workspace";
   leg: number;
   /** Points (x, y, z) of the outline on the ground. */
   ground_mm: number[];
-  /** Points (x, y, z) of the outline in the leg's present plane. */
+  /** Points (x, y, z) of the outline in the present plane of the leg. */
   plane_mm: number[];
-  /** Straight out on the ground, from the coxa axis. */
+  /** Straight outward on the ground, from the coxa axis. */
   nearest_mm: number | null;
   farthest_mm: number | null;
 }

@@ -1,4 +1,4 @@
-"""The studio: the robot in the browser, live. A session without any transport, and a server around it.
+"""The studio: an interactive web app. Sessions are independent of the transport; a server runs them.
 
 Needs the extra ``studio``; `tarsus.studio.session` alone needs only the package itself.
 """

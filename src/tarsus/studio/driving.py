@@ -18,9 +18,9 @@ from tarsus.kinematics.leg import forward_kinematics
 from tarsus.kinematics.mass import centre_of_mass
 from tarsus.kinematics.stability import stability_margin
 from tarsus.robot.robot import Robot
+from tarsus.studio.encoding import degrees, flags, millimetres, or_null, plain
 from tarsus.studio.messages import client as ask
 from tarsus.studio.messages.motion import DriveFrame
-from tarsus.studio.encoding import degrees, flags, millimetres, or_null, plain
 
 __all__ = ["Driver"]
 

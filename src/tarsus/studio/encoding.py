@@ -1,4 +1,4 @@
-"""From arrays in SI units to the flat, rounded lists of the messages."""
+"""Conversion of arrays in SI units to the flat, rounded lists of messages."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 
 __all__ = ["degrees", "flags", "millimetres", "or_null", "plain", "rows_of_flags"]
 
-# A hundredth of a millimetre and a thousandth of a degree: finer than any picture; exact numbers are in the files.
+# Finer than the 3D view can show; exported files have the exact values.
 _MM_DECIMALS, _DEG_DECIMALS, _DECIMALS = 2, 3, 4
 
 
@@ -36,7 +36,7 @@ def degrees(radians: Any) -> list[float]:
 
 
 def plain(values: Any) -> list[float]:
-    """Return numbers as they are, to a ten-thousandth.
+    """Return numbers rounded to four decimals.
 
     Parameters
     ----------
@@ -47,42 +47,42 @@ def plain(values: Any) -> list[float]:
 
 
 def _flat(values: np.ndarray[Any, Any], decimals: int) -> list[float]:
-    # Adding zero makes -0.0 a plain 0.0.
+    # Adding zero turns -0.0 into 0.0.
     flat: list[float] = (np.round(values.astype(np.float64, copy=False), decimals) + 0.0).ravel().tolist()
     return flat
 
 
 def or_null(value: float, *, decimals: int = _DECIMALS) -> float | None:
-    """Return a number, or None for what JSON has no word for.
+    """Return a rounded number, or None for infinities and NaN, which JSON lacks.
 
     Parameters
     ----------
     value : float
         Any number.
     decimals : int
-        To how many decimals.
+        Number of decimals.
     """
     return round(float(value), decimals) + 0.0 if math.isfinite(value) else None
 
 
 def flags(values: Any) -> str:
-    """Return one character for each small number or truth value: ``"101010"``.
+    """Return one character for each digit or truth value: ``"101010"``.
 
     Parameters
     ----------
     values : array of bool or int
-        Any shape; numbers from 0 to 9.
+        Any shape; integers from 0 to 9.
     """
     return (np.asarray(values).astype(np.uint8) + ord("0")).tobytes().decode("ascii")
 
 
 def rows_of_flags(values: Any) -> list[str]:
-    """Return a text of `flags` for each row.
+    """Return the text of `flags` for each row.
 
     Parameters
     ----------
     values : array of bool or int, shape (n, k)
-        Numbers from 0 to 9.
+        Integers from 0 to 9.
     """
     text, width = flags(values), np.shape(values)[1]
     return [text[start : start + width] for start in range(0, len(text), width)]

@@ -1,4 +1,4 @@
-"""What went wrong, as a message."""
+"""Error messages for exceptions and malformed input."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ Kind: TypeAlias = Literal[
     "stroke", "unreachable", "collision", "robot_file", "unknown_name", "missing_data", "input", "internal"
 ]
 
-# The first that fits: a stroke error is an unreachable one too.
+# The first match counts: a StrokeError is an UnreachableError too.
 _KINDS: tuple[tuple[type[TarsusError], Kind], ...] = (
     (StrokeError, "stroke"),
     (UnreachableError, "unreachable"),
@@ -38,19 +38,19 @@ _KINDS: tuple[tuple[type[TarsusError], Kind], ...] = (
     (TarsusError, "input"),
 )
 _BUG = "this is a bug in Tarsus, please report it"
-# A line of a robot file's problems: the key, maybe its value, and what is wrong.
+# A problem of a robot file: the key, an optional value, and the problem.
 _PROBLEM = re.compile(r"(?P<key>[A-Za-z_][\w.\[\]-]*)(?: = .*?)?: ")
 
 
 def error_message(error: Exception, *, id: int | None) -> ErrorMessage:
-    """Return the message on an error; what is no `TarsusError` is a bug, and is logged.
+    """Return the message for an exception; anything but a `TarsusError` is a bug, and is logged.
 
     Parameters
     ----------
     error : Exception
-        The error.
+        The exception.
     id : int or None
-        Of the message that it answers.
+        Id of the message that is answered.
     """
     for family, kind in _KINDS:
         if isinstance(error, family):
@@ -63,20 +63,20 @@ def error_message(error: Exception, *, id: int | None) -> ErrorMessage:
                 longest_stroke_mm=error.longest * 1000 if isinstance(error, StrokeError) else None,
             )
     if isinstance(error, MemoryError):
-        return ErrorMessage(type="error", id=id, kind="limit", text="not enough memory here for so much at once")
+        return ErrorMessage(type="error", id=id, kind="limit", text="the server has not enough memory for this request")
     _log.error("%s", _BUG, exc_info=error)
     return ErrorMessage(type="error", id=id, kind="internal", text=f"{_BUG}: {type(error).__name__}")
 
 
 def malformed(text: str, *, id: int | None = None) -> ErrorMessage:
-    """Return the message on a message that is none.
+    """Return the message for malformed input.
 
     Parameters
     ----------
     text : str
-        What is wrong with it.
+        The problem.
     id : int or None
-        Its id, where that could be read.
+        Id of the malformed message, if it could be read.
     """
     return ErrorMessage(type="error", id=id, kind="message", text=text)
 

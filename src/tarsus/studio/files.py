@@ -1,4 +1,4 @@
-"""The files that can be taken away: a walk's table, the robot's file, the angles, the page that plays offline."""
+"""Exported files: the walk as CSV, the robot file, joint angles, and the offline player."""
 
 from __future__ import annotations
 
@@ -27,33 +27,33 @@ def text_file(name: str, text: str, *, id: int) -> FileMessage:
     Parameters
     ----------
     name : str
-        Its name; the ending tells its kind.
+        Name of the file; its extension determines the MIME type.
     text : str
-        What it holds.
+        Content.
     id : int
-        Of the message that is answered.
+        Id of the message that is answered.
     """
     return FileMessage(type="file", id=id, name=name, mime=_MIME[name.rpartition(".")[2]], text=text)
 
 
-def file_name(robot: Robot, what: str, ending: str) -> str:
-    """Return a name that every file system takes.
+def file_name(robot: Robot, content: str, extension: str) -> str:
+    """Return a file name that is valid on every file system.
 
     Parameters
     ----------
     robot : Robot
-        Whose name it begins with.
-    what : str
-        What it is; may be empty.
-    ending : str
-        ``"csv"`` and the like.
+        A single robot, with whose name the file name starts.
+    content : str
+        Content of the file; may be empty.
+    extension : str
+        Extension, such as ``"csv"``.
     """
     plain = re.sub(r"[^A-Za-z0-9]+", "-", robot.name)[:60].strip("-") or "robot"
-    return f"{'-'.join(part for part in (plain, what) if part)}.{ending}"
+    return f"{'-'.join(part for part in (plain, content) if part)}.{extension}"
 
 
 def walk_csv(motion: Motion) -> str:
-    """Return a walk's table: what `motion_to_csv` writes.
+    """Return a walk as CSV.
 
     Parameters
     ----------
@@ -67,7 +67,7 @@ def walk_csv(motion: Motion) -> str:
 
 
 def angles_csv(robot: Robot, angles: np.ndarray[tuple[int, ...], np.dtype[np.float64]]) -> str:
-    """Return the joint angles of one pose as a table.
+    """Return the joint angles of one pose as CSV.
 
     Parameters
     ----------
@@ -85,7 +85,7 @@ def angles_csv(robot: Robot, angles: np.ndarray[tuple[int, ...], np.dtype[np.flo
 
 
 def toml_of(robot: Robot) -> str:
-    """Return the text of the robot's file.
+    """Return the text of the robot file.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Undo and redo over whole states: a commit is a place to come back to."""
+"""Undo and redo of whole states, from commit to commit."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ _MOST = 100
 
 
 class History:
-    """The present state, those before it and those undone.
+    """The present state, the previous states, and the undone ones.
 
     Attributes
     ----------
     present : StudioState
-        The state now; what is not committed is taken together with the next commit.
+        The present state; uncommitted changes become part of the next commit.
     """
 
     def __init__(self, state: StudioState) -> None:
@@ -29,23 +29,23 @@ class History:
 
     @property
     def can_undo(self) -> bool:
-        """Whether there is a state to go back to."""
+        """Whether there is something to undo."""
         return bool(self._past) or self.present != self._committed
 
     @property
     def can_redo(self) -> bool:
-        """Whether there is an undone state."""
+        """Whether there is something to redo."""
         return bool(self._future)
 
     def change(self, state: StudioState, *, commit: bool) -> None:
-        """Take a new state.
+        """Change the state.
 
         Parameters
         ----------
         state : StudioState
-            The state.
+            The new state.
         commit : bool
-            Whether it is one to come back to; if not, more is to follow.
+            Whether undo returns to this state; false during a continuous change.
         """
         self.present = state
         if commit and state != self._committed:
@@ -54,27 +54,27 @@ class History:
             self._committed = state
 
     def look(self, view: View, picture: Picture) -> None:
-        """Go to a view or look at it differently, which is nothing to undo.
+        """Change the view or the camera, which undo does not revert.
 
         Parameters
         ----------
         view : str
-            The view.
+            The new view.
         picture : Picture
-            How it is looked at.
+            Camera and time.
         """
-        looked = {"view": view, "picture": picture}
+        changes = {"view": view, "picture": picture}
         clean = self.present == self._committed
-        self.present = self.present.model_copy(update=looked)
-        self._committed = self.present if clean else self._committed.model_copy(update=looked)
+        self.present = self.present.model_copy(update=changes)
+        self._committed = self.present if clean else self._committed.model_copy(update=changes)
 
     def undo(self) -> StudioState:
-        """Go back to the commit before, and return it; what is not committed yet is one step.
+        """Return to the previous commit, and return its state; uncommitted changes are one step.
 
         Raises
         ------
         InputError
-            If there is none.
+            If there is nothing to undo.
         """
         if self.present != self._committed:
             self._past.append(self._committed)
@@ -85,12 +85,12 @@ class History:
         return self._go(self._past.pop())
 
     def redo(self) -> StudioState:
-        """Take an undo back, and return the state.
+        """Revert an undo, and return the state.
 
         Raises
         ------
         InputError
-            If nothing is undone.
+            If there is nothing to redo.
         """
         if not self._future:
             raise InputError("there is nothing to redo")
@@ -98,6 +98,6 @@ class History:
         return self._go(self._future.pop())
 
     def _go(self, state: StudioState) -> StudioState:
-        # Where one looks from is not undone.
+        # Camera and time are kept.
         self.present = self._committed = state.model_copy(update={"picture": self.present.picture})
         return self.present

@@ -1,9 +1,8 @@
-"""What one leg reaches: outlines on the ground and in the leg's own plane.
+"""Workspace of a leg: outlines on the ground and in the plane of the leg.
 
-Rays are cast from a point that the leg reaches around: on the ground from below the coxa axis, in the leg's plane from
-the femur axis. Along each, the widest band of reachable points is found by inverse kinematics, its ends by
-halving. So the outline is that of `inverse_kinematics`, joint limits, offsets, tilt and the ground included; left out
-is what a leg reaches backwards over its coxa axis, as a walk never does.
+Rays are cast from the coxa axis on the ground, and from the femur axis in the plane of the leg. Along each ray, inverse
+kinematics finds the widest interval of reachable points, and bisection its ends. So joint limits, offsets, tilt and the
+ground are included. Points that a leg reaches backwards over its coxa axis are excluded, as walks do not use them.
 """
 
 from __future__ import annotations
@@ -20,8 +19,8 @@ from tarsus.kinematics.leg import forward_kinematics
 from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.solution import IKSolution
 from tarsus.robot.robot import Robot
-from tarsus.studio.messages.pose import WorkspaceMessage
 from tarsus.studio.encoding import millimetres, or_null
+from tarsus.studio.messages.pose import WorkspaceMessage
 
 __all__ = ["Outline", "ground_band", "ground_outline", "plane_outline", "workspace_message"]
 
@@ -30,18 +29,18 @@ Points: TypeAlias = Callable[[Floats, Floats], Floats]
 
 _RAYS = 72
 _ALONG = 40
-# A ten-thousandth of a ray's step is less than a micrometre.
+# Halves the step of a ray (some mm) to less than a micrometre.
 _HALVINGS = 14
 
 
 @dataclass(frozen=True, eq=False)
 class Outline:
-    """The outline of what a leg reaches in a plane.
+    """Outline of the workspace of a leg in a plane.
 
     Attributes
     ----------
     near, far : array, shape (k, 3)
-        Nearest and farthest points along each ray, in B [m]; no rays where nothing is reached.
+        Nearest and farthest reachable points along each ray, in B [m]; no rays where no point is reachable.
     """
 
     near: Floats
@@ -49,13 +48,13 @@ class Outline:
 
     @property
     def closed(self) -> Floats:
-        """The points in order round the outline ``(2 k, 3)``."""
+        """The points in order along the outline ``(2 k, 3)``."""
         return np.concatenate([self.far, self.near[::-1]])
 
 
 @dataclass(frozen=True, eq=False)
 class _Plane:
-    """Points of a plane by direction and distance, and which of them the leg reaches."""
+    """Points of a plane by direction and distance, and which of them are reachable."""
 
     points: Points
     reached: Callable[[Floats], np.ndarray[Any, np.dtype[np.bool_]]]
@@ -63,36 +62,36 @@ class _Plane:
 
     @property
     def distances(self) -> Floats:
-        # At the axis itself every direction is the same point, and none of them is told apart from the others.
+        # Distance 0 is the same point in every direction.
         return np.linspace(1e-3 * self.length, self.length, _ALONG)
 
 
 def ground_outline(robot: Robot, leg: int, body: Pose) -> Outline:
-    """Return what a leg reaches on the ground.
+    """Return the outline of the workspace of a leg on the ground.
 
     Parameters
     ----------
     robot : Robot
         A single robot.
     leg : int
-        Which leg.
+        Index of the leg.
     body : Pose
-        Place of B in G.
+        Pose of B in G.
     """
     return _in_body(_cast(_ground(robot, leg, body)), body)
 
 
 def ground_band(robot: Robot, leg: int, body: Pose) -> tuple[float, float]:
-    """Return how near and how far a leg's foot can stand straight out from below its coxa axis [m]; NaN if nowhere.
+    """Return the reachable distances straight outward on the ground from the coxa axis [m]; NaN if there are none.
 
     Parameters
     ----------
     robot : Robot
         A single robot.
     leg : int
-        Which leg.
+        Index of the leg.
     body : Pose
-        Place of B in G.
+        Pose of B in G.
     """
     ground = _ground(robot, leg, body)
     ahead = np.zeros(1)
@@ -125,16 +124,16 @@ def _ground(robot: Robot, leg: int, body: Pose) -> _Plane:
 
 
 def plane_outline(robot: Robot, leg: int, coxa: float) -> Outline:
-    """Return what a leg reaches in its own plane, the body's ground apart.
+    """Return the outline of the workspace of a leg in its own plane, without the ground.
 
     Parameters
     ----------
     robot : Robot
         A single robot.
     leg : int
-        Which leg.
+        Index of the leg.
     coxa : float
-        The coxa angle in whose plane it is [rad]; taken into its limits.
+        Coxa angle of the plane [rad]; clamped to its limits.
     """
     alone = _alone(robot, leg)
     coxa = float(np.clip(coxa, alone.limits[0, 0, 0], alone.limits[0, 0, 1]))
@@ -154,7 +153,7 @@ def plane_outline(robot: Robot, leg: int, coxa: float) -> Outline:
 
 
 def _alone(robot: Robot, leg: int) -> Robot:
-    """Return the robot with one leg only, massless: inverse kinematics needs no more."""
+    """Return the robot with one leg only and without masses, as inverse kinematics needs neither."""
     own = slice(leg, leg + 1)
     arrays = {
         name: getattr(robot, name)[own]
@@ -164,7 +163,7 @@ def _alone(robot: Robot, leg: int) -> Robot:
 
 
 def _reached(alone: Robot, solution: IKSolution) -> np.ndarray[Any, np.dtype[np.bool_]]:
-    """Leave out feet behind the coxa axis: reached with the plane turned away, they are no place to step to."""
+    """Exclude points behind the coxa axis, which are no footholds."""
     away = branches(alone, solution.angles)[..., 0, 0]
     return np.asarray(solution.ok & ~away)
 
@@ -175,7 +174,7 @@ def _length(alone: Robot) -> float:
 
 
 def _cast(plane: _Plane) -> Outline:
-    """Cast rays over the half turn to either side, and again over those directions alone that reach something."""
+    """Cast rays in all directions, and again in the range of directions with reachable points."""
     turns = np.linspace(-np.pi, np.pi, _RAYS + 1)
 
     def hits(turns: Floats) -> np.ndarray[Any, Any]:
@@ -186,7 +185,7 @@ def _cast(plane: _Plane) -> Outline:
         return Outline(np.empty((0, 3)), np.empty((0, 3)))
     first, last = run
 
-    # Of a whole turn, both ends are the same ray, and there is nothing to halve.
+    # For a full circle both ends are the same ray, and bisection changes nothing.
     inside = turns[[first, last]]
     outside = turns[[max(first - 1, 0), min(last + 1, _RAYS)]]
     for _ in range(_HALVINGS):
@@ -200,7 +199,7 @@ def _cast(plane: _Plane) -> Outline:
 
 
 def _widest_run(hit: np.ndarray[Any, Any]) -> tuple[int, int] | None:
-    """Return the first and last of the longest run of what is true."""
+    """Return the first and last index of the longest run of true values."""
     edges = np.flatnonzero(np.diff(np.concatenate([[False], hit, [False]]).astype(np.int8)))
     if not edges.size:
         return None
@@ -210,7 +209,7 @@ def _widest_run(hit: np.ndarray[Any, Any]) -> tuple[int, int] | None:
 
 
 def _bands(plane: _Plane, turns: Floats) -> tuple[Floats, Floats]:
-    """Return the ends of the widest band along each ray; where a ray reaches nothing, both are at its beginning."""
+    """Return the ends of the widest reachable interval of each ray; both 0 where no point is reachable."""
     distances = plane.distances
     ok = plane.reached(plane.points(turns[:, None], distances))
     inside, outside = np.empty((2, len(turns))), np.empty((2, len(turns)))
@@ -228,20 +227,20 @@ def _bands(plane: _Plane, turns: Floats) -> tuple[Floats, Floats]:
 
 
 def workspace_message(robot: Robot, leg: int, body: Pose, coxa: float, *, id: int) -> WorkspaceMessage:
-    """Return what a leg reaches with the body at a place.
+    """Return the workspace of a leg for a body pose.
 
     Parameters
     ----------
     robot : Robot
         A single robot.
     leg : int
-        Which leg.
+        Index of the leg.
     body : Pose
-        Place of B in G.
+        Pose of B in G.
     coxa : float
-        The leg's coxa angle [rad].
+        Coxa angle of the leg [rad].
     id : int
-        Of the message that is answered.
+        Id of the message that is answered.
     """
     nearest, farthest = ground_band(robot, leg, body)
     return WorkspaceMessage(

@@ -1,4 +1,4 @@
-"""What a walk asks of the joints and of the servos, as messages."""
+"""Messages on joint loads and servo sizing."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ from tarsus.load.sizing import size_servos
 from tarsus.load.supply import supply_load
 from tarsus.load.verdict import joint_verdicts
 from tarsus.report.loads_summary import loads_summary, servos_summary
+from tarsus.studio.encoding import or_null, plain
 from tarsus.studio.messages.motion import Candidate, JointLoad, LoadsMessage, ServosMessage
 from tarsus.studio.messages.state import LoadOptions
 from tarsus.studio.walks import fewer_for_more_legs
-from tarsus.studio.encoding import or_null, plain
 
 __all__ = ["loads_message", "loads_of", "servos_message"]
 
@@ -24,21 +24,21 @@ _MOST_SIZED = 3000
 
 
 def loads_of(motion: Motion, options: LoadOptions) -> JointLoads:
-    """Return what every joint bears over a walk.
+    """Return the loads of all joints over a walk.
 
     Parameters
     ----------
     motion : Motion
         The walk.
     options : LoadOptions
-        Payload, supply, and whether inertia counts.
+        Payload, supply voltage, and whether inertia is included.
 
     Raises
     ------
     MissingDataError
         If the robot's masses are unknown.
     InputError
-        If a value is out of its range.
+        If a value is out of range.
     """
     x, y, z = (value / 1000 for value in options.payload_at_mm)
     return joint_loads(
@@ -51,21 +51,21 @@ def loads_of(motion: Motion, options: LoadOptions) -> JointLoads:
 
 
 def loads_message(found: JointLoads, options: LoadOptions, *, id: int) -> LoadsMessage:
-    """Return loads with the verdicts on them.
+    """Return the loads with the verdicts on the servos.
 
     Parameters
     ----------
-    found : Loads
-        What the joints bear.
+    found : JointLoads
+        Loads of the joints.
     options : LoadOptions
         Battery and safety factor.
     id : int
-        Of the message that is answered.
+        Id of the message that is answered.
 
     Raises
     ------
     InputError
-        If a value is out of its range.
+        If a value is out of range.
     """
     drawn = supply_load(found, capacity=options.capacity_ah)
     summary = loads_summary(found, drawn)
@@ -120,27 +120,27 @@ def _joint(row: dict[str, Any], text: str) -> JointLoad:
 
 
 def servos_message(found: JointLoads, options: LoadOptions, *, id: int) -> ServosMessage:
-    """Return which servos would do.
+    """Return the suitable servos.
 
     Parameters
     ----------
-    found : Loads
-        What the joints bear.
+    found : JointLoads
+        Loads of the joints.
     options : LoadOptions
         Safety factor and rule.
     id : int
-        Of the message that is answered.
+        Id of the message that is answered.
 
     Raises
     ------
     InputError
-        If the walk has too many samples, or the factor is 0.
+        If the walk has too many samples, or the safety factor is 0.
     """
     most = fewer_for_more_legs(_MOST_SIZED, found.robot)
     if len(found.motion.time) > most:
         raise InputError(
-            f"the walk has {len(found.motion.time)} samples; as every servo of the catalogue is tried, servos are "
-            f"chosen here for at most {most}: ask for a lower rate or a shorter walk"
+            f"the walk has {len(found.motion.time)} samples; servo sizing evaluates every servo of the catalogue and "
+            f"accepts at most {most}: use a lower rate or a shorter walk"
         )
     sizing = size_servos(found.robot, found, safety_factor=_factor(options), rule=options.rule)
     summary = servos_summary(sizing, found)

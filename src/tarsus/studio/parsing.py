@@ -1,4 +1,4 @@
-"""From what came over the wire to a checked message, or to the error that answers it."""
+"""Parsing of received messages."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 from pydantic import ValidationError
 from pydantic_core import from_json
 
-from tarsus.studio.error_messages import malformed
 from tarsus.robot.document_problems import key_of
+from tarsus.studio.error_messages import malformed
 from tarsus.studio.messages import client_message
 from tarsus.studio.messages.general import ErrorMessage
 
@@ -18,18 +18,18 @@ if TYPE_CHECKING:
 __all__ = ["read"]
 
 _LARGEST_ID = 2**53 - 1
-_MOST_TOLD = 3
+_MOST_PROBLEMS = 3
 
 
 def read(text: str | bytes, *, most: int) -> ClientMessage | ErrorMessage:
-    """Return a client's message, or the error on what is none.
+    """Return the parsed message of a client, or the error that answers malformed input.
 
     Parameters
     ----------
     text : str or bytes
         JSON.
     most : int
-        The most bytes that it may have.
+        Greatest size in bytes.
     """
     size = len(text.encode(errors="replace")) if isinstance(text, str) else len(text)
     if size > most:
@@ -37,7 +37,7 @@ def read(text: str | bytes, *, most: int) -> ClientMessage | ErrorMessage:
     try:
         return client_message.validate_json(text)
     except ValidationError as error:
-        return malformed(_words(error), id=_id_of(text))
+        return malformed(_text(error), id=_id_of(text))
 
 
 def _id_of(text: str | bytes) -> int | None:
@@ -49,8 +49,8 @@ def _id_of(text: str | bytes) -> int | None:
     return number if type(number) is int and 0 <= number <= _LARGEST_ID else None
 
 
-def _words(error: ValidationError) -> str:
+def _text(error: ValidationError) -> str:
     found = error.errors(include_url=False, include_input=False, include_context=False)
-    lines = [f"{key_of(line['loc']) or 'the message'}: {line['msg']}" for line in found[:_MOST_TOLD]]
-    more = f" (and {len(found) - _MOST_TOLD} more)" if len(found) > _MOST_TOLD else ""
-    return f"this is no message of the studio: {'; '.join(lines)}{more}"
+    lines = [f"{key_of(line['loc']) or 'message'}: {line['msg']}" for line in found[:_MOST_PROBLEMS]]
+    more = f" (and {len(found) - _MOST_PROBLEMS} more)" if len(found) > _MOST_PROBLEMS else ""
+    return f"malformed message: {'; '.join(lines)}{more}"

@@ -1,4 +1,4 @@
-"""A walk as one self-contained page that plays offline: the front end's player with the walk's data put into it."""
+"""Offline player of a walk: the player page of the front end with embedded data."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from pathlib import Path
 from tarsus.errors import InputError, TarsusError
 from tarsus.gait.motion import Motion
 from tarsus.studio.loads import loads_message, loads_of
-from tarsus.studio.messages.motion import LoadsMessage
 from tarsus.studio.messages.general import PlayerData
+from tarsus.studio.messages.motion import LoadsMessage
 from tarsus.studio.messages.state import LoadOptions, RobotChoice
 from tarsus.studio.robots import robot_message
 from tarsus.studio.walks import MOST_SAMPLES, walk_message
@@ -16,33 +16,33 @@ from tarsus.studio.walks import MOST_SAMPLES, walk_message
 __all__ = ["BUILD_HINT", "WEB", "player_data", "player_page"]
 
 WEB = Path(__file__).parent / "web_dist"
-"""Where the front end is built to."""
+"""Folder of the built front end."""
 
-BUILD_HINT = "the studio's pages are not built: run `make web` in the project's folder (it needs Node 20 or newer)"
+BUILD_HINT = "the studio's pages are not built: run `make web` in the project folder (requires Node 20 or newer)"
 
 _PLACE = "__MOTION__"
 
 
 def player_data(motion: Motion, *, choice: RobotChoice | None = None, options: LoadOptions | None = None) -> PlayerData:
-    """Return what the page of a walk holds.
+    """Return the data that the player of a walk embeds.
 
     Parameters
     ----------
     motion : Motion
         The walk.
     choice : RobotChoice, optional
-        How the robot was chosen.
+        Selection of the robot.
     options : LoadOptions, optional
         Payload and supply of the loads.
 
     Raises
     ------
     InputError
-        If it has more moments than a page should hold.
+        If it has more samples than a page can hold.
     """
     if len(motion.time) > MOST_SAMPLES:
         raise InputError(
-            f"the walk has {len(motion.time)} moments; a page holds at most {MOST_SAMPLES}: ask for a lower rate or a "
+            f"the walk has {len(motion.time)} samples; a page holds at most {MOST_SAMPLES}: use a lower rate or a "
             "shorter walk"
         )
     chosen = RobotChoice(preset=None) if choice is None else choice
@@ -60,17 +60,17 @@ def _loads(motion: Motion, options: LoadOptions) -> LoadsMessage | None:
 
 
 def player_page(data: PlayerData) -> str:
-    """Return the page's text.
+    """Return the text of the page.
 
     Parameters
     ----------
     data : PlayerData
-        What it shows.
+        Data to embed.
 
     Raises
     ------
     TarsusError
-        If the front end is not built.
+        If the front end has not been built.
     """
     try:
         page = (WEB / "player.html").read_text(encoding="utf-8")
@@ -78,6 +78,6 @@ def player_page(data: PlayerData) -> str:
         page = ""
     if _PLACE not in page:
         raise TarsusError(BUILD_HINT)
-    # Inside a script element only "<" could end it; JSON may write it so.
+    # "<" could end the script element, so it is escaped as JSON allows.
     held = data.model_dump_json().replace("<", "\\u003c")
     return page.replace(_PLACE, held, 1)

@@ -1,4 +1,4 @@
-"""From the state's joints and body to the poses that are shown, and back from a foot that is dragged."""
+"""Poses of the views Joints and Body, and changes of the state when a foot is dragged."""
 
 from __future__ import annotations
 
@@ -22,14 +22,14 @@ __all__ = ["Resting", "drag_foothold", "drag_joints", "require_leg", "resting", 
 
 @dataclass(frozen=True, eq=False)
 class Resting:
-    """Joint angles and how the robot rests with them.
+    """Joint angles and the resting pose that they lead to.
 
     Attributes
     ----------
     angles : array, shape (legs, 3)
         Joint angles [rad].
-    rest : Rest
-        What `resting_pose` says.
+    rest : RestingPose
+        Result of `resting_pose`.
     """
 
     angles: np.ndarray[Any, Any]
@@ -37,19 +37,19 @@ class Resting:
 
 
 def resting(robot: Robot, joints: JointsState) -> Resting:
-    """Return how the robot rests with the view Joints' angles.
+    """Return the resting pose for the angles of the view Joints.
 
     Parameters
     ----------
     robot : Robot
         A single robot.
     joints : JointsState
-        The angles; those of the rest stance, or all zero where the robot has none, if left out.
+        The angles; left out, those of the default stance, or zero where the robot has none.
 
     Raises
     ------
     InputError
-        If there are not three angles a leg.
+        If there are not three angles per leg.
     """
     if joints.angles_deg is None:
         stance = stance_of(robot)
@@ -60,21 +60,21 @@ def resting(robot: Robot, joints: JointsState) -> Resting:
 
 
 def standing(robot: Robot, body: BodyState) -> OnFootholds:
-    """Return how the robot stands with the view Body's pose.
+    """Return the standing robot with the body pose of the view Body.
 
     Parameters
     ----------
     robot : Robot
         A single robot.
     body : BodyState
-        The pose, and the footholds where they were dragged.
+        Body pose, and footholds where they were dragged.
 
     Raises
     ------
     InputError
-        If there are not three coordinates a foot.
+        If there are not three coordinates per foot.
     UnreachableError
-        If a leg reaches the ground nowhere at that body height, and no footholds are given.
+        If a leg does not reach the ground at that body height, and no footholds are given.
     """
     height = default_body_height(robot) if body.body_height_mm is None else body.body_height_mm / 1000
     if body.feet_mm is None:
@@ -89,23 +89,23 @@ def standing(robot: Robot, body: BodyState) -> OnFootholds:
 
 
 def drag_foothold(robot: Robot, body: BodyState, leg: int, position_mm: tuple[float, float, float]) -> BodyState:
-    """Return the view Body's state with one foothold elsewhere; none is put below the ground.
+    """Return the state of the view Body with one foothold moved; none is below the ground.
 
     Parameters
     ----------
     robot : Robot
         A single robot.
     body : BodyState
-        The state before.
+        The present state.
     leg : int
-        Whose foothold.
+        Index of the leg.
     position_mm : tuple of float
-        Where to, in G [mm].
+        New position in G [mm].
 
     Raises
     ------
     InputError
-        If there is no such leg.
+        If the leg does not exist.
     """
     require_leg(robot, leg)
     feet = np.asarray(standing(robot, body).solution.feet) * 1000
@@ -115,50 +115,50 @@ def drag_foothold(robot: Robot, body: BodyState, leg: int, position_mm: tuple[fl
 
 
 def drag_joints(robot: Robot, joints: JointsState, leg: int, position_mm: tuple[float, float, float]) -> JointsState:
-    """Return the view Joints' state with one leg's foot where it is dragged to, or as near as it gets.
+    """Return the state of the view Joints with one foot moved to a position, or as near to it as possible.
 
-    The body stays for that moment where it is; how the robot then rests is another question.
+    The body pose is that before the change; the resting pose follows from the new angles.
 
     Parameters
     ----------
     robot : Robot
         A single robot.
     joints : JointsState
-        The state before.
+        The present state.
     leg : int
-        Whose foot.
+        Index of the leg.
     position_mm : tuple of float
-        Where to, in G [mm].
+        New position in G [mm].
 
     Raises
     ------
     InputError
-        If there is no such leg.
+        If the leg does not exist.
     """
     require_leg(robot, leg)
     now = resting(robot, joints)
-    wanted = now.rest.body.inverse() @ (np.asarray(position_mm) / 1000)
-    # The other legs are solved for the same point, for nothing: only this one's angles are taken.
-    solution = inverse_kinematics(robot, np.broadcast_to(np.asarray(wanted), (robot.legs, 3)))
+    target = now.rest.body.inverse() @ (np.asarray(position_mm) / 1000)
+    # All legs are solved for the same point, but only the angles of this one are used.
+    solution = inverse_kinematics(robot, np.broadcast_to(np.asarray(target), (robot.legs, 3)))
     angles = now.angles.copy()
     angles[leg] = np.asarray(solution.angles)[leg]
     return JointsState(angles_deg=_numbers(np.degrees(angles)))
 
 
 def require_leg(robot: Robot, leg: int) -> None:
-    """Refuse the number of a leg that the robot does not have.
+    """Raise an error if the robot does not have a leg.
 
     Parameters
     ----------
     robot : Robot
         A single robot.
     leg : int
-        The number.
+        Index of the leg.
 
     Raises
     ------
     InputError
-        If there is no such leg.
+        If the leg does not exist.
     """
     if leg >= robot.legs:
         raise InputError(f"leg is {leg}; {robot.name} has legs 0 to {robot.legs - 1}")
@@ -166,10 +166,10 @@ def require_leg(robot: Robot, leg: int) -> None:
 
 def _of_legs(name: str, values: tuple[float, ...], robot: Robot) -> np.ndarray[Any, Any]:
     if len(values) != 3 * robot.legs:
-        raise InputError(f"{name} has {len(values)} numbers; {robot.legs} legs have {3 * robot.legs}")
+        raise InputError(f"{name} has {len(values)} numbers; {robot.legs} legs need {3 * robot.legs}")
     return np.array(values, dtype=np.float64).reshape(robot.legs, 3)
 
 
 def _numbers(values: np.ndarray[Any, Any]) -> tuple[float, ...]:
-    # To a millionth of a mm or deg, so that a link stays short.
+    # Rounded to 1e-6 mm or deg, for short links.
     return tuple((np.round(values, 6) + 0.0).ravel().tolist())

@@ -1,4 +1,4 @@
-"""What a session has worked out of its state, each thing once: robot, poses, walk, loads."""
+"""Results that follow from a state, each computed once: robot, poses, walk, loads."""
 
 from __future__ import annotations
 
@@ -24,13 +24,13 @@ _T = TypeVar("_T")
 
 
 class Results:
-    """Works things out of a state, and keeps the last of each kind."""
+    """Computes results from a state, and keeps the latest of each kind."""
 
     def __init__(self) -> None:
         self._kept: dict[str, tuple[tuple[Any, ...], Any]] = {}
 
     def _once(self, kind: str, given: tuple[Any, ...], make: Callable[[], _T]) -> _T:
-        """Return what was made of the same things before, or make it."""
+        """Return the stored result for the same inputs, or compute it."""
         known = self._kept.get(kind)
         if known is not None and known[0] == given:
             kept: _T = known[1]
@@ -40,38 +40,38 @@ class Results:
         return made
 
     def robot(self, state: StudioState) -> Robot:
-        """Return the robot; the same object as long as it is the same robot."""
+        """Return the robot; the same object for the same state."""
         return self._once("robot", (state.robot,), lambda: robot_of(state.robot))
 
     def resting(self, state: StudioState) -> Resting:
-        """Return how it rests with the view Joints' angles."""
+        """Return the resting pose of the view Joints."""
         robot = self.robot(state)
         return self._once("resting", (robot, state.joints), lambda: resting(robot, state.joints))
 
     def standing(self, state: StudioState) -> OnFootholds:
-        """Return how it stands with the view Body's pose."""
+        """Return the standing robot of the view Body."""
         robot = self.robot(state)
         return self._once("standing", (robot, state.body), lambda: standing(robot, state.body))
 
     def walk(self, state: StudioState) -> Motion:
-        """Return the walk."""
+        """Return the planned walk."""
         robot = self.robot(state)
         return self._once("walk", (robot, state.walk), lambda: plan(robot, state.walk))
 
     def longest(self, state: StudioState) -> float:
-        """Return the longest stroke that works along the walk's path [m]; it does not hang on the pace."""
+        """Return the longest possible stroke along the path [m]; it does not depend on speed and cycle time."""
         robot = self.robot(state)
         slow = {"stroke_mm": None, "speed_mm_s": None, "cycle_time_s": None, "rate_hz": 100.0, "strict": True}
         options = state.walk.model_copy(update=slow)
         return self._once("longest", (robot, options), lambda: longest(robot, options))
 
     def loads(self, state: StudioState) -> JointLoads:
-        """Return what the walk asks of the joints."""
+        """Return the joint loads of the walk."""
         motion = self.walk(state)
         return self._once("loads", (motion, state.loads), lambda: loads_of(motion, state.loads))
 
     def shown(self, state: StudioState) -> tuple[Pose, np.ndarray[Any, Any]]:
-        """Return the body's place and the joint angles of the pose that the view shows; of a walk, its beginning."""
+        """Return body pose and joint angles that the view shows; for a walk, those at its start."""
         if state.view == "joints":
             pose = self.resting(state)
             return pose.rest.body, pose.angles

@@ -17,9 +17,9 @@ from tarsus.kinematics.stance import default_body_height, default_stance
 from tarsus.report.robot_summary import check_robot, dimensions
 from tarsus.robot.file import list_robots, load_robot, robot_from_dict, robot_from_text, robot_to_dict
 from tarsus.robot.robot import Robot
-from tarsus.studio.messages.state import RobotChoice
-from tarsus.studio.messages.pose import Dimension, RobotMessage
 from tarsus.studio.encoding import degrees, millimetres, or_null
+from tarsus.studio.messages.pose import Dimension, RobotMessage
+from tarsus.studio.messages.state import RobotChoice
 
 __all__ = [
     "MOST_LEGS",
@@ -33,24 +33,24 @@ __all__ = [
 ]
 
 MOST_LEGS = 12
-"""Robots with more legs are for the command line: a walk's cost grows with the square of the legs."""
+"""Limit, as the cost of a walk grows with the square of the number of legs; the command line has none."""
 
-# Undo keeps a hundred of them for each visitor; a robot of twelve legs, each with keys of its own, takes a tenth.
+# Limit in characters of JSON, as undo keeps 100 documents per visitor; twelve legs with individual keys take a tenth.
 _LARGEST = 65_536
 
 
 def choice_of_preset(name: str) -> RobotChoice:
-    """Return the choice of a robot that comes with Tarsus.
+    """Return the choice of a preset.
 
     Parameters
     ----------
     name : str
-        One of `list_robots`: never the path of a file.
+        One of `list_robots`; paths of files are not accepted.
 
     Raises
     ------
     UnknownNameError
-        If there is no such robot.
+        If the preset does not exist.
     """
     if name not in list_robots():
         raise UnknownNameError.of("robot", name[:200], list_robots())
@@ -58,30 +58,30 @@ def choice_of_preset(name: str) -> RobotChoice:
 
 
 def choice_of_text(text: str, *, where: str) -> RobotChoice:
-    """Return the choice of the robot that a robot file's text describes.
+    """Return the choice of a robot by the text of its file.
 
     Parameters
     ----------
     text : str
         TOML.
     where : str
-        What to call it in messages.
+        Name of the source in error messages.
 
     Raises
     ------
     RobotFileError
-        If something in it is wrong.
+        If the file is not valid.
     """
     return choice_of_document(robot_to_dict(robot_from_text(text, where=where)))
 
 
 def choice_of_document(document: dict[str, Any]) -> RobotChoice:
-    """Return the choice of the robot with these keys of a robot file; a preset's own are that preset.
+    """Return the choice of a robot by the keys of its file; those of a preset are that preset.
 
     Parameters
     ----------
     document : dict
-        Keys of a robot file; checked only by `robot_of`.
+        Keys of a robot file; `robot_of` validates them.
     """
     name = document.get("name")
     if isinstance(name, str) and name in list_robots() and robot_to_dict(load_robot(name)) == document:
@@ -95,31 +95,31 @@ def robot_of(choice: RobotChoice) -> Robot:
     Parameters
     ----------
     choice : RobotChoice
-        A preset's name, or a document.
+        Name of a preset, or a document.
 
     Raises
     ------
     RobotFileError, UnknownNameError
-        If there is no such robot, or something in its document is wrong.
+        If the preset does not exist, or the document is not valid.
     InputError
-        If its document is too large, it has too many legs, or neither is given.
+        If the document is too large, the robot has too many legs, or neither is given.
     """
     if choice.document is not None:
         size = len(json.dumps(choice.document))
         if size > _LARGEST:
-            raise InputError(f"the robot's document has {size} characters as JSON; the studio keeps at most {_LARGEST}")
+            raise InputError(f"the robot's document has {size} characters as JSON; the limit is {_LARGEST}")
         robot = robot_from_dict(choice.document, where="the robot")
     elif choice.preset is not None:
         robot = load_robot(str(choice_of_preset(choice.preset).preset))
     else:
-        raise InputError("a robot is a preset or a document; neither is given")
+        raise InputError("neither preset nor document is given")
     if robot.legs > MOST_LEGS:
-        raise InputError(f"robot {robot.name!r} has {robot.legs} legs; the studio takes at most {MOST_LEGS}")
+        raise InputError(f"robot {robot.name!r} has {robot.legs} legs; the studio accepts at most {MOST_LEGS}")
     return robot
 
 
 def stance_of(robot: Robot) -> tuple[np.ndarray[Any, Any], np.ndarray[Any, Any]] | None:
-    """Return the feet in G at rest and the joint angles there, or None where the robot can't stand.
+    """Return footholds in G and joint angles of the default stance, or None if the robot can't stand.
 
     Parameters
     ----------
@@ -135,7 +135,7 @@ def stance_of(robot: Robot) -> tuple[np.ndarray[Any, Any], np.ndarray[Any, Any]]
 
 
 def gaits_of(robot: Robot) -> list[str]:
-    """Return the names of the gaits that a robot of so many legs has.
+    """Return the names of the gaits for the number of legs of a robot.
 
     Parameters
     ----------
@@ -154,16 +154,16 @@ def _has_gait(name: str, legs: int) -> bool:
 
 
 def robot_message(robot: Robot, choice: RobotChoice, *, id: int) -> RobotMessage:
-    """Return all that is to be known of a robot.
+    """Return the description of a robot.
 
     Parameters
     ----------
     robot : Robot
         A single robot.
     choice : RobotChoice
-        How it was chosen.
+        Selection of the robot.
     id : int
-        Of the message that is answered.
+        Id of the message that is answered.
     """
     stance, check = stance_of(robot), check_robot(robot)
     servos = [servo for row in robot.servos for servo in row]

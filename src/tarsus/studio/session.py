@@ -1,4 +1,4 @@
-"""One visitor's studio, without any transport: messages in, messages out, frames while driving."""
+"""A session of one visitor, independent of the transport: messages in, messages out, frames while driving."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ from tarsus.studio.driving import Driver
 from tarsus.studio.error_messages import error_message
 from tarsus.studio.history import History
 from tarsus.studio.messages import client as ask
-from tarsus.studio.messages.motion import DriveFrame
 from tarsus.studio.messages.general import Done, ErrorMessage
-from tarsus.studio.messages.state import BodyState, JointsState, RobotChoice, StudioState, WalkOptions
+from tarsus.studio.messages.motion import DriveFrame
 from tarsus.studio.messages.pose import Bounds, StateMessage, Welcome
-from tarsus.studio.poses import drag_foothold, drag_joints
+from tarsus.studio.messages.state import BodyState, JointsState, RobotChoice, StudioState, WalkOptions
 from tarsus.studio.parsing import read
+from tarsus.studio.poses import drag_foothold, drag_joints
 from tarsus.studio.robots import choice_of_document, choice_of_preset, choice_of_text, robot_message
 from tarsus.studio.state_text import state_of, text_of
 from tarsus.studio.views import Views, fitted
@@ -32,25 +32,25 @@ if TYPE_CHECKING:
 __all__ = ["BOUNDS", "Session"]
 
 BOUNDS = Bounds(message_bytes=256 * 1024, messages_per_s=120, plan_samples=MOST_SAMPLES, idle_s=0)
-"""What a session takes unless the server says otherwise."""
+"""Default limits of a session."""
 
 Answers: TypeAlias = "Iterator[ServerMessage]"
 
 
 class Session:
-    """One visitor's studio.
+    """A session of one visitor.
 
-    Nothing that a client says makes it raise: what is wrong or not possible is answered by an error, and the state
-    stays what it was.
+    No message raises an exception: invalid and impossible requests are answered by an error, and leave the state
+    unchanged.
 
     Parameters
     ----------
     start : StudioState, optional
-        The state that it begins with.
+        Initial state.
     bounds : Bounds
-        What the client is told that it may send.
+        Limits, which are sent to the client.
     public : bool
-        Whether it is told that this is a public server.
+        Whether this is a public server, which is sent to the client.
     """
 
     def __init__(self, start: StudioState | None = None, *, bounds: Bounds = BOUNDS, public: bool = False) -> None:
@@ -60,11 +60,11 @@ class Session:
         self._bounds = bounds
         self._public = public
         self._driver: Driver | None = None
-        self._told: StudioState | None = None
+        self._sent_state: StudioState | None = None
 
     @property
     def state(self) -> StudioState:
-        """The state now."""
+        """The present state."""
         return self._history.present
 
     @property
@@ -78,7 +78,7 @@ class Session:
         return self._driver is not None and self._driver.is_planning
 
     def receive(self, text: str | bytes) -> list[ServerMessage]:
-        """Answer a message as it comes over a wire.
+        """Answer a message in JSON.
 
         Parameters
         ----------
@@ -106,9 +106,9 @@ class Session:
         answers: list[ServerMessage] = []
         try:
             answers.extend(_HANDLERS[type(message)](self, message))
-        except Exception as error:  # whatever goes wrong is answered: a visitor's session never falls
+        except Exception as error:  # every error is answered, and the session continues
             answers.append(error_message(error, id=message.id))
-        answers.append(self._done(message.id, tell=getattr(message, "commit", True)))
+        answers.append(self._done(message.id, with_state=getattr(message, "commit", True)))
         return answers
 
     def frame(self, dt: float) -> DriveFrame | ErrorMessage | None:
@@ -129,22 +129,22 @@ class Session:
                 self._driver = None
             return answer
 
-    def _done(self, id: int | None, *, tell: bool = False) -> Done:
+    def _done(self, id: int | None, *, with_state: bool = False) -> Done:
         text = None
-        if tell and self.state != self._told:
-            self._told = self.state
+        if with_state and self.state != self._sent_state:
+            self._sent_state = self.state
             text = text_of(self.state)
         history = self._history
         return Done(type="done", id=id, undo=history.can_undo, redo=history.can_redo, state=text)
 
     def _everything(self, state: StudioState, *, id: int) -> Answers:
-        """Give the robot, the state, and what its view shows."""
+        """Yield the robot, the state, and the content of its view."""
         yield robot_message(self._views.results.robot(state), state.robot, id=id)
         yield StateMessage(type="state", id=id, state=state)
         yield from self._views.shown(state, id=id)
 
     def _take(self, state: StudioState, *, id: int, commit: bool) -> Answers:
-        """Go over to a state, after all of it was worked out."""
+        """Change to a state, after everything that it needs has been computed."""
         state = fitted(state, self._views.results.robot(state))
         answers = list(self._everything(state, id=id))
         self._driver = None
@@ -168,11 +168,11 @@ class Session:
             try:
                 state = state_of(message.state)
                 state = fitted(state, self._views.results.robot(state))
-            except Exception as error:  # a link of long ago: told, and the studio opens all the same
+            except Exception as error:  # an invalid link: report it, and start with the default state
                 yield error_message(error, id=message.id)
                 state = self.state
         self._history = History(state)
-        self._told = None
+        self._sent_state = None
         yield from self._everything(state, id=message.id)
 
     def _ping(self, _message: ask.Ping) -> Answers:
@@ -188,8 +188,8 @@ class Session:
         yield from answers
 
     def _preset(self, message: ask.SetRobot) -> Answers:
-        anew = {"robot": choice_of_preset(message.preset), "joints": JointsState(), "body": BodyState()}
-        state = self.state.model_copy(update={**anew, "walk": WalkOptions()})
+        reset = {"robot": choice_of_preset(message.preset), "joints": JointsState(), "body": BodyState()}
+        state = self.state.model_copy(update={**reset, "walk": WalkOptions()})
         yield from self._take(state, id=message.id, commit=message.commit)
 
     def _robot(self, choice: RobotChoice, message: ask.SetDocument | ask.SetToml) -> Answers:
@@ -209,13 +209,13 @@ class Session:
         yield from self._posed({"body": message.body}, message)
 
     def _posed(self, change: dict[str, Any], message: ask.Change) -> Answers:
-        """Change a pose: the answer is of the view that shows it, whichever the present one is."""
+        """Change a pose; the answer is for the view of that pose, whatever the present one is."""
         state = self.state.model_copy(update=change)
         view = "joints" if "joints" in change else "sources" if state.view == "sources" else "body"
-        seen = state.model_copy(update={"view": view})
-        answers: list[ServerMessage] = [self._views.pose(seen, id=message.id)]
+        shown = state.model_copy(update={"view": view})
+        answers: list[ServerMessage] = [self._views.pose(shown, id=message.id)]
         if view == "sources":
-            answers.append(self._views.source(seen, id=message.id))
+            answers.append(self._views.source(shown, id=message.id))
         self._history.change(state, commit=message.commit)
         yield from answers
 
@@ -240,7 +240,7 @@ class Session:
         yield from answers
 
     def _loads_or_why(self, state: StudioState, *, id: int) -> ServerMessage:
-        """Return a walk's loads; a walk without any is a walk all the same."""
+        """Return the loads of a walk, or the error; the walk is valid without loads."""
         try:
             return self._views.loads(state, id=id)
         except Exception as error:
@@ -248,7 +248,7 @@ class Session:
 
     def _loads(self, message: ask.SetLoads) -> Answers:
         state = self.state.model_copy(update={"loads": message.loads})
-        # Loads are of the walk that the client has; it may not have this one yet.
+        # The loads belong to the walk that the client has, which may not be this one.
         walk = [] if self._views.has_sent_walk(state) else [self._views.walk(state, id=message.id)]
         answer = self._views.loads(state, id=message.id)
         self._history.change(state, commit=message.commit)

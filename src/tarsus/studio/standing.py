@@ -1,4 +1,4 @@
-"""The robot standing or resting: from the views Joints and Body to the message of a pose."""
+"""Messages on the standing or resting robot, for the views Joints and Body."""
 
 from __future__ import annotations
 
@@ -17,32 +17,32 @@ from tarsus.kinematics.rest import CORNERS, RestingPose
 from tarsus.load.torque import joint_torques
 from tarsus.report.standing_summary import Standing, rest_summary
 from tarsus.robot.robot import JOINTS, Robot
-from tarsus.studio.messages.state import View
-from tarsus.studio.messages.pose import BrokenLimit, LegProblem, PoseMessage
 from tarsus.studio.encoding import degrees, flags, millimetres, or_null, plain
+from tarsus.studio.messages.pose import BrokenLimit, LegProblem, PoseMessage
+from tarsus.studio.messages.state import View
 
 __all__ = ["OnFootholds", "broken_limits", "resting_message", "standing_message"]
 
-# A foot dragged no higher than this is still on the ground [m]; so many feet hold a robot up.
+# Height up to which a dragged foot is on the ground [m], and number of feet that can support a robot.
 _ON_GROUND = 1e-5
 _LEAST_FEET = 3
-# What rounding may add to an angle at its limit [deg].
+# Tolerance of joint limits, for rounding [deg].
 _SLACK = 1e-6
 
 
 class OnFootholds(Standing):
-    """A robot on footholds of which some may be lifted off the ground."""
+    """A robot on footholds, some of which may be above the ground."""
 
     @property
     def contacts(self) -> np.ndarray[Any, Any]:
-        """Which feet stand ``(legs,)``: those that reach their foothold, where that is on the ground."""
+        """Feet in contact ``(legs,)``: those that reach their foothold, if it is on the ground."""
         on_ground = np.asarray(self.solution.feet)[:, 2] <= _ON_GROUND
         return np.asarray(super().contacts & on_ground)
 
 
 @dataclass(frozen=True, eq=False)
 class _Placed:
-    """Joint angles at a place, what is on the ground, and what follows: leg points and centre of mass in G [m]."""
+    """Joint angles, body pose and contacts, with the leg points and the centre of mass in G [m]."""
 
     robot: Robot
     angles: np.ndarray[Any, Any]
@@ -53,13 +53,13 @@ class _Placed:
 
     @classmethod
     def of(cls, robot: Robot, angles: np.ndarray[Any, Any], body: Pose, contacts: np.ndarray[Any, Any]) -> Self:
-        """Place the robot."""
+        """Compute leg points and centre of mass."""
         points = forward_kinematics(robot, angles)
         com = np.asarray(body @ np.asarray(centre_of_mass(robot, angles, points=points)))
         return cls(robot, angles, body, contacts, np.asarray(body @ points), com)
 
     def statics(self, *, balanced: bool) -> tuple[list[float] | None, list[float] | None]:
-        """Return the forces on the feet and the joints' torques, where the feet alone hold the robot."""
+        """Return contact forces and joint torques if the feet alone support the robot."""
         if not (balanced and self.robot.has_masses and self.contacts.sum() >= _LEAST_FEET):
             return None, None
         torques, forces = joint_torques(self.robot, self.angles, self.body, self.contacts)
@@ -69,7 +69,7 @@ class _Placed:
 def resting_message(
     robot: Robot, angles: np.ndarray[Any, Any], rest: RestingPose, *, id: int, view: View
 ) -> PoseMessage:
-    """Return how the robot rests with its joints at the given angles.
+    """Return the resting pose for the given joint angles.
 
     Parameters
     ----------
@@ -77,12 +77,12 @@ def resting_message(
         A single robot.
     angles : array, shape (legs, 3)
         Joint angles [rad].
-    rest : Rest
-        What `resting_pose` says of them.
+    rest : RestingPose
+        Result of `resting_pose` for these angles.
     id : int
-        Of the message that is answered.
+        Id of the message that is answered.
     view : str
-        For which view.
+        View that shows the pose.
     """
     down, corners = np.asarray(rest.leg_points_down), np.asarray(rest.corners_down)
     placed = _Placed.of(robot, angles, rest.body, np.asarray(rest.contacts))
@@ -120,16 +120,16 @@ def resting_message(
 
 
 def standing_message(standing: OnFootholds, *, id: int, view: View) -> PoseMessage:
-    """Return how the robot stands with its body moved over its footholds.
+    """Return the pose of a robot on its footholds.
 
     Parameters
     ----------
     standing : OnFootholds
-        The inverse kinematics of one configuration.
+        A single configuration.
     id : int
-        Of the message that is answered.
+        Id of the message that is answered.
     view : str
-        For which view.
+        View that shows the pose.
     """
     robot, solution = standing.solution.robot, standing.solution
     angles, feet, contacts = np.asarray(solution.angles), np.asarray(solution.feet), standing.contacts
@@ -167,7 +167,7 @@ def standing_message(standing: OnFootholds, *, id: int, view: View) -> PoseMessa
 def _text(robot: Robot, contacts: np.ndarray[Any, Any], margin: float) -> str:
     codes = [code for code, down in zip(robot.leg_codes, contacts, strict=True) if down]
     if not codes:
-        return "no foot is on the ground"
+        return "no foot on the ground"
     feet = f"{len(codes)} {'foot' if len(codes) == 1 else 'feet'}"
     if margin < 0:
         return f"tips over: {feet} on the ground, {', '.join(codes)}"
@@ -188,7 +188,7 @@ def _leg_problems(standing: OnFootholds, miss: np.ndarray[Any, Any]) -> list[Leg
 
 
 def broken_limits(robot: Robot, angles: np.ndarray[Any, Any]) -> list[BrokenLimit]:
-    """Return which joints are beyond their limits, and by how much.
+    """Return the joints beyond their limits.
 
     Parameters
     ----------

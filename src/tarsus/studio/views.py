@@ -1,4 +1,4 @@
-"""What each of the seven views shows of a state: the messages, and the state that fits a robot."""
+"""Content of the seven views for a state."""
 
 from __future__ import annotations
 
@@ -6,20 +6,20 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, TypeAlias
 
 from tarsus.errors import TarsusError, UnreachableError
-from tarsus.studio.loads import loads_message, servos_message
-from tarsus.studio.results import Results
 from tarsus.studio.error_messages import error_message
 from tarsus.studio.files import angles_csv, file_name, text_file, toml_of, walk_csv
-from tarsus.studio.messages.motion import LoadsMessage, ServosMessage, WalkMessage
+from tarsus.studio.leg_workspace import workspace_message
+from tarsus.studio.loads import loads_message, servos_message
 from tarsus.studio.messages.general import FileMessage, SourceMessage
-from tarsus.studio.messages.state import BodyState, JointsState, OwnGait, StudioState
+from tarsus.studio.messages.motion import LoadsMessage, ServosMessage, WalkMessage
 from tarsus.studio.messages.pose import PoseMessage, WorkspaceMessage
+from tarsus.studio.messages.state import BodyState, JointsState, OwnGait, StudioState
 from tarsus.studio.player import player_data, player_page
 from tarsus.studio.poses import require_leg
+from tarsus.studio.results import Results
 from tarsus.studio.sources.page import source_message
 from tarsus.studio.standing import resting_message, standing_message
 from tarsus.studio.walks import walk_message
-from tarsus.studio.leg_workspace import workspace_message
 
 if TYPE_CHECKING:
     from tarsus.gait.motion import Motion
@@ -32,14 +32,14 @@ Answers: TypeAlias = "Iterator[ServerMessage]"
 
 
 def fitted(state: StudioState, robot: Robot) -> StudioState:
-    """Return the state without what is of another number of legs.
+    """Return the state without values for another number of legs.
 
     Parameters
     ----------
     state : StudioState
-        A state, maybe of another robot.
+        A state, possibly of another robot.
     robot : Robot
-        The robot.
+        A single robot.
     """
     changes: dict[str, object] = {}
     count = 3 * robot.legs
@@ -57,21 +57,21 @@ def fitted(state: StudioState, robot: Robot) -> StudioState:
 
 
 class Views:
-    """Works the messages out; what was worked out before is not worked out again."""
+    """Creates the messages; results are computed once."""
 
     def __init__(self) -> None:
         self.results = Results()
         self._sent: Motion | None = None
 
     def shown(self, state: StudioState, *, id: int) -> Answers:
-        """Give what the state's view shows; what is not possible is told, and the robot shown as it stands.
+        """Yield the content of the view; if it is not possible, the error and the robot in its default stance.
 
         Parameters
         ----------
         state : StudioState
             The state.
         id : int
-            Of the message that is answered.
+            Id of the message that is answered.
         """
         try:
             if state.view in ("walk", "loads"):
@@ -84,19 +84,19 @@ class Views:
                 yield self.source(state, id=id)
         except TarsusError as error:
             yield error_message(error, id=id)
-            yield self._as_it_stands(state, id=id)
+            yield self._default_pose(state, id=id)
 
     def pose(self, state: StudioState, *, id: int) -> PoseMessage:
-        """Return the pose that the state's view shows."""
+        """Return the pose of the present view."""
         if state.view == "joints":
             pose = self.results.resting(state)
             return resting_message(self.results.robot(state), pose.angles, pose.rest, id=id, view="joints")
         if state.view in ("body", "sources"):
             return standing_message(self.results.standing(state), id=id, view=state.view)
-        return self._as_it_stands(state, id=id)
+        return self._default_pose(state, id=id)
 
-    def _as_it_stands(self, state: StudioState, *, id: int) -> PoseMessage:
-        """Return the rest stance; of a robot that can't stand, how it rests with its legs straight out."""
+    def _default_pose(self, state: StudioState, *, id: int) -> PoseMessage:
+        """Return the default stance; for a robot that can't stand, the resting pose with all angles zero."""
         plain = state.model_copy(update={"body": BodyState(), "joints": JointsState()})
         try:
             return standing_message(self.results.standing(plain), id=id, view=state.view)
@@ -112,31 +112,31 @@ class Views:
         return message
 
     def has_sent_walk(self, state: StudioState) -> bool:
-        """Return whether the state's walk is the one that was sent last."""
+        """Return whether the walk of the state was sent last."""
         return self.results.walk(state) is self._sent
 
     def loads(self, state: StudioState, *, id: int) -> LoadsMessage:
-        """Return what the walk asks of the joints."""
+        """Return the joint loads of the walk."""
         return loads_message(self.results.loads(state), state.loads, id=id)
 
     def servos(self, state: StudioState, *, id: int) -> ServosMessage:
-        """Return which servos would do."""
+        """Return the suitable servos."""
         return servos_message(self.results.loads(state), state.loads, id=id)
 
     def workspace(self, state: StudioState, leg: int, *, id: int) -> WorkspaceMessage:
-        """Return what a leg reaches with the body as the view shows it."""
+        """Return the workspace of a leg for the body pose that the view shows."""
         robot = self.results.robot(state)
         require_leg(robot, leg)
         body, angles = self.results.shown(state)
         return workspace_message(robot, leg, body, float(angles[leg, 0]), id=id)
 
     def source(self, state: StudioState, *, id: int) -> SourceMessage:
-        """Return a source document with the numbers of the view Body's pose."""
+        """Return a source document with the values of the pose of the view Body."""
         require_leg(self.results.robot(state), state.source.leg)
         return source_message(self.results.standing(state), state.source, id=id)
 
     def file(self, state: StudioState, what: str, *, id: int) -> FileMessage:
-        """Return a file to save."""
+        """Return an exported file."""
         robot = self.results.robot(state)
         if what == "toml":
             return text_file(file_name(robot, "", "toml"), toml_of(robot), id=id)

@@ -1,4 +1,4 @@
-"""From the view Walk's options to a motion, and what the browser is told of it."""
+"""Planning of walks from the options of the view Walk, and their messages."""
 
 from __future__ import annotations
 
@@ -19,34 +19,34 @@ from tarsus.gait.walk_setup import WalkSetup, require_number
 from tarsus.kinematics.mass import centre_of_mass
 from tarsus.report.walk_summary import walk_summary
 from tarsus.robot.robot import JOINTS, Robot
+from tarsus.studio.encoding import degrees, millimetres, or_null, rows_of_flags
 from tarsus.studio.messages.motion import JointSpeed, TimedLength, WalkEnd, WalkMessage
 from tarsus.studio.messages.state import Curve, OwnGait, Straight, WalkOptions
-from tarsus.studio.encoding import degrees, millimetres, or_null, rows_of_flags
 
 __all__ = ["MOST_SAMPLES", "fewer_for_more_legs", "gait_of", "longest", "path_of", "plan", "walk_message"]
 
 MOST_SAMPLES = 10_000
-"""Samples that a robot of six legs may have in a plan here; it is about 2 MB to send."""
+"""Limit of the samples of a plan for six legs; about 2 MB as a message."""
 
 _USUAL_LEGS = 6
 
 
 def gait_of(robot: Robot, asked: str | OwnGait | None) -> Gait:
-    """Return the gait that is asked for.
+    """Return the requested gait.
 
     Parameters
     ----------
     robot : Robot
         A single robot.
     asked : str, OwnGait or None
-        A name, a gait's own figures, or None for the robot's.
+        A name, duty factor and offsets, or None for the default of the robot.
 
     Raises
     ------
     UnknownNameError
-        If no gait has that name.
+        If the gait does not exist.
     InputError
-        If there is no such gait for so many legs, or its figures are out of their range.
+        If the gait does not fit the number of legs, or its values are out of range.
     """
     if isinstance(asked, OwnGait):
         return Gait(duty_factor=asked.duty_factor, offsets=asked.offsets)
@@ -54,17 +54,17 @@ def gait_of(robot: Robot, asked: str | OwnGait | None) -> Gait:
 
 
 def path_of(options: WalkOptions) -> BodyPath:
-    """Return the path that is asked for.
+    """Return the requested path.
 
     Parameters
     ----------
     options : WalkOptions
-        What is asked for.
+        Options of the walk.
 
     Raises
     ------
     InputError
-        If it goes nowhere.
+        If its length is zero.
     """
     path = options.path
     if isinstance(path, Straight):
@@ -77,7 +77,7 @@ def path_of(options: WalkOptions) -> BodyPath:
 
 @dataclass(frozen=True)
 class _Options:
-    """The options in SI units, by the names of `plan_walk`."""
+    """Options in SI units, named as the arguments of `plan_walk`."""
 
     pace: dict[str, float | None]
     heights: dict[str, Any]
@@ -108,28 +108,28 @@ def _setup_of(robot: Robot, options: WalkOptions) -> WalkSetup:
 
 
 def plan(robot: Robot, options: WalkOptions) -> Motion:
-    """Return the walk that is asked for: what `plan_walk` gives, unless it is too long to be planned here.
+    """Return the requested walk, unless it is too long.
 
     Parameters
     ----------
     robot : Robot
         A single robot.
     options : WalkOptions
-        What is asked for.
+        Options of the walk.
 
     Raises
     ------
     InputError
-        If it has too many samples.
+        If the walk has too many samples.
     TarsusError
-        If it is not possible.
+        If the walk is not possible.
     """
     asked, path, setup = _Options.of(options), path_of(options), _setup_of(robot, options)
     pace = {n: None if v is None else require_number(n, v, zero=False) for n, v in asked.pace.items()}
-    # The pace is chosen here, so that the number of samples is known before any is worked out.
+    # Stroke and cycle time are chosen here to check the number of samples before the planning.
     assumed = setup.assumed(asked.heights["body_height"], asked.heights["swing_height"])
     stroke, cycle_time = choose_pace(setup, path, **pace, assumed=assumed)
-    _refuse_long(robot, setup, path, stroke=stroke, cycle_time=cycle_time, rate=options.rate_hz)
+    _check_length(robot, setup, path, stroke=stroke, cycle_time=cycle_time, rate=options.rate_hz)
     motion = plan_walk(
         robot,
         setup.gait,
@@ -144,19 +144,19 @@ def plan(robot: Robot, options: WalkOptions) -> Motion:
 
 
 def fewer_for_more_legs(samples: int, robot: Robot) -> int:
-    """Return how many samples of a robot cost what so many of a robot of six legs do.
+    """Return the number of samples that costs as much as the given number for six legs.
 
     Parameters
     ----------
     samples : int
-        Samples of a robot of six legs.
+        Samples of a robot with six legs.
     robot : Robot
         A single robot.
     """
     return int(samples * min(1.0, (_USUAL_LEGS / robot.legs) ** 2))
 
 
-def _refuse_long(
+def _check_length(
     robot: Robot, setup: WalkSetup, path: BodyPath, *, stroke: float, cycle_time: float, rate: float
 ) -> None:
     most = fewer_for_more_legs(MOST_SAMPLES, robot)
@@ -164,25 +164,25 @@ def _refuse_long(
     seconds = (travel / stroke * setup.gait.duty_factor + 2) * cycle_time
     if not seconds * rate <= most:
         raise InputError(
-            f"the walk takes about {seconds:.3g} s: {seconds * rate:.3g} samples at {rate:g} a second, and the studio "
-            f"plans at most {most} at once for {robot.legs} legs; ask for a shorter walk or a lower rate"
+            f"the walk takes about {seconds:.3g} s: {seconds * rate:.3g} samples at {rate:g} Hz; the studio "
+            f"plans at most {most} samples for {robot.legs} legs: use a shorter walk or a lower rate"
         )
 
 
 def longest(robot: Robot, options: WalkOptions) -> float:
-    """Return the longest stroke that works along the path that is asked for [m].
+    """Return the longest possible stroke along the requested path [m].
 
     Parameters
     ----------
     robot : Robot
         A single robot.
     options : WalkOptions
-        What is asked for.
+        Options of the walk.
 
     Raises
     ------
     TarsusError
-        If the robot can't stand or walk so.
+        If the robot can't stand or walk with these options.
     """
     return longest_stroke(_setup_of(robot, options), path_of(options).displacement)
 
@@ -193,11 +193,11 @@ def walk_message(motion: Motion, *, longest: float | None, id: int) -> WalkMessa
     Parameters
     ----------
     motion : Motion
-        The walk, its samples equally far apart.
+        The walk, with uniform sampling.
     longest : float or None
-        The longest stroke that works along its path [m], where that is known.
+        Longest possible stroke along its path [m], if known.
     id : int
-        Of the message that is answered.
+        Id of the message that is answered.
     """
     summary = walk_summary(motion)
     rpy = np.array(motion.body.rpy)

@@ -7,23 +7,23 @@ from typing import Annotated, TypeAlias
 from pydantic import Field, TypeAdapter
 
 from tarsus.studio.messages.client import ClientMessage
-from tarsus.studio.messages.motion import DriveFrame, LoadsMessage, ServosMessage, WalkMessage
 from tarsus.studio.messages.general import Done, ErrorMessage, FileMessage, SourceMessage
+from tarsus.studio.messages.motion import DriveFrame, LoadsMessage, ServosMessage, WalkMessage
 from tarsus.studio.messages.pose import PoseMessage, RobotMessage, StateMessage, Welcome, WorkspaceMessage
 
 __all__ = ["CLOSED", "SOCKET", "ClientMessage", "ServerMessage", "client_message"]
 
 SOCKET = "/session/1"
-"""Path of the socket; it ends with the version of the messages, so that an old page does not get a new server's."""
+"""Path of the socket; it ends with the version of the messages, so that outdated pages do not connect."""
 
 CLOSED = {
-    "TOKEN": (4401, "Wrong token, or none: the page must be opened by the link that the server printed."),
-    "IDLE": (4408, "Nothing was said for too long. To connect again is fine."),
-    "RATE": (4429, "Too many messages, or malformed ones, one after the other."),
-    "FULL": (4503, "The server has as many sessions as it takes. To try again later is fine."),
+    "TOKEN": (4401, "Missing or wrong token: open the link that the server printed."),
+    "IDLE": (4408, "No message for too long; clients may reconnect."),
+    "RATE": (4429, "Too many messages, or too many malformed ones."),
+    "FULL": (4503, "The server has reached its number of sessions; clients may retry later."),
     "LARGE": (1009, "A message was larger than `bounds.message_bytes`."),
 }
-"""Codes with which the server closes the socket, and why."""
+"""Codes with which the server closes the socket, and their reasons."""
 
 ServerMessage: TypeAlias = Annotated[
     Welcome
@@ -44,4 +44,4 @@ ServerMessage: TypeAlias = Annotated[
 """Any message of the server."""
 
 client_message: TypeAdapter[ClientMessage] = TypeAdapter(ClientMessage)
-"""Checks what a client says."""
+"""Validates the messages of clients."""

@@ -1,7 +1,7 @@
-"""What a client says. Every message is answered by any number of messages with its id, and in the end by `done`.
+"""Messages of a client. Each is answered by any number of messages with its id, the last of which is `done`.
 
-Messages that change the state have `commit`: false while a slider or a mouse is still moving, true where it comes to
-rest. Undo goes from commit to commit. Of messages of the same type that wait, only the newest is worked on.
+Messages that change the state have `commit`: false during the movement of a slider or mouse, true at its end. Undo goes
+from commit to commit. Of several queued messages of a type, only the newest is processed.
 """
 
 from __future__ import annotations
@@ -50,14 +50,14 @@ StateText: TypeAlias = Annotated[str, Field(max_length=60_000)]
 
 
 class Hello(Message):
-    """The first message. Answers: welcome, then all that `open` answers."""
+    """The first message. Answers: welcome, and the answers to `open`."""
 
     type: Literal["hello"]
-    state: StateText | None = Field(default=None, description="The state to go on with; null begins anew.")
+    state: StateText | None = Field(default=None, description="State to restore; null for the default.")
 
 
 class Ping(Message):
-    """Nothing, to keep an idle session. Answer: done."""
+    """No operation; keeps an idle session open. Answer: done."""
 
     type: Literal["ping"]
 
@@ -65,11 +65,11 @@ class Ping(Message):
 class Change(Message):
     """A change of the state."""
 
-    commit: bool = Field(default=True, description="Whether undo shall come back to what is here now.")
+    commit: bool = Field(default=True, description="Whether undo returns to the state after this change.")
 
 
 class SetView(Message):
-    """Go to a view, or look at it differently; no step of undo. Answers, where the view changes: what it shows."""
+    """Change the view or the camera, which is not an undo step. Answers, if the view changes: its content."""
 
     type: Literal["view"]
     view: View
@@ -77,44 +77,44 @@ class SetView(Message):
 
 
 class SetRobot(Change):
-    """Take a preset; poses and walk begin anew. Answers: robot, state, what the view shows."""
+    """Select a preset, and reset poses and walk. Answers: robot, state, content of the view."""
 
     type: Literal["robot"]
     preset: Name
 
 
 class SetDocument(Change):
-    """Take a robot by the keys of its file; poses and walk stay. Answers: robot, state, what the view shows."""
+    """Change the robot by the keys of its file; poses and walk are kept. Answers: robot, state, content of the view."""
 
     type: Literal["document"]
     document: Annotated[dict[str, Any], Field(json_schema_extra={"ts": "RobotFile"})]
 
 
 class SetToml(Change):
-    """Take a robot by the text of its file. Answers: robot, state, what the view shows."""
+    """Change the robot by the text of its file. Answers: robot, state, content of the view."""
 
     type: Literal["toml"]
     text: Annotated[str, Field(max_length=200_000)]
 
 
 class SetJoints(Change):
-    """Turn joints; the robot rests as it would. Answer: pose."""
+    """Set joint angles; the resting pose follows. Answer: pose."""
 
     type: Literal["joints"]
     joints: JointsState
 
 
 class SetBody(Change):
-    """Move the body over its feet. Answer: pose."""
+    """Set the body pose relative to the feet. Answer: pose."""
 
     type: Literal["body"]
     body: BodyState
 
 
 class DragFoot(Change):
-    """Put one foot elsewhere: in the view Joints that leg's angles follow, else its foothold.
+    """Move one foot: in the view Joints by changing the joint angles, else the foothold.
 
-    Answers: pose, and with `commit` the state before it.
+    Answers: pose; with `commit`, state before it.
     """
 
     type: Literal["drag_foot"]
@@ -130,34 +130,34 @@ class SetWalk(Change):
 
 
 class SetLoads(Change):
-    """Work out what the walk asks of the joints. Answer: loads, with walk where it was not sent since it changed."""
+    """Compute the joint loads of the walk. Answer: loads; walk before it if the walk has changed since it was sent."""
 
     type: Literal["loads"]
     loads: LoadOptions
 
 
 class SizeServos(Message):
-    """Choose servos for the walk and the payload; takes a second or two. Answer: servos."""
+    """Size servos for the walk and the payload, which takes a second or two. Answer: servos."""
 
     type: Literal["servos"]
 
 
 class ShowWorkspace(Message):
-    """Tell what a leg reaches with the body as it is. Answer: zone."""
+    """Compute the workspace of a leg for the present body pose. Answer: workspace."""
 
     type: Literal["workspace"]
     leg: Leg
 
 
 class ChooseSource(Change):
-    """Show a source document's equations with the live numbers. Answer: source."""
+    """Show the equations of a source document with live values. Answer: source."""
 
     type: Literal["source"]
     source: SourceChoice
 
 
 class Drive(Message):
-    """Begin or end live walking. While it is on, frames come by themselves, with this message's id."""
+    """Start or stop driving. While it is on, frames are sent with the id of this message."""
 
     type: Literal["drive"]
     on: bool
@@ -170,7 +170,7 @@ class Command(Message):
     velocity_mm_s: tuple[Number, Number] = Field(description="Forward, left.")
     turn_deg_s: Angle
     body: tuple[Coordinate, Coordinate, Coordinate, Angle, Angle, Angle] | None = Field(
-        default=None, description="x, y, z [mm], roll, pitch, yaw [deg] against the level body."
+        default=None, description="x, y, z [mm], roll, pitch, yaw [deg] relative to the level body."
     )
     gait: Name | None = None
     body_height_mm: Coordinate | None = None
@@ -180,26 +180,26 @@ class Command(Message):
 
 
 class Undo(Message):
-    """Go back to the commit before. Answers: robot where it changed, state, what the view shows."""
+    """Return to the previous commit. Answers: robot, state, content of the view."""
 
     type: Literal["undo"]
 
 
 class Redo(Message):
-    """Take an undo back. Answers: as for undo."""
+    """Revert an undo. Answers: as for undo."""
 
     type: Literal["redo"]
 
 
 class OpenState(Change):
-    """Take the state that a text holds. Answers: robot, state, what the view shows."""
+    """Restore a state from its text. Answers: robot, state, content of the view."""
 
     type: Literal["open"]
     state: StateText
 
 
 class Download(Message):
-    """Ask for a file. Answer: file."""
+    """Export a file. Answer: file."""
 
     type: Literal["download"]
     what: Literal["csv", "html", "toml", "angles"]

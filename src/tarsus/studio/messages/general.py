@@ -1,4 +1,4 @@
-"""What the server says besides: errors, the end of an answer, files, and the source documents' equations."""
+"""Further messages of the server: errors, the end of an answer, files, and the equations of the source documents."""
 
 from __future__ import annotations
 
@@ -24,17 +24,17 @@ __all__ = [
 
 
 class Problem(Part):
-    """One thing that is wrong in a robot file."""
+    """A problem in a robot file."""
 
-    key: str | None = Field(description="Path of the key, such as legs[2].position_mm; null where there is none.")
+    key: str | None = Field(description="Path of the key, such as legs[2].position_mm; null if the problem has no key.")
     text: str
 
 
 class ErrorMessage(Part):
-    """What was asked for is not possible; the state is what it was."""
+    """A request is not possible; the state is unchanged."""
 
     type: Literal["error"]
-    id: int | None = Field(description="Null where the message was so malformed that its id is unknown.")
+    id: int | None = Field(description="Null if the id of a malformed message is unknown.")
     kind: Literal[
         "message",
         "limit",
@@ -58,14 +58,14 @@ class Done(Part):
 
     type: Literal["done"]
     id: int | None
-    dropped: bool = Field(default=False, description="Whether a newer message of the same type took its place.")
+    dropped: bool = Field(default=False, description="Whether a newer message of the same type replaced it.")
     undo: bool = Field(default=False, description="Whether there is something to undo.")
     redo: bool = False
-    state: str | None = Field(default=None, description="The state as a short URL-safe text; null: unchanged.")
+    state: str | None = Field(default=None, description="State as URL-safe text; null if unchanged.")
 
 
 class FileMessage(Message):
-    """A file to save."""
+    """An exported file."""
 
     type: Literal["file"]
     name: str
@@ -74,15 +74,15 @@ class FileMessage(Message):
 
 
 class PlayerData(Part):
-    """What the self-contained page of a walk holds, as JSON in its element `#motion`."""
+    """Data of the offline player, as JSON in its element `#motion`."""
 
     robot: RobotMessage
     walk: WalkMessage
-    loads: LoadsMessage | None = Field(description="Null where the robot's masses are unknown.")
+    loads: LoadsMessage | None = Field(description="Null if the masses of the robot are unknown.")
 
 
 class MathNode(Part):
-    """A piece of presentation MathML: a tag, and either text or children."""
+    """An element of presentation MathML: a tag, and either text or children."""
 
     tag: Literal["mrow", "mi", "mn", "mo", "mtext", "mfrac", "msup", "msub", "msqrt"]
     text: str | None = None
@@ -90,23 +90,23 @@ class MathNode(Part):
 
 
 class Equation(Part):
-    """A line of a source document, with the live numbers in it."""
+    """An equation of a source document with live values."""
 
     key: str
     name: str
     symbol: MathNode
-    formula: MathNode | None = Field(description="Null where the number is given.")
-    numbers: MathNode | None = Field(description="The formula with the numbers filled in.")
-    plain: str = Field(description="All of it in one line of text.")
+    formula: MathNode | None = Field(description="Null for a given quantity.")
+    numbers: MathNode | None = Field(description="The formula with the values substituted.")
+    plain: str = Field(description="The whole equation as text.")
     value: float | None
     unit: str
-    ours: str | None = Field(description="The same in Tarsus' own words, such as coxa or tibia + 90 deg.")
-    printed_value: str | None = Field(description="What the document prints for its own robot.")
+    ours: str | None = Field(description="The same quantity in Tarsus, such as coxa or tibia + 90 deg.")
+    printed_value: str | None = Field(description="Value printed in the document for its robot.")
     note: str | None
 
 
 class Erratum(Part):
-    """A mistake in a document, and what it would make of the live numbers."""
+    """An erratum of a document, with the results of both formulas."""
 
     printed: str
     right: str

@@ -1,4 +1,4 @@
-"""What the server says of things that move: a walk, its loads, servos for it, live frames."""
+"""Messages of the server on motions: walks, loads, servos, frames of driving."""
 
 from __future__ import annotations
 
@@ -14,22 +14,22 @@ __all__ = [
     "JointLoad",
     "JointSpeed",
     "LoadsMessage",
-    "TimedLength",
     "ServosMessage",
+    "TimedLength",
     "WalkEnd",
     "WalkMessage",
 ]
 
 
 class TimedLength(Part):
-    """A length and when it is so."""
+    """A length and its time."""
 
     mm: float | None
     at_s: float
 
 
 class WalkEnd(Part):
-    """Where the body is in the end."""
+    """Final position and heading of the body."""
 
     x_mm: float
     y_mm: float
@@ -37,7 +37,7 @@ class WalkEnd(Part):
 
 
 class JointSpeed(Part):
-    """The greatest speed of one kind of joint."""
+    """Greatest speed of one kind of joint."""
 
     joint: Literal["coxa", "femur", "tibia"]
     deg_s: float
@@ -48,17 +48,17 @@ class JointSpeed(Part):
 
 
 class WalkMessage(Message):
-    """A whole walk, for playing without a round trip. Moments are `rate_hz` apart, the first at 0 s."""
+    """A complete walk, for playback in the browser: `rate_hz` samples per second, from 0 s."""
 
     type: Literal["walk"]
     rate_hz: float
-    count: int = Field(description="How many moments: n.")
+    count: int = Field(description="Number of samples n.")
     position_mm: list[float] = Field(description="n x (x, y, z) of B in G.")
-    rpy_deg: list[float] = Field(description="n x (roll, pitch, yaw), yaw without jumps.")
+    rpy_deg: list[float] = Field(description="n x (roll, pitch, yaw), yaw unwrapped.")
     angles_deg: list[float] = Field(description="n x legs x (coxa, femur, tibia).")
-    contacts: list[str] = Field(description="n texts, a character a leg, 1 where the foot stands.")
-    reach: list[str] | None = Field(description="n texts, a code of Reach a leg; null where all reach.")
-    margin_mm: list[float | None] = Field(description="n; null where no foot stands.")
+    contacts: list[str] = Field(description="n texts, a character per leg, 1 for a foot in contact.")
+    reach: list[str] | None = Field(description="n texts, a code of Reach per leg; null if all feet are reachable.")
+    margin_mm: list[float | None] = Field(description="n; null without a foot in contact.")
     com_mm: list[float] = Field(description="n x (x, y) of the centre of mass over the ground in G.")
     gait: str
     duty_factor: float
@@ -81,7 +81,7 @@ class WalkMessage(Message):
 
 
 class JointLoad(Part):
-    """What one joint bears over the walk."""
+    """Loads of one joint over the walk."""
 
     leg: str
     joint: Literal["coxa", "femur", "tibia"]
@@ -101,13 +101,13 @@ class JointLoad(Part):
 
 
 class LoadsMessage(Message):
-    """What the joints bear at the moments of the walk that was sent last."""
+    """Joint loads at the samples of the walk that was sent last."""
 
     type: Literal["loads"]
     torques_nm: list[float] = Field(description="n x legs x (coxa, femur, tibia).")
     forces_n: list[float] = Field(description="n x legs x (x, y, z), ground on foot in G.")
-    joints: list[JointLoad] = Field(description="Leg by leg.")
-    worst: list[str] = Field(description="The worst coxa, femur and tibia.")
+    joints: list[JointLoad] = Field(description="In the order of the legs.")
+    worst: list[str] = Field(description="Names of the most loaded coxa, femur and tibia.")
     grade: str
     carried: bool
     balanced: bool
@@ -123,7 +123,7 @@ class LoadsMessage(Message):
 
 
 class Candidate(Part):
-    """Servos of the catalogue that would do."""
+    """Suitable servos of the catalogue."""
 
     name: str
     coxa: str
@@ -136,15 +136,15 @@ class Candidate(Part):
 
 
 class ServosMessage(Message):
-    """Which servos would do."""
+    """Result of the servo sizing."""
 
     type: Literal["servos"]
     present_do: bool
     balanced: bool
-    worst: list[str] = Field(description="A line on the worst coxa, femur and tibia of the present servos.")
-    candidates: list[Candidate] = Field(description="The same servo in all joints, the lightest first.")
-    mixed: Candidate | None = Field(description="The lightest for each kind of joint.")
-    payload_kg: float | None = Field(description="The heaviest that the present servos carry.")
+    worst: list[str] = Field(description="Verdicts on the most loaded coxa, femur and tibia with the present servos.")
+    candidates: list[Candidate] = Field(description="The same servo in all joints, lightest first.")
+    mixed: Candidate | None = Field(description="The lightest servo for each kind of joint.")
+    payload_kg: float | None = Field(description="Greatest payload of the present servos.")
     payload_before_burning_kg: float | None
     advice: list[str]
     left_out: Annotated[dict[str, Any], Field(json_schema_extra={"ts": "Record<string, string>"})]

@@ -1,4 +1,4 @@
-"""What the server says of things that stand still: the robot, a pose, a leg's zone."""
+"""Messages of the server on the robot, its pose, and the workspace of a leg."""
 
 from __future__ import annotations
 
@@ -25,29 +25,29 @@ Schema = Annotated[dict[str, Any], Field(json_schema_extra={"ts": "Record<string
 
 
 class Bounds(Part):
-    """What this server takes at most; a client that keeps to it is never refused."""
+    """Limits of the server; clients that respect them are never rejected."""
 
     message_bytes: int
     messages_per_s: float
     plan_samples: int
-    idle_s: float = Field(description="A session that says nothing for so long is ended; 0 where it never is.")
+    idle_s: float = Field(description="Time without messages after which a session ends; 0 for no limit.")
 
 
 class Welcome(Message):
-    """The first answer: what there is here."""
+    """The first answer: presets, gaits, servos, and limits."""
 
     type: Literal["welcome"]
     version: str
     robots: list[str] = Field(description="Names of the presets.")
     gaits: list[str]
-    servos: list[str] = Field(description="Names in the catalogue.")
-    public: bool = Field(description="Whether this is a public server: the simulator, and nothing else.")
+    servos: list[str] = Field(description="Names in the servo catalogue.")
+    public: bool = Field(description="Whether this is a public server, without access to hardware.")
     bounds: Bounds
     robot_schema: Schema = Field(description="JSON schema of a robot file: descriptions and bounds of its keys.")
 
 
 class Dimension(Part):
-    """One number of the robot file, and where it comes from."""
+    """A value of the robot file, with its source."""
 
     key: str
     value: Annotated[Any, Field(json_schema_extra={"ts": "unknown"})]
@@ -57,7 +57,7 @@ class Dimension(Part):
 
 
 class RobotMessage(Message):
-    """The robot, sent once: all that forward kinematics needs.
+    """The robot, sent once, with everything that forward kinematics needs.
 
     The points of a leg in B, with c, f, t for its angles: the coxa axis is at ``mount``. From there the femur axis is
     ``coxa`` outward and ``femur_axis_offset`` to the left of outward and up. The knee is ``femur (cos f outward +
@@ -68,7 +68,7 @@ class RobotMessage(Message):
 
     type: Literal["robot"]
     name: str
-    preset: str | None = Field(description="The preset's name while nothing of it is changed.")
+    preset: str | None = Field(description="Name of the preset, if it is unchanged.")
     leg_names: list[str]
     leg_codes: list[str] = Field(description="Short names: LF, LM, LR, RR, RM, RF.")
     mount_mm: list[float] = Field(description="Legs x (x, y, z) in B.")
@@ -86,29 +86,31 @@ class RobotMessage(Message):
     body_height_mm: float
     swing_height_mm: float
     gait: str
-    gaits: list[str] = Field(description="Those that a robot of so many legs has.")
-    stance_mm: list[float] | None = Field(description="Rest footholds in G, body over the origin; null: none.")
+    gaits: list[str] = Field(description="Gaits for this number of legs.")
+    stance_mm: list[float] | None = Field(
+        description="Footholds of the default stance in G, body over the origin; null if there is none."
+    )
     stance_angles_deg: list[float] | None
-    longest_stroke_mm: float | None = Field(description="Straight ahead with its own gait.")
+    longest_stroke_mm: float | None = Field(description="Straight ahead with the default gait.")
     document: Annotated[dict[str, Any], Field(json_schema_extra={"ts": "RobotFile"})]
     dimensions: list[Dimension]
-    missing: list[str] = Field(description="What the file does not say, and what that costs.")
-    problems: list[str] = Field(description="Why the robot can't walk; empty where it can.")
+    missing: list[str] = Field(description="Values that the file lacks, and the consequences.")
+    problems: list[str] = Field(description="Why the robot can't walk; empty if it can.")
 
 
 class StateMessage(Message):
-    """The state after something else than the client's own inputs changed it: all inputs take these values."""
+    """The state after a change that is not from the inputs of the client, which take these values."""
 
     type: Literal["state"]
     state: StudioState
 
 
 class LegProblem(Part):
-    """Why a leg can't have its foot where it should be."""
+    """A foot that does not reach its target."""
 
     leg: int
     reach: Literal["TOO_FAR", "TOO_NEAR", "COXA_LIMIT", "FEMUR_LIMIT", "TIBIA_LIMIT", "BELOW_GROUND"]
-    miss_mm: float = Field(description="How far the foot is from where it should be.")
+    miss_mm: float = Field(description="Distance of the foot from its target.")
     text: str
 
 
@@ -124,36 +126,38 @@ class BrokenLimit(Part):
 
 
 class PoseMessage(Message):
-    """The robot standing or resting."""
+    """The standing or resting robot."""
 
     type: Literal["pose"]
     view: View
     position_mm: list[float] = Field(description="Of B in G.")
     rpy_deg: list[float]
-    angles_deg: list[float] = Field(description="Legs x (coxa, femur, tibia); the nearest where a leg can't reach.")
-    feet_mm: list[float] = Field(description="Legs x (x, y, z) in G: where the feet should be.")
-    contacts: str = Field(description="A character a leg, 1 where the foot stands.")
-    points_down: str = Field(description="Legs x (coxa axis, femur axis, knee, foot), 1 where one touches the ground.")
-    corners_down: int = Field(description="How many corners of the body's box touch the ground.")
-    margin_mm: float | None = Field(description="Null where nothing stands.")
+    angles_deg: list[float] = Field(
+        description="Legs x (coxa, femur, tibia); the nearest solution for a leg out of reach."
+    )
+    feet_mm: list[float] = Field(description="Legs x (x, y, z) in G: targets of the feet.")
+    contacts: str = Field(description="A character per leg, 1 for a foot in contact.")
+    points_down: str = Field(description="Legs x (coxa axis, femur axis, knee, foot), 1 for points on the ground.")
+    corners_down: int = Field(description="Number of corners of the body's box on the ground.")
+    margin_mm: float | None = Field(description="Null without contacts.")
     stable: bool
     com_mm: list[float] = Field(description="Centre of mass in G.")
-    support_mm: list[float] = Field(description="Corners (x, y) of the polygon of all that touches.")
-    forces_n: list[float] | None = Field(description="Legs x (x, y, z), ground on foot; null where undetermined.")
-    torques_nm: list[float] | None = Field(description="Legs x (coxa, femur, tibia); null where undetermined.")
+    support_mm: list[float] = Field(description="Corners (x, y) of the support polygon of all contact points.")
+    forces_n: list[float] | None = Field(description="Legs x (x, y, z), ground on foot; null if undetermined.")
+    torques_nm: list[float] | None = Field(description="Legs x (coxa, femur, tibia); null if undetermined.")
     legs: list[LegProblem]
     limits: list[BrokenLimit]
-    text: str = Field(description="How it stands, in words.")
+    text: str = Field(description="Description of the pose.")
     problems: list[str]
     feasible_fraction: float | None = Field(description="How far towards the requested body pose is possible, 0 to 1.")
 
 
 class WorkspaceMessage(Message):
-    """What a leg reaches, as closed outlines in B: they move with the body. Empty where it reaches nothing there."""
+    """Workspace of a leg as closed outlines in B, which move with the body; empty if it has none there."""
 
     type: Literal["workspace"]
     leg: int
     ground_mm: list[float] = Field(description="Points (x, y, z) of the outline on the ground.")
-    plane_mm: list[float] = Field(description="Points (x, y, z) of the outline in the leg's present plane.")
-    nearest_mm: float | None = Field(description="Straight out on the ground, from the coxa axis.")
+    plane_mm: list[float] = Field(description="Points (x, y, z) of the outline in the present plane of the leg.")
+    nearest_mm: float | None = Field(description="Straight outward on the ground, from the coxa axis.")
     farthest_mm: float | None

@@ -1,4 +1,4 @@
-"""The state of a visitor's studio: what undo takes back, and what a link restores exactly."""
+"""The state of a session: undo reverts it, and a link restores it exactly."""
 
 from __future__ import annotations
 
@@ -32,20 +32,20 @@ Points: TypeAlias = Annotated[tuple[Coordinate, ...], Field(max_length=3 * MOST_
 
 
 class RobotChoice(Part):
-    """Which robot: a preset by its name, or a robot of one's own by the keys of its file."""
+    """Choice of the robot: a preset by its name, or a custom robot by the keys of its file."""
 
     preset: Name | None = "strider"
     document: Annotated[dict[str, Any] | None, Field(json_schema_extra={"ts": "RobotFile | null"})] = None
 
 
 class JointsState(Part):
-    """The view Joints: legs x (coxa, femur, tibia); null for those of the rest stance."""
+    """The view Joints: legs x (coxa, femur, tibia); null for the default stance."""
 
     angles_deg: AnglesDeg | None = None
 
 
 class BodyState(Part):
-    """The view Body: how far the body is moved and turned over its feet, and where those are if they were dragged."""
+    """The view Body: body pose relative to the feet, and footholds that were dragged."""
 
     x_mm: Coordinate = 0.0
     y_mm: Coordinate = 0.0
@@ -53,9 +53,9 @@ class BodyState(Part):
     roll_deg: Angle = 0.0
     pitch_deg: Angle = 0.0
     yaw_deg: Angle = 0.0
-    body_height_mm: Coordinate | None = Field(default=None, description="Null for the robot's own.")
+    body_height_mm: Coordinate | None = Field(default=None, description="Null for the default of the robot.")
     knee: Literal["up", "down"] = "up"
-    feet_mm: Points | None = Field(default=None, description="Legs x (x, y, z) in G; null for the rest stance.")
+    feet_mm: Points | None = Field(default=None, description="Legs x (x, y, z) in G; null for the default stance.")
 
 
 class Straight(Part):
@@ -63,11 +63,11 @@ class Straight(Part):
 
     kind: Literal["straight"] = "straight"
     distance_mm: Coordinate = 500.0
-    heading_deg: Angle = Field(default=0.0, description="From the front; 90 is to the left.")
+    heading_deg: Angle = Field(default=0.0, description="Direction, 90 is to the left.")
 
 
 class Curve(Part):
-    """A walk round a centre on the floor."""
+    """A walk around a centre on the ground."""
 
     kind: Literal["curve"]
     angle_deg: Angle = Field(description="Negative is clockwise.")
@@ -75,7 +75,7 @@ class Curve(Part):
 
 
 class Twist(Part):
-    """A walk at a constant twist."""
+    """A walk with a constant twist."""
 
     kind: Literal["twist"]
     velocity_mm_s: tuple[Number, Number]
@@ -87,18 +87,18 @@ Path: TypeAlias = Annotated[Straight | Curve | Twist, Field(discriminator="kind"
 
 
 class OwnGait(Part):
-    """A gait without a name."""
+    """A custom gait."""
 
-    duty_factor: Positive = Field(description="Share of the cycle that a foot is down.")
+    duty_factor: Positive = Field(description="Stance time as a fraction of the cycle time.")
     offsets: Annotated[tuple[Number, ...], Field(max_length=MOST_LEGS)] = Field(
-        description="When in the cycle each leg touches down, from 0 to 1."
+        description="Phase of the touch-down of each leg, from 0 to 1."
     )
 
 
 class WalkOptions(Part):
-    """The view Walk: every option of `plan_walk`; null leaves it to the plan, which then says what it took."""
+    """The view Walk: the options of `plan_walk`; for null, the plan chooses a value and reports it."""
 
-    gait: Name | OwnGait | None = Field(default=None, description="Null for the robot's own.")
+    gait: Name | OwnGait | None = Field(default=None, description="Null for the default of the robot.")
     path: Path = Straight()
     stroke_mm: Positive | None = None
     speed_mm_s: Positive | None = None
@@ -109,15 +109,17 @@ class WalkOptions(Part):
     pitch_deg: Angle = 0.0
     foot_distance_mm: Positive | None = None
     rate_hz: Positive = 100.0
-    strict: bool = Field(default=True, description="Refuse what does not work; if false, show it with its problems.")
+    strict: bool = Field(
+        default=True, description="Whether impossible walks are rejected; if false, they are shown with their problems."
+    )
 
 
 class LoadOptions(Part):
-    """The view Loads, on top of the walk's options."""
+    """The view Loads, in addition to the options of the walk."""
 
     payload_kg: Positive = 0.0
     payload_at_mm: Triple = Field(default=(0.0, 0.0, 0.0), description="In the body frame B.")
-    supply_v: Positive | None = Field(default=None, description="Null for that of the servos' figures.")
+    supply_v: Positive | None = Field(default=None, description="Null for the voltage of the servo data.")
     inertial: bool = True
     capacity_ah: Positive | None = Field(default=None, description="Of the battery.")
     safety_factor: Positive = 3.0
@@ -125,26 +127,26 @@ class LoadOptions(Part):
 
 
 class SourceChoice(Part):
-    """The view Sources: which document, filled in with which leg's numbers."""
+    """The view Sources: the document, and the leg whose values are used."""
 
     number: Literal["000", "001", "002", "003", "004"] = "000"
     leg: Annotated[int, Field(ge=0, lt=MOST_LEGS)] = 0
 
 
 class Picture(Part):
-    """How it is looked at: the server keeps it for the link, and makes nothing of it."""
+    """Camera and time of the 3D view, which the server stores for links only."""
 
     camera: Literal["free", "follow", "top", "side", "front"] = "free"
     eye_mm: Triple | None = None
     target_mm: Triple | None = None
-    time_s: Positive = Field(default=0.0, description="Moment of the walk that is shown.")
+    time_s: Positive = Field(default=0.0, description="Playback time.")
     leg: Annotated[int, Field(ge=0, lt=MOST_LEGS)] | None = Field(
-        default=None, description="The leg whose reachable zone is shown."
+        default=None, description="Leg whose workspace is shown."
     )
 
 
 class StudioState(Part):
-    """The whole state of a visitor's studio."""
+    """The whole state of a session."""
 
     view: View = "walk"
     robot: RobotChoice = RobotChoice()

@@ -17,9 +17,9 @@ from tarsus.studio.messages.general import PlayerData
 __all__ = ["typescript"]
 
 _HEAD = f"""\
-// Written by `make protocol` from src/tarsus/studio/messages. Change that, not this.
+// Written by `make protocol` from src/tarsus/studio/messages. Do not edit.
 
-/** Path of the socket on the page's own host. */
+/** Path of the socket on the page's host. */
 export const SOCKET = {json.dumps(SOCKET)};
 
 /** Codes with which the server closes the socket. */
@@ -31,9 +31,9 @@ _PLAIN = {"string": "string", "number": "number", "integer": "number", "boolean"
 
 
 def typescript() -> str:
-    """Return the text of the module that declares every message."""
+    """Return the text of the TypeScript module that declares all messages."""
     clients, servers = (get_args(get_args(union)[0]) for union in (ClientMessage, ServerMessage))
-    # As what is sent: a part that has a default always has its key. Only a client's own messages may leave one out.
+    # Keys with defaults are always sent by the server; only clients may omit them.
     every = (*clients, *servers, PlayerData)
     models: list[tuple[type[BaseModel], Any]] = [(model, "serialization") for model in every]
     _, schema = models_json_schema(models, ref_template="{model}")
@@ -51,7 +51,7 @@ def _union(name: str, models: tuple[type[BaseModel], ...]) -> str:
 
 
 def _file_type() -> str:
-    """Return the types of a robot file, whose optional keys may be left out, under names of their own."""
+    """Return the types of a robot file, with optional keys, under separate names."""
     schema = robot_schema()
     definitions = {RobotFile.__name__: schema, **schema["$defs"]}
     declared = [

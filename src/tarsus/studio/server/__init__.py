@@ -1,1 +1,1 @@
-"""The server around the sessions: FastAPI, one WebSocket a visitor. Needs the extra ``studio``."""
+"""The server of the sessions: FastAPI, one WebSocket per visitor. Needs the extra ``studio``."""

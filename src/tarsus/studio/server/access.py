@@ -1,4 +1,4 @@
-"""Who may come in: host, origin and token of every request, and the headers of every answer."""
+"""Access control by host, origin and token of requests, and the headers of responses."""
 
 from __future__ import annotations
 
@@ -37,18 +37,18 @@ HEADERS = {
     "x-content-type-options": "nosniff",
     "x-frame-options": "DENY",
 }
-"""Headers of every answer: the page may fetch nothing from elsewhere, and nobody may frame it."""
+"""Headers of all responses: no external resources, no framing."""
 
 _OPEN = frozenset({"/health"})
 
 
 class AccessControl:
-    """Refuses what comes from elsewhere or without the token, before anything else sees it.
+    """Rejects requests from other origins or without the token.
 
     Parameters
     ----------
     app : ASGI application
-        What is guarded.
+        The protected application.
     settings : Settings
         Host and token.
     """
@@ -58,7 +58,7 @@ class AccessControl:
         self._settings = settings
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Let a request through, or answer it."""
+        """Forward a request, or reject it."""
         if scope["type"] == "http":
             await self._http(scope, receive, _with_headers(send))
         elif scope["type"] == "websocket":
@@ -69,24 +69,24 @@ class AccessControl:
     async def _http(self, scope: Scope, receive: Receive, send: Send) -> None:
         headers = _headers(scope)
         if not self._is_our_host(headers):
-            await _answer(send, 403, "this server does not go by that name")
+            await _answer(send, 403, "unknown host name")
         elif scope["path"] in _OPEN or self._knows_token(scope, headers):
             given = _query_token(scope)
             if given is not None and self._settings.token is not None:
-                # The token leaves the address bar; what stands behind the # stays there, browsers keep it.
+                # Redirect to a URL without the token; browsers keep the fragment.
                 await _answer(send, 303, "", location=scope["path"], set_cookie=self._cookie(given))
             else:
                 await self._app(scope, receive, send)
         else:
-            await _answer(send, 401, "this studio is opened by the link that it printed where it was started")
+            await _answer(send, 401, "a token is required: open the link that the server printed at its start")
 
     async def _socket(self, scope: Scope, receive: Receive, send: Send) -> None:
         headers = _headers(scope)
         if not (self._is_our_host(headers) and _same_origin(headers)):
             await receive()
-            await send({"type": "websocket.close", "code": 1008})  # before it is accepted: an HTTP 403
+            await send({"type": "websocket.close", "code": 1008})  # before it is accepted: HTTP 403
         elif not self._knows_token(scope, headers):
-            # A browser tells its page the code of a socket that was open, but nothing of one that was refused.
+            # Browsers report the close code of accepted sockets only.
             await receive()
             await send({"type": "websocket.accept"})
             await send({"type": "websocket.close", "code": CLOSED["TOKEN"][0], "reason": CLOSED["TOKEN"][1]})
@@ -94,7 +94,7 @@ class AccessControl:
             await self._app(scope, receive, send)
 
     def _is_our_host(self, headers: dict[str, str]) -> bool:
-        """Refuse other names for a server of this machine alone: a page elsewhere may have its name lead here."""
+        """Return whether the host is local, for a loopback server: protects against DNS rebinding."""
         if not self._settings.loopback:
             return True
         try:
@@ -118,7 +118,7 @@ def _headers(scope: Scope) -> dict[str, str]:
 
 
 def _same_origin(headers: dict[str, str]) -> bool:
-    """Return whether a socket is opened by our own page, or by no page at all: browsers always say which."""
+    """Return whether the origin is this server or missing; browsers always send it."""
     origin = headers.get("origin")
     return origin is None or urlsplit(origin).netloc.lower() == headers.get("host", "").lower()
 

@@ -1,4 +1,4 @@
-"""The application: the page, its files, a socket a visitor, and whether all is well."""
+"""The ASGI application: page, static files, sockets, and health check."""
 
 from __future__ import annotations
 
@@ -28,25 +28,25 @@ def studio_app(settings: Settings, *, pages: Pages | None = None) -> ASGIApp:
     Parameters
     ----------
     settings : Settings
-        To whom it is served, and how much of it.
+        Access and limits.
     pages : Pages, optional
-        The front end; the one in the package where left out.
+        The front end; that of the package where left out.
     """
     threads = ThreadPoolExecutor(settings.limits.threads, thread_name_prefix="studio")
     front = Pages() if pages is None else pages
-    here: set[WebSocket] = set()
+    sockets: set[WebSocket] = set()
 
     @asynccontextmanager
     async def lifespan(_app: FastAPI) -> AsyncIterator[None]:
         yield
         threads.shutdown(wait=False, cancel_futures=True)
 
-    # The pages that FastAPI makes of itself fetch scripts from elsewhere.
+    # The built-in documentation pages of FastAPI load external scripts.
     app = FastAPI(lifespan=lifespan, docs_url=None, redoc_url=None, openapi_url=None)
 
     @app.get("/health")
     async def health() -> dict[str, object]:
-        return {"status": "ok", "version": __version__, "sessions": len(here), "pages": front.built}
+        return {"status": "ok", "version": __version__, "sessions": len(sockets), "pages": front.built}
 
     @app.get("/{name:path}")
     async def page(request: Request, name: str) -> Response:
@@ -55,13 +55,13 @@ def studio_app(settings: Settings, *, pages: Pages | None = None) -> ASGIApp:
     @app.websocket(SOCKET)
     async def session(socket: WebSocket) -> None:
         await socket.accept()
-        if len(here) >= settings.limits.sessions:
+        if len(sockets) >= settings.limits.sessions:
             await socket.close(*CLOSED["FULL"])
             return
-        here.add(socket)
+        sockets.add(socket)
         try:
             await Visitor(socket, settings, threads).stay()
         finally:
-            here.discard(socket)
+            sockets.discard(socket)
 
     return AccessControl(app, settings)

@@ -1,7 +1,7 @@
-"""Answers that belong together go out together: one call of the system for all that a turn of the event loop sends.
+"""Batched writes: one system call for everything that is sent in one iteration of the event loop.
 
-A slider's pose and the `done` behind it are two messages. Each sent by itself costs the server a quarter of the time
-that the pose took to work out.
+The answer to a slider is two messages, pose and `done`. A system call for each would cost a quarter of the time that
+computing the pose takes.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ __all__ = ["BatchedProtocol"]
 
 
 class _BatchedTransport:
-    """A transport that keeps what is written until the event loop's next turn."""
+    """A transport that buffers writes until the next iteration of the event loop."""
 
     def __init__(self, transport: asyncio.Transport, loop: asyncio.AbstractEventLoop) -> None:
         self._transport = transport
@@ -26,13 +26,13 @@ class _BatchedTransport:
         return getattr(self._transport, name)
 
     def write(self, data: bytes) -> None:
-        """Keep data to be sent."""
+        """Buffer data."""
         if not self._parts:
             self._loop.call_soon(self._flush)
         self._parts.append(data)
 
     def close(self) -> None:
-        """Send what is kept, and close."""
+        """Send buffered data, and close."""
         self._flush()
         self._transport.close()
 
@@ -43,9 +43,9 @@ class _BatchedTransport:
 
 
 class BatchedProtocol(WebSocketsSansIOProtocol):
-    """Uvicorn's WebSocket on such a transport."""
+    """Uvicorn's WebSocket protocol on a batched transport."""
 
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
-        """Begin a connection."""
-        batched: Any = _BatchedTransport(transport, self.loop)  # type: ignore[arg-type] # a stream's is one to write to
+        """Start a connection."""
+        batched: Any = _BatchedTransport(transport, self.loop)  # type: ignore[arg-type] # stream transports can write
         super().connection_made(batched)

@@ -1,4 +1,4 @@
-"""The messages of a visitor that wait for their turn: the newest of a kind takes the place of those before it."""
+"""Queue of received messages, in which the newest of a type replaces earlier ones."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Inbox"]
 
-# Of these only the newest counts: each tells the whole of its part of the state, or asks for what would be outdated.
+# Types of which only the newest is processed: each sets its whole part of the state, or requests a result for it.
 _NEWEST = (
     *(ask.SetJoints, ask.SetBody, ask.DragFoot, ask.SetWalk, ask.SetLoads, ask.SetDocument, ask.ChooseSource),
     *(ask.SizeServos, ask.ShowWorkspace, ask.Command),
@@ -21,12 +21,12 @@ _NEWEST = (
 
 
 class Inbox:
-    """Messages in the order in which they are to be worked on.
+    """Messages in the order of processing.
 
     Parameters
     ----------
     most : int
-        How many may wait.
+        Greatest number of messages.
     """
 
     def __init__(self, most: int) -> None:
@@ -38,15 +38,15 @@ class Inbox:
 
     @property
     def full(self) -> bool:
-        """Whether no message more can wait."""
+        """Whether the queue is full."""
         return len(self._waiting) >= self._most
 
     def pop(self) -> ClientMessage:
-        """Take the first message out."""
+        """Remove and return the first message."""
         return self._waiting.popleft()
 
     def push(self, message: ClientMessage) -> list[Done]:
-        """Put a message in.
+        """Add a message.
 
         Parameters
         ----------
@@ -56,12 +56,12 @@ class Inbox:
         Returns
         -------
         list of Done
-            The answers to those whose place it takes.
+            The answers to the messages that it replaces.
         """
         dropped: list[Done] = []
         if isinstance(message, _NEWEST):
             kept: deque[ClientMessage] = deque()
-            # Only back to the last message of those that must keep their order: undo means what was before it.
+            # Not beyond messages whose order matters, such as undo.
             while self._waiting and isinstance(self._waiting[-1], _NEWEST):
                 older = self._waiting.pop()
                 if _same(older, message):
@@ -81,7 +81,7 @@ def _same(older: ClientMessage, newer: ClientMessage) -> bool:
 
 
 def _with_commit_of(older: ClientMessage, newer: ClientMessage) -> ClientMessage:
-    """Return the newer message; it commits what the older one would have committed."""
+    """Return the newer message, with a commit if the older one has one."""
     if not getattr(older, "commit", False):
         return newer
     committed: Any = newer.model_copy(update={"commit": True})

@@ -1,4 +1,4 @@
-"""The front end's files: read once, compressed once, and nothing else is ever served."""
+"""Static files of the front end, read and compressed once; no other files are served."""
 
 from __future__ import annotations
 
@@ -23,16 +23,16 @@ _KINDS = {".js": "text/javascript", ".css": "text/css", ".wasm": "application/wa
 
 @dataclass(frozen=True)
 class _File:
-    """A file as it is sent."""
+    """A file with its headers."""
 
     content: bytes
     packed: bytes | None
     kind: str
     tag: str
-    lasting: bool
+    immutable: bool
 
     @classmethod
-    def of(cls, path: Path, *, lasting: bool) -> _File:
+    def of(cls, path: Path, *, immutable: bool) -> _File:
         content = path.read_bytes()
         kind = _KINDS.get(path.suffix) or mimetypes.guess_type(path.name)[0] or "application/octet-stream"
         packed = gzip.compress(content, compresslevel=9, mtime=0) if len(content) > _LEAST_COMPRESSED else None
@@ -44,7 +44,7 @@ class _File:
             packed=packed,
             kind=f"{kind}; charset=utf-8" if text else kind,
             tag=f'"{hashlib.sha256(content).hexdigest()[:20]}"',
-            lasting=lasting,
+            immutable=immutable,
         )
 
 
@@ -54,30 +54,31 @@ class Pages:
     Parameters
     ----------
     folder : path
-        Where it was built to.
+        Folder of the built front end.
     """
 
     def __init__(self, folder: Path = WEB) -> None:
         files = sorted(path for path in folder.rglob("*") if path.is_file()) if folder.is_dir() else []
-        # Names of assets hold a hash of what is in them: they may be kept for ever.
+        # Names of assets contain a hash of their content, so they can be cached permanently.
         self._files = {
-            path.relative_to(folder).as_posix(): _File.of(path, lasting=path.parent.name == "assets") for path in files
+            path.relative_to(folder).as_posix(): _File.of(path, immutable=path.parent.name == "assets")
+            for path in files
         }
 
     @property
     def built(self) -> bool:
-        """Whether there is a front end to serve."""
+        """Whether the front end has been built."""
         return "index.html" in self._files
 
     def answer(self, request: Request, name: str) -> Response:
-        """Return the answer to a request for a file.
+        """Return the response to a request for a file.
 
         Parameters
         ----------
         request : Request
-            The request: what it has already, and whether it takes compressed answers.
+            The request, for its caching and compression headers.
         name : str
-            The file's path in the folder; empty for the page itself.
+            Path of the file in the folder; empty for the page itself.
         """
         from fastapi import Response
 
@@ -87,7 +88,7 @@ class Pages:
         file = self._files.get(name or "index.html")
         if file is None:
             return Response("no such file", status_code=404, media_type="text/plain")
-        caching = "public, max-age=31536000, immutable" if file.lasting else "no-cache"
+        caching = "public, max-age=31536000, immutable" if file.immutable else "no-cache"
         headers = {"etag": file.tag, "cache-control": caching, "vary": "accept-encoding"}
         if file.tag in request.headers.get("if-none-match", ""):
             return Response(status_code=304, headers=headers)

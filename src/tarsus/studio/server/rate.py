@@ -1,4 +1,4 @@
-"""How many messages a visitor may send: a bucket that fills steadily, and each message takes from."""
+"""Rate limit of messages."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ class Rate:
     Parameters
     ----------
     per_s : float
-        Messages a second, lasting.
+        Sustained messages per second.
     now : float
-        The time [s].
+        Present time [s].
     """
 
     def __init__(self, per_s: float, now: float) -> None:
@@ -28,7 +28,7 @@ class Rate:
         Parameters
         ----------
         now : float
-            The time [s].
+            Present time [s].
         """
         self._left = min(self._most, self._left + (now - self._at) * self._per_s)
         self._at = now

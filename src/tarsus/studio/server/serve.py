@@ -1,4 +1,4 @@
-"""Listening: the socket, the link that is printed, and a start that is checked."""
+"""The server process: socket, link, and health check."""
 
 from __future__ import annotations
 
@@ -23,19 +23,19 @@ __all__ = ["Serving"]
 
 
 class Serving:
-    """A server that has its port, and can be run.
+    """A server with a bound port.
 
     Parameters
     ----------
     settings : Settings
-        Where to listen; port 0 takes one that is free.
+        Host and port; port 0 selects a free one.
     pages : Pages, optional
-        The front end; the one in the package where left out.
+        The front end; that of the package where left out.
 
     Raises
     ------
     InputError
-        If the port is taken, or there is no such address here.
+        If the port is in use, or the address does not exist.
     """
 
     def __init__(self, settings: Settings, *, pages: Pages | None = None) -> None:
@@ -46,7 +46,7 @@ class Serving:
             studio_app(self.settings, pages=pages),
             ws=BatchedProtocol,
             ws_max_size=limits.message_bytes,
-            # On this machine compressing costs more than it saves.
+            # On loopback, compression costs more than it saves.
             ws_per_message_deflate=not settings.loopback,
             log_level="warning",
             access_log=False,
@@ -71,28 +71,28 @@ class Serving:
         try:
             self._server.run(sockets=[self._socket])
         except KeyboardInterrupt:
-            pass  # that is how it is ended
+            pass  # the usual way to stop it
         finally:
             self._socket.close()
 
     def __enter__(self) -> Serving:
-        """Serve in a thread of its own."""
+        """Serve in a separate thread."""
         self._thread = threading.Thread(target=self.run, daemon=True)
         self._thread.start()
         return self
 
     def __exit__(self, *_error: object) -> None:
-        """Stop, and wait until it has."""
+        """Stop, and wait for the thread."""
         self._server.should_exit = True
         self._thread.join()
 
     def health(self, *, timeout: float = 10.0) -> dict[str, Any]:
-        """Return what the running server says of itself.
+        """Return the health report of the running server.
 
         Parameters
         ----------
         timeout : float
-            How long to wait for it [s].
+            Timeout [s].
         """
         family, address = self._socket.family, "127.0.0.1"
         if family == socket.AF_INET6:
@@ -109,12 +109,12 @@ def _listen(host: str, port: int) -> socket.socket:
         family, kind, protocol, _, address = socket.getaddrinfo(
             host, port, type=socket.SOCK_STREAM, proto=socket.IPPROTO_TCP
         )[0]
-        # Only of a socket that says it is TCP does asyncio send small messages at once: else each waits 40 ms.
+        # asyncio sets TCP_NODELAY only if the protocol is TCP; else small messages are delayed by 40 ms.
         listener = socket.socket(family, kind, protocol)
     except OSError as error:
         raise InputError(_why(host, port, error)) from None
     except (OverflowError, UnicodeError):
-        raise InputError(f"{host!r}, port {port}: there is no such address") from None
+        raise InputError(f"{host!r}, port {port}: the address does not exist") from None
     try:
         if os.name == "posix":
             listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
@@ -128,9 +128,9 @@ def _listen(host: str, port: int) -> socket.socket:
 
 def _why(host: str, port: int, error: OSError) -> str:
     if isinstance(error, socket.gaierror):
-        return f"can't listen at {host!r}: {error.strerror}"
+        return f"cannot listen on {host!r}: {error.strerror}"
     if error.errno == errno.EADDRINUSE:
-        return f"port {port} at {host} is taken; choose another with --port, or --port 0 for any that is free"
+        return f"port {port} at {host} is in use; choose another with --port, or --port 0 for a free one"
     if error.errno in (errno.EACCES, errno.EPERM):
-        return f"port {port} needs more rights than you have; choose one from 1024 on with --port"
-    return f"can't listen at {host}, port {port}: {os.strerror(error.errno) if error.errno else error}"
+        return f"port {port} requires more privileges; choose a port of at least 1024 with --port"
+    return f"cannot listen on {host}, port {port}: {os.strerror(error.errno) if error.errno else error}"

@@ -1,4 +1,4 @@
-"""How a studio is served: where, to whom, and how much of it."""
+"""Settings of the server: address, access, limits."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ import secrets
 from dataclasses import dataclass, field
 
 from tarsus.errors import InputError
-from tarsus.studio.messages.state import StudioState
 from tarsus.studio.messages.pose import Bounds
+from tarsus.studio.messages.state import StudioState
 from tarsus.studio.walks import MOST_SAMPLES
 
 __all__ = ["Limits", "Settings", "is_loopback"]
@@ -17,26 +17,26 @@ __all__ = ["Limits", "Settings", "is_loopback"]
 
 @dataclass(frozen=True, kw_only=True)
 class Limits:
-    """What one visitor, and all of them together, may use.
+    """Limits per visitor and of the whole server.
 
     Attributes
     ----------
     message_bytes : int
-        Size of a message.
+        Greatest size of a message [bytes].
     messages_per_s : float
-        Messages a second, lasting; twice as many at once.
+        Sustained messages per second; bursts of twice as many.
     malformed : int
-        Messages that are none, or too many, before the session is ended.
+        Malformed or excess messages after which the session ends.
     sessions : int
-        Sessions at a time.
+        Simultaneous sessions.
     idle_s : float
-        Without a message for so long a session ends [s].
+        Time without messages after which a session ends [s].
     waiting : int
-        Messages of one visitor that wait for their turn.
+        Queued messages per visitor.
     frame_hz : float
-        Live frames a second.
+        Frames of driving per second.
     threads : int
-        Sessions that are worked on at the same time.
+        Sessions that are processed simultaneously.
     """
 
     message_bytes: int = 256 * 1024
@@ -50,7 +50,7 @@ class Limits:
 
     @property
     def bounds(self) -> Bounds:
-        """What a client is told of them."""
+        """The limits that are sent to clients."""
         return Bounds(
             message_bytes=self.message_bytes,
             messages_per_s=self.messages_per_s,
@@ -61,27 +61,27 @@ class Limits:
 
 @dataclass(frozen=True, kw_only=True)
 class Settings:
-    """A server's settings.
+    """Settings of a server.
 
     Attributes
     ----------
     host : str
-        Address that it listens at.
+        Address to listen on.
     port : int
-        Port that it listens at.
+        Port to listen on.
     public : bool
-        Whether anybody may come in without a token, to the simulator and nothing else.
+        Whether the server is open without a token, and has no access to hardware.
     token : str or None
-        What a visitor must know; None where nobody has to.
+        Secret of the link; None if none is required.
     start : StudioState
-        What a new session begins with.
+        Initial state of sessions.
     limits : Limits
-        How much a visitor may use.
+        Limits per visitor and of the server.
 
     Raises
     ------
     InputError
-        If the token has characters that a link or a cookie can't hold as they are.
+        If the token has characters that links or cookies do not allow.
     """
 
     host: str = "127.0.0.1"
@@ -93,31 +93,31 @@ class Settings:
 
     def __post_init__(self) -> None:
         if self.token is not None and not re.fullmatch(r"[A-Za-z0-9._~-]{1,200}", self.token):
-            raise InputError("a token is 1 to 200 letters and digits, dots, dashes, underscores and tildes")
+            raise InputError("the token must have 1 to 200 letters, digits, dots, dashes, underscores or tildes")
 
     @property
     def loopback(self) -> bool:
-        """Whether only this machine can come in."""
+        """Whether only this machine can connect."""
         return is_loopback(self.host)
 
     @property
     def cookie(self) -> str:
-        """Name of the cookie that keeps the token: cookies don't tell one port from another."""
+        """Name of the cookie with the token; it has the port, as cookies are shared between ports."""
         return f"tarsus_studio_{self.port}"
 
     @staticmethod
     def new_token() -> str:
-        """Return a token that can't be guessed."""
+        """Return a random token."""
         return secrets.token_urlsafe(18)
 
 
 def is_loopback(host: str) -> bool:
-    """Return whether an address is this machine's own, for itself alone.
+    """Return whether an address is a loopback address.
 
     Parameters
     ----------
     host : str
-        An address or a name.
+        Address or host name.
     """
     if host == "localhost":
         return True

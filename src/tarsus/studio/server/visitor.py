@@ -1,4 +1,4 @@
-"""One visitor: a WebSocket, a session of its own, and the work between them."""
+"""A visitor: a WebSocket and its session."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Visitor"]
 
-# What takes a millisecond or two: to hand it to a thread and back would cost as much again.
+# Messages that take 1 to 2 ms are processed in the event loop: a thread would double that.
 _QUICK = (ask.Ping, ask.SetJoints, ask.Command)
 
 # Longest tick, however late a frame is [s]: a longer one would be a jump.
@@ -37,7 +37,7 @@ _LONGEST_STEP = 0.05
 
 
 class _SessionEnd(Exception):  # noqa: N818 - it is no error
-    """The session is over."""
+    """The end of the session, with the reason for the client."""
 
     def __init__(self, why: str) -> None:
         super().__init__(why)
@@ -45,16 +45,16 @@ class _SessionEnd(Exception):  # noqa: N818 - it is no error
 
 
 class Visitor:
-    """A visitor from coming in to going.
+    """A visitor from the connection to its end.
 
     Parameters
     ----------
     socket : WebSocket
         The accepted connection.
     settings : Settings
-        Of the server.
+        Settings of the server.
     threads : Executor
-        Does what takes longer than a few milliseconds.
+        Runs what takes longer than a few milliseconds.
     """
 
     def __init__(self, socket: WebSocket, settings: Settings, threads: Executor) -> None:
@@ -68,7 +68,7 @@ class Visitor:
         self._strikes = 0
 
     async def stay(self) -> None:
-        """Read, work and answer until either side ends it."""
+        """Receive, process and answer messages until either side disconnects."""
         tasks = [asyncio.create_task(self._read()), asyncio.create_task(self._work())]
         try:
             done, _ = await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
@@ -78,7 +78,7 @@ class Visitor:
             with contextlib.suppress(RuntimeError, WebSocketDisconnect):
                 await self._socket.close(end.code, end.reason)
         except (WebSocketDisconnect, RuntimeError):
-            pass  # the visitor is gone; a write to a closed socket is a RuntimeError
+            pass  # the visitor has disconnected; writing to a closed socket is a RuntimeError
         finally:
             for task in tasks:
                 task.cancel()
@@ -99,13 +99,15 @@ class Visitor:
 
     async def _take(self, text: str | bytes, *, allowed: bool) -> None:
         if not allowed:
-            await self._refuse(malformed(f"more than {self._limits.messages_per_s:g} messages a second"), kind="limit")
+            await self._refuse(
+                malformed(f"more than {self._limits.messages_per_s:g} messages per second"), kind="limit"
+            )
             return
         message = read(text, most=self._limits.message_bytes)
         if isinstance(message, ErrorMessage):
             await self._refuse(message, kind=message.kind)
         elif self._inbox.full:
-            full = malformed(f"{len(self._inbox)} messages are waiting; wait for an answer", id=message.id)
+            full = malformed(f"{len(self._inbox)} messages are queued; wait for an answer", id=message.id)
             await self._refuse(full, kind="limit")
         else:
             self._strikes = 0
@@ -144,7 +146,7 @@ class Visitor:
         return await asyncio.get_running_loop().run_in_executor(self._threads, self._session.frame, dt)
 
     async def _wait(self, seconds: float) -> None:
-        """Wait for a message, but not past the next frame."""
+        """Wait for a message, at most until the next frame is due."""
         with contextlib.suppress(TimeoutError):
             async with asyncio.timeout(max(seconds, 0.0)):
                 await self._called.wait()
@@ -163,7 +165,7 @@ class Visitor:
         await self._send_texts([message.model_dump_json() for message in messages])
 
     async def _send_texts(self, texts: Sequence[str]) -> None:
-        # Reader and worker both send; answers to one message stay together.
+        # Reader and worker both send; the answers to a message must not be interleaved.
         async with self._sending:
             for text in texts:
                 await self._socket.send_text(text)

@@ -1,1 +1,1 @@
-"""The five source documents' equations, with live numbers in them."""
+"""The equations of the five source documents, with live values."""

@@ -1,4 +1,4 @@
-"""What a source document is here: given numbers, lines worked out one after the other, and its mistakes."""
+"""A source document: given values, equations in order, and errata."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ Number = Callable[[Live], float]
 
 @dataclass(frozen=True)
 class Given:
-    """A number that the document starts from.
+    """A given quantity of the document.
 
     Attributes
     ----------
     symbol, name, unit : str
-        What it is called there, what it is, in which unit it is shown.
+        Symbol in the document, quantity, and unit of display.
     number : callable
-        Takes it from the leg as it stands, in SI units.
+        Returns the value for a leg, in SI units.
     """
 
     symbol: str
@@ -37,13 +37,13 @@ class Step:
     Attributes
     ----------
     symbol, name, unit : str
-        What comes out, what it is, in which unit it is shown.
+        Symbol in the document, quantity, and unit of display.
     formula : str
         See `tarsus.studio.sources.expression`.
     ours : str
-        The same in Tarsus' words; empty where there is no such thing.
+        The same quantity in Tarsus; empty if there is none.
     number : callable, optional
-        That number as Tarsus has it, in SI units: a test holds both against each other.
+        Value of that quantity in Tarsus, in SI units; a test compares both.
     """
 
     symbol: str
@@ -59,14 +59,14 @@ Line = Given | Step
 
 @dataclass(frozen=True)
 class Slip:
-    """A mistake, as far as it can be put into numbers.
+    """An erratum that can be evaluated.
 
     Attributes
     ----------
     printed, right : str
-        The two formulas.
+        Printed and corrected formula.
     unit : str
-        In which unit what comes out is shown.
+        Unit of the result.
     """
 
     printed: str
@@ -81,13 +81,13 @@ class Document:
     Attributes
     ----------
     number, title, about : str
-        Its number in this project, what it is called, what it is about.
+        Number in this project, title, and subject.
     lines : tuple of Given or Step
-        In the order in which they are worked out.
+        In the order of evaluation.
     slips : mapping
-        Mistakes by the name of the test that holds them, as in the table of errata.
+        Errata by the names of their tests, as in the table of errata.
     sideways : bool
-        Whether it knows of a femur axis that lies beside the coxa axis.
+        Whether it supports a femur axis with a sideways offset from the coxa axis.
     """
 
     number: str

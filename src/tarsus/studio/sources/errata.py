@@ -1,7 +1,6 @@
 """The errata of docs/sources.md, as data of the package: ``python -m tarsus.studio.sources.errata docs/sources.md``.
 
-The page is where they are written; ``errata.json`` beside this module is taken from it, and a test holds that it still
-says the same.
+The page is the source of ``errata.json`` beside this module; a test checks that both agree.
 """
 
 from __future__ import annotations
@@ -26,11 +25,11 @@ class Row(NamedTuple):
     Attributes
     ----------
     number : str
-        The document's number.
+        Number of the document.
     printed, right, why : str
-        The row's texts.
+        Texts of the row.
     test : str
-        Name of the test that holds it.
+        Name of its test.
     """
 
     number: str
@@ -42,12 +41,12 @@ class Row(NamedTuple):
 
 @cache
 def errata() -> tuple[Row, ...]:
-    """Return all errata, in the page's order."""
+    """Return all errata in the order of the page."""
     return tuple(Row(*row) for row in json.loads(_JSON.read_text(encoding="utf-8")))
 
 
 def rows_of_page(text: str) -> tuple[Row, ...]:
-    """Return the errata that a page's tables hold.
+    """Return the errata in the tables of a page.
 
     Parameters
     ----------
@@ -71,7 +70,7 @@ def rows_of_page(text: str) -> tuple[Row, ...]:
 
 
 def _plain(cell: str) -> str:
-    """Return a cell's text without Markdown's marks."""
+    """Return the text of a cell without Markdown."""
     return html.unescape(re.sub(r"</?code>|`", "", cell.strip()))
 
 

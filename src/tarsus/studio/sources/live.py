@@ -1,4 +1,4 @@
-"""The numbers of one leg as it stands, in the words that the source documents share."""
+"""Values of one leg of the standing robot, as the source documents use them."""
 
 from __future__ import annotations
 
@@ -20,22 +20,22 @@ Floats = np.ndarray[Any, np.dtype[np.float64]]
 
 @dataclass(frozen=True, eq=False)
 class Live:
-    """One leg of a robot that stands.
+    """One leg of a standing robot.
 
     Attributes
     ----------
     robot : Robot
         A single robot.
     leg : int
-        Which leg.
+        Index of the leg.
     angles : array, shape (3,)
-        Of coxa, femur and tibia [rad].
+        Angles of coxa, femur and tibia [rad].
     foot : array, shape (3,)
-        Where the foot is, in the leg's coxa frame C [m].
+        Position of the foot in the coxa frame C [m].
     foot_in_body : array, shape (3,)
-        The same in B [m].
+        Position of the foot in B [m].
     mount : array, shape (3,)
-        Where the coxa axis is, in B [m].
+        Position of the coxa axis in B [m].
     rpy : array, shape (3,)
         Attitude of the body [rad].
     body_height : float
@@ -53,14 +53,14 @@ class Live:
 
     @classmethod
     def of(cls, standing: OnFootholds, leg: int) -> Self:
-        """Return the numbers of a leg.
+        """Return the values of a leg.
 
         Parameters
         ----------
         standing : OnFootholds
-            How the robot stands.
+            The standing robot.
         leg : int
-            Which leg.
+            Index of the leg.
         """
         robot, angles = standing.solution.robot, np.asarray(standing.solution.angles)
         feet = np.asarray(forward_kinematics(robot, angles))[:, 3]
@@ -88,17 +88,17 @@ class Live:
 
     @property
     def yaw(self) -> float:
-        """Direction in which the leg is mounted [rad]."""
+        """Yaw of the mount of the leg [rad]."""
         return float(self.robot.mount_yaw[self.leg])
 
     @property
     def offset(self) -> tuple[float, float]:
-        """How far the femur axis lies beside and above the coxa axis [m]."""
+        """Sideways and vertical offset of the femur axis from the coxa axis [m]."""
         side, up = self.robot.femur_axis_offset[self.leg]
         return float(side), float(up)
 
     @property
     def band(self) -> tuple[float, float]:
-        """How near and how far the foot can stand straight out [m]; NaN where it can't."""
+        """Nearest and farthest reachable distance of the foot straight outward [m]; NaN if none."""
         near, far = reachable_band(self.robot, np.asarray(-self.body_height))
         return float(near[self.leg]), float(far[self.leg])

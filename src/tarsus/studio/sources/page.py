@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from tarsus.studio.encoding import or_null
 from tarsus.studio.messages.general import Equation, Erratum, MathNode, SourceMessage
 from tarsus.studio.messages.state import SourceChoice
 from tarsus.studio.sources import doc000, doc001, doc002, doc003, doc004
@@ -16,7 +17,6 @@ from tarsus.studio.sources.expression import Expression, Quantity, symbol_node
 from tarsus.studio.sources.live import Live
 from tarsus.studio.sources.torques import torque_equations, torque_slips
 from tarsus.studio.standing import OnFootholds
-from tarsus.studio.encoding import or_null
 
 __all__ = ["DOCUMENTS", "source_message"]
 
@@ -41,7 +41,7 @@ def source_message(standing: OnFootholds, choice: SourceChoice, *, id: int) -> S
     choice : SourceChoice
         Which document, which leg.
     id : int
-        Of the message that is answered.
+        Id of the message that is answered.
     """
     document, leg = DOCUMENTS[choice.number], Live.of(standing, choice.leg)
     symbols: dict[str, Quantity] = {}

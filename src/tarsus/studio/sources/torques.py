@@ -8,10 +8,10 @@ from collections.abc import Mapping
 from tarsus.load.handbook.lines import Line
 from tarsus.load.handbook.method import handbook
 from tarsus.robot.robot import Robot
+from tarsus.studio.encoding import or_null
 from tarsus.studio.messages.general import Equation, Erratum, MathNode
 from tarsus.studio.sources.errata import errata
 from tarsus.studio.sources.expression import Expression, symbol_node
-from tarsus.studio.encoding import or_null
 
 __all__ = ["torque_equations", "torque_slips"]
 
