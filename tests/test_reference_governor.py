@@ -8,7 +8,7 @@ from scipy.integrate import solve_ivp
 
 from sample_gait_states import EARTH, FACING, moment_of
 from sample_stances import setup_of, velocity_limits_of
-from tarsus.control.filters import CriticallyDamped
+from tarsus.control.filters import CriticallyDamped, integral_factors
 from tarsus.control.walk.reference_governor import governed_twist, polygon_excess
 from tarsus.control.walk.state import integrate_twist
 from tarsus.control.workspace.polygon import NORMALS, polygon_radii
@@ -91,6 +91,8 @@ def test_what_is_allowed_works_and_two_percent_more_would_not(seed, name):
         assert worst(now, np.zeros(3), given_as) > 1e-9
         return
     target = settled(now, current, command, given_as)
+    if (current == command).all():
+        return
     way = command - current
     share = float((target - current) @ way / (way @ way))
     np.testing.assert_allclose(target, current + share * way, atol=1e-12)
@@ -171,3 +173,16 @@ def test_each_foot_is_looked_at_from_when_to_when_it_is_down():
     whole = polygon_excess(now, target[None], **given_as)
     np.testing.assert_allclose(both[0], whole)
     np.testing.assert_allclose(both[1].reshape(3, 6, 16)[0], whole.reshape(3, 6, 16)[1])
+
+
+def test_a_turn_that_cancels_the_smallest_angle_is_no_division_by_zero():
+    now, _, _, given_as = situation(1)
+    now = now._replace(twist=CriticallyDamped.still(np.zeros(3)))
+    straight = np.array([0.1, 0.0, 0.0])
+    expected = polygon_excess(now, straight[None], **given_as)
+    # Half the angle of the whole stance is then exactly -1e-30 rad.
+    moments = given_as["ends"] - given_as["begins"]
+    for time in moments:
+        of_target = integral_factors(np.array(time), bandwidth=BANDWIDTH)[0]
+        turning = np.array([0.1, 0.0, -2e-30 / float(of_target)])
+        np.testing.assert_allclose(polygon_excess(now, turning[None], **given_as), expected, atol=1e-12)

@@ -144,3 +144,22 @@ def test_rejected_readings_are_reported():
     controller = controller_of()
     run(controller, (0.05, 0.0, 0.0), 0.1, SensorReadings(attitude=(math.nan, 0.0)))
     assert {found.kind for found in controller.limitations} == {LimitationKind.READINGS}
+
+
+def test_a_gait_that_tips_the_robot_over_is_reported():
+    controller = controller_of()
+    run(controller, Command(gait=Gait(duty_factor=0.5, offsets=(0.0, 0.0, 0.0, 0.5, 0.5, 0.5)), cycle_time=1.5), 4)
+    assert [found.kind for found in controller.limitations] == [LimitationKind.GAIT, LimitationKind.CYCLE_TIME]
+    assert {found.cause for found in controller.limitations} == {"the robot would tip over"}
+    assert controller.gait.name == "tripod"
+
+
+def test_a_stance_from_which_the_feet_cannot_step_on_is_reported():
+    controller = controller_of()
+    run(controller, Command(body_height=0.4), 20)
+    run(controller, Command(body_height=0.11), 4)
+    (limitation,) = controller.limitations
+    assert limitation.kind is LimitationKind.BODY_HEIGHT
+    assert limitation.asked == 0.11
+    assert limitation.cause == "could not stand and step on the way"
+    assert limitation.leg
