@@ -61,7 +61,7 @@ def test_all_is_reached_by_keyboard_alone(visitor):
     angles = np.array(before)
     angles[0, 1:] = np.radians([femur_now, tibia_now])
     rest = tarsus.resting_pose(STRIDER, angles)
-    expect(visitor.at("standing-facts")).to_contain_text(f"Margin of stability{rest.margin * 1000:.1f} mm")
+    expect(visitor.at("standing-facts")).to_contain_text(f"Stability margin{rest.margin * 1000:.1f} mm")
 
     visitor.at("tab-joints").focus()
     visitor.page.keyboard.press("ArrowDown")
@@ -244,7 +244,7 @@ def test_two_visitors_dont_disturb_each_other(arrive):
     before = other.facts("standing-facts")
     one.at("robot-choice").select_option("phantomx")
     one.type("joint-LF-femur", 50)
-    expect(one.at("standing-facts")).not_to_contain_text(before["Margin of stability"])
+    expect(one.at("standing-facts")).not_to_contain_text(before["Stability margin"])
     other.page.wait_for_timeout(300)
     assert other.facts("standing-facts") == before
     assert other.at("robot-choice").input_value() == "strider"
@@ -266,7 +266,7 @@ def test_after_a_restart_of_the_server_it_goes_on_with_its_state(arrive):
         expect(visitor.at("joint-RM-femur-number")).to_have_value("33")
         expect(visitor.at("joint-RM-coxa-number")).to_have_value("9")
         visitor.type("joint-RM-coxa", 0)
-        expect(visitor.at("standing-facts")).to_contain_text(before["Margin of stability"])
+        expect(visitor.at("standing-facts")).to_contain_text(before["Stability margin"])
         assert visitor.facts("standing-facts") == before
         # That nobody answered is all that there was to complain of.
         assert all("ERR_CONNECTION_REFUSED" in text for text in visitor.complaints)

@@ -58,7 +58,7 @@ def test_a_token_is_new_each_time():
         (("--port", "70000", "--check"), "70000", 2),
         (("--token", "not; a token", "--check"), "letters and digits", 2),
         (("--token", "", "--check"), "letters and digits", 2),
-        (("--host", "192.0.2.1", "--check"), "can't listen at", 2),
+        (("--host", "192.0.2.1", "--check"), "cannot listen on", 2),
         (("phantom", "--check"), "Did you mean 'phantomx'", 1),
     ],
 )

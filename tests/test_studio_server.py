@@ -155,7 +155,7 @@ def test_driving_sends_frames_by_itself_until_it_is_ended(serving):
         assert {frame["id"] for frame in frames} == {number}
         times = [frame["time_s"] for frame in frames]
         assert all(after > before for before, after in itertools.pairwise(times))
-        assert frames[-1]["mode"] == "walking"
+        assert frames[-1]["state"] == "walking"
         assert frames[-1]["position_mm"][0] > frames[0]["position_mm"][0]
         refused = visit.ask("command", velocity_mm_s=[0, 0], turn_deg_s=0, gait="gallop")
         assert any(answer["type"] == "error" and answer["kind"] == "unknown_name" for answer in refused)
@@ -251,7 +251,7 @@ def test_so_many_messages_wait_and_no_more():
             answers.append(visit.receive())
         refused = [answer for answer in answers if answer.get("kind") == "limit"]
         assert len(refused) >= 6
-        assert "3 messages are waiting" in refused[0]["text"]
+        assert "3 messages are queued" in refused[0]["text"]
 
 
 def test_so_many_sessions_and_no_more():
@@ -358,11 +358,11 @@ def test_where_the_pages_are_not_built_it_is_said_how(tmp_path):
 
 def test_a_taken_port_is_an_error_that_says_so(serving):
     port = serving.settings.port
-    with pytest.raises(InputError, match=f"port {port} at 127.0.0.1 is taken; choose another"):
+    with pytest.raises(InputError, match=f"port {port} at 127.0.0.1 is in use; choose another"):
         Serving(Settings(port=port))
 
 
-@pytest.mark.parametrize(("host", "words"), [("192.0.2.1", "can't listen at"), ("no such host", "can't listen at")])
+@pytest.mark.parametrize(("host", "words"), [("192.0.2.1", "cannot listen on"), ("no such host", "cannot listen on")])
 def test_an_address_that_is_not_here_is_an_error(host, words):
     with pytest.raises(InputError, match=words):
         Serving(Settings(host=host))

@@ -137,7 +137,7 @@ def test_forces_and_torques_are_told_where_the_feet_alone_hold_the_robot(ask):
 
 
 def test_angles_of_another_number_of_legs_are_refused(ask):
-    assert "6 legs have 18" in ask.error("joints", joints={"angles_deg": [0.0] * 17})["text"]
+    assert "6 legs need 18" in ask.error("joints", joints={"angles_deg": [0.0] * 17})["text"]
 
 
 BODY = {"x_mm": 12, "y_mm": -8, "z_mm": 5, "roll_deg": 4, "pitch_deg": -3, "yaw_deg": 6}
@@ -409,14 +409,14 @@ def test_what_is_wrong_in_a_document_is_told_by_its_key(ask):
         {"name": f"leg {i}", "position_mm": [300 * math.cos(t), 300 * math.sin(t), 0], "yaw_deg": 0}
         for i, t in enumerate(turns)
     ]
-    many = {**robot_to_dict(STRIDER), "legs": legs}
-    assert "has 13 legs; the studio takes at most 12" in ask.error("document", document=many)["text"]
+    many = {**STRIDER.to_dict(), "legs": legs}
+    assert "has 13 legs; the studio accepts at most 12" in ask.error("document", document=many)["text"]
 
 
 def test_a_document_too_large_is_refused(ask):
     sources = [{"of": ["gait"], "source": "x" * 1000, "confidence": "guess"}] * 70
-    error = ask.error("document", document={**robot_to_dict(STRIDER), "sources": sources})
-    assert "at most 65536" in error["text"]
+    error = ask.error("document", document={**STRIDER.to_dict(), "sources": sources})
+    assert "limit is 65536" in error["text"]
 
 
 def test_toml_in_and_out(ask):

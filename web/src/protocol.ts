@@ -268,7 +268,7 @@ export interface JointSpeed {
   leg: string;
   servo: string | null;
   no_load_deg_s: number | null;
-  share_of_no_load: number | null;
+  no_load_fraction: number | null;
 }
 
 /** The view Joints: legs x (coxa, femur, tibia); null for the default stance. */

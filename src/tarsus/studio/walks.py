@@ -242,12 +242,12 @@ def _timed_length(found: dict[str, Any]) -> TimedLength:
 
 
 def _joint_speed(joint: str, found: dict[str, Any]) -> JointSpeed:
-    share = found["no_load_fraction"]
+    fraction = found["no_load_fraction"]
     return JointSpeed(
         joint=joint,  # type: ignore[arg-type] # one of the three
         deg_s=float(found["deg_s"]),
         leg=found["leg"],
         servo=found["servo"],
         no_load_deg_s=found["no_load_deg_s"],
-        share_of_no_load=None if share is None else or_null(share),
+        no_load_fraction=None if fraction is None else or_null(fraction),
     )

@@ -44,7 +44,7 @@ class JointSpeed(Part):
     leg: str
     servo: str | None
     no_load_deg_s: float | None
-    share_of_no_load: float | None
+    no_load_fraction: float | None
 
 
 class WalkMessage(Message):

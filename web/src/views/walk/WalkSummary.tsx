@@ -31,7 +31,7 @@ export function WalkSummary({ walk }: { walk: WalkMessage }) {
             (speed) =>
               [
                 `Max. speed of ${speed.joint}`,
-                `${withUnit(speed.deg_s, 0, "°/s")}${speed.share_of_no_load === null ? "" : ` (${Math.round(speed.share_of_no_load * 100)} % of no-load)`}`,
+                `${withUnit(speed.deg_s, 0, "°/s")}${speed.no_load_fraction === null ? "" : ` (${Math.round(speed.no_load_fraction * 100)} % of no-load)`}`,
               ] as const,
           ),
         ]}
