@@ -83,13 +83,17 @@ def test_a_robot_file_is_what_the_studio_begins_with(tmp_path):
 def test_it_runs_until_it_is_interrupted():
     command = [SCRIPT, "studio", "--port", "0", "--no-browser"]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
-        link = process.stdout.readline()
-        url = re.fullmatch(r"Tarsus Studio: (http://\S+)\n", link)[1]
-        assert process.stdout.readline() == "Ctrl-C ends it.\n"
-        with urllib.request.urlopen(f"{url}health", timeout=20) as answer:
-            assert json.load(answer)["status"] == "ok"
-        process.send_signal(signal.SIGINT)
-        _, complaint = process.communicate(timeout=30)
+        try:
+            link = process.stdout.readline()
+            url = re.fullmatch(r"Tarsus Studio: (http://\S+)\n", link)[1]
+            assert process.stdout.readline() == "Press Ctrl-C to stop.\n"
+            with urllib.request.urlopen(f"{url}health", timeout=20) as answer:
+                assert json.load(answer)["status"] == "ok"
+            process.send_signal(signal.SIGINT)
+            _, complaint = process.communicate(timeout=30)
+        finally:
+            # Leaving the context waits for the process, also after a failed assertion.
+            process.kill()
     assert process.returncode == 0
     assert complaint == ""
 
