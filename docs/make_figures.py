@@ -54,7 +54,7 @@ def main() -> None:
     save_figure(
         plot_robot(strider, limp, body=rest.body, contacts=rest.contacts, title=rest.describe()), FIGURES / "rest.png"
     )
-    print(f"drew {len(list(FIGURES.glob("*")))} figures into {FIGURES}")
+    print(f"drew {len(list(FIGURES.glob('*')))} figures into {FIGURES}")
 
 
 if __name__ == "__main__":
