@@ -176,7 +176,7 @@ def test_a_field_of_the_robot_changes_the_robot(visitor):
     visitor.at("doc-body.mass_kg").press("Enter")
     document = robot_to_dict(STRIDER)
     document["leg"]["tibia_mm"], document["body"]["mass_kg"] = 200, 2.5
-    robot = tarsus.Robot.from_dict(document)
+    robot = robot_from_dict(document)
     expect(visitor.at("robot-facts")).to_contain_text(f"Total mass{total_mass(robot):.3f} kg")
     longest = tarsus.max_stroke(robot, tarsus.Gait.named(robot.gait.name), 0.0) * 1000
     assert number(visitor.facts("robot-facts")["Longest stroke"]) == pytest.approx(longest, abs=0.06)

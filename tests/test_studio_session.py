@@ -409,13 +409,13 @@ def test_what_is_wrong_in_a_document_is_told_by_its_key(ask):
         {"name": f"leg {i}", "position_mm": [300 * math.cos(t), 300 * math.sin(t), 0], "yaw_deg": 0}
         for i, t in enumerate(turns)
     ]
-    many = {**STRIDER.to_dict(), "legs": legs}
+    many = {**robot_to_dict(STRIDER), "legs": legs}
     assert "has 13 legs; the studio accepts at most 12" in ask.error("document", document=many)["text"]
 
 
 def test_a_document_too_large_is_refused(ask):
     sources = [{"of": ["gait"], "source": "x" * 1000, "confidence": "guess"}] * 70
-    error = ask.error("document", document={**STRIDER.to_dict(), "sources": sources})
+    error = ask.error("document", document={**robot_to_dict(STRIDER), "sources": sources})
     assert "limit is 65536" in error["text"]
 
 
