@@ -54,10 +54,10 @@ def test_a_token_is_new_each_time():
 @pytest.mark.parametrize(
     ("options", "words", "code"),
     [
-        (("--public", "--token", "x", "--check"), "give one of them", 2),
+        (("--public", "--token", "x", "--check"), "exclude each other", 2),
         (("--port", "70000", "--check"), "70000", 2),
-        (("--token", "not; a token", "--check"), "letters and digits", 2),
-        (("--token", "", "--check"), "letters and digits", 2),
+        (("--token", "not; a token", "--check"), "letters, digits", 2),
+        (("--token", "", "--check"), "letters, digits", 2),
         (("--host", "192.0.2.1", "--check"), "cannot listen on", 2),
         (("phantom", "--check"), "Did you mean 'phantomx'", 1),
     ],
@@ -72,7 +72,7 @@ def test_a_taken_port_is_told():
     with Serving(Settings()) as serving:
         result = run("studio", "--port", str(serving.settings.port), "--no-browser")
     assert result.exit_code == 2
-    assert f"port {serving.settings.port} at 127.0.0.1 is taken" in result.stderr
+    assert f"port {serving.settings.port} at 127.0.0.1 is in use" in result.stderr
 
 
 def test_a_robot_file_is_what_the_studio_begins_with(tmp_path):

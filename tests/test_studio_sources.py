@@ -98,19 +98,19 @@ def test_the_errata_are_those_of_the_page():
 @pytest.mark.parametrize("number", DOCUMENTS)
 def test_every_erratum_is_told_and_what_is_printed_comes_out_otherwise(number):
     told, rows = source(number)["errata"], [row for row in errata() if row.number == number]
-    assert [erratum["why"] for erratum in told] == [row.why for row in rows]
+    assert [erratum["reason"] for erratum in told] == [row.reason for row in rows]
     assert set(DOCUMENTS[number].slips) <= {row.test for row in rows}
-    in_numbers = [erratum for erratum in told if erratum["right_formula"]]
+    in_numbers = [erratum for erratum in told if erratum["correct_formula"]]
     assert in_numbers
     for erratum in in_numbers:
         if "whole translation" not in erratum["printed"]:  # on strider's circle it makes no difference
-            assert erratum["printed_value"] != pytest.approx(erratum["right_value"], rel=1e-5)
+            assert erratum["printed_value"] != pytest.approx(erratum["correct_value"], rel=1e-5)
 
 
 def test_a_slip_that_can_not_be_worked_out_has_no_value():
     told = source("001", pitch_deg=0, roll_deg=0)["errata"]
     slope = next(erratum for erratum in told if "1 / tan" in erratum["printed"])
-    assert (slope["printed_value"], slope["right_value"]) == (None, 0)
+    assert (slope["printed_value"], slope["correct_value"]) == (None, 0)
 
 
 def test_a_leg_that_cannot_reach_is_shown_where_it_is():

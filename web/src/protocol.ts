@@ -204,12 +204,12 @@ export interface Equation {
 /** An erratum of a document, with the results of both formulas. */
 export interface Erratum {
   printed: string;
-  right: string;
-  why: string;
+  correct: string;
+  reason: string;
   printed_formula: MathNode | null;
-  right_formula: MathNode | null;
+  correct_formula: MathNode | null;
   printed_value: number | null;
-  right_value: number | null;
+  correct_value: number | null;
   unit: string;
 }
 

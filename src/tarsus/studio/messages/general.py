@@ -109,12 +109,12 @@ class Erratum(Part):
     """An erratum of a document, with the results of both formulas."""
 
     printed: str
-    right: str
-    why: str
+    correct: str
+    reason: str
     printed_formula: MathNode | None
-    right_formula: MathNode | None
+    correct_formula: MathNode | None
     printed_value: float | None
-    right_value: float | None
+    correct_value: float | None
     unit: str
 
 

@@ -63,14 +63,14 @@ class Slip:
 
     Attributes
     ----------
-    printed, right : str
+    printed, correct : str
         Printed and corrected formula.
     unit : str
         Unit of the result.
     """
 
     printed: str
-    right: str
+    correct: str
     unit: str
 
 

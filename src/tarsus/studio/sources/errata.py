@@ -16,7 +16,7 @@ from typing import NamedTuple
 __all__ = ["Row", "errata", "rows_of_page"]
 
 _JSON = Path(__file__).with_name("errata.json")
-_HEADER = ["as printed", "right", "why", "test"]
+_HEADER = ["as printed", "correct", "reason", "test"]
 
 
 class Row(NamedTuple):
@@ -26,7 +26,7 @@ class Row(NamedTuple):
     ----------
     number : str
         Number of the document.
-    printed, right, why : str
+    printed, correct, reason : str
         Texts of the row.
     test : str
         Name of its test.
@@ -34,8 +34,8 @@ class Row(NamedTuple):
 
     number: str
     printed: str
-    right: str
-    why: str
+    correct: str
+    reason: str
     test: str
 
 
@@ -64,8 +64,8 @@ def rows_of_page(text: str) -> tuple[Row, ...]:
         elif not cells:
             inside = False
         elif inside and not set(cells[0]) <= {"-"}:
-            printed, right, why, test = cells
-            rows.append(Row(number, printed, right, why, test))
+            printed, correct, reason, test = cells
+            rows.append(Row(number, printed, correct, reason, test))
     return tuple(rows)
 
 

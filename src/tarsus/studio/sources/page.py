@@ -131,16 +131,16 @@ def _erratum(row: Row, slip: Slip | None, symbols: dict[str, Quantity]) -> Errat
     formulas: list[MathNode | None] = [None, None]
     values: list[float | None] = [None, None]
     if slip is not None:
-        both = [Expression(slip.printed), Expression(slip.right)]
+        both = [Expression(slip.printed), Expression(slip.correct)]
         formulas = [expression.formula() for expression in both]
         values = [_shown(Quantity(expression.value(symbols), slip.unit)) for expression in both]
     return Erratum(
         printed=row.printed,
-        right=row.right,
-        why=row.why,
+        correct=row.correct,
+        reason=row.reason,
         printed_formula=formulas[0],
-        right_formula=formulas[1],
+        correct_formula=formulas[1],
         printed_value=values[0],
-        right_value=values[1],
+        correct_value=values[1],
         unit="" if slip is None else slip.unit,
     )

@@ -89,12 +89,12 @@ def torque_slips(robot: Robot, leg: int) -> dict[str, Erratum]:
             as_printed, as_it_is = printed.line(_SLIPS[row.test]), right.line(_SLIPS[row.test])
             slips[row.test] = Erratum(
                 printed=row.printed,
-                right=row.right,
-                why=row.why,
+                correct=row.correct,
+                reason=row.reason,
                 printed_formula=_node(as_printed.formula),
-                right_formula=_node(as_it_is.formula),
+                correct_formula=_node(as_it_is.formula),
                 printed_value=or_null(as_printed.value, decimals=9),
-                right_value=or_null(as_it_is.value, decimals=9),
+                correct_value=or_null(as_it_is.value, decimals=9),
                 unit=as_it_is.unit,
             )
     return slips

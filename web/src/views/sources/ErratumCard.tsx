@@ -13,13 +13,13 @@ export function ErratumCard({ erratum }: { erratum: Erratum }) {
           {erratum.printed_formula ? <Maths node={erratum.printed_formula} block /> : erratum.printed}
           {erratum.printed_value !== null && <output>{withUnit(erratum.printed_value, 2, unit)}</output>}
         </dd>
-        <dt>Corrected</dt>
+        <dt>Correct</dt>
         <dd className="scroll">
-          {erratum.right_formula ? <Maths node={erratum.right_formula} block /> : erratum.right}
-          {erratum.right_value !== null && <output>{withUnit(erratum.right_value, 2, unit)}</output>}
+          {erratum.correct_formula ? <Maths node={erratum.correct_formula} block /> : erratum.correct}
+          {erratum.correct_value !== null && <output>{withUnit(erratum.correct_value, 2, unit)}</output>}
         </dd>
       </dl>
-      <p className="hint">{erratum.why}</p>
+      <p className="hint">{erratum.reason}</p>
     </div>
   );
 }
