@@ -121,7 +121,7 @@ REASONS = (
 
 
 # Shrinking one example takes as long as trying all of them.
-@settings(max_examples=18, phases=[Phase.explicit, Phase.generate])
+@settings(max_examples=12, phases=[Phase.explicit, Phase.generate])
 @given(initial_poses(), st.floats(0.6, 1.4))
 def test_it_stands_up_from_any_angles_or_gives_the_reason(start, fraction):
     robot, angles = start
