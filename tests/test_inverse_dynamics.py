@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 import tarsus
 from pinocchio_model import Reference
 from sample_robots import hexapod, random_hexapod, standing
+from shape_enforcement import unchecked
 from tarsus.errors import InputError, MissingDataError
 from tarsus.kinematics.inverse import inverse_kinematics
 from tarsus.kinematics.leg import forward_kinematics
@@ -247,13 +248,15 @@ def test_errors(walk):
         motion_torques(robot.replace(body_mass=None), walk)
     with pytest.raises(InputError, match="no foot is on the ground"):
         dynamic_torques(robot, standing(), Pose(), ~ALL, joints, rates)
-    slow = JointRates(velocity=np.zeros((5, 3)), acceleration=joints.acceleration)
+    with unchecked():
+        slow = JointRates(velocity=np.zeros((5, 3)), acceleration=joints.acceleration)
+        askew = BodyRates(angular_velocity=np.zeros(2))
     wild = JointRates(velocity=joints.velocity, acceleration=joints.acceleration * np.nan)
     with pytest.raises(InputError, match=r"joint velocity has shape \(5, 3\)"):
         dynamic_torques(robot, standing(), Pose(), ALL, slow, rates)
     with pytest.raises(InputError, match=r"joint acceleration\[0, 0\] is nan"):
         dynamic_torques(robot, standing(), Pose(), ALL, wild, rates)
     with pytest.raises(InputError, match=r"angular_velocity has shape \(2,\)"):
-        dynamic_torques(robot, standing(), Pose(), ALL, joints, BodyRates(angular_velocity=np.zeros(2)))
+        dynamic_torques(robot, standing(), Pose(), ALL, joints, askew)
     with pytest.raises(InputError, match=r"acceleration\[0\] is inf"):
         dynamic_torques(robot, standing(), Pose(), ALL, joints, BodyRates(acceleration=np.full(3, np.inf)))

@@ -139,6 +139,13 @@ def test_a_function_may_refuse_a_wrong_shape_itself(sample):
         sample.refuses(np.zeros(2))
 
 
+def test_wrong_shapes_may_be_let_pass(sample):
+    with shape_enforcement.unchecked():
+        assert sample.dropped(FEET).shape == (5, 3)
+    with pytest.raises(ShapeError):
+        sample.dropped(FEET)
+
+
 def test_shapes_are_enforced_in_tarsus_itself():
     # NumPy alone would broadcast the one point to all polygons.
     with pytest.raises(ShapeError, match="polygon_margin: inside is ndarray of complex128"):

@@ -173,7 +173,7 @@ def only_where_needed(
 
     Parameters
     ----------
-    needed : array, shape ()
+    needed : array of bool, shape ()
         Whether to compute.
     compute : callable
         Takes no arguments; returns arrays of the shapes of those in `otherwise`.

@@ -83,7 +83,7 @@ class BodyPath:
         return xp.hypot(across, along)
 
 
-def exponential_map(displacement: Sequence[float] | Array, fraction: Array) -> Array:
+def exponential_map(displacement: Sequence[float | Array] | Array, fraction: Array) -> Array:
     """Return the planar pose ``(..., 3)`` reached after a fraction ``(...)`` of a constant twist."""
     parts = [displacement[i] for i in range(3)]
     xp = namespace(fraction, *parts)

@@ -117,7 +117,7 @@ def margin_and_nearest(xp: Namespace, x: Array, y: Array, counts: Array) -> tupl
     ----------
     xp : namespace
         The array library.
-    x, y : array, shape (n, batch)
+    x, y : array, shape (n, batch) or (n, 1)
         The points [m].
     counts : array of bool, shape (n, batch)
         Which of them are used.

@@ -38,7 +38,7 @@ class RestingPose:
         Feet on the ground.
     leg_points_down : array of bool, shape (..., legs, 4)
         Leg points on the ground: coxa axis, femur axis, knee, foot.
-    corners_down : array of bool, shape (..., 8)
+    corners_down : array of bool, shape (..., 8) or (..., 0)
         Corners of the body's box on the ground, in the order of `CORNERS`; ``(..., 0)`` without a box.
     margin : array, shape (...)
         Margin of the centre of mass in the convex hull of all contact points [m].
