@@ -55,7 +55,7 @@ def with_servos(robot: Robot, servos: Mapping[str, Servo]) -> Robot:
     rows = tuple(tuple(servos.get(n, s) for n, s in zip(JOINTS, leg, strict=True)) for leg in robot.servos)
     if why_masses_stay(robot) is not None:
         return robot.replace(servos=rows)
-    body, links = float(robot.body_mass), np.array(robot.link_mass)
+    body, links = float(np.asarray(robot.body_mass)), np.array(robot.link_mass)
     for leg, parts in enumerate(_servo_parts(robot)):
         for joint, part in enumerate(parts):
             new, old = rows[leg][joint], robot.servos[leg][joint]
@@ -91,7 +91,7 @@ def _servo_parts(robot: Robot) -> list[list[int]]:
     """Return for each leg the part that holds each joint's servo; fewer than three if the parts are too light."""
     assignment = []
     for leg, row in enumerate(robot.servos):
-        free = [float(robot.body_mass) / robot.legs, *np.asarray(robot.link_mass)[leg].tolist()]
+        free = [float(np.asarray(robot.body_mass)) / robot.legs, *np.asarray(robot.link_mass)[leg].tolist()]
         parts = []
         for joint, servo in enumerate(row):
             part = next((part for part in (joint, joint + 1) if free[part] >= _mass(servo)), None)

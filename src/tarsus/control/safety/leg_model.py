@@ -52,9 +52,9 @@ class LegModel:
     """
 
     def __init__(self, robot: Robot) -> None:
-        total = float(robot.body_mass + np.asarray(robot.link_mass).sum()) if robot.has_masses else 1.0
+        total = float(np.asarray(robot.body_mass) + np.asarray(robot.link_mass).sum()) if robot.has_masses else 1.0
         self._legs = tuple(_constants(robot, leg, total) for leg in range(robot.legs))
-        body_fraction = float(robot.body_mass / total) if robot.has_masses else 1.0
+        body_fraction = float(np.asarray(robot.body_mass) / total) if robot.has_masses else 1.0
         self._body_com = tuple(float(body_fraction * c) for c in np.asarray(robot.body_com))
 
     def points(self, angles: list[float]) -> tuple[list[Point], Point]:
@@ -89,7 +89,7 @@ def _constants(robot: Robot, leg: int, total: float) -> _LegConstants:
     coxa, femur, tibia = (float(lengths[leg]) for lengths in (robot.coxa, robot.femur, robot.tibia))
     side, up = map(float, robot.femur_axis_offset[leg])
     x, y, z = map(float, robot.mount_position[leg])
-    masses = np.asarray(robot.link_mass[leg]) / total if robot.has_masses else np.zeros(3)
+    masses = np.asarray(robot.link_mass)[leg] / total if robot.has_masses else np.zeros(3)
     coxa_mass, femur_mass, tibia_mass = map(float, masses)
     coxa_com, femur_com, tibia_com = map(float, robot.link_com[leg])
     outer_mass = femur_mass + tibia_mass

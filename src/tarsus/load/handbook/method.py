@@ -241,7 +241,7 @@ def _check(robot: Robot, feet_down: int, leg: int | None, numbers: Mapping[str, 
 def _worst_leg(robot: Robot, feet_down: int, gravity: float) -> int:
     """Return the leg that gives the largest femur torque in stance if all legs are like it; the first of equals."""
     masses, radius = np.asarray(robot.link_mass), _radius(robot)
-    load = (float(robot.body_mass) + (robot.legs - feet_down) * masses.sum(-1)) * gravity / feet_down
+    load = (float(np.asarray(robot.body_mass)) + (robot.legs - feet_down) * masses.sum(-1)) * gravity / feet_down
     femur = masses[:, 0] * gravity * robot.link_com[:, 0] + load * (robot.coxa + radius)
     return int(np.argmax(femur > femur.max() * (1 - 1e-5)))
 
@@ -255,8 +255,8 @@ def _radius(robot: Robot) -> np.ndarray[Any, Any]:
 def _given(robot: Robot, leg: int, femur_out: float | None) -> dict[str, float]:
     """Return the given numbers of the calculation [kg, m]."""
     lengths = [float(length[leg]) for length in (robot.coxa, robot.femur, robot.tibia)]
-    given = {"given.m_body": float(robot.body_mass)}
-    given |= {f"given.m_{joint}": float(robot.link_mass[leg, i]) for i, joint in enumerate(JOINTS)}
+    given = {"given.m_body": float(np.asarray(robot.body_mass))}
+    given |= {f"given.m_{joint}": float(np.asarray(robot.link_mass)[leg, i]) for i, joint in enumerate(JOINTS)}
     given |= {f"given.L_{joint}": lengths[i] for i, joint in enumerate(JOINTS)}
     given |= {f"given.l_{joint}": float(robot.link_com[leg, i]) for i, joint in enumerate(JOINTS)}
     given["given.R_b"] = float(_radius(robot)[leg])
