@@ -11,7 +11,7 @@ from playwright.sync_api import expect
 import tarsus
 from browser import number, numbers
 from tarsus.load.handbook.method import handbook
-from tarsus.robot.file import robot_to_dict
+from tarsus.robot.file import robot_from_dict, robot_to_dict
 from tarsus.studio.messages.state import BodyState, RobotChoice, SourceChoice, StudioState
 
 pytest_plugins = "browser_fixtures"

@@ -134,7 +134,7 @@ def _table(summary: dict[str, Any]) -> Table:
     table.add_row("robot", summary["robot"])
     if summary["scenario"]:
         table.add_row("scenario", summary["scenario"])
-    table.add_row("duration", f"{summary['duration_s']:.2f} s at {summary['rate_hz']:g} ticks a second")
+    table.add_row("duration", f"{summary['duration_s']:.2f} s at {summary['rate_hz']:g} ticks per second")
     table.add_row("walked", f"{summary['walked_s']:.2f} s, {summary['distance_mm']:.0f} mm, {summary['steps']} steps")
     table.add_row("gaits", ", ".join(summary["gaits"]))
     table.add_row(
