@@ -1,4 +1,4 @@
-"""Take the pictures of the studio's views anew, at a desk and on a phone: `make figures`."""
+"""Take the screenshots of the studio's views, at desktop and phone size: `make figures`."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ READY = {"walk": "walk-facts", "drive": "drive-facts", "loads": "torques", "robo
 
 
 def drive(page: Page) -> None:
-    """Walk a curve, and stop."""
+    """Walk on a curve."""
     page.locator("main h2").click()
     for key in "wq":
         page.keyboard.down(key)
@@ -42,7 +42,7 @@ def drive(page: Page) -> None:
 
 
 def take(browser: Browser, url: str, state: StudioState, name: str) -> Path:
-    """Take a view's picture at one size."""
+    """Take the screenshot of a view at one size."""
     phone = name == "phone"
     context = browser.new_context(
         viewport=SIZES[name], reduced_motion="reduce", color_scheme="light", has_touch=phone, is_mobile=phone
@@ -56,7 +56,7 @@ def take(browser: Browser, url: str, state: StudioState, name: str) -> Path:
     picture = Image.open(io.BytesIO(page.screenshot())).convert("RGB")
     context.close()
     path = FIGURES / f"studio-{state.view}-{name}.png"
-    # Few colours are enough for a page, and make a small file.
+    # 256 colours are sufficient and keep the file small.
     picture.quantize(256, method=Image.Quantize.MAXCOVERAGE, kmeans=4, dither=Image.Dither.NONE).save(
         path, optimize=True
     )
@@ -64,7 +64,7 @@ def take(browser: Browser, url: str, state: StudioState, name: str) -> Path:
 
 
 def main() -> None:
-    """Take all of them."""
+    """Take all screenshots."""
     chromium = shutil.which("chromium")
     with Serving(Settings()) as server, sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=chromium, args=list(FLAGS))

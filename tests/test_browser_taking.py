@@ -106,7 +106,7 @@ def test_a_link_restores_exactly_the_state(visitor, arrive):
     visitor.type("body-roll_deg", -3.5)
     expect(visitor.at("standing-facts")).to_contain_text("-3.5, 0.0°")
     visitor.at("copy-link").click()
-    expect(visitor.at("toast")).to_contain_text("Link copied")
+    expect(visitor.at("toast")).to_contain_text("Link to this state copied")
     link = clipboard(visitor)
     state = state_of(link.partition("#s=")[2])
     assert state == StudioState(

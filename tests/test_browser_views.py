@@ -155,7 +155,7 @@ def test_loads_are_those_of_the_walk(visitor):
     expect(visitor.at("load-facts")).to_contain_text(f"Weight{weight:.1f} N")
     peaks = np.array([[number(cell) for cell in row[1:]] for row in visitor.table("torques")])
     assert peaks == pytest.approx(np.abs(found.torques).max(0), abs=0.006)
-    assert number(visitor.facts("load-facts")["Energy of the walk"]) == pytest.approx(found.energy, abs=0.06)
+    assert number(visitor.facts("load-facts")["Energy"]) == pytest.approx(found.energy, abs=0.06)
 
     visitor.at("size-servos").click()
     sizing = tarsus.size_servos(STRIDER, found, safety_factor=3.0)

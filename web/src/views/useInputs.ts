@@ -5,6 +5,6 @@ import { useStudio } from "../state/store";
 export function useInputs(): { robot: RobotMessage; state: StudioState } {
   const robot = useStudio((studio) => studio.robot);
   const state = useStudio((studio) => studio.state);
-  if (!robot || !state) throw new Error("a view is shown before robot and state are there");
+  if (!robot || !state) throw new Error("a view is shown before robot and state are known");
   return { robot, state };
 }

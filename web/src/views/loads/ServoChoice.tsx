@@ -42,9 +42,9 @@ function Answer({ servos }: { servos: ServosMessage }) {
       </Message>
       {servos.payload_kg !== null && (
         <p className="hint">
-          They carry {withUnit(servos.payload_kg, 2, "kg")}
+          Greatest payload: {withUnit(servos.payload_kg, 2, "kg")}
           {servos.payload_before_burning_kg !== null &&
-            `, and ${withUnit(servos.payload_before_burning_kg, 2, "kg")} before they burn`}
+            `; ${withUnit(servos.payload_before_burning_kg, 2, "kg")} until a servo overheats`}
           .
         </p>
       )}

@@ -55,7 +55,7 @@ export function RobotFiles() {
         accept=".toml,text/plain"
         className="hidden-text"
         tabIndex={-1}
-        aria-label="Robot file to load"
+        aria-label="Robot file to import"
         data-testid="toml-file"
         onChange={(event) => {
           const file = event.target.files?.[0];

@@ -23,7 +23,7 @@ export function RobotView() {
   return (
     <div className="view">
       <ViewHead title="Robot">
-        All that the robot file says. Every change is checked and drawn at once; Ctrl+Z takes it back.
+        All values of the robot file. Every change is validated and shown immediately; Ctrl+Z undoes it.
       </ViewHead>
       <RobotFiles />
       <Failure of={["document", "toml", "robot"]} />

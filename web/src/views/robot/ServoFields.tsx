@@ -31,7 +31,7 @@ export function ServoFields() {
               options={[
                 ...(known
                   ? []
-                  : [{ value: now[i] ?? "", label: now[i] ? `${now[i]} (its own figures)` : "not given" }]),
+                  : [{ value: now[i] ?? "", label: now[i] ? `${now[i]} (custom data)` : "not given" }]),
                 ...catalogue.map((name) => ({ value: name, label: name })),
               ]}
               onChange={(name) => name && choose(i, name)}

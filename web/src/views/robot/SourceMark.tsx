@@ -3,7 +3,7 @@ import { pathText, type KeyPath } from "./document";
 
 const WORDS: Record<string, string> = {
   A: "read in the primary file",
-  "A-": "read in the primary file, with a doubt",
+  "A-": "read in the primary file, with uncertainty",
   B: "read in a secondary copy",
   C: "general knowledge",
   guess: "a guess",

@@ -66,8 +66,8 @@ export function GaitChoice() {
         </>
       )}
       {walk && (
-        <p className="hint" data-testid="gait-said">
-          {walk.gait}: each foot is down for {Math.round(walk.duty_factor * 100)} % of the cycle of{" "}
+        <p className="hint" data-testid="gait-text">
+          {walk.gait}: each foot is in stance for {Math.round(walk.duty_factor * 100)} % of the cycle of{" "}
           {walk.cycle_time_s.toFixed(2)} s.
         </p>
       )}
