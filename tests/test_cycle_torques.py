@@ -225,7 +225,7 @@ def test_jax_agrees_for_unreachable_feet_and_tipping_robots():
 
 def test_gradient_against_finite_differences(monkeypatch):
     # Every foot is within reach; one correction towards the nearest reachable point compiles in half the time.
-    monkeypatch.setattr("tarsus.kinematics.nearest._STRIDES", (1.0,))
+    monkeypatch.setattr("tarsus.kinematics.nearest._STEP_SIZES", (1.0,))
     robot = hexapod()
 
     def peak(scale):

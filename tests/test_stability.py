@@ -137,7 +137,7 @@ def test_support_polygon_without_area():
     assert support_polygon(feet, np.ones(4, dtype=bool)).tolist() == [[0, 0], [3, 3]]
     assert support_polygon(feet, [False, True, False, True]).tolist() == [[1, 1]]
     assert support_polygon(feet, [False] * 4).shape == (0, 2)
-    with pytest.raises(InputError, match="one configuration, no batch"):
+    with pytest.raises(InputError, match="without batch axes"):
         support_polygon(feet[None], [True] * 4)
     with pytest.raises(InputError, match=r"expected \(n, 2\) or \(n, 3\)"):
         support_polygon(np.zeros((4, 4)), [True] * 4)

@@ -18,7 +18,7 @@ def cycle_feet(
 ) -> tuple[Array, Array]:
     """Return the feet over one cycle of steady walking, in the body's heading frame on the ground.
 
-    In stance a foot goes from half a stroke ahead of its rest foothold to half a stroke behind, on a straight line or
+    In stance a foot moves from half a stroke ahead of its rest foothold to half a stroke behind, on a straight line or
     an arc (source 001); in swing it moves from foothold to foothold over the ground while the body moves.
 
     Parameters

@@ -18,7 +18,7 @@ from tarsus.robot.robot import JOINTS, Robot
 
 __all__ = ["explain_leg"]
 
-_STEP = 1e-4  # resolution of the body height that works [m]
+_STEP = 1e-4  # resolution of the body height returned [m]
 _TRIES = 64
 _OF_LEGS = (
     *("mount_position", "mount_yaw", "coxa", "femur", "tibia", "femur_axis_offset"),
@@ -36,7 +36,7 @@ def explain_leg(
     *,
     index: tuple[int, ...],
 ) -> str:
-    """Return a line on one leg that fails: which, why, by how much, and the nearest that works.
+    """Return a line on one leg that fails: which, why, by how much, and the nearest foot or body height possible.
 
     Parameters
     ----------

@@ -53,9 +53,9 @@ def joint_limits(robot: Robot, speed: float | None = None, acceleration: float |
     robot : Robot
         A single robot.
     speed : float, optional
-        For all joints [rad/s]; left out, the no-load speed of each joint's servo, 5 rad/s where that is unknown.
+        For all joints [rad/s]. Default: the no-load speed of each servo, 5 rad/s where that is unknown.
     acceleration : float, optional
-        For all joints [rad/s^2]; left out, the one that reaches the speed limit in 0.05 s.
+        For all joints [rad/s^2]. Default: that which reaches the speed limit in 0.05 s.
     """
     known = [[found or UNKNOWN_SPEED for found in row] for row in servo_speeds(robot)]
     speeds = np.array(known) if speed is None else np.full((robot.legs, 3), float(speed))
