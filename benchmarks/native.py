@@ -7,11 +7,15 @@ import re
 import shutil
 import subprocess
 from pathlib import Path
-from typing import Any, Self
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
 from tarsus import Pose, Robot
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
+
 
 __all__ = ["FLAGS", "CLoop"]
 
@@ -63,7 +67,7 @@ class CLoop:
             subprocess.run([*command, "-lm"], check=True)
         return cls(library, robot, robots)
 
-    def __call__(self, feet: np.ndarray[Any, Any], body: Pose | None = None) -> None:
+    def __call__(self, feet: Float[np.ndarray, "..."], body: Pose | None = None) -> None:
         """Solve for feet ``(robots, legs, 3)`` in B, or in G if body poses ``(robots,)`` are given."""
         rotation, position = (None, None) if body is None else (_pointer(body.rotation), _pointer(body.position))
         self._function(
@@ -78,7 +82,7 @@ class CLoop:
         )
 
 
-def _pointer(array: np.ndarray[Any, Any]) -> Any:
+def _pointer(array: Float[np.ndarray, "..."]) -> Any:
     if array.dtype != np.float64 or not array.flags.c_contiguous:
         raise ValueError("the C loop needs contiguous arrays of doubles")
     return array.ctypes.data_as(_DOUBLES)

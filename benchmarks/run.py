@@ -11,7 +11,7 @@ import sys
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from pathlib import Path
-from typing import Any, TypeAlias
+from typing import TYPE_CHECKING, Any
 
 # Must be imported before NumPy: it sets the core and the number of threads.
 from measure import Row, medians, peak_bytes, start_time, use_one_core  # isort: split
@@ -34,7 +34,9 @@ from tarsus import (
 )
 from walk_controller import controller_rows
 
-FloatArray: TypeAlias = np.ndarray[Any, np.dtype[np.float64]]
+if TYPE_CHECKING:
+    from jaxtyping import Float
+
 
 ROBOTS = 100_000
 """Robots in a batch: 600,000 legs."""
@@ -53,7 +55,7 @@ AGREEMENT = 1e-9
 TABLE = Path(__file__).parent.parent / "docs" / "benchmarks.md"
 
 
-def footholds(robot: Robot, rng: np.random.Generator) -> FloatArray:
+def footholds(robot: Robot, rng: np.random.Generator) -> Float[np.ndarray, "..."]:
     """Return random feet in B around a stance, within reach for body tilts of up to 5 degrees about each axis."""
     spread = rng.uniform((-0.02, -0.02, 0.0), (0.02, 0.02, 0.01), (ROBOTS, robot.legs, 3))
     return np.asarray(default_stance(robot, BODY_HEIGHT, swing_height=0.05) + spread)
@@ -66,7 +68,7 @@ def tilted(degrees: float, rng: np.random.Generator) -> Pose:
     return Pose.from_rpy(roll, pitch, yaw, rng.uniform(-0.01, 0.01, (ROBOTS, 3)) + centre)
 
 
-def batches(robot: Robot) -> Iterator[tuple[str, FloatArray, Pose | None, float]]:
+def batches(robot: Robot) -> Iterator[tuple[str, Float[np.ndarray, "..."], Pose | None, float]]:
     """Yield the batches for both implementations: name, feet, body, fraction of legs out of reach."""
     rng = np.random.default_rng(1)
     feet = footholds(robot, rng)
@@ -80,7 +82,9 @@ def batches(robot: Robot) -> Iterator[tuple[str, FloatArray, Pose | None, float]
         yield f"feet in B, {fraction:.1%} out of reach", feet + offset, None, fraction
 
 
-def require_agreement(c_loop: CLoop, robot: Robot, feet: FloatArray, body: Pose | None, out_of_reach: float) -> None:
+def require_agreement(
+    c_loop: CLoop, robot: Robot, feet: Float[np.ndarray, "..."], body: Pose | None, out_of_reach: float
+) -> None:
     """Check that both implementations agree, and that the fraction of legs out of reach is as stated."""
     solution = inverse_kinematics(robot, feet, body)
     c_loop(feet, body)

@@ -9,7 +9,7 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 # Must be imported before NumPy: it sets the number of threads.
 from measure import Row, medians  # isort: split
@@ -22,6 +22,10 @@ from tarsus.control.readings import SensorReadings
 from tarsus.control.safety import Guard
 from tarsus.control.startup import folded_pose, stand_up
 from tarsus.control.walk_controller import WalkController
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
+
 
 __all__ = ["controller_rows", "speed_table", "top_speed"]
 
@@ -82,7 +86,7 @@ def commands(rng: np.random.Generator, controller: WalkController) -> Iterator[C
         number += 1
 
 
-def ticks(robot: Robot, count: int) -> np.ndarray[Any, Any]:
+def ticks(robot: Robot, count: int) -> Float[np.ndarray, "..."]:
     """Return the processor time of each of a number of ticks [s]."""
     controller = WalkController(robot, Gait.named("tripod"))
     command_stream = commands(np.random.default_rng(4), controller)

@@ -8,11 +8,14 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable
-from typing import Any, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
 from tarsus.errors import InputError
+
+if TYPE_CHECKING:
+    from jaxtyping import Bool, Float, Num, Shaped
 
 __all__ = [
     "Array",
@@ -34,7 +37,7 @@ Array: TypeAlias = Any
 Namespace: TypeAlias = Any
 
 
-def namespace(*arrays: Array) -> Namespace:
+def namespace(*arrays: Any) -> Namespace:
     """Return the namespace of `arrays`: NumPy, unless one of them belongs to another library.
 
     Parameters
@@ -52,7 +55,7 @@ def namespace(*arrays: Array) -> Namespace:
     return array_api_compat.array_namespace(*others) if others else np
 
 
-def as_array(xp: Namespace, values: Array) -> Array:
+def as_array(xp: Namespace, values: Any) -> Shaped[Array, "..."]:
     """Return `values` as an array of the namespace `xp`, without a copy if it is one already.
 
     Parameters
@@ -67,7 +70,7 @@ def as_array(xp: Namespace, values: Array) -> Array:
     return xp.asarray(values) if isinstance(values, np.ndarray) or not hasattr(values, "shape") else values
 
 
-def as_floats(xp: Namespace, values: Array, *, name: str) -> Array:
+def as_floats(xp: Namespace, values: Any, *, name: str) -> Float[Array, "*batch"]:
     """Return `values` as a floating-point array of `xp`.
 
     Parameters
@@ -102,7 +105,7 @@ def as_floats(xp: Namespace, values: Array, *, name: str) -> Array:
     return xp.astype(array, xp.float64)
 
 
-def is_traced(array: Array) -> bool:
+def is_traced(array: Any) -> bool:
     """Return whether `array` is an abstract value inside `jax.jit`, `jax.vmap` or `jax.grad`.
 
     Parameters
@@ -114,7 +117,7 @@ def is_traced(array: Array) -> bool:
     return jax is not None and isinstance(array, jax.core.Tracer)
 
 
-def require_finite(name: str, array: Array) -> None:
+def require_finite(name: str, array: Num[Array, "..."]) -> None:
     """Refuse NaN and infinities; traced values can't be checked.
 
     Parameters
@@ -144,7 +147,7 @@ def require_finite(name: str, array: Array) -> None:
     )
 
 
-def require_shape(name: str, array: Array, tail: tuple[int, ...]) -> None:
+def require_shape(name: str, array: Shaped[Array, "..."], tail: tuple[int, ...]) -> None:
     """Refuse an array whose last axes are not `tail`.
 
     Parameters
@@ -167,8 +170,8 @@ def require_shape(name: str, array: Array, tail: tuple[int, ...]) -> None:
 
 
 def only_where_needed(
-    needed: Array, compute: Callable[[], tuple[Array, ...]], otherwise: tuple[Array, ...]
-) -> tuple[Array, ...]:
+    needed: Bool[Array, ""] | bool, compute: Callable[[], tuple[Array, ...]], otherwise: tuple[Any, ...]
+) -> tuple[Any, ...]:
     """Return the result of `compute` if it is needed, else `otherwise`; under `jax.jit`, decided at run time.
 
     Parameters
@@ -187,8 +190,12 @@ def only_where_needed(
 
 
 def improve(
-    step: Callable[[tuple[Array, ...]], tuple[Array, ...]], state: tuple[Array, ...], *, times: int, enough: float
-) -> tuple[Array, ...]:
+    step: Callable[[tuple[Array, ...]], tuple[Array, ...]],
+    state: tuple[Float[Array, "*batch"], ...],
+    *,
+    times: int,
+    enough: float,
+) -> tuple[Float[Array, "*batch"], ...]:
     """Return the state after several steps, each of which does not increase its first array.
 
     An element is final once a step has decreased it by too little, independently of the other elements. Under `jax.jit`
@@ -224,7 +231,7 @@ def improve(
     return state
 
 
-def root(xp: Namespace, square: Array) -> Array:
+def root(xp: Namespace, square: Float[Array, "*batch"]) -> Float[Array, "*batch"]:
     """Return the square root, 0 for negative numbers, with a finite gradient at 0.
 
     Parameters
@@ -240,7 +247,7 @@ def root(xp: Namespace, square: Array) -> Array:
     return xp.where(positive, xp.sqrt(xp.where(positive, square, xp.ones_like(square))), xp.zeros_like(square))
 
 
-def stack_last(xp: Namespace, parts: tuple[Array, ...]) -> Array:
+def stack_last(xp: Namespace, parts: tuple[Float[Array, "..."], ...]) -> Float[Array, "..."]:
     """Stack arrays along a new last axis, as `stack(parts, axis=-1)` does, but faster for NumPy.
 
     Parameters

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from typing import TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
 from tarsus.arrays import Array
+
+if TYPE_CHECKING:
+    from jaxtyping import Shaped
 
 __all__ = ["BLOCK", "SMALL", "Index", "batch_blocks", "block_shape", "columns"]
 
@@ -58,7 +61,7 @@ def block_shape(shape: tuple[int, ...], index: Index) -> tuple[int, ...]:
     return tuple(len(range(*part.indices(n))) for part, n in zip(index, shape, strict=True))
 
 
-def columns(array: Array, index: Index, block: tuple[int, ...], *, tail: int) -> Array:
+def columns(array: Shaped[Array, "..."], index: Index, block: tuple[int, ...], *, tail: int) -> Shaped[Array, "..."]:
     """Return the part of a NumPy array that belongs to a block, transposed so that the block is the last axis.
 
     An operation on ``(legs, block)`` runs over thousands of contiguous numbers; on ``(block, legs)``, with values of

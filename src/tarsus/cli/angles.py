@@ -5,16 +5,17 @@ from __future__ import annotations
 import json
 import math
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 import numpy as np
 
 from tarsus.robot.robot import JOINTS, Robot
 
-__all__ = ["read_angles"]
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
-Floats = np.ndarray[Any, np.dtype[np.float64]]
+__all__ = ["read_angles"]
 
 _MAX_FILE_SIZE = 2**20
 _MAX_DEGREES = 1e6
@@ -22,7 +23,7 @@ _MAX_DEGREES = 1e6
 
 def read_angles(
     robot: Robot, arguments: tuple[str, ...], *, same_for_all: tuple[float, float, float] | None, file: Path | None
-) -> Floats:
+) -> Float[np.ndarray, "legs 3"]:
     """Return the joint angles given to `tarsus rest`.
 
     Parameters

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,9 +13,10 @@ from tarsus.control.states.robot_state import RobotState
 from tarsus.gait.gait import Gait
 from tarsus.kinematics.pose import Pose
 
-__all__ = ["ControlOutput"]
+if TYPE_CHECKING:
+    from jaxtyping import Bool, Float
 
-Floats = np.ndarray[Any, Any]
+__all__ = ["ControlOutput"]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -57,15 +58,15 @@ class ControlOutput:
     """
 
     time: float
-    angles: Floats
+    angles: Float[np.ndarray, "legs 3"]
     state: RobotState
     activity: str
     limitations: tuple[Limitation, ...]
     interventions: tuple[Intervention, ...]
     guard: str
     body: Pose
-    feet: Floats
-    contacts: Floats
+    feet: Float[np.ndarray, "legs 3"]
+    contacts: Bool[np.ndarray, "legs"]
     belly: bool
     twist: tuple[float, float, float]
     gait: Gait

@@ -10,9 +10,12 @@ the exact solution for a constant target, whatever its length.
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
 __all__ = ["PEAK_RATE", "CriticallyDamped", "RateLimitedFilter", "integral_factors"]
 
@@ -31,11 +34,11 @@ class CriticallyDamped(NamedTuple):
         Its derivative [1/s].
     """
 
-    value: np.ndarray[Any, Any]
-    rate: np.ndarray[Any, Any]
+    value: Float[np.ndarray, "n"]
+    rate: Float[np.ndarray, "n"]
 
     @classmethod
-    def still(cls, value: np.ndarray[Any, Any]) -> CriticallyDamped:
+    def still(cls, value: Float[np.ndarray, "n"]) -> CriticallyDamped:
         """Return a filter at rest at a value.
 
         Parameters
@@ -45,7 +48,7 @@ class CriticallyDamped(NamedTuple):
         """
         return cls(value, np.zeros_like(value))
 
-    def step(self, target: np.ndarray[Any, Any], dt: float, *, bandwidth: float) -> CriticallyDamped:
+    def step(self, target: Float[np.ndarray, "n"], dt: float, *, bandwidth: float) -> CriticallyDamped:
         """Return the filter after a time with a constant target.
 
         Parameters
@@ -64,7 +67,7 @@ class CriticallyDamped(NamedTuple):
         return CriticallyDamped(target + moved * decay, (slope - bandwidth * moved) * decay)
 
     def step_with_integral(
-        self, target: np.ndarray[Any, Any], dt: float, *, bandwidth: float
+        self, target: Float[np.ndarray, "n"], dt: float, *, bandwidth: float
     ) -> tuple[CriticallyDamped, list[float]]:
         """Return the filter after a time with a constant target, and the value's integral; in floats, for few values.
 
@@ -89,7 +92,7 @@ class CriticallyDamped(NamedTuple):
             integrals.append(goal * dt - (rates[-1] - rate + 2 * w * (values[-1] - value)) / (w * w))
         return CriticallyDamped(np.array(values), np.array(rates)), integrals
 
-    def integral(self, target: np.ndarray[Any, Any], time: float, *, bandwidth: float) -> np.ndarray[Any, Any]:
+    def integral(self, target: Float[np.ndarray, "n"], time: float, *, bandwidth: float) -> Float[np.ndarray, "n"]:
         """Return the value's integral over a time, with a constant target.
 
         Parameters
@@ -102,7 +105,7 @@ class CriticallyDamped(NamedTuple):
             The bandwidth [rad/s].
         """
         of_target, of_value, of_rate = integral_factors(time, bandwidth=bandwidth)
-        total: np.ndarray[Any, Any] = target * of_target + self.value * of_value + self.rate * of_rate
+        total: np.ndarray = target * of_target + self.value * of_value + self.rate * of_rate
         return total
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Protocol, runtime_checkable
+from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 
 import numpy as np
 
@@ -13,9 +13,11 @@ from tarsus.kinematics.mass import STANDARD_GRAVITY, total_mass
 from tarsus.kinematics.pose import Pose
 from tarsus.robot.robot import Robot
 
+if TYPE_CHECKING:
+    from jaxtyping import Bool, Float
+
 __all__ = ["Environment", "IdealPlant", "Plant"]
 
-Floats = np.ndarray[Any, Any]
 
 # Height over the ground below which a foot switch closes [m].
 _TOUCH = 1e-4
@@ -102,7 +104,9 @@ class Environment:
         """
         self._force[leg], self._forces = force, True
 
-    def readings(self, feet: Floats, body: Pose, contacts: Floats) -> dict[str, Any]:
+    def readings(
+        self, feet: Float[np.ndarray, "legs 3"], body: Pose, contacts: Bool[np.ndarray, "legs"]
+    ) -> dict[str, Any]:
         """Return what is measured, by the names of `SensorReadings`.
 
         Parameters
@@ -120,7 +124,9 @@ class Environment:
             "forces": self._loads(feet, contacts) if self._forces else None,
         }
 
-    def _loads(self, feet: Floats, contacts: Floats) -> Floats:
+    def _loads(
+        self, feet: Float[np.ndarray, "legs 3"], contacts: Bool[np.ndarray, "legs"]
+    ) -> Float[np.ndarray, "legs"]:
         """Return the ground's vertical forces on the feet ``(legs,)`` [N]."""
         # The walk controller takes the centre of mass to be in the middle of the feet; only so is a share no error.
         centre = feet[:, :2].mean(axis=0)
@@ -145,7 +151,7 @@ class IdealPlant:
     def __init__(self, robot: Robot) -> None:
         self.robot = robot
         self.environment = Environment(robot)
-        self._angles: Floats | None = None
+        self._angles: np.ndarray | None = None
 
     def start(self, output: ControlOutput) -> None:
         """Take over the joint angles that the controller starts with."""

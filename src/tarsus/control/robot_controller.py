@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Iterator, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -27,6 +27,9 @@ from tarsus.gait.walk_setup import require_number
 from tarsus.kinematics.leg import forward_kinematics
 from tarsus.kinematics.pose import Pose
 from tarsus.robot.robot import Robot
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
 __all__ = ["RobotController"]
 
@@ -76,7 +79,7 @@ class RobotController:
         gait: Gait | None = None,
         *,
         start: RobotState | str = RobotState.STANDING,
-        angles: Sequence[Any] | np.ndarray[Any, Any] | None = None,
+        angles: Sequence[Any] | Float[np.ndarray, "legs 3"] | None = None,
         body_height: float | None = None,
         swing_height: float | None = None,
         levelling: LevellingMode | None = None,
@@ -245,7 +248,7 @@ class RobotController:
 
     # What is given out.
 
-    def _guarded(self, dt: float) -> tuple[np.ndarray[Any, Any], tuple[Intervention, ...]]:
+    def _guarded(self, dt: float) -> tuple[Float[np.ndarray, "legs 3"], tuple[Intervention, ...]]:
         """Return the angles that the guard lets through, and the interventions that begin with this tick."""
         now = self._now
         if self.guard is None:
@@ -264,7 +267,7 @@ class RobotController:
             feet = np.asarray(body @ forward_kinematics(self.robot, snapshot.angles)[..., 3, :])
         return snapshot._replace(body=body, feet=feet)
 
-    def _shown(self, angles: np.ndarray[Any, Any], began: tuple[Intervention, ...]) -> ControlOutput:
+    def _shown(self, angles: Float[np.ndarray, "legs 3"], began: tuple[Intervention, ...]) -> ControlOutput:
         now, guard = self._now, "" if self.guard is None else str(self.guard.state)
         assert now.feet is not None  # as placed
         return ControlOutput(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -29,9 +29,11 @@ from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.stability import stability_margin
 from tarsus.robot.robot import Robot
 
+if TYPE_CHECKING:
+    from jaxtyping import Bool, Float
+
 __all__ = ["WalkController"]
 
-Floats = np.ndarray[Any, Any]
 
 # Longest part of a tick that is walked [s]: a late tick must not become a jump.
 _LONGEST_TICK = 0.05
@@ -113,7 +115,9 @@ class WalkController:
         self._intake = CommandIntake(walk.robot, walk.transitions, walk.terrain)
         self._twist_limiters, self._rate_limiters = twist_limiters(walk), rate_limiters(walk)
 
-    def step(self, command: Command | Sequence[float], dt: float, readings: SensorReadings | None = None) -> Floats:
+    def step(
+        self, command: Command | Sequence[float], dt: float, readings: SensorReadings | None = None
+    ) -> Float[np.ndarray, "legs 3"]:
         """Advance by one tick.
 
         Parameters
@@ -189,22 +193,22 @@ class WalkController:
         return body_pose(self._tick.gait)
 
     @property
-    def feet(self) -> Floats:
+    def feet(self) -> Float[np.ndarray, "legs 3"]:
         """The feet in G: array, shape (legs, 3) [m]."""
         return foot_positions(self._tick.gait)
 
     @property
-    def contacts(self) -> Floats:
+    def contacts(self) -> Bool[np.ndarray, "legs"]:
         """Which feet are on the ground: array of bool, shape (legs,)."""
         return self._walk.standing_feet(self._tick.gait)
 
     @property
-    def angles(self) -> Floats:
+    def angles(self) -> Float[np.ndarray, "legs 3"]:
         """The joint angles: array, shape (legs, 3) [rad]."""
         return self._walk.time_scaling.angles
 
     @property
-    def twist(self) -> Floats:
+    def twist(self) -> Float[np.ndarray, "3"]:
         """The present twist: array, shape (3,): forward, left [m/s], turning [rad/s]."""
         return self._tick.gait.twist.value * self._walk.time_scaling.rate
 

@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from tarsus.arrays import Array
 from tarsus.robot.robot import Robot
 
+if TYPE_CHECKING:
+    from jaxtyping import Bool, Float
+
 __all__ = ["branches"]
 
 
-def branches(robot: Robot, angles: Array) -> np.ndarray[Any, Any]:
+def branches(robot: Robot, angles: Float[Array, "*#batch legs 3"]) -> Bool[np.ndarray, "*batch legs 2"]:
     """Return the branch of the inverse kinematics of each leg.
 
     Parameters

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 from tarsus.arrays import Array, as_array, namespace, stack_last
 from tarsus.gait.gait import Gait
@@ -10,12 +11,20 @@ from tarsus.gait.path import exponential_map, ground_to_heading, heading_to_grou
 from tarsus.gait.swing import swing_position
 from tarsus.kinematics.pose import Pose
 
+if TYPE_CHECKING:
+    from jaxtyping import Bool, Float
+
 __all__ = ["cycle_feet", "tilted_body"]
 
 
 def cycle_feet(
-    gait: Gait, rest: Array, twist: Sequence[float] | Array, *, swing_height: Array, phases: Array
-) -> tuple[Array, Array]:
+    gait: Gait,
+    rest: Float[Array, "*#batch legs 3"],
+    twist: Sequence[float] | Float[Array, "*#batch 3"],
+    *,
+    swing_height: Float[Array, "*#batch"],
+    phases: Float[Array, "m"],
+) -> tuple[Float[Array, "*batch m legs 3"], Bool[Array, "m legs"]]:
     """Return the feet over one cycle of steady walking, in the body's heading frame on the ground.
 
     In stance a foot moves from half a stroke ahead of its rest foothold to half a stroke behind, on a straight line or
@@ -57,7 +66,9 @@ def cycle_feet(
     return ground_to_heading(body, on_ground[..., None, :])[..., 0, :], contacts
 
 
-def tilted_body(planar_pose: Array, *, body_height: Array, body_tilt: Sequence[float]) -> Pose:
+def tilted_body(
+    planar_pose: Float[Array, "*#batch 3"], *, body_height: Float[Array, "*#batch"], body_tilt: Sequence[float]
+) -> Pose:
     """Return the body's poses at planar poses, with its tilt and height (source 001's A, B and G).
 
     Parameters

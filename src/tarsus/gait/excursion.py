@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import functools
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -12,6 +12,9 @@ from tarsus.gait.gait import Gait
 from tarsus.gait.path import exponential_map, heading_to_ground
 from tarsus.gait.swing import horizontal_profile, vertical_profile
 from tarsus.gait.timing import BodyClock, Steps, least_step_fraction, plan_steps
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
 __all__ = ["SWING_SAMPLES", "Excursions", "extreme_excursions", "walk_excursions"]
 
@@ -42,10 +45,10 @@ class Excursions(NamedTuple):
         Height as a fraction of the swing height.
     """
 
-    last: np.ndarray[Any, Any]
-    following: np.ndarray[Any, Any]
-    along: np.ndarray[Any, Any]
-    up: np.ndarray[Any, Any]
+    last: Float[np.ndarray, "k #legs"]
+    following: Float[np.ndarray, "k #legs"]
+    along: Float[np.ndarray, "k #legs"]
+    up: Float[np.ndarray, "k #legs"]
 
     @classmethod
     def joined(cls, *parts: Excursions) -> Excursions:
@@ -53,11 +56,13 @@ class Excursions(NamedTuple):
         return cls(*(np.concatenate(columns) for columns in zip(*parts, strict=True)))
 
     @property
-    def offset(self) -> np.ndarray[Any, Any]:
+    def offset(self) -> Float[np.ndarray, "k legs"]:
         """Displacement from the rest foothold along a straight path ``(k, legs)``, in strokes."""
         return np.asarray(self.last + (self.following - self.last) * self.along)
 
-    def feet(self, rest: Array, twist: Array, swing_height: float) -> np.ndarray[Any, Any]:
+    def feet(
+        self, rest: Float[Array, "legs 3"], twist: Float[Array, "*#batch 3"], swing_height: float
+    ) -> Float[np.ndarray, "*batch k legs 3"]:
         """Return the feet in the body's heading frame on the ground.
 
         Parameters

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Self
+from typing import TYPE_CHECKING, Self
 
 import numpy as np
 
 from tarsus.arrays import Array, namespace
 from tarsus.errors import InputError, UnknownNameError
+
+if TYPE_CHECKING:
+    from jaxtyping import Bool, Float
 
 __all__ = ["GAITS", "Gait"]
 
@@ -125,7 +128,9 @@ class Gait:
         after = np.asarray(self.offsets) + self.duty_factor + 2 * _ROUNDING
         return int(self.phase(after)[2].sum(-1).min())
 
-    def phase(self, clock: Array) -> tuple[Array, Array, Array]:
+    def phase(
+        self, clock: Float[Array, "*#batch"]
+    ) -> tuple[Float[Array, "*batch legs"], Float[Array, "*batch legs"], Bool[Array, "*batch legs"]]:
         """Return the step, the phase and the contact of each leg.
 
         At touchdown and at lift-off a foot counts as on the ground, so that rounding never leaves two feet in the air

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -21,9 +21,11 @@ from tarsus.kinematics.solution import IKSolution
 from tarsus.kinematics.stability import stability_margin
 from tarsus.robot.robot import JOINTS, Robot
 
+if TYPE_CHECKING:
+    from jaxtyping import Bool, Float, Int
+
 __all__ = ["Motion"]
 
-Floats = np.ndarray[Any, np.dtype[np.float64]]
 
 # Change of an angle from one sample to the next, with a change of branch, above which a leg jumps [rad].
 _JUMP = 0.1
@@ -62,12 +64,12 @@ class Motion:
 
     robot: Robot
     gait: Gait
-    time: Floats
+    time: Float[np.ndarray, "n"]
     body: Pose
-    feet: Floats
-    contacts: np.ndarray[Any, np.dtype[np.bool_]]
-    angles: Floats
-    reach: np.ndarray[Any, np.dtype[np.int8]]
+    feet: Float[np.ndarray, "n legs 3"]
+    contacts: Bool[np.ndarray, "n legs"]
+    angles: Float[np.ndarray, "n legs 3"]
+    reach: Int[np.ndarray, "n legs"]
     cycle_time: float
     stroke: float
     speed: float
@@ -97,20 +99,20 @@ class Motion:
             raise InputError("a motion needs two samples or more, at increasing times")
 
     @cached_property
-    def margin(self) -> Floats:
+    def margin(self) -> Float[np.ndarray, "n"]:
         """Static stability margin at every sample ``(n,)`` [m]."""
         return np.asarray(stability_margin(self.robot, self.angles, self.body, self.contacts))
 
     @cached_property
-    def joint_speed(self) -> Floats:
+    def joint_speed(self) -> Float[np.ndarray, "n legs 3"]:
         """Velocity of every joint at every sample ``(n, legs, 3)`` [rad/s], by central differences."""
-        speed: Floats = np.gradient(self.angles, self.time, axis=0)
+        speed: np.ndarray = np.gradient(self.angles, self.time, axis=0)
         return speed
 
     @cached_property
-    def least_foot_distance(self) -> Floats:
+    def least_foot_distance(self) -> Float[np.ndarray, "n"]:
         """Distance between the two closest feet at every sample ``(n,)`` [m]."""
-        return feet_distance(self.feet)[0]
+        return np.asarray(feet_distance(self.feet)[0])
 
     @property
     def duration(self) -> float:
@@ -123,10 +125,10 @@ class Motion:
         return int((self.contacts[:-1] & ~self.contacts[1:]).sum())
 
     @cached_property
-    def speed_ratio(self) -> Floats:
+    def speed_ratio(self) -> Float[np.ndarray, "legs 3"]:
         """Greatest speed of each joint over the no-load speed of its servo ``(legs, 3)``; NaN where that is unknown."""
         limits = [[math.nan if s is None else s.no_load_speed or math.nan for s in leg] for leg in self.robot.servos]
-        fastest: Floats = np.abs(self.joint_speed).max(0)
+        fastest: np.ndarray = np.abs(self.joint_speed).max(0)
         return np.asarray(fastest / np.array(limits))
 
     @cached_property

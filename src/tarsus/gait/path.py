@@ -9,11 +9,15 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from tarsus.arrays import Array, Namespace, as_array, namespace, stack_last
 from tarsus.errors import InputError
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
 __all__ = ["BodyPath", "curved_path", "ground_to_heading", "heading_to_ground", "straight_path", "twist_path"]
 
@@ -48,7 +52,7 @@ class BodyPath:
         """Angle by which the body turns [rad]."""
         return self.displacement[2]
 
-    def planar_pose(self, fraction: Array) -> Array:
+    def planar_pose(self, fraction: Float[Array, "*#batch"]) -> Float[Array, "*batch 3"]:
         """Return the planar pose of the body after a fraction of the path.
 
         Parameters
@@ -63,7 +67,9 @@ class BodyPath:
         """
         return exponential_map(self.displacement, fraction)
 
-    def travel(self, feet: Array) -> Array:
+    def travel(
+        self, feet: Float[Array, "*#batch legs 2"] | Float[Array, "*#batch legs 3"]
+    ) -> Float[Array, "*batch legs"]:
         """Return the distance that each foot in stance would move relative to the body over the whole path.
 
         Parameters
@@ -83,7 +89,9 @@ class BodyPath:
         return xp.hypot(across, along)
 
 
-def exponential_map(displacement: Sequence[float | Array] | Array, fraction: Array) -> Array:
+def exponential_map(
+    displacement: Sequence[float | Float[Array, "..."]] | Float[Array, "..."], fraction: Float[Array, "*batch"]
+) -> Float[Array, "..."]:
     """Return the planar pose ``(..., 3)`` reached after a fraction ``(...)`` of a constant twist."""
     parts = [displacement[i] for i in range(3)]
     xp = namespace(fraction, *parts)
@@ -96,7 +104,7 @@ def exponential_map(displacement: Sequence[float | Array] | Array, fraction: Arr
     return stack_last(xp, (x * straight - y * aside, x * aside + y * straight, yaw))
 
 
-def _sinc(xp: Namespace, angle: Array) -> Array:
+def _sinc(xp: Namespace, angle: Float[Array, "..."]) -> Float[Array, "..."]:
     # In this range the series and its derivative are accurate to rounding; the derivative of the quotient is not.
     small = xp.abs(angle) < 1e-2
     safe = xp.where(small, xp.ones_like(angle), angle)
@@ -104,7 +112,7 @@ def _sinc(xp: Namespace, angle: Array) -> Array:
     return xp.where(small, 1 - square / 6 * (1 - square / 20 * (1 - square / 42)), xp.sin(safe) / safe)
 
 
-def heading_to_ground(planar_pose: Array, points: Array) -> Array:
+def heading_to_ground(planar_pose: Float[Array, "..."], points: Float[Array, "..."]) -> Float[Array, "..."]:
     """Transform points ``(..., k, 3)`` from the heading frame at planar poses ``(..., 3)`` to G; heights are kept."""
     xp = namespace(planar_pose, points)
     pose, points = as_array(xp, planar_pose), as_array(xp, points)
@@ -114,7 +122,7 @@ def heading_to_ground(planar_pose: Array, points: Array) -> Array:
     return stack_last(xp, (*moved, points[..., 2] + xp.zeros_like(moved[0])))
 
 
-def ground_to_heading(planar_pose: Array, points: Array) -> Array:
+def ground_to_heading(planar_pose: Float[Array, "..."], points: Float[Array, "..."]) -> Float[Array, "..."]:
     """Transform points ``(..., k, 3)`` from G to the heading frame at planar poses ``(..., 3)``; heights are kept."""
     xp = namespace(planar_pose, points)
     pose, points = as_array(xp, planar_pose), as_array(xp, points)

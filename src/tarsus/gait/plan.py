@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -21,6 +21,9 @@ from tarsus.gait.swing import swing_position
 from tarsus.gait.timing import BodyClock, Steps, least_step_fraction, plan_steps
 from tarsus.gait.walk_setup import WalkSetup, require_number
 from tarsus.robot.robot import Robot
+
+if TYPE_CHECKING:
+    from jaxtyping import Bool, Float
 
 __all__ = ["plan_walk"]
 
@@ -150,8 +153,8 @@ def _steps(gait: Gait, *, travel: float, stroke: float, cycle_time: float, rate:
 
 
 def _walk_feet(
-    setup: WalkSetup, path: BodyPath, steps: Steps, time: np.ndarray[Any, Any]
-) -> tuple[np.ndarray[Any, Any], np.ndarray[Any, Any]]:
+    setup: WalkSetup, path: BodyPath, steps: Steps, time: Float[np.ndarray, "..."]
+) -> tuple[Float[np.ndarray, "... legs 3"], Bool[np.ndarray, "... legs"]]:
     """Return the feet in G and their contacts at times since the body's start."""
     last, following, swing_phase, contacts = steps.at(time)
     rest = setup.rest[:, None, :]

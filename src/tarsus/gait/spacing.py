@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from tarsus.arrays import Array
 from tarsus.robot.robot import Robot
+
+if TYPE_CHECKING:
+    from jaxtyping import Float, Int
 
 __all__ = ["default_foot_distance", "feet_distance", "passing_distance"]
 
@@ -23,7 +26,7 @@ def default_foot_distance(robot: Robot) -> float:
     return 2 * float(np.max(np.asarray(robot.foot_radius))) + 0.010
 
 
-def feet_distance(feet: Array) -> tuple[np.ndarray[Any, Any], np.ndarray[Any, Any]]:
+def feet_distance(feet: Float[Array, "*batch legs 3"]) -> tuple[Float[Array, "*batch"], Int[np.ndarray, "*batch 2"]]:
     """Return the least distance between two feet, and their legs.
 
     Parameters
@@ -47,7 +50,9 @@ def feet_distance(feet: Array) -> tuple[np.ndarray[Any, Any], np.ndarray[Any, An
     return np.sqrt(distance2.min(-1)), pair
 
 
-def passing_distance(feet: Array) -> tuple[np.ndarray[Any, Any], np.ndarray[Any, Any]]:
+def passing_distance(
+    feet: Float[Array, "*batch n legs 3"],
+) -> tuple[Float[np.ndarray, "*batch n-1"], Int[np.ndarray, "*batch n-1 2"]]:
     """Return the least distance between two feet from each sample to the next, and their legs.
 
     Feet are interpolated linearly between samples, so that fast feet that pass each other between two are found.

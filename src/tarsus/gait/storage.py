@@ -20,6 +20,7 @@ from tarsus.robot.robot import JOINTS
 
 if TYPE_CHECKING:
     import xarray
+    from jaxtyping import Float, Shaped
 
 __all__ = ["load_motion", "motion_to_csv", "motion_to_dataset", "save_motion"]
 
@@ -28,11 +29,11 @@ _NUMBERS = ("cycle_time", "stroke", "speed", "body_height", "swing_height", "foo
 _FORMAT = "tarsus motion 1"
 
 
-def csv_columns(motion: Motion) -> dict[str, np.ndarray[Any, Any]]:
+def csv_columns(motion: Motion) -> dict[str, Float[np.ndarray, "..."]]:
     """Return the columns of a motion's table, in the units that their names state."""
     x, y, z = (motion.body.position * 1000).T
     roll, pitch, yaw = np.degrees(motion.body.rpy).T
-    table: dict[str, np.ndarray[Any, Any]] = {"time_s": motion.time}
+    table: dict[str, np.ndarray] = {"time_s": motion.time}
     for leg, name in enumerate(motion.robot.leg_codes):
         for joint, joint_name in enumerate(JOINTS):
             table[f"{name} {joint_name} deg"] = np.degrees(motion.angles[:, leg, joint])
@@ -73,7 +74,7 @@ def motion_to_csv(motion: Motion, path: str | os.PathLike[str]) -> None:
         raise InputError(f"{path} can't be written: {error.strerror}") from None
 
 
-def _formatted(column: np.ndarray[Any, Any]) -> list[str]:
+def _formatted(column: Shaped[np.ndarray, "..."]) -> list[str]:
     """Format numbers to a nanometre or a microdegree, without digits of rounding noise."""
     if column.dtype.kind != "f":
         return [str(value) for value in column.tolist()]

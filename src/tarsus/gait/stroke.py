@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -19,9 +19,11 @@ from tarsus.gait.walk_setup import WalkSetup
 from tarsus.kinematics.solution import IKSolution
 from tarsus.robot.robot import Robot
 
+if TYPE_CHECKING:
+    from jaxtyping import Bool, Float
+
 __all__ = ["leg_feasibility", "longest_stroke", "max_stroke", "steady_solution", "unit_twist"]
 
-Floats = np.ndarray[Any, Any]
 
 # Steps in which the first infeasible stroke is searched; strokes computed together.
 _COARSE = 32
@@ -32,7 +34,7 @@ _SAFETY = 0.998
 _START_AND_STOP = 0.05
 
 
-def unit_twist(rest: Array, direction: float | Sequence[float]) -> np.ndarray[Any, Any]:
+def unit_twist(rest: Float[Array, "legs 3"], direction: float | Sequence[float]) -> Float[np.ndarray, "3"]:
     """Return the displacement of a stance ``(3,)`` per metre of stroke, for a heading [rad] or a twist of any size."""
     if np.ndim(direction) == 0:
         heading = float(direction)  # type: ignore[arg-type]
@@ -43,7 +45,7 @@ def unit_twist(rest: Array, direction: float | Sequence[float]) -> np.ndarray[An
     return np.asarray(path.displacement) / float(path.travel(rest).max())
 
 
-def steady_solution(setup: WalkSetup, twist: Array, phases: Array) -> IKSolution:
+def steady_solution(setup: WalkSetup, twist: Float[Array, "*#batch 3"], phases: Float[Array, "m"]) -> IKSolution:
     """Return the inverse kinematics ``(..., m)`` at phases ``(m,)`` of a steady cycle; `twist` is that of a stance."""
     feet, _ = cycle_feet(
         setup.gait, setup.rest, np.asarray(twist), swing_height=np.asarray(setup.swing_height), phases=phases
@@ -51,7 +53,9 @@ def steady_solution(setup: WalkSetup, twist: Array, phases: Array) -> IKSolution
     return setup.solve(feet)
 
 
-def leg_feasibility(setup: WalkSetup, twist: Array) -> tuple[np.ndarray[Any, Any], IKSolution]:
+def leg_feasibility(
+    setup: WalkSetup, twist: Float[Array, "*#batch 3"]
+) -> tuple[Bool[np.ndarray, "*batch legs"], IKSolution]:
     """Return which legs reach their feet without a jump in every walk with that stroke.
 
     Parameters
@@ -87,7 +91,7 @@ def longest_stroke(setup: WalkSetup, direction: float | Sequence[float]) -> floa
     """
     twist = unit_twist(setup.rest, direction)
 
-    def reached(strokes: Floats) -> Floats:
+    def reached(strokes: np.ndarray) -> np.ndarray:
         return np.asarray(leg_feasibility(setup, strokes[:, None] * twist)[0].all(-1))
 
     # A foot moves at most from one side of the coxa axis to the other.
@@ -95,17 +99,17 @@ def longest_stroke(setup: WalkSetup, direction: float | Sequence[float]) -> floa
     return _SAFETY * _keep_distance(setup, twist, _before_failure(reached, longest, tolerance=1e-6))
 
 
-def _keep_distance(setup: WalkSetup, twist: Array, longest: float) -> float:
+def _keep_distance(setup: WalkSetup, twist: Float[Array, "*#batch 3"], longest: float) -> float:
     """Return the longest stroke, at most `longest`, with which the feet keep their distance."""
 
-    def while_cruising(strokes: Floats) -> Floats:
+    def while_cruising(strokes: np.ndarray) -> np.ndarray:
         phases = np.linspace(0, 1, math.ceil(SWING_SAMPLES / (1 - setup.gait.duty_factor)) + 1)
         feet, _ = cycle_feet(
             setup.gait, setup.rest, strokes[:, None] * twist, swing_height=setup.swing_height, phases=phases
         )
         return np.asarray(passing_distance(feet)[0].min(-1))
 
-    def certain(strokes: Floats) -> Floats:
+    def certain(strokes: np.ndarray) -> np.ndarray:
         return np.asarray(while_cruising(strokes) >= setup.foot_distance + _START_AND_STOP * strokes)
 
     tolerance = 2e-4 * longest
@@ -122,7 +126,7 @@ def _keep_distance(setup: WalkSetup, twist: Array, longest: float) -> float:
     return low
 
 
-def _before_failure(feasible: Callable[[Floats], Floats], highest: float, *, tolerance: float) -> float:
+def _before_failure(feasible: Callable[[np.ndarray], np.ndarray], highest: float, *, tolerance: float) -> float:
     """Return the greatest feasible number below the first infeasible one: coarse steps, then finer ones."""
     step = highest / _COARSE
     for first in range(0, _COARSE + 1, _AT_ONCE):

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from tarsus.arrays import Array
 from tarsus.gait.gait import Gait
+
+if TYPE_CHECKING:
+    from jaxtyping import Bool, Float
 
 __all__ = ["BodyClock", "Steps", "least_step_fraction", "plan_steps"]
 
@@ -60,7 +63,7 @@ class BodyClock:
         """Time from the start of the body to its stop [s]."""
         return 2 * self.ramp + self.cruise
 
-    def fraction(self, time: Array) -> np.ndarray[Any, Any]:
+    def fraction(self, time: Float[Array, "*#batch"]) -> Float[np.ndarray, "*batch"]:
         """Return the fraction of the path ``(...)`` at times: 0 before the start, 1 after the stop.
 
         In a ramp the speed follows the quintic ``10 s^3 - 15 s^4 + 6 s^5``. Its integral is at most half the distance
@@ -81,7 +84,7 @@ class BodyClock:
         )
         return np.asarray(np.where(time <= 0, 0.0, np.where(time >= self.duration, 1.0, fraction)))
 
-    def _ramped(self, time: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
+    def _ramped(self, time: Float[np.ndarray, "*#batch"]) -> Float[np.ndarray, "..."]:
         s = time / self.ramp
         return np.asarray(self.rate * self.ramp * s**4 * (2.5 - 3 * s + s * s))
 
@@ -114,13 +117,13 @@ class Steps:
     start: float
     end: float
 
-    def foothold_fraction(self, step: Array) -> np.ndarray[Any, Any]:
+    def foothold_fraction(self, step: Float[Array, "..."]) -> Float[np.ndarray, "..."]:
         """Return the footholds of steps ``(..., legs)`` as fractions of the path ``(..., legs)``."""
         middle = (np.asarray(step) + np.asarray(self.gait.offsets) + self.gait.duty_factor / 2) * self.cycle_time
         fraction = self.clock.fraction(middle)
         return np.where(fraction < self.least_step, 0.0, np.where(fraction > 1 - self.least_step, 1.0, fraction))
 
-    def at(self, time: Array) -> tuple[np.ndarray[Any, Any], ...]:
+    def at(self, time: Float[Array, "n"]) -> tuple[Bool[np.ndarray, "..."] | Float[np.ndarray, "..."], ...]:
         """Return the state of each leg's step.
 
         Parameters

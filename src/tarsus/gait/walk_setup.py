@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, Self
+from typing import TYPE_CHECKING, Self
 
 import numpy as np
 
@@ -18,6 +18,9 @@ from tarsus.kinematics.inverse import inverse_kinematics
 from tarsus.kinematics.solution import IKSolution
 from tarsus.kinematics.stance import default_body_height, default_stance
 from tarsus.robot.robot import Robot
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
 __all__ = ["WalkSetup", "default_swing_height", "require_number"]
 
@@ -102,7 +105,7 @@ class WalkSetup:
 
     robot: Robot
     gait: Gait
-    rest: np.ndarray[Any, Any]
+    rest: Float[np.ndarray, "legs 3"]
     body_height: float
     swing_height: float
     body_tilt: tuple[float, float]
@@ -177,7 +180,9 @@ class WalkSetup:
             )
         return assumed
 
-    def solve(self, feet: Array, planar_pose: Array | None = None) -> IKSolution:
+    def solve(
+        self, feet: Float[Array, "*#batch legs 3"], planar_pose: Float[Array, "*#batch 3"] | None = None
+    ) -> IKSolution:
         """Return the inverse kinematics of feet relative to the ground.
 
         Parameters

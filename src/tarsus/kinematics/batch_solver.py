@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from tarsus.arrays import (
@@ -22,13 +24,18 @@ from tarsus.kinematics.triangle import solve_triangle, to_leg_frame
 from tarsus.robot.geometry import LegGeometry
 from tarsus.robot.robot import Robot
 
+if TYPE_CHECKING:
+    from jaxtyping import Float, Int
+
 __all__ = ["solve_legs"]
 
 # Legs per block of the second pass; each has ten candidates.
 _AGAIN = BLOCK // 8
 
 
-def solve_legs(robot: Robot, feet: Array, body: Pose | None, *, knee: int) -> tuple[Array, Array]:
+def solve_legs(
+    robot: Robot, feet: Float[Array, "*#batch legs 3"], body: Pose | None, *, knee: int
+) -> tuple[Float[Array, "*batch legs 3"], Int[Array, "*batch legs"]]:
     """Return the joint angles for given feet, and the reach code of every leg.
 
     Parameters
@@ -61,7 +68,9 @@ def solve_legs(robot: Robot, feet: Array, body: Pose | None, *, knee: int) -> tu
     return angles, reach
 
 
-def _solve_everywhere(xp: Namespace, robot: Robot, feet: Array, body: Pose | None, knee: int) -> tuple[Array, Array]:
+def _solve_everywhere(
+    xp: Namespace, robot: Robot, feet: Float[Array, "*#batch legs 3"], body: Pose | None, knee: int
+) -> tuple[Float[Array, "... legs 3"], Int[Array, "... legs"]]:
     """Solve without branches on values, for `jax.jit`."""
     g = robot.geometry.to(xp)
     offset = robot.femur_axis_offset[..., 0]  # the geometry is traced as a whole as soon as one of its arrays is
@@ -86,8 +95,8 @@ def _solve_everywhere(xp: Namespace, robot: Robot, feet: Array, body: Pose | Non
 
 
 def _solve_first(
-    robot: Robot, feet: Array, body: Pose | None, knee: int, batch: tuple[int, ...]
-) -> tuple[Array, Array]:
+    robot: Robot, feet: Float[Array, "*#batch legs 3"], body: Pose | None, knee: int, batch: tuple[int, ...]
+) -> tuple[Float[Array, "... legs 3"], Int[Array, "... legs"]]:
     """Solve NumPy legs with their planes facing their feet; large batches in blocks that fit the cache."""
     sideways = bool(robot.geometry.side.any())
     if feet.size <= SMALL and batch == feet.shape[:-2] and not robot.batch_shape:
@@ -114,8 +123,15 @@ def _solve_first(
 
 
 def _first_tries(
-    g: LegGeometry, x: Array, y: Array, z: Array, body: PoseComponents | None, *, knee: int, sideways: bool
-) -> tuple[Array, ...]:
+    g: LegGeometry,
+    x: Float[Array, "*#batch legs"],
+    y: Float[Array, "*#batch legs"],
+    z: Float[Array, "*#batch legs"],
+    body: PoseComponents | None,
+    *,
+    knee: int,
+    sideways: bool,
+) -> tuple[Float[Array, "... legs"] | Int[Array, "... legs"], ...]:
     """Solve NumPy legs in any layout, with feet in B and the legs' planes facing them."""
     solution = solve_triangle(np, g, *to_leg_frame(g, x, y, z), knee=knee, sideways=sideways)
     joints = solution[:3]
@@ -127,7 +143,14 @@ def _first_tries(
     return *joints, codes
 
 
-def _try_again(robot: Robot, feet: Array, body: Pose | None, knee: int, angles: Array, reach: Array) -> None:
+def _try_again(
+    robot: Robot,
+    feet: Float[Array, "*#batch legs 3"],
+    body: Pose | None,
+    knee: int,
+    angles: Float[Array, "*#batch legs 3"],
+    reach: Int[Array, "*#batch legs"],
+) -> None:
     """Solve the NumPy legs that failed in the first pass, and write them into its results."""
     legs = reach.shape
     failed = np.nonzero((reach != 0) & (reach != Reach.BELOW_GROUND))
@@ -147,8 +170,16 @@ def _try_again(robot: Robot, feet: Array, body: Pose | None, knee: int, angles: 
 
 
 def _second_tries(
-    xp: Namespace, g: LegGeometry, x: Array, y: Array, z: Array, codes: Array, *, knee: int, sideways: bool
-) -> tuple[Array, ...]:
+    xp: Namespace,
+    g: LegGeometry,
+    x: Float[Array, "*#batch legs"],
+    y: Float[Array, "*#batch legs"],
+    z: Float[Array, "*#batch legs"],
+    codes: Int[Array, "... legs"],
+    *,
+    knee: int,
+    sideways: bool,
+) -> tuple[Float[Array, "... legs"] | Int[Array, "... legs"], ...]:
     """Solve legs that failed in the first pass: facing away from the foot, or at the nearest reachable point."""
     away = solve_triangle(xp, g, x, y, z, knee=knee, facing=-1, sideways=sideways)
     turned = reach_codes(xp, g, away) == 0

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -11,6 +11,9 @@ from tarsus.errors import InputError
 from tarsus.kinematics.inverse import inverse_kinematics
 from tarsus.kinematics.pose import Pose
 from tarsus.robot.robot import Robot
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
 __all__ = ["coxa_frames", "reachable_fraction"]
 
@@ -44,7 +47,7 @@ def coxa_frames(robot: Robot) -> Pose:
     return Pose(rotation, stack_last(xp, (g.mount_x, g.mount_y, g.mount_z)))
 
 
-def reachable_fraction(robot: Robot, feet: Array, start: Pose, goal: Pose) -> float:
+def reachable_fraction(robot: Robot, feet: Float[Array, "legs 3"], start: Pose, goal: Pose) -> float:
     """Return the fraction of a motion between two body poses during which all feet reach their footholds.
 
     Position, roll, pitch and yaw are interpolated linearly, each angle in the direction of the smaller change.
@@ -74,7 +77,7 @@ def reachable_fraction(robot: Robot, feet: Array, start: Pose, goal: Pose) -> fl
     turn, move = np.asarray(goal.rpy) - rpy, np.asarray(goal.position) - position
     turn -= 2 * np.pi * np.round(turn / (2 * np.pi))
 
-    def reached(fractions: np.ndarray[Any, Any]) -> Array:
+    def reached(fractions: np.ndarray) -> Array:
         roll, pitch, yaw = rpy[:, None] + turn[:, None] * fractions
         body = Pose.from_rpy(roll, pitch, yaw, position + fractions[:, None] * move)
         return np.asarray(inverse_kinematics(robot, feet, body).ok)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any, Literal, Self
+from typing import TYPE_CHECKING, Literal, Self
 
 import numpy as np
 
@@ -15,6 +15,9 @@ from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.reach import Reach
 from tarsus.kinematics.triangle import solve_triangle, to_leg_frame
 from tarsus.robot.robot import JOINTS, Robot
+
+if TYPE_CHECKING:
+    from jaxtyping import Float, Int
 
 __all__ = ["explain_leg"]
 
@@ -28,11 +31,11 @@ _OF_LEGS = (
 
 def explain_leg(
     robot: Robot,
-    feet: Array,
+    feet: Float[Array, "*#batch legs 3"],
     body: Pose | None,
     knee: Literal["up", "down"],
-    angles: Array,
-    reach: Array,
+    angles: Float[Array, "*#batch legs 3"],
+    reach: Int[Array, "*#batch legs"],
     *,
     index: tuple[int, ...],
 ) -> str:
@@ -58,20 +61,20 @@ class _Leg:
 
     robot: Robot
     knee: int
-    target: np.ndarray[Any, Any]
+    target: Float[np.ndarray, "3"]
     body: Pose | None
-    points: np.ndarray[Any, Any]
+    points: Float[np.ndarray, "points batch"]
     in_leg: tuple[float, float, float]
 
     @classmethod
     def of(
         cls,
         robot: Robot,
-        feet: Array,
+        feet: Float[Array, "*#batch legs 3"],
         body: Pose | None,
         knee: str,
-        angles: Array,
-        reach: Array,
+        angles: Float[Array, "*#batch legs 3"],
+        reach: Int[Array, "*#batch legs"],
         *,
         batch: tuple[int, ...],
         leg: int,
@@ -122,7 +125,7 @@ class _Leg:
             return f"Raise the body by {distance}"
         return f"Raised by {distance}, the body is high enough, but the foot is out of reach ({code.name})"
 
-    def _first_above(self, body: Pose, steps: np.ndarray[Any, Any]) -> tuple[int, Reach]:
+    def _first_above(self, body: Pose, steps: Int[np.ndarray, "..."]) -> tuple[int, Reach]:
         """Return the least rise, in steps, at which the leg is above the ground, and its reach code there."""
         higher = Pose(body.rotation, body.position + steps[:, None] * np.array([0.0, 0.0, _STEP]))
         reach = solve_legs(self.robot, self.target[None], higher, knee=self.knee)[1][:, 0]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import NamedTuple, Self
+from typing import TYPE_CHECKING, NamedTuple, Self
 
 import numpy as np
 
@@ -14,14 +14,17 @@ from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.reach import LENGTH_TOLERANCE, Reach, mark
 from tarsus.robot.geometry import LegGeometry
 
+if TYPE_CHECKING:
+    from jaxtyping import Float, Int
+
 __all__ = ["PoseComponents", "certainly_above_ground", "mark_below_ground", "points_in_body"]
 
 
 class PoseComponents(NamedTuple):
     """A pose as its components ``rotation[row][column]`` and ``position[axis]``, in the layout of the leg geometry."""
 
-    rotation: tuple[tuple[Array, ...], ...]
-    position: tuple[Array, ...]
+    rotation: tuple[tuple[Float[Array, "..."], ...], ...]
+    position: tuple[Float[Array, "..."], ...]
 
     @classmethod
     def of_block(cls, body: Pose, index: Index, block: tuple[int, ...]) -> Self:
@@ -33,7 +36,7 @@ class PoseComponents(NamedTuple):
         return cls(tuple(tuple(rotation[j, i] for j in range(3)) for i in range(3)), tuple(position))
 
     @classmethod
-    def of_picked(cls, body: Pose, where: tuple[Array, ...], batch: tuple[int, ...]) -> Self:
+    def of_picked(cls, body: Pose, where: tuple[Float[Array, "..."], ...], batch: tuple[int, ...]) -> Self:
         """Return the components of the NumPy poses at indices `where` along the batch axes."""
         rotation = np.broadcast_to(body.rotation, (*batch, 3, 3))[where]
         position = np.broadcast_to(body.position, (*batch, 3))[where]
@@ -47,19 +50,21 @@ class PoseComponents(NamedTuple):
         elements = tuple(tuple(rotation[..., i, j, :] for j in range(3)) for i in range(3))
         return cls(elements, tuple(position[..., i, :] for i in range(3)))
 
-    def into_body(self, x: Array, y: Array, z: Array) -> tuple[Array, ...]:
+    def into_body(
+        self, x: Float[Array, "..."], y: Float[Array, "..."], z: Float[Array, "..."]
+    ) -> tuple[Float[Array, "..."], ...]:
         """Transform points from G to B."""
         (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = self.rotation
         x, y, z = x - self.position[0], y - self.position[1], z - self.position[2]
         return xx * x + yx * y + zx * z, xy * x + yy * y + zy * z, xz * x + yz * y + zz * z
 
-    def height(self, x: Array, y: Array, z: Array) -> Array:
+    def height(self, x: Float[Array, "..."], y: Float[Array, "..."], z: Float[Array, "..."]) -> Float[Array, "..."]:
         """Return the height above the ground of points in B."""
         zx, zy, zz = self.rotation[2]
         return zx * x + zy * y + zz * z + self.position[2]
 
 
-def points_in_body(body: Pose, points: Array) -> Array:
+def points_in_body(body: Pose, points: Float[Array, "*#batch 3"]) -> Float[Array, "... k 3"]:
     """Transform NumPy points ``(..., k, 3)`` from G to B: as `PoseComponents.into_body` does, to the bit."""
     rotation, offset = body.rotation[..., None, :, :], points - body.position[..., None, :]
     in_body = offset[..., 0:1] * rotation[..., 0, :] + offset[..., 1:2] * rotation[..., 1, :]
@@ -67,15 +72,19 @@ def points_in_body(body: Pose, points: Array) -> Array:
 
 
 def mark_below_ground(
-    xp: Namespace, geometry: LegGeometry, joints: tuple[Array, ...], codes: Array, body: PoseComponents
-) -> Array:
+    xp: Namespace,
+    geometry: LegGeometry,
+    joints: tuple[Float[Array, "..."], ...],
+    codes: Int[Array, "..."],
+    body: PoseComponents,
+) -> Int[Array, "..."]:
     """Mark legs whose coxa axis is below the ground, and legs within reach whose femur axis or knee is."""
     parts = point_parts(xp, geometry, *joints)
     attachment, axis, knee = (body.height(*parts[i : i + 3]) < -LENGTH_TOLERANCE for i in (0, 3, 6))
     return mark(xp, codes, attachment | ((codes == 0) & (axis | knee)), Reach.BELOW_GROUND)
 
 
-def certainly_above_ground(geometry: LegGeometry, femur: Array, body: PoseComponents) -> bool:
+def certainly_above_ground(geometry: LegGeometry, femur: Float[Array, "..."], body: PoseComponents) -> bool:
     """Return whether all bodies are so high that no point of a NumPy leg except the foot can be below the ground."""
     g = geometry
     zx, zy, zz = body.rotation[2]

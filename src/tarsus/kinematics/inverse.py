@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
@@ -13,11 +13,14 @@ from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.solution import IKSolution
 from tarsus.robot.robot import Robot
 
+if TYPE_CHECKING:
+    from jaxtyping import Float
+
 __all__ = ["inverse_kinematics"]
 
 
 def inverse_kinematics(
-    robot: Robot, feet: Array, body: Pose | None = None, *, knee: Literal["up", "down"] = "up"
+    robot: Robot, feet: Float[Array, "*#batch legs 3"], body: Pose | None = None, *, knee: Literal["up", "down"] = "up"
 ) -> IKSolution:
     """Return the joint angles for given feet, and which feet are out of reach.
 
@@ -55,7 +58,7 @@ def inverse_kinematics(
     return IKSolution(robot=robot, feet=_locked_copy(p), body=body, knee=knee, angles=angles, reach=reach)
 
 
-def _locked_copy(feet: Array) -> Array:
+def _locked_copy(feet: Float[Array, "*batch legs 3"]) -> Float[Array, "... legs 3"]:
     """Return a locked copy of a NumPy array, which the caller may write to."""
     if isinstance(feet, np.ndarray):
         feet = feet.copy()

@@ -13,7 +13,7 @@ and the plane turns with the coxa joint about the vertical.
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
@@ -31,10 +31,13 @@ from tarsus.blocks import BLOCK, SMALL, batch_blocks, block_shape, columns
 from tarsus.robot.geometry import LegGeometry
 from tarsus.robot.robot import Robot
 
+if TYPE_CHECKING:
+    from jaxtyping import Float
+
 __all__ = ["checked_angles", "forward_kinematics", "leg_jacobian", "point_parts"]
 
 
-def forward_kinematics(robot: Robot, angles: Array) -> Array:
+def forward_kinematics(robot: Robot, angles: Float[Array, "*#batch legs 3"]) -> Float[Array, "*batch legs 4 3"]:
     """Return the points of every leg in the body frame.
 
     Parameters
@@ -57,7 +60,7 @@ def forward_kinematics(robot: Robot, angles: Array) -> Array:
     return _by_blocks(point_parts, robot, angles, (4, 3))
 
 
-def leg_jacobian(robot: Robot, angles: Array) -> Array:
+def leg_jacobian(robot: Robot, angles: Float[Array, "*#batch legs 3"]) -> Float[Array, "*batch legs 3 3"]:
     """Return the Jacobian of each foot in the body frame with respect to its joint angles.
 
     Parameters
@@ -80,7 +83,9 @@ def leg_jacobian(robot: Robot, angles: Array) -> Array:
     return _by_blocks(_jacobian_parts, robot, angles, (3, 3))
 
 
-def checked_angles(robot: Robot, angles: Array) -> tuple[Namespace, Array]:
+def checked_angles(
+    robot: Robot, angles: Float[Array, "*#batch legs 3"]
+) -> tuple[Namespace, Float[Array, "... legs 3"]]:
     """Return the namespace and the angles as floats, refusing anything but finite numbers ``(..., legs, 3)``."""
     xp = namespace(angles, robot.geometry.coxa)
     q = as_floats(xp, angles, name="angles")
@@ -95,9 +100,9 @@ Parts: TypeAlias = tuple[Array, ...]
 def _by_blocks(
     kernel: Callable[[Namespace, LegGeometry, Array, Array, Array], Parts],
     robot: Robot,
-    angles: Array,
+    angles: Float[Array, "*#batch legs 3"],
     tail: tuple[int, int],
-) -> Array:
+) -> Float[Array, "... 3"]:
     """Apply a kernel to the batch; NumPy arrays in blocks that fit the cache."""
     xp, q = checked_angles(robot, angles)
     geometry = robot.geometry.to(xp)
@@ -118,7 +123,9 @@ def _by_blocks(
     return out.reshape(*batch, robot.legs, *tail)
 
 
-def _sines(xp: Namespace, g: LegGeometry, coxa: Array, femur: Array, tibia: Array) -> Parts:
+def _sines(
+    xp: Namespace, g: LegGeometry, coxa: Float[Array, "..."], femur: Float[Array, "..."], tibia: Float[Array, "..."]
+) -> Parts:
     """Return cosines and sines of the heading of the leg's plane in B, and of the slopes of femur and tibia."""
     coxa_cos, coxa_sin = xp.cos(coxa), xp.sin(coxa)
     heading_cos = g.cos_yaw * coxa_cos - g.sin_yaw * coxa_sin
@@ -127,7 +134,9 @@ def _sines(xp: Namespace, g: LegGeometry, coxa: Array, femur: Array, tibia: Arra
     return heading_cos, heading_sin, xp.cos(femur), xp.sin(femur), xp.cos(slope), xp.sin(slope)
 
 
-def point_parts(xp: Namespace, g: LegGeometry, coxa: Array, femur: Array, tibia: Array) -> Parts:
+def point_parts(
+    xp: Namespace, g: LegGeometry, coxa: Float[Array, "..."], femur: Float[Array, "..."], tibia: Float[Array, "..."]
+) -> Parts:
     """Return x, y, z in B of coxa axis, femur axis, knee and foot, in any layout that broadcasts with the geometry."""
     heading_cos, heading_sin, femur_cos, femur_sin, tibia_cos, tibia_sin = _sines(xp, g, coxa, femur, tibia)
     zero = xp.zeros_like(heading_cos)
@@ -143,7 +152,13 @@ def point_parts(xp: Namespace, g: LegGeometry, coxa: Array, femur: Array, tibia:
     return tuple(parts)
 
 
-def _jacobian_parts(xp: Namespace, g: LegGeometry, coxa: Array, femur: Array, tibia: Array) -> Parts:
+def _jacobian_parts(
+    xp: Namespace,
+    g: LegGeometry,
+    coxa: Float[Array, "*#batch legs"],
+    femur: Float[Array, "*#batch legs"],
+    tibia: Float[Array, "*#batch legs"],
+) -> Parts:
     heading_cos, heading_sin, femur_cos, femur_sin, tibia_cos, tibia_sin = _sines(xp, g, coxa, femur, tibia)
     tibia_r, tibia_z = g.tibia * tibia_cos, g.tibia * tibia_sin
     leg_r, leg_z = g.femur * femur_cos + tibia_r, g.femur * femur_sin + tibia_z

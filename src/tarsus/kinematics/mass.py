@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from tarsus.arrays import Array, Namespace, as_array, as_floats, broadcast_shapes, namespace, require_shape, stack_last
 from tarsus.kinematics.leg import forward_kinematics
 from tarsus.robot.robot import Robot
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
 __all__ = ["STANDARD_GRAVITY", "centre_of_mass", "point_masses", "total_mass"]
 
@@ -12,7 +17,7 @@ STANDARD_GRAVITY = 9.80665
 """Standard gravity (ISO 80000-3) [m/s^2]."""
 
 
-def total_mass(robot: Robot) -> Array:
+def total_mass(robot: Robot) -> Float[Array, "*batch"]:
     """Return the mass of the robot: its body and all its links.
 
     Parameters
@@ -36,7 +41,9 @@ def total_mass(robot: Robot) -> Array:
     return xp.asarray(as_array(xp, robot.body_mass) + links)
 
 
-def centre_of_mass(robot: Robot, angles: Array, *, points: Array | None = None) -> Array:
+def centre_of_mass(
+    robot: Robot, angles: Float[Array, "*#batch legs 3"], *, points: Float[Array, "*#batch legs 4 3"] | None = None
+) -> Float[Array, "*batch 3"]:
     """Return the centre of mass of body and links.
 
     The mass of each link is at the distance ``link_com`` from its inner joint, on the line to the next leg point; where
@@ -84,7 +91,7 @@ def centre_of_mass(robot: Robot, angles: Array, *, points: Array | None = None) 
     return moment / as_array(xp, total_mass(robot))[..., None]
 
 
-def point_masses(xp: Namespace, robot: Robot) -> Array:
+def point_masses(xp: Namespace, robot: Robot) -> Float[Array, "*batch legs 4"]:
     """Return point masses at the leg points that are equivalent to the links: same mass, same centre of mass.
 
     Parameters

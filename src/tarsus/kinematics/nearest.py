@@ -13,10 +13,14 @@ alternately, from several initial values.
 from __future__ import annotations
 
 import math
+from typing import TYPE_CHECKING
 
 from tarsus.arrays import Array, Namespace, improve, root
 from tarsus.kinematics.triangle import direction
 from tarsus.robot.geometry import LegGeometry
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
 __all__ = ["clip_angle", "nearest_angles", "tibia_bend", "tibia_branch"]
 
@@ -28,19 +32,21 @@ _ROUNDS = 8
 _CONVERGED = 1e-15
 
 
-def wrap(xp: Namespace, angle: Array) -> Array:
+def wrap(xp: Namespace, angle: Float[Array, "..."]) -> Float[Array, "..."]:
     """Return the equivalent angle in -pi..pi."""
     return angle - _TURN * xp.round(angle / _TURN)
 
 
-def clip_angle(xp: Namespace, angle: Array, lower: Array, upper: Array) -> Array:
+def clip_angle(
+    xp: Namespace, angle: Float[Array, "..."], lower: Float[Array, "..."], upper: Float[Array, "..."]
+) -> Float[Array, "..."]:
     """Return the angle if it is within its limits, else the limit nearer on the circle."""
     below, above = xp.abs(wrap(xp, lower - angle)), xp.abs(wrap(xp, angle - upper))
     nearer = xp.where(below < above, lower, upper)
     return xp.where((angle >= lower) & (angle <= upper), angle, nearer)
 
 
-def tibia_branch(xp: Namespace, geometry: LegGeometry, *, knee: int) -> tuple[Array, Array]:
+def tibia_branch(xp: Namespace, geometry: LegGeometry, *, knee: int) -> tuple[Float[Array, "..."], Float[Array, "..."]]:
     """Return the tibia limits restricted to a knee branch; unrestricted where no angle is in that branch."""
     lower, upper = geometry.tibia_lower, geometry.tibia_upper
     zero = xp.zeros_like(lower)
@@ -49,7 +55,7 @@ def tibia_branch(xp: Namespace, geometry: LegGeometry, *, knee: int) -> tuple[Ar
     return xp.where(upper >= zero, xp.maximum(lower, zero), lower), upper
 
 
-def tibia_bend(xp: Namespace, geometry: LegGeometry, *, knee: int) -> Array:
+def tibia_bend(xp: Namespace, geometry: LegGeometry, *, knee: int) -> Float[Array, "..."]:
     """Return the sign of the tibia angles in a knee branch; the opposite sign where the limits exclude that branch."""
     one = xp.ones_like(geometry.tibia_lower)
     if knee > 0:
@@ -58,8 +64,15 @@ def tibia_bend(xp: Namespace, geometry: LegGeometry, *, knee: int) -> Array:
 
 
 def nearest_angles(
-    xp: Namespace, geometry: LegGeometry, x: Array, y: Array, z: Array, *, knee: int, sideways: bool
-) -> tuple[Array, ...]:
+    xp: Namespace,
+    geometry: LegGeometry,
+    x: Float[Array, "*#batch legs"],
+    y: Float[Array, "*#batch legs"],
+    z: Float[Array, "*#batch legs"],
+    *,
+    knee: int,
+    sideways: bool,
+) -> tuple[Float[Array, "... legs"], ...]:
     """Return the squared distance from a target to the nearest reachable point [m^2], and its joint angles [rad].
 
     Parameters
@@ -101,21 +114,30 @@ def nearest_angles(
     return _best(xp, improve(correct, tracks, times=_ROUNDS, enough=_CONVERGED))
 
 
-def _best(xp: Namespace, candidates: tuple[Array, ...]) -> tuple[Array, ...]:
+def _best(xp: Namespace, candidates: tuple[Float[Array, "..."], ...]) -> tuple[Float[Array, "..."], ...]:
     """Return for each leg the best of the candidates stacked along the first axis."""
     first = xp.argmin(candidates[0], axis=0, keepdims=True)
     return tuple(xp.take_along_axis(values, first, axis=0)[0, ...] for values in candidates)
 
 
-def _better(xp: Namespace, best: tuple[Array, ...], other: tuple[Array, ...]) -> tuple[Array, ...]:
+def _better(
+    xp: Namespace, best: tuple[Float[Array, "... 3 n"], ...], other: tuple[Float[Array, "... 3 n"], ...]
+) -> tuple[Float[Array, "... 3 n"], ...]:
     """Return for each leg the candidate (squared distance, angles...) with the smaller distance."""
     closer = other[0] < best[0]
     return tuple(xp.where(closer, new, old) for new, old in zip(other, best, strict=True))
 
 
 def _in_planes(
-    xp: Namespace, geometry: LegGeometry, x: Array, y: Array, z: Array, coxa: Array, *, knee: int
-) -> tuple[Array, ...]:
+    xp: Namespace,
+    geometry: LegGeometry,
+    x: Float[Array, "*#batch legs"],
+    y: Float[Array, "*#batch legs"],
+    z: Float[Array, "*#batch legs"],
+    coxa: Float[Array, "*#batch legs"],
+    *,
+    knee: int,
+) -> tuple[Float[Array, "... legs"], ...]:
     """Return squared distance and angles of the nearest points for each of the coxa angles ``(k, ...)``."""
     g = geometry
     cos, sin = xp.cos(coxa), xp.sin(coxa)
@@ -131,8 +153,14 @@ def _in_planes(
 
 
 def _candidates(
-    xp: Namespace, geometry: LegGeometry, r: Array, z: Array, bent: Array, straight: Array, bend: Array
-) -> tuple[Array, Array]:
+    xp: Namespace,
+    geometry: LegGeometry,
+    r: Float[Array, "..."],
+    z: Float[Array, "*#batch legs"],
+    bent: Float[Array, "... legs"],
+    straight: Float[Array, "... legs"],
+    bend: Float[Array, "... legs"],
+) -> tuple[Float[Array, "... legs"], Float[Array, "... legs"]]:
     """Return the femur and tibia angles of the five candidates ``(5, ...)``, before the limits are applied."""
     g = geometry
     zero = xp.zeros_like(r)

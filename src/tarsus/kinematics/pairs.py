@@ -10,12 +10,15 @@ from __future__ import annotations
 
 import math
 from functools import lru_cache
-from typing import Any, NamedTuple, Self
+from typing import TYPE_CHECKING, NamedTuple, Self
 
 import numpy as np
 
 from tarsus.arrays import Array, Namespace, root
 from tarsus.blocks import Index, block_shape, columns
+
+if TYPE_CHECKING:
+    from jaxtyping import Float, Shaped
 
 __all__ = ["Pairs", "columns_of"]
 
@@ -35,28 +38,28 @@ class Pairs(NamedTuple):
         Length of each segment [m].
     """
 
-    x: Array
-    y: Array
-    start_x: Array
-    start_y: Array
-    along_x: Array
-    along_y: Array
-    length: Array
+    x: Float[Array, "n batch"]
+    y: Float[Array, "n batch"]
+    start_x: Float[Array, "pairs batch"]
+    start_y: Float[Array, "pairs batch"]
+    along_x: Float[Array, "pairs batch"]
+    along_y: Float[Array, "pairs batch"]
+    length: Float[Array, "pairs batch"]
 
     @classmethod
-    def of(cls, xp: Namespace, x: Array, y: Array) -> Self:
+    def of(cls, xp: Namespace, x: Float[Array, "n batch"], y: Float[Array, "n batch"]) -> Self:
         """Return the segments of points ``(n, batch)``; a single point is paired with itself."""
         first, second = (xp.asarray(index) for index in _pair_indices(x.shape[0]))
         start_x, start_y = xp.take(x, first, axis=0), xp.take(y, first, axis=0)
         along_x, along_y = xp.take(x, second, axis=0) - start_x, xp.take(y, second, axis=0) - start_y
         return cls(x, y, start_x, start_y, along_x, along_y, root(xp, along_x * along_x + along_y * along_y))
 
-    def normals(self, xp: Namespace) -> tuple[Array, Array]:
+    def normals(self, xp: Namespace) -> tuple[Float[Array, "..."], Float[Array, "..."]]:
         """Return unit normals of the segments ``(pairs, batch)``; zero where a segment has no length."""
         length = xp.where(self.length > 0, self.length, 1.0)
         return self.along_y / length, -self.along_x / length
 
-    def depth_and_width(self, xp: Namespace) -> tuple[Array, Array]:
+    def depth_and_width(self, xp: Namespace) -> tuple[Float[Array, "..."], Float[Array, "..."]]:
         """Return the depth of the origin in the hull ``(batch,)`` and the least width of the hull ``(batch,)`` [m].
 
         The depth is the least distance of a supporting line from the origin over the normals of all pairs. The minimum
@@ -72,7 +75,7 @@ class Pairs(NamedTuple):
         spread = xp.any(real, axis=0)
         return xp.where(spread, depth, 0.0), xp.where(spread, width, 0.0)
 
-    def nearest(self, xp: Namespace) -> tuple[Array, Array, Array]:
+    def nearest(self, xp: Namespace) -> tuple[Float[Array, "..."], Float[Array, "..."], Float[Array, "..."]]:
         """Return the nearest point of each segment to the origin: x, y and fraction along it ``(pairs, batch)``."""
         length2 = self.along_x * self.along_x + self.along_y * self.along_y
         length2 = xp.where(length2 > 0, length2, 1.0)
@@ -80,7 +83,9 @@ class Pairs(NamedTuple):
         return self.start_x + fraction * self.along_x, self.start_y + fraction * self.along_y, fraction
 
 
-def columns_of(xp: Namespace, array: Array, batch: tuple[int, ...], index: Index, *, tail: int) -> Array:
+def columns_of(
+    xp: Namespace, array: Shaped[Array, "..."], batch: tuple[int, ...], index: Index, *, tail: int
+) -> Shaped[Array, "..."]:
     """Return a block of `array` with its last `tail` axes first, in reverse order, and a flat batch axis last.
 
     Parameters
@@ -104,6 +109,6 @@ def columns_of(xp: Namespace, array: Array, batch: tuple[int, ...], index: Index
 
 
 @lru_cache(maxsize=64)
-def _pair_indices(n: int) -> tuple[np.ndarray[Any, Any], np.ndarray[Any, Any]]:
+def _pair_indices(n: int) -> tuple[Float[np.ndarray, "..."], Float[np.ndarray, "..."]]:
     first, second = np.triu_indices(n, k=0 if n == 1 else 1)
     return first, second

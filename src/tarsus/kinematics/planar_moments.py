@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from tarsus.arrays import Array
+
+if TYPE_CHECKING:
+    from jaxtyping import Bool, Float
 
 __all__ = ["PlanarMoments"]
 
@@ -18,16 +21,16 @@ class PlanarMoments(NamedTuple):
         Sums of ``(x - x_mean)^2``, ``(x - x_mean)(y - y_mean)`` and ``(y - y_mean)^2`` [m^2].
     """
 
-    xx: Array
-    xy: Array
-    yy: Array
+    xx: Float[Array, "*#batch"]
+    xy: Float[Array, "*#batch"]
+    yy: Float[Array, "*#batch"]
 
     @property
-    def determinant(self) -> Array:
+    def determinant(self) -> Float[Array, "*batch"]:
         """Determinant ``(...)`` of the normal equations; 0 where the points are on a line [m^4]."""
         return self.xx * self.yy - self.xy * self.xy
 
-    def span_area(self, least: float) -> Array:
+    def span_area(self, least: float) -> Bool[Array, "*batch"]:
         """Return whether the points are not on a line.
 
         Parameters
@@ -41,7 +44,9 @@ class PlanarMoments(NamedTuple):
         """
         return self.determinant > least * (self.xx + self.yy) ** 2
 
-    def slopes(self, xz: Array, yz: Array, *, determinant: Array) -> tuple[Array, Array]:
+    def slopes(
+        self, xz: Float[Array, "*#batch"], yz: Float[Array, "*#batch"], *, determinant: Float[Array, "*#batch"]
+    ) -> tuple[Float[Array, "*batch"], Float[Array, "*batch"]]:
         """Solve the normal equations ``[[xx, xy], [xy, yy]] @ (a, b) = (xz, yz)`` by Cramer's rule.
 
         Parameters

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from tarsus.arrays import (
@@ -20,12 +22,17 @@ from tarsus.errors import InputError
 from tarsus.kinematics.convex_hull import hull_corners, origin_margin
 from tarsus.kinematics.pairs import Pairs, columns_of
 
+if TYPE_CHECKING:
+    from jaxtyping import Bool, Float
+
 __all__ = ["as_mask", "hull_margin", "margin_and_nearest", "support_polygon"]
 
 _WORK = 1 << 17  # numbers in the largest array of a block, to fit in the second-level cache
 
 
-def hull_margin(points: Array, mask: Array, point: Array) -> Array:
+def hull_margin(
+    points: Float[Array, "*#batch n 2"], mask: Bool[Array, "*#batch n"], point: Float[Array, "*#batch 2"]
+) -> Float[Array, "*batch"]:
     """Return the margin of a point in the convex hull of some points.
 
     Parameters
@@ -80,7 +87,7 @@ def hull_margin(points: Array, mask: Array, point: Array) -> Array:
     return margin[()]
 
 
-def as_mask(xp: Namespace, mask: Array, *, name: str) -> Array:
+def as_mask(xp: Namespace, mask: Bool[Array, "*batch n"], *, name: str) -> Bool[Array, "..."]:
     """Return `mask` as an array of booleans.
 
     Parameters
@@ -103,14 +110,23 @@ def as_mask(xp: Namespace, mask: Array, *, name: str) -> Array:
     return mask
 
 
-def _margin(xp: Namespace, points: Array, mask: Array, point: Array, batch: tuple[int, ...], index: Index) -> Array:
+def _margin(
+    xp: Namespace,
+    points: Float[Array, "*#batch n 2"],
+    mask: Bool[Array, "*#batch n"],
+    point: Float[Array, "*#batch 2"],
+    batch: tuple[int, ...],
+    index: Index,
+) -> Float[Array, "..."]:
     x, y = _split(columns_of(xp, points, batch, index, tail=2))
     origin_x, origin_y = _split(columns_of(xp, point, batch, index, tail=1))
     counts = columns_of(xp, mask, batch, index, tail=1)
     return margin_and_nearest(xp, x - origin_x, y - origin_y, counts)[0]
 
 
-def margin_and_nearest(xp: Namespace, x: Array, y: Array, counts: Array) -> tuple[Array, Array, Array]:
+def margin_and_nearest(
+    xp: Namespace, x: Float[Array, "n #batch"], y: Float[Array, "n #batch"], counts: Bool[Array, "n batch"]
+) -> tuple[Float[Array, "batch"], Float[Array, "batch"], Float[Array, "batch"]]:
     """Return the margin of the origin in the convex hull of points, and the point of the hull nearest to it.
 
     Parameters
@@ -140,17 +156,19 @@ def margin_and_nearest(xp: Namespace, x: Array, y: Array, counts: Array) -> tupl
     return margin, *(xp.where(inside, xp.zeros_like(near), near) for near in on_hull)
 
 
-def _split(coordinates: Array) -> tuple[Array, Array]:
+def _split(coordinates: Float[Array, "..."]) -> tuple[Float[Array, "..."], Float[Array, "..."]]:
     return coordinates[0, ...], coordinates[1, ...]
 
 
-def _gathered(xp: Namespace, values: Array, counts: Array) -> Array:
+def _gathered(xp: Namespace, values: Float[Array, "..."], counts: Bool[Array, "n batch"]) -> Float[Array, "... batch"]:
     """Replace unused points by a used one, so that the hull needs no mask."""
     first = xp.argmax(xp.astype(counts, xp.int8), axis=0)[None, ...]
     return xp.where(counts, values, xp.take_along_axis(values, first, axis=0))
 
 
-def support_polygon(feet_xy: Array, contacts: Array) -> Array:
+def support_polygon(
+    feet_xy: Float[Array, "n 2"] | Float[Array, "n 3"], contacts: Bool[Array, "n"]
+) -> Float[Array, "corners 2"]:
     """Return the corners of the support polygon: the convex hull of the feet in contact.
 
     Parameters

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import Any, Self, overload
+from typing import TYPE_CHECKING, Any, Self, overload
 
 import numpy as np
 
@@ -21,10 +21,13 @@ from tarsus.arrays import (
 )
 from tarsus.errors import InputError
 
+if TYPE_CHECKING:
+    from jaxtyping import Float
+
 __all__ = ["Pose", "rpy_from_rotation"]
 
 
-def _locked(array: Array) -> Array:
+def _locked(array: Float[Array, "... 3"]) -> Float[Array, "... 3"]:
     """Copy and lock a NumPy array; arrays of other libraries are immutable or can't be locked."""
     if isinstance(array, np.ndarray) and (array.flags.writeable or _is_writeable(array.base)):
         array = array.copy()
@@ -37,7 +40,7 @@ def _is_writeable(base: object) -> bool:
     return base is not None and not (isinstance(base, np.ndarray) and not base.flags.writeable)
 
 
-def _require_rotation(xp: Namespace, rotation: Array) -> None:
+def _require_rotation(xp: Namespace, rotation: Float[Array, "*batch 3 3"]) -> None:
     """Refuse matrices that are not rotations; traced ones can't be checked."""
     if is_traced(rotation):
         return
@@ -76,8 +79,8 @@ class Pose:
         Position of the origin [m].
     """
 
-    rotation: Array = field(default_factory=lambda: _IDENTITY)
-    position: Array = field(default_factory=lambda: _ORIGIN)
+    rotation: Float[Array, "*#batch 3 3"] = field(default_factory=lambda: _IDENTITY)
+    position: Float[Array, "*#batch 3"] = field(default_factory=lambda: _ORIGIN)
 
     def __post_init__(self) -> None:
         if self.rotation is _IDENTITY and self.position is _ORIGIN:
@@ -98,7 +101,11 @@ class Pose:
 
     @classmethod
     def from_rpy(
-        cls, roll: Array = 0.0, pitch: Array = 0.0, yaw: Array = 0.0, position: Array = (0.0, 0.0, 0.0)
+        cls,
+        roll: Float[Array, "*#batch"] = 0.0,
+        pitch: Float[Array, "*#batch"] = 0.0,
+        yaw: Float[Array, "*#batch"] = 0.0,
+        position: Float[Array, "*#batch 3"] = (0.0, 0.0, 0.0),
     ) -> Self:
         """Build a pose from roll, pitch and yaw: ``Rz(yaw) Ry(pitch) Rx(roll)``.
 
@@ -142,7 +149,7 @@ class Pose:
     @overload
     def __matmul__(self, other: Pose) -> Pose: ...
     @overload
-    def __matmul__(self, other: Array) -> Array: ...
+    def __matmul__(self, other: Float[Array, "*#batch 3"]) -> Float[Array, "... 3"]: ...
     def __matmul__(self, other: Any) -> Any:
         """Transform points, or compose poses.
 
@@ -177,7 +184,7 @@ class Pose:
         transformed = self._transform(xp.reshape(points, (*leading, math.prod(middle), 3)))
         return xp.reshape(transformed, (*transformed.shape[:-2], *middle, 3))
 
-    def _transform(self, points: Array) -> Array:
+    def _transform(self, points: Float[Array, "..."]) -> Float[Array, "*batch k 3"]:
         """Transform points ``(..., k, 3)`` whose leading axes broadcast with the batch axes."""
         xp = namespace(points, self.rotation, self.position)
         rotation, position = xp.asarray(self.rotation), xp.asarray(self.position)
@@ -203,12 +210,12 @@ class Pose:
         return Pose(rotation[(*index, slice(None), slice(None))], position[(*index, slice(None))])
 
     @property
-    def rpy(self) -> Array:
+    def rpy(self) -> Float[Array, "*batch 3"]:
         """Roll, pitch and yaw ``(..., 3)`` [rad]."""
         return rpy_from_rotation(self.rotation)
 
 
-def rpy_from_rotation(rotation: Array) -> Array:
+def rpy_from_rotation(rotation: Float[Array, "*batch 3 3"]) -> Float[Array, "*batch 3"]:
     """Return roll, pitch and yaw of rotation matrices ``Rz(yaw) Ry(pitch) Rx(roll)``.
 
     Parameters

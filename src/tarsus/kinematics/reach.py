@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 import enum
+from typing import TYPE_CHECKING
 
 from tarsus.arrays import Array, Namespace
 from tarsus.kinematics.triangle import Triangle
 from tarsus.robot.geometry import LegGeometry
+
+if TYPE_CHECKING:
+    from jaxtyping import Float, Int
 
 __all__ = ["ANGLE_TOLERANCE", "LENGTH_TOLERANCE", "Reach", "all_within", "mark", "reach_codes"]
 
@@ -33,7 +37,7 @@ class Reach(enum.IntEnum):
     BELOW_GROUND = 6
 
 
-def reach_codes(xp: Namespace, geometry: LegGeometry, solution: Triangle) -> Array:
+def reach_codes(xp: Namespace, geometry: LegGeometry, solution: Triangle) -> Int[Array, "*batch legs"]:
     """Return the reach code of every leg ``(..., legs)``."""
     g = geometry
     codes = xp.zeros(solution.coxa.shape, dtype=xp.int8)
@@ -53,7 +57,9 @@ def reach_codes(xp: Namespace, geometry: LegGeometry, solution: Triangle) -> Arr
     return mark(xp, codes, solution.beside < -tolerance * xp.abs(g.side), Reach.TOO_NEAR)
 
 
-def mark(xp: Namespace, codes: Array, failing: Array, code: Reach) -> Array:
+def mark(
+    xp: Namespace, codes: Int[Array, "..."], failing: Float[Array, "..."], code: Reach
+) -> Int[Array, "*batch legs"]:
     """Return the codes ``(..., legs)`` with those of the failing legs replaced."""
     return xp.where(failing, xp.asarray(int(code), dtype=xp.int8), codes)
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -17,6 +18,9 @@ from tarsus.kinematics.pairs import columns_of
 from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.roll import Settled, rotation_rows, settle
 from tarsus.robot.robot import Robot
+
+if TYPE_CHECKING:
+    from jaxtyping import Bool, Float, Int
 
 __all__ = ["RestingPose", "resting_pose"]
 
@@ -51,12 +55,12 @@ class RestingPose:
 
     robot: Robot
     body: Pose
-    contacts: Array
-    leg_points_down: Array
-    corners_down: Array
-    margin: Array
-    stable: Array
-    rolls: Array
+    contacts: Bool[Array, "*#batch legs"]
+    leg_points_down: Bool[Array, "*#batch legs 4"]
+    corners_down: Bool[Array, "*#batch 8"] | Bool[Array, "*#batch 0"]
+    margin: Float[Array, "*#batch"]
+    stable: Bool[Array, "*#batch"]
+    rolls: Int[Array, "*#batch"]
 
     def describe(self) -> str:
         """Return a sentence on how the robot rests.
@@ -76,7 +80,7 @@ class RestingPose:
         massless = "" if self.robot.has_masses else " (masses unknown: margin of the centre of the body)"
         return f"{contacts}; margin {1000 * float(self.margin):.1f} mm{massless}"
 
-    def _describe_contacts(self, down: Array) -> str:
+    def _describe_contacts(self, down: Float[Array, "..."]) -> str:
         names = [_short(name) for name in self.robot.leg_names]
         parts = []
         for point, part in ((3, "foot"), (2, "knee"), (1, "femur axis")):
@@ -107,7 +111,7 @@ def _short(name: str) -> str:
     return (words[1][0] + words[0][0]).upper() if len(words) == 2 else name
 
 
-def resting_pose(robot: Robot, angles: Array, *, max_rolls: int = 64) -> RestingPose:
+def resting_pose(robot: Robot, angles: Float[Array, "*#batch legs 3"], *, max_rolls: int = 64) -> RestingPose:
     """Return the pose in which the robot rests on flat ground with its joints held at the given angles.
 
     The robot is lowered upright, B's z up, until it touches the ground, and rolls quasi-statically from contact to
@@ -160,7 +164,12 @@ def resting_pose(robot: Robot, angles: Array, *, max_rolls: int = 64) -> Resting
 
 
 def _settle_block(
-    xp: Namespace, cloud: list[Array], com: Array, batch: tuple[int, ...], index: Index, max_rolls: int
+    xp: Namespace,
+    cloud: list[Float[Array, "... 3"]],
+    com: Float[Array, "... 3"],
+    batch: tuple[int, ...],
+    index: Index,
+    max_rolls: int,
 ) -> Settled:
     parts = [columns_of(xp, part, batch, index, tail=2) for part in cloud]
     centre = columns_of(xp, com, batch, index, tail=1)

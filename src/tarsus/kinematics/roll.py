@@ -10,10 +10,13 @@ The axis of points precedes the batch, ``(points, batch)``, so that reductions r
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from tarsus.arrays import Array, Namespace, root
 from tarsus.kinematics.pairs import Pairs
+
+if TYPE_CHECKING:
+    from jaxtyping import Bool, Float, Int
 
 __all__ = ["Settled", "rotation_rows", "settle"]
 
@@ -44,33 +47,33 @@ class Settled(NamedTuple):
     """
 
     up: Vector
-    height: Array
-    down: Array
-    margin: Array
-    stable: Array
-    rolls: Array
+    height: Float[Array, "batch"]
+    down: Bool[Array, "points batch"]
+    margin: Float[Array, "batch"]
+    stable: Bool[Array, "batch"]
+    rolls: Int[Array, "batch"]
 
 
 class _Stance(NamedTuple):
     """Positions of the points relative to the ground, with the projected centre of mass as the origin."""
 
     rows: tuple[Vector, Vector, Vector]
-    x: Array
-    y: Array
-    height: Array
-    lowest: Array
-    down: Array
+    x: Float[Array, "*#batch legs"]
+    y: Float[Array, "*#batch legs"]
+    height: Float[Array, "..."]
+    lowest: Float[Array, "... legs"]
+    down: Bool[Array, "points batch"]
 
 
 class _Balance(NamedTuple):
     """Margin of the centre of mass over the contacts; if not stable, pivot and direction of the roll."""
 
-    margin: Array
-    stable: Array
-    pivot_x: Array
-    pivot_y: Array
-    toward_x: Array
-    toward_y: Array
+    margin: Float[Array, "batch"]
+    stable: Bool[Array, "batch"]
+    pivot_x: Float[Array, "... batch"]
+    pivot_y: Float[Array, "... batch"]
+    toward_x: Float[Array, "... batch"]
+    toward_y: Float[Array, "... batch"]
 
 
 def settle(xp: Namespace, points: Vector, com: Vector, *, max_rolls: int) -> Settled:
@@ -126,7 +129,7 @@ def rotation_rows(xp: Namespace, up: Vector) -> tuple[Vector, Vector, Vector]:
     )
 
 
-def _along(row: Vector, vector: Vector) -> Array:
+def _along(row: Vector, vector: Vector) -> Float[Array, "..."]:
     return row[0] * vector[0] + row[1] * vector[1] + row[2] * vector[2]
 
 
@@ -164,7 +167,9 @@ def _balance(xp: Namespace, stance: _Stance, touch: float) -> _Balance:
     return _Balance(margin, (margin >= -touch) & (width > touch), near_x, near_y, toward_x, toward_y)
 
 
-def _fall(xp: Namespace, pairs: Pairs, across: tuple[Array, Array], touch: float) -> tuple[Array, Array]:
+def _fall(
+    xp: Namespace, pairs: Pairs, across: tuple[Float[Array, "..."], Float[Array, "..."]], touch: float
+) -> tuple[Float[Array, "..."], Float[Array, "..."]]:
     """Return the direction in which a body balanced on a point or an edge tips: forward, or left if parallel to x."""
     longest = xp.argmax(pairs.length, axis=0)
     x, y, length = (_pick(xp, v, longest) for v in (*across, pairs.length))
@@ -183,14 +188,14 @@ def _contact_pairs(xp: Namespace, stance: _Stance) -> Pairs:
     return Pairs.of(xp, xp.where(down, x, x[:1, ...]), xp.where(down, y, y[:1, ...]))
 
 
-def _pick(xp: Namespace, values: Array, which: Array) -> Array:
+def _pick(xp: Namespace, values: Float[Array, "..."], which: Int[Array, "..."]) -> Float[Array, "..."]:
     # For a single body, in a tenth of the time.
     if which.shape == (1,):
         return values[int(which[0]), ...]
     return xp.take_along_axis(values, which[None, ...], axis=0)[0, ...]
 
 
-def _roll(xp: Namespace, stance: _Stance, balance: _Balance) -> tuple[Vector, Array]:
+def _roll(xp: Namespace, stance: _Stance, balance: _Balance) -> tuple[Vector, Bool[Array, "..."]]:
     """Roll until the next point touches the ground: return `up` afterwards, and which bodies rolled.
 
     A point at height h, at distance u ahead of the pivot, touches after the angle ``atan2(h, u)``: the first to do so

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Literal, Self
+from typing import TYPE_CHECKING, Literal, Self
 
 import numpy as np
 
@@ -13,6 +13,9 @@ from tarsus.errors import UnreachableError
 from tarsus.kinematics.explain import explain_leg
 from tarsus.kinematics.pose import Pose
 from tarsus.robot.robot import Robot
+
+if TYPE_CHECKING:
+    from jaxtyping import Bool, Float, Int
 
 __all__ = ["IKSolution"]
 
@@ -40,14 +43,14 @@ class IKSolution:
     """
 
     robot: Robot
-    feet: Array
+    feet: Float[Array, "*#batch legs 3"]
     body: Pose | None
     knee: Literal["up", "down"]
-    angles: Array
-    reach: Array
+    angles: Float[Array, "*#batch legs 3"]
+    reach: Int[Array, "*#batch legs"]
 
     @cached_property
-    def ok(self) -> Array:
+    def ok(self) -> Bool[Array, "*batch"]:
         """Whether all legs reach their feet ``(...)``."""
         return namespace(self.reach).all(self.reach == 0, axis=-1)
 

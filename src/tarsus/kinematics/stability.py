@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from tarsus.arrays import Array, as_array, as_floats, broadcast_shapes, namespace, require_shape
 from tarsus.kinematics.leg import forward_kinematics
 from tarsus.kinematics.mass import centre_of_mass
@@ -9,10 +11,20 @@ from tarsus.kinematics.polygon import as_mask, hull_margin
 from tarsus.kinematics.pose import Pose
 from tarsus.robot.robot import Robot
 
+if TYPE_CHECKING:
+    from jaxtyping import Bool, Float
+
 __all__ = ["stability_margin"]
 
 
-def stability_margin(robot: Robot, angles: Array, body: Pose, contacts: Array, *, points: Array | None = None) -> Array:
+def stability_margin(
+    robot: Robot,
+    angles: Float[Array, "*#batch legs 3"],
+    body: Pose,
+    contacts: Bool[Array, "*#batch legs"],
+    *,
+    points: Float[Array, "*#batch legs 4 3"] | None = None,
+) -> Float[Array, "*batch"]:
     """Return the static stability margin on flat ground.
 
     Parameters

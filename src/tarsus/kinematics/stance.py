@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,10 +14,13 @@ from tarsus.kinematics.triangle import direction
 from tarsus.robot.geometry import LegGeometry
 from tarsus.robot.robot import Robot
 
+if TYPE_CHECKING:
+    from jaxtyping import Bool, Float
+
 __all__ = ["default_body_height", "default_stance", "reachable_band", "stance_or_nan"]
 
 
-def default_body_height(robot: Robot) -> Array:
+def default_body_height(robot: Robot) -> Float[Array, "..."]:
     """Return the default height of the body's origin above the ground [m].
 
     That of the robot file; else the least height of all legs with a vertical tibia and the femur at 30 deg, but at
@@ -37,7 +40,9 @@ def default_body_height(robot: Robot) -> Array:
     return least if is_traced(least) else float(least)
 
 
-def reachable_band(robot: Robot, height: Array) -> tuple[Array, Array]:
+def reachable_band(
+    robot: Robot, height: Float[Array, "*#batch"]
+) -> tuple[Float[Array, "*batch legs"], Float[Array, "*batch legs"]]:
     """Return the least and greatest distance from the coxa axis at which each foot can stand in the leg's plane.
 
     Source 001's `x_min` and `x_max` with the joint limits: at the ends, femur or tibia are at a limit, or the leg is
@@ -85,7 +90,7 @@ def reachable_band(robot: Robot, height: Array) -> tuple[Array, Array]:
     return xp.where(none, nan, best_start + g.coxa), xp.where(none, nan, best_end + g.coxa)
 
 
-def _band_ends(xp: Namespace, g: LegGeometry, z: Array) -> list[Array]:
+def _band_ends(xp: Namespace, g: LegGeometry, z: Float[Array, "*#batch legs"]) -> list[Float[Array, "... legs"]]:
     """Return the distances from the femur axis at which a joint is at a limit, none of them behind the coxa axis."""
     behind = -g.coxa + xp.zeros_like(z)
     ends = [behind]
@@ -99,7 +104,9 @@ def _band_ends(xp: Namespace, g: LegGeometry, z: Array) -> list[Array]:
     return [xp.maximum(end, behind) for end in ends]
 
 
-def _in_limits(xp: Namespace, g: LegGeometry, r: Array, z: Array) -> Array:
+def _in_limits(
+    xp: Namespace, g: LegGeometry, r: Float[Array, "... legs"], z: Float[Array, "*#batch legs"]
+) -> Bool[Array, "... legs"]:
     distance2 = r * r + z * z
     far, near = g.farthest2 - distance2, distance2 - g.nearest2
     height = tibia_bend(xp, g, knee=1) * root(xp, far * near)
@@ -112,7 +119,9 @@ def _in_limits(xp: Namespace, g: LegGeometry, r: Array, z: Array) -> Array:
     return within
 
 
-def default_stance(robot: Robot, body_height: Array | None = None, *, swing_height: Array = 0.0) -> Array:
+def default_stance(
+    robot: Robot, body_height: Float[Array, "*#batch"] | None = None, *, swing_height: Float[Array, "*#batch"] = 0.0
+) -> Float[Array, "*batch legs 3"]:
     """Return the rest footholds in the body frame.
 
     With the coxa at 0 (or at the limit nearest to 0), in the middle of the reachable band: source 001's
@@ -149,7 +158,9 @@ def default_stance(robot: Robot, body_height: Array | None = None, *, swing_heig
     return feet
 
 
-def stance_or_nan(robot: Robot, body_height: Array, *, swing_height: Array = 0.0) -> Array:
+def stance_or_nan(
+    robot: Robot, body_height: Float[Array, "*#batch"], *, swing_height: Float[Array, "*#batch"] = 0.0
+) -> Float[Array, "*batch legs 3"]:
     """Return the rest footholds as `default_stance` does, with NaN for legs that do not reach the ground.
 
     Parameters
@@ -186,7 +197,9 @@ def stance_or_nan(robot: Robot, body_height: Array, *, swing_height: Array = 0.0
     return stack_last(xp, (x, y, z[..., None] + zero))
 
 
-def _middle(xp: Namespace, robot: Robot, height: Array, swing_height: Array) -> Array:
+def _middle(
+    xp: Namespace, robot: Robot, height: Float[Array, "*#batch"], swing_height: Float[Array, "*#batch"]
+) -> Float[Array, "... legs"]:
     """Return the middle of the band that each foot reaches on the ground and lifted; NaN where it is empty."""
     height, swing_height = height + xp.zeros_like(swing_height), swing_height + xp.zeros_like(height)
     # The axis of the two heights precedes those of a batch of designs.
@@ -197,7 +210,10 @@ def _middle(xp: Namespace, robot: Robot, height: Array, swing_height: Array) -> 
 
 
 def _why_no_stance(
-    robot: Robot, body_height: np.ndarray[Any, Any], swing_height: np.ndarray[Any, Any], missing: np.ndarray[Any, Any]
+    robot: Robot,
+    body_height: Float[np.ndarray, "*#batch"],
+    swing_height: Float[np.ndarray, "*#batch"],
+    missing: Bool[np.ndarray, "... legs"],
 ) -> str:
     """Return which leg has no foothold, and the body heights at which all legs of that design have one."""
     *batch, leg = (int(i) for i in np.argwhere(missing)[0])

@@ -13,12 +13,15 @@ tibia at 1e-7 rad the foot is off by 2.5e-10 m.
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from tarsus.arrays import Array, Namespace, root
 from tarsus.robot.geometry import LegGeometry
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
 __all__ = ["Triangle", "direction", "solve_triangle", "to_leg_frame"]
 
@@ -35,22 +38,29 @@ class Triangle(NamedTuple):
         sideways offset of the femur axis [m^2].
     """
 
-    coxa: Array
-    femur: Array
-    tibia: Array
-    far: Array
-    near: Array
-    beside: Array
+    coxa: Float[Array, "*#batch legs"]
+    femur: Float[Array, "*#batch legs"]
+    tibia: Float[Array, "*#batch legs"]
+    far: Float[Array, "*#batch legs"]
+    near: Float[Array, "*#batch legs"]
+    beside: Float[Array, "*#batch legs"]
 
 
-def direction(xp: Namespace, y: Array, x: Array) -> Array:
+def direction(
+    xp: Namespace, y: Float[Array, "*batch legs"], x: Float[Array, "*batch legs"]
+) -> Float[Array, "... legs"]:
     """Return ``atan2(y, x)``, with a gradient that stays finite at the origin."""
     if xp is np:
         return np.atan2(y, x)
     return xp.atan2(y, xp.where((x == 0) & (y == 0), xp.ones_like(x), x))
 
 
-def to_leg_frame(geometry: LegGeometry, x: Array, y: Array, z: Array) -> tuple[Array, Array, Array]:
+def to_leg_frame(
+    geometry: LegGeometry,
+    x: Float[Array, "*#batch legs"],
+    y: Float[Array, "*#batch legs"],
+    z: Float[Array, "*#batch legs"],
+) -> tuple[Float[Array, "... legs"], Float[Array, "... legs"], Float[Array, "... legs"]]:
     """Transform points from the body frame to the coxa frame, raised to the height of the femur axis."""
     g = geometry
     x, y = x - g.mount_x, y - g.mount_y
@@ -60,9 +70,9 @@ def to_leg_frame(geometry: LegGeometry, x: Array, y: Array, z: Array) -> tuple[A
 def solve_triangle(
     xp: Namespace,
     geometry: LegGeometry,
-    x: Array,
-    y: Array,
-    z: Array,
+    x: Float[Array, "*#batch legs"],
+    y: Float[Array, "*#batch legs"],
+    z: Float[Array, "*#batch legs"],
     *,
     knee: int,
     facing: int = 1,

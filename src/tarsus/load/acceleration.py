@@ -11,7 +11,7 @@ in B's axes: origin, Euler, centripetal, Coriolis and relative acceleration (any
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Self
+from typing import TYPE_CHECKING, Self
 
 import numpy as np
 
@@ -19,10 +19,13 @@ from tarsus.arrays import Array, Namespace, as_array, as_floats, require_finite,
 from tarsus.kinematics.pose import Pose
 from tarsus.robot.robot import Robot
 
+if TYPE_CHECKING:
+    from jaxtyping import Float
+
 __all__ = ["BodyRates", "JointRates", "angular_matrix", "differences", "point_accelerations"]
 
 
-def _zeros() -> Array:
+def _zeros() -> Float[Array, "..."]:
     return np.zeros(3)
 
 
@@ -40,12 +43,12 @@ class BodyRates:
         Linear acceleration of B's origin, in G [m/s^2].
     """
 
-    angular_velocity: Array = field(default_factory=_zeros)
-    angular_acceleration: Array = field(default_factory=_zeros)
-    acceleration: Array = field(default_factory=_zeros)
+    angular_velocity: Float[Array, "*#batch 3"] = field(default_factory=_zeros)
+    angular_acceleration: Float[Array, "*#batch 3"] = field(default_factory=_zeros)
+    acceleration: Float[Array, "*#batch 3"] = field(default_factory=_zeros)
 
     @classmethod
-    def of(cls, time: Array, body: Pose) -> Self:
+    def of(cls, time: Float[Array, "n"], body: Pose) -> Self:
         """Differentiate sampled body poses with `differences`.
 
         Parameters
@@ -68,7 +71,9 @@ class BodyRates:
             acceleration=differences(time, np.broadcast_to(body.position, (len(time), 3)))[1],
         )
 
-    def within(self, xp: Namespace, rotation: Array) -> tuple[Array, Array, Array]:
+    def within(
+        self, xp: Namespace, rotation: Float[Array, "*#batch 3 3"]
+    ) -> tuple[Float[Array, "... 3"], Float[Array, "... 3"], Float[Array, "... 3"]]:
         """Return angular velocity, angular acceleration and acceleration in B's axes, for rotations of B in G."""
         rotated = []
         for name in ("angular_velocity", "angular_acceleration", "acceleration"):
@@ -89,11 +94,13 @@ class JointRates:
         First and second derivative of the joint angles [rad/s, rad/s^2].
     """
 
-    velocity: Array
-    acceleration: Array
+    velocity: Float[Array, "*#batch legs 3"]
+    acceleration: Float[Array, "*#batch legs 3"]
 
 
-def differences(time: Array, values: Array) -> tuple[Array, Array]:
+def differences(
+    time: Float[Array, "n"], values: Float[Array, "n *batch"]
+) -> tuple[Float[Array, "n *batch"], Float[Array, "n *batch"]]:
     """Return first and second time derivatives by central differences; the time steps may be uneven.
 
     The derivatives are those of the parabola through each sample and its two neighbours. With even steps h the errors
@@ -125,13 +132,15 @@ def differences(time: Array, values: Array) -> tuple[Array, Array]:
     return first, np.concatenate([second[:1], second, second[-1:]])
 
 
-def _axis(matrix: Array) -> Array:
+def _axis(matrix: Float[Array, "... 3 3"]) -> Float[Array, "... 3"]:
     """Return the axial vectors of the skew parts of matrices ``(..., 3, 3)``."""
     skew = (matrix - np.swapaxes(matrix, -1, -2)) / 2
     return np.stack([skew[..., 2, 1], skew[..., 0, 2], skew[..., 1, 0]], axis=-1)
 
 
-def angular_matrix(xp: Namespace, omega: Array, alpha: Array) -> Array:
+def angular_matrix(
+    xp: Namespace, omega: Float[Array, "... 3"], alpha: Float[Array, "... 3"]
+) -> Float[Array, "*batch 3 3"]:
     """Return the matrix ``(..., 3, 3)`` that maps r to ``alpha x r + omega x (omega x r)``."""
     x, y, z = (omega[..., i] for i in range(3))
     u, v, w = (alpha[..., i] for i in range(3))
@@ -141,8 +150,13 @@ def angular_matrix(xp: Namespace, omega: Array, alpha: Array) -> Array:
 
 
 def point_accelerations(
-    xp: Namespace, robot: Robot, angles: Array, points: Array, joints: JointRates, body: tuple[Array, Array, Array]
-) -> Array:
+    xp: Namespace,
+    robot: Robot,
+    angles: Float[Array, "*#batch legs 3"],
+    points: Float[Array, "*#batch legs 4 3"],
+    joints: JointRates,
+    body: tuple[Float[Array, "*#batch 3"], Float[Array, "*#batch 3"], Float[Array, "*#batch 3"]],
+) -> Float[Array, "*batch legs 4 3"]:
     """Return the accelerations of the leg points relative to G, in B's axes.
 
     Parameters
@@ -185,7 +199,13 @@ def point_accelerations(
     return xp.reshape(total, (*total.shape[:-2], robot.legs, 4, 3))
 
 
-def _relative(xp: Namespace, robot: Robot, angles: Array, velocity: Array, acceleration: Array) -> tuple[Array, Array]:
+def _relative(
+    xp: Namespace,
+    robot: Robot,
+    angles: Float[Array, "*#batch legs 3"],
+    velocity: Float[Array, "*#batch legs 3"],
+    acceleration: Float[Array, "... 3"],
+) -> tuple[Float[Array, "... legs 4 3"], Float[Array, "... legs 4 3"]]:
     """Return the velocities and accelerations of the leg points relative to B.
 
     With the leg's plane at heading h, a point r outward, s sideways and z up has the velocity ``r' - s h'`` outward,

@@ -12,15 +12,16 @@ As its norm is penalised and not its square (an exact penalty), e is 0 wherever 
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from tarsus.errors import MissingDataError, TarsusError
 
-__all__ = ["ConeProgram", "Floats"]
+if TYPE_CHECKING:
+    from jaxtyping import Float, Int
 
-Floats: TypeAlias = np.ndarray[Any, np.dtype[np.float64]]
+__all__ = ["ConeProgram"]
 
 _PENALTY = 1e3  # of the residual; the gradient of the objective is about 1 for forces that sum to 1
 _TOLERANCE = 1e-12
@@ -48,15 +49,15 @@ class ConeProgram(NamedTuple):
         Linear term of the objective.
     """
 
-    sample: np.ndarray[Any, np.dtype[np.int64]]
+    sample: Int[np.ndarray, "feet"]
     samples: int
-    arms: Floats
+    arms: Float[np.ndarray, "feet 3"]
     friction: float
-    up: Floats
-    square: Floats
-    linear: Floats
+    up: Float[np.ndarray, "3"]
+    square: Float[np.ndarray, "feet 3 3"]
+    linear: Float[np.ndarray, "feet 3"]
 
-    def solve(self) -> tuple[Floats, Floats]:
+    def solve(self) -> tuple[Float[np.ndarray, "feet 3"], Float[np.ndarray, "samples 6"]]:
         """Return the contact forces and the residual wrenches, in units of weight and size.
 
         Returns
@@ -108,7 +109,7 @@ class ConeProgram(NamedTuple):
         forces = values[: sizes[0]].reshape(feet, 3)
         return forces, values[sizes[0] : sizes[0] + sizes[1]].reshape(samples, 6)
 
-    def _blocks(self) -> list[tuple[Floats, Floats, Floats]]:
+    def _blocks(self) -> list[tuple[Int[np.ndarray, "..."], Int[np.ndarray, "..."], Float[np.ndarray, "..."]]]:
         """Return rows, columns and entries of the constraint matrix, block by block."""
         feet, samples = len(self.arms), self.samples
         axis = np.arange(3)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -30,6 +30,9 @@ from tarsus.kinematics.pose import Pose
 from tarsus.load.load_distribution import load_fractions, single_pose_fractions
 from tarsus.load.payload import Payload, as_payload
 from tarsus.robot.robot import Robot
+
+if TYPE_CHECKING:
+    from jaxtyping import Bool, Float
 
 __all__ = ["GRAVITY", "ContactForces", "contact_forces"]
 
@@ -59,17 +62,17 @@ class ContactForces:
         Weight of robot and payload [N].
     """
 
-    forces: Array
-    margin: Array
-    weight: Array
+    forces: Float[Array, "*#batch legs 3"]
+    margin: Float[Array, "*#batch"]
+    weight: Float[Array, "*#batch"]
 
     @cached_property
-    def balanced(self) -> Array:
+    def balanced(self) -> Bool[Array, "*batch"]:
         """Whether there is an equilibrium, array of bool ``(...)``; a load on the edge of the polygon has one."""
         return self.margin >= -_ROUNDING
 
     @property
-    def tipping_moment(self) -> Array:
+    def tipping_moment(self) -> Float[Array, "*batch"]:
         """Unbalanced moment ``(...)`` [N m]; 0 in equilibrium."""
         xp = namespace(self.margin)
         return self.weight * xp.maximum(-self.margin, xp.zeros_like(self.margin))
@@ -77,13 +80,13 @@ class ContactForces:
 
 def contact_forces(
     robot: Robot,
-    angles: Array,
+    angles: Float[Array, "*#batch legs 3"],
     body: Pose,
-    contacts: Array,
+    contacts: Bool[Array, "*#batch legs"],
     *,
     payload: Payload | float = 0.0,
     gravity: Sequence[float] = GRAVITY,
-    points: Array | None = None,
+    points: Float[Array, "*#batch legs 4 3"] | None = None,
 ) -> ContactForces:
     """Return contact forces along gravity in equilibrium: non-negative, with the least sum of squares.
 
@@ -135,7 +138,7 @@ def contact_forces(
     return ContactForces(forces=forces, margin=margin, weight=weight)
 
 
-def checked_contacts(xp: Namespace, robot: Robot, contacts: Array) -> Array:
+def checked_contacts(xp: Namespace, robot: Robot, contacts: Bool[Array, "*#batch legs"]) -> Bool[Array, "*batch legs"]:
     """Validate contacts; every sample needs a foot on the ground.
 
     Parameters
@@ -168,7 +171,7 @@ def checked_contacts(xp: Namespace, robot: Robot, contacts: Array) -> Array:
     return contacts
 
 
-def upward(gravity: Sequence[float]) -> tuple[float, np.ndarray[Any, Any]]:
+def upward(gravity: Sequence[float]) -> tuple[float, Float[np.ndarray, "3 3"]]:
     """Return the magnitude of gravity and an orthonormal basis in G whose first axis points against gravity.
 
     Parameters
@@ -203,7 +206,9 @@ def upward(gravity: Sequence[float]) -> tuple[float, np.ndarray[Any, Any]]:
     return strength, np.stack([up, first, np.cross(up, first)])
 
 
-def distribute_load(xp: Namespace, feet: Array, contacts: Array, batch: tuple[int, ...]) -> tuple[Array, Array, Array]:
+def distribute_load(
+    xp: Namespace, feet: Float[Array, "*#batch legs 2"], contacts: Bool[Array, "*#batch legs"], batch: tuple[int, ...]
+) -> tuple[Float[Array, "*batch legs"], Float[Array, "*batch"], Float[Array, "*batch 2"]]:
     """Return the load fractions of feet for a load at the origin, or at the nearest point of the support polygon.
 
     Parameters
@@ -240,7 +245,13 @@ def distribute_load(xp: Namespace, feet: Array, contacts: Array, batch: tuple[in
     return by_sample[..., :legs], by_sample[..., legs], by_sample[..., legs + 1 :]
 
 
-def _distribute_block(xp: Namespace, feet: Array, contacts: Array, batch: tuple[int, ...], index: Index) -> Array:
+def _distribute_block(
+    xp: Namespace,
+    feet: Float[Array, "*#batch legs 2"],
+    contacts: Bool[Array, "*#batch legs"],
+    batch: tuple[int, ...],
+    index: Index,
+) -> Float[Array, "..."]:
     coordinates = columns_of(xp, feet, batch, index, tail=2)
     x, y = coordinates[0, ...], coordinates[1, ...]
     down = columns_of(xp, contacts, batch, index, tail=1)

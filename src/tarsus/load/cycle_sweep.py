@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -31,9 +31,10 @@ from tarsus.robot.geometry import LegGeometry
 from tarsus.robot.robot import Robot
 from tarsus.robot.shape import TAILS
 
-__all__ = ["CyclePhases", "CycleSweep"]
+if TYPE_CHECKING:
+    from jaxtyping import Bool, Float, Int, Shaped
 
-Floats = np.ndarray[Any, np.dtype[np.float64]]
+__all__ = ["CyclePhases", "CycleSweep"]
 
 _BLOCK_SIZE = 49152  # legs times phases in a block: few calls, and the arrays of a block fit in the cache
 
@@ -45,10 +46,10 @@ class CyclePhases(NamedTuple):
     distinct contact patterns: the feet on the ground, and the phases with that pattern.
     """
 
-    phases: Floats
-    contacts: np.ndarray[Any, np.dtype[np.bool_]]
-    offsets: Floats
-    groups: list[tuple[np.ndarray[Any, Any], np.ndarray[Any, Any]]]
+    phases: Float[np.ndarray, "phases"]
+    contacts: Bool[np.ndarray, "*batch legs"]
+    offsets: Float[np.ndarray, "3 legs phases 1"]
+    groups: list[tuple[Int[np.ndarray, "..."], Int[np.ndarray, "..."]]]
 
     @classmethod
     def of(cls, gait: Gait, heading: float, phases: int) -> CyclePhases:
@@ -74,14 +75,14 @@ class CycleSweep:
     xp: Namespace
     robot: Robot
     payload: Payload
-    rest: Array
-    stroke: Array
-    body_height: Array
-    swing_height: Array
+    rest: Float[Array, "*#batch legs 3"]
+    stroke: Float[Array, "*#batch"]
+    body_height: Float[Array, "*#batch"]
+    swing_height: Float[Array, "*#batch"]
     batch: tuple[int, ...]
     cycle: CyclePhases
 
-    def by_blocks(self) -> tuple[Array, ...]:
+    def by_blocks(self) -> tuple[Shaped[Array, "..."], ...]:
         """Solve NumPy designs block by block; designs that `solve_block` leaves unsolved are solved by their angles."""
         legs, phase_count = self.robot.legs, len(self.cycle.phases)
         shape = (legs, phase_count, *self.batch)
@@ -108,7 +109,7 @@ class CycleSweep:
             reach[unsolved_at], balanced[unsolved_at] = rows[3:]
         return angles, torques, forces, reach, balanced
 
-    def by_angles(self) -> tuple[Array, ...]:
+    def by_angles(self) -> tuple[Shaped[Array, "..."], ...]:
         """Return angles, torques, forces, reach and equilibrium of all designs, from inverse kinematics."""
         xp, legs, phase_count = self.xp, self.robot.legs, len(self.cycle.phases)
         forward, left, up = (as_array(xp, np.ascontiguousarray(values[..., 0].T)) for values in self.cycle.offsets)
@@ -132,7 +133,7 @@ class CycleSweep:
         zeros = xp.zeros_like(normal_force)
         return joints, xp.stack((zeros, femur, tibia)), xp.stack((zeros, zeros, normal_force)), reach, balanced
 
-    def block(self, masses: Array, index: Index) -> Block:
+    def block(self, masses: Float[Array, "... legs 4"], index: Index) -> Block:
         """Return the designs at an index of the batch."""
         xp, robot = self.xp, self.robot
 
@@ -156,7 +157,11 @@ class CycleSweep:
             swing_height=columns(self.swing_height, 0),
         )
 
-    def statics(self, block: Block, plane: LegPlane) -> tuple[Array, Array, Array, Array]:
+    def statics(
+        self, block: Block, plane: LegPlane
+    ) -> tuple[
+        Float[Array, "... legs m n"], Float[Array, "... legs m n"], Float[Array, "... legs m n"], Bool[Array, "..."]
+    ]:
         """Return femur torques, tibia torques, normal forces and whether there is an equilibrium."""
         xp = self.xp
         x, y = feet_from_load(xp, block, plane)
@@ -177,7 +182,7 @@ class CycleSweep:
         femur, tibia = torques_in_plane(block, plane, normal_force, STANDARD_GRAVITY)
         return femur, tibia, normal_force, xp.take(xp.concat(balanced, axis=0), order, axis=0)
 
-    def select(self, where: tuple[np.ndarray[Any, Any], ...]) -> CycleSweep:
+    def select(self, where: tuple[Int[np.ndarray, "..."], ...]) -> CycleSweep:
         """Return selected designs as a flat batch."""
 
         def selection(values: Array, tail: int) -> Array:
@@ -196,7 +201,7 @@ def _known(sweep: CycleSweep, name: str) -> bool:
     return getattr(sweep.robot, name) is not None
 
 
-def _rows(array: Array) -> tuple[Array, ...]:
+def _rows(array: Float[Array, "..."]) -> tuple[Float[Array, "..."], ...]:
     return tuple(array[i, ...] for i in range(array.shape[0]))
 
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -24,9 +24,10 @@ from tarsus.load.payload import Payload, as_payload
 from tarsus.robot.robot import Robot
 from tarsus.robot.shape import TAILS
 
-__all__ = ["CycleTorques", "cycle_torques"]
+if TYPE_CHECKING:
+    from jaxtyping import Bool, Float, Int, Shaped
 
-Floats = np.ndarray[Any, np.dtype[np.float64]]
+__all__ = ["CycleTorques", "cycle_torques"]
 
 _MOST_PHASES = 1_000_000
 
@@ -53,22 +54,22 @@ class CycleTorques:
         Whether there is an equilibrium; if not, torques and forces are those at the onset of tipping.
     """
 
-    phases: Floats
-    contacts: np.ndarray[Any, np.dtype[np.bool_]]
-    angles: Array
-    reach: Array
-    torques: Array
-    forces: Array
-    balanced: Array
+    phases: Float[np.ndarray, "phases"]
+    contacts: Bool[np.ndarray, "phases legs"]
+    angles: Float[Array, "*#batch phases legs 3"]
+    reach: Int[Array, "*#batch phases legs"]
+    torques: Float[Array, "*#batch phases legs 3"]
+    forces: Float[Array, "*#batch phases legs 3"]
+    balanced: Bool[Array, "*#batch phases"]
 
     @cached_property
-    def peak(self) -> Array:
+    def peak(self) -> Float[Array, "*batch 3"]:
         """Largest torque of coxa, femur and tibia over the cycle and all legs ``(..., 3)`` [N m]."""
         xp = namespace(self.torques)
         return xp.max(xp.abs(self.torques), axis=(-3, -2))
 
     @cached_property
-    def ok(self) -> Array:
+    def ok(self) -> Bool[Array, "*batch"]:
         """Whether all feet are within reach and the robot is in equilibrium at every phase, array of bool ``(...)``."""
         xp = namespace(self.reach, self.balanced)
         return xp.all(self.reach == 0, axis=(-2, -1)) & xp.all(self.balanced, axis=-1)
@@ -78,10 +79,10 @@ def cycle_torques(
     robot: Robot,
     gait: Gait,
     *,
-    stroke: Array,
+    stroke: Float[Array, "*#batch"],
     heading: float = 0.0,
-    body_height: Array | None = None,
-    swing_height: Array | None = None,
+    body_height: Float[Array, "*#batch"] | None = None,
+    swing_height: Float[Array, "*#batch"] | None = None,
     phases: int = 32,
     payload: Payload | float = 0.0,
 ) -> CycleTorques:
@@ -144,7 +145,7 @@ def cycle_torques(
     return _result(sweep, sweep.by_blocks() if xp is np else sweep.by_angles(), batch)
 
 
-def _result(sweep: CycleSweep, rows: tuple[Array, ...], batch: tuple[int, ...]) -> CycleTorques:
+def _result(sweep: CycleSweep, rows: tuple[Shaped[Array, "..."], ...], batch: tuple[int, ...]) -> CycleTorques:
     """Return the results with the batch axes first; NumPy arrays are views."""
     xp, cycle, legs, phase_count = sweep.xp, sweep.cycle, sweep.robot.legs, len(sweep.cycle.phases)
 

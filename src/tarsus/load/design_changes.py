@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -16,9 +16,10 @@ from tarsus.load.verdict import SAFETY_FACTOR, Rule, joint_verdicts, require_rul
 from tarsus.robot.robot import JOINTS, Robot
 from tarsus.robot.servo import Servo
 
-__all__ = ["largest_payload", "length_sensitivity", "why_masses_stay", "with_lengths", "with_servos"]
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
-Floats = np.ndarray[Any, np.dtype[np.float64]]
+__all__ = ["largest_payload", "length_sensitivity", "why_masses_stay", "with_lengths", "with_servos"]
 
 _HEAVIEST_PAYLOAD = 1e3  # [kg]
 _PAYLOAD_TOLERANCE = 1e-4  # [kg]
@@ -180,7 +181,7 @@ def with_lengths(robot: Robot, **lengths: float) -> Robot:
     return robot.replace(link_com=com, **changes)
 
 
-def length_sensitivity(base: JointLoads, *, step: float = 0.01) -> dict[str, Floats]:
+def length_sensitivity(base: JointLoads, *, step: float = 0.01) -> dict[str, Float[np.ndarray, "... 3"]]:
     """Return the derivative of the peak torques with respect to each link length, for fixed feet and body poses.
 
     Central differences over two computations of the whole motion with the same footholds and body poses.
@@ -206,7 +207,7 @@ def length_sensitivity(base: JointLoads, *, step: float = 0.01) -> dict[str, Flo
     return sensitivity
 
 
-def _peak_with(base: JointLoads, link: str, factor: float) -> Floats:
+def _peak_with(base: JointLoads, link: str, factor: float) -> Float[np.ndarray, "... 3"]:
     """Return the largest peak torques of coxa, femur and tibia with one link scaled."""
     motion, changed = base.motion, with_lengths(base.robot, **{link: factor})
     solution = inverse_kinematics(changed, motion.feet, motion.body)

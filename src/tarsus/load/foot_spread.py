@@ -7,14 +7,16 @@ axis and across it, the three coefficients decouple, so that feet on a line need
 
 from __future__ import annotations
 
-from typing import NamedTuple, Self, TypeAlias
+from typing import TYPE_CHECKING, NamedTuple, Self, TypeAlias
 
 from tarsus.arrays import Array, Namespace
 
-__all__ = ["FLAT", "Column", "Spread", "Triple", "evaluate_plane"]
+if TYPE_CHECKING:
+    from jaxtyping import Bool, Float
 
-Column: TypeAlias = Array
-Triple: TypeAlias = tuple[Column, Column, Column]
+__all__ = ["FLAT", "Spread", "Triple", "evaluate_plane"]
+
+Triple: TypeAlias = tuple[Array, Array, Array]
 
 FLAT = 1e-13
 """Relative spread below which feet count as collinear: 1000 rounding errors."""
@@ -30,15 +32,21 @@ class Spread(NamedTuple):
     centroid along the first axis, and of the residuals across it.
     """
 
-    swap: Column
-    count: Column
-    centroid: tuple[Column, Column]
-    slope: Column
-    along: Column
-    across: Column
+    swap: Bool[Array, "..."]
+    count: Float[Array, "..."]
+    centroid: tuple[Float[Array, "..."], Float[Array, "..."]]
+    slope: Float[Array, "..."]
+    along: Float[Array, "..."]
+    across: Float[Array, "..."]
 
     @classmethod
-    def of(cls, xp: Namespace, x: Array, y: Array, which: Array) -> Self:
+    def of(
+        cls,
+        xp: Namespace,
+        x: Float[Array, "legs batch"],
+        y: Float[Array, "legs batch"],
+        which: Bool[Array, "... legs batch"],
+    ) -> Self:
         """Return the spread of the feet at ``(x, y)``, ``(legs, batch)``, that `which` selects."""
         weights = xp.astype(which, x.dtype)
         count = xp.sum(weights, axis=0)
@@ -53,7 +61,9 @@ class Spread(NamedTuple):
         centroid = (xp.where(swap, mid_y, mid_x), xp.where(swap, mid_x, mid_y))
         return cls(swap, count, centroid, slope, along, xp.sum(residual * residual, axis=0))
 
-    def balance(self, xp: Namespace, total: Column, moment_x: Column, moment_y: Column) -> Triple:
+    def balance(
+        self, xp: Namespace, total: Float[Array, "..."], moment_x: Float[Array, "..."], moment_y: Float[Array, "..."]
+    ) -> Triple:
         """Return the coefficients of the load fractions, negative ones included, with this sum and these moments.
 
         Collinear feet balance only the moment along their line, a single foot only the sum.
@@ -65,7 +75,9 @@ class Spread(NamedTuple):
         )
         return self._plane(xp, total, along, across)
 
-    def free(self, xp: Namespace, total: Column, moment_x: Column, moment_y: Column) -> Triple:
+    def free(
+        self, xp: Namespace, total: Float[Array, "..."], moment_x: Float[Array, "..."], moment_y: Float[Array, "..."]
+    ) -> Triple:
         """Return coefficients that are zero at these feet and rise towards feet that could balance the residual moment.
 
         Where the residual is within rounding, they are zero.
@@ -76,17 +88,23 @@ class Spread(NamedTuple):
         )
         return self._plane(xp, xp.zeros_like(total), along, across)
 
-    def _moments(self, xp: Namespace, total: Column, moment_x: Column, moment_y: Column) -> tuple[Column, Column]:
+    def _moments(
+        self, xp: Namespace, total: Float[Array, "..."], moment_x: Float[Array, "..."], moment_y: Float[Array, "..."]
+    ) -> tuple[Float[Array, "..."], Float[Array, "..."]]:
         """Return the moments about the feet's centroid, along the first axis and across it."""
         first = xp.where(self.swap, moment_y, moment_x) - total * self.centroid[0]
         return first, xp.where(self.swap, moment_x, moment_y) - total * self.centroid[1] - self.slope * first
 
-    def _plane(self, xp: Namespace, total: Column, along: Column, across: Column) -> Triple:
+    def _plane(
+        self, xp: Namespace, total: Float[Array, "..."], along: Float[Array, "..."], across: Float[Array, "..."]
+    ) -> Triple:
         along = along - across * self.slope
         constant = total / self.count - along * self.centroid[0] - across * self.centroid[1]
         return constant, xp.where(self.swap, across, along), xp.where(self.swap, along, across)
 
 
-def evaluate_plane(dual: Triple, x: Array, y: Array) -> Array:
+def evaluate_plane(
+    dual: Triple, x: Float[Array, "legs batch"], y: Float[Array, "legs batch"]
+) -> Float[Array, "... legs batch"]:
     """Return ``a + b x + c y`` at each foot."""
     return dual[0] + dual[1] * x + dual[2] * y

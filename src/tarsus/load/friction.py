@@ -11,20 +11,23 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from tarsus.arrays import as_floats, broadcast_shapes, require_finite
+from tarsus.arrays import Array, as_floats, broadcast_shapes, require_finite
 from tarsus.errors import InputError, UnknownNameError
 from tarsus.kinematics.leg import forward_kinematics, leg_jacobian
 from tarsus.kinematics.mass import centre_of_mass, total_mass
 from tarsus.kinematics.pose import Pose
-from tarsus.load.cone_program import ConeProgram, Floats
+from tarsus.load.cone_program import ConeProgram
 from tarsus.load.contact import GRAVITY, checked_contacts, upward
 from tarsus.load.payload import Payload, as_payload
 from tarsus.load.torque import joint_torques
 from tarsus.robot.robot import Robot
+
+if TYPE_CHECKING:
+    from jaxtyping import Bool, Float
 
 __all__ = ["FrictionForces", "contact_forces_with_friction"]
 
@@ -49,17 +52,17 @@ class FrictionForces:
         Whether forces in the friction cones balance the weight.
     """
 
-    forces: Floats
-    residual_force: Floats
-    residual_moment: Floats
-    balanced: np.ndarray[Any, np.dtype[np.bool_]]
+    forces: Float[np.ndarray, "*#batch legs 3"]
+    residual_force: Float[np.ndarray, "*#batch 3"]
+    residual_moment: Float[np.ndarray, "*#batch 3"]
+    balanced: Bool[Array, "*#batch"]
 
     @cached_property
-    def friction_used(self) -> Floats:
+    def friction_used(self) -> Float[np.ndarray, "*batch legs"]:
         """Tangential over normal force of each foot ``(..., legs)``; 0 for a foot without load."""
         tangential = np.linalg.norm(self.forces[..., :2], axis=-1)
         normal = self.forces[..., 2]
-        used: Floats = np.where(normal > 0, tangential / np.where(normal > 0, normal, 1.0), 0.0)
+        used: np.ndarray = np.where(normal > 0, tangential / np.where(normal > 0, normal, 1.0), 0.0)
         return used
 
     def require(self) -> FrictionForces:
@@ -90,9 +93,9 @@ class FrictionForces:
 
 def contact_forces_with_friction(
     robot: Robot,
-    angles: Floats,
+    angles: Float[np.ndarray, "*#batch legs 3"],
     body: Pose,
-    contacts: np.ndarray[Any, np.dtype[np.bool_]],
+    contacts: Bool[np.ndarray, "*#batch legs"],
     *,
     friction: float,
     payload: Payload | float = 0.0,
@@ -185,7 +188,9 @@ def contact_forces_with_friction(
     )
 
 
-def _torque_objective(lever: Floats, unloaded: Floats) -> tuple[Floats, Floats]:
+def _torque_objective(
+    lever: Float[np.ndarray, "... 3 3"], unloaded: Float[np.ndarray, "... 3"]
+) -> tuple[Float[np.ndarray, "... 3 3"], Float[np.ndarray, "... 3"]]:
     """Return quadratic and linear terms, in the forces, of half the squared torques ``unloaded - lever^T force``."""
     square = lever @ np.swapaxes(lever, -1, -2) + _REGULARISATION * np.eye(3)
     return square, -(lever @ unloaded[..., None])[..., 0]

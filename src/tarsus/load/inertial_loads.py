@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -24,6 +25,9 @@ from tarsus.load.acceleration import BodyRates, JointRates, angular_matrix, poin
 from tarsus.load.contact import GRAVITY, upward
 from tarsus.load.payload import Payload, as_payload
 from tarsus.robot.robot import Robot
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
 __all__ = ["InertialLoads", "inertial_loads"]
 
@@ -44,21 +48,21 @@ class InertialLoads:
         Moment of legs, body and payload about B's origin [N m].
     """
 
-    points: Array
-    force: Array
-    moment: Array
+    points: Float[Array, "*#batch legs 4 3"]
+    force: Float[Array, "*#batch 3"]
+    moment: Float[Array, "*#batch 3"]
 
 
 def inertial_loads(
     robot: Robot,
-    angles: Array,
+    angles: Float[Array, "*#batch legs 3"],
     body: Pose,
     joints: JointRates,
     rates: BodyRates,
     *,
     payload: Payload | float = 0.0,
     gravity: Sequence[float] = GRAVITY,
-    points: Array | None = None,
+    points: Float[Array, "*#batch legs 4 3"] | None = None,
 ) -> InertialLoads:
     """Return the weight and inertial forces on the leg points, and the resultant with body and payload.
 
@@ -116,7 +120,9 @@ def inertial_loads(
     return InertialLoads(points=on_points, force=force, moment=moment)
 
 
-def _rod_forces(xp: Namespace, robot: Robot, accelerations: Array) -> Array:
+def _rod_forces(
+    xp: Namespace, robot: Robot, accelerations: Float[Array, "... legs 4 3"]
+) -> Float[Array, "*batch legs 4 3"]:
     """Return the weight and inertial forces of the links on the leg points ``(..., legs, 4, 3)``."""
     ends, masses = point_masses(xp, robot), as_array(xp, robot.link_mass)
     # Only the first link contributes to the first point mass, so the outer masses follow link by link.
@@ -137,12 +143,12 @@ def _rod_forces(xp: Namespace, robot: Robot, accelerations: Array) -> Array:
     return xp.concat((on_inner, zeros), axis=-2) + xp.concat((zeros, on_outer), axis=-2)
 
 
-def _box(xp: Namespace, robot: Robot) -> Array:
+def _box(xp: Namespace, robot: Robot) -> Float[Array, "*batch 3"]:
     """Return the body's moments of inertia about its centre of mass ``(..., 3)`` [kg m^2]."""
     squares = as_array(xp, robot.body_size) ** 2
     return as_array(xp, robot.body_mass)[..., None] * (xp.sum(squares, axis=-1)[..., None] - squares) * _ROD
 
 
-def _cross(xp: Namespace, left: Array, right: Array) -> Array:
+def _cross(xp: Namespace, left: Float[Array, "... 3"], right: Float[Array, "... 3"]) -> Float[Array, "... 3"]:
     shape = np.broadcast_shapes(left.shape, right.shape)
     return xp.linalg.cross(xp.broadcast_to(left, shape), xp.broadcast_to(right, shape))

@@ -23,6 +23,8 @@ from tarsus.load.zero_moment import ground_forces
 from tarsus.robot.robot import Robot
 
 if TYPE_CHECKING:
+    from jaxtyping import Bool, Float
+
     from tarsus.gait.motion import Motion
 
 __all__ = ["MotionTorques", "dynamic_torques", "motion_torques"]
@@ -45,9 +47,9 @@ class MotionTorques:
         Assumptions made.
     """
 
-    torques: Array
-    forces: Array
-    margin: Array
+    torques: Float[Array, "*#batch legs 3"]
+    forces: Float[Array, "*#batch legs 3"]
+    margin: Float[Array, "*#batch"]
     assumed: tuple[str, ...] = ()
 
 
@@ -104,15 +106,15 @@ def motion_torques(
 
 def dynamic_torques(
     robot: Robot,
-    angles: Array,
+    angles: Float[Array, "*#batch legs 3"],
     body: Pose,
-    contacts: Array,
+    contacts: Bool[Array, "*#batch legs"],
     joints: JointRates,
     rates: BodyRates,
     *,
     payload: Payload | float = 0.0,
     gravity: Sequence[float] = GRAVITY,
-    forces: Array | None = None,
+    forces: Float[Array, "*#batch legs 3"] | None = None,
 ) -> MotionTorques:
     """Return the joint torques for given joint and body accelerations.
 

@@ -17,7 +17,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -25,6 +25,9 @@ from tarsus.arrays import Array, Namespace, is_traced, root
 from tarsus.kinematics.convex_hull import origin_margin
 from tarsus.kinematics.planar_moments import PlanarMoments
 from tarsus.load.foot_spread import FLAT, Spread, Triple, evaluate_plane
+
+if TYPE_CHECKING:
+    from jaxtyping import Bool, Float, Shaped
 
 __all__ = ["load_fractions", "single_pose_fractions"]
 
@@ -35,7 +38,9 @@ _LEAST_FRACTION = 1e-6  # on a foot that certainly bears
 _LEAST_SPREAD = 1e-4  # relative determinant above which the normal equations are accurate to 12 digits
 
 
-def load_fractions(xp: Namespace, x: Array, y: Array, down: Array) -> Array:
+def load_fractions(
+    xp: Namespace, x: Float[Array, "legs batch"], y: Float[Array, "legs batch"], down: Bool[Array, "legs batch"]
+) -> Float[Array, "legs batch"]:
     """Return the fraction of a load on each foot.
 
     Parameters
@@ -102,7 +107,9 @@ def single_pose_fractions(
     return [next(fractions) if touches else 0.0 for touches in contacts], origin_margin(down)[0]
 
 
-def _normalised(xp: Namespace, x: Array, y: Array, down: Array) -> tuple[Array, Array]:
+def _normalised(
+    xp: Namespace, x: Float[Array, "legs batch"], y: Float[Array, "legs batch"], down: Bool[Array, "legs batch"]
+) -> tuple[Float[Array, "... legs batch"], Float[Array, "... legs batch"]]:
     """Map the plane affinely so that the feet on the ground have unit second moments in both directions."""
     size = xp.max(xp.where(down, xp.maximum(xp.abs(x), xp.abs(y)), xp.zeros_like(x)), axis=0)
     size = xp.where(size > 0, size, xp.ones_like(size))
@@ -116,16 +123,23 @@ def _normalised(xp: Namespace, x: Array, y: Array, down: Array) -> tuple[Array, 
     return xp.where(down & wide, x, 0.0), xp.where(down & high, y, 0.0)
 
 
-def _unit_load(xp: Namespace, x: Array) -> Triple:
+def _unit_load(xp: Namespace, x: Float[Array, "legs batch"]) -> Triple:
     zero = xp.zeros_like(x[0, ...])
     return xp.ones_like(zero), zero, zero
 
 
-def _residual(xp: Namespace, x: Array, y: Array, fractions: Array) -> Triple:
+def _residual(
+    xp: Namespace,
+    x: Float[Array, "legs batch"],
+    y: Float[Array, "legs batch"],
+    fractions: Float[Array, "... legs batch"],
+) -> Triple:
     return 1 - xp.sum(fractions, axis=0), -xp.sum(fractions * x, axis=0), -xp.sum(fractions * y, axis=0)
 
 
-def _fractions_of(xp: Namespace, x: Array, y: Array, bearing: Array) -> Array:
+def _fractions_of(
+    xp: Namespace, x: Float[Array, "legs batch"], y: Float[Array, "legs batch"], bearing: Bool[Array, "... legs batch"]
+) -> Float[Array, "... legs batch"]:
     """Return the fractions of the bearing feet, refined to remove the residual left by rounding."""
     fractions = xp.zeros_like(x)
     for _ in range(2):
@@ -139,7 +153,13 @@ def _fractions_of(xp: Namespace, x: Array, y: Array, bearing: Array) -> Array:
     return xp.where(bearing, fractions, 0.0)
 
 
-def _find_bearing(xp: Namespace, x: Array, y: Array, down: Array, dual: Triple) -> Array:
+def _find_bearing(
+    xp: Namespace,
+    x: Float[Array, "legs batch"],
+    y: Float[Array, "legs batch"],
+    down: Bool[Array, "legs batch"],
+    dual: Triple,
+) -> Bool[Array, "... legs batch"]:
     """Find the feet that bear load, by Newton's method on the dual."""
 
     def step(state: tuple[Array, ...]) -> tuple[Array, ...]:
@@ -169,13 +189,22 @@ def _find_bearing(xp: Namespace, x: Array, y: Array, down: Array, dual: Triple) 
     return loop(unfinished, step, (down, start, *dual, 0))[1]
 
 
-def _while(unfinished: Callable[..., Any], step: Callable[..., tuple[Array, ...]], state: tuple[Array, ...]) -> Any:
+def _while(
+    unfinished: Callable[..., Any], step: Callable[..., tuple[Array, ...]], state: tuple[Shaped[Array, "..."], ...]
+) -> Any:
     while bool(unfinished(state)):
         state = step(state)
     return state
 
 
-def _line_search(xp: Namespace, x: Array, y: Array, down: Array, dual: Triple, direction: Triple) -> Triple:
+def _line_search(
+    xp: Namespace,
+    x: Float[Array, "legs batch"],
+    y: Float[Array, "legs batch"],
+    down: Bool[Array, "legs batch"],
+    dual: Triple,
+    direction: Triple,
+) -> Triple:
     """Minimise the dual along a direction: its slope is linear between the zeros of the feet's fractions."""
     value, change, gain = evaluate_plane(dual, x, y), evaluate_plane(direction, x, y), direction[0]
 

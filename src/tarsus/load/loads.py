@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -19,9 +19,11 @@ from tarsus.load.payload import Payload, as_payload
 from tarsus.load.servo_limits import at_supply, utilisation
 from tarsus.robot.robot import JOINTS, Robot
 
+if TYPE_CHECKING:
+    from jaxtyping import Float, Int
+
 __all__ = ["JointLoads", "joint_loads"]
 
-Floats = np.ndarray[Any, np.dtype[np.float64]]
 
 # Rounding of a margin [m]: a load on the edge of the support polygon is in equilibrium.
 _ROUNDING = 1e-9
@@ -58,9 +60,9 @@ class JointLoads:
     robot: Robot
     motion: Motion
     payload: Payload
-    torques: Floats
-    forces: Floats
-    margin: Floats
+    torques: Float[np.ndarray, "n legs 3"]
+    forces: Float[np.ndarray, "n legs 3"]
+    margin: Float[np.ndarray, "n"]
     gravity: tuple[float, ...]
     inertial: bool
     supply: float | None = None
@@ -77,33 +79,33 @@ class JointLoads:
         return bool((self.margin >= -_ROUNDING).all())
 
     @property
-    def speeds(self) -> Floats:
+    def speeds(self) -> Float[np.ndarray, "n legs 3"]:
         """Joint velocities ``(n, legs, 3)`` [rad/s]."""
         return self.motion.joint_speed
 
     @cached_property
-    def peak(self) -> Floats:
+    def peak(self) -> Float[np.ndarray, "legs 3"]:
         """Largest torque of each joint ``(legs, 3)`` [N m]."""
         return _floats(np.abs(self.torques).max(0))
 
     @cached_property
-    def peak_sample(self) -> np.ndarray[Any, np.dtype[np.int64]]:
+    def peak_sample(self) -> Int[np.ndarray, "legs 3"]:
         """Index of the sample with each joint's peak torque ``(legs, 3)``."""
         return np.asarray(np.abs(self.torques).argmax(0))
 
     @cached_property
-    def rms(self) -> Floats:
+    def rms(self) -> Float[np.ndarray, "legs 3"]:
         """Root mean square torque of each joint over the motion ``(legs, 3)`` [N m]; it determines motor heating."""
         mean = np.trapezoid(self.torques**2, self.motion.time, axis=0) / self.motion.duration
         return _floats(np.sqrt(mean))
 
     @cached_property
-    def peak_speed(self) -> Floats:
+    def peak_speed(self) -> Float[np.ndarray, "legs 3"]:
         """Largest speed of each joint ``(legs, 3)`` [rad/s]."""
         return _floats(np.abs(self.speeds).max(0))
 
     @cached_property
-    def power(self) -> Floats:
+    def power(self) -> Float[np.ndarray, "n legs 3"]:
         """Mechanical power of each joint ``(n, legs, 3)`` [W]; negative where the load drives the joint."""
         return _floats(self.torques * self.speeds)
 
@@ -133,27 +135,27 @@ class JointLoads:
         return self.energy / (self.weight * self.distance) if self.distance > 0 else float("inf")
 
     @cached_property
-    def stall_torque(self) -> Floats:
+    def stall_torque(self) -> Float[np.ndarray, "legs 3"]:
         """Stall torque of each servo at the supply voltage ``(legs, 3)`` [N m]; NaN where no servo is known."""
         return self._ratings[..., 0]
 
     @cached_property
-    def no_load_speed(self) -> Floats:
+    def no_load_speed(self) -> Float[np.ndarray, "legs 3"]:
         """No-load speed of each servo at the supply voltage ``(legs, 3)`` [rad/s]; NaN where unknown."""
         return self._ratings[..., 1]
 
     @cached_property
-    def _ratings(self) -> Floats:
+    def _ratings(self) -> Float[np.ndarray, "... legs 3 n"]:
         return np.array([[at_supply(servo, self.supply) for servo in leg] for leg in self.robot.servos])
 
     @cached_property
-    def factor(self) -> Floats:
+    def factor(self) -> Float[np.ndarray, "legs 3"]:
         """Safety factor: stall torque over peak torque ``(legs, 3)``; NaN without a servo, infinite without load."""
         with np.errstate(divide="ignore"):
             return _floats(self.stall_torque / self.peak)
 
     @cached_property
-    def utilisation(self) -> Floats:
+    def utilisation(self) -> Float[np.ndarray, "n legs 3"]:
         """Utilisation of each servo's torque-speed line ``(n, legs, 3)``; NaN where a rating is unknown."""
         return utilisation(self.torques, self.speeds, self.stall_torque, self.no_load_speed)
 
@@ -223,7 +225,7 @@ class JointLoads:
         }
 
 
-def _floats(values: Any) -> Floats:
+def _floats(values: Any) -> Float[np.ndarray, "... legs 3"]:
     return np.asarray(values, dtype=np.float64)
 
 

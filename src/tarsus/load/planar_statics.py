@@ -7,7 +7,7 @@ the foot position without cosines, which would take most of the computation.
 
 from __future__ import annotations
 
-from typing import NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -20,6 +20,9 @@ from tarsus.kinematics.triangle import Triangle, solve_triangle, to_leg_frame
 from tarsus.load.load_distribution import load_fractions
 from tarsus.robot.geometry import LegGeometry
 
+if TYPE_CHECKING:
+    from jaxtyping import Bool, Float
+
 __all__ = [
     "Block",
     "LegPlane",
@@ -30,8 +33,6 @@ __all__ = [
     "torques_in_plane",
     "weight_fractions",
 ]
-
-Column: TypeAlias = Array
 
 _ROUNDING = 1e-12  # of the margin of a load on the edge of the support polygon [m]
 _COLLINEAR = 1e-12  # ratio of determinant to squared trace of the second moments below which feet are collinear
@@ -46,13 +47,13 @@ class Block(NamedTuple):
     """
 
     legs: LegGeometry
-    masses: tuple[Column, ...]
-    moment: tuple[Column, ...]
-    mass: Column
-    rest: tuple[Column, ...]
-    stroke: Column
-    body_height: Column
-    swing_height: Column
+    masses: tuple[Float[Array, "... legs m n"], ...]
+    moment: tuple[Float[Array, "..."], ...]
+    mass: Float[Array, "..."]
+    rest: tuple[Float[Array, "... legs m n"], ...]
+    stroke: Float[Array, "*#batch"]
+    body_height: Float[Array, "*#batch"]
+    swing_height: Float[Array, "*#batch"]
 
 
 class LegPlane(NamedTuple):
@@ -61,13 +62,15 @@ class LegPlane(NamedTuple):
     `cos` and `sin` are those of the coxa angle; `knee` and `foot` are radial distances from the femur axis [m].
     """
 
-    cos: Array
-    sin: Array
-    knee: Array
-    foot: Array
+    cos: Float[Array, "... legs m n"]
+    sin: Float[Array, "... legs m n"]
+    knee: Float[Array, "... legs m n"]
+    foot: Float[Array, "... legs m n"]
 
 
-def solve_block(block: Block, offsets: Array) -> tuple[Triangle, Array, LegPlane]:
+def solve_block(
+    block: Block, offsets: Float[Array, "3 legs phases 1"]
+) -> tuple[Triangle, Bool[Array, "designs"], LegPlane]:
     """Return the joint angles and leg planes of NumPy designs; designs with an unreachable foot are marked unsolved.
 
     Parameters
@@ -104,8 +107,14 @@ def solve_block(block: Block, offsets: Array) -> tuple[Triangle, Array, LegPlane
 
 
 def plane_by_foot(
-    g: LegGeometry, triangle: Triangle, x: Array, y: Array, z: Array, *, sideways: bool
-) -> tuple[LegPlane, Array]:
+    g: LegGeometry,
+    triangle: Triangle,
+    x: Float[Array, "*#batch"],
+    y: Float[Array, "*#batch"],
+    z: Float[Array, "... legs"],
+    *,
+    sideways: bool,
+) -> tuple[LegPlane, Bool[Array, "..."]]:
     """Return NumPy legs in their planes from the feet in the leg frames, and which are singular."""
     across2 = x * x + y * y
     radial = root(np, across2 - g.side2 if sideways else across2)
@@ -120,13 +129,21 @@ def plane_by_foot(
     return LegPlane(forward / across2, left / across2, knee, foot), singular
 
 
-def plane_by_angles(xp: Namespace, g: LegGeometry, coxa: Array, femur: Array, tibia: Array) -> LegPlane:
+def plane_by_angles(
+    xp: Namespace,
+    g: LegGeometry,
+    coxa: Float[Array, "*#batch legs"],
+    femur: Float[Array, "*#batch legs"],
+    tibia: Float[Array, "*#batch legs"],
+) -> LegPlane:
     """Return legs in their planes from joint angles."""
     knee = g.femur * xp.cos(femur)
     return LegPlane(xp.cos(coxa), xp.sin(coxa), knee, knee + g.tibia * xp.cos(femur + tibia))
 
 
-def feet_from_load(xp: Namespace, block: Block, plane: LegPlane) -> tuple[Array, Array]:
+def feet_from_load(
+    xp: Namespace, block: Block, plane: LegPlane
+) -> tuple[Float[Array, "... legs m n"], Float[Array, "... legs m n"]]:
     """Return x and y of the feet relative to the centre of mass, ``(legs, phases, designs)`` [m]."""
     g = block.legs
     mount, axis, knee, foot = block.masses
@@ -144,12 +161,16 @@ def feet_from_load(xp: Namespace, block: Block, plane: LegPlane) -> tuple[Array,
     return x + (g.mount_x - com_x), y + (g.mount_y - com_y)
 
 
-def _to_body(g: LegGeometry, x: Array, y: Array) -> tuple[Array, Array]:
+def _to_body(
+    g: LegGeometry, x: Float[Array, "*#batch"], y: Float[Array, "*#batch"]
+) -> tuple[Float[Array, "... legs m n"], Float[Array, "... legs m n"]]:
     """Rotate vectors of the leg frames into B."""
     return g.cos_yaw * x - g.sin_yaw * y, g.sin_yaw * x + g.cos_yaw * y
 
 
-def weight_fractions(xp: Namespace, x: Array, y: Array) -> tuple[Array, Array]:
+def weight_fractions(
+    xp: Namespace, x: Float[Array, "feet batch"], y: Float[Array, "feet batch"]
+) -> tuple[Float[Array, "feet batch"], Bool[Array, "batch"]]:
     """Return the fraction of the weight on each foot, and whether there is an equilibrium.
 
     Parameters
@@ -183,7 +204,9 @@ def weight_fractions(xp: Namespace, x: Array, y: Array) -> tuple[Array, Array]:
     return result, balanced
 
 
-def _least_squares_fractions(xp: Namespace, x: Array, y: Array) -> tuple[Array, Array]:
+def _least_squares_fractions(
+    xp: Namespace, x: Float[Array, "feet batch"], y: Float[Array, "feet batch"]
+) -> tuple[Float[Array, "... feet batch"], Bool[Array, "... batch"]]:
     """Return the unconstrained least-squares fractions, and whether the feet are not collinear."""
     feet = x.shape[0]
     mid_x, mid_y = xp.sum(x, axis=0) / feet, xp.sum(y, axis=0) / feet
@@ -194,13 +217,17 @@ def _least_squares_fractions(xp: Namespace, x: Array, y: Array) -> tuple[Array, 
     return 1 / feet + along_x * u + along_y * v, spans_area
 
 
-def _constrained_fractions(xp: Namespace, x: Array, y: Array) -> tuple[Array, Array]:
+def _constrained_fractions(
+    xp: Namespace, x: Float[Array, "feet batch"], y: Float[Array, "feet batch"]
+) -> tuple[Float[Array, "... feet batch"], Bool[Array, "... batch"]]:
     down = xp.ones_like(x, dtype=xp.bool)
     margin, near_x, near_y = margin_and_nearest(xp, x, y, down)
     return load_fractions(xp, x - near_x, y - near_y, down), margin >= -_ROUNDING
 
 
-def torques_in_plane(block: Block, plane: LegPlane, normal_force: Array, gravity: float) -> tuple[Array, Array]:
+def torques_in_plane(
+    block: Block, plane: LegPlane, normal_force: Float[Array, "... legs m n"], gravity: float
+) -> tuple[Float[Array, "... legs m n"], Float[Array, "... legs m n"]]:
     """Return femur and tibia torques for vertical contact forces ``(legs, phases, designs)`` [N m]."""
     at_foot = normal_force - gravity * block.masses[3]
     femur = gravity * block.masses[2] * plane.knee - at_foot * plane.foot

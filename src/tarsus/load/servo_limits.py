@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from tarsus.robot.servo import Servo
 
-__all__ = ["at_supply", "utilisation"]
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
-Floats = np.ndarray[Any, np.dtype[np.float64]]
+__all__ = ["at_supply", "utilisation"]
 
 
 def at_supply(servo: Servo | None, supply: float | None) -> tuple[float, float]:
@@ -41,7 +42,12 @@ def at_supply(servo: Servo | None, supply: float | None) -> tuple[float, float]:
     return scaled(servo.stall_torque, servo.torque_at), scaled(servo.no_load_speed, servo.speed_at)
 
 
-def utilisation(torque: Floats, speed: Floats, stall_torque: Floats, no_load_speed: Floats) -> Floats:
+def utilisation(
+    torque: Float[np.ndarray, "*#batch"],
+    speed: Float[np.ndarray, "*#batch"],
+    stall_torque: Float[np.ndarray, "*#batch"],
+    no_load_speed: Float[np.ndarray, "*#batch"],
+) -> Float[np.ndarray, "*batch"]:
     """Return the utilisation of a servo's torque-speed line; above 1 the servo can't give that torque at that speed.
 
     A driving servo gives at most ``stall (1 - speed / no-load speed)``, so the relative torque and the relative speed

@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from types import MappingProxyType
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -25,8 +25,10 @@ from tarsus.robot.catalogue import servo_catalogue
 from tarsus.robot.robot import JOINTS, Robot
 from tarsus.robot.servo import Servo
 
-__all__ = ["Candidate", "ServoSizing", "size_servos"]
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
+__all__ = ["Candidate", "ServoSizing", "size_servos"]
 
 _COXA_CAUTION = (
     "friction between the feet, slopes and obstacles are not included: the coxa servos may need more torque than shown"
@@ -98,7 +100,7 @@ class ServoSizing:
     excluded: Mapping[str, str]
     payload: float | None
     maximum_payload: float | None
-    sensitivity: Mapping[str, np.ndarray[Any, Any]]
+    sensitivity: Mapping[str, Float[np.ndarray, "... 3"]]
     safety_factor: float
     rule: Rule
     assumed: tuple[str, ...] = ()

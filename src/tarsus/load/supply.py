@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from tarsus.errors import InputError
 from tarsus.load.loads import JointLoads
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
 __all__ = ["SupplyLoad", "supply_load"]
 
@@ -38,8 +41,8 @@ class SupplyLoad:
         Time at which most legs are near their peak load [s].
     """
 
-    current: np.ndarray[Any, np.dtype[np.float64]] | None
-    time: np.ndarray[Any, np.dtype[np.float64]]
+    current: Float[np.ndarray, "n"] | None
+    time: Float[np.ndarray, "n"]
     unknown: tuple[str, ...]
     capacity: float | None
     peak_legs: tuple[str, ...]
@@ -115,7 +118,7 @@ def supply_load(loads: JointLoads, *, capacity: float | None = None) -> SupplyLo
     )
 
 
-def _total_current(loads: JointLoads) -> np.ndarray[Any, np.dtype[np.float64]]:
+def _total_current(loads: JointLoads) -> Float[np.ndarray, "n"]:
     """Return the total current of all servos ``(n,)`` [A]; an overloaded servo draws its stall current."""
     robot = loads.robot
     stall = np.array([[(s.stall_current, s.stall_torque) for s in leg if s is not None] for leg in robot.servos])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 from tarsus.arrays import Array, Namespace, as_array, as_floats, namespace, require_finite, require_shape, stack_last
 from tarsus.kinematics.leg import checked_angles, forward_kinematics
@@ -12,19 +13,22 @@ from tarsus.load.contact import GRAVITY, contact_forces, upward
 from tarsus.load.payload import Payload
 from tarsus.robot.robot import Robot
 
+if TYPE_CHECKING:
+    from jaxtyping import Bool, Float
+
 __all__ = ["checked_forces", "joint_torques", "torques_of"]
 
 
 def joint_torques(
     robot: Robot,
-    angles: Array,
+    angles: Float[Array, "*#batch legs 3"],
     body: Pose,
-    contacts: Array,
+    contacts: Bool[Array, "*#batch legs"],
     payload: Payload | float = 0.0,
     *,
     gravity: Sequence[float] = GRAVITY,
-    forces: Array | None = None,
-) -> tuple[Array, Array]:
+    forces: Float[Array, "*#batch legs 3"] | None = None,
+) -> tuple[Float[Array, "*batch legs 3"], Float[Array, "*batch legs 3"]]:
     """Return the joint torques that hold the robot, and the contact forces.
 
     Quasi-static: the moments of the link weights, and ``-J^T f`` for the contact forces `f`. A positive torque acts in
@@ -78,7 +82,9 @@ def joint_torques(
     return torques_of(xp, robot, as_array(xp, q), as_array(xp, points), weights, contact), forces
 
 
-def checked_forces(xp: Namespace, robot: Robot, forces: Array) -> Array:
+def checked_forces(
+    xp: Namespace, robot: Robot, forces: Float[Array, "*#batch legs 3"]
+) -> Float[Array, "*batch legs 3"]:
     """Validate forces on the feet.
 
     Parameters
@@ -106,7 +112,14 @@ def checked_forces(xp: Namespace, robot: Robot, forces: Array) -> Array:
     return forces
 
 
-def torques_of(xp: Namespace, robot: Robot, angles: Array, points: Array, loads: Array, contact: Array) -> Array:
+def torques_of(
+    xp: Namespace,
+    robot: Robot,
+    angles: Float[Array, "*#batch legs 3"],
+    points: Float[Array, "*#batch legs 4 3"],
+    loads: Float[Array, "*#batch legs 4 3"],
+    contact: Float[Array, "*#batch legs 3"],
+) -> Float[Array, "*batch legs 3"]:
     """Return the joint torques that balance forces on the leg points, all in B.
 
     Parameters
@@ -146,13 +159,20 @@ def torques_of(xp: Namespace, robot: Robot, angles: Array, points: Array, loads:
     return stack_last(xp, (coxa, femur, tibia))
 
 
-def _components(*vectors: Array) -> list[tuple[Array, Array, Array]]:
+def _components(
+    *vectors: Float[Array, "... legs 3"],
+) -> list[tuple[Float[Array, "... legs"], Float[Array, "... legs"], Float[Array, "... legs"]]]:
     return [(v[..., 0], v[..., 1], v[..., 2]) for v in vectors]
 
 
 def _lifting_moment(
-    axis: tuple[Array, ...], point: tuple[Array, ...], cos: Array, sin: Array, radial: Array, up: Array
-) -> Array:
+    axis: tuple[Float[Array, "... legs"], ...],
+    point: tuple[Float[Array, "... legs"], ...],
+    cos: Float[Array, "... legs"],
+    sin: Float[Array, "... legs"],
+    radial: Float[Array, "... legs"],
+    up: Float[Array, "... legs"],
+) -> Float[Array, "... legs"]:
     """Return the moment, positive when lifting, of a force in the leg's plane about a joint axis normal to it."""
     distance = (point[0] - axis[0]) * cos + (point[1] - axis[1]) * sin
     return distance * up - (point[2] - axis[2]) * radial

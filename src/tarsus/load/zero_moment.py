@@ -9,8 +9,13 @@ low.
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from tarsus.arrays import Array, Namespace
 from tarsus.load.contact import distribute_load
+
+if TYPE_CHECKING:
+    from jaxtyping import Bool, Float
 
 __all__ = ["ground_forces"]
 
@@ -19,8 +24,13 @@ _REFINEMENTS = 3
 
 
 def ground_forces(
-    xp: Namespace, feet: Array, contacts: Array, force: Array, moment: Array, batch: tuple[int, ...]
-) -> tuple[Array, Array]:
+    xp: Namespace,
+    feet: Float[Array, "*#batch legs 3"],
+    contacts: Bool[Array, "*#batch legs"],
+    force: Float[Array, "*#batch 3"],
+    moment: Float[Array, "*#batch 3"],
+    batch: tuple[int, ...],
+) -> tuple[Float[Array, "*batch legs 3"], Float[Array, "*batch"]]:
     """Return the contact forces for a given resultant, and the margin of the zero-moment point.
 
     Parameters
@@ -65,7 +75,12 @@ def ground_forces(
     return xp.where(pushing[..., None, None], forces, 0.0), xp.where(pushing, margin, -xp.inf)
 
 
-def _moment_forces(xp: Namespace, arms: Array, fractions: Array, moment: Array) -> Array:
+def _moment_forces(
+    xp: Namespace,
+    arms: Float[Array, "... legs 3"],
+    fractions: Float[Array, "... legs"],
+    moment: Float[Array, "*batch 3"],
+) -> Float[Array, "... legs 3"]:
     """Return forces per load fraction with zero resultant and a given moment: weighted least squares.
 
     They are ``mu x arm``, like the velocities of a rotating body, with mu from the inertia tensor of the fractions.
@@ -85,7 +100,7 @@ def _moment_forces(xp: Namespace, arms: Array, fractions: Array, moment: Array) 
     return xp.linalg.cross(xp.broadcast_to(axis[..., 0][..., None, :], arms.shape), arms)
 
 
-def _inverse(xp: Namespace, matrix: Array) -> Array:
+def _inverse(xp: Namespace, matrix: Float[Array, "... 3 3"]) -> Float[Array, "*batch 3 3"]:
     """Return the inverses of symmetric matrices ``(..., 3, 3)`` by their adjugates."""
     first, second, third = (matrix[..., i, :] for i in range(3))
     rows = (xp.linalg.cross(second, third), xp.linalg.cross(third, first), xp.linalg.cross(first, second))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import os
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,6 +15,7 @@ from tarsus.report.film import Film
 from tarsus.report.view import View
 
 if TYPE_CHECKING:
+    from jaxtyping import Float
     from PIL.Image import Image
 
 __all__ = ["MAX_DURATION", "animate", "frame_times"]
@@ -89,7 +90,7 @@ def animate(
     return len(frames)
 
 
-def frame_times(motion: Motion, *, max_duration: float = MAX_DURATION) -> tuple[np.ndarray[Any, Any], int]:
+def frame_times(motion: Motion, *, max_duration: float = MAX_DURATION) -> tuple[Float[np.ndarray, "n"], int]:
     """Return the times of the frames, from the start [s], and the duration of a frame [ms].
 
     Parameters

@@ -14,13 +14,12 @@ from tarsus.report.view import View
 from tarsus.robot.robot import Robot
 
 if TYPE_CHECKING:
+    from jaxtyping import Float
     from matplotlib.axes import Axes
     from matplotlib.lines import Line2D
     from matplotlib.patches import Polygon
 
 __all__ = ["RobotDrawing"]
-
-Floats = np.ndarray[Any, np.dtype[np.float64]]
 
 _STABLE, _BODY, _SHADOW = "#009E73", "#9aa7b5", "#d4d4d4"
 # Thickness of coxa, femur and tibia relative to the length of a leg.
@@ -123,13 +122,13 @@ class RobotDrawing:
         self._update_legs(sample)
         self._update_ground(sample)
 
-    def _project(self, points: Floats) -> Floats:
+    def _project(self, points: Float[np.ndarray, "*#batch 3"]) -> Float[np.ndarray, "*batch 2"]:
         return self._view.project(points * 1000)
 
-    def _zorder(self, points: Floats, sample: Sample) -> Floats:
+    def _zorder(self, points: Float[np.ndarray, "*#batch 3"], sample: Sample) -> Float[np.ndarray, "*batch"]:
         """Return the zorder of points: nearer points are drawn later, the body's origin is at `_SOLID`."""
         depth = self._view.depth(points - np.asarray(sample.body.position))
-        zorder: Floats = _SOLID + _ORDER * np.clip(depth / (4 * self._reach), -0.99, 0.99)
+        zorder: np.ndarray = _SOLID + _ORDER * np.clip(depth / (4 * self._reach), -0.99, 0.99)
         return zorder
 
     def _update_body(self, sample: Sample) -> None:

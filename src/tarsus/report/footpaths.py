@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -11,12 +11,11 @@ from tarsus.report.solid import body_outline
 from tarsus.report.style import INK, PALE, decimation, halo, leg_colours, new_figure, tidy_axes
 
 if TYPE_CHECKING:
+    from jaxtyping import Float, Int
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 __all__ = ["footholds", "plot_footpaths", "walking_direction"]
-
-Floats = np.ndarray[Any, np.dtype[np.float64]]
 
 _WIDTH = 9.0
 
@@ -57,7 +56,7 @@ def plot_footpaths(motion: Motion) -> Figure:
     return figure
 
 
-def footholds(motion: Motion, leg: int) -> Floats:
+def footholds(motion: Motion, leg: int) -> Float[np.ndarray, "stances 3"]:
     """Return the footholds of a leg, one for each stance.
 
     Parameters
@@ -74,11 +73,11 @@ def footholds(motion: Motion, leg: int) -> Floats:
     """
     down = motion.contacts[:, leg]
     first = down & ~np.concatenate([[False], down[:-1]])
-    points: Floats = motion.feet[first, leg]
+    points: np.ndarray = motion.feet[first, leg]
     return points
 
 
-def walking_direction(motion: Motion) -> Floats:
+def walking_direction(motion: Motion) -> Float[np.ndarray, "2"]:
     """Return the walking direction, the horizontal axis of the side view.
 
     Parameters
@@ -91,7 +90,7 @@ def walking_direction(motion: Motion) -> Floats:
     array, shape (2,)
         Unit vector from the body's start to its end in G's xy plane; x if they are within 10 mm of each other.
     """
-    displacement: Floats = (motion.body.position[-1] - motion.body.position[0])[:2]
+    displacement: np.ndarray = (motion.body.position[-1] - motion.body.position[0])[:2]
     length = float(np.hypot(*displacement))
     return displacement / length if length > 0.010 else np.array([1.0, 0.0])
 
@@ -158,7 +157,7 @@ def _name_leg(axes: Axes, motion: Motion, leg: int, colour: str) -> None:
     )
 
 
-def _draw_side(axes: Axes, motion: Motion, legs: np.ndarray[Any, Any]) -> None:
+def _draw_side(axes: Axes, motion: Motion, legs: Int[np.ndarray, "legs"]) -> None:
     shown, colours = decimation(motion), leg_colours(motion.robot)
     distance = motion.feet[..., :2] @ walking_direction(motion) * 1000
     height = motion.feet[..., 2] * 1000

@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from tarsus.report.view import View
 
 if TYPE_CHECKING:
+    from jaxtyping import Float
     from matplotlib.axes import Axes
 
 __all__ = ["Ground"]
-
-Floats = np.ndarray[Any, np.dtype[np.float64]]
 
 _GRID_MM = 100.0
 _MAX_LINES = 80
@@ -45,7 +44,7 @@ class Ground:
         self._lines.set_segments([self._view.project(line) for line in _grid(visible.min(0), visible.max(0))])
 
 
-def _grid(low: Floats, high: Floats) -> list[Floats]:
+def _grid(low: Float[np.ndarray, "n"], high: Float[np.ndarray, "m"]) -> list[Float[np.ndarray, "k 3"]]:
     """Return the grid lines over a rectangle of the ground, with a wider spacing if there are too many."""
     step = _GRID_MM
     while float((high - low).max()) / step > _MAX_LINES:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,6 +12,7 @@ from tarsus.report.style import INK, decimation, leg_colours, new_figure, tidy_a
 from tarsus.robot.robot import JOINTS
 
 if TYPE_CHECKING:
+    from jaxtyping import Float
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
@@ -19,7 +20,7 @@ __all__ = ["joint_panels"]
 
 
 def joint_panels(
-    motion: Motion, values: np.ndarray[Any, Any], *, unit: str, title: str
+    motion: Motion, values: Float[np.ndarray, "n legs 3"], *, unit: str, title: str
 ) -> tuple[Figure, tuple[Axes, ...]]:
     """Draw a quantity of every joint over time, with thick lines in stance.
 
@@ -60,7 +61,7 @@ def joint_panels(
     return figure, tuple(axes[:3])
 
 
-def _draw_joint(axes: Axes, motion: Motion, values: np.ndarray[Any, Any]) -> None:
+def _draw_joint(axes: Axes, motion: Motion, values: Float[np.ndarray, "n legs"]) -> None:
     shown = decimation(motion)
     time = motion.time[shown]
     for leg, colour in enumerate(leg_colours(motion.robot)):

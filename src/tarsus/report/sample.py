@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,9 +15,10 @@ from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.rest import CORNERS, RestingPose
 from tarsus.robot.robot import Robot
 
-__all__ = ["Sample", "sample_of", "touching_points"]
+if TYPE_CHECKING:
+    from jaxtyping import Bool, Float
 
-Floats = np.ndarray[Any, np.dtype[np.float64]]
+__all__ = ["Sample", "sample_of", "touching_points"]
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -40,15 +41,15 @@ class Sample:
         Distance of the centre of mass from the nearest edge of their polygon [m]; minus infinity without a point.
     """
 
-    points: Floats
+    points: Float[np.ndarray, "legs 4 3"]
     body: Pose
-    contacts: np.ndarray[Any, Any]
-    com: Floats
-    support: Floats
+    contacts: Bool[np.ndarray, "legs"]
+    com: Float[np.ndarray, "3"]
+    support: Float[np.ndarray, "k 3"]
     margin: float
 
     @property
-    def centre(self) -> Floats:
+    def centre(self) -> Float[np.ndarray, "3"]:
         """Ground point below the body's origin ``(3,)`` [m]."""
         position = np.array(self.body.position)
         position[2] = 0.0
@@ -57,11 +58,11 @@ class Sample:
 
 def sample_of(
     robot: Robot,
-    angles: Floats,
+    angles: Float[np.ndarray, "legs 3"],
     *,
     body: Pose | None = None,
-    contacts: Sequence[bool] | np.ndarray[Any, Any] | None = None,
-    support: Floats | None = None,
+    contacts: Sequence[bool] | Bool[np.ndarray, "legs"] | None = None,
+    support: Float[np.ndarray, "k 3"] | None = None,
 ) -> Sample:
     """Return the state to draw for one configuration.
 
@@ -100,7 +101,7 @@ def sample_of(
     )
 
 
-def touching_points(rest: RestingPose, angles: Floats) -> Floats:
+def touching_points(rest: RestingPose, angles: Float[np.ndarray, "legs 3"]) -> Float[np.ndarray, "k 3"]:
     """Return the points of a robot at rest that touch the ground.
 
     Parameters
@@ -118,5 +119,5 @@ def touching_points(rest: RestingPose, angles: Floats) -> Floats:
     points = [np.asarray(forward_kinematics(rest.robot, angles))[np.asarray(rest.leg_points_down)]]
     if rest.robot.body_size is not None:
         points.append((CORNERS * np.asarray(rest.robot.body_size))[np.asarray(rest.corners_down)])
-    touching: Floats = np.asarray(rest.body @ np.concatenate(points))
+    touching: np.ndarray = np.asarray(rest.body @ np.concatenate(points))
     return touching

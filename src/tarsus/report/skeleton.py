@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -16,23 +16,22 @@ from tarsus.report.view import View
 from tarsus.robot.robot import Robot
 
 if TYPE_CHECKING:
+    from jaxtyping import Bool, Float
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 __all__ = ["frame_axes", "plot_robot"]
-
-Floats = np.ndarray[Any, np.dtype[np.float64]]
 
 _VIEW = View()
 
 
 def plot_robot(
     robot: Robot,
-    angles: Floats,
+    angles: Float[np.ndarray, "legs 3"],
     *,
     body: Pose | None = None,
-    contacts: Sequence[bool] | np.ndarray[Any, Any] | None = None,
-    support: Floats | None = None,
+    contacts: Sequence[bool] | Bool[np.ndarray, "legs"] | None = None,
+    support: Float[np.ndarray, "k 3"] | None = None,
     view: View = _VIEW,
     title: str = "",
 ) -> Figure:

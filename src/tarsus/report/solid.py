@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from tarsus.kinematics.polygon import support_polygon
 from tarsus.robot.robot import Robot
 
+if TYPE_CHECKING:
+    from jaxtyping import Float
+
 __all__ = ["Solid", "body_outline", "body_solid"]
 
-Floats = np.ndarray[Any, np.dtype[np.float64]]
 
 # Thickness of the plate of a body without a box, relative to its length.
 _THICKNESS = 0.06
@@ -30,11 +32,11 @@ class Solid:
         Corner indices of each face, counter-clockwise seen from outside: bottom, top, sides.
     """
 
-    corners: Floats
+    corners: Float[np.ndarray, "_ 3"]
     faces: tuple[tuple[int, ...], ...]
 
 
-def body_outline(robot: Robot) -> Floats:
+def body_outline(robot: Robot) -> Float[np.ndarray, "n 3"]:
     """Return the outline of the body from above ``(n, 3)``, counter-clockwise, at the height of B's origin [m].
 
     Parameters

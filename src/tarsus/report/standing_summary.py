@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -15,6 +15,9 @@ from tarsus.kinematics.rest import CORNERS, RestingPose
 from tarsus.kinematics.solution import IKSolution
 from tarsus.kinematics.stability import stability_margin
 from tarsus.robot.robot import JOINTS, Robot
+
+if TYPE_CHECKING:
+    from jaxtyping import Bool, Float
 
 __all__ = ["Standing", "rest_summary"]
 
@@ -47,9 +50,9 @@ class Standing:
         return self.solution.body or Pose()
 
     @property
-    def contacts(self) -> np.ndarray[Any, Any]:
+    def contacts(self) -> Bool[np.ndarray, "legs"]:
         """Which feet reach their footholds, array of bool ``(legs,)``."""
-        reaches: np.ndarray[Any, Any] = np.asarray(self.solution.reach) == Reach.OK
+        reaches: np.ndarray = np.asarray(self.solution.reach) == Reach.OK
         return reaches
 
     @property
@@ -107,7 +110,7 @@ class Standing:
         }
 
 
-def rest_summary(robot: Robot, angles: np.ndarray[Any, Any], rest: RestingPose) -> dict[str, Any]:
+def rest_summary(robot: Robot, angles: Float[np.ndarray, "legs 3"], rest: RestingPose) -> dict[str, Any]:
     """Return the numbers of a resting pose, with units in the keys.
 
     Parameters
@@ -146,7 +149,7 @@ def _pose_numbers(body: Pose) -> dict[str, float]:
     return dict(zip(("x_mm", "y_mm", "z_mm", "roll_deg", "pitch_deg", "yaw_deg"), map(float, values), strict=True))
 
 
-def _out_of_limits(robot: Robot, degrees: np.ndarray[Any, Any]) -> list[str]:
+def _out_of_limits(robot: Robot, degrees: Float[np.ndarray, "legs 3"]) -> list[str]:
     problems = []
     limits = np.degrees(np.asarray(robot.limits))
     for leg, name in enumerate(robot.leg_names):

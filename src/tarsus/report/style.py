@@ -162,7 +162,7 @@ def stance_spans(motion: Motion, leg: int) -> list[tuple[float, float]]:
     leg : int
         Index of the leg.
     """
-    contact: np.ndarray[Any, Any] = np.concatenate([[False], motion.contacts[:, leg], [False]])
+    contact: np.ndarray = np.concatenate([[False], motion.contacts[:, leg], [False]])
     edges = np.flatnonzero(contact[1:] != contact[:-1])
     last = len(motion.time) - 1
     starts, ends = motion.time[edges[::2]], motion.time[np.minimum(edges[1::2], last)]

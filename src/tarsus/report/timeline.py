@@ -230,7 +230,7 @@ def _draw_margin(axes: Axes, recording: Recording) -> None:
 
 def _shade(axes: Axes, recording: Recording) -> None:
     """Shade the times at which the robot does not stand on its feet."""
-    lying: np.ndarray[Any, Any] = np.concatenate([[False], ~recording.upright, [False]])
+    lying: np.ndarray = np.concatenate([[False], ~recording.upright, [False]])
     edges = np.flatnonzero(np.diff(lying.astype(int))).reshape(-1, 2)
     time = recording.motion.time
     for start, end in edges:

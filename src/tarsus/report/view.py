@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-__all__ = ["View"]
+from tarsus.arrays import Array
 
-Floats = np.ndarray[Any, np.dtype[np.float64]]
+if TYPE_CHECKING:
+    from jaxtyping import Float
+
+__all__ = ["View"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -29,7 +32,7 @@ class View:
     elevation: float = 28.0
 
     @property
-    def axes(self) -> Floats:
+    def axes(self) -> Float[np.ndarray, "3 3"]:
         """Unit vectors of the view in G as rows: right, up, towards the eye."""
         a, e = math.radians(self.azimuth), math.radians(self.elevation)
         right = (-math.sin(a), math.cos(a), 0.0)
@@ -37,7 +40,7 @@ class View:
         eye = (math.cos(e) * math.cos(a), math.cos(e) * math.sin(a), math.sin(e))
         return np.array([right, up, eye])
 
-    def project(self, points: Floats) -> Floats:
+    def project(self, points: Float[np.ndarray, "*#batch 3"]) -> Float[np.ndarray, "*batch 2"]:
         """Project points ``(..., 3)`` onto the picture plane ``(..., 2)``, in the same unit.
 
         Parameters
@@ -45,10 +48,10 @@ class View:
         points : array, shape (..., 3)
             Points in G.
         """
-        projected: Floats = np.asarray(points) @ self.axes[:2].T
+        projected: np.ndarray = np.asarray(points) @ self.axes[:2].T
         return projected
 
-    def depth(self, points: Floats) -> Floats:
+    def depth(self, points: Float[np.ndarray, "*#batch 3"]) -> Float[Array, "*batch"]:
         """Return the depth of points ``(..., 3)`` towards the eye ``(...)``; points with a larger depth are in front.
 
         Parameters
@@ -56,10 +59,10 @@ class View:
         points : array, shape (..., 3)
             Points in G.
         """
-        nearness: Floats = np.asarray(points) @ self.axes[2]
+        nearness: np.ndarray = np.asarray(points) @ self.axes[2]
         return nearness
 
-    def ground_under(self, picture: Floats) -> Floats:
+    def ground_under(self, picture: Float[np.ndarray, "*#batch 2"]) -> Float[np.ndarray, "n 3"]:
         """Return the ground points ``(..., 3)`` at points of the picture plane ``(..., 2)``.
 
         Parameters
@@ -67,5 +70,5 @@ class View:
         picture : array, shape (..., 2)
             Points of the picture plane.
         """
-        on_ground: Floats = np.asarray(picture) @ np.linalg.inv(self.axes[:2, :2]).T
+        on_ground: np.ndarray = np.asarray(picture) @ np.linalg.inv(self.axes[:2, :2]).T
         return np.concatenate([on_ground, np.zeros((*on_ground.shape[:-1], 1))], axis=-1)

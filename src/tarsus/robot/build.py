@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from decimal import Decimal
-from typing import Any, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
@@ -16,6 +16,9 @@ from tarsus.robot.robot import JOINTS, GaitDefaults, Robot, Source
 from tarsus.robot.schema import JointTable, Leg, LegEntry, RobotFile, ServoFigures
 from tarsus.robot.servo import Servo
 from tarsus.robot.units import from_milli, radians
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
 __all__ = ["build_robot"]
 
@@ -107,7 +110,7 @@ def _places(entries: Sequence[LegEntry]) -> list[str]:
     return problems or _out_of_order(entries, points)
 
 
-def _out_of_order(entries: Sequence[LegEntry], points: np.ndarray[Any, Any]) -> list[str]:
+def _out_of_order(entries: Sequence[LegEntry], points: Float[np.ndarray, "*#batch 3"]) -> list[str]:
     x, y, _ = (points - points.mean(axis=0)).T
     # Rounding puts a leg straight ahead first, whatever the sign of its y.
     angles = np.round(np.degrees(np.arctan2(y, x)), 9) % 360

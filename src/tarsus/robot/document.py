@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from decimal import Decimal
-from typing import Any, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
@@ -14,9 +14,11 @@ from tarsus.robot.robot import JOINTS, GaitDefaults, Robot
 from tarsus.robot.servo import Servo
 from tarsus.robot.units import degrees, to_decimal, to_milli
 
+if TYPE_CHECKING:
+    from jaxtyping import Float
+
 __all__ = ["decimal_document", "plain"]
 
-_Floats: TypeAlias = np.ndarray[Any, np.dtype[np.float64]]
 _Flat: TypeAlias = dict[str, Any]
 
 
@@ -142,11 +144,11 @@ def _alike(a: object, b: object) -> bool:
     return repr(a) == repr(b)
 
 
-def _all_zero(values: _Floats) -> bool:
+def _all_zero(values: Float[np.ndarray, "..."]) -> bool:
     return not values.any() and not np.signbit(values).any()
 
 
-def _floats(values: object) -> _Floats:
+def _floats(values: object) -> Float[np.ndarray, "..."]:
     return np.asarray(values, dtype=np.float64)
 
 

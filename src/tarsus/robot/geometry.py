@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple, Self
+from typing import TYPE_CHECKING, NamedTuple, Self
 
 import numpy as np
 
 from tarsus.arrays import Array, Namespace, as_array
 from tarsus.blocks import Index, columns
+
+if TYPE_CHECKING:
+    from jaxtyping import Float, Int
 
 __all__ = ["LegGeometry"]
 
@@ -21,42 +24,42 @@ class LegGeometry(NamedTuple):
     `axis_depth` the greatest depth of coxa or femur axis below B's origin.
     """
 
-    cos_yaw: Array
-    sin_yaw: Array
-    mount_x: Array
-    mount_y: Array
-    mount_z: Array
-    coxa: Array
-    femur: Array
-    tibia: Array
-    side: Array
-    up: Array
-    side2: Array
-    farthest2: Array
-    nearest2: Array
-    sum2: Array
-    difference2: Array
-    knee_span: Array
-    axis_depth: Array
-    coxa_lower: Array
-    coxa_upper: Array
-    femur_lower: Array
-    femur_upper: Array
-    tibia_lower: Array
-    tibia_upper: Array
+    cos_yaw: Float[Array, "..."]
+    sin_yaw: Float[Array, "..."]
+    mount_x: Float[Array, "..."]
+    mount_y: Float[Array, "..."]
+    mount_z: Float[Array, "..."]
+    coxa: Float[Array, "..."]
+    femur: Float[Array, "..."]
+    tibia: Float[Array, "..."]
+    side: Float[Array, "..."]
+    up: Float[Array, "..."]
+    side2: Float[Array, "..."]
+    farthest2: Float[Array, "..."]
+    nearest2: Float[Array, "..."]
+    sum2: Float[Array, "..."]
+    difference2: Float[Array, "..."]
+    knee_span: Float[Array, "..."]
+    axis_depth: Float[Array, "..."]
+    coxa_lower: Float[Array, "..."]
+    coxa_upper: Float[Array, "..."]
+    femur_lower: Float[Array, "..."]
+    femur_upper: Float[Array, "..."]
+    tibia_lower: Float[Array, "..."]
+    tibia_upper: Float[Array, "..."]
 
     @classmethod
     def of(
         cls,
         xp: Namespace,
         *,
-        mount_position: Array,
-        mount_yaw: Array,
-        coxa: Array,
-        femur: Array,
-        tibia: Array,
-        femur_axis_offset: Array,
-        limits: Array,
+        mount_position: Float[Array, "*#batch legs 3"],
+        mount_yaw: Float[Array, "*#batch legs"],
+        coxa: Float[Array, "*#batch legs"],
+        femur: Float[Array, "*#batch legs"],
+        tibia: Float[Array, "*#batch legs"],
+        femur_axis_offset: Float[Array, "*#batch legs 2"],
+        limits: Float[Array, "*#batch legs 3 2"],
     ) -> Self:
         """Compute the constants from the arrays of a robot (shapes as in `Robot`)."""
         side, up = femur_axis_offset[..., 0], femur_axis_offset[..., 1]
@@ -97,7 +100,7 @@ class LegGeometry(NamedTuple):
         """Return the constants of a block of the batch, as columns (see `tarsus.blocks.columns`)."""
         return LegGeometry(*(columns(values, index, block, tail=1) for values in self))
 
-    def pick(self, where: tuple[Array, ...], shape: tuple[int, ...]) -> LegGeometry:
+    def pick(self, where: tuple[Int[Array, "..."], ...], shape: tuple[int, ...]) -> LegGeometry:
         """Return the constants of single NumPy legs ``(k,)`` at indices `where` along the axes of `shape`."""
         return LegGeometry(
             *(values[where[-1]] if values.ndim == 1 else np.broadcast_to(values, shape)[where] for values in self)

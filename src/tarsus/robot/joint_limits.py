@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from tarsus.robot.robot import Robot
 
-__all__ = ["STOPPING_TIME", "UNKNOWN_SPEED", "JointLimits", "joint_limits", "servo_speeds"]
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
-Floats = np.ndarray[Any, np.dtype[np.float64]]
+__all__ = ["STOPPING_TIME", "UNKNOWN_SPEED", "JointLimits", "joint_limits", "servo_speeds"]
 
 UNKNOWN_SPEED = 5.0
 """Speed limit of a joint whose servo, or its speed, is unknown [rad/s]: 60 deg in 0.21 s, as of a slow hobby servo."""
@@ -30,8 +31,8 @@ class JointLimits(NamedTuple):
         Greatest acceleration of each joint [rad/s^2].
     """
 
-    speed: Floats
-    acceleration: Floats
+    speed: Float[np.ndarray, "legs 3"]
+    acceleration: Float[np.ndarray, "legs 3"]
 
 
 def servo_speeds(robot: Robot) -> list[list[float | None]]:

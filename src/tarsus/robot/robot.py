@@ -6,7 +6,7 @@ import dataclasses
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any, Self
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
@@ -16,6 +16,9 @@ from tarsus.robot.about import GaitDefaults, Source
 from tarsus.robot.geometry import LegGeometry
 from tarsus.robot.servo import Servo
 from tarsus.robot.shape import JOINTS, OPTIONAL, TAILS, locked
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
 __all__ = ["JOINTS", "GaitDefaults", "Robot", "Source", "stack_robots"]
 
@@ -65,19 +68,19 @@ class Robot:
 
     name: str
     leg_names: tuple[str, ...]
-    mount_position: Array
-    mount_yaw: Array
-    coxa: Array
-    femur: Array
-    tibia: Array
-    limits: Array
-    femur_axis_offset: Array = None
-    foot_radius: Array = None
-    link_com: Array = None
-    link_mass: Array = None
-    body_mass: Array = None
-    body_com: Array = None
-    body_size: Array = None
+    mount_position: Float[Array, "*#batch legs 3"]
+    mount_yaw: Float[Array, "*#batch legs"]
+    coxa: Float[Array, "*#batch legs"]
+    femur: Float[Array, "*#batch legs"]
+    tibia: Float[Array, "*#batch legs"]
+    limits: Float[Array, "*#batch legs 3 2"]
+    femur_axis_offset: Float[Array, "*#batch legs 2"] = None
+    foot_radius: Float[Array, "*#batch legs"] = None
+    link_com: Float[Array, "*#batch legs 3"] = None
+    link_mass: Float[Array, "*#batch legs 3"] | None = None
+    body_mass: Float[Array, "*#batch"] | None = None
+    body_com: Float[Array, "*#batch 3"] = None
+    body_size: Float[Array, "*#batch 3"] | None = None
     servos: tuple[tuple[Servo | None, ...], ...] = ()
     gait: GaitDefaults = field(default_factory=GaitDefaults)
     sources: tuple[Source, ...] = ()
@@ -104,7 +107,7 @@ class Robot:
             raise InputError(f"{self.name}: servos must have three entries for each of the {self.legs} legs")
         _ = self.batch_shape  # refuses batch axes that don't broadcast
 
-    def _lock(self, name: str, value: Array) -> None:
+    def _lock(self, name: str, value: Float[Array, "..."] | None) -> None:
         if value is not None:
             object.__setattr__(self, name, locked(name, value, legs=self.legs, robot=self.name))
 

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from tarsus.arrays import Array
 from tarsus.errors import InputError
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
 __all__ = ["JOINTS", "OPTIONAL", "TAILS", "locked"]
 
@@ -37,7 +40,7 @@ _ROUNDING = 1e-9
 _NOT_NEGATIVE = ("coxa", "foot_radius", "link_mass")
 
 
-def locked(name: str, value: Array, *, legs: int, robot: str) -> Array:
+def locked(name: str, value: Float[Array, "..."], *, legs: int, robot: str) -> Float[Array, "..."]:
     """Check a value; return NumPy arrays as a locked copy, and arrays of other libraries as they are.
 
     Parameters
@@ -70,7 +73,7 @@ def locked(name: str, value: Array, *, legs: int, robot: str) -> Array:
     return value
 
 
-def _check_range(name: str, value: np.ndarray[Any, Any], *, robot: str) -> None:
+def _check_range(name: str, value: Float[np.ndarray, "..."], *, robot: str) -> None:
     if not np.isfinite(value).all():
         raise InputError(f"{robot}: {name} contains a value that is not a finite number")
     lowest = float(value.min()) if value.size else np.inf

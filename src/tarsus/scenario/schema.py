@@ -116,12 +116,10 @@ _AT: dict[str, Any] = {
 At = cast("type[Table]", create_model("At", __base__=Table, __doc__="What is told at a moment.", **_AT))
 """One ``[[at]]``: a moment and the commands that are given then."""
 
-
 _GIVING_WAY: dict[str, Any] = {each.key: _number(each, needed=each.needed) for each in ADMITTANCE}
 
 GivingWay = cast("type[Table]", create_model("GivingWay", __base__=Table, __doc__="How feet give way.", **_GIVING_WAY))
 """How feet give way to the forces on them."""
-
 
 _SETTINGS: dict[str, Any] = {
     "name": (Annotated[str, Text(empty=True)], Field(default="", description="Name.")),

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
 __all__ = ["degrees", "flags", "millimetres", "or_null", "plain", "rows_of_flags"]
 
@@ -46,7 +49,7 @@ def plain(values: Any) -> list[float]:
     return _flat(np.asarray(values), _DECIMALS)
 
 
-def _flat(values: np.ndarray[Any, Any], decimals: int) -> list[float]:
+def _flat(values: Float[np.ndarray, "..."], decimals: int) -> list[float]:
     # Adding zero turns -0.0 into 0.0.
     flat: list[float] = (np.round(values.astype(np.float64, copy=False), decimals) + 0.0).ravel().tolist()
     return flat

@@ -7,6 +7,7 @@ import io
 import re
 import tempfile
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,6 +16,9 @@ from tarsus.gait.storage import motion_to_csv
 from tarsus.robot.file import robot_text
 from tarsus.robot.robot import JOINTS, Robot
 from tarsus.studio.messages.general import FileMessage
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
 __all__ = ["angles_csv", "file_name", "text_file", "toml_of", "walk_csv"]
 
@@ -66,7 +70,7 @@ def walk_csv(motion: Motion) -> str:
         return path.read_bytes().decode()
 
 
-def angles_csv(robot: Robot, angles: np.ndarray[tuple[int, ...], np.dtype[np.float64]]) -> str:
+def angles_csv(robot: Robot, angles: Float[np.ndarray, "legs 3"]) -> str:
     """Return the joint angles of one pose as CSV.
 
     Parameters

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
@@ -22,10 +22,12 @@ from tarsus.robot.robot import Robot
 from tarsus.studio.encoding import millimetres, or_null
 from tarsus.studio.messages.pose import WorkspaceMessage
 
+if TYPE_CHECKING:
+    from jaxtyping import Bool, Float
+
 __all__ = ["Outline", "ground_band", "ground_outline", "plane_outline", "workspace_message"]
 
-Floats: TypeAlias = np.ndarray[Any, np.dtype[np.float64]]
-Points: TypeAlias = Callable[[Floats, Floats], Floats]
+Points: TypeAlias = Callable[[np.ndarray, np.ndarray], np.ndarray]
 
 _RAYS = 72
 _ALONG = 40
@@ -43,11 +45,11 @@ class Outline:
         Nearest and farthest reachable points along each ray, in B [m]; no rays where no point is reachable.
     """
 
-    near: Floats
-    far: Floats
+    near: Float[np.ndarray, "k 3"]
+    far: Float[np.ndarray, "k 3"]
 
     @property
-    def closed(self) -> Floats:
+    def closed(self) -> Float[np.ndarray, "..."]:
         """The points in order along the outline ``(2 k, 3)``."""
         return np.concatenate([self.far, self.near[::-1]])
 
@@ -57,11 +59,11 @@ class _Plane:
     """Points of a plane by direction and distance, and which of them are reachable."""
 
     points: Points
-    reached: Callable[[Floats], np.ndarray[Any, np.dtype[np.bool_]]]
+    reached: Callable[[np.ndarray], np.ndarray]
     length: float
 
     @property
-    def distances(self) -> Floats:
+    def distances(self) -> Float[np.ndarray, "..."]:
         # Distance 0 is the same point in every direction.
         return np.linspace(1e-3 * self.length, self.length, _ALONG)
 
@@ -112,12 +114,12 @@ def _ground(robot: Robot, leg: int, body: Pose) -> _Plane:
     middle = np.asarray(body @ np.asarray(robot.mount_position)[leg])[:2]
     ahead = np.arctan2(forward[1], forward[0])
 
-    def points(turn: Floats, distance: Floats) -> Floats:
+    def points(turn: np.ndarray, distance: np.ndarray) -> np.ndarray:
         x = middle[0] + distance * np.cos(ahead + turn)
         y = middle[1] + distance * np.sin(ahead + turn)
         return np.stack([x, y, np.zeros_like(x)], axis=-1)
 
-    def reached(feet: Floats) -> np.ndarray[Any, np.dtype[np.bool_]]:
+    def reached(feet: np.ndarray) -> np.ndarray:
         return _reached(alone, inverse_kinematics(alone, feet[..., None, :], body))
 
     return _Plane(points, reached, _length(alone))
@@ -140,13 +142,13 @@ def plane_outline(robot: Robot, leg: int, coxa: float) -> Outline:
     axis = np.asarray(forward_kinematics(alone, np.array([[coxa, 0.0, 0.0]])))[0]
     outward = (axis[3] - axis[1]) / np.linalg.norm(axis[3] - axis[1])
 
-    def points(turn: Floats, distance: Floats) -> Floats:
+    def points(turn: np.ndarray, distance: np.ndarray) -> np.ndarray:
         level = distance * np.cos(turn)
-        points: Floats = axis[1] + level[..., None] * outward
+        points: np.ndarray = axis[1] + level[..., None] * outward
         points[..., 2] += distance * np.sin(turn)
         return points
 
-    def reached(feet: Floats) -> np.ndarray[Any, np.dtype[np.bool_]]:
+    def reached(feet: np.ndarray) -> np.ndarray:
         return _reached(alone, inverse_kinematics(alone, feet[..., None, :]))
 
     return _cast(_Plane(points, reached, float(alone.femur[0] + alone.tibia[0])))
@@ -162,7 +164,7 @@ def _alone(robot: Robot, leg: int) -> Robot:
     return Robot(name=robot.name, leg_names=robot.leg_names[own], **arrays)
 
 
-def _reached(alone: Robot, solution: IKSolution) -> np.ndarray[Any, np.dtype[np.bool_]]:
+def _reached(alone: Robot, solution: IKSolution) -> Bool[np.ndarray, "..."]:
     """Exclude points behind the coxa axis, which are no footholds."""
     away = branches(alone, solution.angles)[..., 0, 0]
     return np.asarray(solution.ok & ~away)
@@ -177,7 +179,7 @@ def _cast(plane: _Plane) -> Outline:
     """Cast rays in all directions, and again in the range of directions with reachable points."""
     turns = np.linspace(-np.pi, np.pi, _RAYS + 1)
 
-    def hits(turns: Floats) -> np.ndarray[Any, Any]:
+    def hits(turns: np.ndarray) -> np.ndarray:
         return np.asarray(plane.reached(plane.points(turns[:, None], plane.distances)).any(-1))
 
     run = _widest_run(hits(turns))
@@ -198,7 +200,7 @@ def _cast(plane: _Plane) -> Outline:
     return Outline(plane.points(turns, near), plane.points(turns, far))
 
 
-def _widest_run(hit: np.ndarray[Any, Any]) -> tuple[int, int] | None:
+def _widest_run(hit: Float[np.ndarray, "..."]) -> tuple[int, int] | None:
     """Return the first and last index of the longest run of true values."""
     edges = np.flatnonzero(np.diff(np.concatenate([[False], hit, [False]]).astype(np.int8)))
     if not edges.size:
@@ -208,7 +210,7 @@ def _widest_run(hit: np.ndarray[Any, Any]) -> tuple[int, int] | None:
     return int(starts[longest]), int(ends[longest])
 
 
-def _bands(plane: _Plane, turns: Floats) -> tuple[Floats, Floats]:
+def _bands(plane: _Plane, turns: Float[np.ndarray, "..."]) -> tuple[Float[np.ndarray, "..."], Float[np.ndarray, "..."]]:
     """Return the ends of the widest reachable interval of each ray; both 0 where no point is reachable."""
     distances = plane.distances
     ok = plane.reached(plane.points(turns[:, None], distances))

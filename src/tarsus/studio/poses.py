@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -16,6 +16,9 @@ from tarsus.robot.robot import Robot
 from tarsus.studio.messages.state import BodyState, JointsState
 from tarsus.studio.robots import stance_of
 from tarsus.studio.standing import OnFootholds
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
 __all__ = ["Resting", "drag_foothold", "drag_joints", "require_leg", "resting", "standing"]
 
@@ -32,7 +35,7 @@ class Resting:
         Result of `resting_pose`.
     """
 
-    angles: np.ndarray[Any, Any]
+    angles: Float[np.ndarray, "legs 3"]
     rest: RestingPose
 
 
@@ -164,12 +167,12 @@ def require_leg(robot: Robot, leg: int) -> None:
         raise InputError(f"leg is {leg}; {robot.name} has legs 0 to {robot.legs - 1}")
 
 
-def _of_legs(name: str, values: tuple[float, ...], robot: Robot) -> np.ndarray[Any, Any]:
+def _of_legs(name: str, values: tuple[float, ...], robot: Robot) -> Float[np.ndarray, "legs 3"]:
     if len(values) != 3 * robot.legs:
         raise InputError(f"{name} has {len(values)} numbers; {robot.legs} legs need {3 * robot.legs}")
     return np.array(values, dtype=np.float64).reshape(robot.legs, 3)
 
 
-def _numbers(values: np.ndarray[Any, Any]) -> tuple[float, ...]:
+def _numbers(values: Float[np.ndarray, "legs 3"]) -> tuple[float, ...]:
     # Rounded to 1e-6 mm or deg, for short links.
     return tuple((np.round(values, 6) + 0.0).ravel().tolist())

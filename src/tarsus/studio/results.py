@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
@@ -17,6 +17,9 @@ from tarsus.studio.poses import Resting, resting, standing
 from tarsus.studio.robots import robot_of
 from tarsus.studio.standing import OnFootholds
 from tarsus.studio.walks import longest, plan
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
 __all__ = ["Results"]
 
@@ -70,7 +73,7 @@ class Results:
         motion = self.walk(state)
         return self._once("loads", (motion, state.loads), lambda: loads_of(motion, state.loads))
 
-    def shown(self, state: StudioState) -> tuple[Pose, np.ndarray[Any, Any]]:
+    def shown(self, state: StudioState) -> tuple[Pose, Float[np.ndarray, "..."]]:
         """Return body pose and joint angles that the view shows; for a walk, those at its start."""
         if state.view == "joints":
             pose = self.resting(state)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -20,6 +20,9 @@ from tarsus.robot.robot import Robot
 from tarsus.studio.encoding import degrees, millimetres, or_null
 from tarsus.studio.messages.pose import Dimension, RobotMessage
 from tarsus.studio.messages.state import RobotChoice
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
 __all__ = [
     "MOST_LEGS",
@@ -118,7 +121,7 @@ def robot_of(choice: RobotChoice) -> Robot:
     return robot
 
 
-def stance_of(robot: Robot) -> tuple[np.ndarray[Any, Any], np.ndarray[Any, Any]] | None:
+def stance_of(robot: Robot) -> tuple[Float[np.ndarray, "legs 3"], Float[np.ndarray, "legs 3"]] | None:
     """Return footholds in G and joint angles of the default stance, or None if the robot can't stand.
 
     Parameters

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any, Self
+from typing import TYPE_CHECKING, Self
 
 import numpy as np
 
@@ -21,6 +21,9 @@ from tarsus.studio.encoding import degrees, flags, millimetres, or_null, plain
 from tarsus.studio.messages.pose import BrokenLimit, LegProblem, PoseMessage
 from tarsus.studio.messages.state import View
 
+if TYPE_CHECKING:
+    from jaxtyping import Bool, Float
+
 __all__ = ["OnFootholds", "broken_limits", "resting_message", "standing_message"]
 
 # Height up to which a dragged foot is on the ground [m], and number of feet that can support a robot.
@@ -34,7 +37,7 @@ class OnFootholds(Standing):
     """A robot on footholds, some of which may be above the ground."""
 
     @property
-    def contacts(self) -> np.ndarray[Any, Any]:
+    def contacts(self) -> Bool[np.ndarray, "legs"]:
         """Feet in contact ``(legs,)``: those that reach their foothold, if it is on the ground."""
         on_ground = np.asarray(self.solution.feet)[:, 2] <= _ON_GROUND
         return np.asarray(super().contacts & on_ground)
@@ -45,14 +48,16 @@ class _Placed:
     """Joint angles, body pose and contacts, with the leg points and the centre of mass in G [m]."""
 
     robot: Robot
-    angles: np.ndarray[Any, Any]
+    angles: Float[np.ndarray, "legs 3"]
     body: Pose
-    contacts: np.ndarray[Any, Any]
-    points: np.ndarray[Any, Any]
-    com: np.ndarray[Any, Any]
+    contacts: Bool[np.ndarray, "legs"]
+    points: Float[np.ndarray, "*#batch legs 4 3"]
+    com: Float[np.ndarray, "batch"]
 
     @classmethod
-    def of(cls, robot: Robot, angles: np.ndarray[Any, Any], body: Pose, contacts: np.ndarray[Any, Any]) -> Self:
+    def of(
+        cls, robot: Robot, angles: Float[np.ndarray, "legs 3"], body: Pose, contacts: Bool[np.ndarray, "legs"]
+    ) -> Self:
         """Compute leg points and centre of mass."""
         points = forward_kinematics(robot, angles)
         com = np.asarray(body @ np.asarray(centre_of_mass(robot, angles, points=points)))
@@ -67,7 +72,7 @@ class _Placed:
 
 
 def resting_message(
-    robot: Robot, angles: np.ndarray[Any, Any], rest: RestingPose, *, id: int, view: View
+    robot: Robot, angles: Float[np.ndarray, "legs 3"], rest: RestingPose, *, id: int, view: View
 ) -> PoseMessage:
     """Return the resting pose for the given joint angles.
 
@@ -164,7 +169,7 @@ def standing_message(standing: OnFootholds, *, id: int, view: View) -> PoseMessa
     )
 
 
-def _text(robot: Robot, contacts: np.ndarray[Any, Any], margin: float) -> str:
+def _text(robot: Robot, contacts: Bool[np.ndarray, "legs"], margin: float) -> str:
     codes = [code for code, down in zip(robot.leg_codes, contacts, strict=True) if down]
     if not codes:
         return "no foot on the ground"
@@ -174,7 +179,7 @@ def _text(robot: Robot, contacts: np.ndarray[Any, Any], margin: float) -> str:
     return f"stands on {feet}: {', '.join(codes)}; margin {margin * 1000:.1f} mm"
 
 
-def _leg_problems(standing: OnFootholds, miss: np.ndarray[Any, Any]) -> list[LegProblem]:
+def _leg_problems(standing: OnFootholds, miss: Float[np.ndarray, "legs 3"]) -> list[LegProblem]:
     reach = np.asarray(standing.solution.reach)
     return [
         LegProblem(
@@ -187,7 +192,7 @@ def _leg_problems(standing: OnFootholds, miss: np.ndarray[Any, Any]) -> list[Leg
     ]
 
 
-def broken_limits(robot: Robot, angles: np.ndarray[Any, Any]) -> list[BrokenLimit]:
+def broken_limits(robot: Robot, angles: Float[np.ndarray, "legs 3"]) -> list[BrokenLimit]:
     """Return the joints beyond their limits.
 
     Parameters
@@ -220,5 +225,5 @@ def _broken(leg: int, joint: int, angle: float, low: float, high: float) -> Brok
     )
 
 
-def _polygon(points: np.ndarray[Any, Any]) -> list[float]:
+def _polygon(points: Float[np.ndarray, "*batch 3"]) -> list[float]:
     return millimetres(support_polygon(points[:, :2].reshape(-1, 2), np.ones(len(points), dtype=bool)))

@@ -8,16 +8,17 @@ line in the list of the walk controller.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, NamedTuple, Protocol
+from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
 
 from tarsus.control.limitation import Limitation
 from tarsus.control.walk.state import GaitState
 
-__all__ = ["RateGrant", "RateLimiter", "TwistGrant", "TwistLimiter", "TwistRequest", "granted_rate", "granted_twist"]
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
-Floats = np.ndarray[Any, Any]
+__all__ = ["RateGrant", "RateLimiter", "TwistGrant", "TwistLimiter", "TwistRequest", "granted_rate", "granted_twist"]
 
 
 class TwistRequest(NamedTuple):
@@ -38,7 +39,7 @@ class TwistRequest(NamedTuple):
     twist: tuple[float, ...]
     dt: float
     state: GaitState
-    target: Floats
+    target: Float[np.ndarray, "3"]
 
 
 class TwistGrant(NamedTuple):
@@ -55,7 +56,7 @@ class TwistGrant(NamedTuple):
     """
 
     fraction: float = 1.0
-    target: Floats | None = None
+    target: Float[np.ndarray, "3"] | None = None
     limitations: tuple[Limitation, ...] = ()
 
     def at_most(self, fraction: float, limitation: Limitation | None = None) -> TwistGrant:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -12,6 +12,9 @@ from tarsus.control.limiter.protocol import TwistGrant, TwistRequest
 from tarsus.control.terrain.adaptation import TerrainAdaptation
 from tarsus.control.transition.executor import TransitionExecutor
 from tarsus.errors import InputError
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
 __all__ = ["WorkspaceLimiter", "top_speed"]
 
@@ -48,7 +51,7 @@ class WorkspaceLimiter:
             self._key, self._found = key, self._largest(np.array(request.twist), frequency)
         return grant.at_most(*self._found)
 
-    def _largest(self, twist: np.ndarray[Any, Any], frequency: float) -> tuple[float, Limitation | None]:
+    def _largest(self, twist: Float[np.ndarray, "3"], frequency: float) -> tuple[float, Limitation | None]:
         """Return the largest sustainable fraction, at most 1, and what limits it."""
         transitions, pending = self._transitions, self._transitions.pending
         stances = [(transitions.current, transitions.footholds.limits)]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
@@ -20,9 +20,11 @@ from tarsus.gait.walk_setup import WalkSetup
 from tarsus.kinematics.leg import forward_kinematics
 from tarsus.kinematics.pose import Pose
 
+if TYPE_CHECKING:
+    from jaxtyping import Bool, Float
+
 __all__ = ["Recorder"]
 
-Floats = np.ndarray[Any, Any]
 _Key: TypeAlias = tuple[str, str, str, str]
 
 # A limitation that is absent for less than this is still the same one [s].
@@ -184,11 +186,11 @@ class Recorder:
             events=tuple(sorted(self._events, key=lambda event: event.time)),
         )
 
-    def _measured_angles(self) -> Floats:
+    def _measured_angles(self) -> Float[np.ndarray, "n legs 3"]:
         missing = np.full((self._controller.robot.legs, 3), np.nan)
         return np.array([missing if angles is None else angles for angles in self._measured], dtype=float)
 
-    def _motion(self, twist: Floats) -> Motion:
+    def _motion(self, twist: Float[np.ndarray, "n 3"]) -> Motion:
         """Return what was given out, as a motion."""
         outputs, robot, controller = self._outputs, self._controller.robot, self._controller
         angles = np.array([output.angles for output in outputs])
@@ -226,7 +228,7 @@ class Recorder:
         )
 
 
-def _foot_speeds(twist: Floats, rest: Floats) -> Floats:
+def _foot_speeds(twist: Float[np.ndarray, "n 3"], rest: Float[np.ndarray, "legs 3"]) -> Float[np.ndarray, "n legs"]:
     """Return the speed of each foot at rest against the body, for every twist ``(n, legs)`` [m/s]."""
     vx, vy, wz = (twist[:, axis, None] for axis in range(3))
     return np.asarray(np.hypot(vx - wz * rest[:, 1], vy + wz * rest[:, 0]))
@@ -237,6 +239,8 @@ def _replaces(new: Any, old: Any) -> bool:
     return new is not None and bool(new != old)
 
 
-def _locked(array: Floats) -> Floats:
+def _locked(
+    array: Bool[np.ndarray, "*batch"] | Float[np.ndarray, "*batch"],
+) -> Bool[np.ndarray, "*batch"] | Float[np.ndarray, "*batch"]:
     array.setflags(write=False)
     return array

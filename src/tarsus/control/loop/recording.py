@@ -7,7 +7,7 @@ import os
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -17,9 +17,10 @@ from tarsus.errors import InputError
 from tarsus.gait.motion import Motion
 from tarsus.robot.robot import Robot
 
-__all__ = ["Event", "Recording", "Unmet"]
+if TYPE_CHECKING:
+    from jaxtyping import Bool, Float
 
-Floats = np.ndarray[Any, Any]
+__all__ = ["Event", "Recording", "Unmet"]
 
 
 class Event(NamedTuple):
@@ -112,11 +113,11 @@ class Recording:
     rate: float
     compliant: bool
     motion: Motion
-    twist_commanded: Floats
-    twist: Floats
-    cycle_times: Floats
-    belly: Floats
-    measured_angles: Floats
+    twist_commanded: Float[np.ndarray, "n 3"]
+    twist: Float[np.ndarray, "n 3"]
+    cycle_times: Float[np.ndarray, "n"]
+    belly: Bool[np.ndarray, "n"]
+    measured_angles: Float[np.ndarray, "n legs 3"]
     states: tuple[str, ...]
     activities: tuple[str, ...]
     gaits: tuple[str, ...]
@@ -126,7 +127,7 @@ class Recording:
     events: tuple[Event, ...]
 
     @cached_property
-    def upright(self) -> Floats:
+    def upright(self) -> Bool[np.ndarray, "n"]:
         """Whether the robot stands or walks, and is not lying, rising, sitting down or folding ``(n,)``."""
         upright = np.array([activity in _WALK_STATES for activity in self.activities])
         upright.setflags(write=False)

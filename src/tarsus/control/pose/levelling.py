@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Literal, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, Literal, NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -32,12 +32,15 @@ from tarsus.kinematics.mass import centre_of_mass
 from tarsus.kinematics.pose import Pose
 from tarsus.robot.robot import Robot
 
+if TYPE_CHECKING:
+    from jaxtyping import Float
+
 __all__ = ["LEVELLING_MODES", "Correction", "Levelling", "LevellingMode", "com_shift_ratio"]
 
 _STEP = 1e-3  # [m]
 
 
-def com_shift_ratio(robot: Robot, feet: Array) -> float:
+def com_shift_ratio(robot: Robot, feet: Float[Array, "legs 3"]) -> float:
     """Return the shift of the centre of mass over the shift of the body, with the feet fixed.
 
     The links move less than the body, the less the nearer they are to their feet. Computed by central differences

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from tarsus.control.workspace.stance_geometry import SWING_HEIGHT, sway_fraction
 
+if TYPE_CHECKING:
+    from jaxtyping import Float
+
 __all__ = ["ELEVATION_BANDWIDTH", "PoseController", "elevation_bandwidth"]
 
-Floats = np.ndarray[Any, Any]
 
 # Greatest bandwidth of the posture [rad/s], and the greatest speed and turning rate of the body [m/s, rad/s].
 _BANDWIDTH = 4.0
@@ -39,11 +41,11 @@ class PoseController:
         The target posture and the sway's amplitudes; the same array object until either changes.
     """
 
-    def __init__(self, posture: Floats) -> None:
+    def __init__(self, posture: Float[np.ndarray, "7"]) -> None:
         self.posture = posture
         self.target = np.append(posture, np.zeros(SWING_HEIGHT))
 
-    def set_posture(self, posture: Floats) -> None:
+    def set_posture(self, posture: Float[np.ndarray, "7"]) -> None:
         """Set the target posture.
 
         Parameters
@@ -74,7 +76,7 @@ class PoseController:
         if (self.target[SWING_HEIGHT + 1 :] != amplitude).any():
             self.target = np.append(self.posture, amplitude)
 
-    def is_swaying(self, value: Floats) -> bool:
+    def is_swaying(self, value: Float[np.ndarray, "13"]) -> bool:
         """Return whether a posture sways, or its target does.
 
         Parameters
@@ -85,7 +87,7 @@ class PoseController:
         swaying = any(self.target[SWING_HEIGHT + 1 :].tolist())
         return swaying or (value is not self.target and any(value[SWING_HEIGHT + 1 :].tolist()))
 
-    def reached(self, value: Floats) -> bool:
+    def reached(self, value: Float[np.ndarray, "13"]) -> bool:
         """Return whether a posture and its sway have reached their target.
 
         Parameters
@@ -98,7 +100,7 @@ class PoseController:
         off: list[float] = np.abs(value - self.target).tolist()
         return max(off[: SWING_HEIGHT + 1]) < _POSTURE_TOLERANCE and max(off[SWING_HEIGHT + 1 :]) < _SWAY_TOLERANCE
 
-    def bandwidth(self, value: Floats) -> float:
+    def bandwidth(self, value: Float[np.ndarray, "13"]) -> float:
         """Return the bandwidth at which the body keeps to its greatest speeds [rad/s].
 
         Parameters
@@ -116,7 +118,7 @@ class PoseController:
         )
         return _bandwidth_for(time)
 
-    def _distance(self, value: Floats) -> list[float]:
+    def _distance(self, value: Float[np.ndarray, "13"]) -> list[float]:
         """Return the distance to the target, for each number of the posture."""
         if value is self.target:
             return _NO_DISTANCE

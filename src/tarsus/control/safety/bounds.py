@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any, Self
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
@@ -12,9 +12,11 @@ from tarsus.errors import InputError
 from tarsus.robot.joint_limits import STOPPING_TIME, UNKNOWN_SPEED, servo_speeds
 from tarsus.robot.robot import Robot
 
+if TYPE_CHECKING:
+    from jaxtyping import Float
+
 __all__ = ["GuardBounds"]
 
-Floats = np.ndarray[Any, np.dtype[np.float64]]
 
 # Lower end of each range, whether it is included, and upper end.
 _RANGES: dict[str, tuple[float, bool, float]] = {
@@ -67,9 +69,9 @@ class GuardBounds:
         Defaults that replace unknown values.
     """
 
-    limits: Floats
-    speed: Floats
-    acceleration: Floats
+    limits: Float[np.ndarray, "legs 3 2"]
+    speed: Float[np.ndarray, "legs 3"]
+    acceleration: Float[np.ndarray, "legs 3"]
     margin: float = 0.0
     foot_drag: float = 1e-3
     foot_height: float = 0.01
@@ -102,7 +104,7 @@ class GuardBounds:
                 f"{self.min_time_step:g} s"
             )
 
-    def _lock(self, name: str, array: Floats) -> None:
+    def _lock(self, name: str, array: Float[np.ndarray, "*#batch"]) -> None:
         array.setflags(write=False)
         object.__setattr__(self, name, array)
 
@@ -149,7 +151,7 @@ def _number(name: str, value: Any) -> float:
         raise InputError(f"guard bound {name} is {value!r:.80}; it must be a number") from None
 
 
-def _numbers(name: str, value: Any) -> Floats:
+def _numbers(name: str, value: Any) -> Float[np.ndarray, "*batch"]:
     try:
         array = np.array(value, dtype=np.float64)
     except (TypeError, ValueError) as error:
@@ -159,7 +161,7 @@ def _numbers(name: str, value: Any) -> Floats:
     return array
 
 
-def _checked_limits(value: Any) -> Floats:
+def _checked_limits(value: Any) -> Float[np.ndarray, "n 3 2"]:
     limits = _numbers("limits", value)
     if limits.ndim != 3 or limits.shape[1:] != (3, 2):
         raise InputError(f"guard bound limits has shape {limits.shape}; expected (legs, 3, 2)")
@@ -168,7 +170,7 @@ def _checked_limits(value: Any) -> Floats:
     return limits
 
 
-def _per_joint(name: str, value: Any, legs: int) -> Floats:
+def _per_joint(name: str, value: Any, legs: int) -> Float[np.ndarray, "n 3"]:
     """Return positive numbers of shape (legs, 3)."""
     array = _numbers(name, value)
     try:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Literal, get_args
+from typing import TYPE_CHECKING, Literal, get_args
 
 import numpy as np
 
@@ -22,6 +22,9 @@ from tarsus.kinematics.inverse import inverse_kinematics
 from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.stance import default_stance
 from tarsus.robot.robot import Robot
+
+if TYPE_CHECKING:
+    from jaxtyping import Bool, Float, Shaped
 
 __all__ = ["Guard", "Policy", "Recovery"]
 
@@ -72,7 +75,7 @@ class Guard:
         bounds: GuardBounds | None = None,
         policy: Policy = "hold",
         recover: Recovery = "near",
-        start: Array | None = None,
+        start: Float[Array, "legs 3"] | None = None,
         log_size: int = 1000,
     ) -> None:
         for kind, name, known in (("policy", policy, get_args(Policy)), ("recovery", recover, get_args(Recovery))):
@@ -97,7 +100,7 @@ class Guard:
         if start is not None:
             self._joints.start(self._checked_start(start), 0.0)
 
-    def _checked_start(self, start: Array) -> list[float]:
+    def _checked_start(self, start: Float[Array, "legs 3"]) -> list[float]:
         angles = read_angles(start, self._robot.legs)
         violations = [angles] if isinstance(angles, Violation) else self._joints.limit_violations(angles)
         if isinstance(angles, Violation) or violations:
@@ -137,7 +140,13 @@ class Guard:
         """
         self._reset_requested = self._state in (GuardState.HOLDING, GuardState.SITTING)
 
-    def check(self, angles: Array, dt: float, contacts: Array | None = None, body: Pose | None = None) -> GuardOutput:
+    def check(
+        self,
+        angles: Shaped[Array, "*#batch"] | None,
+        dt: float,
+        contacts: Bool[Array, "legs"] | None = None,
+        body: Pose | None = None,
+    ) -> GuardOutput:
         """Check a command and return the joint angles to send.
 
         Parameters
@@ -175,7 +184,9 @@ class Guard:
             self._hold()
         return self._output(violations)
 
-    def _feet_violations(self, command: list[float], contacts: Array | None, body: Pose | None) -> list[Violation]:
+    def _feet_violations(
+        self, command: list[float], contacts: Bool[Array, "legs"] | Float[Array, "legs"] | None, body: Pose | None
+    ) -> list[Violation]:
         """Return the violations of contacts and body pose if these are invalid, else those of the feet."""
         stance = None if contacts is None else read_contacts(contacts, self._robot.legs)
         rows = None if body is None else read_body(body)

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from enum import StrEnum
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from tarsus.control.safety.interventions import Intervention
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
 __all__ = ["GuardOutput", "GuardState"]
 
@@ -42,7 +45,7 @@ class GuardOutput(NamedTuple):
         Violations of the command: the worst one of each kind.
     """
 
-    angles: np.ndarray[Any, np.dtype[np.float64]]
+    angles: Float[np.ndarray, "legs 3"]
     ok: bool
     state: GuardState
     time: float

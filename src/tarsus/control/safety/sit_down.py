@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from itertools import product
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,9 +14,11 @@ from tarsus.control.safety.support_geometry import Point
 from tarsus.kinematics.leg import forward_kinematics, leg_jacobian
 from tarsus.robot.robot import Robot
 
+if TYPE_CHECKING:
+    from jaxtyping import Float
+
 __all__ = ["SitDown"]
 
-Floats = np.ndarray[Any, np.dtype[np.float64]]
 
 # Time to accelerate to the sitting speed and to decelerate from it [s].
 _ACCELERATION_TIME = 0.5
@@ -84,7 +86,13 @@ class SitDown:
         self._ground += self._speed * dt
         return True
 
-    def _move(self, points: Floats, direction: Floats, remaining: float, dt: float) -> bool:
+    def _move(
+        self,
+        points: Float[np.ndarray, "*#batch legs 4 3"],
+        direction: Float[np.ndarray, "legs"],
+        remaining: float,
+        dt: float,
+    ) -> bool:
         """Move the feet in B along the vertical; return False if nothing remains or the bounds do not permit it."""
         if remaining <= _TOLERANCE:
             return False
@@ -99,7 +107,7 @@ class SitDown:
                 return True
         return False
 
-    def _send(self, offsets: Floats, dt: float) -> bool:
+    def _send(self, offsets: Float[np.ndarray, "n 3"], dt: float) -> bool:
         """Move the feet by offsets, if the bounds permit."""
         current = self._angles()
         try:
@@ -114,23 +122,23 @@ class SitDown:
         self._joints.send(angles, dt)
         return True
 
-    def _angles(self) -> Floats:
+    def _angles(self) -> Float[np.ndarray, "n 3"]:
         return np.array(self._joints.angles).reshape(self._robot.legs, 3)
 
-    def _points(self) -> Floats:
-        points: Floats = forward_kinematics(self._robot, self._angles())
+    def _points(self) -> Float[np.ndarray, "m n 3"]:
+        points: np.ndarray = forward_kinematics(self._robot, self._angles())
         return points
 
-    def _height(self, points: Floats) -> float:
+    def _height(self, points: Float[np.ndarray, "*#batch legs 4 3"]) -> float:
         """Return the height over the ground of the lowest point of body and legs, feet excluded [m]."""
         lowest = min(self._underside, float((points[:, :3] @ self._up).min()))
         return lowest - self._ground
 
 
-def _body_corners(robot: Robot) -> Floats:
+def _body_corners(robot: Robot) -> Float[np.ndarray, "n 3"]:
     """Return points of the body in B that include its lowest point in any attitude."""
     if robot.body_size is None:
-        corners: Floats = np.asarray(robot.mount_position)
+        corners: np.ndarray = np.asarray(robot.mount_position)
     else:
         corners = np.array(list(product((-0.5, 0.5), repeat=3))) * np.asarray(robot.body_size)
     return corners

@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -23,6 +24,9 @@ from tarsus.kinematics.leg import checked_angles
 from tarsus.kinematics.mass import STANDARD_GRAVITY, point_masses
 from tarsus.kinematics.planar_moments import PlanarMoments
 from tarsus.robot.robot import Robot
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
 __all__ = ["FootForceEstimator", "balanced_forces", "foot_forces_from_torques"]
 
@@ -113,7 +117,7 @@ def _weight_moment(weight: float, r: float, z: float, up_r: float, up_z: float) 
 
 
 def foot_forces_from_torques(
-    robot: Robot, angles: Array, torques: Array, *, up: Vector = (0.0, 0.0, 1.0)
+    robot: Robot, angles: Float[Array, "legs 3"], torques: Float[Array, "legs 3"], *, up: Vector = (0.0, 0.0, 1.0)
 ) -> tuple[Vector | None, ...]:
     """Return the forces of the ground on the feet, from the joint torques; None for a leg that is singular.
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -11,6 +11,9 @@ from tarsus.arrays import Array, broadcast_shapes, require_shape
 from tarsus.errors import InputError
 from tarsus.kinematics.planar_moments import PlanarMoments
 from tarsus.kinematics.polygon import as_mask
+
+if TYPE_CHECKING:
+    from jaxtyping import Bool, Float
 
 __all__ = ["FLAT", "GroundPlane", "ground_plane"]
 
@@ -34,13 +37,13 @@ class GroundPlane:
         Rise along x and y [m/m].
     """
 
-    x: Array = 0.0
-    y: Array = 0.0
-    z: Array = 0.0
-    slope_x: Array = 0.0
-    slope_y: Array = 0.0
+    x: Float[Array, "*#batch"] = 0.0
+    y: Float[Array, "*#batch"] = 0.0
+    z: Float[Array, "*#batch"] = 0.0
+    slope_x: Float[Array, "*#batch"] = 0.0
+    slope_y: Float[Array, "*#batch"] = 0.0
 
-    def height(self, x: Array, y: Array) -> Array:
+    def height(self, x: Float[Array, "*#batch"], y: Float[Array, "*#batch"]) -> Float[Array, "*batch"]:
         """Return the height of the plane at a point.
 
         Parameters
@@ -60,7 +63,9 @@ FLAT = GroundPlane()
 """The plane z = 0."""
 
 
-def ground_plane(feet: Array, contacts: Array, previous: GroundPlane = FLAT) -> GroundPlane:
+def ground_plane(
+    feet: Float[Array, "*#batch legs 3"], contacts: Bool[Array, "*#batch legs"], previous: GroundPlane = FLAT
+) -> GroundPlane:
     """Return the least-squares plane through the stance feet.
 
     Three or more feet that are not collinear determine a plane. With fewer, or collinear, feet it keeps the previous
@@ -118,7 +123,9 @@ def _fit_one(feet: list[list[float]], contacts: list[bool], previous: GroundPlan
     return GroundPlane(mean_x, mean_y, mean_z, *moments.slopes(xz, yz, determinant=moments.determinant))
 
 
-def _fit_batch(feet: np.ndarray[Any, Any], contacts: np.ndarray[Any, Any], previous: GroundPlane) -> GroundPlane:
+def _fit_batch(
+    feet: Float[np.ndarray, "*#batch legs 3"], contacts: Bool[np.ndarray, "*#batch legs"], previous: GroundPlane
+) -> GroundPlane:
     broadcast_shapes("feet and contacts", feet.shape[:-2], contacts.shape[:-1])
     feet = np.where(contacts[..., None], feet, 0.0)
     if not (np.abs(feet) < _FARTHEST).all():

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,9 +12,11 @@ from tarsus.control.sequence.stage import GRID
 from tarsus.errors import InputError
 from tarsus.kinematics.pose import Pose
 
+if TYPE_CHECKING:
+    from jaxtyping import Bool, Float
+
 __all__ = ["SequencePlayer"]
 
-Floats = np.ndarray[Any, np.dtype[np.float64]]
 
 # Interval at which joint accelerations are evaluated while the playback rate changes [s].
 _INTERVAL = 1e-3
@@ -65,12 +67,12 @@ class SequencePlayer:
         return self.sequence.at(self._time)
 
     @property
-    def angles(self) -> Floats:
+    def angles(self) -> Float[np.ndarray, "legs 3"]:
         """Current joint angles, shape (legs, 3) [rad]."""
         return self.now.angles
 
     @property
-    def contacts(self) -> np.ndarray[Any, np.dtype[np.bool_]]:
+    def contacts(self) -> Bool[np.ndarray, "legs"]:
         """Feet currently on the ground, shape (legs,)."""
         return self.now.contacts
 
@@ -106,7 +108,7 @@ class SequencePlayer:
         """Brake, then play in reverse towards the start of the sequence."""
         self._target_rate = -1.0
 
-    def step(self, dt: float) -> Floats:
+    def step(self, dt: float) -> Float[np.ndarray, "legs 3"]:
         """Advance by a time step and return the joint angles.
 
         Parameters
@@ -162,9 +164,9 @@ class SequencePlayer:
         return math.copysign(min(abs(change), max(float(slope.min()), 0.0) * dt), change)
 
 
-def _interpolate(values: Floats, fraction: float) -> Floats:
+def _interpolate(values: Float[np.ndarray, "n legs 3"], fraction: float) -> Float[np.ndarray, "legs 3"]:
     """Interpolate values given on `GRID`."""
     position = fraction * (len(GRID) - 1)
     low = min(int(position), len(GRID) - 2)
-    found: Floats = values[low] + (position - low) * (values[low + 1] - values[low])
+    found: np.ndarray = values[low] + (position - low) * (values[low + 1] - values[low])
     return found

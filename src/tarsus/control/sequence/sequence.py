@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -19,9 +19,10 @@ from tarsus.kinematics.pose import Pose
 from tarsus.robot.joint_limits import JointLimits
 from tarsus.robot.robot import Robot
 
-__all__ = ["MotionSequence", "SequenceSample"]
+if TYPE_CHECKING:
+    from jaxtyping import Bool, Float
 
-Floats = np.ndarray[Any, np.dtype[np.float64]]
+__all__ = ["MotionSequence", "SequenceSample"]
 
 
 class SequenceSample(NamedTuple):
@@ -41,8 +42,8 @@ class SequenceSample(NamedTuple):
         Whether the body lies on the ground.
     """
 
-    angles: Floats
-    contacts: np.ndarray[Any, np.dtype[np.bool_]]
+    angles: Float[np.ndarray, "legs 3"]
+    contacts: Bool[np.ndarray, "legs"]
     body: Pose
     stage: str
     belly: bool
@@ -77,7 +78,7 @@ class MotionSequence:
         return self.starts[-1]
 
     @property
-    def angles_end(self) -> Floats:
+    def angles_end(self) -> Float[np.ndarray, "legs 3"]:
         """Joint angles at the end, shape (legs, 3) [rad]."""
         return self.stages[-1].angles_end
 

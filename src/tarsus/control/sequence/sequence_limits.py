@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -11,16 +11,17 @@ from tarsus.errors import InputError
 from tarsus.robot.joint_limits import STOPPING_TIME, JointLimits, joint_limits
 from tarsus.robot.robot import Robot
 
-__all__ = ["SERVO_SPEED_FRACTION", "sequence_limits"]
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
-Floats = np.ndarray[Any, np.dtype[np.float64]]
+__all__ = ["SERVO_SPEED_FRACTION", "sequence_limits"]
 
 SERVO_SPEED_FRACTION = 0.5
 """Default joint speed as a fraction of the servo's no-load speed."""
 
 
 def sequence_limits(
-    robot: Robot, joint_speed: Array | None = None, joint_acceleration: Array | None = None
+    robot: Robot, joint_speed: Float[Array, "..."] | None = None, joint_acceleration: Float[Array, ""] | None = None
 ) -> JointLimits:
     """Return the joint limits of a motion sequence; defaults come from the servos.
 
@@ -48,7 +49,7 @@ def sequence_limits(
     return JointLimits(speed, _positive("joint_acceleration", joint_acceleration, shape))
 
 
-def _positive(name: str, values: Array, shape: tuple[int, int]) -> Floats:
+def _positive(name: str, values: Float[Array, "*batch"], shape: tuple[int, int]) -> Float[np.ndarray, "legs 3"]:
     """Return positive numbers as a read-only array of the shape."""
     try:
         array = np.array(np.broadcast_to(np.asarray(values, dtype=np.float64), shape))

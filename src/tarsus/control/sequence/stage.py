@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, NamedTuple, Self
+from typing import TYPE_CHECKING, NamedTuple, Self
 
 import numpy as np
 
@@ -23,10 +23,10 @@ from tarsus.kinematics.triangle import solve_triangle, to_leg_frame
 from tarsus.robot.joint_limits import JointLimits
 from tarsus.robot.robot import Robot
 
-__all__ = ["GRID", "Stage", "StageTable"]
+if TYPE_CHECKING:
+    from jaxtyping import Bool, Float
 
-Floats = np.ndarray[Any, np.dtype[np.float64]]
-Flags = np.ndarray[Any, np.dtype[np.bool_]]
+__all__ = ["GRID", "Stage", "StageTable"]
 
 GRID = np.linspace(0.0, 1.0, 257)
 """Fractions of a stage's duration at which it is evaluated."""
@@ -50,9 +50,9 @@ class StageTable(NamedTuple):
         Joint angles, first and second derivative [rad].
     """
 
-    angles: Floats
-    first: Floats
-    second: Floats
+    angles: Float[np.ndarray, "257 legs 3"]
+    first: Float[np.ndarray, "257 legs 3"]
+    second: Float[np.ndarray, "257 legs 3"]
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -93,21 +93,29 @@ class Stage:
     duration: float
     start: Pose
     end: Pose
-    pivot: Floats
-    angles: Floats
-    angles_end: Floats
-    feet: Floats
-    feet_end: Floats
+    pivot: Float[np.ndarray, "3"]
+    angles: Float[np.ndarray, "legs 3"]
+    angles_end: Float[np.ndarray, "legs 3"]
+    feet: Float[np.ndarray, "legs 3"]
+    feet_end: Float[np.ndarray, "legs 3"]
     swing_height: float
-    cartesian: Flags
-    contacts: Flags
-    contacts_end: Flags
-    supports: Floats
+    cartesian: Bool[np.ndarray, "legs"]
+    contacts: Bool[np.ndarray, "legs"]
+    contacts_end: Bool[np.ndarray, "legs"]
+    supports: Float[np.ndarray, "n 3"]
     belly: bool
 
     @classmethod
     def hold(
-        cls, name: str, robot: Robot, body: Pose, angles: Floats, *, contacts: Flags, supports: Floats, belly: bool
+        cls,
+        name: str,
+        robot: Robot,
+        body: Pose,
+        angles: Float[np.ndarray, "legs 3"],
+        *,
+        contacts: Bool[np.ndarray, "legs"],
+        supports: Float[np.ndarray, "n 3"],
+        belly: bool,
     ) -> Self:
         """Return a stage of one second in which nothing moves.
 
@@ -128,7 +136,7 @@ class Stage:
         belly : bool
             Whether the body lies on the ground.
         """
-        feet: Floats = body @ forward_kinematics(robot, angles)[:, 3]
+        feet: np.ndarray = body @ forward_kinematics(robot, angles)[:, 3]
         return cls(
             name=name,
             robot=robot,
@@ -160,7 +168,7 @@ class Stage:
         return replace(self, start=pose @ self.start, end=pose @ self.end, **points)
 
     @cached_property
-    def _rotation(self) -> tuple[Floats, float]:
+    def _rotation(self) -> tuple[Float[np.ndarray, "3"], float]:
         """Axis in G and angle of the body's rotation."""
         turn = self.end.rotation @ self.start.rotation.T
         axis = np.array([turn[2, 1] - turn[1, 2], turn[0, 2] - turn[2, 0], turn[1, 0] - turn[0, 1]]) / 2
@@ -169,7 +177,7 @@ class Stage:
             return np.zeros(3), 0.0
         return axis / sine, float(np.arctan2(sine, (np.trace(turn) - 1) / 2))
 
-    def body_at(self, fractions: Floats) -> Pose:
+    def body_at(self, fractions: Float[np.ndarray, "n"]) -> Pose:
         """Return the poses of B in G.
 
         Parameters
@@ -193,7 +201,7 @@ class Stage:
         first, last = (pose.position + pose.rotation @ self.pivot for pose in (self.start, self.end))
         return Pose(rotation, first + progress * (last - first) - rotation @ self.pivot)
 
-    def feet_at(self, fractions: Floats) -> Floats:
+    def feet_at(self, fractions: Float[np.ndarray, "n"]) -> Float[np.ndarray, "n legs 3"]:
         """Return the Cartesian paths of the feet in G; meaningless for legs that follow a path in joint space.
 
         Parameters
@@ -207,12 +215,12 @@ class Stage:
             Feet in G [m].
         """
         progress = horizontal_profile(fractions)[:, None, None]
-        feet: Floats = self.feet + progress * (self.feet_end - self.feet)
+        feet: np.ndarray = self.feet + progress * (self.feet_end - self.feet)
         moves = (self.feet != self.feet_end).any(-1)
         feet[..., 2] += self.swing_height * vertical_profile(fractions)[:, None] * moves
         return feet
 
-    def angles_at(self, fractions: Floats) -> Floats:
+    def angles_at(self, fractions: Float[np.ndarray, "n"]) -> Float[np.ndarray, "n legs 3"]:
         """Return the joint angles; NaN where a foot is out of reach.
 
         Parameters
@@ -225,20 +233,22 @@ class Stage:
         array, shape (n, legs, 3)
             Joint angles [rad].
         """
-        angles: Floats = self.angles + horizontal_profile(fractions)[:, None, None] * (self.angles_end - self.angles)
+        angles: np.ndarray = self.angles + horizontal_profile(fractions)[:, None, None] * (
+            self.angles_end - self.angles
+        )
         if self.cartesian.any():
             solved = self._solve(fractions)
             angles[:, self.cartesian] = solved[:, self.cartesian]
         return angles
 
     @cached_property
-    def _branches(self) -> tuple[Flags, Flags]:
+    def _branches(self) -> tuple[Bool[np.ndarray, "legs"], Bool[np.ndarray, "legs"]]:
         """Whether each leg's knee is bent down, and whether its foot is behind its coxa axis."""
         g, femur, tibia = self.robot.geometry, self.angles[:, 1], self.angles[:, 2]
         bend = np.sin(tibia)
         return bend > 0, g.coxa + g.femur * np.cos(femur) + g.tibia * np.cos(femur + tibia) < 0
 
-    def _solve(self, fractions: Floats) -> Floats:
+    def _solve(self, fractions: Float[np.ndarray, "n"]) -> Float[np.ndarray, "n legs 3"]:
         """Return the inverse kinematics of all feet, each leg with the solution that it starts with."""
         g = self.robot.geometry
         points = points_in_body(self.body_at(fractions), self.feet_at(fractions))
@@ -255,7 +265,7 @@ class Stage:
                 for joint in range(3):
                     solved[..., joint] = np.where(ok, found[joint], solved[..., joint])
         # The equivalent angle nearest to the start.
-        return solved - _FULL_TURN * np.round((solved - self.angles) / _FULL_TURN)
+        return np.asarray(solved - _FULL_TURN * np.round((solved - self.angles) / _FULL_TURN))
 
     @cached_property
     def table(self) -> StageTable:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,10 +13,10 @@ from tarsus.control.startup.folded_pose import belly_depth, underside_points
 from tarsus.kinematics.mass import centre_of_mass
 from tarsus.kinematics.pose import Pose
 
-__all__ = ["GROUND_TOLERANCE", "BodyTarget", "body_targets", "stage_to"]
+if TYPE_CHECKING:
+    from jaxtyping import Bool, Float
 
-Floats = np.ndarray[Any, np.dtype[np.float64]]
-Flags = np.ndarray[Any, np.dtype[np.bool_]]
+__all__ = ["GROUND_TOLERANCE", "BodyTarget", "body_targets", "stage_to"]
 
 GROUND_TOLERANCE = 1e-7
 """Height below which a point counts as on the ground [m]."""
@@ -42,7 +42,7 @@ class BodyTarget:
     """
 
     body: Pose
-    pivot: Floats
+    pivot: Float[np.ndarray, "3"]
     belly: bool
 
 
@@ -71,7 +71,7 @@ def body_targets(builder: SequenceBuilder, height: float) -> tuple[BodyTarget, .
     return (lying, *standing) if on_ground.any() else (*standing, lying)
 
 
-def stage_to(builder: SequenceBuilder, target: BodyTarget, cartesian: Flags) -> Stage:
+def stage_to(builder: SequenceBuilder, target: BodyTarget, cartesian: Bool[np.ndarray, "legs"]) -> Stage:
     """Return a stage that moves the body to a target, unchecked.
 
     Parameters
@@ -86,16 +86,16 @@ def stage_to(builder: SequenceBuilder, target: BodyTarget, cartesian: Flags) -> 
     return replace(builder.hold(""), end=target.body, pivot=target.pivot, cartesian=cartesian)
 
 
-def _pose_above(body: Pose, rotation: Floats, pivot: Floats, height: float) -> Pose:
+def _pose_above(body: Pose, rotation: Float[np.ndarray, "3 3"], pivot: Float[np.ndarray, "3"], height: float) -> Pose:
     """Return the pose with a rotation and a height that keeps the horizontal position of the pivot."""
     position = body.position + body.rotation @ pivot - rotation @ pivot
     return Pose(rotation, np.array([position[0], position[1], height]))
 
 
-def _levelling_rotation(up: Floats) -> Floats:
+def _levelling_rotation(up: Float[np.ndarray, "3"]) -> Float[np.ndarray, "3 3"]:
     """Return the smallest rotation that turns the unit vector `up` into z."""
     x, y, z = up
-    rotation: Floats = np.array(
+    rotation: np.ndarray = np.array(
         [[z + y * y / (1 + z), -x * y / (1 + z), -x], [-x * y / (1 + z), z + x * x / (1 + z), -y], up]
     )
     return rotation

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, fields, replace
-from typing import Any, Self
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
@@ -17,10 +17,11 @@ from tarsus.kinematics.pose import Pose
 from tarsus.robot.joint_limits import JointLimits
 from tarsus.robot.robot import Robot
 
+if TYPE_CHECKING:
+    from jaxtyping import Bool, Float
+
 __all__ = ["SequenceBuilder"]
 
-Floats = np.ndarray[Any, np.dtype[np.float64]]
-Flags = np.ndarray[Any, np.dtype[np.bool_]]
 
 # Stages in which no joint moves by more are omitted [rad].
 _MIN_MOTION = 1e-12
@@ -59,11 +60,11 @@ class SequenceBuilder:
 
     robot: Robot
     joint_limits: JointLimits
-    angles: Floats
+    angles: Float[np.ndarray, "legs 3"]
     body: Pose
-    contacts: Flags
+    contacts: Bool[np.ndarray, "legs"]
     belly: bool
-    supports: Floats
+    supports: Float[np.ndarray, "n 3"]
     initial_margin: float
     stages: list[Stage] = field(default_factory=list)
 
@@ -83,9 +84,9 @@ class SequenceBuilder:
             setattr(self, spec.name, getattr(other, spec.name))
 
     @property
-    def feet(self) -> Floats:
+    def feet(self) -> Float[np.ndarray, "legs 3"]:
         """Feet in G, shape (legs, 3) [m]."""
-        feet: Floats = self.body @ forward_kinematics(self.robot, self.angles)[:, 3]
+        feet: np.ndarray = self.body @ forward_kinematics(self.robot, self.angles)[:, 3]
         return feet
 
     @property
@@ -111,7 +112,15 @@ class SequenceBuilder:
             belly=self.belly,
         )
 
-    def move_legs(self, name: str, legs: Flags, angles: Floats, *, landed: bool, margin: float = 0.0) -> None:
+    def move_legs(
+        self,
+        name: str,
+        legs: Bool[np.ndarray, "legs"],
+        angles: Float[np.ndarray, "legs 3"],
+        *,
+        landed: bool,
+        margin: float = 0.0,
+    ) -> None:
         """Move legs through the air to joint angles, with the body stationary and no point below the ground.
 
         Parameters
@@ -137,7 +146,15 @@ class SequenceBuilder:
             after = (self.contacts & ~legs) | (legs & (landed and k == count - 1))
             self._add(name, margin=margin, angles_end=target, contacts=stationary, contacts_end=after)
 
-    def swing(self, name: str, legs: Flags, feet: Floats, *, swing_height: float, margin: float) -> None:
+    def swing(
+        self,
+        name: str,
+        legs: Bool[np.ndarray, "legs"],
+        feet: Float[np.ndarray, "legs 3"],
+        *,
+        swing_height: float,
+        margin: float,
+    ) -> None:
         """Swing feet to new footholds, with the body stationary.
 
         Parameters
@@ -162,9 +179,9 @@ class SequenceBuilder:
         name: str,
         body: Pose,
         *,
-        pivot: Floats | None = None,
-        supports: Floats | None = None,
-        stationary: Flags | None = None,
+        pivot: Float[np.ndarray, "3"] | None = None,
+        supports: Float[np.ndarray, "n 3"] | None = None,
+        stationary: Bool[np.ndarray, "legs"] | None = None,
     ) -> None:
         """Move the body with all feet on the ground stationary; legs in the air keep their joint angles.
 
@@ -203,7 +220,7 @@ class SequenceBuilder:
         points = self.body @ underside_points(self.robot)
         self.supports = points[points[:, 2] < _GROUND_TOLERANCE]
 
-    def set_end_angles(self, angles: Floats) -> None:
+    def set_end_angles(self, angles: Float[np.ndarray, "legs 3"]) -> None:
         """Replace the final joint angles by ones that are equal up to rounding.
 
         Parameters

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -16,9 +16,11 @@ from tarsus.kinematics.mass import centre_of_mass
 from tarsus.kinematics.polygon import hull_margin
 from tarsus.robot.robot import JOINTS, Robot
 
+if TYPE_CHECKING:
+    from jaxtyping import Float
+
 __all__ = ["check_stage", "limit_excess"]
 
-Floats = np.ndarray[Any, np.dtype[np.float64]]
 
 # Tolerances of an angle beyond its limit [rad], of a depth below the ground, and of the stability margin [m].
 _ANGLE_TOLERANCE = 1e-8
@@ -30,7 +32,7 @@ _BRANCH_TOLERANCE = 1e-6
 _MARGIN_INTERVAL = 4
 
 
-def limit_excess(robot: Robot, angles: Floats) -> Floats:
+def limit_excess(robot: Robot, angles: Float[np.ndarray, "*#batch legs 3"]) -> Float[np.ndarray, "*batch legs 3"]:
     """Return how far joint angles are beyond their limits.
 
     Parameters
@@ -46,7 +48,7 @@ def limit_excess(robot: Robot, angles: Floats) -> Floats:
         Excess, 0 within the limits [rad].
     """
     low, high = robot.limits[..., 0], robot.limits[..., 1]
-    excess: Floats = np.maximum(np.maximum(low - angles, angles - high), 0.0)
+    excess: np.ndarray = np.maximum(np.maximum(low - angles, angles - high), 0.0)
     return excess
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import lru_cache
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -13,9 +13,11 @@ from tarsus.kinematics.leg import forward_kinematics, point_parts
 from tarsus.robot.geometry import LegGeometry
 from tarsus.robot.robot import Robot
 
+if TYPE_CHECKING:
+    from jaxtyping import Float
+
 __all__ = ["belly_depth", "folded_pose", "leg_clearance", "underside_points"]
 
-Floats = np.ndarray[Any, np.dtype[np.float64]]
 
 # Spacing of the joint angles that are evaluated, and their distance from the limits where the range permits it [rad].
 _GRID = np.deg2rad(2.5)
@@ -28,7 +30,7 @@ _TRIES = 200
 _LINK_POINTS = 9
 
 
-def underside_points(robot: Robot) -> Floats:
+def underside_points(robot: Robot) -> Float[np.ndarray, "n 3"]:
     """Return the points of the body that can rest on the ground.
 
     These are the lower corners of its box and the coxa axes; without a box, the coxa axes alone. The femur axes, which
@@ -64,7 +66,7 @@ def belly_depth(robot: Robot) -> float:
     return -float(lowest.min())
 
 
-def folded_pose(robot: Robot) -> Floats:
+def folded_pose(robot: Robot) -> Float[np.ndarray, "legs 3"]:
     """Return joint angles with which the legs are retracted and the belly can rest on the ground.
 
     The coxae are straight out, as far as their limits allow. Of all femur and tibia angles with knee and foot above the
@@ -93,7 +95,7 @@ def folded_pose(robot: Robot) -> Floats:
 
 
 @lru_cache(maxsize=16)
-def _folded_pose(robot: Robot) -> Floats:
+def _folded_pose(robot: Robot) -> Float[np.ndarray, "..."]:
     choices = [_leg_choices(robot, leg) for leg in range(robot.legs)]
     enough = 2 * float(robot.foot_radius.max()) + _CLEARANCE
     best, best_clearance = np.zeros((robot.legs, 3)), -1.0
@@ -108,7 +110,7 @@ def _folded_pose(robot: Robot) -> Floats:
     return best
 
 
-def leg_clearance(robot: Robot, angles: Array) -> float:
+def leg_clearance(robot: Robot, angles: Float[Array, "legs 3"]) -> float:
     """Return the least distance between the femurs and tibiae of two legs [m].
 
     Parameters
@@ -127,7 +129,7 @@ def leg_clearance(robot: Robot, angles: Array) -> float:
     return float(np.sqrt((offsets * offsets).sum(-1).min()))
 
 
-def _leg_choices(robot: Robot, leg: int) -> Floats:
+def _leg_choices(robot: Robot, leg: int) -> Float[np.ndarray, "n 3"]:
     """Return the folded joint angles of a leg, shape (n, 3) [rad], the most retracted first."""
     (low, high), *limits = robot.limits[leg]
     coxa = np.clip(0.0, low, high)
@@ -145,17 +147,17 @@ def _leg_choices(robot: Robot, leg: int) -> Floats:
     above = depth >= depth.max() - 1e-9
     highest = points[:, 2:, 2].max(-1) + belly_depth(robot)
     cost = distance.max(-1) ** 2 + highest**2
-    choices: Floats = angles[above][np.argsort(cost[above], kind="stable")]
+    choices: np.ndarray = angles[above][np.argsort(cost[above], kind="stable")]
     return choices
 
 
-def _angle_grid(low: float, high: float) -> Floats:
+def _angle_grid(low: float, high: float) -> Float[np.ndarray, "n"]:
     """Return joint angles between the limits, inset where the range permits it."""
     inset = min(_LIMIT_INSET, (high - low) / 4)
     return np.linspace(low + inset, high - inset, 2 + int((high - low) / _GRID))
 
 
-def _outside_body(robot: Robot, points: Floats) -> Any:
+def _outside_body(robot: Robot, points: Float[np.ndarray, "*#batch legs 4 3"]) -> Any:
     """Return for each leg, shape (n, 4, 3), whether its tibia is outside the body's box."""
     if robot.body_size is None:
         return np.ones(len(points), dtype=bool)

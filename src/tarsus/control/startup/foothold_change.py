@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,17 +12,20 @@ from tarsus.errors import TarsusError
 from tarsus.gait.branch import branches
 from tarsus.kinematics.leg import forward_kinematics
 
+if TYPE_CHECKING:
+    from jaxtyping import Bool, Float
+
 __all__ = ["change_footholds"]
 
-Floats = np.ndarray[Any, np.dtype[np.float64]]
-Flags = np.ndarray[Any, np.dtype[np.bool_]]
 
 # Smaller differences of joint angles are ignored [rad]: less than a nanometre at the foot.
 _TOLERANCE = 1e-9
 _MIN_STANCE_FEET = 3
 
 
-def change_footholds(builder: SequenceBuilder, angles: Floats, *, swing_height: float, margin: float) -> None:
+def change_footholds(
+    builder: SequenceBuilder, angles: Float[np.ndarray, "legs 3"], *, swing_height: float, margin: float
+) -> None:
     """Move all legs to a new stance with the body stationary.
 
     Feet in the air are placed first. Then the tripods are moved, every second leg of the ring, and single legs where a
@@ -55,8 +58,13 @@ def change_footholds(builder: SequenceBuilder, angles: Floats, *, swing_height: 
 
 
 def _move_first_group(
-    builder: SequenceBuilder, remaining: Flags, angles: Floats, *, swing_height: float, margin: float
-) -> Flags:
+    builder: SequenceBuilder,
+    remaining: Bool[np.ndarray, "legs"],
+    angles: Float[np.ndarray, "legs 3"],
+    *,
+    swing_height: float,
+    margin: float,
+) -> Bool[np.ndarray, "legs"]:
     """Move the first group of legs that can be lifted, and return it."""
     errors: list[TarsusError] = []
     for group in _groups(builder, remaining):
@@ -74,7 +82,7 @@ def _move_first_group(
     )
 
 
-def _groups(builder: SequenceBuilder, remaining: Flags) -> Iterator[Flags]:
+def _groups(builder: SequenceBuilder, remaining: Bool[np.ndarray, "legs"]) -> Iterator[Bool[np.ndarray, "..."]]:
     """Yield the groups to try, tripods before single legs, that leave three feet on the ground."""
     legs = np.arange(remaining.size)
     groups = [remaining & (legs % 2 == parity) for parity in (0, 1)]
@@ -82,7 +90,14 @@ def _groups(builder: SequenceBuilder, remaining: Flags) -> Iterator[Flags]:
     return (group for group in groups if group.any() and (builder.contacts & ~group).sum() >= _MIN_STANCE_FEET)
 
 
-def _move(builder: SequenceBuilder, legs: Flags, angles: Floats, *, swing_height: float, margin: float) -> None:
+def _move(
+    builder: SequenceBuilder,
+    legs: Bool[np.ndarray, "legs"],
+    angles: Float[np.ndarray, "legs 3"],
+    *,
+    swing_height: float,
+    margin: float,
+) -> None:
     """Move legs by a swing of their feet if possible, else along paths in joint space."""
     codes = [builder.robot.leg_codes[leg] for leg in np.flatnonzero(legs)]
     name = f"place {' '.join(codes)}"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import contextlib
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,10 +13,11 @@ from tarsus.control.startup.folded_pose import folded_pose
 from tarsus.errors import TarsusError
 from tarsus.kinematics.inverse import inverse_kinematics
 
+if TYPE_CHECKING:
+    from jaxtyping import Bool, Float
+
 __all__ = ["place_feet"]
 
-Floats = np.ndarray[Any, np.dtype[np.float64]]
-Flags = np.ndarray[Any, np.dtype[np.bool_]]
 
 # Number of body poses on the path to the target at which a foothold must be within reach.
 _POSES = 9
@@ -28,7 +29,13 @@ _CHOICES = 6
 
 
 def place_feet(
-    builder: SequenceBuilder, target: BodyTarget, stance: Floats, *, free: Flags, blocking: Flags, margin: float
+    builder: SequenceBuilder,
+    target: BodyTarget,
+    stance: Float[np.ndarray, "legs 3"],
+    *,
+    free: Bool[np.ndarray, "legs"],
+    blocking: Bool[np.ndarray, "legs"],
+    margin: float,
 ) -> None:
     """Place the free legs on footholds that they can keep while the body moves, then the legs that block the motion.
 
@@ -60,7 +67,7 @@ def place_feet(
         builder.unload(leg)
 
 
-def _place(builder: SequenceBuilder, leg: int, choices: Floats, margin: float = 0.0) -> bool:
+def _place(builder: SequenceBuilder, leg: int, choices: Float[np.ndarray, "n 3"], margin: float = 0.0) -> bool:
     """Place a foot with the first reachable joint angles of shape (n, 3) [rad]; return whether one is reachable."""
     for angles in choices:
         with contextlib.suppress(TarsusError):
@@ -70,7 +77,13 @@ def _place(builder: SequenceBuilder, leg: int, choices: Floats, margin: float = 
 
 
 def _move_leg(
-    builder: SequenceBuilder, leg: int, angles: Floats, verb: str, *, landed: bool, margin: float = 0.0
+    builder: SequenceBuilder,
+    leg: int,
+    angles: Float[np.ndarray, "*#batch 3"],
+    verb: str,
+    *,
+    landed: bool,
+    margin: float = 0.0,
 ) -> None:
     """Move one leg through the air to joint angles; if this fails, the builder is unchanged."""
     trial = builder.copy()
@@ -81,7 +94,9 @@ def _move_leg(
     builder.adopt(trial)
 
 
-def _footholds(builder: SequenceBuilder, target: BodyTarget, stance: Floats) -> list[Floats]:
+def _footholds(
+    builder: SequenceBuilder, target: BodyTarget, stance: Float[np.ndarray, "legs 3"]
+) -> list[Float[np.ndarray, "..."]]:
     """Return for each leg the joint angles of reachable footholds, shape (n, 3) [rad], near the preferred one first."""
     robot, g = builder.robot, builder.robot.geometry
     distance = (g.coxa + g.femur + g.tibia) * _DISTANCES[:, None, None]

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any, NamedTuple, Self
+from typing import TYPE_CHECKING, NamedTuple, Self
 
 import numpy as np
 
@@ -19,9 +19,11 @@ from tarsus.kinematics.stance import reachable_band
 from tarsus.kinematics.triangle import to_leg_frame
 from tarsus.robot.robot import Robot
 
+if TYPE_CHECKING:
+    from jaxtyping import Float
+
 __all__ = ["FootholdStation", "foothold_distances", "foothold_stations", "footholds"]
 
-Floats = np.ndarray[Any, np.dtype[np.float64]]
 
 # Spacing of the body heights that are evaluated [m].
 _HEIGHT_STEP = 0.0025
@@ -45,7 +47,7 @@ class FootholdStation(NamedTuple):
     """
 
     height: float
-    distances: Floats
+    distances: Float[np.ndarray, "legs"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,14 +64,14 @@ class _Bands:
         Ends of the bands that are reachable both on the ground and at swing height [m].
     """
 
-    heights: Floats
-    near: Floats
-    far: Floats
-    near_lifted: Floats
-    far_lifted: Floats
+    heights: Float[np.ndarray, "n"]
+    near: Float[np.ndarray, "n legs"]
+    far: Float[np.ndarray, "n legs"]
+    near_lifted: Float[np.ndarray, "n legs"]
+    far_lifted: Float[np.ndarray, "n legs"]
 
     @classmethod
-    def of(cls, robot: Robot, heights: Floats, swing_height: float) -> Self:
+    def of(cls, robot: Robot, heights: Float[np.ndarray, "n"], swing_height: float) -> Self:
         near, far = _inset_band(robot, -heights)
         if heights[0] <= belly_depth(robot) + _TOLERANCE:
             # A foothold right under the folded leg of a lying robot is not accessible through the air.
@@ -78,14 +80,16 @@ class _Bands:
         near_lifted, far_lifted = _inset_band(robot, swing_height - heights)
         return cls(heights, near, far, np.fmax(near, near_lifted), np.fmin(far, far_lifted))
 
-    def lowest_index(self, distances: Floats, start: int) -> int:
+    def lowest_index(self, distances: Float[np.ndarray, "legs"], start: int) -> int:
         """Return the lowest index down to which footholds can be kept from `start`; `start` + 1 if not even there."""
         near, far = self.near[: start + 1], self.far[: start + 1]
         within = (distances >= near - _TOLERANCE) & (distances <= far + _TOLERANCE)
         failing = np.flatnonzero(~within.all(-1))
         return int(failing[-1]) + 1 if failing.size else 0
 
-    def change_at(self, index: int, distances: Floats) -> tuple[int, Floats] | None:
+    def change_at(
+        self, index: int, distances: Float[np.ndarray, "legs"]
+    ) -> tuple[int, Float[np.ndarray, "legs"]] | None:
         """Return the lowest index after a change of footholds at `index`, and the new footholds; None if impossible."""
         low, high = self.near_lifted[index], self.far_lifted[index]
         if not ((distances >= low - _TOLERANCE) & (distances <= high + _TOLERANCE)).all():
@@ -98,7 +102,9 @@ class _Bands:
         return 0, (low + high) / 2
 
 
-def _inset_band(robot: Robot, height: Floats) -> tuple[Floats, Floats]:
+def _inset_band(
+    robot: Robot, height: Float[np.ndarray, "batch"]
+) -> tuple[Float[np.ndarray, "batch legs"], Float[np.ndarray, "batch legs"]]:
     """Return the bands, reduced at both ends; empty (inf, -inf) where the ground is out of reach."""
     near, far = (np.asarray(ends) for ends in reachable_band(robot, height))
     inset = np.minimum(_INSET, (far - near) / 10)
@@ -106,7 +112,7 @@ def _inset_band(robot: Robot, height: Floats) -> tuple[Floats, Floats]:
 
 
 def foothold_stations(
-    robot: Robot, start: float, end: float, feet: Floats, *, swing_height: float
+    robot: Robot, start: float, end: float, feet: Float[np.ndarray, "legs 3"], *, swing_height: float
 ) -> tuple[FootholdStation, ...]:
     """Return the body heights at which the footholds change on a vertical motion, with the new footholds.
 
@@ -149,7 +155,7 @@ def foothold_stations(
         distances, index = other, at
 
 
-def _reason(robot: Robot, bands: _Bands, distances: Floats, index: int) -> str:
+def _reason(robot: Robot, bands: _Bands, distances: Float[np.ndarray, "legs"], index: int) -> str:
     """Return which leg cannot reach its foothold at a height, and by how much."""
     excess = np.maximum(bands.near[index] - distances, distances - bands.far[index])
     leg = int(np.argmax(excess))
@@ -164,7 +170,7 @@ def _reason(robot: Robot, bands: _Bands, distances: Floats, index: int) -> str:
     )
 
 
-def foothold_distances(robot: Robot, feet: Floats) -> Floats:
+def foothold_distances(robot: Robot, feet: Float[np.ndarray, "legs 3"]) -> Float[np.ndarray, "legs"]:
     """Return the distance of each foot from its coxa axis along the plane of the leg.
 
     Parameters
@@ -181,11 +187,11 @@ def foothold_distances(robot: Robot, feet: Floats) -> Floats:
     """
     g = robot.geometry
     x, y, _ = to_leg_frame(g, feet[:, 0], feet[:, 1], feet[:, 2])
-    distances: Floats = np.sqrt(np.maximum(x * x + y * y - g.side2, 0.0))
+    distances: np.ndarray = np.sqrt(np.maximum(x * x + y * y - g.side2, 0.0))
     return distances
 
 
-def footholds(robot: Robot, distances: Floats, height: float) -> Floats:
+def footholds(robot: Robot, distances: Float[np.ndarray, "legs"], height: float) -> Float[np.ndarray, "legs 3"]:
     """Return the footholds straight out from the coxa axes.
 
     Parameters

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -17,9 +17,11 @@ from tarsus.kinematics.rest import RestingPose, resting_pose
 from tarsus.robot.joint_limits import JointLimits
 from tarsus.robot.robot import Robot
 
+if TYPE_CHECKING:
+    from jaxtyping import Float
+
 __all__ = ["initial_state", "lying_state"]
 
-Floats = np.ndarray[Any, np.dtype[np.float64]]
 
 # With a greater tilt, the robot has fallen over.
 _MAX_TILT = math.radians(60)
@@ -27,7 +29,7 @@ _MAX_TILT = math.radians(60)
 _LEVEL_TOLERANCE = 1e-7
 
 
-def initial_state(robot: Robot, angles: Array, joint_limits: JointLimits) -> SequenceBuilder:
+def initial_state(robot: Robot, angles: Float[Array, "legs 3"], joint_limits: JointLimits) -> SequenceBuilder:
     """Return a builder with the robot at rest in its measured joint angles.
 
     Parameters
@@ -74,7 +76,7 @@ def initial_state(robot: Robot, angles: Array, joint_limits: JointLimits) -> Seq
     return builder
 
 
-def _supports(robot: Robot, angles: Floats, rest: RestingPose) -> Floats:
+def _supports(robot: Robot, angles: Float[np.ndarray, "legs 3"], rest: RestingPose) -> Float[np.ndarray, "n 3"]:
     """Return the points in G, other than feet, on which the robot rests."""
     down = np.asarray(rest.leg_points_down)
     points = rest.body @ forward_kinematics(robot, angles)
@@ -82,7 +84,9 @@ def _supports(robot: Robot, angles: Floats, rest: RestingPose) -> Floats:
     return np.concatenate([points[:, :3][down[:, :3]], corners[corners[:, 2] < GROUND_TOLERANCE]])
 
 
-def lying_state(robot: Robot, angles: Array, joint_limits: JointLimits, *, purpose: str) -> SequenceBuilder:
+def lying_state(
+    robot: Robot, angles: Float[Array, "legs 3"], joint_limits: JointLimits, *, purpose: str
+) -> SequenceBuilder:
     """Return a builder with the robot at rest, lying on its belly.
 
     Parameters

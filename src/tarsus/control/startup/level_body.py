@@ -7,7 +7,7 @@ that they support the body too.
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -19,10 +19,11 @@ from tarsus.control.startup.folded_pose import folded_pose, underside_points
 from tarsus.control.startup.foothold_search import place_feet
 from tarsus.kinematics.leg import forward_kinematics
 
+if TYPE_CHECKING:
+    from jaxtyping import Bool, Float
+
 __all__ = ["level_body"]
 
-Floats = np.ndarray[Any, np.dtype[np.float64]]
-Flags = np.ndarray[Any, np.dtype[np.bool_]]
 
 # Tolerance of an angle beyond its limit [rad].
 _ANGLE_TOLERANCE = 1e-7
@@ -30,7 +31,9 @@ _ANGLE_TOLERANCE = 1e-7
 _NEAR_GROUND = 0.005
 
 
-def level_body(builder: SequenceBuilder, target: BodyTarget, stance: Floats, *, margin: float) -> None:
+def level_body(
+    builder: SequenceBuilder, target: BodyTarget, stance: Float[np.ndarray, "legs 3"], *, margin: float
+) -> None:
     """Move the body to a level pose with the loaded feet stationary.
 
     Parameters
@@ -71,21 +74,21 @@ def level_body(builder: SequenceBuilder, target: BodyTarget, stance: Floats, *, 
         builder.set_lying()
 
 
-def _on_knee(builder: SequenceBuilder) -> Flags:
+def _on_knee(builder: SequenceBuilder) -> Bool[np.ndarray, "legs"]:
     """Return the legs whose knee is on the ground."""
     points = builder.body @ forward_kinematics(builder.robot, builder.angles)
-    on_knee: Flags = points[:, 2, 2] < GROUND_TOLERANCE
+    on_knee: np.ndarray = points[:, 2, 2] < GROUND_TOLERANCE
     return on_knee
 
 
-def _body_contacts(builder: SequenceBuilder) -> Floats:
+def _body_contacts(builder: SequenceBuilder) -> Float[np.ndarray, "n 3"]:
     """Return the points of the body on the ground, in G."""
     points = builder.body @ underside_points(builder.robot)
-    contacts: Floats = points[points[:, 2] < GROUND_TOLERANCE]
+    contacts: np.ndarray = points[points[:, 2] < GROUND_TOLERANCE]
     return contacts
 
 
-def _can_follow(builder: SequenceBuilder, target: BodyTarget) -> Flags:
+def _can_follow(builder: SequenceBuilder, target: BodyTarget) -> Bool[np.ndarray, "legs"]:
     """Return the legs that can keep their feet in place while the body moves to the target."""
     angles = stage_to(builder, target, np.ones(builder.robot.legs, dtype=bool)).angles_at(GRID)
     excess_grows = np.diff(limit_excess(builder.robot, np.nan_to_num(angles)), axis=0) > _ANGLE_TOLERANCE

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
-
-import numpy as np
+from typing import TYPE_CHECKING
 
 from tarsus.arrays import Array
 from tarsus.control.sequence.sequence import MotionSequence
@@ -23,9 +21,10 @@ from tarsus.kinematics.inverse import inverse_kinematics
 from tarsus.kinematics.stance import default_body_height, default_stance
 from tarsus.robot.robot import Robot
 
-__all__ = ["DEFAULT_MARGIN", "fold", "sit_down", "stand_up"]
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
-Floats = np.ndarray[Any, np.dtype[np.float64]]
+__all__ = ["DEFAULT_MARGIN", "fold", "sit_down", "stand_up"]
 
 DEFAULT_MARGIN = 0.010
 """Default of the least stability margin during changes of footholds [m]."""
@@ -33,13 +32,13 @@ DEFAULT_MARGIN = 0.010
 
 def stand_up(
     robot: Robot,
-    angles: Array,
+    angles: Float[Array, "legs 3"],
     *,
     body_height: float | None = None,
     swing_height: float | None = None,
     margin: float = DEFAULT_MARGIN,
-    joint_speed: Array | None = None,
-    joint_acceleration: Array | None = None,
+    joint_speed: Float[Array, "3"] | Float[Array, "legs 3"] | None = None,
+    joint_acceleration: Float[Array, ""] | None = None,
 ) -> MotionSequence:
     """Plan how the robot stands up from any joint angles to its walking stance.
 
@@ -101,12 +100,12 @@ def stand_up(
 
 def sit_down(
     robot: Robot,
-    angles: Array | None = None,
+    angles: Float[Array, "legs 3"] | None = None,
     *,
     swing_height: float | None = None,
     margin: float = DEFAULT_MARGIN,
-    joint_speed: Array | None = None,
-    joint_acceleration: Array | None = None,
+    joint_speed: Float[Array, "3"] | Float[Array, "legs 3"] | None = None,
+    joint_acceleration: Float[Array, "3"] | Float[Array, "legs 3"] | None = None,
 ) -> MotionSequence:
     """Plan how the robot lowers its body to the ground over stationary feet.
 
@@ -158,10 +157,10 @@ def sit_down(
 
 def fold(
     robot: Robot,
-    angles: Array,
+    angles: Float[Array, "legs 3"],
     *,
-    joint_speed: Array | None = None,
-    joint_acceleration: Array | None = None,
+    joint_speed: Float[Array, "3"] | Float[Array, "legs 3"] | None = None,
+    joint_acceleration: Float[Array, "3"] | Float[Array, "legs 3"] | None = None,
 ) -> MotionSequence:
     """Plan how a robot that lies on its belly moves its legs to the folded pose.
 

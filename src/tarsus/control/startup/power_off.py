@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,9 +13,11 @@ from tarsus.control.startup.initial_state import lying_state
 from tarsus.control.startup.leg_path import LegFreeSpace
 from tarsus.robot.robot import JOINTS, Robot
 
+if TYPE_CHECKING:
+    from jaxtyping import Float
+
 __all__ = ["PowerOffOrder", "power_off_order"]
 
-Floats = np.ndarray[Any, np.dtype[np.float64]]
 
 # Step of the angle of a falling joint [rad].
 _ANGLE_STEP = np.deg2rad(0.25)
@@ -38,11 +40,11 @@ class PowerOffOrder:
     """
 
     order: tuple[tuple[int, int], ...]
-    drop: Floats
+    drop: Float[np.ndarray, "legs 3"]
     falls: tuple[str, ...]
 
 
-def power_off_order(robot: Robot, angles: Array) -> PowerOffOrder:
+def power_off_order(robot: Robot, angles: Float[Array, "legs 3"]) -> PowerOffOrder:
     """Return the order in which to switch off the joints of a robot that lies on its belly.
 
     The feet bear no load, so each joint holds at most the weight of its own leg from there outward. The coxae come
@@ -81,7 +83,7 @@ def power_off_order(robot: Robot, angles: Array) -> PowerOffOrder:
     )
 
 
-def _drops(robot: Robot, leg: int, space: LegFreeSpace, angles: Floats) -> tuple[float, float]:
+def _drops(robot: Robot, leg: int, space: LegFreeSpace, angles: Float[np.ndarray, "*#batch 3"]) -> tuple[float, float]:
     """Return the drop of the leg with its femur off, and then of its knee with the tibia off as well [m]."""
     coxa, femur, tibia = angles
     low = min(float(robot.limits[leg, 1, 0]), femur)

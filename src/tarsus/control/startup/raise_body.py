@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import math
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -22,9 +22,11 @@ from tarsus.kinematics.inverse import inverse_kinematics
 from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.stance import default_stance
 
+if TYPE_CHECKING:
+    from jaxtyping import Float
+
 __all__ = ["lower_body", "raise_body"]
 
-Floats = np.ndarray[Any, np.dtype[np.float64]]
 
 # Spacing of the body heights that are tried for the advice of an error message [m].
 _BODY_HEIGHT_STEP = 0.005
@@ -32,7 +34,14 @@ _BODY_HEIGHT_STEP = 0.005
 _ANGLE_TOLERANCE = 1e-6
 
 
-def raise_body(builder: SequenceBuilder, feet: Floats, stance: Floats, *, swing_height: float, margin: float) -> None:
+def raise_body(
+    builder: SequenceBuilder,
+    feet: Float[np.ndarray, "legs 3"],
+    stance: Float[np.ndarray, "legs 3"],
+    *,
+    swing_height: float,
+    margin: float,
+) -> None:
     """Move a level body, lying or standing, vertically to a stance.
 
     Parameters
@@ -77,7 +86,7 @@ def raise_body(builder: SequenceBuilder, feet: Floats, stance: Floats, *, swing_
 
 
 def _stations(
-    builder: SequenceBuilder, feet: Floats, height: float, swing_height: float
+    builder: SequenceBuilder, feet: Float[np.ndarray, "legs 3"], height: float, swing_height: float
 ) -> tuple[FootholdStation, ...]:
     """Return the stations up to a height; if there are none, say which body heights would work."""
     robot, start = builder.robot, builder.height

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple, Protocol, Self
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, Self
 
 import numpy as np
 
@@ -19,9 +19,10 @@ from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.rest import resting_pose
 from tarsus.robot.robot import Robot
 
-__all__ = ["Activity", "Playing", "Resting", "Snapshot", "Walking"]
+if TYPE_CHECKING:
+    from jaxtyping import Bool, Float
 
-Floats = np.ndarray[Any, Any]
+__all__ = ["Activity", "Playing", "Resting", "Snapshot", "Walking"]
 
 _NO_TWIST = (0.0, 0.0, 0.0)
 
@@ -51,10 +52,10 @@ class Snapshot(NamedTuple):
         Why the command is not met in full.
     """
 
-    angles: Floats
+    angles: Float[np.ndarray, "legs 3"]
     body: Pose
-    feet: Floats | None
-    contacts: Floats
+    feet: Float[np.ndarray, "legs 3"] | None
+    contacts: Bool[np.ndarray, "legs"]
     belly: bool
     state: RobotState
     activity: str
@@ -176,7 +177,7 @@ class Resting:
         )
 
     @classmethod
-    def after_sitting(cls, robot: Robot, stance: Floats, state: RobotState) -> Self:
+    def after_sitting(cls, robot: Robot, stance: Float[np.ndarray, "legs 3"], state: RobotState) -> Self:
         """Return how a robot lies that has sat down from a stance, and folded its legs where that is the state.
 
         Parameters

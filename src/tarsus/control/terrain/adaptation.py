@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import cmath
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -26,9 +26,11 @@ from tarsus.control.workspace.stance_geometry import LEVEL_TERRAIN, RAISED_FRACT
 from tarsus.gait.gait import Gait
 from tarsus.robot.robot import Robot
 
+if TYPE_CHECKING:
+    from jaxtyping import Bool, Float
+
 __all__ = ["TerrainAdaptation"]
 
-Floats = np.ndarray[Any, Any]
 
 # Ground contact counts as early in this part of the swing, and at least this far above the expected ground [m].
 _EARLIEST_PHASE, _LEAST_HEIGHT = 0.5, 1e-3
@@ -67,10 +69,10 @@ class TerrainAdaptation:
     def __init__(
         self,
         robot: Robot,
-        angles: Floats,
-        feet: Floats,
+        angles: Float[np.ndarray, "legs 3"],
+        feet: Float[np.ndarray, "legs 3"],
         *,
-        acceleration: Floats,
+        acceleration: Float[np.ndarray, "legs 3"],
         levelling: LevellingMode | None,
         admittance: Admittance | None,
     ) -> None:
@@ -108,9 +110,9 @@ class TerrainAdaptation:
         dt: float,
         state: GaitState,
         *,
-        feet: Floats,
-        contacts: Floats,
-        angles: Floats,
+        feet: Float[np.ndarray, "legs 3"],
+        contacts: Bool[np.ndarray, "legs"],
+        angles: Float[np.ndarray, "legs 3"],
         commanded: CommandedAttitude,
     ) -> None:
         """Update the estimate from the readings of one tick.
@@ -159,7 +161,7 @@ class TerrainAdaptation:
             if contact is not None or self._contact_ages[leg] > _CONTACT_TIMEOUT:
                 self._contacts[leg] = contact
 
-    def early_contacts(self, state: GaitState) -> Floats:
+    def early_contacts(self, state: GaitState) -> Bool[np.ndarray, "legs"]:
         """Return which swinging feet touch ground above its expected height.
 
         Parameters
@@ -186,7 +188,7 @@ class TerrainAdaptation:
         """Return whether a foot at the end of its swing is on the ground; True where nothing is known."""
         return self._contacts[leg] is not False
 
-    def may_land(self, state: GaitState, ending: Floats) -> tuple[Floats, bool]:
+    def may_land(self, state: GaitState, ending: Bool[np.ndarray, "legs"]) -> tuple[Bool[np.ndarray, "legs"], bool]:
         """Return which feet may end their swing, and whether all others are held on the ground.
 
         Parameters
@@ -252,7 +254,7 @@ class TerrainAdaptation:
 
         return self.searches.step(state, dt, touches=self._touches, lowest=lowest) if self.estimate else state
 
-    def feet_landed(self, landed: Floats) -> None:
+    def feet_landed(self, landed: Bool[np.ndarray, "legs"]) -> None:
         """Remove feet that have been put down from the search.
 
         Parameters

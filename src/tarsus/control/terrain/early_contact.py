@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,9 +13,11 @@ from tarsus.control.workspace.stance_geometry import SWING_HEIGHT, stance_geomet
 from tarsus.gait.swing import horizontal_profile
 from tarsus.robot.robot import Robot
 
+if TYPE_CHECKING:
+    from jaxtyping import Bool, Float
+
 __all__ = ["relaxed_rate", "stop_on_contact"]
 
-Floats = np.ndarray[Any, Any]
 
 # Stops that are tried: their durations, in shortest ones; and how much of the way from where the foot would come to
 # rest to its planned foothold it sinks.
@@ -30,7 +32,12 @@ _PER_RISE, _ALLOWED_INCREASE = 0.5, 1.1
 
 
 def stop_on_contact(
-    robot: Robot, state: GaitState, early: Floats, *, acceleration: Floats, swing_rate: Floats
+    robot: Robot,
+    state: GaitState,
+    early: Bool[np.ndarray, "legs"],
+    *,
+    acceleration: Float[np.ndarray, "legs 3"],
+    swing_rate: Float[np.ndarray, "legs"],
 ) -> GaitState:
     """Return the state in which feet with early contact stop as soon as their joints can.
 
@@ -67,7 +74,7 @@ def stop_on_contact(
     )
 
 
-def _height_and_speed(state: GaitState) -> tuple[Floats, Floats]:
+def _height_and_speed(state: GaitState) -> tuple[Float[np.ndarray, "legs"], Float[np.ndarray, "legs"]]:
     """Return the feet's heights and their derivatives by the swing phase [m]."""
     swing_height, step = float(state.posture.value[SWING_HEIGHT]), 1e-4
     height = state.height(swing_height)
@@ -78,11 +85,11 @@ def _height_and_speed(state: GaitState) -> tuple[Floats, Floats]:
 def _joint_acceleration(
     robot: Robot,
     state: GaitState,
-    vertical: tuple[Floats, Floats],
-    duration: Floats,
-    sink: Floats,
-    swing_rate: Floats,
-) -> Floats:
+    vertical: tuple[Float[np.ndarray, "legs"], Float[np.ndarray, "legs"]],
+    duration: Float[np.ndarray, "n legs"],
+    sink: Float[np.ndarray, "n legs"],
+    swing_rate: Float[np.ndarray, "legs"],
+) -> Float[np.ndarray, "stops legs 3"]:
     """Return the joints' greatest accelerations ``(stops, legs, 3)`` during each stop [rad/s^2]."""
     height, speed = vertical
     # (stops, samples, legs)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -17,9 +17,11 @@ from tarsus.control.sensing.validation import ReadingsValidator
 from tarsus.kinematics.mass import STANDARD_GRAVITY, centre_of_mass, total_mass
 from tarsus.robot.robot import Robot
 
+if TYPE_CHECKING:
+    from jaxtyping import Bool, Float
+
 __all__ = ["GroundEstimate", "GroundEstimator"]
 
-Floats = np.ndarray[Any, Any]
 
 # Body correction and slope are updated once they have changed by this much, since each update plans a new stance:
 # x, y [m], roll, pitch [rad], slope along x and y.
@@ -48,7 +50,7 @@ class GroundEstimate(NamedTuple):
     contacts: tuple[bool | None, ...] | None
     correction: tuple[float, ...]
     slope: complex
-    offsets: Floats
+    offsets: Float[np.ndarray, "legs"]
     rejected: tuple[str, ...]
     tilt: float = math.nan
 
@@ -78,8 +80,8 @@ class GroundEstimator:
     def __init__(
         self,
         robot: Robot,
-        angles: Floats,
-        feet: Floats,
+        angles: Float[np.ndarray, "legs 3"],
+        feet: Float[np.ndarray, "legs 3"],
         *,
         levelling: LevellingMode | None,
         admittance: Admittance | None,
@@ -99,12 +101,12 @@ class GroundEstimator:
         readings: SensorReadings | None,
         dt: float,
         *,
-        feet: Floats,
-        offsets: Floats,
-        contacts: Floats,
+        feet: Float[np.ndarray, "legs 3"],
+        offsets: Float[np.ndarray, "legs"],
+        contacts: Bool[np.ndarray, "legs"],
         yaw: float,
         commanded: CommandedAttitude,
-        angles: Floats,
+        angles: Float[np.ndarray, "legs 3"],
     ) -> GroundEstimate:
         """Return the estimate after one tick.
 
@@ -162,7 +164,15 @@ class GroundEstimator:
             self._correction = (x, y, rise_x * x + rise_y * y, level.roll, level.pitch, 0.0)
             self._slope, self._adopted = complex(rise_x, rise_y), current
 
-    def _offsets(self, valid: ValidReadings, dt: float, *, feet: Floats, contacts: Floats, angles: Floats) -> Floats:
+    def _offsets(
+        self,
+        valid: ValidReadings,
+        dt: float,
+        *,
+        feet: Float[np.ndarray, "legs 3"],
+        contacts: Bool[np.ndarray, "legs"],
+        angles: Float[np.ndarray, "legs 3"],
+    ) -> Float[np.ndarray, "legs"]:
         """Return the admittance offsets of the feet."""
         if self._filter is None:
             return self._no_offsets

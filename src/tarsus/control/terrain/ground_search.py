@@ -5,7 +5,7 @@ from __future__ import annotations
 import cmath
 import math
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -14,9 +14,10 @@ from tarsus.control.walk.state import GaitState, chord_factor
 from tarsus.control.workspace.stance_geometry import SWING_HEIGHT, TerrainEstimate, joint_margin, stance_geometry_of
 from tarsus.robot.robot import Robot
 
-__all__ = ["SEARCH_DEPTH", "FootSearch", "GroundSearch", "lowest_planned_height", "lowest_reachable_height"]
+if TYPE_CHECKING:
+    from jaxtyping import Bool, Float
 
-Floats = np.ndarray[Any, Any]
+__all__ = ["SEARCH_DEPTH", "FootSearch", "GroundSearch", "lowest_planned_height", "lowest_reachable_height"]
 
 SEARCH_DEPTH = 0.6
 """Depth below the expected ground that is searched, in swing heights."""
@@ -25,7 +26,7 @@ SEARCH_DEPTH = 0.6
 _HEIGHTS = 13
 
 
-def lowest_planned_height(state: GaitState, terrain: TerrainEstimate) -> Floats:
+def lowest_planned_height(state: GaitState, terrain: TerrainEstimate) -> Float[np.ndarray, "legs"]:
     """Return the lowest height at which each foot may be put down: `SEARCH_DEPTH` below the planned ground [m].
 
     Parameters
@@ -156,7 +157,7 @@ class GroundSearch:
         Acceleration limits of the joints [rad/s^2]; low limits slow the search down.
     """
 
-    def __init__(self, acceleration: Floats) -> None:
+    def __init__(self, acceleration: Float[np.ndarray, "legs 3"]) -> None:
         self._feet: dict[int, FootSearch] = {}
         # The foot's acceleration is proportional to the square of its speed.
         self._speed_factor = min(1.0, math.sqrt(float(acceleration.min()) / _FULL_ACCELERATION))
@@ -217,7 +218,7 @@ class GroundSearch:
             ground[leg] = float(self._feet[leg].height.value[0])
         return state._replace(ground_height=ground, contact_phase=np.where(swing_ended, np.inf, state.contact_phase))
 
-    def land(self, landed: Floats) -> None:
+    def land(self, landed: Bool[np.ndarray, "legs"]) -> None:
         """End the searches of feet that have been put down.
 
         Parameters

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Any, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
@@ -13,15 +13,16 @@ from tarsus.control.walk.state import GaitState
 from tarsus.control.walk.stepper import LATEST_LIFT_OFF
 from tarsus.gait.gait import Gait
 
+if TYPE_CHECKING:
+    from jaxtyping import Bool
+
 __all__ = ["HoleRecovery", "Request", "repeated_swing"]
 
-Floats = np.ndarray[Any, Any]
 
 # Least distance travelled after which a request is tried again [m].
 _NEW_PLACE = 1e-5
 # Twists within this of each other count as equal: relative to their size, and absolute [m/s, rad/s].
 _RELATIVE, _ABSOLUTE = 0.2, 1e-3
-
 
 Request: TypeAlias = tuple[Sequence[float], Any]
 """The commanded twist [m/s, m/s, rad/s] and walk parameters."""
@@ -73,7 +74,7 @@ class HoleRecovery:
         """
         self.active, self._legs = False, set(legs)
 
-    def landed(self, landed: Floats) -> None:
+    def landed(self, landed: Bool[np.ndarray, "legs"]) -> None:
         """End the recovery once all feet over the hole have been put down.
 
         Parameters

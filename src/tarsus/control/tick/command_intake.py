@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,9 +15,10 @@ from tarsus.control.workspace.stability import support_sets
 from tarsus.kinematics.mass import centre_of_mass
 from tarsus.robot.robot import Robot
 
-__all__ = ["CommandIntake"]
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
-Floats = np.ndarray[Any, Any]
+__all__ = ["CommandIntake"]
 
 _NO_MOTION = (0.0,) * 6
 
@@ -41,7 +42,7 @@ class CommandIntake:
         self._shifted_for: tuple[int, ...] = ()
         self._shift = 0j
 
-    def accept(self, command: Command, angles: Floats) -> None:
+    def accept(self, command: Command, angles: Float[np.ndarray, "legs 3"]) -> None:
         """Request what is commanded besides the twist, where it differs from what was requested before.
 
         Parameters
@@ -71,7 +72,7 @@ class CommandIntake:
             scheduler.request(command, excluded, correction, terrain)
             self._last = command
 
-    def _correction(self, excluded: tuple[int, ...], angles: Floats) -> tuple[float, ...]:
+    def _correction(self, excluded: tuple[int, ...], angles: Float[np.ndarray, "legs 3"]) -> tuple[float, ...]:
         """Return the correction of the body pose for the ground, and for legs that bear no load."""
         estimate = self._terrain.estimate.correction if self._terrain.estimate else _NO_MOTION
         if not excluded:

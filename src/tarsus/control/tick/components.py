@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -23,9 +23,10 @@ from tarsus.gait.walk_setup import WalkSetup, require_number
 from tarsus.robot.joint_limits import joint_limits
 from tarsus.robot.robot import Robot
 
-__all__ = ["WalkComponents"]
+if TYPE_CHECKING:
+    from jaxtyping import Bool, Float
 
-Floats = np.ndarray[Any, Any]
+__all__ = ["WalkComponents"]
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -57,18 +58,18 @@ class WalkComponents:
     """
 
     robot: Robot
-    joint_speed: Floats
-    joint_acceleration: Floats
+    joint_speed: Float[np.ndarray, "legs 3"]
+    joint_acceleration: Float[np.ndarray, "legs 3"]
     planner: TransitionPlanner
     transitions: TransitionExecutor
     foot_targets: FootTargets
     terrain: TerrainAdaptation
     solver: JointSolver
     time_scaling: TimeScaling
-    every_leg: Floats
-    no_offset: Floats
+    every_leg: Bool[np.ndarray, "legs"]
+    no_offset: Float[np.ndarray, "legs"]
 
-    def standing_feet(self, state: GaitState) -> Floats:
+    def standing_feet(self, state: GaitState) -> Bool[np.ndarray, "legs"]:
         """Return which feet are on the ground: array of bool, shape (legs,).
 
         Parameters

@@ -5,7 +5,6 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Callable
 from functools import partial
-from typing import Any
 
 import numpy as np
 
@@ -28,8 +27,6 @@ from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.stability import stability_margin
 
 __all__ = ["planned"]
-
-Floats = np.ndarray[Any, Any]
 
 _NO_MOTION = (0.0,) * 6
 # Least static stability margin on the remaining feet when a leg is taken out of the gait [m].
@@ -98,7 +95,7 @@ def _recovered(walk: WalkComponents, state: GaitState, command: Command) -> Gait
 def _set_foot_targets(walk: WalkComponents, state: GaitState, command: Command, dt: float) -> None:
     """Set the foot targets of legs that are taken out of the gait, as far as these reach wherever the body sways."""
 
-    def reachable(leg: int, start: Floats, end: Floats) -> float:
+    def reachable(leg: int, start: np.ndarray, end: np.ndarray) -> float:
         sway = walk.transitions.current.parameters.sway
         postures = sway_extremes(state.posture.value[: SWING_HEIGHT + 1], sway)
         return reachable_fraction(walk.robot, postures, leg, start, end)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -10,9 +10,10 @@ from tarsus.control.limitation import Limitation
 from tarsus.control.walk.state import GaitState
 from tarsus.control.walk_state import WalkState
 
-__all__ = ["TickState"]
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
-Floats = np.ndarray[Any, Any]
+__all__ = ["TickState"]
 
 
 class TickState(NamedTuple):
@@ -31,7 +32,7 @@ class TickState(NamedTuple):
     """
 
     gait: GaitState
-    twist: Floats
+    twist: Float[np.ndarray, "3"]
     walk_state: WalkState = WalkState.STANDING
     limitations: tuple[Limitation, ...] = ()
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -19,9 +19,10 @@ from tarsus.control.walk.state import POSITION_TOLERANCE, GaitState
 from tarsus.control.walk.step_timing import StepTiming
 from tarsus.control.workspace.stance_geometry import sway_fraction
 
-__all__ = ["TransitionExecutor"]
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
-Floats = np.ndarray[Any, Any]
+__all__ = ["TransitionExecutor"]
 
 _SWAY = Cause("joint speed and acceleration at this cycle time")
 
@@ -100,13 +101,13 @@ class TransitionExecutor:
         return (self._next_timing if self.changes_gait else self.timing).bandwidth
 
     @property
-    def bounds(self) -> Floats:
+    def bounds(self) -> Float[np.ndarray, "legs 16"]:
         """Sides of the polygons in which the feet that bear load have to stay: array, shape (legs, 16) [m]."""
         return self._foot_targets.without_bounds(self.footholds.bounds)
 
     def stance_intervals(
         self, state: GaitState, hold: float, *, frequency: float | None = None
-    ) -> tuple[Floats, Floats]:
+    ) -> tuple[Float[np.ndarray, "legs"], Float[np.ndarray, "legs"]]:
         """Return from when until when each foot stands where it is, or where it will touch down.
 
         Parameters
@@ -235,11 +236,20 @@ class TransitionExecutor:
             self.pose.set_posture(active.posture)
             self.phase, self._active = TransitionPhase.NONE, None
 
-    def _stays_within(self, bounds: Floats, now: WalkSituation, *, frequency: float, bandwidth: float) -> bool:
+    def _stays_within(
+        self, bounds: Float[np.ndarray, "legs 16"], now: WalkSituation, *, frequency: float, bandwidth: float
+    ) -> bool:
         begins, ends = self.stance_intervals(now.state, now.hold, frequency=frequency)
         return bool(self._excess(begins, ends, bounds, now, bandwidth).max() <= POSITION_TOLERANCE)
 
-    def _excess(self, begins: Floats, ends: Floats, bounds: Floats, now: WalkSituation, bandwidth: float) -> Floats:
+    def _excess(
+        self,
+        begins: Float[np.ndarray, "*#batch legs"],
+        ends: Float[np.ndarray, "*#batch legs"],
+        bounds: Float[np.ndarray, "legs 16"],
+        now: WalkSituation,
+        bandwidth: float,
+    ) -> Float[np.ndarray, "... 3 legs 16"]:
         return polygon_excess(now.state, now.target[None], begins=begins, ends=ends, bounds=bounds, bandwidth=bandwidth)
 
     def _begin(self, planned: StanceTransition, state: GaitState) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -22,6 +22,9 @@ from tarsus.control.workspace.stance_geometry import (
 )
 from tarsus.robot.robot import Robot
 
+if TYPE_CHECKING:
+    from jaxtyping import Complex, Float
+
 __all__ = [
     "HALVINGS",
     "TIPPING",
@@ -34,8 +37,6 @@ __all__ = [
     "reach_cause",
     "reach_margin",
 ]
-
-Floats = np.ndarray[Any, Any]
 
 TIPPING = Cause("the robot would tip over")
 # The whole path is sampled at so many points; the interval that fails is then halved: to 1/2048 of the path.
@@ -64,8 +65,8 @@ class StanceTarget(NamedTuple):
         Slope and roughness of the ground.
     """
 
-    posture: Floats
-    rest: Floats
+    posture: Float[np.ndarray, "7"]
+    rest: Complex[np.ndarray, "legs"]
     terrain: TerrainEstimate = LEVEL_TERRAIN
 
     def towards(self, other: StanceTarget, fraction: float) -> StanceTarget:
@@ -145,7 +146,7 @@ def is_reachable(robot: Robot, stance: StanceTarget) -> bool:
     return bool((rest_margin(robot, stance.stand) >= 0).all())
 
 
-def is_balanced(check: StabilityCheck, stance: StanceTarget, footholds: Floats) -> bool:
+def is_balanced(check: StabilityCheck, stance: StanceTarget, footholds: Complex[np.ndarray, "legs"]) -> bool:
     """Return whether a stance has stability margin to spare for steps.
 
     Parameters
@@ -182,7 +183,7 @@ def first_increment(robot: Robot, start: StanceTarget, end: StanceTarget, fracti
     return float(parts[works.argmax()] if works.any() else parts[-1])
 
 
-def reach_margin(robot: Robot, stances: list[StanceTarget]) -> Floats:
+def reach_margin(robot: Robot, stances: list[StanceTarget]) -> Float[np.ndarray, "n legs"]:
     """Return the margin of each leg at its rest foothold: on the ground, at the lowest ground, and lifted.
 
     Parameters

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -10,9 +10,10 @@ from tarsus.control.transition.stance_transition import StanceTransition
 from tarsus.control.workspace.polygon import NORMALS_CONJUGATE
 from tarsus.control.workspace.velocity_limits import VelocityLimits
 
-__all__ = ["FootholdTransfer"]
+if TYPE_CHECKING:
+    from jaxtyping import Bool, Complex, Float
 
-Floats = np.ndarray[Any, Any]
+__all__ = ["FootholdTransfer"]
 
 _SAME = 1e-9
 
@@ -41,8 +42,8 @@ class FootholdTransfer:
 
     def __init__(self, transition: StanceTransition) -> None:
         self.limits: VelocityLimits = transition.final_limits
-        self.bounds: Floats = transition.final_limits.bounds
-        self.rest: Floats = transition.rest
+        self.bounds: Float[np.ndarray, "legs 16"] = transition.final_limits.bounds
+        self.rest: Complex[np.ndarray, "legs"] = transition.rest
         self.transferred = np.ones(len(self.rest), dtype=bool)
         self._next_bounds = self.bounds
         self._new_rest = self.rest
@@ -51,14 +52,16 @@ class FootholdTransfer:
 
     def _update_placement(self) -> None:
         landing = np.where(self._lands_at_old[:, None], self.bounds, self._next_bounds)
-        self.placement_bounds: Floats = np.maximum(landing - (NORMALS_CONJUGATE * self.rest[:, None]).real, 0.0)
+        self.placement_bounds: Float[np.ndarray, "legs 16"] = np.maximum(
+            landing - (NORMALS_CONJUGATE * self.rest[:, None]).real, 0.0
+        )
 
     @property
-    def new_rest(self) -> Floats:
+    def new_rest(self) -> Complex[np.ndarray, "legs"]:
         """The rest footholds once all feet are transferred: complex array, shape (legs,) [m]."""
         return self._new_rest
 
-    def bounds_with(self, transition: StanceTransition) -> Floats:
+    def bounds_with(self, transition: StanceTransition) -> Float[np.ndarray, "legs 16"]:
         """Return the sides with which the feet would start to transfer.
 
         Parameters
@@ -74,10 +77,10 @@ class FootholdTransfer:
         moved = self._moved(transition)
         return np.where(moved[:, None], self.bounds, np.minimum(self.bounds, transition.stepping_limits.bounds))
 
-    def _moved(self, transition: StanceTransition) -> Floats:
+    def _moved(self, transition: StanceTransition) -> Bool[np.ndarray, "legs"]:
         return np.asarray(np.abs(transition.rest - self._new_rest) > _SAME)
 
-    def begin(self, transition: StanceTransition, down: Floats) -> None:
+    def begin(self, transition: StanceTransition, down: Bool[np.ndarray, "legs"]) -> None:
         """Begin to transfer the feet to new rest footholds.
 
         Parameters
@@ -97,7 +100,7 @@ class FootholdTransfer:
         self._next_bounds, self._new_rest = transition.stepping_limits.bounds, transition.rest
         self._update_placement()
 
-    def feet_landed(self, landed: Floats) -> None:
+    def feet_landed(self, landed: Bool[np.ndarray, "legs"]) -> None:
         """Take note of the feet that landed in this tick.
 
         Parameters

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -20,9 +20,10 @@ from tarsus.control.workspace.stability import StabilityCheck, support_sets
 from tarsus.control.workspace.velocity_limits import VelocityLimits, with_stroke_limits
 from tarsus.robot.robot import Robot
 
-__all__ = ["TransitionPlanner"]
+if TYPE_CHECKING:
+    from jaxtyping import Bool, Float
 
-Floats = np.ndarray[Any, Any]
+__all__ = ["TransitionPlanner"]
 
 _LEAST_FRACTION = 0.02
 # Differences below this are rounding.
@@ -55,7 +56,14 @@ class TransitionPlanner:
         Least distance between two feet [m].
     """
 
-    def __init__(self, robot: Robot, *, speed: Floats, acceleration: Floats, foot_distance: float) -> None:
+    def __init__(
+        self,
+        robot: Robot,
+        *,
+        speed: Float[np.ndarray, "legs 3"],
+        acceleration: Float[np.ndarray, "legs 3"],
+        foot_distance: float,
+    ) -> None:
         self._robot, self._foot_distance = robot, foot_distance
         self._speed, self._acceleration = speed, acceleration
 
@@ -146,7 +154,9 @@ class TransitionPlanner:
             terrain=goal.terrain,
         )
 
-    def _limits(self, parameters: WalkParameters, stance: StanceTarget, sets: Floats) -> Incremental[VelocityLimits]:
+    def _limits(
+        self, parameters: WalkParameters, stance: StanceTarget, sets: Bool[np.ndarray, "n legs"]
+    ) -> Incremental[VelocityLimits]:
         """Find the limits in a stance, with its sway."""
         stands = [stance._replace(posture=row).stand for row in sway_extremes(stance.posture, parameters.sway)]
         return (
@@ -162,7 +172,7 @@ class TransitionPlanner:
         goal: StanceTarget,
         final: VelocityLimits,
         timing: CycleTiming,
-        sets: Floats,
+        sets: Bool[np.ndarray, "n legs"],
     ) -> Incremental[tuple[VelocityLimits, VelocityLimits]]:
         """Find the limits while the feet step, and while the body moves to its goal."""
         if np.abs(goal.posture - start.posture).max() <= _SAME:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -10,16 +10,18 @@ from tarsus.control.limitation import Cause, Limitation, LimitationKind
 from tarsus.control.transition.parameters import WalkParameters
 from tarsus.control.workspace.stance_geometry import SWING_HEIGHT
 
+if TYPE_CHECKING:
+    from jaxtyping import Float
+
 __all__ = ["rejection_limitations", "stance_limitations"]
 
-Floats = np.ndarray[Any, Any]
 
 # Differences below this are rounding [m, rad].
 _TOLERANCE = 1e-6
 
 
 def stance_limitations(
-    parameters: WalkParameters, posture: Floats, cause: Cause, *, stance_width: float
+    parameters: WalkParameters, posture: Float[np.ndarray, "7"], cause: Cause, *, stance_width: float
 ) -> tuple[Limitation, ...]:
     """Return a limitation for each commanded parameter that a posture does not meet.
 
@@ -52,7 +54,7 @@ def stance_limitations(
     return tuple(found)
 
 
-def _body_limitations(parameters: WalkParameters, gap: Floats, cause: Cause) -> list[Limitation]:
+def _body_limitations(parameters: WalkParameters, gap: Float[np.ndarray, "legs"], cause: Cause) -> list[Limitation]:
     """Return what of the body pose is missing; where only the correction for the ground is, the attitude."""
     missing = [axis for axis in range(SWING_HEIGHT) if abs(gap[axis]) > _TOLERANCE]
     commanded = [axis for axis in missing if parameters.body[axis]]
@@ -66,7 +68,7 @@ def _body_limitations(parameters: WalkParameters, gap: Floats, cause: Cause) -> 
 
 
 def rejection_limitations(
-    asked: WalkParameters, current: WalkParameters, posture: Floats | None, cause: Cause
+    asked: WalkParameters, current: WalkParameters, posture: Float[np.ndarray, "7"] | None, cause: Cause
 ) -> tuple[Limitation, ...]:
     """Return the limitations of parameters that are rejected as a whole.
 

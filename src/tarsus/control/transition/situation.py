@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from enum import Enum, auto
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from tarsus.control.walk.state import GaitState
 
-__all__ = ["TransitionPhase", "WalkSituation"]
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
-Floats = np.ndarray[Any, Any]
+__all__ = ["TransitionPhase", "WalkSituation"]
 
 
 class TransitionPhase(Enum):
@@ -42,6 +43,6 @@ class WalkSituation(NamedTuple):
     """
 
     state: GaitState
-    target: Floats
+    target: Float[np.ndarray, "3"]
     standing: bool
     hold: float

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,9 +13,10 @@ from tarsus.control.workspace.cycle_time import CycleTiming
 from tarsus.control.workspace.stance_geometry import TerrainEstimate
 from tarsus.control.workspace.velocity_limits import VelocityLimits
 
-__all__ = ["StanceTransition"]
+if TYPE_CHECKING:
+    from jaxtyping import Complex, Float
 
-Floats = np.ndarray[Any, Any]
+__all__ = ["StanceTransition"]
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -49,8 +50,8 @@ class StanceTransition:
     parameters: WalkParameters
     complete: bool
     keeps_posture: bool
-    posture: Floats
-    rest: Floats
+    posture: Float[np.ndarray, "7"]
+    rest: Complex[np.ndarray, "legs"]
     cycle_timing: CycleTiming
     stepping_limits: VelocityLimits
     path_limits: VelocityLimits

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,16 +13,17 @@ from tarsus.errors import UnreachableError
 from tarsus.kinematics.stance import default_stance, stance_or_nan
 from tarsus.robot.robot import Robot
 
-__all__ = ["sway_extremes", "target_stance"]
+if TYPE_CHECKING:
+    from jaxtyping import Complex, Float
 
-Floats = np.ndarray[Any, Any]
+__all__ = ["sway_extremes", "target_stance"]
 
 _AXES_WITH_BEATS = np.array([1, 0, 1, 0, 1, 0])
 # Fractions of a change of height that are tried where the whole of it has no foothold.
 _FRACTIONS = np.arange(7, 0, -1) / 8
 
 
-def target_stance(robot: Robot, parameters: WalkParameters, posture: Floats | None) -> StanceTarget:
+def target_stance(robot: Robot, parameters: WalkParameters, posture: Float[np.ndarray, "7"] | None) -> StanceTarget:
     """Return posture and rest footholds; for a height without a foothold, of the nearest height that has them.
 
     Parameters
@@ -46,7 +47,9 @@ def target_stance(robot: Robot, parameters: WalkParameters, posture: Floats | No
     return StanceTarget(target, rest, parameters.terrain)
 
 
-def _footholds(robot: Robot, parameters: WalkParameters, posture: Floats | None) -> tuple[float, float, Floats]:
+def _footholds(
+    robot: Robot, parameters: WalkParameters, posture: Float[np.ndarray, "7"] | None
+) -> tuple[float, float, Float[np.ndarray, "legs 3"]]:
     """Return body height, swing height and the feet in B, shape (legs, 3)."""
     if posture is None:
         stance = default_stance(robot, parameters.body_height, swing_height=parameters.swing_height)
@@ -63,7 +66,7 @@ def _footholds(robot: Robot, parameters: WalkParameters, posture: Floats | None)
     raise UnreachableError(f"no leg reaches the ground at body height {parameters.body_height * 1000:.1f} mm")
 
 
-def sway_extremes(posture: Floats, sway: tuple[float, ...]) -> list[Floats]:
+def sway_extremes(posture: Float[np.ndarray, "7"], sway: tuple[float, ...]) -> list[Float[np.ndarray, "7"]]:
     """Return the postures at the extremes of a sway, and the one in the middle last.
 
     Parameters
@@ -80,8 +83,8 @@ def sway_extremes(posture: Floats, sway: tuple[float, ...]) -> list[Floats]:
     return [*(posture + a * beats + b * cycles for a in (1, -1) for b in (1, -1)), posture]
 
 
-def _widened(robot: Robot, rest: Floats, width: float) -> Floats:
+def _widened(robot: Robot, rest: Complex[np.ndarray, "legs"], width: float) -> Complex[np.ndarray, "legs"]:
     mount = robot.geometry.mount_x + 1j * robot.geometry.mount_y
     out = rest - mount
-    wider: Floats = rest + width * out / np.maximum(np.abs(out), 1e-9)
+    wider: np.ndarray = rest + width * out / np.maximum(np.abs(out), 1e-9)
     return wider

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Sequence
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -17,15 +17,19 @@ from tarsus.control.workspace.velocity_limits import VelocityLimits, stance_limi
 from tarsus.gait.gait import Gait
 from tarsus.robot.robot import Robot
 
+if TYPE_CHECKING:
+    from jaxtyping import Bool, Float
+
 __all__ = ["cycle_timing", "foot_workspace", "velocity_limits"]
 
-Floats = np.ndarray[Any, Any]
 
 # How many points on the polygons' edges, and how many blocks of motions, are examined in one tick.
 _POINTS, _BLOCKS = 600, 3
 
 
-def foot_workspace(robot: Robot, stance: StanceGeometry, *, foot_distance: float) -> Incremental[Floats]:
+def foot_workspace(
+    robot: Robot, stance: StanceGeometry, *, foot_distance: float
+) -> Incremental[Float[np.ndarray, "legs 16"]]:
     """Find the sides of each foot's polygon in one stance.
 
     Parameters
@@ -69,7 +73,7 @@ def foot_workspace(robot: Robot, stance: StanceGeometry, *, foot_distance: float
 def velocity_limits(
     robot: Robot,
     stances: Sequence[StanceGeometry],
-    sets: Floats,
+    sets: Bool[np.ndarray, "n legs"],
     *,
     foot_distance: float,
     excluded: tuple[int, ...] = (),
@@ -108,8 +112,8 @@ def cycle_timing(
     stance: StanceGeometry,
     limits: VelocityLimits,
     *,
-    speed: Floats,
-    acceleration: Floats,
+    speed: Float[np.ndarray, "..."],
+    acceleration: Float[np.ndarray, "..."],
     cycle_time: float | None = None,
 ) -> Incremental[CycleTiming]:
     """Find the cycle time that the joints can follow.

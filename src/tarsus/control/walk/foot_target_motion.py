@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import cmath
 from collections.abc import Sequence
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -14,9 +14,11 @@ from tarsus.control.workspace.stance_geometry import SWING_HEIGHT, StanceGeometr
 from tarsus.kinematics.polygon import hull_margin
 from tarsus.robot.robot import Robot
 
+if TYPE_CHECKING:
+    from jaxtyping import Bool, Complex, Float
+
 __all__ = ["FootTargetMotion", "apply_foot_targets", "begin_foot_target", "best_body_shift", "reachable_fraction"]
 
-Floats = np.ndarray[Any, Any]
 
 # Greatest bandwidth [rad/s] and speed [m/s] with which a foot follows its target.
 _BANDWIDTH, _SPEED = 5.0, 0.12
@@ -39,7 +41,7 @@ class FootTargetMotion(NamedTuple):
     """
 
     position: CriticallyDamped
-    target: Floats
+    target: Float[np.ndarray, "3"]
 
     def step(self, dt: float) -> FootTargetMotion:
         """Return the motion after a time.
@@ -107,7 +109,7 @@ def apply_foot_targets(state: GaitState, motions: dict[int, FootTargetMotion], s
     return state._replace(foot=foot, foothold=target, ground_height=ground, swing_velocity=pace)
 
 
-def best_body_shift(rest: Floats, centre: complex, sets: Floats) -> complex:
+def best_body_shift(rest: Complex[np.ndarray, "legs"], centre: complex, sets: Bool[np.ndarray, "n legs"]) -> complex:
     """Return the shift of the centre of mass with the greatest stability margin.
 
     Parameters
@@ -131,7 +133,13 @@ def best_body_shift(rest: Floats, centre: complex, sets: Floats) -> complex:
     return complex(_SHIFTS[int(np.argmax(margins - np.abs(_SHIFTS) / 4))])
 
 
-def reachable_fraction(robot: Robot, postures: Sequence[Floats], leg: int, start: Floats, end: Floats) -> float:
+def reachable_fraction(
+    robot: Robot,
+    postures: Sequence[Float[np.ndarray, "7"]],
+    leg: int,
+    start: Float[np.ndarray, "3"],
+    end: Float[np.ndarray, "3"],
+) -> float:
     """Return the fraction of a straight path that a foot can follow in all of some postures.
 
     Parameters

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,9 +13,10 @@ from tarsus.control.walk.foot_target_motion import FootTargetMotion, apply_foot_
 from tarsus.control.walk.state import GaitState
 from tarsus.errors import InputError
 
-__all__ = ["FootTargets", "excluded_legs"]
+if TYPE_CHECKING:
+    from jaxtyping import Bool, Float
 
-Floats = np.ndarray[Any, Any]
+__all__ = ["FootTargets", "excluded_legs"]
 
 
 def excluded_legs(command: Command, before: tuple[int, ...], legs: int) -> tuple[int, ...]:
@@ -99,7 +100,9 @@ class FootTargets:
         self._motions = stopped | {leg: self._motions.get(leg) or begin_foot_target(state, leg) for leg in excluded}
         self._excluded, self._fractions = excluded, {}
 
-    def set_targets(self, command: Command, dt: float, reachable: Callable[[int, Floats, Floats], float]) -> None:
+    def set_targets(
+        self, command: Command, dt: float, reachable: Callable[[int, np.ndarray, np.ndarray], float]
+    ) -> None:
         """Set the targets of the feet, as far towards the commanded points as their legs reach.
 
         Parameters
@@ -145,7 +148,7 @@ class FootTargets:
             return state
         return apply_foot_targets(state, {leg: motion.step(time) for leg, motion in self._motions.items()}, swing_time)
 
-    def step(self, time: float, down: Floats) -> None:
+    def step(self, time: float, down: Bool[np.ndarray, "legs"]) -> None:
         """Advance the motions by a time; a leg that steps again is removed.
 
         Parameters
@@ -158,7 +161,7 @@ class FootTargets:
         if self._motions:
             self._motions = {leg: motion.step(time) for leg, motion in self._motions.items() if down[leg]}
 
-    def without_bounds(self, bounds: Floats) -> Floats:
+    def without_bounds(self, bounds: Float[np.ndarray, "legs 16"]) -> Float[np.ndarray, "legs 16"]:
         """Return the polygons of the feet, unbounded for the feet that do not step.
 
         Parameters

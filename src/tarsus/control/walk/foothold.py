@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import cmath
 import math
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from tarsus.control.walk.state import GaitState, StepInputs, chord_factor, integrate_twist
 from tarsus.control.workspace.polygon import NORMALS_CONJUGATE
 
+if TYPE_CHECKING:
+    from jaxtyping import Complex, Float
+
 __all__ = ["FootholdPredictor", "final_footholds"]
 
-Floats = np.ndarray[Any, Any]
 
 # Below this twist [m/s, rad/s] a stopping robot steps to its final rest footholds.
 _FINAL_SPEED = 0.01
@@ -21,7 +23,9 @@ _FINAL_SPEED = 0.01
 _ROUNDING = 1e-9
 
 
-def final_footholds(now: GaitState, *, rest: Floats, bandwidth: float) -> Floats | None:
+def final_footholds(
+    now: GaitState, *, rest: Complex[np.ndarray, "legs"], bandwidth: float
+) -> Complex[np.ndarray, "legs"] | None:
     """Return the rest footholds in G at which a stopping robot will stand.
 
     Parameters
@@ -42,7 +46,7 @@ def final_footholds(now: GaitState, *, rest: Floats, bandwidth: float) -> Floats
         return None
     w = bandwidth
     origin, yaw = integrate_twist(now.origin, now.yaw, ((2 * now.twist.value + now.twist.rate / w) / w).tolist())
-    final: Floats = origin + cmath.exp(1j * yaw) * rest
+    final: np.ndarray = origin + cmath.exp(1j * yaw) * rest
     return final
 
 
@@ -79,7 +83,7 @@ class FootholdPredictor(NamedTuple):
         turn = cmath.exp(1j * now.yaw)
         return cls(now.origin, turn, now.twist.value.tolist(), now.twist.rate.tolist(), inputs.bandwidth)
 
-    def foothold(self, rest: complex, bounds: Floats, touchdown: float, mid_stance: float) -> complex:
+    def foothold(self, rest: complex, bounds: Float[np.ndarray, "16"], touchdown: float, mid_stance: float) -> complex:
         """Return the foothold of a foot in G [m].
 
         Parameters

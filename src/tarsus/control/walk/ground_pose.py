@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -10,9 +10,10 @@ from tarsus.control.walk.state import GaitState
 from tarsus.control.workspace.stance_geometry import SWING_HEIGHT, stance_geometry_of, with_sway
 from tarsus.kinematics.pose import Pose
 
-__all__ = ["body_pose", "foot_positions"]
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
-Floats = np.ndarray[Any, Any]
+__all__ = ["body_pose", "foot_positions"]
 
 
 def body_pose(state: GaitState) -> Pose:
@@ -29,7 +30,7 @@ def body_pose(state: GaitState) -> Pose:
     return heading @ Pose(stance.rotation, stance.position)
 
 
-def foot_positions(state: GaitState) -> Floats:
+def foot_positions(state: GaitState) -> Float[np.ndarray, "legs 3"]:
     """Return the positions of the feet in G.
 
     Parameters

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import cmath
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,9 +14,10 @@ from tarsus.kinematics.inverse import inverse_kinematics
 from tarsus.kinematics.scalar_solver import ScalarSolver
 from tarsus.robot.robot import Robot
 
-__all__ = ["JointSolver"]
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
-Floats = np.ndarray[Any, Any]
+__all__ = ["JointSolver"]
 
 
 class JointSolver:
@@ -35,7 +36,7 @@ class JointSolver:
         self._posture: CriticallyDamped | None = None
         self._body: tuple[Rows, list[float], float] = (((),), [], 0.0)
 
-    def angles(self, state: GaitState) -> Floats:
+    def angles(self, state: GaitState) -> Float[np.ndarray, "legs 3"]:
         """Return the joint angles of a state; for feet out of reach, those of the nearest reachable points.
 
         Parameters

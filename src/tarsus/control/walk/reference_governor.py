@@ -8,7 +8,7 @@ stays within bounds. What was feasible in the last tick is feasible again, so th
 from __future__ import annotations
 
 import cmath
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -18,9 +18,11 @@ from tarsus.control.workspace.polygon import NORMALS
 from tarsus.control.workspace.velocity_limits import stance_overhang
 from tarsus.gait.gait import Gait
 
+if TYPE_CHECKING:
+    from jaxtyping import Complex, Float
+
 __all__ = ["governed_twist", "lift_delays", "polygon_excess", "stance_intervals", "time_to_touchdown"]
 
-Floats = np.ndarray[Any, Any]
 
 # Rounding of a distance [m].
 _TOLERANCE = 1e-9
@@ -35,8 +37,14 @@ _NO_ANGLE = 1e-30
 
 
 def polygon_excess(
-    state: GaitState, targets: Floats, *, begins: Floats, ends: Floats, bounds: Floats, bandwidth: float
-) -> Floats:
+    state: GaitState,
+    targets: Float[np.ndarray, "n 3"],
+    *,
+    begins: Float[np.ndarray, "*#batch legs"],
+    ends: Float[np.ndarray, "*#batch legs"],
+    bounds: Float[np.ndarray, "legs 16"],
+    bandwidth: float,
+) -> Float[np.ndarray, "*batch n 3 legs 16"]:
     """Return how far each foot will be outside each side of its polygon, with a constant target of the twist.
 
     Parameters
@@ -63,12 +71,18 @@ def polygon_excess(
 class _Prediction(NamedTuple):
     """Prediction of the feet in the heading frame, up to the target's part: at three times, shape (..., 3, legs)."""
 
-    seen: Floats
-    of_target: Floats
-    travel: Floats
+    seen: Complex[np.ndarray, "legs"]
+    of_target: Float[np.ndarray, "*batch 3 legs"]
+    travel: Float[np.ndarray, "... 3 legs"]
 
     @classmethod
-    def of(cls, state: GaitState, begins: Floats, ends: Floats, bandwidth: float) -> _Prediction:
+    def of(
+        cls,
+        state: GaitState,
+        begins: Float[np.ndarray, "*#batch legs"],
+        ends: Float[np.ndarray, "*#batch legs"],
+        bandwidth: float,
+    ) -> _Prediction:
         """Predict; `travel`, shape (3, ..., 3, legs), is the travel without the target's part."""
         begins = begins[..., None, :]
         times = begins + (ends[..., None, :] - begins) * _TIMES
@@ -77,7 +91,9 @@ class _Prediction(NamedTuple):
         travel = state.twist.value.reshape(axes) * of_value + state.twist.rate.reshape(axes) * of_rate
         return cls((state.foothold - state.origin) * cmath.exp(-1j * state.yaw), of_target, travel)
 
-    def beyond(self, targets: Floats, bounds: Floats) -> Floats:
+    def beyond(
+        self, targets: Float[np.ndarray, "n 3"], bounds: Float[np.ndarray, "legs 16"]
+    ) -> Float[np.ndarray, "*batch n 3 legs 16"]:
         """Return the excess, shape (..., n, 3, legs, 16), for targets of shape (n, 3)."""
         driven = targets.T[(slice(None), *(None,) * (self.of_target.ndim - 2), ..., None, None)]
         x, y, angle = driven * self.of_target[..., None, :, :] + self.travel[..., None, :, :]
@@ -86,21 +102,21 @@ class _Prediction(NamedTuple):
         half = np.where(half == 0.0, _NO_ANGLE, half)
         back = np.exp(-1j * half)
         place = back * (self.seen * back + (x + 1j * y) * (back.imag / half))
-        out: Floats = (place.view(float).reshape(-1, 2) @ _NORMALS).reshape(*place.shape, -1)
+        out: np.ndarray = (place.view(float).reshape(-1, 2) @ _NORMALS).reshape(*place.shape, -1)
         out -= bounds
         return out
 
 
 def governed_twist(
     state: GaitState,
-    current: Floats,
-    command: Floats,
+    current: Float[np.ndarray, "3"],
+    command: Float[np.ndarray, "3"],
     *,
-    begins: Floats,
-    ends: Floats,
-    bounds: Floats,
+    begins: Float[np.ndarray, "*#batch legs"],
+    ends: Float[np.ndarray, "*#batch legs"],
+    bounds: Float[np.ndarray, "legs 16"],
     bandwidth: float,
-) -> Floats:
+) -> Float[np.ndarray, "3"]:
     """Return a feasible target on the path from the current one to the command; the command where it is feasible.
 
     The largest feasible one of some fractions of the path is taken. Repeated tick after tick, it comes as close as
@@ -139,11 +155,13 @@ def governed_twist(
     broken = here > 0
     gain = here[broken] - still[broken]
     needed = np.where(gain > 0, here[broken] / np.where(gain > 0, gain, 1.0), 1.0).max()
-    slower: Floats = current * (1 - min(float(needed), 1.0))
+    slower: np.ndarray = current * (1 - min(float(needed), 1.0))
     return slower
 
 
-def stance_intervals(state: GaitState, gait: Gait, frequency: float, hold: float) -> tuple[Floats, Floats]:
+def stance_intervals(
+    state: GaitState, gait: Gait, frequency: float, hold: float
+) -> tuple[Float[np.ndarray, "legs"], Float[np.ndarray, "legs"]]:
     """Return from when until when each foot stands where it is, or where it will be put down: shape (legs,) each [s].
 
     Parameters
@@ -171,7 +189,7 @@ def stance_intervals(state: GaitState, gait: Gait, frequency: float, hold: float
     return np.array(begins), np.array(ends)
 
 
-def time_to_touchdown(state: GaitState, gait: Gait, frequency: float) -> Floats:
+def time_to_touchdown(state: GaitState, gait: Gait, frequency: float) -> Float[np.ndarray, "legs"]:
     """Return the time until each foot touches down: array, shape (legs,) [s].
 
     Parameters
@@ -182,7 +200,7 @@ def time_to_touchdown(state: GaitState, gait: Gait, frequency: float) -> Floats:
     return np.where(state.down, 0.0, (1 - state.swing_phase) * (1 - gait.duty_factor) / frequency)
 
 
-def lift_delays(gait: Gait, cycle_time: float) -> Floats:
+def lift_delays(gait: Gait, cycle_time: float) -> Float[np.ndarray, "legs legs"]:
     """Return how long each foot stands at the start of a gait, with all feet down: array, shape (legs, legs) [s].
 
     Parameters

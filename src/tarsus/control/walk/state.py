@@ -8,7 +8,7 @@ from __future__ import annotations
 import cmath
 import math
 from collections.abc import Sequence
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -16,6 +16,9 @@ from tarsus.control.filters import CriticallyDamped
 from tarsus.control.sensing.ground_plane import FLAT, GroundPlane
 from tarsus.control.walk.swing_trajectory import stopping_height, swinging_height
 from tarsus.gait.gait import Gait
+
+if TYPE_CHECKING:
+    from jaxtyping import Bool, Complex, Float
 
 __all__ = [
     "EARLY_STOP_FRACTION",
@@ -27,8 +30,6 @@ __all__ = [
     "chord_factor",
     "integrate_twist",
 ]
-
-Floats = np.ndarray[Any, Any]
 
 PHASE_TOLERANCE = 1e-9
 """Differences of the clock below this are rounding [cycles]."""
@@ -91,25 +92,25 @@ class GaitState(NamedTuple):
     """
 
     clock: float
-    step_number: Floats
-    down: Floats
-    swing_phase: Floats
-    foot: Floats
-    foothold: Floats
-    swing_velocity: Floats
-    swing_acceleration: Floats
-    ground_height: Floats
-    start_height: Floats
-    height_factor: Floats
-    contact_phase: Floats
-    stop_phase: Floats
-    contact_height: Floats
-    contact_speed: Floats
+    step_number: Float[np.ndarray, "legs"]
+    down: Bool[np.ndarray, "legs"]
+    swing_phase: Float[np.ndarray, "legs"]
+    foot: Complex[np.ndarray, "legs"]
+    foothold: Complex[np.ndarray, "legs"]
+    swing_velocity: Complex[np.ndarray, "legs"]
+    swing_acceleration: Complex[np.ndarray, "legs"]
+    ground_height: Float[np.ndarray, "legs"]
+    start_height: Float[np.ndarray, "legs"]
+    height_factor: Float[np.ndarray, "legs"]
+    contact_phase: Float[np.ndarray, "legs"]
+    stop_phase: Float[np.ndarray, "legs"]
+    contact_height: Float[np.ndarray, "legs"]
+    contact_speed: Float[np.ndarray, "legs"]
     origin: complex
     yaw: float
     twist: CriticallyDamped
     posture: CriticallyDamped
-    lift_delay: Floats
+    lift_delay: Float[np.ndarray, "legs"]
     rhythm: CriticallyDamped
     elevation: CriticallyDamped
     admittance_offset: CriticallyDamped
@@ -117,7 +118,7 @@ class GaitState(NamedTuple):
     beats: float = 0.0
 
     @classmethod
-    def standing(cls, rest: Floats, posture: Floats) -> GaitState:
+    def standing(cls, rest: Complex[np.ndarray, "legs"], posture: Float[np.ndarray, "13"]) -> GaitState:
         """Return the state of a robot that stands with its feet at rest, its heading frame at G.
 
         Parameters
@@ -154,7 +155,7 @@ class GaitState(NamedTuple):
             admittance_offset=CriticallyDamped.still(none),
         )
 
-    def swings(self, duty_factor: float) -> Floats:
+    def swings(self, duty_factor: float) -> Float[np.ndarray, "legs"]:
         """Return the duration of each foot's swing: array, shape (legs,); for feet on the ground, as planned [cycles].
 
         Parameters
@@ -164,7 +165,7 @@ class GaitState(NamedTuple):
         """
         return np.asarray(1 - duty_factor - np.where(self.down, 0.0, self.lift_delay))
 
-    def height(self, swing_height: float) -> Floats:
+    def height(self, swing_height: float) -> Float[np.ndarray, "legs"]:
         """Return the heights of the feet in G: array, shape (legs,) [m].
 
         Parameters
@@ -248,22 +249,22 @@ class StepInputs(NamedTuple):
 
     gait: Gait
     frequency: float
-    twist: Floats
-    posture: Floats
+    twist: Float[np.ndarray, "3"]
+    posture: Float[np.ndarray, "_"]
     bandwidth: float
     posture_bandwidth: float
-    may_lift: Floats
-    may_land: Floats
-    rest: Floats
-    placement_bounds: Floats
-    admittance_offset: Floats
+    may_lift: Bool[np.ndarray, "legs"]
+    may_land: Bool[np.ndarray, "legs"]
+    rest: Complex[np.ndarray, "legs"]
+    placement_bounds: Float[np.ndarray, "legs 16"]
+    admittance_offset: Float[np.ndarray, "legs"]
     hold_feet: bool = False
     beats: int = 2
     swaying: bool = True
     ground_plane: GroundPlane = FLAT
-    lowest_ground: Floats | float = -math.inf
-    highest_ground: Floats | float = math.inf
-    elevation: Floats = ZERO_ELEVATION
+    lowest_ground: Float[np.ndarray, "legs"] | float = -math.inf
+    highest_ground: Float[np.ndarray, "legs"] | float = math.inf
+    elevation: Float[np.ndarray, "1"] = ZERO_ELEVATION
     elevation_bandwidth: float = 4.0
 
 

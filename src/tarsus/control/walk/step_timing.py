@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -12,7 +12,6 @@ from tarsus.gait.gait import Gait
 
 __all__ = ["StepTiming"]
 
-Floats = np.ndarray[Any, Any]
 
 # The twist follows its target within about one stance: faster, and standing feet would be left behind.
 _TIME_CONSTANTS_PER_STANCE = 4.0

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,9 +14,10 @@ from tarsus.control.walk.state import PHASE_TOLERANCE, POSITION_TOLERANCE, GaitS
 from tarsus.control.walk.swing_trajectory import quintic
 from tarsus.control.workspace.stance_geometry import SWING_HEIGHT
 
-__all__ = ["LATEST_LIFT_OFF", "TARGET_FREEZE", "advance"]
+if TYPE_CHECKING:
+    from jaxtyping import Bool, Float
 
-Floats = np.ndarray[Any, Any]
+__all__ = ["LATEST_LIFT_OFF", "TARGET_FREEZE", "advance"]
 
 TARGET_FREEZE = 0.6
 """Swing phase from which on the foothold stays: the rest of the swing suffices to reach it smoothly."""
@@ -79,7 +80,9 @@ def advance(state: GaitState, inputs: StepInputs, dt: float) -> GaitState:
     return after if all(down) else _swing(after, inputs, down, since_lift, stopping=stopping)
 
 
-def _settled(filtered: CriticallyDamped, target: Floats, dt: float, bandwidth: float) -> CriticallyDamped:
+def _settled(
+    filtered: CriticallyDamped, target: Float[np.ndarray, "n"], dt: float, bandwidth: float
+) -> CriticallyDamped:
     """Return a filter after a time; once at its target, the same object from then on."""
     if filtered.value is target:
         return filtered
@@ -88,7 +91,14 @@ def _settled(filtered: CriticallyDamped, target: Floats, dt: float, bandwidth: f
     return after if off > _NO_DIFFERENCE else CriticallyDamped.still(target)
 
 
-def _lift(state: GaitState, inputs: StepInputs, due: Floats, late: Floats, *, stopping: bool) -> GaitState:
+def _lift(
+    state: GaitState,
+    inputs: StepInputs,
+    due: Bool[np.ndarray, "legs"],
+    late: Float[np.ndarray, "legs"],
+    *,
+    stopping: bool,
+) -> GaitState:
     """Lift the feet that are due; those that may not, or need not, miss this step.
 
     `late` is the time since each was due at the start of the tick [cycles].
@@ -117,7 +127,9 @@ def _lift(state: GaitState, inputs: StepInputs, due: Floats, late: Floats, *, st
     )
 
 
-def _height_factor(state: GaitState, inputs: StepInputs, height: Floats) -> Floats:
+def _height_factor(
+    state: GaitState, inputs: StepInputs, height: Float[np.ndarray, "batch"]
+) -> Float[np.ndarray, "batch"]:
     """Return the fraction of the swing height for feet that lift from a height, to rise no higher than necessary."""
     over = np.maximum(height - inputs.highest_ground, 0.0)
     return np.asarray(np.maximum(1 - over / max(float(state.posture.value[SWING_HEIGHT]), 1e-6), _LEAST_HEIGHT_FACTOR))
@@ -172,7 +184,9 @@ def _swing(
     return _land(after, landed) if landed else after
 
 
-def _with_ground_at(ground: Floats, leg: int, moved: complex, inputs: StepInputs, *, just_lifted: bool) -> Floats:
+def _with_ground_at(
+    ground: Float[np.ndarray, "legs"], leg: int, moved: complex, inputs: StepInputs, *, just_lifted: bool
+) -> Float[np.ndarray, "legs"]:
     """Return the ground heights, that of one foot for a foothold that has moved."""
     changed = ground.copy()
     changed[leg] += inputs.ground_plane.slope_x * moved.real + inputs.ground_plane.slope_y * moved.imag

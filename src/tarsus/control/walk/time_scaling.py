@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
+if TYPE_CHECKING:
+    from jaxtyping import Float
+
 __all__ = ["STOP_DURATION", "TimeScaling"]
 
-Floats = np.ndarray[Any, Any]
 _T = TypeVar("_T")
 
 # How fast the rate may rise, how fast it falls ahead of high accelerations, and how fast to a stop [1/s].
@@ -45,7 +47,12 @@ class TimeScaling:
         Rate of the walk's time, 0 to 1.
     """
 
-    def __init__(self, angles: Floats, speed: Floats, acceleration: Floats) -> None:
+    def __init__(
+        self,
+        angles: Float[np.ndarray, "legs 3"],
+        speed: Float[np.ndarray, "legs 3"],
+        acceleration: Float[np.ndarray, "legs 3"],
+    ) -> None:
         self.angles = angles
         self.rate = 1.0
         self._speed, self._acceleration = speed, acceleration
@@ -56,7 +63,7 @@ class TimeScaling:
     def advance(
         self,
         integrate: Callable[[float], _T],
-        solve: Callable[[_T], Floats],
+        solve: Callable[[_T], np.ndarray],
         dt: float,
         *,
         stop: bool,
@@ -98,20 +105,22 @@ class TimeScaling:
         self.angles, self._speeds, self.rate, self._last_dt = angles, speeds, rate, dt
         return after
 
-    def _demand(self, angles: Floats, dt: float, between: float) -> tuple[Floats, float, bool]:
+    def _demand(
+        self, angles: Float[np.ndarray, "legs 3"], dt: float, between: float
+    ) -> tuple[Float[np.ndarray, "legs 3"], float, bool]:
         """Return the joints' speeds, the fraction of their acceleration that is used, and whether both are kept."""
         speeds = (angles - self.angles) / dt
         used = float((np.abs(speeds - self._speeds) / self._acceleration).max()) / between
         works = used <= _USED and float((np.abs(speeds) / self._speed).max()) <= _USED
         return speeds, used, works
 
-    def _relaxed_rate(self, integrate: Callable[[float], _T], solve: Callable[[_T], Floats]) -> float:
+    def _relaxed_rate(self, integrate: Callable[[float], _T], solve: Callable[[_T], np.ndarray]) -> float:
         """Return the rate at which the joints keep well within their acceleration for the next moments."""
         first, second = solve(integrate(_AHEAD)), solve(integrate(2 * _AHEAD))
         acceleration = np.abs(second - 2 * first + self.angles) / (_AHEAD * _AHEAD)
         return math.sqrt(_AIM / max(float((acceleration / self._acceleration).max()), _AIM))
 
-    def _other_rate(self, speeds: Floats, rate: float, dt: float) -> float:
+    def _other_rate(self, speeds: Float[np.ndarray, "n 3"], rate: float, dt: float) -> float:
         """Return a rate at which the joints keep within speed and acceleration, or come closest to that."""
         if rate == 0:  # the stop is too sudden
             return self.rate / 2

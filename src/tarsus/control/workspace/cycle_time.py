@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -13,9 +13,11 @@ from tarsus.gait.gait import Gait
 from tarsus.gait.swing import horizontal_profile, vertical_profile
 from tarsus.robot.robot import Robot
 
+if TYPE_CHECKING:
+    from jaxtyping import Complex, Float
+
 __all__ = ["CycleTiming", "CycleTimingSearch", "SteadyCycle"]
 
-Floats = np.ndarray[Any, Any]
 
 # Fractions of the joints' limits available to steady walking; the rest is for changes of the command.
 _SPEED_FRACTION, _ACCELERATION_FRACTION = 0.97, 0.8
@@ -79,8 +81,8 @@ class CycleTimingSearch:
         stance: StanceGeometry,
         limits: VelocityLimits,
         *,
-        speed: Floats,
-        acceleration: Floats,
+        speed: Float[np.ndarray, "legs 3"],
+        acceleration: Float[np.ndarray, "legs 3"],
     ) -> None:
         self._robot, self._stance, self._speed, self._acceleration = robot, stance, speed, acceleration
         # Motions of the body during one stance: none, and fractions of the longest that the legs reach.
@@ -90,7 +92,7 @@ class CycleTimingSearch:
         self._cycle = SteadyCycle(gait, moves, stance.swing_height)
         self._block = max(_BLOCK // (robot.legs * len(self._cycle.shift)), 1)
         self.blocks = math.ceil(len(moves) / self._block)
-        self._times: list[Floats] = []
+        self._times: list[np.ndarray] = []
 
     def examine(self, block: int) -> None:
         """Find the shortest cycles of a block of motions; blocks in their order.
@@ -141,7 +143,9 @@ class CycleTimingSearch:
         return CycleTiming(cycle_time, straight_on, on_the_spot, least)
 
 
-def _cap(sizes: Floats, spare: Floats, stroke: Floats) -> Floats:
+def _cap(
+    sizes: Float[np.ndarray, "*batch"], spare: Float[np.ndarray, "*batch"], stroke: Float[np.ndarray, "..."]
+) -> Float[np.ndarray, "..."]:
     """Return the stroke ``(...)`` that is feasible in every direction in which the joints, not the legs, are the limit.
 
     If they are in none, it is the strokes of the legs times the ratio of the cycle time to the shortest one.
@@ -150,7 +154,9 @@ def _cap(sizes: Floats, spare: Floats, stroke: Floats) -> Floats:
     return np.asarray(np.where(np.isfinite(bound), bound, (np.maximum(spare, 1.0) * stroke).max(-1)))
 
 
-def _sizes(shortest: Floats, cycle_times: Floats | float) -> Floats:
+def _sizes(
+    shortest: Float[np.ndarray, "legs n"], cycle_times: Float[np.ndarray, "*batch"] | float
+) -> Float[np.ndarray, "*batch n"]:
     """Return the fraction of the longest stroke that cycle times allow, for each twist on the last axis."""
     return np.stack([np.interp(cycle_times, column, _SIZES) for column in shortest.T], axis=-1)
 
@@ -180,7 +186,7 @@ class SteadyCycle:
         Position of a foot in the heading frame: its rest foothold times `factor`, plus `shift` [m].
     """
 
-    def __init__(self, gait: Gait, moves: Floats, swing_height: float) -> None:
+    def __init__(self, gait: Gait, moves: Float[np.ndarray, "n 3"], swing_height: float) -> None:
         begin = gait.duty_factor - 0.02 if gait.duty_factor >= 0.5 else -0.02
         self.phases = np.linspace(begin, 1.02, round(_SAMPLES * (1.02 - begin) / (1.04 - gait.duty_factor)))
         _, phase, contacts = Gait(gait.duty_factor, (0.0,)).phase(self.phases)
@@ -195,8 +201,13 @@ class SteadyCycle:
         self.shift = (along * there - here) / turned
 
     def shortest_times(
-        self, robot: Robot, stance: StanceGeometry, part: slice, speed: Floats, acceleration: Floats
-    ) -> Floats:
+        self,
+        robot: Robot,
+        stance: StanceGeometry,
+        part: slice,
+        speed: Float[np.ndarray, "legs 3"],
+        acceleration: Float[np.ndarray, "legs 3"],
+    ) -> Float[np.ndarray, "n"]:
         """Return the shortest cycle for each of some moves.
 
         Parameters
@@ -227,7 +238,9 @@ class SteadyCycle:
         return np.asarray(np.maximum(by_speed, by_acceleration).max(axis=(0, 2)))
 
 
-def _moved(moves: Floats, fraction: Floats | float) -> tuple[Floats, Floats]:
+def _moved(
+    moves: Float[np.ndarray, "n 3"], fraction: Float[np.ndarray, "*batch"] | float
+) -> tuple[Complex[np.ndarray, "... n"], Complex[np.ndarray, "... n"]]:
     """Return position and rotation of the body after a fraction of its moves, as complex numbers."""
     half = np.asarray(moves[:, 2] * fraction / 2)
     turned = np.exp(1j * half)

@@ -10,7 +10,7 @@ edges still leave the feasible region between rays, sides are moved inwards.
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -19,9 +19,10 @@ from tarsus.control.workspace.polygon import NORMALS, NORMALS_CONJUGATE, polygon
 from tarsus.control.workspace.stance_geometry import StanceGeometry
 from tarsus.robot.robot import Robot
 
-__all__ = ["PASSES", "FootWorkspaceSearch", "rest_margin"]
+if TYPE_CHECKING:
+    from jaxtyping import Complex, Float
 
-Floats = np.ndarray[Any, Any]
+__all__ = ["PASSES", "FootWorkspaceSearch", "rest_margin"]
 
 _RAYS, _SIDES, _RINGS, _FINE = 24, len(NORMALS), 8, 5
 # Number of inner rings.
@@ -64,9 +65,9 @@ class FootWorkspaceSearch:
     def __init__(self, robot: Robot, stance: StanceGeometry, *, foot_distance: float) -> None:
         self._margin, self._spacing = LegMargin(robot, stance), _FootSpacing(stance.rest, foot_distance)
         self._rest, self._step = stance.rest, _ring(robot)
-        self._rays: Floats = np.arange(_RINGS + 1)[:, None, None] * self._step
+        self._rays: np.ndarray = np.arange(_RINGS + 1)[:, None, None] * self._step
         self._inner = self._edge = self._fraction = self._coarse = np.zeros(0)
-        self.bounds: Floats = np.zeros((robot.legs, _SIDES))
+        self.bounds: Float[np.ndarray, "legs 16"] = np.zeros((robot.legs, _SIDES))
         self.edge_points = len(_ALONG) * _SIDES * robot.legs
 
     def sample_inner(self) -> None:
@@ -105,7 +106,7 @@ class FootWorkspaceSearch:
         return True
 
 
-def rest_margin(robot: Robot, stance: StanceGeometry, *, knees: bool = True) -> Floats:
+def rest_margin(robot: Robot, stance: StanceGeometry, *, knees: bool = True) -> Float[np.ndarray, "legs"]:
     """Return how far a foot can move from its rest foothold in any direction, up to a small distance.
 
     Parameters
@@ -134,7 +135,9 @@ def _ring(robot: Robot) -> float:
     return float((robot.geometry.femur + robot.geometry.tibia).max()) / _RINGS
 
 
-def _first_zero(radii: Floats, margin: Floats, *, interpolation: float) -> Floats:
+def _first_zero(
+    radii: Float[np.ndarray, "k m n"], margin: Float[np.ndarray, "*batch"], *, interpolation: float
+) -> Float[np.ndarray, "rays legs"]:
     """Return where the margin becomes negative along each ray ``(rays, legs)``, or the end of the ray."""
     fails = margin < 0
     first = np.where(fails.any(axis=0), fails.argmax(axis=0), len(margin) - 1)[None]
@@ -151,19 +154,21 @@ def _first_zero(radii: Floats, margin: Floats, *, interpolation: float) -> Float
 class _FootSpacing:
     """Distance to the middle between neighbouring rest footholds, less half the least distance of feet."""
 
-    def __init__(self, rest: Floats, foot_distance: float) -> None:
+    def __init__(self, rest: Complex[np.ndarray, "legs"], foot_distance: float) -> None:
         path = rest[None, :] - rest[:, None]
         length = np.abs(path) + np.where(np.eye(len(rest), dtype=bool), 1e9, 0.0)
         self._direction = path / length
         self._distance = np.maximum((length - foot_distance) / 2, 0.0)
 
-    def __call__(self, out: Floats) -> Floats:
+    def __call__(
+        self, out: Complex[np.ndarray, "*#batch legs"] | Complex[np.ndarray, "*#batch 1"]
+    ) -> Float[np.ndarray, "..."]:
         """Return the factor by which `out` ``(n, legs)`` may be scaled before a foot gets too near to a neighbour's."""
         along = (out.conj()[..., None] * self._direction).real
         return np.asarray(np.where(along > 1e-6, self._distance / np.maximum(along, 1e-6), np.inf).min(axis=-1))
 
 
-def _sides(rest: Floats, reach: Floats) -> Floats:
+def _sides(rest: Complex[np.ndarray, "legs"], reach: Float[np.ndarray, "n legs"]) -> Float[np.ndarray, "legs 16"]:
     """Return the polygons' sides from the lengths of the rays ``(rays, legs)``."""
     reach = np.maximum(reach, -RESERVED_MARGIN)
     ends = reach * _DIRECTIONS[:, None]
@@ -180,13 +185,18 @@ def _sides(rest: Floats, reach: Floats) -> Floats:
     return np.asarray(bounds + (NORMALS_CONJUGATE * rest[:, None]).real)
 
 
-def _edge(bounds: Floats, rest: Floats) -> Floats:
+def _edge(bounds: Float[np.ndarray, "legs 16"], rest: Complex[np.ndarray, "legs"]) -> Complex[np.ndarray, "n legs"]:
     """Return points on the polygons' edges ``(3 * 16, legs)``, relative to the rest footholds."""
     start, end = (ends.T[:, None] for ends in polygon_ends(bounds, rest))
     return np.asarray(start + _ALONG * (end - start)).reshape(-1, len(rest))
 
 
-def _moved_inwards(bounds: Floats, rest: Floats, edge: Floats, fraction: Floats) -> Floats:
+def _moved_inwards(
+    bounds: Float[np.ndarray, "legs 16"],
+    rest: Complex[np.ndarray, "legs"],
+    edge: Complex[np.ndarray, "n legs"],
+    fraction: Float[np.ndarray, "*batch"],
+) -> Float[np.ndarray, "legs 16"]:
     """Return the sides moved inwards to a fraction of the distance to points of `_edge`; unchanged where infinite."""
     normals = np.repeat(NORMALS, len(_ALONG))[:, None]
     inner = (normals.conj() * (rest + np.clip(fraction, 0.0, 1.0) * edge)).real

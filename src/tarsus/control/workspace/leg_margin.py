@@ -7,7 +7,7 @@ for a stance. Margins are taken from the sides of the leg's triangle where possi
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -16,9 +16,10 @@ from tarsus.kinematics.triangle import Triangle, solve_triangle, to_leg_frame
 from tarsus.robot.geometry import LegGeometry
 from tarsus.robot.robot import Robot
 
-__all__ = ["RESERVED_MARGIN", "LegMargin"]
+if TYPE_CHECKING:
+    from jaxtyping import Bool, Complex, Float
 
-Floats = np.ndarray[Any, Any]
+__all__ = ["RESERVED_MARGIN", "LegMargin"]
 
 RESERVED_MARGIN = 0.0015
 """Distance that feet keep from where their leg fails, and knees from the ground [m]."""
@@ -67,7 +68,7 @@ class LegMargin:
         self._no_knees = np.zeros(len(heights), dtype=bool)
         self._speed_at_rest = self._joint_speed(self._solve(np.zeros((1, len(rest))), np.zeros((1, len(rest)))))[0, 0]
 
-    def __call__(self, out: Floats) -> Floats:
+    def __call__(self, out: Complex[np.ndarray, "*#batch #legs"]) -> Float[np.ndarray, "*batch legs"]:
         """Return the least margin over all heights, negative where the leg fails.
 
         Parameters
@@ -92,7 +93,9 @@ class LegMargin:
         margins = [margin if (at == low).all() else self._at(part, low)[0] for part, margin, at in reversed(found)]
         return np.concatenate(margins).reshape(*out.shape[:-1], -1)
 
-    def _at(self, out: Floats, low: Floats) -> tuple[Floats, Floats]:
+    def _at(
+        self, out: Complex[np.ndarray, "*#batch legs"] | Complex[np.ndarray, "*#batch 1"], low: Bool[np.ndarray, "n"]
+    ) -> tuple[Float[np.ndarray, "..."], Bool[np.ndarray, "n"]]:
         """Return the least margin ``(n, legs)``, and the heights at which knees are tested in any block so far."""
         solution = self._solve(out.real, out.imag)
         margin = joint_margin(self._g, solution)
@@ -102,7 +105,7 @@ class LegMargin:
         margin = np.minimum(margin, _SPEED_RATIO - self._joint_speed(solution) / self._speed_at_rest)
         return np.asarray(margin.min(axis=0)), low
 
-    def _solve(self, x: Floats, y: Floats) -> Triangle:
+    def _solve(self, x: Float[np.ndarray, "*#batch"], y: Float[np.ndarray, "*#batch"]) -> Triangle:
         """Return the joint angles ``(heights, n, legs)`` at positions relative to the rest footholds ``(n, legs)``."""
         rest, (xx, xy, xz), (yx, yy, yz) = self._at_rest, self._along_x, self._along_y
         narrower = self._narrower
@@ -110,7 +113,7 @@ class LegMargin:
         in_z = rest[2] + narrower * (xz * x + yz * y) if self._rising else rest[2]
         return solve_triangle(np, self._g, in_x, in_y, in_z, knee=1, sideways=self._sideways)
 
-    def _joint_speed(self, s: Triangle) -> Floats:
+    def _joint_speed(self, s: Triangle) -> Float[np.ndarray, "m n legs"]:
         """Return the greatest joint speed over the speed of the foot [rad/m]."""
         # In its plane, the leg's Jacobian has the determinant femur tibia sin(tibia angle): twice the area of the
         # triangle, which is half the root of `far near`. The sum of its squared elements is that of the squared
@@ -121,7 +124,7 @@ class LegMargin:
         in_plane = np.sqrt(g.farthest2 + g.tibia * g.tibia - s.far) / across
         return np.asarray(np.maximum(in_plane, 1 / np.sqrt(np.maximum(s.beside, 1e-18))))
 
-    def _above_ground(self, s: Triangle, heights: Floats) -> Floats:
+    def _above_ground(self, s: Triangle, heights: Bool[np.ndarray, "n"]) -> Float[np.ndarray, "k m legs"]:
         """Return the height of each leg's femur axis or knee, whichever is lower, at some of the heights [m]."""
         g, (up_x, up_y, up_z) = self._g, self._up
         femur = s.femur[heights]
@@ -134,12 +137,14 @@ class LegMargin:
         return np.asarray(axis + np.minimum(knee, 0.0))
 
 
-def _in_legs(g: LegGeometry, x: float, y: float, z: float) -> tuple[Floats, Floats, float]:
+def _in_legs(
+    g: LegGeometry, x: float, y: float, z: float
+) -> tuple[Float[np.ndarray, "legs"], Float[np.ndarray, "legs"], float]:
     """Return the components of a vector of B in each leg's frame."""
     return g.cos_yaw * x + g.sin_yaw * y, g.cos_yaw * y - g.sin_yaw * x, z
 
 
-def _over_ground(stance: StanceGeometry) -> tuple[Floats, float]:
+def _over_ground(stance: StanceGeometry) -> tuple[Float[np.ndarray, "3"], float]:
     """Return the normal of the ground in B, and the distance of B's origin from the ground [m]."""
     up, above = stance.rotation[2], float(stance.position[2])
     if not stance.slope:
@@ -149,7 +154,7 @@ def _over_ground(stance: StanceGeometry) -> tuple[Floats, float]:
     return normal / size, above / size
 
 
-def _lowest_femur(g: LegGeometry, up: Floats, above: float) -> float:
+def _lowest_femur(g: LegGeometry, up: Float[np.ndarray, "3"], above: float) -> float:
     """Return the femur angle above which no femur axis or knee of a stance can be below the ground [rad].
 
     The inverse of the bound in `certainly_above_ground`.

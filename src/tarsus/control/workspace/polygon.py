@@ -5,20 +5,21 @@ Points are complex numbers, x + iy. A polygon is given by the distances of its s
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
+if TYPE_CHECKING:
+    from jaxtyping import Complex, Float
+
 __all__ = ["NORMALS", "NORMALS_CONJUGATE", "polygon_ends", "polygon_margin", "polygon_radii"]
 
-Floats = np.ndarray[Any, Any]
-
 _SIDES = 16
-NORMALS: Floats = np.exp(2j * np.pi * np.arange(_SIDES) / _SIDES)
+NORMALS: Complex[np.ndarray, "16"] = np.exp(2j * np.pi * np.arange(_SIDES) / _SIDES)
 """Outward normals of the polygons' sides ``(16,)``, the second half opposite to the first."""
 NORMALS.setflags(write=False)
 
-NORMALS_CONJUGATE: Floats = NORMALS.conj()
+NORMALS_CONJUGATE: Complex[np.ndarray, "16"] = NORMALS.conj()
 """Factors with which the real part of a product is a point's coordinate along each normal."""
 NORMALS_CONJUGATE.setflags(write=False)
 
@@ -31,7 +32,9 @@ _BEFORE, _AFTER = np.where(_SINE < 0, 0.0, -np.inf), np.where(_SINE > 0, 0.0, np
 _ROUNDING = 1e-12
 
 
-def polygon_margin(bounds: Floats, inside: Floats) -> Floats:
+def polygon_margin(
+    bounds: Float[np.ndarray, "legs 16"], inside: Complex[np.ndarray, "legs"]
+) -> Float[np.ndarray, "legs 16"]:
     """Return the distance of each side from a point.
 
     Parameters
@@ -49,7 +52,9 @@ def polygon_margin(bounds: Floats, inside: Floats) -> Floats:
     return np.asarray(bounds - (NORMALS.conj() * inside[:, None]).real)
 
 
-def polygon_radii(bounds: Floats, inside: Floats, directions: Floats) -> Floats:
+def polygon_radii(
+    bounds: Float[np.ndarray, "legs 16"], inside: Complex[np.ndarray, "legs"], directions: Complex[np.ndarray, "n"]
+) -> Float[np.ndarray, "legs n"]:
     """Return the distance from a point inside to the boundary along directions.
 
     Parameters
@@ -71,7 +76,9 @@ def polygon_radii(bounds: Floats, inside: Floats, directions: Floats) -> Floats:
     return np.asarray(np.where(along > 1e-9, margins[:, :, None] / np.maximum(along, 1e-9), np.inf).min(axis=1))
 
 
-def polygon_ends(bounds: Floats, inside: Floats) -> tuple[Floats, Floats]:
+def polygon_ends(
+    bounds: Float[np.ndarray, "legs 16"], inside: Complex[np.ndarray, "legs"]
+) -> tuple[Complex[np.ndarray, "legs 16"], Complex[np.ndarray, "legs 16"]]:
     """Return the ends of the polygons' sides, relative to a point inside.
 
     Parameters

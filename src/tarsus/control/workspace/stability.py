@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 import math
 from bisect import bisect_left
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -16,15 +16,16 @@ from tarsus.kinematics.leg import forward_kinematics
 from tarsus.kinematics.mass import point_masses, total_mass
 from tarsus.robot.robot import Robot
 
-__all__ = ["StabilityCheck", "margin_at_rest", "safe_fraction", "support_sets"]
+if TYPE_CHECKING:
+    from jaxtyping import Bool, Complex, Float, Int
 
-Floats = np.ndarray[Any, Any]
+__all__ = ["StabilityCheck", "margin_at_rest", "safe_fraction", "support_sets"]
 
 _FRACTIONS = np.array([*np.linspace(1.0, 0.1, 10), 0.06, 0.03])
 _FIRST = 3
 
 
-def support_sets(gait: Gait, excluded: tuple[int, ...] = ()) -> Floats:
+def support_sets(gait: Gait, excluded: tuple[int, ...] = ()) -> Bool[np.ndarray, "n legs"]:
     """Return the sets of feet that are in stance together, at the times when fewest are.
 
     Parameters
@@ -43,7 +44,7 @@ def support_sets(gait: Gait, excluded: tuple[int, ...] = ()) -> Floats:
 
 
 @functools.lru_cache(maxsize=64)
-def _support_sets(gait: Gait, excluded: tuple[int, ...]) -> Floats:
+def _support_sets(gait: Gait, excluded: tuple[int, ...]) -> Float[np.ndarray, "..."]:
     after = np.asarray(gait.offsets) + gait.duty_factor + 1e-6
     down = gait.phase(after)[2]
     down[:, list(excluded)] = False
@@ -55,7 +56,13 @@ def _support_sets(gait: Gait, excluded: tuple[int, ...]) -> Floats:
 
 
 def safe_fraction(
-    sets: Floats, bounds: Floats, rest: Floats, centre: complex, *, margin: float, shift: Floats | None = None
+    sets: Bool[np.ndarray, "n legs"],
+    bounds: Float[np.ndarray, "legs 16"],
+    rest: Complex[np.ndarray, "legs"],
+    centre: complex,
+    *,
+    margin: float,
+    shift: Complex[np.ndarray, "legs 16"] | None = None,
 ) -> float:
     """Return the factor by which the foot polygons must shrink towards the rest footholds for static stability.
 
@@ -97,7 +104,7 @@ def safe_fraction(
     return float(_FRACTIONS[index]) if index < len(_FRACTIONS) else 0.0
 
 
-def margin_at_rest(sets: Floats, rest: Floats, centre: complex) -> float:
+def margin_at_rest(sets: Bool[np.ndarray, "n legs"], rest: Complex[np.ndarray, "legs"], centre: complex) -> float:
     """Return the least stability margin over all sets, with the feet at rest.
 
     Parameters
@@ -118,7 +125,11 @@ def margin_at_rest(sets: Floats, rest: Floats, centre: complex) -> float:
     return -math.inf if pairs is None else _least_margin(pairs, (rest - centre)[:, None], np.zeros((len(rest), 1)))
 
 
-def _least_margin(pairs: Floats, feet: Floats, shift: Floats) -> float:
+def _least_margin(
+    pairs: Int[np.ndarray, "2 n"],
+    feet: Complex[np.ndarray, "legs m"],
+    shift: Complex[np.ndarray, "legs m"] | Float[np.ndarray, "legs m"],
+) -> float:
     """Return the least distance of the centre of mass inside any edge, over all positions of the feet.
 
     Counter-clockwise, the centre of mass is to the left of every edge. Its distance times the length of the edge is
@@ -141,7 +152,7 @@ def _least_margin(pairs: Floats, feet: Floats, shift: Floats) -> float:
 
 
 @functools.lru_cache(maxsize=64)
-def _edges_of(sets: bytes, legs: int) -> Floats | None:
+def _edges_of(sets: bytes, legs: int) -> Float[np.ndarray, "2 n"] | None:
     """Return the edges ``(2, n)`` of the support polygons of all sets, given as bytes; None if one has no polygon."""
     edges: set[tuple[int, int]] = set()
     for row in np.frombuffer(sets, dtype=bool).reshape(-1, legs):
@@ -179,7 +190,7 @@ class StabilityCheck:
         Least stability margin that is safe [m].
     """
 
-    def __init__(self, robot: Robot, sets: Floats, excluded: tuple[int, ...] = ()) -> None:
+    def __init__(self, robot: Robot, sets: Bool[np.ndarray, "n legs"], excluded: tuple[int, ...] = ()) -> None:
         self._robot, self._sets, self.excluded = robot, sets, list(excluded)
         self.least_margin = _LEAST_MARGIN
         # Masses of the legs' points and first moment of the body, over the total mass.
@@ -191,7 +202,13 @@ class StabilityCheck:
             reach = np.asarray(robot.coxa + robot.femur + robot.tibia) * np.asarray(robot.link_mass).sum(-1) / 4
             self.least_margin += float(reach[self.excluded].sum() / total)
 
-    def safe_fraction(self, stance: StanceGeometry, sides: Floats, centre: complex, shift: Floats) -> float:
+    def safe_fraction(
+        self,
+        stance: StanceGeometry,
+        sides: Float[np.ndarray, "legs 16"],
+        centre: complex,
+        shift: Complex[np.ndarray, "legs 16"],
+    ) -> float:
         """Return the factor by which the foot polygons must shrink towards the rest footholds for static stability.
 
         Parameters
@@ -212,7 +229,9 @@ class StabilityCheck:
         """
         return safe_fraction(self._sets, sides, stance.rest, centre, margin=self.least_margin, shift=shift)
 
-    def centre_of_mass(self, stance: StanceGeometry, sides: Floats) -> tuple[complex, Floats]:
+    def centre_of_mass(
+        self, stance: StanceGeometry, sides: Float[np.ndarray, "legs 16"]
+    ) -> tuple[complex, Complex[np.ndarray, "legs 16"]]:
         """Return the projection of the centre of mass with the feet at rest, and its shift by each leg.
 
         Parameters
@@ -246,7 +265,14 @@ class StabilityCheck:
         """
         return margin_at_rest(self._sets, stance.rest, self._moments(stance, np.zeros((1, len(stance.rest))))[1])
 
-    def _moments(self, stance: StanceGeometry, out: Floats) -> tuple[Floats, complex]:
+    def _moments(
+        self,
+        stance: StanceGeometry,
+        out: Complex[np.ndarray, "*#batch legs"]
+        | Complex[np.ndarray, "*#batch 1"]
+        | Float[np.ndarray, "*#batch legs"]
+        | Float[np.ndarray, "*#batch 1"],
+    ) -> tuple[Complex[np.ndarray, "n legs"], complex]:
         """Return each leg's contribution to the centre of mass ``(n, legs)``, and that centre for the first row [m]."""
         feet = stance.rest + out
         solution = stance.solve(self._robot, feet.real, feet.imag, np.zeros((1, 1)))

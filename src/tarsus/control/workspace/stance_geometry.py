@@ -8,13 +8,16 @@ amplitudes of the sway.
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 import numpy as np
 
 from tarsus.kinematics.triangle import Triangle, solve_triangle, to_leg_frame
 from tarsus.robot.geometry import LegGeometry
 from tarsus.robot.robot import Robot
+
+if TYPE_CHECKING:
+    from jaxtyping import Complex, Float
 
 __all__ = [
     "LEVEL_TERRAIN",
@@ -31,7 +34,6 @@ __all__ = [
     "with_sway",
 ]
 
-Floats = np.ndarray[Any, Any]
 
 # Margin kept to every joint limit [rad], and least angle of the knee from straight or folded [rad].
 _LIMIT_MARGIN = 0.01
@@ -79,14 +81,20 @@ class StanceGeometry(NamedTuple):
         How far below the ground plane feet may have to stand [m].
     """
 
-    rest: Floats
-    rotation: Floats
-    position: Floats
+    rest: Complex[np.ndarray, "*batch legs"]
+    rotation: Float[np.ndarray, "... 3 3"]
+    position: Float[np.ndarray, "..."]
     swing_height: float
     slope: complex = 0j
     depth: float = 0.0
 
-    def solve(self, robot: Robot, x: Floats, y: Floats, z: Floats) -> Triangle:
+    def solve(
+        self,
+        robot: Robot,
+        x: Float[np.ndarray, "*#batch legs"],
+        y: Float[np.ndarray, "*#batch legs"],
+        z: Float[np.ndarray, "*#batch #legs"],
+    ) -> Triangle:
         """Return the joint angles ``(..., legs)`` for feet in the heading frame.
 
         Parameters
@@ -100,7 +108,9 @@ class StanceGeometry(NamedTuple):
         in_leg = to_leg_frame(g, *self.to_body(x - p[0], y - p[1], z - p[2]))
         return solve_triangle(np, g, *in_leg, knee=1, sideways=bool(g.side.any()))
 
-    def to_body(self, x: Floats, y: Floats, z: Floats) -> tuple[Floats, Floats, Floats]:
+    def to_body(
+        self, x: Float[np.ndarray, "*#batch"], y: Float[np.ndarray, "*#batch"], z: Float[np.ndarray, "*#batch"]
+    ) -> tuple[Float[np.ndarray, "... legs"], Float[np.ndarray, "... legs"], Float[np.ndarray, "... legs"]]:
         """Return the components in B of vectors in the heading frame.
 
         Parameters
@@ -128,7 +138,7 @@ def ground_rise(slope: complex, x: Any, y: Any) -> Any:
     return slope.real * x + slope.imag * y
 
 
-def joint_margin(geometry: LegGeometry, solution: Triangle) -> Floats:
+def joint_margin(geometry: LegGeometry, solution: Triangle) -> Float[np.ndarray, "*batch legs"]:
     """Return the distance of each leg to its nearest bound, negative beyond it.
 
     Parameters
@@ -173,7 +183,9 @@ def rotation_rows(roll: float, pitch: float, yaw: float) -> Rows:
     )
 
 
-def stance_geometry_of(posture: Floats, rest: Floats, terrain: TerrainEstimate = LEVEL_TERRAIN) -> StanceGeometry:
+def stance_geometry_of(
+    posture: Float[np.ndarray, "_"], rest: Complex[np.ndarray, "legs"], terrain: TerrainEstimate = LEVEL_TERRAIN
+) -> StanceGeometry:
     """Return the stance geometry of a posture.
 
     Parameters
@@ -194,7 +206,7 @@ def stance_geometry_of(posture: Floats, rest: Floats, terrain: TerrainEstimate =
     )
 
 
-def with_sway(posture: Floats, cycles: float, beats: float) -> Floats:
+def with_sway(posture: Float[np.ndarray, "_"], cycles: float, beats: float) -> Float[np.ndarray, "7"]:
     """Return the posture with the sway's displacement added.
 
     x, z and pitch oscillate once per beat (the lift-off of a set of legs); y, roll and yaw once per gait cycle. Their
@@ -216,12 +228,12 @@ def with_sway(posture: Floats, cycles: float, beats: float) -> Floats:
     if not amplitude.any():
         return posture[: SWING_HEIGHT + 1]
     per_cycle, per_beat = math.sin(2 * math.pi * cycles), math.sin(2 * math.pi * beats)
-    swayed: Floats = posture[: SWING_HEIGHT + 1].copy()
+    swayed: np.ndarray = posture[: SWING_HEIGHT + 1].copy()
     swayed[:SWING_HEIGHT] += amplitude * np.array([per_beat, per_cycle, per_beat, per_cycle, per_beat, per_cycle])
     return swayed
 
 
-def sway_fraction(sway: Floats, frequency: float, beats: int) -> float:
+def sway_fraction(sway: Float[np.ndarray, "6"], frequency: float, beats: int) -> float:
     """Return the fraction of a sway that the joints can follow while walking.
 
     Parameters

@@ -6,7 +6,7 @@ import dataclasses
 import functools
 import math
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -15,9 +15,11 @@ from tarsus.control.workspace.stability import StabilityCheck
 from tarsus.control.workspace.stance_geometry import StanceGeometry
 from tarsus.gait.swing import horizontal_profile
 
+if TYPE_CHECKING:
+    from jaxtyping import Complex, Float
+
 __all__ = ["VelocityLimits", "stance_limits", "stance_overhang", "with_stroke_limits"]
 
-Floats = np.ndarray[Any, Any]
 
 # Fraction of the polygons that the fastest steady walk uses.
 _USED_FRACTION = 0.99
@@ -41,9 +43,9 @@ class VelocityLimits:
         Longest strokes that the joints are fast enough for, walking straight and turning on the spot [m].
     """
 
-    bounds: Floats
-    margins: Floats
-    rest: Floats
+    bounds: Float[np.ndarray, "legs 16"]
+    margins: Float[np.ndarray, "legs 16"]
+    rest: Complex[np.ndarray, "legs"]
     balanced: bool = True
     stroke: float = math.inf
     turning: float = math.inf
@@ -76,7 +78,7 @@ class VelocityLimits:
         )
 
     def feasible_fraction(
-        self, twist: Floats, *, stance_time: float, duty_factor: float, hold: float = 0.0
+        self, twist: Float[np.ndarray, "3"], *, stance_time: float, duty_factor: float, hold: float = 0.0
     ) -> tuple[float, int]:
         """Return the largest multiple of a twist that can be walked steadily, and the leg that limits it.
 
@@ -109,7 +111,9 @@ class VelocityLimits:
         fastest = 1 / max(self._speed_usage(straight, turning, stance_time), _LEAST)
         return min(float(fraction.flat[worst]), fastest) / scale, worst // len(NORMALS)
 
-    def feasible_fractions(self, twists: Floats, *, stance_time: float, duty_factor: float) -> Floats:
+    def feasible_fractions(
+        self, twists: Float[np.ndarray, "n 3"], *, stance_time: float, duty_factor: float
+    ) -> Float[np.ndarray, "n"]:
         """Return the largest multiple of each of some twists that can be walked steadily.
 
         Parameters
@@ -133,7 +137,12 @@ class VelocityLimits:
         usage = self._speed_usage(np.abs(straight), np.abs(turn), stance_time)[:, 0]
         return np.asarray(np.minimum(fraction, 1 / np.maximum(usage, _LEAST)))
 
-    def _fraction_by_side(self, straight: Floats | complex, turn: Floats | float, ahead: float) -> Floats:
+    def _fraction_by_side(
+        self,
+        straight: Complex[np.ndarray, "*#batch"] | complex,
+        turn: Float[np.ndarray, "*#batch"] | float,
+        ahead: float,
+    ) -> Float[np.ndarray, "... legs 16"]:
         """Return the multiple of a twist that each side allows ``(..., legs, 16)``, for a time ahead and back [s]."""
         # An arc to either side of the rest foothold, to second order along and across: an upper bound, as sin x < x and
         # 1 - cos x < x^2 / 2.
@@ -153,7 +162,9 @@ class VelocityLimits:
 _LEAST = 1e-12
 
 
-def _positive_root(a: Floats, b: Floats, c: Floats) -> Floats:
+def _positive_root(
+    a: Float[np.ndarray, "*batch legs 16"], b: Float[np.ndarray, "*batch legs 16"], c: Float[np.ndarray, "legs 16"]
+) -> Float[np.ndarray, "*batch legs 16"]:
     """Return the root of ``a x^2 + b x = c`` for non-negative numbers; a very large one where a and b are 0."""
     bounded = np.minimum(c, 1e3)
     return np.asarray(2 * bounded / np.maximum(b + np.sqrt(b * b + 4 * a * bounded), _LEAST))
@@ -194,7 +205,9 @@ def with_stroke_limits(limits: VelocityLimits, stroke: float, turning: float, *,
     return dataclasses.replace(limits, bounds=bounds, stroke=stroke, turning=turning)
 
 
-def stance_limits(check: StabilityCheck, stance: StanceGeometry, sides: Floats, fraction: float) -> VelocityLimits:
+def stance_limits(
+    check: StabilityCheck, stance: StanceGeometry, sides: Float[np.ndarray, "legs 16"], fraction: float
+) -> VelocityLimits:
     """Return the limits in one stance.
 
     Parameters

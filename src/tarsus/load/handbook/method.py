@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -18,6 +18,9 @@ from tarsus.load.handbook.lines import Line, Sheet, Term, plain_number
 from tarsus.load.handbook.sections import write_sections
 from tarsus.load.handbook.source import NOTES, NOTES_ONE_LEG_UP, printed_numbers
 from tarsus.robot.robot import JOINTS, Robot
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
 __all__ = ["Handbook", "handbook"]
 
@@ -246,9 +249,9 @@ def _worst_leg(robot: Robot, feet_down: int, gravity: float) -> int:
     return int(np.argmax(femur > femur.max() * (1 - 1e-5)))
 
 
-def _radius(robot: Robot) -> np.ndarray[Any, Any]:
+def _radius(robot: Robot) -> Float[np.ndarray, "... legs"]:
     """Return the horizontal distance of each coxa axis from the body's origin [m]."""
-    radius: np.ndarray[Any, Any] = np.hypot(robot.mount_position[:, 0], robot.mount_position[:, 1])
+    radius: np.ndarray = np.hypot(robot.mount_position[:, 0], robot.mount_position[:, 1])
     return radius
 
 

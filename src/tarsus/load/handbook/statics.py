@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -21,10 +21,10 @@ from tarsus.load.handbook.method import Handbook, handbook
 from tarsus.load.torque import joint_torques
 from tarsus.robot.robot import JOINTS, Robot
 
-__all__ = ["compare_with_statics", "minimal_contacts"]
+if TYPE_CHECKING:
+    from jaxtyping import Bool, Float
 
-Floats = np.ndarray[Any, np.dtype[np.float64]]
-Bools = np.ndarray[Any, np.dtype[np.bool_]]
+__all__ = ["compare_with_statics", "minimal_contacts"]
 
 
 def compare_with_statics(
@@ -111,7 +111,7 @@ def compare_with_statics(
     )
 
 
-def minimal_contacts(gait: Gait) -> Bools:
+def minimal_contacts(gait: Gait) -> Bool[np.ndarray, "patterns legs"]:
     """Return the contact patterns of a gait with the fewest feet on the ground, ``(patterns, legs)``.
 
     Parameters
@@ -129,15 +129,22 @@ def minimal_contacts(gait: Gait) -> Bools:
 class _LoadCase:
     """Absolute torques, foot loads and lever arms, for each gravity vector in turn."""
 
-    torques: Floats  # (n, legs, 3) [N m]
-    contacts: Bools  # (n, legs)
-    load: Floats  # (n, legs), along gravity [N]
-    femur_arm: Floats  # (n, legs), horizontal, from the femur axis to the foot [m]
-    knee_arm: Floats  # (n, legs), horizontal, from the knee to the foot [m]
-    margin: Floats  # (n,), of the load in the support polygon [m]
+    torques: Float[np.ndarray, "*batch phases legs 3"]  # (n, legs, 3) [N m]
+    contacts: Bool[np.ndarray, "... legs"]  # (n, legs)
+    load: Float[np.ndarray, "... phases legs"]  # (n, legs), along gravity [N]
+    femur_arm: Float[np.ndarray, "... phases legs"]  # (n, legs), horizontal, from the femur axis to the foot [m]
+    knee_arm: Float[np.ndarray, "... phases legs"]  # (n, legs), horizontal, from the knee to the foot [m]
+    margin: Float[np.ndarray, "..."]  # (n,), of the load in the support polygon [m]
 
     @classmethod
-    def of(cls, robot: Robot, angles: Array, body: Pose, contacts: Bools, gravities: list[Floats]) -> _LoadCase:
+    def of(
+        cls,
+        robot: Robot,
+        angles: Float[Array, "*#batch legs 3"],
+        body: Pose,
+        contacts: Bool[np.ndarray, "*#batch legs"],
+        gravities: list[Float[np.ndarray, "... 3"]],
+    ) -> _LoadCase:
         points = forward_kinematics(robot, angles)
         flat = points[..., :2] - points[..., 3:, :2]
         arms = np.broadcast_to(np.hypot(flat[..., 0], flat[..., 1]), (*contacts.shape, 4))
@@ -159,7 +166,9 @@ class _LoadCase:
         )
 
 
-def _torque_rows(hand: Handbook, statics: Mapping[str, tuple[_LoadCase, Floats | None]]) -> Iterator[ComparisonRow]:
+def _torque_rows(
+    hand: Handbook, statics: Mapping[str, tuple[_LoadCase, Float[np.ndarray, "..."] | None]]
+) -> Iterator[ComparisonRow]:
     for case, (case_loads, time) in statics.items():
         for i, joint in enumerate(JOINTS):
             if (case, joint) != (STANDING, "coxa"):
@@ -171,7 +180,9 @@ def _torque_rows(hand: Handbook, statics: Mapping[str, tuple[_LoadCase, Floats |
         yield _row(hand, SWINGING, joint, "N m", hand.value(f"swing.{joint}"), peak, factor=hand.safety_factor)
 
 
-def _reason_rows(hand: Handbook, statics: Mapping[str, tuple[_LoadCase, Floats | None]]) -> Iterator[ComparisonRow]:
+def _reason_rows(
+    hand: Handbook, statics: Mapping[str, tuple[_LoadCase, Float[np.ndarray, "..."] | None]]
+) -> Iterator[ComparisonRow]:
     arm = hand.value("given.L_coxa") + hand.value("given.R_b")
     for case in (STANDING, WALKING):
         case_loads, time = statics[case]
@@ -189,7 +200,7 @@ def _row(
     quantity: str,
     unit: str,
     value: float,
-    peak: tuple[Floats, Bools, Floats | None],
+    peak: tuple[Float[np.ndarray, "... legs"], Bool[np.ndarray, "... legs"], Float[np.ndarray, "..."] | None],
     *,
     factor: float,
 ) -> ComparisonRow:

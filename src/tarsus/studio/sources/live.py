@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Self
+from typing import TYPE_CHECKING, Self
 
 import numpy as np
 
@@ -13,9 +13,10 @@ from tarsus.kinematics.stance import reachable_band
 from tarsus.robot.robot import Robot
 from tarsus.studio.standing import OnFootholds
 
-__all__ = ["Live"]
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
-Floats = np.ndarray[Any, np.dtype[np.float64]]
+__all__ = ["Live"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,11 +45,11 @@ class Live:
 
     robot: Robot
     leg: int
-    angles: Floats
-    foot: Floats
-    foot_in_body: Floats
-    mount: Floats
-    rpy: Floats
+    angles: Float[np.ndarray, "3"]
+    foot: Float[np.ndarray, "3"]
+    foot_in_body: Float[np.ndarray, "3"]
+    mount: Float[np.ndarray, "3"]
+    rpy: Float[np.ndarray, "3"]
     body_height: float
 
     @classmethod

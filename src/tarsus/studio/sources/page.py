@@ -20,7 +20,6 @@ from tarsus.studio.standing import OnFootholds
 
 __all__ = ["DOCUMENTS", "source_message"]
 
-
 DOCUMENTS: dict[str, Document] = {
     module.DOCUMENT.number: module.DOCUMENT for module in (doc000, doc001, doc002, doc003, doc004)
 }

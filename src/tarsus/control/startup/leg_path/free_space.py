@@ -9,10 +9,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, Self
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
+from tarsus.arrays import Array
 from tarsus.control.startup.leg_path.grid_search import Node, shortest_path
 from tarsus.control.startup.leg_path.lift_off import DEPTH_TOLERANCE, lifts_off
 from tarsus.kinematics.leg import point_parts
@@ -20,10 +21,12 @@ from tarsus.kinematics.pose import Pose
 from tarsus.robot.geometry import LegGeometry
 from tarsus.robot.robot import Robot
 
+if TYPE_CHECKING:
+    from jaxtyping import Float
+
 __all__ = ["LegFreeSpace", "Path"]
 
-Floats = np.ndarray[Any, np.dtype[np.float64]]
-Path = tuple[Floats, ...]
+Path = tuple[np.ndarray, ...]
 """Corners of a path in joint space, without its start."""
 
 # Spacing of the grid, and of the points at which a straight path is evaluated [rad].
@@ -52,7 +55,7 @@ class LegFreeSpace:
     """
 
     geometry: LegGeometry
-    up: Floats
+    up: Float[np.ndarray, "3"]
     height: float
 
     @classmethod
@@ -71,7 +74,7 @@ class LegFreeSpace:
         geometry = LegGeometry(*(values[leg] for values in robot.geometry))
         return cls(geometry, body.rotation[2], float(body.position[2]))
 
-    def points(self, angles: Floats) -> Floats:
+    def points(self, angles: Float[np.ndarray, "*#batch 3"]) -> Float[np.ndarray, "*batch 2 3"]:
         """Return knee and foot in B.
 
         Parameters
@@ -86,10 +89,10 @@ class LegFreeSpace:
         """
         parts = point_parts(np, self.geometry, angles[..., 0], angles[..., 1], angles[..., 2])
         flat = np.stack(np.broadcast_arrays(*parts[6:]), axis=-1)
-        points: Floats = flat.reshape(*flat.shape[:-1], 2, 3)
+        points: np.ndarray = flat.reshape(*flat.shape[:-1], 2, 3)
         return points
 
-    def heights(self, angles: Floats) -> Floats:
+    def heights(self, angles: Float[np.ndarray, "*#batch 3"]) -> Float[np.ndarray, "*batch 2"]:
         """Return the heights of knee and foot over the ground.
 
         Parameters
@@ -102,10 +105,10 @@ class LegFreeSpace:
         array, shape (..., 2)
             Heights of knee and foot [m].
         """
-        heights: Floats = self.points(angles) @ self.up + self.height
+        heights: np.ndarray = self.points(angles) @ self.up + self.height
         return heights
 
-    def lowest(self, angles: Floats) -> Floats:
+    def lowest(self, angles: Float[np.ndarray, "*#batch 3"]) -> Float[Array, "*batch"]:
         """Return the lower one of the heights of knee and foot.
 
         Parameters
@@ -118,10 +121,10 @@ class LegFreeSpace:
         array, shape (...)
             Heights over the ground [m].
         """
-        lowest: Floats = self.heights(angles).min(-1)
+        lowest: np.ndarray = self.heights(angles).min(-1)
         return lowest
 
-    def is_free(self, start: Floats, end: Floats) -> bool:
+    def is_free(self, start: Float[np.ndarray, "3"], end: Float[np.ndarray, "3"]) -> bool:
         """Return whether a straight path is free, and whether a foot on the ground at either end lifts off steeply.
 
         Parameters
@@ -136,7 +139,7 @@ class LegFreeSpace:
             return False
         return lifts_off(points[:, 1], heights[:, 1]) and lifts_off(points[::-1, 1], heights[::-1, 1])
 
-    def find_path(self, start: Floats, end: Floats) -> Path | None:
+    def find_path(self, start: Float[np.ndarray, "3"], end: Float[np.ndarray, "3"]) -> Path | None:
         """Return the corners of a free path without its start; None if there is none.
 
         Parameters
@@ -156,7 +159,7 @@ class LegFreeSpace:
         return None
 
     @cached_property
-    def _axes(self) -> tuple[Floats, Floats]:
+    def _axes(self) -> tuple[Float[np.ndarray, "n"], Float[np.ndarray, "..."]]:
         g = self.geometry
         femur, tibia = (
             np.linspace(low, high, 2 + int((high - low) / _GRID))
@@ -164,17 +167,17 @@ class LegFreeSpace:
         )
         return femur, tibia
 
-    def _grid(self, coxa: float) -> Floats:
+    def _grid(self, coxa: float) -> Float[np.ndarray, "m n 3"]:
         femur, tibia = np.meshgrid(*self._axes, indexing="ij")
         return np.stack([np.full_like(femur, coxa), femur, tibia], axis=-1)
 
-    def _raised(self, coxa: float) -> Floats:
+    def _raised(self, coxa: float) -> Float[np.ndarray, "n"]:
         """Return the femur and tibia angles with which the lowest point of the leg is highest."""
         grid = self._grid(coxa)
-        best: Floats = grid.reshape(-1, 3)[np.argmax(self.lowest(grid))][1:]
+        best: np.ndarray = grid.reshape(-1, 3)[np.argmax(self.lowest(grid))][1:]
         return best
 
-    def _path_in_plane(self, start: Floats, end: Floats) -> Path | None:
+    def _path_in_plane(self, start: Float[np.ndarray, "3"], end: Float[np.ndarray, "3"]) -> Path | None:
         """Return a free path with the coxa stationary; empty if start and end are equal, None if there is none."""
         if (start == end).all():
             return ()
@@ -188,7 +191,9 @@ class LegFreeSpace:
         nodes = shortest_path(free, self._weights(grid), first, last)
         return None if nodes is None else (*(grid[node] for node in nodes), end)
 
-    def _nearest(self, grid: Floats, free: Any, angles: Floats) -> Node | None:
+    def _nearest(
+        self, grid: Float[np.ndarray, "m n 3"], free: Any, angles: Float[np.ndarray, "*#batch 3"]
+    ) -> Node | None:
         """Return the nearest free grid point with a free straight path to some angles."""
         distance = np.where(free, np.abs(grid - angles).sum(-1), np.inf)
         for index in np.argsort(distance, axis=None)[:_NEAREST]:
@@ -197,7 +202,7 @@ class LegFreeSpace:
                 return i, j
         return None
 
-    def _weights(self, angles: Floats) -> Floats:
+    def _weights(self, angles: Float[np.ndarray, "*#batch 3"]) -> Float[np.ndarray, "*batch"]:
         """Return the weight of the path length at joint angles."""
         g = self.geometry
         reach = g.coxa + g.femur * np.cos(angles[..., 1]) + g.tibia * np.cos(angles[..., 1] + angles[..., 2])

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import heapq
 import math
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
+
+if TYPE_CHECKING:
+    from jaxtyping import Bool, Float
 
 __all__ = ["Node", "shortest_path"]
 
@@ -17,7 +20,7 @@ _NEIGHBOURS = ((-1, 0), (1, 0), (0, -1), (0, 1), (-1, -1), (-1, 1), (1, -1), (1,
 
 
 def shortest_path(
-    free: np.ndarray[Any, np.dtype[np.bool_]], weights: np.ndarray[Any, np.dtype[np.float64]], start: Node, end: Node
+    free: Bool[np.ndarray, "n m"], weights: Float[np.ndarray, "n m"], start: Node, end: Node
 ) -> list[Node] | None:
     """Return the shortest path over the free points of a grid, diagonals included; None if there is none.
 

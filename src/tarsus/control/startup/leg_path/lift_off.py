@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-__all__ = ["DEPTH_TOLERANCE", "lifts_off"]
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
-Floats = np.ndarray[Any, np.dtype[np.float64]]
+__all__ = ["DEPTH_TOLERANCE", "lifts_off"]
 
 DEPTH_TOLERANCE = 1e-7
 """Tolerance of a depth below the ground [m]."""
@@ -20,7 +21,7 @@ _CLEAR_HEIGHT = 0.003
 _MIN_SLOPE = 0.5
 
 
-def lifts_off(foot: Floats, heights: Floats) -> bool:
+def lifts_off(foot: Float[np.ndarray, "n 3"], heights: Float[np.ndarray, "n"]) -> bool:
     """Return whether a foot that starts on the ground leaves it steeply; a foot that does not is dragged.
 
     Parameters

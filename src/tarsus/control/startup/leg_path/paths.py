@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -11,13 +11,21 @@ from tarsus.errors import UnreachableError
 from tarsus.kinematics.pose import Pose
 from tarsus.robot.robot import Robot
 
+if TYPE_CHECKING:
+    from jaxtyping import Bool, Float
+
 __all__ = ["leg_paths"]
 
-Floats = np.ndarray[Any, np.dtype[np.float64]]
-Flags = np.ndarray[Any, np.dtype[np.bool_]]
 
-
-def leg_paths(name: str, robot: Robot, body: Pose, *, legs: Flags, start: Floats, end: Floats) -> dict[int, Path]:
+def leg_paths(
+    name: str,
+    robot: Robot,
+    body: Pose,
+    *,
+    legs: Bool[np.ndarray, "legs"],
+    start: Float[np.ndarray, "legs 3"],
+    end: Float[np.ndarray, "legs 3"],
+) -> dict[int, Path]:
     """Return a free path for each of some legs, with the body stationary.
 
     Parameters
@@ -51,5 +59,5 @@ def leg_paths(name: str, robot: Robot, body: Pose, *, legs: Flags, start: Floats
     return paths
 
 
-def _degrees(angles: Floats) -> str:
+def _degrees(angles: Float[np.ndarray, "*batch 3"]) -> str:
     return "(" + ", ".join(f"{a:.0f}" for a in np.degrees(angles)) + ")"
