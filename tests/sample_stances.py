@@ -6,7 +6,7 @@ import numpy as np
 
 from gait_robots import preset
 from tarsus.control.incremental import complete
-from tarsus.control.transition.workspace_stages import cycle_timing, foot_workspace, velocity_limits
+from tarsus.control.transition.stages.workspace import cycle_timing, foot_workspace, velocity_limits
 from tarsus.control.workspace.stability import support_sets
 from tarsus.control.workspace.stance_geometry import stance_geometry_of
 from tarsus.gait.gait import Gait

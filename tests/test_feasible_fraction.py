@@ -11,8 +11,8 @@ from tarsus.control.transition.feasible_fraction import (
     first_increment,
     reach_cause,
 )
-from tarsus.control.transition.stages import balanced_fraction, reachable_fraction
-from tarsus.control.transition.workspace_stages import foot_workspace
+from tarsus.control.transition.stages.reach import balanced_fraction, reachable_fraction
+from tarsus.control.transition.stages.workspace import foot_workspace
 from tarsus.control.workspace.foot_workspace import rest_margin
 from tarsus.control.workspace.polygon import NORMALS
 from tarsus.control.workspace.stability import StabilityCheck, support_sets

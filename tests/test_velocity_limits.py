@@ -12,7 +12,7 @@ from scipy.spatial import ConvexHull
 from gait_robots import PRESETS, ring
 from sample_stances import POSTURES, feet_at, pose_of, setup_of, standing, velocity_limits_of
 from tarsus.control.incremental import complete
-from tarsus.control.transition.workspace_stages import velocity_limits
+from tarsus.control.transition.stages.workspace import velocity_limits
 from tarsus.control.workspace.polygon import NORMALS, polygon_ends, polygon_margin
 from tarsus.control.workspace.stability import safe_fraction, support_sets
 from tarsus.control.workspace.velocity_limits import (

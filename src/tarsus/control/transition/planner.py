@@ -11,10 +11,10 @@ from tarsus.control.limitation import Cause, Limitation, LimitationKind
 from tarsus.control.transition.feasible_fraction import TIPPING, StanceTarget, first_increment, reach_cause
 from tarsus.control.transition.parameters import WalkParameters
 from tarsus.control.transition.shortfalls import stance_limitations
-from tarsus.control.transition.stages import balanced_fraction, reachable_fraction
+from tarsus.control.transition.stages.reach import balanced_fraction, reachable_fraction
+from tarsus.control.transition.stages.workspace import cycle_timing, velocity_limits
 from tarsus.control.transition.stance_transition import StanceTransition
 from tarsus.control.transition.target_stance import sway_extremes, target_stance
-from tarsus.control.transition.workspace_stages import cycle_timing, velocity_limits
 from tarsus.control.workspace.cycle_time import CycleTiming
 from tarsus.control.workspace.stability import StabilityCheck, support_sets
 from tarsus.control.workspace.velocity_limits import VelocityLimits, with_stroke_limits
