@@ -237,10 +237,8 @@ class RobotController:
         if self._goal is RobotState.STANDING and self._now.state.upright:
             return
         command, state = self._command.full, self._now.state
-        if self._goal is RobotState.STANDING:
-            cause = f"the robot is {state}; it starts once it stands"
-        else:
-            cause = f"the robot is {state}, and {self._goal} is the state that is wanted; it must stand"
+        rises = self._goal is RobotState.STANDING
+        cause = f"the robot is {state}; it {'starts once it stands' if rises else 'must stand'}"
         if any(command.twist):
             yield Limitation(kind=LimitationKind.TWIST, cause=cause, asked=1.0, granted=0.0)
         if command.foot_velocities or any(point is not None for point in (command.foot_targets or {}).values()):
