@@ -61,6 +61,8 @@ class Command:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "twist", finite_numbers("twist", self.twist, ("vx", "vy", "wz"), most=math.inf))
+        if self.only_twist:
+            return
         for name in ("body", "sway"):
             if getattr(self, name) is not None:
                 object.__setattr__(self, name, finite_numbers(name, getattr(self, name), BODY_AXES))
@@ -76,19 +78,17 @@ class Command:
     @property
     def only_twist(self) -> bool:
         """Whether everything but the twist stays as it is."""
-        others = (
-            self.body,
-            self.gait,
-            self.body_height,
-            self.swing_height,
-            self.stance_width,
-            self.cycle_time,
-            self.sway,
+        return (
+            self.body is None
+            and self.gait is None
+            and self.body_height is None
+            and self.swing_height is None
+            and self.stance_width is None
+            and self.cycle_time is None
+            and self.sway is None
+            and self.foot_targets is None
+            and self.foot_velocities is None
         )
-        return others == _NOTHING and self.foot_targets is None and self.foot_velocities is None
-
-
-_NOTHING = (None,) * 7
 
 
 def _by_leg(name: str, given: Any, *, back: bool) -> dict[int, tuple[float, ...] | None]:
@@ -134,11 +134,11 @@ def finite_numbers(name: str, values: Sequence[float], axes: Sequence[str], *, m
     if len(found) != len(axes):
         raise InputError(f"the command's {name} has {len(found)} numbers; it must have {len(axes)}: {', '.join(axes)}")
     for axis, value in zip(axes, found, strict=True):
+        if math.isfinite(value) and abs(value) <= most:
+            continue
         what = f"{name} is {value}" if axis == name else f"{name} has {axis} = {value}"
-        if not math.isfinite(value):
-            raise InputError(f"the command's {what}; it must be finite")
-        if abs(value) > most:
-            raise InputError(f"the command's {what}; it must be between {-most:g} and {most:g}")
+        bound = f"between {-most:g} and {most:g}" if math.isfinite(value) else "finite"
+        raise InputError(f"the command's {what}; it must be {bound}")
     return found
 
 

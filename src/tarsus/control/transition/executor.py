@@ -49,22 +49,19 @@ class TransitionExecutor:
         The gait and its frequency.
     phase : TransitionPhase
         The phase of the transition in progress.
+    current : StanceTransition
+        The transition that was begun last.
     """
 
     def __init__(self, initial: StanceTransition, foot_targets: FootTargets) -> None:
         self.scheduler, self.footholds = TransitionScheduler(initial), FootholdTransfer(initial)
         self.pose = PoseController(initial.posture)
         self.timing = StepTiming.of(initial.parameters.gait, initial.cycle_timing.cycle_time)
-        self.phase = TransitionPhase.NONE
+        self.phase, self.current = TransitionPhase.NONE, initial
         self._foot_targets = foot_targets
         self._active: StanceTransition | None = None
         # Of a gait that is about to begin: its timing, the leg that lifts first, how long each foot then stands [s].
         self._next_timing, self._first_leg, self._delays = self.timing, 0, np.zeros(len(initial.rest))
-
-    @property
-    def current(self) -> StanceTransition:
-        """The transition that was begun last."""
-        return self.scheduler.current
 
     @property
     def pending(self) -> StanceTransition | None:
@@ -256,6 +253,7 @@ class TransitionExecutor:
         """Transfer the feet to their new rest footholds; legs that leave the gait get foot targets."""
         self.footholds.begin(planned, state.down)
         self.scheduler.adopt(planned)
+        self.current = self.scheduler.current
         self.phase, self._active = TransitionPhase.FOOTHOLDS, planned
         excluded = planned.parameters.excluded
         if excluded:

@@ -99,7 +99,7 @@ class _Prediction(NamedTuple):
         x, y, angle = driven * self.of_target[..., None, :, :] + self.travel[..., None, :, :]
         # A travel (x, y) that turns by an angle ends at (x + iy) exp(i angle / 2) sin(angle / 2) / (angle / 2).
         half = 0.5 * angle + _NO_ANGLE
-        half = np.where(half == 0.0, _NO_ANGLE, half)
+        np.putmask(half, half == 0.0, _NO_ANGLE)
         back = np.exp(-1j * half)
         place = back * (self.seen * back + (x + 1j * y) * (back.imag / half))
         out: np.ndarray = (place.view(float).reshape(-1, 2) @ _NORMALS).reshape(*place.shape, -1)
