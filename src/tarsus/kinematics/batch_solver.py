@@ -131,7 +131,7 @@ def _first_tries(
     *,
     knee: int,
     sideways: bool,
-) -> tuple[Float[Array, "... legs"] | Int[Array, "... legs"], ...]:
+) -> tuple[Float[Array, "..."] | Int[Array, "..."], ...]:
     """Solve NumPy legs in any layout, with feet in B and the legs' planes facing them."""
     solution = solve_triangle(np, g, *to_leg_frame(g, x, y, z), knee=knee, sideways=sideways)
     joints = solution[:3]
@@ -179,7 +179,7 @@ def _second_tries(
     *,
     knee: int,
     sideways: bool,
-) -> tuple[Float[Array, "... legs"] | Int[Array, "... legs"], ...]:
+) -> tuple[Float[Array, "..."] | Int[Array, "..."], ...]:
     """Solve legs that failed in the first pass: facing away from the foot, or at the nearest reachable point."""
     away = solve_triangle(xp, g, x, y, z, knee=knee, facing=-1, sideways=sideways)
     turned = reach_codes(xp, g, away) == 0

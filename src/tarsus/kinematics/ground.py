@@ -36,7 +36,7 @@ class PoseComponents(NamedTuple):
         return cls(tuple(tuple(rotation[j, i] for j in range(3)) for i in range(3)), tuple(position))
 
     @classmethod
-    def of_picked(cls, body: Pose, where: tuple[Float[Array, "..."], ...], batch: tuple[int, ...]) -> Self:
+    def of_picked(cls, body: Pose, where: tuple[Int[Array, "..."], ...], batch: tuple[int, ...]) -> Self:
         """Return the components of the NumPy poses at indices `where` along the batch axes."""
         rotation = np.broadcast_to(body.rotation, (*batch, 3, 3))[where]
         position = np.broadcast_to(body.position, (*batch, 3))[where]

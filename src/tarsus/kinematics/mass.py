@@ -42,7 +42,10 @@ def total_mass(robot: Robot) -> Float[Array, "*batch"]:
 
 
 def centre_of_mass(
-    robot: Robot, angles: Float[Array, "*#batch legs 3"], *, points: Float[Array, "*#batch legs 4 3"] | None = None
+    robot: Robot,
+    angles: Float[Array, "*#batch legs 3"] | None,
+    *,
+    points: Float[Array, "*#batch legs 4 3"] | None = None,
 ) -> Float[Array, "*batch 3"]:
     """Return the centre of mass of body and links.
 

@@ -121,8 +121,8 @@ def _best(xp: Namespace, candidates: tuple[Float[Array, "..."], ...]) -> tuple[F
 
 
 def _better(
-    xp: Namespace, best: tuple[Float[Array, "... 3 n"], ...], other: tuple[Float[Array, "... 3 n"], ...]
-) -> tuple[Float[Array, "... 3 n"], ...]:
+    xp: Namespace, best: tuple[Float[Array, "..."], ...], other: tuple[Float[Array, "..."], ...]
+) -> tuple[Float[Array, "..."], ...]:
     """Return for each leg the candidate (squared distance, angles...) with the smaller distance."""
     closer = other[0] < best[0]
     return tuple(xp.where(closer, new, old) for new, old in zip(other, best, strict=True))

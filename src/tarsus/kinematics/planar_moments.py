@@ -46,7 +46,7 @@ class PlanarMoments(NamedTuple):
 
     def slopes(
         self, xz: Float[Array, "*#batch"], yz: Float[Array, "*#batch"], *, determinant: Float[Array, "*#batch"]
-    ) -> tuple[Float[Array, "*batch"], Float[Array, "*batch"]]:
+    ) -> tuple[Float[Array, "*batch"] | float, Float[Array, "*batch"] | float]:
         """Solve the normal equations ``[[xx, xy], [xy, yy]] @ (a, b) = (xz, yz)`` by Cramer's rule.
 
         Parameters

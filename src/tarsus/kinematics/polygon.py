@@ -87,7 +87,7 @@ def hull_margin(
     return margin[()]
 
 
-def as_mask(xp: Namespace, mask: Bool[Array, "*batch n"], *, name: str) -> Bool[Array, "..."]:
+def as_mask(xp: Namespace, mask: Bool[Array, "..."], *, name: str) -> Bool[Array, "..."]:
     """Return `mask` as an array of booleans.
 
     Parameters
@@ -125,7 +125,7 @@ def _margin(
 
 
 def margin_and_nearest(
-    xp: Namespace, x: Float[Array, "n #batch"], y: Float[Array, "n #batch"], counts: Bool[Array, "n batch"]
+    xp: Namespace, x: Float[Array, "n #batch"], y: Float[Array, "n #batch"], counts: Bool[Array, "n #batch"]
 ) -> tuple[Float[Array, "batch"], Float[Array, "batch"], Float[Array, "batch"]]:
     """Return the margin of the origin in the convex hull of points, and the point of the hull nearest to it.
 
@@ -160,7 +160,7 @@ def _split(coordinates: Float[Array, "..."]) -> tuple[Float[Array, "..."], Float
     return coordinates[0, ...], coordinates[1, ...]
 
 
-def _gathered(xp: Namespace, values: Float[Array, "..."], counts: Bool[Array, "n batch"]) -> Float[Array, "... batch"]:
+def _gathered(xp: Namespace, values: Float[Array, "..."], counts: Bool[Array, "n #batch"]) -> Float[Array, "..."]:
     """Replace unused points by a used one, so that the hull needs no mask."""
     first = xp.argmax(xp.astype(counts, xp.int8), axis=0)[None, ...]
     return xp.where(counts, values, xp.take_along_axis(values, first, axis=0))

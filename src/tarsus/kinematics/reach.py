@@ -10,7 +10,7 @@ from tarsus.kinematics.triangle import Triangle
 from tarsus.robot.geometry import LegGeometry
 
 if TYPE_CHECKING:
-    from jaxtyping import Float, Int
+    from jaxtyping import Int
 
 __all__ = ["ANGLE_TOLERANCE", "LENGTH_TOLERANCE", "Reach", "all_within", "mark", "reach_codes"]
 
@@ -57,9 +57,7 @@ def reach_codes(xp: Namespace, geometry: LegGeometry, solution: Triangle) -> Int
     return mark(xp, codes, solution.beside < -tolerance * xp.abs(g.side), Reach.TOO_NEAR)
 
 
-def mark(
-    xp: Namespace, codes: Int[Array, "..."], failing: Float[Array, "..."], code: Reach
-) -> Int[Array, "*batch legs"]:
+def mark(xp: Namespace, codes: Int[Array, "..."], failing: Bool[Array, "..."], code: Reach) -> Int[Array, "..."]:
     """Return the codes ``(..., legs)`` with those of the failing legs replaced."""
     return xp.where(failing, xp.asarray(int(code), dtype=xp.int8), codes)
 

@@ -80,7 +80,7 @@ class RestingPose:
         massless = "" if self.robot.has_masses else " (masses unknown: margin of the centre of the body)"
         return f"{contacts}; margin {1000 * float(self.margin):.1f} mm{massless}"
 
-    def _describe_contacts(self, down: Float[Array, "..."]) -> str:
+    def _describe_contacts(self, down: Bool[Array, "legs 4"]) -> str:
         names = [_short(name) for name in self.robot.leg_names]
         parts = []
         for point, part in ((3, "foot"), (2, "knee"), (1, "femur axis")):

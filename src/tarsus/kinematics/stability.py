@@ -19,7 +19,7 @@ __all__ = ["stability_margin"]
 
 def stability_margin(
     robot: Robot,
-    angles: Float[Array, "*#batch legs 3"],
+    angles: Float[Array, "*#batch legs 3"] | None,
     body: Pose,
     contacts: Bool[Array, "*#batch legs"],
     *,

@@ -47,7 +47,7 @@ class Triangle(NamedTuple):
 
 
 def direction(
-    xp: Namespace, y: Float[Array, "*batch legs"], x: Float[Array, "*batch legs"]
+    xp: Namespace, y: Float[Array, "*#batch legs"], x: Float[Array, "*#batch legs"]
 ) -> Float[Array, "... legs"]:
     """Return ``atan2(y, x)``, with a gradient that stays finite at the origin."""
     if xp is np:
@@ -59,8 +59,8 @@ def to_leg_frame(
     geometry: LegGeometry,
     x: Float[Array, "*#batch legs"],
     y: Float[Array, "*#batch legs"],
-    z: Float[Array, "*#batch legs"],
-) -> tuple[Float[Array, "... legs"], Float[Array, "... legs"], Float[Array, "... legs"]]:
+    z: Float[Array, "*#batch #legs"],
+) -> tuple[Float[Array, "..."], Float[Array, "..."], Float[Array, "..."]]:
     """Transform points from the body frame to the coxa frame, raised to the height of the femur axis."""
     g = geometry
     x, y = x - g.mount_x, y - g.mount_y
@@ -72,7 +72,7 @@ def solve_triangle(
     geometry: LegGeometry,
     x: Float[Array, "*#batch legs"],
     y: Float[Array, "*#batch legs"],
-    z: Float[Array, "*#batch legs"],
+    z: Float[Array, "*#batch #legs"],
     *,
     knee: int,
     facing: int = 1,

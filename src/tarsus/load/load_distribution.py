@@ -27,7 +27,7 @@ from tarsus.kinematics.planar_moments import PlanarMoments
 from tarsus.load.foot_spread import FLAT, Spread, Triple, evaluate_plane
 
 if TYPE_CHECKING:
-    from jaxtyping import Bool, Float, Shaped
+    from jaxtyping import Bool, Float
 
 __all__ = ["load_fractions", "single_pose_fractions"]
 
@@ -189,9 +189,7 @@ def _find_bearing(
     return loop(unfinished, step, (down, start, *dual, 0))[1]
 
 
-def _while(
-    unfinished: Callable[..., Any], step: Callable[..., tuple[Array, ...]], state: tuple[Shaped[Array, "..."], ...]
-) -> Any:
+def _while(unfinished: Callable[..., Any], step: Callable[..., tuple[Array, ...]], state: tuple[Any, ...]) -> Any:
     while bool(unfinished(state)):
         state = step(state)
     return state

@@ -28,7 +28,7 @@ def joint_torques(
     *,
     gravity: Sequence[float] = GRAVITY,
     forces: Float[Array, "*#batch legs 3"] | None = None,
-) -> tuple[Float[Array, "*batch legs 3"], Float[Array, "*batch legs 3"]]:
+) -> tuple[Float[Array, "... legs 3"], Float[Array, "... legs 3"]]:
     """Return the joint torques that hold the robot, and the contact forces.
 
     Quasi-static: the moments of the link weights, and ``-J^T f`` for the contact forces `f`. A positive torque acts in

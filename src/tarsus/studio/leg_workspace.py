@@ -200,7 +200,7 @@ def _cast(plane: _Plane) -> Outline:
     return Outline(plane.points(turns, near), plane.points(turns, far))
 
 
-def _widest_run(hit: Float[np.ndarray, "..."]) -> tuple[int, int] | None:
+def _widest_run(hit: Bool[np.ndarray, "n"]) -> tuple[int, int] | None:
     """Return the first and last index of the longest run of true values."""
     edges = np.flatnonzero(np.diff(np.concatenate([[False], hit, [False]]).astype(np.int8)))
     if not edges.size:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Literal, get_args
+from typing import TYPE_CHECKING, Any, Literal, get_args
 
 import numpy as np
 
@@ -24,7 +24,7 @@ from tarsus.kinematics.stance import default_stance
 from tarsus.robot.robot import Robot
 
 if TYPE_CHECKING:
-    from jaxtyping import Bool, Float, Shaped
+    from jaxtyping import Float
 
 __all__ = ["Guard", "Policy", "Recovery"]
 
@@ -142,9 +142,9 @@ class Guard:
 
     def check(
         self,
-        angles: Shaped[Array, "*#batch"] | None,
+        angles: Any,
         dt: float,
-        contacts: Bool[Array, "legs"] | None = None,
+        contacts: Any = None,
         body: Pose | None = None,
     ) -> GuardOutput:
         """Check a command and return the joint angles to send.
@@ -184,9 +184,7 @@ class Guard:
             self._hold()
         return self._output(violations)
 
-    def _feet_violations(
-        self, command: list[float], contacts: Bool[Array, "legs"] | Float[Array, "legs"] | None, body: Pose | None
-    ) -> list[Violation]:
+    def _feet_violations(self, command: list[float], contacts: Any, body: Pose | None) -> list[Violation]:
         """Return the violations of contacts and body pose if these are invalid, else those of the feet."""
         stance = None if contacts is None else read_contacts(contacts, self._robot.legs)
         rows = None if body is None else read_body(body)

@@ -21,7 +21,7 @@ SERVO_SPEED_FRACTION = 0.5
 
 
 def sequence_limits(
-    robot: Robot, joint_speed: Float[Array, "..."] | None = None, joint_acceleration: Float[Array, ""] | None = None
+    robot: Robot, joint_speed: Float[Array, "..."] | None = None, joint_acceleration: Float[Array, "..."] | None = None
 ) -> JointLimits:
     """Return the joint limits of a motion sequence; defaults come from the servos.
 

@@ -37,8 +37,8 @@ def stand_up(
     body_height: float | None = None,
     swing_height: float | None = None,
     margin: float = DEFAULT_MARGIN,
-    joint_speed: Float[Array, "3"] | Float[Array, "legs 3"] | None = None,
-    joint_acceleration: Float[Array, ""] | None = None,
+    joint_speed: Float[Array, "..."] | None = None,
+    joint_acceleration: Float[Array, "..."] | None = None,
 ) -> MotionSequence:
     """Plan how the robot stands up from any joint angles to its walking stance.
 
@@ -104,7 +104,7 @@ def sit_down(
     *,
     swing_height: float | None = None,
     margin: float = DEFAULT_MARGIN,
-    joint_speed: Float[Array, "3"] | Float[Array, "legs 3"] | None = None,
+    joint_speed: Float[Array, "..."] | None = None,
     joint_acceleration: Float[Array, "3"] | Float[Array, "legs 3"] | None = None,
 ) -> MotionSequence:
     """Plan how the robot lowers its body to the ground over stationary feet.
@@ -159,7 +159,7 @@ def fold(
     robot: Robot,
     angles: Float[Array, "legs 3"],
     *,
-    joint_speed: Float[Array, "3"] | Float[Array, "legs 3"] | None = None,
+    joint_speed: Float[Array, "..."] | None = None,
     joint_acceleration: Float[Array, "3"] | Float[Array, "legs 3"] | None = None,
 ) -> MotionSequence:
     """Plan how a robot that lies on its belly moves its legs to the folded pose.

@@ -118,7 +118,7 @@ class GaitState(NamedTuple):
     beats: float = 0.0
 
     @classmethod
-    def standing(cls, rest: Complex[np.ndarray, "legs"], posture: Float[np.ndarray, "13"]) -> GaitState:
+    def standing(cls, rest: Complex[np.ndarray, "legs"], posture: Float[np.ndarray, "n"]) -> GaitState:
         """Return the state of a robot that stands with its feet at rest, its heading frame at G.
 
         Parameters
