@@ -228,7 +228,7 @@ class RobotController:
         else:
             self._activity = Resting(end, playing.end)
         after = self._activity.snapshot
-        self._now = self._now._replace(state=after.state, activity=after.activity)
+        self._now = self._now._replace(state=after.state, activity=after.activity, belly=after.belly)
 
     def _own_limitations(self) -> Iterator[Limitation]:
         """Yield what of the command does not fit the state."""

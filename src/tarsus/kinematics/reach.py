@@ -10,7 +10,7 @@ from tarsus.kinematics.triangle import Triangle
 from tarsus.robot.geometry import LegGeometry
 
 if TYPE_CHECKING:
-    from jaxtyping import Int
+    from jaxtyping import Bool, Int
 
 __all__ = ["ANGLE_TOLERANCE", "LENGTH_TOLERANCE", "Reach", "all_within", "mark", "reach_codes"]
 

@@ -137,8 +137,7 @@ class ScenarioCommands:
         if self._left or time < last + AFTER - _SAME_TIME:
             return False
         walks = output.state.upright and any(self._twist)
-        waits = bool(self._queue) and not self._is_met(self._queue[0], output)
-        return (not waits and (walks or output.at_rest)) or time >= last + LONGEST
+        return (not self._queue and (walks or output.at_rest)) or time >= last + LONGEST
 
     # What holds.
 
@@ -167,15 +166,17 @@ class ScenarioCommands:
             self._feet[leg] = command if isinstance(command, FootTarget | FootVelocity) else None
 
     def _merged(self) -> Command:
-        """Return what is commanded now."""
-        velocities = {n: (f.vx, f.vy, f.vz) for n, f in self._feet.items() if isinstance(f, FootVelocity)}
+        """Return what is commanded now; a robot that is to lie neither walks nor moves single feet."""
+        stands = self._state in (None, RobotState.STANDING)
+        feet = self._feet if stands else dict.fromkeys(self._feet)
+        velocities = {n: (f.vx, f.vy, f.vz) for n, f in feet.items() if isinstance(f, FootVelocity)}
         targets = {
             n: (f.x, f.y, f.z) if isinstance(f, FootTarget) else None
-            for n, f in self._feet.items()
+            for n, f in feet.items()
             if not isinstance(f, FootVelocity)
         }
         return Command(
-            twist=self._twist,
+            twist=self._twist if stands else _NO_TWIST,
             foot_targets=targets or None,
             foot_velocities=velocities or None,
             state=self._state,

@@ -33,7 +33,7 @@ _ROUNDING = 1e-12
 
 
 def polygon_margin(
-    bounds: Float[np.ndarray, "legs 16"], inside: Complex[np.ndarray, "#legs"]
+    bounds: Float[np.ndarray, "legs 16"], inside: Complex[np.ndarray, "legs"]
 ) -> Float[np.ndarray, "legs 16"]:
     """Return the distance of each side from a point.
 
@@ -53,7 +53,7 @@ def polygon_margin(
 
 
 def polygon_radii(
-    bounds: Float[np.ndarray, "legs 16"], inside: Complex[np.ndarray, "#legs"], directions: Complex[np.ndarray, "n"]
+    bounds: Float[np.ndarray, "legs 16"], inside: Complex[np.ndarray, "legs"], directions: Complex[np.ndarray, "n"]
 ) -> Float[np.ndarray, "legs n"]:
     """Return the distance from a point inside to the boundary along directions.
 
@@ -77,7 +77,7 @@ def polygon_radii(
 
 
 def polygon_ends(
-    bounds: Float[np.ndarray, "legs 16"], inside: Complex[np.ndarray, "#legs"]
+    bounds: Float[np.ndarray, "legs 16"], inside: Complex[np.ndarray, "legs"]
 ) -> tuple[Complex[np.ndarray, "legs 16"], Complex[np.ndarray, "legs 16"]]:
     """Return the ends of the polygons' sides, relative to a point inside.
 
