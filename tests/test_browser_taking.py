@@ -1,4 +1,4 @@
-"""Every number can be taken away from the page, and brought back."""
+"""Exports of the page, and their import."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def clipboard(visitor: Visitor) -> str:
     return visitor.page.evaluate("navigator.clipboard.readText()")
 
 
-def test_the_angles_are_copied_as_a_spreadsheet_pastes_them(visitor):
+def test_angles_are_copied_as_tab_separated_text(visitor):
     visitor.open(StudioState(view="body", body=BodyState(pitch_deg=6.0)))
     visitor.unfold()
     visitor.at("copy-angles").click()
@@ -49,7 +49,7 @@ def test_the_angles_are_copied_as_a_spreadsheet_pastes_them(visitor):
     assert np.array([row[1:] for row in rows], dtype=float) == pytest.approx(angles, abs=1e-3)
 
 
-def test_the_walks_csv_is_that_of_python(visitor, tmp_path):
+def test_csv_of_a_walk_equals_that_of_python(visitor, tmp_path):
     visitor.open(StudioState(view="walk", walk=WalkOptions(gait="wave", path=Curve(kind="curve", angle_deg=40.0))))
     visitor.at("walk-facts").wait_for()
     motion = tarsus.plan_walk(
@@ -59,7 +59,7 @@ def test_the_walks_csv_is_that_of_python(visitor, tmp_path):
     assert saved(visitor, "download-csv").read_text(encoding="utf-8") == (tmp_path / "walk.csv").read_text("utf-8")
 
 
-def test_the_picture_is_saved_with_what_is_written_over_it(visitor):
+def test_the_3d_view_is_saved_with_its_labels(visitor):
     visitor.open(StudioState(view="joints"))
     expect(visitor.at("chip-margin")).to_contain_text("stable")
     picture = Image.open(io.BytesIO(saved(visitor, "save-png").read_bytes()))
@@ -71,7 +71,7 @@ def test_the_picture_is_saved_with_what_is_written_over_it(visitor):
     assert len(middle.getcolors(maxcolors=1_000_000)) > 500
 
 
-def test_a_robot_goes_out_as_a_file_and_comes_back(visitor, tmp_path):
+def test_a_robot_file_is_exported_and_imported(visitor, tmp_path):
     visitor.open(StudioState(view="robot"))
     visitor.type("robot-femur", 104)
     expect(visitor.at("undo")).to_be_enabled()
@@ -149,7 +149,7 @@ def test_a_walk_plays_offline_from_one_file(visitor, arrive, tmp_path):
     assert len([url for url in asked if url.startswith("file:")]) == 1
 
 
-def test_undo_goes_back_over_all_views_and_redo_forth(visitor):
+def test_undo_and_redo_work_across_views(visitor):
     visitor.open(StudioState(view="joints"))
     expect(visitor.at("undo")).to_be_disabled()
     visitor.type("joint-LF-coxa", 21)

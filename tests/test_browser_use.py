@@ -1,4 +1,4 @@
-"""The page in use: by keyboard, by touch, driving, with others, over broken connections, and by screen readers."""
+"""Use of the page: keyboard, touch, driving, several visitors, lost connections, accessibility."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def shown_angles(visitor):
     return np.array([[float(cell) for cell in row[1:]] for row in visitor.table("angles")])
 
 
-def test_all_is_reached_by_keyboard_alone(visitor):
+def test_everything_is_operable_by_keyboard(visitor):
     visitor.open(StudioState(view="joints"))
     reached = []
     while "joint-LF-tibia" not in reached:
@@ -147,7 +147,7 @@ def test_another_robot_starts_standing_with_its_own_settings(visitor):
     expect(visitor.at("drive-body-height-number")).to_have_value(f"{height:g}")
 
 
-def test_a_phone_is_enough(arrive):
+def test_all_views_work_on_a_phone(arrive):
     visitor = arrive(viewport=PHONE, has_touch=True, is_mobile=True, device_scale_factor=1)
     visitor.open()
     width = "document.documentElement.scrollWidth"
@@ -199,7 +199,7 @@ def release(visitor):
     visitor.finger.send("Input.dispatchTouchEvent", {"type": "touchEnd", "touchPoints": []})
 
 
-def test_a_foot_is_dragged_in_the_picture_and_the_leg_follows(visitor):
+def test_a_foot_is_dragged_in_the_3d_view(visitor):
     visitor.open(StudioState(view="body", picture=Picture(camera="top")))
     visitor.unfold()
     before = feet_of(visitor)
@@ -238,7 +238,7 @@ def grab(visitor, x, y):
     pytest.fail("there is nothing to grab")
 
 
-def test_two_visitors_dont_disturb_each_other(arrive):
+def test_two_visitors_are_independent(arrive):
     one, other = arrive().open(StudioState(view="joints")), arrive().open(StudioState(view="joints"))
     expect(other.at("standing-facts")).to_be_visible()
     before = other.facts("standing-facts")
@@ -250,7 +250,7 @@ def test_two_visitors_dont_disturb_each_other(arrive):
     assert other.at("robot-choice").input_value() == "strider"
 
 
-def test_after_a_restart_of_the_server_it_goes_on_with_its_state(arrive):
+def test_the_state_survives_a_restart_of_the_server(arrive):
     settings = Settings()
     with Serving(settings) as first:
         visitor = arrive(at=first).open(StudioState(view="joints"))

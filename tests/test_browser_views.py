@@ -1,4 +1,4 @@
-"""Every view in a real browser shows what the Python functions give for the same input."""
+"""The views in a browser agree with the Python functions."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def shown_angles(visitor):
     return np.array([[float(cell) for cell in row[1:]] for row in visitor.table("angles")])
 
 
-def test_joints_show_how_the_robot_rests(visitor):
+def test_joints_show_the_resting_pose(visitor):
     visitor.open(StudioState(view="joints"))
     visitor.unfold()
     angles = np.degrees(tarsus.inverse_kinematics(STRIDER, FEET, body_at()).angles)
@@ -60,7 +60,7 @@ def test_joints_show_how_the_robot_rests(visitor):
     assert [text == "on the ground" for text in said] == rest.contacts.tolist()
 
 
-def test_a_joint_beyond_its_limit_is_told_by_how_much(visitor):
+def test_a_joint_beyond_its_limit_is_reported_with_the_excess(visitor):
     visitor.open(StudioState(view="joints"))
     highest = np.degrees(STRIDER.limits[0, 1, 1])
     visitor.type("joint-LF-femur", highest + 12)
@@ -68,7 +68,7 @@ def test_a_joint_beyond_its_limit_is_told_by_how_much(visitor):
     expect(visitor.at("joint-LF-femur")).to_have_attribute("aria-invalid", "true")
 
 
-def test_the_body_moves_over_its_feet(visitor):
+def test_the_body_moves_relative_to_its_feet(visitor):
     visitor.open(StudioState(view="body"))
     visitor.unfold()
     asked = {"x_mm": 12.0, "z_mm": -9.0, "roll_deg": 4.0, "yaw_deg": -7.0}
@@ -82,7 +82,7 @@ def test_the_body_moves_over_its_feet(visitor):
     assert shown_angles(visitor) == pytest.approx(np.degrees(angles), abs=0.006)
 
 
-def test_a_leg_that_cant_reach_says_why_and_by_how_much(visitor):
+def test_a_leg_out_of_reach_is_reported_with_reason_and_distance(visitor):
     visitor.open(StudioState(view="body", body=BodyState(y_mm=-110.0, z_mm=-60.0)))
     solution = tarsus.inverse_kinematics(STRIDER, FEET, body_at(0, -110, -60))
     failing = np.flatnonzero(np.asarray(solution.reach))
@@ -98,7 +98,7 @@ def test_a_leg_that_cant_reach_says_why_and_by_how_much(visitor):
     expect(visitor.at("standing")).to_contain_text("stands on 6 feet")
 
 
-def test_a_walk_is_planned_as_asked(visitor):
+def test_a_walk_is_planned_with_the_given_options(visitor):
     visitor.open(StudioState(view="walk"))
     visitor.at("gait").select_option("ripple")
     visitor.type("distance", 420)
@@ -119,7 +119,7 @@ def test_a_walk_is_planned_as_asked(visitor):
     expect(visitor.at("walk-verdict")).to_contain_text("All foot trajectories")
 
 
-def test_a_stroke_that_is_too_long_is_refused_with_the_longest_that_works(visitor):
+def test_a_stroke_too_long_is_rejected_with_the_longest_possible(visitor):
     visitor.open(StudioState(view="walk"))
     visitor.type("stroke_mm", 500)
     expect(visitor.at("failure")).to_contain_text("stroke")
@@ -131,7 +131,7 @@ def test_a_stroke_that_is_too_long_is_refused_with_the_longest_that_works(visito
     expect(visitor.at("walk-verdict")).to_contain_text("All foot trajectories")
 
 
-def test_the_moment_of_a_walk_is_stepped_through_and_scrubbed(visitor):
+def test_the_playback_is_stepped_and_scrubbed(visitor):
     visitor.open(StudioState(view="walk"))
     visitor.unfold()
     motion = tarsus.plan_walk(STRIDER, tarsus.Gait.named("tripod"), tarsus.straight_path(0.5))
@@ -188,7 +188,7 @@ def test_a_field_of_the_robot_changes_the_robot(visitor):
     assert shown_angles(visitor) == pytest.approx(np.degrees(angles), abs=0.006)
 
 
-def test_a_field_that_cant_be_says_so_where_it_stands(visitor):
+def test_an_invalid_field_shows_its_error(visitor):
     visitor.open(StudioState(view="robot"))
     visitor.unfold()
     field = visitor.at("doc-leg.limits_deg.femur[0]")
@@ -201,7 +201,7 @@ def test_a_field_that_cant_be_says_so_where_it_stands(visitor):
     expect(visitor.at("joint-LF-femur")).to_have_attribute("min", f"{lowest:g}")
 
 
-def test_the_sources_equations_give_what_tarsus_gives(visitor):
+def test_equations_of_the_sources_agree_with_tarsus(visitor):
     body = BodyState(x_mm=10.0, pitch_deg=5.0)
     state = StudioState(view="sources", source=SourceChoice(number="000", leg=3), body=body)
     visitor.open(state.model_copy(update={"robot": RobotChoice(preset="phantomx")}))

@@ -1,4 +1,4 @@
-"""`tarsus studio` and `tarsus walk --html`, as they are typed."""
+"""`tarsus studio` and `tarsus walk --html` on the command line."""
 
 import json
 import re
@@ -21,7 +21,7 @@ from tarsus.studio.server.settings import Settings
 SCRIPT = Path(sys.executable).with_name("tarsus")
 
 
-def test_a_check_starts_asks_and_stops():
+def test_a_check_starts_and_stops_the_server():
     result = run("studio", "phantomx", "--check", "--json")
     assert result.exit_code == 0
     answer = json.loads(result.stdout)
@@ -38,7 +38,7 @@ def test_a_check_starts_asks_and_stops():
         (("--host", "localhost"), False),
     ],
 )
-def test_who_comes_in_from_elsewhere_needs_the_printed_link(options, token):
+def test_remote_visitors_need_the_printed_link(options, token):
     result = run("studio", *options, "--check", "--json")
     assert result.exit_code == 0
     url = json.loads(result.stdout)["url"]
@@ -46,7 +46,7 @@ def test_who_comes_in_from_elsewhere_needs_the_printed_link(options, token):
     assert ("token=my-own" in url) == ("my-own" in options)
 
 
-def test_a_token_is_new_each_time():
+def test_a_token_is_random():
     urls = {json.loads(run("studio", "--host", "0.0.0.0", "--check", "--json").stdout)["url"][-20:] for _ in range(2)}
     assert len(urls) == 2
 
@@ -62,20 +62,20 @@ def test_a_token_is_new_each_time():
         (("phantom", "--check"), "Did you mean 'phantomx'", 1),
     ],
 )
-def test_what_can_not_be_is_told(options, words, code):
+def test_invalid_options_are_reported(options, words, code):
     result = run("studio", *options)
     assert result.exit_code == code
     assert words in result.stderr
 
 
-def test_a_taken_port_is_told():
+def test_a_port_in_use_is_reported():
     with Serving(Settings()) as serving:
         result = run("studio", "--port", str(serving.settings.port), "--no-browser")
     assert result.exit_code == 2
     assert f"port {serving.settings.port} at 127.0.0.1 is in use" in result.stderr
 
 
-def test_a_robot_file_is_what_the_studio_begins_with(tmp_path):
+def test_the_studio_starts_with_a_robot_file(tmp_path):
     save_robot(load_robot("strider").replace(name="mine"), tmp_path / "mine.toml")
     assert run("studio", str(tmp_path / "mine.toml"), "--check").exit_code == 0
 
@@ -112,7 +112,7 @@ def held(page):
     return json.loads(re.search(r'id="motion">(.*)</script>', page, flags=re.DOTALL)[1])
 
 
-def test_a_page_holds_the_walk(template, tmp_path):
+def test_a_page_contains_the_walk(template, tmp_path):
     file = tmp_path / "walk.html"
     result = run("walk", "strider", "--gait", "ripple", "--distance", "200", "--html", str(file))
     assert result.exit_code == 0
@@ -125,7 +125,7 @@ def test_a_page_holds_the_walk(template, tmp_path):
     assert str(file) in json.loads(run("walk", "strider", "--html", str(file), "--json").stdout)["files"][0]
 
 
-def test_nothing_in_a_robots_name_ends_the_pages_data(template):
+def test_the_name_of_a_robot_is_escaped(template):
     name = "</script><script>alert(1)</script>"
     robot = load_robot("mithi").replace(name=name)
     page = player_page(player_data(plan_walk(robot, Gait.named("tripod"), straight_path(0.2))))
@@ -134,19 +134,19 @@ def test_nothing_in_a_robots_name_ends_the_pages_data(template):
     assert held(page)["loads"] is None
 
 
-def test_a_page_that_can_not_be_written_is_told(template, tmp_path):
+def test_an_unwritable_page_is_reported(template, tmp_path):
     result = run("walk", "strider", "--html", str(tmp_path / "no folder" / "walk.html"))
     assert result.exit_code == 2
     assert "can't be written" in result.stderr
 
 
-def test_a_walk_too_long_for_a_page_is_refused(template, tmp_path):
+def test_a_walk_too_long_for_a_page_is_rejected(template, tmp_path):
     result = run("walk", "strider", "--rate", "3000", "--html", str(tmp_path / "walk.html"))
     assert result.exit_code == 2
     assert "at most 10000" in result.stderr
 
 
-def test_where_the_player_is_not_built_it_is_said_how(monkeypatch, tmp_path):
+def test_a_missing_player_is_reported_with_the_build_command(monkeypatch, tmp_path):
     monkeypatch.setattr(player, "WEB", tmp_path)
     motion = plan_walk(load_robot("mithi"), Gait.named("tripod"), straight_path(0.2))
     with pytest.raises(TarsusError, match="make web"):

@@ -1,4 +1,4 @@
-"""Whatever is said to a session, it answers, lives, and keeps a state that it can show."""
+"""A session answers any input and keeps a valid state."""
 
 import json
 import math
@@ -53,7 +53,7 @@ keys = st.sampled_from(
 
 
 @given(st.binary(max_size=300) | st.text(max_size=300))
-def test_what_is_no_message_is_answered_by_an_error(text):
+def test_arbitrary_input_is_answered_by_an_error(text):
     session = Session()
     answers = session.receive(text)
     assert [answer.type for answer in answers] == ["error", "done"]
@@ -70,7 +70,7 @@ SESSION = Session()
 
 @given(kinds, st.dictionaries(keys, wild, max_size=4), st.integers(0, 2**53 - 1))
 @settings(max_examples=100)
-def test_messages_with_anything_in_them_are_answered(kind, content, number):
+def test_messages_with_arbitrary_content_are_answered(kind, content, number):
     answers = SESSION.receive(json.dumps({"type": kind, "id": number, **content}))
     assert answers[-1].type == "done"
     assert {answer.id for answer in answers} == {number}
@@ -108,7 +108,7 @@ def test_malformed_messages_are_answered_by_an_error(text):
     assert session.state == before
 
 
-def test_the_size_of_a_message_is_that_of_its_bytes():
+def test_the_size_of_a_message_is_counted_in_bytes():
     assert read("ä" * 60, most=100).kind == "limit"
     assert read("a" * 60, most=100).kind == "message"
 
@@ -218,7 +218,7 @@ plausible = st.one_of(
 
 @given(st.lists(plausible, min_size=1, max_size=8), st.floats(0.001, 0.2))
 @settings(max_examples=40)
-def test_a_session_lives_through_anything_and_can_be_resumed(messages, dt):
+def test_a_session_survives_any_messages_and_can_be_restored(messages, dt):
     asked = Asked()
     for message in messages:
         kind = message.pop("type")
@@ -261,7 +261,7 @@ def waiting(inbox):
     return [inbox.pop() for _ in range(len(inbox))]
 
 
-def test_the_newest_of_a_kind_takes_the_place_of_the_older():
+def test_the_newest_message_of_a_type_replaces_older_ones():
     inbox = Inbox(32)
     dropped = [inbox.push(m) for m in (joints(1), message("workspace", 2, leg=0), joints(3), joints(4))]
     assert [[done.id for done in each] for each in dropped] == [[], [], [1], [3]]
@@ -269,7 +269,7 @@ def test_the_newest_of_a_kind_takes_the_place_of_the_older():
     assert [m.id for m in waiting(inbox)] == [2, 4]
 
 
-def test_what_was_to_be_committed_is_committed():
+def test_a_replaced_commit_is_kept():
     inbox = Inbox(32)
     inbox.push(joints(1, commit=True))
     inbox.push(joints(2))
@@ -280,14 +280,14 @@ def test_what_was_to_be_committed_is_committed():
 @pytest.mark.parametrize(
     "between", [message("undo", 2), message("robot", 2, preset="mithi"), message("view", 2, view="walk")]
 )
-def test_nothing_is_taken_past_a_message_whose_order_matters(between):
+def test_ordered_messages_are_not_overtaken(between):
     inbox = Inbox(32)
     for m in (joints(1), between, joints(3)):
         assert inbox.push(m) == []
     assert [m.id for m in waiting(inbox)] == [1, 2, 3]
 
 
-def test_feet_that_are_dragged_are_told_apart():
+def test_drags_of_different_feet_are_kept():
     inbox = Inbox(32)
     for number, leg in enumerate((0, 1, 0)):
         inbox.push(message("drag_foot", number, leg=leg, position_mm=[0, 0, number]))
@@ -295,7 +295,7 @@ def test_feet_that_are_dragged_are_told_apart():
 
 
 @given(st.lists(plausible, max_size=40))
-def test_what_is_put_in_comes_out_once_or_is_dropped(messages):
+def test_every_message_is_returned_once_or_dropped(messages):
     inbox, dropped = Inbox(1000), []
     for number, content in enumerate(messages):
         found = read(json.dumps({**content, "id": number}), most=100_000)
@@ -307,7 +307,7 @@ def test_what_is_put_in_comes_out_once_or_is_dropped(messages):
 
 
 @given(st.lists(st.floats(0, 0.5), min_size=1, max_size=200), st.floats(1, 100))
-def test_a_rate_lets_no_more_through_than_it_says(pauses, per_s):
+def test_a_rate_limit_is_not_exceeded(pauses, per_s):
     rate, now, passed = Rate(per_s, 0.0), 0.0, 0
     for pause in pauses:
         now += pause

@@ -1,4 +1,4 @@
-"""The server as a browser meets it: a real one, on a free port."""
+"""The server on a free port, as a browser uses it."""
 
 from __future__ import annotations
 
@@ -105,7 +105,7 @@ class Visit:
         return self.rest()[1]
 
 
-def test_a_visitor_gets_a_studio(serving):
+def test_a_visitor_gets_a_session(serving):
     with Visit(serving) as visit:
         answers = visit.ask("hello")
         assert [answer["type"] for answer in answers] == ["welcome", "robot", "state", "walk", "done"]
@@ -113,7 +113,7 @@ def test_a_visitor_gets_a_studio(serving):
         assert visit.ask("joints", joints={"angles_deg": [0, 30, -90] * 6})[0]["contacts"] == "111111"
 
 
-def test_nobody_moves_somebody_elses_robot(serving):
+def test_sessions_are_independent(serving):
     with Visit(serving) as one, Visit(serving) as other:
         assert one.ask("robot", preset="phantomx")[0]["name"] == "phantomx"
         assert other.ask("hello")[1]["name"] == "strider"
@@ -132,7 +132,7 @@ def wait_for(reached, seconds=20):
         time.sleep(0.02)
 
 
-def test_a_broken_connection_is_taken_up_where_it_was(serving):
+def test_a_state_is_restored_after_a_lost_connection(serving):
     with Visit(serving) as visit:
         visit.ask("robot", preset="phantomx")
         text = visit.ask("body", body={"x_mm": 12})[-1]["state"]
@@ -143,7 +143,7 @@ def test_a_broken_connection_is_taken_up_where_it_was(serving):
         assert answers[2]["state"]["body"]["x_mm"] == 12
 
 
-def test_driving_sends_frames_by_itself_until_it_is_ended(serving):
+def test_driving_sends_frames_until_it_is_stopped(serving):
     with Visit(serving) as visit:
         number = visit.send("drive", on=True)
         visit.send("command", velocity_mm_s=[60, 0], turn_deg_s=5)
@@ -164,14 +164,14 @@ def test_driving_sends_frames_by_itself_until_it_is_ended(serving):
 
 
 @pytest.mark.parametrize("origin", ["http://evil.example", "https://127.0.0.1", "null", "http://127.0.0.1:1"])
-def test_a_page_from_elsewhere_cannot_connect(serving, origin):
+def test_pages_of_other_origins_cannot_connect(serving, origin):
     with pytest.raises(InvalidStatus) as refused:
         Visit(serving, origin=origin)
     assert refused.value.response.status_code == 403
     assert get_health(serving)["status"] == "ok"
 
 
-def test_a_name_that_leads_here_from_elsewhere_is_no_way_in(serving):
+def test_other_host_names_are_rejected(serving):
     """A page may have its own name resolve to this machine: then origin and host agree, and neither is ours."""
     assert get(serving, host="evil.example:80").status == 403
     with pytest.raises(InvalidStatus) as refused:
@@ -182,12 +182,12 @@ def test_a_name_that_leads_here_from_elsewhere_is_no_way_in(serving):
     assert get(serving, host="[nonsense").status == 403
 
 
-def test_no_page_at_all_may_connect(serving):
+def test_clients_without_an_origin_can_connect(serving):
     with Visit(serving, origin=None) as visit:
         assert visit.ask("ping")[-1]["type"] == "done"
 
 
-def test_with_a_token_only_those_who_know_it_come_in(pages):
+def test_a_token_is_required_to_connect(pages):
     with served(pages, token="open-sesame") as server:
         assert server.url.endswith("/?token=open-sesame")
         assert get(server).status == 401
@@ -211,7 +211,7 @@ def test_with_a_token_only_those_who_know_it_come_in(pages):
                 assert visit.closed() == CLOSED["TOKEN"][0] == 4401
 
 
-def test_a_message_too_large_ends_the_session_and_nothing_else():
+def test_a_message_too_large_ends_only_its_session():
     with served(limits=Limits(message_bytes=5000)) as server, Visit(server) as other:
         with Visit(server) as visit:
             visit.socket.send("x" * 6000)
@@ -219,7 +219,7 @@ def test_a_message_too_large_ends_the_session_and_nothing_else():
         assert other.ask("ping")[-1]["type"] == "done"
 
 
-def test_malformed_messages_are_answered_until_there_are_too_many():
+def test_too_many_malformed_messages_end_the_session():
     with served(limits=Limits(malformed=5)) as server, Visit(server) as visit:
         for text in ("nonsense", b"\xff\x00", "{}", '{"type": "joints", "id": 9}', "[" * 1000):
             visit.socket.send(text)
@@ -231,7 +231,7 @@ def test_malformed_messages_are_answered_until_there_are_too_many():
         assert visit.closed() == CLOSED["RATE"][0]
 
 
-def test_more_messages_than_allowed_are_refused_and_then_the_session_ends():
+def test_excess_messages_are_rejected_and_then_end_the_session():
     with served(limits=Limits(messages_per_s=10, malformed=20)) as server, Visit(server) as visit:
         with contextlib.suppress(ConnectionClosed):
             for _ in range(60):
@@ -241,7 +241,7 @@ def test_more_messages_than_allowed_are_refused_and_then_the_session_ends():
         assert code == CLOSED["RATE"][0]
 
 
-def test_so_many_messages_wait_and_no_more():
+def test_the_number_of_queued_messages_is_limited():
     with served(limits=Limits(waiting=3)) as server, Visit(server) as visit:
         busy = visit.send("servos")
         for _ in range(10):
@@ -254,7 +254,7 @@ def test_so_many_messages_wait_and_no_more():
         assert "3 messages are queued" in refused[0]["text"]
 
 
-def test_so_many_sessions_and_no_more():
+def test_the_number_of_sessions_is_limited():
     with served(limits=Limits(sessions=2)) as server, Visit(server) as one, Visit(server):
         with Visit(server) as third:
             assert third.closed() == CLOSED["FULL"][0]
@@ -271,7 +271,7 @@ def test_an_idle_session_ends():
         assert visit.closed() == CLOSED["IDLE"][0]
 
 
-def test_of_messages_that_come_too_fast_the_newest_is_worked_on(serving):
+def test_of_queued_messages_the_newest_is_processed(serving):
     with Visit(serving) as visit:
         visit.send("servos")  # which takes a while
         last = [visit.send("body", body={"x_mm": x}, commit=False) for x in range(60)][-1]
@@ -288,13 +288,13 @@ def test_of_messages_that_come_too_fast_the_newest_is_worked_on(serving):
         assert pose["position_mm"][0] == 59
 
 
-def test_the_socket_of_another_version_is_not_there(serving):
+def test_sockets_of_other_versions_do_not_exist(serving):
     with pytest.raises(InvalidStatus) as refused:
         Visit(serving, path="/session/0")
     assert refused.value.response.status_code == 403
 
 
-def test_health_tells_that_all_is_well(serving):
+def test_the_health_check_reports_ok(serving):
     health = get_health(serving)
     assert (health["status"], health["pages"]) == ("ok", True)
     assert serving.health() == health
@@ -309,7 +309,7 @@ def test_health_tells_that_all_is_well(serving):
         ("/icon.svg", "image/svg+xml"),
     ],
 )
-def test_pages_are_served_with_headers_that_keep_them_here(serving, path, kind):
+def test_pages_have_security_headers(serving, path, kind):
     answer = get(serving, path)
     assert answer.status == 200
     assert answer.headers["content-type"].partition(";")[0] == kind
@@ -321,7 +321,7 @@ def test_pages_are_served_with_headers_that_keep_them_here(serving, path, kind):
     assert (again.status, again.content) == (304, b"")
 
 
-def test_what_is_large_is_sent_compressed(serving):
+def test_large_files_are_compressed(serving):
     packed = get(serving, "/assets/index-abc.js", accept_encoding="gzip")
     assert packed.headers["content-encoding"] == "gzip"
     assert gzip.decompress(packed.content).decode() == SCRIPT == get(serving, "/assets/index-abc.js").content.decode()
@@ -342,13 +342,13 @@ def test_what_is_large_is_sent_compressed(serving):
         "/openapi.json",
     ],
 )
-def test_nothing_else_is_served(serving, path):
+def test_other_paths_are_not_served(serving, path):
     answer = get(serving, path)
     assert answer.status == 404
     assert answer.content == b"no such file"
 
 
-def test_where_the_pages_are_not_built_it_is_said_how(tmp_path):
+def test_missing_pages_are_reported_with_the_build_command(tmp_path):
     with served(Pages(tmp_path / "nothing")) as server:
         answer = get(server)
         assert answer.status == 503
@@ -356,14 +356,14 @@ def test_where_the_pages_are_not_built_it_is_said_how(tmp_path):
         assert not get_health(server)["pages"]
 
 
-def test_a_taken_port_is_an_error_that_says_so(serving):
+def test_a_port_in_use_is_an_error(serving):
     port = serving.settings.port
     with pytest.raises(InputError, match=f"port {port} at 127.0.0.1 is in use; choose another"):
         Serving(Settings(port=port))
 
 
 @pytest.mark.parametrize(("host", "words"), [("192.0.2.1", "cannot listen on"), ("no such host", "cannot listen on")])
-def test_an_address_that_is_not_here_is_an_error(host, words):
+def test_an_invalid_address_is_an_error(host, words):
     with pytest.raises(InputError, match=words):
         Serving(Settings(host=host))
 
@@ -382,11 +382,11 @@ def test_an_address_that_is_not_here_is_an_error(host, words):
         ("", False),
     ],
 )
-def test_which_addresses_are_this_machines_own(host, own):
+def test_loopback_addresses_are_recognised(host, own):
     assert is_loopback(host) is own
 
 
-def test_a_public_server_tells_so_and_any_host_name_will_do(pages):
+def test_a_public_server_accepts_any_host_name(pages):
     with served(pages, host="0.0.0.0", public=True) as server:
         assert get(server, host="studio.example").status == 200
         with Visit(server, origin=None) as visit:
@@ -394,14 +394,14 @@ def test_a_public_server_tells_so_and_any_host_name_will_do(pages):
             assert visit.ask("robot", preset="/etc/passwd")[0]["kind"] == "unknown_name"
 
 
-def test_a_session_begins_with_the_robot_of_the_command_line():
+def test_a_session_starts_with_the_robot_of_the_command_line():
     robot = load_robot("strider").replace(name="mine")
     start = StudioState(robot=RobotChoice(preset=None, document=robot_to_dict(robot)))
     with served(start=start) as server, Visit(server) as visit:
         assert visit.ask("hello")[1]["name"] == "mine"
 
 
-def test_the_server_stops_with_visitors_in_it():
+def test_the_server_stops_with_open_sessions():
     with contextlib.ExitStack() as visitors:
         with Serving(Settings()) as server:
             visit = visitors.enter_context(Visit(server))

@@ -1,4 +1,4 @@
-"""Every message to a session, against the numbers of the Python API."""
+"""Messages of a session agree with the Python API."""
 
 import json
 import math
@@ -41,7 +41,7 @@ from tarsus.studio.session import Session
 from tarsus.studio.state_text import state_of
 
 MM, DEG = 0.006, 0.0006
-"""Half the last digit on the wire, and a little rounding."""
+"""Half a unit of the last digit of messages, plus rounding."""
 
 STRIDER = load_robot("strider")
 
@@ -53,7 +53,7 @@ def ask():
     return Asked()
 
 
-def test_hello_tells_what_there_is():
+def test_hello_is_answered_by_presets_gaits_and_servos():
     answers = Asked().all("hello")
     assert [answer["type"] for answer in answers] == ["welcome", "robot", "state", "walk", "done"]
     welcome = answers[0]
@@ -64,7 +64,7 @@ def test_hello_tells_what_there_is():
 
 
 @pytest.mark.parametrize("name", list_robots())
-def test_the_robot_is_told_so_that_forward_kinematics_can_be_done_with_it(name):
+def test_the_robot_message_suffices_for_forward_kinematics(name):
     asked = Asked()
     told = asked("robot", "robot", preset=name)
     robot = load_robot(name)
@@ -102,7 +102,7 @@ def by_the_formula(told, angles):
 
 
 @pytest.mark.parametrize("seed", range(6))
-def test_joints_rest_as_resting_pose_says(ask, seed):
+def test_the_pose_of_joints_agrees_with_resting_pose(ask, seed):
     degrees = np.random.default_rng(seed).uniform((-70, -60, -150), (70, 90, 10), (6, 3))
     pose = ask("joints", "pose", joints={"angles_deg": degrees.ravel().tolist()})
     angles = np.radians(degrees)
@@ -123,7 +123,7 @@ def test_joints_rest_as_resting_pose_says(ask, seed):
     assert len(pose["problems"]) >= beyond.sum()
 
 
-def test_forces_and_torques_are_told_where_the_feet_alone_hold_the_robot(ask):
+def test_forces_and_torques_are_given_if_the_feet_alone_support_the_robot(ask):
     pose = ask("joints", "pose", joints={"angles_deg": [0, 30, -100] * 6})
     angles = np.radians([[0, 30, -100]] * 6)
     rest = resting_pose(STRIDER, angles)
@@ -136,7 +136,7 @@ def test_forces_and_torques_are_told_where_the_feet_alone_hold_the_robot(ask):
     assert lying["torques_nm"] is None
 
 
-def test_angles_of_another_number_of_legs_are_refused(ask):
+def test_angles_for_another_number_of_legs_are_rejected(ask):
     assert "6 legs need 18" in ask.error("joints", joints={"angles_deg": [0.0] * 17})["text"]
 
 
@@ -154,7 +154,7 @@ def body_pose(body, height):
 
 
 @pytest.mark.parametrize("body_height", [None, 130.0])
-def test_body_moves_over_still_feet(ask, body_height):
+def test_the_body_moves_relative_to_fixed_feet(ask, body_height):
     told = ask("body", "pose", body={**BODY, "body_height_mm": body_height})
     height = default_body_height(STRIDER) if body_height is None else body_height / 1000
     feet, body = stance_in_ground(height), body_pose(BODY, height)
@@ -175,7 +175,7 @@ def test_body_moves_over_still_feet(ask, body_height):
     assert (told["legs"], told["problems"], told["feasible_fraction"]) == ([], [], 1.0)
 
 
-def test_a_leg_that_cannot_reach_says_why_and_by_how_much(ask):
+def test_a_leg_out_of_reach_is_reported_with_reason_and_distance(ask):
     told = ask("body", "pose", body={"pitch_deg": 25})
     height = default_body_height(STRIDER)
     solution = inverse_kinematics(STRIDER, stance_in_ground(height), body_pose({"pitch_deg": 25}, height))
@@ -191,11 +191,11 @@ def test_a_leg_that_cannot_reach_says_why_and_by_how_much(ask):
     assert ask("body", "pose", body=there)["legs"] == []
 
 
-def test_a_body_too_high_to_stand_is_refused(ask):
+def test_a_body_height_out_of_reach_is_rejected(ask):
     assert ask.error("body", body={"body_height_mm": 400})["kind"] == "unreachable"
 
 
-def test_a_foot_is_dragged_and_the_leg_follows(ask):
+def test_a_foothold_is_dragged(ask):
     ask.all("view", view="body")
     state, told, done = ask.all("drag_foot", leg=1, position_mm=[10, 240, 25])
     assert state["state"]["body"]["feet_mm"][3:6] == [10, 240, 25]
@@ -211,7 +211,7 @@ def test_a_foot_is_dragged_and_the_leg_follows(ask):
     assert "legs 0 to 5" in ask.error("drag_foot", leg=6, position_mm=[0, 0, 0])["text"]
 
 
-def test_a_foot_dragged_in_the_view_joints_turns_that_leg_alone(ask):
+def test_dragging_a_foot_in_joints_changes_only_its_leg(ask):
     before = ask("view", "pose", view="joints")
     goal = np.array([20.0, 230.0, 10.0])
     state, told, _ = ask.all("drag_foot", leg=1, position_mm=goal.tolist())
@@ -255,7 +255,7 @@ WALKS = [
 
 
 @pytest.mark.parametrize(("options", "plan"), WALKS)
-def test_a_walk_is_what_plan_walk_gives(ask, options, plan):
+def test_a_walk_agrees_with_plan_walk(ask, options, plan):
     told, motion = ask("walk", "walk", walk=options), plan(STRIDER)
     assert told["count"] == len(motion.time)
     assert np.arange(told["count"]) / told["rate_hz"] == pytest.approx(motion.time)
@@ -293,7 +293,7 @@ def test_a_walk_is_what_plan_walk_gives(ask, options, plan):
     )
 
 
-def test_a_walk_that_does_not_work_is_refused_with_what_would(ask):
+def test_an_impossible_walk_is_rejected_with_the_longest_stroke(ask):
     error = ask.error("walk", walk={"stroke_mm": 400})
     assert error["kind"] == "stroke"
     longest = max_stroke(STRIDER, Gait.named("tripod")) * 1000
@@ -313,14 +313,14 @@ def test_a_walk_that_does_not_work_is_refused_with_what_would(ask):
         {"path": {"kind": "curve", "angle_deg": 3600, "centre_mm": [0, 90_000]}, "stroke_mm": 1},
     ],
 )
-def test_a_walk_of_too_many_samples_is_refused_with_the_number(ask, options):
+def test_a_walk_with_too_many_samples_is_rejected_with_their_number(ask, options):
     error = ask.error("walk", walk=options)
     assert error["kind"] == "input"
     assert "at most 10000" in error["text"]
 
 
 @pytest.mark.parametrize("name", ["no-such-gait", "tripod "])
-def test_an_unknown_gait_is_named(ask, name):
+def test_an_unknown_gait_is_rejected_with_its_name(ask, name):
     error = ask.error("walk", walk={"gait": name})
     assert error["kind"] == "unknown_name"
     assert "tripod, tetrapod, ripple, wave" in error["text"]
@@ -329,7 +329,7 @@ def test_an_unknown_gait_is_named(ask, name):
 LOADS = {"payload_kg": 0.2, "payload_at_mm": [10, 0, 20], "supply_v": 6.8, "capacity_ah": 3, "safety_factor": 2}
 
 
-def test_loads_are_what_loads_gives(ask):
+def test_loads_agree_with_joint_loads(ask):
     motion = plan_walk(STRIDER, Gait.named("tripod"), straight_path(0.5))
     told = ask("loads", "loads", loads=LOADS)
     found = joint_loads(STRIDER, motion, payload=Payload(0.2, (0.01, 0, 0.02)), supply=6.8)
@@ -343,7 +343,7 @@ def test_loads_are_what_loads_gives(ask):
     assert told["cost_of_transport"] == pytest.approx(found.cost_of_transport)
 
 
-def test_loads_come_with_the_walk_where_the_client_does_not_have_it(ask):
+def test_loads_are_sent_with_the_walk_if_it_has_changed(ask):
     ask.all("view", view="robot")
     ask.all("robot", preset="phantomx")
     assert ask.types("loads", loads={}) == ["walk", "loads", "done"]
@@ -352,18 +352,18 @@ def test_loads_come_with_the_walk_where_the_client_does_not_have_it(ask):
     assert ask.types("walk", walk={"gait": "ripple"}) == ["walk", "loads", "done"]
 
 
-def test_loads_of_a_robot_without_masses_tell_what_is_missing(ask):
+def test_loads_without_masses_report_the_missing_values(ask):
     ask.all("robot", preset="mithi")
     assert ask.error("loads", loads={})["kind"] == "missing_data"
     assert ask.types("view", view="loads") == ["walk", "error", "pose", "done"]
 
 
 @pytest.mark.parametrize("loading", [{"safety_factor": 0}, {"supply_v": 0}, {"capacity_ah": 0}])
-def test_loads_out_of_range_are_refused(ask, loading):
+def test_load_options_out_of_range_are_rejected(ask, loading):
     assert ask.error("loads", loads=loading)["kind"] == "input"
 
 
-def test_servos_are_those_of_size_servos(ask):
+def test_servos_agree_with_size_servos(ask):
     ask.all(
         "walk",
         walk={
@@ -376,7 +376,7 @@ def test_servos_are_those_of_size_servos(ask):
     told = ask("servos", "servos")
     motion = plan_walk(STRIDER, Gait.named("wave"), straight_path(0.15), body_height=0.13)
     sizing = size_servos(STRIDER, joint_loads(STRIDER, motion), safety_factor=2.5)
-    assert told["present_do"] == sizing.ok
+    assert told["sufficient"] == sizing.ok
     assert [servo["name"] for servo in told["candidates"]] == [servo.name for servo in sizing.candidates] != []
     assert told["mixed"]["factor"] == pytest.approx(sizing.mixed.factor)
     assert told["payload_kg"] == pytest.approx(sizing.payload)
@@ -396,7 +396,7 @@ def test_a_document_changes_the_robot_and_keeps_the_pose(ask):
     assert ask("document", "robot", document=document)["preset"] == "strider"
 
 
-def test_what_is_wrong_in_a_document_is_told_by_its_key(ask):
+def test_problems_of_a_document_have_their_keys(ask):
     document = robot_to_dict(STRIDER)
     document["leg"]["femur_mm"] = -3
     document["legs"][2]["yaw"] = 3
@@ -413,13 +413,13 @@ def test_what_is_wrong_in_a_document_is_told_by_its_key(ask):
     assert "has 13 legs; the studio accepts at most 12" in ask.error("document", document=many)["text"]
 
 
-def test_a_document_too_large_is_refused(ask):
+def test_a_document_too_large_is_rejected(ask):
     sources = [{"of": ["gait"], "source": "x" * 1000, "confidence": "guess"}] * 70
     error = ask.error("document", document={**robot_to_dict(STRIDER), "sources": sources})
     assert "limit is 65536" in error["text"]
 
 
-def test_toml_in_and_out(ask):
+def test_toml_is_imported_and_exported(ask):
     text = ask("download", "file", what="toml")
     assert (text["name"], text["mime"]) == ("strider.toml", "application/toml")
     assert robot_from_text(text["text"], where="it") == STRIDER
@@ -430,7 +430,7 @@ def test_toml_in_and_out(ask):
     assert "line 1" in error["text"]
 
 
-def test_a_robot_that_cannot_stand_is_shown_all_the_same(ask):
+def test_a_robot_that_cannot_stand_is_shown(ask):
     document = robot_to_dict(STRIDER)
     document["gait"]["body_height_mm"] = 500
     answers = ask.all("document", document=document)
@@ -441,7 +441,7 @@ def test_a_robot_that_cannot_stand_is_shown_all_the_same(ask):
     assert ask.types("view", view="joints") == ["pose", "done"]
 
 
-def test_a_preset_of_another_number_of_legs_begins_anew(ask):
+def test_a_preset_with_another_number_of_legs_resets_the_state(ask):
     document = robot_to_dict(STRIDER)
     document["legs"] = document["legs"][:5]
     ask.all("joints", joints={"angles_deg": [0, 30, -100] * 6})
@@ -456,7 +456,7 @@ def test_a_preset_of_another_number_of_legs_begins_anew(ask):
     assert ask("robot", "robot", preset="phantomx")["leg_codes"] == ["LF", "LM", "LR", "RR", "RM", "RF"]
 
 
-def test_presets_are_names_and_never_files(ask, tmp_path):
+def test_paths_are_not_accepted_as_presets(ask, tmp_path):
     save_robot(STRIDER, tmp_path / "mine.toml")
     assert ask.error("robot", preset=str(tmp_path / "mine.toml"))["kind"] == "unknown_name"
     assert "Did you mean 'phantomx'" in ask.error("robot", preset="phantom")["text"]
@@ -473,7 +473,7 @@ def test_presets_are_names_and_never_files(ask, tmp_path):
         ("sources", ["pose", "source"]),
     ],
 )
-def test_a_view_shows_what_it_is_for(ask, view, types):
+def test_a_view_sends_its_content(ask, view, types):
     answers = ask.all("view", view=view, picture=PICTURE)
     assert [answer["type"] for answer in answers] == [*types, "done"]
     assert not answers[-1]["undo"]
@@ -483,7 +483,7 @@ def test_a_view_shows_what_it_is_for(ask, view, types):
     assert ask.types("view", view=view) == ["done"]
 
 
-def test_undo_goes_from_commit_to_commit_and_back(ask):
+def test_undo_and_redo_go_from_commit_to_commit(ask):
     ask.all("view", view="body")
     for x in (5, 10, 15):
         assert ask.all("body", body={"x_mm": x}, commit=False)[-1]["state"] is None
@@ -505,7 +505,7 @@ def test_undo_goes_from_commit_to_commit_and_back(ask):
     assert "nothing to redo" in ask.error("redo")["text"]
 
 
-def test_undo_takes_back_what_was_not_committed_yet(ask):
+def test_undo_reverts_uncommitted_changes(ask):
     ask.all("view", view="body")
     ask.all("body", body={"x_mm": 20})
     ask.all("body", body={"x_mm": 30}, commit=False)
@@ -513,7 +513,7 @@ def test_undo_takes_back_what_was_not_committed_yet(ask):
     assert ask("redo", "state")["state"]["body"]["x_mm"] == 30
 
 
-def test_a_state_goes_on_in_another_session(ask):
+def test_a_state_is_restored_in_another_session(ask):
     ask.all("robot", preset="phantomx")
     ask.all("view", view="body")
     text = ask.all("body", body=BODY)[-1]["state"]
@@ -529,12 +529,12 @@ def test_a_state_goes_on_in_another_session(ask):
     assert opened.error("open", state="1.nonsense")["kind"] == "input"
 
 
-def test_a_damaged_link_is_told_and_the_studio_opens_all_the_same():
+def test_a_damaged_link_is_reported_and_the_session_starts():
     answers = Asked().all("hello", state="1.%%%")
     assert [answer["type"] for answer in answers] == ["welcome", "error", "robot", "state", "walk", "done"]
 
 
-def test_downloads_are_what_the_api_writes(ask, tmp_path):
+def test_exports_agree_with_the_api(ask, tmp_path):
     motion = plan_walk(STRIDER, Gait.named("tripod"), straight_path(0.5))
     motion_to_csv(motion, tmp_path / "walk.csv")
     file = ask("download", "file", what="csv")
@@ -548,7 +548,7 @@ def test_downloads_are_what_the_api_writes(ask, tmp_path):
     assert len(lines) == 7
 
 
-def test_a_robot_of_ones_own_is_there_from_the_start():
+def test_a_session_starts_with_a_custom_robot():
     document = robot_to_dict(STRIDER.replace(name="mine"))
     asked = Asked(Session(StudioState(robot=RobotChoice(preset=None, document=document))))
     robot = asked("hello", "robot")
@@ -557,27 +557,27 @@ def test_a_robot_of_ones_own_is_there_from_the_start():
     assert asked("undo", "robot")["name"] == "mine"
 
 
-def test_what_is_of_another_leg_is_left_out(ask):
+def test_values_for_other_numbers_of_legs_are_dropped(ask):
     document = robot_to_dict(STRIDER)
     document["legs"] = document["legs"][:5]
     ask.all("view", view="body", picture={**PICTURE, "leg": 5})
     assert ask("document", "state", document=document)["state"]["picture"]["leg"] is None
 
 
-def test_a_walk_without_loads_is_a_walk_all_the_same(ask):
+def test_a_walk_is_valid_without_loads(ask):
     ask.all("robot", preset="mithi")
     ask.all("view", view="loads")
     assert ask.types("walk", walk={"gait": "wave"}) == ["walk", "error", "done"]
     assert ask.session.state.walk.gait == "wave"
 
 
-def test_in_the_view_sources_the_numbers_follow_the_body(ask):
+def test_the_values_in_sources_follow_the_body_pose(ask):
     ask.all("view", view="sources")
     assert ask.types("body", body=BODY) == ["pose", "source", "done"]
     assert "legs 0 to 5" in ask.error("source", source={"number": "000", "leg": 7})["text"]
 
 
-def test_a_page_of_the_walk_needs_the_built_front_end(ask, monkeypatch, tmp_path):
+def test_the_offline_player_requires_the_built_front_end(ask, monkeypatch, tmp_path):
     monkeypatch.setattr("tarsus.studio.player.WEB", tmp_path)
     assert "make web" in ask.error("download", what="html")["text"]
     (tmp_path / "player.html").write_text("<script>__MOTION__</script>", encoding="utf-8")
@@ -586,7 +586,7 @@ def test_a_page_of_the_walk_needs_the_built_front_end(ask, monkeypatch, tmp_path
     assert json.loads(file["text"][8:-9])["robot"]["preset"] == "strider"
 
 
-def test_no_memory_for_it_is_no_bug(ask, monkeypatch):
+def test_lack_of_memory_is_not_reported_as_a_bug(ask, monkeypatch):
     def fails(*_given, **_more):
         raise MemoryError
 
@@ -598,7 +598,7 @@ def test_a_ping_is_answered(ask):
     assert ask.types("ping") == ["done"]
 
 
-def test_what_nobody_thought_of_is_told_as_a_bug_and_the_session_goes_on(ask, monkeypatch, caplog):
+def test_unexpected_errors_are_reported_as_bugs_and_the_session_continues(ask, monkeypatch, caplog):
     def fails(*_given, **_more):
         raise RuntimeError("nobody thought of this")
 

@@ -1,4 +1,4 @@
-"""The source documents in the studio: their equations give what Tarsus gives, their errata are the page's."""
+"""The source documents in the studio: equations agree with Tarsus, errata with the page."""
 
 import ast
 import json
@@ -45,7 +45,7 @@ def source(number, leg=0, robot="strider", **pose):
 
 @pytest.mark.parametrize("robot", list_robots())
 @pytest.mark.parametrize("number", DOCUMENTS)
-def test_the_equations_give_what_tarsus_gives(number, robot):
+def test_equations_agree_with_tarsus(number, robot):
     how = standing(load_robot(robot), BodyState(**POSE))
     for leg in (0, 4):
         told, numbers = source(number, leg, robot), Live.of(how, leg)
@@ -61,7 +61,7 @@ def test_the_equations_give_what_tarsus_gives(number, robot):
         assert compared >= 3
 
 
-def test_what_a_document_does_not_know_of_is_told():
+def test_unsupported_offsets_are_noted():
     robot = load_robot("strider")
     offset = robot.replace(femur_axis_offset=np.tile([0.02, 0.0], (6, 1)), name="offset")
     asked = Asked()
@@ -74,7 +74,7 @@ def test_what_a_document_does_not_know_of_is_told():
     assert not any(equation["note"] for equation in knows["equations"])
 
 
-def test_with_the_knee_down_the_difference_is_told():
+def test_the_knee_down_branch_is_noted():
     notes = [equation["note"] for equation in source("004", knee="down")["equations"][:15]]
     assert any(note and note.startswith("Tarsus has femur") for note in notes)
 
@@ -88,7 +88,7 @@ def test_the_hand_method_is_that_of_the_handbook():
     assert len(source("004", robot="mithi")["equations"]) == len(DOCUMENTS["004"].lines)
 
 
-def test_the_errata_are_those_of_the_page():
+def test_errata_agree_with_the_page():
     assert errata() == rows_of_page(PAGE.read_text(encoding="utf-8")), (
         "run: python -m tarsus.studio.sources.errata docs/sources.md"
     )
@@ -96,7 +96,7 @@ def test_the_errata_are_those_of_the_page():
 
 
 @pytest.mark.parametrize("number", DOCUMENTS)
-def test_every_erratum_is_told_and_what_is_printed_comes_out_otherwise(number):
+def test_errata_are_listed_and_printed_formulas_give_other_values(number):
     told, rows = source(number)["errata"], [row for row in errata() if row.number == number]
     assert [erratum["reason"] for erratum in told] == [row.reason for row in rows]
     assert set(DOCUMENTS[number].slips) <= {row.test for row in rows}
@@ -107,13 +107,13 @@ def test_every_erratum_is_told_and_what_is_printed_comes_out_otherwise(number):
             assert erratum["printed_value"] != pytest.approx(erratum["correct_value"], rel=1e-5)
 
 
-def test_a_slip_that_can_not_be_worked_out_has_no_value():
+def test_an_erratum_that_cannot_be_evaluated_has_no_value():
     told = source("001", pitch_deg=0, roll_deg=0)["errata"]
     slope = next(erratum for erratum in told if "1 / tan" in erratum["printed"])
     assert (slope["printed_value"], slope["correct_value"]) == (None, 0)
 
 
-def test_a_leg_that_cannot_reach_is_shown_where_it_is():
+def test_a_leg_out_of_reach_is_shown_at_its_position():
     told = source("000", pitch_deg=25)
     robot = load_robot("strider")
     how = standing(robot, BodyState(**{**POSE, "pitch_deg": 25}))
@@ -139,14 +139,14 @@ expressions = st.recursive(
 
 
 @given(expressions)
-def test_an_expression_is_worked_out_as_python_would(text):
+def test_expressions_are_evaluated_like_python(text):
     plain = {name: quantity.value for name, quantity in NAMES.items()}
     expected = eval(text, {"sin": math.sin, "atan2": math.atan2, "pi": math.pi}, plain)
     assert Expression(text).value(NAMES) == pytest.approx(expected, rel=1e-12)
 
 
 @given(expressions)
-def test_what_is_shown_reads_back_as_the_same_expression(text):
+def test_displayed_text_parses_to_the_same_expression(text):
     """The MathML, its brackets included, is turned back into arithmetic: nothing may bind otherwise than it did."""
     plain = {"α": None, **{name.replace("c_2", "c2"): quantity.value for name, quantity in NAMES.items()}}
     plain["θ"] = plain["theta"]
@@ -172,7 +172,7 @@ def arithmetic(node):
     return {"−": "-", "·": "*"}.get(node.text, node.text)
 
 
-def test_numbers_take_the_place_of_symbols():
+def test_values_replace_symbols():
     quantities = {"L": Quantity(0.098, "mm"), "q": Quantity(math.radians(-30), "deg"), "n": Quantity(2.0, "")}
     numbers = Expression("L * cos(q) - n ** 2").numbers(quantities)
     texts = [child.text for child in walk(numbers) if child.text]
@@ -188,13 +188,13 @@ def walk(node):
 @pytest.mark.parametrize(
     ("name", "text"), [("theta_C", "θC"), ("L1", "L1"), ("Px_a3", "Pxa3"), ("alpha", "α"), ("C_Angle", "CAngle")]
 )
-def test_symbols_are_set_as_in_print(name, text):
+def test_symbols_are_typeset(name, text):
     node = symbol_node(name)
     assert "".join(part.text for part in walk(node) if part.text) == text
 
 
 @pytest.mark.parametrize("bad", ["__import__('os')", "a.b", "[1]", "a < b", "lambda: 1", "'text'"])
-def test_an_equation_holds_arithmetic_alone(bad):
+def test_equations_allow_arithmetic_only(bad):
     with pytest.raises((SyntaxError, KeyError)):
         Expression(bad).value(NAMES)
 

@@ -1,4 +1,4 @@
-"""The state as a link's text, and undo as a machine that is compared with a plain list."""
+"""The state as the text of a link, and undo compared with a list of states."""
 
 import base64
 import re
@@ -55,13 +55,13 @@ states = st.builds(
 
 
 @given(states)
-def test_a_state_comes_back_from_its_text_exactly(state):
+def test_a_state_is_restored_exactly_from_its_text(state):
     text = text_of(state)
     assert re.fullmatch(r"1\.[A-Za-z0-9_-]+", text)
     assert state_of(text) == state
 
 
-def test_a_plain_state_is_short():
+def test_the_text_of_a_default_state_is_short():
     assert len(text_of(StudioState())) < 12
     posed = StudioState(view="joints", joints=JointsState(angles_deg=(0.0, 36.137594, -123.231111) * 6))
     assert len(text_of(posed)) < 150
@@ -92,13 +92,13 @@ def packed(document):
         (packed(b" " * 2**21), "too large"),
     ],
 )
-def test_a_text_that_holds_no_state_is_refused(text, words):
+def test_an_invalid_text_is_rejected(text, words):
     with pytest.raises(InputError, match=re.escape(words)):
         state_of(text)
 
 
 @given(st.text(max_size=200))
-def test_no_text_at_all_is_more_than_refused(text):
+def test_any_invalid_text_is_rejected_by_an_input_error(text):
     with pytest.raises(InputError, match="link"):
         state_of(text.replace(".", ","))
     try:
@@ -166,7 +166,7 @@ class Histories(RuleBasedStateMachine):
 TestHistories = Histories.TestCase
 
 
-def test_only_so_many_steps_are_kept():
+def test_the_number_of_undo_steps_is_limited():
     history = History(at(0))
     for x in range(1, 500):
         history.change(at(x), commit=True)

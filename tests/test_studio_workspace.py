@@ -1,4 +1,4 @@
-"""What a leg reaches, as the studio draws it, against inverse kinematics and the reachable band."""
+"""The workspace of a leg agrees with inverse kinematics and `reachable_band`."""
 
 import numpy as np
 import pytest
@@ -23,7 +23,7 @@ def reached(robot, leg, feet, body=None):
 
 
 @pytest.mark.parametrize("name", list_robots())
-def test_the_band_on_the_ground_is_that_of_reachable_band(name):
+def test_reachable_distances_agree_with_reachable_band(name):
     robot = load_robot(name)
     near, far = (np.asarray(end) for end in reachable_band(robot, -default_body_height(robot)))
     for leg in (0, 3):
@@ -35,7 +35,7 @@ def test_the_band_on_the_ground_is_that_of_reachable_band(name):
 
 @pytest.mark.parametrize("name", ["strider", "phantomx", "ch3r"])
 @pytest.mark.parametrize("tilted", [False, True])
-def test_the_outline_on_the_ground_parts_what_is_reached_from_what_is_not(name, tilted):
+def test_the_outline_on_the_ground_separates_reachable_points(name, tilted):
     robot, leg = load_robot(name), 1
     body = TILTED if tilted else level(robot)
     outline = ground_outline(robot, leg, body)
@@ -49,7 +49,7 @@ def test_the_outline_on_the_ground_parts_what_is_reached_from_what_is_not(name, 
     assert not reached(robot, leg, far + 1e-4 * outward, body).any()
 
 
-def test_an_outline_ends_at_the_coxas_limits():
+def test_an_outline_ends_at_the_coxa_limits():
     robot = load_robot("strider")
     outline = ground_outline(robot, 1, level(robot))
     turn = np.arctan2(outline.far[:, 1] - 0.086, outline.far[:, 0]) - np.pi / 2
@@ -58,7 +58,7 @@ def test_an_outline_ends_at_the_coxas_limits():
 
 @pytest.mark.parametrize("name", ["strider", "phantomx"])
 @pytest.mark.parametrize("coxa", [0.0, 0.4, 9.0])
-def test_the_outline_in_the_legs_plane_parts_what_is_reached_from_what_is_not(name, coxa):
+def test_the_outline_in_the_plane_of_the_leg_separates_reachable_points(name, coxa):
     robot, leg = load_robot(name), 0
     outline = plane_outline(robot, leg, coxa)
     inside = outline.near + (outline.far - outline.near) * np.linspace(0.01, 0.99, 7)[:, None, None]
@@ -67,14 +67,14 @@ def test_the_outline_in_the_legs_plane_parts_what_is_reached_from_what_is_not(na
     assert length.max() > 0.03
 
 
-def test_where_nothing_is_reached_there_is_no_outline():
+def test_the_outline_is_empty_without_reachable_points():
     robot = load_robot("strider")
     high = Pose.from_rpy(position=(0, 0, 1.0))
     assert ground_outline(robot, 0, high).closed.shape == (0, 3)
     assert np.isnan(ground_band(robot, 0, high)).all()
 
 
-def test_the_zone_is_told_for_the_body_that_is_shown():
+def test_the_workspace_is_that_of_the_shown_body_pose():
     ask = Asked()
     ask.all("view", view="body")
     ask.all("body", body={"z_mm": 20, "pitch_deg": 5})

@@ -489,7 +489,7 @@ export interface RobotMessage {
 export interface ServosMessage {
   id: number;
   type: "servos";
-  present_do: boolean;
+  sufficient: boolean;
   balanced: boolean;
   /** Verdicts on the most loaded coxa, femur and tibia with the present servos. */
   worst: string[];
@@ -499,7 +499,7 @@ export interface ServosMessage {
   mixed: Candidate | null;
   /** Greatest payload of the present servos. */
   payload_kg: number | null;
-  payload_before_burning_kg: number | null;
+  maximum_payload_kg: number | null;
   advice: string[];
   left_out: Record<string, string>;
   assumed: string[];

@@ -139,13 +139,13 @@ class ServosMessage(Message):
     """Result of the servo sizing."""
 
     type: Literal["servos"]
-    present_do: bool
+    sufficient: bool
     balanced: bool
     worst: list[str] = Field(description="Verdicts on the most loaded coxa, femur and tibia with the present servos.")
     candidates: list[Candidate] = Field(description="The same servo in all joints, lightest first.")
     mixed: Candidate | None = Field(description="The lightest servo for each kind of joint.")
     payload_kg: float | None = Field(description="Greatest payload of the present servos.")
-    payload_before_burning_kg: float | None
+    maximum_payload_kg: float | None
     advice: list[str]
     left_out: Annotated[dict[str, Any], Field(json_schema_extra={"ts": "Record<string, string>"})]
     assumed: list[str]

@@ -37,14 +37,14 @@ function Answer({ servos }: { servos: ServosMessage }) {
   const leftOut = Object.entries(servos.left_out);
   return (
     <div className="field" data-testid="servo-answer">
-      <Message kind={servos.present_do ? "good" : "bad"}>
-        {servos.present_do ? "The present servos are sufficient." : "The present servos are not sufficient."}
+      <Message kind={servos.sufficient ? "good" : "bad"}>
+        {servos.sufficient ? "The present servos are sufficient." : "The present servos are not sufficient."}
       </Message>
       {servos.payload_kg !== null && (
         <p className="hint">
           Greatest payload: {withUnit(servos.payload_kg, 2, "kg")}
-          {servos.payload_before_burning_kg !== null &&
-            `; ${withUnit(servos.payload_before_burning_kg, 2, "kg")} until a servo overheats`}
+          {servos.maximum_payload_kg !== null &&
+            `; ${withUnit(servos.maximum_payload_kg, 2, "kg")} until a servo overheats`}
           .
         </p>
       )}
