@@ -16,7 +16,7 @@ from tarsus.errors import TarsusError
 from tarsus.gait.gait import Gait
 from tarsus.kinematics.leg import forward_kinematics
 from tarsus.kinematics.mass import centre_of_mass
-from tarsus.kinematics.stability import stability_margin
+from tarsus.kinematics.polygon import hull_margin
 from tarsus.robot.robot import Robot
 from tarsus.studio.encoding import degrees, flags, millimetres, or_null, plain
 from tarsus.studio.messages import client as ask
@@ -111,6 +111,7 @@ class Driver:
     def _frame(self, output: ControlOutput) -> DriveFrame:
         margin, com = (None, None) if output.belly else self._stability(output)
         vx, vy, wz = output.twist
+        rpy = degrees(output.body.rpy)
         return DriveFrame(
             type="frame",
             id=self.id,
@@ -120,8 +121,8 @@ class Driver:
             guard=output.guard,
             gait=output.gait.name,
             position_mm=millimetres(output.body.position),
-            rpy_deg=degrees(output.body.rpy),
-            heading_deg=round(math.degrees(output.heading), 3),
+            rpy_deg=rpy,
+            heading_deg=rpy[2],
             angles_deg=degrees(output.angles),
             contacts=flags(output.contacts),
             belly=output.belly,
@@ -137,7 +138,9 @@ class Driver:
         """Return the static stability margin [mm] and the centre of mass projected onto the ground [mm]."""
         points = forward_kinematics(self._robot, output.angles)
         com = np.asarray(output.body @ np.asarray(centre_of_mass(self._robot, output.angles, points=points)))
-        margin = float(stability_margin(self._robot, output.angles, output.body, output.contacts, points=points))
+        # As `stability_margin`, which would compute the centre of mass again.
+        feet = np.asarray(output.body @ points[:, 3])
+        margin = float(hull_margin(feet[:, :2], output.contacts, com[:2]))
         return or_null(margin * 1000, decimals=2), millimetres(com[:2])
 
 
