@@ -13,7 +13,7 @@ from tarsus.control.command import Command
 from tarsus.control.loop.recording import Recording
 from tarsus.control.plant import Environment
 from tarsus.control.pose.admittance import Admittance
-from tarsus.control.safety import GuardOutput, Intervention, InterventionKind
+from tarsus.control.safety import GuardOutput, GuardState, Intervention, InterventionKind
 from tarsus.control.walk_controller import WalkController
 from tarsus.errors import InputError, UnknownNameError
 from tarsus.gait.gait import Gait
@@ -295,12 +295,12 @@ class Rejecting:
     """A guard that lets nothing through for a while, and sends zeros instead."""
 
     def __init__(self, robot, **_more):
-        self.robot, self.ticks, self.state = robot, 0, "passing"
+        self.robot, self.ticks, self.state = robot, 0, GuardState.PASSING
 
     def check(self, angles, dt, contacts, body):
         self.ticks += 1
         held = 30 <= self.ticks < 60
-        self.state = "holding" if held else "passing"
+        self.state = GuardState.HOLDING if held else GuardState.PASSING
         sent = np.zeros_like(angles) if held else angles
         found = (Intervention(InterventionKind.JOINT_SPEED, "LF", "coxa", 9.0, 5.0, 0.3),) if held else ()
         return GuardOutput(sent, not held, self.state, 0.0, found)
