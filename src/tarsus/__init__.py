@@ -16,6 +16,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from tarsus import simulation as simulation
     from tarsus.control.command import Command
     from tarsus.control.control_output import ControlOutput
     from tarsus.control.limitation import Limitation, LimitationKind
@@ -35,6 +36,7 @@ if TYPE_CHECKING:
         InputError,
         MissingDataError,
         RobotFileError,
+        SimulationError,
         StrokeError,
         TarsusError,
         UnknownNameError,
@@ -100,8 +102,8 @@ _HOMES = {
     "tarsus.scenario.runner": ("run_scenario",),
     "tarsus.scenario.scenario": ("Scenario",),
     "tarsus.errors": (
-        *("CollisionError", "InputError", "MissingDataError", "RobotFileError", "StrokeError", "TarsusError"),
-        *("UnknownNameError", "UnreachableError"),
+        *("CollisionError", "InputError", "MissingDataError", "RobotFileError", "SimulationError"),
+        *("StrokeError", "TarsusError", "UnknownNameError", "UnreachableError"),
     ),
     "tarsus.gait.cycle": ("cycle_feet",),
     "tarsus.gait.gait": ("GAITS", "Gait"),
@@ -167,6 +169,8 @@ _HOMES = {
         *("load_scenario", "save_scenario", "scenario_from_dict", "scenario_from_text", "scenario_to_dict"),
     ),
 }
+# Packages of heavier parts, each with public names of its own.
+_PACKAGES = ("simulation",)
 _HOME_OF = {name: module for module, names in _HOMES.items() for name in names}
 
 __all__ = [
@@ -213,6 +217,7 @@ __all__ = [
     "SequencePlayer",
     "Servo",
     "ServoSizing",
+    "SimulationError",
     "Source",
     "StrokeError",
     "SupplyLoad",
@@ -287,6 +292,8 @@ __all__ = [
 
 def __getattr__(name: str) -> Any:
     """Import a public name from where it lives."""
+    if name in _PACKAGES:
+        return import_module(f"tarsus.{name}")
     if name not in _HOME_OF:
         raise AttributeError(f"module 'tarsus' has no attribute {name!r}")
     value = getattr(import_module(_HOME_OF[name]), name)
@@ -295,4 +302,4 @@ def __getattr__(name: str) -> Any:
 
 
 def __dir__() -> list[str]:
-    return sorted(__all__)
+    return sorted([*__all__, *_PACKAGES])

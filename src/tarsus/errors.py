@@ -9,7 +9,8 @@
     ├── MissingDataError    the robot file lacks data that a computation needs
     ├── UnreachableError    a foot is out of reach
     │   └── StrokeError     the stroke leaves the workspace; `.longest` is the longest possible
-    └── CollisionError      two feet come closer to each other than allowed
+    ├── CollisionError      two feet come closer to each other than allowed
+    └── SimulationError     the physics of a simulated robot becomes unstable
 
 A message says what is wrong, where, the number and its bound, and what is possible.
 """
@@ -25,6 +26,7 @@ __all__ = [
     "InputError",
     "MissingDataError",
     "RobotFileError",
+    "SimulationError",
     "StrokeError",
     "TarsusError",
     "UnknownNameError",
@@ -102,6 +104,10 @@ class StrokeError(UnreachableError):
 
 class CollisionError(TarsusError):
     """Two feet come closer to each other than allowed."""
+
+
+class SimulationError(TarsusError):
+    """The physics of a simulated robot becomes unstable."""
 
 
 def nearest_name(name: str, known: Iterable[str]) -> str | None:

@@ -1,0 +1,63 @@
+"""Physics: a robot in MuJoCo, with actuators after real servos, terrain and sensors.
+
+::
+
+    from tarsus import Command, RobotController, load_robot, run
+    from tarsus.simulation import SimulatedPlant, terrain
+
+    robot = load_robot("strider")
+    plant = SimulatedPlant(robot, terrain=terrain.Ramp(slope=0.1), sensors="hobby")
+    run(RobotController(robot), plant, [(0.0, Command(twist=(0.05, 0.0, 0.0)))])
+
+MuJoCo is imported when a model is built; the extra ``sim`` installs it.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from tarsus.simulation import terrain
+    from tarsus.simulation.robot_model import model, model_assumptions
+    from tarsus.simulation.sensors.suite import FootSwitch, Sensor, SensorSuite
+    from tarsus.simulation.servos.servo_model import ServoModel
+    from tarsus.simulation.simulated_plant import PlantState, SimulatedPlant
+
+_HOMES = {
+    "FootSwitch": "tarsus.simulation.sensors.suite",
+    "PlantState": "tarsus.simulation.simulated_plant",
+    "Sensor": "tarsus.simulation.sensors.suite",
+    "SensorSuite": "tarsus.simulation.sensors.suite",
+    "ServoModel": "tarsus.simulation.servos.servo_model",
+    "SimulatedPlant": "tarsus.simulation.simulated_plant",
+    "model": "tarsus.simulation.robot_model",
+    "model_assumptions": "tarsus.simulation.robot_model",
+}
+
+__all__ = [
+    "FootSwitch",
+    "PlantState",
+    "Sensor",
+    "SensorSuite",
+    "ServoModel",
+    "SimulatedPlant",
+    "model",
+    "model_assumptions",
+    "terrain",
+]
+
+
+def __getattr__(name: str) -> Any:
+    """Import a public name from where it lives."""
+    if name == "terrain":
+        return import_module("tarsus.simulation.terrain")
+    if name not in _HOMES:
+        raise AttributeError(f"module 'tarsus.simulation' has no attribute {name!r}")
+    value = getattr(import_module(_HOMES[name]), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

@@ -1,0 +1,33 @@
+"""MuJoCo, imported when it is first used."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import Any
+
+from tarsus.errors import TarsusError
+
+__all__ = ["FAULTY", "mujoco_module"]
+
+FAULTY = ("4.0.0",)
+"""Versions of MuJoCo that compute wrongly: the Newton solver of 4.0.0 factorises wrongly."""
+
+
+def mujoco_module() -> Any:
+    """Return the module `mujoco`.
+
+    Raises
+    ------
+    TarsusError
+        If it is not installed, or a version that computes wrongly.
+    """
+    try:
+        mujoco = import_module("mujoco")
+    except ImportError:
+        raise TarsusError("the simulation needs MuJoCo; install it with: pip install 'tarsus[sim]'") from None
+    if mujoco.__version__ in FAULTY:
+        raise TarsusError(
+            f"MuJoCo {mujoco.__version__} computes contacts wrongly; install another version with: "
+            "pip install 'mujoco!=4.0.0'"
+        )
+    return mujoco

@@ -1,0 +1,68 @@
+"""Exact values of what can be measured, from the state of the physics engine."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from tarsus.robot.robot import Robot
+from tarsus.simulation.engine import mujoco_module
+from tarsus.simulation.robot_model import foot_geom_name
+
+__all__ = ["Measurement"]
+
+Floats = np.ndarray[Any, np.dtype[np.float64]]
+
+
+_ROWS = np.arange(3)
+
+
+class Measurement:
+    """Reads a robot's state from the physics engine.
+
+    Parameters
+    ----------
+    robot : Robot
+        The robot.
+    model : mujoco.MjModel
+        Its model.
+    data : mujoco.MjData
+        The state; what is returned refers to its present content.
+    """
+
+    def __init__(self, robot: Robot, model: Any, data: Any) -> None:
+        self._mujoco, self._model, self._data = mujoco_module(), model, data
+        self._legs = robot.legs
+        self._leg_of = {model.geom(foot_geom_name(robot, leg)).id: leg for leg in range(robot.legs)}
+
+    def rotation(self) -> Floats:
+        """Return the rotation from B to G, ``(3, 3)``."""
+        matrix = np.empty(9)
+        self._mujoco.mju_quat2Mat(matrix, self._data.qpos[3:7])
+        return matrix.reshape(3, 3)
+
+    def attitude(self) -> Floats:
+        """Return roll and pitch of B, ``(2,)`` [rad]."""
+        w, x, y, z = self._data.qpos[3:7].tolist()
+        roll = math.atan2(2 * (y * z + w * x), 1 - 2 * (x * x + y * y))
+        return np.array([roll, math.asin(max(-1.0, min(1.0, 2 * (w * y - x * z))))])
+
+    def foot_forces(self) -> Floats:
+        """Return the forces of the ground on the feet in G, ``(legs, 3)`` [N]."""
+        forces, contact = np.zeros((self._legs, 3)), self._data.contact
+        geoms, rows, frames = contact.geom, contact.efc_address, contact.frame
+        # With elliptic cones the rows of a contact are its normal and its two tangential forces.
+        found = self._data.efc_force[np.maximum(rows, 0)[:, None] + _ROWS]
+        for number, (first, second) in enumerate(geoms.tolist()):
+            leg = self._leg_of.get(second, self._leg_of.get(first))
+            if leg is not None and rows[number] >= 0:
+                # The normal points from the first geom to the second; which of them is the foot depends on the shapes.
+                force = found[number] @ frames[number].reshape(3, 3)
+                forces[leg] += force if second in self._leg_of else -force
+        return forces
+
+    def angular_rates(self) -> Floats:
+        """Return the angular velocity of B, along its own axes, ``(3,)`` [rad/s]."""
+        return np.array(self._data.qvel[3:6])

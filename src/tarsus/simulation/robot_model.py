@@ -1,0 +1,263 @@
+"""A robot as a model of rigid bodies for MuJoCo.
+
+The world, with the terrain, carries the body on a free joint, and the body each leg's coxa, femur and tibia on hinges.
+The frames of the links have their origins at the joints and x along the link; angles are those of
+`docs/conventions.md`: the coxa turns about z, femur and tibia about -y, so that positive angles lift the foot.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from typing import Any
+
+import numpy as np
+
+from tarsus.errors import InputError
+from tarsus.gait.setup import require_number
+from tarsus.robot.robot import JOINTS, Robot
+from tarsus.simulation.engine import mujoco_module
+from tarsus.simulation.servos.servo_table import ServoTable
+from tarsus.simulation.settings import apply_settings
+from tarsus.simulation.terrain.flat import Flat
+from tarsus.simulation.terrain.protocol import Terrain
+
+__all__ = ["FLOOR_OF_MASS", "body_geom_name", "foot_geom_name", "link_name", "model", "model_assumptions"]
+
+Floats = np.ndarray[Any, np.dtype[np.float64]]
+
+FLOOR_OF_MASS = 1e-4
+"""Least mass of a body or link that can be simulated [kg]."""
+
+# Section of a link, for its inertia: that of a servo and its bracket [m].
+_SECTION = 0.025
+# Foot radius where the robot's file has none [m].
+_POINT_FOOT = 0.001
+# Greatest radius of the links' contact geometry, and its ratio to the foot radius.
+_LINK_RADIUS, _LINK_RATIO = 0.006, 0.75
+# Half the thickness of a body that is the polygon of its coxa axes [m], and its height for the inertia [m].
+_HALF_PLATE, _BODY_HEIGHT = 0.001, 0.05
+# Links shorter than this have no contact geometry [m]; a joint that is fixed gets this range [rad].
+_SHORT, _FIXED = 1e-4, 1e-6
+_ROBOT_COLOUR, _FOOT_COLOUR = (0.30, 0.45, 0.65, 1.0), (0.15, 0.15, 0.15, 1.0)
+
+
+def link_name(robot: Robot, leg: int, joint: int) -> str:
+    """Return the name of a link's body and joint in the model."""
+    return f"{robot.leg_names[leg]} {JOINTS[joint]}"
+
+
+def foot_geom_name(robot: Robot, leg: int) -> str:
+    """Return the name of a foot's ball in the model."""
+    return f"{robot.leg_names[leg]} foot"
+
+
+def body_geom_name() -> str:
+    """Return the name of the body and its geom in the model."""
+    return "body"
+
+
+def model(robot: Robot, *, terrain: Terrain | None = None, servos: Any = "catalogue") -> Any:
+    """Return a robot on a terrain as a model for MuJoCo.
+
+    Bodies are named ``"body"`` and by leg and link (``"front left femur"``), joints and motors like the link that they
+    move, the balls of the feet ``"front left foot"``. The motors apply torques; damping and rotor inertia of
+    the servos are in the joints. Links collide with the terrain, not with each other.
+
+    Parameters
+    ----------
+    robot : Robot
+        A single robot with masses.
+    terrain : Terrain, optional
+        What it stands on; flat ground where left out.
+    servos : "catalogue", "ideal", ServoModel or nested sequence of ServoModel
+        See `SimulatedPlant`.
+
+    Returns
+    -------
+    mujoco.MjSpec
+        The model, which ``compile()`` turns into a ``mujoco.MjModel``. It can be changed before.
+
+    Raises
+    ------
+    MissingDataError
+        If the mass of the body or of a link is unknown, or a servo for ``"catalogue"``.
+    InputError
+        If the robot is a batch, or a mass is too small to be simulated.
+    TarsusError
+        If MuJoCo is not installed.
+    """
+    _check(robot)
+    mujoco = mujoco_module()
+    table = ServoTable.of(robot, servos)
+    spec = mujoco.MjSpec()
+    spec.modelname = robot.name
+    spec.compiler.degree = False
+    spec.compiler.autolimits = True
+    apply_settings(spec)
+    (terrain or Flat()).add_to(spec)
+    spec.worldbody.add_light(pos=(0, 0, 3), dir=(0, 0, -1))
+    body = _add_body(spec, robot)
+    for leg in range(robot.legs):
+        _add_leg(spec, body, robot, leg, table)
+    return spec
+
+
+def model_assumptions(robot: Robot) -> tuple[str, ...]:
+    """Return what the model of a robot assumes beyond its file, a line each.
+
+    Parameters
+    ----------
+    robot : Robot
+        A single robot.
+    """
+    lines = [
+        f"inertia of a link: that of a uniform box as long as the link, {1000 * _SECTION:g} mm wide and high",
+        "inertia of the body: that of a uniform box",
+        "legs collide with the ground, not with each other or the body",
+    ]
+    if robot.body_size is None:
+        lines.append(
+            f"body: the polygon of the coxa axes, {2000 * _HALF_PLATE:g} mm thick; for its inertia, the box around it, "
+            f"{1000 * _BODY_HEIGHT:g} mm high"
+        )
+    if not np.all(robot.foot_radius):
+        lines.append(f"foot radius where it is 0: {1000 * _POINT_FOOT:g} mm")
+    return tuple(lines)
+
+
+def _check(robot: Robot) -> None:
+    if robot.batch_shape:
+        raise InputError(f"robot {robot.name!r} is a batch of designs {robot.batch_shape}; expected one robot")
+    robot.require_masses()
+    masses = {"the body": float(robot.body_mass)}
+    for leg, joint in itertools.product(range(robot.legs), range(3)):
+        masses[link_name(robot, leg, joint)] = float(robot.link_mass[leg, joint])
+    for name, mass in masses.items():
+        if mass < FLOOR_OF_MASS:
+            raise InputError(
+                f"robot {robot.name!r}: the mass of {name} is {mass:g} kg; physics needs at least {FLOOR_OF_MASS:g} kg"
+            )
+
+
+def _box_inertia(mass: float, size: Floats) -> tuple[float, float, float]:
+    """Return the principal moments of inertia of a uniform box about its centre [kg m^2]."""
+    x, y, z = (float(edge) ** 2 for edge in size)
+    return mass * (y + z) / 12, mass * (x + z) / 12, mass * (x + y) / 12
+
+
+def _add_body(spec: Any, robot: Robot) -> Any:
+    mujoco = mujoco_module()
+    mounts = np.asarray(robot.mount_position)
+    name, attributes = body_geom_name(), _robot_geom()
+    if robot.body_size is None:
+        size = np.append(np.ptp(mounts[:, :2], axis=0), _BODY_HEIGHT)
+        corners = [(x, y, z + sign * _HALF_PLATE) for x, y, z in mounts.tolist() for sign in (-1, 1)]
+        spec.add_mesh(name=name, uservert=np.array(corners).ravel())
+        shape = {"type": mujoco.mjtGeom.mjGEOM_MESH, "meshname": name}
+    else:
+        size = np.asarray(robot.body_size)
+        shape = {"type": mujoco.mjtGeom.mjGEOM_BOX, "size": (size / 2).tolist()}
+    mass = float(robot.body_mass)
+    body = spec.worldbody.add_body(
+        name=name,
+        mass=mass,
+        ipos=np.asarray(robot.body_com),
+        inertia=_box_inertia(mass, size),
+        explicitinertial=True,
+    )
+    body.add_freejoint(name="free")
+    body.add_geom(name=name, **shape, **attributes)
+    return body
+
+
+def _robot_geom() -> dict[str, Any]:
+    """Return the attributes of the robot's geoms: without mass, in contact with the terrain alone."""
+    return {"mass": 0.0, "contype": 0, "conaffinity": 1, "rgba": _ROBOT_COLOUR}
+
+
+def _add_leg(spec: Any, body: Any, robot: Robot, leg: int, table: ServoTable) -> None:
+    yaw = float(robot.mount_yaw[leg])
+    side, up = np.asarray(robot.femur_axis_offset[leg]).tolist()
+    coxa, femur, tibia = (float(getattr(robot, name)[leg]) for name in JOINTS)
+    steps = [(coxa, side, up), (femur, 0.0, 0.0), (tibia, 0.0, 0.0)]
+    positions = [np.asarray(robot.mount_position[leg]), np.array(steps[0]), np.array(steps[1])]
+    parent = body
+    for joint, step in enumerate(steps):
+        turn = (math.cos(yaw / 2), 0.0, 0.0, math.sin(yaw / 2)) if joint == 0 else (1.0, 0.0, 0.0, 0.0)
+        parent = parent.add_body(
+            name=link_name(robot, leg, joint),
+            pos=positions[joint],
+            quat=turn,
+            explicitinertial=True,
+            **_link_inertia(robot, leg, joint, np.array(step)),
+        )
+        _add_joint(spec, parent, robot, (leg, joint), table)
+        _add_link_geom(parent, robot, (leg, joint), np.array(step))
+    geom = mujoco_module().mjtGeom.mjGEOM_SPHERE
+    parent.add_geom(
+        name=foot_geom_name(robot, leg),
+        type=geom,
+        size=(_foot_radius(robot, leg), 0, 0),
+        pos=steps[2],
+        **(_robot_geom() | {"rgba": _FOOT_COLOUR}),
+    )
+
+
+def _link_inertia(robot: Robot, leg: int, joint: int, step: Floats) -> dict[str, Any]:
+    """Return mass, centre of mass and inertia of a link, in its frame."""
+    length = float(np.linalg.norm(step))
+    mass, distance = float(robot.link_mass[leg, joint]), float(robot.link_com[leg, joint])
+    along = step / length if length else np.zeros(3)
+    inertia = _box_inertia(mass, np.array([max(length, _SECTION), _SECTION, _SECTION]))
+    return {"mass": mass, "ipos": distance * along, "iquat": _quaternion_from_x(along), "inertia": inertia}
+
+
+def _quaternion_from_x(direction: Floats) -> Floats:
+    """Return the quaternion of the shortest rotation from x to a unit vector; none for the zero vector."""
+    if not direction.any():
+        return np.array([1.0, 0.0, 0.0, 0.0])
+    x, y, z = direction
+    quaternion = np.array([1.0 + x, 0.0, -z, y])
+    length = float(np.linalg.norm(quaternion))
+    return quaternion / length if length > _FIXED else np.array([0.0, 0.0, 0.0, 1.0])
+
+
+def _add_joint(spec: Any, body: Any, robot: Robot, place: tuple[int, int], table: ServoTable) -> None:
+    mujoco = mujoco_module()
+    leg, joint = place
+    name = link_name(robot, leg, joint)
+    low, high = np.asarray(robot.limits[leg, joint]).tolist()
+    servo = table.servos[leg][joint]
+    body.add_joint(
+        name=name,
+        type=mujoco.mjtJoint.mjJNT_HINGE,
+        axis=(0, 0, 1) if joint == 0 else (0, -1, 0),
+        range=(low, max(high, low + _FIXED)),
+        damping=servo.joint_damping,
+        armature=servo.rotor_inertia,
+    )
+    motor = spec.add_actuator(name=name, target=name, trntype=mujoco.mjtTrn.mjTRN_JOINT)
+    motor.set_to_motor()
+
+
+def _add_link_geom(body: Any, robot: Robot, place: tuple[int, int], step: Floats) -> None:
+    """Add the capsule of a link; that of the tibia ends inside the ball of the foot."""
+    leg, joint = place
+    foot = _foot_radius(robot, leg)
+    length = float(np.linalg.norm(step))
+    end = step * max(1.0 - foot / length, 0.5) if joint == 2 else step
+    if length < _SHORT:
+        return
+    radius = min(_LINK_RADIUS, _LINK_RATIO * foot)
+    body.add_geom(
+        name=link_name(robot, leg, joint),
+        type=mujoco_module().mjtGeom.mjGEOM_CAPSULE,
+        size=(radius, 0, 0),
+        fromto=(0.0, 0.0, 0.0, *end.tolist()),
+        **_robot_geom(),
+    )
+
+
+def _foot_radius(robot: Robot, leg: int) -> float:
+    return require_number("foot_radius", float(robot.foot_radius[leg]), zero=True) or _POINT_FOOT

@@ -1,0 +1,1 @@
+"""Sensor suites: what a simulated robot measures, with noise, bias, delay and drop-outs."""

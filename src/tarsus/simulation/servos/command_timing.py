@@ -1,0 +1,77 @@
+"""When servos take over a command: update rate, delay and dead band."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from tarsus.simulation.servos.servo_table import ServoTable
+
+__all__ = ["CommandTiming"]
+
+Floats = np.ndarray[Any, np.dtype[np.float64]]
+
+
+class _Group:
+    """Servos with the same timing."""
+
+    def __init__(self, joints: Floats, period: int, delay: int) -> None:
+        self.joints, self.period, self.delay = joints, period, delay
+        self.pending: dict[int, Floats] = {}
+
+
+class CommandTiming:
+    """The targets of all servos from one physics step to the next.
+
+    A servo takes over the newest command at every multiple of its update period; it acts after its delay.
+
+    Parameters
+    ----------
+    table : ServoTable
+        The servos.
+    timestep : float
+        Duration of a physics step [s].
+    angles : array, shape (joints,)
+        Targets at the start [rad].
+    """
+
+    def __init__(self, table: ServoTable, timestep: float, angles: Floats) -> None:
+        each = [servo for row in table.servos for servo in row]
+        self._dead_band = np.array([servo.dead_band for servo in each])
+        timings = [(max(1, round(1 / (s.update_rate * timestep))), round(s.delay / timestep)) for s in each]
+        self._groups = [
+            _Group(np.array([i for i, each in enumerate(timings) if each == timing]), *timing)
+            for timing in sorted(set(timings))
+        ]
+        self.target = np.array(angles, dtype=float)
+
+    def command(self, step: int, angles: Floats) -> None:
+        """Give a command at a physics step.
+
+        Parameters
+        ----------
+        step : int
+            Number of the step.
+        angles : array, shape (joints,)
+            Joint angles [rad].
+        """
+        for group in self._groups:
+            taken = -(-step // group.period) * group.period
+            group.pending[taken + group.delay] = angles
+
+    def advance(self, step: int) -> Floats:
+        """Return the targets in a physics step, ``(joints,)`` [rad].
+
+        Parameters
+        ----------
+        step : int
+            Its number; each is asked for once, in ascending order.
+        """
+        for group in self._groups:
+            new = group.pending.pop(step, None)
+            if new is not None:
+                joints, target = group.joints, self.target
+                band = self._dead_band[joints]
+                target[joints] = np.clip(target[joints], new[joints] - band, new[joints] + band)
+        return self.target

@@ -1,0 +1,236 @@
+"""The model of a position-controlled servo: what limits its torque, and how it follows commands."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any, Self
+
+import numpy as np
+
+from tarsus.errors import InputError, MissingDataError
+from tarsus.load.servo_limits import at_supply
+from tarsus.robot.servo import Servo
+from tarsus.simulation.servos.known_servos import KNOWN_SERVOS, KnownServo
+from tarsus.simulation.servos.torque_law import drive_torque
+
+__all__ = ["ServoModel"]
+
+Floats = np.ndarray[Any, np.dtype[np.float64]]
+
+# What is assumed where no source says more. Position error at which a servo gives its stall torque [rad]: servos whose
+# gain is known have 0.11 to 0.19, stiff digital ones less. With it, and the twist of the gears, the presets' joints
+# have 9-24 N m/rad, in the lower part of what was measured on the loaded joints of a hexapod (10-79 N m/rad).
+_FULL_TORQUE_ERROR = math.radians(5.0)
+# Twist of the gears under stall torque [rad].
+_GEAR_TWIST = math.radians(1.0)
+_BACKLASH = math.radians(0.5)
+_DEAD_BAND = math.radians(0.3)
+_ROTOR_INERTIA = 0.005  # [kg m^2]
+_PWM_RATE, _BUS_RATE = 50.0, 100.0  # [1/s]
+_PWM_DELAY, _BUS_DELAY = 0.004, 0.006  # [s]
+_NO_LOAD_SPEED = 5.0  # [rad/s]
+
+
+@dataclass(frozen=True, kw_only=True)
+class ServoModel:
+    """A position-controlled servo.
+
+    The torque is proportional to the position error, falls with the speed by the slope of the torque-speed line, and is
+    limited by that line: a driving servo gives at most ``stall_torque (1 - speed / no_load_speed)``, one that is driven
+    by its load at most the stall torque. Within the backlash there is no stiffness. A new command is taken over
+    `update_rate` times a second, acts after `delay`, and moves the target only where it differs by more than
+    `dead_band`.
+
+    Attributes
+    ----------
+    name : str
+        What it is called.
+    stall_torque : float
+        Greatest torque [N m]; may be infinite.
+    no_load_speed : float
+        Speed at which it drives nothing any more [rad/s]; may be infinite.
+    control_stiffness : float
+        Torque per position error of the control loop [N m/rad].
+    gear_stiffness : float
+        Stiffness of gears and bracket, in series with that of the control loop [N m/rad]; may be infinite.
+    damping : float
+        Torque per speed beyond the torque-speed line: of the control loop and of friction [N m s/rad].
+    rotor_inertia : float
+        Inertia of rotor and gears, reflected to the output [kg m^2].
+    backlash : float
+        Free play at the output [rad].
+    dead_band : float
+        Change of the command that it ignores [rad].
+    delay : float
+        From a command to its effect [s].
+    update_rate : float
+        How often a command is taken over [1/s]; infinite for at every physics step.
+    assumed : tuple of str
+        What its numbers assume beyond the catalogue, a line each.
+
+    Raises
+    ------
+    InputError
+        If a number is NaN or out of its range.
+    """
+
+    name: str
+    stall_torque: float = math.inf
+    no_load_speed: float = math.inf
+    control_stiffness: float = 100.0
+    gear_stiffness: float = math.inf
+    damping: float = 1.0
+    rotor_inertia: float = 0.005
+    backlash: float = 0.0
+    dead_band: float = 0.0
+    delay: float = 0.0
+    update_rate: float = math.inf
+    assumed: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        for name, unit in _POSITIVE.items():
+            value = getattr(self, name)
+            if not value > 0:
+                raise InputError(f"{self.name}: {name} is {value:g} {unit}; it must be greater than 0")
+        for name, unit in _FINITE.items():
+            value = getattr(self, name)
+            if not 0 <= value < math.inf:
+                raise InputError(f"{self.name}: {name} is {value:g} {unit}; it must be a finite number, not negative")
+
+    @classmethod
+    def ideal(cls, *, stiffness: float = 100.0, damping: float = 1.0) -> Self:
+        """Return a servo that follows at once, with any torque: a spring and a damper.
+
+        Parameters
+        ----------
+        stiffness : float
+            Torque per position error [N m/rad].
+        damping : float
+            Torque per speed [N m s/rad].
+        """
+        return cls(
+            name="ideal",
+            control_stiffness=stiffness,
+            damping=damping,
+            assumed=(
+                f"ideal servo: {stiffness:g} N m/rad, {damping:g} N m s/rad, rotor inertia {_ROTOR_INERTIA:g} kg m^2",
+            ),
+        )
+
+    @classmethod
+    def of(cls, servo: Servo | None, *, supply: float | None = None) -> Self:
+        """Return the model of a servo, with what its catalogue entry leaves open assumed and listed.
+
+        Parameters
+        ----------
+        servo : Servo or None
+            The servo.
+        supply : float, optional
+            Supply voltage [V]; left out, that of the catalogue's ratings.
+
+        Raises
+        ------
+        MissingDataError
+            If there is no servo.
+        """
+        if servo is None:
+            raise MissingDataError(
+                "a joint has no servo; give one in the robot's file ([leg] servo), or simulate with servos='ideal'"
+            )
+        stall, speed = at_supply(servo, supply)
+        known = KNOWN_SERVOS.get(servo.name, KnownServo(source=""))
+        values, assumed = _figures(servo, known, stall)
+        if math.isnan(speed):
+            speed = _NO_LOAD_SPEED
+            assumed.append(f"no-load speed {speed:g} rad/s")
+        assumed.append("no damping beyond the torque-speed line, no dry friction, constant supply")
+        return cls(
+            name=servo.name,
+            stall_torque=stall,
+            no_load_speed=speed,
+            damping=0.0,
+            assumed=tuple(f"{servo.name}: {line}" for line in assumed),
+            **values,
+        )
+
+    @property
+    def stiffness(self) -> float:
+        """Torque per position error of control loop and gears in series [N m/rad]."""
+        return 1.0 / (1.0 / self.control_stiffness + 1.0 / self.gear_stiffness)
+
+    @property
+    def torque_speed_slope(self) -> float:
+        """Torque that each rad/s of speed costs: stall torque over no-load speed [N m s/rad]; 0 without a limit."""
+        return self.stall_torque / self.no_load_speed if math.isfinite(self.stall_torque) else 0.0
+
+    @property
+    def joint_damping(self) -> float:
+        """All damping of the joint: slope of the torque-speed line and further damping [N m s/rad]."""
+        return self.torque_speed_slope + self.damping
+
+    def torque(self, error: Floats, speed: Floats) -> Floats:
+        """Return the torque at a position error and a speed.
+
+        Parameters
+        ----------
+        error : array, shape (...)
+            Target less joint angle [rad].
+        speed : array, shape (...)
+            Joint speed [rad/s].
+
+        Returns
+        -------
+        array, shape (...)
+            Torque [N m].
+        """
+        speeds = np.asarray(speed, dtype=float)
+        drive = drive_torque(
+            np.asarray(error, dtype=float),
+            speeds,
+            stiffness=self.stiffness,
+            play=self.backlash / 2,
+            stall_torque=self.stall_torque,
+            slope=self.torque_speed_slope,
+        )
+        return drive - self.joint_damping * speeds
+
+
+_POSITIVE = {
+    "stall_torque": "N m",
+    "no_load_speed": "rad/s",
+    "control_stiffness": "N m/rad",
+    "gear_stiffness": "N m/rad",
+    "update_rate": "1/s",
+}
+_FINITE = {
+    "control_stiffness": "N m/rad",
+    "damping": "N m s/rad",
+    "rotor_inertia": "kg m^2",
+    "backlash": "rad",
+    "dead_band": "rad",
+    "delay": "s",
+}
+
+
+def _figures(servo: Servo, known: KnownServo, stall: float) -> tuple[dict[str, float], list[str]]:
+    """Return what the catalogue does not say, known or assumed, and a line for each."""
+    pulses = "pwm" in servo.control.lower()
+    guesses = {
+        "control_stiffness": (stall / _FULL_TORQUE_ERROR, "N m/rad: stall torque at an error of 5 deg"),
+        "rotor_inertia": (_ROTOR_INERTIA, "kg m^2"),
+        "backlash": (_BACKLASH, "rad (0.5 deg)"),
+        "dead_band": (_DEAD_BAND, "rad (0.3 deg)"),
+        "update_rate": (_PWM_RATE, "1/s: pulses at 50 Hz") if pulses else (_BUS_RATE, "1/s: one bus message a tick"),
+    }
+    values: dict[str, float] = {"gear_stiffness": stall / _GEAR_TWIST, "delay": _PWM_DELAY if pulses else _BUS_DELAY}
+    lines = [
+        f"gear stiffness {values['gear_stiffness']:.3g} N m/rad: 1 deg under stall torque",
+        f"delay {1000 * values['delay']:g} ms after a command is taken over",
+    ]
+    for name, (guess, why) in guesses.items():
+        found = getattr(known, name)
+        values[name] = guess if found is None else found
+        words = name.replace("_", " ")
+        lines.append(f"{words} {guess:.3g} {why}" if found is None else f"{words} {found:.3g}, from {known.source}")
+    return values, lines

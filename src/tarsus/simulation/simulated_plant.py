@@ -1,0 +1,262 @@
+"""A plant in MuJoCo: servos, terrain and sensors of a simulated robot."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from tarsus.control.control_output import ControlOutput
+from tarsus.control.readings import SensorReadings
+from tarsus.errors import InputError, SimulationError
+from tarsus.kinematics.pose import Pose
+from tarsus.robot.robot import Robot
+from tarsus.simulation.engine import mujoco_module
+from tarsus.simulation.initial_state import check_stability, place
+from tarsus.simulation.measurement import Measurement
+from tarsus.simulation.robot_model import model, model_assumptions
+from tarsus.simulation.sensors.sampler import Sampler
+from tarsus.simulation.sensors.suite import SensorSuite
+from tarsus.simulation.servos.command_timing import CommandTiming
+from tarsus.simulation.servos.servo_table import ServoTable
+from tarsus.simulation.settings import TIMESTEP
+from tarsus.simulation.terrain.flat import Flat
+from tarsus.simulation.terrain.protocol import Terrain
+
+__all__ = ["PlantState", "SimulatedPlant"]
+
+Floats = np.ndarray[Any, np.dtype[np.float64]]
+
+# Settling ends when nothing moves faster than this [m/s, rad/s], or after the longest time [s].
+_AT_REST, _LONGEST_SETTLING = 2e-3, 3.0
+_SETTLING_CHECK = 25  # steps
+# A simulation in which anything is faster than this is unstable [m/s, rad/s].
+_UNSTABLE = 1e3
+
+
+class PlantState(NamedTuple):
+    """What a simulated robot does, exactly.
+
+    Attributes
+    ----------
+    time : float
+        Since the start [s].
+    body : Pose
+        Pose of B in G.
+    joint_angles, joint_speeds : array, shape (legs, 3)
+        Of the joints [rad, rad/s].
+    torques : array, shape (legs, 3)
+        Of the servos in the last physics step [N m].
+    foot_forces : array, shape (legs, 3)
+        Of the ground on the feet in the last physics step, in G [N].
+    """
+
+    time: float
+    body: Pose
+    joint_angles: Floats
+    joint_speeds: Floats
+    torques: Floats
+    foot_forces: Floats
+
+
+class SimulatedPlant:
+    """Executes joint angles in physics: a `Plant`.
+
+    The servos' torques are computed in every physics step of 2 ms, from the targets that they have taken over by then.
+
+    Parameters
+    ----------
+    robot : Robot
+        A single robot with masses.
+    terrain : Terrain, optional
+        What it walks on; flat ground where left out.
+    sensors : SensorSuite or str
+        What it measures: a suite or the name of one (`SensorSuite.named`).
+    servos : "catalogue", "ideal", ServoModel or nested sequence of ServoModel
+        Models of the servos in the robot's file (`ServoModel.of`), ideal ones, one for all joints, or ``[leg][joint]``.
+    seed : int
+        Seed of what is random in the sensors. The same seed gives the same run to the bit.
+
+    Attributes
+    ----------
+    terrain : Terrain
+        The ground.
+    sensors : SensorSuite
+        The sensors.
+    servos : tuple of tuple of ServoModel
+        The servos, ``servos[leg][joint]``.
+    assumed : tuple of str
+        What the model and the servos assume, a line each.
+    mj_model, mj_data : mujoco.MjModel, mujoco.MjData
+        Model and state in the engine, for viewers and for what has no method here.
+
+    Raises
+    ------
+    MissingDataError
+        If the mass of the body or of a link is unknown, or a servo for ``"catalogue"``.
+    InputError
+        If the robot is a batch, or a mass is too small to be simulated.
+    TarsusError
+        If MuJoCo is not installed.
+    """
+
+    def __init__(
+        self,
+        robot: Robot,
+        *,
+        terrain: Terrain | None = None,
+        sensors: SensorSuite | str = "ideal",
+        servos: Any = "catalogue",
+        seed: int = 0,
+    ) -> None:
+        self.robot = robot
+        self.terrain: Terrain = terrain or Flat()
+        self.sensors = SensorSuite.named(sensors) if isinstance(sensors, str) else sensors
+        self._seed = seed
+        self._table = ServoTable.of(robot, servos)
+        self.servos = self._table.servos
+        self.assumed = (*model_assumptions(robot), *self._table.assumed)
+        self._mujoco = mujoco_module()
+        self.mj_model = model(robot, terrain=self.terrain, servos=self.servos).compile()
+        self.mj_data = self._mujoco.MjData(self.mj_model)
+        self._measurement = Measurement(robot, self.mj_model, self.mj_data)
+        self._stall_currents = _stall_currents(robot)
+        self._timing: CommandTiming | None = None
+        self._sampler: Sampler | None = None
+        self._time, self._steps = 0.0, 0
+
+    def start(self, output: ControlOutput) -> None:
+        """Place the robot on the terrain in the controller's pose, and let it settle.
+
+        Its lowest foot touches the ground; a robot on its belly lies on it.
+
+        Parameters
+        ----------
+        output : ControlOutput
+            What the controller starts with.
+
+        Raises
+        ------
+        InputError
+            If the robot starts inside the terrain, or servos are too stiff for the physics step.
+        SimulationError
+            If the simulation becomes unstable.
+        """
+        angles = _checked(output.angles)
+        self._mujoco.mj_resetData(self.mj_model, self.mj_data)
+        place(self.robot, self.terrain, output, self.mj_model, self.mj_data)
+        check_stability(self._table, self.mj_model, self.mj_data)
+        self._timing = CommandTiming(self._table, TIMESTEP, angles)
+        self._time, self._steps = 0.0, 0
+        for _ in range(round(_LONGEST_SETTLING / TIMESTEP / _SETTLING_CHECK)):
+            self._advance(_SETTLING_CHECK)
+            if np.abs(self.mj_data.qvel).max() < _AT_REST:
+                break
+        self._timing = CommandTiming(self._table, TIMESTEP, angles)
+        self._time, self._steps = 0.0, 0
+        self._sampler = Sampler(self.sensors, self._exact(), seed=self._seed)
+
+    def step(self, output: ControlOutput, dt: float) -> SensorReadings:
+        """Execute joint angles for one tick, and measure.
+
+        Parameters
+        ----------
+        output : ControlOutput
+            What the controller gave out.
+        dt : float
+            Duration of the tick [s]; physics takes as many steps as fit until the tick's end, to the nearest.
+
+        Raises
+        ------
+        InputError
+            If an angle or the duration is not finite, or the plant has not been started.
+        SimulationError
+            If the simulation becomes unstable.
+        """
+        if self._timing is None or self._sampler is None:
+            raise InputError("the simulated plant has not been started; call start(output) before step(output, dt)")
+        if not 0 < dt < math.inf:
+            raise InputError(f"dt is {dt:g} s; it must be a finite number greater than 0")
+        self._timing.command(self._steps, _checked(output.angles))
+        self._time += dt
+        self._advance(round(self._time / TIMESTEP) - self._steps)
+        return self._sampler.read(self._time, self._exact())
+
+    def stop(self) -> None:
+        """Do nothing: the robot stays as it is."""
+
+    @property
+    def state(self) -> PlantState:
+        """What the robot does, exactly; a copy."""
+        data, shape = self.mj_data, (self.robot.legs, 3)
+        return PlantState(
+            time=self._time,
+            body=Pose(self._measurement.rotation(), np.array(data.qpos[:3])),
+            joint_angles=np.array(data.qpos[7:]).reshape(shape),
+            joint_speeds=np.array(data.qvel[6:]).reshape(shape),
+            torques=self._torques(),
+            foot_forces=self._measurement.foot_forces(),
+        )
+
+    def _advance(self, steps: int) -> None:
+        """Take physics steps."""
+        assert self._timing is not None
+        model, data, table, timing = self.mj_model, self.mj_data, self._table, self._timing
+        angles, speeds, motors = data.qpos[7:], data.qvel[6:], data.ctrl
+        take_step = self._mujoco.mj_step
+        for number in range(self._steps, self._steps + steps):
+            # The engine damps the joints, implicitly and so without becoming unstable.
+            motors[:] = table.drive(timing.advance(number) - angles, speeds)
+            take_step(model, data)
+        self._steps += steps
+        fastest = float(np.abs(data.qvel).max())
+        if not fastest < _UNSTABLE:
+            raise SimulationError(
+                f"the simulation became unstable by {self._steps * TIMESTEP:.3f} s: a speed of {fastest:g} m/s or "
+                "rad/s; softer servos, more rotor inertia or heavier links would work"
+            )
+
+    def _torques(self) -> Floats:
+        """Return the servos' torques in the last physics step ``(legs, 3)`` [N m]."""
+        data = self.mj_data
+        return np.asarray(data.ctrl - self._table.damping * data.qvel[6:]).reshape(self.robot.legs, 3)
+
+    def _exact(self) -> dict[str, Any]:
+        """Return the exact values of all channels of the sensor suite."""
+        data, suite, values = self.mj_data, self.sensors, dict[str, Any]()
+        shape = (self.robot.legs, 3)
+        if suite.joint_angles:
+            values["joint_angles"] = data.qpos[7:].reshape(shape).copy()
+        if suite.joint_speeds:
+            values["joint_speeds"] = data.qvel[6:].reshape(shape).copy()
+        if suite.torques:
+            values["torques"] = self._torques()
+        if suite.currents and self._stall_currents is not None:
+            values["currents"] = np.abs(self._torques()) * self._stall_currents
+        if suite.contacts or suite.forces:
+            forces = self._measurement.foot_forces()
+            values["contacts"] = np.linalg.norm(forces, axis=1)
+            values["forces"] = forces @ self._measurement.rotation()
+        if suite.attitude:
+            values["attitude"] = self._measurement.attitude()
+        if suite.angular_rates:
+            values["angular_rates"] = self._measurement.angular_rates()
+        return values
+
+
+def _checked(angles: Floats) -> Floats:
+    """Return joint angles in one axis, refusing what is not finite."""
+    if not np.isfinite(angles).all():
+        leg, joint = np.argwhere(~np.isfinite(angles))[0].tolist()
+        raise InputError(f"the commanded angle of leg {leg}, joint {joint} is {angles[leg, joint]}; it must be finite")
+    return np.array(angles, dtype=float).ravel()
+
+
+def _stall_currents(robot: Robot) -> Floats | None:
+    """Return current over torque of every servo ``(legs, 3)`` [A/(N m)]; None if one is unknown."""
+    rows = [
+        [s.stall_current / s.stall_torque if s and s.stall_current else math.nan for s in row] for row in robot.servos
+    ]
+    ratio = np.array(rows)
+    return None if np.isnan(ratio).any() else ratio

@@ -1,0 +1,67 @@
+"""Gaps: trenches across level ground."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+from tarsus.errors import InputError
+from tarsus.gait.setup import require_number
+from tarsus.simulation.settings import FRICTION
+from tarsus.simulation.terrain.profile import Profile
+from tarsus.simulation.terrain.protocol import Floats
+
+__all__ = ["Gaps"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Gaps:
+    """Equal trenches across x in level ground.
+
+    Attributes
+    ----------
+    width : float
+        Width of each trench along x [m].
+    spacing : float
+        From the start of one to the start of the next [m].
+    count : int
+        How many there are.
+    depth : float
+        How deep they are [m].
+    start : float
+        Where the first begins [m].
+    friction : float
+        Coefficient of friction.
+    """
+
+    width: float = 0.05
+    spacing: float = 0.4
+    count: int = 3
+    depth: float = 0.3
+    start: float = 0.5
+    friction: float = FRICTION
+
+    def __post_init__(self) -> None:
+        for name in ("friction", "width", "spacing", "depth"):
+            require_number(name, getattr(self, name), zero=False)
+        if self.count < 1:
+            raise InputError(f"count is {self.count}; there must be at least 1")
+        if self.width >= self.spacing:
+            raise InputError(f"width is {self.width:g} m; it must be less than the spacing, {self.spacing:g} m")
+
+    @cached_property
+    def profile(self) -> Profile:
+        """Its cross-section."""
+        starts = [self.start + number * self.spacing for number in range(self.count)]
+        edges = tuple(edge for start in starts for edge in (start, start + self.width))
+        floor = (-self.depth, -self.depth)
+        return Profile(edges, ((0.0, 0.0), *((floor, (0.0, 0.0)) * self.count)))
+
+    def height(self, x: Any, y: Any) -> Floats:
+        """Return the height of the ground [m]; see `Terrain`."""
+        return self.profile.height(x, y)
+
+    def add_to(self, spec: Any) -> None:
+        """Add the ground to a model; see `Terrain`."""
+        self.profile.add_to(spec, self.friction)

@@ -1,0 +1,63 @@
+"""Stairs: equal steps, one after the other, up or down."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+from tarsus.errors import InputError
+from tarsus.gait.setup import require_number
+from tarsus.simulation.settings import FRICTION
+from tarsus.simulation.terrain.profile import Profile
+from tarsus.simulation.terrain.protocol import Floats
+from tarsus.simulation.terrain.surface import FAR
+
+__all__ = ["Stairs"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Stairs:
+    """Equal steps along x.
+
+    Attributes
+    ----------
+    rise : float
+        Height of each step, negative downstairs [m].
+    tread : float
+        Depth of each step [m].
+    steps : int
+        How many there are.
+    start : float
+        Where the first face is [m].
+    friction : float
+        Coefficient of friction.
+    """
+
+    rise: float
+    tread: float = 0.25
+    steps: int = 5
+    start: float = 0.5
+    friction: float = FRICTION
+
+    def __post_init__(self) -> None:
+        require_number("friction", self.friction, zero=False)
+        require_number("tread", self.tread, zero=False)
+        if not 0 < abs(self.rise) < FAR:
+            raise InputError(f"rise is {self.rise:g} m; it must be between -{FAR:g} and {FAR:g} m, and not 0")
+        if self.steps < 1:
+            raise InputError(f"steps is {self.steps}; there must be at least 1")
+
+    @cached_property
+    def profile(self) -> Profile:
+        """Its cross-section."""
+        edges = tuple(self.start + number * self.tread for number in range(self.steps))
+        return Profile(edges, tuple((number * self.rise, number * self.rise) for number in range(self.steps + 1)))
+
+    def height(self, x: Any, y: Any) -> Floats:
+        """Return the height of the ground [m]; see `Terrain`."""
+        return self.profile.height(x, y)
+
+    def add_to(self, spec: Any) -> None:
+        """Add the ground to a model; see `Terrain`."""
+        self.profile.add_to(spec, self.friction)
