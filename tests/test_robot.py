@@ -106,6 +106,15 @@ def test_robots_are_equal_when_every_number_is():
     assert robot != "six"
 
 
+def test_robots_of_which_one_lacks_an_array_differ():
+    robot = six(body_mass=1.0, body_size=[0.2, 0.1, 0.05], link_mass=np.full((6, 3), 0.1))
+    for name in ("body_mass", "body_size", "link_mass"):
+        lacking = robot.replace(**{name: None})
+        assert robot != lacking
+        assert lacking != robot
+        assert lacking == robot.replace(**{name: None})
+
+
 def test_a_batch_of_designs_broadcasts():
     robot = six(femur=np.full((4, 1, 6), 0.1), coxa=np.full((3, 6), 0.02), body_mass=np.ones(3))
     assert robot.batch_shape == (4, 3)

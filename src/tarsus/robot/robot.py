@@ -116,7 +116,7 @@ class Robot:
             return NotImplemented
         for spec in dataclasses.fields(self):
             mine, theirs = getattr(self, spec.name), getattr(other, spec.name)
-            if spec.name in TAILS and mine is not None and theirs is not None:
+            if spec.name in TAILS:
                 if not np.array_equal(np.asarray(mine), np.asarray(theirs)):
                     return False
             elif mine is not theirs and mine != theirs:

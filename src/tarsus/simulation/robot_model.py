@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from tarsus.errors import InputError
-from tarsus.gait.setup import require_number
+from tarsus.gait.walk_setup import require_number
 from tarsus.robot.robot import JOINTS, Robot
 from tarsus.simulation.engine import mujoco_module
 from tarsus.simulation.servos.servo_table import ServoTable

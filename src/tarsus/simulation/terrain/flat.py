@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from tarsus.gait.setup import require_number
+from tarsus.gait.walk_setup import require_number
 from tarsus.simulation.engine import mujoco_module
 from tarsus.simulation.settings import FRICTION
 from tarsus.simulation.terrain.protocol import Floats

@@ -7,7 +7,7 @@ from functools import cached_property
 from typing import Any
 
 from tarsus.errors import InputError
-from tarsus.gait.setup import require_number
+from tarsus.gait.walk_setup import require_number
 from tarsus.simulation.settings import FRICTION
 from tarsus.simulation.terrain.profile import Profile
 from tarsus.simulation.terrain.protocol import Floats

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from tarsus.errors import InputError
-from tarsus.gait.setup import require_number
+from tarsus.gait.walk_setup import require_number
 from tarsus.simulation.settings import FRICTION
 from tarsus.simulation.terrain.height_field import HeightField
 from tarsus.simulation.terrain.protocol import Floats
