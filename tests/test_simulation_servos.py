@@ -158,7 +158,7 @@ def test_a_command_is_taken_over_at_the_update_and_acts_after_the_delay():
 
 
 def test_the_dead_band_holds_the_target_until_the_command_leaves_it():
-    servo = ServoModel(name="lazy", dead_band=0.01)
+    servo = ServoModel(name="lazy", dead_band=0.02)
     assert targets(servo, {0: 0.005, 1: 0.02, 2: 0.015, 3: -0.1}, 4) == pytest.approx([0, 0.01, 0.01, -0.09])
 
 
@@ -168,7 +168,7 @@ def test_servos_with_different_timing_in_one_robot():
     timing.command(0, np.full(18, 0.5))
     rows = np.array([timing.advance(step).copy()[:3] for step in range(3)])
     assert rows[:, 0] == pytest.approx([0, 0, 0.5])
-    assert rows[:, 1] == pytest.approx([0, 0, 0.5 - DS3225.dead_band])
+    assert rows[:, 1] == pytest.approx([0, 0, 0.5 - DS3225.dead_band / 2])
     assert rows[:, 2] == pytest.approx([0.5, 0.5, 0.5])
 
 

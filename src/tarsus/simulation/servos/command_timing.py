@@ -24,7 +24,8 @@ class _Group:
 class CommandTiming:
     """The targets of all servos from one physics step to the next.
 
-    A servo takes over the newest command at every multiple of its update period; it acts after its delay.
+    A servo takes over the newest command at every multiple of its update period; it acts after its delay. Within the
+    dead band around its target a command changes nothing, so that the target lags by half of it: hysteresis.
 
     Parameters
     ----------
@@ -38,7 +39,7 @@ class CommandTiming:
 
     def __init__(self, table: ServoTable, timestep: float, angles: Floats) -> None:
         each = [servo for row in table.servos for servo in row]
-        self._dead_band = np.array([servo.dead_band for servo in each])
+        self._dead_band = np.array([servo.dead_band / 2 for servo in each])
         timings = [(max(1, round(1 / (s.update_rate * timestep))), round(s.delay / timestep)) for s in each]
         self._groups = [
             _Group(np.array([i for i, each in enumerate(timings) if each == timing]), *timing)

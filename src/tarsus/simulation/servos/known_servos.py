@@ -22,7 +22,7 @@ class KnownServo(NamedTuple):
     backlash : float or None
         Free play at the output [rad].
     dead_band : float or None
-        Change of the command that the servo ignores [rad].
+        Width of the dead band [rad].
     update_rate : float or None
         How often it takes over a new command [1/s].
     """
@@ -37,16 +37,16 @@ class KnownServo(NamedTuple):
 
 _STS3215 = KnownServo(
     source="identified model in github.com/TheRobotStudio/SO-ARM100 (kp 17.8, armature 0.028); "
-    "free play measured by robonine.com",
+    "free play measured by robonine.com; dead zones of 1 step on either side",
     control_stiffness=17.8,
     rotor_inertia=0.028,
     backlash=math.radians(1.0),
-    dead_band=math.radians(360 / 4096),
+    dead_band=math.radians(2 * 360 / 4096),
 )
 _AX = KnownServo(
-    source="ROBOTIS e-manual: compliance slope 32 steps of 0.29 deg, resolution 0.29 deg (1.5 N m over 9.4 deg)",
+    source="ROBOTIS e-manual: compliance slope 32 steps of 0.29 deg, margin 1 step on either side",
     control_stiffness=1.5 / math.radians(32 * 300 / 1024),
-    dead_band=math.radians(300 / 1024),
+    dead_band=math.radians(2 * 300 / 1024),
 )
 
 KNOWN_SERVOS = {
@@ -59,7 +59,7 @@ KNOWN_SERVOS = {
         rotor_inertia=0.045,
     ),
     "DS3225": KnownServo(
-        source="catalogue note: dead band 3 us of 2000 us for 270 deg; pulses at 50-330 Hz",
+        source="catalogue note: dead band 3 us, of 2000 us for 270 deg",
         dead_band=math.radians(3 / 2000 * 270),
     ),
 }

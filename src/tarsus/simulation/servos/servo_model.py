@@ -25,7 +25,7 @@ _FULL_TORQUE_ERROR = math.radians(5.0)
 # Twist of the gears under stall torque [rad].
 _GEAR_TWIST = math.radians(1.0)
 _BACKLASH = math.radians(0.5)
-_DEAD_BAND = math.radians(0.3)
+_DEAD_BAND = math.radians(0.5)
 _ROTOR_INERTIA = 0.005  # [kg m^2]
 _PWM_RATE, _BUS_RATE = 50.0, 100.0  # [1/s]
 _PWM_DELAY, _BUS_DELAY = 0.004, 0.006  # [s]
@@ -39,8 +39,8 @@ class ServoModel:
     The torque is proportional to the position error, falls with the speed by the slope of the torque-speed line, and is
     limited by that line: a driving servo gives at most ``stall_torque (1 - speed / no_load_speed)``, one that is driven
     by its load at most the stall torque. Within the backlash there is no stiffness. A new command is taken over
-    `update_rate` times a second, acts after `delay`, and moves the target only where it differs by more than
-    `dead_band`.
+    `update_rate` times a second, acts after `delay`, and moves the target only as far as it is outside the dead
+    band around it.
 
     Attributes
     ----------
@@ -61,7 +61,7 @@ class ServoModel:
     backlash : float
         Free play at the output [rad].
     dead_band : float
-        Change of the command that it ignores [rad].
+        Width of the range of commands around the target in which it does not react [rad].
     delay : float
         From a command to its effect [s].
     update_rate : float
@@ -220,7 +220,7 @@ def _figures(servo: Servo, known: KnownServo, stall: float) -> tuple[dict[str, f
         "control_stiffness": (stall / _FULL_TORQUE_ERROR, "N m/rad: stall torque at an error of 5 deg"),
         "rotor_inertia": (_ROTOR_INERTIA, "kg m^2"),
         "backlash": (_BACKLASH, "rad (0.5 deg)"),
-        "dead_band": (_DEAD_BAND, "rad (0.3 deg)"),
+        "dead_band": (_DEAD_BAND, "rad (0.5 deg)"),
         "update_rate": (_PWM_RATE, "1/s: pulses at 50 Hz") if pulses else (_BUS_RATE, "1/s: one bus message a tick"),
     }
     values: dict[str, float] = {"gear_stiffness": stall / _GEAR_TWIST, "delay": _PWM_DELAY if pulses else _BUS_DELAY}
