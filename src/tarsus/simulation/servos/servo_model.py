@@ -217,20 +217,20 @@ def _figures(servo: Servo, known: KnownServo, stall: float) -> tuple[dict[str, f
     """Return what the catalogue does not say, known or assumed, and a line for each."""
     pulses = "pwm" in servo.control.lower()
     guesses = {
-        "control_stiffness": (stall / _FULL_TORQUE_ERROR, "N m/rad: stall torque at an error of 5 deg"),
-        "rotor_inertia": (_ROTOR_INERTIA, "kg m^2"),
-        "backlash": (_BACKLASH, "rad (0.5 deg)"),
-        "dead_band": (_DEAD_BAND, "rad (0.5 deg)"),
-        "update_rate": (_PWM_RATE, "1/s: pulses at 50 Hz") if pulses else (_BUS_RATE, "1/s: one bus message a tick"),
+        "control_stiffness": (stall / _FULL_TORQUE_ERROR, "N m/rad", "stall torque at an error of 5 deg"),
+        "rotor_inertia": (_ROTOR_INERTIA, "kg m^2", "assumed"),
+        "backlash": (_BACKLASH, "rad", "0.5 deg, assumed"),
+        "dead_band": (_DEAD_BAND, "rad", "0.5 deg, assumed"),
+        "update_rate": (_PWM_RATE if pulses else _BUS_RATE, "1/s", "pulses" if pulses else "a bus message a tick"),
     }
     values: dict[str, float] = {"gear_stiffness": stall / _GEAR_TWIST, "delay": _PWM_DELAY if pulses else _BUS_DELAY}
     lines = [
         f"gear stiffness {values['gear_stiffness']:.3g} N m/rad: 1 deg under stall torque",
         f"delay {1000 * values['delay']:g} ms after a command is taken over",
     ]
-    for name, (guess, why) in guesses.items():
+    for name, (guess, unit, why) in guesses.items():
         found = getattr(known, name)
         values[name] = guess if found is None else found
-        words = name.replace("_", " ")
-        lines.append(f"{words} {guess:.3g} {why}" if found is None else f"{words} {found:.3g}, from {known.source}")
+        origin = why if found is None else f"from {known.source}"
+        lines.append(f"{name.replace('_', ' ')} {values[name]:.3g} {unit}: {origin}")
     return values, lines
