@@ -130,14 +130,18 @@ def _check(robot: Robot) -> None:
     if robot.batch_shape:
         raise InputError(f"robot {robot.name!r} is a batch of designs {robot.batch_shape}; expected one robot")
     robot.require_masses()
-    masses = {"the body": float(robot.body_mass)}
+    masses = {"the body": float(np.asarray(robot.body_mass))}
     for leg, joint in itertools.product(range(robot.legs), range(3)):
-        masses[link_name(robot, leg, joint)] = float(robot.link_mass[leg, joint])
+        masses[link_name(robot, leg, joint)] = _link_mass(robot, leg, joint)
     for name, mass in masses.items():
         if mass < FLOOR_OF_MASS:
             raise InputError(
                 f"robot {robot.name!r}: the mass of {name} is {mass:g} kg; physics needs at least {FLOOR_OF_MASS:g} kg"
             )
+
+
+def _link_mass(robot: Robot, leg: int, joint: int) -> float:
+    return float(np.asarray(robot.link_mass)[leg, joint])
 
 
 def _box_inertia(mass: float, size: Floats) -> tuple[float, float, float]:
@@ -158,7 +162,7 @@ def _add_body(spec: Any, robot: Robot) -> Any:
     else:
         size = np.asarray(robot.body_size)
         shape = {"type": mujoco.mjtGeom.mjGEOM_BOX, "size": (size / 2).tolist()}
-    mass = float(robot.body_mass)
+    mass = float(np.asarray(robot.body_mass))
     body = spec.worldbody.add_body(
         name=name,
         mass=mass,
@@ -207,7 +211,7 @@ def _add_leg(spec: Any, body: Any, robot: Robot, leg: int, table: ServoTable) ->
 def _link_inertia(robot: Robot, leg: int, joint: int, step: Floats) -> dict[str, Any]:
     """Return mass, centre of mass and inertia of a link, in its frame."""
     length = float(np.linalg.norm(step))
-    mass, distance = float(robot.link_mass[leg, joint]), float(robot.link_com[leg, joint])
+    mass, distance = _link_mass(robot, leg, joint), float(robot.link_com[leg, joint])
     along = step / length if length else np.zeros(3)
     inertia = _box_inertia(mass, np.array([max(length, _SECTION), _SECTION, _SECTION]))
     return {"mass": mass, "ipos": distance * along, "iquat": _quaternion_from_x(along), "inertia": inertia}
