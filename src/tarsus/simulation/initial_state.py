@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -18,9 +18,11 @@ from tarsus.simulation.servos.servo_table import ServoTable
 from tarsus.simulation.settings import TIMESTEP
 from tarsus.simulation.terrain.protocol import Terrain
 
+if TYPE_CHECKING:
+    from jaxtyping import Shaped
+
 __all__ = ["check_stability", "place"]
 
-Floats = np.ndarray[Any, np.dtype[np.float64]]
 
 # Penetration of the terrain at which a robot starts inside it [m].
 _INSIDE = 0.003
@@ -65,7 +67,9 @@ def place(robot: Robot, terrain: Terrain, output: ControlOutput, model: Any, dat
         )
 
 
-def _lowest_points(robot: Robot, output: ControlOutput, model: Any) -> tuple[Floats, Floats]:
+def _lowest_points(
+    robot: Robot, output: ControlOutput, model: Any
+) -> tuple[Shaped[np.ndarray, "..."], Shaped[np.ndarray, "..."]]:
     """Return the points in G that may touch the ground ``(n, 3)``, and their radii ``(n,)``; feet, or all parts."""
     legs = np.asarray(output.body @ forward_kinematics(robot, output.angles))
     names = [f"{name} foot" for name in robot.leg_names]
@@ -77,7 +81,7 @@ def _lowest_points(robot: Robot, output: ControlOutput, model: Any) -> tuple[Flo
     return points, np.concatenate([radii, np.repeat(radii, 2), np.zeros(len(body))])
 
 
-def _lift(terrain: Terrain, points: Floats, radii: Floats) -> float:
+def _lift(terrain: Terrain, points: Shaped[np.ndarray, "..."], radii: Shaped[np.ndarray, "..."]) -> float:
     """Return by how much to raise the robot so that balls around its points are nowhere below the ground [m]."""
     around = np.linspace(0, 2 * math.pi, 8, endpoint=False)
     ring = np.concatenate([np.zeros((1, 2)), np.stack([np.cos(around), np.sin(around)], axis=-1)])

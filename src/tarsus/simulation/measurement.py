@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -11,10 +11,10 @@ from tarsus.robot.robot import Robot
 from tarsus.simulation.engine import mujoco_module
 from tarsus.simulation.robot_model import foot_geom_name
 
+if TYPE_CHECKING:
+    from jaxtyping import Float
+
 __all__ = ["Measurement"]
-
-Floats = np.ndarray[Any, np.dtype[np.float64]]
-
 
 _ROWS = np.arange(3)
 
@@ -37,19 +37,19 @@ class Measurement:
         self._legs = robot.legs
         self._leg_of = {model.geom(foot_geom_name(robot, leg)).id: leg for leg in range(robot.legs)}
 
-    def rotation(self) -> Floats:
+    def rotation(self) -> Float[np.ndarray, "3 3"]:
         """Return the rotation from B to G, ``(3, 3)``."""
         matrix = np.empty(9)
         self._mujoco.mju_quat2Mat(matrix, self._data.qpos[3:7])
         return matrix.reshape(3, 3)
 
-    def attitude(self) -> Floats:
+    def attitude(self) -> Float[np.ndarray, "2"]:
         """Return roll and pitch of B, ``(2,)`` [rad]."""
         w, x, y, z = self._data.qpos[3:7].tolist()
         roll = math.atan2(2 * (y * z + w * x), 1 - 2 * (x * x + y * y))
         return np.array([roll, math.asin(max(-1.0, min(1.0, 2 * (w * y - x * z))))])
 
-    def foot_forces(self) -> Floats:
+    def foot_forces(self) -> Float[np.ndarray, "legs 3"]:
         """Return the forces of the ground on the feet in G, ``(legs, 3)`` [N]."""
         forces, contact = np.zeros((self._legs, 3)), self._data.contact
         geoms, rows, frames = contact.geom, contact.efc_address, contact.frame
@@ -63,6 +63,6 @@ class Measurement:
                 forces[leg] += force if second in self._leg_of else -force
         return forces
 
-    def angular_rates(self) -> Floats:
+    def angular_rates(self) -> Float[np.ndarray, "3"]:
         """Return the angular velocity of B, along its own axes, ``(3,)`` [rad/s]."""
         return np.array(self._data.qvel[3:6])

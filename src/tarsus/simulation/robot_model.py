@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -22,9 +22,10 @@ from tarsus.simulation.settings import apply_settings
 from tarsus.simulation.terrain.flat import Flat
 from tarsus.simulation.terrain.protocol import Terrain
 
-__all__ = ["FLOOR_OF_MASS", "body_geom_name", "foot_geom_name", "link_name", "model", "model_assumptions"]
+if TYPE_CHECKING:
+    from jaxtyping import Shaped
 
-Floats = np.ndarray[Any, np.dtype[np.float64]]
+__all__ = ["FLOOR_OF_MASS", "body_geom_name", "foot_geom_name", "link_name", "model", "model_assumptions"]
 
 FLOOR_OF_MASS = 1e-4
 """Least mass of a body or link that can be simulated [kg]."""
@@ -144,7 +145,7 @@ def _link_mass(robot: Robot, leg: int, joint: int) -> float:
     return float(np.asarray(robot.link_mass)[leg, joint])
 
 
-def _box_inertia(mass: float, size: Floats) -> tuple[float, float, float]:
+def _box_inertia(mass: float, size: Shaped[np.ndarray, "..."]) -> tuple[float, float, float]:
     """Return the principal moments of inertia of a uniform box about its centre [kg m^2]."""
     x, y, z = (float(edge) ** 2 for edge in size)
     return mass * (y + z) / 12, mass * (x + z) / 12, mass * (x + y) / 12
@@ -208,7 +209,7 @@ def _add_leg(spec: Any, body: Any, robot: Robot, leg: int, table: ServoTable) ->
     )
 
 
-def _link_inertia(robot: Robot, leg: int, joint: int, step: Floats) -> dict[str, Any]:
+def _link_inertia(robot: Robot, leg: int, joint: int, step: Shaped[np.ndarray, "..."]) -> dict[str, Any]:
     """Return mass, centre of mass and inertia of a link, in its frame."""
     length = float(np.linalg.norm(step))
     mass, distance = _link_mass(robot, leg, joint), float(robot.link_com[leg, joint])
@@ -217,7 +218,7 @@ def _link_inertia(robot: Robot, leg: int, joint: int, step: Floats) -> dict[str,
     return {"mass": mass, "ipos": distance * along, "iquat": _quaternion_from_x(along), "inertia": inertia}
 
 
-def _quaternion_from_x(direction: Floats) -> Floats:
+def _quaternion_from_x(direction: Shaped[np.ndarray, "..."]) -> Shaped[np.ndarray, "..."]:
     """Return the quaternion of the shortest rotation from x to a unit vector; none for the zero vector."""
     if not direction.any():
         return np.array([1.0, 0.0, 0.0, 0.0])
@@ -245,7 +246,7 @@ def _add_joint(spec: Any, body: Any, robot: Robot, place: tuple[int, int], table
     motor.set_to_motor()
 
 
-def _add_link_geom(body: Any, robot: Robot, place: tuple[int, int], step: Floats) -> None:
+def _add_link_geom(body: Any, robot: Robot, place: tuple[int, int], step: Shaped[np.ndarray, "..."]) -> None:
     """Add the capsule of a link; that of the tibia ends inside the ball of the foot."""
     leg, joint = place
     foot = _foot_radius(robot, leg)

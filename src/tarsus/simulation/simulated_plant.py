@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -24,9 +24,11 @@ from tarsus.simulation.settings import TIMESTEP
 from tarsus.simulation.terrain.flat import Flat
 from tarsus.simulation.terrain.protocol import Terrain
 
+if TYPE_CHECKING:
+    from jaxtyping import Float, Shaped
+
 __all__ = ["PlantState", "SimulatedPlant"]
 
-Floats = np.ndarray[Any, np.dtype[np.float64]]
 
 # Settling ends when nothing moves faster than this [m/s, rad/s], or after the longest time [s].
 _AT_REST, _LONGEST_SETTLING = 2e-3, 3.0
@@ -54,10 +56,10 @@ class PlantState(NamedTuple):
 
     time: float
     body: Pose
-    joint_angles: Floats
-    joint_speeds: Floats
-    torques: Floats
-    foot_forces: Floats
+    joint_angles: Float[np.ndarray, "legs 3"]
+    joint_speeds: Float[np.ndarray, "legs 3"]
+    torques: Float[np.ndarray, "legs 3"]
+    foot_forces: Float[np.ndarray, "legs 3"]
 
 
 class SimulatedPlant:
@@ -217,7 +219,7 @@ class SimulatedPlant:
                 "rad/s; softer servos, more rotor inertia or heavier links would work"
             )
 
-    def _torques(self) -> Floats:
+    def _torques(self) -> Float[np.ndarray, "legs 3"]:
         """Return the servos' torques in the last physics step ``(legs, 3)`` [N m]."""
         data = self.mj_data
         return np.asarray(data.ctrl - self._table.damping * data.qvel[6:]).reshape(self.robot.legs, 3)
@@ -245,7 +247,7 @@ class SimulatedPlant:
         return values
 
 
-def _checked(angles: Floats) -> Floats:
+def _checked(angles: Shaped[np.ndarray, "..."]) -> Shaped[np.ndarray, "..."]:
     """Return joint angles in one axis, refusing what is not finite."""
     if not np.isfinite(angles).all():
         leg, joint = np.argwhere(~np.isfinite(angles))[0].tolist()
@@ -253,7 +255,7 @@ def _checked(angles: Floats) -> Floats:
     return np.array(angles, dtype=float).ravel()
 
 
-def _stall_currents(robot: Robot) -> Floats | None:
+def _stall_currents(robot: Robot) -> Float[np.ndarray, "legs 3"] | None:
     """Return current over torque of every servo ``(legs, 3)`` [A/(N m)]; None if one is unknown."""
     rows = [
         [s.stall_current / s.stall_torque if s and s.stall_current else math.nan for s in row] for row in robot.servos

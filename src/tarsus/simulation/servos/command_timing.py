@@ -2,23 +2,24 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from tarsus.simulation.servos.servo_table import ServoTable
 
-__all__ = ["CommandTiming"]
+if TYPE_CHECKING:
+    from jaxtyping import Float, Shaped
 
-Floats = np.ndarray[Any, np.dtype[np.float64]]
+__all__ = ["CommandTiming"]
 
 
 class _Group:
     """Servos with the same timing."""
 
-    def __init__(self, joints: Floats, period: int, delay: int) -> None:
+    def __init__(self, joints: Shaped[np.ndarray, "..."], period: int, delay: int) -> None:
         self.joints, self.period, self.delay = joints, period, delay
-        self.pending: dict[int, Floats] = {}
+        self.pending: dict[int, np.ndarray] = {}
 
 
 class CommandTiming:
@@ -37,7 +38,7 @@ class CommandTiming:
         Targets at the start [rad].
     """
 
-    def __init__(self, table: ServoTable, timestep: float, angles: Floats) -> None:
+    def __init__(self, table: ServoTable, timestep: float, angles: Float[np.ndarray, "joints"]) -> None:
         each = [servo for row in table.servos for servo in row]
         self._dead_band = np.array([servo.dead_band / 2 for servo in each])
         timings = [(max(1, round(1 / (s.update_rate * timestep))), round(s.delay / timestep)) for s in each]
@@ -47,7 +48,7 @@ class CommandTiming:
         ]
         self.target = np.array(angles, dtype=float)
 
-    def command(self, step: int, angles: Floats) -> None:
+    def command(self, step: int, angles: Float[np.ndarray, "joints"]) -> None:
         """Give a command at a physics step.
 
         Parameters
@@ -61,7 +62,7 @@ class CommandTiming:
             taken = -(-step // group.period) * group.period
             group.pending[taken + group.delay] = angles
 
-    def advance(self, step: int) -> Floats:
+    def advance(self, step: int) -> Float[np.ndarray, "joints"]:
         """Return the targets in a physics step, ``(joints,)`` [rad].
 
         Parameters

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any, Self
+from typing import TYPE_CHECKING, Self
 
 import numpy as np
 
@@ -14,9 +14,11 @@ from tarsus.robot.servo import Servo
 from tarsus.simulation.servos.known_servos import KNOWN_SERVOS, KnownServo
 from tarsus.simulation.servos.torque_law import drive_torque
 
+if TYPE_CHECKING:
+    from jaxtyping import Float
+
 __all__ = ["ServoModel"]
 
-Floats = np.ndarray[Any, np.dtype[np.float64]]
 
 # What is assumed where no source says more. Position error at which a servo gives its stall torque [rad]: servos whose
 # gain is known have 0.11 to 0.19, stiff digital ones less. With it, and the twist of the gears, the presets' joints
@@ -169,7 +171,9 @@ class ServoModel:
         """All damping of the joint: slope of the torque-speed line and further damping [N m s/rad]."""
         return self.torque_speed_slope + self.damping
 
-    def torque(self, error: Floats, speed: Floats) -> Floats:
+    def torque(
+        self, error: Float[np.ndarray, "*#batch"], speed: Float[np.ndarray, "*#batch"]
+    ) -> Float[np.ndarray, "*batch"]:
         """Return the torque at a position error and a speed.
 
         Parameters

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, NamedTuple, Self
+from typing import TYPE_CHECKING, Any, NamedTuple, Self
 
 import numpy as np
 
@@ -12,9 +12,10 @@ from tarsus.robot.robot import JOINTS, Robot
 from tarsus.simulation.servos.servo_model import ServoModel
 from tarsus.simulation.servos.torque_law import drive_torque
 
-__all__ = ["ServoTable"]
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
-Floats = np.ndarray[Any, np.dtype[np.float64]]
+__all__ = ["ServoTable"]
 
 
 class ServoTable(NamedTuple):
@@ -37,11 +38,11 @@ class ServoTable(NamedTuple):
     """
 
     servos: tuple[tuple[ServoModel, ...], ...]
-    stiffness: Floats
-    damping: Floats
-    play: Floats
-    stall_torque: Floats
-    slope: Floats
+    stiffness: Float[np.ndarray, "joints"]
+    damping: Float[np.ndarray, "joints"]
+    play: Float[np.ndarray, "joints"]
+    stall_torque: Float[np.ndarray, "joints"]
+    slope: Float[np.ndarray, "joints"]
 
     @classmethod
     def of(cls, robot: Robot, servos: Any) -> Self:
@@ -77,7 +78,9 @@ class ServoTable(NamedTuple):
         """What the models assume, a line each."""
         return tuple(dict.fromkeys(line for row in self.servos for servo in row for line in servo.assumed))
 
-    def drive(self, error: Floats, speed: Floats) -> Floats:
+    def drive(
+        self, error: Float[np.ndarray, "joints"], speed: Float[np.ndarray, "joints"]
+    ) -> Float[np.ndarray, "joints"]:
         """Return the torque of every servo without what damps it.
 
         Parameters

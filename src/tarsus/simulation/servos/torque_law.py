@@ -12,19 +12,27 @@ torque times ``1 - |w| / no-load speed``; while it is driven by its load, at mos
 
 from __future__ import annotations
 
-from typing import Any, TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
+if TYPE_CHECKING:
+    from jaxtyping import Float
+
 __all__ = ["drive_torque"]
 
-Floats = np.ndarray[Any, np.dtype[np.float64]]
-Numbers: TypeAlias = Floats | float
+Numbers: TypeAlias = np.ndarray | float
 
 
 def drive_torque(
-    error: Floats, speed: Floats, *, stiffness: Numbers, play: Numbers, stall_torque: Numbers, slope: Numbers
-) -> Floats:
+    error: Float[np.ndarray, "*#batch"],
+    speed: Float[np.ndarray, "*#batch"],
+    *,
+    stiffness: Numbers,
+    play: Numbers,
+    stall_torque: Numbers,
+    slope: Numbers,
+) -> Float[np.ndarray, "*batch"]:
     """Return the torque of servos without what damps them; all arrays broadcast against each other.
 
     Parameters

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -13,8 +13,10 @@ from tarsus.gait.walk_setup import require_number
 from tarsus.simulation.engine import mujoco_module
 from tarsus.simulation.settings import FRICTION
 from tarsus.simulation.terrain.flat import Flat
-from tarsus.simulation.terrain.protocol import Floats
 from tarsus.simulation.terrain.surface import surface
+
+if TYPE_CHECKING:
+    from jaxtyping import Float, Shaped
 
 __all__ = ["Blocks"]
 
@@ -64,7 +66,7 @@ class Blocks:
         return round(2 * self.extent / self.size)
 
     @cached_property
-    def heights(self) -> Floats:
+    def heights(self) -> Float[np.ndarray, "side side"]:
         """Heights of the blocks by x and y, ``(side, side)`` [m]."""
         heights = self.rise * np.random.default_rng(self.seed).random((self.side, self.side))
         centres = (np.arange(self.side) + 0.5) * self.size - self.side * self.size / 2
@@ -73,7 +75,7 @@ class Blocks:
         heights.setflags(write=False)
         return heights
 
-    def height(self, x: Any, y: Any) -> Floats:
+    def height(self, x: Any, y: Any) -> Shaped[np.ndarray, "..."]:
         """Return the height of the ground [m]; see `Terrain`."""
         along, across = np.broadcast_arrays(np.asarray(x, dtype=float), np.asarray(y, dtype=float))
         cells = [np.floor(at / self.size + self.side / 2).astype(int) for at in (along, across)]

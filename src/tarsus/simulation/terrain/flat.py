@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from tarsus.gait.walk_setup import require_number
 from tarsus.simulation.engine import mujoco_module
 from tarsus.simulation.settings import FRICTION
-from tarsus.simulation.terrain.protocol import Floats
 from tarsus.simulation.terrain.surface import surface
+
+if TYPE_CHECKING:
+    from jaxtyping import Shaped
 
 __all__ = ["Flat"]
 
@@ -31,7 +33,7 @@ class Flat:
     def __post_init__(self) -> None:
         require_number("friction", self.friction, zero=False)
 
-    def height(self, x: Any, y: Any) -> Floats:
+    def height(self, x: Any, y: Any) -> Shaped[np.ndarray, "..."]:
         """Return the height of the ground, 0 [m]; see `Terrain`."""
         return np.zeros(np.broadcast_shapes(np.shape(x), np.shape(y)))
 

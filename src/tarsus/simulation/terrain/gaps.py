@@ -4,13 +4,17 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from tarsus.errors import InputError
 from tarsus.gait.walk_setup import require_number
 from tarsus.simulation.settings import FRICTION
 from tarsus.simulation.terrain.profile import Profile
-from tarsus.simulation.terrain.protocol import Floats
+
+if TYPE_CHECKING:
+    from jaxtyping import Shaped
 
 __all__ = ["Gaps"]
 
@@ -58,7 +62,7 @@ class Gaps:
         floor = (-self.depth, -self.depth)
         return Profile(edges, ((0.0, 0.0), *((floor, (0.0, 0.0)) * self.count)))
 
-    def height(self, x: Any, y: Any) -> Floats:
+    def height(self, x: Any, y: Any) -> Shaped[np.ndarray, "..."]:
         """Return the height of the ground [m]; see `Terrain`."""
         return self.profile.height(x, y)
 

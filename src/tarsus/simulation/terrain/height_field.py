@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import os
 from dataclasses import dataclass
-from typing import Any, Self
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
@@ -13,8 +13,10 @@ from tarsus.errors import InputError, TarsusError
 from tarsus.gait.walk_setup import require_number
 from tarsus.simulation.engine import mujoco_module
 from tarsus.simulation.settings import FRICTION
-from tarsus.simulation.terrain.protocol import Floats
 from tarsus.simulation.terrain.surface import FAR, surface
+
+if TYPE_CHECKING:
+    from jaxtyping import Float, Shaped
 
 __all__ = ["HeightField"]
 
@@ -36,7 +38,7 @@ class HeightField:
         Coefficient of friction.
     """
 
-    heights: Floats
+    heights: Float[np.ndarray, "rows columns"]
     size: tuple[float, float]
     friction: float = FRICTION
 
@@ -99,7 +101,7 @@ class HeightField:
             raise InputError(f"{os.fspath(path)} can't be read as a picture: {error}") from None
         return cls(heights=grey[::-1] / (65535 if deep else 255) * rise, size=size, friction=friction)
 
-    def height(self, x: Any, y: Any) -> Floats:
+    def height(self, x: Any, y: Any) -> Shaped[np.ndarray, "..."]:
         """Return the height of the ground [m]; see `Terrain`."""
         x, y = np.broadcast_arrays(np.asarray(x, dtype=float), np.asarray(y, dtype=float))
         rows, columns = self.heights.shape

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from tarsus.simulation.engine import mujoco_module
-from tarsus.simulation.terrain.protocol import Floats
 from tarsus.simulation.terrain.surface import FAR, surface
+
+if TYPE_CHECKING:
+    from jaxtyping import Shaped
 
 __all__ = ["Profile"]
 
@@ -31,11 +33,11 @@ class Profile(NamedTuple):
     ends: tuple[tuple[float, float], ...]
 
     @property
-    def bounds(self) -> Floats:
+    def bounds(self) -> Shaped[np.ndarray, "..."]:
         """All edges, the outermost included, ``(segments + 1,)`` [m]."""
         return np.array([-FAR, *self.edges, FAR])
 
-    def height(self, x: Any, y: Any) -> Floats:
+    def height(self, x: Any, y: Any) -> Shaped[np.ndarray, "..."]:
         """Return the height of the ground; at a vertical face, that of the farther segment."""
         at = np.broadcast_to(np.asarray(x, dtype=float), np.broadcast_shapes(np.shape(x), np.shape(y)))
         bounds, ends = self.bounds, np.array(self.ends)

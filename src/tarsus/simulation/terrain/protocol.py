@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any, Protocol, runtime_checkable
+from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 
 import numpy as np
 
-__all__ = ["Floats", "Terrain"]
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
-Floats = np.ndarray[Any, np.dtype[np.float64]]
+__all__ = ["Terrain"]
 
 
 @runtime_checkable
@@ -19,7 +20,7 @@ class Terrain(Protocol):
     def friction(self) -> float:
         """Coefficient of friction between ground and feet."""
 
-    def height(self, x: Any, y: Any) -> Floats:
+    def height(self, x: Any, y: Any) -> Float[np.ndarray, "*batch"]:
         """Return the height of the ground.
 
         Parameters

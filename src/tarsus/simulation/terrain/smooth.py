@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -12,7 +12,9 @@ from tarsus.errors import InputError
 from tarsus.gait.walk_setup import require_number
 from tarsus.simulation.settings import FRICTION
 from tarsus.simulation.terrain.height_field import HeightField
-from tarsus.simulation.terrain.protocol import Floats
+
+if TYPE_CHECKING:
+    from jaxtyping import Shaped
 
 __all__ = ["Smooth"]
 
@@ -80,7 +82,7 @@ class Smooth:
         heights *= self.amplitude / np.abs(heights).max()
         return HeightField(heights=heights, size=(2 * self.extent, 2 * self.extent), friction=self.friction)
 
-    def height(self, x: Any, y: Any) -> Floats:
+    def height(self, x: Any, y: Any) -> Shaped[np.ndarray, "..."]:
         """Return the height of the ground [m]; see `Terrain`."""
         return self.field.height(x, y)
 

@@ -4,14 +4,18 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from tarsus.errors import InputError
 from tarsus.gait.walk_setup import require_number
 from tarsus.simulation.settings import FRICTION
 from tarsus.simulation.terrain.profile import Profile
-from tarsus.simulation.terrain.protocol import Floats
 from tarsus.simulation.terrain.surface import FAR
+
+if TYPE_CHECKING:
+    from jaxtyping import Shaped
 
 __all__ = ["Stairs"]
 
@@ -54,7 +58,7 @@ class Stairs:
         edges = tuple(self.start + number * self.tread for number in range(self.steps))
         return Profile(edges, tuple((number * self.rise, number * self.rise) for number in range(self.steps + 1)))
 
-    def height(self, x: Any, y: Any) -> Floats:
+    def height(self, x: Any, y: Any) -> Shaped[np.ndarray, "..."]:
         """Return the height of the ground [m]; see `Terrain`."""
         return self.profile.height(x, y)
 

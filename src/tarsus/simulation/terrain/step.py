@@ -4,14 +4,18 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from tarsus.errors import InputError
 from tarsus.gait.walk_setup import require_number
 from tarsus.simulation.settings import FRICTION
 from tarsus.simulation.terrain.profile import Profile
-from tarsus.simulation.terrain.protocol import Floats
 from tarsus.simulation.terrain.surface import FAR
+
+if TYPE_CHECKING:
+    from jaxtyping import Shaped
 
 __all__ = ["Step"]
 
@@ -44,7 +48,7 @@ class Step:
         """Its cross-section."""
         return Profile((self.start,), ((0.0, 0.0), (self.rise, self.rise)))
 
-    def height(self, x: Any, y: Any) -> Floats:
+    def height(self, x: Any, y: Any) -> Shaped[np.ndarray, "..."]:
         """Return the height of the ground [m]; see `Terrain`."""
         return self.profile.height(x, y)
 
