@@ -160,9 +160,8 @@ class Recorder:
         rate : float
             Nominal ticks per second [1/s].
         """
-        for since, _, last, limitation in self._present.values():
-            if last > self.time - _GAP:
-                self._note_unmet(since, limitation)
+        for since, _, _, limitation in self._present.values():
+            self._note_unmet(since, limitation)
         outputs = self._outputs
         twist = np.array([output.twist for output in outputs])
         guard = tuple(output.guard for output in outputs)
