@@ -27,6 +27,7 @@ def step_inputs_of(setup, rest, twist, **changes):
         "may_land": np.ones(len(rest), dtype=bool),
         "rest": rest,
         "placement_bounds": np.full((len(rest), 16), np.inf),
+        "placement_radii": [np.inf] * len(rest),
         "admittance_offset": np.zeros(len(rest)),
     }
     return StepInputs(**{**values, **changes})

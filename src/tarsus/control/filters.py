@@ -124,11 +124,12 @@ def integral_factors(time: Any, *, bandwidth: float) -> tuple[Any, Any, Any]:
     of_target, of_value, of_rate : float or array
         Factors [s, s, s^2].
     """
-    turned = bandwidth * time
-    decay = np.exp(-turned) if isinstance(turned, np.ndarray) else math.exp(-turned)
-    of_rate = (1 - decay * (1 + turned)) / (bandwidth * bandwidth)
-    of_value = (1 - decay) / bandwidth + bandwidth * of_rate
-    return time - of_value, of_value, of_rate
+    exponent = -bandwidth * time
+    decay = np.exp(exponent) if isinstance(exponent, np.ndarray) else math.exp(exponent)
+    decayed = 1 - decay
+    settled = decayed + decay * exponent
+    of_value = (decayed + settled) / bandwidth
+    return time - of_value, of_value, settled / (bandwidth * bandwidth)
 
 
 # Values and rates below this are 0 [unit of the values].

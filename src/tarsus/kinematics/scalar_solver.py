@@ -4,8 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from math import atan2, sqrt
+from typing import TYPE_CHECKING
+
+import numpy as np
 
 from tarsus.robot.robot import Robot
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
 __all__ = ["ScalarSolver"]
 
@@ -24,9 +30,9 @@ class ScalarSolver:
         columns = (
             *(g.mount_x, g.mount_y, g.mount_z + g.up, g.cos_yaw, g.sin_yaw, g.coxa, g.side, g.side2),
             *(g.farthest2, g.nearest2, g.sum2, g.difference2),
-            *(g.coxa_lower, g.coxa_upper, g.femur_lower, g.femur_upper, g.tibia_lower, g.tibia_upper),
         )
-        self._legs = list(zip(*(column.tolist() for column in columns), strict=True))
+        limits = (g.coxa_lower, g.coxa_upper, g.femur_lower, g.femur_upper, g.tibia_lower, g.tibia_upper)
+        self._legs, self._limits = _rows(columns), _rows(limits)
 
     def angles(
         self, feet: Sequence[Sequence[float]], rotation: Sequence[Sequence[float]], position: Sequence[float]
@@ -50,8 +56,8 @@ class ScalarSolver:
         (r00, r01, r02), (r10, r11, r12), (r20, r21, r22) = rotation
         px, py, pz = position
         found = []
-        for (fx, fy, fz), leg in zip(feet, self._legs, strict=True):
-            (mx, my, mz, cos, sin, coxa, side, side2, farthest2, nearest2, sum2, difference2, *limits) = leg
+        for (fx, fy, fz), leg, limits in zip(feet, self._legs, self._limits, strict=True):
+            mx, my, mz, cos, sin, coxa, side, side2, farthest2, nearest2, sum2, difference2 = leg
             dx, dy, dz = fx - px, fy - py, fz - pz
             bx, by = dx * r00 + dy * r10 + dz * r20 - mx, dx * r01 + dy * r11 + dz * r21 - my
             z = dx * r02 + dy * r12 + dz * r22 - mz
@@ -74,3 +80,7 @@ class ScalarSolver:
                 return None
             found.append((q0, q1, q2))
         return found
+
+
+def _rows(columns: Sequence[Float[np.ndarray, "legs"]]) -> list[tuple[float, ...]]:
+    return list(zip(*(column.tolist() for column in columns), strict=True))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 from tarsus.control.limiter.protocol import RateLimiter, granted_rate
 from tarsus.control.tick.components import WalkComponents
@@ -55,13 +54,11 @@ def _step_inputs(walk: WalkComponents, tick: TickState, dt: float) -> StepInputs
     if walk.foot_targets:
         may_lift = every.copy()
         may_lift[list(current.parameters.excluded)] = False
-    ground: dict[str, Any] = {"admittance_offset": walk.no_offset}
     if terrain.estimate is not None:
         phase = state.swing_phase + dt * timing.frequency / state.swings(timing.gait.duty_factor)
         may_land, waits = terrain.may_land(state, phase >= 1.0 - PHASE_TOLERANCE)
         hold_feet = hold_feet or waits
-        ground = terrain.step_inputs(state, current.terrain)
-    return StepInputs(
+    inputs = StepInputs(
         gait=timing.gait,
         frequency=0.0 if standing else timing.frequency,
         twist=tick.twist,
@@ -72,11 +69,13 @@ def _step_inputs(walk: WalkComponents, tick: TickState, dt: float) -> StepInputs
         may_land=may_land,
         rest=transitions.footholds.rest,
         placement_bounds=transitions.footholds.placement_bounds,
+        placement_radii=transitions.footholds.placement_radii,
+        admittance_offset=walk.no_offset,
         hold_feet=hold_feet,
         beats=timing.beats,
         swaying=pose.is_swaying(state.posture.value),
-        **ground,
     )
+    return inputs if terrain.estimate is None else inputs._replace(**terrain.step_inputs(state, current.terrain))
 
 
 def _finished(walk: WalkComponents, tick: TickState, state: GaitState, dt: float) -> TickState:

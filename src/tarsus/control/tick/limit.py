@@ -66,13 +66,13 @@ def limited(
     limiters : sequence of TwistLimiter
         The limiters in their order.
     """
-    transitions = walk.transitions
-    state = transitions.timing.with_first_lift(tick.gait, 0) if tick.standing else tick.gait
+    transitions, standing = walk.transitions, tick.standing
+    state = transitions.timing.with_first_lift(tick.gait, 0) if standing else tick.gait
     grant = granted_twist(limiters, TwistRequest(tuple(command.twist), dt, state, tick.twist))
-    if tick.standing and not any(grant.scaled(command.twist)) and transitions.at_rest(tick.gait):
+    if standing and not any(grant.scaled(command.twist)) and transitions.at_rest(tick.gait):
         return TickState(tick.gait, tick.twist, tick.walk_state, grant.limitations)
     assert grant.target is not None  # the governor sets it
     following = tick.walk_state
-    if tick.standing:
+    if standing:
         following = next_walk_state(following, follows_twist=bool(grant.target.any()), at_rest=False)
     return TickState(state, grant.target, following, grant.limitations)

@@ -25,6 +25,8 @@ if TYPE_CHECKING:
 __all__ = ["TransitionExecutor"]
 
 _SWAY = Cause("joint speed and acceleration at this cycle time")
+# Rounding of a distance [m].
+_ROUNDING = 1e-9
 
 
 class TransitionExecutor:
@@ -215,7 +217,8 @@ class TransitionExecutor:
         bounds = self._foot_targets.without_bounds(self.footholds.bounds_with(planned))
         bounds = np.minimum(bounds, planned.final_limits.bounds)
         over = self._excess(np.zeros(delays.shape), ends, bounds, now, timing.bandwidth).max(axis=(1, 2, 3, 4))
-        first = int(over.argmin())
+        # Symmetric legs suit equally well but for rounding; the first of them lifts, on any machine.
+        first = int((over <= over.min() + _ROUNDING).argmax())
         if over[first] <= POSITION_TOLERANCE:
             self.phase, self._active, self.scheduler.planned = TransitionPhase.TOUCHDOWN, planned, None
             self._next_timing, self._first_leg, self._delays = timing, first, delays[first]

@@ -36,6 +36,8 @@ class FootholdTransfer:
         Where each foot rests, or will be put down, in the heading frame [m].
     placement_bounds : array, shape (legs, 16)
         Distance from its rest foothold at which each foot may be put down next, along each side's normal [m].
+    placement_radii : list of float
+        The least of these distances of each foot [m].
     transferred : array of bool, shape (legs,)
         Which feet stand at their new rest footholds.
     """
@@ -55,6 +57,7 @@ class FootholdTransfer:
         self.placement_bounds: Float[np.ndarray, "legs 16"] = np.maximum(
             landing - (NORMALS_CONJUGATE * self.rest[:, None]).real, 0.0
         )
+        self.placement_radii: list[float] = self.placement_bounds.min(axis=1).tolist()
 
     @property
     def new_rest(self) -> Complex[np.ndarray, "legs"]:

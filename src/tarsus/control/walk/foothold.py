@@ -61,6 +61,8 @@ class FootholdPredictor(NamedTuple):
         Its twist [m/s, m/s, rad/s], and the rate of change of the twist.
     bandwidth : float
         Bandwidth with which that rate decays [rad/s].
+    known : dict of float to (complex, complex)
+        Predictions that are made: legs that swing together ask for the same times.
     """
 
     origin: complex
@@ -68,6 +70,7 @@ class FootholdPredictor(NamedTuple):
     value: list[float]
     rate: list[float]
     bandwidth: float
+    known: dict[float, tuple[complex, complex]]
 
     @classmethod
     def of(cls, now: GaitState, inputs: StepInputs) -> FootholdPredictor:
@@ -81,9 +84,11 @@ class FootholdPredictor(NamedTuple):
             Inputs of the step.
         """
         turn = cmath.exp(1j * now.yaw)
-        return cls(now.origin, turn, now.twist.value.tolist(), now.twist.rate.tolist(), inputs.bandwidth)
+        return cls(now.origin, turn, now.twist.value.tolist(), now.twist.rate.tolist(), inputs.bandwidth, {})
 
-    def foothold(self, rest: complex, bounds: Float[np.ndarray, "16"], touchdown: float, mid_stance: float) -> complex:
+    def foothold(
+        self, rest: complex, bounds: Float[np.ndarray, "16"], *, radius: float, touchdown: float, mid_stance: float
+    ) -> complex:
         """Return the foothold of a foot in G [m].
 
         Parameters
@@ -92,6 +97,8 @@ class FootholdPredictor(NamedTuple):
             Its rest foothold in the heading frame [m].
         bounds : array, shape (16,)
             Greatest distance from the rest foothold along each of `NORMALS` [m].
+        radius : float
+            The least of them [m].
         touchdown, mid_stance : float
             Time until touchdown, and until the middle of the stance [s].
         """
@@ -100,16 +107,21 @@ class FootholdPredictor(NamedTuple):
         # While the body turns or slows down, this may be outside the bounds at touchdown.
         position, rotation = self._body(touchdown)
         out = (foothold - position) * rotation.conjugate() - rest
-        along = (NORMALS_CONJUGATE * out).real
-        fraction = float((bounds / np.maximum(along, 1e-12)).min())
-        if fraction < 1 - _ROUNDING:
-            foothold = position + rotation * (rest + fraction * out)
+        if abs(out) > radius:
+            along = (NORMALS_CONJUGATE * out).real
+            fraction = float((bounds / np.maximum(along, 1e-12)).min())
+            if fraction < 1 - _ROUNDING:
+                foothold = position + rotation * (rest + fraction * out)
         return self.origin + self.turn * foothold
 
     def _body(self, ahead: float) -> tuple[complex, complex]:
         """Return position and rotation of the heading frame after a time, relative to the present ones."""
+        if ahead in self.known:
+            return self.known[ahead]
         w = self.bandwidth
         decayed = (1 - math.exp(-w * ahead) * (1 + w * ahead)) / (w * w)
         (x, y, angle), (ax, ay, turn) = self.value, self.rate
         angle = angle * ahead + turn * decayed
-        return complex(x * ahead + ax * decayed, y * ahead + ay * decayed) * chord_factor(angle), cmath.exp(1j * angle)
+        position = complex(x * ahead + ax * decayed, y * ahead + ay * decayed) * chord_factor(angle)
+        self.known[ahead] = position, cmath.exp(1j * angle)
+        return self.known[ahead]

@@ -65,15 +65,19 @@ def polygon_excess(
     array, shape (..., n, 3, legs, 16)
         At the start, in the middle and at the end of that time [m]; negative inside.
     """
-    return _Prediction.of(state, begins, ends, bandwidth).beyond(targets, bounds)
+    return _Prediction.of(state, begins, ends, bandwidth).excess(targets, bounds)
 
 
 class _Prediction(NamedTuple):
-    """Prediction of the feet in the heading frame, up to the target's part: at three times, shape (..., 3, legs)."""
+    """Prediction of the feet in the heading frame for any target of the twist, at three times, shape (..., 3, legs).
+
+    The integral of a critically damped filter is linear in target, value and rate (see `integral_factors`): `of_target`
+    is the factor of the target, `travel` is the part of value and rate, shape (3, ..., 1, 3, legs).
+    """
 
     seen: Complex[np.ndarray, "legs"]
-    of_target: Float[np.ndarray, "*batch 3 legs"]
-    travel: Float[np.ndarray, "... 3 legs"]
+    of_target: Float[np.ndarray, "*batch 1 3 legs"]
+    travel: Float[np.ndarray, "3 *batch 1 3 legs"]
 
     @classmethod
     def of(
@@ -83,25 +87,34 @@ class _Prediction(NamedTuple):
         ends: Float[np.ndarray, "*#batch legs"],
         bandwidth: float,
     ) -> _Prediction:
-        """Predict; `travel`, shape (3, ..., 3, legs), is the travel without the target's part."""
-        begins = begins[..., None, :]
-        times = begins + (ends[..., None, :] - begins) * _TIMES
+        """Predict for feet that stand for an interval, shape (..., legs)."""
+        begins = begins[..., None, None, :]
+        times = begins + (ends[..., None, None, :] - begins) * _TIMES
         of_target, of_value, of_rate = integral_factors(times, bandwidth=bandwidth)
         axes = (3, *(1,) * times.ndim)
-        travel = state.twist.value.reshape(axes) * of_value + state.twist.rate.reshape(axes) * of_rate
+        travel = state.twist.value.reshape(axes) * of_value
+        travel += state.twist.rate.reshape(axes) * of_rate
         return cls((state.foothold - state.origin) * cmath.exp(-1j * state.yaw), of_target, travel)
 
-    def beyond(
+    def excess(
         self, targets: Float[np.ndarray, "n 3"], bounds: Float[np.ndarray, "legs 16"]
     ) -> Float[np.ndarray, "*batch n 3 legs 16"]:
         """Return the excess, shape (..., n, 3, legs, 16), for targets of shape (n, 3)."""
-        driven = targets.T[(slice(None), *(None,) * (self.of_target.ndim - 2), ..., None, None)]
-        x, y, angle = driven * self.of_target[..., None, :, :] + self.travel[..., None, :, :]
+        driven = targets.T[(slice(None), *(None,) * (self.of_target.ndim - 3), ..., None, None)]
+        x, y, angle = driven * self.of_target + self.travel
         # A travel (x, y) that turns by an angle ends at (x + iy) exp(i angle / 2) sin(angle / 2) / (angle / 2).
-        half = 0.5 * angle + _NO_ANGLE
+        half = angle * -0.5
+        half -= _NO_ANGLE
         np.putmask(half, half == 0.0, _NO_ANGLE)
-        back = np.exp(-1j * half)
-        place = back * (self.seen * back + (x + 1j * y) * (back.imag / half))
+        back, travel = np.empty(half.shape, dtype=complex), np.empty(half.shape, dtype=complex)
+        np.cos(half, out=back.real)
+        np.sin(half, out=back.imag)
+        chord = back.imag / half
+        np.multiply(x, chord, out=travel.real)
+        np.multiply(y, chord, out=travel.imag)
+        place = self.seen * back
+        place -= travel
+        place *= back
         out: np.ndarray = (place.view(float).reshape(-1, 2) @ _NORMALS).reshape(*place.shape, -1)
         out -= bounds
         return out
@@ -137,19 +150,18 @@ def governed_twist(
         The target; where not even the current one is feasible, a reduction of it.
     """
     prediction = _Prediction.of(state, begins, ends, bandwidth)
-    targets = command[None] if (command == current).all() else current + _FRACTIONS * (command - current)
-    works = prediction.beyond(targets, bounds).reshape(len(targets), -1).max(axis=1) <= _TOLERANCE
-    if works[-1]:
-        return command
-    if works.any():
-        return np.asarray(targets[np.flatnonzero(works)[-1]])
+    unchanged = command.tolist() == current.tolist()
+    targets = command[None] if unchanged else current + _FRACTIONS * (command - current)
+    last = _last_feasible(prediction.excess(targets, bounds))
+    if last is not None:
+        return command if last == len(targets) - 1 else np.asarray(targets[last])
     targets = _REDUCTIONS * current
-    over = prediction.beyond(targets, bounds).reshape(len(targets), -1)
-    works = over.max(axis=1) <= _TOLERANCE
-    if works.any():
-        return np.asarray(targets[np.flatnonzero(works)[-1]])
+    over = prediction.excess(targets, bounds)
+    last = _last_feasible(over)
+    if last is not None:
+        return np.asarray(targets[last])
     # No reduction keeps every foot inside: the one with the least excess.
-    still, here = over[0], over[-1]
+    still, here = over[0].ravel(), over[-1].ravel()
     if here.max() <= still.max():
         return current
     broken = here > 0
@@ -157,6 +169,12 @@ def governed_twist(
     needed = np.where(gain > 0, here[broken] / np.where(gain > 0, gain, 1.0), 1.0).max()
     slower: np.ndarray = current * (1 - min(float(needed), 1.0))
     return slower
+
+
+def _last_feasible(excess: Float[np.ndarray, "n 3 legs 16"]) -> int | None:
+    """Return the index of the last target with which every foot stays in its polygon."""
+    feasible: list[bool] = (np.maximum.reduce(excess, axis=(1, 2, 3)) <= _TOLERANCE).tolist()
+    return len(feasible) - 1 - feasible[::-1].index(True) if True in feasible else None
 
 
 def stance_intervals(

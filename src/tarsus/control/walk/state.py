@@ -228,6 +228,8 @@ class StepInputs(NamedTuple):
         Rest footholds in the heading frame [m].
     placement_bounds : array, shape (legs, 16)
         Distance from its rest foothold at which each foot may be put down, along each of `NORMALS` [m].
+    placement_radii : list of float
+        The least of these distances of each foot [m].
     admittance_offset : array, shape (legs,)
         Target of each foot's admittance offset [m].
     hold_feet : bool
@@ -257,6 +259,7 @@ class StepInputs(NamedTuple):
     may_land: Bool[np.ndarray, "legs"]
     rest: Complex[np.ndarray, "legs"]
     placement_bounds: Float[np.ndarray, "legs 16"]
+    placement_radii: list[float]
     admittance_offset: Float[np.ndarray, "legs"]
     hold_feet: bool = False
     beats: int = 2

@@ -143,42 +143,49 @@ def _swing(
     swing, stance = 1 - duty_factor, duty_factor / inputs.frequency
     predictor = FootholdPredictor.of(state, inputs)
     final = final_footholds(state, rest=inputs.rest, bandwidth=inputs.bandwidth) if stopping else None
-    phase, foot, target = state.swing_phase.tolist(), state.foot.tolist(), state.foothold.tolist()
-    velocity, acceleration = state.swing_velocity.tolist(), state.swing_acceleration.tolist()
-    may_land, landed = inputs.may_land.tolist(), []
-    flat, ground = inputs.ground_plane is FLAT, state.ground_height
-    contact, stop, delay = state.contact_phase.tolist(), state.stop_phase.tolist(), state.lift_delay.tolist()
+    phases, feet, targets = state.swing_phase.copy(), state.foot.copy(), state.foothold.copy()
+    velocities, accelerations = state.swing_velocity.copy(), state.swing_acceleration.copy()
+    flat, ground, landed = inputs.ground_plane is FLAT, state.ground_height, []
     for leg in [leg for leg, on in enumerate(down) if not on]:
-        late, since = delay[leg], since_lift[leg]
+        late, since = float(state.lift_delay[leg]), since_lift[leg]
+        phase, target, contact = float(phases[leg]), complex(targets[leg]), float(state.contact_phase[leg])
         reached = min(max((since - late) / (swing - late), 0.0), 1.0)
-        if phase[leg] <= TARGET_FREEZE and contact[leg] == math.inf:
+        if phase <= TARGET_FREEZE and contact == math.inf:
             until = (swing - since) / inputs.frequency
-            before = target[leg]
-            target[leg] = (
-                predictor.foothold(complex(inputs.rest[leg]), inputs.placement_bounds[leg], until, until + stance / 2)
+            before = target
+            target = (
+                predictor.foothold(
+                    complex(inputs.rest[leg]),
+                    inputs.placement_bounds[leg],
+                    radius=inputs.placement_radii[leg],
+                    touchdown=until,
+                    mid_stance=until + stance / 2,
+                )
                 if final is None
                 else complex(final[leg])
             )
+            targets[leg] = target
             if not flat:
-                ground = _with_ground_at(ground, leg, target[leg] - before, inputs, just_lifted=phase[leg] == 0)
-        path = (foot[leg], velocity[leg], acceleration[leg])
+                ground = _with_ground_at(ground, leg, target - before, inputs, just_lifted=phase == 0)
+        path = (complex(feet[leg]), complex(velocities[leg]), complex(accelerations[leg]))
         # After early contact the foot stops on the ground.
-        left = min(contact[leg] + stop[leg], 1.0) - phase[leg]
-        foot[leg], velocity[leg], acceleration[leg] = (
-            quintic(path, target[leg], left, min((reached - phase[leg]) / left, 1.0))
-            if left > 0
-            else (target[leg], 0j, 0j)
-        )
-        phase[leg] = reached
-        if may_land[leg] and since >= swing - PHASE_TOLERANCE:
+        left = min(contact + float(state.stop_phase[leg]), 1.0) - phase
+        lands = bool(inputs.may_land[leg]) and since >= swing - PHASE_TOLERANCE
+        if lands:
             landed.append(leg)
-            phase[leg], foot[leg], velocity[leg], acceleration[leg] = 0.0, target[leg], 0j, 0j
+            reached, path = 0.0, (target, 0j, 0j)
+        elif left > 0:
+            path = quintic(path, target, left, min((reached - phase) / left, 1.0))
+        else:
+            path = (target, 0j, 0j)
+        phases[leg] = reached
+        feet[leg], velocities[leg], accelerations[leg] = path
     after = state._replace(
-        swing_phase=np.array(phase),
-        foot=np.array(foot),
-        foothold=np.array(target),
-        swing_velocity=np.array(velocity),
-        swing_acceleration=np.array(acceleration),
+        swing_phase=phases,
+        foot=feet,
+        foothold=targets,
+        swing_velocity=velocities,
+        swing_acceleration=accelerations,
         ground_height=ground,
     )
     return _land(after, landed) if landed else after
