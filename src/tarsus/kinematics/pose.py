@@ -138,7 +138,22 @@ class Pose:
         pose = cls(position=position)
         if rotation.ndim > 2 and pose.position.ndim > 1:
             broadcast_shapes("a pose", rotation.shape[:-2], pose.position.shape[:-1])
+        return cls.unchecked(rotation, pose.position)
+
+    @classmethod
+    def unchecked(cls, rotation: Float[Array, "*#batch 3 3"], position: Float[Array, "*#batch 3"]) -> Self:
+        """Build a pose from arrays that are valid by construction; checking them takes longer than most uses.
+
+        Parameters
+        ----------
+        rotation : array, shape (..., 3, 3)
+            Rotation matrices, of floats.
+        position : array, shape (..., 3)
+            Position of the origin, finite floats [m].
+        """
+        pose = object.__new__(cls)
         object.__setattr__(pose, "rotation", _locked(rotation))
+        object.__setattr__(pose, "position", _locked(position))
         return pose
 
     @property
@@ -167,7 +182,8 @@ class Pose:
         """
         if isinstance(other, Pose):
             xp = namespace(self.rotation, other.rotation, other.position)
-            return Pose(
+            broadcast_shapes("the poses", self.batch_shape, other.batch_shape)
+            return Pose.unchecked(
                 xp.matmul(xp.asarray(self.rotation), xp.asarray(other.rotation)),
                 self._transform(other.position[..., None, :])[..., 0, :],
             )
@@ -194,7 +210,7 @@ class Pose:
         """Return the inverse pose: ``T_from_to`` of ``T_to_from``."""
         xp = namespace(self.rotation, self.position)
         back = xp.matrix_transpose(xp.asarray(self.rotation))
-        return Pose(back, -xp.matmul(back, xp.asarray(self.position)[..., None])[..., 0])
+        return Pose.unchecked(back, -xp.matmul(back, xp.asarray(self.position)[..., None])[..., 0])
 
     def __getitem__(self, index: Any) -> Pose:
         """Return the poses at `index` of the batch axes."""
@@ -207,7 +223,7 @@ class Pose:
         index = index if isinstance(index, tuple) else (index,)
         if not any(part is Ellipsis for part in index):
             index = (*index, ...)
-        return Pose(rotation[(*index, slice(None), slice(None))], position[(*index, slice(None))])
+        return Pose.unchecked(rotation[(*index, slice(None), slice(None))], position[(*index, slice(None))])
 
     @property
     def rpy(self) -> Float[Array, "*batch 3"]:

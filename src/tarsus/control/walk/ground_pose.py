@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import cmath
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from tarsus.control.walk.state import GaitState
-from tarsus.control.workspace.stance_geometry import SWING_HEIGHT, stance_geometry_of, with_sway
+from tarsus.control.workspace.stance_geometry import SWING_HEIGHT, rotation_rows, with_sway
 from tarsus.kinematics.pose import Pose
 
 if TYPE_CHECKING:
@@ -24,10 +25,10 @@ def body_pose(state: GaitState) -> Pose:
     state : GaitState
         The gait state.
     """
-    stance = stance_geometry_of(with_sway(state.posture.value, state.cycles, state.beats), state.foot)
-    elevation = float(state.elevation.value[0])
-    heading = Pose.from_rpy(0.0, 0.0, state.yaw, (state.origin.real, state.origin.imag, elevation))
-    return heading @ Pose(stance.rotation, stance.position)
+    x, y, z, roll, pitch, yaw, _ = with_sway(state.posture.value, state.cycles, state.beats).tolist()
+    origin = state.origin + cmath.exp(1j * state.yaw) * complex(x, y)
+    rotation = np.array(rotation_rows(roll, pitch, state.yaw + yaw))
+    return Pose.unchecked(rotation, np.array([origin.real, origin.imag, float(state.elevation.value[0]) + z]))
 
 
 def foot_positions(state: GaitState) -> Float[np.ndarray, "legs 3"]:
