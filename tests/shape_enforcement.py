@@ -6,6 +6,8 @@ array arguments and its result must fit their annotations together, a named dime
 call. A call that raises is not checked, since functions refuse wrong shapes with messages of their own.
 
 Whether arrays fit depends on their types, dtypes and shapes alone, so each combination is checked once per function.
+Even to look that up takes as long as many a function of a control loop: of a function that is called often, the first
+calls and a sample of the others are checked.
 """
 
 from __future__ import annotations
@@ -28,6 +30,9 @@ from beartype.door import is_bearable
 
 __all__ = ["DTYPES", "NAMES_DTYPE", "Checks", "ShapeError", "enforce", "install", "load", "unchecked"]
 
+
+# Number of calls of which each is checked, and the interval of those that are checked from then on.
+_FIRST_CALLS, _INTERVAL = 200, 16
 
 DTYPES = ("Bool", "Complex", "Float", "Int", "Integer", "Num", "Real", "Shaped")
 NAMES_DTYPE = re.compile(rf"\b({'|'.join(DTYPES)})\[")
@@ -140,10 +145,15 @@ def _function(function: Any) -> Any:
     rest = code.co_varnames[code.co_argcount + code.co_kwonlyargcount] if code.co_flags & 0x04 else ""
     checks = Checks(function.__qualname__, function.__module__, annotations)
     returns = "return" in annotations
+    calls = 0
 
     @functools.wraps(function)
     def checked(*args: Any, **kwargs: Any) -> Any:
+        nonlocal calls
         result = function(*args, **kwargs)
+        calls += 1
+        if calls > _FIRST_CALLS and calls % _INTERVAL:
+            return result
         count = len(args)
         values = [(name, args[i]) for i, name in places if i < count]
         if rest and rest in annotations:
@@ -161,10 +171,15 @@ def _function(function: Any) -> Any:
 def _constructor(construct: Callable[..., Any], owner: type, annotations: dict[str, str]) -> Callable[..., Any]:
     """Return a dataclass's `__init__` or a named tuple's `__new__`, after which the fields are checked."""
     checks = Checks(owner.__qualname__, owner.__module__, annotations, call=False)
+    calls = 0
 
     @functools.wraps(construct)
     def checked(self: Any, *args: Any, **kwargs: Any) -> Any:
+        nonlocal calls
         made = construct(self, *args, **kwargs)
+        calls += 1
+        if calls > _FIRST_CALLS and calls % _INTERVAL:
+            return made
         instance = self if made is None else made
         checks([(name, getattr(instance, name)) for name in annotations])
         return made

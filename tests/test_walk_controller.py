@@ -261,8 +261,10 @@ def test_top_speeds_are_reached_within_the_joints_limits(name, direction):
 
 
 @pytest.mark.lengthy
-@pytest.mark.parametrize("name", ["strider", "phantomx", "ch3r"])
-@pytest.mark.parametrize("gaits", list(itertools.permutations(GAITS, 2)), ids="-".join)
+@pytest.mark.parametrize(
+    ("name", "gaits"),
+    list(zip(["strider", "phantomx", "ch3r"] * 4, itertools.permutations(GAITS, 2), strict=True)),
+)
 def test_the_gait_changes_on_the_move_without_a_missing_support(name, gaits):
     first, second = gaits
     w = controller(name, first)

@@ -1,4 +1,4 @@
-"""Whatever is asked of the live walker, and whenever: what must hold holds. More than an hour of walking in all."""
+"""Whatever is commanded, and whenever: the invariants hold. Three quarters of an hour of walking in all."""
 
 import numpy as np
 import pytest
@@ -21,13 +21,13 @@ SECONDS = 40.0
 GIVING = Admittance(mass=1.0, damping=40.0, stiffness=400.0)
 
 
-@pytest.mark.parametrize("seed", range(64))
+@pytest.mark.parametrize("seed", range(40))
 def test_any_stream_of_wishes_keeps_the_invariants(seed):
     name, gait = PRESETS[seed % len(PRESETS)], GAITS[seed // len(PRESETS) % len(GAITS)]
     drive(WalkController(preset(name), Gait.named(gait)), seed, SECONDS).assert_sound()
 
 
-@pytest.mark.parametrize("seed", [*range(300, 324), 1023])
+@pytest.mark.parametrize("seed", [*range(300, 315), 1023])
 def test_legs_moved_by_hand_and_a_swaying_body_keep_them(seed):
     controller = WalkController(
         preset(PRESETS[seed % len(PRESETS)]), Gait.named(GAITS[seed // len(PRESETS) % len(GAITS)])
@@ -35,13 +35,13 @@ def test_legs_moved_by_hand_and_a_swaying_body_keep_them(seed):
     drive(controller, seed, SECONDS, legs_as_hands=True).assert_sound()
 
 
-@pytest.mark.parametrize("seed", range(100, 116))
+@pytest.mark.parametrize("seed", range(100, 110))
 def test_sensors_garbage_keeps_them(seed):
     controller = WalkController(preset(PRESETS[seed % len(PRESETS)]), levelling="level", admittance=GIVING)
     drive(controller, seed, SECONDS, sensing=True).assert_sound()
 
 
-@pytest.mark.parametrize("seed", range(200, 208))
+@pytest.mark.parametrize("seed", range(200, 204))
 def test_ticks_of_a_millisecond_keep_them(seed):
     controller = WalkController(preset(PRESETS[seed % len(PRESETS)]))
     trace, rng = Trace(controller), np.random.default_rng(seed)
@@ -152,4 +152,4 @@ class AnyWishes(RuleBasedStateMachine):
 
 
 class TestAnyWishes(AnyWishes.TestCase):
-    settings = settings(max_examples=40, stateful_step_count=40)
+    settings = settings(max_examples=24, stateful_step_count=40)
