@@ -7,6 +7,7 @@ import numpy as np
 from gait_robots import preset
 from tarsus.control.incremental import complete
 from tarsus.control.transition.stages.workspace import cycle_timing, foot_workspace, velocity_limits
+from tarsus.control.workspace.polygon import NORMALS, polygon_margin
 from tarsus.control.workspace.stability import support_sets
 from tarsus.control.workspace.stance_geometry import stance_geometry_of
 from tarsus.gait.gait import Gait
@@ -73,3 +74,10 @@ def cycle_timing_of(name, gait="tripod", cycle_time=None):
             cycle_time=cycle_time,
         )
     )
+
+
+def polygon_radii(bounds, inside, directions):
+    """Return the distance from points inside polygons, given by their 16 sides, to the boundary along directions."""
+    margins = np.maximum(polygon_margin(bounds, inside), 0.0)
+    along = (NORMALS.conj()[:, None] * directions).real
+    return np.asarray(np.where(along > 1e-9, margins[:, :, None] / np.maximum(along, 1e-9), np.inf).min(axis=1))

@@ -7,10 +7,10 @@ import pytest
 from scipy.spatial import HalfspaceIntersection
 
 from gait_robots import PRESETS, ring
-from sample_stances import POSTURES, feet_at, polygons, pose_of, posture_of, setup_of, standing
+from sample_stances import POSTURES, feet_at, polygon_radii, polygons, pose_of, posture_of, setup_of, standing
 from tarsus.control.incremental import complete
 from tarsus.control.transition.stages.workspace import foot_workspace
-from tarsus.control.workspace.polygon import NORMALS, polygon_ends, polygon_margin, polygon_radii
+from tarsus.control.workspace.polygon import NORMALS, polygon_ends, polygon_margin
 from tarsus.control.workspace.stance_geometry import TerrainEstimate, joint_margin, stance_geometry_of
 from tarsus.kinematics.inverse import inverse_kinematics
 from tarsus.kinematics.leg import forward_kinematics

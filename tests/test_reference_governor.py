@@ -7,11 +7,11 @@ from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
 from sample_gait_states import EARTH, FACING, moment_of
-from sample_stances import setup_of, velocity_limits_of
+from sample_stances import polygon_radii, setup_of, velocity_limits_of
 from tarsus.control.filters import CriticallyDamped, integral_factors
 from tarsus.control.walk.reference_governor import governed_twist, polygon_excess
 from tarsus.control.walk.state import integrate_twist
-from tarsus.control.workspace.polygon import NORMALS, polygon_radii
+from tarsus.control.workspace.polygon import NORMALS
 
 STANCE = 0.5
 BANDWIDTH = 4 / STANCE

@@ -158,3 +158,15 @@ def test_what_is_no_longer_asked_for_is_refused_no_more():
     controller.step(Command(sway=(0, 0, 0.2, 0, 0, 0)), DT)
     walk(controller, Command(sway=(0,) * 6), 5)
     assert controller.limitations == ()
+
+
+def test_a_point_below_the_ground_is_reported_and_the_foot_stays_on_it():
+    controller = WalkController(load_robot("strider"), Gait.named("wave"))
+    x, y, _ = controller.feet[0]
+    walk(controller, Command(foot_targets={0: (x, y, -0.01)}), 10)
+    assert [each.text() for each in controller.limitations] == [
+        "foot_target: front left: the point is below the ground; the foot stays on it"
+    ]
+    assert controller.feet[0, 2] > -1e-9
+    walk(controller, Command(foot_targets={0: (x, y, 0.02)}), 3)
+    assert controller.limitations == ()

@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 
 __all__ = ["FootTargets", "excluded_legs"]
 
+_BELOW_GROUND = "the point is below the ground; the foot stays on it"
+
 
 def excluded_legs(command: Command, before: tuple[int, ...], legs: int) -> tuple[int, ...]:
     """Return the legs that are taken out of the gait.
@@ -61,6 +63,7 @@ class FootTargets:
         self._excluded: tuple[int, ...] = ()
         self._points: dict[int, Sequence[float]] = {}
         self._fractions: dict[int, float] = {}
+        self._below_ground: list[int] = []
 
     def __bool__(self) -> bool:
         return bool(self._motions)
@@ -77,13 +80,16 @@ class FootTargets:
 
     @property
     def limitations(self) -> list[Limitation]:
-        """Foot targets that are out of reach."""
+        """Foot targets that are out of reach or below the ground."""
+        kind, names = LimitationKind.FOOT_TARGET, self._names
+        fractions = self._fractions.items()
         return [
-            Limitation(
-                kind=LimitationKind.FOOT_TARGET, cause="out of reach", leg=self._names[leg], asked=1.0, granted=fraction
-            )
-            for leg, fraction in self._fractions.items()
-            if fraction < 1
+            *(
+                Limitation(kind=kind, cause="out of reach", leg=names[leg], asked=1.0, granted=fraction)
+                for leg, fraction in fractions
+                if fraction < 1
+            ),
+            *(Limitation(kind=kind, cause=_BELOW_GROUND, leg=names[leg]) for leg in self._below_ground),
         ]
 
     def set_legs(self, excluded: tuple[int, ...], state: GaitState) -> None:
@@ -98,7 +104,7 @@ class FootTargets:
         """
         stopped = {leg: motion.stopped() for leg, motion in self._motions.items() if leg not in excluded}
         self._motions = stopped | {leg: self._motions.get(leg) or begin_foot_target(state, leg) for leg in excluded}
-        self._excluded, self._fractions = excluded, {}
+        self._excluded, self._fractions, self._below_ground = excluded, {}, []
 
     def set_targets(
         self, command: Command, dt: float, reachable: Callable[[int, np.ndarray, np.ndarray], float]
@@ -119,6 +125,7 @@ class FootTargets:
         velocities = command.foot_velocities or {}
         points = {**self._points, **(command.foot_targets or {})}
         self._points = {leg: point for leg, point in points.items() if point is not None and leg not in velocities}
+        self._below_ground = []
         for leg in self._excluded:
             motion = self._motions[leg]
             start = motion.position.value
@@ -126,6 +133,8 @@ class FootTargets:
                 end = motion.target + np.array(velocities[leg]) * dt
             elif leg in self._points:
                 end = np.array(self._points[leg])
+                if end[2] < 0:
+                    self._below_ground.append(leg)
             else:
                 continue
             end[2] = max(end[2], 0.0)

@@ -12,7 +12,7 @@ import numpy as np
 if TYPE_CHECKING:
     from jaxtyping import Complex, Float
 
-__all__ = ["NORMALS", "NORMALS_CONJUGATE", "polygon_ends", "polygon_margin", "polygon_radii"]
+__all__ = ["NORMALS", "NORMALS_CONJUGATE", "polygon_ends", "polygon_margin"]
 
 _SIDES = 16
 NORMALS: Complex[np.ndarray, "16"] = np.exp(2j * np.pi * np.arange(_SIDES) / _SIDES)
@@ -50,30 +50,6 @@ def polygon_margin(
         Distances [m]; negative where the point is outside.
     """
     return np.asarray(bounds - (NORMALS.conj() * inside[:, None]).real)
-
-
-def polygon_radii(
-    bounds: Float[np.ndarray, "legs 16"], inside: Complex[np.ndarray, "legs"], directions: Complex[np.ndarray, "n"]
-) -> Float[np.ndarray, "legs n"]:
-    """Return the distance from a point inside to the boundary along directions.
-
-    Parameters
-    ----------
-    bounds : array, shape (legs, 16)
-        The polygons' sides [m].
-    inside : complex array, shape (legs,)
-        The points [m].
-    directions : complex array, shape (n,)
-        Unit directions.
-
-    Returns
-    -------
-    array, shape (legs, n)
-        Distances [m].
-    """
-    margins = np.maximum(polygon_margin(bounds, inside), 0.0)
-    along = (NORMALS.conj()[:, None] * directions).real
-    return np.asarray(np.where(along > 1e-9, margins[:, :, None] / np.maximum(along, 1e-9), np.inf).min(axis=1))
 
 
 def polygon_ends(
