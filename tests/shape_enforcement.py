@@ -152,7 +152,7 @@ def _function(function: Any) -> Any:
         nonlocal calls
         result = function(*args, **kwargs)
         calls += 1
-        if calls > _FIRST_CALLS and calls % _INTERVAL:
+        if calls > _FIRST_CALLS and calls % Checks.interval:
             return result
         count = len(args)
         values = [(name, args[i]) for i, name in places if i < count]
@@ -178,7 +178,7 @@ def _constructor(construct: Callable[..., Any], owner: type, annotations: dict[s
         nonlocal calls
         made = construct(self, *args, **kwargs)
         calls += 1
-        if calls > _FIRST_CALLS and calls % _INTERVAL:
+        if calls > _FIRST_CALLS and calls % Checks.interval:
             return made
         instance = self if made is None else made
         checks([(name, getattr(instance, name)) for name in annotations])
@@ -191,6 +191,7 @@ class Checks:
     """The annotations of one function or class, and the combinations of arrays that are known to fit them."""
 
     active = True
+    interval = _INTERVAL
 
     def __init__(self, name: str, module: str, annotations: dict[str, str], *, call: bool = True) -> None:
         self.name, self.module, self.annotations, self.call = name, module, annotations, call

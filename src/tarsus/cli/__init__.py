@@ -18,6 +18,7 @@ from tarsus.cli.pose import pose
 from tarsus.cli.rest import rest
 from tarsus.cli.robots import robots
 from tarsus.cli.servos import servos
+from tarsus.cli.simulate import simulate
 from tarsus.cli.studio import studio
 from tarsus.cli.values import examples
 from tarsus.cli.walk import walk
@@ -47,5 +48,5 @@ def main() -> None:
     """
 
 
-for command in (studio, walk, drive, pose, rest, loads, servos, robots):
+for command in (studio, walk, drive, simulate, pose, rest, loads, servos, robots):
     main.add_command(command)

@@ -53,6 +53,7 @@ def drive(
     with semicolons between them. The exit code is 0 only if every command was met in full, the guard did not
     intervene, and the motion is possible.
     """
+    from tarsus.cli.timeline import timeline_of
     from tarsus.scenario.runner import run_scenario
     from tarsus.scenario.summary import drive_summary
 
@@ -60,7 +61,7 @@ def drive(
         raise click.UsageError("servos are not supported yet; --dry runs the scenario on an ideal plant")
     if out is not None:
         make_folder(out)
-    timeline = _scenario(scenario, rate)
+    timeline = timeline_of(scenario, rate)
     recording = run_scenario(timeline, robot=robot or timeline.robot or _DEFAULT_ROBOT, guard=not no_guard)
     found = _loads(recording)
     summary = {**drive_summary(recording), "loads": _load_numbers(found)}
@@ -74,18 +75,6 @@ def drive(
     for file in files if not as_json else ():
         click.echo(f"wrote {file}")
     return 0 if summary["possible"] else 1
-
-
-def _scenario(text: str, rate: float | None) -> Any:
-    """Return the scenario of a file, or of a timeline."""
-    import dataclasses
-
-    from tarsus.scenario.file import load_scenario, scenario_from_text
-
-    # A file name is not expected to begin with "at ".
-    is_timeline = text.lstrip().startswith("at ") and not Path(text).is_file()
-    found = scenario_from_text(text) if is_timeline else load_scenario(text)
-    return found if rate is None else dataclasses.replace(found, rate=rate)
 
 
 def _loads(recording: Recording) -> JointLoads | None:

@@ -5,13 +5,14 @@ from __future__ import annotations
 import math
 import os
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from tarsus.errors import InputError
 from tarsus.gait.motion import Motion
 from tarsus.report.film import Film
+from tarsus.report.video import write_video
 from tarsus.report.view import View
 
 if TYPE_CHECKING:
@@ -37,9 +38,10 @@ def animate(
     max_duration: float = MAX_DURATION,
     view: View = _VIEW,
     size: tuple[int, int] = (640, 500),
+    height: Callable[[Any, Any], Any] | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> int:
-    """Write a motion as an animated GIF in real time.
+    """Write a motion as an animated GIF in real time, or as a video where the path ends in ``.mp4``.
 
     The view follows the robot over a ground grid of 100 mm. It shows the feet on the ground (filled), the support
     polygon, the centre of mass above it, the time and the gait diagram.
@@ -56,6 +58,8 @@ def animate(
         Direction of view.
     size : tuple of int
         Width and height [pixels].
+    height : callable, optional
+        Height of the ground [m] at x, y [m]; flat ground where left out.
     progress : callable, optional
         Called after every frame with the completed fraction, up to 1.
 
@@ -69,10 +73,13 @@ def animate(
     InputError
         If the file can't be written, or `max_duration` is not positive.
     TarsusError
-        If matplotlib is not installed.
+        If matplotlib is not installed, or imageio-ffmpeg for a video.
     """
     times, duration = frame_times(motion, max_duration=max_duration)
-    film = Film(motion, view=view, size=size)
+    film = Film(motion, view=view, size=size, height=height)
+    if os.fspath(path).lower().endswith(".mp4"):
+        pictures = (film.frame(_sample_at(motion, float(time))) for time in times)
+        return write_video(pictures, path, rate=1000 / duration, number=len(times), progress=progress)
     from PIL.Image import Dither
 
     frames: list[Image] = []

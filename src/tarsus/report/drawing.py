@@ -43,12 +43,14 @@ class RobotDrawing:
         Direction of view.
     names : bool
         Whether to label the legs.
+    shadows : bool
+        Whether to draw shadows, support polygon and the foot of the centre of mass on the plane z = 0.
     """
 
-    def __init__(self, axes: Axes, robot: Robot, *, view: View, names: bool = False) -> None:
+    def __init__(self, axes: Axes, robot: Robot, *, view: View, names: bool = False, shadows: bool = True) -> None:
         from matplotlib.patches import Polygon
 
-        self._axes, self._robot, self._view = axes, robot, view
+        self._axes, self._robot, self._view, self._has_shadows = axes, robot, view, shadows
         self._solid = body_solid(robot)
         self._colours = leg_colours(robot)
         self._reach = float((robot.coxa + robot.femur + robot.tibia).max())
@@ -120,7 +122,8 @@ class RobotDrawing:
         """
         self._update_body(sample)
         self._update_legs(sample)
-        self._update_ground(sample)
+        if self._has_shadows:
+            self._update_ground(sample)
 
     def _project(self, points: Float[np.ndarray, "*#batch 3"]) -> Float[np.ndarray, "*batch 2"]:
         return self._view.project(points * 1000)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
@@ -33,9 +34,13 @@ class Film:
         Direction of view.
     size : tuple of int
         Width and height [pixels].
+    height : callable, optional
+        Height of the ground [m] at x, y [m]; flat ground where left out.
     """
 
-    def __init__(self, motion: Motion, *, view: View, size: tuple[int, int]) -> None:
+    def __init__(
+        self, motion: Motion, *, view: View, size: tuple[int, int], height: Callable[[Any, Any], Any] | None = None
+    ) -> None:
         dpi = 100
         self.figure = new_figure(width=size[0] / dpi, height=size[1] / dpi, dpi=dpi, manual_layout=True)
         self._canvas = cast("Any", self.figure.canvas)  # FigureCanvasAgg, whose methods have no types
@@ -47,8 +52,8 @@ class Film:
         frame_axes(self.axes, [self._sample(i) for i in range(0, len(motion.time), every)], view=view)
         self._origin = view.project(self._sample(0).centre * 1000)
         self._limits = np.array([self.axes.get_xlim(), self.axes.get_ylim()])
-        self._ground = Ground(self.axes, view)
-        self.drawing = RobotDrawing(self.axes, motion.robot, view=view, names=True)
+        self._ground = Ground(self.axes, view, height)
+        self.drawing = RobotDrawing(self.axes, motion.robot, view=view, names=True, shadows=height is None)
         self.caption = self.figure.text(0.015, 0.975, "", color=INK, fontsize=11, va="top")
         self._make_strip()
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from tarsus.robot.robot import Robot
 from tarsus.simulation.engine import mujoco_module
-from tarsus.simulation.robot_model import foot_geom_name
+from tarsus.simulation.robot_model import body_geom_name, foot_geom_name
 
 if TYPE_CHECKING:
     from jaxtyping import Float
@@ -36,6 +36,7 @@ class Measurement:
         self._mujoco, self._model, self._data = mujoco_module(), model, data
         self._legs = robot.legs
         self._leg_of = {model.geom(foot_geom_name(robot, leg)).id: leg for leg in range(robot.legs)}
+        self._body = model.geom(body_geom_name()).id
 
     def rotation(self) -> Float[np.ndarray, "3 3"]:
         """Return the rotation from B to G, ``(3, 3)``."""
@@ -62,6 +63,30 @@ class Measurement:
                 force = found[number] @ frames[number].reshape(3, 3)
                 forces[leg] += force if second in self._leg_of else -force
         return forces
+
+    def slip_speeds(self) -> Float[np.ndarray, "legs"]:
+        """Return how fast the contact point of each foot slides over the ground, ``(legs,)`` [m/s]; 0 in the air.
+
+        A ball that rolls does not slide: the speed is that of the ball's material at the contact point, along the
+        ground.
+        """
+        speeds, contact, velocity = np.zeros(self._legs), self._data.contact, np.empty(6)
+        kind = self._mujoco.mjtObj.mjOBJ_XBODY
+        for number, pair in enumerate(contact.geom.tolist()):
+            geom = pair[1] if pair[1] in self._leg_of else pair[0]
+            leg = self._leg_of.get(geom)
+            if leg is None:
+                continue
+            link = self._model.geom_bodyid[geom]
+            self._mujoco.mj_objectVelocity(self._model, self._data, kind, link, velocity, 0)
+            moved = velocity[3:] + np.cross(velocity[:3], contact.pos[number] - self._data.xpos[link])
+            normal = contact.frame[number, :3]
+            speeds[leg] = max(speeds[leg], float(np.linalg.norm(moved - (moved @ normal) * normal)))
+        return speeds
+
+    def body_touches(self) -> bool:
+        """Return whether the body is in contact with the ground."""
+        return bool((self._data.contact.geom == self._body).any())
 
     def angular_rates(self) -> Float[np.ndarray, "3"]:
         """Return the angular velocity of B, along its own axes, ``(3,)`` [rad/s]."""

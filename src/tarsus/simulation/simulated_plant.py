@@ -25,7 +25,7 @@ from tarsus.simulation.terrain.flat import Flat
 from tarsus.simulation.terrain.protocol import Terrain
 
 if TYPE_CHECKING:
-    from jaxtyping import Float, Shaped
+    from jaxtyping import Bool, Float, Shaped
 
 __all__ = ["PlantState", "SimulatedPlant"]
 
@@ -50,8 +50,14 @@ class PlantState(NamedTuple):
         Of the joints [rad, rad/s].
     torques : array, shape (legs, 3)
         Of the servos in the last physics step [N m].
+    saturated : array of bool, shape (legs, 3)
+        Whether the servos gave all the torque that they can at their speed.
     foot_forces : array, shape (legs, 3)
         Of the ground on the feet in the last physics step, in G [N].
+    slip_speeds : array, shape (legs,)
+        Of the feet's contact points over the ground; 0 for a foot that rolls, or is in the air [m/s].
+    body_touches : bool
+        Whether the body is in contact with the ground.
     """
 
     time: float
@@ -59,7 +65,10 @@ class PlantState(NamedTuple):
     joint_angles: Float[np.ndarray, "legs 3"]
     joint_speeds: Float[np.ndarray, "legs 3"]
     torques: Float[np.ndarray, "legs 3"]
+    saturated: Bool[np.ndarray, "legs 3"]
     foot_forces: Float[np.ndarray, "legs 3"]
+    slip_speeds: Float[np.ndarray, "legs"]
+    body_touches: bool
 
 
 class SimulatedPlant:
@@ -198,7 +207,10 @@ class SimulatedPlant:
             joint_angles=np.array(data.qpos[7:]).reshape(shape),
             joint_speeds=np.array(data.qvel[6:]).reshape(shape),
             torques=self._torques(),
+            saturated=self._table.saturated(np.array(data.ctrl), np.array(data.qvel[6:])).reshape(shape),
             foot_forces=self._measurement.foot_forces(),
+            slip_speeds=self._measurement.slip_speeds(),
+            body_touches=self._measurement.body_touches(),
         )
 
     def _advance(self, steps: int) -> None:

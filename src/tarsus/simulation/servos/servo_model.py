@@ -138,7 +138,7 @@ class ServoModel:
         """
         if servo is None:
             raise MissingDataError(
-                "a joint has no servo; give one in the robot's file ([leg] servo), or simulate with servos='ideal'"
+                "a joint has no servo; give one in the robot's file ([leg] servo), or simulate with ideal servos"
             )
         stall, speed = at_supply(servo, supply)
         known = KNOWN_SERVOS.get(servo.name, KnownServo(source=""))

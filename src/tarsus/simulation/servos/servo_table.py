@@ -13,9 +13,12 @@ from tarsus.simulation.servos.servo_model import ServoModel
 from tarsus.simulation.servos.torque_law import drive_torque
 
 if TYPE_CHECKING:
-    from jaxtyping import Float
+    from jaxtyping import Bool, Float
 
 __all__ = ["ServoTable"]
+
+# Fraction of the greatest torque from which on a servo counts as saturated.
+_ALL = 0.99
 
 
 class ServoTable(NamedTuple):
@@ -99,6 +102,22 @@ class ServoTable(NamedTuple):
             error, speed, stiffness=self.stiffness, play=self.play, stall_torque=self.stall_torque, slope=self.slope
         )
 
+    def saturated(
+        self, drive: Float[np.ndarray, "joints"], speed: Float[np.ndarray, "joints"]
+    ) -> Bool[np.ndarray, "joints"]:
+        """Return which servos give at least 99 % of the torque that they can at their speed.
+
+        Parameters
+        ----------
+        drive : array, shape (joints,)
+            Torque as `drive` returns it [N m].
+        speed : array, shape (joints,)
+            Joint speed [rad/s].
+        """
+        loss = self.slope * speed
+        forward, backward = np.minimum(loss, 0.0) + self.stall_torque, self.stall_torque - np.maximum(loss, 0.0)
+        return np.asarray(np.where(drive > 0, drive >= _ALL * forward, -drive >= _ALL * backward))
+
 
 def _rows(robot: Robot, servos: Any) -> tuple[tuple[ServoModel, ...], ...]:
     if isinstance(servos, str):
@@ -124,6 +143,6 @@ def _of_joint(robot: Robot, leg: int, joint: int) -> ServoModel:
     if servo is None:
         raise MissingDataError(
             f"robot {robot.name!r}, leg {robot.leg_names[leg]}: the servo of the {JOINTS[joint]} is unknown; add it to "
-            "its file ([leg] servo), or simulate with servos='ideal'"
+            "its file ([leg] servo), or simulate with ideal servos"
         )
     return ServoModel.of(servo)

@@ -1,0 +1,185 @@
+"""Runs of `tarsus simulate`: a planned walk or a scenario on a simulated plant, and the files of it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+import numpy as np
+
+from tarsus.cli.output import Progress
+from tarsus.cli.planning import plan
+from tarsus.cli.timeline import timeline_of
+from tarsus.errors import InputError, TarsusError
+from tarsus.gait.motion import Motion
+from tarsus.report.animation import animate
+from tarsus.robot.file import load_robot
+from tarsus.scenario.runner import run_scenario
+from tarsus.simulation.simulated_plant import SimulatedPlant
+from tarsus.simulation.truth.as_motion import trace_motion
+from tarsus.simulation.truth.comparison import planned_torques
+from tarsus.simulation.truth.outcome import Outcome
+from tarsus.simulation.truth.trace import Trace, trace_to_csv, trace_to_dataset
+from tarsus.simulation.truth.traced_plant import TracedPlant, play
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
+
+__all__ = ["SimulatedRun", "run_plan", "run_timeline", "write_run"]
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class SimulatedRun:
+    """A run in physics.
+
+    Attributes
+    ----------
+    motion : Motion
+        What was planned, or commanded by the controller.
+    plant : SimulatedPlant
+        The plant, at the end.
+    trace : Trace
+        What the robot did.
+    outcome : Outcome
+        The same in numbers.
+    planned : (array, shape (3,), array, shape (3,)), optional
+        Peak and root mean square torque of coxa, femur and tibia that statics predicts [N m].
+    assumed : tuple of str
+        What plan, model and servos assume.
+    """
+
+    motion: Motion
+    plant: SimulatedPlant
+    trace: Trace
+    outcome: Outcome
+    planned: tuple[Float[np.ndarray, "3"], Float[np.ndarray, "3"]] | None
+    assumed: tuple[str, ...]
+
+
+def run_plan(robot: str, options: dict[str, Any], settings: dict[str, Any], progress: Progress) -> SimulatedRun:
+    """Plan a walk, and execute it in physics.
+
+    Parameters
+    ----------
+    robot : str
+        Name of the robot, or path of its file.
+    options : dict
+        Options of `tarsus.cli.planning.plan`.
+    settings : dict
+        Keyword arguments of `SimulatedPlant`.
+    progress : callable
+        Takes what is done, and the completed fraction.
+
+    Raises
+    ------
+    TarsusError
+        If the walk is not possible, or can't be simulated.
+    """
+    motion = plan(robot, options)
+    if not motion.ok:
+        raise TarsusError(f"the walk is not possible: {motion.problems[0]}; `tarsus walk` shows the whole verdict")
+    plant = SimulatedPlant(motion.robot, **settings)
+    progress("physics", 0.1)
+    trace = play(motion, plant)
+    return SimulatedRun(
+        motion=motion,
+        plant=plant,
+        trace=trace,
+        outcome=Outcome.of(trace),
+        planned=planned_torques(motion),
+        assumed=(*motion.assumed, *plant.assumed),
+    )
+
+
+def run_timeline(
+    scenario: str, robot: str, options: dict[str, Any], settings: dict[str, Any], progress: Progress
+) -> SimulatedRun:
+    """Run a scenario through the robot controller in physics.
+
+    Parameters
+    ----------
+    scenario : str
+        Path of a scenario file, or a timeline.
+    robot, options, settings, progress
+        As for `run_plan`; no option of a walk may be given.
+
+    Raises
+    ------
+    UsageError
+        If an option of a walk is given, too.
+    TarsusError
+        If the scenario can't be run.
+    """
+    given = [name for name, value in options.items() if value is not None and name != "rate"]
+    if given:
+        raise click.UsageError(f"--{given[0].replace('_', '-')} and --scenario exclude each other")
+    plant = SimulatedPlant(load_robot(robot), **settings)
+    traced = TracedPlant(plant)
+    progress("physics", 0.1)
+    recording = run_scenario(timeline_of(scenario, None), robot=plant.robot, plant=traced)
+    trace = traced.trace
+    standing = max(recording.standing, key=lambda part: part.duration, default=None)
+    planned = planned_torques(standing) if standing is not None and len(standing.time) > 2 else None
+    return SimulatedRun(
+        motion=recording.motion,
+        plant=plant,
+        trace=trace,
+        outcome=Outcome.of(trace),
+        planned=planned,
+        assumed=plant.assumed,
+    )
+
+
+def write_run(
+    found: SimulatedRun, *, out: Path | None, zarr: bool, video: Path | None, progress: Progress
+) -> list[Path]:
+    """Write the files of a run, and return their paths.
+
+    Parameters
+    ----------
+    found : SimulatedRun
+        The run.
+    out : Path, optional
+        Existing folder for the table.
+    zarr : bool
+        Whether to write a Zarr store there, too.
+    video : Path, optional
+        Where to write a video.
+    progress : callable
+        Takes what is done, and the completed fraction.
+
+    Raises
+    ------
+    TarsusError
+        If a file can't be written, or a package for it is missing.
+    """
+    written = []
+    if out is not None:
+        written.append(out / "trace.csv")
+        trace_to_csv(found.trace, written[-1])
+        if zarr:
+            written.append(out / "trace.zarr")
+            _write_zarr(found.trace, written[-1])
+    if video is not None:
+        motion, terrain = trace_motion(found.trace, found.motion), found.plant.terrain
+        flat = type(terrain).__name__ == "Flat"
+        animate(
+            motion,
+            video,
+            height=None if flat else terrain.height,
+            progress=lambda fraction: progress(video.name, fraction),
+        )
+        written.append(video)
+    return written
+
+
+def _write_zarr(trace: Trace, path: Path) -> None:
+    dataset = trace_to_dataset(trace)
+    try:
+        dataset.to_zarr(path, mode="w", zarr_format=2)
+    except ImportError:
+        raise InputError("a Zarr store needs zarr: pip install 'tarsus[data]'") from None
+    except OSError as error:
+        raise InputError(f"{path} can't be written: {error.strerror}") from None

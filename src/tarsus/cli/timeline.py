@@ -1,0 +1,32 @@
+"""Scenarios from the command line: a file, or the timeline itself."""
+
+from __future__ import annotations
+
+import dataclasses
+from pathlib import Path
+
+from tarsus.scenario.file import load_scenario, scenario_from_text
+from tarsus.scenario.scenario import Scenario
+
+__all__ = ["timeline_of"]
+
+
+def timeline_of(text: str, rate: float | None) -> Scenario:
+    """Return the scenario of a file, or of a timeline.
+
+    Parameters
+    ----------
+    text : str
+        Path of a scenario file, or commands such as ``at 0 s: walk 50 mm/s``, separated by semicolons.
+    rate : float, optional
+        Ticks per second; the scenario's own where left out [1/s].
+
+    Raises
+    ------
+    InputError
+        If the file can't be read, or a command is malformed.
+    """
+    # A file name is not expected to begin with "at ".
+    is_timeline = text.lstrip().startswith("at ") and not Path(text).is_file()
+    found = scenario_from_text(text) if is_timeline else load_scenario(text)
+    return found if rate is None else dataclasses.replace(found, rate=rate)

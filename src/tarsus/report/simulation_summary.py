@@ -1,0 +1,133 @@
+"""Numbers of a simulated run, as printed by `tarsus simulate`."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tarsus.robot.robot import JOINTS
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
+    from rich.table import Table
+
+    from tarsus.simulation.truth.outcome import Outcome
+
+__all__ = ["simulation_summary", "simulation_table", "simulation_verdict"]
+
+
+def simulation_summary(
+    outcome: Outcome, planned: tuple[Float[np.ndarray, "3"], Float[np.ndarray, "3"]] | None
+) -> dict[str, Any]:
+    """Return the numbers of a simulated run, with units in the keys.
+
+    Parameters
+    ----------
+    outcome : Outcome
+        What the robot did.
+    planned : (array, shape (3,), array, shape (3,)), optional
+        Peak and root mean square torque of coxa, femur and tibia that statics predicts [N m].
+
+    Returns
+    -------
+    dict
+        Strings, numbers, lists and dicts; None if unknown.
+    """
+    joints = {}
+    for number, name in enumerate(JOINTS):
+        joints[name] = {
+            "peak_nm": float(outcome.peak_torque[number]),
+            "rms_nm": float(outcome.rms_torque[number]),
+            "planned_peak_nm": None if planned is None else float(planned[0][number]),
+            "planned_rms_nm": None if planned is None else float(planned[1][number]),
+            "saturated_fraction": float(outcome.saturated[number]),
+        }
+    return {
+        "duration_s": outcome.duration,
+        "commanded_end": _place(outcome.commanded_end),
+        "end": _place(outcome.end),
+        "way_ratio": _finite(outcome.way_ratio),
+        "turn_ratio": _finite(outcome.turn_ratio),
+        "deviation_mm": 1000 * outcome.deviation,
+        "tilt_deg": math.degrees(outcome.tilt),
+        "sag_mm": 1000 * outcome.sag,
+        "slip_mm": 1000 * outcome.slip,
+        "joints": joints,
+        "energy_j": outcome.energy,
+        "cost_of_transport": _finite(outcome.cost_of_transport),
+        "fell_at_s": outcome.fell_at,
+        "stalls": list(outcome.stalls),
+        "problems": list(outcome.problems),
+        "ok": outcome.ok,
+    }
+
+
+def _place(place: tuple[float, float, float]) -> dict[str, float]:
+    return {"x_mm": 1000 * place[0], "y_mm": 1000 * place[1], "turned_deg": math.degrees(place[2])}
+
+
+def _finite(value: float) -> float | None:
+    return value if math.isfinite(value) else None
+
+
+def simulation_table(summary: dict[str, Any]) -> Table:
+    """Return the numbers of a simulated run as a table: what was planned or commanded, and physics.
+
+    Parameters
+    ----------
+    summary : dict
+        Summary from `simulation_summary`.
+    """
+    from rich import box
+    from rich.table import Table
+
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, header_style="bold")
+    for column in ("quantity", "planned", "physics", "ratio"):
+        table.add_column(column, justify="left" if column == "quantity" else "right")
+    before, after = summary["commanded_end"], summary["end"]
+    ways, turns = _ratio(summary["way_ratio"]), _ratio(summary["turn_ratio"])
+    table.add_row("forward", f"{before['x_mm']:.1f} mm", f"{after['x_mm']:.1f} mm", ways)
+    table.add_row("to the left", f"{before['y_mm']:.1f} mm", f"{after['y_mm']:.1f} mm", "")
+    table.add_row("turned", f"{before['turned_deg']:.1f} deg", f"{after['turned_deg']:.1f} deg", turns)
+    for name, value in (
+        ("greatest deviation", f"{summary['deviation_mm']:.1f} mm"),
+        ("greatest tilt", f"{summary['tilt_deg']:.2f} deg"),
+        ("sag of the body", f"{summary['sag_mm']:.1f} mm"),
+        ("slip of a foot", f"{summary['slip_mm']:.1f} mm"),
+    ):
+        table.add_row(name, "0", value, "")
+    for joint, found in summary["joints"].items():
+        for kind in ("peak", "rms"):
+            planned, real = found[f"planned_{kind}_nm"], found[f"{kind}_nm"]
+            ratio = "" if not planned or planned < _SMALL else _ratio(real / planned)
+            name = f"{joint} torque, {'peak' if kind == 'peak' else 'RMS'}"
+            table.add_row(name, "" if planned is None else f"{planned:.3f} N m", f"{real:.3f} N m", ratio)
+        if found["saturated_fraction"]:
+            table.add_row(f"{joint} saturated", "", f"{100 * found['saturated_fraction']:.1f} % of the time", "")
+    table.add_row("energy", "", f"{summary['energy_j']:.2f} J", "")
+    transport = summary["cost_of_transport"]
+    table.add_row("cost of transport", "", "none" if transport is None else f"{transport:.2f}", "")
+    return table
+
+
+# Torque below which a ratio means nothing [N m].
+_SMALL = 1e-3
+
+
+def _ratio(value: float | None) -> str:
+    return "" if value is None else f"{value:.3f}"
+
+
+def simulation_verdict(summary: dict[str, Any]) -> str:
+    """Return the verdict on a simulated run as text.
+
+    Parameters
+    ----------
+    summary : dict
+        Summary from `simulation_summary`.
+    """
+    if summary["ok"]:
+        return "It neither fell nor stalled."
+    return "\n".join(["It did not get through:", *(f"  {problem}" for problem in summary["problems"])])

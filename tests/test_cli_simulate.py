@@ -1,0 +1,104 @@
+"""`tarsus simulate`: numbers are those of `compare`; files are written; falls have an exit code."""
+
+import json
+import shlex
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from sample_commands import run as run_arguments
+from sample_commands import run_json as run_json_arguments
+from tarsus.gait.gait import Gait
+from tarsus.gait.path import straight_path
+from tarsus.gait.plan import plan_walk
+from tarsus.report.simulation_summary import simulation_summary
+from tarsus.robot.file import load_robot
+from tarsus.simulation.truth.comparison import compare
+
+SHORT = "simulate strider --distance 60"
+
+
+def run(line):
+    """Run a command line, and return its exit code and its output."""
+    result = run_arguments(*shlex.split(line))
+    return result.exit_code, result.output
+
+
+def run_json(line):
+    return run_json_arguments(*shlex.split(line))
+
+
+def test_numbers_are_those_of_the_comparison():
+    truth = compare(plan_walk(load_robot("strider"), Gait.named("tripod"), straight_path(0.06), rate=100.0))
+    expected = simulation_summary(truth.outcome, (truth.planned_peak, truth.planned_rms))
+    code, found = run_json(SHORT)
+    assert code == 0
+    assert {name: found[name] for name in expected} == json.loads(
+        json.dumps(expected), parse_float=lambda text: round(float(text), 6)
+    )
+    assert found["ok"]
+    assert found["terrain"] == "flat"
+
+
+def test_the_table_has_plan_and_physics():
+    code, text = run(SHORT)
+    assert code == 0
+    for part in ("quantity", "planned", "physics", "coxa torque, peak", "cost of transport", "It neither fell nor"):
+        assert part in text
+
+
+def test_files_are_written(tmp_path):
+    code, text = run(f"{SHORT} --servos ideal --out {tmp_path / 'out'} --zarr --video {tmp_path / 'walk.gif'}")
+    assert code == 0
+    assert text.count("wrote") == 3
+    table = np.genfromtxt(tmp_path / "out" / "trace.csv", delimiter=",", names=True)
+    assert table["body_x_mm"][-1] == pytest.approx(60, abs=3)
+    assert (tmp_path / "out" / "trace.zarr").is_dir()
+    with Image.open(tmp_path / "walk.gif") as picture:
+        assert picture.n_frames > 10
+
+
+def test_a_video_is_an_mp4_file(tmp_path):
+    code, _ = run(f"{SHORT} --servos ideal --terrain blocks:rise=10,clear=200 --video {tmp_path / 'walk.mp4'}")
+    assert code == 0
+    assert (tmp_path / "walk.mp4").read_bytes()[4:8] == b"ftyp"
+
+
+def test_a_scenario_runs_through_the_controller():
+    timeline = '--scenario "at 0 s: walk 50 mm/s; at 1.5 s: stop"'
+    code, found = run_json(f"simulate strider {timeline} --sensors smart --seed 3")
+    assert code == 0
+    assert found["sensors"] == "smart"
+    assert found["commanded_end"]["x_mm"] > 50
+    assert found["way_ratio"] == pytest.approx(1, abs=0.1)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code", "message"),
+    [
+        (f"{SHORT} --zarr", 2, "--zarr needs --out"),
+        (
+            'simulate strider --scenario "at 0 s: stop" --distance 100',
+            2,
+            "--distance and --scenario exclude each other",
+        ),
+        ("simulate strider --terrain hills", 2, "no terrain is called 'hills'"),
+        ("simulate strider --distance 100 --cycle 0.2", 1, "the walk is not possible: "),
+        ("simulate mithi", 1, "the servo of the coxa is unknown"),
+        (f"{SHORT} --terrain step:rise=60,start=0", 1, "It did not get through:\n  made 18 mm of 60 mm"),
+    ],
+)
+def test_what_is_wrong_is_named(arguments, code, message):
+    found, text = run(arguments)
+    assert found == code, text
+    assert message in text
+
+
+def test_the_viewer_needs_a_screen(monkeypatch):
+    monkeypatch.delenv("DISPLAY", raising=False)
+    monkeypatch.delenv("WAYLAND_DISPLAY", raising=False)
+    monkeypatch.setattr("sys.platform", "linux")
+    code, text = run(f"{SHORT} --view")
+    assert code == 1
+    assert "--view needs a screen" in text
