@@ -133,7 +133,11 @@ MISTAKES = [
     (("legs", 2, "yaw_deg"), 361, "legs[2].yaw_deg = 361: must be from -360 to 360 deg"),
     (("legs", 2, "position_mm"), [NAN, 0, 0], "legs[2].position_mm = [nan, 0, 0]: the first number must be a finite"),
     (("legs", 2, "name"), "front left", 'legs[2].name = "front left": legs[0] has the same name'),
-    (("legs", 2, "position_mm"), [0, 86.5, 0], "0.5 mm from legs[1]; it must be at least 1 mm"),
+    (
+        ("legs", 2, "position_mm"),
+        [0, 86.5, 0],
+        '0.5 mm from legs[1], "middle left"; it must be at least 1 mm. Likely cause: x or y',
+    ),
     (("sources", 0, "of"), "leg", 'sources[0].of = "leg": must be a list'),
     (("sources", 0, "confidence"), "sure", 'sources[0].confidence = "sure": must be one of A, A-, B, C, guess'),
     (("sources",), "me", 'sources = "me": must be a list of tables, each under [[sources]]'),
@@ -184,10 +188,93 @@ def test_too_few_and_too_many_legs_are_refused(count, wanted):
 def test_legs_out_of_order_are_refused_with_the_expected_order():
     document = strider()
     right_order = [leg["name"] for leg in document["legs"]]
-    for legs in (document["legs"][::-1], document["legs"][1:] + document["legs"][:1]):
-        (problem,) = problems({**document, "legs": legs})
-        assert "counter-clockwise from the front left" in problem
-        assert problem.endswith(", ".join(f'"{name}"' for name in right_order))
+    legs = document["legs"]
+    causes = {
+        "they are listed clockwise": legs[::-1],
+        'the list does not start with "front left"': legs[1:] + legs[:1],
+        '"front left" and "rear right" are exchanged': [legs[3], *legs[1:3], legs[0], *legs[4:]],
+        "they are listed side by side or by number": [legs[i] for i in (0, 5, 1, 4, 2, 3)],
+    }
+    for cause, listed in causes.items():
+        (problem,) = problems({**document, "legs": listed})
+        assert "counter-clockwise from the front left: " + ", ".join(f'"{name}"' for name in right_order) in problem
+        assert f"Likely cause: {cause}" in problem
+
+
+@pytest.mark.parametrize(
+    ("frame", "cause"),
+    [
+        (lambda x, y: [x, -y], "y counts to the right"),
+        (lambda x, y: [-x, y], "x counts backward"),
+        (lambda x, y: [y, x], "x and y are exchanged"),
+        (lambda x, y: [-y, x], "x counts to the right and y counts forward"),
+    ],
+)
+def test_positions_in_another_frame_are_named(frame, cause):
+    document = strider()
+    for leg in document["legs"]:
+        leg["position_mm"] = [*frame(*leg["position_mm"][:2]), 0]
+    (problem,) = problems(document)
+    assert f"Likely cause: {cause}; here " in problem
+
+
+def test_names_that_fit_no_frame_leave_the_order_as_the_cause():
+    document = strider()
+    names = ["rear left", "front right", "front left", "rear right", "middle left", "middle right"]
+    for leg, name in zip(document["legs"], names, strict=True):
+        leg["name"] = name
+    (problem,) = problems({**document, "legs": document["legs"][::-1]})
+    assert problem.endswith("Likely cause: they are listed clockwise")
+
+
+def test_positions_in_metres_are_one_problem():
+    document = strider()
+    for leg in document["legs"]:
+        leg["position_mm"] = [x / 1000 for x in leg["position_mm"]]
+    (problem,) = problems(document)
+    assert problem.endswith("Likely cause: these look like m instead of mm")
+
+
+@pytest.mark.parametrize(
+    ("limits", "cause"),
+    [
+        ([500, 2500], "these look like pulse widths in us"),
+        ([-740, 580], "these look like tenths of a degree"),
+        ([0, 1023], "these look like the ticks of a servo"),
+        ([0, 270], "the angles count from another direction"),
+    ],
+)
+def test_limits_in_the_units_of_firmware_are_named(limits, cause):
+    (problem,) = problems(changed(("leg", "limits_deg", "tibia"), limits))
+    assert f"Likely cause: {cause}" in problem
+    assert "tarsus robots convert-limits" in problem
+
+
+@pytest.mark.parametrize("limits", [[-9e5, 0], [0, NAN], ["0", 500], [0, 500, 1]])
+def test_other_limits_have_no_cause(limits):
+    (problem,) = problems(changed(("leg", "limits_deg", "tibia"), limits))
+    assert "Likely cause" not in problem
+
+
+def test_two_legs_are_too_few():
+    (problem,) = problems({**strider(), "legs": strider()["legs"][:2]})
+    assert problem == "legs: 2 entries; there must be at least 4"
+    (problem,) = problems({**strider(), "legs": strider()["legs"][:1]})
+    assert problem == "legs: 1 entry; there must be at least 4"
+
+
+@pytest.mark.parametrize("text", ['{"name": "x", "legs": []}', '{"name": "x", "legs": [}', '  {\n "name": NaN}'])
+def test_json_gets_the_hint_that_toml_is_wanted(tmp_path, text):
+    path = tmp_path / "my.json"
+    path.write_text(text)
+    with pytest.raises(RobotFileError, match="is JSON; a robot file is TOML"):
+        load_robot(path)
+
+
+def test_a_pipe_is_refused_without_waiting_for_it(tmp_path):
+    os.mkfifo(tmp_path / "my.toml")
+    with pytest.raises(RobotFileError, match="is a pipe or a device; a robot file is a regular file"):
+        load_robot(tmp_path / "my.toml")
 
 
 def test_a_leg_straight_ahead_may_be_the_first():

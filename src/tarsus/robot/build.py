@@ -12,6 +12,7 @@ import numpy as np
 from tarsus.errors import RobotFileError
 from tarsus.robot.catalogue import load_servo, servo_of
 from tarsus.robot.document_problems import key_of
+from tarsus.robot.leg_words import end_in_name, side_in_name
 from tarsus.robot.robot import JOINTS, GaitDefaults, Robot, Source
 from tarsus.robot.schema import JointTable, Leg, LegEntry, RobotFile, ServoFigures
 from tarsus.robot.servo import Servo
@@ -99,26 +100,78 @@ def _same_name(entries: Sequence[LegEntry]) -> list[str]:
 def _places(entries: Sequence[LegEntry]) -> list[str]:
     """Refuse legs at the same position, and legs out of counter-clockwise order."""
     points = np.array([[float(x) for x in entry.position_mm] for entry in entries])
+    extent = float(np.ptp(points, axis=0).max())
+    if extent < _LEAST_DISTANCE_MM:
+        return [
+            (
+                f"legs.position_mm: all coxa axes lie within {extent:.4g} mm of each other; two must be at least "
+                f"{_LEAST_DISTANCE_MM:g} mm apart. Likely cause: these look like m instead of mm"
+            )
+        ]
     problems = []
     for i in range(len(points)):
         for j in range(i):
             if (distance := math.dist(points[i], points[j])) < _LEAST_DISTANCE_MM:
+                place = f"[{', '.join(f'{x:g}' for x in points[i])}]"
                 problems.append(
-                    f"legs[{i}].position_mm = {points[i].tolist()}: {distance:g} mm from legs[{j}]; "
-                    f"it must be at least {_LEAST_DISTANCE_MM:g} mm"
+                    f"legs[{i}].position_mm = {place}: {distance:g} mm from legs[{j}], "
+                    f'"{entries[j].name}"; it must be at least {_LEAST_DISTANCE_MM:g} mm. Likely cause: x or y of one '
+                    "of the two has the wrong sign"
                 )
     return problems or _out_of_order(entries, points)
 
 
-def _out_of_order(entries: Sequence[LegEntry], points: Float[np.ndarray, "*#batch 3"]) -> list[str]:
-    x, y, _ = (points - points.mean(axis=0)).T
-    # Rounding puts a leg straight ahead first, whatever the sign of its y.
-    angles = np.round(np.degrees(np.arctan2(y, x)), 9) % 360
-    order = np.argsort(angles, kind="stable")
-    if (order == np.arange(len(order))).all():
+# Other frames in which positions may have been typed: what turns them into x forward, y left, and in words. Those after
+# the first two keep the order of the legs' names, as they exchange the axes.
+_FRAMES = (
+    ((1, 0, 0, -1), "y counts to the right; here y is left"),
+    ((-1, 0, 0, 1), "x counts backward; here x is forward"),
+    ((0, 1, 1, 0), "x and y are exchanged; here x is forward and y is left"),
+    ((0, 1, -1, 0), "x counts to the right and y counts forward; here x is forward and y is left"),
+)
+
+
+def _out_of_order(entries: Sequence[LegEntry], points: Float[np.ndarray, "n 3"]) -> list[str]:
+    plane = points[:, :2] - points[:, :2].mean(axis=0)
+    order = _ring(plane)
+    if order == list(range(len(order))):
         return []
     expected = ", ".join(f'"{entries[i].name}"' for i in order)
-    return [f"legs: they must be listed counter-clockwise from the front left: {expected}"]
+    cause = _why_out_of_order([entry.name for entry in entries], plane)
+    return [f"legs: they must be listed counter-clockwise from the front left: {expected}{cause}"]
+
+
+def _ring(plane: Float[np.ndarray, "n 2"]) -> list[int]:
+    """Return the legs counter-clockwise, starting from straight ahead."""
+    # Rounding puts a leg straight ahead first, whatever the sign of its y.
+    angles = np.round(np.degrees(np.arctan2(plane[:, 1], plane[:, 0])), 9) % 360
+    return [int(leg) for leg in np.argsort(angles, kind="stable")]
+
+
+def _why_out_of_order(names: Sequence[str], plane: Float[np.ndarray, "n 2"]) -> str:
+    """Return the likely cause of a wrong order: another frame, if the names fit it, or a clockwise list."""
+    listed = list(range(len(names)))
+    if not _names_fit(names, plane):
+        for (xx, xy, yx, yy), words in _FRAMES:
+            turned = plane @ np.array([[xx, yx], [xy, yy]])
+            if _ring(turned) == listed and _names_fit(names, turned):
+                return f". Likely cause: {words}"
+    order = _ring(plane)
+    step = [(b - a) % len(order) for a, b in zip(order, [*order[1:], order[0]], strict=True)]
+    if step.count(1) == len(order):
+        return f'. Likely cause: the list does not start with "{names[order[0]]}"'
+    if step.count(len(order) - 1) == len(order):
+        return ". Likely cause: they are listed clockwise"
+    misplaced = [names[leg] for at, leg in enumerate(order) if at != leg]
+    if len(misplaced) == 2:
+        return f'. Likely cause: "{misplaced[0]}" and "{misplaced[1]}" are exchanged'
+    return ". Likely cause: they are listed side by side or by number, instead of around the body"
+
+
+def _names_fit(names: Sequence[str], plane: Float[np.ndarray, "n 2"]) -> bool:
+    """Return whether no leg is on another side or at another end than its name says."""
+    said = np.array([(end_in_name(name), side_in_name(name)) for name in names])
+    return bool((said * np.round(plane, 6) >= 0).all())
 
 
 def _leg_arrays(legs: Sequence[_Flat]) -> dict[str, Any]:

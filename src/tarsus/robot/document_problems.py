@@ -138,7 +138,8 @@ def _line(found: ErrorDetails, wording: Wording) -> str:
     shown = show(found["input"])
     if not location:
         return f"the document is {shown}: {words}"
-    return f"{key}: {words}" if shown == _TABLE else f"{key} = {shown}: {words}"
+    # A table, or a list of tables, is no value to show.
+    return f"{key}: {words}" if _TABLE in shown.strip("[]").split(", ") else f"{key} = {shown}: {words}"
 
 
 def _description(table: type[BaseModel], name: str) -> str:
@@ -158,7 +159,8 @@ def _suggestion(wording: Wording, location: Location) -> str:
 def _number_of_entries(found: ErrorDetails) -> str:
     context: dict[str, Any] = found["ctx"]
     bound = f"at least {context['min_length']}" if "min_length" in context else f"at most {context['max_length']}"
-    return f"{len(found['input'])} entries; there must be {bound}"
+    count = len(found["input"])
+    return f"{count} {'entry' if count == 1 else 'entries'}; there must be {bound}"
 
 
 def _not_a_list(found: ErrorDetails) -> str:

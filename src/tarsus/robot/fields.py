@@ -19,7 +19,7 @@ from tarsus.errors import nearest_name
 from tarsus.robot.catalogue import list_servos
 from tarsus.robot.units import to_decimal
 
-__all__ = ["REFUSED", "Choice", "Number", "Numbers", "ServoName", "Text", "refuse"]
+__all__ = ["REFUSED", "Choice", "JointRange", "Number", "Numbers", "ServoName", "Text", "refuse"]
 
 REFUSED = "tarsus"
 """Type of the pydantic errors raised here."""
@@ -82,11 +82,10 @@ class Number(_Kind):
 
 @dataclass(frozen=True)
 class Numbers(_Kind):
-    """A list of `count` numbers of the kind `each`; with `ordered`, in ascending order."""
+    """A list of `count` numbers of the kind `each`."""
 
     count: int
     each: Number
-    ordered: bool = False
 
     def check(self, value: object) -> tuple[Decimal, ...]:
         """Return the values as decimals."""
@@ -102,14 +101,47 @@ class Numbers(_Kind):
                 numbers.append(self.each.check(item))
             except PydanticCustomError as error:
                 raise refuse(f"the {ordinal} number {error.message()}") from None
-        if self.ordered and sorted(numbers) != numbers:
-            raise refuse("the limits are reversed; the lower limit comes first")
         return tuple(numbers)
 
     def describe(self) -> dict[str, Any]:
         """Return the JSON schema."""
         size = {"minItems": self.count, "maxItems": self.count}
         return {"type": "array", "items": self.each.describe(), **size}
+
+
+@dataclass(frozen=True)
+class JointRange(Numbers):
+    """The lower and the upper limit of a joint, whose errors name the unit or the zero that they may have instead."""
+
+    def check(self, value: object) -> tuple[Decimal, ...]:
+        """Return the limits as decimals."""
+        try:
+            low, high = super().check(value)
+        except PydanticCustomError as error:
+            raise refuse(f"{error.message()}{_likely_angles(value)}") from None
+        if low > high:
+            raise refuse("the limits are reversed; the lower limit comes first")
+        return low, high
+
+
+def _likely_angles(value: object) -> str:
+    """Return what two limits beyond half a turn may be instead of angles in degrees."""
+    value = _unwrap(value)
+    limits = [_decimal(item) for item in value] if isinstance(value, list | tuple) else []
+    if len(limits) != 2 or any(limit is None or not limit.is_finite() for limit in limits):
+        return ""
+    low, high = sorted(float(limit) for limit in limits if limit is not None)
+    if low >= 400 and high <= 2600:
+        what = "these look like pulse widths in us"
+    elif low < 0 and high <= 1800 and low >= -1800 and max(-low, high) > 360:
+        what = "these look like tenths of a degree, as in the Phoenix firmware"
+    elif low >= 0 and high in (1023, 4095):
+        what = "these look like the ticks of a servo"
+    elif low >= -360 and high <= 360:
+        what = "the angles count from another direction; at 0 the leg is straight, and the coxa at yaw_deg"
+    else:
+        return ""
+    return f". Likely cause: {what}; tarsus robots convert-limits converts those of common firmware"
 
 
 @dataclass(frozen=True)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import tomllib
@@ -16,12 +17,14 @@ from pydantic import ValidationError
 from tarsus.errors import RobotFileError, nearest_name
 from tarsus.robot.build import build_robot
 from tarsus.robot.document import decimal_document, plain
+from tarsus.robot.preset_names import PRESETS, preset_names
 from tarsus.robot.problems import problems_of
 from tarsus.robot.robot import Robot
 from tarsus.robot.schema import RobotFile
 from tarsus.robot.writer import toml_string, toml_text
 
 __all__ = [
+    "file_text",
     "list_robots",
     "load_robot",
     "robot_from_dict",
@@ -38,7 +41,7 @@ _LARGEST = 2**20
 
 def list_robots() -> tuple[str, ...]:
     """Return the names of the preset robots."""
-    return tuple(sorted(path.stem for path in (_HERE / "presets").glob("*.toml")))
+    return preset_names()
 
 
 def load_robot(name_or_path: str | os.PathLike[str]) -> Robot:
@@ -57,14 +60,28 @@ def load_robot(name_or_path: str | os.PathLike[str]) -> Robot:
     """
     if name_or_path in list_robots():
         return _load_preset(str(name_or_path))
-    path = Path(name_or_path)
-    return robot_from_text(_read(path), where=str(path))
+    return robot_from_text(file_text(name_or_path), where=str(Path(name_or_path)))
+
+
+def file_text(name_or_path: str | os.PathLike[str]) -> str:
+    """Return the text of a preset's file, or of the file at a path.
+
+    Parameters
+    ----------
+    name_or_path : str or path
+        One of `list_robots`, or the path of a robot file.
+
+    Raises
+    ------
+    RobotFileError
+        If there is no such robot, or its file can't be read.
+    """
+    return _read(PRESETS / f"{name_or_path}.toml" if name_or_path in list_robots() else Path(name_or_path))
 
 
 @cache
 def _load_preset(name: str) -> Robot:
-    path = _HERE / "presets" / f"{name}.toml"
-    return robot_from_text(_read(path), where=name)
+    return robot_from_text(file_text(name), where=name)
 
 
 def robot_from_dict(document: Mapping[str, Any], *, where: str = "robot") -> Robot:
@@ -182,6 +199,9 @@ def _read(path: Path) -> str:
     if path.is_dir():
         raise RobotFileError(where, ["is a folder; a robot file is a TOML file"])
     try:
+        if path.exists() and not path.is_file():
+            # Opening a pipe would wait for a writer.
+            raise RobotFileError(where, ["is a pipe or a device; a robot file is a regular file"])
         with path.open("rb") as file:
             content = file.read(_LARGEST + 1)
     except FileNotFoundError:
@@ -215,12 +235,26 @@ def _parse(text: str, *, where: str) -> dict[str, Any]:
     try:
         return tomllib.loads(text, parse_float=Decimal)
     except tomllib.TOMLDecodeError as error:
-        problem = _not_toml(str(error), text)
+        problem = _NOT_JSON if _is_json(text) else _not_toml(str(error), text)
     except RecursionError:
         problem = "lists or tables are nested too deeply; a robot file has three levels at most"
     except (ValueError, ArithmeticError):
         problem = "a number has too many digits or too large an exponent"
     raise RobotFileError(where, [problem])
+
+
+_NOT_JSON = (
+    'is JSON; a robot file is TOML: write name = "...", [leg] and [[legs]] instead of braces, or load the document '
+    "in Python and save it with tarsus.save_robot(tarsus.robot_from_dict(document), path)"
+)
+
+
+def _is_json(text: str) -> bool:
+    try:
+        return isinstance(json.loads(text), dict)
+    except (ValueError, RecursionError):
+        # JSON with a mistake in it begins like JSON nevertheless; no TOML begins with a brace.
+        return text.lstrip().startswith("{")
 
 
 def _not_toml(message: str, text: str) -> str:

@@ -7,7 +7,7 @@ from typing import Annotated, Any, TypeAlias
 
 from pydantic import BaseModel, ConfigDict, Discriminator, Field, Tag, model_validator
 
-from tarsus.robot.fields import REFUSED, Choice, Number, Numbers, ServoName, Text, refuse
+from tarsus.robot.fields import REFUSED, Choice, JointRange, Number, Numbers, ServoName, Text, refuse
 
 __all__ = [
     "GAIT_NAMES",
@@ -35,7 +35,7 @@ Coordinate: TypeAlias = Annotated[Decimal, Number(-10_000, 10_000, "mm")]
 Point: TypeAlias = Annotated[tuple[Decimal, ...], Numbers(3, Number(-10_000, 10_000, "mm"))]
 Offset: TypeAlias = Annotated[tuple[Decimal, ...], Numbers(2, Number(-10_000, 10_000, "mm"))]
 Size: TypeAlias = Annotated[tuple[Decimal, ...], Numbers(3, Number(0.001, 10_000, "mm"))]
-Range: TypeAlias = Annotated[tuple[Decimal, ...], Numbers(2, Number(-180, 180, "deg"), ordered=True)]
+Range: TypeAlias = Annotated[tuple[Decimal, ...], JointRange(2, Number(-180, 180, "deg"))]
 Mass: TypeAlias = Annotated[Decimal, Number(0.000001, 10_000, "kg")]
 MassOrZero: TypeAlias = Annotated[Decimal, Number(0, 10_000, "kg")]
 Volts: TypeAlias = Annotated[Decimal, Number(0, 1000, "V")]
