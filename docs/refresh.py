@@ -9,6 +9,7 @@ from pathlib import Path
 
 from click.testing import CliRunner
 
+from mistyped import table as mistakes_table
 from tarsus import load_robot
 from tarsus.cli import main as tarsus
 from tarsus.load.handbook.page import docs_page
@@ -37,10 +38,20 @@ def _example(match: re.Match[str]) -> str:
     return f"```python\n{match[1]}```\n\n```text\n{printed.getvalue()}```"
 
 
+def with_mistakes(text: str) -> str:
+    """Return the page on checking robot files with the current table of mistakes."""
+    marks = "<!-- table of mistakes -->\n", "<!-- end of the table -->"
+    before, _, rest = text.partition(marks[0])
+    return f"{before}{marks[0]}{mistakes_table()}\n{marks[1]}{rest.partition(marks[1])[2]}"
+
+
 def main() -> None:
     for page in PAGES:
         page.write_text(refreshed(page.read_text(encoding="utf-8")), encoding="utf-8")
         print(f"refreshed {page.name}")
+    check = ROOT / "docs" / "robot-check.md"
+    check.write_text(with_mistakes(check.read_text(encoding="utf-8")), encoding="utf-8")
+    print(f"refreshed {check.name}")
     handbook = ROOT / "docs" / "handbook.md"
     handbook.write_text(docs_page(handbook.read_text(encoding="utf-8"), load_robot("strider")), encoding="utf-8")
     print(f"refreshed {handbook.name}")

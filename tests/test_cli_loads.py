@@ -159,7 +159,7 @@ def test_servos_match_size_servos():
         assert f"length: {advice}" in text
     for name, reason in expected["excluded"].items():
         assert f"excluded: {name}, as {reason}" in text
-    assert text.splitlines()[-1] == "the robot's servos are sufficient"
+    assert text.splitlines()[-1] == "the robot's servos are sufficient (with estimated leg.servo)"
 
 
 def test_insufficient_servos():
@@ -168,7 +168,9 @@ def test_insufficient_servos():
     assert "LM femur (MG996R): " in result.stdout or "RM femur (MG996R): " in result.stdout
     assert "XM430-W350-T" in result.stdout
     assert "coxa / femur / tibia: " in result.stdout
-    assert result.stdout.splitlines()[-1] == "the robot's servos are not sufficient"
+    assert result.stdout.splitlines()[-1] == (
+        "the robot's servos are not sufficient (with estimated body.mass_kg, leg.mass_kg)"
+    )
     hopeless = run("servos", EXAMPLES / "burnt-5kg.toml", *SHORT, "--factor", "50")
     assert "no servo of the catalogue is sufficient in all joints" in hopeless.stdout
 

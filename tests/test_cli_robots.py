@@ -12,7 +12,18 @@ import tarsus.robot.file
 from sample_commands import run, run_json
 from tarsus.cli import main
 from tarsus.report.robot_summary import dimensions, robot_summary
-from tarsus.robot.file import list_robots, load_robot, template_text
+from tarsus.robot.copied import copied_text
+from tarsus.robot.file import (
+    file_text,
+    list_robots,
+    load_robot,
+    robot_from_dict,
+    robot_from_text,
+    robot_to_dict,
+    save_robot,
+    template_text,
+)
+from tarsus.robot.robot import JOINTS
 
 SCHEMA = Path(tarsus.robot.file.__file__).with_name("robot.schema.json")
 
@@ -53,7 +64,104 @@ def test_new_writes_the_template_and_does_not_overwrite(tmp_path, monkeypatch):
     assert "already exists" in again.stderr
     assert file.read_text(encoding="utf-8") == template_text("my robot/../x")
     code, document = run_json("robots", "new", "third", "--out", "3.toml")
-    assert (code, document) == (0, {"name": "third", "file": "3.toml"})
+    assert (code, document) == (0, {"name": "third", "file": "3.toml", "from": None, "has_masses": True})
+
+
+@pytest.mark.parametrize("name", list_robots())
+def test_new_copies_a_preset_with_its_comments(tmp_path, name):
+    file = tmp_path / "mine.toml"
+    result = run("robots", "new", "mine", "--from", name, "--out", file)
+    assert result.exit_code == 0
+    preset, copy, text = load_robot(name), load_robot(file), file.read_text(encoding="utf-8")
+    assert copy == preset.replace(name="mine")
+    assert "#:schema" not in text
+    comments = [line for line in file_text(name).splitlines()[1:] if line.startswith("#")]
+    assert all(line in text.splitlines() for line in comments)
+    assert ("masses are not known" in result.stdout) == (not preset.has_masses)
+    assert ("Weigh the body" in text) == (not preset.has_masses)
+    # The numbers of the comments, taken over as they are, make a robot with masses.
+    filled = robot_from_text(text.replace("# mass_kg = ", "mass_kg = "), where="filled")
+    assert filled.has_masses
+
+
+def test_new_copies_a_file_and_keeps_what_it_can(tmp_path):
+    first, second = tmp_path / "first.toml", tmp_path / "second.toml"
+    first.write_text(template_text("first").replace("mass_kg = 1.2 ", "# "), encoding="utf-8")
+    assert "body" in run("robots", "new", "x", "--from", first, "--out", second).stderr or second.exists()
+    second.unlink(missing_ok=True)
+    # A name over several lines can't be replaced where it stands.
+    first.write_text(template_text("first").replace('"first"', '"""first\n"""'), encoding="utf-8")
+    assert run("robots", "new", "x", "--from", first, "--out", second).exit_code == 0
+    assert load_robot(second) == load_robot(first).replace(name="x")
+    code, document = run_json("robots", "new", "y", "--from", "freenove", "--out", tmp_path / "y.toml")
+    assert code == 0
+    assert document == {"name": "y", "file": str(tmp_path / "y.toml"), "from": "freenove", "has_masses": False}
+    assert run("robots", "new", "y", "--from", "nobody").exit_code == 1
+
+
+@pytest.mark.parametrize("known", [{"body": {"mass_kg": 1.0}}, {"leg": {"mass_kg": dict.fromkeys(JOINTS, 0.1)}}])
+def test_a_copy_asks_for_the_masses_that_are_unknown(tmp_path, known):
+    document = robot_to_dict(load_robot("phantomx"))
+    for table in ("body", "leg"):
+        del document[table]["mass_kg"]
+        document[table] |= known.get(table, {})
+    path = tmp_path / "part.toml"
+    save_robot(robot_from_dict(document), path)
+    text = copied_text(path, "copy")
+    assert text.count("# mass_kg = ") == 1
+    assert text.count("Weigh the body") == 1
+    assert robot_from_text(text.replace("# mass_kg = ", "mass_kg = "), where="filled").has_masses
+
+
+def test_check_warns_with_the_cause_and_strict_makes_it_an_error(tmp_path):
+    file = tmp_path / "mine.toml"
+    file.write_text(template_text("mine").replace("size_mm = [220, 140, 50]", "size_mm = [22, 14, 5]"), "utf-8")
+    result = run("robots", "check", file)
+    assert result.exit_code == 0
+    assert "no errors, 1 warning" in result.stdout
+    assert "warning: body.size_mm: 22 x 14 x 5 mm" in result.stdout
+    assert "Likely cause: these look like cm" in result.stdout
+    strict = run("robots", "check", file, "--strict")
+    assert strict.exit_code == 1
+    assert "error: body.size_mm" in strict.stdout
+    code, document = run_json("robots", "check", file, "--strict")
+    assert code == 1
+    assert [warning["code"] for warning in document["warnings"]] == ["box-unit"]
+    assert all(run("robots", "check", name, "--strict").exit_code == 0 for name in ("strider", "freenove"))
+
+
+def test_check_plans_a_walk_with_every_gait(tmp_path):
+    _, document = run_json("robots", "check", "strider")
+    assert all(trial["possible"] for trial in document["gaits"])
+    heavy = tmp_path / "heavy.toml"
+    text = template_text("heavy").replace("[body]", "[body]\ncom_mm = [300, 0, 0]")
+    heavy.write_text(text, encoding="utf-8")
+    result = run("robots", "check", heavy)
+    assert result.exit_code == 1
+    assert "tips over" in result.stdout
+    assert "cannot walk: " in result.stdout
+
+
+def test_check_says_what_is_estimated_and_what_to_weigh(tmp_path):
+    file = tmp_path / "mine.toml"
+    assert run("robots", "new", "mine", "--out", file).exit_code == 0
+    assert "estimated, not measured: body.mass_kg, leg.mass_kg, leg.servo" in run("robots", "check", file).stdout
+    assert "tarsus robots new my-freenove --from freenove" in run("robots", "check", "freenove").stdout
+    assert "tarsus robots new my-freenove --from freenove" in run("loads", "freenove").stderr
+
+
+def test_verdicts_on_estimated_masses_say_so(tmp_path):
+    file = tmp_path / "mine.toml"
+    assert run("robots", "new", "mine", "--out", file).exit_code == 0
+    estimated = "(with estimated body.mass_kg, leg.mass_kg, leg.servo)"
+    assert run("loads", file, "--distance", 100).stdout.rstrip().endswith(estimated)
+    assert run("servos", file, "--distance", 100).stdout.rstrip().endswith(estimated)
+    line = "estimated in the robot file, not measured: body.mass_kg, leg.mass_kg"
+    assert f"assumed: {line}\n" in run("rest", file, "--all", "0,40,-100").stdout
+    assert line in " ".join(run("walk", file, "--distance", 100).stdout.split())
+    measured = file.read_text(encoding="utf-8").replace('"body.mass_kg", "leg.mass_kg", ', "")
+    file.write_text(measured, encoding="utf-8")
+    assert "estimated" not in run("rest", file, "--all", "0,40,-100").stdout
 
 
 @pytest.mark.parametrize(
@@ -74,10 +182,10 @@ def test_check_of_a_valid_file(tmp_path):
     result = run("robots", "check", file)
     assert result.exit_code == 0
     assert "no errors" in result.stdout
-    assert "longest stroke straight ahead" in result.stdout
+    assert "can walk: tripod" in result.stdout
     code, document = run_json("robots", "check", "mithi")
     assert code == 0
-    assert len(document["missing"]) == 4
+    assert len(document["missing"]) == 3
 
 
 def test_check_lists_all_errors(tmp_path):

@@ -2,6 +2,7 @@
 
 import importlib.util
 import re
+import sys
 import tomllib
 from pathlib import Path
 
@@ -34,7 +35,7 @@ def test_every_key_the_page_describes_exists():
 
 def test_the_pages_examples_are_toml():
     blocks = re.findall(r"```toml\n(.*?)```", ROBOT_FILE, flags=re.DOTALL)
-    assert len(blocks) == 2
+    assert len(blocks) == 3
     for block in blocks:
         tomllib.loads(block)
 
@@ -60,9 +61,11 @@ def test_the_example_robots_load_and_account_for_their_numbers(path):
 
 
 def refresh_module():
+    sys.path.insert(0, str(DOCS))
     spec = importlib.util.spec_from_file_location("refresh", DOCS / "refresh.py")
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
+    sys.path.remove(str(DOCS))
     return module
 
 
@@ -70,3 +73,10 @@ def refresh_module():
 def test_what_the_pages_show_is_what_is_printed(page):
     text = (DOCS.parent / page).read_text(encoding="utf-8")
     assert refresh_module().refreshed(text) == text, "run: make figures"
+
+
+def test_the_table_of_mistakes_is_what_is_said():
+    text = (DOCS / "robot-check.md").read_text(encoding="utf-8")
+    assert refresh_module().with_mistakes(text) == text, "run: make figures"
+    rows = [line for line in text.splitlines() if line.startswith("| ") and "| strider |" in line]
+    assert len(rows) >= 40

@@ -167,7 +167,7 @@ def test_unloaded_joints_are_good():
     found = sample_loads()
     idle = summary_of(replace(found, torques=np.zeros_like(found.torques)))
     assert idle["class"] == "good"
-    assert str(loads_verdict(idle)) == "good: LF coxa"
+    assert str(loads_verdict(idle)) == "good: LF coxa (with estimated leg.servo)"
 
 
 def test_lines_with_current_and_battery_life():

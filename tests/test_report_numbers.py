@@ -17,7 +17,8 @@ from tarsus.kinematics.mass import total_mass
 from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.rest import resting_pose
 from tarsus.kinematics.stance import default_body_height, default_stance
-from tarsus.report.robot_summary import check_robot, dimensions, robot_summary
+from tarsus.report.robot_check import check_robot, longest_stroke
+from tarsus.report.robot_summary import dimensions, robot_summary
 from tarsus.report.standing_summary import Standing, rest_summary
 from tarsus.report.tables import angle_table, number, robot_table, source_table, verdict, walk_table
 from tarsus.report.walk_summary import walk_summary
@@ -281,7 +282,7 @@ def test_check_lists_missing_values():
     assert report["longest_stroke_mm"] == pytest.approx(max_stroke(robot, Gait.named("tripod")) * 1000)
     keys = [line.split(":")[0] for line in report["missing"]]
     assert keys == [
-        *("body.mass_kg", "leg.mass_kg", "body.size_mm", "leg.servo"),
+        *("body.mass_kg, leg.mass_kg", "body.size_mm", "leg.servo"),
         *("gait.body_height_mm", "gait.swing_height_mm"),
     ]
     assert check_robot(load_robot("strider"))["missing"] == []
@@ -322,3 +323,30 @@ def test_end_position_of_a_sideways_walk():
     motion = plan_walk(load_robot("strider"), Gait.named("tripod"), straight_path(0.1, math.pi / 2), rate=20)
     end = walk_summary(motion)["end"]
     assert (end["x_mm"], end["y_mm"], end["turned_deg"]) == pytest.approx((0, 100, 0), abs=1e-9)
+
+
+def test_the_longest_stroke_of_the_robots_own_gait():
+    robot = load_robot("strider")
+    assert longest_stroke(robot) == (pytest.approx(max_stroke(robot, Gait.named("tripod")) * 1000), [])
+    assert longest_stroke(ring_robot(4))[0] is None
+    limits = np.array(robot.limits)
+    limits[:, 0] = 0
+    stiff = robot.replace(limits=limits, mount_yaw=np.full(6, np.pi / 2))
+    stroke, (problem,) = longest_stroke(stiff)
+    assert stroke == 0
+    assert problem.startswith("the longest stroke is 0")
+
+
+def test_check_of_a_gait_for_another_number_of_legs_names_those_that_exist():
+    report = check_robot(ring_robot(8).replace(gait=GaitDefaults(name="tetrapod")))
+    possible = [trial["gait"] for trial in report["gaits"] if trial["possible"]]
+    if "tetrapod" in possible:
+        assert report["possible"]
+    else:
+        assert report["problems"][0].endswith(f"set [gait] name to one that is possible: {', '.join(possible)}")
+    assert "tripod" in possible
+
+
+def test_check_lists_what_is_estimated():
+    assert check_robot(load_robot("ch3r"))["estimated"] == ["body.mass_kg", "leg.mass_kg"]
+    assert check_robot(ring_robot(6))["estimated"] == []

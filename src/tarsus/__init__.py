@@ -72,6 +72,9 @@ if TYPE_CHECKING:
     from tarsus.load.supply import SupplyLoad, supply_load
     from tarsus.load.torque import joint_torques
     from tarsus.load.verdict import JointVerdict, joint_verdicts
+    from tarsus.plausibility.checks import plausibility_warnings
+    from tarsus.plausibility.gait_trials import GaitTrial, try_gaits
+    from tarsus.plausibility.warning import PlausibilityWarning
     from tarsus.report.angles import plot_angles
     from tarsus.report.animation import animate
     from tarsus.report.footpaths import plot_footpaths
@@ -154,6 +157,9 @@ _HOMES = {
     "tarsus.load.supply": ("SupplyLoad", "supply_load"),
     "tarsus.load.torque": ("joint_torques",),
     "tarsus.load.verdict": ("JointVerdict", "joint_verdicts"),
+    "tarsus.plausibility.checks": ("plausibility_warnings",),
+    "tarsus.plausibility.gait_trials": ("GaitTrial", "try_gaits"),
+    "tarsus.plausibility.warning": ("PlausibilityWarning",),
     "tarsus.report.angles": ("plot_angles",),
     "tarsus.report.animation": ("animate",),
     "tarsus.report.footpaths": ("plot_footpaths",),
@@ -185,6 +191,7 @@ __all__ = [
     "CycleTorques",
     "Gait",
     "GaitDefaults",
+    "GaitTrial",
     "Guard",
     "GuardBounds",
     "GuardOutput",
@@ -204,6 +211,7 @@ __all__ = [
     "MotionTorques",
     "Payload",
     "Plant",
+    "PlausibilityWarning",
     "Pose",
     "Reach",
     "Recording",
@@ -257,6 +265,7 @@ __all__ = [
     "motion_to_dataset",
     "motion_torques",
     "plan_walk",
+    "plausibility_warnings",
     "plot_angles",
     "plot_footpaths",
     "plot_gait",
@@ -286,6 +295,7 @@ __all__ = [
     "supply_load",
     "support_polygon",
     "total_mass",
+    "try_gaits",
     "twist_path",
 ]
 

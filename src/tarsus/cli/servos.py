@@ -56,7 +56,7 @@ def servos(
     from tarsus.load.loads import joint_loads
     from tarsus.load.sizing import size_servos
     from tarsus.report.loads_summary import servos_summary
-    from tarsus.report.loads_table import candidate_table, servo_lines
+    from tarsus.report.loads_table import candidate_table, on_estimates, servo_lines
 
     motion = plan(robot, options)
     loads = joint_loads(motion.robot, motion, payload=payload, supply=supply, inertial=not static)
@@ -71,5 +71,6 @@ def servos(
     show(*servo_lines(summary))
     tipping = "" if summary["balanced"] else "; the robot tips"
     text = "the robot's servos are sufficient" if sufficient else f"the robot's servos are not sufficient{tipping}"
+    text += on_estimates(summary)
     show(Text(text, style="bold green" if sufficient else "bold red"))
     return 0 if sufficient else 1

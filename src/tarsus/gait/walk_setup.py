@@ -17,6 +17,7 @@ from tarsus.gait.spacing import default_foot_distance
 from tarsus.kinematics.inverse import inverse_kinematics
 from tarsus.kinematics.solution import IKSolution
 from tarsus.kinematics.stance import default_body_height, default_stance
+from tarsus.robot.estimates import MASS_KEYS, estimate_text
 from tarsus.robot.robot import Robot
 
 if TYPE_CHECKING:
@@ -178,6 +179,8 @@ class WalkSetup:
                 "the robot file gives no masses: the stability margin is that of the body's centre of mass, "
                 "with massless links"
             )
+        elif estimated := estimate_text(self.robot, MASS_KEYS):
+            assumed.append(estimated)
         return assumed
 
     def solve(

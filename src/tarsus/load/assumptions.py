@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from tarsus.gait.motion import Motion
+from tarsus.robot.estimates import SERVO_KEY, estimate_text
 from tarsus.robot.robot import JOINTS, Robot
 
 __all__ = ["load_assumptions"]
@@ -22,6 +23,8 @@ def load_assumptions(robot: Robot, motion: Motion, supply: float | None) -> Iter
     supply : float or None
         Supply voltage of the servos [V].
     """
+    if estimated := estimate_text(robot, [SERVO_KEY]):
+        yield estimated
     unreachable = int((motion.reach != 0).any(-1).sum())
     if unreachable:
         count = f"{unreachable} of {len(motion.time)} samples"

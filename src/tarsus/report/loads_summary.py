@@ -11,6 +11,7 @@ from tarsus.load.loads import JointLoads
 from tarsus.load.sizing import Candidate, ServoSizing
 from tarsus.load.supply import SupplyLoad
 from tarsus.load.verdict import BURNOUT_FACTOR, JointVerdict, joint_verdicts
+from tarsus.robot.estimates import estimated_keys
 from tarsus.robot.robot import JOINTS
 
 __all__ = ["length_advice", "loads_summary", "servos_summary", "worst_of_each"]
@@ -39,6 +40,7 @@ def loads_summary(loads: JointLoads, supply: SupplyLoad) -> dict[str, Any]:
     return {
         **document,
         "gait": loads.motion.gait.name,
+        "estimated": list(estimated_keys(loads.robot)),
         "speed_mm_s": loads.motion.speed * 1000,
         "body_height_mm": loads.motion.body_height * 1000,
         "stroke_mm": loads.motion.stroke * 1000,
@@ -95,6 +97,7 @@ def servos_summary(sizing: ServoSizing, loads: JointLoads) -> dict[str, Any]:
         "safety_factor": sizing.safety_factor,
         "sufficient": sizing.ok,
         "balanced": loads.balanced,
+        "estimated": list(estimated_keys(loads.robot)),
         "joints": [_joint(verdict, sizing) for verdict in worst_of_each(sizing.verdicts)],
         "candidates": [_candidate(candidate) for candidate in sizing.candidates],
         "mixed": None if sizing.mixed is None else _candidate(sizing.mixed),

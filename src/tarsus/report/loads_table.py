@@ -12,7 +12,16 @@ if TYPE_CHECKING:
     from rich.console import RenderableType
     from rich.table import Table
 
-__all__ = ["candidate_table", "load_bar", "load_rows", "loads_lines", "loads_table", "loads_verdict", "servo_lines"]
+__all__ = [
+    "candidate_table",
+    "load_bar",
+    "load_rows",
+    "loads_lines",
+    "loads_table",
+    "loads_verdict",
+    "on_estimates",
+    "servo_lines",
+]
 
 LOAD_COLUMNS = (
     "joint",
@@ -152,6 +161,7 @@ def loads_verdict(summary: dict[str, Any]) -> RenderableType:
     """
     from rich.text import Text
 
+    estimates = on_estimates(summary)
     worst = min(
         summary["joints"], key=lambda joint: -1.0 if joint["class"] == "unknown" else joint["factor"] or math.inf
     )
@@ -159,12 +169,23 @@ def loads_verdict(summary: dict[str, Any]) -> RenderableType:
     if summary["class"] == "unknown":
         return Text(f"unknown: the robot file names no servo for {name}", style="bold yellow")
     if not summary["balanced"]:
-        return Text(f"not carried: the robot tips; servos: {summary['class']} ({name})", style="bold red")
+        return Text(f"not carried: the robot tips; servos: {summary['class']} ({name}){estimates}", style="bold red")
     factor = "" if worst["factor"] is None else f", safety factor {worst['factor']:.2f}"
     text = f"{summary['class']}: {name}{factor}"
     if not summary["carried"]:
-        return Text(f"{text}; at least {BURNOUT_FACTOR:g} is required", style="bold red")
-    return Text(text, style="bold green" if summary["class"] == "good" else "bold yellow")
+        return Text(f"{text}; at least {BURNOUT_FACTOR:g} is required{estimates}", style="bold red")
+    return Text(f"{text}{estimates}", style="bold green" if summary["class"] == "good" else "bold yellow")
+
+
+def on_estimates(summary: dict[str, Any]) -> str:
+    """Return the words that qualify a verdict on estimated masses or servos; empty without estimates.
+
+    Parameters
+    ----------
+    summary : dict
+        Summary from `tarsus.report.loads_summary.loads_summary` or `servos_summary`.
+    """
+    return f" (with estimated {', '.join(summary['estimated'])})" if summary["estimated"] else ""
 
 
 def candidate_table(summary: dict[str, Any]) -> Table:

@@ -14,6 +14,7 @@ from tarsus.kinematics.reach import Reach
 from tarsus.kinematics.rest import CORNERS, RestingPose
 from tarsus.kinematics.solution import IKSolution
 from tarsus.kinematics.stability import stability_margin
+from tarsus.robot.estimates import MASS_KEYS, estimate_text
 from tarsus.robot.robot import JOINTS, Robot
 
 if TYPE_CHECKING:
@@ -106,7 +107,7 @@ class Standing:
             "feasible_fraction": self.feasible_fraction,
             "possible": not problems,
             "problems": problems,
-            "assumed": [] if robot.has_masses else [_NO_MASSES],
+            "assumed": _assumed(robot),
         }
 
 
@@ -140,8 +141,16 @@ def rest_summary(robot: Robot, angles: Float[np.ndarray, "legs 3"], rest: Restin
         "angles_deg": np.degrees(angles).tolist(),
         "possible": not problems,
         "problems": problems,
-        "assumed": [] if robot.has_masses else [_NO_MASSES],
+        "assumed": _assumed(robot),
     }
+
+
+def _assumed(robot: Robot) -> list[str]:
+    """Return the assumptions behind stability and resting pose, a line for each."""
+    if not robot.has_masses:
+        return [_NO_MASSES]
+    estimated = estimate_text(robot, MASS_KEYS)
+    return [estimated] if estimated else []
 
 
 def _pose_numbers(body: Pose) -> dict[str, float]:

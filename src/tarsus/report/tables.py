@@ -8,7 +8,7 @@ if TYPE_CHECKING:
     from rich.console import RenderableType
     from rich.table import Table
 
-__all__ = ["angle_table", "number", "robot_table", "source_table", "verdict", "walk_table"]
+__all__ = ["angle_table", "gait_table", "number", "robot_table", "source_table", "verdict", "walk_table"]
 
 _UNKNOWN = "unknown"
 
@@ -127,6 +127,28 @@ def robot_table(summaries: list[dict[str, Any]]) -> Table:
         body = _UNKNOWN if robot["body_mm"] is None else " x ".join(f"{size:g}" for size in robot["body_mm"])
         mass, servos = number(robot["mass_kg"], "kg", digits=2), ", ".join(robot["servos"]) or _UNKNOWN
         table.add_row(robot["name"], str(robot["legs"]), lengths, body, mass, servos, robot["gait"])
+    return table
+
+
+def gait_table(trials: list[dict[str, Any]]) -> Table:
+    """Return a table of the gaits that exist for the robot's number of legs, and of a short walk with each.
+
+    Parameters
+    ----------
+    trials : list of dict
+        `gaits` from `tarsus.report.robot_check.check_robot`.
+    """
+    table = _table("gait", "walk", "longest stroke", "stability margin")
+    for trial in trials:
+        margin = trial["least_margin_mm"]
+        # Without a foot on the ground the margin is minus infinity.
+        known = margin is not None and margin != float("-inf")
+        table.add_row(
+            trial["gait"],
+            "possible" if trial["possible"] else "not possible",
+            "" if trial["longest_stroke_mm"] is None else number(trial["longest_stroke_mm"], "mm"),
+            number(margin, "mm") if known else "",
+        )
     return table
 
 

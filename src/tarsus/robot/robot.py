@@ -14,13 +14,14 @@ from tarsus.arrays import Array, broadcast_shapes, namespace
 from tarsus.errors import InputError, MissingDataError
 from tarsus.robot.about import GaitDefaults, Source
 from tarsus.robot.geometry import LegGeometry
+from tarsus.robot.preset_names import preset_names
 from tarsus.robot.servo import Servo
 from tarsus.robot.shape import JOINTS, OPTIONAL, TAILS, locked
 
 if TYPE_CHECKING:
     from jaxtyping import Float
 
-__all__ = ["JOINTS", "GaitDefaults", "Robot", "Source", "stack_robots"]
+__all__ = ["JOINTS", "GaitDefaults", "Robot", "Source", "masses_advice", "stack_robots"]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -186,8 +187,7 @@ class Robot:
         ]
         if missing:
             raise MissingDataError(
-                f"robot {self.name!r}: {' and '.join(missing)} missing from its file; "
-                "add the masses of the body and of each link, servos included"
+                f"robot {self.name!r}: {' and '.join(missing)} missing from its file; {masses_advice(self)}"
             )
 
     def replace(self, **changes: Any) -> Self:
@@ -225,6 +225,23 @@ class Robot:
                 array = np.asarray(value)
                 changes[name] = np.broadcast_to(array, (*batch, *array.shape[array.ndim - len(tail) :]))[index]
         return self.replace(**changes)
+
+
+def masses_advice(robot: Robot) -> str:
+    """Return what to do about the missing masses of a robot.
+
+    Parameters
+    ----------
+    robot : Robot
+        The robot.
+    """
+    measure = "weigh the body with its battery, and one leg's links with their servos"
+    if robot.name in preset_names():
+        return (
+            f"no masses are published for this preset: copy it with tarsus robots new my-{robot.name} --from "
+            f"{robot.name}, {measure}, and fill in the masses there"
+        )
+    return f"{measure}, and add mass_kg under [body] and [leg]; estimates are marked in [[sources]] as a guess"
 
 
 def stack_robots(robots: Sequence[Robot]) -> Robot:

@@ -14,7 +14,8 @@ from tarsus.kinematics.inverse import inverse_kinematics
 from tarsus.kinematics.mass import total_mass
 from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.stance import default_body_height, default_stance
-from tarsus.report.robot_summary import check_robot, dimensions
+from tarsus.report.robot_check import longest_stroke, missing_values
+from tarsus.report.robot_summary import dimensions
 from tarsus.robot.file import list_robots, load_robot, robot_from_dict, robot_from_text, robot_to_dict
 from tarsus.robot.robot import Robot
 from tarsus.studio.encoding import degrees, millimetres, or_null
@@ -168,7 +169,7 @@ def robot_message(robot: Robot, choice: RobotChoice, *, id: int) -> RobotMessage
     id : int
         Id of the message that is answered.
     """
-    stance, check = stance_of(robot), check_robot(robot)
+    stance, (longest, problems) = stance_of(robot), longest_stroke(robot)
     servos = [servo for row in robot.servos for servo in row]
     return RobotMessage(
         type="robot",
@@ -195,11 +196,11 @@ def robot_message(robot: Robot, choice: RobotChoice, *, id: int) -> RobotMessage
         gaits=gaits_of(robot),
         stance_mm=None if stance is None else millimetres(stance[0]),
         stance_angles_deg=None if stance is None else degrees(stance[1]),
-        longest_stroke_mm=check["longest_stroke_mm"],
+        longest_stroke_mm=longest,
         document=robot_to_dict(robot),
         dimensions=[_dimension(row) for row in dimensions(robot)],
-        missing=check["missing"],
-        problems=check["problems"],
+        missing=list(missing_values(robot)),
+        problems=problems,
     )
 
 
