@@ -83,6 +83,7 @@ if TYPE_CHECKING:
     from tarsus.report.timeline import plot_timeline
     from tarsus.robot.catalogue import list_servos, load_servo
     from tarsus.robot.file import list_robots, load_robot, robot_from_dict, robot_to_dict, save_robot
+    from tarsus.robot.firmware import FIRMWARE, Firmware, convert_limits
     from tarsus.robot.robot import JOINTS, GaitDefaults, Robot, Source, stack_robots
     from tarsus.robot.schema import robot_schema
     from tarsus.robot.servo import Servo
@@ -168,6 +169,7 @@ _HOMES = {
     "tarsus.report.timeline": ("plot_timeline",),
     "tarsus.robot.catalogue": ("list_servos", "load_servo"),
     "tarsus.robot.file": ("list_robots", "load_robot", "robot_from_dict", "robot_to_dict", "save_robot"),
+    "tarsus.robot.firmware": ("FIRMWARE", "Firmware", "convert_limits"),
     "tarsus.robot.robot": ("JOINTS", "GaitDefaults", "Robot", "Source", "stack_robots"),
     "tarsus.robot.schema": ("robot_schema",),
     "tarsus.robot.servo": ("Servo",),
@@ -180,6 +182,7 @@ _PACKAGES = ("simulation",)
 _HOME_OF = {name: module for module, names in _HOMES.items() for name in names}
 
 __all__ = [
+    "FIRMWARE",
     "GAITS",
     "JOINTS",
     "Admittance",
@@ -189,6 +192,7 @@ __all__ = [
     "ContactForces",
     "ControlOutput",
     "CycleTorques",
+    "Firmware",
     "Gait",
     "GaitDefaults",
     "GaitTrial",
@@ -239,6 +243,7 @@ __all__ = [
     "compare_with_statics",
     "contact_forces",
     "contact_forces_with_friction",
+    "convert_limits",
     "coxa_frames",
     "curved_path",
     "cycle_feet",

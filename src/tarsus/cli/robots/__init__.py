@@ -5,6 +5,7 @@ from __future__ import annotations
 import click
 
 from tarsus.cli.robots.check import check
+from tarsus.cli.robots.convert_limits import convert_limits
 from tarsus.cli.robots.list import list_all
 from tarsus.cli.robots.new import new
 from tarsus.cli.robots.schema import schema
@@ -20,12 +21,13 @@ __all__ = ["robots"]
         "tarsus robots show strider",
         "tarsus robots new my-robot --out my-robot.toml",
         "tarsus robots check my-robot.toml",
+        "tarsus robots convert-limits phoenix --coxa -65,65 --femur -105,75 --tibia -53,90",
         "tarsus robots schema",
     )
 )
 def robots() -> None:
-    """List robots, show their dimensions and sources, create and check robot files."""
+    """List robots, show their dimensions and sources, create and check robot files, convert joint limits."""
 
 
-for command in (list_all, show_robot, new, check, schema):
+for command in (list_all, show_robot, new, check, convert_limits, schema):
     robots.add_command(command)
