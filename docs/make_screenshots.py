@@ -18,12 +18,12 @@ FIGURES = Path(__file__).parent / "figures"
 SIZES = {"desktop": ViewportSize(width=1280, height=800), "phone": ViewportSize(width=390, height=844)}
 FLAGS = ("--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist", "--no-sandbox")
 
-_UP, _DOWN = (0.0, 85.0, -100.0), (0.0, 45.0, -127.0)
+_UP, _DOWN = (0.0, 85.0, -100.0), (0.0, 34.6, -100.7)
 _LIFTED = _UP + _DOWN * 3 + (10.0, 70.0, -127.0) + _DOWN
 _CURVE = WalkOptions(gait="ripple", path=Curve(kind="curve", angle_deg=70.0, centre_mm=(0.0, 500.0)))
 STATES = (
     StudioState(view="joints", joints=JointsState(angles_deg=_LIFTED)),
-    StudioState(view="body", body=BodyState(x_mm=15.0, y_mm=-110.0, z_mm=-35.0, roll_deg=-6.0), picture=Picture(leg=1)),
+    StudioState(view="body", body=BodyState(x_mm=15.0, y_mm=-140.0, z_mm=-35.0, roll_deg=-6.0), picture=Picture(leg=1)),
     StudioState(view="walk", walk=_CURVE, picture=Picture(time_s=2.6)),
     StudioState(view="drive", picture=Picture(camera="follow")),
     StudioState(view="loads", picture=Picture(time_s=1.4)),

@@ -83,8 +83,8 @@ def test_the_body_moves_relative_to_its_feet(visitor):
 
 
 def test_a_leg_out_of_reach_is_reported_with_reason_and_distance(visitor):
-    visitor.open(StudioState(view="body", body=BodyState(y_mm=-110.0, z_mm=-60.0)))
-    solution = tarsus.inverse_kinematics(STRIDER, FEET, body_at(0, -110, -60))
+    visitor.open(StudioState(view="body", body=BodyState(y_mm=-130.0, z_mm=-60.0)))
+    solution = tarsus.inverse_kinematics(STRIDER, FEET, body_at(0, -130, -60))
     failing = np.flatnonzero(np.asarray(solution.reach))
     assert 0 < len(failing) < 6
     problems = visitor.at("problems")

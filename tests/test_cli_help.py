@@ -93,7 +93,7 @@ def test_help_imports_nothing_heavy(command):
 
 def test_installed_command():
     script = Path(sys.executable).with_name("tarsus")
-    answer = subprocess.run([script, "pose", "strider", "--pitch", "26"], capture_output=True, text=True, check=False)
+    answer = subprocess.run([script, "pose", "strider", "--pitch", "42"], capture_output=True, text=True, check=False)
     assert answer.returncode == 1
     assert "not possible" in answer.stdout
     assert answer.stderr == ""

@@ -36,7 +36,7 @@ def posed(roll=0.0, pitch=0.0, yaw=0.0, by=(0.0, 0.0, 0.0), body_height=110.0, k
         ("--x -30 --y 10 --yaw -8", {"yaw": -8, "by": (-30, 10, 0)}),
         ("--roll 5 --body-height 130", {"roll": 5, "body_height": 130}),
         ("--roll=-5 --pitch=-3.5", {"roll": -5, "pitch": -3.5}),
-        ("--pitch 26", {"pitch": 26}),
+        ("--pitch 42", {"pitch": 42}),
         ("--z 300", {"by": (0, 0, 300)}),
     ],
 )
@@ -55,10 +55,10 @@ def test_pose_matches_inverse_kinematics(options, move):
 
 
 def test_feasible_fraction_is_the_limit():
-    _, document = run_json("pose", "strider", "--pitch", "26")
+    _, document = run_json("pose", "strider", "--pitch", "42")
     fraction = document["feasible_fraction"]
-    assert run("pose", "strider", "--pitch", f"{26 * fraction - 0.01:.3f}").exit_code == 0
-    assert run("pose", "strider", "--pitch", f"{26 * fraction + 0.01:.3f}").exit_code == 1
+    assert run("pose", "strider", "--pitch", f"{42 * fraction - 0.01:.3f}").exit_code == 0
+    assert run("pose", "strider", "--pitch", f"{42 * fraction + 0.01:.3f}").exit_code == 1
 
 
 def test_knees_down():
@@ -73,7 +73,7 @@ def test_pose_output():
     for angle in posed(pitch=5).angles[1]:
         assert f"{math.degrees(angle):.2f}" in good.stdout
     assert good.stdout.strip().endswith("possible")
-    bad = run("pose", "strider", "--pitch", "26")
+    bad = run("pose", "strider", "--pitch", "42")
     assert bad.exit_code == 1
     assert "FEMUR_LIMIT" in bad.stdout
     assert "the robot tips" in bad.stdout
@@ -106,7 +106,7 @@ def test_pose_errors(options, code, text):
 
 
 def test_figures_of_pose_and_rest(tmp_path):
-    result = run("pose", "strider", "--pitch", "26", "--picture", tmp_path / "pose.png")
+    result = run("pose", "strider", "--pitch", "42", "--picture", tmp_path / "pose.png")
     assert result.exit_code == 1
     assert f"wrote {tmp_path / 'pose.png'}" in result.stdout
     code, document = run_json("rest", "strider", "--all", "0,-30,-60", "--picture", tmp_path / "rest.png")

@@ -138,7 +138,7 @@ def test_standing_with_all_feet_on_their_footholds():
 
 
 def test_legs_that_do_not_reach_are_in_the_air():
-    posed = standing("strider", roll=0.34)
+    posed = standing("strider", roll=0.62)
     summary = posed.summary()
     assert not summary["possible"]
     assert 0 < posed.contacts.sum() < 6
@@ -149,7 +149,7 @@ def test_legs_that_do_not_reach_are_in_the_air():
 
 
 def test_tipping_robot():
-    posed = standing("strider", pitch=math.radians(26))
+    posed = standing("strider", pitch=math.radians(42))
     assert posed.margin < 0
     assert posed.summary()["problems"][-1] == (
         f"the robot tips: its centre of mass is {-posed.margin * 1000:.1f} mm outside its support polygon"

@@ -15,7 +15,7 @@ def test_it_agrees_with_the_array_version(name):
     quick, rng = ScalarSolver(robot), np.random.default_rng(1)
     stance = default_stance(robot)
     solved = rejected = 0
-    for _ in range(300):
+    for _ in range(400):
         feet = stance + rng.normal(size=stance.shape) * 0.04
         body = Pose.from_rpy(*rng.normal(size=3) * 0.1, rng.normal(size=3) * 0.02)
         feet_up = feet + UP

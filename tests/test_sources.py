@@ -268,7 +268,9 @@ def test_001_body_frame_is_ours_turned_by_a_quarter() -> None:
 def test_001_rest_foothold_in_the_middle_of_the_reachable_band() -> None:
     robot, body_height = load_robot("strider"), 0.11
     x_min, x_max = reachable_band(robot, -body_height)
-    distance = np.linalg.norm((default_stance(robot, body_height) - robot.mount_position)[:, :2], axis=-1)
+    distance = np.linalg.norm(
+        (default_stance(robot, body_height, swing_height=0) - robot.mount_position)[:, :2], axis=-1
+    )
     assert distance == pytest.approx(x_min + (x_max - x_min) / 2, abs=TIGHT)
     for distance, reached in ((x_min + 1e-6, True), (x_max - 1e-6, True), (x_max + 1e-4, False)):
         feet = coxa_frames(robot) @ (distance[:, None] * [1, 0, 0] + np.array([0, 0, -body_height]))

@@ -17,7 +17,6 @@ from tarsus.control.startup.initial_state import initial_state
 from tarsus.control.startup.planner import fold, sit_down, stand_up
 from tarsus.control.startup.raise_body import raise_body
 from tarsus.errors import InputError, TarsusError, UnreachableError
-from tarsus.gait.walk_setup import default_swing_height
 from tarsus.kinematics.inverse import inverse_kinematics
 from tarsus.kinematics.leg import forward_kinematics
 from tarsus.kinematics.mass import centre_of_mass
@@ -25,7 +24,7 @@ from tarsus.kinematics.polygon import hull_margin
 from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.rest import resting_pose
 from tarsus.kinematics.stability import stability_margin
-from tarsus.kinematics.stance import default_body_height, default_stance
+from tarsus.kinematics.stance import default_body_height, default_stance, default_swing_height
 from tarsus.robot.robot import stack_robots
 
 _DT = 0.004

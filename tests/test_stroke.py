@@ -12,10 +12,9 @@ from tarsus.gait.path import BodyPath, curved_path, straight_path
 from tarsus.gait.plan import plan_walk
 from tarsus.gait.spacing import default_foot_distance, feet_distance, passing_distance
 from tarsus.gait.stroke import max_stroke, unit_twist
-from tarsus.gait.walk_setup import default_swing_height
 from tarsus.kinematics.inverse import inverse_kinematics
 from tarsus.kinematics.leg import forward_kinematics
-from tarsus.kinematics.stance import default_stance
+from tarsus.kinematics.stance import default_stance, default_swing_height
 from tarsus.robot.robot import stack_robots
 
 DIRECTIONS = {

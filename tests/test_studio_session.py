@@ -176,9 +176,9 @@ def test_the_body_moves_relative_to_fixed_feet(ask, body_height):
 
 
 def test_a_leg_out_of_reach_is_reported_with_reason_and_distance(ask):
-    told = ask("body", "pose", body={"pitch_deg": 25})
+    told = ask("body", "pose", body={"pitch_deg": 42})
     height = default_body_height(STRIDER)
-    solution = inverse_kinematics(STRIDER, stance_in_ground(height), body_pose({"pitch_deg": 25}, height))
+    solution = inverse_kinematics(STRIDER, stance_in_ground(height), body_pose({"pitch_deg": 42}, height))
     failing = np.flatnonzero(solution.reach)
     assert [leg["leg"] for leg in told["legs"]] == failing.tolist() != []
     assert [leg["text"] for leg in told["legs"]] == solution.explain().splitlines()
@@ -187,7 +187,7 @@ def test_a_leg_out_of_reach_is_reported_with_reason_and_distance(ask):
         assert f"{leg['miss_mm']:.1f} mm away" in leg["text"]
         assert told["contacts"][leg["leg"]] == "0"
     assert 0 < told["feasible_fraction"] < 1
-    there = {"pitch_deg": 25 * told["feasible_fraction"] - 1e-3}
+    there = {"pitch_deg": 42 * told["feasible_fraction"] - 1e-3}
     assert ask("body", "pose", body=there)["legs"] == []
 
 

@@ -59,7 +59,12 @@ if TYPE_CHECKING:
     from tarsus.kinematics.rest import RestingPose, resting_pose
     from tarsus.kinematics.solution import IKSolution
     from tarsus.kinematics.stability import stability_margin
-    from tarsus.kinematics.stance import default_body_height, default_stance, reachable_band
+    from tarsus.kinematics.stance import (
+        default_body_height,
+        default_stance,
+        default_swing_height,
+        reachable_band,
+    )
     from tarsus.load.contact import ContactForces, contact_forces
     from tarsus.load.cycle_torques import CycleTorques, cycle_torques
     from tarsus.load.friction import contact_forces_with_friction
@@ -145,7 +150,7 @@ _HOMES = {
     "tarsus.kinematics.solution": ("IKSolution",),
     "tarsus.kinematics.rest": ("RestingPose", "resting_pose"),
     "tarsus.kinematics.stability": ("stability_margin",),
-    "tarsus.kinematics.stance": ("default_body_height", "default_stance", "reachable_band"),
+    "tarsus.kinematics.stance": ("default_body_height", "default_stance", "default_swing_height", "reachable_band"),
     "tarsus.load.contact": ("ContactForces", "contact_forces"),
     "tarsus.load.cycle_torques": ("CycleTorques", "cycle_torques"),
     "tarsus.load.friction": ("contact_forces_with_friction",),
@@ -250,6 +255,7 @@ __all__ = [
     "cycle_torques",
     "default_body_height",
     "default_stance",
+    "default_swing_height",
     "fold",
     "folded_pose",
     "forward_kinematics",

@@ -33,6 +33,7 @@ __all__ = ["pose"]
 @number_option("--pitch", "DEG", "Pitch: the front down.", default=0.0)
 @number_option("--yaw", "DEG", "Yaw: to the left.", default=0.0)
 @number_option("--body-height", "MM", "Body height before the displacement.  [default: the robot's]")
+@number_option("--swing-height", "MM", "Swing height for which the feet are placed.  [default: the robot's]")
 @click.option(
     "--knee", type=click.Choice(["up", "down"]), default="up", show_default=True, help="Configuration of the knees."
 )
@@ -41,7 +42,7 @@ __all__ = ["pose"]
 )
 @json_option
 def pose(robot: str, knee: Literal["up", "down"], picture: Path | None, as_json: bool, **displacement: Any) -> int:
-    """Move the body while the feet stay on their rest footholds.
+    """Move the body while the feet stay on their rest footholds, those in which a walk starts and ends.
 
     Prints the joint angles. A leg that can't reach its foothold is in the air; the centre of mass and the support
     polygon of the other feet determine whether the robot stands. The exit code is 0 only if all legs reach their
@@ -79,7 +80,8 @@ def _standing(name: str, knee: Literal["up", "down"], displacement: dict[str, An
 
     robot = load_robot(name)
     height = default_body_height(robot) if displacement["body_height"] is None else displacement["body_height"] / 1000
-    feet = np.asarray(default_stance(robot, height)) + np.array([0.0, 0.0, height])
+    rise = None if displacement["swing_height"] is None else displacement["swing_height"] / 1000
+    feet = np.asarray(default_stance(robot, height, swing_height=rise)) + np.array([0.0, 0.0, height])
     start = Pose.from_rpy(position=(0.0, 0.0, height))
     roll, pitch, yaw = np.radians([displacement["roll"], displacement["pitch"], displacement["yaw"]])
     position = np.array([displacement["x"], displacement["y"], displacement["z"]]) / 1000 + start.position

@@ -16,28 +16,17 @@ from tarsus.gait.gait import Gait
 from tarsus.gait.spacing import default_foot_distance
 from tarsus.kinematics.inverse import inverse_kinematics
 from tarsus.kinematics.solution import IKSolution
-from tarsus.kinematics.stance import default_body_height, default_stance
+from tarsus.kinematics.stance import default_body_height, default_stance, default_swing_height
 from tarsus.robot.estimates import MASS_KEYS, estimate_text
 from tarsus.robot.robot import Robot
 
 if TYPE_CHECKING:
     from jaxtyping import Float
 
-__all__ = ["WalkSetup", "default_swing_height", "require_number"]
+__all__ = ["WalkSetup", "require_number"]
 
 # Upper bound of lengths [m], so that their squares do not overflow.
 _MOST = 1e3
-
-
-def default_swing_height(robot: Robot) -> float:
-    """Return the default swing height [m]: that of the robot file, else a quarter of the default body height.
-
-    Parameters
-    ----------
-    robot : Robot
-        The robot.
-    """
-    return robot.gait.swing_height if robot.gait.swing_height is not None else abs(default_body_height(robot)) / 4
 
 
 _UNITS = {

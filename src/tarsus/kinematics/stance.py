@@ -1,4 +1,4 @@
-"""Rest footholds: the middle of the range that each leg reaches on the ground (source 001)."""
+"""The rest stance, from which every leg can step: the middle of the range it reaches (source 001)."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from tarsus.robot.robot import Robot
 if TYPE_CHECKING:
     from jaxtyping import Bool, Float
 
-__all__ = ["default_body_height", "default_stance", "reachable_band", "stance_or_nan"]
+__all__ = ["default_body_height", "default_stance", "default_swing_height", "reachable_band", "stance_or_nan"]
 
 
 def default_body_height(robot: Robot) -> Float[Array, "..."]:
@@ -38,6 +38,17 @@ def default_body_height(robot: Robot) -> Float[Array, "..."]:
     g = g.to(xp)
     least = xp.min(xp.maximum(g.tibia - g.femur / 2, g.tibia / 2) - (g.mount_z + g.up))
     return least if is_traced(least) else float(least)
+
+
+def default_swing_height(robot: Robot) -> Float[Array, ""]:
+    """Return the default swing height [m]: that of the robot file, else a quarter of the default body height.
+
+    Parameters
+    ----------
+    robot : Robot
+        The robot, or a batch of designs.
+    """
+    return robot.gait.swing_height if robot.gait.swing_height is not None else abs(default_body_height(robot)) / 4
 
 
 def reachable_band(
@@ -120,13 +131,16 @@ def _in_limits(
 
 
 def default_stance(
-    robot: Robot, body_height: Float[Array, "*#batch"] | None = None, *, swing_height: Float[Array, "*#batch"] = 0.0
+    robot: Robot,
+    body_height: Float[Array, "*#batch"] | None = None,
+    *,
+    swing_height: Float[Array, "*#batch"] | None = None,
 ) -> Float[Array, "*batch legs 3"]:
-    """Return the rest footholds in the body frame.
+    """Return the rest footholds in the body frame: the stance in which walks, poses and live driving start.
 
-    With the coxa at 0 (or at the limit nearest to 0), in the middle of the reachable band: source 001's
-    ``x_min + (x_max - x_min) / 2``. With a swing height, of the intersection of the bands on the ground and at the
-    swing height, so that every leg can step.
+    With the coxa at 0 (or at the limit nearest to 0), in the middle of the distances reachable both on the ground and
+    at the swing height, so that every leg can step. At a swing height of 0 it is source 001's
+    ``x_min + (x_max - x_min) / 2``.
 
     Parameters
     ----------
@@ -134,8 +148,8 @@ def default_stance(
         The robot, or a batch of designs.
     body_height : array, shape (...), optional
         Height of the body's origin above the ground [m]. Default: `default_body_height`.
-    swing_height : array, shape (...)
-        Height above the ground to which each foot can be lifted [m].
+    swing_height : array, shape (...), optional
+        Height above the ground to which each foot can be lifted [m]. Default: `default_swing_height`.
 
     Returns
     -------
@@ -150,16 +164,17 @@ def default_stance(
         If a leg does not reach the ground at that body height; the message gives the body heights that are possible.
     """
     height = default_body_height(robot) if body_height is None else body_height
-    feet = stance_or_nan(robot, height, swing_height=swing_height)
+    rise = default_swing_height(robot) if swing_height is None else swing_height
+    feet = stance_or_nan(robot, height, swing_height=rise)
     xp = namespace(feet)
     missing = xp.isnan(feet[..., 0])
     if not is_traced(feet) and bool(xp.any(missing)):
-        raise UnreachableError(_why_no_stance(robot, np.asarray(height), np.asarray(swing_height), np.asarray(missing)))
+        raise UnreachableError(_why_no_stance(robot, np.asarray(height), np.asarray(rise), np.asarray(missing)))
     return feet
 
 
 def stance_or_nan(
-    robot: Robot, body_height: Float[Array, "*#batch"], *, swing_height: Float[Array, "*#batch"] = 0.0
+    robot: Robot, body_height: Float[Array, "*#batch"], *, swing_height: Float[Array, "*#batch"]
 ) -> Float[Array, "*batch legs 3"]:
     """Return the rest footholds as `default_stance` does, with NaN for legs that do not reach the ground.
 

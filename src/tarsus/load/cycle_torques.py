@@ -17,8 +17,7 @@ import numpy as np
 from tarsus.arrays import Array, as_floats, broadcast_shapes, namespace, require_finite
 from tarsus.errors import InputError
 from tarsus.gait.gait import Gait
-from tarsus.gait.walk_setup import default_swing_height
-from tarsus.kinematics.stance import default_body_height, default_stance
+from tarsus.kinematics.stance import default_body_height, default_stance, default_swing_height
 from tarsus.load.cycle_sweep import CyclePhases, CycleSweep
 from tarsus.load.payload import Payload, as_payload
 from tarsus.robot.robot import Robot

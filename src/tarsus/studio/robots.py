@@ -9,11 +9,10 @@ import numpy as np
 
 from tarsus.errors import InputError, UnknownNameError, UnreachableError
 from tarsus.gait.gait import GAITS, Gait
-from tarsus.gait.walk_setup import default_swing_height
 from tarsus.kinematics.inverse import inverse_kinematics
 from tarsus.kinematics.mass import total_mass
 from tarsus.kinematics.pose import Pose
-from tarsus.kinematics.stance import default_body_height, default_stance
+from tarsus.kinematics.stance import default_body_height, default_stance, default_swing_height
 from tarsus.report.robot_check import longest_stroke, missing_values
 from tarsus.report.robot_summary import dimensions
 from tarsus.robot.file import list_robots, load_robot, robot_from_dict, robot_from_text, robot_to_dict

@@ -16,9 +16,9 @@ from tarsus.control.startup.initial_state import initial_state, lying_state
 from tarsus.control.startup.level_body import level_body
 from tarsus.control.startup.raise_body import lower_body, raise_body
 from tarsus.errors import InputError, TarsusError, UnreachableError
-from tarsus.gait.walk_setup import default_swing_height, require_number
+from tarsus.gait.walk_setup import require_number
 from tarsus.kinematics.inverse import inverse_kinematics
-from tarsus.kinematics.stance import default_body_height, default_stance
+from tarsus.kinematics.stance import default_body_height, default_stance, default_swing_height
 from tarsus.robot.robot import Robot
 
 if TYPE_CHECKING:
