@@ -18,6 +18,7 @@ from tarsus.kinematics.leg import forward_kinematics
 from tarsus.kinematics.mass import centre_of_mass
 from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.stance import default_stance
+from tarsus.robot.joint_limits import UNKNOWN_SPEED
 
 TRIPOD = Gait.named("tripod")
 
@@ -103,17 +104,17 @@ def test_joint_speed_is_the_derivative_of_the_angles_to_second_order():
     assert np.log2(errors[1] / errors[2]) == pytest.approx(2, abs=0.4)
 
 
-def test_speed_ratio_is_relative_to_each_servo_and_nan_where_unknown():
+def test_speed_ratio_is_relative_to_each_servo_or_to_the_limit_of_live_walking():
     motion = walk()
     limit = motion.robot.servos[2][1].no_load_speed
     assert motion.speed_ratio[2, 1] == pytest.approx(np.abs(motion.joint_speed[:, 2, 1]).max() / limit)
     some = ((None,) * 3, *motion.robot.servos[1:])
     unknown = dataclasses.replace(motion, robot=motion.robot.replace(servos=some))
-    assert np.isnan(unknown.speed_ratio[0]).all()
-    assert not np.isnan(unknown.speed_ratio[1:]).any()
+    np.testing.assert_allclose(unknown.speed_ratio[0], np.abs(motion.joint_speed[:, 0]).max(0) / UNKNOWN_SPEED)
+    np.testing.assert_array_equal(unknown.speed_ratio[1:], motion.speed_ratio[1:])
     silent = dataclasses.replace(motion.robot.servos[0][0], no_load_speed=None)
     silent = dataclasses.replace(motion, robot=motion.robot.replace(servos=((silent,) * 3,) * 6))
-    assert np.isnan(silent.speed_ratio).all()
+    np.testing.assert_allclose(silent.speed_ratio, np.abs(motion.joint_speed).max(0) / UNKNOWN_SPEED)
     assert silent.ok
 
 
@@ -183,12 +184,22 @@ def test_feet_too_close_names_legs_and_distance():
     )
 
 
+def test_a_joint_of_an_unknown_servo_has_the_speed_limit_of_live_walking():
+    motion = walk(cycle_time=0.4, rate=200)
+    none = motion.robot.replace(servos=((None,) * 3,) * 6)
+    (problem,) = dataclasses.replace(motion, robot=none).problems
+    assert problem.startswith("too fast: the tibia of ")
+    assert "the limit is 286 deg/s, as the speed of its servo is unknown" in problem
+    longer = float(problem.split("a cycle time of about ")[1].split(" s")[0])
+    assert longer == pytest.approx(0.4 * np.abs(motion.joint_speed).max() / UNKNOWN_SPEED, abs=0.006)
+
+
 def test_too_fast_names_the_joint_and_a_feasible_cycle_time():
     motion = walk(cycle_time=0.5, rate=200)
     (problem,) = motion.problems
     assert problem.startswith("too fast: the tibia of ")
     assert "its servo DS3225 reaches 462 deg/s without load" in problem
-    longer = float(problem.split("a cycle time of ")[1].split(" s")[0])
+    longer = float(problem.split("a cycle time of about ")[1].split(" s")[0])
     assert longer == pytest.approx(0.5 * motion.speed_ratio.max(), abs=0.006)
     assert walk(cycle_time=longer * 1.01, rate=200).ok
     assert kinds(walk(cycle_time=longer * 0.97, rate=200)) == ["too fast"]

@@ -1,4 +1,5 @@
 import math
+import re
 
 import jax.numpy as jnp
 import numpy as np
@@ -20,6 +21,7 @@ from tarsus.gait.walk_setup import WalkSetup
 from tarsus.kinematics.inverse import inverse_kinematics
 from tarsus.kinematics.leg import forward_kinematics
 from tarsus.kinematics.stance import default_stance
+from tarsus.robot.joint_limits import UNKNOWN_SPEED
 from tarsus.robot.robot import GaitDefaults, stack_robots
 
 PATHS = {
@@ -334,6 +336,20 @@ def test_the_default_cycle_time_keeps_joints_at_half_the_servo_speed(robot, name
     assert any("half the no-load speed of its servo" in line for line in motion.assumed)
 
 
+@pytest.mark.parametrize("name", ["mithi", "freenove"])
+def test_without_known_servos_a_walk_keeps_half_the_joint_speed_limit_of_live_walking(name):
+    robot = preset(name)
+    motion = plan_walk(robot, Gait.named("wave"), curved_path(np.pi), rate=200)
+    assert 0.47 * UNKNOWN_SPEED < np.abs(motion.joint_speed).max() <= 0.5 * UNKNOWN_SPEED * 1.005
+    assert "joint speed limit 286 deg/s where the robot file gives no servo speed" in motion.assumed
+    assert any("no joint exceeds half its speed limit" in line for line in motion.assumed)
+    # Walked in a second, as before there was a limit, it is not possible, and the cycle time given is.
+    fast = plan_walk(robot, Gait.named("wave"), curved_path(np.pi), cycle_time=1.0, rate=1000)
+    (problem,) = fast.problems
+    possible = float(re.search(r"a cycle time of about ([\d.]+) s or longer is possible$", problem)[1])
+    assert plan_walk(robot, Gait.named("wave"), curved_path(np.pi), cycle_time=1.01 * possible, rate=200).ok
+
+
 def test_the_default_cycle_time_is_at_least_a_second():
     motion = plan_walk(preset("strider"), TRIPOD, straight_path(0.05), stroke=0.01, swing_height=0.003)
     assert motion.cycle_time == 1
@@ -348,14 +364,15 @@ def test_assumptions_are_listed():
         "swing height 20 mm: a quarter of the body height",
         "the robot file gives no masses",
         "0.6 of the longest possible",
-        "cycle time 1 s: the robot file does not give the speed of every servo",
+        "joint speed limit 286 deg/s where the robot file gives no servo speed",
     ):
         assert any(part in line for line in assumed), part
     given_all = plan_walk(
         ring(6), TRIPOD, straight_path(0.2), body_height=0.08, swing_height=0.02, stroke=0.03, cycle_time=1.0
     )
-    assert given_all.assumed == ()
+    assert given_all.assumed == ("joint speed limit 286 deg/s where the robot file gives no servo speed",)
     own = ring(6, gait=GaitDefaults(body_height=0.08, swing_height=0.02))
+    own = own.replace(servos=preset("strider").servos)
     assert plan_walk(own, TRIPOD, straight_path(0.2), stroke=0.03, cycle_time=1.0).assumed == ()
 
 

@@ -62,19 +62,21 @@ def test_walk_summary(kind):
         assert speed["deg_s"] == pytest.approx(np.degrees(np.abs(motion.joint_speed[..., number_of]).max()))
 
 
-def test_no_load_fraction_is_that_of_the_critical_leg():
+def test_limit_fraction_is_that_of_the_critical_leg():
     motion = sample_walk("too fast")
     for joint, speed in enumerate(walk_summary(motion)["joint_speed"].values()):
-        assert speed["no_load_fraction"] == pytest.approx(motion.speed_ratio[:, joint].max())
+        assert speed["limit_fraction"] == pytest.approx(motion.speed_ratio[:, joint].max())
         assert speed["no_load_deg_s"] == pytest.approx(math.degrees(motion.robot.servos[0][joint].no_load_speed))
         assert speed["servo"] == "DS3225"
 
 
-def test_unknown_servos_have_no_no_load_fraction():
+def test_unknown_servos_have_the_speed_limit_of_live_walking():
     summary = walk_summary(sample_walk("round"))
     for speed in summary["joint_speed"].values():
-        assert (speed["servo"], speed["no_load_deg_s"], speed["no_load_fraction"]) == (None, None, None)
-    assert "no-load speed unknown" in text_of(walk_table(summary))
+        assert (speed["servo"], speed["no_load_deg_s"]) == (None, None)
+        assert speed["limit_deg_s"] == pytest.approx(math.degrees(5))
+        assert speed["limit_fraction"] == pytest.approx(speed["deg_s"] / speed["limit_deg_s"])
+    assert "% of 286 deg/s, as the no-load speed is unknown" in text_of(walk_table(summary))
 
 
 def test_yaw_counts_full_turns():
@@ -294,7 +296,7 @@ def test_check_lists_servos_with_unknown_speed():
 
     slow = replace(robot.servos[0][0], no_load_speed=None)
     report = check_robot(robot.replace(servos=((slow,) * 3,) * 6))
-    assert report["missing"] == ["no_load_rad_s of the servo DS3225: without it, no verdict on joint speeds"]
+    assert report["missing"] == ["no_load_rad_s of the servo DS3225: without it, joint speeds are limited to 286 deg/s"]
 
 
 @pytest.mark.parametrize(

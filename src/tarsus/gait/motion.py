@@ -19,6 +19,7 @@ from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.reach import Reach
 from tarsus.kinematics.solution import IKSolution
 from tarsus.kinematics.stability import stability_margin
+from tarsus.robot.joint_limits import joint_limits, servo_speeds
 from tarsus.robot.robot import JOINTS, Robot
 
 if TYPE_CHECKING:
@@ -126,10 +127,12 @@ class Motion:
 
     @cached_property
     def speed_ratio(self) -> Float[np.ndarray, "legs 3"]:
-        """Greatest speed of each joint over the no-load speed of its servo ``(legs, 3)``; NaN where that is unknown."""
-        limits = [[math.nan if s is None else s.no_load_speed or math.nan for s in leg] for leg in self.robot.servos]
+        """Greatest speed of each joint over its limit ``(legs, 3)``.
+
+        The limit is the servo's no-load speed, and 5 rad/s where that is unknown, as in live walking.
+        """
         fastest: np.ndarray = np.abs(self.joint_speed).max(0)
-        return np.asarray(fastest / np.array(limits))
+        return np.asarray(fastest / joint_limits(self.robot).speed)
 
     @cached_property
     def problems(self) -> tuple[str, ...]:
@@ -144,10 +147,12 @@ class Motion:
     def _problems(self) -> Iterator[str]:
         if (self.reach != Reach.OK).any():
             yield self._why_unreachable()
-        yield from self._jumps()
+        jumps = list(self._jumps())
+        yield from jumps
         yield from self._tips_over()
         yield from self._feet_too_close()
-        yield from self._too_fast()
+        if not jumps:  # no cycle time makes a jump slow enough
+            yield from self._too_fast()
 
     def _jumps(self) -> Iterator[str]:
         """Yield the largest jump of a leg that changes its inverse-kinematics branch."""
@@ -181,16 +186,20 @@ class Motion:
             )
 
     def _too_fast(self) -> Iterator[str]:
-        ratio = np.nan_to_num(self.speed_ratio, nan=0.0)
+        ratio = self.speed_ratio
         leg, joint = np.unravel_index(int(np.argmax(ratio)), ratio.shape)
-        servo = self.robot.servos[leg][joint]
-        if ratio[leg, joint] > 1 and servo is not None and servo.no_load_speed is not None:
-            needed = math.degrees(ratio[leg, joint] * servo.no_load_speed)
-            yield (
-                f"too fast: the {JOINTS[joint]} of {self.robot.leg_codes[leg]} would turn at {needed:.0f} deg/s, "
-                f"its servo {servo.name} reaches {math.degrees(servo.no_load_speed):.0f} deg/s without load; "
-                f"a cycle time of {self.cycle_time * ratio[leg, joint]:.2f} s or longer is possible"
-            )
+        worst = float(ratio[leg, joint])
+        if worst <= 1:
+            return
+        limit, servo = float(joint_limits(self.robot).speed[leg, joint]), self.robot.servos[leg][joint]
+        bound = f"the limit is {math.degrees(limit):.0f} deg/s, as the speed of its servo is unknown"
+        if servo is not None and servo_speeds(self.robot)[leg][joint] is not None:
+            bound = f"its servo {servo.name} reaches {math.degrees(limit):.0f} deg/s without load"
+        yield (
+            f"too fast: the {JOINTS[joint]} of {self.robot.leg_codes[leg]} would turn at "
+            f"{math.degrees(worst * limit):.0f} deg/s, {bound}; "
+            f"a cycle time of about {self.cycle_time * worst:.2f} s or longer is possible"
+        )
 
     def _why_unreachable(self) -> str:
         failing = self.reach != Reach.OK

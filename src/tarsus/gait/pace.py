@@ -11,11 +11,12 @@ from tarsus.gait.path import BodyPath
 from tarsus.gait.spacing import feet_distance
 from tarsus.gait.stroke import longest_stroke, steady_solution, unit_twist
 from tarsus.gait.walk_setup import WalkSetup
+from tarsus.robot.joint_limits import joint_limits, servo_speeds
 
 __all__ = ["choose_pace"]
 
 _FRACTION_OF_MAX_STROKE = 0.6
-_FRACTION_OF_SERVO_SPEED = 0.5
+_FRACTION_OF_SPEED_LIMIT = 0.5
 _CYCLE_TIME = 1.0
 # Samples of joint speed per swing, most per cycle, and the step of the differences [cycles].
 _SAMPLES_PER_SWING = 100
@@ -93,11 +94,7 @@ def _why_no_stroke(setup: WalkSetup) -> str:
 
 
 def _servo_cycle_time(setup: WalkSetup, path: BodyPath, stroke: float, assumed: list[str]) -> float:
-    """Return the cycle time at which no joint exceeds half the speed of its servo, at least 1 s."""
-    speeds = [[None if s is None else s.no_load_speed for s in leg] for leg in setup.robot.servos]
-    if any(speed is None for leg in speeds for speed in leg):
-        assumed.append(f"cycle time {_CYCLE_TIME:g} s: the robot file does not give the speed of every servo")
-        return _CYCLE_TIME
+    """Return the cycle time at which no joint exceeds half its speed limit, at least 1 s."""
     count = min(math.ceil(_SAMPLES_PER_SWING / (1 - setup.gait.duty_factor)), _MOST_SAMPLES)
     phases = (np.arange(count)[:, None] / count + np.array([-0.5, 0.5]) * _DIFFERENCE).ravel()
     twist = unit_twist(setup.rest, path.displacement) * stroke
@@ -106,9 +103,11 @@ def _servo_cycle_time(setup: WalkSetup, path: BodyPath, stroke: float, assumed: 
         return _CYCLE_TIME  # joint speeds of an impossible walk are meaningless
     angles = np.asarray(solution.angles).reshape(count, 2, setup.robot.legs, 3)
     per_cycle = np.abs(angles[:, 1] - angles[:, 0]).max(0) / _DIFFERENCE
-    needed = float((per_cycle / np.array(speeds, dtype=float)).max()) / _FRACTION_OF_SERVO_SPEED
+    needed = float((per_cycle / joint_limits(setup.robot).speed).max()) / _FRACTION_OF_SPEED_LIMIT
     if needed > _CYCLE_TIME:
-        assumed.append(f"cycle time {needed:.3f} s: no joint exceeds half the no-load speed of its servo")
+        known = all(speed is not None for leg in servo_speeds(setup.robot) for speed in leg)
+        limit = "the no-load speed of its servo" if known else "its speed limit"
+        assumed.append(f"cycle time {needed:.3f} s: no joint exceeds half {limit}")
         return needed
     assumed.append(f"cycle time {_CYCLE_TIME:g} s")
     return _CYCLE_TIME

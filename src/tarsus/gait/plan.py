@@ -70,7 +70,7 @@ def plan_walk(  # noqa: PLR0913 - the options of a walk, all of them with defaul
         and cycle time, else from the duration of the path.
     cycle_time : float, optional
         Duration of a cycle [s]. Default: from stroke and speed; without speed and duration 1 s, or longer where a joint
-        would exceed half the no-load speed of its servo.
+        would exceed half the no-load speed of its servo, or half of 5 rad/s where that is unknown.
     body_height : float, optional
         Height of the body's origin above the ground [m]. Default: the robot's.
     swing_height : float, optional

@@ -18,6 +18,7 @@ from tarsus.kinematics.inverse import inverse_kinematics
 from tarsus.kinematics.solution import IKSolution
 from tarsus.kinematics.stance import default_body_height, default_stance, default_swing_height
 from tarsus.robot.estimates import MASS_KEYS, estimate_text
+from tarsus.robot.joint_limits import UNKNOWN_SPEED, servo_speeds
 from tarsus.robot.robot import Robot
 
 if TYPE_CHECKING:
@@ -163,6 +164,10 @@ class WalkSetup:
             assumed.append(f"body height {self.body_height * 1000:.0f} mm: derived from femur and tibia")
         if swing_height is None and self.robot.gait.swing_height is None:
             assumed.append(f"swing height {self.swing_height * 1000:.0f} mm: a quarter of the body height")
+        if any(speed is None for leg in servo_speeds(self.robot) for speed in leg):
+            assumed.append(
+                f"joint speed limit {math.degrees(UNKNOWN_SPEED):.0f} deg/s where the robot file gives no servo speed"
+            )
         if not self.robot.has_masses:
             assumed.append(
                 "the robot file gives no masses: the stability margin is that of the body's centre of mass, "

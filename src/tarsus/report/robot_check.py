@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 from collections.abc import Iterator
 from typing import Any
 
@@ -14,11 +15,15 @@ from tarsus.plausibility.checks import plausibility_warnings
 from tarsus.plausibility.gait_trials import NO_STROKE, GaitTrial, try_gaits
 from tarsus.report.robot_summary import robot_summary
 from tarsus.robot.estimates import MASS_KEYS, estimated_keys
+from tarsus.robot.joint_limits import UNKNOWN_SPEED
 from tarsus.robot.robot import Robot, masses_advice
 
 __all__ = ["Check", "check_robot", "longest_stroke", "missing_values"]
 
 Check = dict[str, Any]
+
+# Speed limit of a joint whose servo's speed is unknown [deg/s].
+_ASSUMED = math.degrees(UNKNOWN_SPEED)
 
 
 def check_robot(robot: Robot) -> Check:
@@ -119,10 +124,10 @@ def missing_values(robot: Robot) -> Iterator[str]:
         yield "body.size_mm: without it, the body is the flat polygon of the coxa axes"
     servos = [servo for row in robot.servos for servo in row]
     if None in servos:
-        yield "leg.servo: without it, no verdict on joint speeds"
+        yield f"leg.servo: without it, joint speeds are limited to {_ASSUMED:.0f} deg/s"
     slow = sorted({servo.name for servo in servos if servo is not None and servo.no_load_speed is None})
     for name in slow:
-        yield f"no_load_rad_s of the servo {name}: without it, no verdict on joint speeds"
+        yield f"no_load_rad_s of the servo {name}: without it, joint speeds are limited to {_ASSUMED:.0f} deg/s"
     if robot.gait.body_height is None:
         yield f"gait.body_height_mm: {default_body_height(robot) * 1000:.0f} mm is assumed, from the leg lengths"
     if robot.gait.swing_height is None:

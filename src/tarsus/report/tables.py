@@ -72,10 +72,10 @@ def _least_margin(margin: dict[str, Any]) -> str:
 
 
 def _joint_speed(speed: dict[str, Any]) -> str:
-    text = f"peak {speed['deg_s']:.0f} deg/s ({speed['leg']})"
-    if speed["no_load_fraction"] is None:
-        return f"{text}; no-load speed unknown"
-    return f"{text}; {speed['no_load_fraction'] * 100:.0f} % of the no-load speed of {speed['servo']}"
+    text = f"peak {speed['deg_s']:.0f} deg/s ({speed['leg']}); {speed['limit_fraction'] * 100:.0f} % of"
+    if speed["no_load_deg_s"] is None:
+        return f"{text} {speed['limit_deg_s']:.0f} deg/s, as the no-load speed is unknown"
+    return f"{text} the no-load speed of {speed['servo']}"
 
 
 def verdict(summary: dict[str, Any]) -> RenderableType:

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from tarsus.gait.motion import Motion
+from tarsus.robot.joint_limits import joint_limits, servo_speeds
 from tarsus.robot.robot import JOINTS
 
 __all__ = ["walk_summary"]
@@ -71,18 +72,20 @@ def _nearest_feet(motion: Motion) -> dict[str, Any]:
 
 
 def _joint_speed(motion: Motion, joint: int) -> dict[str, Any]:
-    """Return the peak speed of coxa, femur or tibia, and its ratio to the servo's no-load speed."""
+    """Return the peak speed of coxa, femur or tibia, and its ratio to the joint's speed limit."""
     fastest = np.abs(motion.joint_speed[:, :, joint]).max(0)
     leg = int(np.argmax(fastest))
     ratio = motion.speed_ratio[:, joint]
     # With different servos, the leg with the largest ratio is not always the fastest.
-    critical = leg if np.isnan(ratio).all() else int(np.nanargmax(ratio))
+    critical = int(np.argmax(ratio))
     servo = motion.robot.servos[critical][joint]
-    limit = None if servo is None or servo.no_load_speed is None else math.degrees(servo.no_load_speed)
+    limit = math.degrees(joint_limits(motion.robot).speed[critical, joint])
+    known = servo_speeds(motion.robot)[critical][joint] is not None
     return {
         "deg_s": math.degrees(fastest[leg]),
         "leg": motion.robot.leg_codes[leg],
         "servo": None if servo is None else servo.name,
-        "no_load_deg_s": limit,
-        "no_load_fraction": None if limit is None else ratio[critical],
+        "limit_deg_s": limit,
+        "limit_fraction": ratio[critical],
+        "no_load_deg_s": limit if known else None,
     }

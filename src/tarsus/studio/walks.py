@@ -242,12 +242,11 @@ def _timed_length(found: dict[str, Any]) -> TimedLength:
 
 
 def _joint_speed(joint: str, found: dict[str, Any]) -> JointSpeed:
-    fraction = found["no_load_fraction"]
     return JointSpeed(
         joint=joint,  # type: ignore[arg-type] # one of the three
         deg_s=float(found["deg_s"]),
         leg=found["leg"],
         servo=found["servo"],
         no_load_deg_s=found["no_load_deg_s"],
-        no_load_fraction=None if fraction is None else or_null(fraction),
+        no_load_fraction=None if found["no_load_deg_s"] is None else float(found["limit_fraction"]),
     )
