@@ -48,7 +48,8 @@ def test_pose_matches_inverse_kinematics(options, move):
     assert document["possible"] == bool(solution.ok)
     assert code == (0 if solution.ok else 1)
     if not solution.ok:
-        assert document["problems"][: (solution.reach != 0).sum()] == solution.explain().splitlines()
+        lines = solution.explain().splitlines()
+        assert document["problems"][: len(lines)] == lines
         start = Pose.from_rpy(position=(0, 0, 0.11))
         fraction = reachable_fraction(STRIDER, solution.feet, start, solution.body)
         assert document["feasible_fraction"] == pytest.approx(fraction, abs=1e-6)
@@ -67,6 +68,19 @@ def test_knees_down():
     assert document["feasible_fraction"] is None
 
 
+def test_a_knee_that_cannot_be_down_is_not_possible():
+    code, document = run_json("pose", "makeyourpet", "--knee", "down")
+    assert code == 1
+    assert (np.array(document["angles_deg"])[:, 2] < 0).all()
+    assert document["problems"] == [
+        (
+            "all legs: the knee can't be down, as the tibia's limits are -161.4 and -41.4 deg; the angles are those "
+            "with the knee up"
+        )
+    ]
+    assert run_json("pose", "makeyourpet")[1]["assumed"] == []
+
+
 def test_pose_output():
     good = run("pose", "strider", "--pitch", "5")
     assert good.exit_code == 0
@@ -75,10 +89,11 @@ def test_pose_output():
     assert good.stdout.strip().endswith("possible")
     bad = run("pose", "strider", "--pitch", "42")
     assert bad.exit_code == 1
-    assert "FEMUR_LIMIT" in bad.stdout
+    assert "femur limit" in bad.stdout
+    assert "front left and front right can't reach their targets: the femur angle would be " in bad.stdout
     assert "the robot tips" in bad.stdout
     assert "% of this displacement" in bad.stdout
-    assert "none, no leg reaches its foothold" in run("pose", "strider", "--z", "300").stdout
+    assert "none, no foot is on the ground" in run("pose", "strider", "--z", "300").stdout
     assert "assumed: the robot file gives no masses" in run("pose", "mithi").stdout
 
 
@@ -160,10 +175,10 @@ def test_rest_output():
 def test_angles_outside_their_limits():
     result = run("rest", "strider", "--all", "0,-90,-60")
     assert result.exit_code == 1
-    assert "front left: femur angle -90 deg is outside its limits, -80 to 100 deg" in result.stdout
+    assert "all legs: femur angle -90 deg is outside its limits, -80 to 100 deg" in result.stdout
     code, document = run_json("rest", "strider", "--all", "0,-90,-60")
     assert code == 1
-    assert len(document["problems"]) == 6
+    assert document["problems"] == ["all legs: femur angle -90 deg is outside its limits, -80 to 100 deg"]
 
 
 @pytest.mark.parametrize(

@@ -148,9 +148,9 @@ def test_out_of_reach_names_time_leg_and_reason():
     miss = np.linalg.norm(reached - motion.feet, axis=-1)
     worst, leg = np.unravel_index(int(np.argmax(miss)), miss.shape)
     name = motion.robot.leg_names[leg]
-    assert motion.problems[0].startswith(f"out of reach: at {motion.time[worst]:.2f} s {name}: ")
+    assert motion.problems[0].startswith(f"out of reach: at {motion.time[worst]:.2f} s {name} can't reach its target: ")
     assert motion.problems[0].endswith(f"{miss[worst, leg] * 1000:.1f} mm away")
-    assert "TOO_FAR" in motion.problems[0]
+    assert " mm too far. In the ground frame G the target is (" in motion.problems[0]
     assert not motion.ok
 
 

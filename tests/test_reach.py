@@ -159,7 +159,10 @@ def test_an_axis_below_ground_overrides_whatever_else_is_wrong():
     feet = forward_kinematics(robot, np.tile([0, 0.4, -1.4], (6, 1)))[:, 3] + [0, 0, 1]
     solution = inverse_kinematics(robot, feet * [9, 9, 1], Pose(np.eye(3), [0, 0, -0.02]))
     assert solution.reach.tolist() == [Reach.BELOW_GROUND] * 6
-    assert "the coxa axis is 20.0 mm below the ground" in solution.explain()
+    assert solution.explain() == (
+        "no leg can reach its target: the coxa axis would be 20.0 mm below the ground. Raised by 20.0 mm, the body is "
+        "high enough, but the foot is out of reach: too far"
+    )
 
 
 def number(pattern, text):
@@ -178,22 +181,23 @@ def test_explanations_are_correct(with_body, seed):
     solution = inverse_kinematics(robot, feet, body)
     points = forward_kinematics(robot, solution.angles)
     points = points if body is None else body @ points
-    lines = solution.explain().splitlines()
     failing = np.flatnonzero(solution.reach)
     if not len(failing):
-        assert lines == ["every leg reaches its foot"]
+        assert solution.explain() == "every leg reaches its target"
         return
-    assert len(lines) == len(failing)
-    for leg, line in zip(failing, lines, strict=True):
+    for leg in failing:
+        line = solution.explain_leg((int(leg),))
         code = Reach(int(solution.reach[leg]))
-        assert line.startswith(f"leg {leg}: {code.name}: the ")
+        assert line.startswith(f"leg {leg} can't reach its target: the ")
         if code is Reach.BELOW_GROUND:
             depth = -points[leg, :3, 2].min() * 1000
-            assert abs(number(r"is ([\d.]+) mm below the ground", line) - depth) <= 0.051
+            assert abs(number(r"would be ([\d.]+) mm below the ground", line) - depth) <= 0.051
             check_raise(robot, feet, body, leg, line)
             continue
-        printed = np.array([float(v) for v in re.search(r"at \((.*?)\) mm", line).group(1).split(", ")])
-        assert np.abs(printed - points[leg, 3] * 1000).max() <= 0.051
+        frame = "the body frame B" if body is None else "the ground frame G"
+        named = re.search(rf"In {frame} the target is \((.*?)\) mm, the nearest reachable point \((.*?)\) mm", line)
+        for text, point in zip(named.groups(), (feet[leg], points[leg, 3]), strict=True):
+            assert np.abs(np.array([float(v) for v in text.split(", ")]) - point * 1000).max() <= 0.051
         assert (
             abs(number(r"\) mm, ([\d.]+) mm away", line) - np.linalg.norm(points[leg, 3] - feet[leg]) * 1000) <= 0.051
         )
@@ -205,7 +209,7 @@ def test_explanations_are_correct(with_body, seed):
             assert f"too {code.name[4:].lower()}" in line
         else:
             joint = code - Reach.COXA_LIMIT
-            assert line.split("the ")[1].startswith(("coxa", "femur", "tibia")[joint])
+            assert line.split("target: the ")[1].startswith(("coxa", "femur", "tibia")[joint])
             excess_deg = number(r", ([\d.]+) deg (?:above|below) its", line)
             angle, bound = number(r"would be (-?[\d.]+) deg", line), number(r"limit of (-?[\d.]+)", line)
             end = np.rad2deg(robot.limits[leg, joint])[0 if "below its lower" in line else 1]
@@ -221,7 +225,7 @@ def check_raise(robot, feet, body, leg, line):
     verdict = Reach(int(higher.reach[leg]))
     assert verdict is not Reach.BELOW_GROUND
     assert ("Raise the body by" in line) == (verdict is Reach.OK)
-    assert verdict is Reach.OK or f"out of reach ({verdict.name})" in line
+    assert verdict is Reach.OK or line.endswith(f"the foot is out of reach: {verdict.text}")
     lower = inverse_kinematics(robot, feet, Pose(body.rotation, body.position + np.maximum(rise - 2e-4, 0)))
     assert lower.reach[leg] == Reach.BELOW_GROUND
 
@@ -234,20 +238,20 @@ def test_every_reason_has_a_message():
     )
     feet = [[0.4, 0, 0], [0.068, 0, 0], [0.1, 0.2, -0.1], [0.15, 0, -0.1], [0.1, 0, -0.1], [0.2, 0, -0.1]]
     lines = inverse_kinematics(robot, np.array(feet)).explain().splitlines()
-    assert [line.split(". Nearest reachable: ")[0] for line in lines] == [
+    assert [line.replace(" can't reach its target", "").split(". In the body frame B ")[0] for line in lines] == [
+        "LF: the target is 332.0 mm from the femur axis, and femur and tibia are 279.0 mm long: 53.0 mm too far",
         (
-            "LF: TOO_FAR: the foot is 332.0 mm from the femur axis, and femur and tibia are 279.0 mm long: "
-            "53.0 mm too far"
-        ),
-        (
-            "LM: TOO_NEAR: the foot is 0.0 mm from the femur axis, and the folded leg reaches no nearer than 83.0 mm: "
+            "LM: the target is 0.0 mm from the femur axis, and the folded leg reaches no nearer than 83.0 mm: "
             "83.0 mm too near"
         ),
-        "LR: COXA_LIMIT: the coxa angle would be 63.4 deg, 3.4 deg above its upper limit of 60.0 deg",
-        "RR: FEMUR_LIMIT: the femur angle would be 54.1 deg, 0.1 deg above its upper limit of 54.0 deg",
-        "RM: TIBIA_LIMIT: the tibia angle would be -152.1 deg, 2.1 deg below its lower limit of -150.0 deg",
+        "LR: the coxa angle would be 63.4 deg, 3.4 deg above its upper limit of 60.0 deg",
+        "RR: the femur angle would be 54.1 deg, 0.1 deg above its upper limit of 54.0 deg",
+        "RM: the tibia angle would be -152.1 deg, 2.1 deg below its lower limit of -150.0 deg",
     ]
-    assert lines[0].endswith(". Nearest reachable: the foot at (347.0, 0.0, 0.0) mm, 53.0 mm away")
+    assert lines[0].endswith(
+        ". In the body frame B the target is (400.0, 0.0, 0.0) mm, the nearest reachable point (347.0, 0.0, 0.0) mm, "
+        "53.0 mm away"
+    )
     assert "-0.0" not in "".join(lines)
 
 
@@ -258,12 +262,34 @@ def test_a_sideways_offset_keeps_the_foot_away_from_the_coxa_axis():
         femur_axis_offset=np.tile([0.02, 0], (6, 1)),
         limits=np.tile([[-3, 3], [-3, 3], [-3, 0]], (6, 1, 1)),
     )
-    line = inverse_kinematics(robot, np.tile([0.005, 0, -0.15], (6, 1))).explain().splitlines()[0]
-    assert line.startswith(
-        "LF: TOO_NEAR: the foot is 5.0 mm from the coxa axis, less than the sideways offset of the femur axis, "
-        "20.0 mm: 15.0 mm too near. Nearest reachable: "
+    assert inverse_kinematics(robot, np.tile([0.005, 0, -0.15], (6, 1))).explain() == (
+        "no leg can reach its target: the target is 5.0 mm from the coxa axis, less than the sideways offset of the "
+        "femur axis, 20.0 mm: 15.0 mm too near. The nearest reachable points are 15.0 mm away"
     )
-    assert line.endswith(", 15.0 mm away")
+
+
+@pytest.mark.parametrize(
+    ("failing", "start", "end"),
+    [
+        ([0], "LF can't reach its target: ", "the target is (150.0, 0.0, -100.0) mm, the nearest reachable point ("),
+        ([0, 5], "LF and RF can't reach their targets: ", "the targets are (150.0, 0.0, -100.0) and (150.0, 0.0, "),
+        ([0, 1, 5], "LF, LM and RF can't reach their targets: ", "The nearest reachable points are "),
+        ([0, 1, 2, 3, 4, 5], "no leg can reach its target: ", "The nearest reachable points are "),
+    ],
+)
+def test_legs_that_fail_alike_share_a_sentence(failing, start, end):
+    robot = plain_hexapod(
+        mount_yaw=np.zeros(6),
+        mount_position=np.zeros((6, 3)),
+        limits=np.tile(np.deg2rad([[-60, 60], [-80, 54], [-150, 10]]), (6, 1, 1)),
+    )
+    feet = np.tile([0.2, 0, -0.1], (6, 1))
+    feet[failing] = [0.15, 0, -0.1]
+    (line,) = inverse_kinematics(robot, feet).explain().splitlines()
+    assert line.startswith(f"{start}the femur angle would be 54.1 deg, 0.1 deg above its upper limit of 54.0 deg. ")
+    assert end in line
+    named = inverse_kinematics(robot, feet).explain(frame="frame F")
+    assert ("In frame F the" in named) == (len(failing) <= 2)
 
 
 def test_excess_over_a_limit_is_measured_in_the_shorter_direction():
@@ -281,7 +307,7 @@ def test_require_returns_the_solution_or_raises_its_explanation():
     feet = forward_kinematics(robot, np.tile([0, 0.4, -1.4], (6, 1)))[:, 3]
     solution = inverse_kinematics(robot, feet)
     assert solution.require() is solution
-    assert solution.explain() == "every leg reaches its foot"
+    assert solution.explain() == "every leg reaches its target"
     far = inverse_kinematics(robot, feet * [3, 3, 1])
     with pytest.raises(UnreachableError) as caught:
         far.require()

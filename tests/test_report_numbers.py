@@ -160,7 +160,7 @@ def test_tipping_robot():
 
 def test_no_leg_reaches_its_foothold():
     summary = standing("strider", z=0.3).summary()
-    assert summary["problems"][-1] == "no leg reaches its foothold"
+    assert summary["problems"][-1] == "no foot is on the ground"
     assert not summary["stands"]
 
 

@@ -181,7 +181,8 @@ def test_a_leg_out_of_reach_is_reported_with_reason_and_distance(ask):
     solution = inverse_kinematics(STRIDER, stance_in_ground(height), body_pose({"pitch_deg": 42}, height))
     failing = np.flatnonzero(solution.reach)
     assert [leg["leg"] for leg in told["legs"]] == failing.tolist() != []
-    assert [leg["text"] for leg in told["legs"]] == solution.explain().splitlines()
+    assert [leg["text"] for leg in told["legs"]] == [solution.explain_leg((leg,)) for leg in failing]
+    assert told["problems"][: len(solution.explain().splitlines())] == solution.explain().splitlines()
     assert table(told["angles_deg"], 3) == pytest.approx(np.degrees(solution.angles), abs=DEG)
     for leg in told["legs"]:
         assert f"{leg['miss_mm']:.1f} mm away" in leg["text"]

@@ -12,7 +12,10 @@ except ImportError:  # installed without the extra
 
 from tarsus import __version__
 from tarsus.cli.drive import drive
+from tarsus.cli.fk import fk
 from tarsus.cli.group import TarsusGroup
+from tarsus.cli.handbook import handbook
+from tarsus.cli.ik import ik
 from tarsus.cli.loads import loads
 from tarsus.cli.pose import pose
 from tarsus.cli.rest import rest
@@ -33,6 +36,7 @@ __all__ = ["main"]
     epilog=examples(
         "tarsus walk strider --out walk",
         "tarsus pose strider --pitch 5",
+        "tarsus ik strider --leg LF 230 130 -110",
         "tarsus rest strider --all 0,-30,-60",
         "tarsus loads strider",
         "tarsus robots list",
@@ -48,5 +52,5 @@ def main() -> None:
     """
 
 
-for command in (studio, walk, drive, simulate, pose, rest, loads, servos, robots):
+for command in (studio, walk, drive, simulate, pose, fk, ik, rest, loads, servos, handbook, robots):
     main.add_command(command)

@@ -58,7 +58,7 @@ def pose(robot: str, knee: Literal["up", "down"], picture: Path | None, as_json:
     if as_json:
         print_json(summary)
         return 0 if summary["possible"] else 1
-    margin = number(summary["margin_mm"], "mm") if standing.contacts.any() else "none, no leg reaches its foothold"
+    margin = number(summary["margin_mm"], "mm") if standing.contacts.any() else "none, no foot is on the ground"
     show(angle_table(summary), f"stability margin: {margin}", *(f"assumed: {text}" for text in summary["assumed"]))
     show(verdict(summary))
     fraction = summary["feasible_fraction"]

@@ -50,14 +50,14 @@ def rest(
     """
     import numpy as np
 
-    from tarsus.cli.angles import read_angles
+    from tarsus.cli.leg_values import ANGLES, read_leg_values
     from tarsus.kinematics.rest import resting_pose
     from tarsus.report.standing_summary import rest_summary
     from tarsus.report.tables import verdict
     from tarsus.robot.file import load_robot
 
     loaded = load_robot(robot)
-    radians = np.radians(read_angles(loaded, angles, same_for_all=same_for_all, file=file))
+    radians = np.radians(read_leg_values(loaded, ANGLES, angles, same_for_all=same_for_all, file=file))
     result = resting_pose(loaded, radians)
     summary = rest_summary(loaded, radians, result)
     if picture is not None:

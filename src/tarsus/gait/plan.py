@@ -19,7 +19,7 @@ from tarsus.gait.spacing import passing_distance
 from tarsus.gait.stroke import leg_feasibility, longest_stroke, unit_twist
 from tarsus.gait.swing import swing_position
 from tarsus.gait.timing import BodyClock, Steps, least_step_fraction, plan_steps
-from tarsus.gait.walk_setup import WalkSetup, require_number
+from tarsus.gait.walk_setup import HEADING_FRAME, WalkSetup, require_number
 from tarsus.robot.robot import Robot
 
 if TYPE_CHECKING:
@@ -224,7 +224,7 @@ def _refuse_stroke(setup: WalkSetup, path: BodyPath, motion: Motion) -> None:
     if found:
         reason = found[0]
     elif (solution.reach != 0).any():
-        reason = f"out of reach: during start or stop, {solution.explain().splitlines()[0]}"
+        reason = f"out of reach: during start or stop, {solution.explain(frame=HEADING_FRAME).splitlines()[0]}"
     else:
         leg = setup.robot.leg_names[int(np.argmin(feasible))]
         reason = f"jumps: during start or stop, leg {leg} would change its inverse-kinematics branch"

@@ -1,10 +1,11 @@
-"""Explains why a leg can't reach its foot, by how much, and which foot or body height is possible."""
+"""Explains why legs can't reach their targets, by how much, and which point or body height is possible."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal, Self
+from typing import TYPE_CHECKING, Literal, NamedTuple, Self
 
 import numpy as np
 
@@ -19,17 +20,21 @@ from tarsus.robot.robot import JOINTS, Robot
 if TYPE_CHECKING:
     from jaxtyping import Float, Int
 
-__all__ = ["explain_leg"]
+__all__ = ["BODY_FRAME", "GROUND_FRAME", "explain_legs"]
+
+BODY_FRAME, GROUND_FRAME = "the body frame B", "the ground frame G"
+"""Names of the frames in which targets are given."""
 
 _STEP = 1e-4  # resolution of the body height returned [m]
 _TRIES = 64
+_POINTS = 2  # most legs in a sentence with their points
 _OF_LEGS = (
     *("mount_position", "mount_yaw", "coxa", "femur", "tibia", "femur_axis_offset"),
     *("limits", "foot_radius", "link_com", "link_mass"),
 )
 
 
-def explain_leg(
+def explain_legs(
     robot: Robot,
     feet: Float[Array, "*#batch legs 3"],
     body: Pose | None,
@@ -37,22 +42,72 @@ def explain_leg(
     angles: Float[Array, "*#batch legs 3"],
     reach: Int[Array, "*#batch legs"],
     *,
-    index: tuple[int, ...],
-) -> str:
-    """Return a line on one leg that fails: which, why, by how much, and the nearest foot or body height possible.
+    batch: tuple[int, ...],
+    legs: Sequence[int],
+    frame: str,
+) -> list[tuple[str, int]]:
+    """Return sentences on legs that fail: which, why, by how much, and the nearest point or body height possible.
+
+    Legs that fail for the same reason by the same amount share a sentence.
 
     Parameters
     ----------
     robot, feet, body, knee, angles, reach
         As in `IKSolution`.
-    index : tuple of int
-        Index of the leg in `reach`.
+    batch : tuple of int
+        Index of the sample in the batch.
+    legs : sequence of int
+        The legs, which fail in that sample.
+    frame : str
+        Name of the frame of the targets.
+
+    Returns
+    -------
+    list of (str, int)
+        Each sentence with the number of its legs.
     """
-    *batch, leg = index
-    one = _Leg.of(robot, feet, body, knee, angles, reach, batch=tuple(batch), leg=leg)
-    code = Reach(int(np.asarray(reach)[index]))
-    where = f"{batch} " if batch else ""
-    return f"{where}{robot.leg_names[leg]}: {code.name}: {one.why(code)}. {one.what_works(code)}"
+    groups: dict[tuple[str, ...], list[_Failure]] = {}
+    for leg in legs:
+        failure = _Leg.of(robot, feet, body, knee, angles, reach, batch=batch, leg=leg).failure(
+            Reach(int(np.asarray(reach)[(*batch, leg)]))
+        )
+        groups.setdefault((failure.why, failure.remedy, failure.miss), []).append(failure)
+    where = f"{list(batch)} " if batch else ""
+    return [(where + _sentence(group, robot.legs, frame), len(group)) for group in groups.values()]
+
+
+class _Failure(NamedTuple):
+    """Why a leg fails, as texts; `nearest` and `miss` are empty where raising the body is the remedy."""
+
+    leg: str
+    target: str
+    why: str
+    nearest: str
+    miss: str
+    remedy: str
+
+
+def _sentence(failures: list[_Failure], legs: int, frame: str) -> str:
+    """Return one sentence on legs that fail alike; points are printed for one or two legs."""
+    first, one = failures[0], len(failures) == 1
+    names = _list([failure.leg for failure in failures])
+    who = f"{names} can't reach {'its target' if one else 'their targets'}"
+    if legs == len(failures) > _POINTS:
+        who = "no leg can reach its target"
+    if first.remedy:
+        return f"{who}: {first.why}. {first.remedy}"
+    if len(failures) > _POINTS:
+        return f"{who}: {first.why}. The nearest reachable points are {first.miss} mm away"
+    targets, nearest = _list([f.target for f in failures]), _list([f.nearest for f in failures])
+    what, where = ("target is", "point") if one else ("targets are", "points")
+    return (
+        f"{who}: {first.why}. In {frame} the {what} {targets} mm, the nearest reachable {where} {nearest} mm, "
+        f"{first.miss} mm away"
+    )
+
+
+def _list(names: list[str]) -> str:
+    return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} and {names[-1]}"
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,18 +153,18 @@ class _Leg:
         if code is Reach.BELOW_GROUND:
             lowest = int(np.argmin(self.points[:3, 2]))
             point, depth = ("coxa axis", "femur axis", "knee")[lowest], -float(self.points[lowest, 2])
-            return f"the {point} is {depth * 1000:.1f} mm below the ground"
+            return f"the {point} would be {depth * 1000:.1f} mm below the ground"
         if code in (Reach.TOO_FAR, Reach.TOO_NEAR):
             return self._why_distance(code)
         return self._why_limit(code)
 
-    def what_works(self, code: Reach) -> str:
-        """Return the nearest foot that is reachable, or the body height that is possible."""
+    def failure(self, code: Reach) -> _Failure:
+        """Return why the leg fails, and the nearest point that is reachable or the body height that is possible."""
+        name, target, why = self.robot.leg_names[0], _point(self.target), self.why(code)
         if code is Reach.BELOW_GROUND and self.body is not None:
-            return self._raise_body(self.body)
-        x, y, z = np.round(self.points[3] * 1000, 1) + 0.0  # no -0.0
+            return _Failure(name, target, why, "", "", self._raise_body(self.body))
         miss = math.dist(self.points[3], self.target) * 1000
-        return f"Nearest reachable: the foot at ({x:.1f}, {y:.1f}, {z:.1f}) mm, {miss:.1f} mm away"
+        return _Failure(name, target, why, _point(self.points[3]), f"{miss:.1f}", "")
 
     def _raise_body(self, body: Pose) -> str:
         """Return by how much the body must be raised, with the feet unchanged, for the leg to be above the ground."""
@@ -123,7 +178,7 @@ class _Leg:
         distance = f"{rise * _STEP * 1000:.1f} mm"
         if code is Reach.OK:
             return f"Raise the body by {distance}"
-        return f"Raised by {distance}, the body is high enough, but the foot is out of reach ({code.name})"
+        return f"Raised by {distance}, the body is high enough, but the foot is out of reach: {code.text}"
 
     def _first_above(self, body: Pose, steps: Int[np.ndarray, "..."]) -> tuple[int, Reach]:
         """Return the least rise, in steps, at which the leg is above the ground, and its reach code there."""
@@ -138,7 +193,7 @@ class _Leg:
         side, radius = abs(float(g.side[0])) * 1000, math.hypot(x, y) * 1000
         if radius < side:
             return (
-                f"the foot is {radius:.1f} mm from the coxa axis, less than the sideways offset of the femur axis, "
+                f"the target is {radius:.1f} mm from the coxa axis, less than the sideways offset of the femur axis, "
                 f"{side:.1f} mm: {side - radius:.1f} mm too near"
             )
         r = math.sqrt(max(x * x + y * y - float(g.side2[0]), 0.0)) - float(g.coxa[0])
@@ -146,12 +201,12 @@ class _Leg:
         femur, tibia = float(g.femur[0]) * 1000, float(g.tibia[0]) * 1000
         if code is Reach.TOO_FAR:
             return (
-                f"the foot is {distance:.1f} mm from the femur axis, and femur and tibia are "
+                f"the target is {distance:.1f} mm from the femur axis, and femur and tibia are "
                 f"{femur + tibia:.1f} mm long: {distance - femur - tibia:.1f} mm too far"
             )
         folded = abs(femur - tibia)
         return (
-            f"the foot is {distance:.1f} mm from the femur axis, and the folded leg reaches no nearer than "
+            f"the target is {distance:.1f} mm from the femur axis, and the folded leg reaches no nearer than "
             f"{folded:.1f} mm: {folded - distance:.1f} mm too near"
         )
 
@@ -170,6 +225,12 @@ class _Leg:
             f"the {JOINTS[joint]} angle would be {low - below:.1f} deg, {below:.1f} deg below its lower limit of "
             f"{low:.1f} deg"
         )
+
+
+def _point(point: Float[np.ndarray, "3"]) -> str:
+    """Return a point in millimetres as text."""
+    x, y, z = np.round(point * 1000, 1) + 0.0  # no -0.0
+    return f"({x:.1f}, {y:.1f}, {z:.1f})"
 
 
 def _one_leg(robot: Robot, leg: int) -> Robot:

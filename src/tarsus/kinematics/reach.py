@@ -36,6 +36,11 @@ class Reach(enum.IntEnum):
     TIBIA_LIMIT = 5
     BELOW_GROUND = 6
 
+    @property
+    def text(self) -> str:
+        """Name of the code in words."""
+        return self.name.replace("_", " ").lower() if self else "OK"
+
 
 def reach_codes(xp: Namespace, geometry: LegGeometry, solution: Triangle) -> Int[Array, "*batch legs"]:
     """Return the reach code of every leg ``(..., legs)``."""

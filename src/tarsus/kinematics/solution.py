@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Literal, Self
@@ -10,7 +11,7 @@ import numpy as np
 
 from tarsus.arrays import Array, namespace
 from tarsus.errors import UnreachableError
-from tarsus.kinematics.explain import explain_leg
+from tarsus.kinematics.explain import BODY_FRAME, GROUND_FRAME, explain_legs
 from tarsus.kinematics.pose import Pose
 from tarsus.robot.robot import Robot
 
@@ -66,23 +67,49 @@ class IKSolution:
             raise UnreachableError(self.explain())
         return self
 
-    def explain(self) -> str:
-        """Return a line for every leg that fails: which, why, by how much, and the nearest foot that is reachable."""
+    def explain(self, *, frame: str | None = None) -> str:
+        """Return sentences on the legs that fail: which, why, by how much, and the nearest point that is reachable.
+
+        Legs that fail for the same reason by the same amount share a sentence.
+
+        Parameters
+        ----------
+        frame : str, optional
+            Name of the frame in which the feet were given. Default: the ground frame G where `body` is given, else the
+            body frame B.
+        """
         reach = np.asarray(self.reach)
         failing = np.argwhere(reach != 0)
         if not len(failing):
-            return "every leg reaches its foot"
-        lines = [self.explain_leg(tuple(int(i) for i in index)) for index in failing[:_MOST_LINES]]
-        if len(failing) > _MOST_LINES:
-            lines.append(f"... and {len(failing) - _MOST_LINES} more of {reach.size} legs")
+            return "every leg reaches its target"
+        # All legs of a sample may share a sentence.
+        enough = failing[: _MOST_LINES * reach.shape[-1], :-1].tolist()
+        samples = list(dict.fromkeys(map(tuple, enough)))[:_MOST_LINES]
+        sentences = [sentence for sample in samples for sentence in self._sentences(sample, frame)]
+        lines = [line for line, _ in sentences[:_MOST_LINES]]
+        explained = sum(legs for _, legs in sentences[:_MOST_LINES])
+        if len(failing) > explained:
+            lines.append(f"... and {len(failing) - explained} more of {reach.size} legs")
         return "\n".join(lines)
 
-    def explain_leg(self, index: tuple[int, ...]) -> str:
-        """Return the line on one leg that fails.
+    def explain_leg(self, index: tuple[int, ...], *, frame: str | None = None) -> str:
+        """Return the sentence on one leg that fails.
 
         Parameters
         ----------
         index : tuple of int
             Index of the leg in `reach`.
+        frame : str, optional
+            As for `explain`.
         """
-        return explain_leg(self.robot, self.feet, self.body, self.knee, self.angles, self.reach, index=index)
+        return self._sentences(index[:-1], frame, legs=[index[-1]])[0][0]
+
+    def _sentences(
+        self, batch: tuple[int, ...], frame: str | None, *, legs: Sequence[int] | None = None
+    ) -> list[tuple[str, int]]:
+        """Return the sentences on a sample of the batch, with the numbers of their legs."""
+        if legs is None:
+            legs = np.flatnonzero(np.asarray(self.reach)[batch]).tolist()
+        default = BODY_FRAME if self.body is None else GROUND_FRAME
+        solution = (self.robot, self.feet, self.body, self.knee, self.angles, self.reach)
+        return explain_legs(*solution, batch=batch, legs=legs, frame=frame or default)

@@ -6,7 +6,7 @@ import math
 from typing import TYPE_CHECKING, Any
 
 from tarsus.load.verdict import BURNOUT_FACTOR
-from tarsus.report.tables import number
+from tarsus.report.tables import number, table_of
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -92,16 +92,6 @@ def _percent(value: float | None) -> str:
     return "unknown" if value is None else f"{value * 100:.0f} %"
 
 
-def _table(*columns: str) -> Table:
-    from rich import box
-    from rich.table import Table
-
-    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, header_style="bold")
-    for column in columns:
-        table.add_column(column, overflow="fold", justify="right" if column in _RIGHT else "left")
-    return table
-
-
 _RIGHT = {"peak N m", "RMS N m", "factor", "deg/s", "utilisation", "thermal", "servo mass", "robot mass"}
 
 
@@ -113,7 +103,7 @@ def loads_table(summary: dict[str, Any]) -> Table:
     summary : dict
         Summary from `tarsus.report.loads_summary.loads_summary`.
     """
-    table = _table(*LOAD_COLUMNS)
+    table = table_of(*LOAD_COLUMNS, right=_RIGHT)
     for row in load_rows(summary):
         name = row[0]
         table.add_row(*row, style="bold" if name in summary["worst"] else None)
@@ -196,7 +186,7 @@ def candidate_table(summary: dict[str, Any]) -> Table:
     summary : dict
         Summary from `tarsus.report.loads_summary.servos_summary`.
     """
-    table = _table("sufficient servos", "factor", "thermal", "servo mass", "robot mass")
+    table = table_of("sufficient servos", "factor", "thermal", "servo mass", "robot mass", right=_RIGHT)
     for candidate in [*summary["candidates"], *([summary["mixed"]] if summary["mixed"] else [])]:
         named = candidate["name"]
         name = f"coxa / femur / tibia: {named}" if " / " in named and candidate is summary["mixed"] else named

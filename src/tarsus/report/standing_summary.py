@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -20,7 +21,7 @@ from tarsus.robot.robot import JOINTS, Robot
 if TYPE_CHECKING:
     from jaxtyping import Bool, Float
 
-__all__ = ["Standing", "rest_summary"]
+__all__ = ["Standing", "knee_lines", "limit_lines", "lines_by_text", "rest_summary"]
 
 _NO_MASSES = "the robot file gives no masses: the centre of mass is that of the body"
 # Rounding of an angle at its limit [deg].
@@ -65,11 +66,13 @@ class Standing:
     def problems(self) -> list[str]:
         """Reasons why the pose is not possible; empty if it is."""
         problems = [] if bool(self.solution.ok) else self.solution.explain().splitlines()
+        if self.solution.knee == "down":
+            problems += knee_lines(self.solution)
         depth = self._body_depth()
         if depth > 1e-9:
             problems.append(f"the body box is {depth * 1000:.1f} mm below the ground; raise the body by that distance")
         if not self.contacts.any():
-            problems.append("no leg reaches its foothold")
+            problems.append("no foot is on the ground")
         elif self.margin < 0:
             problems.append(
                 f"the robot tips: its centre of mass is {-self.margin * 1000:.1f} mm outside its support polygon"
@@ -107,8 +110,56 @@ class Standing:
             "feasible_fraction": self.feasible_fraction,
             "possible": not problems,
             "problems": problems,
-            "assumed": _assumed(robot),
+            "assumed": [
+                *_assumed(robot),
+                *(knee_lines(self.solution) if self.solution.knee == "up" else []),
+            ],
         }
+
+
+def knee_lines(solution: IKSolution, legs: Sequence[int] | None = None) -> list[str]:
+    """Return a line on each range of tibia limits that excludes the knee branch of a solution.
+
+    The angles of these legs are of the other branch.
+
+    Parameters
+    ----------
+    solution : IKSolution
+        Solution of one configuration.
+    legs : sequence of int, optional
+        The legs that matter. Default: all.
+    """
+    robot, other = solution.robot, "up" if solution.knee == "down" else "down"
+    limits = np.degrees(np.asarray(robot.limits)[:, 2])
+    excluded = limits[:, 1] < 0 if solution.knee == "down" else limits[:, 0] > 0
+    lines = (
+        (
+            leg,
+            (
+                f"the knee can't be {solution.knee}, as the tibia's limits are {limits[leg, 0]:.1f} and "
+                f"{limits[leg, 1]:.1f} deg; the angles are those with the knee {other}"
+            ),
+        )
+        for leg in (range(robot.legs) if legs is None else legs)
+        if excluded[leg]
+    )
+    return lines_by_text(robot, lines)
+
+
+def lines_by_text(robot: Robot, lines: Iterable[tuple[int, str]]) -> list[str]:
+    """Return lines on legs; legs with the same text share a line.
+
+    Parameters
+    ----------
+    robot : Robot
+        A single robot.
+    lines : iterable of (int, str)
+        Index of a leg, and text on it.
+    """
+    groups: dict[str, list[str]] = {}
+    for leg, text in lines:
+        groups.setdefault(text, []).append(robot.leg_names[leg])
+    return [f"{'all legs' if len(legs) == robot.legs else ', '.join(legs)}: {text}" for text, legs in groups.items()]
 
 
 def rest_summary(robot: Robot, angles: Float[np.ndarray, "legs 3"], rest: RestingPose) -> dict[str, Any]:
@@ -123,7 +174,7 @@ def rest_summary(robot: Robot, angles: Float[np.ndarray, "legs 3"], rest: Restin
     rest : RestingPose
         Resting pose of these angles.
     """
-    problems = _out_of_limits(robot, np.degrees(angles))
+    problems = limit_lines(robot, np.degrees(angles), range(robot.legs))
     if not bool(rest.stable):
         problems.append("the robot has no stable resting pose with these angles")
     return {
@@ -158,14 +209,29 @@ def _pose_numbers(body: Pose) -> dict[str, float]:
     return dict(zip(("x_mm", "y_mm", "z_mm", "roll_deg", "pitch_deg", "yaw_deg"), map(float, values), strict=True))
 
 
-def _out_of_limits(robot: Robot, degrees: Float[np.ndarray, "legs 3"]) -> list[str]:
-    problems = []
+def limit_lines(robot: Robot, degrees: Float[np.ndarray, "legs 3"], legs: Sequence[int]) -> list[str]:
+    """Return a line on each joint angle outside its limits.
+
+    Parameters
+    ----------
+    robot : Robot
+        A single robot.
+    degrees : array, shape (legs, 3)
+        Joint angles [deg].
+    legs : sequence of int
+        The legs that matter.
+    """
     limits = np.degrees(np.asarray(robot.limits))
-    for leg, name in enumerate(robot.leg_names):
-        for joint, joint_name in enumerate(JOINTS):
-            angle, (low, high) = degrees[leg, joint], limits[leg, joint]
-            if not low - _ROUNDING <= angle <= high + _ROUNDING:
-                problems.append(
-                    f"{name}: {joint_name} angle {angle:g} deg is outside its limits, {low:g} to {high:g} deg"
-                )
-    return problems
+    outside = (degrees < limits[..., 0] - _ROUNDING) | (degrees > limits[..., 1] + _ROUNDING)
+    lines = (
+        (
+            leg,
+            (
+                f"{JOINTS[joint]} angle {degrees[leg, joint]:g} deg is outside its limits, "
+                f"{limits[leg, joint, 0]:g} to {limits[leg, joint, 1]:g} deg"
+            ),
+        )
+        for leg in legs
+        for joint in np.flatnonzero(outside[leg]).tolist()
+    )
+    return lines_by_text(robot, lines)

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from typing import TYPE_CHECKING, Any
+
+from tarsus.kinematics.reach import Reach
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
     from rich.table import Table
 
-__all__ = ["angle_table", "gait_table", "number", "robot_table", "source_table", "verdict", "walk_table"]
+__all__ = ["angle_table", "gait_table", "number", "robot_table", "source_table", "table_of", "verdict", "walk_table"]
 
 _UNKNOWN = "unknown"
 
@@ -28,13 +31,24 @@ def number(value: float | None, unit: str, *, digits: int = 1) -> str:
     return _UNKNOWN if value is None else f"{value:.{digits}f} {unit}".rstrip()
 
 
-def _table(*columns: str, header: bool = True) -> Table:
+def table_of(*columns: str, header: bool = True, right: Collection[str] = ()) -> Table:
+    """Return an empty table in the style of all tables.
+
+    Parameters
+    ----------
+    *columns : str
+        Headers of the columns.
+    header : bool
+        Whether to show them.
+    right : collection of str
+        Headers of the columns that are aligned at the right.
+    """
     from rich import box
     from rich.table import Table
 
     table = Table(box=box.SIMPLE_HEAD if header else None, show_header=header, pad_edge=False, header_style="bold")
     for column in columns:
-        table.add_column(column, overflow="fold")
+        table.add_column(column, overflow="fold", justify="right" if column in right else "left")
     return table
 
 
@@ -47,7 +61,7 @@ def walk_table(summary: dict[str, Any]) -> Table:
         Summary from `tarsus.report.walk_summary.walk_summary`.
     """
     end, margin, feet = summary["end"], summary["least_margin"], summary["nearest_feet"]
-    table = _table("quantity", "value", header=False)
+    table = table_of("quantity", "value", header=False)
     table.add_row("robot", summary["robot"])
     table.add_row("gait", f"{summary['gait']}, duty factor {summary['duty_factor']:.3g}")
     table.add_row("end", f"x {end['x_mm']:.1f} mm, y {end['y_mm']:.1f} mm, yaw {end['turned_deg']:.1f} deg")
@@ -104,12 +118,11 @@ def angle_table(summary: dict[str, Any]) -> Table:
     summary : dict
         Summary with `legs`, `joints`, `angles_deg` and optionally `reach`.
     """
-    table = _table("leg", *(f"{joint} deg" for joint in summary["joints"]), *(["reach"] if "reach" in summary else []))
-    for column in table.columns[1:4]:
-        column.justify = "right"
+    joints = [f"{joint} deg" for joint in summary["joints"]]
+    table = table_of("leg", *joints, *(["reach"] if "reach" in summary else []), right=joints)
     reach = summary.get("reach", [None] * len(summary["legs"]))
     for leg, angles, code in zip(summary["legs"], summary["angles_deg"], reach, strict=True):
-        table.add_row(leg, *(f"{round(angle, 2) + 0.0:.2f}" for angle in angles), *([code] if code else []))
+        table.add_row(leg, *(f"{round(angle, 2) + 0.0:.2f}" for angle in angles), *([Reach[code].text] if code else []))
     return table
 
 
@@ -121,7 +134,7 @@ def robot_table(summaries: list[dict[str, Any]]) -> Table:
     summaries : list of dict
         Summary from `tarsus.report.robot_summary.robot_summary`.
     """
-    table = _table("robot", "legs", "coxa, femur, tibia mm", "body mm", "mass", "servos", "gait")
+    table = table_of("robot", "legs", "coxa, femur, tibia mm", "body mm", "mass", "servos", "gait")
     for robot in summaries:
         lengths = ", ".join(_value(robot[f"{joint}_mm"]) for joint in ("coxa", "femur", "tibia"))
         body = _UNKNOWN if robot["body_mm"] is None else " x ".join(f"{size:g}" for size in robot["body_mm"])
@@ -138,7 +151,7 @@ def gait_table(trials: list[dict[str, Any]]) -> Table:
     trials : list of dict
         `gaits` from `tarsus.report.robot_check.check_robot`.
     """
-    table = _table("gait", "walk", "longest stroke", "stability margin")
+    table = table_of("gait", "walk", "longest stroke", "stability margin")
     for trial in trials:
         margin = trial["least_margin_mm"]
         # Without a foot on the ground the margin is minus infinity.
@@ -169,7 +182,7 @@ def source_table(rows: list[dict[str, Any]]) -> Table:
     rows : list of dict
         Summary from `tarsus.report.robot_summary.dimensions`.
     """
-    table = _table("key", "value", "confidence", "source")
+    table = table_of("key", "value", "confidence", "source")
     for row in rows:
         source = "none" if row["source_number"] is None else f"({row['source_number']})"
         table.add_row(row["key"], _value(row["value"]), row["confidence"] or _UNKNOWN, source)

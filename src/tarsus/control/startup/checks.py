@@ -90,9 +90,10 @@ def _check_reach(stage: Stage) -> None:
     body = stage.body_at(fraction)[0]
     feet = np.where(stage.cartesian[:, None], stage.feet_at(fraction)[0], stage.feet)
     name = stage.robot.leg_names[leg]
-    lines = inverse_kinematics(stage.robot, feet, body).explain().splitlines()
-    reasons = [line for line in lines if line.startswith(name + ":")]
-    reason = reasons[0] if reasons else f"{name}: the leg would be straight, or folded back on itself"
+    solution = inverse_kinematics(stage.robot, feet, body)
+    reason = f"{name} would be straight, or folded back on itself"
+    if solution.reach[leg]:
+        reason = solution.explain_leg((leg,))
     raise UnreachableError(f"{stage.name}: at body height {body.position[2] * 1000:.1f} mm, {reason}")
 
 
