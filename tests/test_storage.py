@@ -6,6 +6,7 @@ import zipfile
 
 import numpy as np
 import pytest
+import xarray
 
 from gait_robots import PRESETS, preset, ring
 from tarsus.errors import InputError, RobotFileError
@@ -222,7 +223,29 @@ def test_the_data_set_is_labelled_and_equal():
     assert [data[name].attrs["units"] for name in ("angles", "feet", "time")] == ["rad", "m", "s"]
     assert (data.attrs["robot"], data.attrs["gait"]) == ("strider", "ripple")
     assert {name: data.attrs[name] for name in NUMBERS} == {name: getattr(motion, name) for name in NUMBERS}
-    assert data["reach"].attrs["codes"]["TOO_FAR"] == Reach.TOO_FAR
+
+
+def test_the_data_set_names_the_reach_codes():
+    """As CF flags: `flag_values` of the variable's own type, `flag_meanings` separated by blanks."""
+    reach = motion_to_dataset(walk())["reach"]
+    flags = reach.attrs["flag_values"]
+    assert flags.dtype == reach.dtype
+    named = dict(zip(reach.attrs["flag_meanings"].split(), flags, strict=True))
+    assert named == {code.name.lower(): code for code in Reach}
+
+
+@pytest.mark.parametrize("kind", ["netcdf4", "scipy", "zarr 2", "zarr 3"])
+def test_the_data_set_is_the_same_after_writing_and_reading(kind, tmp_path):
+    data = motion_to_dataset(walk())
+    if kind.startswith("zarr"):
+        data.to_zarr(tmp_path / "walk", zarr_format=int(kind[-1]), consolidated=False)
+        again = xarray.open_zarr(tmp_path / "walk", chunks=None, consolidated=False)
+    else:
+        data.to_netcdf(tmp_path / "walk.nc", engine=kind)
+        again = xarray.open_dataset(tmp_path / "walk.nc", engine=kind)
+    with again:
+        xarray.testing.assert_identical(again.load(), data)
+    assert {name: again[name].dtype for name in data.data_vars} == {name: data[name].dtype for name in data.data_vars}
 
 
 def test_without_xarray_the_error_says_what_to_install(monkeypatch):

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 from tarsus.errors import InputError
+from tarsus.representation import represented
 
 __all__ = ["BODY_AXES", "Command", "finite_numbers"]
 
@@ -16,6 +17,7 @@ BODY_AXES = ("x", "y", "z", "roll", "pitch", "yaw")
 """The six axes of a body pose."""
 
 
+@represented()
 @dataclass(frozen=True, kw_only=True)
 class Command:
     """What the robot is commanded to do; what is None stays as it is.

@@ -12,6 +12,7 @@ from tarsus.control.safety import Intervention
 from tarsus.control.states.robot_state import RobotState
 from tarsus.gait.gait import Gait
 from tarsus.kinematics.pose import Pose
+from tarsus.representation import represented
 
 if TYPE_CHECKING:
     from jaxtyping import Bool, Float
@@ -19,6 +20,9 @@ if TYPE_CHECKING:
 __all__ = ["ControlOutput"]
 
 
+@represented(
+    "time", "state", "activity", "angles", "twist", "gait", "contacts", "limitations", "interventions", "guard"
+)
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ControlOutput:
     """The joint angles of a tick, and what they belong to.

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import NamedTuple
 
+from tarsus.representation import represented
+
 __all__ = ["Cause", "Limitation", "LimitationKind"]
 
 _NONE = math.nan
@@ -45,6 +47,7 @@ _UNITS = {
 }
 
 
+@represented()
 class Cause(NamedTuple):
     """What stops a motion or makes it impossible.
 
@@ -92,6 +95,7 @@ class Cause(NamedTuple):
         )
 
 
+@represented()
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Limitation:
     """One reason why a command is not met in full.

@@ -11,6 +11,7 @@ from tarsus.control.readings import SensorReadings
 from tarsus.control.sensing.foot_force import balanced_forces
 from tarsus.kinematics.mass import STANDARD_GRAVITY, total_mass
 from tarsus.kinematics.pose import Pose
+from tarsus.representation import represented
 from tarsus.robot.robot import Robot
 
 if TYPE_CHECKING:
@@ -134,6 +135,7 @@ class Environment:
         return np.where(contacts, np.array(share) + self._force, 0.0)
 
 
+@represented("robot")
 class IdealPlant:
     """Executes joint angles exactly and at once, and measures them exactly.
 

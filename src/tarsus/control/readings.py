@@ -6,11 +6,14 @@ from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from typing import Any, NamedTuple, TypeAlias
 
+from tarsus.representation import represented
+
 __all__ = ["CHANNELS", "SensorReadings", "ValidReadings", "Vector"]
 
 Vector: TypeAlias = tuple[float, float, float]
 
 
+@represented()
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class SensorReadings:
     """Readings of all sensors at one tick, as measured; each channel may be missing (None).

@@ -20,12 +20,14 @@ from tarsus.control.startup import fold, sit_down, stand_up
 from tarsus.control.states.activity import Activity, Playing, Resting, Snapshot, Walking
 from tarsus.control.states.persistent_command import PersistentCommand
 from tarsus.control.states.robot_state import RobotState, next_state, requested_state
+from tarsus.control.walk.ground_pose import ground_frame
 from tarsus.control.walk_controller import WalkController
 from tarsus.errors import TarsusError
 from tarsus.gait.gait import Gait
 from tarsus.gait.walk_setup import require_number
 from tarsus.kinematics.leg import forward_kinematics
 from tarsus.kinematics.pose import Pose
+from tarsus.representation import represented
 from tarsus.robot.robot import Robot
 
 if TYPE_CHECKING:
@@ -38,6 +40,7 @@ _AT_REST = 1e-3
 _NO_TWIST = (0.0, 0.0, 0.0)
 
 
+@represented("robot", "state", "output.time", "output.activity", "output.angles", "output.twist", "output.limitations")
 class RobotController:
     """Controls a robot in all its states: lying, rising, standing, walking, sitting down, folding.
 
@@ -103,7 +106,7 @@ class RobotController:
             self._activity = (
                 Resting.after_sitting(robot, stance, start) if angles is None else Resting.measured(robot, angles)
             )
-            self._base = _ground_frame(self._activity.snapshot.body).inverse()
+            self._base = ground_frame(self._activity.snapshot.body).inverse()
         self._now = self._placed(self._activity.snapshot)
         self._goal = RobotState.STANDING if self._now.state.upright else self._now.state
         self._rejected: Limitation | None = None
@@ -201,7 +204,7 @@ class RobotController:
             return
         playing = Playing(sequence, change[0], before=self._activity, end=change[1])
         self._before = self._base
-        self._base = _ground_frame(self._now.body) @ _ground_frame(sequence.stages[0].start).inverse()
+        self._base = ground_frame(self._now.body) @ ground_frame(sequence.stages[0].start).inverse()
         self._activity = playing
 
     def _next_change(self) -> tuple[RobotState, RobotState] | None:
@@ -221,7 +224,7 @@ class RobotController:
         if playing.returning:
             self._activity, self._base = playing.before, self._before
         elif playing.end is RobotState.STANDING:
-            frame = _ground_frame(end.body)
+            frame = ground_frame(end.body)
             self._base = frame if self._base is None else self._base @ frame
             self._activity = self._new_walk()
             self._command.forget_released()
@@ -291,9 +294,3 @@ def _stopped(command: Command, legs: int) -> Command:
     """Return the command to stand with every foot in the gait: what a robot does before it sits down."""
     targets = dict.fromkeys(range(legs)) if command.foot_targets or command.foot_velocities else None
     return dataclasses.replace(command, twist=_NO_TWIST, foot_targets=targets, foot_velocities=None)
-
-
-def _ground_frame(body: Pose) -> Pose:
-    """Return the frame on the ground below a body that has the body's heading."""
-    yaw = float(np.asarray(body.rpy)[2])
-    return Pose.from_rpy(0.0, 0.0, yaw, (float(body.position[0]), float(body.position[1]), 0.0))

@@ -27,6 +27,7 @@ from tarsus.gait.gait import Gait
 from tarsus.gait.walk_setup import require_number
 from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.stability import stability_margin
+from tarsus.representation import represented
 from tarsus.robot.robot import Robot
 
 if TYPE_CHECKING:
@@ -39,6 +40,7 @@ __all__ = ["WalkController"]
 _LONGEST_TICK = 0.05
 
 
+@represented("robot", "gait", "walk_state", "time", "twist", "cycle_time", "margin", "angles", "limitations")
 class WalkController:
     """Walks a robot live: each tick takes a command and readings, and gives the next joint angles.
 

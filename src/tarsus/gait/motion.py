@@ -19,6 +19,7 @@ from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.reach import Reach
 from tarsus.kinematics.solution import IKSolution
 from tarsus.kinematics.stability import stability_margin
+from tarsus.representation import Rows, represented
 from tarsus.robot.joint_limits import joint_limits, servo_speeds
 from tarsus.robot.robot import JOINTS, Robot
 
@@ -32,6 +33,20 @@ __all__ = ["Motion"]
 _JUMP = 0.1
 
 
+@represented(
+    "robot",
+    "gait",
+    "ok",
+    "steps",
+    "duration",
+    "stroke",
+    "cycle_time",
+    "speed",
+    "body_height",
+    "margin",
+    "angles",
+    "assumed",
+)
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Motion:
     """A motion of a robot, sampled in time.
@@ -114,6 +129,18 @@ class Motion:
     def least_foot_distance(self) -> Float[np.ndarray, "n"]:
         """Distance between the two closest feet at every sample ``(n,)`` [m]."""
         return np.asarray(feet_distance(self.feet)[0])
+
+    def _rows(self) -> Rows:
+        """Return the angles and the greatest speed of each joint, a row for each leg."""
+        low, high, speed = (
+            np.degrees(values) for values in (self.angles.min(0), self.angles.max(0), np.abs(self.joint_speed).max(0))
+        )
+        return [
+            {"leg": name}
+            | {f"{joint} [deg]": f"{low[leg, i]:.1f} to {high[leg, i]:.1f}" for i, joint in enumerate(JOINTS)}
+            | {f"{joint} [deg/s]": f"{speed[leg, i]:.0f}" for i, joint in enumerate(JOINTS)}
+            for leg, name in enumerate(self.robot.leg_names)
+        ]
 
     @property
     def duration(self) -> float:

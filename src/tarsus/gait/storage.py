@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import json
 import os
+from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -84,6 +85,9 @@ def _formatted(column: Shaped[np.ndarray, "..."]) -> list[str]:
 def motion_to_dataset(motion: Motion) -> xarray.Dataset:
     """Return a motion as a labelled `xarray.Dataset` in SI units (needs the extra ``data``).
 
+    Reach is a flag variable of the CF conventions: `flag_values` and `flag_meanings` name its codes. The data set can
+    be written to netCDF and Zarr as it is (``.to_netcdf``, ``.to_zarr``).
+
     Parameters
     ----------
     motion : Motion
@@ -93,6 +97,10 @@ def motion_to_dataset(motion: Motion) -> xarray.Dataset:
     ------
     InputError
         If xarray is not installed.
+
+    Notes
+    -----
+    NetCDF Climate and Forecast (CF) Metadata Conventions 1.11, section 3.5: flags.
     """
     try:
         import xarray
@@ -104,24 +112,39 @@ def motion_to_dataset(motion: Motion) -> xarray.Dataset:
             "angles": ((*per_leg, "joint"), motion.angles, {"units": "rad"}),
             "feet": ((*per_leg, "axis"), motion.feet, {"units": "m", "frame": "ground"}),
             "contacts": (per_leg, motion.contacts),
-            "reach": (per_leg, motion.reach, {"codes": {code.name: int(code) for code in Reach}}),
+            "reach": (per_leg, motion.reach, _reach_flags()),
             "body_position": (("time", "axis"), motion.body.position, {"units": "m", "frame": "ground"}),
             "body_rotation": (("time", "axis", "body_axis"), motion.body.rotation),
             "margin": (("time",), motion.margin, {"units": "m"}),
         },
         coords={
             "time": ("time", motion.time, {"units": "s"}),
-            "leg": list(motion.robot.leg_codes),
-            "joint": list(JOINTS),
-            "axis": list("xyz"),
-            "body_axis": list("xyz"),
+            "leg": _labels(motion.robot.leg_codes),
+            "joint": _labels(JOINTS),
+            "axis": _labels("xyz"),
+            "body_axis": _labels("xyz"),
         },
         attrs={
+            "Conventions": "CF-1.11",
             "robot": motion.robot.name,
             "gait": motion.gait.name,
             **{name: getattr(motion, name) for name in _NUMBERS},
         },
     )
+
+
+def _labels(texts: Iterable[str]) -> Shaped[np.ndarray, "n"]:
+    """Return texts of any length as an array: Zarr 3 specifies no texts of fixed length."""
+    return np.array(list(texts), dtype=object)
+
+
+def _reach_flags() -> dict[str, Any]:
+    """Return the attributes that name the codes of `Reach`."""
+    return {
+        "long_name": "whether the leg reaches its foot, and if not, why",
+        "flag_values": np.array([int(code) for code in Reach], dtype=np.int8),
+        "flag_meanings": " ".join(code.name.lower() for code in Reach),
+    }
 
 
 def save_motion(motion: Motion, path: str | os.PathLike[str]) -> None:

@@ -20,6 +20,7 @@ from tarsus.arrays import (
     stack_last,
 )
 from tarsus.errors import InputError
+from tarsus.representation import represented
 
 if TYPE_CHECKING:
     from jaxtyping import Float
@@ -67,6 +68,7 @@ _IDENTITY = _locked(np.eye(3))
 _ORIGIN = _locked(np.zeros(3))
 
 
+@represented("position", "rpy")
 @dataclass(frozen=True, eq=False)
 class Pose:
     """Pose of a frame in another one: ``T_to_from @ points_in_from`` gives points in the frame `to`.

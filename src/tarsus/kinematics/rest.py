@@ -17,6 +17,7 @@ from tarsus.kinematics.mass import centre_of_mass
 from tarsus.kinematics.pairs import columns_of
 from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.roll import Settled, rotation_rows, settle
+from tarsus.representation import represented
 from tarsus.robot.robot import Robot
 
 if TYPE_CHECKING:
@@ -28,6 +29,7 @@ CORNERS = np.array(list(itertools.product((-0.5, 0.5), repeat=3)))
 """Corners of the body's box in units of its size, in the order of `RestingPose.corners_down`: x varies slowest."""
 
 
+@represented("robot", "body", "contacts", "margin", "stable", "rolls")
 @dataclass(frozen=True, kw_only=True, eq=False)
 class RestingPose:
     """How a robot rests on flat ground, for one configuration or a batch.

@@ -9,11 +9,13 @@ from typing import TYPE_CHECKING, Literal, Self
 
 import numpy as np
 
-from tarsus.arrays import Array, namespace
+from tarsus.arrays import Array, is_traced, namespace
 from tarsus.errors import UnreachableError
 from tarsus.kinematics.explain import BODY_FRAME, GROUND_FRAME, explain_legs
 from tarsus.kinematics.pose import Pose
-from tarsus.robot.robot import Robot
+from tarsus.kinematics.reach import Reach
+from tarsus.representation import Rows, represented
+from tarsus.robot.robot import JOINTS, Robot
 
 if TYPE_CHECKING:
     from jaxtyping import Bool, Float, Int
@@ -23,6 +25,7 @@ __all__ = ["IKSolution"]
 _MOST_LINES = 12
 
 
+@represented("robot", "ok", "knee", "angles", "reach")
 @dataclass(frozen=True, eq=False, kw_only=True)
 class IKSolution:
     """Joint angles for given feet, with a reach code for every leg.
@@ -54,6 +57,18 @@ class IKSolution:
     def ok(self) -> Bool[Array, "*batch"]:
         """Whether all legs reach their feet ``(...)``."""
         return namespace(self.reach).all(self.reach == 0, axis=-1)
+
+    def _rows(self) -> Rows:
+        """Return angles and reach of each leg of a single robot in a single pose."""
+        if is_traced(self.angles) or np.ndim(self.angles) != 2:
+            return ()
+        angles, reach = np.degrees(np.asarray(self.angles)), np.asarray(self.reach)
+        return [
+            {"leg": name}
+            | {f"{joint} [deg]": f"{angle:.1f}" for joint, angle in zip(JOINTS, angles[leg], strict=True)}
+            | {"reach": Reach(int(reach[leg])).name}
+            for leg, name in enumerate(self.robot.leg_names)
+        ]
 
     def require(self) -> Self:
         """Return the solution itself.

@@ -29,6 +29,7 @@ from tarsus.kinematics.polygon import as_mask, margin_and_nearest
 from tarsus.kinematics.pose import Pose
 from tarsus.load.load_distribution import load_fractions, single_pose_fractions
 from tarsus.load.payload import Payload, as_payload
+from tarsus.representation import represented
 from tarsus.robot.robot import Robot
 
 if TYPE_CHECKING:
@@ -47,6 +48,7 @@ _ROUNDING = 1e-12  # of the margin of a load on the edge of the support polygon 
 _BLOCK = 1024  # samples in a block, so that the pairs of their feet fit in the second-level cache
 
 
+@represented()
 @dataclass(frozen=True, eq=False, kw_only=True)
 class ContactForces:
     """Contact forces on the feet.

@@ -14,13 +14,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tarsus.arrays import Array, as_floats, broadcast_shapes, namespace, require_finite
+from tarsus.arrays import Array, as_floats, broadcast_shapes, is_traced, namespace, require_finite
 from tarsus.errors import InputError
 from tarsus.gait.gait import Gait
 from tarsus.kinematics.stance import default_body_height, default_stance, default_swing_height
 from tarsus.load.cycle_sweep import CyclePhases, CycleSweep
 from tarsus.load.payload import Payload, as_payload
-from tarsus.robot.robot import Robot
+from tarsus.representation import Rows, represented
+from tarsus.robot.robot import JOINTS, Robot
 from tarsus.robot.shape import TAILS
 
 if TYPE_CHECKING:
@@ -31,6 +32,7 @@ __all__ = ["CycleTorques", "cycle_torques"]
 _MOST_PHASES = 1_000_000
 
 
+@represented("ok", "peak", "phases", "angles", "torques", "forces", "balanced")
 @dataclass(frozen=True, eq=False, kw_only=True)
 class CycleTorques:
     """Steady gait cycles of a batch of designs ``(...)``.
@@ -60,6 +62,17 @@ class CycleTorques:
     torques: Float[Array, "*#batch phases legs 3"]
     forces: Float[Array, "*#batch phases legs 3"]
     balanced: Bool[Array, "*#batch phases"]
+
+    def _rows(self) -> Rows:
+        """Return the greatest torque of each kind of joint: least, median and greatest of all designs."""
+        if is_traced(self.torques):
+            return ()
+        peak = np.asarray(self.peak).reshape(-1, len(JOINTS))
+        levels = {"least": peak.min(0), "median": np.median(peak, axis=0), "greatest": peak.max(0)}
+        return [
+            {"joint": joint} | {f"{level} peak [N m]": f"{values[i]:.3f}" for level, values in levels.items()}
+            for i, joint in enumerate(JOINTS)
+        ]
 
     @cached_property
     def peak(self) -> Float[Array, "*batch 3"]:

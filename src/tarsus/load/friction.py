@@ -24,6 +24,7 @@ from tarsus.load.cone_program import ConeProgram
 from tarsus.load.contact import GRAVITY, checked_contacts, upward
 from tarsus.load.payload import Payload, as_payload
 from tarsus.load.torque import joint_torques
+from tarsus.representation import represented
 from tarsus.robot.robot import Robot
 
 if TYPE_CHECKING:
@@ -36,6 +37,7 @@ _LISTED = 8  # samples named in a message
 _REGULARISATION = 1e-6  # weight of the forces' squares beside the torques', so that straight legs have a solution
 
 
+@represented()
 @dataclass(frozen=True, eq=False, kw_only=True)
 class FrictionForces:
     """Contact forces in friction cones.

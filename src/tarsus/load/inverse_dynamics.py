@@ -20,6 +20,7 @@ from tarsus.load.inertial_loads import inertial_loads
 from tarsus.load.payload import Payload
 from tarsus.load.torque import checked_forces, joint_torques, torques_of
 from tarsus.load.zero_moment import ground_forces
+from tarsus.representation import represented
 from tarsus.robot.robot import Robot
 
 if TYPE_CHECKING:
@@ -30,6 +31,7 @@ if TYPE_CHECKING:
 __all__ = ["MotionTorques", "dynamic_torques", "motion_torques"]
 
 
+@represented()
 @dataclass(frozen=True, eq=False, kw_only=True)
 class MotionTorques:
     """Joint torques and contact forces of a motion.

@@ -17,6 +17,7 @@ from tarsus.load.contact import GRAVITY, upward
 from tarsus.load.inverse_dynamics import motion_torques
 from tarsus.load.payload import Payload, as_payload
 from tarsus.load.servo_limits import at_supply, utilisation
+from tarsus.representation import Rows, represented
 from tarsus.robot.robot import JOINTS, Robot
 
 if TYPE_CHECKING:
@@ -29,6 +30,7 @@ __all__ = ["JointLoads", "joint_loads"]
 _ROUNDING = 1e-9
 
 
+@represented("robot", "payload", "balanced", "peak", "rms", "peak_speed", "margin", "inertial", "supply", "assumed")
 @dataclass(frozen=True, eq=False, kw_only=True)
 class JointLoads:
     """Joint loads over a motion; arrays ``(legs, 3)`` hold coxa, femur and tibia.
@@ -67,6 +69,15 @@ class JointLoads:
     inertial: bool
     supply: float | None = None
     assumed: tuple[str, ...] = field(default=())
+
+    def _rows(self) -> Rows:
+        """Return the greatest and the root mean square torque of each joint, a row for each leg."""
+        return [
+            {"leg": name}
+            | {f"{joint} peak [N m]": f"{self.peak[leg, i]:.2f}" for i, joint in enumerate(JOINTS)}
+            | {f"{joint} rms [N m]": f"{self.rms[leg, i]:.2f}" for i, joint in enumerate(JOINTS)}
+            for leg, name in enumerate(self.robot.leg_names)
+        ]
 
     @property
     def conditions(self) -> dict[str, Any]:

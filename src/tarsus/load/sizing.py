@@ -21,6 +21,7 @@ from tarsus.load.verdict import (
     joint_verdicts,
     require_rule,
 )
+from tarsus.representation import represented
 from tarsus.robot.catalogue import servo_catalogue
 from tarsus.robot.robot import JOINTS, Robot
 from tarsus.robot.servo import Servo
@@ -35,6 +36,7 @@ _COXA_CAUTION = (
 )
 
 
+@represented()
 @dataclass(frozen=True, kw_only=True)
 class Candidate:
     """Servos of the catalogue that carry the robot, with their own masses included.
@@ -66,6 +68,7 @@ class Candidate:
         return names[0] if len(set(names)) == 1 else " / ".join(names)
 
 
+@represented("safety_factor", "rule", "payload", "maximum_payload", "candidates", "mixed", "verdicts", "assumed")
 @dataclass(frozen=True, kw_only=True)
 class ServoSizing:
     """Result of sizing the servos of a robot for a motion.

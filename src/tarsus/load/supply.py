@@ -10,6 +10,7 @@ import numpy as np
 
 from tarsus.errors import InputError
 from tarsus.load.loads import JointLoads
+from tarsus.representation import represented
 
 if TYPE_CHECKING:
     from jaxtyping import Float
@@ -21,6 +22,7 @@ _NEAR_PEAK = 0.9
 _COINCIDING_LEGS = 3
 
 
+@represented()
 @dataclass(frozen=True, eq=False, kw_only=True)
 class SupplyLoad:
     """Supply current of a robot's servos over a motion.

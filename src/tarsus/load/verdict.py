@@ -8,6 +8,7 @@ from typing import Literal
 
 from tarsus.errors import InputError, UnknownNameError
 from tarsus.load.loads import JointLoads
+from tarsus.representation import represented
 from tarsus.robot.robot import JOINTS
 from tarsus.robot.servo import Servo
 
@@ -75,6 +76,7 @@ def require_rule(rule: str) -> None:
         raise UnknownNameError.of("rule", str(rule), RULES)
 
 
+@represented()
 @dataclass(frozen=True, kw_only=True)
 class JointVerdict:
     """Verdict on one joint's servo.

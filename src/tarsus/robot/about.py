@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from tarsus.representation import represented
+
 __all__ = ["GaitDefaults", "Source"]
 
 
@@ -26,6 +28,7 @@ class GaitDefaults:
     swing_height: float | None = None
 
 
+@represented()
 @dataclass(frozen=True, kw_only=True)
 class Source:
     """Source of numbers in a robot file, and their confidence.

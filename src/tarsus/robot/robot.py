@@ -12,6 +12,7 @@ import numpy as np
 
 from tarsus.arrays import Array, broadcast_shapes, namespace
 from tarsus.errors import InputError, MissingDataError
+from tarsus.representation import Rows, represented
 from tarsus.robot.about import GaitDefaults, Source
 from tarsus.robot.geometry import LegGeometry
 from tarsus.robot.preset_names import preset_names
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
 __all__ = ["JOINTS", "GaitDefaults", "Robot", "Source", "masses_advice", "stack_robots"]
 
 
+@represented("name", "leg_codes", "batch_shape", "coxa", "femur", "tibia", "limits", "body_mass", "link_mass", "gait")
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Robot:
     """A legged robot, or a batch of designs: every array may have leading batch axes, which broadcast.
@@ -126,6 +128,21 @@ class Robot:
 
     def __hash__(self) -> int:
         return hash((self.name, self.leg_names))
+
+    def _rows(self) -> Rows:
+        """Return the legs of a single robot."""
+        if self.batch_shape or not isinstance(self.femur, np.ndarray):
+            return ()
+        position, yaw, limits = self.mount_position * 1000, np.degrees(self.mount_yaw), np.degrees(self.limits)
+        links = {"coxa [mm]": self.coxa, "femur [mm]": self.femur, "tibia [mm]": self.tibia}
+        return [
+            {"leg": name}
+            | {f"{axis} [mm]": f"{position[leg, i]:.1f}" for i, axis in enumerate("xyz")}
+            | {"yaw [deg]": f"{yaw[leg]:.1f}"}
+            | {link: f"{length[leg] * 1000:.1f}" for link, length in links.items()}
+            | {f"{j} [deg]": f"{limits[leg, i, 0]:.0f} to {limits[leg, i, 1]:.0f}" for i, j in enumerate(JOINTS)}
+            for leg, name in enumerate(self.leg_names)
+        ]
 
     @property
     def legs(self) -> int:

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from tarsus.representation import represented
+
 __all__ = ["Servo"]
 
 
+@represented()
 @dataclass(frozen=True, kw_only=True)
 class Servo:
     """A servo model; data that its source does not give are None.

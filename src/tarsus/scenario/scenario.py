@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from tarsus.control.pose.admittance import Admittance
 from tarsus.errors import InputError, UnknownNameError
+from tarsus.representation import represented
 from tarsus.scenario.quantities import require_quantity
 from tarsus.scenario.settings import ADMITTANCE, LEVELLINGS, NUMBERS, STARTS
 from tarsus.scenario.timed_command import GAIT_NAMES, TimedCommand
@@ -20,6 +21,7 @@ LONGEST_TICK = 0.05
 _MOST_TICKS = 1_000_000
 
 
+@represented()
 @dataclass(frozen=True)
 class Scenario:
     """What a robot is told over time.

@@ -11,6 +11,7 @@ from tarsus.control.control_output import ControlOutput
 from tarsus.control.readings import SensorReadings
 from tarsus.errors import InputError, SimulationError
 from tarsus.kinematics.pose import Pose
+from tarsus.representation import represented
 from tarsus.robot.robot import Robot
 from tarsus.simulation.engine import mujoco_module
 from tarsus.simulation.initial_state import check_stability, place
@@ -37,6 +38,7 @@ _SETTLING_CHECK = 25  # steps
 _UNSTABLE = 1e3
 
 
+@represented()
 class PlantState(NamedTuple):
     """What a simulated robot does, exactly.
 
@@ -71,6 +73,7 @@ class PlantState(NamedTuple):
     body_touches: bool
 
 
+@represented("robot", "terrain", "sensors", "assumed")
 class SimulatedPlant:
     """Executes joint angles in physics: a `Plant`.
 

@@ -15,6 +15,7 @@ from tarsus.control.limitation import Limitation
 from tarsus.control.walk_state import WalkState
 from tarsus.errors import InputError
 from tarsus.gait.motion import Motion
+from tarsus.representation import represented
 from tarsus.robot.robot import Robot
 
 if TYPE_CHECKING:
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
 __all__ = ["Event", "Recording", "Unmet"]
 
 
+@represented()
 class Event(NamedTuple):
     """Something that happened in a run.
 
@@ -45,6 +47,7 @@ class Event(NamedTuple):
     text: str
 
 
+@represented()
 class Unmet(NamedTuple):
     """A command that was not met in full by the time it was replaced, or the run ended.
 
@@ -67,6 +70,7 @@ class Unmet(NamedTuple):
         return f"{self.time:.2f} to {self.until:.2f} s: {self.limitation.text()}"
 
 
+@represented("robot", "name", "rate", "motion", "interventions", "unmet", "events")
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Recording:
     """A run of a controller and a plant. Arrays have a row for each tick; the first is the robot at the start.

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Self
 import numpy as np
 
 from tarsus.errors import InputError
+from tarsus.representation import represented
 from tarsus.robot.joint_limits import STOPPING_TIME, UNKNOWN_SPEED, servo_speeds
 from tarsus.robot.robot import Robot
 
@@ -33,6 +34,7 @@ _RANGES: dict[str, tuple[float, bool, float]] = {
 }
 
 
+@represented()
 @dataclass(frozen=True, eq=False, kw_only=True)
 class GuardBounds:
     """Bounds that a `Guard` enforces.

@@ -21,6 +21,7 @@ from tarsus.errors import InputError, TarsusError, UnknownNameError
 from tarsus.kinematics.inverse import inverse_kinematics
 from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.stance import default_stance
+from tarsus.representation import represented
 from tarsus.robot.robot import Robot
 
 if TYPE_CHECKING:
@@ -32,6 +33,7 @@ Policy = Literal["hold", "sit"]
 Recovery = Literal["near", "reset"]
 
 
+@represented("state", "time", "counts", "bounds")
 class Guard:
     """Passes joint angles that violate no bound; otherwise brakes, holds and recovers.
 

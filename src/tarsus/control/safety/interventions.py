@@ -6,6 +6,7 @@ import math
 from enum import StrEnum
 from typing import NamedTuple
 
+from tarsus.representation import represented
 from tarsus.robot.robot import JOINTS, Robot
 
 __all__ = ["Intervention", "InterventionKind", "Violation"]
@@ -90,6 +91,7 @@ class Violation(NamedTuple):
         return Intervention(self.kind, leg, joint, self.value, self.bound, time)
 
 
+@represented()
 class Intervention(NamedTuple):
     """The reason why the guard did not pass a command.
 

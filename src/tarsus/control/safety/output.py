@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from tarsus.control.safety.interventions import Intervention
+from tarsus.representation import represented
 
 if TYPE_CHECKING:
     from jaxtyping import Float
@@ -28,6 +29,7 @@ class GuardState(StrEnum):
     """The joints approach the command."""
 
 
+@represented()
 class GuardOutput(NamedTuple):
     """Output of the guard for one tick.
 

@@ -11,6 +11,7 @@ from tarsus.control.sequence.sequence import MotionSequence, SequenceSample
 from tarsus.control.sequence.stage import GRID
 from tarsus.errors import InputError
 from tarsus.kinematics.pose import Pose
+from tarsus.representation import represented
 
 if TYPE_CHECKING:
     from jaxtyping import Bool, Float
@@ -28,6 +29,7 @@ _ACCELERATION_FRACTION = 0.98
 _END_TOLERANCE = 1e-9
 
 
+@represented("time", "rate", "stage", "done", "angles")
 class SequencePlayer:
     """Plays a motion sequence tick by tick.
 

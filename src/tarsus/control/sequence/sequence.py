@@ -16,6 +16,7 @@ from tarsus.gait.motion import Motion
 from tarsus.gait.walk_setup import require_number
 from tarsus.kinematics.leg import forward_kinematics
 from tarsus.kinematics.pose import Pose
+from tarsus.representation import represented
 from tarsus.robot.joint_limits import JointLimits
 from tarsus.robot.robot import Robot
 
@@ -49,6 +50,7 @@ class SequenceSample(NamedTuple):
     belly: bool
 
 
+@represented()
 @dataclass(frozen=True, eq=False, kw_only=True)
 class MotionSequence:
     """Named stages one after the other, each from rest to rest: standing up, sitting down, folding.

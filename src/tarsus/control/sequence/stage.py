@@ -20,6 +20,7 @@ from tarsus.kinematics.ground import points_in_body
 from tarsus.kinematics.leg import forward_kinematics
 from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.triangle import solve_triangle, to_leg_frame
+from tarsus.representation import represented
 from tarsus.robot.joint_limits import JointLimits
 from tarsus.robot.robot import Robot
 
@@ -55,6 +56,7 @@ class StageTable(NamedTuple):
     second: Float[np.ndarray, "257 legs 3"]
 
 
+@represented()
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Stage:
     """A motion of the whole robot from rest to rest.

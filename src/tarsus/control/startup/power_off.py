@@ -11,6 +11,7 @@ from tarsus.arrays import Array
 from tarsus.control.sequence.sequence_limits import sequence_limits
 from tarsus.control.startup.initial_state import lying_state
 from tarsus.control.startup.leg_path import LegFreeSpace
+from tarsus.representation import represented
 from tarsus.robot.robot import JOINTS, Robot
 
 if TYPE_CHECKING:
@@ -25,6 +26,7 @@ _ANGLE_STEP = np.deg2rad(0.25)
 _MIN_DROP = 0.001
 
 
+@represented()
 @dataclass(frozen=True, eq=False, kw_only=True)
 class PowerOffOrder:
     """Order in which joints are switched off, and how far legs drop.

@@ -14,7 +14,7 @@ from tarsus.kinematics.pose import Pose
 if TYPE_CHECKING:
     from jaxtyping import Float
 
-__all__ = ["body_pose", "foot_positions"]
+__all__ = ["body_pose", "foot_positions", "ground_frame"]
 
 
 def body_pose(state: GaitState) -> Pose:
@@ -46,3 +46,15 @@ def foot_positions(state: GaitState) -> Float[np.ndarray, "legs 3"]:
     """
     height = state.height(float(state.posture.value[SWING_HEIGHT])) + state.admittance_offset.value
     return np.stack([state.foot.real, state.foot.imag, height], axis=-1)
+
+
+def ground_frame(body: Pose) -> Pose:
+    """Return the frame on the ground below a body that has the body's heading.
+
+    Parameters
+    ----------
+    body : Pose
+        Pose of B in G.
+    """
+    yaw = float(np.asarray(body.rpy)[2])
+    return Pose.from_rpy(0.0, 0.0, yaw, (float(body.position[0]), float(body.position[1]), 0.0))

@@ -10,6 +10,7 @@ from tarsus.errors import UnknownNameError
 from tarsus.gait.motion import Motion
 from tarsus.load.handbook.lines import plain_number
 from tarsus.load.handbook.method import Handbook
+from tarsus.representation import represented
 from tarsus.robot.robot import JOINTS
 
 __all__ = ["ACCELERATING", "STANDING", "SWINGING", "WALKING", "Comparison", "ComparisonRow"]
@@ -20,6 +21,7 @@ _NO_LOAD = 1e-9  # torques below this are rounding [N m]
 _OVERSIZED = 2.0
 
 
+@represented()
 @dataclass(frozen=True, kw_only=True)
 class ComparisonRow:
     """One quantity by the hand method and by statics.
@@ -81,6 +83,7 @@ class ComparisonRow:
         return "safe with the factor only" if self.reserve >= 1 else "unsafe"
 
 
+@represented()
 @dataclass(frozen=True, kw_only=True)
 class Comparison:
     """Comparison of the hand method with statics.

@@ -7,6 +7,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from tarsus.representation import represented
+
 __all__ = ["Line", "Sheet", "Term", "plain_number"]
 
 _SUM, _PRODUCT, _SINGLE = 1, 2, 3  # precedence of an expression; operands of lower precedence get brackets
@@ -26,6 +28,7 @@ def plain_number(value: float, unit: str = "") -> str:
     return str(np.format_float_positional(rounded, precision=6, fractional=False, trim="-"))
 
 
+@represented()
 @dataclass(frozen=True)
 class Term:
     """A number with its formula, in symbols and in numbers.
@@ -82,6 +85,7 @@ class Term:
         return self.symbols, self.numbers
 
 
+@represented()
 @dataclass(frozen=True, kw_only=True)
 class Line:
     """One line of the calculation.

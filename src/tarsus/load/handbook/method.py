@@ -17,6 +17,7 @@ from tarsus.errors import InputError, UnknownNameError
 from tarsus.load.handbook.lines import Line, Sheet, Term, plain_number
 from tarsus.load.handbook.sections import write_sections
 from tarsus.load.handbook.source import NOTES, NOTES_ONE_LEG_UP, printed_numbers
+from tarsus.representation import represented
 from tarsus.robot.robot import JOINTS, Robot
 
 if TYPE_CHECKING:
@@ -28,6 +29,7 @@ _FEMUR_ANGLE = math.pi / 4
 _HEADER = ("key", "symbol", "formula", "with numbers", "value", "unit", "source 004", "note")
 
 
+@represented()
 @dataclass(frozen=True, kw_only=True)
 class Handbook:
     """Hand calculation of a robot's joint torques.

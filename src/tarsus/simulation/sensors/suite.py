@@ -9,6 +9,7 @@ from types import MappingProxyType
 from typing import Any, Self
 
 from tarsus.errors import InputError, UnknownNameError
+from tarsus.representation import represented
 
 __all__ = ["CHANNELS", "FootSwitch", "Sensor", "SensorSuite"]
 
@@ -92,6 +93,7 @@ def _require_probability(name: str, value: float) -> None:
         raise InputError(f"{name} is {value:g}; it must be at least 0 and less than 1")
 
 
+@represented()
 @dataclass(frozen=True, kw_only=True)
 class SensorSuite:
     """The sensors of a robot; what is None is not measured. Channels are those of `SensorReadings`.

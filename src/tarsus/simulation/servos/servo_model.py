@@ -10,6 +10,7 @@ import numpy as np
 
 from tarsus.errors import InputError, MissingDataError
 from tarsus.load.servo_limits import at_supply
+from tarsus.representation import represented
 from tarsus.robot.servo import Servo
 from tarsus.simulation.servos.known_servos import KNOWN_SERVOS, KnownServo
 from tarsus.simulation.servos.torque_law import drive_torque
@@ -34,6 +35,7 @@ _PWM_DELAY, _BUS_DELAY = 0.004, 0.006  # [s]
 _NO_LOAD_SPEED = 5.0  # [rad/s]
 
 
+@represented()
 @dataclass(frozen=True, kw_only=True)
 class ServoModel:
     """A position-controlled servo.

@@ -11,6 +11,7 @@ import numpy as np
 
 from tarsus.errors import InputError, TarsusError
 from tarsus.gait.walk_setup import require_number
+from tarsus.representation import represented
 from tarsus.simulation.engine import mujoco_module
 from tarsus.simulation.settings import FRICTION
 from tarsus.simulation.terrain.surface import FAR, surface
@@ -24,6 +25,7 @@ __all__ = ["HeightField"]
 _THICKNESS = 0.5
 
 
+@represented()
 @dataclass(frozen=True, kw_only=True, eq=False)
 class HeightField:
     """Heights on a grid around the origin, joined by triangles; around it, level ground at height 0.
