@@ -8,6 +8,7 @@ from tarsus.robot.file import list_robots, load_robot
 from tarsus.robot.robot import Robot
 
 PRESETS = list_robots()
+HEXAPOD_GAITS = ("tripod", "tetrapod", "ripple", "wave")
 
 
 @functools.cache

@@ -8,6 +8,9 @@ from tarsus.gait.path import curved_path, straight_path
 from tarsus.gait.plan import plan_walk
 from tarsus.robot.file import load_robot, robot_from_dict
 
+WAVE_OF_FOUR = Gait(3 / 4, (0.25, 0.0, 0.5, 0.75), name="wave of four")
+"""Always one of four legs in the air: without a body shift, the robot tips over."""
+
 
 def ring_robot(legs):
     """A robot with any number of legs, without masses, servos or a box."""
@@ -34,7 +37,7 @@ def sample_walk(kind):
     if kind == "turning":
         return plan_walk(strider, Gait.named("tetrapod"), curved_path(-0.4), rate=50, body_tilt=(0.05, -0.1))
     if kind == "tips over":
-        return plan_walk(ring_robot(4), Gait.named("wave", legs=4), straight_path(0.1), rate=50)
+        return plan_walk(ring_robot(4), WAVE_OF_FOUR, straight_path(0.1), rate=50)
     if kind == "eight legs":
         return plan_walk(ring_robot(8), Gait.named("wave", legs=8), straight_path(0.1), rate=50)
     if kind == "too fast":

@@ -9,9 +9,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.linalg import expm
 
-from gait_robots import PRESETS, preset
+from gait_robots import HEXAPOD_GAITS, PRESETS, preset
 from tarsus.gait.cycle import cycle_feet, tilted_body
-from tarsus.gait.gait import GAITS, Gait
+from tarsus.gait.gait import Gait
 from tarsus.gait.path import curved_path
 from tarsus.gait.stroke import unit_twist
 from tarsus.kinematics.stance import default_stance
@@ -43,7 +43,7 @@ def reference(gait, rest, twist, swing_height, phase):
     return np.array(feet), np.array(down)
 
 
-@pytest.mark.parametrize("name", GAITS)
+@pytest.mark.parametrize("name", HEXAPOD_GAITS)
 @pytest.mark.parametrize("twist", TWISTS)
 def test_the_cycle_follows_its_definition_leg_by_leg(name, twist):
     gait, rest = Gait.named(name), rest_of()
@@ -55,7 +55,7 @@ def test_the_cycle_follows_its_definition_leg_by_leg(name, twist):
         np.testing.assert_array_equal(contacts[i], down)
 
 
-@given(st.sampled_from(GAITS), st.floats(-0.1, 0.1), st.floats(-0.1, 0.1), st.floats(-0.6, 0.6))
+@given(st.sampled_from(HEXAPOD_GAITS), st.floats(-0.1, 0.1), st.floats(-0.1, 0.1), st.floats(-0.6, 0.6))
 def test_stances_are_straight_or_arcs_symmetric_about_rest(name, x, y, yaw):
     gait, rest = Gait.named(name), rest_of()
     for leg, offset in enumerate(gait.offsets):

@@ -157,9 +157,9 @@ def test_joint_limits_without_servos_and_as_given():
     np.testing.assert_array_equal(acceleration, 7.0)
 
 
-@pytest.mark.parametrize("legs", [4, 6, 8])
-def test_more_legs_take_more_increments(legs):
-    setup = setup_of(ring(legs), "wave")
+@pytest.mark.parametrize(("legs", "gait"), [(4, "creep"), (6, "wave"), (8, "wave")])
+def test_more_legs_take_more_increments(legs, gait):
+    setup = setup_of(ring(legs), gait)
     speed, acceleration = joint_limits(setup.robot, None, None)
     limits = complete(
         velocity_limits(setup.robot, [standing(setup)], np.ones((1, legs), dtype=bool), foot_distance=0.01)

@@ -9,12 +9,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from gait_robots import HEXAPOD_GAITS
 from robots import random_robot, seeds
 from sample_loads import robot_of
 from sample_robots import hexapod
 from tarsus.errors import InputError, MissingDataError, UnreachableError
 from tarsus.gait.cycle import cycle_feet
-from tarsus.gait.gait import GAITS, Gait
+from tarsus.gait.gait import Gait
 from tarsus.kinematics.inverse import inverse_kinematics
 from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.stance import default_body_height, default_stance
@@ -68,7 +69,7 @@ def sized(count, rng, robot=None):
     )
 
 
-@pytest.mark.parametrize("gait", GAITS)
+@pytest.mark.parametrize("gait", HEXAPOD_GAITS)
 @pytest.mark.parametrize("name", ["strider", "phantomx", "ch3r", "freenove"])
 def test_presets_match_the_general_functions(name, gait):
     robot = robot_of(name)
@@ -89,7 +90,7 @@ def test_presets_match_the_general_functions(name, gait):
     assert found.ok == bool(expected[0].ok.all() and (expected[3] >= 0).all())
 
 
-@given(seed=seeds(), gait=st.sampled_from(GAITS), heading=st.floats(-4, 4))
+@given(seed=seeds(), gait=st.sampled_from(HEXAPOD_GAITS), heading=st.floats(-4, 4))
 def test_batch_equals_loop(seed, gait, heading):
     rng = np.random.default_rng(seed)
     together = sized(3, rng)

@@ -215,8 +215,8 @@ def test_it_is_computed_incrementally():
 
 
 def test_robots_of_any_number_of_legs_have_polygons():
-    for legs in (4, 5, 8):
-        setup = setup_of(ring(legs), "wave")
+    for legs, gait in ((4, "creep"), (5, "wave"), (8, "wave")):
+        setup = setup_of(ring(legs), gait)
         stand = standing(setup)
         bounds = complete(foot_workspace(setup.robot, stand, foot_distance=setup.foot_distance))
         assert bounds.shape == (legs, 16)

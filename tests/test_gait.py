@@ -6,9 +6,12 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from scipy.spatial import ConvexHull
 
+from gait_robots import HEXAPOD_GAITS, ring
 from tarsus.errors import InputError, UnknownNameError
 from tarsus.gait.gait import GAITS, Gait
+from tarsus.kinematics.stance import default_stance
 
 LF, LM, LR, RR, RM, RF = range(6)
 
@@ -67,7 +70,7 @@ def test_wave_lifts_one_leg_at_a_time_one_side_after_the_other_from_the_back():
     assert air_pairs(gait) == set()
 
 
-@pytest.mark.parametrize("name", GAITS)
+@pytest.mark.parametrize("name", HEXAPOD_GAITS)
 def test_no_two_neighbours_of_the_ring_are_ever_in_the_air_together(name):
     gait = Gait.named(name)
     neighbours = {(i, i + 1) for i in range(5)} | {(0, 5)}
@@ -82,7 +85,7 @@ def test_fewest_feet_down(name, fewest):
 def test_names_are_case_insensitive_and_have_aliases():
     assert Gait.named("Amble") == Gait.named("tetrapod")
     assert Gait.named("TRIPOD").name == "tripod"
-    assert GAITS == ("tripod", "tetrapod", "ripple", "wave")
+    assert (*HEXAPOD_GAITS, "creep") == GAITS
 
 
 def test_an_unknown_name_lists_the_known_ones_and_suggests_the_nearest():
@@ -92,8 +95,8 @@ def test_an_unknown_name_lists_the_known_ones_and_suggests_the_nearest():
         Gait.named(3)
 
 
-@pytest.mark.parametrize("legs", [4, 5, 8, 9])
-def test_wave_for_any_number_of_legs_from_four(legs):
+@pytest.mark.parametrize("legs", [5, 8, 9])
+def test_wave_for_any_number_of_legs_from_five(legs):
     gait = Gait.named("wave", legs=legs)
     assert gait.legs == legs
     assert gait.duty_factor == (legs - 1) / legs
@@ -107,11 +110,59 @@ def test_tripod_of_eight_legs_alternates_four_and_four():
     assert not air_pairs(gait) & ({(i, i + 1) for i in range(7)} | {(0, 7)})
 
 
+@pytest.mark.parametrize("legs", [6, 7, 8])
+def test_tetrapod_keeps_four_feet_down_and_no_neighbours_in_the_air(legs):
+    gait = Gait.named("tetrapod", legs=legs)
+    assert gait.fewest_feet_down == 4
+    assert not air_pairs(gait) & {tuple(sorted((leg, (leg + 1) % legs))) for leg in range(legs)}
+
+
+@pytest.mark.parametrize("legs", [5, 6, 7, 8, 9, 12])
+def test_ripple_always_has_two_legs_in_the_air_that_are_no_neighbours(legs):
+    gait = Gait.named("ripple", legs=legs)
+    assert sorted(gait.offsets) == pytest.approx(np.arange(legs) / legs)
+    down = gait.phase((np.arange(100 * legs) + 0.5) / (100 * legs))[2]
+    np.testing.assert_array_equal((~down).sum(-1), 2)
+    assert not air_pairs(gait) & {tuple(sorted((leg, (leg + 1) % legs))) for leg in range(legs)}
+
+
 @pytest.mark.parametrize(
-    ("name", "legs"), [("tripod", 4), ("tripod", 5), ("tripod", 7), ("tetrapod", 8), ("ripple", 4), ("wave", 3)]
+    ("name", "legs"),
+    [(name, legs) for legs in range(5, 13) for name in HEXAPOD_GAITS if legs in (6, 8) or name in ("ripple", "wave")],
 )
-def test_gaits_refuse_unsupported_numbers_of_legs(name, legs):
-    with pytest.raises(InputError, match=f"the {name} gait does not exist for {legs} legs; the wave gait"):
+def test_at_rest_the_centre_is_within_every_support_polygon(name, legs):
+    """Of a ring of like legs, by the hull of the feet that Qhull finds."""
+    gait, rest = Gait.named(name, legs=legs), default_stance(ring(legs))[:, :2]
+    for down in np.unique(gait.phase((np.arange(997) + 0.5) / 997)[2], axis=0):
+        hull = ConvexHull(rest[down])
+        assert (hull.equations[:, 2] < -0.01).all()
+
+
+def test_creep_lifts_one_leg_at_a_time_around_the_body_and_stands_between():
+    gait = Gait.named("creep", legs=4)
+    assert gait.body_shift
+    assert gait.duty_factor == pytest.approx(5 / 6)
+    assert touchdown_order(gait) == [0, 1, 2, 3]
+    assert air_pairs(gait) == set()
+    assert gait.phase(np.arange(4) / 4 - 1 / 24)[2].sum(-1).tolist() == [3] * 4
+    assert gait.phase(np.arange(4) / 4 + 1 / 24)[2].all()
+    clockwise = Gait.named("creep", legs=4, turning=-0.1)
+    assert touchdown_order(clockwise) == [3, 2, 1, 0]
+
+
+@pytest.mark.parametrize(
+    ("name", "legs", "others"),
+    [
+        ("tripod", 4, "4 legs have: creep"),
+        ("wave", 4, "4 legs have: creep"),
+        ("tripod", 5, "5 legs have: ripple, wave"),
+        ("tetrapod", 9, "9 legs have: ripple, wave"),
+        ("creep", 6, "6 legs have: tripod, tetrapod, ripple, wave"),
+        ("wave", 3, "gaits need four legs or more"),
+    ],
+)
+def test_gaits_refuse_unsupported_numbers_of_legs(name, legs, others):
+    with pytest.raises(InputError, match=f"the {name} gait does not exist for {legs} legs; {others}"):
         Gait.named(name, legs=legs)
 
 
@@ -182,7 +233,7 @@ def test_fewest_feet_down_equals_a_count_over_the_cycle(gait):
         assert gait.fewest_feet_down == counts.min()
 
 
-@pytest.mark.parametrize("name", GAITS)
+@pytest.mark.parametrize("name", HEXAPOD_GAITS)
 def test_at_simultaneous_touchdown_and_lift_off_both_feet_count_as_down(name):
     gait = Gait.named(name)
     events = np.concatenate([gait.offsets, np.array(gait.offsets) + gait.duty_factor])

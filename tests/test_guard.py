@@ -11,19 +11,18 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from gait_robots import PRESETS, preset, ring
+from gait_robots import HEXAPOD_GAITS, PRESETS, preset, ring
 from sample_guard import ALL_STANCE, INVALID_ANGLES, NAN, TICK, check_bounds, run, standing, walk
 from sample_robots import random_hexapod
 from tarsus.control.safety import Guard, GuardBounds, GuardState, InterventionKind
 from tarsus.control.safety.leg_model import LegModel
-from tarsus.gait.gait import GAITS
 from tarsus.kinematics.leg import forward_kinematics
 from tarsus.kinematics.mass import centre_of_mass
 from tarsus.kinematics.pose import Pose
 
 
 @pytest.mark.lengthy
-@pytest.mark.parametrize("gait", GAITS)
+@pytest.mark.parametrize("gait", HEXAPOD_GAITS)
 @pytest.mark.parametrize("name", PRESETS)
 def test_a_valid_walk_passes_unchanged(name, gait):
     motion = walk(name, gait)

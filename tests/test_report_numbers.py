@@ -303,7 +303,7 @@ def test_check_lists_servos_with_unknown_speed():
     ("gait", "text"),
     [
         (GaitDefaults(name="tetrapod"), "does not exist for 4 legs"),
-        (GaitDefaults(name="wave", body_height=0.5), "does not reach the ground"),
+        (GaitDefaults(name="creep", body_height=0.5), "does not reach the ground"),
     ],
 )
 def test_check_gives_the_reason_why_a_robot_cannot_walk(gait, text):

@@ -3,11 +3,10 @@
 import numpy as np
 import pytest
 
-from gait_robots import PRESETS, ring
+from gait_robots import HEXAPOD_GAITS, PRESETS, ring
 from sample_stances import POSTURES, polygons, setup_of, standing
 from tarsus.control.workspace.polygon import NORMALS, polygon_ends
 from tarsus.control.workspace.stability import StabilityCheck, margin_at_rest, safe_fraction, support_sets
-from tarsus.gait.gait import GAITS
 from tarsus.kinematics.mass import centre_of_mass
 
 
@@ -45,7 +44,7 @@ def test_excluded_legs_widen_the_margin():
     assert shift[[0, 2, 3, 5]].any(axis=-1).all()
 
 
-@pytest.mark.parametrize("gait", GAITS)
+@pytest.mark.parametrize("gait", HEXAPOD_GAITS)
 def test_bisection_finds_the_first_safe_fraction(gait):
     rest = 0.2 * np.exp(1j * np.pi / 6 * np.array([1, 3, 5, 7, 9, 11]))
     sets = support_sets(setup_of("strider", gait).gait)

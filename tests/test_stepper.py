@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.linalg import expm
 
-from gait_robots import PRESETS
+from gait_robots import HEXAPOD_GAITS, PRESETS
 from sample_gait_states import EARTH, FACING, begun, moment_of, rest_of, step_inputs_of
 from sample_stances import setup_of
 from tarsus.control.filters import CriticallyDamped
@@ -19,12 +19,11 @@ from tarsus.control.walk.state import EARLY_STOP_FRACTION, POSITION_TOLERANCE, c
 from tarsus.control.walk.stepper import TARGET_FREEZE, advance
 from tarsus.control.workspace.stance_geometry import with_sway
 from tarsus.gait.cycle import cycle_feet
-from tarsus.gait.gait import GAITS
 from tarsus.kinematics.pose import Pose
 
 TWISTS = [(0.08, 0.0, 0.0), (0.0, -0.06, 0.0), (0.05, 0.02, 0.3), (0.0, 0.0, -0.5)]
 every_walk = pytest.mark.parametrize(
-    ("name", "gait"), [(n, "tripod") for n in PRESETS] + [("strider", g) for g in GAITS]
+    ("name", "gait"), [(n, "tripod") for n in PRESETS] + [("strider", g) for g in HEXAPOD_GAITS]
 )
 
 
@@ -158,7 +157,7 @@ def test_the_given_moment_is_not_changed(twist):
         now = after
 
 
-@pytest.mark.parametrize("gait", GAITS)
+@pytest.mark.parametrize("gait", HEXAPOD_GAITS)
 def test_stopping_ends_at_rest_with_every_foot_at_its_rest_foothold(gait):
     setup, rest = setup_of("strider", gait), rest_of("strider")
     now = walked(begun(setup, rest), step_inputs_of(setup, rest, (0.05, 0.02, 0.2)), 3.13, 0.01)

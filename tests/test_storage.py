@@ -72,7 +72,7 @@ def test_csv_names_the_reach_codes_and_writes_no_minus_zero(tmp_path):
 def test_csv_columns_of_legs_without_short_names(tmp_path):
     names = ("one", "two", "the third leg", "four")
     robot = ring(4, leg_names=names)
-    motion = plan_walk(robot, Gait.named("wave", legs=4), straight_path(0.05), rate=30)
+    motion = plan_walk(robot, Gait.named("creep", legs=4), straight_path(0.05), rate=30)
     motion_to_csv(motion, tmp_path / "walk.csv")
     assert "the_third_leg_coxa_deg" in read_csv(tmp_path / "walk.csv")[0]
 

@@ -324,7 +324,7 @@ def test_a_walk_with_too_many_samples_is_rejected_with_their_number(ask, options
 def test_an_unknown_gait_is_rejected_with_its_name(ask, name):
     error = ask.error("walk", walk={"gait": name})
     assert error["kind"] == "unknown_name"
-    assert "tripod, tetrapod, ripple, wave" in error["text"]
+    assert "tripod, tetrapod, ripple, wave, creep" in error["text"]
 
 
 LOADS = {"payload_kg": 0.2, "payload_at_mm": [10, 0, 20], "supply_v": 6.8, "capacity_ah": 3, "safety_factor": 2}

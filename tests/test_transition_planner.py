@@ -8,8 +8,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from gait_robots import PRESETS, ring
+from gait_robots import HEXAPOD_GAITS, PRESETS, ring
 from sample_stances import feet_at, pose_of, posture_of, setup_of
+from sample_walks import WAVE_OF_FOUR
 from tarsus.control.incremental import complete
 from tarsus.control.limitation import Cause, Limitation, LimitationKind
 from tarsus.control.transition.feasible_fraction import TIPPING, StanceTarget
@@ -18,7 +19,7 @@ from tarsus.control.transition.planner import TransitionPlanner
 from tarsus.control.transition.stance_transition import StanceTransition
 from tarsus.control.workspace.stance_geometry import SWING_HEIGHT, rotation_rows, stance_geometry_of
 from tarsus.errors import UnreachableError
-from tarsus.gait.gait import GAITS, Gait
+from tarsus.gait.gait import Gait
 from tarsus.kinematics.inverse import inverse_kinematics
 from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.stance import default_stance
@@ -65,7 +66,7 @@ def reached(setup, posture, rest):
 
 @pytest.mark.parametrize("name", PRESETS)
 def test_every_preset_stands_and_walks_in_every_gait_as_it_is(name):
-    for gait in GAITS:
+    for gait in HEXAPOD_GAITS:
         setup, found = setup_of(name, gait), start(name, gait)
         assert isinstance(found, StanceTransition)
         assert found.complete
@@ -197,7 +198,7 @@ def test_a_wish_that_the_balance_bounds_is_gone_as_far_as_it_lets_and_that_is_sa
 
 
 def test_a_robot_that_cannot_stand_and_step_at_all_is_refused_at_once():
-    setup = setup_of(ring(4), "wave")
+    setup = setup_of(ring(4), WAVE_OF_FOUR)
     # On three of four feet the middle of the body is on an edge.
     assert planned(setup, parameters_of(setup)) == TIPPING
     low = setup_of("strider")

@@ -9,8 +9,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial import ConvexHull
 
-from gait_robots import PRESETS, ring
+from gait_robots import HEXAPOD_GAITS, PRESETS, ring
 from sample_stances import POSTURES, feet_at, pose_of, setup_of, standing, velocity_limits_of
+from sample_walks import WAVE_OF_FOUR
 from tarsus.control.incremental import complete
 from tarsus.control.transition.stages.workspace import velocity_limits
 from tarsus.control.workspace.polygon import NORMALS, polygon_ends, polygon_margin
@@ -21,7 +22,7 @@ from tarsus.control.workspace.velocity_limits import (
     with_stroke_limits,
 )
 from tarsus.gait.cycle import cycle_feet
-from tarsus.gait.gait import GAITS, Gait
+from tarsus.gait.gait import Gait
 from tarsus.gait.stroke import max_stroke
 from tarsus.kinematics.inverse import inverse_kinematics
 from tarsus.kinematics.stability import stability_margin
@@ -45,7 +46,7 @@ def steady(name, gait, twist):
 # Supports.
 
 
-@pytest.mark.parametrize("name", GAITS)
+@pytest.mark.parametrize("name", HEXAPOD_GAITS)
 def test_support_sets_are_the_minimal_sets_of_a_cycle(name):
     gait = Gait.named(name)
     seen = {tuple(row) for row in gait.phase((np.arange(3600) + 0.5) / 3600)[2].tolist()}
@@ -125,7 +126,7 @@ def test_two_feet_have_no_support_polygon(size):
 # The largest share.
 
 
-@pytest.mark.parametrize(("name", "gait"), list(itertools.product(PRESETS, GAITS)))
+@pytest.mark.parametrize(("name", "gait"), list(itertools.product(PRESETS, HEXAPOD_GAITS)))
 def test_steady_walks_at_the_feasible_fraction_are_reachable_and_stable(name, gait):
     setup, limits = setup_of(name, gait), velocity_limits_of(name, gait)
     stand = standing(setup)
@@ -245,7 +246,7 @@ def test_the_intersection_is_feasible_in_both():
 
 def test_a_centre_of_mass_outside_its_support_polygon_is_infeasible():
     # Four legs in a wave: on three feet the middle of the body is on an edge.
-    setup = setup_of(ring(4), "wave")
+    setup = setup_of(ring(4), WAVE_OF_FOUR)
     found = complete(
         velocity_limits(setup.robot, [standing(setup)], support_sets(setup.gait), foot_distance=setup.foot_distance)
     )

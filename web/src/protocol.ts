@@ -813,8 +813,8 @@ export interface FileBody {
 
 /** Default settings of the robot's walks. */
 export interface FileGait {
-  /** The gait. */
-  name?: "tripod" | "tetrapod" | "amble" | "ripple" | "wave";
+  /** The gait. Default: tripod; for four legs creep, for an odd number wave. */
+  name?: "tripod" | "tetrapod" | "amble" | "ripple" | "wave" | "creep";
   /** Height of the body's origin above the ground [mm]. */
   body_height_mm?: number;
   /** Swing height [mm]. */

@@ -40,7 +40,7 @@ def plan(name: str, options: dict[str, Any]) -> Motion:
     """
     path = path_of(options)
     robot = load_robot(name)
-    gait = Gait.named(options["gait"] or robot.gait.name, legs=robot.legs)
+    gait = Gait.named(options["gait"] or robot.gait.name, legs=robot.legs, turning=path.angle)
     tilt = options["tilt"] or (0.0, 0.0)
     lengths: dict[str, Any] = {key: None if options[key] is None else options[key] / 1000 for key in _LENGTHS}
     return plan_walk(

@@ -22,7 +22,11 @@ def walk_options(function: _F) -> _F:
 
 
 _OPTIONS = (
-    click.option("--gait", metavar="NAME", help="tripod, tetrapod, ripple or wave.  [default: the robot's]"),
+    click.option(
+        "--gait",
+        metavar="NAME",
+        help="tripod, tetrapod, ripple, wave or, with four legs, creep.  [default: the robot's]",
+    ),
     number_option("--distance", "MM", "Straight walk: distance.  [default: 500]"),
     number_option("--heading", "DEG", "Straight walk: direction from the front; 90 is to the left.  [default: 0]"),
     number_option("--curve", "DEG", "Walk around a centre by this angle; negative is clockwise."),

@@ -14,9 +14,9 @@ from tarsus.gait.swing import horizontal_profile, vertical_profile
 from tarsus.gait.timing import BodyClock, Steps, least_step_fraction, plan_steps
 
 if TYPE_CHECKING:
-    from jaxtyping import Float
+    from jaxtyping import Bool, Float
 
-__all__ = ["SWING_SAMPLES", "Excursions", "extreme_excursions", "walk_excursions"]
+__all__ = ["SWING_SAMPLES", "Excursions", "extreme_excursions", "walk_excursions", "walk_phases"]
 
 _OFFSETS = 24
 _PHASES = np.linspace(0.0, 1.0, 49)
@@ -131,7 +131,27 @@ def walk_excursions(gait: Gait) -> Excursions:
     gait : Gait
         The gait.
     """
-    return Excursions.joined(*(_walk(gait, cruise) for cruise in _CRUISES_OF_WALKS))
+    return Excursions.joined(*(_walk(gait, cruise)[0] for cruise in _CRUISES_OF_WALKS))
+
+
+@functools.lru_cache(maxsize=64)
+def walk_phases(gait: Gait) -> tuple[Float[np.ndarray, "k"], Bool[np.ndarray, "k legs"]]:
+    """Return the phases of the gait and the contacts of the positions of `walk_excursions`.
+
+    Parameters
+    ----------
+    gait : Gait
+        The gait.
+
+    Returns
+    -------
+    phases : array, shape (k,)
+        Phases [cycles].
+    contacts : array of bool, shape (k, legs)
+        Whether each foot is on the ground.
+    """
+    walks = [_walk(gait, cruise)[1:] for cruise in _CRUISES_OF_WALKS]
+    return np.concatenate([phases for phases, _ in walks]), np.concatenate([contacts for _, contacts in walks])
 
 
 def _steady_swing(duty_factor: float) -> Excursions:
@@ -156,14 +176,14 @@ def _swings(duty_factor: float) -> Excursions:
     return Excursions(*(column.reshape(-1, 1) for column in (start, end, along, up)))
 
 
-def _walk(gait: Gait, cruise: float) -> Excursions:
-    """Return the foot positions of a walk that cruises for a number of cycles."""
+def _walk(gait: Gait, cruise: float) -> tuple[Excursions, Float[np.ndarray, "k"], Bool[np.ndarray, "k legs"]]:
+    """Return the foot positions of a walk that cruises for a number of cycles, its phases and contacts."""
     steps, strokes = _walk_steps(gait, cruise)
     time = np.arange(steps.start, steps.end, (1 - gait.duty_factor) / SWING_SAMPLES)
-    last, following, swing_phase, _ = steps.at(time)
+    last, following, swing_phase, contacts = steps.at(time)
     body = steps.clock.fraction(time)[:, None]
     along, up = horizontal_profile(swing_phase), vertical_profile(swing_phase)
-    return Excursions((last - body) * strokes, (following - body) * strokes, along, up)
+    return Excursions((last - body) * strokes, (following - body) * strokes, along, up), time, contacts
 
 
 def _walk_steps(gait: Gait, cruise: float) -> tuple[Steps, float]:

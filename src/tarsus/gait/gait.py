@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import math
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Self
+from typing import TYPE_CHECKING, NamedTuple, Self, TypeAlias
 
 import numpy as np
 
@@ -17,33 +18,75 @@ if TYPE_CHECKING:
 __all__ = ["GAITS", "Gait"]
 
 
-def _tripod(legs: int) -> tuple[float, tuple[float, ...]]:
+_Timing: TypeAlias = tuple[float, tuple[float, ...]]
+
+
+def _sides(legs: int) -> tuple[list[int], list[int]]:
+    """Return the legs of the left and of the right side, each from back to front."""
+    return list(range(legs // 2 - 1, -1, -1)), list(range(legs // 2, legs))
+
+
+def _in_order(offsets: Mapping[int, float]) -> tuple[float, ...]:
+    return tuple(offsets[leg] for leg in sorted(offsets))
+
+
+def _tripod(legs: int) -> _Timing:
     """Even and odd legs alternate."""
     return 1 / 2, tuple(0.5 * (leg % 2) for leg in range(legs))
 
 
-def _tetrapod(_legs: int) -> tuple[float, tuple[float, ...]]:
-    """Three diagonal pairs in turn, from back to front on each side."""
-    return 2 / 3, (2 / 3, 1 / 3, 0.0, 1 / 3, 2 / 3, 0.0)
+def _tetrapod(legs: int) -> _Timing:
+    """Four feet or more on the ground: sets of diagonal legs in turn, from back to front on each side.
+
+    Six legs: three pairs. Seven: three sets of two or three. Eight: two sets of four, which alternate.
+    """
+    sets = math.ceil(legs / (legs - 4))
+    left, right = _sides(legs)
+    offsets = {leg: (i % sets) / sets for i, leg in enumerate(left)}
+    offsets |= {leg: ((i + 1) % sets) / sets for i, leg in enumerate(right)}
+    return (sets - 1) / sets, _in_order(offsets)
 
 
-def _ripple(_legs: int) -> tuple[float, tuple[float, ...]]:
-    """Back to front on each side, the sides half a cycle apart: two legs in the air, overlapping."""
-    return 2 / 3, (4 / 6, 2 / 6, 0.0, 3 / 6, 5 / 6, 1 / 6)
+def _ripple(legs: int) -> _Timing:
+    """Back to front on each side, the sides alternating: two legs in the air, overlapping."""
+    left, right = _sides(legs)
+    if legs % 2:
+        # The longer side begins, the other one half its length later.
+        late = len(left) // 2
+        slots = {leg: 2 * i for i, leg in enumerate(right)}
+        slots |= {leg: 2 * ((i + late) % len(left)) + 1 for i, leg in enumerate(left)}
+    else:
+        # Half a cycle later, in an odd slot.
+        late = legs // 2 + (legs // 2 + 1) % 2
+        slots = {leg: 2 * i for i, leg in enumerate(left)} | {leg: (2 * i + late) % legs for i, leg in enumerate(right)}
+    return (legs - 2) / legs, _in_order({leg: slot / legs for leg, slot in slots.items()})
 
 
-def _wave(legs: int) -> tuple[float, tuple[float, ...]]:
+def _wave(legs: int) -> _Timing:
     """One leg in the air: the left side from back to front, then the right side."""
-    left = legs // 2
-    order = [*range(left - 1, -1, -1), *range(left, legs)]
-    return (legs - 1) / legs, tuple(order.index(leg) / legs for leg in range(legs))
+    left, right = _sides(legs)
+    return (legs - 1) / legs, _in_order({leg: slot / legs for slot, leg in enumerate((*left, *right))})
 
 
-_NAMED: dict[str, Callable[[int], tuple[float, tuple[float, ...]]]] = {
-    "tripod": _tripod,
-    "tetrapod": _tetrapod,
-    "ripple": _ripple,
-    "wave": _wave,
+def _creep(legs: int) -> _Timing:
+    """One leg at a time, around the ring; between two swings all feet are on the ground."""
+    return 1 - 2 / (3 * legs), tuple(leg / legs for leg in range(legs))
+
+
+class _Named(NamedTuple):
+    """A gait with a name: its timing for a number of legs, and the numbers of legs that it exists for."""
+
+    timing: Callable[[int], _Timing]
+    exists: Callable[[int], bool]
+    body_shift: bool = False
+
+
+_NAMED = {
+    "tripod": _Named(_tripod, lambda legs: legs >= 6 and legs % 2 == 0),
+    "tetrapod": _Named(_tetrapod, lambda legs: 6 <= legs <= 8),
+    "ripple": _Named(_ripple, lambda legs: legs >= 5),
+    "wave": _Named(_wave, lambda legs: legs >= 5),
+    "creep": _Named(_creep, lambda legs: legs == 4, body_shift=True),
 }
 _ALIASES = {"amble": "tetrapod"}
 
@@ -66,11 +109,15 @@ class Gait:
         For each leg, the phase of the cycle at which its foot touches down, in [0, 1).
     name : str
         Name.
+    body_shift : bool
+        Whether the body shifts over the feet that stay on the ground before another one lifts: see
+        `tarsus.gait.body_shift`.
     """
 
     duty_factor: float
     offsets: tuple[float, ...]
     name: str = "custom"
+    body_shift: bool = False
 
     def __post_init__(self) -> None:
         try:
@@ -89,16 +136,22 @@ class Gait:
                 raise InputError(f"gait {self.name!r}: offsets[{leg}] is {offset}; it must be in [0, 1)")
 
     @classmethod
-    def named(cls, name: str, *, legs: int = 6) -> Self:
+    def named(cls, name: str, *, legs: int = 6, turning: float = 0.0) -> Self:
         """Return one of the standard gaits.
 
         Parameters
         ----------
         name : str
-            ``"tripod"`` (duty factor 1/2), ``"tetrapod"`` (2/3, also called amble), ``"ripple"`` (2/3) or ``"wave"``
-            ((legs - 1)/legs: 5/6 for six). Source 004's "ripple", with five feet down, is the wave.
+            ``"tripod"``: even and odd legs alternate; duty factor 1/2; an even number of legs from six.
+            ``"tetrapod"`` (also called amble): sets of legs in turn, at least four feet down; 2/3 for six and seven
+            legs, 1/2 for eight. ``"ripple"``: two legs in the air, overlapping; ``(legs - 2) / legs``, five legs or
+            more. ``"wave"``: one leg in the air; ``(legs - 1) / legs``, five legs or more. Source 004's "ripple", with
+            five feet down, is the wave. ``"creep"``: one leg at a time with a body shift; 5/6; four legs.
         legs : int
-            Number of legs: tetrapod and ripple require six, tripod an even number of at least six, wave at least four.
+            Number of legs.
+        turning : float
+            Angle or yaw rate of the walk: in a clockwise turn (negative) the creep gait steps clockwise around the
+            body, else counter-clockwise.
 
         Raises
         ------
@@ -106,15 +159,26 @@ class Gait:
             If there is no such gait.
         InputError
             If the gait does not exist for that number of legs.
+
+        Notes
+        -----
+        D. M. Wilson, "Insect walking", Annual Review of Entomology 11 (1966): tripod, tetrapod, ripple and wave.
+        R. B. McGhee and A. A. Frank, "On the stability properties of quadruped creeping gaits", Mathematical
+        Biosciences 3 (1968): a quadruped that keeps one foot at most in the air is statically stable with the order
+        left rear, left front, right rear, right front, by (duty factor - 3/4) of a stride; that margin is 0 in short
+        strides. With a body shift, the order around the body needs the least acceleration, whatever the stride.
         """
         key = _ALIASES.get(str(name).lower(), str(name).lower())
         if key not in _NAMED:
             raise UnknownNameError.of("gait", str(name), (*_NAMED, *_ALIASES))
-        fits = {"tripod": legs >= 6 and legs % 2 == 0, "wave": legs >= 4}.get(key, legs == 6)
-        if not fits:
-            raise InputError(f"the {key} gait does not exist for {legs} legs; the wave gait does for 4 or more")
-        duty_factor, offsets = _NAMED[key](legs)
-        return cls(duty_factor=duty_factor, offsets=offsets, name=key)
+        if not _NAMED[key].exists(legs):
+            others = [other for other, gait in _NAMED.items() if gait.exists(legs)]
+            known = f"{legs} legs have: {', '.join(others)}" if others else "gaits need four legs or more"
+            raise InputError(f"the {key} gait does not exist for {legs} legs; {known}")
+        duty_factor, offsets = _NAMED[key].timing(legs)
+        if key == "creep" and turning < 0:
+            offsets = tuple(reversed(offsets))
+        return cls(duty_factor=duty_factor, offsets=offsets, name=key, body_shift=_NAMED[key].body_shift)
 
     @property
     def legs(self) -> int:

@@ -9,15 +9,17 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tarsus.errors import CollisionError, InputError, StrokeError, UnreachableError
+from tarsus.gait.body_shift import shift_at
 from tarsus.gait.cycle import tilted_body
 from tarsus.gait.excursion import SWING_SAMPLES
 from tarsus.gait.gait import Gait
 from tarsus.gait.motion import Motion
 from tarsus.gait.pace import choose_pace
 from tarsus.gait.path import BodyPath, heading_to_ground
+from tarsus.gait.shifted_walk import shifted_pose, walk_shift
 from tarsus.gait.spacing import passing_distance
 from tarsus.gait.stroke import leg_feasibility, longest_stroke, unit_twist
-from tarsus.gait.swing import swing_position
+from tarsus.gait.swing import horizontal_profile, swing_position
 from tarsus.gait.timing import BodyClock, Steps, least_step_fraction, plan_steps
 from tarsus.gait.walk_setup import HEADING_FRAME, WalkSetup, require_number
 from tarsus.robot.robot import Robot
@@ -30,6 +32,8 @@ __all__ = ["plan_walk"]
 _MOST_SAMPLES = 2_000_000
 _SHORTEST_PATH = 1e-9
 _LONGEST_STROKE = 1e3
+# Time in which a body shift begins and ends [cycles].
+_LEAD = 0.5
 
 
 def plan_walk(  # noqa: PLR0913 - the options of a walk, all of them with defaults
@@ -51,6 +55,7 @@ def plan_walk(  # noqa: PLR0913 - the options of a walk, all of them with defaul
 
     A foot that touches down at time `t` for the stance time `Ts` is placed at the rest foothold of the body's pose at
     mid-stance: ``T_ground_body(t + Ts / 2) @ rest``. The body starts and stops along smooth ramps of one cycle each.
+    With a gait that has one, the body also shifts over the feet on the ground, in a smooth and periodic way.
     Strokes are therefore symmetric about the rest footholds, those of a curved walk are arcs about its centre, distance
     and angle of the path are exact, and the walk ends in the stance in which it started.
 
@@ -88,8 +93,8 @@ def plan_walk(  # noqa: PLR0913 - the options of a walk, all of them with defaul
     Returns
     -------
     Motion
-        Sampled at ``k / rate``, from the first lift-off to the last touchdown. A path too short for start and stop with
-        that stroke is walked with shorter steps.
+        Sampled at ``k / rate``, from the first lift-off to the last touchdown, with half a cycle before and after for a
+        body shift. A path too short for start and stop with that stroke is walked with shorter steps.
 
     Raises
     ------
@@ -167,13 +172,20 @@ def _sample(
     setup: WalkSetup, path: BodyPath, steps: Steps, *, stroke: float, rate: float, assumed: tuple[str, ...]
 ) -> Motion:
     """Compute the motion at every sample."""
-    duration = steps.end - steps.start
+    lead = _lead(setup, steps)
+    duration = steps.end - steps.start + 2 * lead
     # Rounding must not add a sample where the end falls on one.
     time = np.arange(math.ceil(duration * rate - 1e-6) + 1) / rate
     # At the end every leg stands; a later time than the last touchdown excludes rounding.
-    since_start = np.where(time >= duration - 1e-9, steps.end + 2 * steps.cycle_time, time + steps.start)
-    feet, contacts = _walk_feet(setup, path, steps, since_start)
+    since_start = np.where(time >= duration - lead - 1e-9, steps.end + 2 * steps.cycle_time, time - lead + steps.start)
+    feet, contacts = _walk_feet(setup, path, steps, np.maximum(since_start, steps.start))
     planar_pose = path.planar_pose(steps.clock.fraction(since_start))
+    if setup.gait.body_shift:
+        shift = walk_shift(setup, unit_twist(setup.rest, path.displacement) * stroke)
+        # In and out while every foot is on the ground.
+        share = horizontal_profile(np.clip(np.minimum(time, duration - time) / lead, 0.0, 1.0))
+        displacement = share * shift_at(shift, (time - lead + steps.start) / steps.cycle_time)
+        planar_pose = shifted_pose(planar_pose, displacement)
     solution = setup.solve(feet, planar_pose)
     return Motion(
         robot=setup.robot,
@@ -194,12 +206,17 @@ def _sample(
     )
 
 
+def _lead(setup: WalkSetup, steps: Steps) -> float:
+    """Return the time in which the body shift begins before the first lift-off, and ends after the last touchdown."""
+    return _LEAD * steps.cycle_time if setup.gait.body_shift else 0.0
+
+
 def _refuse_close_feet(setup: WalkSetup, path: BodyPath, steps: Steps, motion: Motion) -> None:
     """Raise if feet come too close to each other, at a sample or between two."""
     time, feet = motion.time, motion.feet
-    between = steps.cycle_time * (1 - setup.gait.duty_factor) / SWING_SAMPLES
+    between, late = steps.cycle_time * (1 - setup.gait.duty_factor) / SWING_SAMPLES, 0.0
     if time[1] - time[0] > between:
-        time = np.arange(0, steps.end - steps.start, between)
+        time, late = np.arange(0, steps.end - steps.start, between), _lead(setup, steps)
         feet = _walk_feet(setup, path, steps, time + steps.start)[0]
     distance, pair = passing_distance(feet)
     worst = int(np.argmin(distance))
@@ -208,7 +225,7 @@ def _refuse_close_feet(setup: WalkSetup, path: BodyPath, steps: Steps, motion: M
         longest = longest_stroke(setup, path.displacement)
         advice = f"Strokes up to {longest * 1000:.1f} mm are possible" if longest else "No stroke is possible here"
         raise CollisionError(
-            f"the feet of {legs} are {distance[worst] * 1000:.1f} mm apart at {time[worst]:.2f} s, "
+            f"the feet of {legs} are {distance[worst] * 1000:.1f} mm apart at {time[worst] + late:.2f} s, "
             f"less than the foot_distance of {setup.foot_distance * 1000:.1f} mm. {advice}"
         )
 
@@ -223,6 +240,8 @@ def _refuse_stroke(setup: WalkSetup, path: BodyPath, motion: Motion) -> None:
         raise UnreachableError(f"a stroke of {motion.stroke * 1000:.1f} mm is not possible here: {found[0]}")
     if found:
         reason = found[0]
+    elif not feasible.any() and setup.gait.body_shift:
+        reason = "tips over: no body shift keeps the stability margin during all of the walk"
     elif (solution.reach != 0).any():
         reason = f"out of reach: during start or stop, {solution.explain(frame=HEADING_FRAME).splitlines()[0]}"
     else:

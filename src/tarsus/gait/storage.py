@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import dataclasses
 import json
 import os
 from collections.abc import Iterable
@@ -165,7 +166,7 @@ def save_motion(motion: Motion, path: str | os.PathLike[str]) -> None:
     about = {
         "format": _FORMAT,
         "robot": robot_text(motion.robot),
-        "gait": {"duty_factor": motion.gait.duty_factor, "offsets": motion.gait.offsets, "name": motion.gait.name},
+        "gait": dataclasses.asdict(motion.gait),
         "assumed": motion.assumed,
         **{name: getattr(motion, name) for name in _NUMBERS},
     }

@@ -9,11 +9,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tarsus.arrays import Array
+from tarsus.gait.body_shift import shift_at
 from tarsus.gait.branch import branches
 from tarsus.gait.cycle import cycle_feet
 from tarsus.gait.excursion import SWING_SAMPLES, extreme_excursions, walk_excursions
 from tarsus.gait.gait import Gait
 from tarsus.gait.path import BodyPath
+from tarsus.gait.shifted_walk import shifted_feasibility, shifted_pose, walk_shift
 from tarsus.gait.spacing import passing_distance
 from tarsus.gait.walk_setup import WalkSetup
 from tarsus.kinematics.solution import IKSolution
@@ -28,6 +30,8 @@ __all__ = ["leg_feasibility", "longest_stroke", "max_stroke", "steady_solution",
 # Steps in which the first infeasible stroke is searched; strokes computed together.
 _COARSE = 32
 _AT_ONCE = 8
+# Tolerance of a stroke with a body shift, which is fitted to each stroke that is tried [m].
+_SHIFT_TOLERANCE = 2e-3
 # For maxima between the samples.
 _SAFETY = 0.998
 # Decrease of the distance between feet during start and stop, in strokes: 0.02 at most (measured).
@@ -50,7 +54,9 @@ def steady_solution(setup: WalkSetup, twist: Float[Array, "*#batch 3"], phases: 
     feet, _ = cycle_feet(
         setup.gait, setup.rest, np.asarray(twist), swing_height=np.asarray(setup.swing_height), phases=phases
     )
-    return setup.solve(feet)
+    if not setup.gait.body_shift:
+        return setup.solve(feet)
+    return setup.solve(feet, shifted_pose(np.zeros(3), shift_at(walk_shift(setup, twist), np.asarray(phases))))
 
 
 def leg_feasibility(
@@ -70,8 +76,10 @@ def leg_feasibility(
     feasible : array of bool, shape (..., legs)
         Whether the leg does.
     solution : IKSolution
-        Inverse kinematics of the feet of `extreme_excursions`.
+        Inverse kinematics of the feet of `extreme_excursions`; with a body shift, of `walk_excursions`.
     """
+    if setup.gait.body_shift:
+        return shifted_feasibility(setup, twist)
     excursions = extreme_excursions(setup.gait.duty_factor, curved=bool(np.any(twist[..., 2])))
     solution = setup.solve(excursions.feet(setup.rest, twist, setup.swing_height))
     at_rest = branches(setup.robot, setup.solve(setup.rest).angles)
@@ -96,7 +104,8 @@ def longest_stroke(setup: WalkSetup, direction: float | Sequence[float]) -> floa
 
     # A foot moves at most from one side of the coxa axis to the other.
     longest = 2 * float((setup.robot.coxa + setup.robot.femur + setup.robot.tibia).max())
-    return _SAFETY * _keep_distance(setup, twist, _before_failure(reached, longest, tolerance=1e-6))
+    tolerance = _SHIFT_TOLERANCE if setup.gait.body_shift else 1e-6
+    return _SAFETY * _keep_distance(setup, twist, _before_failure(reached, longest, tolerance=tolerance))
 
 
 def _keep_distance(setup: WalkSetup, twist: Float[Array, "*#batch 3"], longest: float) -> float:
@@ -160,7 +169,8 @@ def max_stroke(
 
     Walks of any length in that direction are possible with this stroke and all shorter ones: stances and swings of
     steady walking, and those of start and stop, whose excursions are larger. The limit is the first stroke at which a
-    foot is out of reach, a leg changes its inverse-kinematics branch, or two feet come too close to each other.
+    foot is out of reach, a leg changes its inverse-kinematics branch, or two feet come too close to each other; with a
+    body shift, also the first at which the stability margin is less than half of the one planned.
 
     Parameters
     ----------

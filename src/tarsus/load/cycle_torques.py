@@ -128,10 +128,15 @@ def cycle_torques(
     UnreachableError
         If a leg of a design can't reach the ground at that body height; the message names it.
     InputError
-        If a number is not finite or out of range, or the gait is for another number of legs.
+        If a number is not finite or out of range, or the gait is for another number of legs or has a body shift.
     """
     robot.require_masses()
     gait.require_legs(robot.legs)
+    if gait.body_shift:
+        raise InputError(
+            f"gait {gait.name!r} shifts the body, differently for each design; cycle_torques is for gaits without "
+            "a body shift: use joint_loads of a planned walk"
+        )
     carried = as_payload(payload)
     if not 1 <= phases <= _MOST_PHASES or phases != int(phases):
         raise InputError(f"phases is {phases}; it must be a whole number from 1 to {_MOST_PHASES}")

@@ -46,7 +46,7 @@ def build_robot(file: RobotFile, *, where: str) -> Robot:
         **_body_arrays(file),
         servos=tuple(tuple(_servo(leg.get(f"servo.{joint}")) for joint in JOINTS) for leg in legs),
         gait=GaitDefaults(
-            name=file.gait.name,
+            name=file.gait.name if "name" in file.gait.model_fields_set else _usual_gait(len(legs)),
             body_height=_metre(file.gait.body_height_mm),
             swing_height=_metre(file.gait.swing_height_mm),
         ),
@@ -55,6 +55,11 @@ def build_robot(file: RobotFile, *, where: str) -> Robot:
             for entry in file.sources
         ),
     )
+
+
+def _usual_gait(legs: int) -> str:
+    """Return the name of the gait for robots whose file names none."""
+    return "creep" if legs == 4 else "wave" if legs % 2 else "tripod"
 
 
 def _flatten(keys: Leg) -> _Flat:

@@ -25,7 +25,7 @@ __all__ = [
     "robot_schema",
 ]
 
-GAIT_NAMES = ("tripod", "tetrapod", "amble", "ripple", "wave")
+GAIT_NAMES = ("tripod", "tetrapod", "amble", "ripple", "wave", "creep")
 """Names that `[gait] name` may have."""
 
 # Lengths below 1 um and masses below 1 mg are typing errors, and would lose digits in SI units.
@@ -213,7 +213,9 @@ class Body(Table):
 class Gait(Table):
     """Default settings of the robot's walks."""
 
-    name: Annotated[str, Choice(GAIT_NAMES)] = Field(default="tripod", description="The gait.")
+    name: Annotated[str, Choice(GAIT_NAMES)] = Field(
+        default="tripod", description="The gait. Default: tripod; for four legs creep, for an odd number wave."
+    )
     body_height_mm: Length | None = Field(
         default=None, description="Height of the body's origin above the ground [mm]."
     )

@@ -31,7 +31,7 @@ MOST_SAMPLES = 10_000
 _USUAL_LEGS = 6
 
 
-def gait_of(robot: Robot, asked: str | OwnGait | None) -> Gait:
+def gait_of(robot: Robot, asked: str | OwnGait | None, *, turning: float = 0.0) -> Gait:
     """Return the requested gait.
 
     Parameters
@@ -40,6 +40,8 @@ def gait_of(robot: Robot, asked: str | OwnGait | None) -> Gait:
         A single robot.
     asked : str, OwnGait or None
         A name, duty factor and offsets, or None for the default of the robot.
+    turning : float
+        Angle by which the walk turns [rad].
 
     Raises
     ------
@@ -50,7 +52,7 @@ def gait_of(robot: Robot, asked: str | OwnGait | None) -> Gait:
     """
     if isinstance(asked, OwnGait):
         return Gait(duty_factor=asked.duty_factor, offsets=asked.offsets)
-    return Gait.named(asked or robot.gait.name, legs=robot.legs)
+    return Gait.named(asked or robot.gait.name, legs=robot.legs, turning=turning)
 
 
 def path_of(options: WalkOptions) -> BodyPath:
@@ -104,7 +106,8 @@ def _metres(mm: float | None) -> float | None:
 
 
 def _setup_of(robot: Robot, options: WalkOptions) -> WalkSetup:
-    return WalkSetup.of(robot, gait_of(robot, options.gait), **_Options.of(options).heights)
+    gait = gait_of(robot, options.gait, turning=path_of(options).angle)
+    return WalkSetup.of(robot, gait, **_Options.of(options).heights)
 
 
 def plan(robot: Robot, options: WalkOptions) -> Motion:
