@@ -8,7 +8,7 @@ from pinocchio_model import Reference
 from sample_robots import hexapod, random_hexapod, standing
 from tarsus.errors import InputError, MissingDataError
 from tarsus.kinematics.leg import forward_kinematics
-from tarsus.kinematics.mass import centre_of_mass, total_mass
+from tarsus.kinematics.mass import MassWeights, centre_of_mass, total_mass
 from tarsus.robot.robot import stack_robots
 
 jax.config.update("jax_enable_x64", True)
@@ -117,3 +117,14 @@ def test_a_design_can_be_differentiated_down_to_no_coxa():
     # A longer femur lifts the knee, from which the tibia's mass hangs; a longer coxa lifts nothing.
     np.testing.assert_allclose(by_femur, 0.08 * np.sin(np.deg2rad(35)) / total_mass(robot), rtol=1e-12)
     np.testing.assert_allclose(by_coxa, 0, atol=1e-15)
+
+
+@pytest.mark.parametrize("massless", [False, True])
+def test_the_weights_of_the_leg_points_give_the_same_centre(massless):
+    rng = np.random.default_rng(3)
+    robot = random_hexapod(rng)
+    robot = robot.replace(link_mass=None) if massless else robot
+    weights = MassWeights.of(robot)
+    for angles in rng.uniform(-2, 2, (5, 6, 3)):
+        com = weights.centre_of_mass(forward_kinematics(robot, angles))
+        np.testing.assert_allclose(com, centre_of_mass(robot, angles), rtol=0, atol=1e-15)

@@ -356,6 +356,32 @@ def test_batch_equals_loop(monkeypatch):
                 np.testing.assert_array_equal(getattr(together, name)[i, j], getattr(alone, name))
 
 
+@pytest.mark.parametrize("box", [True, False])
+def test_a_single_robot_that_stands_as_lowered_is_not_settled(monkeypatch, box):
+    """The short way of a robot that doesn't roll gives what the general one gives."""
+    rng = np.random.default_rng(21)
+    robot = hexapod(body_size=BOX if box else None)
+    # With equal legs, of which some are raised, it stands level, or rolls where those on the ground don't carry it.
+    angles = [standing() + np.array([0.0, 1.0, 0.0]) * raised[:, None] for raised in rng.integers(0, 2, (60, 6)) * 0.3]
+    general = [resting_pose(robot, one[None]) for one in (*angles, UP)]
+    angles.append(UP)
+    lowered = [index for index, rest in enumerate(general) if rest.rolls[0] == 0 and rest.margin[0] > 1e-9]
+    assert 10 < len(lowered) < 60
+
+    def refuse(*_args, **_options):
+        raise AssertionError("it is settled")
+
+    monkeypatch.setattr(rest_module, "settle", refuse)
+    for index in lowered:
+        alone, want = resting_pose(robot, angles[index]), general[index]
+        np.testing.assert_allclose(alone.body.rotation, want.body.rotation[0], rtol=0, atol=0)
+        np.testing.assert_allclose(alone.body.position, want.body.position[0], rtol=0, atol=0)
+        np.testing.assert_allclose(alone.margin, want.margin[0], rtol=0, atol=1e-15)
+        for name in ("contacts", "leg_points_down", "corners_down", "stable", "rolls"):
+            np.testing.assert_array_equal(getattr(alone, name), getattr(want, name)[0])
+            assert getattr(alone, name).dtype == getattr(want, name).dtype
+
+
 def test_an_empty_batch():
     rest = resting_pose(hexapod(body_size=BOX), np.zeros((0, 6, 3)))
     assert rest.margin.shape == (0,)

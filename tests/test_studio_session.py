@@ -120,7 +120,9 @@ def test_the_pose_of_joints_agrees_with_resting_pose(ask, seed):
     assert [(limit["leg"], limit["joint"]) for limit in pose["limits"]] == [
         (leg, ("coxa", "femur", "tibia")[joint]) for leg, joint in np.argwhere(beyond)
     ]
-    assert len(pose["problems"]) >= beyond.sum()
+    named = [f"{STRIDER.leg_names[leg]}: the " for leg, _ in np.argwhere(beyond)]
+    assert all(limit["text"].startswith(name) for limit, name in zip(pose["limits"], named, strict=True))
+    assert pose["problems"] == ([] if rest.stable else ["the robot has no stable resting pose with these angles"])
 
 
 def test_forces_and_torques_are_given_if_the_feet_alone_support_the_robot(ask):
@@ -134,6 +136,17 @@ def test_forces_and_torques_are_given_if_the_feet_alone_support_the_robot(ask):
     assert lying["corners_down"] == 4
     assert lying["forces_n"] is None
     assert lying["torques_nm"] is None
+
+
+def test_during_a_change_forces_and_torques_are_computed_on_request_only(ask):
+    for kind, given in (("joints", {"joints": {"angles_deg": [0, 30, -100] * 6}}), ("body", {"body": {"x_mm": 3}})):
+        committed = ask(kind, "pose", **given)
+        during = ask(kind, "pose", **given, commit=False)
+        assert during["forces_n"] is during["torques_nm"] is None
+        assert {**during, **{key: committed[key] for key in ("id", "forces_n", "torques_nm")}} == committed
+        wanted = ask(kind, "pose", **given, commit=False, forces=True)
+        assert wanted["forces_n"] == committed["forces_n"] is not None
+        assert wanted["torques_nm"] == committed["torques_nm"]
 
 
 def test_angles_for_another_number_of_legs_are_rejected(ask):

@@ -135,6 +135,8 @@ export interface DragFoot {
   id: number;
   /** Whether undo returns to the state after this change. */
   commit?: boolean;
+  /** Whether the answer has forces and torques; with `commit` it always has. */
+  forces?: boolean;
   type: "drag_foot";
   leg: number;
   /** In G. */
@@ -510,6 +512,8 @@ export interface SetBody {
   id: number;
   /** Whether undo returns to the state after this change. */
   commit?: boolean;
+  /** Whether the answer has forces and torques; with `commit` it always has. */
+  forces?: boolean;
   type: "body";
   body: BodyState;
 }
@@ -528,6 +532,8 @@ export interface SetJoints {
   id: number;
   /** Whether undo returns to the state after this change. */
   commit?: boolean;
+  /** Whether the answer has forces and torques; with `commit` it always has. */
+  forces?: boolean;
   type: "joints";
   joints: JointsState;
 }

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Self
+
+import numpy as np
 
 from tarsus.arrays import Array, Namespace, as_array, as_floats, broadcast_shapes, namespace, require_shape, stack_last
 from tarsus.kinematics.leg import forward_kinematics
@@ -11,7 +14,7 @@ from tarsus.robot.robot import Robot
 if TYPE_CHECKING:
     from jaxtyping import Float
 
-__all__ = ["STANDARD_GRAVITY", "centre_of_mass", "point_masses", "total_mass"]
+__all__ = ["STANDARD_GRAVITY", "MassWeights", "centre_of_mass", "point_masses", "total_mass"]
 
 STANDARD_GRAVITY = 9.80665
 """Standard gravity (ISO 80000-3) [m/s^2]."""
@@ -120,3 +123,46 @@ def point_masses(xp: Namespace, robot: Robot) -> Float[Array, "*batch legs 4"]:
     inner = mass - outer
     none = xp.zeros_like(outer[..., :1])
     return xp.concat((inner, none), axis=-1) + xp.concat((none, outer), axis=-1)
+
+
+@dataclass(frozen=True, eq=False)
+class MassWeights:
+    """The weights of the leg points in the centre of mass of a single robot, computed once for many configurations.
+
+    Attributes
+    ----------
+    weights : array, shape (4 legs,)
+        Fractions of the total mass at the leg points; 0 for a robot without masses, as in `centre_of_mass`.
+    offset : array, shape (3,)
+        Contribution of the body, in B [m].
+    """
+
+    weights: Float[np.ndarray, "points"]
+    offset: Float[np.ndarray, "3"]
+
+    @classmethod
+    def of(cls, robot: Robot) -> Self:
+        """Compute the weights.
+
+        Parameters
+        ----------
+        robot : Robot
+            A single robot.
+        """
+        body_com = np.asarray(robot.body_com)
+        if not robot.has_masses:
+            return cls(np.zeros(4 * robot.legs), body_com)
+        total = np.asarray(total_mass(robot))
+        weights = np.asarray(point_masses(np, robot)).reshape(-1) / total
+        return cls(weights, np.asarray(robot.body_mass) / total * body_com)
+
+    def centre_of_mass(self, points: Float[np.ndarray, "legs 4 3"]) -> Float[np.ndarray, "3"]:
+        """Return the centre of mass in B [m].
+
+        Parameters
+        ----------
+        points : array, shape (legs, 4, 3)
+            Result of `forward_kinematics` [m].
+        """
+        com: np.ndarray = self.weights @ points.reshape(-1, 3) + self.offset
+        return com

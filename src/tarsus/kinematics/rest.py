@@ -13,6 +13,7 @@ from tarsus.arrays import Array, Namespace, as_array, broadcast_shapes, is_trace
 from tarsus.blocks import BLOCK, Index, batch_blocks, block_shape
 from tarsus.errors import InputError
 from tarsus.kinematics.leg import forward_kinematics
+from tarsus.kinematics.lowered import Lowered, stands_as_lowered
 from tarsus.kinematics.mass import centre_of_mass
 from tarsus.kinematics.pairs import columns_of
 from tarsus.kinematics.pose import Pose
@@ -23,7 +24,7 @@ from tarsus.robot.robot import Robot
 if TYPE_CHECKING:
     from jaxtyping import Bool, Float, Int
 
-__all__ = ["RestingPose", "resting_pose"]
+__all__ = ["RestingPose", "rest_of_points", "resting_pose"]
 
 CORNERS = np.array(list(itertools.product((-0.5, 0.5), repeat=3)))
 """Corners of the body's box in units of its size, in the order of `RestingPose.corners_down`: x varies slowest."""
@@ -151,7 +152,34 @@ def resting_pose(robot: Robot, angles: Float[Array, "*#batch legs 3"], *, max_ro
     if max_rolls < 0:
         raise InputError(f"max_rolls is {max_rolls}; it must not be negative")
     points = forward_kinematics(robot, angles)
-    com = centre_of_mass(robot, angles, points=points)
+    return rest_of_points(robot, points, centre_of_mass(robot, angles, points=points), max_rolls=max_rolls)
+
+
+def rest_of_points(
+    robot: Robot,
+    points: Float[Array, "*#batch legs 4 3"],
+    com: Float[Array, "*#batch 3"],
+    *,
+    max_rolls: int = 64,
+) -> RestingPose:
+    """Return the resting pose, as `resting_pose`, where leg points and centre of mass are known already.
+
+    Parameters
+    ----------
+    robot : Robot
+        The robot, or a batch of designs.
+    points : array, shape (..., legs, 4, 3)
+        Result of `forward_kinematics` [m].
+    com : array, shape (..., 3)
+        Result of `centre_of_mass` [m].
+    max_rolls : int
+        Most rolls, at least 0.
+
+    Raises
+    ------
+    InputError
+        If an array is traced by JAX.
+    """
     if any(is_traced(array) for array in (points, com, robot.body_size)):
         raise InputError("resting_pose can't be traced: the number of rolls depends on the values; call it outside jit")
     xp = namespace(points, com, robot.body_size)
@@ -160,9 +188,26 @@ def resting_pose(robot: Robot, angles: Float[Array, "*#batch legs 3"], *, max_ro
     if robot.body_size is not None:
         cloud.append(as_array(xp, robot.body_size)[..., None, :] * xp.asarray(CORNERS))
     batch = broadcast_shapes("robot and angles", com.shape[:-1], *(part.shape[:-2] for part in cloud))
+    if xp is np and not batch and (standing := stands_as_lowered(np.concatenate(cloud), com)) is not None:
+        return _as_lowered(robot, standing)
     size = BLOCK // robot.legs if xp is np else max(1, math.prod(batch))
     blocks = [_settle_block(xp, cloud, com, batch, index, max_rolls) for index in batch_blocks(batch, size)]
     return _rest(xp, robot, blocks, batch)
+
+
+def _as_lowered(robot: Robot, standing: Lowered) -> RestingPose:
+    legs = 4 * robot.legs
+    leg_points = standing.down[:legs].reshape(robot.legs, 4)
+    return RestingPose(
+        robot=robot,
+        body=Pose(position=np.array([0.0, 0.0, standing.height])),
+        contacts=leg_points[:, 3],
+        leg_points_down=leg_points,
+        corners_down=standing.down[legs:],
+        margin=np.array(standing.margin),
+        stable=np.array(True),
+        rolls=np.array(0, dtype=np.int32),
+    )
 
 
 def _settle_block(

@@ -18,9 +18,11 @@ from tarsus.kinematics.pairs import Pairs
 if TYPE_CHECKING:
     from jaxtyping import Bool, Float, Int
 
-__all__ = ["Settled", "rotation_rows", "settle"]
+__all__ = ["TOUCH", "Settled", "rotation_rows", "settle"]
 
-_TOUCH = 1e-9  # height below which a point is in contact [m]; the rounding of a dozen rolls is 1e-14
+TOUCH = 1e-9
+"""Height below which a point is in contact [m]; the rounding of a dozen rolls is 1e-14."""
+
 _ALONG = 1e-9  # x of an edge's normal below which the edge counts as parallel to x
 _LEVEL = 1e-12  # cosine of the pitch below which roll and yaw are not separable
 
@@ -95,7 +97,7 @@ def settle(xp: Namespace, points: Vector, com: Vector, *, max_rolls: int) -> Set
     Settled
         State at rest, or after the last roll.
     """
-    touch = max(_TOUCH, 64 * float(xp.finfo(com[0].dtype).eps))
+    touch = max(TOUCH, 64 * float(xp.finfo(com[0].dtype).eps))
     up = (xp.zeros_like(com[0]), xp.zeros_like(com[0]), xp.ones_like(com[0]))
     rolls = xp.zeros(com[0].shape, dtype=xp.int32)
     stance = _stance(xp, up, points, com, touch)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -21,7 +22,10 @@ from tarsus.robot.robot import JOINTS, Robot
 if TYPE_CHECKING:
     from jaxtyping import Bool, Float
 
-__all__ = ["Standing", "knee_lines", "limit_lines", "lines_by_text", "rest_summary"]
+__all__ = ["NOT_STABLE", "Standing", "knee_lines", "limit_lines", "lines_by_text", "rest_summary"]
+
+NOT_STABLE = "the robot has no stable resting pose with these angles"
+"""Problem of a robot that does not come to rest."""
 
 _NO_MASSES = "the robot file gives no masses: the centre of mass is that of the body"
 # Rounding of an angle at its limit [deg].
@@ -57,7 +61,7 @@ class Standing:
         reaches: np.ndarray = np.asarray(self.solution.reach) == Reach.OK
         return reaches
 
-    @property
+    @cached_property
     def margin(self) -> float:
         """Stability margin on the legs that reach [m]; minus infinity if none does."""
         return float(stability_margin(self.solution.robot, self.solution.angles, self.body, self.contacts))
@@ -176,7 +180,7 @@ def rest_summary(robot: Robot, angles: Float[np.ndarray, "legs 3"], rest: Restin
     """
     problems = limit_lines(robot, np.degrees(angles), range(robot.legs))
     if not bool(rest.stable):
-        problems.append("the robot has no stable resting pose with these angles")
+        problems.append(NOT_STABLE)
     return {
         "robot": robot.name,
         "description": rest.describe(),

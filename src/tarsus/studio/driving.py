@@ -14,9 +14,9 @@ from tarsus.control.robot_controller import RobotController
 from tarsus.control.states.robot_state import next_state, requested_state
 from tarsus.errors import TarsusError
 from tarsus.gait.gait import Gait
+from tarsus.kinematics.convex_hull import origin_margin
 from tarsus.kinematics.leg import forward_kinematics
-from tarsus.kinematics.mass import centre_of_mass
-from tarsus.kinematics.polygon import hull_margin
+from tarsus.kinematics.mass import MassWeights
 from tarsus.robot.robot import Robot
 from tarsus.studio.encoding import degrees, flags, millimetres, or_null, plain
 from tarsus.studio.messages import client as ask
@@ -47,6 +47,7 @@ class Driver:
     def __init__(self, robot: Robot, *, id: int) -> None:
         self.id = id
         self._robot = robot
+        self._masses = MassWeights.of(robot)
         self._controller = RobotController(robot)
         self._plant = IdealPlant(robot)
         self._plant.start(self._controller.output)
@@ -137,11 +138,10 @@ class Driver:
     def _stability(self, output: ControlOutput) -> tuple[float | None, list[float]]:
         """Return the static stability margin [mm] and the centre of mass projected onto the ground [mm]."""
         points = forward_kinematics(self._robot, output.angles)
-        com = np.asarray(output.body @ np.asarray(centre_of_mass(self._robot, output.angles, points=points)))
-        # As `stability_margin`, which would compute the centre of mass again.
-        feet = np.asarray(output.body @ points[:, 3])
-        margin = float(hull_margin(feet[:, :2], output.contacts, com[:2]))
-        return or_null(margin * 1000, decimals=2), millimetres(com[:2])
+        com = self._masses.centre_of_mass(points)
+        placed = np.asarray(output.body @ np.concatenate([points[output.contacts, 3], com[None]]))
+        margin = origin_margin((placed[:-1, :2] - placed[-1, :2]).tolist())[0]
+        return or_null(margin * 1000, decimals=2), millimetres(placed[-1, :2])
 
 
 def _metres(mm: float | None) -> float | None:

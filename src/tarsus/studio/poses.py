@@ -2,44 +2,27 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from tarsus.errors import InputError
 from tarsus.kinematics.inverse import inverse_kinematics
+from tarsus.kinematics.mass import MassWeights
 from tarsus.kinematics.pose import Pose
-from tarsus.kinematics.rest import RestingPose, resting_pose
 from tarsus.kinematics.stance import default_body_height, default_stance
 from tarsus.robot.robot import Robot
 from tarsus.studio.messages.state import BodyState, JointsState
 from tarsus.studio.robots import stance_of
-from tarsus.studio.standing import OnFootholds
+from tarsus.studio.standing import OnFootholds, Resting
 
 if TYPE_CHECKING:
     from jaxtyping import Float
 
-__all__ = ["Resting", "drag_foothold", "drag_joints", "require_leg", "resting", "standing"]
+__all__ = ["drag_foothold", "drag_joints", "require_leg", "resting", "standing"]
 
 
-@dataclass(frozen=True, eq=False)
-class Resting:
-    """Joint angles and the resting pose that they lead to.
-
-    Attributes
-    ----------
-    angles : array, shape (legs, 3)
-        Joint angles [rad].
-    rest : RestingPose
-        Result of `resting_pose`.
-    """
-
-    angles: Float[np.ndarray, "legs 3"]
-    rest: RestingPose
-
-
-def resting(robot: Robot, joints: JointsState) -> Resting:
+def resting(robot: Robot, joints: JointsState, *, masses: MassWeights | None = None) -> Resting:
     """Return the resting pose for the angles of the view Joints.
 
     Parameters
@@ -48,6 +31,8 @@ def resting(robot: Robot, joints: JointsState) -> Resting:
         A single robot.
     joints : JointsState
         The angles; left out, those of the default stance, or zero where the robot has none.
+    masses : MassWeights, optional
+        Its masses, where they are known already.
 
     Raises
     ------
@@ -59,7 +44,7 @@ def resting(robot: Robot, joints: JointsState) -> Resting:
         angles = np.zeros((robot.legs, 3)) if stance is None else stance[1]
     else:
         angles = np.radians(_of_legs("angles_deg", joints.angles_deg, robot))
-    return Resting(angles, resting_pose(robot, angles))
+    return Resting.of(robot, MassWeights.of(robot) if masses is None else masses, angles)
 
 
 def standing(robot: Robot, body: BodyState) -> OnFootholds:

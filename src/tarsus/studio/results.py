@@ -8,14 +8,15 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import numpy as np
 
 from tarsus.gait.motion import Motion
+from tarsus.kinematics.mass import MassWeights
 from tarsus.kinematics.pose import Pose
 from tarsus.load.loads import JointLoads
 from tarsus.robot.robot import Robot
 from tarsus.studio.loads import loads_of
 from tarsus.studio.messages.state import StudioState
-from tarsus.studio.poses import Resting, resting, standing
+from tarsus.studio.poses import resting, standing
 from tarsus.studio.robots import robot_of
-from tarsus.studio.standing import OnFootholds
+from tarsus.studio.standing import OnFootholds, Resting
 from tarsus.studio.walks import longest, plan
 
 if TYPE_CHECKING:
@@ -49,7 +50,8 @@ class Results:
     def resting(self, state: StudioState) -> Resting:
         """Return the resting pose of the view Joints."""
         robot = self.robot(state)
-        return self._once("resting", (robot, state.joints), lambda: resting(robot, state.joints))
+        masses = self._once("masses", (robot,), lambda: MassWeights.of(robot))
+        return self._once("resting", (robot, state.joints), lambda: resting(robot, state.joints, masses=masses))
 
     def standing(self, state: StudioState) -> OnFootholds:
         """Return the standing robot of the view Body."""

@@ -208,12 +208,13 @@ class Session:
     def _body(self, message: ask.SetBody) -> Answers:
         yield from self._posed({"body": message.body}, message)
 
-    def _posed(self, change: dict[str, Any], message: ask.Change) -> Answers:
+    def _posed(self, change: dict[str, Any], message: ask.ChangePose) -> Answers:
         """Change a pose; the answer is for the view of that pose, whatever the present one is."""
         state = self.state.model_copy(update=change)
         view = "joints" if "joints" in change else "sources" if state.view == "sources" else "body"
         shown = state.model_copy(update={"view": view})
-        answers: list[ServerMessage] = [self._views.pose(shown, id=message.id)]
+        forces = message.commit or message.forces
+        answers: list[ServerMessage] = [self._views.pose(shown, id=message.id, forces=forces)]
         if view == "sources":
             answers.append(self._views.source(shown, id=message.id))
         self._history.change(state, commit=message.commit)

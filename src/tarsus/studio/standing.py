@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING, Self
 import numpy as np
 
 from tarsus.kinematics.leg import forward_kinematics
-from tarsus.kinematics.mass import centre_of_mass
+from tarsus.kinematics.mass import MassWeights, centre_of_mass
 from tarsus.kinematics.polygon import support_polygon
 from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.reach import Reach
-from tarsus.kinematics.rest import CORNERS, RestingPose
+from tarsus.kinematics.rest import CORNERS, RestingPose, rest_of_points
 from tarsus.load.torque import joint_torques
-from tarsus.report.standing_summary import Standing, rest_summary
+from tarsus.report.standing_summary import NOT_STABLE, Standing
 from tarsus.robot.robot import JOINTS, Robot
 from tarsus.studio.encoding import degrees, flags, millimetres, or_null, plain
 from tarsus.studio.messages.pose import BrokenLimit, LegProblem, PoseMessage
@@ -24,13 +24,13 @@ from tarsus.studio.messages.state import View
 if TYPE_CHECKING:
     from jaxtyping import Bool, Float
 
-__all__ = ["OnFootholds", "broken_limits", "resting_message", "standing_message"]
+__all__ = ["OnFootholds", "Resting", "broken_limits", "resting_message", "standing_message"]
 
 # Height up to which a dragged foot is on the ground [m], and number of feet that can support a robot.
 _ON_GROUND = 1e-5
 _LEAST_FEET = 3
-# Tolerance of joint limits, for rounding [deg].
-_SLACK = 1e-6
+# Tolerance of joint limits, for rounding [rad].
+_SLACK = 1e-8
 
 
 class OnFootholds(Standing):
@@ -41,6 +41,48 @@ class OnFootholds(Standing):
         """Feet in contact ``(legs,)``: those that reach their foothold, if it is on the ground."""
         on_ground = np.asarray(self.solution.feet)[:, 2] <= _ON_GROUND
         return np.asarray(super().contacts & on_ground)
+
+
+@dataclass(frozen=True, eq=False)
+class Resting:
+    """Joint angles and the resting pose that they lead to.
+
+    Attributes
+    ----------
+    robot : Robot
+        A single robot.
+    angles : array, shape (legs, 3)
+        Joint angles [rad].
+    points : array, shape (legs, 4, 3)
+        Leg points in B [m].
+    com : array, shape (3,)
+        Centre of mass in B [m].
+    rest : RestingPose
+        Result of `resting_pose`.
+    """
+
+    robot: Robot
+    angles: Float[np.ndarray, "legs 3"]
+    points: Float[np.ndarray, "legs 4 3"]
+    com: Float[np.ndarray, "3"]
+    rest: RestingPose
+
+    @classmethod
+    def of(cls, robot: Robot, masses: MassWeights, angles: Float[np.ndarray, "legs 3"]) -> Self:
+        """Return the resting pose of joint angles.
+
+        Parameters
+        ----------
+        robot : Robot
+            A single robot.
+        masses : MassWeights
+            Its masses.
+        angles : array, shape (legs, 3)
+            Joint angles [rad].
+        """
+        points = np.asarray(forward_kinematics(robot, angles))
+        com = masses.centre_of_mass(points)
+        return cls(robot, angles, points, com, rest_of_points(robot, points, com))
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,12 +98,18 @@ class _Placed:
 
     @classmethod
     def of(
-        cls, robot: Robot, angles: Float[np.ndarray, "legs 3"], body: Pose, contacts: Bool[np.ndarray, "legs"]
+        cls,
+        robot: Robot,
+        angles: Float[np.ndarray, "legs 3"],
+        points: Float[np.ndarray, "legs 4 3"],
+        com: Float[np.ndarray, "3"],
+        body: Pose,
+        contacts: Bool[np.ndarray, "legs"],
     ) -> Self:
-        """Compute leg points and centre of mass."""
-        points = forward_kinematics(robot, angles)
-        com = np.asarray(body @ np.asarray(centre_of_mass(robot, angles, points=points)))
-        return cls(robot, angles, body, contacts, np.asarray(body @ points), com)
+        """Place the leg points and the centre of mass, given in B."""
+        # In one transformation, which costs as much for one point as for all.
+        placed = np.asarray(body @ np.concatenate([points.reshape(-1, 3), com[None]]))
+        return cls(robot, angles, body, contacts, placed[:-1].reshape(points.shape), placed[-1])
 
     def statics(self, *, balanced: bool) -> tuple[list[float] | None, list[float] | None]:
         """Return contact forces and joint torques if the feet alone support the robot."""
@@ -71,34 +119,30 @@ class _Placed:
         return plain(forces), plain(torques)
 
 
-def resting_message(
-    robot: Robot, angles: Float[np.ndarray, "legs 3"], rest: RestingPose, *, id: int, view: View
-) -> PoseMessage:
-    """Return the resting pose for the given joint angles.
+def resting_message(found: Resting, *, id: int, view: View, forces: bool = True) -> PoseMessage:
+    """Return the resting pose of joint angles.
 
     Parameters
     ----------
-    robot : Robot
-        A single robot.
-    angles : array, shape (legs, 3)
-        Joint angles [rad].
-    rest : RestingPose
-        Result of `resting_pose` for these angles.
+    found : Resting
+        The robot, its joint angles and its resting pose.
     id : int
         Id of the message that is answered.
     view : str
         View that shows the pose.
+    forces : bool
+        Whether to compute contact forces and joint torques.
     """
+    robot, angles, rest = found.robot, found.angles, found.rest
     down, corners = np.asarray(rest.leg_points_down), np.asarray(rest.corners_down)
-    placed = _Placed.of(robot, angles, rest.body, np.asarray(rest.contacts))
-    points, margin = placed.points, float(rest.margin)
+    placed = _Placed.of(robot, angles, found.points, found.com, rest.body, np.asarray(rest.contacts))
+    points, margin, stable = placed.points, float(rest.margin), bool(rest.stable)
     on_feet = not (down[:, :3].any() or corners.any())
-    forces, torques = placed.statics(balanced=on_feet and bool(rest.stable) and margin >= 0)
+    statics = placed.statics(balanced=forces and on_feet and stable and margin >= 0)
     touching = points[down]
     if corners.any():
         box = np.asarray(rest.body @ (CORNERS * np.asarray(robot.body_size)))
         touching = np.concatenate([touching, box[corners]])
-    summary = rest_summary(robot, angles, rest)
     return PoseMessage(
         type="pose",
         id=id,
@@ -111,20 +155,20 @@ def resting_message(
         points_down=flags(down),
         corners_down=int(corners.sum()),
         margin_mm=or_null(margin * 1000),
-        stable=bool(rest.stable),
+        stable=stable,
         com_mm=millimetres(placed.com),
         support_mm=_polygon(touching),
-        forces_n=forces,
-        torques_nm=torques,
+        forces_n=statics[0],
+        torques_nm=statics[1],
         legs=[],
         limits=broken_limits(robot, angles),
-        text=summary["description"],
-        problems=summary["problems"],
+        text=rest.describe(),
+        problems=[] if stable else [NOT_STABLE],
         feasible_fraction=None,
     )
 
 
-def standing_message(standing: OnFootholds, *, id: int, view: View) -> PoseMessage:
+def standing_message(standing: OnFootholds, *, id: int, view: View, forces: bool = True) -> PoseMessage:
     """Return the pose of a robot on its footholds.
 
     Parameters
@@ -135,12 +179,16 @@ def standing_message(standing: OnFootholds, *, id: int, view: View) -> PoseMessa
         Id of the message that is answered.
     view : str
         View that shows the pose.
+    forces : bool
+        Whether to compute contact forces and joint torques.
     """
     robot, solution = standing.solution.robot, standing.solution
     angles, feet, contacts = np.asarray(solution.angles), np.asarray(solution.feet), standing.contacts
     margin, problems = standing.margin, standing.problems
-    placed = _Placed.of(robot, angles, standing.body, contacts)
-    forces, torques = placed.statics(balanced=margin >= 0)
+    points = np.asarray(forward_kinematics(robot, angles))
+    com = np.asarray(centre_of_mass(robot, angles, points=points))
+    placed = _Placed.of(robot, angles, points, com, standing.body, contacts)
+    statics = placed.statics(balanced=forces and margin >= 0)
     reached = placed.points
     down = np.zeros((robot.legs, 4), dtype=bool)
     down[:, 3] = contacts
@@ -159,8 +207,8 @@ def standing_message(standing: OnFootholds, *, id: int, view: View) -> PoseMessa
         stable=margin >= 0,
         com_mm=millimetres(placed.com),
         support_mm=_polygon(reached[contacts, 3]),
-        forces_n=forces,
-        torques_nm=torques,
+        forces_n=statics[0],
+        torques_nm=statics[1],
         legs=_leg_problems(standing, reached[:, 3] - feet),
         limits=[],
         text=_text(robot, contacts, margin),
@@ -202,15 +250,18 @@ def broken_limits(robot: Robot, angles: Float[np.ndarray, "legs 3"]) -> list[Bro
     angles : array, shape (legs, 3)
         Joint angles [rad].
     """
-    turned, limits = np.degrees(angles), np.degrees(np.asarray(robot.limits))
-    broken = (turned < limits[..., 0] - _SLACK) | (turned > limits[..., 1] + _SLACK)
+    limits = np.asarray(robot.limits)
+    broken = (angles < limits[..., 0] - _SLACK) | (angles > limits[..., 1] + _SLACK)
+    if not broken.any():
+        return []
+    turned, limits = np.degrees(angles), np.degrees(limits)
     return [
-        _broken(leg, joint, float(turned[leg, joint]), *map(float, limits[leg, joint]))
+        _broken(robot.leg_names[leg], leg, joint, float(turned[leg, joint]), *map(float, limits[leg, joint]))
         for leg, joint in np.argwhere(broken).tolist()
     ]
 
 
-def _broken(leg: int, joint: int, angle: float, low: float, high: float) -> BrokenLimit:
+def _broken(leg_name: str, leg: int, joint: int, angle: float, low: float, high: float) -> BrokenLimit:
     above = angle > high
     bound, beyond = (high, angle - high) if above else (low, low - angle)
     name = JOINTS[joint]
@@ -220,7 +271,7 @@ def _broken(leg: int, joint: int, angle: float, low: float, high: float) -> Brok
         angle_deg=round(angle, 3),
         low_deg=round(low, 3),
         high_deg=round(high, 3),
-        text=f"the {name} angle is {angle:.1f} deg, {math.fabs(beyond):.1f} deg "
+        text=f"{leg_name}: the {name} angle is {angle:.1f} deg, {math.fabs(beyond):.1f} deg "
         f"{'above its upper' if above else 'below its lower'} limit of {bound:.1f} deg",
     )
 

@@ -86,13 +86,12 @@ class Views:
             yield error_message(error, id=id)
             yield self._default_pose(state, id=id)
 
-    def pose(self, state: StudioState, *, id: int) -> PoseMessage:
-        """Return the pose of the present view."""
+    def pose(self, state: StudioState, *, id: int, forces: bool = True) -> PoseMessage:
+        """Return the pose of the present view, with contact forces and torques where they are wanted."""
         if state.view == "joints":
-            pose = self.results.resting(state)
-            return resting_message(self.results.robot(state), pose.angles, pose.rest, id=id, view="joints")
+            return resting_message(self.results.resting(state), id=id, view="joints", forces=forces)
         if state.view in ("body", "sources"):
-            return standing_message(self.results.standing(state), id=id, view=state.view)
+            return standing_message(self.results.standing(state), id=id, view=state.view, forces=forces)
         return self._default_pose(state, id=id)
 
     def _default_pose(self, state: StudioState, *, id: int) -> PoseMessage:
@@ -101,8 +100,7 @@ class Views:
         try:
             return standing_message(self.results.standing(plain), id=id, view=state.view)
         except UnreachableError:
-            pose = self.results.resting(plain)
-            return resting_message(self.results.robot(state), pose.angles, pose.rest, id=id, view=state.view)
+            return resting_message(self.results.resting(plain), id=id, view=state.view)
 
     def walk(self, state: StudioState, *, id: int) -> WalkMessage:
         """Return the walk."""

@@ -68,6 +68,14 @@ class Change(Message):
     commit: bool = Field(default=True, description="Whether undo returns to the state after this change.")
 
 
+class ChangePose(Change):
+    """A change of the pose."""
+
+    forces: bool = Field(
+        default=False, description="Whether the answer has forces and torques; with `commit` it always has."
+    )
+
+
 class SetView(Message):
     """Change the view or the camera, which is not an undo step. Answers, if the view changes: its content."""
 
@@ -97,21 +105,21 @@ class SetToml(Change):
     text: Annotated[str, Field(max_length=200_000)]
 
 
-class SetJoints(Change):
+class SetJoints(ChangePose):
     """Set joint angles; the resting pose follows. Answer: pose."""
 
     type: Literal["joints"]
     joints: JointsState
 
 
-class SetBody(Change):
+class SetBody(ChangePose):
     """Set the body pose relative to the feet. Answer: pose."""
 
     type: Literal["body"]
     body: BodyState
 
 
-class DragFoot(Change):
+class DragFoot(ChangePose):
     """Move one foot: in the view Joints by changing the joint angles, else the foothold.
 
     Answers: pose; with `commit`, state before it.

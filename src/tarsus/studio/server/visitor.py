@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import math
 from collections.abc import Sequence
 from concurrent.futures import Executor
 from typing import TYPE_CHECKING
@@ -36,6 +37,10 @@ _QUICK = (ask.Ping, ask.SetJoints, ask.Command)
 _LONGEST_STEP = 0.05
 
 
+# Interval of the check for idle sessions, at most [s].
+_LONGEST_SLEEP = 600.0
+
+
 class _SessionEnd(Exception):  # noqa: N818 - it is no error
     """The end of the session, with the reason for the client."""
 
@@ -66,10 +71,11 @@ class Visitor:
         self._called = asyncio.Event()
         self._sending = asyncio.Lock()
         self._strikes = 0
+        self._heard = _now()
 
     async def stay(self) -> None:
         """Receive, process and answer messages until either side disconnects."""
-        tasks = [asyncio.create_task(self._read()), asyncio.create_task(self._work())]
+        tasks = [asyncio.create_task(part()) for part in (self._read, self._work, self._end_idle)]
         try:
             done, _ = await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
             for task in done:
@@ -87,15 +93,18 @@ class Visitor:
     async def _read(self) -> None:
         rate = Rate(self._limits.messages_per_s, _now())
         while True:
-            try:
-                async with asyncio.timeout(self._limits.idle_s or None):
-                    received = await self._socket.receive()
-            except TimeoutError:
-                raise _SessionEnd("IDLE") from None
+            received = await self._socket.receive()
+            self._heard = _now()
             if received["type"] == "websocket.disconnect":
                 return
             text = received.get("text")
             await self._take(received.get("bytes") or b"" if text is None else text, allowed=rate.take(_now()))
+
+    async def _end_idle(self) -> None:
+        """End the session after too long a time without messages; a timeout for each of them would cost more."""
+        while (left := self._heard + (self._limits.idle_s or math.inf) - _now()) > 0:
+            await asyncio.sleep(min(left, _LONGEST_SLEEP))
+        raise _SessionEnd("IDLE")
 
     async def _take(self, text: str | bytes, *, allowed: bool) -> None:
         if not allowed:
