@@ -5,11 +5,13 @@ from __future__ import annotations
 import contextlib
 import gzip
 import http.client
+import ipaddress
 import itertools
 import json
 import re
 import socket
 import time
+from urllib.parse import urlsplit
 
 import pytest
 from websockets.exceptions import ConnectionClosed, InvalidStatus
@@ -19,6 +21,7 @@ from tarsus import InputError, load_robot
 from tarsus.robot.file import robot_to_dict
 from tarsus.studio.messages import CLOSED, SOCKET
 from tarsus.studio.messages.state import RobotChoice, StudioState
+from tarsus.studio.server import serve
 from tarsus.studio.server.access import HEADERS
 from tarsus.studio.server.pages import Pages
 from tarsus.studio.server.serve import Serving
@@ -384,6 +387,17 @@ def test_an_invalid_address_is_an_error(host, words):
 )
 def test_loopback_addresses_are_recognised(host, own):
     assert is_loopback(host) is own
+
+
+def test_the_printed_link_has_an_address_of_this_machine_rather_than_its_name(pages, monkeypatch):
+    with served(pages, host="0.0.0.0", public=True) as server:
+        host = urlsplit(server.url).hostname
+        ipaddress.ip_address(host)
+        with socket.socket() as probe:
+            probe.bind((host, 0))  # only possible with an address of its own
+        # Without a network there is no address but the loopback one.
+        monkeypatch.setitem(serve._ELSEWHERE, socket.AF_INET, ("255.255.255.255", 9))
+        assert urlsplit(server.url).hostname == "127.0.0.1"
 
 
 def test_a_public_server_accepts_any_host_name(pages):

@@ -60,7 +60,7 @@ class Serving:
         """The link that opens the studio, with its token."""
         host = self.settings.host
         if host in ("0.0.0.0", "::"):
-            host = socket.gethostname()
+            host = _own_address(self._socket.family)
         if ":" in host:
             host = f"[{host}]"
         token = "" if self.settings.token is None else f"?token={self.settings.token}"
@@ -102,6 +102,21 @@ class Serving:
         with urllib.request.urlopen(f"http://{address}:{self.settings.port}/health", timeout=timeout) as answer:
             health: dict[str, Any] = json.load(answer)
         return health
+
+
+# Addresses reserved for documentation (RFC 5737, RFC 3849): no packet is sent to them.
+_ELSEWHERE = {socket.AF_INET: ("192.0.2.1", 9), socket.AF_INET6: ("2001:db8::1", 9)}
+
+
+def _own_address(family: socket.AddressFamily) -> str:
+    """Return the address of this machine in its network; a name such as ``robot`` is unknown to other machines."""
+    with socket.socket(family, socket.SOCK_DGRAM) as probe:
+        try:
+            # Connecting a datagram socket selects the interface, and its address, without sending anything.
+            probe.connect(_ELSEWHERE[family])
+            return str(probe.getsockname()[0])
+        except OSError:  # not in a network
+            return "127.0.0.1" if family == socket.AF_INET else "::1"
 
 
 def _listen(host: str, port: int) -> socket.socket:
