@@ -37,12 +37,18 @@ class Wording(NamedTuple):
         Takes a path; returns its position in the file, to follow the key, or an empty string.
     tags : tuple of str
         Tags of discriminated unions, which pydantic inserts into paths.
+    path : callable
+        Takes a path; returns the one that is shown.
+    whole : str
+        What the whole is called.
     """
 
     table_of: Callable[[Location], type[BaseModel]]
     other_place: Callable[[str, type[BaseModel]], str]
     position: Callable[[Location], str] = lambda _: ""
     tags: tuple[str, ...] = ()
+    path: Callable[[Location], Location] = lambda location: location
+    whole: str = "the document"
 
 
 def problem_lines(error: ValidationError, wording: Wording) -> list[str]:
@@ -118,6 +124,7 @@ _SHOWN: dict[type, Callable[[Any], str]] = {
     float: str,
     Decimal: _show_decimal,
     str: lambda value: json.dumps(value[: 2 * _LONGEST_VALUE], ensure_ascii=False),
+    type(None): lambda _: "null",
     datetime.date: datetime.date.isoformat,
     datetime.time: datetime.time.isoformat,
 }
@@ -129,22 +136,26 @@ def _shorten(text: str) -> str:
 
 def _line(found: ErrorDetails, wording: Wording) -> str:
     location = found["loc"]
-    key = key_of(location, wording.tags) + wording.position(location)
+    key = key_of(wording.path(location), wording.tags) + wording.position(location)
+    if found["type"] in _KINDS:
+        return _KINDS[found["type"]](found, key)
     if found["type"] == "missing":
-        return f"{key}: missing; {_description(wording.table_of(location), str(location[-1]))}"
+        description = _description(wording.table_of(location), str(location[-1]))
+        return f"{key}: missing; {description}" if description else f"{key}: missing"
     if found["type"] == "extra_forbidden":
         return f"{key}: unknown key; {_suggestion(wording, location)}"
     words = _WORDS.get(found["type"], _wrong_type)(found)
     shown = show(found["input"])
     if not location:
-        return f"the document is {shown}: {words}"
+        return f"{wording.whole} is {shown}: {words}"
     # A table, or a list of tables, is no value to show.
     return f"{key}: {words}" if _TABLE in shown.strip("[]").split(", ") else f"{key} = {shown}: {words}"
 
 
 def _description(table: type[BaseModel], name: str) -> str:
-    description = str(table.model_fields[name].description)
-    return description[0].lower() + description[1:].rstrip(".")
+    field = table.model_fields.get(name)  # none for an entry of a list
+    description = (field and field.description) or ""
+    return description[:1].lower() + description[1:].rstrip(".")
 
 
 def _suggestion(wording: Wording, location: Location) -> str:
@@ -172,10 +183,51 @@ def _wrong_type(_found: ErrorDetails) -> str:
     return "must be a table of keys"
 
 
+def _unknown_kind(found: ErrorDetails, key: str) -> str:
+    """Return the problem of a table whose kind, a key of it, is none of those known."""
+    context: dict[str, Any] = found["ctx"]
+    name, tag = context["discriminator"].strip("'"), str(context["tag"])
+    known = re.findall(r"'([^']*)'", context["expected_tags"])
+    nearest = nearest_name(tag[:_LONGEST_VALUE], known)
+    words = f"did you mean {nearest!r}?" if nearest else f"must be one of {', '.join(known)}"
+    return f"{_inside(key, name)} = {show(tag)}: {words}"
+
+
+def _inside(key: str, name: str) -> str:
+    return f"{key}.{name}" if key else name
+
+
+# Of these the key is a part of the input, or there is none.
+_KINDS: dict[str, Callable[[ErrorDetails, str], str]] = {
+    "union_tag_invalid": _unknown_kind,
+    "union_tag_not_found": lambda found, key: f"{_inside(key, found['ctx']['discriminator'].strip(chr(39)))}: missing",
+    "json_invalid": lambda found, _: f"not valid JSON: {found['ctx']['error']}",
+}
+
+
+def _bound(key: str, words: str) -> Callable[[ErrorDetails], str]:
+    return lambda found: f"must be {words} {found['ctx'][key]:g}"
+
+
+_NUMBER, _TEXT, _WHOLE = "must be a number", "must be text", "must be a whole number"
+
 _WORDS: dict[str, Callable[[ErrorDetails], str]] = {
     REFUSED: lambda found: found["msg"],
     "invalid_key": lambda _: "keys must be text",
     "list_type": _not_a_list,
     "too_short": _number_of_entries,
     "too_long": _number_of_entries,
+    "tuple_type": lambda _: "must be a list",
+    "float_type": lambda _: _NUMBER,
+    "float_parsing": lambda _: _NUMBER,
+    "finite_number": lambda _: "must be a finite number",
+    "int_type": lambda _: _WHOLE,
+    "int_from_float": lambda _: _WHOLE,
+    "bool_type": lambda _: "must be true or false",
+    "string_type": lambda _: _TEXT,
+    "string_too_long": lambda found: f"has {len(found['input'])} characters; at most {found['ctx']['max_length']}",
+    "literal_error": lambda found: f"must be {found['ctx']['expected']}",
+    "greater_than_equal": _bound("ge", "at least"),
+    "less_than_equal": _bound("le", "at most"),
+    "less_than": _bound("lt", "less than"),
 }

@@ -2,18 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from pydantic import ValidationError
 from pydantic_core import from_json
 
-from tarsus.robot.document_problems import key_of
 from tarsus.studio.error_messages import malformed
-from tarsus.studio.messages import client_message
+from tarsus.studio.messages import ClientMessage, client_message
 from tarsus.studio.messages.general import ErrorMessage
-
-if TYPE_CHECKING:
-    from tarsus.studio.messages import ClientMessage
+from tarsus.studio.problems import problems_of
 
 __all__ = ["read"]
 
@@ -50,7 +45,6 @@ def _id_of(text: str | bytes) -> int | None:
 
 
 def _text(error: ValidationError) -> str:
-    found = error.errors(include_url=False, include_input=False, include_context=False)
-    lines = [f"{key_of(line['loc']) or 'message'}: {line['msg']}" for line in found[:_MOST_PROBLEMS]]
+    found = problems_of(error, ClientMessage, whole="the message")
     more = f" (and {len(found) - _MOST_PROBLEMS} more)" if len(found) > _MOST_PROBLEMS else ""
-    return f"malformed message: {'; '.join(lines)}{more}"
+    return f"malformed message: {'; '.join(found[:_MOST_PROBLEMS])}{more}"

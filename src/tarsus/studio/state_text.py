@@ -13,8 +13,8 @@ import zlib
 from pydantic import ValidationError
 
 from tarsus.errors import InputError
-from tarsus.robot.document_problems import key_of
 from tarsus.studio.messages.state import StudioState
+from tarsus.studio.problems import problems_of
 
 __all__ = ["state_of", "text_of"]
 
@@ -71,6 +71,5 @@ def state_of(text: str) -> StudioState:
 
 def _reason(error: Exception) -> str:
     if isinstance(error, ValidationError):
-        first = error.errors(include_url=False, include_input=False)[0]
-        return f"{key_of(first['loc']) or 'the state'}: {first['msg'].lower()}"
+        return problems_of(error, StudioState, whole="the state")[0]
     return "the text has been changed"
