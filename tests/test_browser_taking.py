@@ -13,8 +13,9 @@ from playwright.sync_api import expect
 
 import tarsus
 from browser import Visitor
+from tarsus.errors import RobotFileError
 from tarsus.gait.storage import motion_to_csv
-from tarsus.robot.file import robot_from_dict, robot_to_dict
+from tarsus.robot.file import load_robot, robot_from_dict, robot_to_dict
 from tarsus.studio.messages.state import BodyState, Curve, Picture, StudioState, WalkOptions
 from tarsus.studio.state_text import state_of
 
@@ -98,6 +99,17 @@ def test_a_robot_file_is_exported_and_imported(visitor, tmp_path):
     )
     expect(visitor.at("failure")).to_contain_text("leg.femur_mm")
     expect(visitor.at("robot-femur-number")).to_have_value("91")
+
+    # So is one in another encoding, in the words of the command line; another view makes the refusal disappear.
+    other.write_bytes(mine.replace("strider", "Käfer").encode("latin-1"))
+    visitor.at("toml-file").set_input_files(other)
+    with pytest.raises(RobotFileError) as refused:
+        load_robot(other)
+    expect(visitor.at("failure")).to_contain_text(str(refused.value).partition("byte")[2])
+    visitor.view("joints")
+    visitor.view("robot")
+    expect(visitor.at("robot-femur-number")).to_have_value("91")
+    expect(visitor.at("failure")).to_have_count(0)
 
 
 def test_a_link_restores_exactly_the_state(visitor, arrive):

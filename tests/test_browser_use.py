@@ -11,7 +11,8 @@ from playwright.sync_api import expect
 
 import tarsus
 from browser import PHONE, VIEWS, number, numbers
-from tarsus.studio.messages.state import JointsState, Picture, StudioState
+from tarsus.robot.file import robot_to_dict
+from tarsus.studio.messages.state import JointsState, Picture, RobotChoice, StudioState
 from tarsus.studio.server.serve import Serving
 from tarsus.studio.server.settings import Settings
 
@@ -93,6 +94,21 @@ def test_keys_drive_the_robot_and_it_stops_in_its_stance(visitor):
     assert abs(y) <= 1
 
 
+def test_arrow_keys_drive_after_a_click_on_the_tab(visitor):
+    visitor.open(StudioState(view="joints"))
+    visitor.view("drive")
+    visitor.at("drive-facts").wait_for()
+    visitor.page.locator(".scene").click(position={"x": 8, "y": 200})
+    visitor.page.keyboard.down("ArrowUp")
+    visitor.page.keyboard.down("ArrowRight")
+    expect(visitor.at("drive-facts")).to_contain_text(re.compile(r"Heading([5-9]|\d{2,})° right"))
+    expect(visitor.at("chip-motion")).to_contain_text(re.compile(r"^[1-9]\d* mm/s, heading \d+° right$"))
+    visitor.page.keyboard.up("ArrowUp")
+    visitor.page.keyboard.up("ArrowRight")
+    expect(visitor.at("drive-state")).to_have_text("standing")
+    expect(visitor.at("chip-motion")).to_contain_text("0 mm/s")
+
+
 def test_turning_changes_the_heading(visitor):
     visitor.open(StudioState(view="drive"))
     visitor.at("drive-facts").wait_for()
@@ -149,19 +165,27 @@ def test_another_robot_starts_standing_with_its_own_settings(visitor):
 
 def test_all_views_work_on_a_phone(arrive):
     visitor = arrive(viewport=PHONE, has_touch=True, is_mobile=True, device_scale_factor=1)
-    visitor.open()
-    width = "document.documentElement.scrollWidth"
+    robot = robot_to_dict(STRIDER) | {"name": "a robot whose name is much longer than a phone is wide " * 2}
+    visitor.open(StudioState(robot=RobotChoice(preset=None, document=robot)))
+    size = "[document.documentElement.scrollWidth, document.documentElement.scrollHeight]"
     for view in VIEWS:
         visitor.at(f"tab-{view}").tap()
         expect(visitor.page.locator(".app")).to_have_attribute("data-view", view)
         visitor.unfold()
-        assert visitor.page.evaluate(width) == PHONE["width"], view
+        assert visitor.page.evaluate(size) == list(PHONE.values()), view
+        panel = "panel => [panel.scrollWidth, panel.clientWidth]"
+        wide, seen = visitor.page.locator(".panel").evaluate(panel)
+        assert wide == seen, view
+        for word in ("Ctrl", "Shift", "Keys", "drop a", "Click"):
+            assert word not in visitor.page.locator(".panel").inner_text(), view
         small = visitor.page.evaluate(
-            """[...document.querySelectorAll('button, select, input[type=number]')]
+            """[...document.querySelectorAll('button, select, input.typed')]
                  .map(one => [one.getBoundingClientRect(), one.dataset.testid || one.textContent])
                  .filter(([box]) => box.width > 0 && Math.min(box.width, box.height) < 24).map(([, name]) => name)"""
         )
         assert small == [], view
+    for button in ("undo", "redo", "copy-link", "save-png", "theme"):
+        expect(visitor.at(button)).to_be_in_viewport(ratio=1)
 
     visitor.at("tab-body").tap()
     slider = visitor.at("body-pitch_deg")

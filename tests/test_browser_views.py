@@ -12,7 +12,7 @@ import tarsus
 from browser import number, numbers
 from tarsus.load.handbook.method import handbook
 from tarsus.robot.file import robot_from_dict, robot_to_dict
-from tarsus.studio.messages.state import BodyState, RobotChoice, SourceChoice, StudioState
+from tarsus.studio.messages.state import BodyState, RobotChoice, SourceChoice, StudioState, WalkOptions
 
 pytest_plugins = "browser_fixtures"
 
@@ -94,6 +94,11 @@ def test_a_leg_out_of_reach_is_reported_with_reason_and_distance(visitor):
     expect(visitor.at("chip-trouble")).to_contain_text(f"problems in {len(failing)} legs")
     assert "%" in visitor.at("feasible-fraction").inner_text()
     visitor.at("body-home").click()
+    # Of a body that isn't moved, no fraction of the movement is possible or not.
+    visitor.type("body-height", 400)
+    expect(visitor.at("problems").or_(visitor.at("failure")).first).to_be_visible()
+    expect(visitor.at("feasible-fraction")).to_have_count(0)
+    visitor.at("body-height-auto").click()
     expect(problems).to_have_count(0)
     expect(visitor.at("standing")).to_contain_text("stands on 6 feet")
 
@@ -116,19 +121,73 @@ def test_a_walk_is_planned_with_the_given_options(visitor):
     assert number(facts["Least stability margin"]) == pytest.approx(least, abs=0.06)
     longest = tarsus.max_stroke(STRIDER, tarsus.Gait.named("ripple"), np.radians(35)) * 1000
     assert number(facts["Longest stroke"]) == pytest.approx(longest, abs=0.06)
-    expect(visitor.at("walk-verdict")).to_contain_text("All foot trajectories")
+    expect(visitor.at("walk-verdict")).to_contain_text("Every foot reaches its whole path.")
 
 
-def test_a_stroke_too_long_is_rejected_with_the_longest_possible(visitor):
+def test_a_stroke_too_long_is_refused_beside_its_field(visitor):
     visitor.open(StudioState(view="walk"))
     visitor.type("stroke_mm", 500)
     expect(visitor.at("failure")).to_contain_text("stroke")
     with pytest.raises(tarsus.TarsusError) as refused:
         tarsus.plan_walk(STRIDER, tarsus.Gait.named("tripod"), tarsus.straight_path(0.5), stroke=0.5)
     assert str(refused.value) in visitor.at("failure").inner_text()
-    visitor.page.get_by_role("button", name=re.compile(r"Use [\d.]+ mm")).click()
+    # Beside its field, and nothing says that all is well. Scrolled away, it stays in sight.
+    field, refusal = visitor.at("stroke_mm-number"), visitor.at("failure")
+    assert 0 < refusal.bounding_box()["y"] - field.bounding_box()["y"] < 100
+    expect(refusal).to_be_in_viewport()
+    expect(visitor.at("walk-verdict")).to_contain_text("the last walk that was accepted")
+    for end in (0, 10_000):
+        visitor.page.locator(".panel").evaluate("(panel, end) => panel.scrollTo(0, end)", end)
+        expect(visitor.page.locator(".failures")).to_be_in_viewport(ratio=0.9)
+    visitor.page.locator(".failures").get_by_role("button", name=re.compile(r"Use [\d.]+ mm")).click()
     expect(visitor.at("failure")).to_have_count(0)
-    expect(visitor.at("walk-verdict")).to_contain_text("All foot trajectories")
+    expect(visitor.at("walk-verdict")).to_contain_text("Every foot reaches its whole path.")
+
+
+def test_a_number_field_shows_what_is_applied(visitor):
+    visitor.open(StudioState(view="walk"))
+    field, note = visitor.at("distance-number"), visitor.at("distance-number-note")
+    for text, why in {"99999": "99999: must be from 0 to 20000", "": "Empty: must", "1,2,3": "1,2,3: must"}.items():
+        field.fill(text)
+        field.press("Enter")
+        expect(field).to_have_value("500")
+        expect(note).to_contain_text(why)
+    for text, value in {"412,5": "412.5", "6e2": "600"}.items():
+        field.fill(text)
+        field.press("Enter")
+        expect(field).to_have_value(value)
+        expect(note).to_have_count(0)
+        expect(visitor.at("walk-facts")).to_contain_text(f"End position x, y{float(value):.1f}, 0.0 mm")
+    # Undo by keyboard, though the field still has the focus.
+    expect(field).to_be_focused()
+    visitor.page.keyboard.press("Control+z")
+    expect(field).to_have_value("412.5")
+    visitor.page.keyboard.press("Control+z")
+    expect(field).to_have_value("500")
+    expect(visitor.at("undo")).to_be_disabled()
+
+
+def test_a_custom_gait_starts_as_the_present_one(visitor):
+    visitor.open(StudioState(view="walk", walk=WalkOptions(gait="ripple")))
+    least = visitor.facts("walk-facts")["Least stability margin"]
+    visitor.at("gait").select_option("own")
+    expect(visitor.at("phase-LF")).to_be_visible()
+    expect(visitor.page.get_by_text("Touch-down of each foot")).to_be_visible()
+    assert [float(visitor.at(f"phase-{code}").input_value()) for code in STRIDER.leg_codes] == pytest.approx(
+        tarsus.Gait.named("ripple").offsets, abs=0.006
+    )
+    expect(visitor.at("walk-verdict")).to_contain_text("Every foot")
+    assert visitor.facts("walk-facts")["Least stability margin"] == least
+
+
+def test_forces_are_labelled_in_newtons_beside_the_names_of_the_legs(visitor):
+    visitor.open(StudioState(view="loads"))
+    expect(visitor.at("force-legend")).to_contain_text("[N]")
+    motion = tarsus.plan_walk(STRIDER, tarsus.Gait.named("tripod"), tarsus.straight_path(0.5))
+    forces = np.linalg.norm(tarsus.joint_loads(STRIDER, motion).forces[0], axis=-1)
+    for code, force in zip(STRIDER.leg_codes, forces, strict=True):
+        expect(visitor.at(f"force-{code}")).to_have_text(f"{force:.1f} N")
+        expect(visitor.page.locator(".note-leg", has_text=code)).to_be_visible()
 
 
 def test_the_playback_is_stepped_and_scrubbed(visitor):

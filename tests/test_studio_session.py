@@ -35,7 +35,7 @@ from tarsus import (
 from tarsus.gait.path import curved_path
 from tarsus.gait.storage import motion_to_csv
 from tarsus.report.walk_summary import walk_summary
-from tarsus.robot.file import robot_from_text, robot_to_dict, save_robot
+from tarsus.robot.file import robot_from_text, robot_text, robot_to_dict, save_robot
 from tarsus.studio.messages.state import RobotChoice, StudioState
 from tarsus.studio.session import Session
 from tarsus.studio.state_text import state_of
@@ -622,3 +622,25 @@ def test_unexpected_errors_are_reported_as_bugs_and_the_session_continues(ask, m
     assert error["kind"] == "internal"
     assert "nobody thought of this" in caplog.text
     assert ask("walk", "walk", walk={"gait": "wave"})["gait"] == "wave"
+
+
+def test_an_imported_robot_of_another_name_starts_in_its_own_stance(ask):
+    ask("joints", "pose", joints={"angles_deg": [0, -60, 0] * 6})
+    text = robot_text(STRIDER)
+    edited = text.replace("tibia_mm = 181", "tibia_mm = 180")
+    assert edited != text
+    ask("view", "pose", view="joints")
+    assert ask("toml", "state", text=edited)["state"]["joints"]["angles_deg"] == [0, -60, 0] * 6
+    own = edited.replace('name = "strider"', 'name = "mine"')
+    answers = {answer["type"]: answer for answer in ask.all("toml", text=own)}
+    assert answers["state"]["state"]["joints"]["angles_deg"] is None
+    assert answers["pose"]["text"].startswith("stands on 6 feet")
+
+
+def test_a_walk_tells_the_phases_of_its_gait(ask):
+    walk = ask("walk", "walk", walk={"gait": "ripple"})
+    gait = Gait.named("ripple")
+    assert walk["offsets"] == pytest.approx(gait.offsets)
+    own = ask("walk", "walk", walk={"gait": {"duty_factor": walk["duty_factor"], "offsets": walk["offsets"]}})
+    assert own["possible"]
+    assert own["angles_deg"] == walk["angles_deg"]

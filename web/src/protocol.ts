@@ -556,7 +556,11 @@ export interface SetRobot {
   preset: string;
 }
 
-/** Change the robot by the text of its file. Answers: robot, state, content of the view. */
+/**
+ * Change the robot by the text of its file; a robot of another name resets poses and walk.
+ *
+ * Answers: robot, state, content of the view.
+ */
 export interface SetToml {
   id: number;
   /** Whether undo returns to the state after this change. */
@@ -690,6 +694,8 @@ export interface WalkMessage {
   com_mm: number[];
   gait: string;
   duty_factor: number;
+  /** Phase of the touch-down of each leg, from 0 to 1. */
+  offsets: number[];
   duration_s: number;
   cycle_time_s: number;
   steps: number;

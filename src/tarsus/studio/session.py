@@ -188,19 +188,25 @@ class Session:
         yield from answers
 
     def _preset(self, message: ask.SetRobot) -> Answers:
-        reset = {"robot": choice_of_preset(message.preset), "joints": JointsState(), "body": BodyState()}
-        state = self.state.model_copy(update={**reset, "walk": WalkOptions()})
-        yield from self._take(state, id=message.id, commit=message.commit)
+        yield from self._other_robot(choice_of_preset(message.preset), message)
 
-    def _robot(self, choice: RobotChoice, message: ask.SetDocument | ask.SetToml) -> Answers:
+    def _other_robot(self, choice: RobotChoice, message: ask.SetRobot | ask.SetToml) -> Answers:
+        """Change to another robot: in the poses and on the walk of the present one it might fall."""
+        reset = {"robot": choice, "joints": JointsState(), "body": BodyState(), "walk": WalkOptions()}
+        yield from self._take(self.state.model_copy(update=reset), id=message.id, commit=message.commit)
+
+    def _same_robot(self, choice: RobotChoice, message: ask.SetDocument | ask.SetToml) -> Answers:
         state = self.state.model_copy(update={"robot": choice})
         yield from self._take(state, id=message.id, commit=message.commit)
 
     def _document(self, message: ask.SetDocument) -> Answers:
-        yield from self._robot(choice_of_document(message.document), message)
+        yield from self._same_robot(choice_of_document(message.document), message)
 
     def _toml(self, message: ask.SetToml) -> Answers:
-        yield from self._robot(choice_of_text(message.text, where="the file"), message)
+        choice = choice_of_text(message.text, where="the file")
+        name = choice.preset if choice.document is None else choice.document["name"]
+        present = self._views.results.robot(self.state).name
+        yield from (self._same_robot if name == present else self._other_robot)(choice, message)
 
     def _joints(self, message: ask.SetJoints) -> Answers:
         yield from self._posed({"joints": message.joints}, message)

@@ -221,6 +221,7 @@ def walk_message(motion: Motion, *, longest: float | None, id: int) -> WalkMessa
         com_mm=millimetres(com[:, :2]),
         gait=motion.gait.name,
         duty_factor=motion.gait.duty_factor,
+        offsets=[float(offset) for offset in motion.gait.offsets],
         duration_s=motion.duration,
         cycle_time_s=motion.cycle_time,
         steps=motion.steps,

@@ -63,7 +63,7 @@ export function PicturePane({ view }: { view: View }) {
         trails={trails}
         forces={loaded}
         torques={loaded}
-        names={!loaded}
+        driven={view === "drive"}
         description={DESCRIPTIONS[view]}
         onFloor={onFloor}
         onRest={keepPlace}

@@ -3,12 +3,14 @@ import { useEffect, useState } from "react";
 import { fixed } from "../controls/numbers";
 import type { Frame } from "../scene/frame";
 import { stage } from "../scene/stage";
+import { motionText } from "../views/drive/robotState";
 
 /** Interval at which the texts are updated [ms]: faster changes could not be read. */
 const INTERVAL = 120;
 
 interface Status {
   state: string | null;
+  motion: string | null;
   belly: boolean;
   limitations: number;
   margin: string;
@@ -39,6 +41,11 @@ export function StatusChips() {
       {status.state !== null && (
         <span className={`chip ${status.state === "fault" ? "bad" : ""}`} data-testid="chip-state">
           {status.state}
+        </span>
+      )}
+      {status.motion !== null && (
+        <span className="chip" data-testid="chip-motion">
+          {status.motion}
         </span>
       )}
       {status.belly ? (
@@ -72,6 +79,7 @@ function statusOf(frame: Frame): Status {
   const down = frame.contacts.filter(Boolean).length;
   return {
     state: frame.state,
+    motion: frame.motion && motionText(frame.motion.speed, frame.motion.heading),
     belly: frame.belly,
     limitations: frame.limitations,
     margin: frame.margin === null ? "" : `${fixed(frame.margin, 0)} mm`,

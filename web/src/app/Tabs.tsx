@@ -38,7 +38,11 @@ export function Tabs({ view }: { view: View }) {
             aria-controls="panel"
             tabIndex={tab.view === view ? 0 : -1}
             data-testid={`tab-${tab.view}`}
-            onClick={() => openView(tab.view)}
+            onClick={(event) => {
+              openView(tab.view);
+              // After a click the arrow keys drive; reached by keyboard, the tab keeps the focus, and they change the tab.
+              if (tab.view === "drive" && event.detail > 0) event.currentTarget.blur();
+            }}
             onKeyDown={keys}
           >
             <Icon name={tab.view} />

@@ -1,6 +1,6 @@
 import type { BodyState } from "../protocol";
 import type { DragEvent } from "../scene/Handles";
-import { ask, change } from "../state/session";
+import { change, dragFoot } from "../state/session";
 import { useStudio } from "../state/store";
 
 /** Position of the body at the start of the drag, to which the drag is added. */
@@ -9,7 +9,7 @@ let before: { from: DragEvent["from"]; body: BodyState } | null = null;
 /** Handle a drag of a foot or of the body: the server solves the inverse kinematics. */
 export function dragged({ grip, from, to, done }: DragEvent): void {
   if (grip !== "body") {
-    ask({ type: "drag_foot", leg: grip, position_mm: [to[0], to[1], Math.max(0, to[2])], commit: done });
+    dragFoot(grip, [to[0], to[1], Math.max(0, to[2])], done);
     return;
   }
   const { state } = useStudio.getState();

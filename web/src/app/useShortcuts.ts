@@ -6,7 +6,8 @@ import { ask } from "../state/session";
 export function useShortcuts(): void {
   useEffect(() => {
     const keys = (event: KeyboardEvent) => {
-      if (!(event.ctrlKey || event.metaKey) || event.altKey || isTyping(event.target)) return;
+      if (!(event.ctrlKey || event.metaKey) || event.altKey) return;
+      if (isTyping(event.target) && !isApplied(event.target)) return;
       const key = event.key.toLowerCase();
       const redo = key === "y" || (key === "z" && event.shiftKey);
       if (!redo && key !== "z") return;
@@ -23,4 +24,9 @@ export function isTyping(target: EventTarget | null): boolean {
   if (!(target instanceof HTMLElement)) return false;
   if (target instanceof HTMLTextAreaElement || target instanceof HTMLSelectElement) return true;
   return target instanceof HTMLInputElement && !["range", "checkbox", "radio"].includes(target.type);
+}
+
+/** Whether an element is a number field without text that is not applied: there is nothing for the browser to undo. */
+function isApplied(target: EventTarget | null): boolean {
+  return target instanceof HTMLInputElement && target.dataset.draft === "false";
 }

@@ -1,7 +1,6 @@
-import { useState } from "react";
+import { useState, type KeyboardEvent } from "react";
 
-import { decimalsOf, fixed, typedNumber } from "./numbers";
-import { useCommit } from "./useCommit";
+import { decimalsOf, fixed, rangeText, stepped, typedNumber } from "./numbers";
 
 interface Props {
   id: string;
@@ -29,56 +28,80 @@ interface Draft {
   stands: readonly (number | null)[];
 }
 
-/** A numeric text field. Valid numbers take effect while typing; the text is formatted when the focus leaves. */
+/**
+ * A text field for a number, with a point or a comma. Valid numbers take effect while typing. What is not applied is not
+ * shown either: on Enter, and when the focus leaves, the field shows its value again, and a note says what is possible.
+ */
 export function NumberInput(props: Props) {
-  const {
-    id,
-    value,
-    step,
-    min,
-    max,
-    disabled,
-    exact,
-    placeholder,
-    describedBy,
-    label,
-    testId,
-    onChange,
-    onEmpty,
-  } = props;
+  const { id, value, step, min, max, disabled, exact, placeholder, label, testId, onChange, onEmpty } = props;
   const [draft, setDraft] = useState<Draft | null>(null);
+  const [refused, setRefused] = useState<{ text: string; value: number | null } | null>(null);
   // One digit more than the step has shows values between two steps.
   const shown = value === null ? "" : String(Number(fixed(value, exact ? 6 : decimalsOf(step) + 1)));
 
-  const isInside = (number: number) => number >= (min ?? -Infinity) && number <= (max ?? Infinity);
-  const standing = draft?.stands.includes(value) ?? false;
+  const inside = (text: string) => {
+    const number = typedNumber(text);
+    return number !== null && number >= (min ?? -Infinity) && number <= (max ?? Infinity) ? number : null;
+  };
   // Text typed for another robot, for example, does not apply.
-  const input = useCommit((number) => standing && isInside(number) && onChange(number, true));
+  const typed = draft?.stands.includes(value) ? draft.text : null;
+  const isWrong = typed !== null && inside(typed) === null && !(onEmpty && typed.trim() === "");
+  const note = refused?.value === value && typed === null ? refused.text : null;
 
   const type = (text: string) => {
-    const number = typedNumber(text);
-    const inside = number !== null && isInside(number);
-    setDraft({ text, stands: [value, inside ? number : value] });
-    if (inside && number !== value) onChange(number, false);
+    const number = inside(text);
+    setRefused(null);
+    setDraft({ text, stands: [value, number ?? value] });
+    if (number !== null && number !== value) onChange(number, false);
     if (text.trim() === "" && value !== null) onEmpty?.();
   };
+  const settle = () => {
+    setDraft(null);
+    if (typed === null) return;
+    const number = inside(typed);
+    if (number !== null) onChange(number, true);
+    else if (isWrong) setRefused({ text: `${typed.trim() || "Empty"}: ${rangeText(min, max)}`, value });
+  };
+  const keys = (event: KeyboardEvent) => {
+    const direction = { ArrowUp: 1, ArrowDown: -1 }[event.key];
+    if (event.key === "Enter") settle();
+    else if (event.key === "Escape") setDraft(null);
+    else if (direction && value !== null) {
+      event.preventDefault();
+      setDraft(null);
+      onChange(stepped(value, direction * step, min, max), true);
+    }
+  };
   return (
-    <input
-      ref={input}
-      id={id}
-      data-testid={testId}
-      type="number"
-      inputMode="decimal"
-      step={step}
-      min={min}
-      max={max}
-      disabled={disabled}
-      placeholder={placeholder}
-      aria-describedby={describedBy}
-      aria-label={label}
-      value={draft && standing ? draft.text : shown}
-      onChange={(event) => type(event.target.value)}
-      onBlur={() => setDraft(null)}
-    />
+    <span className="number-input">
+      <input
+        id={id}
+        data-testid={testId}
+        data-draft={typed !== null}
+        className="typed"
+        type="text"
+        inputMode={min !== undefined && min >= 0 ? "decimal" : "text"}
+        role="spinbutton"
+        aria-valuenow={value ?? undefined}
+        aria-valuetext={value === null ? (placeholder ?? "empty") : undefined}
+        aria-valuemin={min}
+        aria-valuemax={max}
+        aria-invalid={isWrong || note !== null}
+        autoComplete="off"
+        disabled={disabled}
+        placeholder={placeholder}
+        aria-describedby={note === null ? props.describedBy : `${id}note`}
+        aria-label={label}
+        value={typed ?? shown}
+        onChange={(event) => type(event.target.value)}
+        onKeyDown={keys}
+        onBlur={settle}
+      />
+      {note !== null && (
+        <span id={`${id}note`} className="number-note" role="alert" data-testid={testId && `${testId}-note`}>
+          {note}
+        </span>
+      )}
+    </span>
   );
 }

@@ -1,4 +1,4 @@
-import { useId } from "react";
+import { useId, type ReactNode } from "react";
 
 import { NumberInput } from "./NumberInput";
 import { clamp, decimalsOf, fixed } from "./numbers";
@@ -21,6 +21,8 @@ interface Props {
   bad?: boolean;
   disabled?: boolean;
   testId?: string;
+  /** What stands below it, such as the refusal of its value. */
+  note?: ReactNode;
   /** Whether the server chooses the value, and the function that makes it do so; left out where it can't. */
   auto?: boolean;
   onAuto?: () => void;
@@ -87,6 +89,7 @@ export function Slider(props: Props) {
           {unit}
         </span>
       </div>
+      {props.note}
     </div>
   );
 }

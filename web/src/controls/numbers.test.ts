@@ -1,7 +1,7 @@
 import { describe, expect, it } from "vitest";
 
 import { angleText } from "../views/angleText";
-import { decimalsOf, fixed, typedNumber, withUnit } from "./numbers";
+import { decimalsOf, fixed, rangeText, stepped, typedNumber, withUnit } from "./numbers";
 
 describe("numbers", () => {
   it("have as many decimals as their step", () => {
@@ -22,6 +22,21 @@ describe("numbers", () => {
   it("may be typed with a decimal comma; incomplete numbers are rejected", () => {
     expect(["1,5", " -3 ", ".5", "1e3", "−2"].map(typedNumber)).toEqual([1.5, -3, 0.5, 1000, -2]);
     expect(["", "-", "1,2,3", "abc", "Infinity", "1e999"].map(typedNumber)).toEqual(Array(6).fill(null));
+  });
+});
+
+describe("a number field", () => {
+  it("says what it accepts", () => {
+    expect(rangeText(0, 5000)).toBe("must be from 0 to 5000");
+    expect([rangeText(1, undefined), rangeText(undefined, 9), rangeText(undefined, undefined)]).toEqual([
+      "must be at least 1",
+      "must be at most 9",
+      "must be a number",
+    ]);
+  });
+
+  it("steps within its range", () => {
+    expect([stepped(0.1, 0.2), stepped(4, 5, 0, 6), stepped(1, -5, 0)]).toEqual([0.3, 6, 0]);
   });
 });
 

@@ -30,6 +30,18 @@ export function typedNumber(text: string): number | null {
   return Number.isFinite(value) ? value : null;
 }
 
+/** What a field accepts, in words. */
+export function rangeText(min: number | undefined, max: number | undefined): string {
+  if (min !== undefined && max !== undefined) return `must be from ${min} to ${max}`;
+  if (min !== undefined) return `must be at least ${min}`;
+  return max === undefined ? "must be a number" : `must be at most ${max}`;
+}
+
+/** A number moved by a step within a range, without the rounding of binary fractions. */
+export function stepped(value: number, step: number, min = -Infinity, max = Infinity): number {
+  return clamp(Number((value + step).toFixed(6)), min, max);
+}
+
 /** A number clamped to a range. */
 export function clamp(value: number, low: number, high: number): number {
   return Math.min(high, Math.max(low, value));

@@ -4,6 +4,7 @@ import { Object3D } from "three";
 
 import { beginTheme } from "../app/theme";
 import type { PlayerData } from "../protocol";
+import { beginConsole } from "../scene/console";
 import { Player } from "./Player";
 
 import "../app/theme.css";
@@ -22,6 +23,7 @@ function heldData(): PlayerData | null {
   }
 }
 
+beginConsole();
 beginTheme();
 const root = document.getElementById("root");
 const data = heldData();

@@ -7,16 +7,16 @@ interface Props {
   layer: RefObject<HTMLDivElement | null>;
   shape: Shape;
   colours: readonly string[];
-  /** Whether to show the short names of the legs. */
-  names: boolean;
+  /** Whether to show the forces at the feet. */
+  forces: boolean;
 }
 
 /**
- * Labels over the 3D view: names of the legs, problems of legs, and the stability margin.
+ * Labels over the 3D view: names of the legs, problems of legs, the stability margin, and forces.
  *
  * Hidden from screen readers, as the panel has the same in sentences. `LabelPositions` moves the labels.
  */
-export function Labels({ layer, shape, colours, names }: Props) {
+export function Labels({ layer, shape, colours, forces }: Props) {
   const [troubles, setTroubles] = useState<readonly (LegTrouble | null)[]>([]);
   useEffect(
     () =>
@@ -30,7 +30,7 @@ export function Labels({ layer, shape, colours, names }: Props) {
       {shape.short.map((code, leg) => {
         const trouble = troubles[leg];
         return (
-          <div key={code} className="note" hidden={!names && !trouble}>
+          <div key={code} className="note">
             {trouble ? (
               <span className="note-trouble">
                 <b>⚠ {code}</b> {trouble.short}
@@ -47,6 +47,12 @@ export function Labels({ layer, shape, colours, names }: Props) {
       <div className="note">
         <span className="note-margin" />
       </div>
+      {forces &&
+        shape.short.map((code) => (
+          <div key={`force ${code}`} className="note">
+            <span className="note-force" data-testid={`force-${code}`} />
+          </div>
+        ))}
     </div>
   );
 }

@@ -2,19 +2,23 @@ import { useEffect, useMemo, useRef } from "react";
 
 import { footOf, type Frame } from "./frame";
 import { makeLine, setLine } from "./lines";
+import { roomFor, smoothed } from "./smooth";
+import { stage } from "./stage";
 import { useStage } from "./useStage";
 
 /** Number of stored positions of each foot, and the distance between them [mm]. */
 const MOST = 240;
 const APART = 3;
 
-/** Recent paths of the feet while driving. */
+/** Recent paths of the feet while driving: of every frame of the server, however few are drawn, and smooth. */
 export function LiveTrails({ colours }: { colours: readonly string[] }) {
   const lines = useMemo(
     () => colours.map((colour) => makeLine({ colour, width: 2, opacity: 0.7 })),
     [colours],
   );
   const trails = useRef<Float32Array[]>([]);
+  const curves = useRef<Float32Array[]>([]);
+  const changed = useRef(new Set<number>());
   useEffect(
     () => () => {
       lines.forEach((line) => {
@@ -25,12 +29,22 @@ export function LiveTrails({ colours }: { colours: readonly string[] }) {
     },
     [lines],
   );
-  useStage((frame) =>
-    lines.forEach((line, leg) => {
-      const trail = (trails.current[leg] ??= filledWith(frame, leg));
-      if (follow(trail, frame, leg)) setLine(line, trail);
-    }),
+  useEffect(
+    () =>
+      stage.watchTargets((frame) => {
+        frame.contacts.forEach((_, leg) => {
+          if (follow((trails.current[leg] ??= filledWith(frame, leg)), frame, leg)) changed.current.add(leg);
+        });
+      }),
+    [],
   );
+  useStage(() => {
+    changed.current.forEach((leg) => {
+      const [line, trail] = [lines[leg], trails.current[leg]];
+      if (line && trail) setLine(line, smoothed(trail, (curves.current[leg] ??= roomFor(MOST))));
+    });
+    changed.current.clear();
+  });
   return (
     <group>
       {lines.map((line, leg) => (

@@ -5,6 +5,7 @@ import { useRef, type KeyboardEvent, type ReactNode } from "react";
 import { Arrows } from "./Arrows";
 import { CameraRig, type View } from "./CameraRig";
 import type { CameraName, Place } from "./cameras";
+import { ForceLegend } from "./ForceLegend";
 import { FrameLoop } from "./FrameLoop";
 import { Contacts } from "./Contacts";
 import type { Shape } from "./frame";
@@ -31,7 +32,8 @@ export interface SceneProps {
   trails?: readonly ArrayLike<number>[];
   forces?: boolean;
   torques?: boolean;
-  names?: boolean;
+  /** Whether arrow keys drive the robot: then they turn the camera with Shift only. */
+  driven?: boolean;
   /** Description for screen readers. */
   description: string;
   onRest?: (place: Place, turned: boolean) => void;
@@ -62,11 +64,12 @@ function Scene(props: SceneProps) {
     trails,
     forces,
     torques,
-    names,
+    driven,
     onFloor,
   } = props;
   const notes = useRef<HTMLDivElement>(null);
   const keys = (event: KeyboardEvent) => {
+    if (driven && event.key.startsWith("Arrow") && !event.shiftKey) return;
     if (steer(event.key)) event.preventDefault();
   };
   return (
@@ -76,7 +79,7 @@ function Scene(props: SceneProps) {
       className="scene"
       role="application"
       aria-roledescription="3D view"
-      aria-label={`${props.description} Arrow keys turn the camera, plus and minus zoom.`}
+      aria-label={`${props.description} ${driven ? "Shift and the arrow keys" : "Arrow keys"} turn the camera, plus and minus zoom.`}
       data-testid="scene"
       // eslint-disable-next-line jsx-a11y/no-noninteractive-tabindex
       tabIndex={0}
@@ -117,7 +120,8 @@ function Scene(props: SceneProps) {
         <CameraRig camera={camera} view={view} place={place} onRest={props.onRest ?? nothing} />
         <LabelPositions layer={notes} />
       </Canvas>
-      <Labels layer={notes} shape={shape} colours={colours} names={names ?? true} />
+      <Labels layer={notes} shape={shape} colours={colours} forces={forces ?? false} />
+      {forces && <ForceLegend />}
     </div>
   );
 }

@@ -33,6 +33,8 @@ export interface Frame {
   margin: number | null;
   /** State of a robot that is driven; null in the other views. */
   state: string | null;
+  /** Speed [mm/s] and heading [deg, positive to the left] of a robot that is driven; null in the other views. */
+  motion: { speed: number; heading: number } | null;
   /** Whether the body of a robot that is driven rests on the ground: then it has no support polygon. */
   belly: boolean;
   /** Number of reasons why the command to a robot that is driven is not met in full. */

@@ -16,6 +16,7 @@ function aFrame(x: number): Frame {
     com: [x, 0, 0],
     margin: x,
     state: null,
+    motion: null,
     belly: false,
     limitations: 0,
     trouble: [null],

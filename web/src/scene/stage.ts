@@ -15,11 +15,13 @@ class Stage {
   current: Frame | null = null;
   private target: Frame | null = null;
   private clock: ((dt: number) => Frame | null) | null = null;
+  private readonly targetWatchers = new Set<(frame: Frame) => void>();
   private readonly watchers = new Set<(frame: Frame) => void>();
 
   /** Set the target frame; without smoothing it is drawn immediately. */
   show(frame: Frame, smooth = true): void {
     this.target = frame;
+    this.targetWatchers.forEach((watcher) => watcher(frame));
     if (!smooth || !this.current || prefersReducedMotion()) this.current = frame;
     invalidate();
   }
@@ -37,6 +39,12 @@ class Stage {
   watch(watcher: (frame: Frame) => void): () => void {
     this.watchers.add(watcher);
     return () => this.watchers.delete(watcher);
+  }
+
+  /** Call a function with every frame that is set as target; returns a function that stops this. */
+  watchTargets(watcher: (frame: Frame) => void): () => void {
+    this.targetWatchers.add(watcher);
+    return () => this.targetWatchers.delete(watcher);
   }
 
   /** Advance by dt [s] before a frame is drawn; returns whether another is needed. */

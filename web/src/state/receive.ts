@@ -20,7 +20,7 @@ export function received(
       return { robot: message };
     case "state":
       // Earlier errors belong to inputs that have been replaced.
-      return { state: keepingNewer(message.state, studio.state, isNewer), failures: {} };
+      return { state: keepingNewer(message.state, studio.state, isNewer), failures: {}, edited: {} };
     case "pose":
       return { poses: { ...studio.poses, [message.view]: message } };
     case "walk":

@@ -1,12 +1,14 @@
 import type { FileMessage, ServerMessage, StudioState } from "../protocol";
 import { readAddress, writeAddress } from "./address";
 import { showDriveFrame } from "./driving";
+import { changedKey } from "./edited";
 import { saveBlob } from "./files";
 import { Link } from "./link";
+import { useOptions } from "./options";
 import type { ClientType, Draft } from "./outbox";
 import { received } from "./receive";
 import { notify, useStudio } from "./store";
-import { Unsaved, withPart, type Settable } from "./unsaved";
+import { endsFileRefusal, Unsaved, withPart, type Settable } from "./unsaved";
 
 /** Delay after which the URL is updated [ms]: browsers allow about 100 changes in 30 s. */
 const ADDRESS_DELAY = 600;
@@ -53,6 +55,7 @@ export function retry(): void {
 
 /** Send a message; its answers change the store. */
 export function ask(draft: Draft): void {
+  if (endsFileRefusal(draft)) forgetFileRefusal();
   unsaved.add(draft);
   if (!link.send(draft)) {
     if (REPORTED.has(draft.type)) notify("Not connected to the server");
@@ -77,14 +80,34 @@ export function change<K extends Settable>(part: K, values: Partial<StudioState[
   const { state } = useStudio.getState();
   if (!state) return;
   const next = { ...state[part], ...values };
-  useStudio.setState({ state: { ...state, [part]: next } });
-  ask({ type: part, [part]: next, commit } as unknown as Draft);
+  useStudio.setState((studio) => ({
+    state: { ...state, [part]: next },
+    edited: { ...studio.edited, [part]: changedKey(state[part], next) ?? studio.edited[part] },
+  }));
+  ask({ type: part, [part]: next, commit, ...wantedForces(part) } as unknown as Draft);
+}
+
+/** During a change of a pose, forces are computed only where they are shown. */
+function wantedForces(part: Settable | "drag_foot"): { forces?: boolean } {
+  return part === "joints" || part === "body" || part === "drag_foot"
+    ? { forces: useOptions.getState().forces }
+    : {};
+}
+
+/** Drag a foot to a position in the ground frame [mm]. */
+export function dragFoot(leg: number, position_mm: [number, number, number], commit: boolean): void {
+  ask({ type: "drag_foot", leg, position_mm, commit, ...wantedForces("drag_foot") });
+}
+
+function forgetFileRefusal(): void {
+  useStudio.setState(({ failures }) => ({ failures: { ...failures, toml: undefined } }));
 }
 
 /** Change the view, or the camera and time of the 3D view. */
 export function look(view: StudioState["view"] | null, picture: Partial<StudioState["picture"]> = {}): void {
   const { state } = useStudio.getState();
   if (!state) return;
+  if (view !== null && view !== state.view) forgetFileRefusal();
   const next = { ...state, view: view ?? state.view, picture: { ...state.picture, ...picture } };
   useStudio.setState({ state: next });
   ask({ type: "view", view: next.view, picture: next.picture });

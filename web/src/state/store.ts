@@ -40,6 +40,8 @@ export interface Studio {
   drive: DriveFrame | null;
   /** Errors by the type of the request; removed when a request of the type succeeds. */
   failures: Partial<Record<ClientType, ErrorMessage>>;
+  /** The input of each type that was changed last, such as stroke_mm. */
+  edited: Partial<Record<ClientType, string>>;
   /** Types with a request in progress. */
   busy: Partial<Record<ClientType, boolean>>;
   /** A notification that disappears by itself. */
@@ -62,6 +64,7 @@ export const useStudio = create<Studio>(() => ({
   source: null,
   drive: null,
   failures: {},
+  edited: {},
   busy: {},
   notice: null,
 }));

@@ -44,3 +44,8 @@ export function withPart(state: StudioState, draft: Draft): StudioState {
     ? { ...state, [draft.type]: (draft as unknown as StudioState)[draft.type] }
     : state;
 }
+
+/** Whether the refusal of a robot file is out of date with a message: another change is made, whatever comes of it. */
+export function endsFileRefusal(draft: Draft): boolean {
+  return "commit" in draft || draft.type === "undo" || draft.type === "redo" || draft.type === "robot";
+}

@@ -18,6 +18,7 @@ export function aWalk(): WalkMessage {
     com_mm: samples.flatMap((i) => [10 * i, 0]),
     gait: "tripod",
     duty_factor: 0.5,
+    offsets: [0, 0.5, 0, 0.5, 0, 0.5],
     duration_s: 0.2,
     cycle_time_s: 1,
     steps: 1,

@@ -1,7 +1,8 @@
-import { Failure } from "../controls/Failure";
+import { Failure, Refusal } from "../controls/Failure";
 import { Icon } from "../controls/icons";
 import { Segments } from "../controls/Segments";
 import { Slider } from "../controls/Slider";
+import { useTouch } from "../controls/useTouch";
 import type { BodyState } from "../protocol";
 import { change } from "../state/session";
 import { useStudio } from "../state/store";
@@ -32,21 +33,27 @@ const RESET: Partial<BodyState> = {
   feet_mm: null,
 };
 
+/** Whether the body is moved at all: of no movement, no fraction is possible. */
+function isMoved(body: BodyState): boolean {
+  return SLIDERS.some(({ key }) => body[key] !== 0);
+}
+
 /** Inverse kinematics: the body moves, the feet stay on the ground. */
 export function BodyView() {
   const { robot, state } = useInputs();
   const pose = useStudio((studio) => studio.poses.body);
   const { body } = state;
+  const touch = useTouch();
   const set = (values: Partial<BodyState>, commit = true) => change("body", values, commit);
   return (
     <div className="view">
       <ViewHead title="Body">
-        Move and rotate the body relative to the feet. Body and feet can also be dragged in the 3D view; with
-        Shift, vertically.
+        Move and rotate the body relative to the feet. Body and feet can also be dragged in the 3D view
+        {touch ? "" : "; with Shift, vertically"}.
       </ViewHead>
       <Failure of={["body", "drag_foot"]} />
       {pose && <Standing pose={pose} />}
-      {pose?.feasible_fraction != null && pose.feasible_fraction < 1 && (
+      {pose?.feasible_fraction != null && pose.feasible_fraction < 1 && isMoved(body) && (
         <p className="hint" data-testid="feasible-fraction">
           {Math.floor(pose.feasible_fraction * 100)} % of this movement is possible.
         </p>
@@ -65,6 +72,7 @@ export function BodyView() {
             step={step}
             unit={unit}
             testId={`body-${key}`}
+            note={<Refusal of="body" at={key} />}
             onChange={(value, commit) => set({ [key]: value }, commit)}
           />
         ))}
@@ -85,6 +93,7 @@ export function BodyView() {
           step={1}
           unit="mm"
           testId="body-height"
+          note={<Refusal of="body" at="body_height_mm" />}
           auto={body.body_height_mm === null}
           onAuto={() => set({ body_height_mm: null })}
           onChange={(value, commit) => set({ body_height_mm: value }, commit)}

@@ -4,9 +4,11 @@ import { Icon } from "../controls/icons";
 import { NumberInput } from "../controls/NumberInput";
 import type { PoseMessage } from "../protocol";
 import { triple } from "../scene/kinematics";
-import { ask, change } from "../state/session";
+import { change, dragFoot } from "../state/session";
 import { useInputs } from "./useInputs";
 
+/** Greatest coordinate of a foothold [mm]. */
+const FAR = 5000;
 const AXES = ["x", "y", "z"] as const;
 
 /** Numeric inputs of the footholds. */
@@ -16,7 +18,7 @@ export function FeetInputs({ pose }: { pose: PoseMessage }) {
   const move = (leg: number, axis: number, value: number, commit: boolean) => {
     const at: [number, number, number] = [...triple(pose.feet_mm, leg)];
     at[axis] = value;
-    ask({ type: "drag_foot", leg, position_mm: at, commit });
+    dragFoot(leg, at, commit);
   };
   return (
     <details>
@@ -46,6 +48,8 @@ export function FeetInputs({ pose }: { pose: PoseMessage }) {
                         label={`${robot.leg_names[leg] ?? ""} foot ${axis} in mm`}
                         value={triple(pose.feet_mm, leg)[i] ?? 0}
                         step={0.5}
+                        min={axis === "z" ? 0 : -FAR}
+                        max={FAR}
                         testId={`foot-${code}-${axis}`}
                         onChange={(value, commit) => move(leg, i, value, commit)}
                       />

@@ -1,4 +1,4 @@
-import { Failure } from "../controls/Failure";
+import { Failure, Refusal } from "../controls/Failure";
 import { Icon } from "../controls/icons";
 import { Slider } from "../controls/Slider";
 import type { PoseMessage, RobotMessage } from "../protocol";
@@ -115,6 +115,7 @@ function Joint({ robot, pose, leg, joint, value, onChange }: JointProps) {
       unit="°"
       bad={broken}
       testId={`joint-${robot.leg_codes[leg] ?? leg}-${name}`}
+      note={<Refusal of="joints" at={`angles_deg[${leg * 3 + joint}]`} />}
       onChange={onChange}
     />
   );

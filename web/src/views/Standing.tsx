@@ -5,6 +5,7 @@ import { withUnit } from "../controls/numbers";
 import type { PoseMessage } from "../protocol";
 import { contactsOf } from "../scene/frames";
 import { useOptions } from "../state/options";
+import { useStudio } from "../state/store";
 
 /** The standing or resting robot: result in words, problems, and values. */
 export function Standing({ pose }: { pose: PoseMessage }) {
@@ -17,6 +18,7 @@ export function Standing({ pose }: { pose: PoseMessage }) {
     ]),
   ];
   const forces = useOptions((options) => options.forces);
+  const hasMasses = useStudio((studio) => studio.robot?.mass_kg != null);
   const feet = contactsOf(pose.contacts).filter(Boolean).length;
   const [x = 0, y = 0, z = 0] = pose.position_mm;
   const [roll = 0, pitch = 0] = pose.rpy_deg;
@@ -28,7 +30,7 @@ export function Standing({ pose }: { pose: PoseMessage }) {
         </Message>
         <Remarks kind="bad" items={problems} testId="problems" />
       </div>
-      {pose.forces_n && (
+      {hasMasses && (
         <Check
           label="Show forces and torques"
           testId="show-forces"

@@ -99,7 +99,10 @@ class SetDocument(Change):
 
 
 class SetToml(Change):
-    """Change the robot by the text of its file. Answers: robot, state, content of the view."""
+    """Change the robot by the text of its file; a robot of another name resets poses and walk.
+
+    Answers: robot, state, content of the view.
+    """
 
     type: Literal["toml"]
     text: Annotated[str, Field(max_length=200_000)]

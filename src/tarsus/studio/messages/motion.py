@@ -62,6 +62,7 @@ class WalkMessage(Message):
     com_mm: list[float] = Field(description="n x (x, y) of the centre of mass over the ground in G.")
     gait: str
     duty_factor: float
+    offsets: list[float] = Field(description="Phase of the touch-down of each leg, from 0 to 1.")
     duration_s: float
     cycle_time_s: float
     steps: int

@@ -3,6 +3,7 @@ import { useState } from "react";
 import { Failure } from "../../controls/Failure";
 import { Select } from "../../controls/Select";
 import { Slider } from "../../controls/Slider";
+import { useTouch } from "../../controls/useTouch";
 import { useStudio } from "../../state/store";
 import { AngleTable } from "../AngleTable";
 import { useInputs } from "../useInputs";
@@ -35,12 +36,14 @@ function DriveControls() {
   const drive = useStudio((studio) => studio.drive);
   const [settings, setSettings] = useState<Settings>(DEFAULTS);
   const sticks = useDriving(settings);
+  const touch = useTouch();
   const set = (values: Partial<Settings>) => setSettings((before) => ({ ...before, ...values }));
   return (
     <div className="view">
       <ViewHead title="Drive">
-        Keys W, A, S, D walk, Q and E turn; the sticks and a gamepad do the same. The robot stops when they
-        are released.
+        {touch
+          ? "Push the sticks to walk and turn. The robot stops when they are released."
+          : "Keys W, A, S, D walk, Q and E turn; the arrow keys walk and turn. So do the sticks and a gamepad. The robot stops when they are released."}
       </ViewHead>
       <Failure of={["drive", "command"]} />
       <StateButtons

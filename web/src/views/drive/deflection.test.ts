@@ -1,11 +1,24 @@
 import { describe, expect, it } from "vitest";
 
-import { gamepadDeflection, isCentred, keyDeflection, stickDeflection, sumOf } from "./deflection";
+import {
+  gamepadDeflection,
+  isCentred,
+  isDriveKey,
+  keyDeflection,
+  stickDeflection,
+  sumOf,
+} from "./deflection";
 
 describe("keys", () => {
   it("walk and turn", () => {
     expect(keyDeflection(new Set(["w", "q"]))).toEqual({ forward: 1, left: 0, turn: 1 });
     expect(keyDeflection(new Set(["d"]))).toEqual({ forward: 0, left: -1, turn: 0 });
+  });
+
+  it("are the arrow keys too", () => {
+    expect(keyDeflection(new Set(["arrowup", "arrowright"]))).toEqual({ forward: 1, left: 0, turn: -1 });
+    expect(keyDeflection(new Set(["q", "arrowleft"])).turn).toBe(1);
+    expect(["ArrowUp", "ArrowLeft", "w", "x"].map(isDriveKey)).toEqual([true, true, true, false]);
   });
 
   it("cancel if opposite, and are not faster diagonally", () => {

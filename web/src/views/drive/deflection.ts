@@ -25,6 +25,10 @@ const KEYS: Record<string, Partial<Deflection>> = {
   d: { left: -1 },
   q: { turn: 1 },
   e: { turn: -1 },
+  arrowup: { forward: 1 },
+  arrowdown: { forward: -1 },
+  arrowleft: { turn: 1 },
+  arrowright: { turn: -1 },
 };
 
 /** Whether a key drives the robot. */
@@ -42,7 +46,7 @@ export function keyDeflection(pressed: ReadonlySet<string>): Deflection {
     turn += deflection.turn ?? 0;
   }
   const length = Math.max(1, Math.hypot(forward, left));
-  return { forward: forward / length, left: left / length, turn };
+  return { forward: forward / length, left: left / length, turn: Math.max(-1, Math.min(1, turn)) };
 }
 
 /** Deflection of a gamepad with the standard layout: left stick walks, right stick turns. */

@@ -1,7 +1,7 @@
 import { describe, expect, it } from "vitest";
 
 import { aDriveFrame } from "../../testing/drive";
-import { canRequest, headingText, stateText } from "./robotState";
+import { canRequest, headingText, motionText, stateText } from "./robotState";
 
 describe("requests for a state", () => {
   it("are possible unless the state is requested already", () => {
@@ -30,5 +30,12 @@ describe("the state in words", () => {
 describe("the heading in words", () => {
   it("names the side", () => {
     expect([12.4, -90, 0.2, -0.2].map(headingText)).toEqual(["12° left", "90° right", "0°", "0°"]);
+  });
+});
+
+describe("the motion in words", () => {
+  it("has the speed and the heading", () => {
+    expect(motionText(84.6, -12.4)).toBe("85 mm/s, heading 12° right");
+    expect(motionText(0, 0)).toBe("0 mm/s, heading 0°");
   });
 });

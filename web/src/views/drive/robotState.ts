@@ -28,3 +28,8 @@ export function headingText(degrees: number): string {
   if (rounded === 0) return "0°";
   return `${Math.abs(rounded)}° ${rounded > 0 ? "left" : "right"}`;
 }
+
+/** Speed [mm/s] and heading [deg] in words: 85 mm/s, heading 12° left. */
+export function motionText(speed: number, heading: number): string {
+  return `${Math.round(speed)} mm/s, heading ${headingText(heading)}`;
+}

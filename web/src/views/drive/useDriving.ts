@@ -71,6 +71,12 @@ export function useDriving(settings: Settings): Sticks {
     const down = (event: KeyboardEvent) => {
       if (!isDriveKey(event.key) || event.ctrlKey || event.metaKey || event.altKey || isTyping(event.target))
         return;
+      // Arrow keys belong to the slider, the tab or the stick that has the focus, and with Shift to the camera.
+      if (
+        event.key.startsWith("Arrow") &&
+        (event.defaultPrevented || event.shiftKey || isChoosing(event.target))
+      )
+        return;
       event.preventDefault();
       keys.add(event.key.toLowerCase());
     };
@@ -110,4 +116,9 @@ function commandOf(
     body: [...body],
     state,
   };
+}
+
+/** Whether arrow keys change an input that has the focus: a slider or one of several choices. */
+function isChoosing(target: EventTarget | null): boolean {
+  return target instanceof HTMLInputElement && (target.type === "range" || target.type === "radio");
 }

@@ -1,4 +1,5 @@
 import { Check } from "../../controls/Check";
+import { Refusal } from "../../controls/Failure";
 import { Segments } from "../../controls/Segments";
 import { Slider } from "../../controls/Slider";
 import { change } from "../../state/session";
@@ -26,6 +27,7 @@ export function LoadInputs() {
         step={0.05}
         unit="kg"
         testId="payload"
+        note={<Refusal of="loads" at="payload_kg" />}
         onChange={(payload_kg, commit) => change("loads", { payload_kg }, commit)}
       />
       <Slider
@@ -37,6 +39,7 @@ export function LoadInputs() {
         step={0.1}
         unit="×"
         testId="safety-factor"
+        note={<Refusal of="loads" at="safety_factor" />}
         onChange={(safety_factor, commit) => change("loads", { safety_factor }, commit)}
       />
       <div className="row">
@@ -63,7 +66,7 @@ export function LoadInputs() {
         onChange={(inertial) => change("loads", { inertial })}
       />
       <details>
-        <summary>Payload position, supply, battery</summary>
+        <summary>Payload position, supply voltage, battery</summary>
         <div className="inside">
           {AXES.map(([label, axis]) => (
             <Slider
@@ -76,6 +79,7 @@ export function LoadInputs() {
               typedMax={5000}
               step={5}
               unit="mm"
+              note={<Refusal of="loads" at={`payload_at_mm[${axis}]`} />}
               onChange={(value, commit) => {
                 const at: [number, number, number] = [...loads.payload_at_mm];
                 at[axis] = value;
@@ -84,7 +88,7 @@ export function LoadInputs() {
             />
           ))}
           <Slider
-            label="Supply"
+            label="Supply voltage"
             value={loads.supply_v}
             min={0}
             max={16}
@@ -92,12 +96,13 @@ export function LoadInputs() {
             step={0.1}
             unit="V"
             testId="supply"
+            note={<Refusal of="loads" at="supply_v" />}
             auto={loads.supply_v === null}
             onAuto={() => change("loads", { supply_v: null })}
             onChange={(supply_v, commit) => change("loads", { supply_v }, commit)}
           />
           <Slider
-            label="Battery"
+            label="Battery capacity"
             value={loads.capacity_ah}
             min={0}
             max={10}
@@ -105,6 +110,7 @@ export function LoadInputs() {
             step={0.1}
             unit="Ah"
             testId="capacity"
+            note={<Refusal of="loads" at="capacity_ah" />}
             auto={loads.capacity_ah === null}
             onAuto={() => change("loads", { capacity_ah: null })}
             onChange={(capacity_ah, commit) => change("loads", { capacity_ah }, commit)}

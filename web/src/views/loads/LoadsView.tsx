@@ -50,7 +50,10 @@ function Verdict({ loads }: { loads: LoadsMessage }) {
       </Message>
       <Remarks kind="warn" items={loads.supply_warning === null ? [] : [loads.supply_warning]} />
       {!loads.balanced && (
-        <Remarks kind="warn" items={["At some times vertical contact forces can’t balance the robot."]} />
+        <Remarks
+          kind="warn"
+          items={["At some times the robot tips: vertical contact forces can’t balance it."]}
+        />
       )}
     </>
   );

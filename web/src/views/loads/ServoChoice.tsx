@@ -81,10 +81,10 @@ function Candidates({ all }: { all: readonly Candidate[] }) {
         <thead>
           <tr>
             <th scope="col">Servo</th>
-            <th scope="col">factor</th>
-            <th scope="col">robot</th>
+            <th scope="col">Safety factor</th>
+            <th scope="col">Mass of robot</th>
             <th scope="col">
-              <span className="hidden-text">Install</span>
+              <span className="hidden-text">Choice</span>
             </th>
           </tr>
         </thead>
@@ -100,10 +100,10 @@ function Candidates({ all }: { all: readonly Candidate[] }) {
                 <button
                   type="button"
                   className="button small"
-                  aria-label={`Install ${one.name}`}
+                  aria-label={`Use ${one.name}`}
                   onClick={() => setDocument(withServos(robot.document, one.coxa, one.femur, one.tibia))}
                 >
-                  Fit
+                  Use
                 </button>
               </td>
             </tr>

@@ -1,5 +1,6 @@
 import { useId } from "react";
 
+import { Refusal } from "../../controls/Failure";
 import { NumberInput } from "../../controls/NumberInput";
 import { useStudio } from "../../state/store";
 import { useInputs } from "../useInputs";
@@ -35,6 +36,7 @@ export function DocumentField({ field }: { field: NumberField }) {
         />
         <span className="unit">{field.unit}</span>
       </span>
+      <Refusal of="document" at={pathText(field.path)} />
       {problem && (
         <p id={`${id}p`} className="field-problem">
           ⚠ {problem}
@@ -48,6 +50,9 @@ export function DocumentField({ field }: { field: NumberField }) {
 function useProblem({ path }: NumberField): string | null {
   const problems = useStudio((studio) => studio.failures.document?.problems);
   const text = pathText(path);
+  const changed = useStudio((studio) => studio.edited.document);
+  // Beside the field that was changed last stands the whole refusal.
+  if (changed === text) return null;
   const problem = problems?.find(({ key }) => key !== null && (key === text || text.startsWith(`${key}[`)));
   return problem?.text ?? null;
 }

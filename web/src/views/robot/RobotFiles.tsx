@@ -1,10 +1,13 @@
 import { useEffect, useId, useRef, useState } from "react";
 
 import { Icon } from "../../controls/icons";
+import { useTouch } from "../../controls/useTouch";
+import type { ErrorMessage } from "../../protocol";
 import { ask } from "../../state/session";
-import { notify, useStudio } from "../../state/store";
+import { useStudio } from "../../state/store";
 import { useInputs } from "../useInputs";
 import { withValue } from "./document";
+import { robotText } from "./robotText";
 import { setDocument } from "./setDocument";
 
 /** Name of the robot, and import and export of its file. */
@@ -13,6 +16,7 @@ export function RobotFiles() {
   const id = useId();
   const input = useRef<HTMLInputElement>(null);
   const over = useDrop();
+  const touch = useTouch();
   return (
     <div className={`drop${over ? " over" : ""}`}>
       <div className="field">
@@ -48,7 +52,7 @@ export function RobotFiles() {
           <Icon name="save" /> Export robot file
         </button>
       </div>
-      <p className="hint">Or drop a .toml file anywhere on this page.</p>
+      {!touch && <p className="hint">Or drop a .toml file anywhere on this page.</p>}
       <input
         ref={input}
         type="file"
@@ -99,8 +103,23 @@ function useDrop(): boolean {
 async function load(file: File): Promise<void> {
   const most = Math.min(200_000, useStudio.getState().welcome?.bounds.message_bytes ?? 200_000);
   if (file.size > most) {
-    notify(`${file.name} has ${file.size} bytes; the limit is ${most}`);
+    refuse(`${file.name}: the file has ${file.size} bytes; at most ${most} are read`);
     return;
   }
-  ask({ type: "toml", text: await file.text(), commit: true });
+  const found = robotText(new Uint8Array(await file.arrayBuffer()));
+  if ("problem" in found) refuse(`${file.name}: ${found.problem}`);
+  else ask({ type: "toml", text: found.text, commit: true });
+}
+
+/** Show why a file is not sent, where the server's refusals of files are shown. */
+function refuse(text: string): void {
+  const toml: ErrorMessage = {
+    type: "error",
+    id: null,
+    kind: "robot_file",
+    text,
+    problems: [],
+    longest_stroke_mm: null,
+  };
+  useStudio.setState((studio) => ({ failures: { ...studio.failures, toml } }));
 }

@@ -1,13 +1,14 @@
 import type { ReactNode } from "react";
 
-import { Failure } from "../../controls/Failure";
+import { Failure, Refusal } from "../../controls/Failure";
 import { Facts } from "../../controls/Facts";
 import { Remarks } from "../../controls/Message";
 import { withUnit } from "../../controls/numbers";
 import { Slider } from "../../controls/Slider";
+import { useTouch } from "../../controls/useTouch";
 import { useInputs } from "../useInputs";
 import { ViewHead } from "../ViewHead";
-import { numberAt, withValue } from "./document";
+import { numberAt, pathText, withValue } from "./document";
 import { DocumentField } from "./DocumentField";
 import { BODY, LEG_MORE, LENGTHS, LIMITS, MASSES } from "./fields";
 import { GaitFields } from "./GaitFields";
@@ -20,10 +21,12 @@ import { setDocument } from "./setDocument";
 export function RobotView() {
   const { robot } = useInputs();
   const { document } = robot;
+  const touch = useTouch();
   return (
     <div className="view">
       <ViewHead title="Robot">
-        All values of the robot file. Every change is validated and shown immediately; Ctrl+Z undoes it.
+        All values of the robot file. Every change is validated and shown immediately
+        {touch ? "" : "; Ctrl+Z undoes it"}.
       </ViewHead>
       <RobotFiles />
       <Failure of={["document", "toml", "robot"]} />
@@ -38,7 +41,7 @@ export function RobotView() {
         ]}
       />
       <fieldset>
-        <legend>Legs</legend>
+        <legend>Links of all legs</legend>
         {LENGTHS.map(({ path, label, unit, step, min, max }) => (
           <Slider
             key={label}
@@ -50,6 +53,7 @@ export function RobotView() {
             step={step}
             unit={unit}
             testId={`robot-${label.toLowerCase()}`}
+            note={<Refusal of="document" at={pathText(path)} />}
             onChange={(value, commit) => setDocument(withValue(document, path, value), commit)}
           />
         ))}

@@ -1,4 +1,5 @@
 import type { RobotFile } from "../../protocol";
+import { changedKey } from "../../state/edited";
 import { ask } from "../../state/session";
 import { useStudio } from "../../state/store";
 
@@ -6,6 +7,9 @@ import { useStudio } from "../../state/store";
 export function setDocument(document: RobotFile, commit = true): void {
   const { robot } = useStudio.getState();
   if (!robot) return;
-  useStudio.setState({ robot: { ...robot, document } });
+  useStudio.setState((studio) => ({
+    robot: { ...robot, document },
+    edited: { ...studio.edited, document: changedKey(robot.document, document) ?? studio.edited.document },
+  }));
   ask({ type: "document", document, commit });
 }

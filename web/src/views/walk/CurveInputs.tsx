@@ -1,9 +1,12 @@
 import { Slider } from "../../controls/Slider";
+import { useTouch } from "../../controls/useTouch";
 import type { PathProps } from "./paths";
+import { WalkRefusal } from "./WalkRefusal";
 
 /** Angle and centre of a curve. */
 export function CurveInputs({ path, set }: PathProps<"curve">) {
   const [x, y] = path.centre_mm;
+  const touch = useTouch();
   return (
     <>
       <Slider
@@ -16,9 +19,10 @@ export function CurveInputs({ path, set }: PathProps<"curve">) {
         step={5}
         unit="°"
         testId="curve-angle"
+        note={<WalkRefusal at="path.angle_deg" />}
         onChange={(angle_deg, commit) => set({ ...path, angle_deg }, commit)}
       />
-      <p className="hint">Click on the ground to set the centre, or enter it here.</p>
+      <p className="hint">{touch ? "Tap" : "Click on"} the ground to set the centre, or enter it here.</p>
       <Slider
         label="Centre x (forward)"
         value={x}
@@ -29,6 +33,7 @@ export function CurveInputs({ path, set }: PathProps<"curve">) {
         step={10}
         unit="mm"
         testId="centre-x"
+        note={<WalkRefusal at="path.centre_mm[0]" />}
         onChange={(next, commit) => set({ ...path, centre_mm: [next, y] }, commit)}
       />
       <Slider
@@ -41,6 +46,7 @@ export function CurveInputs({ path, set }: PathProps<"curve">) {
         step={10}
         unit="mm"
         testId="centre-y"
+        note={<WalkRefusal at="path.centre_mm[1]" />}
         onChange={(next, commit) => set({ ...path, centre_mm: [x, next] }, commit)}
       />
     </>

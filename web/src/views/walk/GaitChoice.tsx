@@ -3,6 +3,7 @@ import { Slider } from "../../controls/Slider";
 import { change } from "../../state/session";
 import { useStudio } from "../../state/store";
 import { useInputs } from "../useInputs";
+import { WalkRefusal } from "./WalkRefusal";
 
 /** The gait: the default of the robot, a named one, or a custom one. */
 export function GaitChoice() {
@@ -11,10 +12,9 @@ export function GaitChoice() {
   const { gait } = state.walk;
   const own = gait !== null && typeof gait !== "string" ? gait : null;
   const choose = (value: string) => {
-    if (value === "own") {
-      const legs = robot.leg_names.length;
-      change("walk", { gait: { duty_factor: 0.75, offsets: robot.leg_names.map((_, leg) => leg / legs) } });
-    } else change("walk", { gait: value === "" ? null : value });
+    if (value !== "own") change("walk", { gait: value === "" ? null : value });
+    // That of the present walk, to begin with.
+    else if (walk) change("walk", { gait: { duty_factor: walk.duty_factor, offsets: walk.offsets } });
   };
   return (
     <fieldset>
@@ -25,10 +25,11 @@ export function GaitChoice() {
         options={[
           { value: "", label: `robot default (${robot.gait})` },
           ...robot.gaits.map((name) => ({ value: name, label: name })),
-          { value: "own", label: "custom …" },
+          ...(walk || own ? [{ value: "own", label: "custom …" }] : []),
         ]}
         onChange={choose}
       />
+      <WalkRefusal at="gait" />
       {own && (
         <>
           <Slider
@@ -41,8 +42,10 @@ export function GaitChoice() {
             step={0.01}
             unit=""
             testId="duty-factor"
+            note={<WalkRefusal at="gait.duty_factor" />}
             onChange={(value, commit) => change("walk", { gait: { ...own, duty_factor: value } }, commit)}
           />
+          <p className="label">Touch-down of each foot, as a fraction of the cycle</p>
           {robot.leg_codes.map((code, leg) => (
             <Slider
               key={code}
@@ -54,6 +57,8 @@ export function GaitChoice() {
               max={1}
               step={0.01}
               unit=""
+              testId={`phase-${code}`}
+              note={<WalkRefusal at={`gait.offsets[${leg}]`} />}
               onChange={(offset, commit) =>
                 change(
                   "walk",

@@ -5,6 +5,7 @@ import { CurveInputs } from "./CurveInputs";
 import { pathOf, type Path } from "./paths";
 import { StraightInputs } from "./StraightInputs";
 import { TwistInputs } from "./TwistInputs";
+import { WalkRefusal } from "./WalkRefusal";
 
 /** Path of the body: straight, around a centre, or with a constant twist. */
 export function PathInputs() {
@@ -27,6 +28,7 @@ export function PathInputs() {
           onChange={(kind) => set(pathOf(kind))}
         />
       </div>
+      <WalkRefusal at="path.kind" />
       {path.kind === "straight" && <StraightInputs path={path} set={set} />}
       {path.kind === "curve" && <CurveInputs path={path} set={set} />}
       {path.kind === "twist" && <TwistInputs path={path} set={set} />}

@@ -3,6 +3,7 @@ import type { WalkMessage } from "../../protocol";
 import { change } from "../../state/session";
 import { useStudio } from "../../state/store";
 import { useInputs } from "../useInputs";
+import { WalkRefusal } from "./WalkRefusal";
 
 type Key = "stroke_mm" | "speed_mm_s" | "body_height_mm" | "swing_height_mm";
 
@@ -75,6 +76,7 @@ export function StepInputs() {
             step={step}
             unit={unit}
             testId={key}
+            note={<WalkRefusal at={key} />}
             auto={value === null}
             onAuto={() => change("walk", { [key]: null })}
             onChange={(next, commit) => change("walk", { [key]: next }, commit)}
@@ -82,7 +84,7 @@ export function StepInputs() {
         );
       })}
       <details>
-        <summary>Tilt, cycle time, stance width</summary>
+        <summary>Tilt, cycle time, distance between feet</summary>
         <div className="inside">
           {(["roll_deg", "pitch_deg"] as const).map((key) => (
             <Slider
@@ -96,6 +98,7 @@ export function StepInputs() {
               step={0.5}
               unit="°"
               testId={key}
+              note={<WalkRefusal at={key} />}
               onChange={(next, commit) => change("walk", { [key]: next }, commit)}
             />
           ))}
@@ -108,12 +111,13 @@ export function StepInputs() {
             step={0.05}
             unit="s"
             testId="cycle_time_s"
+            note={<WalkRefusal at="cycle_time_s" />}
             auto={state.walk.cycle_time_s === null}
             onAuto={() => change("walk", { cycle_time_s: null })}
             onChange={(next, commit) => change("walk", { cycle_time_s: next }, commit)}
           />
           <Slider
-            label="Foot distance from coxa axis"
+            label="Least distance between feet"
             value={state.walk.foot_distance_mm}
             min={0}
             max={400}
@@ -121,6 +125,7 @@ export function StepInputs() {
             step={1}
             unit="mm"
             testId="foot_distance_mm"
+            note={<WalkRefusal at="foot_distance_mm" />}
             auto={state.walk.foot_distance_mm === null}
             onAuto={() => change("walk", { foot_distance_mm: null })}
             onChange={(next, commit) => change("walk", { foot_distance_mm: next }, commit)}

@@ -1,5 +1,6 @@
 import { Slider } from "../../controls/Slider";
 import type { PathProps } from "./paths";
+import { WalkRefusal } from "./WalkRefusal";
 
 /** Distance and direction of a straight walk. */
 export function StraightInputs({ path, set }: PathProps<"straight">) {
@@ -15,6 +16,7 @@ export function StraightInputs({ path, set }: PathProps<"straight">) {
         step={10}
         unit="mm"
         testId="distance"
+        note={<WalkRefusal at="path.distance_mm" />}
         onChange={(distance_mm, commit) => set({ ...path, distance_mm }, commit)}
       />
       <Slider
@@ -25,6 +27,7 @@ export function StraightInputs({ path, set }: PathProps<"straight">) {
         step={5}
         unit="°"
         testId="heading"
+        note={<WalkRefusal at="path.heading_deg" />}
         onChange={(heading_deg, commit) => set({ ...path, heading_deg }, commit)}
       />
     </>

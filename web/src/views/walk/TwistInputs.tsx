@@ -1,5 +1,6 @@
 import { Slider } from "../../controls/Slider";
 import type { PathProps } from "./paths";
+import { WalkRefusal } from "./WalkRefusal";
 
 /** Twist and duration. */
 export function TwistInputs({ path, set }: PathProps<"twist">) {
@@ -16,6 +17,7 @@ export function TwistInputs({ path, set }: PathProps<"twist">) {
         step={5}
         unit="mm/s"
         testId="twist-x"
+        note={<WalkRefusal at="path.velocity_mm_s[0]" />}
         onChange={(next, commit) => set({ ...path, velocity_mm_s: [next, vy] }, commit)}
       />
       <Slider
@@ -28,6 +30,7 @@ export function TwistInputs({ path, set }: PathProps<"twist">) {
         step={5}
         unit="mm/s"
         testId="twist-y"
+        note={<WalkRefusal at="path.velocity_mm_s[1]" />}
         onChange={(next, commit) => set({ ...path, velocity_mm_s: [vx, next] }, commit)}
       />
       <Slider
@@ -40,6 +43,7 @@ export function TwistInputs({ path, set }: PathProps<"twist">) {
         step={1}
         unit="°/s"
         testId="twist-turn"
+        note={<WalkRefusal at="path.turn_deg_s" />}
         onChange={(turn_deg_s, commit) => set({ ...path, turn_deg_s }, commit)}
       />
       <Slider
@@ -52,6 +56,7 @@ export function TwistInputs({ path, set }: PathProps<"twist">) {
         step={0.5}
         unit="s"
         testId="twist-duration"
+        note={<WalkRefusal at="path.duration_s" />}
         onChange={(duration_s, commit) => set({ ...path, duration_s }, commit)}
       />
     </>

@@ -3,14 +3,26 @@ import { Message, Remarks } from "../../controls/Message";
 import { withUnit } from "../../controls/numbers";
 import type { WalkMessage } from "../../protocol";
 
+interface Props {
+  walk: WalkMessage;
+  /** Whether the present inputs are refused: then this is an earlier walk. */
+  refused: boolean;
+}
+
 /** Summary of the planned walk. */
-export function WalkSummary({ walk }: { walk: WalkMessage }) {
+export function WalkSummary({ walk, refused }: Props) {
   const { end, least_margin: margin } = walk;
   return (
     <>
-      <Message kind={walk.possible ? "good" : "bad"} testId="walk-verdict">
-        {walk.possible ? "All foot trajectories are reachable." : "This walk is not possible."}
-      </Message>
+      {refused ? (
+        <Message kind="warn" testId="walk-verdict">
+          These inputs are refused. Shown is the last walk that was accepted.
+        </Message>
+      ) : (
+        <Message kind={walk.possible ? "good" : "bad"} testId="walk-verdict">
+          {walk.possible ? "Every foot reaches its whole path." : "This walk is not possible."}
+        </Message>
+      )}
       <Remarks kind="warn" items={walk.problems} testId="walk-problems" />
       <Facts
         testId="walk-facts"
@@ -24,7 +36,7 @@ export function WalkSummary({ walk }: { walk: WalkMessage }) {
           ["End heading", withUnit(end.turned_deg, 1, "°")],
           ["Least stability margin", `${withUnit(margin.mm, 1, "mm")} at ${withUnit(margin.at_s, 2, "s")}`],
           [
-            "Least foot distance",
+            "Least distance between feet",
             `${withUnit(walk.nearest_feet.mm, 0, "mm")} (${walk.nearest_legs.join(", ")})`,
           ],
           ...walk.joint_speed.map(

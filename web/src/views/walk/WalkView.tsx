@@ -10,33 +10,20 @@ import { PathInputs } from "./PathInputs";
 import { StepInputs } from "./StepInputs";
 import { WalkAngles } from "./WalkAngles";
 import { WalkPlots } from "./WalkPlots";
+import { WalkRemedies } from "./WalkRemedies";
 import { WalkSummary } from "./WalkSummary";
 
 /** Plan a walk and play it. */
 export function WalkView() {
   const { state } = useInputs();
   const walk = useStudio((studio) => studio.walk);
-  const failure = useStudio((studio) => studio.failures.walk);
+  const refused = useStudio((studio) => studio.failures.walk !== undefined);
   const busy = useStudio((studio) => studio.busy.walk === true);
-  const longest = failure?.longest_stroke_mm ?? null;
   return (
     <div className="view">
-      <ViewHead title="Walk">Plan a complete walk, which is then played back in the browser.</ViewHead>
+      <ViewHead title="Walk">Plan a walk and play it back.</ViewHead>
       <Failure of={["walk"]}>
-        <div className="row">
-          {longest !== null && (
-            <button
-              type="button"
-              className="button small"
-              onClick={() => change("walk", { stroke_mm: Math.floor(longest * 10) / 10 })}
-            >
-              Use {Math.floor(longest * 10) / 10} mm
-            </button>
-          )}
-          <button type="button" className="button small" onClick={() => change("walk", { strict: false })}>
-            Show it anyway
-          </button>
-        </div>
+        <WalkRemedies />
       </Failure>
       <GaitChoice />
       <PathInputs />
@@ -44,7 +31,7 @@ export function WalkView() {
       <p className="busy" aria-live="polite">
         {busy ? "Planning …" : " "}
       </p>
-      {walk && <WalkSummary walk={walk} />}
+      {walk && <WalkSummary walk={walk} refused={refused} />}
       {walk && <GaitDiagram walk={walk} />}
       {walk && <WalkPlots walk={walk} />}
       <fieldset>

@@ -1,0 +1,20 @@
+import { change } from "../../state/session";
+import { useStudio } from "../../state/store";
+
+/** What helps where a walk is refused. */
+export function WalkRemedies() {
+  const longest = useStudio((studio) => studio.failures.walk?.longest_stroke_mm ?? null);
+  const fitting = longest === null ? null : Math.floor(longest * 10) / 10;
+  return (
+    <div className="row">
+      {fitting !== null && (
+        <button type="button" className="button small" onClick={() => change("walk", { stroke_mm: fitting })}>
+          Use {fitting} mm
+        </button>
+      )}
+      <button type="button" className="button small" onClick={() => change("walk", { strict: false })}>
+        Show it anyway
+      </button>
+    </div>
+  );
+}
