@@ -7,7 +7,7 @@ OUT ?= walk
 # JAX takes half the time to compile so; an XLA that does not know the option ends with an error, hence not in the tests.
 COMPILE_FAST := XLA_FLAGS=--xla_cpu_use_fusion_emitters=false
 
-.PHONY: studio walk test lint types tests web web-check browser protocol bench figures schema clean
+.PHONY: studio walk test lint types tests web web-check browser protocol bench figures truth schema clean
 
 studio: $(VENV)/.run web
 	$(BIN)/tarsus studio $(ROBOT)
@@ -57,6 +57,10 @@ figures: $(VENV)/.dev web browser
 	$(BIN)/python docs/make_figures.py
 	$(BIN)/python docs/make_screenshots.py
 	$(BIN)/python docs/refresh.py
+
+# How far plans are true in physics: the tables of docs/how-true.md.
+truth: $(VENV)/.dev
+	$(BIN)/python docs/how_true.py
 
 schema: $(VENV)/.dev
 	$(BIN)/tarsus robots schema > src/tarsus/robot/robot.schema.json

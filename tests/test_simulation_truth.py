@@ -2,9 +2,11 @@
 
 import dataclasses
 import functools
+import importlib.util
 import math
 import re
 import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -30,6 +32,7 @@ from tarsus.simulation.truth.trace import Trace, trace_to_csv, trace_to_dataset
 from tarsus.simulation.truth.traced_plant import TracedPlant, play
 
 STRIDER = load_robot("strider")
+DOCS = Path(__file__).parents[1] / "docs"
 
 
 @functools.cache
@@ -248,3 +251,19 @@ def test_terrain_and_seed_reach_the_plant():
     rough = compare(plan, terrain=Blocks(rise=0.02, clear=0.2, seed=1), servos="ideal")
     flat = compare(plan, terrain=Flat(friction=0.8), servos="ideal")
     assert rough.outcome.tilt > 2 * flat.outcome.tilt
+
+
+@pytest.mark.parametrize(("servos", "gait"), [("ideal", "tripod"), ("catalogue", "ripple")])
+def test_the_pages_rows_are_reproduced(servos, gait):
+    spec = importlib.util.spec_from_file_location("how_true", DOCS / "how_true.py")
+    how_true = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(how_true)
+    table = (DOCS / "how-true.md").read_text().partition(f"<!-- table: {servos} -->\n")[2].partition("<!-- end -->")[0]
+    assert how_true.row(STRIDER, gait, servos) in table
+
+
+def test_the_pages_example_runs(capsys):
+    examples = re.findall(r"```python\n(.*?)```", (DOCS / "simulation.md").read_text(), flags=re.DOTALL)
+    (example,) = (text for text in examples if "compare" in text)
+    exec(compile(example, "example", "exec"), {})
+    assert "xarray.DataArray" in capsys.readouterr().out

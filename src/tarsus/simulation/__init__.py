@@ -23,28 +23,51 @@ if TYPE_CHECKING:
     from tarsus.simulation.sensors.suite import FootSwitch, Sensor, SensorSuite
     from tarsus.simulation.servos.servo_model import ServoModel
     from tarsus.simulation.simulated_plant import PlantState, SimulatedPlant
+    from tarsus.simulation.terrain.from_text import terrain_from_text
+    from tarsus.simulation.truth.comparison import Truth, compare
+    from tarsus.simulation.truth.outcome import Outcome
+    from tarsus.simulation.truth.trace import Trace, trace_to_csv, trace_to_dataset
+    from tarsus.simulation.truth.traced_plant import TracedPlant, play
 
 _HOMES = {
     "FootSwitch": "tarsus.simulation.sensors.suite",
+    "Outcome": "tarsus.simulation.truth.outcome",
     "PlantState": "tarsus.simulation.simulated_plant",
     "Sensor": "tarsus.simulation.sensors.suite",
     "SensorSuite": "tarsus.simulation.sensors.suite",
     "ServoModel": "tarsus.simulation.servos.servo_model",
     "SimulatedPlant": "tarsus.simulation.simulated_plant",
+    "Trace": "tarsus.simulation.truth.trace",
+    "TracedPlant": "tarsus.simulation.truth.traced_plant",
+    "Truth": "tarsus.simulation.truth.comparison",
+    "compare": "tarsus.simulation.truth.comparison",
     "model": "tarsus.simulation.robot_model",
     "model_assumptions": "tarsus.simulation.robot_model",
+    "play": "tarsus.simulation.truth.traced_plant",
+    "terrain_from_text": "tarsus.simulation.terrain.from_text",
+    "trace_to_csv": "tarsus.simulation.truth.trace",
+    "trace_to_dataset": "tarsus.simulation.truth.trace",
 }
 
 __all__ = [
     "FootSwitch",
+    "Outcome",
     "PlantState",
     "Sensor",
     "SensorSuite",
     "ServoModel",
     "SimulatedPlant",
+    "Trace",
+    "TracedPlant",
+    "Truth",
+    "compare",
     "model",
     "model_assumptions",
+    "play",
     "terrain",
+    "terrain_from_text",
+    "trace_to_csv",
+    "trace_to_dataset",
 ]
 
 
