@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import copy
 import math
+import tempfile
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
 from typing import Any
 
 from tarsus import (
@@ -18,7 +21,7 @@ from tarsus import (
 from tarsus.robot.catalogue import figures_of
 from tarsus.robot.document import plain
 
-__all__ = ["MISTAKES", "Mistake", "answers", "sound", "table"]
+__all__ = ["MISTAKES", "TEXTS", "Mistake", "answers", "sound", "table", "text_answer"]
 
 Document = dict[str, Any]
 JOINTS = ("coxa", "femur", "tibia")
@@ -48,6 +51,11 @@ class Mistake:
 
 def sound(name: str) -> Document:
     """Return the document of a preset, with masses, a box and a servo where it has none."""
+    return copy.deepcopy(_sound(name))
+
+
+@cache
+def _sound(name: str) -> Document:
     document = robot_to_dict(load_robot(name))
     document.setdefault("body", {}).setdefault("mass_kg", 1.2)
     places = [leg["position_mm"] for leg in document["legs"]]
@@ -73,6 +81,7 @@ def answers(document: Document) -> list[str]:
 def table() -> str:
     """Return the table of mistakes and of what is said, made in the strider's file or in another preset's."""
     lines = ["| what is wrong | in | what is said |", "|---|---|---|"]
+    lines += [f"| {words} | | {_escaped(text_answer(text))} |" for words, (text, _) in TEXTS.items()]
     for mistake in MISTAKES:
         name, document = next(
             (name, made) for name in ("strider", "phoenix", "makeyourpet") if (made := mistake.of(name)) is not None
@@ -80,8 +89,25 @@ def table() -> str:
         said = answers(document)
         shown = next((text for text in said if mistake.cause in text), said[0] if said else "nothing")
         more = f" (and {len(said) - 1} more)" if len(said) > 1 else ""
-        lines.append(f"| {mistake.words} | {name} | {shown}{more} |".replace("[[legs]]", "`[[legs]]`"))
+        lines.append(f"| {mistake.words} | {name} | {_escaped(shown)}{more} |")
     return "\n".join(lines)
+
+
+def text_answer(text: str) -> str:
+    """Return what is said to a file with that text."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "my-robot.toml"
+        path.write_text(text, encoding="utf-8")
+        try:
+            load_robot(path)
+        except RobotFileError as error:
+            return error.problems[0]
+    raise AssertionError(text)
+
+
+def _escaped(text: str) -> str:
+    # Two pairs of brackets would be a link.
+    return text.replace("[[", "\\[[").replace("\n", " ")
 
 
 def _legs(document: Document) -> Iterator[Document]:
@@ -266,7 +292,59 @@ def _together(*steps: Callable[[Document], bool | None]) -> Callable[[Document],
     return make
 
 
+def _first_legs(count: int) -> Callable[[Document], None]:
+    def make(document: Document) -> None:
+        document["legs"] = document["legs"][:count]
+
+    return make
+
+
+def _move(key: str, table: str) -> Callable[[Document], None]:
+    def make(document: Document) -> None:
+        document[key] = document[table].pop(key)
+
+    return make
+
+
+def _without(table: str, key: str) -> Callable[[Document], None]:
+    def make(document: Document) -> None:
+        del document[table][key]
+
+    return make
+
+
+def _misspelt(document: Document) -> None:
+    document["leg"]["femmur_mm"] = document["leg"].pop("femur_mm")
+
+
+def _same_name(document: Document) -> None:
+    document["legs"][1]["name"] = document["legs"][0]["name"]
+
+
+TEXTS = {
+    "an empty file": ("", "the file is empty"),
+    "prose": ("This is a robot.", "not valid TOML"),
+    "JSON": ('{"name": "strider", "legs": []}', "a robot file is TOML"),
+    "a decimal comma": ('name = "strider"\n[leg]\ncoxa_mm = 68,5\n', "a decimal comma; write 68.5"),
+    "a unit after a number": ('name = "strider"\n[leg]\ncoxa_mm = 68 mm\n', "a unit after the number"),
+    "a text without its closing quote": ('name = "strider\n[leg]\n', "a quote is missing"),
+    "a key given twice": ('name = "strider"\nname = "rider"\n', "cannot overwrite a value"),
+}
+"""Texts that are no robot file, and words of what is said."""
+
 MISTAKES = (
+    Mistake("keys", "a key misspelt", _misspelt, "did you mean 'femur_mm'?"),
+    Mistake("keys", "a key in the wrong table", _move("femur_mm", "leg"), "it belongs to [leg]"),
+    Mistake("keys", "a key missing", _without("leg", "tibia_mm"), "every leg needs it"),
+    Mistake("keys", "the mass of one link only", _set("leg.mass_kg", {"femur": 0.1}), "or of none"),
+    Mistake("keys", "a number in quotes", _set("leg.coxa_mm", "68"), "without quotes"),
+    Mistake("keys", "a number with its unit", _set("leg.coxa_mm", "68 mm"), "without a unit"),
+    Mistake("keys", "a negative length", _scale(-1, "leg.femur_mm"), "must be from 0.001"),
+    Mistake("keys", "one limit only", _set("leg.limits_deg", {joint: [60] for joint in JOINTS}), "a list of 2 numbers"),
+    Mistake("keys", "a servo that is not in the catalogue", _set("leg.servo", "MG-996"), "did you mean 'MG996R'?"),
+    Mistake("keys", "a gait that does not exist", _set("gait.name", "tripd"), "did you mean 'tripod'?"),
+    Mistake("keys", "two legs", _first_legs(2), "there must be at least 4"),
+    Mistake("keys", "two legs of the same name", _same_name, "has the same name"),
     Mistake("units", "all lengths in cm", _scale(0.1, *_ALL_LENGTHS), "cm"),
     Mistake("units", "all lengths in m", _scale(0.001, *_ALL_LENGTHS), " m instead"),
     Mistake("units", "all lengths in inches", _scale(1 / 25.4, *_ALL_LENGTHS), "inches"),

@@ -330,7 +330,7 @@ def test_end_position_of_a_sideways_walk():
 def test_the_longest_stroke_of_the_robots_own_gait():
     robot = load_robot("strider")
     assert longest_stroke(robot) == (pytest.approx(max_stroke(robot, Gait.named("tripod")) * 1000), [])
-    assert longest_stroke(ring_robot(4))[0] is None
+    assert longest_stroke(ring_robot(5).replace(gait=GaitDefaults(name="tripod")))[0] is None
     limits = np.array(robot.limits)
     limits[:, 0] = 0
     stiff = robot.replace(limits=limits, mount_yaw=np.full(6, np.pi / 2))

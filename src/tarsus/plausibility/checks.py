@@ -5,7 +5,7 @@ from __future__ import annotations
 from tarsus.errors import InputError
 from tarsus.plausibility.dimensions import Dimensions
 from tarsus.plausibility.directions import direction_warnings
-from tarsus.plausibility.lengths import length_warnings
+from tarsus.plausibility.lengths import LEG_CODES, length_warnings
 from tarsus.plausibility.limits import limit_warnings
 from tarsus.plausibility.masses import mass_warnings
 from tarsus.plausibility.mirror import position_warnings
@@ -41,12 +41,14 @@ def plausibility_warnings(robot: Robot) -> tuple[PlausibilityWarning, ...]:
     if robot.batch_shape:
         raise InputError(f"plausibility is checked for a single robot, not for a batch {robot.batch_shape} of designs")
     size = Dimensions.of(robot.item(()))
+    lengths = tuple(length_warnings(robot, size))
+    doubtful = any(warning.code in LEG_CODES for warning in lengths)
     return (
-        *length_warnings(robot, size),
+        *lengths,
         *position_warnings(robot, size),
         *direction_warnings(robot, size),
         *name_warnings(robot, size),
         *limit_warnings(robot, size),
-        *mass_warnings(robot, size),
+        *(() if doubtful else mass_warnings(robot, size)),
         *servo_warnings(robot),
     )

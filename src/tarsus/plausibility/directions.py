@@ -22,6 +22,8 @@ MOST_ACROSS, MOST_BACK = 15.0, 30.0
 # Legs nearer to the middle than this share of the extent belong to neither side, or neither end.
 _MIDDLE = 0.3, 0.5
 MOST_YAW_DIFFERENCE = 20.0
+# Horizontal distance of a standing foot from the femur axis, in lengths of femur and tibia.
+_STANDING = 0.5
 # Angles of a whole turn in radians.
 RADIANS = 6.3
 
@@ -43,6 +45,7 @@ def direction_warnings(robot: Robot, size: Dimensions) -> Iterator[PlausibilityW
         yield from _why_inward(robot, size, inward)
     else:
         yield from _differing(robot, size)
+        yield from _crossing(robot, size)
 
 
 def _inward(size: Dimensions, yaw: Float[np.ndarray, "legs"]) -> Bool[np.ndarray, "legs"]:
@@ -171,3 +174,31 @@ def _differing(robot: Robot, size: Dimensions) -> Iterator[PlausibilityWarning]:
             cause="a typing error in one of the two, such as a missing digit",
             remedy=f"The mirror image is {-size.yaw[other]:.4g} deg",
         )
+
+
+def _crossing(robot: Robot, size: Dimensions) -> Iterator[PlausibilityWarning]:
+    """Warn of two legs that cross each other where they stand, each pointing in its own direction."""
+    angle = np.radians(size.yaw)
+    foot = size.position + (size.coxa + _STANDING * size.reach) * np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+    for leg in range(robot.legs):
+        for other in range(leg):
+            if _cross(size.position[other], foot[other], size.position[leg], foot[leg]):
+                names = f"{robot.leg_names[other]}, {robot.leg_names[leg]}"
+                yield PlausibilityWarning(
+                    code="legs-cross",
+                    where=f"{names}: yaw_deg",
+                    what=f"pointing at {size.yaw[other]:.4g} and {size.yaw[leg]:.4g} deg, these legs cross each other",
+                    cause="the angle of one of the two is wrong, or their positions are exchanged",
+                    remedy="Neighbouring legs point apart or are parallel",
+                )
+
+
+def _cross(
+    a: Float[np.ndarray, "2"], b: Float[np.ndarray, "2"], c: Float[np.ndarray, "2"], d: Float[np.ndarray, "2"]
+) -> bool:
+    """Return whether the lines from a to b and from c to d have a point in common."""
+
+    def side(p: Float[np.ndarray, "2"], q: Float[np.ndarray, "2"], r: Float[np.ndarray, "2"]) -> float:
+        return float((q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]))
+
+    return side(a, b, c) * side(a, b, d) < 0 and side(c, d, a) * side(c, d, b) < 0

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from tarsus.errors import InputError, TarsusError
+from tarsus.errors import InputError, TarsusError, UnreachableError
 from tarsus.gait.gait import GAITS, Gait
 from tarsus.gait.path import straight_path
 from tarsus.gait.plan import plan_walk
 from tarsus.gait.stroke import max_stroke
+from tarsus.kinematics.stance import default_stance, default_swing_height
 from tarsus.robot.robot import Robot
 
 __all__ = ["NO_STROKE", "GaitTrial", "try_gaits"]
@@ -68,7 +69,12 @@ def try_gaits(robot: Robot) -> tuple[GaitTrial, ...]:
     """
     if robot.batch_shape:
         raise InputError(f"gaits are tried for a single robot, not for a batch {robot.batch_shape} of designs")
-    return tuple(_try(robot, gait) for gait in _gaits(robot.legs))
+    gaits = _gaits(robot.legs)
+    try:
+        default_stance(robot, swing_height=default_swing_height(robot))
+    except UnreachableError as error:
+        return tuple(GaitTrial(gait=gait.name, problems=(str(error),)) for gait in gaits)
+    return tuple(_try(robot, gait) for gait in gaits)
 
 
 def _gaits(legs: int) -> list[Gait]:
@@ -82,11 +88,10 @@ def _gaits(legs: int) -> list[Gait]:
 
 
 def _try(robot: Robot, gait: Gait) -> GaitTrial:
-    longest = None
+    longest = max_stroke(robot, gait)
+    if longest == 0:
+        return GaitTrial(gait=gait.name, problems=(NO_STROKE,), longest_stroke=longest)
     try:
-        longest = max_stroke(robot, gait)
-        if longest == 0:
-            return GaitTrial(gait=gait.name, problems=(NO_STROKE,), longest_stroke=longest)
         walk = plan_walk(robot, gait, straight_path(_STROKES * _STROKE * longest), rate=_RATE)
     except TarsusError as error:
         return GaitTrial(gait=gait.name, problems=(str(error),), longest_stroke=longest)

@@ -8,41 +8,53 @@ from collections.abc import Iterator
 import numpy as np
 
 from tarsus.plausibility.dimensions import Dimensions
+from tarsus.plausibility.mirror import mirror_partners
 from tarsus.plausibility.units import unit_causes
 from tarsus.plausibility.warning import PlausibilityWarning
 from tarsus.robot.robot import JOINTS, Robot
 
-__all__ = ["length_warnings"]
+__all__ = ["LEG_CODES", "length_warnings"]
+
+LEG_CODES = frozenset({"length-unit", "link-ratio"})
+"""Codes of the warnings after which the length of a leg is no measure for anything else."""
 
 # Length of a straight leg [mm]: hexapods of 2 g servos have 60, walking machines of 40 kg 1200.
 LEG = (45.0, 2000.0)
 _USUAL_LEG = (50.0, 1500.0)
 # Bounds of ratios, from the presets and published robots with a margin of 2 and more at either end.
-TIBIA_TO_FEMUR = (0.3, 4.5)
+TIBIA_TO_FEMUR = (0.28, 7.0)
 MOST_COXA = 1.0
 RADIUS_TO_LEG = (0.08, 2.0)
 _USUAL_RADIUS = (0.15, 1.3)
 BOX_TO_MOUNTS = (0.25, 4.0)
-MOST_BOX_HEIGHT = 1.2
+# A body is higher than this share of its longer side only if it is no more than this higher than the shorter one.
+MOST_BOX_HEIGHT = 0.8, 2.0
 MOST_FOOT = 0.35
 HEIGHT_TO_REACH = (0.08, 1.0)
 SWING_TO_REACH = (0.025, 1.0)
-MOST_LEG_RATIO = 3.0
+# A link of one leg against those of the other legs, unless the opposite leg has the same; in lengths of a leg.
+MOST_LEG_RATIO, LEAST_DIFFERENCE = 3.0, 0.1
 # Usual length of a leg in radii of the coxa axes.
 _USUAL_PROPORTION = 2.8
 
 
 def length_warnings(robot: Robot, size: Dimensions) -> Iterator[PlausibilityWarning]:
     """Yield the warnings on the lengths of a single robot."""
-    legs = list(_legs(size))
+    # What is compared with a doubtful length would be named for an error that it does not have.
+    legs = list(_legs(size)) or list(_links(size))
     yield from legs
-    if not legs:
-        yield from _links(size)
-    yield from _single_links(robot)
-    yield from _mounts(size, legs_doubtful=bool(legs))
-    yield from _box(robot, size)
+    yield from _single_links(robot, size)
+    if legs:
+        return
+    mounts = list(_mounts(size))
+    yield from mounts
+    boxes = [] if mounts else list(_box(robot, size))
+    yield from boxes
     yield from _feet(robot, size)
-    yield from _stance(robot, size)
+    heights = list(_heights(robot, size))
+    yield from heights
+    if not boxes and not heights:
+        yield from _body_in_ground(robot)
 
 
 def _inside(bounds: tuple[float, float], value: float) -> bool:
@@ -102,31 +114,41 @@ def _oddity(size: Dimensions, leg: float) -> float:
     return abs(math.log(leg / max(size.radius, 1e-9) / _USUAL_PROPORTION))
 
 
-def _single_links(robot: Robot) -> Iterator[PlausibilityWarning]:
-    """Warn of a leg with a link of quite another length than those of the other legs."""
+def _single_links(robot: Robot, size: Dimensions) -> Iterator[PlausibilityWarning]:
+    """Warn of a leg with a link of quite another length than those of the other legs and of the opposite leg."""
+    partners = mirror_partners(size)
     for joint in JOINTS:
         lengths = np.asarray(getattr(robot, joint), dtype=np.float64) * 1000
         median = float(np.median(lengths))
-        for leg, length in zip(robot.leg_names, lengths, strict=True):
-            if median > 0 and not 1 / MOST_LEG_RATIO < length / median < MOST_LEG_RATIO and length > 0:
-                small = bool(length < median)
-                cause, remedy = unit_causes(
-                    length,
-                    lambda factor: 1 / MOST_LEG_RATIO < length * factor / median < MOST_LEG_RATIO,  # noqa: B023
-                    too_small=small,
-                )
-                yield PlausibilityWarning(
-                    code="leg-differs",
-                    where=f"{leg}: {joint}_mm",
-                    what=f"{length:.4g} mm, while the other legs have {median:.4g} mm",
-                    cause=cause,
-                    remedy=remedy,
-                )
+        for leg, length in enumerate(lengths):
+            partner = partners[leg]
+            opposite = median if partner in (None, leg) else float(lengths[partner])
+            if _differs(length, median, size) and _differs(length, opposite, size):
+                yield _single_link(f"{robot.leg_names[leg]}: {joint}_mm", float(length), median)
 
 
-def _mounts(size: Dimensions, *, legs_doubtful: bool) -> Iterator[PlausibilityWarning]:
+def _differs(length: float, usual: float, size: Dimensions) -> bool:
+    ratio = length / max(usual, 1e-9)
+    return abs(length - usual) > LEAST_DIFFERENCE * size.leg and not 1 / MOST_LEG_RATIO < ratio < MOST_LEG_RATIO
+
+
+def _single_link(where: str, length: float, usual: float) -> PlausibilityWarning:
+    def fits(factor: float) -> bool:
+        return 1 / MOST_LEG_RATIO < length * factor / max(usual, 1e-9) < MOST_LEG_RATIO
+
+    cause, remedy = unit_causes(length, fits, too_small=length < usual)
+    return PlausibilityWarning(
+        code="leg-differs",
+        where=where,
+        what=f"{length:.4g} mm, while the other legs have {usual:.4g} mm",
+        cause=cause,
+        remedy=remedy,
+    )
+
+
+def _mounts(size: Dimensions) -> Iterator[PlausibilityWarning]:
     ratio = size.radius / size.leg
-    if legs_doubtful or _inside(RADIUS_TO_LEG, ratio):
+    if _inside(RADIUS_TO_LEG, ratio):
         return
     small = ratio < RADIUS_TO_LEG[0]
     cause, remedy = unit_causes(size.radius, lambda factor: _inside(_USUAL_RADIUS, ratio * factor), too_small=small)
@@ -158,11 +180,12 @@ def _box(robot: Robot, size: Dimensions) -> Iterator[PlausibilityWarning]:
             cause=cause,
             remedy=f"{remedy} on average" if "would be" in remedy else remedy,
         )
-    elif box[2] > MOST_BOX_HEIGHT * max(box[0], box[1]):
+    elif box[2] > MOST_BOX_HEIGHT[0] * max(box[0], box[1]) and box[2] > MOST_BOX_HEIGHT[1] * min(box[0], box[1]):
         yield PlausibilityWarning(
             code="box-order",
             where="body.size_mm",
-            what=f"{shown} mm: the height, {box[2]:.4g} mm, exceeds length and width",
+            what=f"{shown} mm: the height, {box[2]:.4g} mm, exceeds {MOST_BOX_HEIGHT[1]:g} times the shorter side, "
+            f"{min(box[0], box[1]):.4g} mm",
             cause="the numbers are in another order",
             remedy="The order is length (forward), width, height",
         )
@@ -182,8 +205,8 @@ def _feet(robot: Robot, size: Dimensions) -> Iterator[PlausibilityWarning]:
     )
 
 
-def _stance(robot: Robot, size: Dimensions) -> Iterator[PlausibilityWarning]:
-    """Warn of a body height or a swing height that no leg like these has, and of a body box in the ground."""
+def _heights(robot: Robot, size: Dimensions) -> Iterator[PlausibilityWarning]:
+    """Warn of a body height or a swing height that no leg like these has."""
     raised = np.abs(np.asarray(robot.mount_position)[:, 2] + np.asarray(robot.femur_axis_offset)[:, 1]).max() * 1000
     reach = size.reach + raised
     for key, value, (least, most) in (
@@ -207,15 +230,18 @@ def _stance(robot: Robot, size: Dimensions) -> Iterator[PlausibilityWarning]:
             cause=cause,
             remedy=remedy,
         )
-    if robot.body_size is not None and robot.gait.body_height is not None:
-        half = float(np.asarray(robot.body_size)[2]) * 500
-        height = robot.gait.body_height * 1000
-        if half >= height:
-            yield PlausibilityWarning(
-                code="body-in-ground",
-                where="gait.body_height_mm",
-                what=f"{height:.4g} mm, while the body's box reaches {half:.4g} mm below its origin, into the ground",
-                cause="a unit, a digit, or the order of body.size_mm is wrong, or the height was measured to the "
-                "underside",
-                remedy="Body height is that of the origin, the centre of the coxa axes",
-            )
+
+
+def _body_in_ground(robot: Robot) -> Iterator[PlausibilityWarning]:
+    if robot.body_size is None or robot.gait.body_height is None:
+        return
+    half = float(np.asarray(robot.body_size)[2]) * 500
+    height = robot.gait.body_height * 1000
+    if half >= height:
+        yield PlausibilityWarning(
+            code="body-in-ground",
+            where="gait.body_height_mm",
+            what=f"{height:.4g} mm, while the body's box reaches {half:.4g} mm below its origin, into the ground",
+            cause="a unit or a digit is wrong, or the height was measured to the underside",
+            remedy="Body height is that of the origin, the centre of the coxa axes",
+        )

@@ -41,7 +41,7 @@ _MASS_ERRORS: tuple[tuple[float, tuple[float, ...], str, str], ...] = (
 
 
 def mass_warnings(robot: Robot, size: Dimensions) -> Iterator[PlausibilityWarning]:
-    """Yield the warnings on the masses of a single robot."""
+    """Yield the warnings on the masses of a single robot, whose lengths are plausible."""
     if robot.body_mass is not None and robot.link_mass is not None:
         yield from _masses(robot, size)
     yield from _body_com(robot, size)

@@ -23,7 +23,8 @@ def name_warnings(robot: Robot, size: Dimensions) -> Iterator[PlausibilityWarnin
         (1, "y", [side_in_name(name) for name in robot.leg_names], "left", "right"),
         (0, "x", [end_in_name(name) for name in robot.leg_names], "front", "rear"),
     )
-    position = size.position - size.position.mean(axis=0)
+    # The median, as a single leg typed far away would shift the mean.
+    position = size.position - np.median(size.position, axis=0)
     for axis, letter, signs, positive, negative in named:
         sign, at = np.array(signs), position[:, axis]
         wrong = (sign * at < 0) & (np.abs(at) > _MIDDLE * size.radius)

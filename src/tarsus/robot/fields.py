@@ -7,6 +7,7 @@ that editors use.
 from __future__ import annotations
 
 import math
+import re
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from decimal import Decimal
@@ -68,7 +69,9 @@ class Number(_Kind):
         """Return the value as the decimal written in the file."""
         number = _decimal(_unwrap(value))
         if number is None:
-            raise refuse(f"must be a number {self.allowed}")
+            is_text = isinstance(value, str) and re.match(r"\s*[-+.]?\d", value)
+            bare = ", without quotes and without a unit" if is_text else ""
+            raise refuse(f"must be a number {self.allowed}{bare}")
         if not number.is_finite():
             raise refuse(f"must be a finite number {self.allowed}")
         if not to_decimal(self.low) <= number <= to_decimal(self.high):

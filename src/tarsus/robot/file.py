@@ -2,12 +2,8 @@
 
 from __future__ import annotations
 
-import json
 import os
-import re
-import tomllib
 from collections.abc import Mapping
-from decimal import Decimal
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -17,6 +13,7 @@ from pydantic import ValidationError
 from tarsus.errors import RobotFileError, nearest_name
 from tarsus.robot.build import build_robot
 from tarsus.robot.document import decimal_document, plain
+from tarsus.robot.parse import parse_toml
 from tarsus.robot.preset_names import PRESETS, preset_names
 from tarsus.robot.problems import problems_of
 from tarsus.robot.robot import Robot
@@ -157,7 +154,7 @@ def robot_from_text(text: str, *, where: str) -> Robot:
     RobotFileError
         If something in it is wrong.
     """
-    return robot_from_dict(_parse(text, where=where), where=where)
+    return robot_from_dict(parse_toml(text, where=where), where=where)
 
 
 def save_robot(robot: Robot, path: str | os.PathLike[str]) -> None:
@@ -229,43 +226,3 @@ def _no_such_robot(name: str) -> str:
 
 def _reason(error: OSError | ValueError) -> str:
     return (error.strerror or "is not a regular file") if isinstance(error, OSError) else "is not a valid path"
-
-
-def _parse(text: str, *, where: str) -> dict[str, Any]:
-    try:
-        return tomllib.loads(text, parse_float=Decimal)
-    except tomllib.TOMLDecodeError as error:
-        problem = _NOT_JSON if _is_json(text) else _not_toml(str(error), text)
-    except RecursionError:
-        problem = "lists or tables are nested too deeply; a robot file has three levels at most"
-    except (ValueError, ArithmeticError):
-        problem = "a number has too many digits or too large an exponent"
-    raise RobotFileError(where, [problem])
-
-
-_NOT_JSON = (
-    'is JSON; a robot file is TOML: write name = "...", [leg] and [[legs]] instead of braces, or load the document '
-    "in Python and save it with tarsus.save_robot(tarsus.robot_from_dict(document), path)"
-)
-
-
-def _is_json(text: str) -> bool:
-    try:
-        return isinstance(json.loads(text), dict)
-    except (ValueError, RecursionError):
-        # JSON with a mistake in it begins like JSON nevertheless; no TOML begins with a brace.
-        return text.lstrip().startswith("{")
-
-
-def _not_toml(message: str, text: str) -> str:
-    """Return the message on an error of the TOML parser, with its line."""
-    reason, _, place = message.rpartition(" (at ")
-    reason = reason[:1].lower() + reason[1:]
-    found = re.fullmatch(r"line (\d+), column (\d+)\)", place)
-    lines = text.splitlines() or [""]
-    if found is None:
-        return f"line {len(lines)}, at the end: not valid TOML: {reason}"
-    number, column = int(found[1]), int(found[2])
-    line = text.split("\n")[number - 1].strip()
-    shown = line if len(line) <= 60 else line[:57] + "..."
-    return f"line {number}, column {column}: not valid TOML: {reason}; in: {shown}"

@@ -28,5 +28,10 @@ def list_all(as_json: bool) -> int:
     if as_json:
         print_json(summaries)
     else:
+        unknown = ", ".join(summary["name"] for summary in summaries if summary["mass_kg"] is None)
         show(robot_table(summaries))
+        show(
+            f"unknown masses: {unknown}. Without masses there are no torques: copy the robot with tarsus robots new "
+            "my-robot --from NAME; the file says what to weigh"
+        )
     return 0
