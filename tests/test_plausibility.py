@@ -17,6 +17,7 @@ from tarsus.gait.gait import GAITS, Gait
 from tarsus.gait.path import straight_path
 from tarsus.gait.plan import plan_walk
 from tarsus.gait.stroke import max_stroke
+from tarsus.plausibility import directions, lengths, limits, masses, servos
 from tarsus.plausibility.checks import plausibility_warnings
 from tarsus.plausibility.gait_trials import NO_STROKE, try_gaits
 from tarsus.robot.file import list_robots, load_robot, robot_from_dict, robot_from_text, robot_to_dict, template_text
@@ -67,6 +68,35 @@ def test_the_table_has_all_groups_and_forty_kinds_of_mistakes():
         "magnitudes",
     }
     assert len({mistake.words for mistake in mistyped.MISTAKES}) == len(mistyped.MISTAKES)
+
+
+def test_the_page_gives_the_bounds_of_the_code():
+    def ends(bounds, factor=1):
+        return " to ".join(f"{bound * factor:g}" for bound in bounds)
+
+    rows = {
+        "length of a straight leg": f"{ends(lengths.LEG)} mm",
+        "tibia / femur": ends(lengths.TIBIA_TO_FEMUR),
+        "coxa / (femur + tibia)": f"at most {lengths.MOST_COXA:g}",
+        "distance of the coxa axes from their centre / length of a leg": ends(lengths.RADIUS_TO_LEG),
+        "body's box / extent of the coxa axes": ends(lengths.BOX_TO_MOUNTS),
+        "radius of the feet / tibia": f"at most {lengths.MOST_FOOT:g}",
+        "body height / (femur + tibia)": ends(lengths.HEIGHT_TO_REACH),
+        "swing height / (femur + tibia)": ends(lengths.SWING_TO_REACH),
+        "mass / (length of a leg)^3": f"{ends(masses.DENSITY)} kg/m^3",
+        "share of the links in the mass": f"{ends(masses.LINK_SHARE, 100)} %",
+        "stall torque / mass of a servo": f"at most {servos.MOST_TORQUE_PER_MASS:g} N m/kg",
+        "no-load speed": f"{ends(servos.SPEED)} rad/s",
+        "middle of the coxa's range": f"{ends((-limits.MOST_COXA_MIDDLE, limits.MOST_COXA_MIDDLE))} deg",
+        "middle of the femur's range": f"{ends(limits.FEMUR_MIDDLE)} deg",
+        "middle of the tibia's range": f"at most {limits.MOST_TIBIA_MIDDLE:g} deg, unless it begins below "
+        f"{limits.LEAST_TIBIA:g} deg",
+        "direction of a leg": f"outward; opposite legs are mirror images within {directions.MOST_YAW_DIFFERENCE:g} deg",
+    }
+    page = (ROOT / "docs" / "robot-check.md").read_text(encoding="utf-8")
+    table = page.partition("| value | bounds |\n|---|---|\n")[2].partition("\n\n")[0]
+    assert table.splitlines() == [f"| {value} | {bounds} |" for value, bounds in rows.items()]
+    assert f"A range of {limits.FREE_SPAN:g} deg or more" in page
 
 
 # Sound robots
