@@ -1,6 +1,7 @@
 """Scenarios as values, files and text: every form says the same, and what is wrong is told with its place."""
 
 import dataclasses
+import os
 import re
 import tomllib
 from decimal import Decimal
@@ -304,6 +305,9 @@ def test_files_that_can_not_be_read_or_written_are_told(tmp_path):
         load_scenario(tmp_path / "none.toml")
     with pytest.raises(InputError, match="can't be read: not a valid path"):
         load_scenario("\0")
+    os.mkfifo(tmp_path / "pipe.toml")
+    with pytest.raises(InputError, match="is a pipe or a device"):
+        load_scenario(tmp_path / "pipe.toml")
     with pytest.raises(InputError, match="can't be written"):
         save_scenario(Scenario(), tmp_path)
     with pytest.raises(InputError, match="can't be written: not a valid path"):

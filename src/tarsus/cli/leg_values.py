@@ -13,6 +13,7 @@ import numpy as np
 
 from tarsus.errors import UnknownNameError
 from tarsus.robot.robot import Robot
+from tarsus.robot.special_file import is_pipe_or_device
 
 if TYPE_CHECKING:
     from jaxtyping import Float
@@ -148,6 +149,8 @@ def _from_file(file: Path, what: LegValues) -> list[Any]:
 
 
 def _document(file: Path) -> Any:
+    if is_pipe_or_device(file):
+        raise click.UsageError(f"{file} is a pipe or a device; give a regular file")
     try:
         with file.open("rb") as stream:
             content = stream.read(_MAX_FILE_SIZE + 1)

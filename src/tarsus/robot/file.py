@@ -18,6 +18,7 @@ from tarsus.robot.preset_names import PRESETS, preset_names
 from tarsus.robot.problems import problems_of
 from tarsus.robot.robot import Robot
 from tarsus.robot.schema import RobotFile
+from tarsus.robot.special_file import is_pipe_or_device
 from tarsus.robot.writer import toml_string, toml_text
 
 __all__ = [
@@ -196,8 +197,7 @@ def _read(path: Path) -> str:
     if path.is_dir():
         raise RobotFileError(where, ["is a folder; a robot file is a TOML file"])
     try:
-        if path.exists() and not path.is_file():
-            # Opening a pipe would wait for a writer.
+        if is_pipe_or_device(path):
             raise RobotFileError(where, ["is a pipe or a device; a robot file is a regular file"])
         with path.open("rb") as file:
             content = file.read(_LARGEST + 1)

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from tarsus.errors import InputError
+from tarsus.robot.special_file import is_pipe_or_device
 from tarsus.robot.writer import toml_string, toml_text
 from tarsus.scenario.document import decimal_document, document_error, plain, scenario_from_document
 from tarsus.scenario.scenario import Scenario
@@ -35,6 +36,8 @@ def load_scenario(path: str | os.PathLike[str]) -> Scenario:
         If it can't be read, or something in it is wrong; a line of the message for each problem.
     """
     where = str(path)
+    if is_pipe_or_device(Path(path)):
+        raise InputError(f"{where} is a pipe or a device; a scenario is a regular file")
     try:
         with Path(path).open("rb") as file:
             content = file.read(_LARGEST + 1)
