@@ -15,7 +15,10 @@ from tarsus.cli import main as tarsus
 from tarsus.load.handbook.page import docs_page
 
 ROOT = Path(__file__).parents[1]
-PAGES = (ROOT / "README.md", *(ROOT / "docs" / name for name in ("commands.md", "walking-live.md", "firmware.md")))
+PAGES = (
+    ROOT / "README.md",
+    *(ROOT / "docs" / name for name in ("commands.md", "loads.md", "walking-live.md", "firmware.md")),
+)
 
 
 def refreshed(text: str) -> str:

@@ -141,7 +141,8 @@ def test_unwritable_file(tmp_path, name):
     assert f"{name} can't be written" in result.stderr
 
 
-def test_servos_match_size_servos():
+def test_servos_match_size_servos(monkeypatch):
+    monkeypatch.setenv("COLUMNS", "120")
     code, document = run_json("servos", "strider", *SHORT, "--factor", "1.5", "--payload", "0.1")
     motion = short_walk()
     found = joint_loads(motion.robot, motion, payload=0.1)
@@ -157,17 +158,22 @@ def test_servos_match_size_servos():
         assert candidate["name"] in text
     for advice in expected["advice"]:
         assert f"length: {advice}" in text
-    for name, reason in expected["excluded"].items():
-        assert f"excluded: {name}, as {reason}" in text
+    assert "not evaluated, as the no-load speed is unknown: HTS-35H, HTD-45H" in text
+    # The robot's servos are sufficient: nothing needs to help them.
+    assert "what helps the robot's servos" not in text
+    assert document["changes"] == []
     assert text.splitlines()[-1] == "the robot's servos are sufficient (with estimated leg.servo)"
 
 
-def test_insufficient_servos():
+def test_insufficient_servos(monkeypatch):
+    monkeypatch.setenv("COLUMNS", "120")
     result = run("servos", EXAMPLES / "burnt-mg996r.toml", *SHORT)
     assert result.exit_code == 1
     assert "LM femur (MG996R): " in result.stdout or "RM femur (MG996R): " in result.stdout
     assert "XM430-W350-T" in result.stdout
-    assert "coxa / femur / tibia: " in result.stdout
+    assert result.stdout.index("what helps the robot's servos") < result.stdout.index("sufficient servos ")
+    assert "factor: smallest stall torque over peak torque (below 1 cannot stand" in result.stdout
+    assert "thermal: largest RMS torque over 1/5 of the stall torque" in result.stdout
     assert result.stdout.splitlines()[-1] == (
         "the robot's servos are not sufficient (with estimated body.mass_kg, leg.mass_kg)"
     )
@@ -182,7 +188,39 @@ def test_continuous_rule():
     assert document["rule"] == "continuous"
     assert document["sufficient"] is (code == 0)
     text = run("servos", "strider", *SHORT, "--rule", "continuous").stdout
-    assert "kg with the continuous load limit" in text
+    assert "payload: none at the continuous load limit; " in text
+
+
+def test_advice_comes_first_with_a_factor_for_each_change_and_payload_in_plain_words(monkeypatch):
+    monkeypatch.setenv("COLUMNS", "120")
+    text = run("servos", "strider", *SHORT).stdout
+    _, document = run_json("servos", "strider", *SHORT)
+    assert document["changes"][0]["factor"] > 3
+    for change in document["changes"]:
+        assert change["text"] in text
+        assert f"{change['factor']:.2f}" in text
+    assert "Dynamixel 2.0" in text
+    at_limit = document["maximum_payload_kg"]
+    assert f"payload: none at factor 3; {at_limit:.2f} kg at the limit, factor 1.5, below which" in text
+    weak = run("servos", EXAMPLES / "burnt-5kg.toml", *SHORT).stdout
+    assert "payload: none at factor 3; none at the limit, factor 1.5" in weak
+    nearer = run_json("servos", "strider", *SHORT, "--stance-width", "-10")[1]
+    assert all(row["factor"] > 1 for row in nearer["changes"])
+
+
+def test_a_joint_that_bears_nothing_has_no_factor():
+    text = run("loads", "strider", *SHORT, "--static").stdout
+    assert "e+" not in text
+    assert "no load" in text
+    _, document = run_json("loads", "strider", *SHORT, "--static")
+    assert max(row["factor"] or 0.0 for row in document["joints"]) < 1e3
+    assert {row["text"] for row in document["joints"] if row["joint"] == "coxa"} == {"no load"}
+
+
+def test_loads_explains_its_columns():
+    text = run("loads", "strider", *SHORT).stdout
+    for column in ("of stall", "factor", "utilisation", "thermal"):
+        assert f"\n{column}: " in text
 
 
 @pytest.mark.parametrize("command", ["loads", "servos"])

@@ -70,7 +70,7 @@ def refresh_module():
     return module
 
 
-@pytest.mark.parametrize("page", ["README.md", "docs/commands.md", "docs/firmware.md"])
+@pytest.mark.parametrize("page", ["README.md", "docs/commands.md", "docs/loads.md", "docs/firmware.md"])
 def test_what_the_pages_show_is_what_is_printed(page):
     text = (DOCS.parent / page).read_text(encoding="utf-8")
     assert refresh_module().refreshed(text) == text, "run: make figures"

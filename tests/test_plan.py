@@ -350,6 +350,25 @@ def test_without_known_servos_a_walk_keeps_half_the_joint_speed_limit_of_live_wa
     assert plan_walk(robot, Gait.named("wave"), curved_path(np.pi), cycle_time=1.01 * possible, rate=200).ok
 
 
+@pytest.mark.parametrize("width", [-0.03, 0.02])
+def test_a_stance_width_moves_the_feet_away_from_their_coxa_axes(width):
+    robot = preset("strider")
+    motion = plan_walk(robot, TRIPOD, straight_path(0.2), stance_width=width)
+    usual = plan_walk(robot, TRIPOD, straight_path(0.2))
+    mounts = np.asarray(robot.mount_position)[:, :2]
+    out, usually = (np.linalg.norm(each.feet[0, :, :2] - mounts, axis=1) for each in (motion, usual))
+    np.testing.assert_allclose(out, usually + width, atol=1e-9)
+    assert np.abs(motion.angles[0, :, 0]).max() < 1e-9
+    assert motion.ok
+
+
+def test_a_stance_width_that_brings_a_foot_to_its_coxa_axis_is_refused():
+    robot = preset("strider")
+    for bad in (-0.3, math.nan, math.inf):
+        with pytest.raises(InputError, match=r"stance_width is .* and more than -0.22"):
+            plan_walk(robot, TRIPOD, straight_path(0.2), stance_width=bad)
+
+
 def test_the_default_cycle_time_is_at_least_a_second():
     motion = plan_walk(preset("strider"), TRIPOD, straight_path(0.05), stroke=0.01, swing_height=0.003)
     assert motion.cycle_time == 1

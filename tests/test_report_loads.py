@@ -6,6 +6,7 @@ import math
 import re
 from dataclasses import replace
 from io import BytesIO
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -17,13 +18,22 @@ from sample_loads import sample_loads
 from tarsus.load.loads import joint_loads
 from tarsus.load.sizing import size_servos
 from tarsus.load.supply import supply_load
-from tarsus.load.verdict import joint_verdicts
+from tarsus.load.verdict import CLASSES, joint_verdicts, severity_of
 from tarsus.report.loads_files import write_loads
 from tarsus.report.loads_page import loads_page
 from tarsus.report.loads_speed import plot_torque_speed
 from tarsus.report.loads_summary import length_advice, loads_summary, worst_of_each
-from tarsus.report.loads_table import LOAD_COLUMNS, load_bar, load_rows, loads_lines, loads_verdict
+from tarsus.report.loads_table import (
+    LEGEND,
+    LOAD_COLUMNS,
+    SEVERITY_STYLES,
+    load_bar,
+    load_rows,
+    loads_lines,
+    loads_verdict,
+)
 from tarsus.report.loads_torque import plot_torques, servo_limits
+from tarsus.report.style import SEVERITY_COLOURS
 from tarsus.robot.servo import Servo
 
 PLOTS = (plot_torques, plot_torque_speed)
@@ -146,6 +156,24 @@ def test_load_rows():
     assert (unknown["utilisation"], unknown["thermal"]) == ("unknown", "unknown")
 
 
+def test_rows_that_are_the_same_for_all_legs_become_one():
+    summary = summary_of(sample_loads())
+    alike = [row | {"leg": leg} for leg in ("LF", "LM", "LR") for row in summary["joints"][:2]]
+    alike[3] = alike[3] | {"peak_nm": 9.0}
+    rows = load_rows({**summary, "joints": alike})
+    assert [row[0] for row in rows] == ["all legs coxa", "LF femur", "LM femur", "LR femur"]
+    assert rows[0][1:] == load_rows(summary)[0][1:]
+
+
+def test_one_scale_of_colours_for_report_and_studio():
+    theme = (Path(__file__).parents[1] / "web" / "src" / "app" / "theme.css").read_text(encoding="utf-8")
+    studio = {name: re.search(rf"--{name}: (#\w+);", theme)[1] for name in ("good", "warn", "bad")}
+    assert {"good": studio["good"], "warning": studio["warn"], "bad": studio["bad"]} == SEVERITY_COLOURS
+    assert [severity_of(name) for _, name in CLASSES] == ["bad", "bad", "warning", "good"]
+    assert severity_of("unknown") == "warning"
+    assert set(SEVERITY_STYLES) == set(SEVERITY_COLOURS)
+
+
 def test_worst_of_each_joint_has_the_smallest_factor():
     verdicts = joint_verdicts(sample_loads())
     for number, worst in enumerate(worst_of_each(verdicts)):
@@ -220,7 +248,8 @@ def test_page_is_self_contained_and_complete(tmp_path):
         assert f"<li>{line}</li>" in text
     assert str(loads_verdict(summary)) in text
     assert "payload 0.2 kg" in text
-    assert 'class="verdict not-carried"' in page
+    assert 'class="verdict bad"' in page
+    assert "; ".join(LEGEND) in text
 
 
 def test_names_are_escaped():
@@ -229,6 +258,9 @@ def test_names_are_escaped():
     page = loads_page(summary_of(named), [])
     assert "<b>&" not in page
     assert "&lt;b&gt;&amp;" in page
-    assert 'class="verdict carried"' in page
+    # The strider is marginal: amber, as in the studio and in the terminal.
+    assert 'class="verdict warning"' in page
+    assert '<td class="warning">marginal</td>' in page
+    assert loads_verdict(summary_of(found)).style == "bold yellow"
     assert "with inertia" in page
     assert "quasi-static" in loads_page(summary_of(sample_loads(inertial=False)), [])

@@ -60,6 +60,7 @@ def load_values():
     yield from (loads, tarsus.supply_load(loads), tarsus.Payload(0.5))
     sizing = tarsus.size_servos(robot, loads)
     yield from (sizing, sizing.verdicts[0])
+    yield tarsus.WalkChange(text="wave gait", options={"gait": motion.gait}, factor=2.0, thermal_ratio=1.5)
     yield tarsus.contact_forces(robot, motion.angles, motion.body, motion.contacts)
     yield from (tarsus.motion_torques(robot, motion), tarsus.handbook(robot), tarsus.compare_with_statics(robot))
     yield tarsus.cycle_torques(designs(), tarsus.Gait.named("tripod"), stroke=0.03, phases=8)

@@ -10,6 +10,7 @@ import tarsus.robot.catalogue as catalogue
 from tarsus.errors import UnknownNameError
 from tarsus.robot.catalogue import list_servos, load_servo, servo_catalogue
 from tarsus.robot.schema import ServoFigures
+from tarsus.robot.servo import Servo
 
 CSV = Path(catalogue.__file__).with_name("servos.csv")
 with CSV.open(encoding="utf-8", newline="") as table:
@@ -73,6 +74,29 @@ def test_data_are_in_si_units():
 )
 def test_known_and_unknown_data(name, attribute, value):
     assert getattr(load_servo(name), attribute) == value
+
+
+@pytest.mark.parametrize(
+    ("name", "buses"),
+    [
+        ("SG90", {"PWM"}),
+        ("Savox SB-2271SG", {"PWM"}),
+        ("LX-16A", {"LewanSoul/Hiwonder"}),
+        ("STS3032", {"Feetech STS/SMS"}),
+        ("SCS15 / Waveshare SC15", {"Feetech SCS"}),
+        ("AX-12A", {"Dynamixel 1.0"}),
+        ("MX-28T/AT", {"Dynamixel 1.0", "Dynamixel 2.0"}),
+        ("XL430-W250-T", {"Dynamixel 2.0"}),
+        ("LSS-HT1", {"Lynxmotion LSS", "PWM"}),
+    ],
+)
+def test_buses(name, buses):
+    assert load_servo(name).buses == buses
+
+
+def test_every_servo_of_the_catalogue_has_a_bus():
+    assert all(servo.buses for servo in servo_catalogue().values())
+    assert Servo(name="own", stall_torque=1.0).buses == frozenset()
 
 
 def test_names_are_case_insensitive():

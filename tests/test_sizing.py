@@ -10,15 +10,16 @@ from tarsus.errors import InputError, MissingDataError, UnknownNameError
 from tarsus.load.design_changes import largest_payload, with_servos
 from tarsus.load.loads import joint_loads
 from tarsus.load.sizing import size_servos
-from tarsus.load.verdict import joint_verdicts
+from tarsus.load.verdict import joint_verdicts, sufficient_joints
 from tarsus.robot.catalogue import list_servos, load_servo
 from tarsus.robot.robot import JOINTS
 from tarsus.robot.servo import Servo
 
 
-def is_carried_with(found, servos, *, rule, safety_factor):
+def is_carried_with(found, servos, *, rule, safety_factor, supply=None):
     """Whether other servos carry the robot, computed independently."""
-    loads = joint_loads(with_servos(found.robot, servos), found.motion, inertial=found.inertial, supply=found.supply)
+    supply = found.supply if supply is None else supply
+    loads = joint_loads(with_servos(found.robot, servos), found.motion, inertial=found.inertial, supply=supply)
     return all(verdict.is_sufficient(rule) for verdict in joint_verdicts(loads, safety_factor=safety_factor))
 
 
@@ -51,33 +52,61 @@ def test_candidates_are_exactly_the_sufficient_servos(name, gait, factor, rule):
         assert candidate.robot_mass - candidate.servo_mass == pytest.approx(found.weight / 9.80665 - current)
 
 
-def test_mixed_choice_is_sufficient_and_minimal_in_each_joint():
-    found = sample_loads("burnt-mg996r")
-    sizing = size_servos(found.robot, found)
-    mixed = sizing.mixed
-    assert is_carried_with(found, mixed.servos, rule="factor", safety_factor=3.0)
-    assert mixed.servo_mass <= sizing.candidates[0].servo_mass
-    assert mixed.factor >= 3
-    assert mixed.name == " / ".join(mixed.servos[joint].name for joint in JOINTS)
-    for joint in JOINTS:
-        for name in set(list_servos()) - set(sizing.excluded):
-            if load_servo(name).mass < mixed.servos[joint].mass:
-                lighter = {**mixed.servos, joint: load_servo(name)}
-                assert not is_carried_with(found, lighter, rule="factor", safety_factor=3.0)
+@pytest.mark.parametrize(("name", "supply"), [("strider", None), ("burnt-mg996r", None), ("burnt-mg996r", 12.0)])
+def test_sets_are_of_one_bus_and_one_supply_and_minimal_in_each_joint(name, supply):
+    found = sample_loads(name, supply=supply)
+    sizing = size_servos(found.robot, found, safety_factor=2.0)
+    assert sizing.sets
+    assert len({each.name for each in (*sizing.candidates, *sizing.sets)}) == len(sizing.candidates) + len(sizing.sets)
+    masses = [each.servo_mass for each in sizing.sets]
+    assert masses == sorted(masses)
+    assert sizing.mixed.servo_mass == min(each.servo_mass for each in (*sizing.candidates, *sizing.sets))
+    for found_set in sizing.sets:
+        servos = found_set.servos
+        assert found_set.bus in frozenset.intersection(*(servo.buses for servo in servos.values()))
+        assert all(servo.supply[0] <= found_set.supply <= servo.supply[1] for servo in servos.values())
+        assert supply is None or found_set.supply == supply
+        rules = {"rule": "factor", "safety_factor": 2.0, "supply": found_set.supply}
+        assert is_carried_with(found, servos, **rules)
+        assert found_set.factor >= 2
+        if len(set(servos.values())) > 1:
+            assert found_set.name == " / ".join(servos[joint].name for joint in JOINTS)
+        for joint in JOINTS:
+            for lighter in (load_servo(name) for name in set(list_servos()) - set(sizing.excluded)):
+                on_bus = found_set.bus in lighter.buses and lighter.mass < servos[joint].mass
+                if on_bus and lighter.supply[0] <= found_set.supply <= lighter.supply[1]:
+                    assert not is_carried_with(found, {**servos, joint: lighter}, **rules)
+
+
+def test_the_lightest_set_of_the_strider_can_be_bought():
+    """One controller and one supply drive it; the lightest servo of each joint would be of three buses."""
+    found = sample_loads("strider")
+    lightest = size_servos(found.robot, found).sets[0]
+    assert lightest.name == "XL430-W250-T / MX-64T/AT / XM430-W350-T"
+    assert (lightest.bus, lightest.supply) == ("Dynamixel 2.0", 12.0)
+
+
+@pytest.mark.parametrize("rule", ["factor", "continuous"])
+@pytest.mark.parametrize("conditions", [{}, {"inertial": False}, {"supply": 5.0}])
+def test_sufficient_joints_are_those_of_the_verdicts(rule, conditions):
+    for name in ("strider", "burnt-5kg"):
+        found = sample_loads(name, **conditions)
+        expected = [verdict.is_sufficient(rule) for verdict in joint_verdicts(found, safety_factor=1.7)]
+        assert sufficient_joints(found, safety_factor=1.7, rule=rule).ravel().tolist() == expected
 
 
 def test_no_sufficient_servo():
     found = sample_loads("burnt-5kg")
     sizing = size_servos(found.robot, found, safety_factor=30.0)
     assert sizing.candidates == ()
-    assert sizing.mixed is None
+    assert (sizing.sets, sizing.mixed) == ((), None)
     assert not sizing.ok
 
 
 def test_servos_of_another_voltage_are_excluded():
     found = sample_loads("burnt-mg996r", supply=6.0)
     sizing = size_servos(found.robot, found, safety_factor=1.0)
-    assert sizing.excluded["AX-12A"] == "it is rated for 9 to 12 V, the supply is 6 V"
+    assert sizing.excluded["AX-12A"] == "the rated supply is 9 to 12 V, the supply is 6 V"
     assert "DS3218" not in sizing.excluded
 
 

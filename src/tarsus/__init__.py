@@ -77,6 +77,7 @@ if TYPE_CHECKING:
     from tarsus.load.supply import SupplyLoad, supply_load
     from tarsus.load.torque import joint_torques
     from tarsus.load.verdict import JointVerdict, joint_verdicts
+    from tarsus.load.walk_changes import WalkChange, walk_changes
     from tarsus.plausibility.checks import plausibility_warnings
     from tarsus.plausibility.gait_trials import GaitTrial, try_gaits
     from tarsus.plausibility.warning import PlausibilityWarning
@@ -163,6 +164,7 @@ _HOMES = {
     "tarsus.load.supply": ("SupplyLoad", "supply_load"),
     "tarsus.load.torque": ("joint_torques",),
     "tarsus.load.verdict": ("JointVerdict", "joint_verdicts"),
+    "tarsus.load.walk_changes": ("WalkChange", "walk_changes"),
     "tarsus.plausibility.checks": ("plausibility_warnings",),
     "tarsus.plausibility.gait_trials": ("GaitTrial", "try_gaits"),
     "tarsus.plausibility.warning": ("PlausibilityWarning",),
@@ -241,6 +243,7 @@ __all__ = [
     "TarsusError",
     "UnknownNameError",
     "UnreachableError",
+    "WalkChange",
     "WalkController",
     "__version__",
     "animate",
@@ -308,6 +311,7 @@ __all__ = [
     "total_mass",
     "try_gaits",
     "twist_path",
+    "walk_changes",
 ]
 
 

@@ -57,7 +57,7 @@ def loads(
     from tarsus.load.loads import joint_loads
     from tarsus.load.supply import supply_load
     from tarsus.report.loads_summary import loads_summary
-    from tarsus.report.loads_table import loads_lines, loads_table, loads_verdict
+    from tarsus.report.loads_table import LEGEND, loads_lines, loads_table, loads_verdict
 
     if out is not None:
         make_folder(out)
@@ -66,7 +66,7 @@ def loads(
     currents = supply_load(joint_load_results, capacity=capacity)
     summary = loads_summary(joint_load_results, currents)
     if not as_json:
-        show(loads_table(summary), *loads_lines(summary), loads_verdict(summary))
+        show(loads_table(summary), *LEGEND, "", *loads_lines(summary), loads_verdict(summary))
     files: list[Path] = []
     if out is not None:
         from tarsus.report.loads_files import write_loads

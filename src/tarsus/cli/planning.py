@@ -13,7 +13,7 @@ from tarsus.gait.path import BodyPath, curved_path, straight_path, twist_path
 from tarsus.gait.plan import plan_walk
 from tarsus.robot.file import load_robot
 
-__all__ = ["path_of", "plan"]
+__all__ = ["path_of", "plan", "with_changes"]
 
 _DISTANCE = 500.0
 # Options that determine the path, with the options that depend on them.
@@ -49,9 +49,25 @@ def plan(name: str, options: dict[str, Any]) -> Motion:
         path,
         cycle_time=options["cycle"],
         body_tilt=(math.radians(tilt[0]), math.radians(tilt[1])),
+        stance_width=options["stance_width"] / 1000,
         rate=options["rate"],
         **lengths,
     )
+
+
+def with_changes(options: dict[str, Any], changes: dict[str, Any]) -> dict[str, Any]:
+    """Return the options with changes of a walk.
+
+    Parameters
+    ----------
+    options : dict
+        Options of `tarsus walk`, None if not given.
+    changes : dict
+        Options of a `WalkChange`.
+    """
+    changed = {key: value.name if isinstance(value, Gait) else value * 1000 for key, value in changes.items()}
+    changed["stance_width"] = options["stance_width"] + changed.get("stance_width", 0.0)
+    return {**options, **changed}
 
 
 def path_of(options: dict[str, Any]) -> BodyPath:

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import click
 
 from tarsus.cli.output import print_json, show
 from tarsus.cli.values import examples, json_option, number_option, robot_argument
 from tarsus.cli.walk_options import walk_options
+
+if TYPE_CHECKING:
+    from tarsus.gait.motion import Motion
 
 __all__ = ["servos"]
 
@@ -45,30 +48,41 @@ def servos(
     as_json: bool,
     **options: Any,
 ) -> int:
-    """Judge the robot's servos for a walk, and find sufficient ones in the catalogue.
+    """Judge the robot's servos for a walk, say what would help them, and find sufficient ones in the catalogue.
 
-    Every servo of the catalogue is evaluated with its own mass. The exit code is 0 only if the robot's servos satisfy
+    First come changes of the walk that raise the safety factor of the robot's own servos: a higher body, feet nearer to
+    it, shorter strokes, another gait. Then every servo of the catalogue is evaluated with its own mass, in all joints
+    and in sets of one bus and one supply voltage. The exit code is 0 only if the robot's servos satisfy
     the rule and are fast enough, and the robot does not tip.
     """
     from rich.text import Text
 
-    from tarsus.cli.planning import plan
+    from tarsus.cli.planning import plan, with_changes
     from tarsus.load.loads import joint_loads
     from tarsus.load.sizing import size_servos
+    from tarsus.load.walk_changes import walk_changes
     from tarsus.report.loads_summary import servos_summary
-    from tarsus.report.loads_table import candidate_table, on_estimates, servo_lines
+    from tarsus.report.loads_table import SERVO_LEGEND, candidate_table, change_table, on_estimates, servo_lines
+
+    def plan_with(**changes: Any) -> Motion:
+        return plan(robot, with_changes(options, changes))
 
     motion = plan(robot, options)
     loads = joint_loads(motion.robot, motion, payload=payload, supply=supply, inertial=not static)
-    summary = servos_summary(size_servos(motion.robot, loads, safety_factor=factor, rule=rule), loads)
+    sizing = size_servos(motion.robot, loads, safety_factor=factor, rule=rule)
+    changes = () if sizing.ok else walk_changes(loads, plan_with, safety_factor=factor)
+    summary = servos_summary(sizing, loads, changes)
     sufficient = bool(summary["sufficient"] and summary["balanced"])
     if as_json:
         print_json(summary)
         return 0 if sufficient else 1
     show(*(f"{row['leg']} {row['joint']} ({row['servo'] or 'no servo'}): {row['text']}" for row in summary["joints"]))
-    table = candidate_table(summary)
-    show(table if table.row_count else "no servo of the catalogue is sufficient in all joints")
-    show(*servo_lines(summary))
+    for table in (change_table(summary), candidate_table(summary)):
+        if table.row_count:
+            show(table)
+    if not summary["candidates"] and not summary["sets"]:
+        show("no servo of the catalogue is sufficient in all joints")
+    show(*SERVO_LEGEND, "", *servo_lines(summary))
     tipping = "" if summary["balanced"] else "; the robot tips"
     text = "the robot's servos are sufficient" if sufficient else f"the robot's servos are not sufficient{tipping}"
     text += on_estimates(summary)

@@ -47,6 +47,7 @@ def plan_walk(  # noqa: PLR0913 - the options of a walk, all of them with defaul
     body_height: float | None = None,
     swing_height: float | None = None,
     body_tilt: Sequence[float] = (0.0, 0.0),
+    stance_width: float = 0.0,
     foot_distance: float | None = None,
     rate: float = 100.0,
     strict: bool = True,
@@ -82,6 +83,8 @@ def plan_walk(  # noqa: PLR0913 - the options of a walk, all of them with defaul
         Swing height [m]. Default: the robot's.
     body_tilt : (roll, pitch)
         Tilt of the body relative to the ground [rad].
+    stance_width : float
+        How much farther out than the default stance the feet rest [m]; negative for nearer.
     foot_distance : float, optional
         Least distance between two feet [m]. Default: two foot radii and 10 mm.
     rate : float
@@ -114,6 +117,7 @@ def plan_walk(  # noqa: PLR0913 - the options of a walk, all of them with defaul
         swing_height=swing_height,
         body_tilt=body_tilt,
         foot_distance=foot_distance,
+        stance_width=stance_width,
     )
     assumed = setup.assumed(body_height, swing_height)
     stroke, speed, cycle_time = (

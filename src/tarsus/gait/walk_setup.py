@@ -115,6 +115,7 @@ class WalkSetup:
         swing_height: float | None,
         body_tilt: Sequence[float],
         foot_distance: float | None,
+        stance_width: float | None = None,
     ) -> Self:
         """Check the settings given, and complete them with the robot's defaults.
 
@@ -122,6 +123,8 @@ class WalkSetup:
         ----------
         robot, gait, body_height, swing_height, body_tilt, foot_distance
             As the attributes; None for the robot's default.
+        stance_width : float, optional
+            How much farther out than the default stance the feet rest [m]. Default: 0.
 
         Raises
         ------
@@ -143,7 +146,7 @@ class WalkSetup:
         height = default_body_height(robot) if body_height is None else body_height
         if not abs(height) <= _MOST:
             raise InputError(f"body_height is {height} m; it must be a finite number, at most {_MOST:g} m")
-        stance = default_stance(robot, height, swing_height=swing_height)
+        stance = _widened(robot, default_stance(robot, height, swing_height=swing_height), stance_width or 0.0)
         return cls(
             robot=robot,
             gait=gait,
@@ -195,6 +198,22 @@ class WalkSetup:
         pose = np.zeros(3) if planar_pose is None else planar_pose
         body = tilted_body(pose, body_height=np.asarray(self.body_height), body_tilt=self.body_tilt)
         return inverse_kinematics(self.robot, feet, body)
+
+
+def _widened(robot: Robot, stance: Float[np.ndarray, "legs 3"], width: float) -> Float[np.ndarray, "legs 3"]:
+    """Return the stance with every foot farther from its coxa axis by a width [m]."""
+    if width == 0:
+        return stance
+    out = (stance - np.asarray(robot.mount_position))[:, :2]
+    distance = np.hypot(*out.T)
+    if not -distance.min() < width <= _MOST:
+        raise InputError(
+            f"stance_width is {width:g} m; it must be a finite number, at most {_MOST:g} m, and more than "
+            f"{-distance.min():.4f} m, where a foot is at its coxa axis"
+        )
+    wider = stance.copy()
+    wider[:, :2] += width * out / np.maximum(distance, 1e-9)[:, None]
+    return wider
 
 
 def _tilt(body_tilt: Sequence[float]) -> tuple[float, float]:

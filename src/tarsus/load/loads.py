@@ -23,8 +23,10 @@ from tarsus.robot.robot import JOINTS, Robot
 if TYPE_CHECKING:
     from jaxtyping import Float, Int
 
-__all__ = ["JointLoads", "joint_loads"]
+__all__ = ["NO_LOAD", "JointLoads", "joint_loads"]
 
+NO_LOAD = 1e-9
+"""Peak torque up to which a joint bears no load [N m]: rounding of the statics."""
 
 # Rounding of a margin [m]: a load on the edge of the support polygon is in equilibrium.
 _ROUNDING = 1e-9
@@ -162,8 +164,10 @@ class JointLoads:
     @cached_property
     def factor(self) -> Float[np.ndarray, "legs 3"]:
         """Safety factor: stall torque over peak torque ``(legs, 3)``; NaN without a servo, infinite without load."""
-        with np.errstate(divide="ignore"):
-            return _floats(self.stall_torque / self.peak)
+        # A peak torque below rounding is no load: its factor would be 1e33.
+        loaded = self.peak > NO_LOAD
+        factor = self.stall_torque / np.where(loaded, self.peak, 1.0)
+        return _floats(np.where(loaded, factor, self.stall_torque * np.inf))
 
     @cached_property
     def utilisation(self) -> Float[np.ndarray, "n legs 3"]:

@@ -20,6 +20,7 @@ from tarsus.load.verdict import (
     Rule,
     joint_verdicts,
     require_rule,
+    sufficient_joints,
 )
 from tarsus.representation import represented
 from tarsus.robot.catalogue import servo_catalogue
@@ -53,6 +54,10 @@ class Candidate:
         Mass of all servos [kg].
     robot_mass : float
         Mass of the robot with these servos, without payload [kg].
+    bus : str
+        Bus that all of the servos run on; of several, the names with commas between them.
+    supply : float or None
+        Supply voltage at which they suffice [V]; None if unknown.
     """
 
     servos: Mapping[str, Servo]
@@ -60,6 +65,8 @@ class Candidate:
     thermal_ratio: float
     servo_mass: float
     robot_mass: float
+    bus: str
+    supply: float | None
 
     @property
     def name(self) -> str:
@@ -68,7 +75,7 @@ class Candidate:
         return names[0] if len(set(names)) == 1 else " / ".join(names)
 
 
-@represented("safety_factor", "rule", "payload", "maximum_payload", "candidates", "mixed", "verdicts", "assumed")
+@represented("safety_factor", "rule", "payload", "maximum_payload", "candidates", "sets", "verdicts", "assumed")
 @dataclass(frozen=True, kw_only=True)
 class ServoSizing:
     """Result of sizing the servos of a robot for a motion.
@@ -79,8 +86,9 @@ class ServoSizing:
         Verdicts on the robot's servos, leg by leg.
     candidates : tuple of Candidate
         Servos of the catalogue that suffice in all joints, the lightest first.
-    mixed : Candidate or None
-        The lightest sufficient servo for each of coxa, femur and tibia; None if there is none.
+    sets : tuple of Candidate
+        For each bus, the lightest sufficient servo for each of coxa, femur and tibia at one supply voltage, the
+        lightest set first; without the sets of one servo that `candidates` contains.
     excluded : mapping
         Servos of the catalogue that could not be evaluated, and the reasons.
     payload : float or None
@@ -99,7 +107,7 @@ class ServoSizing:
 
     verdicts: tuple[JointVerdict, ...]
     candidates: tuple[Candidate, ...]
-    mixed: Candidate | None
+    sets: tuple[Candidate, ...]
     excluded: Mapping[str, str]
     payload: float | None
     maximum_payload: float | None
@@ -112,6 +120,11 @@ class ServoSizing:
     def ok(self) -> bool:
         """Whether the robot's servos suffice."""
         return all(verdict.is_sufficient(self.rule) for verdict in self.verdicts)
+
+    @property
+    def mixed(self) -> Candidate | None:
+        """The lightest of `candidates` and `sets`; None if there is none."""
+        return min((*self.candidates, *self.sets), key=_candidate_order, default=None)
 
     @property
     def worst(self) -> JointVerdict:
@@ -155,7 +168,7 @@ def size_servos(
     return ServoSizing(
         verdicts=verdicts,
         candidates=candidates,
-        mixed=evaluation.mixed(excluded),
+        sets=evaluation.sets(candidates, excluded),
         excluded=excluded,
         payload=largest_payload(base, safety_factor=safety_factor, rule=rule) if known else None,
         maximum_payload=largest_payload(base, safety_factor=BURNOUT_FACTOR) if known else None,
@@ -185,9 +198,11 @@ class _Evaluation:
     safety_factor: float
     rule: Rule
 
-    def loads_for(self, servos: Mapping[str, Servo]) -> JointLoads:
+    def loads_for(self, servos: Mapping[str, Servo], supply: float | None) -> JointLoads:
         """Return the loads with other servos, their masses included."""
-        return _reloaded(self.base, with_servos(self.base.robot, servos))
+        conditions = {**self.base.conditions, "supply": supply}
+        robot = with_servos(self.base.robot, servos)
+        return joint_loads(robot, self.base.motion, payload=self.base.payload, **conditions)
 
     def verdicts(self, loads: JointLoads) -> tuple[JointVerdict, ...]:
         return joint_verdicts(loads, safety_factor=self.safety_factor)
@@ -200,11 +215,14 @@ class _Evaluation:
             thermal_ratio=max(v.thermal_ratio for v in verdicts),
             servo_mass=sum(loads.robot.legs * (servos[joint].mass or 0.0) for joint in JOINTS),
             robot_mass=float(total_mass(loads.robot)),
+            bus=", ".join(sorted(frozenset.intersection(*(servo.buses for servo in servos.values())))),
+            supply=servos[JOINTS[0]].torque_at if loads.supply is None else loads.supply,
         )
 
     def insufficient(self, loads: JointLoads) -> set[str]:
         """Return the joints (coxa, femur, tibia) whose servo is insufficient in some leg."""
-        return {verdict.joint for verdict in self.verdicts(loads) if not verdict.is_sufficient(self.rule)}
+        sufficient = sufficient_joints(loads, safety_factor=self.safety_factor, rule=self.rule)
+        return {JOINTS[joint] for joint in np.flatnonzero(~sufficient.all(axis=0)).tolist()}
 
     def candidates(self) -> tuple[tuple[Candidate, ...], dict[str, str]]:
         """Evaluate each servo of the catalogue in all joints; return the sufficient ones and the excluded ones."""
@@ -216,42 +234,66 @@ class _Evaluation:
                 excluded[name] = reason
                 continue
             servos = dict.fromkeys(JOINTS, servo)
-            loads = self.loads_for(servos)
+            loads = self.loads_for(servos, self.base.supply)
             if not self.insufficient(loads):
                 suitable.append(self.candidate(servos, loads))
-        return tuple(sorted(suitable, key=lambda c: (c.servo_mass, c.name))), excluded
+        return tuple(sorted(suitable, key=_candidate_order)), excluded
 
     def _exclusion_reason(self, servo: Servo) -> str | None:
         volts = self.base.supply
         if servo.no_load_speed is None:
-            return "its no-load speed is unknown"
+            return "the no-load speed is unknown"
         if servo.mass is None:
-            return "its mass is unknown"
+            return "the mass is unknown"
         if volts is not None and servo.supply is not None and not servo.supply[0] <= volts <= servo.supply[1]:
-            return f"it is rated for {servo.supply[0]:g} to {servo.supply[1]:g} V, the supply is {volts:g} V"
+            return f"the rated supply is {servo.supply[0]:g} to {servo.supply[1]:g} V, the supply is {volts:g} V"
         return None
 
-    def mixed(self, excluded: Mapping[str, str]) -> Candidate | None:
-        """Choose the lightest sufficient servo for each of coxa, femur and tibia.
+    def sets(self, candidates: tuple[Candidate, ...], excluded: Mapping[str, str]) -> tuple[Candidate, ...]:
+        """Return the lightest sufficient set of each bus; those of one servo only if `candidates` lacks it."""
+        servos = sorted((s for name, s in servo_catalogue().items() if name not in excluded), key=_mass_order)
+        uniform = {candidate.name for candidate in candidates}
+        lightest = []
+        for bus in sorted(frozenset.union(*(servo.buses for servo in servos))):
+            on_bus = [servo for servo in servos if bus in servo.buses]
+            found = [self.set_at(supply, on_bus) for supply in self.supplies(on_bus)]
+            best = min((each for each in found if each is not None), key=_candidate_order, default=None)
+            if best is not None and best.name not in uniform:
+                lightest.append(best)
+        # Servos that run on two buses make the same set on both.
+        return tuple(sorted({each.name: each for each in lightest}.values(), key=_candidate_order))
+
+    def supplies(self, servos: list[Servo]) -> list[float]:
+        """Return the supply voltages to evaluate: the one given, or those of the ratings."""
+        if self.base.supply is not None:
+            return [self.base.supply]
+        return sorted({servo.torque_at for servo in servos if servo.torque_at is not None})
+
+    def set_at(self, supply: float, servos: list[Servo]) -> Candidate | None:
+        """Choose the lightest sufficient servo for each of coxa, femur and tibia at a supply voltage.
 
         All joints start with the lightest servo. An insufficient one is replaced by the next heavier one that suffices
         for the current loads, and the loads are recomputed, until all suffice. As heavier servos only increase the
         loads, no chosen servo is heavier than necessary.
         """
-        by_mass = sorted((s for name, s in servo_catalogue().items() if name not in excluded), key=_mass_order)
-        remaining = {joint: iter(by_mass) for joint in JOINTS}
-        servos = {joint: next(candidates, None) for joint, candidates in remaining.items()}
-        while None not in servos.values():
-            fitted = {joint: servo for joint, servo in servos.items() if servo is not None}
-            loads = self.loads_for(fitted)
+        usable = [s for s in servos if s.supply is None or s.supply[0] <= supply <= s.supply[1]]
+        remaining = {joint: iter(usable) for joint in JOINTS}
+        chosen = {joint: next(each, None) for joint, each in remaining.items()}
+        while None not in chosen.values():
+            fitted = {joint: servo for joint, servo in chosen.items() if servo is not None}
+            loads = self.loads_for(fitted, supply)
             insufficient = self.insufficient(loads)
             if not insufficient:
                 return self.candidate(fitted, loads)
             for joint in insufficient:
-                servos[joint] = next(
+                chosen[joint] = next(
                     (s for s in remaining[joint] if joint not in self.insufficient(_with_servo(loads, s))), None
                 )
         return None
+
+
+def _candidate_order(candidate: Candidate) -> tuple[float, str]:
+    return candidate.servo_mass, candidate.name
 
 
 def _with_servo(loads: JointLoads, servo: Servo) -> JointLoads:

@@ -4,13 +4,18 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
 
 from tarsus.errors import InputError, UnknownNameError
-from tarsus.load.loads import JointLoads
+from tarsus.load.loads import NO_LOAD, JointLoads
 from tarsus.representation import represented
 from tarsus.robot.robot import JOINTS
 from tarsus.robot.servo import Servo
+
+if TYPE_CHECKING:
+    from jaxtyping import Bool
 
 __all__ = [
     "BURNOUT_FACTOR",
@@ -23,6 +28,8 @@ __all__ = [
     "class_of",
     "joint_verdicts",
     "require_rule",
+    "severity_of",
+    "sufficient_joints",
 ]
 
 Rule = Literal["factor", "continuous"]
@@ -44,6 +51,19 @@ CLASSES = ((1.0, "cannot stand"), (BURNOUT_FACTOR, "stalls or burns"), (SAFETY_F
 
 A marginal robot walks, but its servos run warm and have no reserve.
 """
+
+
+def severity_of(name: str) -> Literal["good", "warning", "bad"]:
+    """Return the severity of a class, which determines its colour in reports and in the studio.
+
+    Parameters
+    ----------
+    name : str
+        Name of a class in `CLASSES`, or ``"unknown"``.
+    """
+    if name in ("marginal", "unknown"):
+        return "warning"
+    return "good" if name == "good" else "bad"
 
 
 def class_of(factor: float) -> str:
@@ -116,7 +136,7 @@ class JointVerdict:
     @property
     def factor(self) -> float:
         """Safety factor: stall torque over peak torque; NaN if no servo is known."""
-        return self.stall_torque / self.peak if self.peak > 0 else self.stall_torque * math.inf
+        return self.stall_torque / self.peak if self.peak > NO_LOAD else self.stall_torque * math.inf
 
     @property
     def class_name(self) -> str:
@@ -192,6 +212,28 @@ class JointVerdict:
         if self.within_continuous_limit:
             return ""
         return f"; runs warm: rms torque {self.thermal_ratio:.1f} times its continuous limit (1/5 of stall)"
+
+
+def sufficient_joints(
+    loads: JointLoads, *, safety_factor: float = SAFETY_FACTOR, rule: Rule = "factor"
+) -> Bool[np.ndarray, "legs 3"]:
+    """Return for every joint whether its servo satisfies a sizing rule and is fast enough.
+
+    As `JointVerdict.is_sufficient`, for all joints at once.
+
+    Parameters
+    ----------
+    loads : JointLoads
+        Joint loads.
+    safety_factor : float
+        Required stall torque over peak torque.
+    rule : {"factor", "continuous"}
+        Safety factor, or continuous load limit.
+    """
+    fast = (loads.utilisation.max(0) <= 1) & (loads.peak_speed <= loads.no_load_speed)
+    if rule == "factor":
+        return np.asarray((loads.factor >= safety_factor) & fast)
+    return np.asarray((loads.rms <= CONTINUOUS_FRACTION * loads.stall_torque) & fast)
 
 
 def joint_verdicts(loads: JointLoads, *, safety_factor: float = SAFETY_FACTOR) -> tuple[JointVerdict, ...]:

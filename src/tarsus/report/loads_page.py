@@ -8,7 +8,9 @@ from html import escape
 from pathlib import Path
 from typing import Any
 
-from tarsus.report.loads_table import LOAD_COLUMNS, load_rows, loads_lines, loads_verdict
+from tarsus.load.verdict import severity_of
+from tarsus.report.loads_table import LEGEND, LOAD_COLUMNS, is_worst, load_rows, loads_lines, loads_verdict
+from tarsus.report.style import SEVERITY_COLOURS
 
 __all__ = ["loads_page"]
 
@@ -22,15 +24,12 @@ th, td { padding: .15rem .6rem; text-align: left; white-space: nowrap; }
 th { border-bottom: 1px solid #222; } tr.worst td { font-weight: bold; }
 td.number { text-align: right; } td.bar { font-family: monospace; }
 .verdict { font-size: 1.2rem; font-weight: bold; padding: .4rem .8rem; border-left: .4rem solid; }
-.carried { border-color: #009E73; } .not-carried { border-color: #b00020; }
 .wide { overflow-x: auto; }
-"""
-
-_LEGEND = (
-    "factor: stall torque over peak torque (below 1 cannot stand, below 1.5 stalls or burns, below 3 marginal). "
-    "utilisation: of the servo's torque-speed line, from stall torque to no-load speed. thermal: root mean square "
-    "torque over 1/5 of the stall torque, the limit of the continuous load."
+""" + "\n".join(
+    f".{severity} {{ border-color: {colour}; }} td.{severity} {{ color: {colour}; }}"
+    for severity, colour in SEVERITY_COLOURS.items()
 )
+
 _TITLES = {"torques": "Torque over time", "torque-speed": "Torque over speed"}
 _NUMBERS = {"peak N m", "RMS N m", "factor", "deg/s", "utilisation", "thermal"}
 
@@ -46,15 +45,15 @@ def loads_page(summary: dict[str, Any], figures: Sequence[Path]) -> str:
         PNG files.
     """
     title = f"{summary['robot']}: joint loads"
-    state = "carried" if summary["carried"] else "not-carried"
+    severity = severity_of(summary["class"]) if summary["balanced"] else "bad"
     sections = [
         f"<h1>{escape(title)}</h1>",
         f"<p>{escape(_walk(summary))}</p>",
-        f'<p class="verdict {state}">{escape(str(loads_verdict(summary)))}</p>',
+        f'<p class="verdict {severity}">{escape(str(loads_verdict(summary)))}</p>',
         *(_figure(path) for path in figures),
         "<h2>Every joint</h2>",
         f'<div class="wide">{_table(summary)}</div>',
-        f"<p>{escape(_LEGEND)}</p>",
+        f"<p>{escape('; '.join(LEGEND))}</p>",
         "<h2>Details</h2>",
         f"<ul>{''.join(f'<li>{escape(line)}</li>' for line in loads_lines(summary))}</ul>",
     ]
@@ -87,10 +86,12 @@ def _table(summary: dict[str, Any]) -> str:
     rows = []
     for row in load_rows(summary):
         cells = "".join(_cell(column, text) for column, text in zip(LOAD_COLUMNS, row, strict=True))
-        rows.append(f'<tr class="worst">{cells}</tr>' if row[0] in summary["worst"] else f"<tr>{cells}</tr>")
+        rows.append(f'<tr class="worst">{cells}</tr>' if is_worst(row, summary) else f"<tr>{cells}</tr>")
     return f"<table>\n<tr>{head}</tr>\n" + "\n".join(rows) + "\n</table>"
 
 
 def _cell(column: str, text: str) -> str:
     kind = ' class="number"' if column in _NUMBERS else ' class="bar"' if column == "of stall" else ""
+    if column == "class":
+        kind = f' class="{severity_of(text)}"'
     return f"<td{kind}>{escape(text)}</td>"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,7 @@ from tarsus.load.loads import JointLoads
 from tarsus.load.sizing import Candidate, ServoSizing
 from tarsus.load.supply import SupplyLoad
 from tarsus.load.verdict import BURNOUT_FACTOR, JointVerdict, joint_verdicts
+from tarsus.load.walk_changes import WalkChange
 from tarsus.robot.estimates import estimated_keys
 from tarsus.robot.robot import JOINTS
 
@@ -80,7 +82,7 @@ def worst_of_each(verdicts: tuple[JointVerdict, ...]) -> list[JointVerdict]:
     return [min((v for v in verdicts if v.joint == joint), key=lambda v: (_rank(v), -v.peak)) for joint in JOINTS]
 
 
-def servos_summary(sizing: ServoSizing, loads: JointLoads) -> dict[str, Any]:
+def servos_summary(sizing: ServoSizing, loads: JointLoads, changes: Sequence[WalkChange] = ()) -> dict[str, Any]:
     """Return a servo sizing as plain numbers with units in the keys; None if unknown.
 
     Parameters
@@ -89,6 +91,8 @@ def servos_summary(sizing: ServoSizing, loads: JointLoads) -> dict[str, Any]:
         Result of `size_servos`.
     loads : JointLoads
         Joint loads of the sizing.
+    changes : sequence of WalkChange
+        What would help the robot's servos, from `walk_changes`.
     """
     return {
         "robot": loads.robot.name,
@@ -99,7 +103,11 @@ def servos_summary(sizing: ServoSizing, loads: JointLoads) -> dict[str, Any]:
         "balanced": loads.balanced,
         "estimated": list(estimated_keys(loads.robot)),
         "joints": [_joint(verdict, sizing) for verdict in worst_of_each(sizing.verdicts)],
+        "changes": [
+            {"text": change.text, "factor": change.factor, "thermal_ratio": change.thermal_ratio} for change in changes
+        ],
         "candidates": [_candidate(candidate) for candidate in sizing.candidates],
+        "sets": [_candidate(candidate) for candidate in sizing.sets],
         "mixed": None if sizing.mixed is None else _candidate(sizing.mixed),
         "largest_payload_kg": sizing.payload,
         "maximum_payload_kg": sizing.maximum_payload,
@@ -136,6 +144,8 @@ def _candidate(candidate: Candidate) -> dict[str, Any]:
         "servos": {joint: servo.name for joint, servo in candidate.servos.items()},
         "factor": _number(candidate.factor),
         "thermal_ratio": candidate.thermal_ratio,
+        "bus": candidate.bus,
+        "supply_v": candidate.supply,
         "servo_mass_kg": candidate.servo_mass,
         "robot_mass_kg": candidate.robot_mass,
     }

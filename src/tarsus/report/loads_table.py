@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
-from tarsus.load.verdict import BURNOUT_FACTOR
+from tarsus.load.verdict import BURNOUT_FACTOR, class_of, severity_of
 from tarsus.report.tables import number, table_of
 
 if TYPE_CHECKING:
@@ -13,7 +13,13 @@ if TYPE_CHECKING:
     from rich.table import Table
 
 __all__ = [
+    "LEGEND",
+    "LOAD_COLUMNS",
+    "SERVO_LEGEND",
+    "SEVERITY_STYLES",
     "candidate_table",
+    "change_table",
+    "is_worst",
     "load_bar",
     "load_rows",
     "loads_lines",
@@ -35,8 +41,30 @@ LOAD_COLUMNS = (
     "utilisation",
     "thermal",
 )
-"""Column headers of `load_rows`; "utilisation" is of the torque-speed line, "thermal" the RMS over 1/5 of stall."""
+"""Column headers of `load_rows`; `LEGEND` explains them."""
 
+_FACTOR = "stall torque over peak torque (below 1 cannot stand, below 1.5 stalls or burns, below 3 marginal)"
+_THERMAL = "RMS torque over 1/5 of the stall torque, the limit of continuous load"
+LEGEND = (
+    "of stall: peak torque over stall torque, full at 100 %",
+    f"factor: {_FACTOR}",
+    "utilisation: of the servo's torque-speed line, from stall torque to no-load speed",
+    f"thermal: {_THERMAL}",
+)
+"""What the columns mean, a line for each."""
+
+SERVO_LEGEND = (
+    "servos: one for all joints, or those of coxa / femur / tibia, on one bus and at one supply voltage",
+    f"factor: smallest {_FACTOR}",
+    f"thermal: largest {_THERMAL}",
+)
+"""What the columns of `change_table` and `candidate_table` mean, a line for each."""
+
+SEVERITY_STYLES = {"good": "green", "warning": "yellow", "bad": "red"}
+"""Colour of each severity in the terminal."""
+
+_ALL_LEGS = "all legs"
+_CLASS = LOAD_COLUMNS.index("class")
 _BAR = 10
 _EIGHTHS = " ▏▎▍▌▋▊▉█"
 
@@ -60,39 +88,64 @@ def load_bar(fraction: float | None, *, width: int = _BAR) -> str:
 
 
 def load_rows(summary: dict[str, Any]) -> list[tuple[str, ...]]:
-    """Return a row of text for each joint, with the columns `LOAD_COLUMNS`.
+    """Return a row of text for each joint, with the columns `LOAD_COLUMNS`; one for all legs where they are alike.
 
     Parameters
     ----------
     summary : dict
         Summary from `tarsus.report.loads_summary.loads_summary`.
     """
-    rows: list[tuple[str, ...]] = []
-    for joint in summary["joints"]:
-        factor = joint["factor"]
-        fraction = None if joint["stall_nm"] is None else joint["peak_nm"] / joint["stall_nm"]
-        rows.append(
-            (
-                f"{joint['leg']} {joint['joint']}",
-                joint["servo"] or "none",
-                f"{joint['peak_nm']:.3f}",
-                f"{joint['rms_nm']:.3f}",
-                load_bar(fraction),
-                "" if factor is None else f"{factor:.2f}",
-                joint["class"],
-                f"{math.degrees(joint['peak_speed_rad_s']):.0f}",
-                _percent(joint["utilisation"]),
-                _percent(joint["thermal_ratio"]),
-            )
-        )
-    return rows
+    rows = [(joint["joint"], _row(joint)) for joint in summary["joints"]]
+    texts: dict[str, set[tuple[str, ...]]] = {}
+    for name, row in rows:
+        texts.setdefault(name, set()).add(row[1:])
+    merged = {name: f"{_ALL_LEGS} {name}" for name, found in texts.items() if len(found) == 1}
+    return list(dict.fromkeys((merged.get(name, row[0]), *row[1:]) for name, row in rows))
+
+
+def is_worst(row: tuple[str, ...], summary: dict[str, Any]) -> bool:
+    """Return whether a row of `load_rows` is of the joint with the smallest factor of its kind.
+
+    Parameters
+    ----------
+    row : tuple of str
+        The row.
+    summary : dict
+        Summary from `tarsus.report.loads_summary.loads_summary`.
+    """
+    return row[0] in summary["worst"] or row[0].startswith(_ALL_LEGS)
+
+
+def _row(joint: dict[str, Any]) -> tuple[str, ...]:
+    fraction = None if joint["stall_nm"] is None else joint["peak_nm"] / joint["stall_nm"]
+    return (
+        f"{joint['leg']} {joint['joint']}",
+        joint["servo"] or "none",
+        f"{joint['peak_nm']:.3f}",
+        f"{joint['rms_nm']:.3f}",
+        load_bar(fraction),
+        _factor(joint),
+        joint["class"],
+        f"{math.degrees(joint['peak_speed_rad_s']):.0f}",
+        _percent(joint["utilisation"]),
+        _percent(joint["thermal_ratio"]),
+    )
+
+
+def _factor(joint: dict[str, Any]) -> str:
+    """Return the safety factor as text; a servo that bears nothing has none."""
+    if joint["factor"] is None:
+        return "" if joint["stall_nm"] is None else "no load"
+    return f"{joint['factor']:.2f}"
 
 
 def _percent(value: float | None) -> str:
     return "unknown" if value is None else f"{value * 100:.0f} %"
 
 
-_RIGHT = {"peak N m", "RMS N m", "factor", "deg/s", "utilisation", "thermal", "servo mass", "robot mass"}
+# Payloads below this are none [kg].
+_NO_PAYLOAD = 0.005
+_RIGHT = {"supply", "peak N m", "RMS N m", "factor", "deg/s", "utilisation", "thermal", "servos kg", "robot kg"}
 
 
 def loads_table(summary: dict[str, Any]) -> Table:
@@ -104,9 +157,12 @@ def loads_table(summary: dict[str, Any]) -> Table:
         Summary from `tarsus.report.loads_summary.loads_summary`.
     """
     table = table_of(*LOAD_COLUMNS, right=_RIGHT)
+    from rich.text import Text
+
     for row in load_rows(summary):
-        name = row[0]
-        table.add_row(*row, style="bold" if name in summary["worst"] else None)
+        cells: list[str | Text] = list(row)
+        cells[_CLASS] = Text(row[_CLASS], style=SEVERITY_STYLES[severity_of(row[_CLASS])])
+        table.add_row(*cells, style="bold" if is_worst(row, summary) else None)
     return table
 
 
@@ -157,14 +213,14 @@ def loads_verdict(summary: dict[str, Any]) -> RenderableType:
     )
     name = f"{worst['leg']} {worst['joint']}"
     if summary["class"] == "unknown":
-        return Text(f"unknown: the robot file names no servo for {name}", style="bold yellow")
+        return Text(f"unknown: the robot file names no servo for {name}", style=_style("unknown"))
     if not summary["balanced"]:
         return Text(f"not carried: the robot tips; servos: {summary['class']} ({name}){estimates}", style="bold red")
     factor = "" if worst["factor"] is None else f", safety factor {worst['factor']:.2f}"
     text = f"{summary['class']}: {name}{factor}"
     if not summary["carried"]:
         return Text(f"{text}; at least {BURNOUT_FACTOR:g} is required{estimates}", style="bold red")
-    return Text(f"{text}{estimates}", style="bold green" if summary["class"] == "good" else "bold yellow")
+    return Text(f"{text}{estimates}", style=_style(summary["class"]))
 
 
 def on_estimates(summary: dict[str, Any]) -> str:
@@ -178,24 +234,44 @@ def on_estimates(summary: dict[str, Any]) -> str:
     return f" (with estimated {', '.join(summary['estimated'])})" if summary["estimated"] else ""
 
 
-def candidate_table(summary: dict[str, Any]) -> Table:
-    """Return a table of the sufficient servos, the lightest first; the mixed choice last.
+def _style(class_name: str) -> str:
+    return f"bold {SEVERITY_STYLES[severity_of(class_name)]}"
+
+
+def change_table(summary: dict[str, Any]) -> Table:
+    """Return a table of the changes of the walk that help the robot's servos, the most effective first.
 
     Parameters
     ----------
     summary : dict
         Summary from `tarsus.report.loads_summary.servos_summary`.
     """
-    table = table_of("sufficient servos", "factor", "thermal", "servo mass", "robot mass", right=_RIGHT)
-    for candidate in [*summary["candidates"], *([summary["mixed"]] if summary["mixed"] else [])]:
-        named = candidate["name"]
-        name = f"coxa / femur / tibia: {named}" if " / " in named and candidate is summary["mixed"] else named
+    table = table_of("what helps the robot's servos", "factor", "thermal", right=_RIGHT)
+    for change in summary["changes"]:
+        style = SEVERITY_STYLES[severity_of(class_of(change["factor"]))]
+        table.add_row(change["text"], f"{change['factor']:.2f}", _percent(change["thermal_ratio"]), style=style)
+    return table
+
+
+def candidate_table(summary: dict[str, Any]) -> Table:
+    """Return a table of the sufficient servos, the lightest first: one for all joints, and sets of one bus and supply.
+
+    Parameters
+    ----------
+    summary : dict
+        Summary from `tarsus.report.loads_summary.servos_summary`.
+    """
+    table = table_of("sufficient servos", "bus", "supply", "factor", "thermal", "servos kg", "robot kg", right=_RIGHT)
+    rows = [*summary["candidates"], *summary["sets"]]
+    for candidate in sorted(rows, key=lambda row: row["servo_mass_kg"]):
         table.add_row(
-            name,
+            candidate["name"],
+            candidate["bus"],
+            number(candidate["supply_v"], "V"),
             "" if candidate["factor"] is None else f"{candidate['factor']:.2f}",
             _percent(candidate["thermal_ratio"]),
-            f"{candidate['servo_mass_kg']:.3f} kg",
-            f"{candidate['robot_mass_kg']:.3f} kg",
+            f"{candidate['servo_mass_kg']:.3f}",
+            f"{candidate['robot_mass_kg']:.3f}",
         )
     return table
 
@@ -210,7 +286,10 @@ def servo_lines(summary: dict[str, Any]) -> list[str]:
     """
     lines = [f"payload: {_payload(summary)}"]
     lines += [f"length: {text}" for text in summary["advice"]]
-    lines += [f"excluded: {name}, as {reason}" for name, reason in summary["excluded"].items()]
+    by_reason: dict[str, list[str]] = {}
+    for name, reason in summary["excluded"].items():
+        by_reason.setdefault(reason, []).append(name)
+    lines += [f"not evaluated, as {reason}: {', '.join(names)}" for reason, names in by_reason.items()]
     return [*lines, *(f"assumed: {text}" for text in summary["assumed"])]
 
 
@@ -219,4 +298,6 @@ def _payload(summary: dict[str, Any]) -> str:
     if largest is None:
         return "unknown, as the robot file does not name all servos"
     rule = f"factor {summary['safety_factor']:g}" if summary["rule"] == "factor" else "the continuous load limit"
-    return f"{largest:.2f} kg with {rule}, at most {maximum:.2f} kg before servos stall or burn"
+    limit = f"the limit, factor {BURNOUT_FACTOR:g}, below which servos stall or burn"
+    at_limit = f"none at {limit}" if maximum < _NO_PAYLOAD else f"{maximum:.2f} kg at {limit}"
+    return f"{'none' if largest < _NO_PAYLOAD else f'{largest:.2f} kg'} at {rule}; {at_limit}"

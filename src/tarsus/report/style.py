@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 __all__ = [
     "INK",
     "PALE",
+    "SEVERITY_COLOURS",
     "WARNING",
     "decimation",
     "halo",
@@ -41,6 +42,9 @@ PALE = "#8a8a8a"
 
 WARNING = "#b00020"
 """Limits and faults."""
+
+SEVERITY_COLOURS = {"good": "#17703c", "warning": "#875400", "bad": "#b3121f"}
+"""Colours of `tarsus.load.verdict.severity_of`: those of the studio in its light theme."""
 
 # Colours of Okabe and Ito, and two of Tol for robots with more legs: cool on the left, warm on the right.
 _LEFT = ("#0072B2", "#56B4E9", "#009E73", "#332288")

@@ -59,3 +59,12 @@ class Servo:
     confidence: str = ""
     source: str = ""
     note: str = ""
+
+    @property
+    def buses(self) -> frozenset[str]:
+        """Names of the buses on which the servo runs; servos with one in common run on the same."""
+        name, _, other = self.control.partition(" (")
+        if name.startswith("Dynamixel"):
+            return frozenset(f"Dynamixel {number}.0" for number in (1, 2) if f"P{number}" in self.control)
+        buses = {"PWM" if name.startswith("PWM") else name.removesuffix(" bus").removesuffix(" ASCII")}
+        return frozenset(buses | ({"PWM"} if "PWM" in other else set())) - {""}

@@ -8,6 +8,7 @@ import { LoadInputs } from "./LoadInputs";
 import { ServoChoice } from "./ServoChoice";
 import { TorqueGrid } from "./TorqueGrid";
 import { TorquePlots } from "./TorquePlots";
+import { severityOf } from "./severity";
 
 /** Joint torques of the walk, and whether the servos provide them. */
 export function LoadsView() {
@@ -30,12 +31,7 @@ export function LoadsView() {
 }
 
 function Verdict({ loads }: { loads: LoadsMessage }) {
-  const kind =
-    loads.grade === "good"
-      ? "good"
-      : loads.grade === "marginal" || loads.grade === "unknown"
-        ? "warn"
-        : "bad";
+  const kind = severityOf(loads.grade);
   return (
     <>
       <Message kind={kind} testId="loads-verdict">

@@ -5,6 +5,7 @@ import type { JointLoad, LoadsMessage } from "../../protocol";
 import { stage } from "../../scene/stage";
 import { useInputs } from "../useInputs";
 import { JOINTS } from "../angleText";
+import { severityOf } from "./severity";
 
 /** A bar for each joint: peak torque over the walk, and present torque, relative to the stall torque. */
 export function TorqueGrid({ loads }: { loads: LoadsMessage }) {
@@ -64,7 +65,7 @@ const SIGNS: Record<string, string> = { good: "✓", marginal: "△", unknown: "
 
 function Bar({ load, onMark }: { load: JointLoad; onMark: (mark: HTMLElement | null) => void }) {
   const fraction = load.stall_nm ? Math.min(1, load.peak_nm / load.stall_nm) : 0;
-  const kind = load.grade === "good" ? "good" : load.grade === "marginal" ? "warn" : "bad";
+  const kind = severityOf(load.grade);
   return (
     <div className="torque">
       <span>
