@@ -123,8 +123,8 @@ class ServoSizing:
 
     @property
     def mixed(self) -> Candidate | None:
-        """The lightest of `candidates` and `sets`; None if there is none."""
-        return min((*self.candidates, *self.sets), key=_candidate_order, default=None)
+        """The lightest of `sets`; None if there is none."""
+        return self.sets[0] if self.sets else None
 
     @property
     def worst(self) -> JointVerdict:
