@@ -7,6 +7,7 @@ import pytest
 from scipy.spatial import ConvexHull
 
 from gait_robots import in_heading_frame, ring
+from quadrupeds import hull_margin, random_quadruped
 from sample_walks import ring_robot
 from tarsus.errors import InputError, StrokeError
 from tarsus.gait.body_shift import COEFFICIENTS, edge_constraints, fitted_shift, shift_at
@@ -15,7 +16,6 @@ from tarsus.gait.path import curved_path, straight_path
 from tarsus.gait.plan import plan_walk
 from tarsus.gait.storage import load_motion, save_motion
 from tarsus.gait.stroke import max_stroke
-from tarsus.kinematics.leg import forward_kinematics
 from tarsus.load.cycle_torques import cycle_torques
 from tarsus.robot.file import robot_from_dict, robot_to_dict
 
@@ -32,42 +32,6 @@ PATHS = {
 }
 
 
-def random_quadruped(seed):
-    """Four legs that differ in place, direction, size and mass, and a body whose centre of mass is off its middle."""
-    rng = np.random.default_rng(seed)
-    yaw = np.deg2rad([45, 135, -135, -45]) + rng.uniform(-0.3, 0.3, 4)
-    place = rng.uniform(0.05, 0.14, (4, 2)) * np.sign(np.stack([np.cos(yaw), np.sin(yaw)], axis=-1))
-    return ring(
-        4,
-        mount_position=np.concatenate([place, rng.uniform(-0.01, 0.01, (4, 1))], axis=-1),
-        mount_yaw=yaw,
-        coxa=rng.uniform(0.02, 0.05, 4),
-        femur=rng.uniform(0.07, 0.09, 4),
-        tibia=rng.uniform(0.11, 0.14, 4),
-        link_mass=rng.uniform(0.01, 0.12, (4, 3)),
-        body_com=np.array([*rng.uniform(-0.02, 0.02, 2), 0.0]),
-        body_mass=rng.uniform(0.5, 2.0),
-    )
-
-
-def hull_margin(motion):
-    """Distance of the centre of mass inside the hull of the feet on the ground, from masses summed link by link."""
-    robot = motion.robot
-    points = motion.body @ forward_kinematics(robot, motion.angles)
-    moment = (motion.body @ robot.body_com) * robot.body_mass
-    for leg in range(4):
-        for link in range(3):
-            inner, outer = points[:, leg, link], points[:, leg, link + 1]
-            along = (outer - inner) / np.linalg.norm(outer - inner, axis=-1, keepdims=True)
-            moment = moment + robot.link_mass[leg, link] * (inner + robot.link_com[leg, link] * along)
-    centre = (moment / (robot.body_mass + robot.link_mass.sum()))[:, :2]
-    margins = []
-    for sample, down in enumerate(motion.contacts):
-        hull = ConvexHull(motion.feet[sample, down, :2])
-        margins.append(-(hull.equations[:, :2] @ centre[sample] + hull.equations[:, 2]).max())
-    return np.array(margins)
-
-
 def creep(robot, path, **more):
     return plan_walk(robot, Gait.named("creep", legs=4, turning=path.angle), path, rate=50, **more)
 
@@ -76,7 +40,7 @@ def creep(robot, path, **more):
 def test_random_quadrupeds_are_stable_throughout(seed, path):
     motion = creep(random_quadruped(seed), PATHS[path], stroke=0.012 if seed > 2 else None)
     assert motion.ok
-    margin = hull_margin(motion)
+    margin = hull_margin(motion.robot, motion.angles, motion.body, motion.contacts)
     np.testing.assert_allclose(motion.margin, margin, atol=1e-9)
     assert margin.min() > 0.002
 

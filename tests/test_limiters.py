@@ -1,5 +1,7 @@
 """The limiter protocols: how limiters combine, and what each of them decides."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
@@ -97,7 +99,7 @@ def test_the_governor_keeps_a_target_that_another_limiter_set():
 class Waiting:
     """A transition that can't begin."""
 
-    waiting = True
+    waiting, scheduler = True, SimpleNamespace(planned=None)
 
 
 def test_a_transition_that_waits_slows_the_walk_down_and_is_reported_when_it_lasts():

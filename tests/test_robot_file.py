@@ -120,7 +120,7 @@ MISTAKES = [
     (
         ("gait", "name"),
         "tripd",
-        'gait.name = "tripd": must be one of tripod, tetrapod, amble, ripple, wave, creep; did you',
+        'gait.name = "tripd": must be one of tripod, tetrapod, amble, ripple, wave, creep; ',
     ),
     (("gait", "name"), 3, "gait.name = 3: must be one of tripod, tetrapod, amble, ripple, wave, creep"),
     (("gait", "swing_height_mm"), 0, "gait.swing_height_mm = 0: must be from 0.001 to 10000 mm"),

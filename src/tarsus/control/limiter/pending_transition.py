@@ -34,6 +34,9 @@ class PendingTransitionLimiter:
         """Return the grant, reduced by the time that the transition has been waiting."""
         waiting = self._transitions.waiting
         self._fraction = self._fraction * math.exp(-request.dt / _TIME_CONSTANT) if waiting else 1.0
+        planned = self._transitions.scheduler.planned
+        if planned is not None and self._transitions.timing.stands_before(planned.parameters.gait):
+            self._fraction = 0.0
         limitation = None
         if self._fraction < _REPORTED and any(request.twist):
             limitation = Limitation(kind=LimitationKind.TWIST, cause=_CAUSE, asked=1.0, granted=self._fraction)

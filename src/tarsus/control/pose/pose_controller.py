@@ -6,10 +6,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from tarsus.control.workspace.body_shift import NO_SHIFT
 from tarsus.control.workspace.stance_geometry import SWING_HEIGHT, sway_fraction
 
 if TYPE_CHECKING:
-    from jaxtyping import Float
+    from jaxtyping import Complex, Float
 
 __all__ = ["ELEVATION_BANDWIDTH", "PoseController", "elevation_bandwidth"]
 
@@ -22,6 +23,8 @@ ELEVATION_BANDWIDTH = _BANDWIDTH
 
 # Tolerances within which a posture and a sway count as reached [m, rad].
 _POSTURE_TOLERANCE, _SWAY_TOLERANCE = 2e-4, 1e-3
+# Tolerance of the body shift, less than the least stability margin [m].
+_SHIFT_TOLERANCE = 2e-3
 _NO_DISTANCE = [0.0] * (SWING_HEIGHT + 1)
 
 
@@ -39,11 +42,31 @@ class PoseController:
         The target posture.
     target : array, shape (13,)
         The target posture and the sway's amplitudes; the same array object until either changes.
+    shift : array, shape (14,), or None
+        Target of the body shift's coefficients [m]; None before the first gait with one.
     """
 
     def __init__(self, posture: Float[np.ndarray, "7"]) -> None:
         self.posture = posture
         self.target = np.append(posture, np.zeros(SWING_HEIGHT))
+        self.shift: Float[np.ndarray, "14"] | None = None
+
+    def set_shift(self, coefficients: Complex[np.ndarray, "7"] | None, value: Float[np.ndarray, "14"]) -> bool:
+        """Set the body shift, and return whether it is reached.
+
+        Parameters
+        ----------
+        coefficients : complex array, shape (7,), or None
+            Its coefficients [m]; None for no shift.
+        value : array, shape (14,)
+            Its present coefficients, real and imaginary parts [m].
+        """
+        if coefficients is not None:
+            if self.shift is None or self.shift.base is not coefficients:
+                self.shift = coefficients.view(float)
+        elif self.shift is not None:
+            self.shift = NO_SHIFT.value
+        return self.shift is None or float(np.abs(value - self.shift).sum()) <= _SHIFT_TOLERANCE
 
     def set_posture(self, posture: Float[np.ndarray, "7"]) -> None:
         """Set the target posture.

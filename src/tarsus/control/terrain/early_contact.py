@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from tarsus.control.walk.ground_pose import body_posture
 from tarsus.control.walk.state import EARLY_STOP_FRACTION, GaitState, chord_factor
 from tarsus.control.walk.swing_trajectory import quintic, stopping_fraction
-from tarsus.control.workspace.stance_geometry import SWING_HEIGHT, stance_geometry_of, with_sway
+from tarsus.control.workspace.stance_geometry import SWING_HEIGHT, stance_geometry_of
 from tarsus.gait.swing import horizontal_profile
 from tarsus.robot.robot import Robot
 
@@ -102,7 +103,7 @@ def _joint_acceleration(
     forward, left, turning = state.twist.value.tolist()
     travelled = complex(forward, left) * time * chord_factor(turning * time)
     in_heading = ((foot - state.origin) * np.exp(-1j * state.yaw) - travelled) * np.exp(-1j * turning * time)
-    stance = stance_geometry_of(with_sway(state.posture.value, state.cycles, state.beats), state.foot)
+    stance = stance_geometry_of(body_posture(state), state.foot)
     solution = stance.solve(robot, in_heading.real, in_heading.imag, z)
     angles, seconds = np.stack(solution[:3], axis=-1), (duration / swing_rate)[..., None]
     greatest = []

@@ -48,7 +48,8 @@ def _step_inputs(walk: WalkComponents, tick: TickState, dt: float) -> StepInputs
     state, standing = tick.gait, tick.standing
     transitions, terrain = walk.transitions, walk.terrain
     timing, pose, current = transitions.timing, transitions.pose, transitions.current
-    pose.set_sway(_NO_MOTION if standing else current.parameters.sway, frequency=timing.frequency, beats=timing.beats)
+    sway = _NO_MOTION if standing or timing.gait.body_shift else current.parameters.sway
+    pose.set_sway(sway, frequency=timing.frequency, beats=timing.beats)
     every = walk.every_leg
     may_lift, may_land, hold_feet = every, every, transitions.changes_gait
     if walk.foot_targets:
@@ -74,6 +75,7 @@ def _step_inputs(walk: WalkComponents, tick: TickState, dt: float) -> StepInputs
         hold_feet=hold_feet,
         beats=timing.beats,
         swaying=pose.is_swaying(state.posture.value),
+        shift=pose.shift,
     )
     return inputs if terrain.estimate is None else inputs._replace(**terrain.step_inputs(state, current.terrain))
 

@@ -69,8 +69,14 @@ def limited(
     transitions, standing = walk.transitions, tick.standing
     state = transitions.timing.with_first_lift(tick.gait, 0) if standing else tick.gait
     grant = granted_twist(limiters, TwistRequest(tuple(command.twist), dt, state, tick.twist))
-    if standing and not any(grant.scaled(command.twist)) and transitions.at_rest(tick.gait):
+    steps = not standing or any(grant.scaled(command.twist)) or not transitions.at_rest(tick.gait)
+    shift = transitions.current.final_limits.shift if steps else None
+    shifted = transitions.pose.set_shift(shift, state.shift.value)
+    if not steps:
         return TickState(tick.gait, tick.twist, tick.walk_state, grant.limitations)
+    if standing and not shifted:
+        # Every foot stays on the ground until the body is over those that stay.
+        return TickState(state, tick.twist, tick.walk_state, grant.limitations)
     assert grant.target is not None  # the governor sets it
     following = tick.walk_state
     if standing:

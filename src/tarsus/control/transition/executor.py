@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 __all__ = ["TransitionExecutor"]
 
 _SWAY = Cause("joint speed and acceleration at this cycle time")
+_SHIFTS = Cause("the body shift of this gait takes its place")
 # Rounding of a distance [m].
 _ROUNDING = 1e-9
 
@@ -73,10 +74,10 @@ class TransitionExecutor:
     @property
     def limitations(self) -> tuple[Limitation, ...]:
         """What of the commanded parameters is not met, and will not be."""
-        sway = self.current.parameters.sway
+        sway, found = self.current.parameters.sway, self.scheduler.limitations
         fraction = sway_fraction(np.array(sway), self.timing.frequency, self.timing.beats) if any(sway) else 1.0
-        found = self.scheduler.limitations
-        return found if fraction == 1 else (*found, _SWAY.limitation(LimitationKind.SWAY, asked=1.0, granted=fraction))
+        fraction, cause = (0.0, _SHIFTS) if self.timing.gait.body_shift and any(sway) else (fraction, _SWAY)
+        return found if fraction == 1 else (*found, cause.limitation(LimitationKind.SWAY, asked=1.0, granted=fraction))
 
     @property
     def waiting(self) -> bool:
@@ -185,10 +186,10 @@ class TransitionExecutor:
         # The steps get faster only after the transition.
         frequency = min(self.timing.frequency, 1 / planned.cycle_timing.cycle_time)
         feasible = self._feasible(planned, frequency, now)
-        if (gait.duty_factor, gait.offsets) != (self.timing.gait.duty_factor, self.timing.gait.offsets):
+        if not self.timing.steps_like(gait):
             if now.standing:
                 return self._start_gait(planned, 0, state)
-            if feasible:
+            if feasible and not self.timing.stands_before(gait):
                 self._try_to_change_gait(planned, now)
             return state
         leaving = list(set(planned.parameters.excluded) - set(self.current.parameters.excluded))

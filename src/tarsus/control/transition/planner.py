@@ -12,7 +12,7 @@ from tarsus.control.transition.feasible_fraction import TIPPING, StanceTarget, f
 from tarsus.control.transition.parameters import WalkParameters
 from tarsus.control.transition.shortfalls import stance_limitations
 from tarsus.control.transition.stages.reach import balanced_fraction, reachable_fraction
-from tarsus.control.transition.stages.workspace import cycle_timing, velocity_limits
+from tarsus.control.transition.stages.workspace import cycle_timing, shifted_limits, velocity_limits
 from tarsus.control.transition.stance_transition import StanceTransition
 from tarsus.control.transition.target_stance import sway_extremes, target_stance
 from tarsus.control.workspace.cycle_time import CycleTiming
@@ -108,7 +108,7 @@ class TransitionPlanner:
         if np.abs(end.rest - path.start.rest).max() > _SAME:
             yield
         limits = yield from self._limits(parameters, path.at(fraction), sets)
-        if not (limits.feasible or limits.balanced or path.start is end):
+        if not (limits.feasible or limits.balanced or path.start is end or parameters.gait.body_shift):
             check = StabilityCheck(robot, sets, parameters.excluded)
             fraction = yield from balanced_fraction(check, path.start, end, fraction)
             path = path._replace(fraction=fraction, cause=TIPPING)
@@ -157,7 +157,11 @@ class TransitionPlanner:
     def _limits(
         self, parameters: WalkParameters, stance: StanceTarget, sets: Bool[np.ndarray, "n legs"]
     ) -> Incremental[VelocityLimits]:
-        """Find the limits in a stance, with its sway."""
+        """Find the limits in a stance, with its sway or the body shift of its gait."""
+        if parameters.gait.body_shift:
+            return (
+                yield from shifted_limits(self._robot, parameters.gait, stance.stand, foot_distance=self._foot_distance)
+            )
         stands = [stance._replace(posture=row).stand for row in sway_extremes(stance.posture, parameters.sway)]
         return (
             yield from velocity_limits(

@@ -8,13 +8,30 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tarsus.control.walk.state import GaitState
+from tarsus.control.workspace.body_shift import NO_SHIFT
 from tarsus.control.workspace.stance_geometry import SWING_HEIGHT, rotation_rows, with_sway
+from tarsus.gait.body_shift import shift_at
 from tarsus.kinematics.pose import Pose
 
 if TYPE_CHECKING:
     from jaxtyping import Float
 
-__all__ = ["body_pose", "foot_positions", "ground_frame"]
+__all__ = ["body_pose", "body_posture", "foot_positions", "ground_frame"]
+
+
+def body_posture(state: GaitState) -> Float[np.ndarray, "7"]:
+    """Return the posture with the displacements by sway and body shift.
+
+    Parameters
+    ----------
+    state : GaitState
+        The gait state.
+    """
+    posture = with_sway(state.posture.value, state.cycles, state.beats)
+    if state.shift is NO_SHIFT:
+        return posture
+    shift = complex(shift_at(state.shift.value.view(complex), state.clock))
+    return np.asarray(posture + np.array([shift.real, shift.imag, 0.0, 0.0, 0.0, 0.0, 0.0]))
 
 
 def body_pose(state: GaitState) -> Pose:
@@ -25,7 +42,7 @@ def body_pose(state: GaitState) -> Pose:
     state : GaitState
         The gait state.
     """
-    x, y, z, roll, pitch, yaw, _ = with_sway(state.posture.value, state.cycles, state.beats).tolist()
+    x, y, z, roll, pitch, yaw, _ = body_posture(state).tolist()
     origin = state.origin + cmath.exp(1j * state.yaw) * complex(x, y)
     rotation = np.array(rotation_rows(roll, pitch, state.yaw + yaw))
     return Pose.unchecked(rotation, np.array([origin.real, origin.imag, float(state.elevation.value[0]) + z]))

@@ -8,8 +8,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tarsus.control.filters import CriticallyDamped
+from tarsus.control.walk.ground_pose import body_posture
 from tarsus.control.walk.state import GaitState
-from tarsus.control.workspace.stance_geometry import SWING_HEIGHT, Rows, rotation_rows, with_sway
+from tarsus.control.workspace.body_shift import NO_SHIFT
+from tarsus.control.workspace.stance_geometry import SWING_HEIGHT, Rows, rotation_rows
 from tarsus.kinematics.inverse import inverse_kinematics
 from tarsus.kinematics.scalar_solver import ScalarSolver
 from tarsus.robot.robot import Robot
@@ -68,9 +70,9 @@ class JointSolver:
         return angles
 
     def _body_at(self, state: GaitState) -> tuple[Rows, list[float], float]:
-        if state.posture is not self._posture:
+        if state.posture is not self._posture or state.shift is not NO_SHIFT:
             row = state.posture.value
-            x, y, z, roll, pitch, yaw, swing_height = with_sway(row, state.cycles, state.beats).tolist()
+            x, y, z, roll, pitch, yaw, swing_height = body_posture(state).tolist()
             self._body = rotation_rows(roll, pitch, yaw), [x, y, z], swing_height
             self._posture = None if row[SWING_HEIGHT + 1 :].any() else state.posture
         return self._body

@@ -15,6 +15,7 @@ import numpy as np
 from tarsus.control.filters import CriticallyDamped
 from tarsus.control.sensing.ground_plane import FLAT, GroundPlane
 from tarsus.control.walk.swing_trajectory import stopping_height, swinging_height
+from tarsus.control.workspace.body_shift import NO_SHIFT
 from tarsus.gait.gait import Gait
 
 if TYPE_CHECKING:
@@ -85,6 +86,8 @@ class GaitState(NamedTuple):
         Rates of `cycles` and `beats`, shape (2,) [1/s].
     elevation : CriticallyDamped
         Height of the heading frame over G's origin, shape (1,) [m].
+    shift : CriticallyDamped
+        Coefficients of the body shift, real and imaginary parts, shape (14,) [m]; `NO_SHIFT` before the first one.
     admittance_offset : CriticallyDamped
         Upward offset of each foot on the ground, shape (legs,) [m].
     cycles, beats : float
@@ -116,6 +119,7 @@ class GaitState(NamedTuple):
     admittance_offset: CriticallyDamped
     cycles: float = 0.0
     beats: float = 0.0
+    shift: CriticallyDamped = NO_SHIFT
 
     @classmethod
     def standing(cls, rest: Complex[np.ndarray, "legs"], posture: Float[np.ndarray, "n"]) -> GaitState:
@@ -247,6 +251,8 @@ class StepInputs(NamedTuple):
         Target of the heading frame's elevation [m].
     elevation_bandwidth : float
         Bandwidth of its filter [rad/s].
+    shift : array, shape (14,), or None
+        Target of the body shift's coefficients [m]; None where the state has none.
     """
 
     gait: Gait
@@ -269,6 +275,7 @@ class StepInputs(NamedTuple):
     highest_ground: Float[np.ndarray, "legs"] | float = math.inf
     elevation: Float[np.ndarray, "1"] = ZERO_ELEVATION
     elevation_bandwidth: float = 4.0
+    shift: Float[np.ndarray, "14"] | None = None
 
 
 def chord_factor(angle: Any) -> Any:

@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tarsus.control.walk.state import PHASE_TOLERANCE, GaitState
+from tarsus.control.workspace.body_shift import NO_SHIFT
 from tarsus.gait.gait import Gait
 
 __all__ = ["StepTiming"]
@@ -62,8 +63,29 @@ class StepTiming(NamedTuple):
         """Duration of a swing [s]."""
         return (1 - self.gait.duty_factor) / self.frequency
 
+    def steps_like(self, gait: Gait) -> bool:
+        """Return whether another gait has the same steps and the same kind of body motion.
+
+        Parameters
+        ----------
+        gait : Gait
+            The other gait.
+        """
+        mine = self.gait
+        return (gait.duty_factor, gait.offsets, gait.body_shift) == (mine.duty_factor, mine.offsets, mine.body_shift)
+
+    def stands_before(self, gait: Gait) -> bool:
+        """Return whether the robot has to stand before it takes another gait: one of them shifts the body.
+
+        Parameters
+        ----------
+        gait : Gait
+            The other gait.
+        """
+        return (gait.body_shift or self.gait.body_shift) and not self.steps_like(gait)
+
     def with_first_lift(self, state: GaitState, leg: int) -> GaitState:
-        """Return the gait state with the clock at the lift-off of a leg.
+        """Return the gait state with the clock at the lift-off of a leg; while the body is shifted, the clock stays.
 
         Parameters
         ----------
@@ -73,7 +95,8 @@ class StepTiming(NamedTuple):
             The leg that lifts first.
         """
         offsets, duty_factor = np.asarray(self.gait.offsets), self.gait.duty_factor
-        clock = float(offsets[leg]) + duty_factor
+        shifted = state.shift is not NO_SHIFT and bool(state.shift.value.any())
+        clock = state.clock if shifted else float(offsets[leg]) + duty_factor
         return state._replace(clock=clock, step_number=np.ceil(clock - offsets - duty_factor - PHASE_TOLERANCE))
 
     def approach(self, frequency: float, dt: float) -> StepTiming:

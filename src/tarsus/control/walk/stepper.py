@@ -27,6 +27,8 @@ LATEST_LIFT_OFF = 0.5
 
 # Bandwidth of the admittance offsets [rad/s].
 _ADMITTANCE_BANDWIDTH = 20.0
+# Bandwidth of the body shift's coefficients [rad/s].
+_SHIFT_BANDWIDTH = 5.0
 # Least fraction of the swing height.
 _LEAST_HEIGHT_FACTOR = 0.3
 # A speed below the first is 0 [m/s]; a filter this close to its target, and as slow, is at it [m, m/s, rad, rad/s].
@@ -65,6 +67,7 @@ def advance(state: GaitState, inputs: StepInputs, dt: float) -> GaitState:
         rhythm=rhythm,
         elevation=_settled(state.elevation, inputs.elevation, dt, inputs.elevation_bandwidth),
         admittance_offset=_settled(state.admittance_offset, inputs.admittance_offset, dt, _ADMITTANCE_BANDWIDTH),
+        shift=state.shift if inputs.shift is None else _settled(state.shift, inputs.shift, dt, _SHIFT_BANDWIDTH),
         cycles=state.cycles + cycles,
         beats=state.beats + beats,
     )

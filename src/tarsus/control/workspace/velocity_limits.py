@@ -41,6 +41,8 @@ class VelocityLimits:
         Whether the centre of mass is inside the support polygons with the feet at their rest footholds.
     stroke, turning : float
         Longest strokes that the joints are fast enough for, walking straight and turning on the spot [m].
+    shift : complex array, shape (7,), or None
+        Coefficients of the body shift with which they hold; None without one [m].
     """
 
     bounds: Float[np.ndarray, "legs 16"]
@@ -49,6 +51,7 @@ class VelocityLimits:
     balanced: bool = True
     stroke: float = math.inf
     turning: float = math.inf
+    shift: Complex[np.ndarray, "7"] | None = None
 
     @property
     def feasible(self) -> bool:
@@ -75,6 +78,7 @@ class VelocityLimits:
             self.balanced and other.balanced,
             min(self.stroke, other.stroke),
             min(self.turning, other.turning),
+            self.shift,
         )
 
     def feasible_fraction(

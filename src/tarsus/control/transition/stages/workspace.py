@@ -9,18 +9,21 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tarsus.control.incremental import Incremental
+from tarsus.control.workspace.body_shift import displaced, shift_extremes, stance_shift, support_phases
 from tarsus.control.workspace.cycle_time import CycleTiming, CycleTimingSearch
 from tarsus.control.workspace.foot_workspace import PASSES, FootWorkspaceSearch
+from tarsus.control.workspace.polygon import NORMALS_CONJUGATE
 from tarsus.control.workspace.stability import StabilityCheck
 from tarsus.control.workspace.stance_geometry import StanceGeometry
 from tarsus.control.workspace.velocity_limits import VelocityLimits, stance_limits
+from tarsus.gait.body_shift import shift_at
 from tarsus.gait.gait import Gait
 from tarsus.robot.robot import Robot
 
 if TYPE_CHECKING:
     from jaxtyping import Bool, Float
 
-__all__ = ["cycle_timing", "foot_workspace", "velocity_limits"]
+__all__ = ["cycle_timing", "foot_workspace", "shifted_limits", "velocity_limits"]
 
 
 # How many points on the polygons' edges, and how many blocks of motions, are examined in one tick.
@@ -104,6 +107,44 @@ def velocity_limits(
         yield
     assert limits is not None  # there is at least one stance
     return dataclasses.replace(limits, rest=stances[-1].rest)
+
+
+def shifted_limits(
+    robot: Robot, gait: Gait, stance: StanceGeometry, *, foot_distance: float
+) -> Incremental[VelocityLimits]:
+    """Find a body shift for a stance, and the limits that hold with it.
+
+    Parameters
+    ----------
+    robot : Robot
+        A single robot.
+    gait : Gait
+        A gait with a body shift.
+    stance : StanceGeometry
+        The body, without its shift, and the rest footholds.
+    foot_distance : float
+        Least distance between two feet [m].
+    """
+    everywhere = StabilityCheck(robot, np.ones((1, robot.legs), dtype=bool))
+    sides = yield from foot_workspace(robot, stance, foot_distance=foot_distance)
+    limits = stance_limits(everywhere, stance, sides, 1.0)
+    centre, _ = everywhere.centre_of_mass(stance, sides)
+    yield
+    coefficients = stance_shift(gait, stance, centre, max(float(limits.margins.min()), 0.0))
+    yield
+    for displacement in shift_extremes(coefficients).tolist():
+        stand = displaced(stance, displacement)
+        sides = yield from foot_workspace(robot, stand, foot_distance=foot_distance)
+        limits = limits.intersection(stance_limits(everywhere, stand, sides, 1.0))
+        yield
+    # Longer polygons would have to shrink more for stability, in their short directions too.
+    around = (NORMALS_CONJUGATE * stance.rest[:, None]).real + max(float(limits.margins.min()), 0.0)
+    sides, fraction = np.minimum(limits.bounds, around), 1.0
+    for phase, down in zip(*support_phases(gait), strict=True):
+        check, stand = StabilityCheck(robot, down[None]), displaced(stance, complex(shift_at(coefficients, phase)))
+        fraction = min(fraction, check.safe_fraction(stand, sides, *check.centre_of_mass(stand, sides)))
+        yield
+    return dataclasses.replace(stance_limits(everywhere, stance, sides, fraction), shift=coefficients)
 
 
 def cycle_timing(

@@ -1,0 +1,93 @@
+"""Body shift of a live walk: it keeps the robot stable wherever its feet are in their polygons."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from tarsus.control.filters import CriticallyDamped
+from tarsus.control.workspace.stance_geometry import StanceGeometry
+from tarsus.gait.body_shift import COEFFICIENTS, edge_constraints, fitted_shift, shift_at
+from tarsus.gait.gait import Gait
+
+if TYPE_CHECKING:
+    from jaxtyping import Bool, Complex, Float
+
+__all__ = ["NO_SHIFT", "displaced", "shift_extremes", "stance_shift", "support_phases"]
+
+NO_SHIFT = CriticallyDamped.still(np.zeros(2 * COEFFICIENTS))
+"""No body shift: coefficients, real and imaginary parts, shape (14,) [m]."""
+
+_SAMPLES = 96
+# Phases of the shift at which the reach of the legs is examined, and of a swing at which the stability is.
+_EXTREMES, _SWING = 8, np.array([0.0, 0.5, 1.0])
+# The part of a leg's room that the shift takes: what is left for steps, and the stability margin, are about as large.
+_SHARE_OF_ROOM = 0.4
+
+
+def stance_shift(gait: Gait, stance: StanceGeometry, centre: complex, room: float) -> Complex[np.ndarray, "7"]:
+    """Return the coefficients of the shift with the feet at rest.
+
+    Parameters
+    ----------
+    gait : Gait
+        A gait with a body shift.
+    stance : StanceGeometry
+        The body and the rest footholds.
+    centre : complex
+        Projection of the centre of mass [m].
+    room : float
+        Least distance of a rest foothold from the sides of its polygon [m].
+    """
+    phases = (np.arange(_SAMPLES) + 0.5) / _SAMPLES
+    contacts = gait.phase(phases)[2]
+    swings = ~contacts.all(-1)
+    feet = np.broadcast_to(stance.rest, contacts.shape)[swings]
+    sample, inward, distance = edge_constraints(feet, contacts[swings], np.full(len(feet), centre))
+    return fitted_shift(phases[swings][sample], inward, distance, margin=_SHARE_OF_ROOM * room)
+
+
+def shift_extremes(coefficients: Complex[np.ndarray, "7"]) -> Complex[np.ndarray, "8"]:
+    """Return displacements of a shift in all its directions: array, shape (8,) [m].
+
+    Parameters
+    ----------
+    coefficients : complex array, shape (7,)
+        Coefficients of the shift [m].
+    """
+    return shift_at(coefficients, np.arange(_EXTREMES) / _EXTREMES)
+
+
+def support_phases(gait: Gait) -> tuple[Float[np.ndarray, "n"], Bool[np.ndarray, "n legs"]]:
+    """Return phases at begin, middle and end of each swing, and the feet that are then on the ground.
+
+    Parameters
+    ----------
+    gait : Gait
+        The gait.
+
+    Returns
+    -------
+    phases : array, shape (n,)
+        Phases [cycles].
+    contacts : array of bool, shape (n, legs)
+        The feet that are on the ground just after the begin of the swing and just before its end.
+    """
+    lift = np.asarray(gait.offsets)[:, None] + gait.duty_factor
+    inside = 1e-6 + _SWING * (1 - gait.duty_factor - 2e-6)
+    phases = (lift + inside).ravel()
+    return phases, gait.phase(phases)[2]
+
+
+def displaced(stance: StanceGeometry, displacement: complex) -> StanceGeometry:
+    """Return the stance with the body displaced in the ground plane.
+
+    Parameters
+    ----------
+    stance : StanceGeometry
+        The stance.
+    displacement : complex
+        Displacement [m].
+    """
+    return stance._replace(position=stance.position + np.array([displacement.real, displacement.imag, 0.0]))
