@@ -52,6 +52,8 @@ def static_values():
     yield from (robot, designs(), *robot.sources, robot.gait, tarsus.load_servo("DS3225"))
     yield from (tarsus.Pose(), motion.body, tarsus.straight_path(1.0), tarsus.Gait.named("tripod"), motion)
     yield from (tarsus.inverse_kinematics(robot, stance), tarsus.inverse_kinematics(designs(), stance * 9))
+    heavy = tarsus.plausibility_warnings(robot.replace(body_mass=np.array(1386.0)))
+    yield from (*tarsus.FIRMWARE.values(), *tarsus.try_gaits(robot), *heavy)
     yield from (tarsus.resting_pose(robot, motion.angles[0]), tarsus.power_off_order(robot, tarsus.folded_pose(robot)))
 
 
@@ -84,8 +86,12 @@ def control_values():
 def simulation_values():
     robot = tarsus.load_robot("strider")
     plant = simulation.SimulatedPlant(robot, servos="ideal")
-    plant.start(tarsus.RobotController(robot).output)
-    yield from (plant, plant.state, plant.servos[0][0])
+    traced = simulation.TracedPlant(plant)
+    traced.start(tarsus.RobotController(robot).output)
+    yield from (traced, plant, plant.state, plant.servos[0][0])
+    short = tarsus.plan_walk(robot, tarsus.Gait.named("tripod"), tarsus.straight_path(0.02), stroke=0.02, rate=50)
+    truth = simulation.compare(short, servos="ideal")
+    yield from (truth, truth.trace, truth.outcome)
     yield from (simulation.SensorSuite(), simulation.Sensor(), simulation.FootSwitch())
     yield from (terrain.Blocks(), terrain.Flat(), terrain.Gaps(), terrain.Ramp(slope=0.1), terrain.Smooth())
     yield from (terrain.Stairs(rise=0.02), terrain.Step(rise=0.02))

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import xarray
 
 from tarsus.control.command import Command
 from tarsus.control.loop.run import run
@@ -210,6 +211,8 @@ def test_the_data_set_has_everything(tmp_path):
     assert data.torques.attrs["units"] == "N m"
     assert data.body_position.shape == (len(trace.time), 3)
     assert data.attrs["robot"] == "strider"
+    data.to_zarr(tmp_path / "trace", zarr_format=3, consolidated=False)
+    xarray.testing.assert_identical(xarray.open_zarr(tmp_path / "trace", chunks=None, consolidated=False).load(), data)
 
 
 def test_without_xarray_the_extra_is_named(monkeypatch):

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     import xarray
     from jaxtyping import Float, Shaped
 
-__all__ = ["load_motion", "motion_to_csv", "motion_to_dataset", "save_motion"]
+__all__ = ["labels", "load_motion", "motion_to_csv", "motion_to_dataset", "save_motion"]
 
 _ARRAYS = ("time", "feet", "contacts", "angles", "reach")
 _NUMBERS = ("cycle_time", "stroke", "speed", "body_height", "swing_height", "foot_distance")
@@ -120,10 +120,10 @@ def motion_to_dataset(motion: Motion) -> xarray.Dataset:
         },
         coords={
             "time": ("time", motion.time, {"units": "s"}),
-            "leg": _labels(motion.robot.leg_codes),
-            "joint": _labels(JOINTS),
-            "axis": _labels("xyz"),
-            "body_axis": _labels("xyz"),
+            "leg": labels(motion.robot.leg_codes),
+            "joint": labels(JOINTS),
+            "axis": labels("xyz"),
+            "body_axis": labels("xyz"),
         },
         attrs={
             "Conventions": "CF-1.11",
@@ -134,8 +134,8 @@ def motion_to_dataset(motion: Motion) -> xarray.Dataset:
     )
 
 
-def _labels(texts: Iterable[str]) -> Shaped[np.ndarray, "n"]:
-    """Return texts of any length as an array: Zarr 3 specifies no texts of fixed length."""
+def labels(texts: Iterable[str]) -> Shaped[np.ndarray, "n"]:
+    """Return the labels of an axis as an array of texts of any length, since Zarr 3 specifies none of fixed length."""
     return np.array(list(texts), dtype=object)
 
 

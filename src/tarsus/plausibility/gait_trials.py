@@ -10,6 +10,7 @@ from tarsus.gait.path import straight_path
 from tarsus.gait.plan import plan_walk
 from tarsus.gait.stroke import max_stroke
 from tarsus.kinematics.stance import default_stance, default_swing_height
+from tarsus.representation import represented
 from tarsus.robot.robot import Robot
 
 __all__ = ["NO_STROKE", "GaitTrial", "try_gaits"]
@@ -22,6 +23,7 @@ _STROKE, _STROKES = 0.6, 3
 _RATE = 50.0
 
 
+@represented()
 @dataclass(frozen=True, kw_only=True)
 class GaitTrial:
     """A short walk straight ahead, with the robot's default heights.

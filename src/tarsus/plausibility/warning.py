@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from tarsus.representation import represented
+
 __all__ = ["PlausibilityWarning"]
 
 
+@represented()
 @dataclass(frozen=True, kw_only=True)
 class PlausibilityWarning:
     """A value that no robot like this one has, and its likely cause.

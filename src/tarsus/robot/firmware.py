@@ -13,6 +13,7 @@ from types import MappingProxyType
 from typing import NamedTuple
 
 from tarsus.errors import InputError, UnknownNameError
+from tarsus.representation import represented
 from tarsus.robot.shape import JOINTS
 
 __all__ = ["FIRMWARE", "SIDES", "Firmware", "convert_limits"]
@@ -36,6 +37,7 @@ _Signs = tuple[int, int, int]
 _Angles = tuple[tuple[int, float], tuple[int, float], tuple[int, float]]
 
 
+@represented("name", "units")
 @dataclass(frozen=True, kw_only=True)
 class Firmware:
     """How a firmware counts joint angles.

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Self
 import numpy as np
 
 from tarsus.kinematics.mass import STANDARD_GRAVITY, total_mass
+from tarsus.representation import represented
 from tarsus.robot.robot import JOINTS
 from tarsus.simulation.truth.trace import Trace
 
@@ -27,6 +28,7 @@ _STALL = 0.5
 _STUCK, _WAY = 0.5, 0.05
 
 
+@represented()
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Outcome:
     """What a simulated robot did. Positions are relative to where it stood at the start.

@@ -12,6 +12,7 @@ import numpy as np
 
 from tarsus.control.control_output import ControlOutput
 from tarsus.errors import InputError
+from tarsus.gait.storage import labels
 from tarsus.kinematics.pose import Pose
 from tarsus.robot.robot import JOINTS, Robot
 from tarsus.simulation.simulated_plant import PlantState
@@ -207,10 +208,10 @@ def trace_to_dataset(trace: Trace) -> xarray.Dataset:
         },
         coords={
             "time": ("time", trace.time, {"units": "s"}),
-            "leg": list(trace.robot.leg_codes),
-            "joint": list(JOINTS),
-            "axis": list("xyz"),
-            "body_axis": list("xyz"),
+            "leg": labels(trace.robot.leg_codes),
+            "joint": labels(JOINTS),
+            "axis": labels("xyz"),
+            "body_axis": labels("xyz"),
         },
         attrs={"robot": trace.robot.name},
     )

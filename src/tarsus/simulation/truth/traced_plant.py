@@ -7,6 +7,7 @@ from tarsus.control.readings import SensorReadings
 from tarsus.control.states.robot_state import RobotState
 from tarsus.errors import InputError
 from tarsus.gait.motion import Motion
+from tarsus.representation import represented
 from tarsus.simulation.simulated_plant import PlantState, SimulatedPlant
 from tarsus.simulation.truth.trace import Trace
 
@@ -16,6 +17,7 @@ __all__ = ["TracedPlant", "play"]
 _HOLD = 0.5
 
 
+@represented("robot", "plant")
 class TracedPlant:
     """A `Plant` that keeps the exact state of a simulated one after every tick.
 
