@@ -437,6 +437,15 @@ def test_001_erratum_the_two_slopes_have_their_own_signs() -> None:
     assert (pitched @ ahead)[2] + body_height / math.cos(tilt) == pytest.approx((pitched @ ahead)[0] * math.tan(tilt))
 
 
+def test_001_erratum_the_depth_of_the_feet_is_not_the_clearance() -> None:
+    robot, body_height = load_robot("strider"), 0.11
+    feet = default_stance(robot, body_height)
+    assert feet[:, 2] == pytest.approx(-body_height, abs=TIGHT)
+    body = Pose(position=np.array([0.0, 0.0, body_height]))
+    underside = (body @ np.array([0.0, 0.0, -robot.body_size[2] / 2]))[2]
+    assert underside == pytest.approx(0.085, abs=TIGHT)
+
+
 def test_001_erratum_only_the_last_line_of_the_knee_derivation_is_right() -> None:
     l1, l2, interior = 0.133, 0.066, 1.9
     big = math.sqrt(l1**2 + l2**2 - 2 * l1 * l2 * math.cos(interior))
@@ -985,6 +994,22 @@ def test_004_erratum_the_straight_leg_has_q3_zero() -> None:
     assert abs(theirs[-1, 2]) < 1e-3
     assert (np.diff(theirs[:, 2]) < 0).all()
     assert (np.diff(theirs[:, 1]) < 0).all()
+
+
+def test_004_erratum_the_femur_of_a_standing_leg_points_up() -> None:
+    robot, depth = load_robot("strider"), 0.11
+    middle = sum(reachable_band(robot, -depth)) / 2
+    stance = coxa_frames(robot) @ np.stack([middle, 0 * middle, 0 * middle - depth], axis=-1)
+    standing = np.degrees(inverse_kinematics(robot, stance).require().angles)
+    assert standing[:, 1] == pytest.approx(45, abs=1)
+    assert (-standing[:, 2] > 90).all()  # flexed, as the document says
+    reach = np.arange(0.0, 0.256, 0.001)
+    feet = coxa_frames(robot)[0] @ np.stack([reach + 0.068, 0 * reach, 0 * reach - depth], axis=-1)
+    alone = feet[:, None] + np.zeros((6, 1))
+    femur = inverse_kinematics(robot, alone).angles[:, 0, 1]
+    stretched = np.hypot(reach, depth) / (0.098 + 0.181)
+    assert (femur[stretched < 0.95] > 0).all()
+    assert (femur[stretched > 0.96] < 0).all()
 
 
 def test_004_erratum_a_foot_under_the_femur_axis_is_reachable() -> None:

@@ -88,6 +88,52 @@ def test_the_hand_method_is_that_of_the_handbook():
     assert len(source("004", robot="mithi")["equations"]) == len(DOCUMENTS["004"].lines)
 
 
+def test_the_hand_method_is_shown_for_three_and_for_five_feet():
+    told = {equation["key"]: equation for equation in source("004")["equations"]}
+    lines = [
+        line for line in handbook(load_robot("strider"), leg=0, feet_down=5).lines if line.key[:4] in ("stan", "walk")
+    ]
+    assert len(lines) >= 6
+    for line in lines:
+        assert told[f"{line.key}.5"]["value"] == pytest.approx(line.value, rel=1e-6, abs=1e-9)
+    assert "given" not in {equation["name"] for equation in told.values()}
+    assert told["stance.load.5"]["name"] == "standing on five feet"
+    assert told["stance.load.5"]["value"] == pytest.approx(3.26536, abs=1e-5)
+
+
+def values(told):
+    return {equation["key"].partition(".")[2]: equation["value"] for equation in told["equations"]}
+
+
+@pytest.mark.parametrize("leg", range(6))
+def test_walks_of_source_001_are_those_of_the_view_walk(leg):
+    asked = Asked()
+    asked.all("view", view="sources")
+
+    def numbers(**walk):
+        asked.all("walk", walk={"stroke_mm": 60, **walk})
+        return values(asked("source", "source", source={"number": "001", "leg": leg}))
+
+    straight = numbers(path={"kind": "straight", "distance_mm": 300, "heading_deg": 90})
+    # To the left, which is the document's -x: half a stroke before and behind the foothold.
+    assert straight["n"] == pytest.approx(5)
+    assert [straight["a_x"], straight["a_y"]] == pytest.approx([straight["E_x"] - 30, straight["E_y"]], abs=1e-3)
+    assert [straight["d_x"], straight["d_y"]] == pytest.approx([straight["E_x"] + 30, straight["E_y"]], abs=1e-3)
+    curve = numbers(path={"kind": "curve", "angle_deg": -40, "centre_mm": [100, -200]})
+    assert (curve["A_c"], curve["X_C"], curve["Y_C"]) == (-40, 200, 100)
+    ends = np.array([[curve[f"{axis}_{end}"] for axis in "XY"] for end in "da"])
+    radii = np.hypot(*(ends - [200, 100]).T)
+    assert radii == pytest.approx(curve["CP"], abs=1e-3)
+    assert 60 * curve["CP"] / curve["CP_max"] == pytest.approx(curve["CP"] * math.radians(curve["T"]), rel=1e-6)
+
+
+def test_the_rotation_of_source_003_is_a_rotation():
+    told = values(source("003"))
+    entries = np.array([[told[f"R_{row}{column}"] for column in (1, 2, 3)] for row in (1, 2, 3)])
+    assert entries @ entries.T == pytest.approx(np.eye(3), abs=1e-5)
+    assert np.linalg.det(entries) == pytest.approx(1, abs=1e-5)
+
+
 def test_errata_agree_with_the_page():
     assert errata() == rows_of_page(PAGE.read_text(encoding="utf-8")), (
         "run: python -m tarsus.studio.sources.errata docs/sources.md"

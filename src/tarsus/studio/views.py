@@ -131,7 +131,7 @@ class Views:
     def source(self, state: StudioState, *, id: int) -> SourceMessage:
         """Return a source document with the values of the pose of the view Body."""
         require_leg(self.results.robot(state), state.source.leg)
-        return source_message(self.results.standing(state), state.source, id=id)
+        return source_message(self.results.standing(state), state.source, state.walk, id=id)
 
     def file(self, state: StudioState, what: str, *, id: int) -> FileMessage:
         """Return an exported file."""

@@ -1,7 +1,7 @@
 import { describe, expect, it } from "vitest";
 
 import { angleText } from "../views/angleText";
-import { decimalsOf, fixed, rangeText, stepped, typedNumber, withUnit } from "./numbers";
+import { apart, decimalsOf, fixed, rangeText, significant, stepped, typedNumber, withUnit } from "./numbers";
 
 describe("numbers", () => {
   it("have as many decimals as their step", () => {
@@ -22,6 +22,24 @@ describe("numbers", () => {
   it("may be typed with a decimal comma; incomplete numbers are rejected", () => {
     expect(["1,5", " -3 ", ".5", "1e3", "−2"].map(typedNumber)).toEqual([1.5, -3, 0.5, 1000, -2]);
     expect(["", "-", "1,2,3", "abc", "Infinity", "1e999"].map(typedNumber)).toEqual(Array(6).fill(null));
+  });
+});
+
+describe("significant digits", () => {
+  it("are shown without exponents", () => {
+    expect([0.00006144, 1234567, 0, -0.5, 12].map((value) => significant(value, 4))).toEqual([
+      "0.00006144",
+      "1234567",
+      "0",
+      "-0.5000",
+      "12.00",
+    ]);
+  });
+
+  it("are as many as it takes to tell two numbers apart", () => {
+    expect(apart(0.0001233, 0.0000614)).toEqual(["0.0001233", "0.00006140"]);
+    expect(apart(100.00001, 100.00002)).toEqual(["100.00001", "100.00002"]);
+    expect(apart(2, 2)).toEqual(["2.000", "2.000"]);
   });
 });
 

@@ -46,3 +46,22 @@ export function stepped(value: number, step: number, min = -Infinity, max = Infi
 export function clamp(value: number, low: number, high: number): number {
   return Math.min(high, Math.max(low, value));
 }
+
+/** Least and greatest number of digits after which two numbers are compared. */
+const [FEW, MANY] = [4, 9];
+
+/** A number with so many significant digits, in decimal notation. */
+export function significant(value: number, digits: number): string {
+  if (value === 0 || !Number.isFinite(value)) return fixed(value, 0);
+  const decimals = digits - 1 - Math.floor(Math.log10(Math.abs(value)));
+  return fixed(value, Math.min(12, Math.max(0, decimals)));
+}
+
+/** Two numbers with digits enough to tell them apart. */
+export function apart(one: number, other: number): [string, string] {
+  for (let digits = FEW; digits < MANY; digits++) {
+    const texts: [string, string] = [significant(one, digits), significant(other, digits)];
+    if (texts[0] !== texts[1]) return texts;
+  }
+  return [significant(one, FEW), significant(other, FEW)];
+}

@@ -47,9 +47,9 @@ DOCUMENT = Document(
         Step("Ot", "tibia angle, back again", "deg", "deg(180) - gamma", "−tibia", lambda leg: -leg.angles[2]),
     ),
     slips={
-        "test_002_erratum_the_hypotenuse_is_of_d_and_y": Slip("sqrt(r * r + d * d)", "sqrt(d * d + y * y)", "mm"),
+        "test_002_erratum_the_hypotenuse_is_of_d_and_y": Slip("r * r + d * d", "d * d + y * y", "mm²"),
         "test_002_erratum_the_law_of_cosines_subtracts": Slip(
-            "(f * f + L * L) / (2 * f * L)", "(f * f + L * L - t * t) / (2 * f * L)", ""
+            "f * f + L * L", "f * f + L * L - 2 * f * L * cos(alpha)", "mm²"
         ),
         "test_002_erratum_the_femur_angle_has_the_opposite_sign": Slip(
             "deg(90) - alpha - beta", "alpha + beta - deg(90)", "deg"

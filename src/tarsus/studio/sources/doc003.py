@@ -3,13 +3,45 @@
 from __future__ import annotations
 
 import math
+from typing import TYPE_CHECKING
+
+import numpy as np
 
 from tarsus.kinematics.pose import Pose
-from tarsus.studio.sources.document import Document, Given, Slip, Step
+from tarsus.studio.sources.document import Document, Given, Number, Slip, Step
+from tarsus.studio.sources.live import Live
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
 __all__ = ["DOCUMENT"]
 
 _TURNED = "cos(theta) * cos(beta) - sin(theta) * sin(alpha) * sin(beta)"
+
+_ROTATION = (
+    ("cos(alpha) * cos(beta)", "-(cos(alpha) * sin(beta))", "sin(alpha)"),
+    ("sin(theta) * sin(alpha) * cos(beta) + cos(theta) * sin(beta)", _TURNED, "-(sin(theta) * cos(alpha))"),
+    (
+        "-(cos(theta) * sin(alpha) * cos(beta)) + sin(theta) * sin(beta)",
+        "cos(theta) * sin(alpha) * sin(beta) + sin(theta) * cos(beta)",
+        "cos(theta) * cos(alpha)",
+    ),
+)
+
+
+def _rotation(leg: Live) -> Float[np.ndarray, "3 3"]:
+    """Return roll times pitch times yaw, the yaw first."""
+    roll, pitch, yaw = map(float, leg.rpy)
+    return np.asarray((Pose.from_rpy(roll=roll) @ Pose.from_rpy(pitch=pitch) @ Pose.from_rpy(yaw=yaw)).rotation)
+
+
+def _entry(row: int, column: int) -> Number:
+    return lambda leg: float(_rotation(leg)[row, column])
+
+
+def _turned(row: int) -> Number:
+    return lambda leg: float(_rotation(leg)[row] @ leg.mount)
+
 
 DOCUMENT = Document(
     number="003",
@@ -53,8 +85,31 @@ DOCUMENT = Document(
         Given("theta", "turn of the body about x", "deg", lambda leg: leg.rpy[0]),
         Given("alpha", "turn of the body about z there, our y", "deg", lambda leg: leg.rpy[1]),
         Given("beta", "turn of the body about y there, our z", "deg", lambda leg: leg.rpy[2]),
-        Step(
-            "R_22", "middle entry of the rotation", "", _TURNED, "cos(roll) cos(yaw) − …", lambda leg: _middle(*leg.rpy)
+        *(
+            Step(
+                f"R_{row + 1}{column + 1}",
+                f"rotation of the body: row {row + 1}, column {column + 1}",
+                "",
+                formula,
+                "roll · pitch · yaw",
+                _entry(row, column),
+            )
+            for row, formulas in enumerate(_ROTATION)
+            for column, formula in enumerate(formulas)
+        ),
+        Given("x", "coxa axis from the body's centre, forward", "mm", lambda leg: leg.mount[0]),
+        Given("z", "coxa axis from the body's centre, to the left", "mm", lambda leg: leg.mount[1]),
+        Given("y", "coxa axis from the body's centre, up", "mm", lambda leg: leg.mount[2]),
+        *(
+            Step(
+                symbol,
+                f"coxa axis in the turned body, {way}",
+                "mm",
+                f"x * R_{row}1 + z * R_{row}2 + y * R_{row}3",
+                "turned coxa axis",
+                _turned(row - 1),
+            )
+            for row, (symbol, way) in enumerate((("X_t", "forward"), ("Z_t", "to the left"), ("Y_t", "up")), start=1)
         ),
     ),
     slips={
@@ -66,9 +121,3 @@ DOCUMENT = Document(
         ),
     },
 )
-
-
-def _middle(roll: float, pitch: float, yaw: float) -> float:
-    """Return the middle entry of roll times pitch times yaw, the yaw first."""
-    turned = Pose.from_rpy(roll=roll) @ Pose.from_rpy(pitch=pitch) @ Pose.from_rpy(yaw=yaw)
-    return float(turned.rotation[1, 1])

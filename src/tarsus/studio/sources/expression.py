@@ -50,6 +50,7 @@ FUNCTIONS: Mapping[str, tuple[str, Callable[..., float]]] = {
     "atan2": ("atan2", math.atan2),
     "hypot": ("hypot", math.hypot),
     "sqrt": ("sqrt", math.sqrt),
+    "abs": ("abs", abs),
     "deg": ("deg", _deg),
 }
 """Functions of expressions: what they are called in print, and how they are worked out."""
@@ -200,6 +201,8 @@ def _call(name: str, arguments: list[ast.expr], symbols: Symbols) -> MathNode:
         return MathNode(tag="msqrt", children=[_node(arguments[0], symbols)])
     if name == "deg":
         return _leaf("mn", f"{ast.unparse(arguments[0])}°")
+    if name == "abs":
+        return _row(_leaf("mo", "|"), _node(arguments[0], symbols), _leaf("mo", "|"))
     inside: list[MathNode] = []
     for argument in arguments:
         inside += [*([_leaf("mo", ",")] if inside else []), _node(argument, symbols)]

@@ -9,13 +9,13 @@ import numpy as np
 
 from tarsus.studio.encoding import or_null
 from tarsus.studio.messages.general import Equation, Erratum, MathNode, SourceMessage
-from tarsus.studio.messages.state import SourceChoice
+from tarsus.studio.messages.state import SourceChoice, WalkOptions
 from tarsus.studio.sources import doc000, doc001, doc002, doc003, doc004
 from tarsus.studio.sources.document import Document, Given, Line, Slip
 from tarsus.studio.sources.errata import Row, errata
 from tarsus.studio.sources.expression import Expression, Quantity, symbol_node
-from tarsus.studio.sources.live import Live
-from tarsus.studio.sources.torques import torque_equations, torque_slips
+from tarsus.studio.sources.live import Live, WalkValues
+from tarsus.studio.sources.torques import FEET_DOWN, torque_equations, torque_slips
 from tarsus.studio.standing import OnFootholds
 
 __all__ = ["DOCUMENTS", "source_message"]
@@ -30,7 +30,9 @@ _OURS_DIFFERS = "Tarsus has {}: {}"
 _AGREES = 1e-6
 
 
-def source_message(standing: OnFootholds, choice: SourceChoice, *, id: int) -> SourceMessage:
+def source_message(
+    standing: OnFootholds, choice: SourceChoice, walk: WalkOptions | None = None, *, id: int
+) -> SourceMessage:
     """Return a document with the numbers of a leg as it stands.
 
     Parameters
@@ -39,14 +41,20 @@ def source_message(standing: OnFootholds, choice: SourceChoice, *, id: int) -> S
         How the robot stands.
     choice : SourceChoice
         Which document, which leg.
+    walk : WalkOptions, optional
+        Options of the view Walk, which the equations of walks take.
     id : int
         Id of the message that is answered.
     """
-    document, leg = DOCUMENTS[choice.number], Live.of(standing, choice.leg)
+    document, leg = (
+        DOCUMENTS[choice.number],
+        Live.of(standing, choice.leg, None if walk is None else WalkValues.of(walk)),
+    )
     symbols: dict[str, Quantity] = {}
     equations = [_equation(f"{index}.{line.symbol}", line, leg, symbols) for index, line in enumerate(document.lines)]
     if choice.number == "004":
-        equations += torque_equations(leg.robot, leg.leg)
+        for feet_down in FEET_DOWN:
+            equations += torque_equations(leg.robot, leg.leg, feet_down=feet_down)
     return SourceMessage(
         type="source",
         id=id,

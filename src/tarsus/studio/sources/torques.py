@@ -13,17 +13,28 @@ from tarsus.studio.messages.general import Equation, Erratum, MathNode
 from tarsus.studio.sources.errata import errata
 from tarsus.studio.sources.expression import Expression, symbol_node
 
-__all__ = ["torque_equations", "torque_slips"]
+__all__ = ["FEET_DOWN", "torque_equations", "torque_slips"]
 
-_LEAST_LEGS_DOWN = 3
+FEET_DOWN = (3, 5)
+"""Numbers of feet on the ground for which the document computes torques: a tripod, and all legs but one."""
+
+_COUNTS = {3: "three", 5: "five"}
 
 _SECTIONS: Mapping[str, str] = {
-    "given": "given",
     "weight": "weight",
     "swing": "a leg that swings freely",
     "inertia": "inertia about the coxa axis",
-    "stance": "standing on three feet",
-    "walk": "walking on three feet",
+    "stance": "standing on {} feet",
+    "walk": "walking on {} feet",
+}
+
+_PARTS = ("body", "coxa", "femur", "tibia")
+_GIVEN: Mapping[str, str] = {
+    **{f"given.m_{part}": f"mass of the {part}" for part in _PARTS},
+    **{f"given.L_{part}": f"length of the {part}" for part in _PARTS},
+    **{f"given.l_{part}": f"centre of mass of the {part}, from its inner joint" for part in _PARTS},
+    "given.R_b": "coxa axis from the body's centre",
+    "given.L_femur_out": "horizontal length of the femur in stance",
 }
 
 # The line of the hand method that each mistake is in.
@@ -37,8 +48,8 @@ _SLIPS: Mapping[str, str] = {
 }
 
 
-def torque_equations(robot: Robot, leg: int) -> list[Equation]:
-    """Return the hand method's lines; none where the robot's masses are unknown.
+def torque_equations(robot: Robot, leg: int, *, feet_down: int) -> list[Equation]:
+    """Return the hand method's lines; none where the robot's masses are unknown or it has not more legs than that.
 
     Parameters
     ----------
@@ -46,18 +57,25 @@ def torque_equations(robot: Robot, leg: int) -> list[Equation]:
         A single robot.
     leg : int
         The leg that stands for all.
+    feet_down : int
+        Number of feet on the ground, one of `FEET_DOWN`; beyond the first, only the lines that depend on it.
     """
-    if not robot.has_masses:
+    if not robot.has_masses or robot.legs <= feet_down:
         return []
-    return [_equation(line) for line in handbook(robot, leg=leg, feet_down=_LEAST_LEGS_DOWN).lines]
+    lines = handbook(robot, leg=leg, feet_down=feet_down).lines
+    return [
+        _equation(line, feet_down)
+        for line in lines
+        if feet_down == FEET_DOWN[0] or line.key.partition(".")[0] in ("stance", "walk")
+    ]
 
 
-def _equation(line: Line) -> Equation:
-    section = _SECTIONS[line.key.partition(".")[0]]
+def _equation(line: Line, feet_down: int) -> Equation:
+    section = _SECTIONS.get(line.key.partition(".")[0], "given").format(_COUNTS[feet_down])
     formula = f" = {line.formula}" if line.formula else ""
     return Equation(
-        key=line.key,
-        name=section,
+        key=line.key if feet_down == FEET_DOWN[0] else f"{line.key}.{feet_down}",
+        name=_GIVEN.get(line.key, section),
         symbol=_symbol(line.symbol),
         formula=_node(line.formula),
         numbers=_node(line.substitution),

@@ -1,7 +1,6 @@
-import { withUnit } from "../../controls/numbers";
 import { Scroll } from "../../controls/Scroll";
 import type { Equation } from "../../protocol";
-import { digitsOf } from "./digits";
+import { valueText } from "./digits";
 import { Maths } from "./Maths";
 
 /** An equation of a document: formula, values, result, and the name in Tarsus. */
@@ -11,7 +10,7 @@ export function EquationCard({ equation }: { equation: Equation }) {
     <div className="equation" data-testid={`equation-${equation.key}`}>
       <div className="equation-head">
         <span>{equation.name}</span>
-        <output>{withUnit(value, digitsOf(unit), unit)}</output>
+        <output>{valueText(value, unit)}</output>
       </div>
       <Scroll label={`${equation.name}: formula`} className="maths">
         <Maths node={row(symbol, formula)} block />

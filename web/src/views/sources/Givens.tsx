@@ -1,6 +1,5 @@
-import { withUnit } from "../../controls/numbers";
 import type { Equation } from "../../protocol";
-import { digitsOf } from "./digits";
+import { valueText } from "./digits";
 import { Maths } from "./Maths";
 
 /** Given quantities of a document: symbol, quantity, and value for this robot. */
@@ -26,7 +25,7 @@ export function Givens({ equations }: { equations: readonly Equation[] }) {
               {name}
               {ours && <span className="hint"> – {ours}</span>}
             </td>
-            <td>{withUnit(value, digitsOf(unit), unit)}</td>
+            <td>{valueText(value, unit)}</td>
           </tr>
         ))}
       </tbody>

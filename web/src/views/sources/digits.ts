@@ -1,4 +1,8 @@
-/** Number of decimals for each unit. */
-export function digitsOf(unit: string): number {
-  return unit === "mm" || unit === "deg" || unit === "°" ? 2 : 4;
+import { significant, withUnit } from "../../controls/numbers";
+
+/** A value of an equation: lengths and angles with two decimals, others, which may be tiny, with four digits. */
+export function valueText(value: number | null, unit: string): string {
+  if (value === null) return "–";
+  if (unit === "mm" || unit === "deg") return withUnit(value, 2, unit === "deg" ? "°" : unit);
+  return `${significant(value, 4)} ${unit}`.trim();
 }
