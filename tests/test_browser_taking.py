@@ -164,6 +164,13 @@ def test_a_walk_plays_offline_from_one_file(visitor, arrive, tmp_path):
 def test_undo_and_redo_work_across_views(visitor):
     visitor.open(StudioState(view="joints"))
     expect(visitor.at("undo")).to_be_disabled()
+    # By keyboard at once, where the choice still has the focus.
+    visitor.at("robot-choice").focus()
+    visitor.at("robot-choice").select_option("phantomx")
+    expect(visitor.at("undo")).to_be_enabled()
+    visitor.page.keyboard.press("Control+z")
+    expect(visitor.at("robot-choice")).to_have_value("strider")
+    expect(visitor.at("undo")).to_be_disabled()
     visitor.type("joint-LF-coxa", 21)
     visitor.view("robot")
     visitor.type("robot-coxa", 55)

@@ -143,7 +143,7 @@ def test_the_robot_sits_down_folds_and_stands_up(visitor):
     expect(state).to_have_text("folded")
     expect(fold).to_be_disabled()
     expect(sit).to_be_disabled()
-    expect(visitor.at("chip-feet")).to_have_text("0 feet down")
+    expect(visitor.at("chip-feet")).to_have_text("0 feet on the ground")
     stand.click()
     expect(state).to_have_text("standing")
     expect(visitor.at("chip-margin")).to_contain_text("stable")

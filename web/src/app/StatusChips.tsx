@@ -84,7 +84,7 @@ function statusOf(frame: Frame): Status {
     limitations: frame.limitations,
     margin: frame.margin === null ? "" : `${fixed(frame.margin, 0)} mm`,
     stable: frame.margin !== null && frame.margin >= 0,
-    feet: `${down} ${down === 1 ? "foot" : "feet"} down`,
+    feet: `${down} ${down === 1 ? "foot" : "feet"} on the ground`,
     troubled: frame.trouble.filter(Boolean).length,
   };
 }

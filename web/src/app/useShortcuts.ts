@@ -26,7 +26,8 @@ export function isTyping(target: EventTarget | null): boolean {
   return target instanceof HTMLInputElement && !["range", "checkbox", "radio"].includes(target.type);
 }
 
-/** Whether an element is a number field without text that is not applied: there is nothing for the browser to undo. */
+/** Whether the browser has nothing to undo in an element: a choice, or a number field whose text is applied. */
 function isApplied(target: EventTarget | null): boolean {
+  if (target instanceof HTMLSelectElement) return true;
   return target instanceof HTMLInputElement && target.dataset.draft === "false";
 }

@@ -67,7 +67,7 @@ function writeMargin(note: Element | null | undefined, { com, margin }: Frame) {
   if (!(note instanceof HTMLElement)) return;
   note.hidden = com === null || margin === null;
   if (margin === null) return;
-  note.textContent = margin < 0 ? `falls: ${margin.toFixed(0)} mm` : `${margin.toFixed(0)} mm`;
+  note.textContent = margin < 0 ? `tips over: ${margin.toFixed(0)} mm` : `${margin.toFixed(0)} mm`;
   note.classList.toggle("bad", margin < 0);
 }
 

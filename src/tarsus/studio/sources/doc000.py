@@ -11,7 +11,7 @@ __all__ = ["DOCUMENT"]
 DOCUMENT = Document(
     number="000",
     title="Kinematics Calculations for Hexapod Robot",
-    about="Nabeel Chowdhury, 2021. The three angles of a leg from where its foot is to be, by the law of cosines.",
+    about="Nabeel Chowdhury, 2021. The joint angles of a leg for a foot position, by the law of cosines.",
     lines=(
         Given("P_x", "foot from the coxa axis, outward", "mm", lambda leg: leg.foot[0]),
         Given("P_y", "foot from the coxa axis, to the left", "mm", lambda leg: leg.foot[1]),

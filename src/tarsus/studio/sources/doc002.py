@@ -11,15 +11,15 @@ __all__ = ["DOCUMENT"]
 DOCUMENT = Document(
     number="002",
     title="Hexapod Leg Kinematics",
-    about="About the robot Hexy, 2015, author not given. A leg's foot from its angles, and back. Its y points up, and "
-    "the coxa turns about it, clockwise seen from above.",
+    about="About the robot Hexy, 2015, author not given. Forward and inverse kinematics of a leg. Its y axis "
+    "points up; the coxa angle is positive clockwise, seen from above.",
     lines=(
         Given("c", "length of the coxa", "mm", lambda leg: leg.length("coxa")),
         Given("f", "length of the femur", "mm", lambda leg: leg.length("femur")),
         Given("t", "length of the tibia", "mm", lambda leg: leg.length("tibia")),
-        Given("Oc", "coxa angle: our coxa, the other way round", "deg", lambda leg: -leg.angles[0]),
+        Given("Oc", "coxa angle: our coxa, negated", "deg", lambda leg: -leg.angles[0]),
         Given("Of", "femur angle: our femur", "deg", lambda leg: leg.angles[1]),
-        Given("Ot", "tibia angle, bent down: our tibia, the other way round", "deg", lambda leg: -leg.angles[2]),
+        Given("Ot", "tibia angle, bent down: our tibia, negated", "deg", lambda leg: -leg.angles[2]),
         Step("r", "foot from the coxa axis, seen from above", "mm", "c + f * cos(Of) + t * cos(Of - Ot)"),
         Step(
             "y",
@@ -43,8 +43,8 @@ DOCUMENT = Document(
             "tibia + 180°",
             lambda leg: leg.angles[2] + math.pi,
         ),
-        Step("Of", "femur angle, back again", "deg", "alpha + beta - deg(90)", "femur", lambda leg: leg.angles[1]),
-        Step("Ot", "tibia angle, back again", "deg", "deg(180) - gamma", "−tibia", lambda leg: -leg.angles[2]),
+        Step("Of", "femur angle from the foot", "deg", "alpha + beta - deg(90)", "femur", lambda leg: leg.angles[1]),
+        Step("Ot", "tibia angle from the foot", "deg", "deg(180) - gamma", "−tibia", lambda leg: -leg.angles[2]),
     ),
     slips={
         "test_002_erratum_the_hypotenuse_is_of_d_and_y": Slip("r * r + d * d", "d * d + y * y", "mm²"),

@@ -11,7 +11,7 @@ DOCUMENT = Document(
     number="004",
     title="Torque calculations and Inverse Kinematics",
     about="Author not given. A robot with its coxa axes on a circle, Tarsus' preset strider: the angles of a leg, and "
-    "the torques by a method for pencil and paper. What the joints really bear is in the view Loads.",
+    "the torques by a hand calculation. The static torques are in the view Loads.",
     lines=(
         Given("v_x", "foot from the coxa axis in the body frame, forward", "mm", lambda leg: _from_mount(leg)[0]),
         Given("v_y", "foot from the coxa axis in the body frame, left", "mm", lambda leg: _from_mount(leg)[1]),

@@ -25,7 +25,7 @@ DOCUMENTS: dict[str, Document] = {
 }
 """The five documents, by their numbers."""
 
-_SIDEWAYS = "this robot's femur axis lies {:.1f} mm beside its coxa axis, of which the document does not know"
+_SIDEWAYS = "Note: the femur axis of this robot lies {:.1f} mm beside its coxa axis; the document has no such offset."
 _OURS_DIFFERS = "Tarsus has {}: {}"
 _AGREES = 1e-6
 
@@ -70,7 +70,7 @@ def source_message(
 def _caveats(document: Document, leg: Live) -> Iterator[str]:
     beside = leg.offset[0] * 1000
     if beside and not document.sideways:
-        yield f"Mind: {_SIDEWAYS.format(beside)}."
+        yield _SIDEWAYS.format(beside)
 
 
 def _equation(key: str, line: Line, leg: Live, symbols: dict[str, Quantity]) -> Equation:
