@@ -20,6 +20,7 @@ import numpy as np
 
 from loads import load_rows
 from native import FLAGS, CLoop
+from simulation import simulation_rows
 from studio import studio_rows
 from tarsus import (
     Gait,
@@ -257,6 +258,7 @@ def rows(robot: Robot, c_loop: CLoop | None) -> Iterator[Row]:
     for group in (single_rows, memory_rows, forward_rows, design_rows, walk_rows, load_rows, controller_rows):
         yield from group(robot)
     yield from start_rows()
+    yield from simulation_rows()
     yield from studio_rows()
 
 

@@ -15,6 +15,7 @@ from tarsus.simulation import ServoModel
 from tarsus.simulation.servos.command_timing import CommandTiming
 from tarsus.simulation.servos.known_servos import KNOWN_SERVOS
 from tarsus.simulation.servos.servo_table import ServoTable
+from tarsus.simulation.servos.torque_law import drive_torque
 
 STRIDER = load_robot("strider")
 DS3225 = ServoModel.of(load_servo("DS3225"))
@@ -116,7 +117,11 @@ def test_servos_are_given_by_name_as_one_or_for_each_joint():
     rng = np.random.default_rng(0)
     error, speed = rng.normal(0, 0.1, 18), rng.normal(0, 3, 18)
     expected = [s.torque(e, w) for s, e, w in zip([s for row in mixed for s in row], error, speed, strict=True)]
-    assert table.drive(error, speed) - table.damping * speed == pytest.approx(np.array(expected))
+    drive, zero = np.empty(18), np.zeros(18)
+    table.law.apply(error, zero, speed, drive)
+    assert drive - table.damping * speed == pytest.approx(np.array(expected))
+    kept = {"stiffness": table.stiffness, "play": table.play, "stall_torque": table.stall_torque, "slope": table.slope}
+    assert (drive == drive_torque(error, speed, **kept)).all()
 
 
 @pytest.mark.parametrize("servos", [3, [DS3225] * 6, [[DS3225] * 3] * 5, [[DS3225, DS3225, "ideal"]] * 6])

@@ -36,6 +36,9 @@ class Measurement:
         self._mujoco, self._model, self._data = mujoco_module(), model, data
         self._legs = robot.legs
         self._leg_of = {model.geom(foot_geom_name(robot, leg)).id: leg for leg in range(robot.legs)}
+        self._leg_of_geom = np.full(model.ngeom, -1)
+        self._leg_of_geom[list(self._leg_of)] = list(self._leg_of.values())
+        self._every_leg = np.arange(robot.legs)[:, None]
         self._body = model.geom(body_geom_name()).id
 
     def rotation(self) -> Float[np.ndarray, "3 3"]:
@@ -52,16 +55,15 @@ class Measurement:
 
     def foot_forces(self) -> Float[np.ndarray, "legs 3"]:
         """Return the forces of the ground on the feet in G, ``(legs, 3)`` [N]."""
-        forces, contact = np.zeros((self._legs, 3)), self._data.contact
-        geoms, rows, frames = contact.geom, contact.efc_address, contact.frame
+        contact = self._data.contact
+        rows, legs = contact.efc_address, self._leg_of_geom[contact.geom]
         # With elliptic cones the rows of a contact are its normal and its two tangential forces.
         found = self._data.efc_force[np.maximum(rows, 0)[:, None] + _ROWS]
-        for number, (first, second) in enumerate(geoms.tolist()):
-            leg = self._leg_of.get(second, self._leg_of.get(first))
-            if leg is not None and rows[number] >= 0:
-                # The normal points from the first geom to the second; which of them is the foot depends on the shapes.
-                force = found[number] @ frames[number].reshape(3, 3)
-                forces[leg] += force if second in self._leg_of else -force
+        along = (found[:, None, :] @ contact.frame.reshape(-1, 3, 3))[:, 0]
+        # The normal points from the first geom to the second; which of them is the foot depends on the shapes.
+        of_second = self._every_leg == legs[:, 1]
+        sign = (of_second * 1.0 - ((self._every_leg == legs[:, 0]) & ~of_second)) * (rows >= 0)
+        forces: np.ndarray = sign @ along
         return forces
 
     def slip_speeds(self) -> Float[np.ndarray, "legs"]:

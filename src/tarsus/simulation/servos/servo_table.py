@@ -10,7 +10,7 @@ import numpy as np
 from tarsus.errors import InputError, MissingDataError, UnknownNameError
 from tarsus.robot.robot import JOINTS, Robot
 from tarsus.simulation.servos.servo_model import ServoModel
-from tarsus.simulation.servos.torque_law import drive_torque
+from tarsus.simulation.servos.torque_law import TorqueLaw
 
 if TYPE_CHECKING:
     from jaxtyping import Bool, Float
@@ -81,26 +81,10 @@ class ServoTable(NamedTuple):
         """What the models assume, a line each."""
         return tuple(dict.fromkeys(line for row in self.servos for servo in row for line in servo.assumed))
 
-    def drive(
-        self, error: Float[np.ndarray, "joints"], speed: Float[np.ndarray, "joints"]
-    ) -> Float[np.ndarray, "joints"]:
-        """Return the torque of every servo without what damps it.
-
-        Parameters
-        ----------
-        error : array, shape (joints,)
-            Target less joint angle [rad].
-        speed : array, shape (joints,)
-            Joint speed [rad/s].
-
-        Returns
-        -------
-        array, shape (joints,)
-            Torque to which ``-damping * speed`` is to be added [N m].
-        """
-        return drive_torque(
-            error, speed, stiffness=self.stiffness, play=self.play, stall_torque=self.stall_torque, slope=self.slope
-        )
+    @property
+    def law(self) -> TorqueLaw:
+        """The torque of all servos, without what damps them."""
+        return TorqueLaw(stiffness=self.stiffness, play=self.play, stall_torque=self.stall_torque, slope=self.slope)
 
     def saturated(
         self, drive: Float[np.ndarray, "joints"], speed: Float[np.ndarray, "joints"]
@@ -110,7 +94,7 @@ class ServoTable(NamedTuple):
         Parameters
         ----------
         drive : array, shape (joints,)
-            Torque as `drive` returns it [N m].
+            Torque without what damps it [N m].
         speed : array, shape (joints,)
             Joint speed [rad/s].
         """

@@ -1,0 +1,81 @@
+"""Cost of physics: the shares of MuJoCo, of the plant around it and of the controller, in a simulated walk."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from measure import Row
+from tarsus import Command, RobotController, load_robot
+from tarsus.simulation import SimulatedPlant
+from tarsus.simulation.engine import mujoco_module
+
+__all__ = ["simulation_rows"]
+
+TICKS, ROUNDS = 300, 5
+MOST, MOST_ADDED = 1000 / 15, 0.4
+"""Targets: processor time for a second of one robot [ms], and what the plant adds to MuJoCo's steps."""
+
+# What reading the clock twice takes [ns], taken off what is timed.
+_CLOCK = 450
+
+
+class _TimedEngine:
+    """MuJoCo, with the time of its steps."""
+
+    def __init__(self) -> None:
+        self._mujoco = mujoco_module()
+        self.spent, self.steps = 0, 0
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._mujoco, name)
+
+    def mj_step(self, model: Any, data: Any) -> None:
+        """Take a physics step."""
+        start = time.thread_time_ns()
+        self._mujoco.mj_step(model, data)
+        self.spent += time.thread_time_ns() - start - _CLOCK
+        self.steps += 1
+
+
+def _walk(sensors: str) -> tuple[float, float, float]:
+    """Return the times of MuJoCo, of the plant around it and of the controller, for a second of walking [ms]."""
+    robot = load_robot("strider")
+    controller, plant, engine = RobotController(robot), SimulatedPlant(robot, sensors=sensors), _TimedEngine()
+    plant.start(controller.output)
+    plant._mujoco = engine
+    output, command, spent = controller.output, Command(twist=(0.05, 0.0, 0.0)), [0, 0]
+    for _ in range(TICKS):
+        start = time.thread_time_ns()
+        readings = plant.step(output, 0.01)
+        between = time.thread_time_ns()
+        output = controller.step(command, 0.01, readings)
+        spent[0] += between - start
+        spent[1] += time.thread_time_ns() - between
+    around = spent[0] - engine.spent - 2 * _CLOCK * engine.steps
+    seconds = TICKS / 100 * 1e6
+    return engine.spent / seconds, around / seconds, spent[1] / seconds
+
+
+def simulation_rows() -> Iterator[Row]:
+    """Yield the rows."""
+    for sensors in ("blind", "hobby", "smart"):
+        physics, around, controller = np.median([_walk(sensors) for _ in range(ROUNDS)], axis=0).tolist()
+        whole = physics + around + controller
+        yield Row(
+            what=f"a second of the strider in physics, {sensors}, 100 ticks",
+            measured=f"{whole:.0f} ms",
+            compared=f"MuJoCo {physics:.0f}, plant {around:.0f}, controller {controller:.0f} ms",
+            target=f"at most {MOST:.0f} ms",
+            met=whole <= MOST,
+        )
+        yield Row(
+            what=f"the plant's own work, {sensors}",
+            measured=f"{100 * around / physics:.0f} %",
+            compared=f"MuJoCo's steps {physics:.0f} ms",
+            target=f"at most {100 * MOST_ADDED:.0f} %",
+            met=around <= MOST_ADDED * physics,
+        )
