@@ -49,7 +49,7 @@ def plan(name: str, options: dict[str, Any]) -> Motion:
         path,
         cycle_time=options["cycle"],
         body_tilt=(math.radians(tilt[0]), math.radians(tilt[1])),
-        stance_width=options["stance_width"] / 1000,
+        stance_width=(options["stance_width"] or 0.0) / 1000,
         rate=options["rate"],
         **lengths,
     )
@@ -65,8 +65,10 @@ def with_changes(options: dict[str, Any], changes: dict[str, Any]) -> dict[str, 
     changes : dict
         Options of a `WalkChange`.
     """
-    changed = {key: value.name if isinstance(value, Gait) else value * 1000 for key, value in changes.items()}
-    changed["stance_width"] = options["stance_width"] + changed.get("stance_width", 0.0)
+    changed: dict[str, Any] = {
+        key: value.name if isinstance(value, Gait) else value * 1000 for key, value in changes.items()
+    }
+    changed["stance_width"] = (options["stance_width"] or 0.0) + changed.get("stance_width", 0.0)
     return {**options, **changed}
 
 
