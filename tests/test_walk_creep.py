@@ -21,6 +21,7 @@ from tarsus.kinematics.pose import Pose
 from tarsus.robot.file import robot_from_dict
 from tarsus.scenario.file import scenario_from_text
 from tarsus.scenario.runner import run_scenario
+from tarsus.scenario.summary import drive_summary
 from tarsus.simulation.simulated_plant import SimulatedPlant
 
 CREEP, CLOCKWISE = (Gait.named("creep", legs=4, turning=turning) for turning in (0.0, -1.0))
@@ -177,6 +178,8 @@ def test_a_quadruped_stands_up_walks_and_sits_down_without_interventions():
     walked = np.array([state == "walking" for state in found.states])
     assert found.motion.margin[walked].min() > 0.01
     assert found.motion.body.position[-1, 0] > 0.05
+    # The way is that of the walk, without the body's loops.
+    assert drive_summary(found)["distance_mm"] == pytest.approx(1000 * found.motion.body.position[-1, 0], rel=0.02)
 
 
 def test_in_physics_a_quadruped_keeps_level_and_goes_where_it_is_told():

@@ -166,7 +166,7 @@ class Gait:
         R. B. McGhee and A. A. Frank, "On the stability properties of quadruped creeping gaits", Mathematical
         Biosciences 3 (1968): a quadruped that keeps one foot at most in the air is statically stable with the order
         left rear, left front, right rear, right front, by (duty factor - 3/4) of a stride; that margin is 0 in short
-        strides. With a body shift, the order around the body needs the least acceleration, whatever the stride.
+        strides. With a body shift, the order around the body needs less acceleration.
         """
         key = _ALIASES.get(str(name).lower(), str(name).lower())
         if key not in _NAMED:

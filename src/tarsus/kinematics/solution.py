@@ -62,7 +62,7 @@ class IKSolution:
         """Return angles and reach of each leg of a single robot in a single pose."""
         if is_traced(self.angles) or np.ndim(self.angles) != 2:
             return ()
-        angles, reach = np.degrees(np.asarray(self.angles)), np.asarray(self.reach)
+        angles, reach = np.degrees(np.asarray(self.angles)).round(1) + 0.0, np.asarray(self.reach)
         return [
             {"leg": name}
             | {f"{joint} [deg]": f"{angle:.1f}" for joint, angle in zip(JOINTS, angles[leg], strict=True)}

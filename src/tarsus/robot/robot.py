@@ -133,7 +133,8 @@ class Robot:
         """Return the legs of a single robot."""
         if self.batch_shape or not isinstance(self.femur, np.ndarray):
             return ()
-        position, yaw, limits = self.mount_position * 1000, np.degrees(self.mount_yaw), np.degrees(self.limits)
+        position, yaw = (self.mount_position * 1000).round(1) + 0.0, np.degrees(self.mount_yaw).round(1) + 0.0
+        limits = np.degrees(self.limits)
         links = {"coxa [mm]": self.coxa, "femur [mm]": self.femur, "tibia [mm]": self.tibia}
         return [
             {"leg": name}

@@ -23,7 +23,8 @@ def drive_summary(recording: Recording) -> dict[str, Any]:
     motion = recording.motion
     walking = recording.upright & np.array([activity != "standing" for activity in recording.activities])
     steps = np.diff(motion.time)
-    path = np.linalg.norm(np.diff(motion.body.position[:, :2], axis=0), axis=1)
+    # Of the heading frame: a sway or a body shift is no way.
+    path = np.linalg.norm(recording.twist[1:, :2], axis=1) * steps
     moved = walking[1:]
     yaw = np.unwrap(np.asarray(motion.body.rpy)[:, 2])
     x, y = motion.body.position[-1, :2] * 1000
