@@ -160,9 +160,9 @@ def test_an_erratum_that_cannot_be_evaluated_has_no_value():
 
 
 def test_a_leg_out_of_reach_is_shown_at_its_position():
-    told = source("000", pitch_deg=25)
+    told = source("000", z_mm=150)
     robot = load_robot("strider")
-    how = standing(robot, BodyState(**{**POSE, "pitch_deg": 25}))
+    how = standing(robot, BodyState(**{**POSE, "z_mm": 150}))
     assert np.asarray(how.solution.reach).any()
     angle = next(equation["value"] for equation in told["equations"] if equation["ours"] == "coxa")
     found = inverse_kinematics(robot, np.asarray(how.solution.feet), how.body)
