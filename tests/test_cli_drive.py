@@ -1,4 +1,4 @@
-"""`tarsus drive`: what it says is what `run` says; what is wrong with a scenario is told with its place."""
+"""`tarsus drive`: what it says is what `run` says; what is wrong with a scenario is reported with its place."""
 
 import csv
 import json
@@ -69,7 +69,7 @@ def test_without_dry_servos_are_refused():
     assert "servos are not supported yet; --dry" in result.stderr
 
 
-def test_a_refused_command_is_told_and_is_exit_code_1():
+def test_a_rejected_command_is_reported_with_exit_code_1():
     result = run("drive", "--dry", "at 0 s: power_off")
     assert result.exit_code == 1
     assert "not possible" in result.stdout
@@ -114,7 +114,7 @@ def test_a_robot_that_never_stands_has_no_margin_and_no_loads(tmp_path):
         ("at 0 s: foot_target XX x 1 mm y 1 mm z 1 mm", (), "no leg is called 'XX'"),
     ],
 )
-def test_what_is_asked_wrongly_is_told(scenario, options, wanted):
+def test_malformed_requests_are_reported(scenario, options, wanted):
     result = run("drive", "--dry", scenario, *options)
     assert result.exit_code == 2
     assert wanted in result.stderr

@@ -1,4 +1,4 @@
-"""What a wish may be, and what is said where it is something else."""
+"""What a command may contain, and how malformed commands are refused."""
 
 import numpy as np
 import pytest
@@ -11,7 +11,7 @@ from tarsus.errors import InputError
 finite = st.floats(-1e3, 1e3)
 
 
-def test_a_wish_for_nothing_leaves_all_as_it_is():
+def test_an_empty_command_changes_nothing():
     command = Command()
     assert command.twist == (0.0, 0.0, 0.0)
     others = (
@@ -36,11 +36,11 @@ def test_numbers_of_any_kind_become_plain_floats(values):
         assert {type(value) for value in body} == {float}
 
 
-def test_speeds_beyond_all_measure_are_a_wish_for_the_walker_to_cut():
+def test_excessive_speeds_are_limited_by_the_controller():
     assert Command(twist=(1e300, -1e300, 5)).twist == (1e300, -1e300, 5.0)
 
 
-def test_legs_as_hands_are_taken_out_and_put_back():
+def test_legs_with_foot_targets_leave_the_gait_and_return():
     command = Command(foot_targets={0: [0.1, 0, np.float64(0.05)], 3: None}, foot_velocities={1: (0, 0, 1)})
     assert command.foot_targets == {0: (0.1, 0.0, 0.05), 3: None}
     assert command.foot_velocities == {1: (0.0, 0.0, 1.0)}

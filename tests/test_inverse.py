@@ -264,7 +264,7 @@ def test_a_foot_on_the_coxa_axis_is_within_reach_whatever_the_coxas_limits(shift
 @pytest.mark.parametrize("size", [0.0, 1e-15, 1e-12, 1e-9, 1e-7, 1e-4])
 @pytest.mark.parametrize("what", ["femur axis", "coxa axis"])
 def test_a_foot_slightly_too_near_is_not_reached(size, what):
-    """Femur and tibia that differ by `size`, or an offset of `size`: that is the miss, told from 1e-13 m on."""
+    """Femur and tibia that differ by `size`, or an offset of `size`: the miss, told apart from 1e-13 m on."""
     changes = {"tibia": np.full(6, 0.098 + size)} if what == "femur axis" else {}
     limits = np.tile([[-1, 1], [-np.pi, np.pi], [-np.pi, np.pi]], (6, 1, 1))
     offset = size if what == "coxa axis" else 0

@@ -112,8 +112,8 @@ def test_centre_of_mass_and_attitude_are_kept_on_a_slope(seed, mode):
     T_world_ground, turn = rotation(*lean), rotation(0, 0, commanded.yaw)
     over = np.array([0.3, -0.2])  # B's origin without correction, in G
     origin = np.array([*over, plane.height(*over) + commanded.height])
-    wished = origin + rotation(commanded.roll, commanded.pitch, commanded.yaw) @ com
-    support = np.array([*wished[:2], plane.height(*wished[:2])])
+    wanted = origin + rotation(commanded.roll, commanded.pitch, commanded.yaw) @ com
+    support = np.array([*wanted[:2], plane.height(*wanted[:2])])
     body = rotation(commanded.roll + got.roll, commanded.pitch + got.pitch, commanded.yaw)
     centre = origin + turn @ [got.x, got.y, 0] + body @ com
     # From the centre of mass down along gravity until the ground is met.

@@ -50,7 +50,7 @@ def test_the_text_has_the_numbers_in_their_units(values, text):
         (math.nan, math.nan, "support"),
     ],
 )
-def test_a_stability_margin_is_told_from_the_side_that_it_is_on(margin, least, text):
+def test_a_stability_margin_is_described_by_its_side(margin, least, text):
     cause = Cause("support", margin=margin, least_margin=least)
     assert cause.text() == text
     limitation = cause.limitation(LimitationKind.FOOT_TARGET, asked=1.0, granted=0.0)

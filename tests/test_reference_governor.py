@@ -19,7 +19,7 @@ seeds = st.integers(0, 10**6)
 
 
 def situation(seed, name="strider"):
-    """Feet anywhere about their rest footholds, moving anyhow; a current target and a wish."""
+    """Feet anywhere about their rest footholds, moving anyhow; a current target and a command."""
     rng = np.random.default_rng(seed)
     setup, limits = setup_of(name), velocity_limits_of(name)
     rest = limits.rest
@@ -117,7 +117,7 @@ def test_what_was_allowed_stays_allowed(seed, dt):
         assert worst(later, target, given_as) <= 1e-9
 
 
-def test_a_wish_that_works_is_taken_whole():
+def test_a_feasible_command_is_met_in_full():
     now, current, _, given_as = situation(1)
     command = np.array([0.01, 0.0, 0.0])
     assert governed_twist(now, current, command, **given_as) is command

@@ -132,7 +132,7 @@ def test_a_foot_gives_way_by_the_force_over_its_stiffness():
 
 @pytest.mark.lengthy
 @pytest.mark.parametrize("speed", [(0.02, 0.0, 0.0), (0.0, -0.01, 0.015), (-0.01, 0.02, -0.01)])
-def test_a_hand_moves_at_its_speed_until_another_command(speed):
+def test_a_foot_velocity_holds_until_another_command(speed):
     vx, vy, vz = (f"{name} {1000 * value:g} mm/s" for name, value in zip(("vx", "vy", "vz"), speed, strict=True))
     text = (
         "at 0 s: gait wave; foot_target RF x 250 mm y -200 mm z 60 mm; "
@@ -150,13 +150,13 @@ def test_a_hand_moves_at_its_speed_until_another_command(speed):
     assert found.motion.contacts[-1].all()
 
 
-def test_a_hand_at_a_speed_goes_on_to_the_end_of_its_reach_and_a_point_ends_it():
+def test_a_foot_velocity_holds_to_the_end_of_reach_and_a_point_ends_it():
     text = (
         "at 0 s: gait wave; foot_target RF x 250 mm y -200 mm z 60 mm; at 7 s: foot_velocity RF vx 50 mm/s; "
         "at 11 s: foot_target RF x 250 mm y -200 mm z 50 mm"
     )
     found = run_scenario(scenario_from_text(text, duration=15.0), robot="strider")
-    # At the edge it comes and goes from tick to tick, and is told once.
+    # At the edge it comes and goes from tick to tick, and is reported once.
     (limit,) = (event for event in found.events if event.kind == "limit")
     assert "front right: out of reach" in limit.text
     assert limit.time == pytest.approx(8.3, abs=0.5)
@@ -166,7 +166,7 @@ def test_a_hand_at_a_speed_goes_on_to_the_end_of_its_reach_and_a_point_ends_it()
     assert foot[-1] == pytest.approx([0.25, -0.2, 0.05], abs=1e-6)
 
 
-def test_a_hand_at_a_speed_is_put_down_where_the_robot_sits_down():
+def test_a_foot_with_a_velocity_is_put_down_before_the_robot_sits_down():
     text = "at 0 s: gait wave; foot_velocity RF vz 20 mm/s; at 5 s: sit; at 6 s: foot_release RF"
     found = run_scenario(scenario_from_text(text, duration=10.0), robot="strider")
     assert found.ok, found.problems
@@ -278,7 +278,7 @@ def test_it_gets_up_where_it_has_sat_down():
     assert found.standing[1].time[0] == 0
 
 
-def test_limits_are_told_once_with_their_time():
+def test_limitations_are_reported_once_with_their_time():
     found = run_scenario(
         scenario_from_text("at 0.5 s: walk 3 m/s; at 2 s: walk 10 mm/s", duration=3.0), robot="strider"
     )
@@ -338,7 +338,7 @@ def test_while_the_guard_holds_the_walker_waits_and_what_is_sent_is_recorded(mon
         ("at 1 s: stop", None, InputError, "the scenario names no robot"),
     ],
 )
-def test_what_a_robot_can_not_be_told_is_refused_before_the_start(text, robot, error, wanted):
+def test_infeasible_commands_are_refused_before_the_start(text, robot, error, wanted):
     with pytest.raises(error, match=wanted):
         run_scenario(scenario_from_text(text), robot=robot)
 

@@ -1,4 +1,4 @@
-"""Scenarios as values, files and text: every form says the same, and what is wrong is told with its place."""
+"""Scenarios as values, files and text: every form says the same, and what is wrong is reported with its place."""
 
 import dataclasses
 import os
@@ -213,7 +213,7 @@ def test_errors_in_a_timeline_name_its_line(text, wanted):
         assert wanted in str(rejected.value)
 
 
-def test_all_problems_of_a_timeline_are_told_and_long_ones_are_shortened():
+def test_all_problems_of_a_timeline_are_reported_and_long_ones_are_shortened():
     with pytest.raises(InputError, match="2 problems") as rejected:
         scenario_from_text("at 1 s: " + "x" * 500 + "\nat 2 s: stop\nat 3 s: hop")
     assert "..." in str(rejected.value)
@@ -265,13 +265,13 @@ def test_all_problems_of_a_timeline_are_told_and_long_ones_are_shortened():
         ({"at": [{"time_s": 3, "ground_mm": 5}]}, "at[0].ground_mm = 5: must be a table of legs"),
     ],
 )
-def test_what_is_wrong_with_a_document_is_told_with_its_key(document, wanted):
+def test_problems_of_a_document_are_reported_with_their_key(document, wanted):
     with pytest.raises(InputError) as rejected:
         scenario_from_dict(document)
     assert wanted in str(rejected.value)
 
 
-def test_problems_of_a_file_are_told_with_the_line_of_their_table(tmp_path):
+def test_problems_of_a_file_are_reported_with_the_line_of_their_table(tmp_path):
     path = tmp_path / "wrong.toml"
     path.write_text(
         "name = 'x'\n\n[[at]]\ntime_s = 1\ndo = 'stop'\n\n[[at]]\ntime_s = 2\nswing_height_mm = -1\n", encoding="utf-8"
@@ -300,7 +300,7 @@ def test_files_that_are_none_are_refused(content, wanted, tmp_path):
         load_scenario(path)
 
 
-def test_files_that_can_not_be_read_or_written_are_told(tmp_path):
+def test_unreadable_and_unwritable_files_are_reported(tmp_path):
     with pytest.raises(InputError, match="can't be read: No such file"):
         load_scenario(tmp_path / "none.toml")
     with pytest.raises(InputError, match="can't be read: not a valid path"):
@@ -385,8 +385,8 @@ ROWS = re.findall(r"^\| `(.+?)` \| `(.+?)` \|", PAGE.partition("## Commands")[2]
 
 @pytest.mark.parametrize(("text", "table"), ROWS)
 def test_the_page_shows_two_forms_of_the_same_command(text, table):
-    told = scenario_from_text(f"at 1 s: {text}")
-    assert told == scenario_from_dict(tomllib.loads(f"[[at]]\ntime_s = 1\n{table}"))
+    found = scenario_from_text(f"at 1 s: {text}")
+    assert found == scenario_from_dict(tomllib.loads(f"[[at]]\ntime_s = 1\n{table}"))
 
 
 def test_the_page_shows_every_command():

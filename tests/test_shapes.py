@@ -111,7 +111,7 @@ def test_fitting_shapes_pass(sample):
 
 
 @pytest.mark.parametrize(
-    ("call", "told"),
+    ("call", "message"),
     [
         (lambda s: s.scaled(np.zeros((6, 2)), 1.0), "feet is ndarray of float64, shape (6, 2)"),
         (lambda s: s.scaled(np.zeros(3), 1.0), "feet is ndarray of float64, shape (3,)"),
@@ -128,10 +128,10 @@ def test_fitting_shapes_pass(sample):
         (lambda s: s.Step(FEET[:, 0] + 0j, FEET[:, 0]), "end is ndarray of float64"),
     ],
 )
-def test_wrong_shapes_and_dtypes_are_caught(sample, call, told):
+def test_wrong_shapes_and_dtypes_are_caught(sample, call, message):
     with pytest.raises(ShapeError) as caught:
         call(sample)
-    assert told in str(caught.value)
+    assert message in str(caught.value)
 
 
 def test_a_function_may_refuse_a_wrong_shape_itself(sample):

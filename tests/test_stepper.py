@@ -143,7 +143,7 @@ def arrays_of(value):
 
 
 @pytest.mark.parametrize("twist", [(0.1, 0.0, 0.3), (0.0, 0.0, 0.0)])
-def test_the_given_moment_is_not_changed(twist):
+def test_the_given_state_is_not_changed(twist):
     setup, rest = setup_of("strider"), rest_of("strider")
     now = walked(begun(setup, rest), step_inputs_of(setup, rest, (0.1, 0.0, 0.3)), 0.7, 0.01)
     inputs = step_inputs_of(setup, rest, twist)
@@ -209,7 +209,7 @@ def test_a_travel_is_the_exponential_of_its_displacement(yaw, x, y, angle):
     assert facing == yaw + angle
 
 
-def test_how_a_way_bends_is_the_same_for_numbers_and_arrays():
+def test_chord_factors_are_the_same_for_numbers_and_arrays():
     angles = np.array([0.0, 1e-9, 1e-7, 1e-5, 0.3, -2.0, np.pi, 2 * np.pi])
     direct = np.array([chord_factor(float(a)) for a in angles])
     np.testing.assert_allclose(chord_factor(angles), direct, atol=1e-15)

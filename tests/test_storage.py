@@ -145,8 +145,8 @@ def rewritten(motion, path, *, about=None, **arrays):
     save_motion(motion, path)
     with np.load(path) as file:
         content = dict(file)
-    told = json.loads(str(content["about"])) | (about or {})
-    np.savez(path, **{**content, "about": np.array(json.dumps(told)), **arrays})
+    stored = json.loads(str(content["about"])) | (about or {})
+    np.savez(path, **{**content, "about": np.array(json.dumps(stored)), **arrays})
 
 
 def test_another_format_is_refused_by_its_name(tmp_path):

@@ -66,37 +66,37 @@ def test_hello_is_answered_by_presets_gaits_and_servos():
 @pytest.mark.parametrize("name", list_robots())
 def test_the_robot_message_suffices_for_forward_kinematics(name):
     asked = Asked()
-    told = asked("robot", "robot", preset=name)
+    answer = asked("robot", "robot", preset=name)
     robot = load_robot(name)
-    assert told["name"] == name == told["preset"]
-    assert told["document"] == robot_to_dict(robot)
+    assert answer["name"] == name == answer["preset"]
+    assert answer["document"] == robot_to_dict(robot)
     angles = np.random.default_rng(1).uniform(-1, 1, (robot.legs, 3))
-    assert by_the_formula(told, angles) == pytest.approx(forward_kinematics(robot, angles) * 1000, abs=0.03)
-    assert table(told["limits_deg"], 3, 2) == pytest.approx(np.degrees(robot.limits), abs=DEG)
+    assert by_the_formula(answer, angles) == pytest.approx(forward_kinematics(robot, angles) * 1000, abs=0.03)
+    assert table(answer["limits_deg"], 3, 2) == pytest.approx(np.degrees(robot.limits), abs=DEG)
     height = default_body_height(robot)
-    assert told["body_height_mm"] == pytest.approx(height * 1000)
-    assert table(told["stance_mm"], 3)[:, :2] == pytest.approx(default_stance(robot, height)[:, :2] * 1000, abs=MM)
-    assert told["longest_stroke_mm"] == pytest.approx(max_stroke(robot, Gait.named(robot.gait.name)) * 1000)
-    assert [bool(servo) for servo in told["servos"]] == [servo is not None for row in robot.servos for servo in row]
+    assert answer["body_height_mm"] == pytest.approx(height * 1000)
+    assert table(answer["stance_mm"], 3)[:, :2] == pytest.approx(default_stance(robot, height)[:, :2] * 1000, abs=MM)
+    assert answer["longest_stroke_mm"] == pytest.approx(max_stroke(robot, Gait.named(robot.gait.name)) * 1000)
+    assert [bool(servo) for servo in answer["servos"]] == [servo is not None for row in robot.servos for servo in row]
 
 
-def by_the_formula(told, angles):
+def by_the_formula(answer, angles):
     """The leg points as the message's description says that they follow."""
     points = []
-    for leg in range(len(told["leg_names"])):
+    for leg in range(len(answer["leg_names"])):
         coxa, femur, tibia = angles[leg]
-        yaw = math.radians(told["mount_yaw_deg"][leg]) + coxa
+        yaw = math.radians(answer["mount_yaw_deg"][leg]) + coxa
         out, left, up = (
             np.array([math.cos(yaw), math.sin(yaw), 0]),
             np.array([-math.sin(yaw), math.cos(yaw), 0]),
             [0, 0, 1],
         )
-        side, rise = table(told["femur_axis_offset_mm"], 2)[leg]
-        mount = table(told["mount_mm"], 3)[leg]
-        axis = mount + told["coxa_mm"][leg] * out + side * left + rise * np.array(up)
-        knee = axis + told["femur_mm"][leg] * (math.cos(femur) * out + math.sin(femur) * np.array(up))
+        side, rise = table(answer["femur_axis_offset_mm"], 2)[leg]
+        mount = table(answer["mount_mm"], 3)[leg]
+        axis = mount + answer["coxa_mm"][leg] * out + side * left + rise * np.array(up)
+        knee = axis + answer["femur_mm"][leg] * (math.cos(femur) * out + math.sin(femur) * np.array(up))
         bend = femur + tibia
-        foot = knee + told["tibia_mm"][leg] * (math.cos(bend) * out + math.sin(bend) * np.array(up))
+        foot = knee + answer["tibia_mm"][leg] * (math.cos(bend) * out + math.sin(bend) * np.array(up))
         points.append([mount, axis, knee, foot])
     return np.array(points)
 
@@ -168,40 +168,40 @@ def body_pose(body, height):
 
 @pytest.mark.parametrize("body_height", [None, 130.0])
 def test_the_body_moves_relative_to_fixed_feet(ask, body_height):
-    told = ask("body", "pose", body={**BODY, "body_height_mm": body_height})
+    answer = ask("body", "pose", body={**BODY, "body_height_mm": body_height})
     height = default_body_height(STRIDER) if body_height is None else body_height / 1000
     feet, body = stance_in_ground(height), body_pose(BODY, height)
     solution = inverse_kinematics(STRIDER, feet, body)
-    assert table(told["angles_deg"], 3) == pytest.approx(np.degrees(solution.angles), abs=DEG)
-    assert table(told["feet_mm"], 3) == pytest.approx(feet * 1000, abs=MM)
-    assert told["contacts"] == "111111"
+    assert table(answer["angles_deg"], 3) == pytest.approx(np.degrees(solution.angles), abs=DEG)
+    assert table(answer["feet_mm"], 3) == pytest.approx(feet * 1000, abs=MM)
+    assert answer["contacts"] == "111111"
     margin = stability_margin(STRIDER, solution.angles, body, np.ones(6, dtype=bool))
-    assert told["margin_mm"] == pytest.approx(margin * 1000, abs=MM)
+    assert answer["margin_mm"] == pytest.approx(margin * 1000, abs=MM)
     polygon = support_polygon(feet, np.ones(6, dtype=bool)) * 1000
     # Of two corners equally far back, rounding says which is the first.
-    apart = np.linalg.norm(table(told["support_mm"], 2)[:, None] - polygon, axis=-1)
-    assert len(told["support_mm"]) == polygon.size
+    apart = np.linalg.norm(table(answer["support_mm"], 2)[:, None] - polygon, axis=-1)
+    assert len(answer["support_mm"]) == polygon.size
     assert apart.min(0).max() < 2 * MM
     torques, forces = joint_torques(STRIDER, solution.angles, body, np.ones(6, dtype=bool))
-    assert told["torques_nm"] == pytest.approx(torques.ravel(), abs=1e-4)
-    assert table(told["forces_n"], 3)[:, 2].sum() == pytest.approx(forces[:, 2].sum(), abs=1e-3)
-    assert (told["legs"], told["problems"], told["feasible_fraction"]) == ([], [], 1.0)
+    assert answer["torques_nm"] == pytest.approx(torques.ravel(), abs=1e-4)
+    assert table(answer["forces_n"], 3)[:, 2].sum() == pytest.approx(forces[:, 2].sum(), abs=1e-3)
+    assert (answer["legs"], answer["problems"], answer["feasible_fraction"]) == ([], [], 1.0)
 
 
 def test_a_leg_out_of_reach_is_reported_with_reason_and_distance(ask):
-    told = ask("body", "pose", body={"pitch_deg": 42})
+    answer = ask("body", "pose", body={"pitch_deg": 42})
     height = default_body_height(STRIDER)
     solution = inverse_kinematics(STRIDER, stance_in_ground(height), body_pose({"pitch_deg": 42}, height))
     failing = np.flatnonzero(solution.reach)
-    assert [leg["leg"] for leg in told["legs"]] == failing.tolist() != []
-    assert [leg["text"] for leg in told["legs"]] == [solution.explain_leg((leg,)) for leg in failing]
-    assert told["problems"][: len(solution.explain().splitlines())] == solution.explain().splitlines()
-    assert table(told["angles_deg"], 3) == pytest.approx(np.degrees(solution.angles), abs=DEG)
-    for leg in told["legs"]:
+    assert [leg["leg"] for leg in answer["legs"]] == failing.tolist() != []
+    assert [leg["text"] for leg in answer["legs"]] == [solution.explain_leg((leg,)) for leg in failing]
+    assert answer["problems"][: len(solution.explain().splitlines())] == solution.explain().splitlines()
+    assert table(answer["angles_deg"], 3) == pytest.approx(np.degrees(solution.angles), abs=DEG)
+    for leg in answer["legs"]:
         assert f"{leg['miss_mm']:.1f} mm away" in leg["text"]
-        assert told["contacts"][leg["leg"]] == "0"
-    assert 0 < told["feasible_fraction"] < 1
-    there = {"pitch_deg": 42 * told["feasible_fraction"] - 1e-3}
+        assert answer["contacts"][leg["leg"]] == "0"
+    assert 0 < answer["feasible_fraction"] < 1
+    there = {"pitch_deg": 42 * answer["feasible_fraction"] - 1e-3}
     assert ask("body", "pose", body=there)["legs"] == []
 
 
@@ -211,14 +211,14 @@ def test_a_body_height_out_of_reach_is_rejected(ask):
 
 def test_a_foothold_is_dragged(ask):
     ask.all("view", view="body")
-    state, told, done = ask.all("drag_foot", leg=1, position_mm=[10, 240, 25])
+    state, answer, done = ask.all("drag_foot", leg=1, position_mm=[10, 240, 25])
     assert state["state"]["body"]["feet_mm"][3:6] == [10, 240, 25]
     height = default_body_height(STRIDER)
     feet = stance_in_ground(height)
     feet[1] = 0.010, 0.240, 0.025
     solution = inverse_kinematics(STRIDER, feet, body_pose({}, height))
-    assert table(told["angles_deg"], 3) == pytest.approx(np.degrees(solution.angles), abs=DEG)
-    assert told["contacts"] == "101111"
+    assert table(answer["angles_deg"], 3) == pytest.approx(np.degrees(solution.angles), abs=DEG)
+    assert answer["contacts"] == "101111"
     assert done["undo"]
     below = ask("drag_foot", "state", leg=1, position_mm=[10, 240, -50])
     assert below["state"]["body"]["feet_mm"][5] == 0
@@ -228,9 +228,9 @@ def test_a_foothold_is_dragged(ask):
 def test_dragging_a_foot_in_joints_changes_only_its_leg(ask):
     before = ask("view", "pose", view="joints")
     goal = np.array([20.0, 230.0, 10.0])
-    state, told, _ = ask.all("drag_foot", leg=1, position_mm=goal.tolist())
-    assert state["state"]["joints"]["angles_deg"] == pytest.approx(told["angles_deg"], abs=1e-3)
-    was, now = table(before["angles_deg"], 3), table(told["angles_deg"], 3)
+    state, answer, _ = ask.all("drag_foot", leg=1, position_mm=goal.tolist())
+    assert state["state"]["joints"]["angles_deg"] == pytest.approx(answer["angles_deg"], abs=1e-3)
+    was, now = table(before["angles_deg"], 3), table(answer["angles_deg"], 3)
     assert np.delete(now, 1, 0) == pytest.approx(np.delete(was, 1, 0), abs=DEG)
     rest = resting_pose(STRIDER, np.radians(was))
     foot = (rest.body @ forward_kinematics(STRIDER, np.radians(now)))[1, 3]
@@ -270,21 +270,21 @@ WALKS = [
 
 @pytest.mark.parametrize(("options", "plan"), WALKS)
 def test_a_walk_agrees_with_plan_walk(ask, options, plan):
-    told, motion = ask("walk", "walk", walk=options), plan(STRIDER)
-    assert told["count"] == len(motion.time)
-    assert np.arange(told["count"]) / told["rate_hz"] == pytest.approx(motion.time)
-    assert table(told["angles_deg"], 6, 3) == pytest.approx(np.degrees(motion.angles), abs=DEG)
-    assert table(told["position_mm"], 3) == pytest.approx(motion.body.position * 1000, abs=MM)
+    answer, motion = ask("walk", "walk", walk=options), plan(STRIDER)
+    assert answer["count"] == len(motion.time)
+    assert np.arange(answer["count"]) / answer["rate_hz"] == pytest.approx(motion.time)
+    assert table(answer["angles_deg"], 6, 3) == pytest.approx(np.degrees(motion.angles), abs=DEG)
+    assert table(answer["position_mm"], 3) == pytest.approx(motion.body.position * 1000, abs=MM)
     rpy = motion.body.rpy
-    assert table(told["rpy_deg"], 3)[:, :2] == pytest.approx(np.degrees(rpy[:, :2]), abs=DEG)
-    turned = np.radians(table(told["rpy_deg"], 3)[:, 2]) - rpy[:, 2]
+    assert table(answer["rpy_deg"], 3)[:, :2] == pytest.approx(np.degrees(rpy[:, :2]), abs=DEG)
+    turned = np.radians(table(answer["rpy_deg"], 3)[:, 2]) - rpy[:, 2]
     assert np.cos(turned) == pytest.approx(np.ones(len(turned)))
-    assert np.abs(np.diff(table(told["rpy_deg"], 3)[:, 2])).max() < 20
-    assert told["contacts"] == ["".join(str(int(down)) for down in row) for row in motion.contacts]
-    assert told["reach"] is None
-    assert told["margin_mm"] == pytest.approx(motion.margin * 1000, abs=MM)
+    assert np.abs(np.diff(table(answer["rpy_deg"], 3)[:, 2])).max() < 20
+    assert answer["contacts"] == ["".join(str(int(down)) for down in row) for row in motion.contacts]
+    assert answer["reach"] is None
+    assert answer["margin_mm"] == pytest.approx(motion.margin * 1000, abs=MM)
     com = (motion.body @ centre_of_mass(STRIDER, motion.angles)[:, None])[:, 0, :2]
-    assert table(told["com_mm"], 2) == pytest.approx(com * 1000, abs=MM)
+    assert table(answer["com_mm"], 2) == pytest.approx(com * 1000, abs=MM)
     summary = walk_summary(motion)
     for key in (
         "gait",
@@ -296,13 +296,13 @@ def test_a_walk_agrees_with_plan_walk(ask, options, plan):
         "body_height_mm",
         "swing_height_mm",
     ):
-        assert told[key] == pytest.approx(summary[key])
+        assert answer[key] == pytest.approx(summary[key])
     for key in ("possible", "problems", "assumed"):
-        assert told[key] == summary[key]
-    assert told["end"] == pytest.approx(summary["end"])
-    assert told["least_margin"]["at_s"] == summary["least_margin"]["at_s"]
-    assert told["nearest_legs"] == summary["nearest_feet"]["legs"]
-    assert [joint["deg_s"] for joint in told["joint_speed"]] == pytest.approx(
+        assert answer[key] == summary[key]
+    assert answer["end"] == pytest.approx(summary["end"])
+    assert answer["least_margin"]["at_s"] == summary["least_margin"]["at_s"]
+    assert answer["nearest_legs"] == summary["nearest_feet"]["legs"]
+    assert [joint["deg_s"] for joint in answer["joint_speed"]] == pytest.approx(
         [summary["joint_speed"][joint]["deg_s"] for joint in ("coxa", "femur", "tibia")]
     )
 
@@ -345,16 +345,16 @@ LOADS = {"payload_kg": 0.2, "payload_at_mm": [10, 0, 20], "supply_v": 6.8, "capa
 
 def test_loads_agree_with_joint_loads(ask):
     motion = plan_walk(STRIDER, Gait.named("tripod"), straight_path(0.5))
-    told = ask("loads", "loads", loads=LOADS)
+    answer = ask("loads", "loads", loads=LOADS)
     found = joint_loads(STRIDER, motion, payload=Payload(0.2, (0.01, 0, 0.02)), supply=6.8)
-    assert table(told["torques_nm"], 6, 3) == pytest.approx(found.torques, abs=1e-4)
-    assert table(told["forces_n"], 6, 3) == pytest.approx(found.forces, abs=1e-4)
+    assert table(answer["torques_nm"], 6, 3) == pytest.approx(found.torques, abs=1e-4)
+    assert table(answer["forces_n"], 6, 3) == pytest.approx(found.forces, abs=1e-4)
     verdicts = joint_verdicts(found, safety_factor=2)
-    assert [joint["text"] for joint in told["joints"]] == [verdict.text() for verdict in verdicts]
-    assert [joint["grade"] for joint in told["joints"]] == [verdict.class_name for verdict in verdicts]
-    assert [joint["peak_nm"] for joint in told["joints"]] == pytest.approx(found.peak.ravel())
-    assert told["weight_n"] == pytest.approx(found.weight)
-    assert told["cost_of_transport"] == pytest.approx(found.cost_of_transport)
+    assert [joint["text"] for joint in answer["joints"]] == [verdict.text() for verdict in verdicts]
+    assert [joint["grade"] for joint in answer["joints"]] == [verdict.class_name for verdict in verdicts]
+    assert [joint["peak_nm"] for joint in answer["joints"]] == pytest.approx(found.peak.ravel())
+    assert answer["weight_n"] == pytest.approx(found.weight)
+    assert answer["cost_of_transport"] == pytest.approx(found.cost_of_transport)
 
 
 def test_loads_are_sent_with_the_walk_if_it_has_changed(ask):
@@ -387,13 +387,13 @@ def test_servos_agree_with_size_servos(ask):
         },
     )
     ask.all("loads", loads={"safety_factor": 2.5})
-    told = ask("servos", "servos")
+    answer = ask("servos", "servos")
     motion = plan_walk(STRIDER, Gait.named("wave"), straight_path(0.15), body_height=0.13)
     sizing = size_servos(STRIDER, joint_loads(STRIDER, motion), safety_factor=2.5)
-    assert told["sufficient"] == sizing.ok
-    assert [servo["name"] for servo in told["candidates"]] == [servo.name for servo in sizing.candidates] != []
-    assert told["mixed"]["factor"] == pytest.approx(sizing.mixed.factor)
-    assert told["payload_kg"] == pytest.approx(sizing.payload)
+    assert answer["sufficient"] == sizing.ok
+    assert [servo["name"] for servo in answer["candidates"]] == [servo.name for servo in sizing.candidates] != []
+    assert answer["mixed"]["factor"] == pytest.approx(sizing.mixed.factor)
+    assert answer["payload_kg"] == pytest.approx(sizing.payload)
     ask.all("walk", walk={"rate_hz": 800})
     assert "at most 3000" in ask.error("servos")["text"]
 

@@ -48,9 +48,9 @@ def source(number, leg=0, robot="strider", **pose):
 def test_equations_agree_with_tarsus(number, robot):
     how = standing(load_robot(robot), BodyState(**POSE))
     for leg in (0, 4):
-        told, numbers = source(number, leg, robot), Live.of(how, leg)
+        answer, numbers = source(number, leg, robot), Live.of(how, leg)
         compared = 0
-        for equation, line in zip(told["equations"], DOCUMENTS[number].lines, strict=False):
+        for equation, line in zip(answer["equations"], DOCUMENTS[number].lines, strict=False):
             if isinstance(line, Step) and line.number is not None:
                 ours = Quantity(float(line.number(numbers)), line.unit).shown
                 apart = equation["value"] - ours
@@ -66,9 +66,9 @@ def test_unsupported_offsets_are_noted():
     offset = robot.replace(femur_axis_offset=np.tile([0.02, 0.0], (6, 1)), name="offset")
     asked = Asked()
     asked.all("document", document=robot_to_dict(offset))
-    told = asked("source", "source", source={"number": "000", "leg": 0})
-    assert "20.0 mm beside its coxa axis; the document has no such offset" in told["about"]
-    assert any(equation["note"] and equation["note"].startswith("Tarsus has coxa") for equation in told["equations"])
+    answer = asked("source", "source", source={"number": "000", "leg": 0})
+    assert "20.0 mm beside its coxa axis; the document has no such offset" in answer["about"]
+    assert any(equation["note"] and equation["note"].startswith("Tarsus has coxa") for equation in answer["equations"])
     knows = asked("source", "source", source={"number": "001", "leg": 0})
     assert "no such offset" not in knows["about"]
     assert not any(equation["note"] for equation in knows["equations"])
@@ -80,29 +80,29 @@ def test_the_knee_down_branch_is_noted():
 
 
 def test_the_hand_method_is_that_of_the_handbook():
-    told = {equation["key"]: equation for equation in source("004")["equations"]}
+    answer = {equation["key"]: equation for equation in source("004")["equations"]}
     for line in handbook(load_robot("strider"), leg=0).lines:
-        assert told[line.key]["value"] == pytest.approx(line.value, rel=1e-6, abs=1e-9)
-        assert told[line.key]["printed_value"] == line.printed
-        assert (told[line.key]["formula"] is None) == (not line.formula)
+        assert answer[line.key]["value"] == pytest.approx(line.value, rel=1e-6, abs=1e-9)
+        assert answer[line.key]["printed_value"] == line.printed
+        assert (answer[line.key]["formula"] is None) == (not line.formula)
     assert len(source("004", robot="mithi")["equations"]) == len(DOCUMENTS["004"].lines)
 
 
 def test_the_hand_method_is_shown_for_three_and_for_five_feet():
-    told = {equation["key"]: equation for equation in source("004")["equations"]}
+    answer = {equation["key"]: equation for equation in source("004")["equations"]}
     lines = [
         line for line in handbook(load_robot("strider"), leg=0, feet_down=5).lines if line.key[:4] in ("stan", "walk")
     ]
     assert len(lines) >= 6
     for line in lines:
-        assert told[f"{line.key}.5"]["value"] == pytest.approx(line.value, rel=1e-6, abs=1e-9)
-    assert "given" not in {equation["name"] for equation in told.values()}
-    assert told["stance.load.5"]["name"] == "standing on five feet"
-    assert told["stance.load.5"]["value"] == pytest.approx(3.26536, abs=1e-5)
+        assert answer[f"{line.key}.5"]["value"] == pytest.approx(line.value, rel=1e-6, abs=1e-9)
+    assert "given" not in {equation["name"] for equation in answer.values()}
+    assert answer["stance.load.5"]["name"] == "standing on five feet"
+    assert answer["stance.load.5"]["value"] == pytest.approx(3.26536, abs=1e-5)
 
 
-def values(told):
-    return {equation["key"].partition(".")[2]: equation["value"] for equation in told["equations"]}
+def values(answer):
+    return {equation["key"].partition(".")[2]: equation["value"] for equation in answer["equations"]}
 
 
 @pytest.mark.parametrize("leg", range(6))
@@ -128,8 +128,8 @@ def test_walks_of_source_001_are_those_of_the_view_walk(leg):
 
 
 def test_the_rotation_of_source_003_is_a_rotation():
-    told = values(source("003"))
-    entries = np.array([[told[f"R_{row}{column}"] for column in (1, 2, 3)] for row in (1, 2, 3)])
+    answer = values(source("003"))
+    entries = np.array([[answer[f"R_{row}{column}"] for column in (1, 2, 3)] for row in (1, 2, 3)])
     assert entries @ entries.T == pytest.approx(np.eye(3), abs=1e-5)
     assert np.linalg.det(entries) == pytest.approx(1, abs=1e-5)
 
@@ -143,10 +143,10 @@ def test_errata_agree_with_the_page():
 
 @pytest.mark.parametrize("number", DOCUMENTS)
 def test_errata_are_listed_and_printed_formulas_give_other_values(number):
-    told, rows = source(number)["errata"], [row for row in errata() if row.number == number]
-    assert [erratum["reason"] for erratum in told] == [row.reason for row in rows]
+    answer, rows = source(number)["errata"], [row for row in errata() if row.number == number]
+    assert [erratum["reason"] for erratum in answer] == [row.reason for row in rows]
     assert set(DOCUMENTS[number].slips) <= {row.test for row in rows}
-    in_numbers = [erratum for erratum in told if erratum["correct_formula"]]
+    in_numbers = [erratum for erratum in answer if erratum["correct_formula"]]
     assert in_numbers
     for erratum in in_numbers:
         if "whole translation" not in erratum["printed"]:  # on strider's circle it makes no difference
@@ -154,17 +154,17 @@ def test_errata_are_listed_and_printed_formulas_give_other_values(number):
 
 
 def test_an_erratum_that_cannot_be_evaluated_has_no_value():
-    told = source("001", pitch_deg=0, roll_deg=0)["errata"]
-    slope = next(erratum for erratum in told if "1 / tan" in erratum["printed"])
+    answer = source("001", pitch_deg=0, roll_deg=0)["errata"]
+    slope = next(erratum for erratum in answer if "1 / tan" in erratum["printed"])
     assert (slope["printed_value"], slope["correct_value"]) == (None, 0)
 
 
 def test_a_leg_out_of_reach_is_shown_at_its_position():
-    told = source("000", z_mm=150)
+    answer = source("000", z_mm=150)
     robot = load_robot("strider")
     how = standing(robot, BodyState(**{**POSE, "z_mm": 150}))
     assert np.asarray(how.solution.reach).any()
-    angle = next(equation["value"] for equation in told["equations"] if equation["ours"] == "coxa")
+    angle = next(equation["value"] for equation in answer["equations"] if equation["ours"] == "coxa")
     found = inverse_kinematics(robot, np.asarray(how.solution.feet), how.body)
     assert angle == pytest.approx(math.degrees(found.angles[0, 0]), abs=1e-4)
 
@@ -247,8 +247,8 @@ def test_equations_allow_arithmetic_only(bad):
 
 def test_every_formula_is_well_formed_mathml():
     for number in DOCUMENTS:
-        told = source(number)
-        for equation in told["equations"]:
+        answer = source(number)
+        for equation in answer["equations"]:
             for part in ("symbol", "formula", "numbers"):
                 if equation[part]:
                     ET.fromstring(xml(equation[part]))

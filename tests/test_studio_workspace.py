@@ -78,12 +78,12 @@ def test_the_workspace_is_that_of_the_shown_body_pose():
     ask = Asked()
     ask.all("view", view="body")
     ask.all("body", body={"z_mm": 20, "pitch_deg": 5})
-    told = ask("workspace", "workspace", leg=2)
+    answer = ask("workspace", "workspace", leg=2)
     robot = load_robot("strider")
     body = Pose.from_rpy(pitch=np.radians(5), position=(0, 0, default_body_height(robot) + 0.02))
-    assert table(told["ground_mm"], 3) == pytest.approx(ground_outline(robot, 2, body).closed * 1000, abs=0.006)
-    assert told["farthest_mm"] == pytest.approx(ground_band(robot, 2, body)[1] * 1000, abs=1e-3)
-    assert len(told["plane_mm"]) > 100
+    assert table(answer["ground_mm"], 3) == pytest.approx(ground_outline(robot, 2, body).closed * 1000, abs=0.006)
+    assert answer["farthest_mm"] == pytest.approx(ground_band(robot, 2, body)[1] * 1000, abs=1e-3)
+    assert len(answer["plane_mm"]) > 100
     ask.all("view", view="walk")
     walking = ask("workspace", "workspace", leg=2)
     assert table(walking["ground_mm"], 3) == pytest.approx(

@@ -41,7 +41,7 @@ def test_where_they_do_not_it_is_slower_and_they_do(fast, dt):
     assert change <= 1.001
 
 
-def test_told_to_stop_it_comes_to_rest():
+def test_commanded_to_stop_it_comes_to_rest():
     own = TimeScaling(np.zeros((1, 3)), SPEED, ACCELERATION)
     time, rates = 0.0, []
     for _ in range(20):
@@ -51,7 +51,7 @@ def test_told_to_stop_it_comes_to_rest():
     assert time == pytest.approx(0.01 * sum(rates))
 
 
-def test_on_a_way_that_no_joint_could_go_it_goes_on_all_the_same():
+def test_a_path_beyond_the_joints_is_followed_as_far_as_possible():
     own = TimeScaling(np.zeros((1, 3)), SPEED, ACCELERATION)
     tried = []
 

@@ -80,7 +80,7 @@ def test_every_preset_stands_and_walks_in_every_gait_as_it_is(name):
 
 
 @pytest.mark.parametrize("name", PRESETS)
-def test_small_changes_work_whole_and_on_all_the_way(name):
+def test_small_changes_are_feasible_in_full_and_along_the_whole_path(name):
     found = from_start(name, body=(0.002, -0.002, 0.003, 0.01, -0.01, 0.01))
     assert isinstance(found, StanceTransition)
     assert found.complete
@@ -97,7 +97,7 @@ def test_small_changes_work_whole_and_on_all_the_way(name):
 
 @pytest.mark.parametrize("name", ["strider", "phantomx", "phoenix"])
 @pytest.mark.parametrize("axis", range(6))
-def test_of_too_far_a_move_the_largest_part_is_gone_step_by_step(name, axis):
+def test_an_infeasible_move_is_approached_stepwise_as_far_as_feasible(name, axis):
     setup, first = setup_of(name), start(name)
     body = tuple((0.3 if axis < 3 else 1.2) * (i == axis) for i in range(6))
     posture, rest, said = first.posture, first.rest, None
@@ -135,7 +135,7 @@ def test_a_wider_stance_puts_each_foot_farther_from_its_coxa_axis():
     np.testing.assert_allclose(np.abs(found.rest - mount), np.abs(start("strider").rest - mount) + 0.02)
 
 
-def test_a_height_from_which_no_leg_reaches_is_gone_towards_as_far_as_one_does():
+def test_an_unreachable_height_is_approached_as_far_as_the_legs_reach():
     setup, first = setup_of("strider"), start("strider")
     found = from_start("strider", body_height=0.5)
     assert isinstance(found, StanceTransition)
@@ -185,7 +185,7 @@ def test_a_robot_that_would_tip_over_is_refused():
     assert found == TIPPING
 
 
-def test_a_wish_that_the_balance_bounds_is_gone_as_far_as_it_lets_and_that_is_said():
+def test_a_command_limited_by_balance_is_met_in_part_and_reported():
     setup, first = setup_of("mithi"), start("mithi")
     forward = parameters_of(setup, body=(0.3, 0.0, 0.0, 0.0, 0.0, 0.0))
     found = planned(setup, forward, first.posture, first.rest)
@@ -205,7 +205,7 @@ def test_a_robot_that_cannot_stand_and_step_at_all_is_refused_at_once():
     assert planned(low, parameters_of(low, stance_width=0.3)).reason == "end of the leg's reach"
 
 
-def test_of_a_wish_whose_sway_goes_too_far_a_part_is_gone_or_the_sway_is_blamed():
+def test_a_command_with_too_large_a_sway_is_met_in_part_or_the_sway_is_reported():
     found = from_start("phantomx", body=(0.03, 0.0, 0.0, 0.0, 0.0, 0.0), sway=(0.0, 0.03, 0.0, 0.0, 0.0, 0.0))
     assert isinstance(found, StanceTransition)
     assert 0 < found.posture[0] <= 0.03
@@ -238,7 +238,7 @@ def test_a_correction_for_the_ground_is_added_to_the_body():
 
 @settings(max_examples=12)
 @given(st.tuples(*[st.floats(-0.1, 0.1)] * 3, *[st.floats(-0.5, 0.5)] * 3), st.floats(0.02, 0.3), st.floats(0, 0.1))
-def test_whatever_is_wished_for_what_comes_of_it_is_reached(body, body_height, swing_height):
+def test_whatever_is_commanded_the_result_is_reached(body, body_height, swing_height):
     setup = setup_of("phantomx")
     try:
         found = from_start("phantomx", body=body, body_height=body_height, swing_height=swing_height)

@@ -1,4 +1,4 @@
-"""The live walker as a whole: what it does with a wish, and what it says of it."""
+"""The walk controller as a whole: how it executes commands, and which limitations it reports."""
 
 import functools
 import gc
@@ -202,7 +202,7 @@ def test_at_full_speed_from_standing_and_back(name, gait):
 # The twist.
 
 
-def test_linear_and_angular_wishes_are_scaled_together():
+def test_linear_and_angular_speeds_are_scaled_together():
     for direction in ((1.0, 0.5, 3.0), (0.3, -0.8, 2.0), (-0.7, 0.1, -1.0)):
         w, command = controller("strider"), np.array(direction)
         reached = []
@@ -227,7 +227,7 @@ def test_every_legs_reach_bounds_the_speed_in_every_direction(name):
             assert whole > 0.01
 
 
-def test_what_is_wished_within_reach_is_what_is_walked():
+def test_a_feasible_command_is_what_is_walked():
     w = controller("phantomx")
     trace = Trace(w).run((0.08, 0.02, 0.2), 4)
     np.testing.assert_allclose(w.twist, (0.08, 0.02, 0.2), atol=1e-9)
@@ -316,8 +316,8 @@ def test_reversing_drags_no_foot(gait, direction):
     assert 0 < aside[1] < 1.5 * aside[0]
 
 
-def test_a_foot_in_the_air_goes_where_the_new_wish_needs_it():
-    """Strides adapt mid-swing: the foothold follows a wish that comes while the foot is up."""
+def test_a_foot_in_the_air_goes_where_the_new_command_needs_it():
+    """Strides adapt mid-swing: the foothold follows a command that arrives during the swing."""
     ends = []
     for second in ((0.15, 0, 0), (0.0, 0.1, 0.5)):
         w = controller("strider")
@@ -358,7 +358,7 @@ def test_height_lift_width_and_pace_change_on_the_move():
     np.testing.assert_allclose(out, 0.01, atol=1e-9)
 
 
-def test_what_a_wish_leaves_out_stays_as_it_is():
+def test_what_a_command_leaves_out_stays_as_it_is():
     one, other = controller("strider"), controller("strider")
     command = Command(twist=(0.05, 0, 0), body=(0, 0, 0.01, 0, 0.05, 0), swing_height=0.02, cycle_time=1.3)
     for tick in range(300):
@@ -391,7 +391,7 @@ def test_the_body_goes_as_far_as_all_legs_reach_and_says_which_one_stops_it(name
     assert inverse_kinematics(w.robot, feet, beyond).reach[:, leg].any()
 
 
-def test_a_small_wish_for_the_body_is_met_whole_while_walking():
+def test_a_small_body_pose_is_met_in_full_while_walking():
     w = controller("strider")
     body = (0.01, -0.01, 0.015, 0.05, -0.04, 0.08)
     level = w.body.position[2]
@@ -436,7 +436,7 @@ def hand_of(trace, leg):
     return (level @ seen)[:, leg]
 
 
-def test_a_leg_leaves_the_gait_goes_where_it_is_told_and_comes_back():
+def test_a_leg_leaves_the_gait_follows_its_target_and_returns():
     w = controller("strider", "wave")
     point = w.feet[0] + [0.03, 0.02, 0.06]
     trace = Trace(w).run((0.006, 0, 0.01), 3)
@@ -456,7 +456,7 @@ def test_a_leg_leaves_the_gait_goes_where_it_is_told_and_comes_back():
     assert w.contacts.all()
 
 
-def test_a_hand_goes_as_fast_as_it_is_told():
+def test_a_foot_moves_at_its_commanded_velocity():
     w = controller("strider", "wave")
     trace = Trace(w).run(Command(foot_targets={5: w.feet[5] + [0, 0, 0.03]}), 10)
     start = hand_of(trace, 5)[-1]
@@ -466,7 +466,7 @@ def test_a_hand_goes_as_fast_as_it_is_told():
     np.testing.assert_allclose(hand_of(trace, 5)[-1] - start, (0.02, 0, 0.04), atol=1e-3)
 
 
-def test_a_hand_goes_no_farther_than_its_leg_and_says_so():
+def test_a_foot_target_out_of_reach_is_limited_and_reported():
     w = controller("strider", "wave")
     trace = Trace(w).run(Command(foot_targets={0: (0.6, 0.3, 0.1)}), 12)
     (reason,) = map(Limitation.text, w.limitations)
@@ -528,7 +528,7 @@ def test_a_late_tick_is_no_jump():
     assert late.controller.time == prompt.controller.time
 
 
-def test_short_ticks_and_long_ones_go_the_same_way():
+def test_short_and_long_ticks_follow_the_same_path():
     places, angles = [], []
     for dt in (0.005, 0.01, 0.025, 0.05):
         w = controller("strider")
@@ -578,7 +578,7 @@ def test_memory_does_not_grow():
     assert blocks < 200
 
 
-# What is no wish.
+# Malformed commands.
 
 NAN, INF = math.nan, math.inf
 BAD = {
@@ -622,7 +622,7 @@ def undisturbed():
 
 
 @pytest.mark.parametrize("bad", [*BAD.values(), *({"twist": (0, 0, 0), **w} for w in BAD_WISHES.values())], ids=repr)
-def test_what_is_no_wish_is_refused_and_changes_nothing(bad):
+def test_what_is_no_command_is_refused_and_changes_nothing(bad):
     w = controller("strider")
     trace = Trace(w).run((0.1, 0, 0.1), 1)
     with pytest.raises(InputError):
@@ -689,9 +689,9 @@ def test_the_guard_lets_clean_walks_through(name):
     for twist, gait in zip(script, gaits, strict=True):
         for _ in range(150):
             angles = w.step(Command(twist=twist, gait=gait), 0.02)
-            told = guard.check(angles, 0.02, w.contacts, w.body)
-            assert told.ok, told.interventions
-            assert (told.angles == angles).all()
+            checked = guard.check(angles, 0.02, w.contacts, w.body)
+            assert checked.ok, told.interventions
+            assert (checked.angles == angles).all()
     assert not any(guard.counts.values())
 
 
@@ -743,7 +743,7 @@ def test_the_pages_top_speeds_are_those_reached(name, gait):
     np.testing.assert_allclose(cells, [controller(name, gait).cycle_time, *reached], atol=0.0051)
 
 
-def test_the_page_shows_every_preset_and_gait_and_every_wish():
+def test_the_page_shows_every_preset_gait_and_direction():
     rows = re.findall(r"^\| ([\w-]+) \| (\w+) \| [\d. |]+$", PAGE, flags=re.MULTILINE)
     assert rows == list(itertools.product(PRESETS, GAITS))
     for name in Command.__dataclass_fields__:

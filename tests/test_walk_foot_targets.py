@@ -1,4 +1,4 @@
-"""Legs of the live walker that are taken out of the gait, moved by hand, and put back."""
+"""Legs that are taken out of the gait follow foot targets, and return to the gait."""
 
 import numpy as np
 import pytest
@@ -35,7 +35,7 @@ def in_heading_frame(controller, leg):
     return np.array([np.cos(yaw) * off[0] + np.sin(yaw) * off[1], np.cos(yaw) * off[1] - np.sin(yaw) * off[0], off[2]])
 
 
-def test_a_leg_goes_where_it_is_told_while_the_others_walk():
+def test_a_foot_follows_its_target_while_the_other_legs_walk():
     controller = WalkController(load_robot("strider"), Gait.named("wave"))
     point = (0.25, 0.2, 0.08)
     walk(controller, Command(twist=(0.03, 0, 0.05)), 3)
@@ -126,7 +126,7 @@ def test_a_sway_that_the_joints_do_not_allow_is_cut_and_that_is_said():
 
 
 @pytest.mark.parametrize("name", ["freenove", "strider", "phoenix"])
-def test_a_hand_comes_to_the_edge_of_its_reach_wherever_the_body_sways(name):
+def test_a_foot_target_reaches_the_edge_of_the_workspace_wherever_the_body_sways(name):
     controller = WalkController(load_robot(name), Gait.named("wave"), cycle_time=6.0)
     trace, twist = Trace(controller), (0.005, 0, 0)
     trace.run(Command(twist=twist, sway=(0, 0.015, 0.01, 0.06, 0.05, 0.08)), 3, 0.02)
@@ -144,7 +144,7 @@ def test_a_sway_stops_and_changes_its_pace_without_a_jump():
     trace.run(Command(twist=0.5 * twist, gait="wave"), 4, 0.002).assert_sound()
 
 
-def test_one_hand_is_swapped_for_another():
+def test_one_foot_target_replaces_another():
     controller = WalkController(load_robot("strider"), Gait.named("wave"))
     walk(controller, Command(twist=(0.005, 0, 0), foot_targets={0: (0.2, 0.15, 0.06)}), 14)
     assert not controller.contacts[0]
@@ -153,7 +153,7 @@ def test_one_hand_is_swapped_for_another():
     assert controller.contacts.tolist() == [True] * 5 + [False]
 
 
-def test_what_is_no_longer_asked_for_is_refused_no_more():
+def test_a_withdrawn_command_is_no_longer_reported():
     controller = WalkController(load_robot("strider"))
     controller.step(Command(sway=(0, 0, 0.2, 0, 0, 0)), DT)
     walk(controller, Command(sway=(0,) * 6), 5)

@@ -22,21 +22,21 @@ GIVING = Admittance(mass=1.0, damping=40.0, stiffness=400.0)
 
 
 @pytest.mark.parametrize("seed", range(40))
-def test_any_stream_of_wishes_keeps_the_invariants(seed):
+def test_any_stream_of_commands_keeps_the_invariants(seed):
     name, gait = PRESETS[seed % len(PRESETS)], GAITS[seed // len(PRESETS) % len(GAITS)]
     drive(WalkController(preset(name), Gait.named(gait)), seed, SECONDS).assert_sound()
 
 
 @pytest.mark.parametrize("seed", [*range(300, 315), 1023])
-def test_legs_moved_by_hand_and_a_swaying_body_keep_them(seed):
+def test_foot_targets_and_a_swaying_body_keep_them(seed):
     controller = WalkController(
         preset(PRESETS[seed % len(PRESETS)]), Gait.named(GAITS[seed // len(PRESETS) % len(GAITS)])
     )
-    drive(controller, seed, SECONDS, legs_as_hands=True).assert_sound()
+    drive(controller, seed, SECONDS, with_foot_targets=True).assert_sound()
 
 
 @pytest.mark.parametrize("seed", range(100, 110))
-def test_sensors_garbage_keeps_them(seed):
+def test_implausible_readings_keep_them(seed):
     controller = WalkController(preset(PRESETS[seed % len(PRESETS)]), levelling="level", admittance=GIVING)
     drive(controller, seed, SECONDS, sensing=True).assert_sound()
 
@@ -64,7 +64,7 @@ anything = st.one_of(
 )
 
 
-class AnyWishes(RuleBasedStateMachine):
+class AnyCommands(RuleBasedStateMachine):
     """A walker, and everything that can be asked of it in any order."""
 
     @initialize(
@@ -151,5 +151,5 @@ class AnyWishes(RuleBasedStateMachine):
             self.trace.assert_sound()
 
 
-class TestAnyWishes(AnyWishes.TestCase):
+class TestAnyCommands(AnyCommands.TestCase):
     settings = settings(max_examples=24, stateful_step_count=40)

@@ -151,7 +151,7 @@ def tick_over_the_drop(trace, command, ticks):
 
 @pytest.mark.lengthy
 @pytest.mark.parametrize(("name", "gait"), list(zip(["strider", "phantomx"] * 2, GAITS, strict=True)))
-def test_a_foot_over_a_drop_is_drawn_back_when_the_robot_is_told_to_go_back(name, gait):
+def test_a_foot_over_a_drop_is_drawn_back_when_a_return_is_commanded(name, gait):
     trace, speed = at_an_edge(name, gait)
     controller, x = trace.controller, trace.controller.place[0]
     hung = controller.angles
@@ -179,7 +179,7 @@ def test_the_same_stop_draws_a_foot_back_only_once():
 
 @pytest.mark.parametrize("levelling", [None, "level"])
 @pytest.mark.parametrize("feeling", [False, True])
-def test_a_leg_that_was_a_hand_is_put_down_on_the_ground(levelling, feeling):
+def test_a_leg_that_returns_to_the_gait_is_put_down_on_the_ground(levelling, feeling):
     controller = WalkController(preset("strider"), Gait.named("wave"), levelling=levelling)
     trace, twist = Trace(controller), (0.006, 0.0, 0.01)
     point = tuple(controller.feet[0] + [0.03, 0.02, 0.06])

@@ -41,7 +41,7 @@ class Trace:
         self._record(self.controller.step(command, dt, **readings), dt)
 
     def run(self, command: Any, duration: float, dt: float = 0.025) -> Trace:
-        """Go on with one wish for a while."""
+        """Continue with one command for a time."""
         for _ in range(max(1, round(duration / dt))):
             self.step(command, dt)
         return self
@@ -146,7 +146,7 @@ class Stream:
     The seed settles everything: robot apart, the same stream always asks for the same.
     """
 
-    def __init__(self, seed: int, controller: WalkController, *, legs_as_hands: bool = False) -> None:
+    def __init__(self, seed: int, controller: WalkController, *, with_foot_targets: bool = False) -> None:
         self._rng = np.random.default_rng(seed)
         self._body_height, self._lift = (
             controller.robot.gait.body_height or 0.1,
@@ -162,7 +162,7 @@ class Stream:
             self._height,
             self._stance,
             self._pace,
-            *([self._sway, self._foot_target, self._foot_velocity] if legs_as_hands else []),
+            *([self._sway, self._foot_target, self._foot_velocity] if with_foot_targets else []),
         )
 
     def dt(self) -> float:
@@ -170,11 +170,11 @@ class Stream:
         return self._even or float(self._rng.choice([self._rng.uniform(0.001, 0.05), 0.045, 0.03]))
 
     def lasts(self) -> float:
-        """For how long the next wish stays [s]."""
+        """Duration of the next command [s]."""
         return float(self._rng.choice([0.05, 0.3, 1.0, 3.0, 10.0]))
 
     def command(self) -> Command:
-        """The next wish."""
+        """The next command."""
         changes: dict[str, Any] = {}
         for kind in self._rng.choice(len(self._kinds), size=self._rng.choice([1, 1, 1, 3])):
             changes |= self._kinds[kind]()
@@ -229,10 +229,10 @@ class Stream:
 
 
 def drive(
-    controller: WalkController, seed: int, duration: float, *, sensing: bool = False, legs_as_hands: bool = False
+    controller: WalkController, seed: int, duration: float, *, sensing: bool = False, with_foot_targets: bool = False
 ) -> Trace:
     """Drive a walker with a stream of commands, and of sensors' garbage where it is `sensing`."""
-    stream, trace = Stream(seed, controller, legs_as_hands=legs_as_hands), Trace(controller)
+    stream, trace = Stream(seed, controller, with_foot_targets=with_foot_targets), Trace(controller)
     while controller.time < duration:
         asked: Any = stream.command()
         until, twist = min(controller.time + stream.lasts(), duration), asked.twist
