@@ -690,7 +690,7 @@ def test_the_guard_lets_clean_walks_through(name):
         for _ in range(150):
             angles = w.step(Command(twist=twist, gait=gait), 0.02)
             checked = guard.check(angles, 0.02, w.contacts, w.body)
-            assert checked.ok, told.interventions
+            assert checked.ok, checked.interventions
             assert (checked.angles == angles).all()
     assert not any(guard.counts.values())
 

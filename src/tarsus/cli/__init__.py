@@ -12,6 +12,7 @@ except ImportError:  # installed without the extra
 
 from tarsus import __version__
 from tarsus.cli.drive import drive
+from tarsus.cli.export import export
 from tarsus.cli.fk import fk
 from tarsus.cli.group import TarsusGroup
 from tarsus.cli.handbook import handbook
@@ -52,5 +53,5 @@ def main() -> None:
     """
 
 
-for command in (studio, walk, drive, simulate, pose, fk, ik, rest, loads, servos, handbook, robots):
+for command in (studio, walk, drive, simulate, pose, fk, ik, rest, loads, servos, handbook, robots, export):
     main.add_command(command)

@@ -17,6 +17,7 @@ from tarsus.errors import InputError
 from tarsus.gait.walk_setup import require_number
 from tarsus.robot.robot import JOINTS, Robot
 from tarsus.simulation.engine import mujoco_module
+from tarsus.simulation.inertia import BODY_HEIGHT, SECTION, body_inertia, link_inertia, link_step
 from tarsus.simulation.servos.servo_table import ServoTable
 from tarsus.simulation.settings import apply_settings
 from tarsus.simulation.terrain.flat import Flat
@@ -30,14 +31,12 @@ __all__ = ["FLOOR_OF_MASS", "body_geom_name", "foot_geom_name", "link_name", "mo
 FLOOR_OF_MASS = 1e-4
 """Least mass of a body or link that can be simulated [kg]."""
 
-# Section of a link, for its inertia: that of a servo and its bracket [m].
-_SECTION = 0.025
 # Foot radius where the robot's file has none [m].
 _POINT_FOOT = 0.001
 # Greatest radius of the links' contact geometry, and its ratio to the foot radius.
 _LINK_RADIUS, _LINK_RATIO = 0.006, 0.75
-# Half the thickness of a body that is the polygon of its coxa axes [m], and its height for the inertia [m].
-_HALF_PLATE, _BODY_HEIGHT = 0.001, 0.05
+# Half the thickness of a body that is the polygon of its coxa axes [m].
+_HALF_PLATE = 0.001
 # Links shorter than this have no contact geometry [m]; a joint that is fixed gets this range [rad].
 _SHORT, _FIXED = 1e-4, 1e-6
 _ROBOT_COLOUR, _FOOT_COLOUR = (0.30, 0.45, 0.65, 1.0), (0.15, 0.15, 0.15, 1.0)
@@ -113,14 +112,14 @@ def model_assumptions(robot: Robot) -> tuple[str, ...]:
         A single robot.
     """
     lines = [
-        f"inertia of a link: that of a uniform box as long as the link, {1000 * _SECTION:g} mm wide and high",
+        f"inertia of a link: that of a uniform box as long as the link, {1000 * SECTION:g} mm wide and high",
         "inertia of the body: that of a uniform box",
         "legs collide with the ground, not with each other or the body",
     ]
     if robot.body_size is None:
         lines.append(
             f"body: the polygon of the coxa axes, {2000 * _HALF_PLATE:g} mm thick; for its inertia, the box around it, "
-            f"{1000 * _BODY_HEIGHT:g} mm high"
+            f"{1000 * BODY_HEIGHT:g} mm high"
         )
     if not np.all(robot.foot_radius):
         lines.append(f"foot radius where it is 0: {1000 * _POINT_FOOT:g} mm")
@@ -133,7 +132,7 @@ def _check(robot: Robot) -> None:
     robot.require_masses()
     masses = {"the body": float(np.asarray(robot.body_mass))}
     for leg, joint in itertools.product(range(robot.legs), range(3)):
-        masses[link_name(robot, leg, joint)] = _link_mass(robot, leg, joint)
+        masses[link_name(robot, leg, joint)] = link_inertia(robot, leg, joint).mass
     for name, mass in masses.items():
         if mass < FLOOR_OF_MASS:
             raise InputError(
@@ -141,34 +140,22 @@ def _check(robot: Robot) -> None:
             )
 
 
-def _link_mass(robot: Robot, leg: int, joint: int) -> float:
-    return float(np.asarray(robot.link_mass)[leg, joint])
-
-
-def _box_inertia(mass: float, size: Shaped[np.ndarray, "..."]) -> tuple[float, float, float]:
-    """Return the principal moments of inertia of a uniform box about its centre [kg m^2]."""
-    x, y, z = (float(edge) ** 2 for edge in size)
-    return mass * (y + z) / 12, mass * (x + z) / 12, mass * (x + y) / 12
-
-
 def _add_body(spec: Any, robot: Robot) -> Any:
     mujoco = mujoco_module()
     mounts = np.asarray(robot.mount_position)
     name, attributes = body_geom_name(), _robot_geom()
     if robot.body_size is None:
-        size = np.append(np.ptp(mounts[:, :2], axis=0), _BODY_HEIGHT)
         corners = [(x, y, z + sign * _HALF_PLATE) for x, y, z in mounts.tolist() for sign in (-1, 1)]
         spec.add_mesh(name=name, uservert=np.array(corners).ravel())
         shape = {"type": mujoco.mjtGeom.mjGEOM_MESH, "meshname": name}
     else:
-        size = np.asarray(robot.body_size)
-        shape = {"type": mujoco.mjtGeom.mjGEOM_BOX, "size": (size / 2).tolist()}
-    mass = float(np.asarray(robot.body_mass))
+        shape = {"type": mujoco.mjtGeom.mjGEOM_BOX, "size": (np.asarray(robot.body_size) / 2).tolist()}
+    solid = body_inertia(robot)
     body = spec.worldbody.add_body(
         name=name,
-        mass=mass,
-        ipos=np.asarray(robot.body_com),
-        inertia=_box_inertia(mass, size),
+        mass=solid.mass,
+        ipos=solid.centre,
+        inertia=solid.moments,
         explicitinertial=True,
     )
     body.add_freejoint(name="free")
@@ -183,10 +170,8 @@ def _robot_geom() -> dict[str, Any]:
 
 def _add_leg(spec: Any, body: Any, robot: Robot, leg: int, table: ServoTable) -> None:
     yaw = float(robot.mount_yaw[leg])
-    side, up = np.asarray(robot.femur_axis_offset[leg]).tolist()
-    coxa, femur, tibia = (float(getattr(robot, name)[leg]) for name in JOINTS)
-    steps = [(coxa, side, up), (femur, 0.0, 0.0), (tibia, 0.0, 0.0)]
-    positions = [np.asarray(robot.mount_position[leg]), np.array(steps[0]), np.array(steps[1])]
+    steps = [link_step(robot, leg, joint) for joint in range(3)]
+    positions = [np.asarray(robot.mount_position[leg]), steps[0], steps[1]]
     parent = body
     for joint, step in enumerate(steps):
         turn = (math.cos(yaw / 2), 0.0, 0.0, math.sin(yaw / 2)) if joint == 0 else (1.0, 0.0, 0.0, 0.0)
@@ -195,10 +180,10 @@ def _add_leg(spec: Any, body: Any, robot: Robot, leg: int, table: ServoTable) ->
             pos=positions[joint],
             quat=turn,
             explicitinertial=True,
-            **_link_inertia(robot, leg, joint, np.array(step)),
+            **_inertia(robot, leg, joint),
         )
         _add_joint(spec, parent, robot, (leg, joint), table)
-        _add_link_geom(parent, robot, (leg, joint), np.array(step))
+        _add_link_geom(parent, robot, (leg, joint), step)
     geom = mujoco_module().mjtGeom.mjGEOM_SPHERE
     parent.add_geom(
         name=foot_geom_name(robot, leg),
@@ -209,13 +194,15 @@ def _add_leg(spec: Any, body: Any, robot: Robot, leg: int, table: ServoTable) ->
     )
 
 
-def _link_inertia(robot: Robot, leg: int, joint: int, step: Shaped[np.ndarray, "..."]) -> dict[str, Any]:
+def _inertia(robot: Robot, leg: int, joint: int) -> dict[str, Any]:
     """Return mass, centre of mass and inertia of a link, in its frame."""
-    length = float(np.linalg.norm(step))
-    mass, distance = _link_mass(robot, leg, joint), float(robot.link_com[leg, joint])
-    along = step / length if length else np.zeros(3)
-    inertia = _box_inertia(mass, np.array([max(length, _SECTION), _SECTION, _SECTION]))
-    return {"mass": mass, "ipos": distance * along, "iquat": _quaternion_from_x(along), "inertia": inertia}
+    solid = link_inertia(robot, leg, joint)
+    return {
+        "mass": solid.mass,
+        "ipos": solid.centre,
+        "iquat": _quaternion_from_x(solid.axis),
+        "inertia": solid.moments,
+    }
 
 
 def _quaternion_from_x(direction: Shaped[np.ndarray, "..."]) -> Shaped[np.ndarray, "..."]:

@@ -1,0 +1,51 @@
+"""A robot as an MJCF file: MuJoCo's own format."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from tarsus.robot.robot import Robot
+from tarsus.simulation.engine import mujoco_module
+from tarsus.simulation.robot_model import model
+from tarsus.simulation.servos.servo_table import ServoTable
+from tarsus.simulation.terrain.protocol import Terrain
+
+__all__ = ["to_mjcf"]
+
+
+def to_mjcf(robot: Robot, *, terrain: Terrain | None = None, servos: Any = "catalogue") -> str:
+    """Return a robot on a terrain as an MJCF document.
+
+    The model is that of `tarsus.simulation.model`, with position actuators in place of the motors that `SimulatedPlant`
+    drives: of the servos' stiffness, within their stall torques. Backlash, dead band, delays and the torque-speed line
+    beyond its damping are not in it. The document needs no other file, except for height fields.
+
+    Parameters
+    ----------
+    robot : Robot
+        A single robot with masses.
+    terrain : Terrain, optional
+        What it stands on; flat ground where left out.
+    servos : "catalogue", "ideal", ServoModel or nested sequence of ServoModel
+        See `SimulatedPlant`.
+
+    Raises
+    ------
+    MissingDataError
+        If the mass of the body or of a link is unknown, or a servo for ``"catalogue"``.
+    InputError
+        If the robot is a batch.
+    TarsusError
+        If MuJoCo is not installed.
+    """
+    spec, table = model(robot, terrain=terrain, servos=servos), ServoTable.of(robot, servos)
+    limits = np.asarray(robot.limits).reshape(-1, 2)
+    for number, actuator in enumerate(spec.actuators):
+        actuator.set_to_position(kp=float(table.stiffness[number]))
+        actuator.ctrlrange = limits[number]
+        if np.isfinite(table.stall_torque[number]):
+            actuator.forcerange = (-table.stall_torque[number], table.stall_torque[number])
+    mujoco_module().MjSpec.compile(spec)
+    return str(spec.to_xml())
