@@ -59,6 +59,8 @@ def test_files_are_written(tmp_path):
         assert picture.n_frames > 10
 
 
+# JAX, which other tests of this process may have started, warns of every fork.
+@pytest.mark.filterwarnings("ignore:os.fork:RuntimeWarning")
 def test_a_video_is_an_mp4_file(tmp_path):
     code, _ = run(f"{SHORT} --servos ideal --terrain blocks:rise=10,clear=200 --video {tmp_path / 'walk.mp4'}")
     assert code == 0
