@@ -16,7 +16,7 @@ from measure import Row, medians  # isort: split
 
 import numpy as np
 
-from tarsus import GAITS, Gait, Robot, list_robots, load_robot
+from tarsus import Gait, Robot, list_robots, load_robot
 from tarsus.control.command import Command
 from tarsus.control.readings import SensorReadings
 from tarsus.control.safety import Guard
@@ -28,6 +28,9 @@ if TYPE_CHECKING:
 
 
 __all__ = ["controller_rows", "speed_table", "top_speed"]
+
+GAITS = ("tripod", "tetrapod", "ripple", "wave")
+"""The gaits of six legs."""
 
 TICKS = 100_000
 RUNS = 5
