@@ -327,7 +327,7 @@ TEXTS = {
     "JSON": ('{"name": "strider", "legs": []}', "a robot file is TOML"),
     "a decimal comma": ('name = "strider"\n[leg]\ncoxa_mm = 68,5\n', "a decimal comma; write 68.5"),
     "a unit after a number": ('name = "strider"\n[leg]\ncoxa_mm = 68 mm\n', "a unit after the number"),
-    "a text without its closing quote": ('name = "strider\n[leg]\n', "a quote is missing"),
+    "a string without its closing quote": ('name = "strider\n[leg]\n', "a quote is missing"),
     "a key given twice": ('name = "strider"\nname = "rider"\n', "cannot overwrite a value"),
 }
 """Texts that are no robot file, and words of what is said."""
@@ -390,8 +390,8 @@ MISTAKES = (
     Mistake(
         "signs", "yaw of the right legs as on the left", _yaw(lambda yaw, _: abs(yaw)), "right legs have the angles of"
     ),
-    Mistake("signs", "y positive to the right", _positions(lambda x, y: (x, -y)), "y counts to the right"),
-    Mistake("signs", "x positive backward", _positions(lambda x, y: (-x, y)), "x counts backward"),
+    Mistake("signs", "y positive to the right", _positions(lambda x, y: (x, -y)), "y points right"),
+    Mistake("signs", "x positive backward", _positions(lambda x, y: (-x, y)), "x points backward"),
     Mistake(
         "signs",
         "y of the front right leg positive",
@@ -421,7 +421,7 @@ MISTAKES = (
     ),
     Mistake("signs", "coxa limits of the left legs copied to the right", _coxa_of_the_left, "copied"),
     Mistake("order", "x and y of all legs exchanged", _positions(lambda x, y: (y, x)), "x and y are exchanged"),
-    Mistake("order", "x to the right and y forward", _positions(lambda x, y: (-y, x)), "y counts forward"),
+    Mistake("order", "x to the right and y forward", _positions(lambda x, y: (-y, x)), "x points right and y forward"),
     Mistake("order", "limits with the upper one first", _limits_reversed, "reversed"),
     Mistake("order", "legs listed clockwise", _in_reverse, "clockwise"),
     Mistake("order", "two legs exchanged in the list", _swap_two, "must be listed counter-clockwise"),
@@ -435,7 +435,7 @@ MISTAKES = (
         "order", "yaw of front left and rear left exchanged", _exchange("yaw_deg", FRONT_LEFT, REAR_LEFT), "exchanged"
     ),
     Mistake("order", "size of the body as height, width, length", lambda d: d["body"]["size_mm"].reverse(), "order"),
-    Mistake("zeros", "yaw counted from the left", _yaw(lambda yaw, _: yaw - 90), "count from the left"),
+    Mistake("zeros", "yaw measured from the left", _yaw(lambda yaw, _: yaw - 90), "measured from the left"),
     Mistake(
         "zeros",
         "yaw from the foot to the body",
@@ -445,7 +445,7 @@ MISTAKES = (
     Mistake("zeros", "yaw of all legs 0", _yaw(lambda _, leg: 0.0 * leg["yaw_deg"]), "own direction"),
     Mistake(
         "zeros",
-        "tibia counted from the right angle",
+        "tibia measured from the right angle",
         _limits(lambda a, b: _clipped(a + 90, b + 90), "tibia"),
         "right angle",
     ),
@@ -463,19 +463,19 @@ MISTAKES = (
     ),
     Mistake(
         "zeros",
-        "femur counted from straight down",
+        "femur measured from straight down",
         _limits(lambda a, b: _clipped(a + 90, b + 90), "femur"),
         "straight down",
     ),
     Mistake(
         "zeros",
-        "femur counted from straight up",
+        "femur measured from straight up",
         _limits(lambda a, b: _clipped(a - 90, b - 90), "femur"),
         "straight up",
     ),
     Mistake("zeros", "limits of the servo, 0 to 180", _servo_range, "0 to 180"),
     Mistake("zeros", "coxa limits as 0 to 180", _all_coxa(0, 180), "0 to 180"),
-    Mistake("zeros", "coxa limits counted from x", _coxa_from_ahead, "forward direction"),
+    Mistake("zeros", "coxa limits measured from x", _coxa_from_ahead, "forward direction"),
     Mistake("magnitudes", "femur ten times as long", _scale(10, "leg.femur_mm"), "digit"),
     Mistake("magnitudes", "tibia a tenth as long", _scale(0.1, "leg.tibia_mm"), "digit"),
     Mistake("magnitudes", "coxa ten times as long", _scale(10, "leg.coxa_mm"), "digit"),

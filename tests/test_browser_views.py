@@ -80,7 +80,9 @@ def test_the_body_moves_relative_to_its_feet(visitor):
     body = body_at(12, 0, -9, roll=4, yaw=-7)
     angles = tarsus.inverse_kinematics(STRIDER, FEET, body).require().angles
     margin = tarsus.stability_margin(STRIDER, angles, body, np.ones(6, bool)) * 1000
-    expect(visitor.at("standing")).to_contain_text(f"stands on 6 feet: LF, LM, LR, RR, RM, RF; margin {margin:.1f} mm")
+    expect(visitor.at("standing")).to_contain_text(
+        f"stands on 6 feet: LF, LM, LR, RR, RM, RF; stability margin {margin:.1f} mm"
+    )
     assert number(visitor.facts("standing-facts")["Stability margin"]) == pytest.approx(margin, abs=0.06)
     assert shown_angles(visitor) == pytest.approx(np.degrees(angles), abs=0.006)
 

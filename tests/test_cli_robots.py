@@ -182,7 +182,7 @@ def test_check_of_a_valid_file(tmp_path):
     result = run("robots", "check", file)
     assert result.exit_code == 0
     assert "no errors" in result.stdout
-    assert "can walk: tripod" in result.stdout
+    assert "can walk with its own gait, tripod" in result.stdout
     code, document = run_json("robots", "check", "mithi")
     assert code == 0
     assert len(document["missing"]) == 3

@@ -62,6 +62,15 @@ def test_feasible_fraction_is_the_limit():
     assert run("pose", "strider", "--pitch", f"{42 * fraction + 0.01:.3f}").exit_code == 1
 
 
+def test_a_body_that_is_not_displaced_has_no_feasible_fraction_of_its_displacement():
+    assert "of this displacement" in run("pose", "strider", "--z", "500").stdout
+    assert "of this displacement" not in run("pose", "strider", "--body-height", "-10").stdout
+
+
+def test_zero_has_no_sign():
+    assert "pitch 0.00 deg, body height 0.0 mm" in run("rest", "mithi", "--all", "0,0,0").stdout
+
+
 def test_knees_down():
     _, document = run_json("pose", "mithi", "--knee", "down")
     assert (np.array(document["angles_deg"])[:, 2] > 0).all()
@@ -167,7 +176,7 @@ def test_rest_output():
     result = run("rest", "strider", "--all", "0,80,0")
     assert result.exit_code == 0
     assert "lies on its belly" in result.stdout
-    assert "roll 0.00 deg, pitch 0.00 deg, height 25.0 mm" in result.stdout
+    assert "roll 0.00 deg, pitch 0.00 deg, body height 25.0 mm" in result.stdout
     assert "feet on the ground: none" in result.stdout
     assert "assumed" in run("rest", "mithi", "--all", "0,40,-100").stdout
 

@@ -263,9 +263,11 @@ def test_gait_names_follow_the_literature():
 
 def test_title_names_the_representative_leg():
     assert handbook(STRIDER).title == (
-        "strider: 3 of 6 feet down, tripod gait; all legs like the front left one, errors corrected"
+        "strider: 3 of 6 feet down, tripod gait; every leg taken as the front left one, errors corrected"
     )
-    assert handbook(STRIDER, leg=4, corrected=False).title.endswith("all legs like the middle right one, as printed")
+    assert handbook(STRIDER, leg=4, corrected=False).title.endswith(
+        "every leg taken as the middle right one, as printed"
+    )
 
 
 def test_table_has_a_row_for_each_line():

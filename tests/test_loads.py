@@ -92,7 +92,7 @@ def test_cause_of_the_peak_torque():
     assert text.startswith(f"at {found.motion.time[sample]:.2f} s, stance of ")
     down = [code for code, at in zip(found.robot.leg_codes, found.motion.contacts[sample], strict=True) if at]
     assert f"stance of {' '.join(down)}, " in text
-    assert f"{found.forces[sample, leg, 2] / found.forces[sample, :, 2].sum():.0%} of the weight" in text
+    assert f"{100 * found.forces[sample, leg, 2] / found.forces[sample, :, 2].sum():.0f} % of the weight" in text
     air = replace(found, motion=replace(found.motion, contacts=np.zeros_like(found.motion.contacts)))
     assert air.cause(leg, 1).endswith("s, swing")
 
@@ -145,7 +145,7 @@ def test_assumptions():
     assert any("slender uniform rod" in text for text in strider)
     assert "DS3225 at 6.8 V, the voltage of its rated stall torque" in strider
     given_volts = sample_loads(supply=9.0).assumed
-    assert "DS3225 is rated for 4.8 to 6.8 V; the supply is 9 V" in given_volts
+    assert "DS3225 is rated for 4.8 to 6.8 V; torque and speed are extrapolated to the supply of 9 V" in given_volts
     assert not any("rated stall torque" in text for text in given_volts)
     assert not any("rod" in text for text in sample_loads(inertial=False).assumed)
     assert not any("DS3225" in text for text in sample_loads(supply=6.0).assumed)

@@ -179,7 +179,7 @@ def test_feet_too_close_names_legs_and_distance():
     near = int(np.argmin(motion.least_foot_distance))
     assert problem.startswith(f"feet too close: at {motion.time[near]:.2f} s ")
     assert (
-        f" are {motion.least_foot_distance[near] * 1000:.1f} mm apart, less than the foot_distance of 280.0 mm"
+        f" are {motion.least_foot_distance[near] * 1000:.1f} mm apart, less than the required foot distance of 280.0 mm"
         in problem
     )
 

@@ -460,9 +460,7 @@ def test_an_unreachable_body_height_names_the_reachable_ones():
 
 def test_a_stroke_too_long_names_leg_reason_and_longest_stroke():
     robot = preset("strider")
-    with pytest.raises(
-        StrokeError, match=r"300.0 mm is too long: out of reach: at .* s front .* mm too far\."
-    ) as refused:
+    with pytest.raises(StrokeError, match=r"300.0 mm is too long: at .* s front .* mm too far\.") as refused:
         plan_walk(robot, TRIPOD, straight_path(1.0), stroke=0.3, cycle_time=1.0)
     assert refused.value.longest == max_stroke(robot, TRIPOD)
     assert f"longest possible is {refused.value.longest * 1000:.1f} mm" in str(refused.value)
@@ -492,12 +490,12 @@ def test_where_no_stroke_is_possible_the_message_says_why():
     robot = preset("strider")
     path = straight_path(0.2)
     with pytest.raises(
-        StrokeError, match=r"in the rest stance two feet are .* less than the foot_distance of 1000.0 mm"
+        StrokeError, match=r"in the rest stance two feet are .* less than the required foot distance of 1000.0 mm"
     ) as refused:
         plan_walk(robot, TRIPOD, path, foot_distance=1.0)
     assert refused.value.longest == 0
     with pytest.raises(
-        StrokeError, match=r"stepping on the spot is impossible: .* can't reach .*In the heading frame \("
+        StrokeError, match=r"stepping on the spot is impossible: [a-z ]+ can't reach .*In the heading frame \("
     ):
         plan_walk(robot, TRIPOD, path, body_tilt=(0.9, 0))
     with pytest.raises(StrokeError, match="no stroke is possible here"):
@@ -541,7 +539,9 @@ def test_samples_out_of_reach_are_refused_even_if_the_stroke_is_feasible(monkeyp
         return works, solution
 
     monkeypatch.setattr(plan, "leg_feasibility", blind)
-    with pytest.raises(UnreachableError, match=r"a stroke of 300.0 mm is not possible here: out of reach"):
+    with pytest.raises(
+        UnreachableError, match=r"a stroke of 300.0 mm is not possible here: at .* s front left can.t reach"
+    ):
         plan_walk(preset("strider"), TRIPOD, straight_path(1.0), stroke=0.3, cycle_time=1.0)
 
 

@@ -299,14 +299,14 @@ def test_names_of_two_legs_exchanged():
     names = list(hexapod().leg_names)
     names[0], names[5] = names[5], names[0]
     warning = codes(hexapod(leg_names=tuple(names)))["leg-name"]
-    assert "counts in the other direction" not in warning.cause
+    assert "points in the other direction" not in warning.cause
     assert "the names of left and right legs are exchanged" in warning.cause
 
 
 def test_a_coxa_range_elsewhere_for_each_leg():
     limits = np.array(np.broadcast_to(np.radians([[-60, 60], [-80, 90], [-150, 0]]), (6, 3, 2)))
     limits[0, 0], limits[3, 0] = np.radians([[60, 100], [-100, -40]])
-    assert "another direction than the leg's own" in codes(hexapod(limits=limits))["limits-zero"].cause
+    assert "a direction other than the leg's own" in codes(hexapod(limits=limits))["limits-zero"].cause
 
 
 def test_limits_that_no_convention_explains():
@@ -315,7 +315,7 @@ def test_limits_that_no_convention_explains():
     warning = codes(hexapod(limits=limits))["limits-zero"]
     assert "keep it above -20 deg" in warning.what
     limits[:, 2] = np.radians([-110, 175])
-    assert codes(hexapod(limits=limits))["limits-zero"].cause == "another zero or sign of the angle"
+    assert codes(hexapod(limits=limits))["limits-zero"].cause == "a different zero or sign of the angle"
 
 
 def test_a_locked_joint_is_no_joint_in_radians():

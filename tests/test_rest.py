@@ -177,7 +177,7 @@ def test_standing():
     assert not rest.corners_down.any()
     assert rest.rolls == 0
     assert rest.robot is robot
-    assert rest.describe() == f"stands on 6 feet: LF, LM, LR, RR, RM, RF; margin {1000 * rest.margin:.1f} mm"
+    assert rest.describe() == f"stands on 6 feet: LF, LM, LR, RR, RM, RF; stability margin {1000 * rest.margin:.1f} mm"
 
 
 def test_a_raised_leg_changes_nothing_and_a_long_one_tips_the_robot():
@@ -201,7 +201,7 @@ def test_on_the_belly_with_the_legs_up():
     np.testing.assert_array_equal(rest.corners_down, CORNERS[:, 2] < 0)
     assert rest.body.position[2] == pytest.approx(0.025)
     assert rest.margin == pytest.approx(0.08)
-    assert rest.describe() == "lies on its belly; margin 80.0 mm"
+    assert rest.describe() == "lies on its belly; stability margin 80.0 mm"
 
 
 def test_without_a_box_the_coxa_axes_are_the_belly():
@@ -219,7 +219,7 @@ def test_on_the_belly_and_feet():
     # The feet of one side just at the height of the belly: knee 98 mm up, then down by 123 mm.
     angles[:3] = [0, np.pi / 2, -np.pi / 2 - np.arcsin((0.098 + 0.025) / 0.181)]
     rest = resting_pose(robot, angles)
-    assert rest.describe().startswith("lies on its belly and the feet LF, LM, LR; margin ")
+    assert rest.describe().startswith("lies on its belly and the feet LF, LM, LR; stability margin ")
 
 
 @pytest.mark.parametrize(
@@ -242,7 +242,9 @@ def test_a_tall_body_tips_to_the_side_of_its_centre_of_mass(push, face, angles):
         link_mass=None,
     )
     rest = resting_pose(robot, standing())
-    assert rest.describe() == f"lies on its {face}; margin 50.0 mm (masses unknown: margin of the centre of the body)"
+    assert (
+        rest.describe() == f"lies on its {face}; stability margin 50.0 mm (masses unknown: margin of the body's centre)"
+    )
     np.testing.assert_allclose(rest.body.rpy, np.deg2rad(angles), atol=1e-9)
     assert rest.body.position[2] == pytest.approx(0.05)
     assert rest.corners_down.sum() == 4
@@ -254,7 +256,7 @@ def test_on_its_knees():
     rest = resting_pose(robot, np.deg2rad(np.tile([0.0, -60.0, 90.0], (6, 1))))
     assert rest.leg_points_down[:, 2].all()
     assert not rest.contacts.any()
-    assert rest.describe().startswith("rests on the knees LF, LM, LR, RR, RM, RF; margin ")
+    assert rest.describe().startswith("rests on the knees LF, LM, LR, RR, RM, RF; stability margin ")
     angles = np.deg2rad(np.tile([0.0, -60.0, 90.0], (6, 1)))
     angles[1] = [0, np.deg2rad(-60), -np.pi / 6]
     assert "the foot LM and the knees" in resting_pose(robot, angles).describe()
@@ -269,7 +271,7 @@ def test_onto_the_back_by_more_than_one_roll():
     assert rest.rolls > 3
     np.testing.assert_array_equal(rest.corners_down, CORNERS[:, 2] > 0)
     np.testing.assert_allclose(np.abs(rest.body.rpy), [np.pi, 0, 0], atol=1e-9)
-    assert rest.describe().startswith("lies on its back; margin 29.")
+    assert rest.describe().startswith("lies on its back; stability margin 29.")
 
 
 def four_legged(yaws, angles, **changes):
@@ -320,7 +322,7 @@ def test_over_the_edge_of_a_polygon_with_an_area_it_rests_with_margin_zero():
     assert rest.rolls == 0
     assert rest.margin == pytest.approx(0, abs=1e-15)
     assert rest.describe() == (
-        "stands on 3 feet: a, b, d; margin 0.0 mm (masses unknown: margin of the centre of the body)"
+        "stands on 3 feet: a, b, d; stability margin 0.0 mm (masses unknown: margin of the body's centre)"
     )
 
 

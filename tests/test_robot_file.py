@@ -208,10 +208,10 @@ def test_legs_out_of_order_are_refused_with_the_expected_order():
 @pytest.mark.parametrize(
     ("frame", "cause"),
     [
-        (lambda x, y: [x, -y], "y counts to the right"),
-        (lambda x, y: [-x, y], "x counts backward"),
+        (lambda x, y: [x, -y], "y points right"),
+        (lambda x, y: [-x, y], "x points backward"),
         (lambda x, y: [y, x], "x and y are exchanged"),
-        (lambda x, y: [-y, x], "x counts to the right and y counts forward"),
+        (lambda x, y: [-y, x], "x points right and y forward"),
     ],
 )
 def test_positions_in_another_frame_are_named(frame, cause):
@@ -245,7 +245,7 @@ def test_positions_in_metres_are_one_problem():
         ([500, 2500], "these look like pulse widths in us"),
         ([-740, 580], "these look like tenths of a degree"),
         ([0, 1023], "these look like the ticks of a servo"),
-        ([0, 270], "the angles count from another direction"),
+        ([0, 270], "the angles are measured from another direction"),
     ],
 )
 def test_limits_in_the_units_of_firmware_are_named(limits, cause):

@@ -127,7 +127,7 @@ def test_a_robot_whose_servos_are_too_weak_falls():
     assert found.problems[0] == f"fell at {found.fell_at:.2f} s"
     assert found.saturated.max() > 0.5
     assert any(
-        re.search(r"(front|middle|rear) \w+ (femur|tibia): at its greatest torque for", line) for line in found.stalls
+        re.search(r"(front|middle|rear) \w+ (femur|tibia): at its maximum torque for", line) for line in found.stalls
     )
 
 
@@ -180,7 +180,7 @@ def test_less_than_half_of_the_way_is_a_stall():
     path[:, 0] = np.linspace(0, 0.4, 101)
     level = np.broadcast_to(np.eye(3), (101, 3, 3))
     found = Outcome.of(standing_still(commanded_body=Pose(level, path), body=Pose(level, 0.25 * path)))
-    assert found.stalls == ("made 100 mm of 400 mm",)
+    assert found.stalls == ("covered 100 mm of 400 mm",)
     assert found.fell_at is None
 
 

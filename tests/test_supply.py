@@ -89,7 +89,7 @@ def test_coinciding_peaks_give_a_warning():
 def test_warning_without_known_currents():
     found = with_torques(np.full((samples(), 6), 0.5))
     unknown = replace(found, robot=found.robot.replace(servos=((Servo(name="S", stall_torque=2.0),) * 3,) * 6))
-    assert "coincide: a weaker supply" in supply_load(unknown).warning
+    assert "coincide: if the supply cannot deliver it" in supply_load(unknown).warning
 
 
 def test_unloaded_legs_have_no_peak():

@@ -82,11 +82,11 @@ def test_joint_without_load():
         ({"peak": 2.4}, "stalls or burns: safety factor 1.25, 4.20 N m short of factor 3"),
         ({"peak": 4.0, "rms": 0.0}, "cannot stand: safety factor 0.75, 9.00 N m short of factor 3"),
         ({"peak": 1.5, "safety_factor": 2.0}, "safety factor 2.0"),
-        ({"rms": 0.9}, "safety factor 3.0; runs warm: rms torque 1.5 times its continuous limit (1/5 of stall)"),
+        ({"rms": 0.9}, "safety factor 3.0; runs warm: RMS torque 1.5 times its continuous limit (1/5 of stall)"),
         ({"peak_speed": 8.0, "utilisation": 1.4}, "safety factor 3.0; too slow by 115 deg/s"),
         (
             {"utilisation": 1.1},
-            "safety factor 3.0; too slow under load: 110% of its torque-speed line",
+            "safety factor 3.0; too slow under load: 110 % of its torque-speed line",
         ),
         (
             {"no_load_speed": math.nan, "utilisation": math.nan},

@@ -31,10 +31,12 @@ _DEFAULT_ROBOT = "strider"
 )
 @click.argument("scenario", metavar="SCENARIO")
 @click.option("--dry", is_flag=True, help="Run on an ideal plant, without servos.")
-@click.option("--robot", metavar="ROBOT", help="Drive this one.  [default: the scenario's, else strider]")
-@click.option("--out", type=click.Path(path_type=Path), metavar="DIR", help="Write tables, motion and pictures here.")
-@click.option("--no-animation", is_flag=True, help="Leave out the animation (of the first 20 s at most).")
-@click.option("--no-guard", is_flag=True, help="Without the guard that checks every tick's joint angles.")
+@click.option("--robot", metavar="ROBOT", help="Robot to drive.  [default: the scenario's, else strider]")
+@click.option(
+    "--out", type=click.Path(path_type=Path), metavar="DIR", help="Write tables, motion and figures to this folder."
+)
+@click.option("--no-animation", is_flag=True, help="Do not write the animation (of the first 20 s at most).")
+@click.option("--no-guard", is_flag=True, help="Run without the guard, which checks the joint angles of every tick.")
 @number_option("--rate", "HZ", "Ticks per second.  [default: the scenario's, else 100]")
 @json_option
 def drive(
@@ -127,11 +129,14 @@ def _table(summary: dict[str, Any]) -> Table:
     table.add_row("walked", f"{summary['walked_s']:.2f} s, {summary['distance_mm']:.0f} mm, {summary['steps']} steps")
     table.add_row("gaits", ", ".join(summary["gaits"]))
     table.add_row(
-        "ends at", f"x {end['x_mm']:.1f} mm, y {end['y_mm']:.1f} mm, turned {end['turned_deg']:.1f} deg, {end['state']}"
+        "end", f"x {end['x_mm']:z.1f} mm, y {end['y_mm']:z.1f} mm, yaw {end['turned_deg']:z.1f} deg, {end['state']}"
     )
-    table.add_row("top speed", f"{summary['top_speed_mm_s']:.1f} mm/s, {summary['top_turn_deg_s']:.1f} deg/s")
+    table.add_row("peak speed", f"{summary['top_speed_mm_s']:.1f} mm/s, {summary['top_turn_deg_s']:.1f} deg/s")
     table.add_row(
-        "least margin", "never off the ground" if margin is None else f"{margin['mm']:.1f} mm at {margin['at_s']:.2f} s"
+        "stability margin",
+        "none: the body is never off the ground"
+        if margin is None
+        else f"minimum {margin['mm']:.1f} mm at {margin['at_s']:.2f} s",
     )
     for joint, load in (summary["loads"] or {}).items():
         factor = "" if load["factor"] != load["factor"] else f", safety factor {load['factor']:.2f}"

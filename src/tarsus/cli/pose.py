@@ -62,7 +62,8 @@ def pose(robot: str, knee: Literal["up", "down"], picture: Path | None, as_json:
     show(angle_table(summary), f"stability margin: {margin}", *(f"assumed: {text}" for text in summary["assumed"]))
     show(verdict(summary))
     fraction = summary["feasible_fraction"]
-    if not summary["possible"] and fraction is not None:
+    displaced = any(displacement[name] for name in ("x", "y", "z", "roll", "pitch", "yaw"))
+    if displaced and not summary["possible"] and fraction is not None:
         show(f"feasible with every foot on its foothold: {fraction * 100:.1f} % of this displacement")
     if picture is not None:
         click.echo(f"wrote {picture}")

@@ -77,7 +77,7 @@ def _print(summary: dict[str, Any]) -> None:
     body = summary["body"]
     show(
         f"{summary['robot']} {summary['description']}",
-        f"roll {body['roll_deg'] + 0.0:.2f} deg, pitch {body['pitch_deg'] + 0.0:.2f} deg, height {body['z_mm']:.1f} mm",
+        f"roll {body['roll_deg']:z.2f} deg, pitch {body['pitch_deg']:z.2f} deg, body height {body['z_mm']:z.1f} mm",
         f"feet on the ground: {', '.join(summary['contacts']) or 'none'}",
         *(f"assumed: {text}" for text in summary["assumed"]),
     )

@@ -47,7 +47,7 @@ __all__ = ["simulate"]
     type=click.Choice(["catalogue", "ideal"]),
     default="catalogue",
     show_default=True,
-    help="As strong, slow and soft as those of the robot's file, or ideal ones.",
+    help="Torque, speed and stiffness of the servos in the robot file, or ideal servos.",
 )
 @click.option(
     "--sensors",
@@ -56,11 +56,11 @@ __all__ = ["simulate"]
     metavar="SUITE",
     help="What the controller of a scenario reads: ideal, hobby, smart or blind.",
 )
-@click.option("--seed", type=int, default=0, show_default=True, help="Seed of what is random in the sensors.")
+@click.option("--seed", type=int, default=0, show_default=True, help="Random seed of the sensor noise.")
 @click.option(
-    "--out", type=click.Path(path_type=Path), metavar="DIR", help="Write everything as a table (CSV) to this folder."
+    "--out", type=click.Path(path_type=Path), metavar="DIR", help="Write every sample to a table (CSV) in this folder."
 )
-@click.option("--zarr", is_flag=True, help="Write a Zarr store to the folder, too.")
+@click.option("--zarr", is_flag=True, help="Also write a Zarr store to the folder.")
 @click.option(
     "--video",
     type=click.Path(path_type=Path, dir_okay=False),
@@ -79,7 +79,7 @@ def simulate(
     as_json: bool,
     **options: Any,
 ) -> int:
-    """Walk in physics (MuJoCo), and compare with the plan.
+    """Simulate a walk in physics (MuJoCo), and compare it with the plan.
 
     A planned walk is executed as it is, without feedback; a scenario runs through the controller, which reads the
     simulated sensors. The exit code is 0 only if the robot neither fell nor stalled.

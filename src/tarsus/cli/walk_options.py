@@ -51,7 +51,7 @@ _OPTIONS = (
     click.option(
         "--tilt", type=Numbers("ROLL", "PITCH"), metavar="ROLL,PITCH", help="Roll and pitch of the body, in deg."
     ),
-    number_option("--stance-width", "MM", "How much farther out than by default the feet rest."),
+    number_option("--stance-width", "MM", "Outward displacement of the feet from their default rest positions."),
     number_option("--foot-distance", "MM", "Smallest allowed distance between two feet."),
     number_option("--rate", "HZ", "Samples per second.", default=100.0, show_default=True),
 )

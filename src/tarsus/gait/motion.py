@@ -209,7 +209,7 @@ class Motion:
             legs = " and ".join(self.robot.leg_codes[i] for i in pair[near])
             yield (
                 f"feet too close: at {self.time[near]:.2f} s {legs} are {distance[near] * 1000:.1f} mm apart, "
-                f"less than the foot_distance of {self.foot_distance * 1000:.1f} mm"
+                f"less than the required foot distance of {self.foot_distance * 1000:.1f} mm"
             )
 
     def _too_fast(self) -> Iterator[str]:

@@ -9,8 +9,8 @@ import numpy as np
 from tarsus.errors import InputError, StrokeError
 from tarsus.gait.path import BodyPath
 from tarsus.gait.spacing import feet_distance
-from tarsus.gait.stroke import longest_stroke, steady_solution, unit_twist
-from tarsus.gait.walk_setup import HEADING_FRAME, WalkSetup
+from tarsus.gait.stroke import first_failure, longest_stroke, steady_solution, unit_twist
+from tarsus.gait.walk_setup import WalkSetup
 from tarsus.robot.joint_limits import joint_limits, servo_speeds
 
 __all__ = ["choose_pace"]
@@ -87,10 +87,10 @@ def _why_no_stroke(setup: WalkSetup) -> str:
     if distance < setup.foot_distance:
         return (
             f"in the rest stance two feet are {distance * 1000:.1f} mm apart, "
-            f"less than the foot_distance of {setup.foot_distance * 1000:.1f} mm"
+            f"less than the required foot distance of {setup.foot_distance * 1000:.1f} mm"
         )
     solution = steady_solution(setup, np.zeros(3), np.arange(48) / 48)
-    return f"stepping on the spot is impossible: {solution.explain(frame=HEADING_FRAME).splitlines()[0]}"
+    return f"stepping on the spot is impossible: {first_failure(solution)}"
 
 
 def _servo_cycle_time(setup: WalkSetup, path: BodyPath, stroke: float, assumed: list[str]) -> float:

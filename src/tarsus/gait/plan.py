@@ -18,10 +18,10 @@ from tarsus.gait.pace import choose_pace
 from tarsus.gait.path import BodyPath, heading_to_ground
 from tarsus.gait.shifted_walk import shifted_pose, walk_shift
 from tarsus.gait.spacing import passing_distance
-from tarsus.gait.stroke import leg_feasibility, longest_stroke, unit_twist
+from tarsus.gait.stroke import first_failure, leg_feasibility, longest_stroke, unit_twist
 from tarsus.gait.swing import horizontal_profile, swing_position
 from tarsus.gait.timing import BodyClock, Steps, least_step_fraction, plan_steps
-from tarsus.gait.walk_setup import HEADING_FRAME, WalkSetup, require_number
+from tarsus.gait.walk_setup import WalkSetup, require_number
 from tarsus.robot.robot import Robot
 
 if TYPE_CHECKING:
@@ -230,7 +230,7 @@ def _refuse_close_feet(setup: WalkSetup, path: BodyPath, steps: Steps, motion: M
         advice = f"Strokes up to {longest * 1000:.1f} mm are possible" if longest else "No stroke is possible here"
         raise CollisionError(
             f"the feet of {legs} are {distance[worst] * 1000:.1f} mm apart at {time[worst] + late:.2f} s, "
-            f"less than the foot_distance of {setup.foot_distance * 1000:.1f} mm. {advice}"
+            f"less than the required foot distance of {setup.foot_distance * 1000:.1f} mm. {advice}"
         )
 
 
@@ -239,7 +239,8 @@ def _refuse_stroke(setup: WalkSetup, path: BodyPath, motion: Motion) -> None:
     feasible, solution = leg_feasibility(setup, unit_twist(setup.rest, path.displacement) * motion.stroke)
     if feasible.all() and not motion.reach.any():
         return
-    found = [problem for problem in motion.problems if problem.startswith(("out of reach", "jumps"))]
+    kinds = ("out of reach", "jumps")
+    found = [text.removeprefix("out of reach: ") for text in motion.problems if text.startswith(kinds)]
     if feasible.all():
         raise UnreachableError(f"a stroke of {motion.stroke * 1000:.1f} mm is not possible here: {found[0]}")
     if found:
@@ -247,7 +248,7 @@ def _refuse_stroke(setup: WalkSetup, path: BodyPath, motion: Motion) -> None:
     elif not feasible.any() and setup.gait.body_shift:
         reason = "tips over: no body shift keeps the stability margin during all of the walk"
     elif (solution.reach != 0).any():
-        reason = f"out of reach: during start or stop, {solution.explain(frame=HEADING_FRAME).splitlines()[0]}"
+        reason = f"during start or stop, {first_failure(solution)}"
     else:
         leg = setup.robot.leg_names[int(np.argmin(feasible))]
         reason = f"jumps: during start or stop, leg {leg} would change its inverse-kinematics branch"

@@ -17,14 +17,14 @@ from tarsus.gait.gait import Gait
 from tarsus.gait.path import BodyPath
 from tarsus.gait.shifted_walk import shifted_feasibility, shifted_pose, walk_shift
 from tarsus.gait.spacing import passing_distance
-from tarsus.gait.walk_setup import WalkSetup
+from tarsus.gait.walk_setup import HEADING_FRAME, WalkSetup
 from tarsus.kinematics.solution import IKSolution
 from tarsus.robot.robot import Robot
 
 if TYPE_CHECKING:
     from jaxtyping import Bool, Float
 
-__all__ = ["leg_feasibility", "longest_stroke", "max_stroke", "steady_solution", "unit_twist"]
+__all__ = ["first_failure", "leg_feasibility", "longest_stroke", "max_stroke", "steady_solution", "unit_twist"]
 
 
 # Steps in which the first infeasible stroke is searched; strokes computed together.
@@ -57,6 +57,11 @@ def steady_solution(setup: WalkSetup, twist: Float[Array, "*#batch 3"], phases: 
     if not setup.gait.body_shift:
         return setup.solve(feet)
     return setup.solve(feet, shifted_pose(np.zeros(3), shift_at(walk_shift(setup, twist), np.asarray(phases))))
+
+
+def first_failure(solution: IKSolution) -> str:
+    """Return the sentence on the first sample of a steady cycle in which a leg fails, without its index."""
+    return solution.explain(frame=HEADING_FRAME).splitlines()[0].partition("] ")[2]
 
 
 def leg_feasibility(

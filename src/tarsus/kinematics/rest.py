@@ -80,8 +80,8 @@ class RestingPose:
         contacts = self._describe_contacts(np.asarray(self.leg_points_down))
         if not bool(self.stable):
             return f"does not come to rest; after {int(self.rolls)} rolls it {contacts}"
-        massless = "" if self.robot.has_masses else " (masses unknown: margin of the centre of the body)"
-        return f"{contacts}; margin {1000 * float(self.margin):.1f} mm{massless}"
+        massless = "" if self.robot.has_masses else " (masses unknown: margin of the body's centre)"
+        return f"{contacts}; stability margin {1000 * float(self.margin):.1f} mm{massless}"
 
     def _describe_contacts(self, down: Bool[Array, "legs 4"]) -> str:
         names = [_short(name) for name in self.robot.leg_names]

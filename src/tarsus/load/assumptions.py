@@ -37,7 +37,10 @@ def load_assumptions(robot: Robot, motion: Motion, supply: float | None) -> Iter
         if servo.torque_at is None or (servo.no_load_speed is not None and servo.speed_at is None):
             yield f"{servo.name}: the voltage of its ratings is unknown; they are used unchanged at {supply:g} V"
         if servo.supply is not None and not servo.supply[0] <= supply <= servo.supply[1]:
-            yield f"{servo.name} is rated for {servo.supply[0]:g} to {servo.supply[1]:g} V; the supply is {supply:g} V"
+            yield (
+                f"{servo.name} is rated for {servo.supply[0]:g} to {servo.supply[1]:g} V; torque and speed are "
+                f"extrapolated to the supply of {supply:g} V"
+            )
     unnamed = [
         f"{JOINTS[joint]} of {robot.leg_codes[leg]}"
         for leg, row in enumerate(robot.servos)

@@ -189,7 +189,7 @@ class JointLoads:
         if not self.motion.contacts[sample, leg]:
             return f"{time}, swing"
         fraction = float(self.forces[sample, leg] @ upward(self.gravity)[1][0]) / self.weight
-        return f"{time}, stance of {' '.join(standing)}, {fraction:.0%} of the weight on {codes[leg]}"
+        return f"{time}, stance of {' '.join(standing)}, {100 * fraction:.0f} % of the weight on {codes[leg]}"
 
     def worst(self, joint: int) -> int:
         """Return the leg with the largest peak torque in a joint.

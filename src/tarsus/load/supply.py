@@ -80,7 +80,7 @@ class SupplyLoad:
         legs = f"{len(self.peak_legs)} legs ({' '.join(self.peak_legs)})"
         return (
             f"at {self.peak_time:.2f} s the peak loads of {legs} coincide{amount}: "
-            "a weaker supply drops its voltage and resets the controller"
+            "if the supply cannot deliver it, its voltage drops and the controller resets"
         )
 
 

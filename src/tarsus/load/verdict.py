@@ -205,13 +205,13 @@ class JointVerdict:
         if self.peak_speed > self.no_load_speed:
             return f"; too slow by {math.degrees(self.peak_speed - self.no_load_speed):.0f} deg/s"
         if not self.fast_enough:
-            return f"; too slow under load: {self.utilisation:.0%} of its torque-speed line"
+            return f"; too slow under load: {100 * self.utilisation:.0f} % of its torque-speed line"
         return ""
 
     def _heat(self) -> str:
         if self.within_continuous_limit:
             return ""
-        return f"; runs warm: rms torque {self.thermal_ratio:.1f} times its continuous limit (1/5 of stall)"
+        return f"; runs warm: RMS torque {self.thermal_ratio:.1f} times its continuous limit (1/5 of stall)"
 
 
 def sufficient_joints(

@@ -63,8 +63,8 @@ _Correction = Callable[[Dimensions], "Float[np.ndarray, 'legs']"]
 _SYSTEMATIC: tuple[tuple[_Correction, str, str], ...] = (
     (
         lambda size: -size.yaw,
-        "the angles count clockwise",
-        "yaw_deg counts counter-clockwise seen from above: left legs have positive angles. Change all signs",
+        "the angles are clockwise",
+        "yaw_deg is counter-clockwise seen from above: left legs have positive angles. Change all signs",
     ),
     (
         lambda size: np.where(size.position[:, 1] < 0, -size.yaw, size.yaw),
@@ -78,18 +78,18 @@ _SYSTEMATIC: tuple[tuple[_Correction, str, str], ...] = (
     ),
     (
         lambda size: size.yaw + 90,
-        "the angles count from the left or from y forward",
+        "the angles are measured from the left, or y points forward",
         "yaw_deg is 0 forward and 90 left: add 90",
     ),
     (
         lambda size: size.yaw - 90,
-        "the angles count from the right",
+        "the angles are measured from the right",
         "yaw_deg is 0 forward and 90 left: subtract 90",
     ),
     (
         lambda size: _outward(size) + size.yaw,
-        "the angles count from each leg's own direction outward",
-        "yaw_deg counts from the body's forward direction, for all legs",
+        "the angles are measured from each leg's own direction outward",
+        "yaw_deg is measured from the body's forward direction, for all legs",
     ),
 )
 

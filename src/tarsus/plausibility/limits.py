@@ -78,15 +78,13 @@ def _coxa(robot: Robot, size: Dimensions) -> Iterator[PlausibilityWarning]:
         low, high = (float(limit) for limit in size.limits[worst, 0])
         about = f"The range should be about zero, such as {_range(low - middle[worst], high - middle[worst])}"
         if (np.abs(wrapped(middle - size.yaw)) < 40).all():
-            cause = "the angles count from the body's forward direction"
+            cause = "the angles are measured from the body's forward direction"
             remedy = f"A coxa angle of 0 is the leg's own direction, yaw_deg: subtract it. {about}"
         elif float(np.ptp(middle)) < 25:
-            cause = (
-                f"the middle of the servo's range counts as {middle[worst]:.4g}, as in the servo's range of 0 to 180"
-            )
+            cause = f"the middle of the servo's range is taken as {middle[worst]:.4g}, as in a servo range of 0 to 180"
             remedy = f"Subtract {middle[worst]:.4g}. {about}"
         else:
-            cause = "the angles count from another direction than the leg's own, yaw_deg"
+            cause = "the angles are measured from a direction other than the leg's own, yaw_deg"
             remedy = about
         yield PlausibilityWarning(
             code="limits-zero",
@@ -109,7 +107,7 @@ def _coxa(robot: Robot, size: Dimensions) -> Iterator[PlausibilityWarning]:
                 what=f"both {_range(low, high)} deg: one leg swings farther forward, the other farther backward, by "
                 f"{chirality:.4g} deg",
                 cause="the limits of one side were copied to the other with the sign of that side",
-                remedy="Coxa angles count counter-clockwise on both sides: the mirror image is "
+                remedy="Coxa angles are counter-clockwise on both sides: the mirror image is "
                 f"{_range(-high, -low)} deg",
             )
 
@@ -184,6 +182,6 @@ def _convention(
         code="limits-zero",
         where=f"limits_deg.{JOINTS[joint]}",
         what=what,
-        cause=f"another zero or sign: {causes}" if causes else "another zero or sign of the angle",
+        cause=f"a different zero or sign: {causes}" if causes else "a different zero or sign of the angle",
         remedy=f"{ours}; tarsus robots convert-limits converts those of common firmware",
     )

@@ -71,7 +71,8 @@ def _masses(robot: Robot, size: Dimensions) -> Iterator[PlausibilityWarning]:
     share = float(links.sum()) / total
     what = f"body {body:.4g} kg and legs {links.sum():.4g} kg"
     if DENSITY[0] <= total / cube <= DENSITY[1]:
-        what += f": the legs are {share:.1%} of the robot, outside {LINK_SHARE[0]:.0%} to {LINK_SHARE[1]:.0%}"
+        low, high = (100 * bound for bound in LINK_SHARE)
+        what += f": the legs are {100 * share:.1f} % of the robot, outside {low:.0f} to {high:.0f} %"
     else:
         low, high = (bound * cube for bound in DENSITY)
         what += f", {total:.4g} kg in all, outside {low:.3g} to {high:.3g} kg for legs of {size.leg:.4g} mm"
@@ -125,7 +126,7 @@ def _body_com(robot: Robot, size: Dimensions) -> Iterator[PlausibilityWarning]:
         what=f"[{', '.join(f'{x:.4g}' for x in com)}] mm: the centre of mass is {what}",
         cause="it is measured from a corner or from another origin"
         + (", or there is a digit too many" if slip else ""),
-        remedy="com_mm counts from the body's origin, the centre of the coxa axes: x forward, y left, z up",
+        remedy="com_mm is measured from the body's origin, the centre of the coxa axes: x forward, y left, z up",
     )
 
 
@@ -139,6 +140,6 @@ def _link_com(robot: Robot) -> Iterator[PlausibilityWarning]:
                 code="link-com",
                 where=f"leg.com_mm.{joint}",
                 what=f"{centre:.4g} mm on a link of {length:.4g} mm: the centre of mass is off the link",
-                cause="a digit too many, or it is measured from another point than the inner joint",
-                remedy=f"com_mm counts along the link from its inner joint; the middle is {length / 2:.4g}",
+                cause="a digit too many, or it is measured from a point other than the inner joint",
+                remedy=f"com_mm is measured along the link from its inner joint; the middle is {length / 2:.4g}",
             )

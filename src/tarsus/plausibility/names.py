@@ -39,6 +39,6 @@ def name_warnings(robot: Robot, size: Dimensions) -> Iterator[PlausibilityWarnin
             f"{', '.join(f'{size.position[i, axis]:.4g}' for i in legs)} mm; {positive} legs are at positive {letter}, "
             f"{negative} legs at negative {letter}",
             cause=f"the names of {positive} and {negative} legs are exchanged"
-            + (f", or {letter} counts in the other direction" if every else ""),
+            + (f", or {letter} points in the other direction" if every else ""),
             remedy="x is forward and y is left",
         )

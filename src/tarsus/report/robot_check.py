@@ -117,8 +117,8 @@ def missing_values(robot: Robot) -> Iterator[str]:
     unknown = [key for key, mass in zip(MASS_KEYS, (robot.body_mass, robot.link_mass), strict=True) if mass is None]
     if unknown:
         yield (
-            f"{', '.join(unknown)}: without masses, no torques, and the stability margin of the body's centre with "
-            f"massless links; {masses_advice(robot)}"
+            f"{', '.join(unknown)}: without them there are no torques, and the stability margin is that of the "
+            f"body's centre, with massless links; {masses_advice(robot)}"
         )
     if robot.body_size is None:
         yield "body.size_mm: without it, the body is the flat polygon of the coxa axes"

@@ -88,14 +88,14 @@ def simulation_table(summary: dict[str, Any]) -> Table:
         table.add_column(column, justify="left" if column == "quantity" else "right")
     before, after = summary["commanded_end"], summary["end"]
     ways, turns = _ratio(summary["way_ratio"]), _ratio(summary["turn_ratio"])
-    table.add_row("forward", f"{before['x_mm']:.1f} mm", f"{after['x_mm']:.1f} mm", ways)
-    table.add_row("to the left", f"{before['y_mm']:.1f} mm", f"{after['y_mm']:.1f} mm", "")
-    table.add_row("turned", f"{before['turned_deg']:.1f} deg", f"{after['turned_deg']:.1f} deg", turns)
+    table.add_row("forward", f"{before['x_mm']:z.1f} mm", f"{after['x_mm']:z.1f} mm", ways)
+    table.add_row("left", f"{before['y_mm']:z.1f} mm", f"{after['y_mm']:z.1f} mm", "")
+    table.add_row("yaw", f"{before['turned_deg']:z.1f} deg", f"{after['turned_deg']:z.1f} deg", turns)
     for name, value in (
-        ("greatest deviation", f"{summary['deviation_mm']:.1f} mm"),
-        ("greatest tilt", f"{summary['tilt_deg']:.2f} deg"),
+        ("maximum deviation", f"{summary['deviation_mm']:.1f} mm"),
+        ("maximum tilt", f"{summary['tilt_deg']:.2f} deg"),
         ("sag of the body", f"{summary['sag_mm']:.1f} mm"),
-        ("slip of a foot", f"{summary['slip_mm']:.1f} mm"),
+        ("slip of a foot, mean", f"{summary['slip_mm']:.1f} mm"),
     ):
         table.add_row(name, "0", value, "")
     for joint, found in summary["joints"].items():
@@ -129,5 +129,5 @@ def simulation_verdict(summary: dict[str, Any]) -> str:
         Summary from `simulation_summary`.
     """
     if summary["ok"]:
-        return "It neither fell nor stalled."
-    return "\n".join(["It did not get through:", *(f"  {problem}" for problem in summary["problems"])])
+        return "completed: the robot neither fell nor stalled"
+    return "\n".join(["failed", *(f"  {problem}" for problem in summary["problems"])])

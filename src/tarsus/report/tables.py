@@ -64,7 +64,7 @@ def walk_table(summary: dict[str, Any]) -> Table:
     table = table_of("quantity", "value", header=False)
     table.add_row("robot", summary["robot"])
     table.add_row("gait", f"{summary['gait']}, duty factor {summary['duty_factor']:.3g}")
-    table.add_row("end", f"x {end['x_mm']:.1f} mm, y {end['y_mm']:.1f} mm, yaw {end['turned_deg']:.1f} deg")
+    table.add_row("end", f"x {end['x_mm']:z.1f} mm, y {end['y_mm']:z.1f} mm, yaw {end['turned_deg']:z.1f} deg")
     table.add_row("duration", f"{summary['duration_s']:.2f} s, {summary['steps']} steps")
     table.add_row("stroke", f"{summary['stroke_mm']:.1f} mm at {summary['speed_mm_s']:.1f} mm/s")
     table.add_row("cycle time", number(summary["cycle_time_s"], "s", digits=3))

@@ -129,10 +129,10 @@ def _places(entries: Sequence[LegEntry]) -> list[str]:
 # Other frames in which positions may have been typed: what turns them into x forward, y left, and in words. Those after
 # the first two keep the order of the legs' names, as they exchange the axes.
 _FRAMES = (
-    ((1, 0, 0, -1), "y counts to the right; here y is left"),
-    ((-1, 0, 0, 1), "x counts backward; here x is forward"),
-    ((0, 1, 1, 0), "x and y are exchanged; here x is forward and y is left"),
-    ((0, 1, -1, 0), "x counts to the right and y counts forward; here x is forward and y is left"),
+    ((1, 0, 0, -1), "y points right; here y points left"),
+    ((-1, 0, 0, 1), "x points backward; here x points forward"),
+    ((0, 1, 1, 0), "x and y are exchanged; here x points forward and y left"),
+    ((0, 1, -1, 0), "x points right and y forward; here x points forward and y left"),
 )
 
 

@@ -141,7 +141,7 @@ def _likely_angles(value: object) -> str:
     elif low >= 0 and high in (1023, 4095):
         what = "these look like the ticks of a servo"
     elif low >= -360 and high <= 360:
-        what = "the angles count from another direction; at 0 the leg is straight, and the coxa at yaw_deg"
+        what = "the angles are measured from another direction; at 0 the leg is straight, and the coxa at yaw_deg"
     else:
         return ""
     return f". Likely cause: {what}; tarsus robots convert-limits converts those of common firmware"

@@ -224,7 +224,7 @@ def _text(robot: Robot, contacts: Bool[np.ndarray, "legs"], margin: float) -> st
     feet = f"{len(codes)} {'foot' if len(codes) == 1 else 'feet'}"
     if margin < 0:
         return f"tips over: {feet} on the ground, {', '.join(codes)}"
-    return f"stands on {feet}: {', '.join(codes)}; margin {margin * 1000:.1f} mm"
+    return f"stands on {feet}: {', '.join(codes)}; stability margin {margin * 1000:.1f} mm"
 
 
 def _leg_problems(standing: OnFootholds, miss: Float[np.ndarray, "legs 3"]) -> list[LegProblem]:

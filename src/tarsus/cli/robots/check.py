@@ -65,7 +65,7 @@ def _print(file: str, report: dict[str, Any], *, strict: bool) -> None:
         show(Text(f"  {'error' if strict else 'warning'}: {warning['text']}", style="red" if strict else "yellow"))
     show(gait_table(report["gaits"]), *_why_not(report["gaits"]))
     if report["possible"]:
-        show(Text(f"can walk: {report['robot']['gait']}", style="bold green"))
+        show(Text(f"can walk with its own gait, {report['robot']['gait']}", style="bold green"))
     else:
         show(Text(f"cannot walk: {report['problems'][-1]}", style="bold red"))
 

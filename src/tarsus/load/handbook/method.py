@@ -70,7 +70,7 @@ class Handbook:
     def title(self) -> str:
         """Title of the calculation, in one line."""
         return (
-            f"{self.robot.name}: {self.feet_down} of {self.robot.legs} feet down, {self.gait}; all legs like the "
+            f"{self.robot.name}: {self.feet_down} of {self.robot.legs} feet down, {self.gait}; every leg taken as the "
             f"{self.robot.leg_names[self.leg]} one, {'errors corrected' if self.corrected else 'as printed'}"
         )
 

@@ -180,7 +180,7 @@ def _stalled(trace: Trace) -> list[str]:
         longest = int(np.argmax(lasted))
         if lasted[longest] >= _STALL:
             lines.append(
-                f"{trace.robot.leg_names[leg]} {JOINTS[joint]}: at its greatest torque for {lasted[longest]:.2f} s "
+                f"{trace.robot.leg_names[leg]} {JOINTS[joint]}: at its maximum torque for {lasted[longest]:.2f} s "
                 f"from {trace.time[begins[longest]]:.2f} s"
             )
     return lines
@@ -191,4 +191,4 @@ def _stuck(commanded: tuple[float, float, float], end: tuple[float, float, float
     made = (commanded[0] * end[0] + commanded[1] * end[1]) / way if way else 0.0
     if way < _WAY or made >= _STUCK * way:
         return []
-    return [f"made {1000 * made:.0f} mm of {1000 * way:.0f} mm"]
+    return [f"covered {1000 * made:.0f} mm of {1000 * way:.0f} mm"]
