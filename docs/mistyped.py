@@ -80,7 +80,7 @@ def answers(document: Document) -> list[str]:
 
 def table() -> str:
     """Return the table of mistakes and of what is said, made in the strider's file or in another preset's."""
-    lines = ["| what is wrong | in | what is said |", "|---|---|---|"]
+    lines = ["| what is wrong | in | message |", "|---|---|---|"]
     lines += [f"| {words} | | {_escaped(text_answer(text))} |" for words, (text, _) in TEXTS.items()]
     for mistake in MISTAKES:
         name, document = next(

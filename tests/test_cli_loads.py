@@ -160,7 +160,7 @@ def test_servos_match_size_servos(monkeypatch):
         assert f"length: {advice}" in text
     assert "not evaluated, as the no-load speed is unknown: HTS-35H, HTD-45H" in text
     # The robot's servos are sufficient: nothing needs to help them.
-    assert "what helps the robot's servos" not in text
+    assert "changes for the robot's servos" not in text
     assert document["changes"] == []
     assert text.splitlines()[-1] == "the robot's servos are sufficient (with estimated leg.servo)"
 
@@ -171,7 +171,7 @@ def test_insufficient_servos(monkeypatch):
     assert result.exit_code == 1
     assert "LM femur (MG996R): " in result.stdout or "RM femur (MG996R): " in result.stdout
     assert "XM430-W350-T" in result.stdout
-    assert result.stdout.index("what helps the robot's servos") < result.stdout.index("sufficient servos ")
+    assert result.stdout.index("changes for the robot's servos") < result.stdout.index("sufficient servos ")
     assert "factor: smallest stall torque over peak torque (below 1 cannot stand" in result.stdout
     assert "thermal: largest RMS torque over 1/5 of the stall torque" in result.stdout
     assert result.stdout.splitlines()[-1] == (

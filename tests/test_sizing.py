@@ -163,7 +163,11 @@ def test_robot_without_servos():
 def test_assumptions():
     found = sample_loads("strider")
     assert "the coxa servos may need more torque" in size_servos(found.robot, found).assumed[-2]
-    assert size_servos(found.robot, found).assumed[-1].startswith("a servo sits on the inner side of its joint")
+    assert (
+        size_servos(found.robot, found)
+        .assumed[-1]
+        .startswith("a servo is part of the link on the inner side of its joint")
+    )
 
 
 def test_errors():

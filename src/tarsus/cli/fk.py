@@ -14,6 +14,7 @@ __all__ = ["fk"]
 
 # Angles are often negative, and must not be parsed as options.
 @click.command(
+    short_help="Forward kinematics: points of the legs for joint angles.",
     context_settings={"ignore_unknown_options": True},
     epilog=examples(
         "tarsus fk strider --leg LF 10 40 -100",

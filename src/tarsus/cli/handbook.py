@@ -11,12 +11,13 @@ __all__ = ["handbook"]
 
 
 @click.command(
+    short_help="Hand calculation of joint torques (source 004), and statics.",
     epilog=examples(
         "tarsus handbook strider",
         "tarsus handbook strider --gait wave --factor 2",
         "tarsus handbook strider --as-printed",
         "tarsus handbook phantomx --body-height 130 --json",
-    )
+    ),
 )
 @robot_argument
 @click.option("--gait", metavar="NAME", help="Gait, which determines the number of feet down.  [default: the robot's]")

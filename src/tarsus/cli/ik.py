@@ -15,6 +15,7 @@ __all__ = ["ik"]
 
 # Coordinates are often negative, and must not be parsed as options.
 @click.command(
+    short_help="Inverse kinematics: joint angles for foot positions.",
     context_settings={"ignore_unknown_options": True},
     epilog=examples(
         "tarsus ik strider --leg LF 230 130 -110",

@@ -16,13 +16,14 @@ __all__ = ["loads"]
 
 
 @click.command(
+    short_help="Joint loads over a walk, with a verdict on each servo.",
     epilog=examples(
         "tarsus loads strider",
         "tarsus loads phantomx --body-height 130 --gait ripple",
         "tarsus loads strider --payload 0.2 --supply 6.8 --distance 300",
         "tarsus loads strider --static --capacity 3 --json",
         "tarsus loads strider --distance 300 --out loads",
-    )
+    ),
 )
 @robot_argument
 @walk_options

@@ -17,13 +17,14 @@ __all__ = ["pose"]
 
 
 @click.command(
+    short_help="Joint angles for a body pose over fixed feet.",
     epilog=examples(
         "tarsus pose strider --pitch 12 --z 20",
         "tarsus pose strider --x 30 --yaw -10 --body-height 120",
         "tarsus pose strider --roll 8 --json",
         "tarsus pose mithi --knee down",
         "tarsus pose phantomx --z -15 --picture pose.png",
-    )
+    ),
 )
 @robot_argument
 @number_option("--x", "MM", "Move the body forward.", default=0.0)

@@ -18,6 +18,7 @@ __all__ = ["rest"]
 
 # Angles are often negative, and must not be parsed as options.
 @click.command(
+    short_help="Resting pose on flat ground for joint angles.",
     context_settings={"ignore_unknown_options": True},
     epilog=examples(
         "tarsus rest strider --all 0,-30,-60",

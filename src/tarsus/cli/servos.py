@@ -17,12 +17,13 @@ __all__ = ["servos"]
 
 
 @click.command(
+    short_help="Evaluate the robot's servos for a walk, and find sufficient ones.",
     epilog=examples(
         "tarsus servos strider --gait wave --body-height 130",
         "tarsus servos strider --factor 1.5 --payload 0.2",
         "tarsus servos phantomx --gait ripple --body-height 130 --distance 300 --json",
         "tarsus servos strider --rule continuous --gait wave --body-height 140",
-    )
+    ),
 )
 @robot_argument
 @walk_options
@@ -48,12 +49,12 @@ def servos(
     as_json: bool,
     **options: Any,
 ) -> int:
-    """Judge the robot's servos for a walk, say what would help them, and find sufficient ones in the catalogue.
+    """Evaluate the robot's servos for a walk, list changes that reduce their load, and find sufficient servos.
 
-    First come changes of the walk that raise the safety factor of the robot's own servos: a higher body, feet nearer to
-    it, shorter strokes, another gait. Then every servo of the catalogue is evaluated with its own mass, in all joints
-    and in sets of one bus and one supply voltage. The exit code is 0 only if the robot's servos satisfy
-    the rule and are fast enough, and the robot does not tip.
+    The first table lists changes of the walk that raise the safety factor of the robot's own servos: a higher body,
+    feet nearer to it, shorter strokes, another gait. The second lists sufficient servos of the catalogue, evaluated
+    with their own masses: one servo in all joints, or a set for one bus and one supply voltage. The exit code is 0
+    only if the robot's servos satisfy the rule and are fast enough, and the robot does not tip.
     """
     from rich.text import Text
 

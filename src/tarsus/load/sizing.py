@@ -186,7 +186,9 @@ def _reloaded(base: JointLoads, robot: Robot) -> JointLoads:
 def _servo_placement(robot: Robot) -> str:
     reason = why_masses_stay(robot)
     if reason is None:
-        return "a servo sits on the inner side of its joint if the part there is heavy enough, else on the outer side"
+        return (
+            "a servo is part of the link on the inner side of its joint if that is heavy enough, else of the outer link"
+        )
     return f"{reason}: the masses of the robot file are used unchanged for every servo"
 
 

@@ -48,7 +48,7 @@ _THERMAL = "RMS torque over 1/5 of the stall torque, the limit of continuous loa
 LEGEND = (
     "of stall: peak torque over stall torque, full at 100 %",
     f"factor: {_FACTOR}",
-    "utilisation: of the servo's torque-speed line, from stall torque to no-load speed",
+    "utilisation: peak load relative to the servo's torque-speed line, from stall torque to no-load speed",
     f"thermal: {_THERMAL}",
 )
 """What the columns mean, a line for each."""
@@ -246,7 +246,7 @@ def change_table(summary: dict[str, Any]) -> Table:
     summary : dict
         Summary from `tarsus.report.loads_summary.servos_summary`.
     """
-    table = table_of("what helps the robot's servos", "factor", "thermal", right=_RIGHT)
+    table = table_of("changes for the robot's servos", "factor", "thermal", right=_RIGHT)
     for change in summary["changes"]:
         style = SEVERITY_STYLES[severity_of(class_of(change["factor"]))]
         table.add_row(change["text"], f"{change['factor']:.2f}", _percent(change["thermal_ratio"]), style=style)

@@ -19,7 +19,7 @@ from tarsus.robot.shape import JOINTS
 __all__ = ["FIRMWARE", "SIDES", "Firmware", "convert_limits"]
 
 SIDES = ("left", "right")
-"""Sides of the robot; firmware often counts angles the other way round on one of them."""
+"""Sides of the robot; in firmware, angles often have the other sign on one of them."""
 
 _LARGEST = 180.0
 _ROUNDING = 1e-6
@@ -40,7 +40,7 @@ _Angles = tuple[tuple[int, float], tuple[int, float], tuple[int, float]]
 @represented("name", "units")
 @dataclass(frozen=True, kw_only=True)
 class Firmware:
-    """How a firmware counts joint angles.
+    """Zeros, signs and units of a firmware's joint angles.
 
     Attributes
     ----------

@@ -16,6 +16,7 @@ __all__ = ["robots"]
 
 
 @click.group(
+    short_help="List, show, create and check robot files.",
     epilog=examples(
         "tarsus robots list",
         "tarsus robots show strider",
@@ -23,7 +24,7 @@ __all__ = ["robots"]
         "tarsus robots check my-robot.toml",
         "tarsus robots convert-limits phoenix --coxa -65,65 --femur -105,75 --tibia -53,90",
         "tarsus robots schema",
-    )
+    ),
 )
 def robots() -> None:
     """List robots, show their dimensions and sources, create and check robot files, convert joint limits."""

@@ -14,11 +14,12 @@ __all__ = ["check"]
 
 
 @click.command(
+    short_help="Check a robot file, and plan a walk with each gait.",
     epilog=examples(
         "tarsus robots check my-robot.toml",
         "tarsus robots check my-robot.toml --strict",
         "tarsus robots check mithi --json",
-    )
+    ),
 )
 @click.argument("file")
 @click.option("--strict", is_flag=True, help="Treat warnings as errors: exit code 1.")

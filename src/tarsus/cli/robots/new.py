@@ -13,11 +13,12 @@ __all__ = ["new"]
 
 
 @click.command(
+    short_help="Write a robot file: a template or a copy.",
     epilog=examples(
         "tarsus robots new my-robot",
         "tarsus robots new my-freenove --from freenove",
         'tarsus robots new "my second robot" --out second.toml',
-    )
+    ),
 )
 @click.argument("name")
 @click.option("--from", "source", metavar="ROBOT", help="Copy a preset or a robot file.  [default: a template]")

@@ -12,6 +12,7 @@ __all__ = ["schema"]
 
 
 @click.command(
+    short_help="Print the JSON schema of robot files.",
     epilog=examples(
         "tarsus robots schema",
     )
