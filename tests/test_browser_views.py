@@ -123,7 +123,7 @@ def test_a_walk_is_planned_with_the_given_options(visitor):
     assert int(facts["Steps"]) == motion.steps
     assert number(facts["Stroke"]) == pytest.approx(motion.stroke * 1000, abs=0.06)
     assert number(facts["Speed"]) == pytest.approx(motion.speed * 1000, abs=0.06)
-    assert number(facts["Least stability margin"]) == pytest.approx(least, abs=0.06)
+    assert number(facts["Minimum stability margin"]) == pytest.approx(least, abs=0.06)
     longest = tarsus.max_stroke(STRIDER, tarsus.Gait.named("ripple"), np.radians(35)) * 1000
     assert number(facts["Longest stroke"]) == pytest.approx(longest, abs=0.06)
     expect(visitor.at("walk-verdict")).to_contain_text("Every foot reaches its whole path.")
@@ -174,7 +174,7 @@ def test_a_number_field_shows_what_is_applied(visitor):
 
 def test_a_custom_gait_starts_as_the_present_one(visitor):
     visitor.open(StudioState(view="walk", walk=WalkOptions(gait="ripple")))
-    least = visitor.facts("walk-facts")["Least stability margin"]
+    least = visitor.facts("walk-facts")["Minimum stability margin"]
     visitor.at("gait").select_option("own")
     expect(visitor.at("phase-LF")).to_be_visible()
     expect(visitor.page.get_by_text("Touch-down of each foot")).to_be_visible()
@@ -182,7 +182,7 @@ def test_a_custom_gait_starts_as_the_present_one(visitor):
         tarsus.Gait.named("ripple").offsets, abs=0.006
     )
     expect(visitor.at("walk-verdict")).to_contain_text("Every foot")
-    assert visitor.facts("walk-facts")["Least stability margin"] == least
+    assert visitor.facts("walk-facts")["Minimum stability margin"] == least
 
 
 def test_forces_are_labelled_in_newtons_beside_the_names_of_the_legs(visitor):

@@ -23,7 +23,7 @@ export function ServoChoice() {
           disabled={busy}
           onClick={() => ask({ type: "servos" })}
         >
-          {busy ? "Evaluating all servos …" : "Find suitable servos"}
+          {busy ? "Evaluating all servos …" : "Find sufficient servos"}
         </button>
       </div>
       <Failure of={["servos"]} />
@@ -42,9 +42,9 @@ function Answer({ servos }: { servos: ServosMessage }) {
       </Message>
       {servos.payload_kg !== null && (
         <p className="hint">
-          Greatest payload: {withUnit(servos.payload_kg, 2, "kg")}
+          Maximum payload: {withUnit(servos.payload_kg, 2, "kg")}
           {servos.maximum_payload_kg !== null &&
-            `; ${withUnit(servos.maximum_payload_kg, 2, "kg")} until a servo overheats`}
+            `; ${withUnit(servos.maximum_payload_kg, 2, "kg")} at safety factor 1.5, below which servos stall or burn`}
           .
         </p>
       )}
@@ -77,7 +77,7 @@ function Candidates({ all }: { all: readonly Candidate[] }) {
   return (
     <div className="scroll">
       <table>
-        <caption className="hidden-text">Suitable servos, lightest first</caption>
+        <caption className="hidden-text">Sufficient servos, lightest first</caption>
         <thead>
           <tr>
             <th scope="col">Servo</th>

@@ -117,7 +117,7 @@ export function StepInputs() {
             onChange={(next, commit) => change("walk", { cycle_time_s: next }, commit)}
           />
           <Slider
-            label="Least distance between feet"
+            label="Smallest allowed distance between feet"
             value={state.walk.foot_distance_mm}
             min={0}
             max={400}

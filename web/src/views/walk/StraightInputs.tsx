@@ -20,7 +20,7 @@ export function StraightInputs({ path, set }: PathProps<"straight">) {
         onChange={(distance_mm, commit) => set({ ...path, distance_mm }, commit)}
       />
       <Slider
-        label="Direction (90 is left)"
+        label="Direction (90° is left)"
         value={path.heading_deg}
         min={-180}
         max={180}

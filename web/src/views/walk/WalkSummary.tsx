@@ -16,7 +16,7 @@ export function WalkSummary({ walk, refused }: Props) {
     <>
       {refused ? (
         <Message kind="warn" testId="walk-verdict">
-          These inputs are refused. Shown is the last walk that was accepted.
+          These inputs are refused. The last accepted walk is shown.
         </Message>
       ) : (
         <Message kind={walk.possible ? "good" : "bad"} testId="walk-verdict">
@@ -34,9 +34,9 @@ export function WalkSummary({ walk, refused }: Props) {
           ["Speed", withUnit(walk.speed_mm_s, 1, "mm/s")],
           ["End position x, y", `${end.x_mm.toFixed(1)}, ${end.y_mm.toFixed(1)} mm`],
           ["End heading", withUnit(end.turned_deg, 1, "°")],
-          ["Least stability margin", `${withUnit(margin.mm, 1, "mm")} at ${withUnit(margin.at_s, 2, "s")}`],
+          ["Minimum stability margin", `${withUnit(margin.mm, 1, "mm")} at ${withUnit(margin.at_s, 2, "s")}`],
           [
-            "Least distance between feet",
+            "Minimum distance between feet",
             `${withUnit(walk.nearest_feet.mm, 0, "mm")} (${walk.nearest_legs.join(", ")})`,
           ],
           ...walk.joint_speed.map(
