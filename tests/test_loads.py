@@ -8,8 +8,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from gait_robots import ring
 from sample_loads import BURNT, robot_of, sample_loads, sample_motion
 from tarsus.errors import InputError, MissingDataError
+from tarsus.gait.gait import Gait
+from tarsus.gait.path import curved_path, straight_path
+from tarsus.gait.plan import plan_walk
 from tarsus.kinematics.mass import total_mass
 from tarsus.load.inverse_dynamics import motion_torques
 from tarsus.load.loads import joint_loads
@@ -262,3 +266,18 @@ def test_surviving_robots_have_larger_factors_than_burnt_ones(living, gait):
 def test_masses_of_the_burnt_robots():
     assert total_mass(robot_of("burnt-5kg")) == pytest.approx(5.0)
     assert total_mass(robot_of("burnt-mg996r")) == pytest.approx(1.8 + 0.25, abs=0.001)
+
+
+@pytest.mark.parametrize(
+    ("path", "length"),
+    [
+        (straight_path(0.1), 0.1),
+        (curved_path(1.5, (0.0, 0.3)), 0.45),
+        (curved_path(-1.5, (0.0, 0.0)), 0.0),
+        (curved_path(4.5, (0.0, 0.3)), 1.35),
+    ],
+)
+def test_the_distance_of_a_walk_does_not_include_the_body_shift(path, length):
+    quadruped = ring(4)
+    found = joint_loads(quadruped, plan_walk(quadruped, Gait.named("creep", legs=4), path, rate=25.0))
+    assert found.distance == pytest.approx(length, rel=0.1, abs=1e-6)

@@ -19,7 +19,7 @@ __all__ = ["export"]
     "--out",
     type=click.Path(path_type=Path, dir_okay=False),
     metavar="FILE",
-    help="Write the file here, in place of the standard output.",
+    help="Output file.  [default: standard output]",
 )
 @click.option(
     "--servos",
@@ -32,7 +32,7 @@ __all__ = ["export"]
 def export(format_: str, robot: str, out: Path | None, servos: str, as_json: bool) -> int:
     """Write a robot as URDF (for ROS, Pinocchio, MuJoCo and others) or MJCF (MuJoCo).
 
-    One file, without meshes: boxes, cylinders and balls. The robot needs masses; inertias are those of uniform boxes.
+    One file, without meshes: boxes, cylinders and spheres. The robot needs masses; inertias are those of uniform boxes.
     """
     from tarsus.errors import InputError
     from tarsus.export import to_mjcf, to_urdf

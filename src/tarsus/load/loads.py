@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -130,9 +131,20 @@ class JointLoads:
 
     @property
     def distance(self) -> float:
-        """Length of the path of the body's origin over the ground [m]."""
-        steps = np.diff(self.motion.body.position[:, :2], axis=0)
-        return float(np.hypot(steps[:, 0], steps[:, 1]).sum())
+        """Length of the path of the body's origin over the ground, without its body shift [m]."""
+        path = self.motion.body.position[:, :2]
+        if self.motion.gait.body_shift:
+            return self._distance_of_arcs(path)
+        return float(np.linalg.norm(np.diff(path, axis=0), axis=1).sum())
+
+    def _distance_of_arcs(self, path: Float[np.ndarray, "n 2"]) -> float:
+        """Return the length of arcs, of at most half a turn, through a path that begins and ends without shift."""
+        turned = np.unwrap(np.asarray(self.motion.body.rpy)[:, 2])
+        turned = np.abs(turned - turned[0])
+        arcs = max(math.ceil(turned[-1] / math.pi - 1e-9), 1)
+        ends = [0, *(int(np.argmax(turned >= turned[-1] * k / arcs)) for k in range(1, arcs)), -1]
+        chords = np.linalg.norm(np.diff(path[ends], axis=0), axis=1)
+        return float(chords.sum() / np.sinc(turned[-1] / arcs / (2 * math.pi)))
 
     @property
     def weight(self) -> float:

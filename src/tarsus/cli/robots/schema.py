@@ -15,7 +15,7 @@ __all__ = ["schema"]
     short_help="Print the JSON schema of robot files.",
     epilog=examples(
         "tarsus robots schema",
-    )
+    ),
 )
 @click.option("--json", "as_json", is_flag=True, help="No effect: the schema is JSON.")
 def schema(as_json: bool) -> int:  # noqa: ARG001 - every command takes --json
