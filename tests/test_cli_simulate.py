@@ -80,6 +80,7 @@ def test_a_scenario_runs_through_the_controller():
     ("arguments", "code", "message"),
     [
         (f"{SHORT} --zarr", 2, "--zarr needs --out"),
+        (f"{SHORT} --video walk.avi", 2, "--video walk.avi: the name must end in .mp4 or .gif"),
         (
             'simulate strider --scenario "at 0 s: stop" --distance 100',
             2,

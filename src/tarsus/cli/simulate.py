@@ -17,6 +17,8 @@ if TYPE_CHECKING:
 
 __all__ = ["simulate"]
 
+_VIDEOS = (".mp4", ".gif")
+
 
 @click.command(
     epilog=examples(
@@ -88,6 +90,8 @@ def simulate(
     from tarsus.report.simulation_summary import simulation_summary, simulation_table, simulation_verdict
     from tarsus.simulation.terrain.from_text import terrain_from_text
 
+    if video is not None and video.suffix.lower() not in _VIDEOS:
+        raise click.UsageError(f"--video {video}: the name must end in {' or '.join(_VIDEOS)}")
     if zarr and out is None:
         raise click.UsageError("--zarr needs --out, the folder to write to")
     if out is not None:
