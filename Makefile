@@ -61,6 +61,7 @@ figures: $(VENV)/.dev web browser
 # How far plans are true in physics: the tables of docs/how-true.md.
 truth: $(VENV)/.dev
 	$(BIN)/python docs/how_true.py
+	$(BIN)/python docs/faults.py
 
 schema: $(VENV)/.dev
 	$(BIN)/tarsus robots schema > src/tarsus/robot/robot.schema.json

@@ -140,7 +140,7 @@ def test_a_stroke_too_long_is_refused_beside_its_field(visitor):
     field, refusal = visitor.at("stroke_mm-number"), visitor.at("failure")
     assert 0 < refusal.bounding_box()["y"] - field.bounding_box()["y"] < 100
     expect(refusal).to_be_in_viewport()
-    expect(visitor.at("walk-verdict")).to_contain_text("the last walk that was accepted")
+    expect(visitor.at("walk-verdict")).to_contain_text("The last accepted walk is shown.")
     for end in (0, 10_000):
         visitor.page.locator(".panel").evaluate("(panel, end) => panel.scrollTo(0, end)", end)
         expect(visitor.page.locator(".failures")).to_be_in_viewport(ratio=0.9)

@@ -11,6 +11,7 @@ import pytest
 from sample_commands import run
 from tarsus import __version__
 from tarsus.cli import main
+from tarsus.report.animation import animate
 
 ANGLES = "[" + ", ".join(["0, 40, -100"] * 6) + "]"
 
@@ -52,6 +53,7 @@ def test_every_command_has_json_and_documented_options(path):
 @pytest.mark.parametrize("example", EXAMPLES)
 def test_examples_run(example, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
+    monkeypatch.setitem(animate.__kwdefaults__, "max_duration", 0.5)
     if "check my-robot.toml" in example:
         assert run("robots", "new", "my-robot").exit_code == 0
     Path("angles.json").write_text(ANGLES, encoding="utf-8")

@@ -256,13 +256,33 @@ def test_terrain_and_seed_reach_the_plant():
     assert rough.outcome.tilt > 2 * flat.outcome.tilt
 
 
+def docs_module(name):
+    spec = importlib.util.spec_from_file_location(name, DOCS / f"{name}.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def table_on_the_page(name):
+    text = (DOCS / "how-true.md").read_text(encoding="utf-8")
+    return text.partition(f"<!-- table: {name} -->\n")[2].partition("<!-- end -->")[0]
+
+
 @pytest.mark.parametrize(("servos", "gait"), [("ideal", "tripod"), ("catalogue", "ripple")])
 def test_the_pages_rows_are_reproduced(servos, gait):
-    spec = importlib.util.spec_from_file_location("how_true", DOCS / "how_true.py")
-    how_true = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(how_true)
-    table = (DOCS / "how-true.md").read_text().partition(f"<!-- table: {servos} -->\n")[2].partition("<!-- end -->")[0]
-    assert how_true.row(STRIDER, gait, servos) in table
+    assert docs_module("how_true").row(STRIDER, gait, servos) in table_on_the_page(servos)
+
+
+@pytest.mark.parametrize(
+    ("robot", "fault"),
+    [("strider", "one servo dead (middle left femur)"), ("phantomx", "push of half the weight for 0.2 s")],
+)
+def test_the_pages_faults_are_reproduced(robot, fault):
+    assert docs_module("faults").fault_row(robot, fault) in table_on_the_page("faults")
+
+
+def test_the_pages_changes_of_state_are_reproduced():
+    assert docs_module("faults").state_row("strider", "catalogue") in table_on_the_page("states")
 
 
 def test_the_pages_example_runs(capsys):
