@@ -294,6 +294,8 @@ def test_the_state_survives_a_restart_of_the_server(arrive):
         assert visitor.facts("standing-facts") == before
         # That nobody answered is all that there was to complain of.
         assert all("ERR_CONNECTION_REFUSED" in text for text in visitor.complaints)
+        # Once this server is gone, too, the page would complain again.
+        visitor.context.close()
         visitor.complaints.clear()
 
 

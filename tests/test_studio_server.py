@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import contextlib
 import gzip
 import http.client
@@ -422,3 +423,27 @@ def test_the_server_stops_with_open_sessions():
             visit.send("drive", on=True)
             visit.receive()
         assert visit.closed() == 1012  # the server restarts, says the standard: come back later
+
+
+def test_a_connection_that_comes_while_the_server_ends_is_closed():
+    """One that is accepted after all others were asked to end, for example of a page that reconnects at once."""
+
+    class Late:
+        def __init__(self):
+            self.ended = 0
+
+        def shutdown(self):
+            self.ended += 1
+            server.server_state.connections.discard(self)
+
+    with Serving(Settings()) as serving:
+        assert serving.health()
+        server, late = serving._server, Late()
+        asked = server.shutdown
+
+        async def shutdown(sockets=None):
+            asyncio.get_running_loop().call_later(0.01, server.server_state.connections.add, late)
+            await asked(sockets)
+
+        server.shutdown = shutdown
+    assert late.ended == 1

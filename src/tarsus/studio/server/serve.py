@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import dataclasses
 import errno
 import json
@@ -20,6 +21,28 @@ from tarsus.studio.server.pages import Pages
 from tarsus.studio.server.settings import Settings
 
 __all__ = ["Serving"]
+
+# Interval in which connections that came late are looked for while the server ends [s].
+_SHUTDOWN_CHECK = 0.05
+
+
+class _Server(uvicorn.Server):
+    """Uvicorn, ending also connections that were being accepted while it asked all others to end."""
+
+    async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
+        asked = set(self.server_state.connections)
+        ending = asyncio.create_task(self._end_late_connections(asked))
+        try:
+            await super().shutdown(sockets)
+        finally:
+            ending.cancel()
+
+    async def _end_late_connections(self, asked: set[Any]) -> None:
+        while True:
+            await asyncio.sleep(_SHUTDOWN_CHECK)
+            for connection in set(self.server_state.connections) - asked:
+                asked.add(connection)
+                connection.shutdown()
 
 
 class Serving:
@@ -53,7 +76,7 @@ class Serving:
             server_header=False,
             timeout_graceful_shutdown=2,
         )
-        self._server = uvicorn.Server(config)
+        self._server = _Server(config)
 
     @property
     def url(self) -> str:
