@@ -1,5 +1,6 @@
 """Cycle torques of a batch of designs against the general functions, one design at a time."""
 
+import dataclasses
 import math
 
 import jax
@@ -274,3 +275,15 @@ def test_missing_masses_and_unreachable_ground():
         cycle_torques(robot_of("strider").replace(body_mass=None), TRIPOD, stroke=0.05)
     with pytest.raises(UnreachableError, match="does not reach the ground"):
         cycle_torques(robot_of("strider"), TRIPOD, stroke=0.05, body_height=2.0)
+
+
+def test_traced_torques_have_no_table():
+    found, tables = cycle_torques(hexapod(), Gait.named("tripod"), stroke=0.03, phases=4), []
+
+    def keep(torques):
+        tables.append(dataclasses.replace(found, torques=torques)._rows())
+        return torques
+
+    jax.jit(keep)(jnp.asarray(found.torques))
+    assert tables == [()]
+    assert [row["joint"] for row in found._rows()] == ["coxa", "femur", "tibia"]
