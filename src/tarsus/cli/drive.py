@@ -83,10 +83,8 @@ def _loads(recording: Recording) -> JointLoads | None:
     """Return the loads of the longest stretch in which the body is off the ground, where masses are known."""
     from tarsus.load.loads import joint_loads
 
-    if not recording.standing or not recording.robot.has_masses:
-        return None
-    longest = max(recording.standing, key=lambda part: part.duration)
-    return joint_loads(recording.robot, longest) if len(longest.time) > 2 else None
+    longest = recording.longest_standing
+    return None if longest is None or not recording.robot.has_masses else joint_loads(recording.robot, longest)
 
 
 def _load_numbers(found: JointLoads | None) -> dict[str, Any] | None:

@@ -18,11 +18,12 @@ from tarsus.report.animation import animate
 from tarsus.robot.file import load_robot
 from tarsus.scenario.runner import run_scenario
 from tarsus.simulation.simulated_plant import SimulatedPlant
+from tarsus.simulation.terrain.flat import Flat
 from tarsus.simulation.truth.as_motion import trace_motion
-from tarsus.simulation.truth.comparison import planned_torques
+from tarsus.simulation.truth.comparison import compare, planned_torques
 from tarsus.simulation.truth.outcome import Outcome
 from tarsus.simulation.truth.trace import Trace, trace_to_csv, trace_to_dataset
-from tarsus.simulation.truth.traced_plant import TracedPlant, play
+from tarsus.simulation.truth.traced_plant import TracedPlant
 
 if TYPE_CHECKING:
     from jaxtyping import Float
@@ -80,16 +81,15 @@ def run_plan(robot: str, options: dict[str, Any], settings: dict[str, Any], prog
     motion = plan(robot, options)
     if not motion.ok:
         raise TarsusError(f"the walk is not possible: {motion.problems[0]}; `tarsus walk` shows the whole verdict")
-    plant = SimulatedPlant(motion.robot, **settings)
     progress("physics", 0.1)
-    trace = play(motion, plant)
+    truth = compare(motion, **settings)
     return SimulatedRun(
         motion=motion,
-        plant=plant,
-        trace=trace,
-        outcome=Outcome.of(trace),
-        planned=planned_torques(motion),
-        assumed=(*motion.assumed, *plant.assumed),
+        plant=truth.plant,
+        trace=truth.trace,
+        outcome=truth.outcome,
+        planned=(truth.planned_peak, truth.planned_rms),
+        assumed=(*motion.assumed, *truth.assumed),
     )
 
 
@@ -120,8 +120,8 @@ def run_timeline(
     progress("physics", 0.1)
     recording = run_scenario(timeline_of(scenario, None), robot=plant.robot, plant=traced)
     trace = traced.trace
-    standing = max(recording.standing, key=lambda part: part.duration, default=None)
-    planned = planned_torques(standing) if standing is not None and len(standing.time) > 2 else None
+    standing = recording.longest_standing
+    planned = None if standing is None else planned_torques(standing)
     return SimulatedRun(
         motion=recording.motion,
         plant=plant,
@@ -164,11 +164,10 @@ def write_run(
             _write_zarr(found.trace, written[-1])
     if video is not None:
         motion, terrain = trace_motion(found.trace, found.motion), found.plant.terrain
-        flat = type(terrain).__name__ == "Flat"
         animate(
             motion,
             video,
-            height=None if flat else terrain.height,
+            height=None if isinstance(terrain, Flat) else terrain.height,
             progress=lambda fraction: progress(video.name, fraction),
         )
         written.append(video)

@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 
 from tarsus.robot.robot import Robot
-from tarsus.simulation.engine import mujoco_module
 from tarsus.simulation.robot_model import model
 from tarsus.simulation.servos.servo_table import ServoTable
 from tarsus.simulation.terrain.protocol import Terrain
@@ -47,5 +46,5 @@ def to_mjcf(robot: Robot, *, terrain: Terrain | None = None, servos: Any = "cata
         actuator.ctrlrange = limits[number]
         if np.isfinite(table.stall_torque[number]):
             actuator.forcerange = (-table.stall_torque[number], table.stall_torque[number])
-    mujoco_module().MjSpec.compile(spec)
+    spec.compile()  # a document can only be written of a model that compiles
     return str(spec.to_xml())

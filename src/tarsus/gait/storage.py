@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     import xarray
     from jaxtyping import Float, Shaped
 
-__all__ = ["labels", "load_motion", "motion_to_csv", "motion_to_dataset", "save_motion"]
+__all__ = ["labels", "load_motion", "motion_to_csv", "motion_to_dataset", "save_motion", "write_table"]
 
 _ARRAYS = ("time", "feet", "contacts", "angles", "reach")
 _NUMBERS = ("cycle_time", "stroke", "speed", "body_height", "swing_height", "foot_distance")
@@ -66,14 +66,33 @@ def motion_to_csv(motion: Motion, path: str | os.PathLike[str]) -> None:
         If it can't be written.
     """
     table = csv_columns(motion)
-    columns = [_formatted(column) for column in table.values()]
+    write_table(path, table, zip(*(_formatted(column) for column in table.values()), strict=True))
+
+
+def write_table(path: str | os.PathLike[str], header: Iterable[str], rows: Iterable[Iterable[str]]) -> None:
+    """Write a table as a CSV file.
+
+    Parameters
+    ----------
+    path : path
+        Where to write it.
+    header : iterable of str
+        Names of the columns.
+    rows : iterable of iterable of str
+        The rows.
+
+    Raises
+    ------
+    InputError
+        If it can't be written.
+    """
     try:
         with open(path, "w", newline="", encoding="utf-8") as file:
             writer = csv.writer(file)
-            writer.writerow(table)
-            writer.writerows(zip(*columns, strict=True))
+            writer.writerow(header)
+            writer.writerows(rows)
     except OSError as error:
-        raise InputError(f"{path} can't be written: {error.strerror}") from None
+        raise InputError(f"{os.fspath(path)} can't be written: {error.strerror or error}") from None
 
 
 def _formatted(column: Shaped[np.ndarray, "..."]) -> list[str]:

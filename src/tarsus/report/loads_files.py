@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import csv
 from pathlib import Path
 from typing import Any
 
 from tarsus.errors import InputError
+from tarsus.gait.storage import write_table
 from tarsus.load.loads import JointLoads
 from tarsus.report.loads_page import loads_page
 from tarsus.report.loads_speed import plot_torque_speed
@@ -67,16 +67,14 @@ def write_loads_csv(loads: JointLoads, path: Path) -> None:
     header = ["time_s", "margin_mm"]
     header += [f"{code}_{joint}_nm" for code in codes for joint in JOINTS]
     header += [f"{code}_f{axis}_n" for code in codes for axis in "xyz"]
-    try:
-        with path.open("w", encoding="utf-8", newline="") as stream:
-            table = csv.writer(stream)
-            table.writerow(header)
-            rows = zip(loads.motion.time, loads.margin, loads.torques, loads.forces, strict=True)
-            for time, margin, torques, forces in rows:
-                numbers = (*torques.ravel(), *forces.ravel())
-                # Adding zero turns -0.0 into 0.0.
-                table.writerow(
-                    [f"{time:.6f}", f"{1000 * margin:.3f}", *(f"{round(float(v), 6) + 0.0:.6f}" for v in numbers)]
-                )
-    except OSError as error:
-        raise InputError(f"{path} can't be written: {error.strerror or error}") from None
+    samples = zip(loads.motion.time, loads.margin, loads.torques, loads.forces, strict=True)
+    # Adding zero turns -0.0 into 0.0.
+    rows = (
+        [
+            f"{time:.6f}",
+            f"{1000 * margin:.3f}",
+            *(f"{round(float(v), 6) + 0.0:.6f}" for v in (*torques.ravel(), *forces.ravel())),
+        ]
+        for time, margin, torques, forces in samples
+    )
+    write_table(path, header, rows)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from tarsus.report.tables import table_of
 from tarsus.robot.robot import JOINTS
 
 if TYPE_CHECKING:
@@ -80,12 +81,8 @@ def simulation_table(summary: dict[str, Any]) -> Table:
     summary : dict
         Summary from `simulation_summary`.
     """
-    from rich import box
-    from rich.table import Table
-
-    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, header_style="bold")
-    for column in ("quantity", "planned", "physics", "ratio"):
-        table.add_column(column, justify="left" if column == "quantity" else "right")
+    numbers = ("planned", "physics", "ratio")
+    table = table_of("quantity", *numbers, right=numbers)
     before, after = summary["commanded_end"], summary["end"]
     ways, turns = _ratio(summary["way_ratio"]), _ratio(summary["turn_ratio"])
     table.add_row("forward", f"{before['x_mm']:z.1f} mm", f"{after['x_mm']:z.1f} mm", ways)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -13,8 +12,8 @@ import numpy as np
 
 from tarsus.control.limitation import Limitation
 from tarsus.control.walk_state import WalkState
-from tarsus.errors import InputError
 from tarsus.gait.motion import Motion
+from tarsus.gait.storage import write_table
 from tarsus.representation import represented
 from tarsus.robot.robot import Robot
 
@@ -146,6 +145,12 @@ class Recording:
         edges = np.flatnonzero(np.diff(np.concatenate([[True], self.belly, [True]]).astype(int)))
         return tuple(self._part(int(first), int(end)) for first, end in edges.reshape(-1, 2) if end - first > 1)
 
+    @property
+    def longest_standing(self) -> Motion | None:
+        """The longest of `standing`; None where it has fewer samples than loads need."""
+        longest = max(self.standing, key=lambda part: part.duration, default=None)
+        return longest if longest is not None and len(longest.time) > 2 else None
+
     def _part(self, first: int, end: int) -> Motion:
         whole, rows = self.motion, slice(first, end)
         if end - first == len(whole.time):
@@ -199,14 +204,9 @@ class Recording:
         twists = [self.motion.time[:, None], self.twist_commanded * scale, self.twist * scale]
         rows = np.hstack([*twists, self.cycle_times[:, None], self.motion.margin[:, None] * 1e3]).tolist()
         guard = self.guard or ("",) * len(rows)
-        try:
-            with open(path, "w", newline="", encoding="utf-8") as file:
-                writer = csv.writer(file)
-                writer.writerow(_COLUMNS)
-                for row, *words in zip(rows, self.gaits, self.states, self.activities, guard, strict=True):
-                    writer.writerow([*(f"{round(value, 6) + 0.0:.6f}" for value in row), *words])
-        except OSError as error:
-            raise InputError(f"{path} can't be written: {error.strerror}") from None
+        ticks = zip(rows, self.gaits, self.states, self.activities, guard, strict=True)
+        texts = ([*(f"{round(value, 6) + 0.0:.6f}" for value in row), *words] for row, *words in ticks)
+        write_table(path, _COLUMNS, texts)
 
 
 _WALK_STATES = frozenset(map(str, WalkState))

@@ -30,6 +30,8 @@ class Truth:
     ----------
     motion : Motion
         The plan.
+    plant : SimulatedPlant
+        The plant, at the end.
     trace : Trace
         What the robot did.
     outcome : Outcome
@@ -42,6 +44,7 @@ class Truth:
     """
 
     motion: Motion
+    plant: SimulatedPlant
     trace: Trace
     outcome: Outcome
     planned_peak: Float[np.ndarray, "3"]
@@ -83,6 +86,7 @@ def compare(
     peak, rms = planned_torques(motion)
     return Truth(
         motion=motion,
+        plant=plant,
         trace=trace,
         outcome=Outcome.of(trace),
         planned_peak=peak,

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import os
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -12,7 +11,7 @@ import numpy as np
 
 from tarsus.control.control_output import ControlOutput
 from tarsus.errors import InputError
-from tarsus.gait.storage import labels
+from tarsus.gait.storage import labels, write_table
 from tarsus.kinematics.pose import Pose
 from tarsus.robot.robot import JOINTS, Robot
 from tarsus.simulation.simulated_plant import PlantState
@@ -130,13 +129,7 @@ def trace_to_csv(trace: Trace, path: str | os.PathLike[str]) -> None:
         If it can't be written.
     """
     columns = dict(_columns(trace))
-    try:
-        with open(path, "w", newline="", encoding="utf-8") as file:
-            writer = csv.writer(file)
-            writer.writerow(columns)
-            writer.writerows([[f"{value:.6g}" for value in row] for row in zip(*columns.values(), strict=True)])
-    except OSError as error:
-        raise InputError(f"{os.fspath(path)} can't be written: {error.strerror}") from None
+    write_table(path, columns, ([f"{value:.6g}" for value in row] for row in zip(*columns.values(), strict=True)))
 
 
 def _columns(trace: Trace) -> Iterator[tuple[str, Float[np.ndarray, "n"]]]:

@@ -11,9 +11,6 @@ from typing import Any
 
 from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIOProtocol
 
-__all__ = ["BatchedProtocol"]
-
-
 __all__ = ["BatchedProtocol", "BatchedTransport"]
 
 
