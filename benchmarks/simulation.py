@@ -33,10 +33,10 @@ class _TimedEngine:
     def __getattr__(self, name: str) -> Any:
         return getattr(self._mujoco, name)
 
-    def mj_step(self, model: Any, data: Any) -> None:
-        """Take a physics step."""
+    def mj_step(self, model: Any, data: Any, steps: int) -> None:
+        """Take physics steps."""
         start = time.thread_time_ns()
-        self._mujoco.mj_step(model, data)
+        self._mujoco.mj_step(model, data, steps)
         self.spent += time.thread_time_ns() - start - _CLOCK
         self.steps += 1
 

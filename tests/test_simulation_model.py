@@ -19,6 +19,7 @@ from tarsus.kinematics.pose import Pose
 from tarsus.robot.file import list_robots, load_robot
 from tarsus.robot.robot import JOINTS
 from tarsus.simulation import engine, model, model_assumptions
+from tarsus.simulation.servos.actuators import ACTUATORS
 from tarsus.simulation.terrain import Flat, Step
 
 WEIGHED = [name for name in list_robots() if load_robot(name).has_masses]
@@ -113,7 +114,10 @@ def test_joint_limits_feet_and_body_are_the_robots():
     assert ranges.reshape(6, 3, 2) == pytest.approx(robot.limits)
     assert [made.geom(f"{name} foot").size[0] for name in robot.leg_names] == pytest.approx(robot.foot_radius)
     assert made.geom("body").size == pytest.approx(robot.body_size / 2)
-    assert [made.actuator(i).name for i in range(18)] == [f"{n} {j}" for n in robot.leg_names for j in JOINTS]
+    joints = [f"{n} {j}" for n in robot.leg_names for j in JOINTS]
+    assert [made.joint(i + 1).name for i in range(18)] == joints
+    assert [made.actuator(i).name for i in range(54)] == [f"{joint} {kind}" for joint in joints for kind in ACTUATORS]
+    assert [made.sensor(i).name for i in range(7)] == [*(f"{n} foot" for n in robot.leg_names), "body"]
     assert made.nv == 24
     mujoco.mj_forward(made, data)
 

@@ -3,6 +3,7 @@
 import dataclasses
 import re
 
+import mujoco
 import numpy as np
 import pytest
 
@@ -76,6 +77,24 @@ def test_readings_are_those_of_the_state():
     assert readings.age == 0.0
     assert state.time == pytest.approx(0.01)
     plant.stop()
+
+
+def test_foot_forces_are_the_sums_of_the_contacts_forces():
+    controller, plant = started(sensors="ideal", terrain=Blocks(rise=0.02, clear=0.0))
+    model, data, wrench = plant.mj_model, plant.mj_data, np.empty(6)
+    for _ in range(20):
+        readings = plant.step(controller.output, 0.01)
+        expected = np.zeros((6, 3))
+        for number, contact in enumerate(data.contact):
+            mujoco.mj_contactForce(model, data, number, wrench)
+            names = [model.geom(geom).name for geom in contact.geom]
+            for leg, name in enumerate(STRIDER.leg_names):
+                if f"{name} foot" in names:
+                    sign = 1 if names[1] == f"{name} foot" else -1
+                    expected[leg] += sign * (wrench[:3] @ contact.frame.reshape(3, 3))
+        assert plant.state.foot_forces == pytest.approx(expected, abs=1e-9)
+        assert (readings.contacts == (np.linalg.norm(expected, axis=1) > 0.5)).all()
+        assert not plant.state.body_touches
 
 
 def test_attitude_and_rates_are_those_of_the_body():

@@ -3,6 +3,7 @@
 import math
 import re
 
+import mujoco
 import numpy as np
 import pytest
 
@@ -11,11 +12,10 @@ from tarsus.load.servo_limits import utilisation
 from tarsus.robot.catalogue import list_servos, load_servo
 from tarsus.robot.file import load_robot
 from tarsus.robot.servo import Servo
-from tarsus.simulation import ServoModel
+from tarsus.simulation import ServoModel, model
 from tarsus.simulation.servos.command_timing import CommandTiming
 from tarsus.simulation.servos.known_servos import KNOWN_SERVOS
 from tarsus.simulation.servos.servo_table import ServoTable
-from tarsus.simulation.servos.torque_law import drive_torque
 
 STRIDER = load_robot("strider")
 DS3225 = ServoModel.of(load_servo("DS3225"))
@@ -114,14 +114,28 @@ def test_servos_are_given_by_name_as_one_or_for_each_joint():
     table = ServoTable.of(STRIDER, mixed)
     assert table.servos == tuple(tuple(row) for row in mixed)
     assert table.assumed == (*DS3225.assumed, *ServoModel.ideal().assumed)
-    rng = np.random.default_rng(0)
-    error, speed = rng.normal(0, 0.1, 18), rng.normal(0, 3, 18)
-    expected = [s.torque(e, w) for s, e, w in zip([s for row in mixed for s in row], error, speed, strict=True)]
-    drive, zero = np.empty(18), np.zeros(18)
-    table.law.apply(error, zero, speed, drive)
-    assert drive - table.damping * speed == pytest.approx(np.array(expected))
-    kept = {"stiffness": table.stiffness, "play": table.play, "stall_torque": table.stall_torque, "slope": table.slope}
-    assert (drive == drive_torque(error, speed, **kept)).all()
+
+
+@pytest.mark.parametrize(
+    "servo", [DS3225, ServoModel.ideal(), ServoModel(name="damped", stall_torque=2.0, backlash=0.05)]
+)
+def test_the_engine_computes_the_torque_of_the_model(servo):
+    robot, built = STRIDER, model(STRIDER, servos=servo).compile()
+    state, random = mujoco.MjData(built), np.random.default_rng(1)
+    # Small and large errors and speeds, so that all limits are reached: driving, braking, beyond the no-load speed.
+    for scale in (0.005, 0.1, 1.0):
+        error, speed = random.normal(0, scale, (40, 18)), random.normal(0, 10 * scale, (40, 18))
+        for wrong, fast in zip(error, speed, strict=True):
+            state.qpos[2], state.qpos[7:], state.qvel[6:] = 1.0, random.normal(0, 0.3, 18), fast
+            state.ctrl[:] = np.repeat(state.qpos[7:] + wrong, 3)
+            mujoco.mj_forward(built, state)
+            torque = state.qfrc_actuator[6:] + state.qfrc_damper[6:]
+            expected = servo.torque(wrong, fast)
+            # The damping beyond the line is no torque of the motor, and not limited with it.
+            assert torque == pytest.approx(expected, abs=1e-9 * (1 + np.abs(expected).max()))
+    assert [built.joint(i + 1).name for i in range(18)] == [
+        built.actuator(3 * i).name.removesuffix(" forward") for i in range(3 * robot.legs)
+    ]
 
 
 @pytest.mark.parametrize("servos", [3, [DS3225] * 6, [[DS3225] * 3] * 5, [[DS3225, DS3225, "ideal"]] * 6])
@@ -175,6 +189,18 @@ def test_servos_with_different_timing_in_one_robot():
     assert rows[:, 0] == pytest.approx([0, 0, 0.5])
     assert rows[:, 1] == pytest.approx([0, 0, 0.5 - DS3225.dead_band / 2])
     assert rows[:, 2] == pytest.approx([0.5, 0.5, 0.5])
+
+
+def test_the_next_change_of_a_target_is_known():
+    slow = ServoModel(name="slow", delay=0.004, update_rate=100.0)
+    timing = CommandTiming(ServoTable.of(STRIDER, [[slow, DS3225, ServoModel.ideal()]] * 6), 0.002, np.zeros(18))
+    timing.command(1, np.full(18, 0.5))
+    found, steps = [], 0
+    while steps < 20:
+        timing.advance(steps)
+        steps = timing.next_change(steps, 20)
+        found.append(steps)
+    assert found == [1, 7, 12, 20]
 
 
 def test_a_servo_of_ones_own_has_a_model():

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import itertools
+import math
 from typing import Any
 
 import numpy as np
 
 from tarsus.robot.robot import Robot
-from tarsus.simulation.robot_model import model
+from tarsus.simulation.engine import mujoco_module
+from tarsus.simulation.robot_model import link_name, passive_model
 from tarsus.simulation.servos.servo_table import ServoTable
 from tarsus.simulation.terrain.protocol import Terrain
 
@@ -17,9 +20,9 @@ __all__ = ["to_mjcf"]
 def to_mjcf(robot: Robot, *, terrain: Terrain | None = None, servos: Any = "catalogue") -> str:
     """Return a robot on a terrain as an MJCF document.
 
-    The model is that of `tarsus.simulation.model`, with position actuators in place of the motors that `SimulatedPlant`
-    drives: of the servos' stiffness, within their stall torques. Backlash, dead band, delays and the torque-speed line
-    beyond its damping are not in it. The document needs no other file, except for height fields.
+    The model is that of `tarsus.simulation.model`, with position actuators in place of the servos of
+    `SimulatedPlant`: of their stiffness, within their stall torques. Backlash, dead band, delays and the torque-speed
+    line beyond its damping are not in it. The document needs no other file, except for height fields.
 
     Parameters
     ----------
@@ -39,12 +42,13 @@ def to_mjcf(robot: Robot, *, terrain: Terrain | None = None, servos: Any = "cata
     TarsusError
         If MuJoCo is not installed.
     """
-    spec, table = model(robot, terrain=terrain, servos=servos), ServoTable.of(robot, servos)
-    limits = np.asarray(robot.limits).reshape(-1, 2)
-    for number, actuator in enumerate(spec.actuators):
-        actuator.set_to_position(kp=float(table.stiffness[number]))
-        actuator.ctrlrange = limits[number]
-        if np.isfinite(table.stall_torque[number]):
-            actuator.forcerange = (-table.stall_torque[number], table.stall_torque[number])
+    spec, table = passive_model(robot, terrain=terrain, servos=servos), ServoTable.of(robot, servos)
+    for leg, joint in itertools.product(range(robot.legs), range(3)):
+        name, servo = link_name(robot, leg, joint), table.servos[leg][joint]
+        actuator = spec.add_actuator(name=name, target=name, trntype=mujoco_module().mjtTrn.mjTRN_JOINT)
+        actuator.set_to_position(kp=servo.stiffness)
+        actuator.ctrlrange = np.asarray(robot.limits[leg, joint])
+        if math.isfinite(servo.stall_torque):
+            actuator.forcerange = (-servo.stall_torque, servo.stall_torque)
     spec.compile()  # a document can only be written of a model that compiles
     return str(spec.to_xml())

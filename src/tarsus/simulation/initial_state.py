@@ -117,7 +117,7 @@ def check_stability(table: ServoTable, model: Any, data: Any) -> None:
         joint = int(np.argmax(table.stiffness * np.diag(compliance)))
         servo = list(itertools.chain(*table.servos))[joint]
         raise InputError(
-            f"{servo.name}: a stiffness of {servo.stiffness:g} N m/rad at joint {model.actuator(joint).name!r} is too "
+            f"{servo.name}: a stiffness of {servo.stiffness:g} N m/rad at joint {model.joint(joint + 1).name!r} is too "
             f"much for steps of {1000 * TIMESTEP:g} ms; at most {servo.stiffness * _STIFFEST / highest:.3g} N m/rad "
             "would work, or more rotor inertia"
         )

@@ -9,14 +9,14 @@ import numpy as np
 
 from tarsus.robot.robot import Robot
 from tarsus.simulation.engine import mujoco_module
-from tarsus.simulation.robot_model import body_geom_name, foot_geom_name
+from tarsus.simulation.robot_model import foot_geom_name
 
 if TYPE_CHECKING:
     from jaxtyping import Float
 
 __all__ = ["Measurement"]
 
-_ROWS = np.arange(3)
+_ONES = np.ones(3)
 
 
 class Measurement:
@@ -36,35 +36,33 @@ class Measurement:
         self._mujoco, self._model, self._data = mujoco_module(), model, data
         self._legs = robot.legs
         self._leg_of = {model.geom(foot_geom_name(robot, leg)).id: leg for leg in range(robot.legs)}
-        self._leg_of_geom = np.full(model.ngeom, -1)
-        self._leg_of_geom[list(self._leg_of)] = list(self._leg_of.values())
-        self._every_leg = np.arange(robot.legs)[:, None]
-        self._body = model.geom(body_geom_name()).id
+        # Looking an array up in the engine's data takes longer than reading it.
+        self._orientation, self._rates = data.qpos[3:7], data.qvel[3:6]
+        found = data.sensordata[: 3 * robot.legs + 1]
+        self._foot_forces, self._body_contact = found[:-1].reshape(robot.legs, 3), found[-1:]
 
     def rotation(self) -> Float[np.ndarray, "3 3"]:
         """Return the rotation from B to G, ``(3, 3)``."""
         matrix = np.empty(9)
-        self._mujoco.mju_quat2Mat(matrix, self._data.qpos[3:7])
+        self._mujoco.mju_quat2Mat(matrix, self._orientation)
         return matrix.reshape(3, 3)
 
     def attitude(self) -> Float[np.ndarray, "2"]:
         """Return roll and pitch of B, ``(2,)`` [rad]."""
-        w, x, y, z = self._data.qpos[3:7].tolist()
+        w, x, y, z = self._orientation.tolist()
         roll = math.atan2(2 * (y * z + w * x), 1 - 2 * (x * x + y * y))
         return np.array([roll, math.asin(max(-1.0, min(1.0, 2 * (w * y - x * z))))])
 
     def foot_forces(self) -> Float[np.ndarray, "legs 3"]:
         """Return the forces of the ground on the feet in G, ``(legs, 3)`` [N]."""
-        contact = self._data.contact
-        rows, legs = contact.efc_address, self._leg_of_geom[contact.geom]
-        # With elliptic cones the rows of a contact are its normal and its two tangential forces.
-        found = self._data.efc_force[np.maximum(rows, 0)[:, None] + _ROWS]
-        along = (found[:, None, :] @ contact.frame.reshape(-1, 3, 3))[:, 0]
-        # The normal points from the first geom to the second; which of them is the foot depends on the shapes.
-        of_second = self._every_leg == legs[:, 1]
-        sign = (of_second * 1.0 - ((self._every_leg == legs[:, 0]) & ~of_second)) * (rows >= 0)
-        forces: np.ndarray = sign @ along
+        # The sensor has the force of the foot on the ground.
+        forces: np.ndarray = np.negative(self._foot_forces)
         return forces
+
+    def contact_forces(self) -> Float[np.ndarray, "legs"]:
+        """Return the magnitudes of the forces of the ground on the feet, ``(legs,)`` [N]."""
+        magnitudes: np.ndarray = np.sqrt(np.square(self._foot_forces) @ _ONES)
+        return magnitudes
 
     def slip_speeds(self) -> Float[np.ndarray, "legs"]:
         """Return how fast the contact point of each foot slides over the ground, ``(legs,)`` [m/s]; 0 in the air.
@@ -88,8 +86,9 @@ class Measurement:
 
     def body_touches(self) -> bool:
         """Return whether the body is in contact with the ground."""
-        return bool((self._data.contact.geom == self._body).any())
+        return bool(self._body_contact[0])
 
     def angular_rates(self) -> Float[np.ndarray, "3"]:
         """Return the angular velocity of B, along its own axes, ``(3,)`` [rad/s]."""
-        return np.array(self._data.qvel[3:6])
+        rates: np.ndarray = self._rates.copy()
+        return rates

@@ -18,6 +18,7 @@ from tarsus.gait.walk_setup import require_number
 from tarsus.robot.robot import JOINTS, Robot
 from tarsus.simulation.engine import mujoco_module
 from tarsus.simulation.inertia import BODY_HEIGHT, SECTION, body_inertia, link_inertia, link_step
+from tarsus.simulation.servos.actuators import add_servo
 from tarsus.simulation.servos.servo_table import ServoTable
 from tarsus.simulation.settings import apply_settings
 from tarsus.simulation.terrain.flat import Flat
@@ -26,7 +27,15 @@ from tarsus.simulation.terrain.protocol import Terrain
 if TYPE_CHECKING:
     from jaxtyping import Shaped
 
-__all__ = ["FLOOR_OF_MASS", "body_geom_name", "foot_geom_name", "link_name", "model", "model_assumptions"]
+__all__ = [
+    "FLOOR_OF_MASS",
+    "body_geom_name",
+    "foot_geom_name",
+    "link_name",
+    "model",
+    "model_assumptions",
+    "passive_model",
+]
 
 FLOOR_OF_MASS = 1e-4
 """Least mass of a body or link that can be simulated [kg]."""
@@ -39,6 +48,8 @@ _LINK_RADIUS, _LINK_RATIO = 0.006, 0.75
 _HALF_PLATE = 0.001
 # Links shorter than this have no contact geometry [m]; a joint that is fixed gets this range [rad].
 _SHORT, _FIXED = 1e-4, 1e-6
+# Content and reduction of contact sensors, in the engine's numbers: bits of found and force; sum of the forces.
+_FOUND, _FORCE, _NET_FORCE = 1, 2, 3
 _ROBOT_COLOUR, _FOOT_COLOUR = (0.30, 0.45, 0.65, 1.0), (0.15, 0.15, 0.15, 1.0)
 
 
@@ -60,9 +71,10 @@ def body_geom_name() -> str:
 def model(robot: Robot, *, terrain: Terrain | None = None, servos: Any = "catalogue") -> Any:
     """Return a robot on a terrain as a model for MuJoCo.
 
-    Bodies are named ``"body"`` and by leg and link (``"front left femur"``), joints and motors like the link that they
-    move, the balls of the feet ``"front left foot"``. The motors apply torques; damping and rotor inertia of
-    the servos are in the joints. Links collide with the terrain, not with each other.
+    Bodies are named ``"body"`` and by leg and link (``"front left femur"``), joints like the link that they move, the
+    balls of the feet and the sensors of the ground's forces on them ``"front left foot"``. Each joint has the three
+    actuators of a servo, ``"front left femur forward"``, ``"... backward"`` and ``"... back-EMF"``, whose control is
+    the target angle [rad]. Links collide with the terrain, not with each other.
 
     Parameters
     ----------
@@ -88,9 +100,28 @@ def model(robot: Robot, *, terrain: Terrain | None = None, servos: Any = "catalo
         If MuJoCo is not installed.
     """
     _check(robot)
-    mujoco = mujoco_module()
     table = ServoTable.of(robot, servos)
-    spec = mujoco.MjSpec()
+    spec = _bodies(robot, terrain, table, damping=[[servo.damping for servo in row] for row in table.servos])
+    for leg in range(robot.legs):
+        for joint, servo in enumerate(table.servos[leg]):
+            add_servo(spec, spec.joint(link_name(robot, leg, joint)), servo)
+    _add_sensors(spec, robot)
+    return spec
+
+
+def passive_model(robot: Robot, *, terrain: Terrain | None = None, servos: Any = "catalogue") -> Any:
+    """Return the model of a robot on a terrain without actuators and sensors; all damping is in its joints.
+
+    Parameters, returned value and errors are those of `model`.
+    """
+    _check(robot)
+    table = ServoTable.of(robot, servos)
+    return _bodies(robot, terrain, table, damping=[[servo.joint_damping for servo in row] for row in table.servos])
+
+
+def _bodies(robot: Robot, terrain: Terrain | None, table: ServoTable, *, damping: list[list[float]]) -> Any:
+    """Return terrain, body and legs, with the damping of each joint [N m s/rad]."""
+    spec = mujoco_module().MjSpec()
     spec.modelname = robot.name
     spec.compiler.degree = False
     spec.compiler.autolimits = True
@@ -99,7 +130,7 @@ def model(robot: Robot, *, terrain: Terrain | None = None, servos: Any = "catalo
     spec.worldbody.add_light(pos=(0, 0, 3), dir=(0, 0, -1))
     body = _add_body(spec, robot)
     for leg in range(robot.legs):
-        _add_leg(spec, body, robot, leg, table)
+        _add_leg(body, robot, leg, table, damping[leg])
     return spec
 
 
@@ -168,7 +199,7 @@ def _robot_geom() -> dict[str, Any]:
     return {"mass": 0.0, "contype": 0, "conaffinity": 1, "rgba": _ROBOT_COLOUR}
 
 
-def _add_leg(spec: Any, body: Any, robot: Robot, leg: int, table: ServoTable) -> None:
+def _add_leg(body: Any, robot: Robot, leg: int, table: ServoTable, damping: list[float]) -> None:
     yaw = float(robot.mount_yaw[leg])
     steps = [link_step(robot, leg, joint) for joint in range(3)]
     positions = [np.asarray(robot.mount_position[leg]), steps[0], steps[1]]
@@ -182,7 +213,7 @@ def _add_leg(spec: Any, body: Any, robot: Robot, leg: int, table: ServoTable) ->
             explicitinertial=True,
             **_inertia(robot, leg, joint),
         )
-        _add_joint(spec, parent, robot, (leg, joint), table)
+        _add_joint(parent, robot, (leg, joint), damping[joint], table.servos[leg][joint].rotor_inertia)
         _add_link_geom(parent, robot, (leg, joint), step)
     geom = mujoco_module().mjtGeom.mjGEOM_SPHERE
     parent.add_geom(
@@ -192,6 +223,18 @@ def _add_leg(spec: Any, body: Any, robot: Robot, leg: int, table: ServoTable) ->
         pos=steps[2],
         **(_robot_geom() | {"rgba": _FOOT_COLOUR}),
     )
+
+
+def _add_sensors(spec: Any, robot: Robot) -> None:
+    """Add a sensor of the ground's force on each foot, in G, with the opposite sign, and one of the body's contacts."""
+    kinds = mujoco_module().mjtSensor
+    names = [foot_geom_name(robot, leg) for leg in range(robot.legs)]
+    for name, content in [*((name, _FORCE) for name in names), (body_geom_name(), _FOUND)]:
+        sensor = spec.add_sensor(
+            name=name, type=kinds.mjSENS_CONTACT, objtype=mujoco_module().mjtObj.mjOBJ_GEOM, objname=name
+        )
+        # What is measured, of the sum of all contacts, once.
+        sensor.intprm[:3] = content, _NET_FORCE, 1
 
 
 def _inertia(robot: Robot, leg: int, joint: int) -> dict[str, Any]:
@@ -215,22 +258,18 @@ def _quaternion_from_x(direction: Shaped[np.ndarray, "..."]) -> Shaped[np.ndarra
     return quaternion / length if length > _FIXED else np.array([0.0, 0.0, 0.0, 1.0])
 
 
-def _add_joint(spec: Any, body: Any, robot: Robot, place: tuple[int, int], table: ServoTable) -> None:
-    mujoco = mujoco_module()
+def _add_joint(body: Any, robot: Robot, place: tuple[int, int], damping: float, inertia: float) -> None:
     leg, joint = place
     name = link_name(robot, leg, joint)
     low, high = np.asarray(robot.limits[leg, joint]).tolist()
-    servo = table.servos[leg][joint]
     body.add_joint(
         name=name,
-        type=mujoco.mjtJoint.mjJNT_HINGE,
+        type=mujoco_module().mjtJoint.mjJNT_HINGE,
         axis=(0, 0, 1) if joint == 0 else (0, -1, 0),
         range=(low, max(high, low + _FIXED)),
-        damping=servo.joint_damping,
-        armature=servo.rotor_inertia,
+        damping=damping,
+        armature=inertia,
     )
-    motor = spec.add_actuator(name=name, target=name, trntype=mujoco.mjtTrn.mjTRN_JOINT)
-    motor.set_to_motor()
 
 
 def _add_link_geom(body: Any, robot: Robot, place: tuple[int, int], step: Shaped[np.ndarray, "..."]) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -19,6 +20,7 @@ from tarsus.simulation.measurement import Measurement
 from tarsus.simulation.robot_model import model, model_assumptions
 from tarsus.simulation.sensors.sampler import Sampler
 from tarsus.simulation.sensors.suite import SensorSuite
+from tarsus.simulation.servos.actuators import ACTUATORS
 from tarsus.simulation.servos.command_timing import CommandTiming
 from tarsus.simulation.servos.servo_table import ServoTable
 from tarsus.simulation.settings import TIMESTEP
@@ -77,7 +79,8 @@ class PlantState(NamedTuple):
 class SimulatedPlant:
     """Executes joint angles in physics: a `Plant`.
 
-    The servos' torques are computed in every physics step of 2 ms, from the targets that they have taken over by then.
+    The engine computes the servos' torques in every physics step of 2 ms, from the targets that they have taken over by
+    then.
 
     Parameters
     ----------
@@ -129,14 +132,19 @@ class SimulatedPlant:
         self.sensors = SensorSuite.named(sensors) if isinstance(sensors, str) else sensors
         self._seed = seed
         self._table = ServoTable.of(robot, servos)
-        self._law = self._table.law
         self.servos = self._table.servos
         self.assumed = (*model_assumptions(robot), *self._table.assumed)
         self._mujoco = mujoco_module()
         self.mj_model = model(robot, terrain=self.terrain, servos=self.servos).compile()
         self.mj_data = self._mujoco.MjData(self.mj_model)
-        self._measurement = Measurement(robot, self.mj_model, self.mj_data)
+        data, joints = self.mj_data, 3 * robot.legs
+        # Looking an array up in the engine's data takes longer than reading it.
+        self._angles, self._speeds, self._all_speeds = data.qpos[7:], data.qvel[6:], data.qvel
+        self._targets = data.ctrl.reshape(joints, len(ACTUATORS))
+        self._servo_torques, self._back_emf = data.qfrc_actuator[6:], data.actuator_force[2 :: len(ACTUATORS)]
+        self._measurement = Measurement(robot, self.mj_model, data)
         self._stall_currents = _stall_currents(robot)
+        self._exact_channels = self._channels()
         self._timing: CommandTiming | None = None
         self._sampler: Sampler | None = None
         self._time, self._steps = 0.0, 0
@@ -208,10 +216,10 @@ class SimulatedPlant:
         return PlantState(
             time=self._time,
             body=Pose(self._measurement.rotation(), np.array(data.qpos[:3])),
-            joint_angles=np.array(data.qpos[7:]).reshape(shape),
-            joint_speeds=np.array(data.qvel[6:]).reshape(shape),
+            joint_angles=self._angles.reshape(shape).copy(),
+            joint_speeds=self._speeds.reshape(shape).copy(),
             torques=self._torques(),
-            saturated=self._table.saturated(np.array(data.ctrl), np.array(data.qvel[6:])).reshape(shape),
+            saturated=self._table.saturated(self._drives(), self._speeds).reshape(shape),
             foot_forces=self._measurement.foot_forces(),
             slip_speeds=self._measurement.slip_speeds(),
             body_touches=self._measurement.body_touches(),
@@ -220,15 +228,13 @@ class SimulatedPlant:
     def _advance(self, steps: int) -> None:
         """Take physics steps."""
         assert self._timing is not None
-        model, data, law, timing = self.mj_model, self.mj_data, self._law, self._timing
-        angles, speeds, motors = data.qpos[7:], data.qvel[6:], data.ctrl
-        take_step = self._mujoco.mj_step
-        for number in range(self._steps, self._steps + steps):
-            # The engine damps the joints, implicitly and so without becoming unstable.
-            law.apply(timing.advance(number), angles, speeds, motors)
-            take_step(model, data)
-        self._steps += steps
-        speeds = data.qvel
+        timing, number, end = self._timing, self._steps, self._steps + steps
+        while number < end:
+            self._targets[:] = timing.advance(number)[:, None]
+            until = timing.next_change(number, end)
+            self._mujoco.mj_step(self.mj_model, self.mj_data, until - number)
+            number = until
+        self._steps, speeds = end, self._all_speeds
         if not float(speeds @ speeds) < _UNSTABLE**2:
             fastest = float(np.abs(speeds).max())
             raise SimulationError(
@@ -236,41 +242,46 @@ class SimulatedPlant:
                 "rad/s; softer servos, more rotor inertia or heavier links would work"
             )
 
+    def _drives(self) -> Float[np.ndarray, "joints"]:
+        """Return the servos' torques without what damps them in the last physics step ``(joints,)`` [N m]."""
+        drives: np.ndarray = self._servo_torques - self._back_emf
+        return drives
+
     def _torques(self) -> Float[np.ndarray, "legs 3"]:
         """Return the servos' torques in the last physics step ``(legs, 3)`` [N m]."""
-        data = self.mj_data
-        return np.asarray(data.ctrl - self._table.damping * data.qvel[6:]).reshape(self.robot.legs, 3)
+        # The implicit integrator damps by the speed at the end of the step.
+        return np.asarray(self._drives() - self._table.damping * self._speeds).reshape(self.robot.legs, 3)
+
+    def _channels(self) -> dict[str, Callable[[], Any]]:
+        """Return what gives the exact value of each channel of the sensor suite; it may be a view."""
+        measurement, shape = self._measurement, (self.robot.legs, 3)
+        angles, speeds, currents = self._angles.reshape(shape), self._speeds.reshape(shape), self._stall_currents
+        channels: dict[str, Callable[[], Any]] = {
+            "joint_angles": lambda: angles,
+            "joint_speeds": lambda: speeds,
+            "torques": self._torques,
+            "contacts": measurement.contact_forces,
+            "forces": lambda: measurement.foot_forces() @ measurement.rotation(),
+            "attitude": measurement.attitude,
+            "angular_rates": measurement.angular_rates,
+        }
+        if currents is not None:
+            channels["currents"] = lambda: np.abs(self._torques()) * currents
+        return {name: channel for name, channel in channels.items() if getattr(self.sensors, name)}
 
     def _exact(self) -> dict[str, Any]:
         """Return the exact values of all channels of the sensor suite."""
-        data, suite, values = self.mj_data, self.sensors, dict[str, Any]()
-        shape = (self.robot.legs, 3)
-        if suite.joint_angles:
-            values["joint_angles"] = data.qpos[7:].reshape(shape).copy()
-        if suite.joint_speeds:
-            values["joint_speeds"] = data.qvel[6:].reshape(shape).copy()
-        if suite.torques:
-            values["torques"] = self._torques()
-        if suite.currents and self._stall_currents is not None:
-            values["currents"] = np.abs(self._torques()) * self._stall_currents
-        if suite.contacts or suite.forces:
-            forces = self._measurement.foot_forces()
-            values["contacts"] = np.sqrt((forces * forces).sum(axis=1))
-            if suite.forces:
-                values["forces"] = forces @ self._measurement.rotation()
-        if suite.attitude:
-            values["attitude"] = self._measurement.attitude()
-        if suite.angular_rates:
-            values["angular_rates"] = self._measurement.angular_rates()
-        return values
+        return {name: channel() for name, channel in self._exact_channels.items()}
 
 
 def _checked(angles: Shaped[np.ndarray, "..."]) -> Shaped[np.ndarray, "..."]:
     """Return joint angles in one axis, refusing what is not finite."""
-    if not math.isfinite(float(angles.sum())):
+    flat = np.array(angles, dtype=float).ravel()
+    # Faster than a test of each number; no angle is so large that its square overflows.
+    if not math.isfinite(flat @ flat):
         leg, joint = np.argwhere(~np.isfinite(angles))[0].tolist()
         raise InputError(f"the commanded angle of leg {leg}, joint {joint} is {angles[leg, joint]}; it must be finite")
-    return np.array(angles, dtype=float).ravel()
+    return flat
 
 
 def _stall_currents(robot: Robot) -> Float[np.ndarray, "legs 3"] | None:

@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
+import itertools
 from collections import deque
-from collections.abc import Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import Any
 
 import numpy as np
 
 from tarsus.control.readings import SensorReadings
-from tarsus.simulation.sensors.suite import CHANNELS, FootSwitch, Sensor, SensorSuite
+from tarsus.simulation.sensors.suite import CHANNELS, FootSwitch, Sampling, Sensor, SensorSuite
 
 __all__ = ["Sampler"]
 
 # Rounding of sums of tick times [s].
 _SAME_TIME = 1e-9
+# How many random numbers of a kind are drawn at a time.
+_BLOCK = 256
 
 
 class Sampler:
@@ -31,11 +34,11 @@ class Sampler:
     """
 
     def __init__(self, suite: SensorSuite, exact: Mapping[str, Any], *, seed: int) -> None:
-        present = [(name, getattr(suite, name)) for name in CHANNELS]
-        random = np.random.default_rng(seed)
+        randoms = np.random.default_rng(seed).spawn(len(CHANNELS))
+        present = [(name, getattr(suite, name), random) for name, random in zip(CHANNELS, randoms, strict=True)]
         self._channels = [
             _Channel(name, sensor, exact[name], random)
-            for name, sensor in present
+            for name, sensor, random in present
             if sensor is not None and name in exact
         ]
 
@@ -51,8 +54,7 @@ class Sampler:
         """
         values, ages = {}, {}
         for channel in self._channels:
-            channel.measure(time, exact[channel.name])
-            values[channel.name], age = channel.reading(time)
+            values[channel.name], age = channel.read(time, exact[channel.name])
             if age > _SAME_TIME:
                 ages[channel.name] = age
         return SensorReadings(**values, age=ages or 0.0)
@@ -62,36 +64,51 @@ class _Channel:
     """One channel: its random errors, and the measurements on their way."""
 
     def __init__(self, name: str, sensor: Sensor | FootSwitch, exact: Any, random: np.random.Generator) -> None:
-        self.name, self._sensor, self._random = name, sensor, random
-        shape = np.shape(exact)
-        bias = sensor.bias if isinstance(sensor, Sensor) else 0.0
-        self._bias = random.normal(0.0, bias, shape) if bias else 0.0
+        self.name = name
+        self._delay, self._pause = sensor.delay - _SAME_TIME, 1 / sensor.rate - _SAME_TIME
+        self._threshold = sensor.threshold if isinstance(sensor, FootSwitch) else None
+        self._resolution = sensor.resolution if isinstance(sensor, Sensor) else 0.0
+        self._errors, self._lost = _errors(sensor, np.shape(exact), random), _losses(sensor, random)
         self._taken = 0.0
         self._waiting = deque([(0.0, self._disturbed(exact))])
 
-    def measure(self, time: float, exact: Any) -> None:
-        """Take a measurement, unless it is not due yet or is lost."""
-        sensor = self._sensor
-        if time - self._taken < 1 / sensor.rate - _SAME_TIME:
-            return
-        self._taken = time
-        if not sensor.dropout or self._random.random() >= sensor.dropout:
-            self._waiting.append((time, self._disturbed(exact)))
-
-    def reading(self, time: float) -> tuple[Any, float]:
-        """Return the newest measurement that has arrived, and its age."""
-        waiting, newest = self._waiting, time - self._sensor.delay + _SAME_TIME
+    def read(self, time: float, exact: Any) -> tuple[Any, float]:
+        """Take a measurement, unless it is not due yet or is lost; return the newest that has arrived, and its age."""
+        waiting = self._waiting
+        if time - self._taken >= self._pause:
+            self._taken = time
+            if self._lost is None or not next(self._lost):
+                waiting.append((time, self._disturbed(exact)))
+        newest = time - self._delay
         while len(waiting) > 1 and waiting[1][0] <= newest:
             waiting.popleft()
         taken, value = waiting[0]
         return value, time - taken
 
     def _disturbed(self, exact: Any) -> Any:
-        sensor = self._sensor
-        if isinstance(sensor, FootSwitch):
-            closed = exact > sensor.threshold
-            return closed ^ (self._random.random(closed.shape) < sensor.flips) if sensor.flips else closed
-        value = exact + self._bias
-        if sensor.noise:
-            value = value + self._random.normal(0.0, sensor.noise, value.shape)
-        return np.round(value / sensor.resolution) * sensor.resolution if sensor.resolution else value
+        errors, resolution = self._errors, self._resolution
+        if self._threshold is not None:
+            closed = exact > self._threshold
+            return closed if errors is None else closed ^ next(errors)
+        value = np.array(exact) if errors is None else exact + next(errors)
+        return np.rint(value / resolution) * resolution if resolution else value
+
+
+def _errors(sensor: Sensor | FootSwitch, shape: tuple[int, ...], random: np.random.Generator) -> Iterator[Any] | None:
+    """Return the errors of one measurement after the other, drawn many at a time; None without any."""
+    if isinstance(sensor, FootSwitch):
+        return _one_by_one(lambda: random.random((_BLOCK, *shape)) < sensor.flips) if sensor.flips else None
+    bias = random.normal(0.0, sensor.bias, shape) if sensor.bias else np.zeros(shape)
+    if sensor.noise:
+        return _one_by_one(lambda: random.normal(bias, sensor.noise, (_BLOCK, *shape)))
+    return itertools.repeat(bias) if sensor.bias else None
+
+
+def _losses(sensor: Sampling, random: np.random.Generator) -> Iterator[bool] | None:
+    """Return whether one measurement after the other is lost; None if none ever is."""
+    return _one_by_one(lambda: random.random(_BLOCK) < sensor.dropout) if sensor.dropout else None
+
+
+def _one_by_one(draw: Callable[[], Iterable[Any]]) -> Iterator[Any]:
+    while True:
+        yield from draw()

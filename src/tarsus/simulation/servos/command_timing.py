@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from tarsus.simulation.servos.servo_table import ServoTable
 
 if TYPE_CHECKING:
-    from jaxtyping import Float, Shaped
+    from jaxtyping import Float
 
 __all__ = ["CommandTiming"]
 
@@ -17,9 +17,16 @@ __all__ = ["CommandTiming"]
 class _Group:
     """Servos with the same timing."""
 
-    def __init__(self, joints: Shaped[np.ndarray, "..."], period: int, delay: int) -> None:
+    def __init__(self, joints: Any, dead_band: Float[np.ndarray, "group"], period: int, delay: int) -> None:
         self.joints, self.period, self.delay = joints, period, delay
+        self.dead_band = dead_band
         self.pending: dict[int, np.ndarray] = {}
+
+    def take_over(self, target: Float[np.ndarray, "joints"], angles: Float[np.ndarray, "joints"]) -> None:
+        """Move the targets of its joints to a command, as far as it is outside the dead band."""
+        joints, band = self.joints, self.dead_band
+        new = angles[joints]
+        target[joints] = np.minimum(np.maximum(target[joints], new - band), new + band)
 
 
 class CommandTiming:
@@ -40,12 +47,13 @@ class CommandTiming:
 
     def __init__(self, table: ServoTable, timestep: float, angles: Float[np.ndarray, "joints"]) -> None:
         each = [servo for row in table.servos for servo in row]
-        self._dead_band = np.array([servo.dead_band / 2 for servo in each])
+        dead_band = np.array([servo.dead_band / 2 for servo in each])
         timings = [(max(1, round(1 / (s.update_rate * timestep))), round(s.delay / timestep)) for s in each]
-        self._groups = [
-            _Group(np.array([i for i, each in enumerate(timings) if each == timing]), *timing)
-            for timing in sorted(set(timings))
-        ]
+        self._groups = []
+        for timing in sorted(set(timings)):
+            joints = np.array([each == timing for each in timings])
+            # All joints as a slice take less time than as indices.
+            self._groups.append(_Group(slice(None) if joints.all() else joints, dead_band[joints], *timing))
         self.target = np.array(angles, dtype=float)
 
     def command(self, step: int, angles: Float[np.ndarray, "joints"]) -> None:
@@ -73,7 +81,19 @@ class CommandTiming:
         for group in self._groups:
             new = group.pending.pop(step, None)
             if new is not None:
-                joints, target = group.joints, self.target
-                band = self._dead_band[joints]
-                target[joints] = np.clip(target[joints], new[joints] - band, new[joints] + band)
+                group.take_over(self.target, new)
         return self.target
+
+    def next_change(self, step: int, end: int) -> int:
+        """Return the first physics step after one, before an end, in which a target may change; else the end.
+
+        Parameters
+        ----------
+        step, end : int
+            Numbers of steps.
+        """
+        for group in self._groups:
+            for each in group.pending:
+                if step < each < end:
+                    end = each
+        return end

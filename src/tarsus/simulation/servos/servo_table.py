@@ -10,7 +10,6 @@ import numpy as np
 from tarsus.errors import InputError, MissingDataError, UnknownNameError
 from tarsus.robot.robot import JOINTS, Robot
 from tarsus.simulation.servos.servo_model import ServoModel
-from tarsus.simulation.servos.torque_law import TorqueLaw
 
 if TYPE_CHECKING:
     from jaxtyping import Bool, Float
@@ -32,8 +31,6 @@ class ServoTable(NamedTuple):
         Torque per error [N m/rad].
     damping : array, shape (joints,)
         All damping of the joints [N m s/rad].
-    play : array, shape (joints,)
-        Half the backlash [rad].
     stall_torque : array, shape (joints,)
         Greatest torque [N m].
     slope : array, shape (joints,)
@@ -43,7 +40,6 @@ class ServoTable(NamedTuple):
     servos: tuple[tuple[ServoModel, ...], ...]
     stiffness: Float[np.ndarray, "joints"]
     damping: Float[np.ndarray, "joints"]
-    play: Float[np.ndarray, "joints"]
     stall_torque: Float[np.ndarray, "joints"]
     slope: Float[np.ndarray, "joints"]
 
@@ -71,7 +67,6 @@ class ServoTable(NamedTuple):
             servos=rows,
             stiffness=np.array([servo.stiffness for servo in each]),
             damping=np.array([servo.joint_damping for servo in each]),
-            play=np.array([servo.backlash / 2 for servo in each]),
             stall_torque=np.array([servo.stall_torque for servo in each]),
             slope=np.array([servo.torque_speed_slope for servo in each]),
         )
@@ -80,11 +75,6 @@ class ServoTable(NamedTuple):
     def assumed(self) -> tuple[str, ...]:
         """What the models assume, a line each."""
         return tuple(dict.fromkeys(line for row in self.servos for servo in row for line in servo.assumed))
-
-    @property
-    def law(self) -> TorqueLaw:
-        """The torque of all servos, without what damps them."""
-        return TorqueLaw(stiffness=self.stiffness, play=self.play, stall_torque=self.stall_torque, slope=self.slope)
 
     def saturated(
         self, drive: Float[np.ndarray, "joints"], speed: Float[np.ndarray, "joints"]
