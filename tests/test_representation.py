@@ -14,11 +14,11 @@ import pytest
 import tarsus
 from sample_loads import sample_loads, sample_motion
 from sample_robots import hexapod
-from tarsus import simulation
+from tarsus import hardware, simulation
 from tarsus.representation import represented
 from tarsus.simulation import terrain
 
-PUBLIC = (tarsus, simulation, terrain)
+PUBLIC = (tarsus, simulation, terrain, hardware)
 LINES, WIDTH = 10, 100
 
 
@@ -37,7 +37,7 @@ CLASSES = sorted({c for c in public_classes() if not getattr(c, "_is_protocol", 
 @cache
 def values():
     """One value of each public class, or several: as large as users have them."""
-    return [*static_values(), *load_values(), *control_values(), *simulation_values()]
+    return [*static_values(), *load_values(), *control_values(), *simulation_values(), *hardware_values()]
 
 
 @cache
@@ -81,6 +81,17 @@ def control_values():
     yield from (sequence, tarsus.SequencePlayer(sequence), tarsus.WalkController(robot), tarsus.IdealPlant(robot))
     yield from (tarsus.SensorReadings(contacts=[True] * 6), tarsus.Admittance(mass=1.0, damping=40.0, stiffness=400.0))
     yield from (scenario, tarsus.run_scenario(scenario))
+
+
+def hardware_values():
+    bus, line = hardware.emulated_bus("feetech-sts", range(1, 19))
+    yield from (line, line.servos[1], line.servos[1].traits, line.supply, line.faults, hardware.BUSES["feetech-sts"])
+    yield from (bus.capabilities, bus.ping(1), bus.timing(range(1, 19)), bus.read_positions(range(1, 19)))
+    yield from (bus.read_telemetry((1,)).values[1], hardware.ManualClock(), hardware.SystemClock())
+    yield from (hardware.MemoryTransport(line), hardware.EmulatedLine({}, baud=9600))
+    with hardware.PtyServer(line) as server:
+        yield server
+        yield hardware.SerialTransport(server.port, 1_000_000)
 
 
 def simulation_values():

@@ -16,6 +16,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from tarsus import hardware as hardware
     from tarsus import simulation as simulation
     from tarsus.control.command import Command
     from tarsus.control.control_output import ControlOutput
@@ -32,10 +33,15 @@ if TYPE_CHECKING:
     from tarsus.control.states.robot_state import RobotState
     from tarsus.control.walk_controller import WalkController
     from tarsus.errors import (
+        BusError,
         CollisionError,
+        CorruptAnswerError,
         InputError,
         MissingDataError,
+        NoAnswerError,
+        PortError,
         RobotFileError,
+        ServoStatusError,
         SimulationError,
         StrokeError,
         TarsusError,
@@ -112,7 +118,8 @@ _HOMES = {
     "tarsus.scenario.runner": ("run_scenario",),
     "tarsus.scenario.scenario": ("Scenario",),
     "tarsus.errors": (
-        *("CollisionError", "InputError", "MissingDataError", "RobotFileError", "SimulationError"),
+        *("BusError", "CollisionError", "CorruptAnswerError", "InputError", "MissingDataError", "NoAnswerError"),
+        *("PortError", "RobotFileError", "ServoStatusError", "SimulationError"),
         *("StrokeError", "TarsusError", "UnknownNameError", "UnreachableError"),
     ),
     "tarsus.gait.cycle": ("cycle_feet",),
@@ -185,7 +192,7 @@ _HOMES = {
     ),
 }
 # Packages of heavier parts, each with public names of its own.
-_PACKAGES = ("simulation",)
+_PACKAGES = ("hardware", "simulation")
 _HOME_OF = {name: module for module, names in _HOMES.items() for name in names}
 
 __all__ = [
@@ -194,10 +201,12 @@ __all__ = [
     "JOINTS",
     "Admittance",
     "BodyPath",
+    "BusError",
     "CollisionError",
     "Command",
     "ContactForces",
     "ControlOutput",
+    "CorruptAnswerError",
     "CycleTorques",
     "Firmware",
     "Gait",
@@ -220,9 +229,11 @@ __all__ = [
     "Motion",
     "MotionSequence",
     "MotionTorques",
+    "NoAnswerError",
     "Payload",
     "Plant",
     "PlausibilityWarning",
+    "PortError",
     "Pose",
     "Reach",
     "Recording",
@@ -236,6 +247,7 @@ __all__ = [
     "SequencePlayer",
     "Servo",
     "ServoSizing",
+    "ServoStatusError",
     "SimulationError",
     "Source",
     "StrokeError",

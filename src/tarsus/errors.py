@@ -10,7 +10,12 @@
     ├── UnreachableError    a foot is out of reach
     │   └── StrokeError     the stroke leaves the workspace; `.longest` is the longest possible
     ├── CollisionError      two feet come closer to each other than allowed
-    └── SimulationError     the physics of a simulated robot becomes unstable
+    ├── SimulationError     the physics of a simulated robot becomes unstable
+    └── BusError            communication with servos fails
+        ├── PortError           a port can't be opened, or is gone
+        ├── NoAnswerError       a servo or board does not answer in time
+        ├── CorruptAnswerError  an answer is damaged, or is not the one expected
+        └── ServoStatusError    a servo or board reports an error
 
 A message says what is wrong, where, the number and its bound, and what is possible.
 """
@@ -22,10 +27,15 @@ from collections.abc import Iterable, Sequence
 from typing import Self
 
 __all__ = [
+    "BusError",
     "CollisionError",
+    "CorruptAnswerError",
     "InputError",
     "MissingDataError",
+    "NoAnswerError",
+    "PortError",
     "RobotFileError",
+    "ServoStatusError",
     "SimulationError",
     "StrokeError",
     "TarsusError",
@@ -108,6 +118,48 @@ class CollisionError(TarsusError):
 
 class SimulationError(TarsusError):
     """The physics of a simulated robot becomes unstable."""
+
+
+class BusError(TarsusError):
+    """Communication with servos fails.
+
+    Attributes
+    ----------
+    bus : str
+        Name of the bus, such as ``"feetech-sts"``.
+    port : str
+        Name of the port, such as ``"/dev/ttyUSB0"``.
+    id : int or None
+        Id or channel of the servo; None if the whole bus is concerned.
+    expected, received : str
+        What should have come, and what came.
+    remedy : str
+        What would work.
+    """
+
+    def __init__(
+        self, bus: str, port: str, *, expected: str, received: str, remedy: str, id: int | None = None
+    ) -> None:
+        self.bus, self.port, self.id = bus, port, id
+        self.expected, self.received, self.remedy = expected, received, remedy
+        where = f"{bus} on {port}" + (f", id {id}" if id is not None else "")
+        super().__init__(f"{where}: expected {expected}, received {received}. {remedy}")
+
+
+class PortError(BusError):
+    """A port can't be opened, or is gone."""
+
+
+class NoAnswerError(BusError):
+    """A servo or board does not answer in time."""
+
+
+class CorruptAnswerError(BusError):
+    """An answer is damaged, or is not the one expected."""
+
+
+class ServoStatusError(BusError):
+    """A servo or board reports an error."""
 
 
 def nearest_name(name: str, known: Iterable[str]) -> str | None:

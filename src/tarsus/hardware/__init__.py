@@ -1,0 +1,84 @@
+"""Real robots: servo buses and their transports, and emulated servos that speak the same bytes.
+
+::
+
+    from tarsus import hardware
+
+    bus = hardware.open_bus("feetech-sts", "/dev/ttyUSB0")
+    print(bus.scan())
+    bus.write_goals({1: 2048, 2: 1900})
+
+pyserial and smbus2 are imported when a port is opened; the extra ``hardware`` installs them.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from tarsus.hardware.bus.protocol import Answers, Bus, BusServo, BusTiming, Capabilities, Telemetry
+    from tarsus.hardware.bus.registry import BUSES, BusKind, bus_over, open_bus
+    from tarsus.hardware.emulation.faults import Faults
+    from tarsus.hardware.emulation.line import EmulatedLine
+    from tarsus.hardware.emulation.registry import emulate, emulated_bus
+    from tarsus.hardware.emulation.servo import EmulatedServo, ServoTraits
+    from tarsus.hardware.emulation.supply import Supply
+    from tarsus.hardware.transport.clock import ManualClock, SystemClock
+    from tarsus.hardware.transport.memory import MemoryTransport
+    from tarsus.hardware.transport.pty import PtyServer
+    from tarsus.hardware.transport.serial import SerialTransport, list_ports
+
+_HOMES = {
+    "tarsus.hardware.bus.protocol": ("Answers", "Bus", "BusServo", "BusTiming", "Capabilities", "Telemetry"),
+    "tarsus.hardware.bus.registry": ("BUSES", "BusKind", "bus_over", "open_bus"),
+    "tarsus.hardware.emulation.faults": ("Faults",),
+    "tarsus.hardware.emulation.line": ("EmulatedLine",),
+    "tarsus.hardware.emulation.registry": ("emulate", "emulated_bus"),
+    "tarsus.hardware.emulation.servo": ("EmulatedServo", "ServoTraits"),
+    "tarsus.hardware.emulation.supply": ("Supply",),
+    "tarsus.hardware.transport.clock": ("ManualClock", "SystemClock"),
+    "tarsus.hardware.transport.memory": ("MemoryTransport",),
+    "tarsus.hardware.transport.pty": ("PtyServer",),
+    "tarsus.hardware.transport.serial": ("SerialTransport", "list_ports"),
+}
+_HOME_OF = {name: module for module, names in _HOMES.items() for name in names}
+
+__all__ = [
+    "BUSES",
+    "Answers",
+    "Bus",
+    "BusKind",
+    "BusServo",
+    "BusTiming",
+    "Capabilities",
+    "EmulatedLine",
+    "EmulatedServo",
+    "Faults",
+    "ManualClock",
+    "MemoryTransport",
+    "PtyServer",
+    "SerialTransport",
+    "ServoTraits",
+    "Supply",
+    "SystemClock",
+    "Telemetry",
+    "bus_over",
+    "emulate",
+    "emulated_bus",
+    "list_ports",
+    "open_bus",
+]
+
+
+def __getattr__(name: str) -> Any:
+    """Import a public name from where it lives."""
+    if name not in _HOME_OF:
+        raise AttributeError(f"module 'tarsus.hardware' has no attribute {name!r}")
+    value = getattr(import_module(_HOME_OF[name]), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

@@ -1,0 +1,154 @@
+"""Checks of what is asked of a bus, before anything is sent."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+
+from tarsus.errors import InputError
+from tarsus.hardware.bus.protocol import Capabilities
+
+__all__ = ["checked_goals", "checked_ids", "checked_range", "checked_share", "checked_speed", "checked_time"]
+
+
+def checked_ids(bus: str, can: Capabilities, ids: Iterable[int]) -> tuple[int, ...]:
+    """Return ids in their order, each once.
+
+    Parameters
+    ----------
+    bus : str
+        Name of the bus, for messages.
+    can : Capabilities
+        What it can do.
+    ids : iterable of int
+        Ids or channels.
+
+    Raises
+    ------
+    InputError
+        If one of them is none of this bus.
+    """
+    found = tuple(dict.fromkeys(ids))
+    for id in found:
+        if id not in can.ids:
+            raise InputError(f"{bus} has no id {id!r}: ids are {can.ids.start} to {can.ids.stop - 1}")
+    return found
+
+
+def _checked(bus: str, can: Capabilities, what: str, value: float) -> float:
+    if not can.lowest <= value <= can.highest:
+        raise InputError(f"{bus}, {what}: {value:g} {can.unit} is outside {can.lowest:g} to {can.highest:g} {can.unit}")
+    return float(value)
+
+
+def checked_goals(bus: str, can: Capabilities, goals: Mapping[int, float]) -> dict[int, float]:
+    """Return goals that a bus accepts.
+
+    Parameters
+    ----------
+    bus : str
+        Name of the bus, for messages.
+    can : Capabilities
+        What it can do.
+    goals : mapping of int to float
+        Goals by id.
+
+    Raises
+    ------
+    InputError
+        If an id is none of this bus, or a goal is NaN or outside its range.
+    """
+    ids = checked_ids(bus, can, goals)
+    return {id: _checked(bus, can, f"goal of id {id}", goals[id]) for id in ids}
+
+
+def checked_range(bus: str, can: Capabilities, id: int, lowest: float, highest: float) -> tuple[int, int]:
+    """Return limits that a bus accepts, rounded inwards.
+
+    Parameters
+    ----------
+    bus : str
+        Name of the bus, for messages.
+    can : Capabilities
+        What it can do.
+    id : int
+        The servo.
+    lowest, highest : float
+        Range of its goals.
+
+    Raises
+    ------
+    InputError
+        If the id is none of this bus, or the range is empty or outside that of the bus.
+    """
+    checked_ids(bus, can, (id,))
+    low = math.ceil(_checked(bus, can, f"lower limit of id {id}", lowest))
+    high = math.floor(_checked(bus, can, f"upper limit of id {id}", highest))
+    if low > high:
+        raise InputError(f"{bus}, id {id}: the lower limit {lowest:g} is above the upper limit {highest:g} {can.unit}")
+    return low, high
+
+
+def checked_speed(bus: str, can: Capabilities, speed: float | None) -> float | None:
+    """Return a speed limit, or None for the servo's own.
+
+    Parameters
+    ----------
+    bus : str
+        Name of the bus, for messages.
+    can : Capabilities
+        What it can do.
+    speed : float or None
+        In the unit of the bus a second.
+
+    Raises
+    ------
+    InputError
+        If it is not finite and positive.
+    """
+    if speed is not None and not 0 < speed < math.inf:
+        raise InputError(f"{bus}: a speed limit of {speed:g} {can.unit}/s is none; give one above 0")
+    return speed
+
+
+def checked_share(bus: str, share: float) -> float:
+    """Return a share of the highest torque.
+
+    Parameters
+    ----------
+    bus : str
+        Name of the bus, for messages.
+    share : float
+        Share of the highest torque.
+
+    Raises
+    ------
+    InputError
+        If it is outside 0 to 1.
+    """
+    if not 0 <= share <= 1:
+        raise InputError(f"{bus}: a torque limit of {share:g} is outside 0 to 1, shares of the highest torque")
+    return float(share)
+
+
+def checked_time(bus: str, can: Capabilities, seconds: float | None) -> float | None:
+    """Return the time of a watchdog, or None for never.
+
+    Parameters
+    ----------
+    bus : str
+        Name of the bus, for messages.
+    can : Capabilities
+        What it can do.
+    seconds : float or None
+        The time [s].
+
+    Raises
+    ------
+    InputError
+        If the bus can't time that.
+    """
+    low, high = can.watchdog or (0.0, math.inf)
+    if seconds is not None and not low <= seconds <= high:
+        raise InputError(f"{bus}: a watchdog of {seconds:g} s is outside {low:g} to {high:g} s")
+    return seconds

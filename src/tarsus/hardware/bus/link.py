@@ -1,0 +1,142 @@
+"""Requests and answers over a line of bytes: who answered, who did not, and what is not to be believed."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection
+from typing import Protocol
+
+from tarsus.errors import BusError, CorruptAnswerError, NoAnswerError
+from tarsus.hardware.bus.protocol import Answers
+from tarsus.hardware.codec.scan import Frame, Scanned
+from tarsus.hardware.transport.protocol import Transport
+from tarsus.hardware.transport.wire import serial_seconds
+
+__all__ = ["Link", "hexadecimal"]
+
+_WIRING = "Check that it has this id and baud rate, its supply, and the cable to it."
+_NOISE = "Look for two servos with one id, a loose cable or a wrong baud rate; a lower baud rate helps against noise."
+_MOST_SETTLING = 8
+
+
+def hexadecimal(data: bytes, most: int = 24) -> str:
+    """Return bytes as text, for messages.
+
+    Parameters
+    ----------
+    data : bytes
+        The bytes.
+    most : int
+        How many are shown.
+    """
+    return data[:most].hex(" ").upper() + (" ..." if len(data) > most else "")
+
+
+class _Scanner(Protocol):
+    def __call__(self, received: bytes, *, ended: bool = False) -> Scanned: ...
+
+
+class Link:
+    """A line on which one side asks and the other answers.
+
+    After an answer that is late or damaged the line is not believed until it has been silent for as long as an answer
+    may be late: what still arrives is thrown away.
+
+    Parameters
+    ----------
+    transport : Transport
+        The line.
+    bus : str
+        Name of the bus, for messages.
+    scan : callable
+        The codec's function that finds frames in bytes.
+    timeout : float
+        Longest time until an answer begins, beyond its time on the wire [s].
+    """
+
+    def __init__(self, transport: Transport, bus: str, scan: _Scanner, *, timeout: float) -> None:
+        self.transport, self.bus, self.timeout = transport, bus, timeout
+        self._scan = scan
+        self._doubtful = False
+
+    def send(self, frame: bytes) -> None:
+        """Send a frame that nobody answers.
+
+        Parameters
+        ----------
+        frame : bytes
+            The frame.
+        """
+        self.transport.write(frame)
+
+    def ask(
+        self, frame: bytes, ids: Collection[int], count: int, *, belongs: Callable[[Frame], bool] | None = None
+    ) -> Answers[Frame]:
+        """Send a frame, and return the answers of servos.
+
+        Parameters
+        ----------
+        frame : bytes
+            The frame.
+        ids : collection of int
+            Who answers.
+        count : int
+            How many bytes of data each answer has.
+        belongs : callable
+            Whether a frame answers this request, as far as the protocol tells.
+        """
+        self._settle()
+        self.transport.write(frame)
+        most = serial_seconds(len(frame) + len(ids) * (count + 8), self.transport.baud)
+        deadline = self.transport.now() + most + self.timeout
+        found: dict[int, Frame] = {}
+        twice: set[int] = set()
+        received, rest, noise, echo = b"", b"", b"", False
+        while len(found) < len(ids):
+            data = self.transport.read(deadline - self.transport.now())
+            scanned = self._scan(rest + data, ended=not data)
+            received, rest = received + data, scanned.rest
+            noise += b"".join(scanned.damaged)
+            for answer in scanned.frames:
+                if answer.raw == frame and not echo:
+                    echo = True
+                elif answer.id in found:
+                    twice.add(answer.id)
+                elif answer.id in ids and len(answer.data) == count and (belongs is None or belongs(answer)):
+                    found[answer.id] = answer
+                else:
+                    noise += answer.raw
+            if not data:
+                break
+        self._doubtful = len(found) < len(ids) or bool(noise or rest or twice)
+        refused = [id for id in ids if id not in found or id in twice]
+        errors = [self._error(id, count, received, noise, echo=echo, twice=id in twice) for id in refused]
+        return Answers({id: found[id] for id in ids if id not in refused}, tuple(errors))
+
+    def _error(self, id: int, count: int, received: bytes, noise: bytes, *, echo: bool, twice: bool) -> BusError:
+        expected = f"an answer with {count} byte{'s' * (count != 1)} of data"
+        if twice:
+            return CorruptAnswerError(
+                self.bus,
+                self.transport.port,
+                id=id,
+                expected="one answer",
+                received=f"two: {hexadecimal(received)}",
+                remedy="Look for two servos with this id: connect them one at a time, and give one another id.",
+            )
+        late = f" within {self.timeout * 1e3:.0f} ms"
+        if noise:
+            text = f"{hexadecimal(noise)}, which is no such answer"
+            return CorruptAnswerError(
+                self.bus, self.transport.port, id=id, expected=expected, received=text, remedy=_NOISE
+            )
+        text = f"only the echo of the request{late}" if echo else f"nothing{late}"
+        return NoAnswerError(self.bus, self.transport.port, id=id, expected=expected, received=text, remedy=_WIRING)
+
+    def _settle(self) -> None:
+        """Empty the input; wait until the line is silent if it is in doubt."""
+        self.transport.discard()
+        if self._doubtful:
+            for _ in range(_MOST_SETTLING):
+                if not self.transport.read(self.timeout):
+                    break
+        self._doubtful = False

@@ -1,0 +1,120 @@
+"""The kinds of servo buses by name, and opening one."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from tarsus.errors import UnknownNameError
+from tarsus.hardware.bus.feetech import FeetechBus
+from tarsus.hardware.bus.protocol import Bus
+from tarsus.hardware.transport.serial import SerialTransport
+from tarsus.representation import represented
+
+__all__ = ["BUSES", "BusKind", "bus_kind", "bus_over", "open_bus"]
+
+
+@represented("name", "title", "baud", "transport")
+@dataclass(frozen=True)
+class BusKind:
+    """A kind of servo bus.
+
+    Attributes
+    ----------
+    name : str
+        Its name in calibration files and on the command line.
+    title : str
+        What it is called.
+    baud : int
+        Bits per second as the maker delivers it; the clock [Hz] of I2C.
+    make : callable
+        Makes the bus on a transport, with the bus's own options.
+    transport : str
+        ``"serial"`` or ``"i2c"``.
+    """
+
+    name: str
+    title: str
+    baud: int
+    make: Callable[..., Bus]
+    transport: str = "serial"
+
+
+def _feetech(series: str) -> Callable[..., Bus]:
+    def make(transport: Any, **options: Any) -> Bus:
+        return FeetechBus(transport, series, **options)
+
+    return make
+
+
+_KINDS = (
+    BusKind("feetech-sts", "Feetech STS and SMS", 1_000_000, _feetech("sts")),
+    BusKind("feetech-scs", "Feetech SCS", 1_000_000, _feetech("scs")),
+)
+
+BUSES = {kind.name: kind for kind in _KINDS}
+"""All kinds of buses by name."""
+
+
+def bus_kind(name: str) -> BusKind:
+    """Return a kind of bus.
+
+    Parameters
+    ----------
+    name : str
+        Its name.
+
+    Raises
+    ------
+    UnknownNameError
+        If there is none of that name; the message lists all.
+    """
+    if name not in BUSES:
+        raise UnknownNameError.of("servo bus", name, BUSES)
+    return BUSES[name]
+
+
+def bus_over(name: str, transport: Any, **options: Any) -> Bus:
+    """Return a bus on a transport that is open.
+
+    Parameters
+    ----------
+    name : str
+        Kind of the bus.
+    transport : Transport or I2cTransport
+        The line, of the kind that the bus needs.
+    **options
+        The bus's own.
+
+    Raises
+    ------
+    UnknownNameError
+        If there is no bus of that name.
+    """
+    return bus_kind(name).make(transport, **options)
+
+
+def open_bus(name: str, port: str, *, baud: int | None = None, **options: Any) -> Bus:
+    """Open a bus on a port of this machine.
+
+    Parameters
+    ----------
+    name : str
+        Kind of the bus: a name in `BUSES`.
+    port : str
+        The port, such as ``"/dev/ttyUSB0"``, ``"COM3"`` or ``"/dev/i2c-1"``.
+    baud : int, optional
+        Bits per second, or clock of I2C [Hz]; by default the maker's.
+    **options
+        The bus's own, such as ``timeout`` [s].
+
+    Raises
+    ------
+    UnknownNameError
+        If there is no bus of that name.
+    PortError
+        If the port can't be opened.
+    """
+    kind = bus_kind(name)
+    return kind.make(SerialTransport(port, baud or kind.baud), **options)

@@ -1,0 +1,73 @@
+"""Clocks: the machine's, and one that only moves when it is told to."""
+
+from __future__ import annotations
+
+import time
+from typing import Protocol
+
+from tarsus.representation import represented
+
+__all__ = ["Clock", "ManualClock", "SystemClock"]
+
+
+class Clock(Protocol):
+    """A clock that can be waited for."""
+
+    def now(self) -> float:
+        """Return the time [s]; only differences mean something."""
+
+    def sleep(self, seconds: float) -> None:
+        """Wait.
+
+        Parameters
+        ----------
+        seconds : float
+            How long [s].
+        """
+
+
+@represented()
+class SystemClock:
+    """The machine's own clock."""
+
+    def now(self) -> float:
+        """Return the time [s]; only differences mean something."""
+        return time.monotonic()
+
+    def sleep(self, seconds: float) -> None:
+        """Wait.
+
+        Parameters
+        ----------
+        seconds : float
+            How long [s].
+        """
+        time.sleep(max(seconds, 0.0))
+
+
+@represented()
+class ManualClock:
+    """A clock that stands still unless something waits: emulated servos then run as fast as the computer can.
+
+    Parameters
+    ----------
+    start : float
+        What it shows at first [s].
+    """
+
+    def __init__(self, start: float = 0.0) -> None:
+        self._time = start
+
+    def now(self) -> float:
+        """Return the time [s]; only differences mean something."""
+        return self._time
+
+    def sleep(self, seconds: float) -> None:
+        """Move on at once.
+
+        Parameters
+        ----------
+        seconds : float
+            By how much [s].
+        """
+        self._time += max(seconds, 0.0)
