@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection
-from typing import Protocol
 
 from tarsus.errors import BusError, CorruptAnswerError, NoAnswerError
 from tarsus.hardware.bus.protocol import Answers
-from tarsus.hardware.codec.scan import Frame, Scanned
+from tarsus.hardware.codec.scan import Frame, Scanner
 from tarsus.hardware.transport.protocol import Transport
 from tarsus.hardware.transport.wire import serial_seconds
 
@@ -16,6 +15,8 @@ __all__ = ["Link", "hexadecimal"]
 _WIRING = "Check that it has this id and baud rate, its supply, and the cable to it."
 _NOISE = "Look for two servos with one id, a loose cable or a wrong baud rate; a lower baud rate helps against noise."
 _MOST_SETTLING = 8
+_LONGEST_LINE = 64
+_MOST_ECHO = 2048
 
 
 def hexadecimal(data: bytes, most: int = 24) -> str:
@@ -29,10 +30,6 @@ def hexadecimal(data: bytes, most: int = 24) -> str:
         How many are shown.
     """
     return data[:most].hex(" ").upper() + (" ..." if len(data) > most else "")
-
-
-class _Scanner(Protocol):
-    def __call__(self, received: bytes, *, ended: bool = False) -> Scanned: ...
 
 
 class Link:
@@ -51,12 +48,15 @@ class Link:
         The codec's function that finds frames in bytes.
     timeout : float
         Longest time until an answer begins, beyond its time on the wire [s].
+    delay : float
+        Time that each servo takes before it answers, as it is delivered [s].
     """
 
-    def __init__(self, transport: Transport, bus: str, scan: _Scanner, *, timeout: float) -> None:
-        self.transport, self.bus, self.timeout = transport, bus, timeout
+    def __init__(self, transport: Transport, bus: str, scan: Scanner, *, timeout: float, delay: float = 0.0) -> None:
+        self.transport, self.bus, self.timeout, self._delay = transport, bus, timeout, delay
         self._scan = scan
         self._doubtful = False
+        self._sent = b""
 
     def send(self, frame: bytes) -> None:
         """Send a frame that nobody answers.
@@ -67,6 +67,7 @@ class Link:
             The frame.
         """
         self.transport.write(frame)
+        self._sent = (self._sent + frame)[-_MOST_ECHO:]
 
     def ask(
         self, frame: bytes, ids: Collection[int], count: int, *, belongs: Callable[[Frame], bool] | None = None
@@ -86,8 +87,9 @@ class Link:
         """
         self._settle()
         self.transport.write(frame)
-        most = serial_seconds(len(frame) + len(ids) * (count + 8), self.transport.baud)
-        deadline = self.transport.now() + most + self.timeout
+        sent, self._sent = self._sent, b""
+        most = serial_seconds(len(frame) + len(ids) * (count + 12), self.transport.baud)
+        deadline = self.transport.now() + most + len(ids) * self._delay + self.timeout
         found: dict[int, Frame] = {}
         twice: set[int] = set()
         received, rest, noise, echo = b"", b"", b"", False
@@ -99,6 +101,9 @@ class Link:
             for answer in scanned.frames:
                 if answer.raw == frame and not echo:
                     echo = True
+                elif answer.raw in sent:
+                    # The echo of what nobody answers.
+                    continue
                 elif answer.id in found:
                     twice.add(answer.id)
                 elif answer.id in ids and len(answer.data) == count and (belongs is None or belongs(answer)):
@@ -111,6 +116,63 @@ class Link:
         refused = [id for id in ids if id not in found or id in twice]
         errors = [self._error(id, count, received, noise, echo=echo, twice=id in twice) for id in refused]
         return Answers({id: found[id] for id in ids if id not in refused}, tuple(errors))
+
+    def ask_board(self, frame: bytes, *, size: int | None = None, end: bytes = b"") -> bytes:
+        """Send a frame, and return the answer of a board, which has no frame of its own.
+
+        Parameters
+        ----------
+        frame : bytes
+            The frame.
+        size : int, optional
+            How many bytes the answer has.
+        end : bytes
+            With what the answer ends, if its size is not known.
+
+        Raises
+        ------
+        NoAnswerError
+            If the answer does not come, or not completely.
+        CorruptAnswerError
+            If more comes than the answer.
+        """
+        self._settle()
+        self.transport.write(frame)
+        self._sent = b""
+        most = serial_seconds(len(frame) + (size or _LONGEST_LINE), self.transport.baud)
+        deadline = self.transport.now() + most + self.timeout
+        received = b""
+        while not _complete(received, frame, size, end):
+            data = self.transport.read(deadline - self.transport.now())
+            received += data
+            if data:
+                continue
+            if len(received) == size:
+                # An answer that begins like the request, without an echo before it.
+                return received
+            self._doubtful = True
+            raise self._silent(size, received, echo=received == frame)
+        answer = received.removeprefix(frame)
+        self._doubtful = size is not None and len(answer) > size
+        if self._doubtful:
+            raise CorruptAnswerError(
+                self.bus,
+                self.transport.port,
+                expected=f"{size} byte{'s' * (size != 1)}",
+                received=hexadecimal(answer),
+                remedy=_NOISE,
+            )
+        return answer
+
+    def _silent(self, size: int | None, received: bytes, *, echo: bool) -> BusError:
+        got = "only the echo of the request" if echo else hexadecimal(received) or "nothing"
+        return NoAnswerError(
+            self.bus,
+            self.transport.port,
+            expected="a line" if size is None else f"{size} byte{'s' * (size != 1)}",
+            received=f"{got} within {self.timeout * 1e3:.0f} ms",
+            remedy="Check that this is the board's port and baud rate, and that the board has its supply.",
+        )
 
     def _error(self, id: int, count: int, received: bytes, noise: bytes, *, echo: bool, twice: bool) -> BusError:
         expected = f"an answer with {count} byte{'s' * (count != 1)} of data"
@@ -140,3 +202,9 @@ class Link:
                 if not self.transport.read(self.timeout):
                     break
         self._doubtful = False
+
+
+def _complete(received: bytes, frame: bytes, size: int | None, end: bytes) -> bool:
+    """Return whether the answer of a board is there, behind an echo of the request if there is one."""
+    answer = received.removeprefix(frame)
+    return len(answer) >= size if size is not None else answer.endswith(end) and bool(answer)

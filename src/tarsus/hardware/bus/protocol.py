@@ -42,6 +42,8 @@ class Capabilities:
         Whether a servo or the board takes limits of goals, of speed and of torque.
     watchdog : tuple of float, or None
         Shortest and longest time after which servos or board stop by themselves if no packet comes [s].
+    watchdog_action : str
+        What they do then: ``"hold"`` where they are, or ``"release"``.
     synchronous : bool
         Whether the goals of all servos take effect at the same time.
     """
@@ -59,6 +61,7 @@ class Capabilities:
     speed_limit: bool = False
     torque_limit: bool = False
     watchdog: tuple[float, float] | None = None
+    watchdog_action: Literal["hold", "release", "none"] = "none"
     synchronous: bool = True
 
 

@@ -7,8 +7,15 @@ from dataclasses import dataclass
 from typing import Any
 
 from tarsus.errors import UnknownNameError
-from tarsus.hardware.bus.feetech import FeetechBus
+from tarsus.hardware.bus.lines import LineBus
+from tarsus.hardware.bus.lx16a import Lx16aBus
+from tarsus.hardware.bus.maestro import MaestroBus
+from tarsus.hardware.bus.pca9685 import Pca9685Bus
 from tarsus.hardware.bus.protocol import Bus
+from tarsus.hardware.bus.register_bus import RegisterBus
+from tarsus.hardware.bus.servo2040 import Servo2040Bus
+from tarsus.hardware.bus.ssc32 import Ssc32Bus
+from tarsus.hardware.transport.i2c import SmbusTransport
 from tarsus.hardware.transport.serial import SerialTransport
 from tarsus.representation import represented
 
@@ -27,7 +34,7 @@ class BusKind:
     title : str
         What it is called.
     baud : int
-        Bits per second as the maker delivers it; the clock [Hz] of I2C.
+        Bits per second: the maker's where it is fast enough; the clock [Hz] of I2C.
     make : callable
         Makes the bus on a transport, with the bus's own options.
     transport : str
@@ -41,16 +48,25 @@ class BusKind:
     transport: str = "serial"
 
 
-def _feetech(series: str) -> Callable[..., Bus]:
+def _registers(name: str, title: str, baud: int) -> BusKind:
     def make(transport: Any, **options: Any) -> Bus:
-        return FeetechBus(transport, series, **options)
+        return RegisterBus(transport, name, **options)
 
-    return make
+    return BusKind(name, title, baud, make)
 
 
 _KINDS = (
-    BusKind("feetech-sts", "Feetech STS and SMS", 1_000_000, _feetech("sts")),
-    BusKind("feetech-scs", "Feetech SCS", 1_000_000, _feetech("scs")),
+    _registers("feetech-sts", "Feetech STS and SMS", 1_000_000),
+    _registers("feetech-scs", "Feetech SCS", 1_000_000),
+    _registers("dynamixel-x", "Dynamixel X, and MX with protocol 2.0", 57_600),
+    _registers("dynamixel-mx", "Dynamixel MX with protocol 1.0", 57_600),
+    _registers("dynamixel-ax", "Dynamixel AX", 1_000_000),
+    BusKind("lx16a", "Hiwonder LX-16A and HTS", 115_200, Lx16aBus),
+    BusKind("maestro", "Pololu Mini Maestro", 115_200, MaestroBus),
+    BusKind("ssc32", "Lynxmotion SSC-32 and SSC-32U", 115_200, Ssc32Bus),
+    BusKind("servo2040", "Pimoroni Servo2040", 115_200, Servo2040Bus),
+    BusKind("lines", "Lines of pulse widths, for an Arduino", 115_200, LineBus),
+    BusKind("pca9685", "PCA9685 boards", 400_000, Pca9685Bus, "i2c"),
 )
 
 BUSES = {kind.name: kind for kind in _KINDS}
@@ -117,4 +133,5 @@ def open_bus(name: str, port: str, *, baud: int | None = None, **options: Any) -
         If the port can't be opened.
     """
     kind = bus_kind(name)
-    return kind.make(SerialTransport(port, baud or kind.baud), **options)
+    transport = SmbusTransport if kind.transport == "i2c" else SerialTransport
+    return kind.make(transport(port, baud or kind.baud), **options)

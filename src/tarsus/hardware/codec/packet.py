@@ -5,15 +5,13 @@ Sources: ROBOTIS e-Manual, DYNAMIXEL Protocol 1.0; Feetech, SMS/STS communicatio
 
 from __future__ import annotations
 
-from tarsus.hardware.codec.scan import Frame, Scanned
+from tarsus.hardware.codec.scan import Frame, Framing, Scanned, scan_frames
 
 __all__ = ["BROADCAST", "HEADER", "checksum", "packet", "scan"]
 
 HEADER = b"\xff\xff"
 BROADCAST = 0xFE
-# Header, id, length, code, checksum.
-_OVERHEAD = 6
-# Of ids only 0 to 253 answer; the longest length that Feetech and Dynamixel send.
+# A packet with instruction and checksum alone has a length of 2.
 _MOST_LENGTH = 250
 
 
@@ -54,29 +52,16 @@ def scan(received: bytes, *, ended: bool = False) -> Scanned:
     ended : bool
         Whether nothing more comes, so that an incomplete packet is a damaged one.
     """
-    frames, damaged, at, noise = [], [], 0, 0
-    while at < len(received):
-        end = _end(received, at)
-        if end > len(received) and not ended:
-            break
-        raw = received[at:end]
-        if at < end <= len(received) and checksum(raw[2:-1]) == raw[-1]:
-            damaged += [received[noise:at]] if at > noise else []
-            frames.append(Frame(raw[2], raw[4], raw[5:-1], raw))
-            at = noise = end
-        else:
-            # Where another packet follows, the length is right: bytes inside a damaged packet are no packets.
-            follows = at < end and received[end:].startswith(HEADER)
-            at = end if follows or end == len(received) > at else at + 1
-    damaged += [received[noise:at]] if at > noise else []
-    return Scanned(tuple(frames), received[at:], tuple(damaged))
+    return scan_frames(received, _FRAMING, ended=ended)
 
 
-def _end(received: bytes, at: int) -> int:
-    """Return where a packet that begins at a place would end; the place itself if none can begin there."""
-    begin = received[at : at + 4]
-    if not HEADER.startswith(begin[:2]) or begin[2:3] == b"\xff":
-        return at
-    if len(begin) < 4:
-        return at + _OVERHEAD
-    return at + 4 + begin[3] if 2 <= begin[3] <= _MOST_LENGTH else at
+def _size(begin: bytes) -> int:
+    # A third FF belongs to no id: the header begins one byte later.
+    return 4 + begin[3] if begin[2] != 0xFF and 2 <= begin[3] <= _MOST_LENGTH else 0
+
+
+def _decode(raw: bytes) -> Frame | None:
+    return Frame(raw[2], raw[4], raw[5:-1], raw) if checksum(raw[2:-1]) == raw[-1] else None
+
+
+_FRAMING = Framing(HEADER, 4, _size, _decode)

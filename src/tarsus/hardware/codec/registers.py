@@ -10,7 +10,7 @@ from importlib import resources
 from tarsus.errors import InputError
 from tarsus.representation import represented
 
-__all__ = ["Register", "load_registers"]
+__all__ = ["Register", "load_models", "load_registers"]
 
 
 @represented("name", "address", "size", "unit")
@@ -97,8 +97,6 @@ def load_registers(table: str) -> dict[str, Register]:
     table : str
         Name of the table, such as ``"feetech-sts"``.
     """
-    text = (resources.files("tarsus.hardware") / "tables" / f"{table}.csv").read_text(encoding="utf-8")
-    rows = csv.DictReader(text.splitlines())
     return {
         row["name"]: Register(
             name=row["name"],
@@ -110,5 +108,22 @@ def load_registers(table: str) -> dict[str, Register]:
             unit=row["unit"],
             source=row["source"],
         )
-        for row in rows
+        for row in _rows(table)
     }
+
+
+@cache
+def load_models(bus: str) -> dict[int, str]:
+    """Return the names of servos by their makers' numbers.
+
+    Parameters
+    ----------
+    bus : str
+        Name of the bus, such as ``"feetech-sts"``.
+    """
+    return {int(row["number"]): row["name"] for row in _rows("models") if row["bus"] == bus}
+
+
+def _rows(table: str) -> csv.DictReader[str]:
+    text = (resources.files("tarsus.hardware") / "tables" / f"{table}.csv").read_text(encoding="utf-8")
+    return csv.DictReader(text.splitlines())

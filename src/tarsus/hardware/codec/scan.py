@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Protocol
 
-__all__ = ["Frame", "Scanned"]
+__all__ = ["Frame", "Framing", "Scanned", "Scanner", "scan_frames"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,3 +48,79 @@ class Scanned:
     frames: tuple[Frame, ...]
     rest: bytes
     damaged: tuple[bytes, ...]
+
+
+class Scanner(Protocol):
+    """A codec's function that finds frames in bytes."""
+
+    def __call__(self, received: bytes, *, ended: bool = False) -> Scanned:
+        """Return what is in the bytes that have arrived.
+
+        Parameters
+        ----------
+        received : bytes
+            What has arrived and was not part of a frame before.
+        ended : bool
+            Whether nothing more comes, so that an incomplete frame is a damaged one.
+        """
+
+
+@dataclass(frozen=True, slots=True)
+class Framing:
+    """How the frames of a protocol look.
+
+    Attributes
+    ----------
+    header : bytes
+        With which each frame begins.
+    known : int
+        How many bytes must be there until the length of a frame is known.
+    size : callable
+        Size of the frame that begins with these bytes, or 0 if none begins with them.
+    decode : callable
+        The frame in whole bytes, or None if they are damaged.
+    """
+
+    header: bytes
+    known: int
+    size: Callable[[bytes], int]
+    decode: Callable[[bytes], Frame | None]
+
+
+def scan_frames(received: bytes, framing: Framing, *, ended: bool) -> Scanned:
+    """Return the frames in a stream of bytes.
+
+    Parameters
+    ----------
+    received : bytes
+        What has arrived and was not part of a frame before.
+    framing : Framing
+        How frames look.
+    ended : bool
+        Whether nothing more comes, so that an incomplete frame is a damaged one.
+    """
+    frames: list[Frame] = []
+    damaged: list[bytes] = []
+    at = noise = 0
+    while at < len(received):
+        end = at + _size(received[at : at + framing.known], framing)
+        if end > len(received) and not ended:
+            break
+        frame = framing.decode(received[at:end]) if at < end <= len(received) else None
+        if frame is not None:
+            damaged += [received[noise:at]] if at > noise else []
+            frames.append(frame)
+            at = noise = end
+        else:
+            # Where another frame follows, the length is right: bytes inside a damaged frame are no frames.
+            follows = at < end and received[end:].startswith(framing.header)
+            at = end if follows or end == len(received) > at else at + 1
+    damaged += [received[noise:at]] if at > noise else []
+    return Scanned(tuple(frames), received[at:], tuple(damaged))
+
+
+def _size(begin: bytes, framing: Framing) -> int:
+    """Return the size of a frame that begins with these bytes, at least that; 0 if none can."""
+    if not framing.header.startswith(begin[: len(framing.header)]):
+        return 0
+    return framing.size(begin) if len(begin) == framing.known else framing.known

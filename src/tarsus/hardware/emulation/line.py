@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
 
-from tarsus.hardware.emulation.faults import Faults
 from tarsus.hardware.emulation.servo import EmulatedServo
-from tarsus.hardware.emulation.supply import Supply
+from tarsus.hardware.emulation.servos import EmulatedServos
 from tarsus.hardware.transport.protocol import Delivery
 from tarsus.hardware.transport.wire import serial_seconds
 from tarsus.representation import represented
@@ -14,8 +14,8 @@ from tarsus.representation import represented
 __all__ = ["EmulatedLine"]
 
 
-@represented("baud", "ids")
-class EmulatedLine:
+@represented("baud", "ids", "supply", "faults")
+class EmulatedLine(EmulatedServos):
     """Servos, or a board with servos, on a serial line; a kind of it for each protocol.
 
     Parameters
@@ -24,72 +24,21 @@ class EmulatedLine:
         Servos by id or channel.
     baud : int
         Bits per second.
-    supply : Supply, optional
-        What feeds them.
-    faults : Faults, optional
-        What goes wrong.
     turnaround : float
         Time from a request to the answer [s].
-
-    Attributes
-    ----------
-    servos : mapping of int to EmulatedServo
-        Servos by id or channel.
-    supply : Supply
-        What feeds them.
-    faults : Faults
-        What goes wrong.
+    **shared
+        ``supply`` and ``faults``, passed on to `EmulatedServos`.
     """
 
+    # Whether the computer's port feeds what answers, so that it goes on when the servos' supply fails.
+    _fed_by_port = False
+
     def __init__(
-        self,
-        servos: Mapping[int, EmulatedServo],
-        *,
-        baud: int,
-        supply: Supply | None = None,
-        faults: Faults | None = None,
-        turnaround: float = 50e-6,
+        self, servos: Mapping[int, EmulatedServo], *, baud: int, turnaround: float = 50e-6, **shared: Any
     ) -> None:
-        self.servos = dict(servos)
+        super().__init__(servos, **shared)
         self.baud, self.turnaround = baud, turnaround
-        self.supply, self.faults = supply or Supply(), faults or Faults()
         self._buffer = b""
-        self._heard: float | None = None
-
-    @property
-    def ids(self) -> tuple[int, ...]:
-        """Ids or channels of the servos."""
-        return tuple(self.servos)
-
-    @property
-    def plugged(self) -> bool:
-        """Whether the line is connected."""
-        return not self.faults.unplugged
-
-    def advance(self, now: float) -> None:
-        """Move the servos on to a time, as at each request.
-
-        Parameters
-        ----------
-        now : float
-            The time [s].
-        """
-        silent = 0.0 if self._heard is None else now - self._heard
-        self._watch(silent, now)
-        self.supply.advance(now, self.servos.values())
-        if not self.supply.up(now):
-            self._started_anew()
-
-    def positions(self, now: float) -> dict[int, float]:
-        """Return where the shafts are, by id.
-
-        Parameters
-        ----------
-        now : float
-            The time [s].
-        """
-        self.advance(now)
-        return {id: servo.position for id, servo in self.servos.items()}
 
     def receive(self, data: bytes, now: float) -> Sequence[Delivery]:
         """Take bytes in, and return what is sent in answer.
@@ -103,16 +52,17 @@ class EmulatedLine:
         """
         self.advance(now)
         deliveries = [Delivery(now, data)] if self.faults.echo else []
-        if not self.supply.up(now):
+        if not (self._fed_by_port or self.supply.up(now)):
             self._buffer = b""
             return deliveries
+        self._heard = now
         self._buffer += data
         at = now
         for id, answer in self._answers():
             if id in self.faults.missing:
                 continue
             whole = self.faults.delivered(id, self._together(id, answer))
-            at += self.turnaround + serial_seconds(len(whole), self.baud)
+            at += self._delay(id) + serial_seconds(len(whole), self.baud)
             deliveries.append(Delivery(at + self.faults.late.get(id, 0.0), whole))
         return deliveries
 
@@ -120,16 +70,16 @@ class EmulatedLine:
         """Carry out the requests in the buffer, and return the answers with their ids; by default nobody answers."""
         return ()
 
-    def _watch(self, silent: float, now: float) -> None:
-        """Carry out what the watchdog does after a time without requests; by default there is none."""
-
-    def _started_anew(self) -> None:
-        """Forget what is lost without supply."""
+    def _delay(self, id: int) -> float:
+        """Return the time from a request, or from the answer before, to the answer of a servo [s]."""
+        del id
+        return self.turnaround
 
     def _together(self, id: int, answer: bytes) -> bytes:
         """Return what two servos with one id make of an answer: a wire that either of them pulls low is low."""
         if id not in self.faults.duplicate or not answer:
             return answer
-        # The second one holds another position, so that its bytes differ.
-        other = bytes(byte ^ 0x05 if at > 4 else byte for at, byte in enumerate(answer))
-        return bytes(one & two for one, two in zip(answer, other, strict=True))
+        # The second one holds another position, so that its bytes and the sum of them differ.
+        other = bytes(byte ^ 0x15 if at > 4 else byte for at, byte in enumerate(answer))
+        both = bytes(one & two for one, two in zip(answer, other, strict=True))
+        return both if both != answer else answer[:-1] + bytes((answer[-1] ^ 0x01,))

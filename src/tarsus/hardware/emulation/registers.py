@@ -49,10 +49,40 @@ class ServoMemory:
             self.set(name, value)
         self.set("goal", round(servo.goal))
 
-    @property
-    def size(self) -> int:
-        """Number of bytes."""
-        return len(self._bytes)
+    def has(self, name: str) -> bool:
+        """Return whether there is a register.
+
+        Parameters
+        ----------
+        name : str
+            Name of the register.
+        """
+        return name in self._registers
+
+    def address(self, name: str) -> int:
+        """Return where a register begins.
+
+        Parameters
+        ----------
+        name : str
+            Name of the register.
+        """
+        return self._registers[name].address
+
+    def touches(self, name: str, address: int, count: int) -> bool:
+        """Return whether some bytes belong to a register.
+
+        Parameters
+        ----------
+        name : str
+            Name of the register.
+        address : int
+            The first byte.
+        count : int
+            How many.
+        """
+        one = self._registers[name]
+        return address < one.address + one.size and one.address < address + count
 
     def get(self, name: str) -> int:
         """Return the number in a register, as it was last written or measured.

@@ -6,24 +6,38 @@ from collections.abc import Callable, Iterable
 from typing import Any
 
 from tarsus.errors import UnknownNameError
+from tarsus.hardware.bus.dialect import SERIES
 from tarsus.hardware.bus.protocol import Bus
 from tarsus.hardware.bus.registry import bus_kind, bus_over
-from tarsus.hardware.emulation.feetech import EmulatedFeetech
-from tarsus.hardware.emulation.line import EmulatedLine
+from tarsus.hardware.emulation.boards import EmulatedLines, EmulatedMaestro, EmulatedServo2040, EmulatedSsc32
+from tarsus.hardware.emulation.lx16a import EmulatedLx16a
+from tarsus.hardware.emulation.pca9685 import EmulatedPca9685
+from tarsus.hardware.emulation.register_line import EmulatedRegisters
+from tarsus.hardware.emulation.servos import EmulatedServos
 from tarsus.hardware.transport.clock import Clock
-from tarsus.hardware.transport.memory import MemoryTransport
+from tarsus.hardware.transport.memory import MemoryI2c, MemoryTransport
 
 __all__ = ["EMULATIONS", "emulate", "emulated_bus"]
 
-EMULATIONS: dict[str, Callable[..., EmulatedLine]] = {
-    "feetech-sts": lambda ids, **line: EmulatedFeetech(ids, "sts", **line),
-    "feetech-scs": lambda ids, **line: EmulatedFeetech(ids, "scs", **line),
+
+def _registers(name: str) -> Callable[..., EmulatedServos]:
+    return lambda ids, **line: EmulatedRegisters(ids, name, **line)
+
+
+EMULATIONS: dict[str, Callable[..., EmulatedServos]] = {
+    **{name: _registers(name) for name in SERIES},
+    "lx16a": EmulatedLx16a,
+    "maestro": EmulatedMaestro,
+    "ssc32": EmulatedSsc32,
+    "servo2040": EmulatedServo2040,
+    "lines": EmulatedLines,
+    "pca9685": EmulatedPca9685,
 }
 """What makes emulated servos, by the name of the bus."""
 
 
-def emulate(name: str, ids: Iterable[int], **line: Any) -> EmulatedLine:
-    """Return emulated servos.
+def emulate(name: str, ids: Iterable[int], **line: Any) -> Any:
+    """Return emulated servos: an `EmulatedLine`, or for I2C the devices on it.
 
     Parameters
     ----------
@@ -32,7 +46,7 @@ def emulate(name: str, ids: Iterable[int], **line: Any) -> EmulatedLine:
     ids : iterable of int
         Their ids or channels.
     **line
-        ``baud``, ``supply``, ``faults``, ``turnaround``, ``traits``.
+        ``supply``, ``faults``, ``traits``, and on serial lines ``baud`` and ``turnaround``.
 
     Raises
     ------
@@ -41,10 +55,11 @@ def emulate(name: str, ids: Iterable[int], **line: Any) -> EmulatedLine:
     """
     if name not in EMULATIONS:
         raise UnknownNameError.of("emulated servo bus", name, EMULATIONS)
-    return EMULATIONS[name](ids, **{"baud": bus_kind(name).baud, **line})
+    rate = {"baud": bus_kind(name).baud} if bus_kind(name).transport == "serial" else {}
+    return EMULATIONS[name](ids, **{**rate, **line})
 
 
-def emulated_bus(name: str, ids: Iterable[int], *, clock: Clock | None = None, **line: Any) -> tuple[Bus, EmulatedLine]:
+def emulated_bus(name: str, ids: Iterable[int], *, clock: Clock | None = None, **line: Any) -> tuple[Bus, Any]:
     """Return a bus in memory and the emulated servos on it.
 
     Parameters
@@ -64,4 +79,6 @@ def emulated_bus(name: str, ids: Iterable[int], *, clock: Clock | None = None, *
         If there is no bus of that name.
     """
     device = emulate(name, ids, **line)
+    if bus_kind(name).transport == "i2c":
+        return bus_over(name, MemoryI2c(device, clock, frequency=bus_kind(name).baud)), device
     return bus_over(name, MemoryTransport(device, clock)), device

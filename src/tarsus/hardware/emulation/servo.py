@@ -129,6 +129,10 @@ class EmulatedServo:
         """
         self._motor = self._shaft = position
 
+    def halt(self) -> None:
+        """Stop where the motor is, and hold."""
+        self.goal = self._motor
+
     def advance(self, now: float, supply: float) -> None:
         """Move on to a time.
 

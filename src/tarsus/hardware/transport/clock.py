@@ -26,9 +26,17 @@ class Clock(Protocol):
         """
 
 
-@represented()
+@represented("resolution")
 class SystemClock:
-    """The machine's own clock."""
+    """The machine's own clock.
+
+    Attributes
+    ----------
+    resolution : float
+        Its shortest step [s].
+    """
+
+    resolution = time.get_clock_info("monotonic").resolution
 
     def now(self) -> float:
         """Return the time [s]; only differences mean something."""
@@ -45,7 +53,7 @@ class SystemClock:
         time.sleep(max(seconds, 0.0))
 
 
-@represented()
+@represented("time")
 class ManualClock:
     """A clock that stands still unless something waits: emulated servos then run as fast as the computer can.
 
@@ -53,14 +61,19 @@ class ManualClock:
     ----------
     start : float
         What it shows at first [s].
+
+    Attributes
+    ----------
+    time : float
+        What it shows [s].
     """
 
     def __init__(self, start: float = 0.0) -> None:
-        self._time = start
+        self.time = start
 
     def now(self) -> float:
         """Return the time [s]; only differences mean something."""
-        return self._time
+        return self.time
 
     def sleep(self, seconds: float) -> None:
         """Move on at once.
@@ -70,4 +83,4 @@ class ManualClock:
         seconds : float
             By how much [s].
         """
-        self._time += max(seconds, 0.0)
+        self.time += max(seconds, 0.0)

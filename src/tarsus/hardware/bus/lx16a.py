@@ -1,0 +1,262 @@
+"""LX-16A, HTS and other bus servos of Hiwonder (LewanSoul)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+
+from tarsus.errors import BusError, CorruptAnswerError, ServoStatusError
+from tarsus.hardware.bus.checks import checked_goals, checked_ids, checked_range, checked_share, checked_speed
+from tarsus.hardware.bus.link import Link
+from tarsus.hardware.bus.protocol import Answers, BusServo, BusTiming, Capabilities, Telemetry
+from tarsus.hardware.bus.scanning import scanned
+from tarsus.hardware.codec import lx16a as codec
+from tarsus.hardware.transport.protocol import Transport
+from tarsus.hardware.transport.wire import serial_seconds
+from tarsus.representation import represented
+
+__all__ = ["Lx16aBus"]
+
+_CAPABILITIES = Capabilities(
+    unit="tick",
+    lowest=0,
+    highest=1000,
+    # 1000 steps over 240 degrees.
+    per_turn=1500,
+    ids=range(254),
+    ping="servo",
+    positions=True,
+    telemetry=frozenset(("position", "temperature", "voltage")),
+    torque_off="torque",
+    limits=True,
+)
+# From a request to the answer.
+_TURNAROUND = 300e-6
+
+
+@represented("name", "port")
+class Lx16aBus:
+    """Servos of the kinds LX-16A, LX-224, LX-15D, HTS-35H and alike, through Hiwonder's half-duplex adapter.
+
+    Servos are asked one at a time: reading all of 18 takes longer than a tick of 10 ms.
+
+    Parameters
+    ----------
+    transport : Transport
+        The line.
+    timeout : float
+        Longest time until an answer begins, beyond its time on the wire [s].
+
+    Attributes
+    ----------
+    name : str
+        Name of the bus.
+    port : str
+        Name of the port.
+    capabilities : Capabilities
+        What it can do.
+    """
+
+    def __init__(self, transport: Transport, *, timeout: float = 0.02) -> None:
+        self.name, self.port, self.capabilities = "lx16a", transport.port, _CAPABILITIES
+        self._transport = transport
+        self._link = Link(transport, self.name, codec.scan, timeout=timeout)
+
+    def ping(self, id: int) -> BusServo | None:
+        """Return a servo that answers, or None.
+
+        Parameters
+        ----------
+        id : int
+            Its id.
+
+        Raises
+        ------
+        CorruptAnswerError
+            If what comes back is damaged.
+        """
+        checked_ids(self.name, self.capabilities, (id,))
+        answers = self._read((id,), codec.ID_READ, 1)
+        for error in answers.errors:
+            if isinstance(error, CorruptAnswerError):
+                raise error
+        return BusServo(id) if answers.values else None
+
+    def scan(self, ids: Iterable[int] | None = None) -> Answers[BusServo]:
+        """Return the servos that answer, and an error for each id whose answer is damaged.
+
+        Parameters
+        ----------
+        ids : iterable of int, optional
+            Ids to ask; all if left out.
+        """
+        return scanned(self, ids)
+
+    def read_positions(self, ids: Sequence[int]) -> Answers[float]:
+        """Return measured positions [tick].
+
+        Parameters
+        ----------
+        ids : sequence of int
+            The servos.
+        """
+        answers = self._read(checked_ids(self.name, self.capabilities, ids), codec.POSITION_READ, 2)
+        return Answers({id: float(codec.decode_signed(data)) for id, data in answers.values.items()}, answers.errors)
+
+    def read_telemetry(self, ids: Sequence[int]) -> Answers[Telemetry]:
+        """Return what servos measure, with a request for each value.
+
+        Parameters
+        ----------
+        ids : sequence of int
+            The servos.
+        """
+        values: dict[int, Telemetry] = {}
+        errors: list[BusError] = []
+        for id in checked_ids(self.name, self.capabilities, ids):
+            parts: list[bytes] = []
+            for command, count in ((codec.POSITION_READ, 2), (codec.VOLTAGE_READ, 2), (codec.TEMPERATURE_READ, 1)):
+                answer = self._read((id,), command, count)
+                parts += answer.values.values()
+                if answer.errors:
+                    errors += answer.errors
+                    break
+            else:
+                values[id] = Telemetry(
+                    position=float(codec.decode_signed(parts[0])),
+                    voltage=codec.decode_unsigned(parts[1]) * 1e-3,
+                    temperature=float(codec.decode_unsigned(parts[2])),
+                )
+        return Answers(values, tuple(errors))
+
+    def write_goals(self, goals: Mapping[int, float]) -> None:
+        """Send goals [tick], one frame for each servo, and let all servos begin together.
+
+        Parameters
+        ----------
+        goals : mapping of int to float
+            Goals by id.
+        """
+        checked = checked_goals(self.name, self.capabilities, goals)
+        if checked:
+            self._link.send(self._frames(checked))
+
+    def set_torque(self, ids: Sequence[int] | None, on: bool) -> bool:
+        """Switch the torque of servos on or off; all of them at once with a broadcast.
+
+        Parameters
+        ----------
+        ids : sequence of int, or None
+            The servos; None for all on the bus.
+        on : bool
+            Whether they hold.
+        """
+        chosen = (codec.BROADCAST,) if ids is None else checked_ids(self.name, self.capabilities, ids)
+        for id in chosen:
+            self._link.send(codec.frame(id, codec.TORQUE_WRITE, bytes((int(on),))))
+        return True
+
+    def set_limits(self, id: int, lowest: float, highest: float) -> bool:
+        """Set the range of goals that a servo accepts; it keeps them without supply.
+
+        Parameters
+        ----------
+        id : int
+            The servo.
+        lowest, highest : float
+            Range [tick].
+
+        Raises
+        ------
+        NoAnswerError, CorruptAnswerError
+            If its answer does not come, or is damaged.
+        ServoStatusError
+            If the servo does not take the limits.
+        """
+        limits = checked_range(self.name, self.capabilities, id, lowest, highest)
+        wanted = codec.encode_words(*limits)
+        self._link.send(codec.frame(id, codec.LIMITS_WRITE, wanted))
+        read = self._read((id,), codec.LIMITS_READ, 4).require()[id]
+        if read != wanted:
+            raise ServoStatusError(
+                self.name,
+                self.port,
+                id=id,
+                expected=f"limits of {limits[0]} and {limits[1]}",
+                received=f"{codec.decode_unsigned(read[:2])} and {codec.decode_unsigned(read[2:])}",
+                remedy="Write them again; the lower limit must be below the upper one.",
+            )
+        return True
+
+    def set_speed_limit(self, ids: Sequence[int], speed: float | None) -> bool:
+        """Do nothing: these servos take times of movements, not speeds.
+
+        Parameters
+        ----------
+        ids : sequence of int
+            The servos.
+        speed : float or None
+            Speed [tick/s].
+        """
+        checked_speed(self.name, self.capabilities, speed)
+        checked_ids(self.name, self.capabilities, ids)
+        return False
+
+    def set_torque_limit(self, ids: Sequence[int], share: float) -> bool:
+        """Do nothing: these servos have no torque limit.
+
+        Parameters
+        ----------
+        ids : sequence of int
+            The servos.
+        share : float
+            Share of the highest torque.
+        """
+        checked_share(self.name, share)
+        checked_ids(self.name, self.capabilities, ids)
+        return False
+
+    def set_watchdog(self, ids: Sequence[int], seconds: float | None) -> bool:
+        """Do nothing: these servos have no watchdog.
+
+        Parameters
+        ----------
+        ids : sequence of int
+            The servos.
+        seconds : float or None
+            The time [s].
+        """
+        checked_ids(self.name, self.capabilities, ids)
+        del seconds
+        return False
+
+    def timing(self, ids: Sequence[int]) -> BusTiming:
+        """Return how long the bytes of a tick take on the wire.
+
+        Parameters
+        ----------
+        ids : sequence of int
+            The servos.
+        """
+        baud, servos = self._transport.baud, len(ids)
+        goals = serial_seconds(len(self._frames(dict.fromkeys(ids, 0.0))), baud)
+        # A request of 6 bytes, and an answer with as many more as it has data.
+        position, voltage, temperature = (serial_seconds(12 + data, baud) + _TURNAROUND for data in (2, 2, 1))
+        return BusTiming(goals, servos * position, servos * (position + voltage + temperature))
+
+    def close(self) -> None:
+        """Close the port; torque stays as it is."""
+        self._transport.close()
+
+    def _frames(self, goals: Mapping[int, float]) -> bytes:
+        # In no time: as fast as the servo can.
+        waiting = (codec.frame(id, codec.MOVE_WAIT, codec.encode_words(round(goal), 0)) for id, goal in goals.items())
+        return b"".join(waiting) + codec.frame(codec.BROADCAST, codec.MOVE_START)
+
+    def _read(self, ids: Sequence[int], command: int, count: int) -> Answers[bytes]:
+        values: dict[int, bytes] = {}
+        errors: list[BusError] = []
+        for id in ids:
+            answer = self._link.ask(codec.frame(id, command), (id,), count, belongs=lambda frame: frame.code == command)
+            values.update({id: frame.data for id, frame in answer.values.items()})
+            errors += answer.errors
+        return Answers(values, tuple(errors))

@@ -1,0 +1,92 @@
+"""Pimoroni Servo2040 with the firmware for Chica, over USB."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from tarsus.hardware.bus.board_bus import LONGEST_PULSE, SHORTEST_PULSE, BoardBus, runs
+from tarsus.hardware.bus.link import Link
+from tarsus.hardware.bus.protocol import Capabilities, Telemetry
+from tarsus.hardware.codec import servo2040 as codec
+from tarsus.hardware.transport.protocol import Transport
+from tarsus.hardware.transport.wire import serial_seconds
+
+__all__ = ["Servo2040Bus"]
+
+_CAPABILITIES = Capabilities(
+    unit="us",
+    lowest=SHORTEST_PULSE,
+    highest=LONGEST_PULSE,
+    ids=range(codec.CHANNELS),
+    ping="board",
+    telemetry=frozenset(("current", "voltage")),
+    torque_off="pulses",
+)
+_TOUCH_SENSORS = 6
+
+
+class Servo2040Bus(BoardBus):
+    """A Servo2040 with 18 channels, six touch sensors, and measured current and voltage of its supply.
+
+    All channels have pulses or none: switching one on or off switches all of them.
+
+    Parameters
+    ----------
+    transport : Transport
+        The port.
+    timeout : float
+        Longest time until an answer begins, beyond its time on the wire [s].
+    """
+
+    def __init__(self, transport: Transport, *, timeout: float = 0.02) -> None:
+        super().__init__("servo2040", transport, _CAPABILITIES)
+        self._transport = transport
+        self._link = Link(transport, self.name, codec.scan, timeout=timeout)
+
+    def read_touch(self) -> tuple[float, ...]:
+        """Return the voltages of the six touch sensors [V].
+
+        Raises
+        ------
+        NoAnswerError, CorruptAnswerError
+            If the board does not answer, or its answer is damaged.
+        """
+        return tuple(codec.voltage(value) for value in self._get(codec.TOUCH, _TOUCH_SENSORS))
+
+    def _goal_seconds(self, ids: Sequence[int]) -> float:
+        # Over USB it takes less than at the rate of the port, which means nothing there.
+        return serial_seconds(len(self._frames(dict.fromkeys(ids, 0.0))), self._transport.baud)
+
+    def _telemetry_seconds(self) -> float:
+        # Two values of two bytes, after a header of three.
+        return serial_seconds(len(codec.get(codec.CURRENT, 2)) + 3 + 4, self._transport.baud)
+
+    def _frames(self, goals: Mapping[int, float]) -> bytes:
+        chunks = runs(goals, codec.CHANNELS)
+        return b"".join(codec.set_pins(run[0], [round(goals[channel]) for channel in run]) for run in chunks)
+
+    def _send(self, goals: Mapping[int, float]) -> None:
+        self._link.send(self._frames(goals))
+
+    def _switch(self, ids: Sequence[int] | None, on: bool) -> None:
+        del ids
+        self._link.send(codec.set_pins(codec.RELAY, (int(on),)))
+
+    def _board(self, id: int) -> str:
+        self._get(id, 1)
+        return "Servo2040"
+
+    def _measured(self) -> Telemetry:
+        current, voltage = self._get(codec.CURRENT, 2)
+        return Telemetry(current=codec.current(current), voltage=codec.voltage(voltage))
+
+    def _get(self, first: int, count: int) -> tuple[int, ...]:
+        """Return the values of pins."""
+        answers = self._link.ask(
+            codec.get(first, count), (first,), 2 * count, belongs=lambda frame: frame.code == count
+        )
+        for error in answers.errors:
+            # The pin is none of the servos.
+            remedy = "Check that this is the board's port, and that the firmware for Chica is on it."
+            raise type(error)(self.name, self.port, expected=error.expected, received=error.received, remedy=remedy)
+        return codec.values_in(answers.values[first])

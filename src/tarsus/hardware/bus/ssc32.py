@@ -1,0 +1,88 @@
+"""Lynxmotion SSC-32 and SSC-32U."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from tarsus.errors import CorruptAnswerError
+from tarsus.hardware.bus.board_bus import BoardBus
+from tarsus.hardware.bus.checks import checked_ids, checked_speed
+from tarsus.hardware.bus.link import Link, hexadecimal
+from tarsus.hardware.bus.protocol import Capabilities
+from tarsus.hardware.codec import ssc32 as codec
+from tarsus.hardware.codec.packet import scan
+from tarsus.hardware.transport.protocol import Transport
+from tarsus.hardware.transport.wire import serial_seconds
+
+__all__ = ["Ssc32Bus"]
+
+# The board turns widths outside into these.
+_CAPABILITIES = Capabilities(
+    unit="us",
+    lowest=500,
+    highest=2500,
+    ids=range(32),
+    ping="board",
+    torque_off="pulses",
+    speed_limit=True,
+)
+
+
+class Ssc32Bus(BoardBus):
+    """An SSC-32 or SSC-32U with 32 channels.
+
+    Parameters
+    ----------
+    transport : Transport
+        The line.
+    timeout : float
+        Longest time until an answer begins, beyond its time on the wire [s].
+    """
+
+    def __init__(self, transport: Transport, *, timeout: float = 0.02) -> None:
+        super().__init__("ssc32", transport, _CAPABILITIES)
+        self._transport = transport
+        self._link = Link(transport, self.name, scan, timeout=timeout)
+        self._speeds: dict[int, int] = {}
+
+    def set_speed_limit(self, ids: Sequence[int], speed: float | None) -> bool:
+        """Set the highest speed at which pulses change; the board has it from the next goal on.
+
+        Parameters
+        ----------
+        ids : sequence of int
+            The channels.
+        speed : float or None
+            Speed [us/s]; None for none.
+        """
+        limit = checked_speed(self.name, self.capabilities, speed)
+        for channel in checked_ids(self.name, self.capabilities, ids):
+            self._speeds.pop(channel, None)
+            if limit is not None:
+                self._speeds[channel] = min(max(round(limit), 1), 65535)
+        return True
+
+    def _goal_seconds(self, ids: Sequence[int]) -> float:
+        size = len(codec.move(dict.fromkeys(ids, 1500), speeds=self._speeds))
+        return serial_seconds(size, self._transport.baud)
+
+    def _send(self, goals: Mapping[int, float]) -> None:
+        pulses = {channel: round(goal) for channel, goal in goals.items()}
+        self._link.send(codec.move(pulses, speeds=self._speeds))
+
+    def _switch(self, ids: Sequence[int] | None, on: bool) -> None:
+        if not on:
+            self._link.send(codec.move(dict.fromkeys(self.capabilities.ids if ids is None else ids, 0)))
+
+    def _board(self, id: int) -> str:
+        del id
+        answer = self._link.ask_board(codec.VERSION, end=codec.END)
+        if not (answer[:-1].isascii() and answer[:-1].decode("ascii").isprintable()):
+            raise CorruptAnswerError(
+                self.name,
+                self.port,
+                expected="the board's version",
+                received=hexadecimal(answer),
+                remedy="Check the baud rate: buttons and lamps of the SSC-32U tell and set it.",
+            )
+        return answer[:-1].decode("ascii")

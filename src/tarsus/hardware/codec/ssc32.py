@@ -1,0 +1,55 @@
+"""Lynxmotion SSC-32 and SSC-32U: lines of ASCII that end with a carriage return.
+
+Sources: Lynxmotion SSC-32U user guide, "Commands"; ``P0``, which ends the pulses, is Lynxmotion's own answer in
+community.robotshop.com/forum/t/servo-release-with-ssc-32u.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+__all__ = ["END", "MOVING", "VERSION", "move", "query_pulses", "read_pulses"]
+
+END = b"\r"
+VERSION = b"VER\r"
+MOVING = b"Q\r"
+
+
+def move(pulses: Mapping[int, int], *, speeds: Mapping[int, int] | None = None) -> bytes:
+    """Return the group move that sets pulse widths at the same time.
+
+    Parameters
+    ----------
+    pulses : mapping of int to int
+        Pulse widths by channel [us]; 0 ends the pulses.
+    speeds : mapping of int to int, optional
+        Highest speeds by channel [us/s].
+    """
+    limits = speeds or {}
+    parts = (
+        f"#{channel}P{pulse}" + (f"S{limits[channel]}" if channel in limits and pulse else "")
+        for channel, pulse in pulses.items()
+    )
+    return "".join(parts).encode("ascii") + END
+
+
+def query_pulses(*channels: int) -> bytes:
+    """Return the query for the pulse widths that channels send; a byte for each of them answers.
+
+    Parameters
+    ----------
+    *channels : int
+        The channels.
+    """
+    return "".join(f"QP{channel}" for channel in channels).encode("ascii") + END
+
+
+def read_pulses(answer: bytes) -> tuple[int, ...]:
+    """Return pulse widths [us], which the board tells in steps of 10 us.
+
+    Parameters
+    ----------
+    answer : bytes
+        The answer to `query_pulses`.
+    """
+    return tuple(10 * byte for byte in answer)
