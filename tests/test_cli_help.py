@@ -56,6 +56,8 @@ def test_examples_run(example, tmp_path, monkeypatch):
     monkeypatch.setitem(animate.__kwdefaults__, "max_duration", 0.5)
     if "check my-robot.toml" in example:
         assert run("robots", "new", "my-robot").exit_code == 0
+    if " my-strider.toml" in example and "--out my-strider.toml" not in example:
+        assert run("calibration", "new", "strider", "--nominal", "--out", "my-strider.toml").exit_code == 0
     Path("angles.json").write_text(ANGLES, encoding="utf-8")
     result = run(*shlex.split(example)[1:])
     assert result.exit_code == 0, result.output

@@ -37,7 +37,14 @@ CLASSES = sorted({c for c in public_classes() if not getattr(c, "_is_protocol", 
 @cache
 def values():
     """One value of each public class, or several: as large as users have them."""
-    return [*static_values(), *load_values(), *control_values(), *simulation_values(), *hardware_values()]
+    return [
+        *static_values(),
+        *load_values(),
+        *control_values(),
+        *simulation_values(),
+        *hardware_values(),
+        *calibration_values(),
+    ]
 
 
 @cache
@@ -66,6 +73,14 @@ def load_values():
     yield tarsus.contact_forces(robot, motion.angles, motion.body, motion.contacts)
     yield from (tarsus.motion_torques(robot, motion), tarsus.handbook(robot), tarsus.compare_with_statics(robot))
     yield tarsus.cycle_torques(designs(), tarsus.Gait.named("tripod"), stroke=0.03, phases=8)
+
+
+def calibration_values():
+    robot = tarsus.load_robot("strider")
+    yield from (hardware.BUS_COMMANDS["feetech-sts"], hardware.new_calibration(robot, "strider"))
+    yield from (calibration := hardware.nominal_calibration(robot, "strider"), *calibration.buses)
+    yield from (calibration.joints[0][0], hardware.SupplySettings(voltage=7.4, least_voltage=6.0))
+    yield from (hardware.FootSwitches(bus="main", inputs=(0, 1, 2, 3, 4, None)), hardware.Mounting(port="COM3"))
 
 
 def control_values():

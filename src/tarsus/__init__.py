@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from tarsus.control.walk_controller import WalkController
     from tarsus.errors import (
         BusError,
+        CalibrationError,
         CollisionError,
         CorruptAnswerError,
         InputError,
@@ -118,8 +119,8 @@ _HOMES = {
     "tarsus.scenario.runner": ("run_scenario",),
     "tarsus.scenario.scenario": ("Scenario",),
     "tarsus.errors": (
-        *("BusError", "CollisionError", "CorruptAnswerError", "InputError", "MissingDataError", "NoAnswerError"),
-        *("PortError", "RobotFileError", "ServoStatusError", "SimulationError"),
+        *("BusError", "CalibrationError", "CollisionError", "CorruptAnswerError", "InputError", "MissingDataError"),
+        *("NoAnswerError", "PortError", "RobotFileError", "ServoStatusError", "SimulationError"),
         *("StrokeError", "TarsusError", "UnknownNameError", "UnreachableError"),
     ),
     "tarsus.gait.cycle": ("cycle_feet",),
@@ -202,6 +203,7 @@ __all__ = [
     "Admittance",
     "BodyPath",
     "BusError",
+    "CalibrationError",
     "CollisionError",
     "Command",
     "ContactForces",

@@ -4,6 +4,7 @@
 
     TarsusError
     ├── RobotFileError      a robot file can't be read or written, or something in it is wrong
+    ├── CalibrationError    a calibration file can't be read or written, is incomplete, or contradicts the robot
     ├── UnknownNameError    no robot, servo, gait or leg has that name
     ├── InputError          an argument has the wrong shape, is not finite or is out of range (also a ValueError)
     ├── MissingDataError    the robot file lacks data that a computation needs
@@ -28,6 +29,7 @@ from typing import Self
 
 __all__ = [
     "BusError",
+    "CalibrationError",
     "CollisionError",
     "CorruptAnswerError",
     "InputError",
@@ -60,8 +62,21 @@ class RobotFileError(TarsusError):
 
     def __init__(self, where: str, problems: Sequence[str]) -> None:
         self.problems = tuple(problems)
-        lines = "".join(f"\n  {problem}" for problem in self.problems)
-        super().__init__(f"{where}: {len(self.problems)} problem{'s' * (len(self.problems) != 1)}{lines}")
+        super().__init__(_listed(where, self.problems))
+
+
+class CalibrationError(TarsusError):
+    """A calibration file can't be read or written, is incomplete, or contradicts itself or the robot.
+
+    Attributes
+    ----------
+    problems : tuple of str
+        One line for each problem.
+    """
+
+    def __init__(self, where: str, problems: Sequence[str]) -> None:
+        self.problems = tuple(problems)
+        super().__init__(_listed(where, self.problems))
 
 
 class UnknownNameError(TarsusError):
@@ -160,6 +175,12 @@ class CorruptAnswerError(BusError):
 
 class ServoStatusError(BusError):
     """A servo or board reports an error."""
+
+
+def _listed(where: str, problems: Sequence[str]) -> str:
+    """Return the message that lists problems, a line for each."""
+    lines = "".join(f"\n  {problem}" for problem in problems)
+    return f"{where}: {len(problems)} problem{'s' * (len(problems) != 1)}{lines}"
 
 
 def nearest_name(name: str, known: Iterable[str]) -> str | None:

@@ -11,6 +11,7 @@ except ImportError:  # installed without the extra
     raise SystemExit("the command line needs click and rich: pip install 'tarsus[cli]'") from None
 
 from tarsus import __version__
+from tarsus.cli.calibration import calibration
 from tarsus.cli.drive import drive
 from tarsus.cli.export import export
 from tarsus.cli.fk import fk
@@ -53,5 +54,20 @@ def main() -> None:
     """
 
 
-for command in (studio, walk, drive, simulate, pose, fk, ik, rest, loads, servos, handbook, robots, export):
+for command in (
+    studio,
+    walk,
+    drive,
+    simulate,
+    pose,
+    fk,
+    ik,
+    rest,
+    loads,
+    servos,
+    handbook,
+    robots,
+    calibration,
+    export,
+):
     main.add_command(command)

@@ -1,4 +1,4 @@
-"""Real robots: servo buses and their transports, and emulated servos that speak the same bytes.
+"""Real robots: calibration, servo buses and their transports, and emulated servos that speak the same bytes.
 
 ::
 
@@ -19,6 +19,17 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from tarsus.hardware.bus.protocol import Answers, Bus, BusServo, BusTiming, Capabilities, Telemetry
     from tarsus.hardware.bus.registry import BUSES, BusKind, bus_over, open_bus
+    from tarsus.hardware.calibration.blank import new_calibration, nominal_calibration
+    from tarsus.hardware.calibration.bus_commands import BUS_COMMANDS, BusCommands
+    from tarsus.hardware.calibration.calibration import Calibration
+    from tarsus.hardware.calibration.parts import (
+        BusSettings,
+        FootSwitches,
+        JointCalibration,
+        Mounting,
+        SupplySettings,
+    )
+    from tarsus.hardware.calibration.schema import calibration_schema
     from tarsus.hardware.emulation.faults import Faults
     from tarsus.hardware.emulation.line import EmulatedLine
     from tarsus.hardware.emulation.registry import emulate, emulated_bus
@@ -32,6 +43,13 @@ if TYPE_CHECKING:
 _HOMES = {
     "tarsus.hardware.bus.protocol": ("Answers", "Bus", "BusServo", "BusTiming", "Capabilities", "Telemetry"),
     "tarsus.hardware.bus.registry": ("BUSES", "BusKind", "bus_over", "open_bus"),
+    "tarsus.hardware.calibration.blank": ("new_calibration", "nominal_calibration"),
+    "tarsus.hardware.calibration.bus_commands": ("BUS_COMMANDS", "BusCommands"),
+    "tarsus.hardware.calibration.calibration": ("Calibration",),
+    "tarsus.hardware.calibration.parts": (
+        *("BusSettings", "FootSwitches", "JointCalibration", "Mounting", "SupplySettings"),
+    ),
+    "tarsus.hardware.calibration.schema": ("calibration_schema",),
     "tarsus.hardware.emulation.faults": ("Faults",),
     "tarsus.hardware.emulation.line": ("EmulatedLine",),
     "tarsus.hardware.emulation.registry": ("emulate", "emulated_bus"),
@@ -46,27 +64,38 @@ _HOME_OF = {name: module for module, names in _HOMES.items() for name in names}
 
 __all__ = [
     "BUSES",
+    "BUS_COMMANDS",
     "Answers",
     "Bus",
+    "BusCommands",
     "BusKind",
     "BusServo",
+    "BusSettings",
     "BusTiming",
+    "Calibration",
     "Capabilities",
     "EmulatedLine",
     "EmulatedServo",
     "Faults",
+    "FootSwitches",
+    "JointCalibration",
     "ManualClock",
     "MemoryTransport",
+    "Mounting",
     "PtyServer",
     "SerialTransport",
     "ServoTraits",
     "Supply",
+    "SupplySettings",
     "SystemClock",
     "Telemetry",
     "bus_over",
+    "calibration_schema",
     "emulate",
     "emulated_bus",
     "list_ports",
+    "new_calibration",
+    "nominal_calibration",
     "open_bus",
 ]
 

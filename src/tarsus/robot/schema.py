@@ -23,6 +23,7 @@ __all__ = [
     "ServoFigures",
     "SourceEntry",
     "robot_schema",
+    "tidy_schema",
 ]
 
 GAIT_NAMES = ("tripod", "tetrapod", "amble", "ripple", "wave", "creep")
@@ -248,16 +249,16 @@ class RobotFile(Table):
 
 def robot_schema() -> dict[str, Any]:
     """Return the JSON schema of a robot file, for editors that complete and check TOML."""
-    schema: dict[str, Any] = _tidy(RobotFile.model_json_schema())
+    schema: dict[str, Any] = tidy_schema(RobotFile.model_json_schema())
     return {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema, "title": "Tarsus robot"}
 
 
-def _tidy(node: Any) -> Any:
+def tidy_schema(node: Any) -> Any:
     """Remove what has no meaning in TOML: null, and titles derived from the keys."""
     if isinstance(node, list):
-        return [_tidy(item) for item in node]
+        return [tidy_schema(item) for item in node]
     if not isinstance(node, dict):
         return node
-    tidied = {key: _tidy(value) for key, value in node.items() if key not in ("title", "default")}
+    tidied = {key: tidy_schema(value) for key, value in node.items() if key not in ("title", "default")}
     choices = [choice for choice in tidied.pop("anyOf", []) if choice != {"type": "null"}]
     return {**choices[0], **tidied} if choices else tidied

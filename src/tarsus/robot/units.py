@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from decimal import Context, Decimal
 
-__all__ = ["degrees", "from_milli", "radians", "to_decimal", "to_milli"]
+__all__ = ["degrees", "from_milli", "per_degree", "per_radian", "radians", "to_decimal", "to_milli"]
 
 # More digits than the 17 of a double, so that each conversion is rounded once, at its end; no traps, whatever
 # the decimal context of the calling program.
@@ -45,3 +45,15 @@ def degrees(value: float) -> Decimal:
     # 17 digits always suffice: half a unit of the 17th is less than half the distance between doubles.
     roundings = (Context(prec=digits, traps=[]).plus(exact) for digits in range(1, _DIGITS_OF_A_DOUBLE + 1))
     return next(rounded for rounded in roundings if radians(rounded) == value)
+
+
+def per_radian(value: Decimal) -> float:
+    """Return the double nearest to `value` for a degree, for a radian."""
+    return float(_CONTEXT.divide(_CONTEXT.multiply(value, Decimal(180)), _PI))
+
+
+def per_degree(value: float) -> Decimal:
+    """Return the shortest decimal for a degree that `per_radian` converts to the same double."""
+    exact = _CONTEXT.divide(_CONTEXT.multiply(Decimal(value), _PI), Decimal(180))
+    roundings = (Context(prec=digits, traps=[]).plus(exact) for digits in range(1, _DIGITS_OF_A_DOUBLE + 1))
+    return next(rounded for rounded in roundings if per_radian(rounded) == value)

@@ -5,6 +5,7 @@ Decimals are written with exactly their digits. General TOML writers put every n
 
 from __future__ import annotations
 
+import datetime
 import json
 import re
 from decimal import Decimal
@@ -59,6 +60,10 @@ def _value(value: Any) -> str:
         return toml_number(value)
     if isinstance(value, str):
         return toml_string(value)
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, datetime.date):
+        return value.isoformat()
     if isinstance(value, list):
         return f"[{', '.join(_value(item) for item in value)}]"
     return f"{{ {', '.join(f'{key} = {_value(item)}' for key, item in value.items())} }}"

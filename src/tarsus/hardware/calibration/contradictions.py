@@ -1,0 +1,193 @@
+"""What contradicts itself, the bus or the robot in a calibration."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from tarsus.errors import InputError, nearest_name
+from tarsus.hardware.calibration.bus_commands import BUS_COMMANDS, BusCommands
+from tarsus.hardware.calibration.parts import BusSettings, FootSwitches, JointCalibration
+from tarsus.robot.robot import JOINTS, Robot
+
+__all__ = ["Contradiction", "angle_range", "contradictions"]
+
+# Pulse widths for a degree are round numbers, so that the range of a servo is met to 1 % only.
+_TRAVEL_TOLERANCE = 1.01
+_ROUNDING = 1e-9
+# Of each PCA9685.
+_CHANNELS = 16
+
+
+class Contradiction(NamedTuple):
+    """Something that can't be.
+
+    Attributes
+    ----------
+    place : tuple of (str or int)
+        Path in the calibration file: ``("legs", leg, "femur")`` or ``("buses", number)``.
+    text : str
+        What is wrong, the number and its bound.
+    """
+
+    place: tuple[str | int, ...]
+    text: str
+
+
+def contradictions(
+    robot: Robot,
+    buses: Sequence[BusSettings],
+    joints: Sequence[Sequence[JointCalibration]],
+    foot_switches: FootSwitches | None = None,
+) -> list[Contradiction]:
+    """Return everything that can't be.
+
+    Parameters
+    ----------
+    robot : Robot
+        A single robot.
+    buses : sequence of BusSettings
+        The buses.
+    joints : nested sequence of JointCalibration
+        ``joints[leg][joint]``.
+    foot_switches : FootSwitches, optional
+        The foot switches.
+    """
+    found = list(_of_buses(buses))
+    known = {bus.name: bus for bus in buses if bus.kind in BUS_COMMANDS}
+    taken: dict[tuple[str, int], str] = {}
+    for leg, row in enumerate(joints):
+        for j, joint in enumerate(row):
+            name = f"{robot.leg_names[leg]} {JOINTS[j]}"
+            texts = list(_of_joint(robot, leg, j, joint, known))
+            if joint.number is not None:
+                other = taken.setdefault((joint.bus, joint.number), name)
+                if other != name:
+                    texts.append(
+                        f"{_key(known.get(joint.bus))} {joint.number} on bus {joint.bus!r} is that of {other} already"
+                    )
+            found += [Contradiction(("legs", leg, JOINTS[j]), f"{name}: {text}") for text in texts]
+    if foot_switches is not None:
+        found += [
+            Contradiction(("sensors", "foot_switches"), text) for text in _of_switches(robot, foot_switches, known)
+        ]
+    return found
+
+
+def angle_range(joint: JointCalibration) -> tuple[float, float]:
+    """Return the least and greatest joint angle within the limits of a joint's commands [rad].
+
+    Parameters
+    ----------
+    joint : JointCalibration
+        A joint of which all is known.
+    """
+    if joint.limits is None or joint.zero is None or joint.direction is None or joint.scale is None:
+        raise InputError(f"the joint's {', '.join(joint.missing)} must be known")
+    slope = joint.direction * joint.scale
+    low, high = sorted((limit - joint.zero) / slope for limit in joint.limits)
+    return low, high
+
+
+def _key(bus: BusSettings | None) -> str:
+    return bus.properties.number_key if bus else "id"
+
+
+def _of_buses(buses: Sequence[BusSettings]) -> Iterator[Contradiction]:
+    names: set[str] = set()
+    for number, bus in enumerate(buses):
+        if bus.kind not in BUS_COMMANDS:
+            nearest = nearest_name(bus.kind, BUS_COMMANDS)
+            hint = f"; did you mean {nearest!r}?" if nearest else f"; there are: {', '.join(BUS_COMMANDS)}"
+            yield Contradiction(("buses", number), f"bus {bus.name!r}: no kind of bus is called {bus.kind!r}{hint}")
+        if bus.name in names:
+            yield Contradiction(("buses", number), f"two buses are called {bus.name!r}; each needs a name of its own")
+        names.add(bus.name)
+
+
+def _of_joint(robot: Robot, leg: int, j: int, joint: JointCalibration, buses: dict[str, BusSettings]) -> Iterator[str]:
+    """Yield what is wrong with one joint."""
+    if joint.bus not in buses:
+        yield f"there is no bus {joint.bus!r}; there are: {', '.join(buses) or 'none'}"
+        return
+    kind = buses[joint.bus].properties
+    first, last = kind.numbers
+    if buses[joint.bus].addresses:
+        last = _CHANNELS * len(buses[joint.bus].addresses) - 1
+    if joint.number is not None and not first <= joint.number <= last:
+        yield f"{kind.number_key} is {joint.number}; on {kind.text} it is from {first} to {last}"
+    if joint.direction not in (None, 1, -1):
+        yield f"direction is {joint.direction}; it must be 1 or -1"
+        return
+    for key, value in (("zero", joint.zero), ("scale", joint.scale)):
+        if value is not None and not (math.isfinite(value) and (key == "zero" or value > 0)):
+            yield f"{key} is {value:g}; it must be a finite number{' greater than 0' * (key == 'scale')}"
+            return
+    limits = list(_of_limits(joint, kind))
+    yield from limits
+    if not limits:
+        yield from _of_angles(robot, leg, j, joint, kind)
+
+
+def _of_limits(joint: JointCalibration, kind: BusCommands) -> Iterator[str]:
+    """Yield what is wrong with the limits of the commands."""
+    if joint.limits is None:
+        return
+    low, high = joint.limits
+    least, most = kind.commands
+    if not low < high:
+        yield f"limits are {low:g} and {high:g} {kind.unit}; the lower one comes first"
+    elif not (least <= low and high <= most):
+        yield f"limits are {low:g} to {high:g} {kind.unit}; {kind.text} can send {least:g} to {most:g}"
+
+
+def _of_angles(robot: Robot, leg: int, j: int, joint: JointCalibration, kind: BusCommands) -> Iterator[str]:
+    """Yield how a joint contradicts the robot's limits or the servo's travel."""
+    own, servo = np.asarray(robot.limits)[leg, j], robot.servos[leg][j]
+    if joint.limits is not None and joint.scale is not None and servo is not None and servo.travel is not None:
+        swept = (joint.limits[1] - joint.limits[0]) / joint.scale
+        if swept > servo.travel * _TRAVEL_TOLERANCE:
+            yield (
+                f"limits of {joint.limits[0]:g} to {joint.limits[1]:g} {kind.unit} are {math.degrees(swept):.4g} deg, "
+                f"beyond the travel of the {servo.name}, {math.degrees(servo.travel):.4g} deg"
+            )
+    whole = not joint.missing
+    if whole:
+        low, high = angle_range(joint)
+        if high < own[0] or low > own[1]:
+            yield (
+                f"its limits are {math.degrees(low):.4g} to {math.degrees(high):.4g} deg as joint angles, all of it "
+                f"beyond those of the robot, {_degrees(own)} deg: zero or direction is wrong"
+            )
+            return
+    if joint.soft_limits is None:
+        return
+    low, high = joint.soft_limits
+    if not low < high:
+        yield f"soft limits are {_degrees(joint.soft_limits)} deg; the lower one comes first"
+    elif low < own[0] - _ROUNDING or high > own[1] + _ROUNDING:
+        yield f"soft limits of {_degrees(joint.soft_limits)} deg are beyond those of the robot, {_degrees(own)} deg"
+    elif whole:
+        ends = angle_range(joint)
+        if low < ends[0] - _ROUNDING or high > ends[1] + _ROUNDING:
+            yield (
+                f"soft limits of {_degrees(joint.soft_limits)} deg are beyond what the limits of the commands allow, "
+                f"{_degrees(ends)} deg"
+            )
+
+
+def _of_switches(robot: Robot, switches: FootSwitches, buses: dict[str, BusSettings]) -> Iterator[str]:
+    if switches.bus not in buses:
+        yield f"foot switches: there is no bus {switches.bus!r}; there are: {', '.join(buses) or 'none'}"
+    if len(switches.inputs) != robot.legs:
+        yield f"foot switches: {len(switches.inputs)} inputs; the robot has {robot.legs} legs"
+    used = [number for number in switches.inputs if number is not None]
+    if len(set(used)) < len(used):
+        yield "foot switches: two legs have the same input"
+
+
+def _degrees(pair: Sequence[float]) -> str:
+    return f"{math.degrees(pair[0]):.4g} to {math.degrees(pair[1]):.4g}"
