@@ -57,7 +57,13 @@ def test_examples_run(example, tmp_path, monkeypatch):
     if "check my-robot.toml" in example:
         assert run("robots", "new", "my-robot").exit_code == 0
     if " my-strider.toml" in example and "--out my-strider.toml" not in example:
-        assert run("calibration", "new", "strider", "--nominal", "--out", "my-strider.toml").exit_code == 0
+        assert (
+            run("calibration", "new", "strider", "--nominal", "--bus", "ssc32", "--out", "my-strider.toml").exit_code
+            == 0
+        )
+    if " Hex_Cfg.h" in example:
+        assert run("calibration", "new", "phoenix", "--nominal", "--bus", "ssc32").exit_code == 0
+        assert run("calibration", "to-phoenix", "phoenix.calibration.toml").exit_code == 0
     Path("angles.json").write_text(ANGLES, encoding="utf-8")
     result = run(*shlex.split(example)[1:])
     assert result.exit_code == 0, result.output

@@ -12,22 +12,25 @@ from tarsus.gait.motion import Motion
 from tarsus.gait.path import BodyPath, curved_path, straight_path, twist_path
 from tarsus.gait.plan import plan_walk
 from tarsus.robot.file import load_robot
+from tarsus.robot.robot import Robot
 
-__all__ = ["path_of", "plan", "with_changes"]
+__all__ = ["DISTANCE", "path_of", "plan", "with_changes"]
 
-_DISTANCE = 500.0
+DISTANCE = 500.0
+"""Distance of a straight walk by default [mm]."""
+
 # Options that determine the path, with the options that depend on them.
 _PATH_OPTIONS = {"distance": ("heading",), "curve": ("centre",), "twist": ("duration",)}
 _LENGTHS = ("stroke", "speed", "body_height", "swing_height", "foot_distance")
 
 
-def plan(name: str, options: dict[str, Any]) -> Motion:
+def plan(name: str | Robot, options: dict[str, Any]) -> Motion:
     """Plan the walk given by the options.
 
     Parameters
     ----------
-    name : str
-        Name of the robot, or path of its file.
+    name : str or Robot
+        Name of the robot, path of its file, or the robot itself.
     options : dict
         Options of `tarsus walk`, None if not given.
 
@@ -39,7 +42,7 @@ def plan(name: str, options: dict[str, Any]) -> Motion:
         If the robot, the gait or the walk is not possible.
     """
     path = path_of(options)
-    robot = load_robot(name)
+    robot = name if isinstance(name, Robot) else load_robot(name)
     gait = Gait.named(options["gait"] or robot.gait.name, legs=robot.legs, turning=path.angle)
     tilt = options["tilt"] or (0.0, 0.0)
     lengths: dict[str, Any] = {key: None if options[key] is None else options[key] / 1000 for key in _LENGTHS}
@@ -102,5 +105,5 @@ def path_of(options: dict[str, Any]) -> BodyPath:
             raise click.UsageError("--twist and --duration must be given together")
         vx, vy, wz = options["twist"]
         return twist_path(vx / 1000, vy / 1000, math.radians(wz), options["duration"])
-    distance = _DISTANCE if options["distance"] is None else options["distance"]
+    distance = DISTANCE if options["distance"] is None else options["distance"]
     return straight_path(distance / 1000, math.radians(options["heading"] or 0.0))

@@ -8,9 +8,12 @@ from typing import TYPE_CHECKING, Any, Literal
 import click
 
 from tarsus.cli.output import print_json, show
+from tarsus.cli.pulses import pose_pulses, pulse_table, pulses_option
 from tarsus.cli.values import examples, json_option, number_option, robot_argument
 
 if TYPE_CHECKING:
+    from rich.table import Table
+
     from tarsus.report.standing_summary import Standing
 
 __all__ = ["pose"]
@@ -24,6 +27,7 @@ __all__ = ["pose"]
         "tarsus pose strider --roll 8 --json",
         "tarsus pose mithi --knee down",
         "tarsus pose phantomx --z -15 --picture pose.png",
+        "tarsus pose strider --z 20 --pulses my-strider.toml",
     ),
 )
 @robot_argument
@@ -41,8 +45,16 @@ __all__ = ["pose"]
 @click.option(
     "--picture", type=click.Path(path_type=Path), metavar="FILE", help="Draw the robot to this file (png, svg, pdf)."
 )
+@pulses_option("Print the servo commands, and write them to pulses.csv.")
 @json_option
-def pose(robot: str, knee: Literal["up", "down"], picture: Path | None, as_json: bool, **displacement: Any) -> int:
+def pose(
+    robot: str,
+    knee: Literal["up", "down"],
+    picture: Path | None,
+    pulses: Path | None,
+    as_json: bool,
+    **displacement: Any,
+) -> int:
     """Move the body while the feet stay on their rest footholds, those in which a walk starts and ends.
 
     Prints the joint angles. A leg that can't reach its foothold is in the air; the centre of mass and the support
@@ -56,6 +68,12 @@ def pose(robot: str, knee: Literal["up", "down"], picture: Path | None, as_json:
     if picture is not None:
         _draw(standing, picture)
         summary["files"] = [str(picture)]
+    table: list[Table] = []
+    if pulses is not None and summary["possible"]:
+        calibration, commands, written = pose_pulses(standing.solution, pulses, Path())
+        table = [pulse_table(calibration, commands)]
+        summary |= {"commands": commands, "units": calibration.units}
+        summary["files"] = [*summary.get("files", []), str(written)]
     if as_json:
         print_json(summary)
         return 0 if summary["possible"] else 1
@@ -66,8 +84,9 @@ def pose(robot: str, knee: Literal["up", "down"], picture: Path | None, as_json:
     displaced = any(displacement[name] for name in ("x", "y", "z", "roll", "pitch", "yaw"))
     if displaced and not summary["possible"] and fraction is not None:
         show(f"feasible with every foot on its foothold: {fraction * 100:.1f} % of this displacement")
-    if picture is not None:
-        click.echo(f"wrote {picture}")
+    show(*table)
+    for file in summary.get("files", []):
+        click.echo(f"wrote {file}")
     return 0 if summary["possible"] else 1
 
 

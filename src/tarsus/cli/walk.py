@@ -9,6 +9,7 @@ import click
 
 from tarsus.cli.folder import make_folder
 from tarsus.cli.output import print_json, progress_bar, show
+from tarsus.cli.pulses import pulses_option, walk_pulses
 from tarsus.cli.values import examples, json_option, robot_argument
 from tarsus.cli.walk_options import walk_options
 
@@ -28,6 +29,7 @@ __all__ = ["walk"]
         "tarsus walk strider --distance 200 --stroke 80 --speed 60 --tilt 0,5 --json",
         "tarsus walk strider --distance 200 --out walk --no-animation",
         "tarsus walk strider --gait ripple --html walk.html",
+        "tarsus walk strider --pulses my-strider.toml",
     )
 )
 @robot_argument
@@ -42,8 +44,17 @@ __all__ = ["walk"]
     metavar="FILE",
     help="Write an offline HTML page that plays the walk in 3D.",
 )
+@pulses_option("Write servo commands (pulses.csv) and a cycle for Arduino (gait_cycle.h), to --out or here.")
 @json_option
-def walk(robot: str, out: Path | None, no_animation: bool, html: Path | None, as_json: bool, **options: Any) -> int:
+def walk(
+    robot: str,
+    out: Path | None,
+    no_animation: bool,
+    html: Path | None,
+    pulses: Path | None,
+    as_json: bool,
+    **options: Any,
+) -> int:
     """Plan a walk and check whether the robot can execute it.
 
     The path is straight unless --curve or --twist is given. Other parameters have feasible defaults, listed under
@@ -62,6 +73,8 @@ def walk(robot: str, out: Path | None, no_animation: bool, html: Path | None, as
     files = [] if out is None else _write(motion, out, animation=not no_animation, quiet=as_json)
     if html is not None:
         files.append(_write_page(motion, html))
+    if pulses is not None and summary["possible"]:
+        files += walk_pulses(motion, options, pulses, out or Path())
     if as_json:
         print_json({**summary, "files": [str(file) for file in files]})
     else:
