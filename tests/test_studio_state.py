@@ -21,6 +21,7 @@ from tarsus.studio.messages.state import (
     Picture,
     RobotChoice,
     SourceChoice,
+    Straight,
     StudioState,
     Twist,
     WalkOptions,
@@ -38,7 +39,8 @@ states = st.builds(
     walk=st.builds(
         WalkOptions,
         gait=st.sampled_from([None, "wave", OwnGait(duty_factor=0.6, offsets=(0.1,) * 6)]),
-        path=st.builds(Curve, kind=st.just("curve"), angle_deg=numbers)
+        path=st.builds(Straight, kind=st.just("straight"), distance_mm=numbers)
+        | st.builds(Curve, kind=st.just("curve"), angle_deg=numbers)
         | st.builds(
             Twist,
             kind=st.just("twist"),

@@ -61,7 +61,8 @@ class BodyState(Part):
 class Straight(Part):
     """A straight walk."""
 
-    kind: Literal["straight"] = "straight"
+    # Without a default, as the text of a state omits those, and a path needs its kind.
+    kind: Literal["straight"]
     distance_mm: Coordinate = 500.0
     heading_deg: Angle = Field(default=0.0, description="Direction, 90 is to the left.")
 
@@ -99,7 +100,7 @@ class WalkOptions(Part):
     """The view Walk: the options of `plan_walk`; for null, the plan chooses a value and reports it."""
 
     gait: Name | OwnGait | None = Field(default=None, description="Null for the default of the robot.")
-    path: Path = Straight()
+    path: Path = Straight(kind="straight")
     stroke_mm: Positive | None = None
     speed_mm_s: Positive | None = None
     cycle_time_s: Positive | None = None
