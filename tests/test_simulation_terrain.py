@@ -11,6 +11,7 @@ from PIL import Image
 
 from tarsus.errors import InputError, TarsusError
 from tarsus.simulation.terrain import Blocks, Flat, Gaps, HeightField, Ramp, Smooth, Stairs, Step, Terrain
+from tarsus.simulation.terrain.solids import terrain_solids
 
 GRID = np.random.default_rng(0).random((7, 5)) * 0.05
 TERRAINS = [
@@ -145,3 +146,40 @@ def test_a_picture_that_cannot_be_read_is_refused(tmp_path, monkeypatch):
 def test_a_terrain_that_cannot_be_is_refused(make, message):
     with pytest.raises(InputError, match=re.escape(message)):
         make()
+
+
+def drawn_height(solids, x, y):
+    """The height of the drawn ground at a point: the highest box, triangle or cell over it."""
+    heights = [0.0] if solids.level else []
+    low, high = solids.boxes[:, 0], solids.boxes[:, 1]
+    over = (low[:, 0] <= x) & (x <= high[:, 0]) & (low[:, 1] <= y) & (y <= high[:, 1])
+    heights += high[over, 2].tolist()
+    for corners in solids.triangles:
+        edges = np.column_stack([corners[1] - corners[0], corners[2] - corners[0]])
+        if abs(np.linalg.det(edges[:2])) > 1e-9:
+            u, v = np.linalg.solve(edges[:2], np.array([x, y]) - corners[0, :2])
+            if min(u, v, 1 - u - v) >= 0:
+                heights.append(float(corners[0, 2] + edges[2] @ (u, v)))
+    if solids.field is not None:
+        (x0, y0), (x1, y1) = solids.field.corners
+        if x0 <= x <= x1 and y0 <= y <= y1:
+            same = HeightField(heights=solids.field.heights, size=(x1 - x0, y1 - y0))
+            heights.append(float(same.height(x, y)))
+    return max(heights)
+
+
+def test_a_terrain_that_the_engine_refuses_is_an_error():
+    with pytest.raises(InputError, match="the physics engine refuses Ramp"):
+        terrain_solids(Ramp(slope=0.1, length=1e-9))
+
+
+@pytest.mark.parametrize("terrain", TERRAINS, ids=lambda each: type(each).__name__)
+def test_the_shapes_to_draw_are_those_of_the_physics_engine(terrain):
+    solids = terrain_solids(terrain)
+    x, y = np.random.default_rng(2).uniform(-2.5, 2.5, (2, 40))
+    found = [drawn_height(solids, *place) for place in zip(x, y, strict=True)]
+    assert terrain.height(x, y) == pytest.approx(np.array(found), abs=1e-5)
+    # Seen from outside: the normals of the triangles point away from the middle of their wedge.
+    for wedge in solids.triangles.reshape(-1, 12, 3, 3):
+        normals = np.cross(wedge[:, 1] - wedge[:, 0], wedge[:, 2] - wedge[:, 0])
+        assert (((wedge.mean(1) - wedge.mean((0, 1))) * normals).sum(1) > 0).all()

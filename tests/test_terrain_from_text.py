@@ -8,7 +8,8 @@ from PIL import Image
 
 from tarsus.errors import InputError, UnknownNameError
 from tarsus.simulation.terrain import Blocks, Flat, Gaps, Ramp, Smooth, Stairs, Step
-from tarsus.simulation.terrain.from_text import TERRAINS, terrain_from_text, terrain_help
+from tarsus.simulation.terrain.from_text import terrain_from_text, terrain_help
+from tarsus.simulation.terrain.kinds import TERRAINS, terrain_of, terrain_parameters
 
 
 @pytest.mark.parametrize(
@@ -60,3 +61,12 @@ def test_the_help_has_every_kind():
     lines = terrain_help().splitlines()
     assert [line.partition(":")[0] for line in lines] == [*TERRAINS, "FILE.png"]
     assert "gaps: width, spacing, count, depth, start, friction" in lines
+
+
+@pytest.mark.parametrize("kind", TERRAINS)
+def test_parameters_have_the_values_of_the_terrain_in_mm_and_degrees(kind):
+    parameters = terrain_parameters(kind)
+    given = {parameter.name: parameter.default for parameter in parameters}
+    assert terrain_of(kind, given) == terrain_of(kind, {}) == terrain_from_text(kind)
+    assert {parameter.name for parameter in parameters if parameter.unit == "deg"} <= {"slope"}
+    assert {parameter.name for parameter in parameters if parameter.whole} <= {"seed", "steps", "count"}

@@ -7,7 +7,7 @@ from typing import Any
 
 from tarsus.errors import TarsusError
 
-__all__ = ["FAULTY", "mujoco_module"]
+__all__ = ["FAULTY", "engine_problem", "mujoco_module"]
 
 FAULTY = ("4.0.0",)
 """Versions of MuJoCo that compute wrongly: the Newton solver of 4.0.0 factorises wrongly."""
@@ -31,3 +31,12 @@ def mujoco_module() -> Any:
             "pip install 'mujoco!=4.0.0'"
         )
     return mujoco
+
+
+def engine_problem() -> str | None:
+    """Return why there is no physics, and what to install; None if there is."""
+    try:
+        mujoco_module()
+    except TarsusError as error:
+        return str(error)
+    return None

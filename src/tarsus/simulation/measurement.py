@@ -79,9 +79,12 @@ class Measurement:
                 continue
             link = self._model.geom_bodyid[geom]
             self._mujoco.mj_objectVelocity(self._model, self._data, kind, link, velocity, 0)
-            moved = velocity[3:] + np.cross(velocity[:3], contact.pos[number] - self._data.xpos[link])
-            normal = contact.frame[number, :3]
-            speeds[leg] = max(speeds[leg], float(np.linalg.norm(moved - (moved @ normal) * normal)))
+            # In plain numbers: NumPy's cross product of two vectors takes ten times as long.
+            (wx, wy, wz, vx, vy, vz), (nx, ny, nz) = velocity.tolist(), contact.frame[number, :3].tolist()
+            x, y, z = (contact.pos[number] - self._data.xpos[link]).tolist()
+            moved = (vx + wy * z - wz * y, vy + wz * x - wx * z, vz + wx * y - wy * x)
+            into = moved[0] * nx + moved[1] * ny + moved[2] * nz
+            speeds[leg] = max(speeds[leg], math.hypot(moved[0] - into * nx, moved[1] - into * ny, moved[2] - into * nz))
         return speeds
 
     def body_touches(self) -> bool:

@@ -2,41 +2,16 @@
 
 from __future__ import annotations
 
-import dataclasses
 import math
-from typing import Any
 
-from tarsus.errors import InputError, UnknownNameError
-from tarsus.simulation.terrain.blocks import Blocks
-from tarsus.simulation.terrain.flat import Flat
-from tarsus.simulation.terrain.gaps import Gaps
+from tarsus.errors import InputError
 from tarsus.simulation.terrain.height_field import HeightField
+from tarsus.simulation.terrain.kinds import TERRAINS, si_value, terrain_of, terrain_parameters
 from tarsus.simulation.terrain.protocol import Terrain
-from tarsus.simulation.terrain.ramp import Ramp
-from tarsus.simulation.terrain.smooth import Smooth
-from tarsus.simulation.terrain.stairs import Stairs
-from tarsus.simulation.terrain.step import Step
 
-__all__ = ["TERRAINS", "terrain_from_text", "terrain_help"]
+__all__ = ["terrain_from_text", "terrain_help"]
 
-TERRAINS: dict[str, Any] = {
-    "flat": Flat,
-    "ramp": Ramp,
-    "step": Step,
-    "stairs": Stairs,
-    "blocks": Blocks,
-    "smooth": Smooth,
-    "gaps": Gaps,
-}
-"""Kinds of terrain by name; a path of a PNG file is a height field."""
-
-# Values that a kind needs and has no default for.
-_DEFAULTS: dict[str, dict[str, float]] = {
-    "ramp": {"slope": math.radians(5)},
-    "step": {"rise": 0.02},
-    "stairs": {"rise": 0.02},
-}
-_PLAIN = ("friction", "seed", "steps", "count")
+_OF_PICTURES = ("rise", "length", "width", "friction")
 
 
 def terrain_from_text(text: str, *, friction: float | None = None) -> Terrain:
@@ -61,26 +36,18 @@ def terrain_from_text(text: str, *, friction: float | None = None) -> Terrain:
     values = _values(text, rest)
     if friction is not None:
         values["friction"] = friction
-    if kind.lower().endswith(".png"):
-        return _height_field(kind, values)
-    if kind not in TERRAINS:
-        raise UnknownNameError.of("terrain", kind, tuple(TERRAINS))
-    known = [field.name for field in dataclasses.fields(TERRAINS[kind])]
-    _require_known(kind, values, known)
-    found: Terrain = TERRAINS[kind](**{**_DEFAULTS.get(kind, {}), **values})
-    return found
+    return _height_field(kind, values) if kind.lower().endswith(".png") else terrain_of(kind, values)
 
 
 def terrain_help() -> str:
     """Return the kinds of terrain with their parameters, a line each."""
-    lines = [
-        f"{name}: {', '.join(field.name for field in dataclasses.fields(kind))}" for name, kind in TERRAINS.items()
-    ]
-    return "\n".join([*lines, "FILE.png: rise, length, width, friction"])
+    lines = [f"{kind}: {', '.join(each.name for each in terrain_parameters(kind))}" for kind in TERRAINS]
+    return "\n".join([*lines, f"FILE.png: {', '.join(_OF_PICTURES)}"])
 
 
-def _values(text: str, rest: str) -> dict[str, Any]:
-    values: dict[str, Any] = {}
+def _values(text: str, rest: str) -> dict[str, float]:
+    """Return the values as given, in mm and deg."""
+    values: dict[str, float] = {}
     for part in filter(None, rest.split(",")):
         name, given, number = (piece.strip() for piece in part.partition("="))
         try:
@@ -89,22 +56,14 @@ def _values(text: str, rest: str) -> dict[str, Any]:
             value = math.nan
         if not given or not math.isfinite(value):
             raise InputError(f"terrain {text!r}: {part!r} is not of the form NAME=NUMBER, such as rise=20")
-        if name in ("seed", "steps", "count"):
-            if not value.is_integer():
-                raise InputError(f"terrain {text!r}: {name} is {value:g}; it must be a whole number")
-            values[name] = int(value)
-        else:
-            values[name] = value if name in _PLAIN else math.radians(value) if name == "slope" else value / 1000
+        values[name] = value
     return values
 
 
-def _height_field(path: str, values: dict[str, Any]) -> Terrain:
-    _require_known(path, values, ["rise", "length", "width", "friction"])
+def _height_field(path: str, given: dict[str, float]) -> Terrain:
+    for name in given:
+        if name not in _OF_PICTURES:
+            raise InputError(f"terrain {path!r} has no parameter {name!r}; it has {', '.join(_OF_PICTURES)}")
+    values = {name: si_value(name, value) for name, value in given.items()}
     size = (values.pop("length", 4.0), values.pop("width", 4.0))
     return HeightField.from_png(path, size=size, **{"rise": 0.05, **values})
-
-
-def _require_known(kind: str, values: dict[str, Any], known: list[str]) -> None:
-    for name in values:
-        if name not in known:
-            raise InputError(f"terrain {kind!r} has no parameter {name!r}; it has {', '.join(known)}")

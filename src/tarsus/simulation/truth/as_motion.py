@@ -8,10 +8,10 @@ from tarsus.gait.motion import Motion
 from tarsus.kinematics.leg import forward_kinematics
 from tarsus.simulation.truth.trace import Trace
 
-__all__ = ["trace_motion"]
+__all__ = ["CONTACT_FORCE", "trace_motion"]
 
-# Vertical force from which on a foot counts as on the ground [N].
-_CONTACT = 0.05
+CONTACT_FORCE = 0.05
+"""Vertical force from which on a foot counts as on the ground [N]."""
 
 
 def trace_motion(trace: Trace, plan: Motion) -> Motion:
@@ -31,7 +31,7 @@ def trace_motion(trace: Trace, plan: Motion) -> Motion:
         time=trace.time,
         body=trace.body,
         feet=points[..., 3, :],
-        contacts=trace.foot_forces[..., 2] > _CONTACT,
+        contacts=trace.foot_forces[..., 2] > CONTACT_FORCE,
         angles=trace.angles,
         reach=np.zeros(trace.angles.shape[:2], dtype=np.int8),
         cycle_time=plan.cycle_time,

@@ -16,10 +16,11 @@ from tarsus.simulation.truth.trace import Trace
 if TYPE_CHECKING:
     from jaxtyping import Bool, Float
 
-__all__ = ["Outcome"]
+__all__ = ["FALLEN", "Outcome"]
 
-# A robot that is this much more inclined than commanded has fallen [rad].
-_FALLEN = math.radians(45)
+FALLEN = math.radians(45)
+"""A robot that is this much more inclined than commanded has fallen [rad]."""
+
 # A body may touch the ground this long before and after it is commanded to rest on it [s].
 _BELLY_MARGIN = 1.0
 # A servo that is saturated for this long stalls [s].
@@ -156,7 +157,7 @@ def _end(path: Float[np.ndarray, "n 4"]) -> tuple[float, float, float]:
 
 def _fall(trace: Trace, tilt: Float[np.ndarray, "n"]) -> float | None:
     """Return when the robot fell; None if it didn't."""
-    down = (trace.body_touches & ~_near(trace.time, trace.commanded_belly)) | (tilt > _FALLEN)
+    down = (trace.body_touches & ~_near(trace.time, trace.commanded_belly)) | (tilt > FALLEN)
     return float(trace.time[int(np.argmax(down))]) if down.any() else None
 
 
