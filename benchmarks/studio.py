@@ -30,6 +30,9 @@ SECONDS = 5.0
 VISITORS = 20
 ONE_HZ, EACH_HZ = 60.0, 30.0
 LATENCY = 0.05
+PHYSICS_LOAD = 0.1
+"""Target: fraction of a core that the physics of one visitor takes."""
+
 RATE_TOLERANCE = 0.97
 """Fraction of the requested updates that meets the target, for rounding at the start and the end."""
 
@@ -126,6 +129,13 @@ async def slide(socket: ClientConnection, visitor: VisitorStatistics, hertz: flo
     receiving.cancel()
 
 
+async def drive_in_physics(socket: ClientConnection, visitor: VisitorStatistics, hertz: float) -> None:
+    """Drive in physics, and count the received frames."""
+    await ask(socket, 3, type="view", view="drive")
+    await ask(socket, 4, type="physics", physics={"on": True})
+    await drive(socket, visitor, hertz)
+
+
 async def drive(socket: ClientConnection, visitor: VisitorStatistics, _hertz: float) -> None:
     """Drive, and count the received frames."""
     await socket.send(json.dumps({"type": "drive", "id": 100, "on": True}))
@@ -160,16 +170,19 @@ async def visit_all(url: str, visit: Visit, visitors: int, hertz: float) -> list
     return await asyncio.gather(*(one(VisitorStatistics(), number / visitors / hertz) for number in range(visitors)))
 
 
-def measured(url: str, pid: int, visit: Visit, visitors: int, hertz: float) -> tuple[list[VisitorStatistics], str]:
-    """Return the statistics of the visitors, and the server load as text."""
+def measured(
+    url: str, pid: int, visit: Visit, visitors: int, hertz: float
+) -> tuple[list[VisitorStatistics], float | None, str]:
+    """Return the statistics of the visitors, the server load as a fraction of a core, and as text."""
     with all_cores():
         before = processor_time(pid)
         start = time.perf_counter()
         all_visitors = asyncio.run(visit_all(url, visit, visitors, hertz))
         duration, after = time.perf_counter() - start, processor_time(pid)
     kilobytes = statistics.median(one.received for one in all_visitors) / SECONDS / 1000
-    cost = "" if before is None or after is None else f"server {(after - before) / duration * 100:.0f} % of a core, "
-    return all_visitors, f"{cost}{kilobytes:.0f} kB/s each"
+    load = None if before is None or after is None else (after - before) / duration
+    cost = "" if load is None else f"server {load * 100:.0f} % of a core, "
+    return all_visitors, load, f"{cost}{kilobytes:.0f} kB/s each"
 
 
 def studio_rows() -> Iterator[Row]:
@@ -178,11 +191,13 @@ def studio_rows() -> Iterator[Row]:
         ("one visitor moves a slider", slide, 1, ONE_HZ),
         (f"{VISITORS} visitors move sliders", slide, VISITORS, EACH_HZ),
         ("one visitor drives", drive, 1, ONE_HZ),
+        ("one visitor drives in physics", drive_in_physics, 1, ONE_HZ),
         (f"{VISITORS} visitors drive", drive, VISITORS, EACH_HZ),
     ]
+    loads: dict[str, float | None] = {}
     with server() as (url, pid):
         for what, visit, visitors, hertz in cases:
-            all_visitors, cost = measured(url, pid, visit, visitors, hertz)
+            all_visitors, loads[what], cost = measured(url, pid, visit, visitors, hertz)
             lowest = min(one.updates for one in all_visitors) / SECONDS
             yield Row(
                 what=f"studio: {what}, updates per second",
@@ -200,6 +215,15 @@ def studio_rows() -> Iterator[Row]:
                     target=f"< {LATENCY * 1e3:.0f} ms",
                     met=high < LATENCY,
                 )
+    planned, physical = loads["one visitor drives"], loads["one visitor drives in physics"]
+    if planned is not None and physical is not None:
+        yield Row(
+            what="studio: what the physics of one driving visitor adds",
+            measured=f"{100 * (physical - planned):.0f} % of a core",
+            compared="the controller reads sensors then, which is part of it",
+            target=f"< {100 * PHYSICS_LOAD:.0f} %",
+            met=physical - planned < PHYSICS_LOAD,
+        )
 
 
 if __name__ == "__main__":

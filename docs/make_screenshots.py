@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import io
+import itertools
 import shutil
 from pathlib import Path
 
 from PIL import Image
 from playwright.sync_api import Browser, Page, ViewportSize, sync_playwright
 
+from tarsus.studio.messages.physics import PhysicsOptions, TerrainChoice
 from tarsus.studio.messages.state import BodyState, Curve, JointsState, Picture, SourceChoice, StudioState, WalkOptions
 from tarsus.studio.server.serve import Serving
 from tarsus.studio.server.settings import Settings
@@ -30,6 +32,9 @@ STATES = (
     StudioState(view="robot"),
     StudioState(view="sources", source=SourceChoice(number="000", leg=1), body=BodyState(x_mm=20.0, yaw_deg=8.0)),
 )
+# The walk in physics, which has one picture.
+_BLOCKS = PhysicsOptions(on=True, terrain=TerrainChoice(kind="blocks", values={"rise": 25.0, "clear": 250.0}))
+PHYSICS = StudioState(view="walk", physics=_BLOCKS, picture=Picture(time_s=2.4))
 READY = {"walk": "walk-facts", "drive": "drive-facts", "loads": "torques", "robot": "robot-facts", "sources": "source"}
 
 
@@ -49,13 +54,14 @@ def take(browser: Browser, url: str, state: StudioState, name: str) -> Path:
     )
     page = context.new_page()
     page.goto(f"{url}#s={text_of(state)}")
-    page.get_by_test_id(READY.get(state.view, "standing-facts")).wait_for()
+    ready = "simulated-facts" if state.physics.on else READY.get(state.view, "standing-facts")
+    page.get_by_test_id(ready).wait_for()
     if state.view == "drive":
         drive(page)
     page.wait_for_timeout(1500)
     picture = Image.open(io.BytesIO(page.screenshot())).convert("RGB")
     context.close()
-    path = FIGURES / f"studio-{state.view}-{name}.png"
+    path = FIGURES / f"studio-{'physics' if state.physics.on else state.view}-{name}.png"
     # 256 colours are sufficient and keep the file small.
     picture.quantize(256, method=Image.Quantize.MAXCOVERAGE, kmeans=4, dither=Image.Dither.NONE).save(
         path, optimize=True
@@ -68,10 +74,9 @@ def main() -> None:
     chromium = shutil.which("chromium")
     with Serving(Settings()) as server, sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=chromium, args=list(FLAGS))
-        for state in STATES:
-            for name in SIZES:
-                path = take(browser, server.url, state, name)
-                print(f"{path.name}: {path.stat().st_size // 1000} kB")
+        for state, name in [*itertools.product(STATES, SIZES), (PHYSICS, "desktop")]:
+            path = take(browser, server.url, state, name)
+            print(f"{path.name}: {path.stat().st_size // 1000} kB")
         browser.close()
 
 

@@ -6,6 +6,8 @@ from pathlib import Path
 import pytest
 
 from tarsus.studio.messages import CLOSED, SOCKET
+from tarsus.studio.physics.terrains import MOST_BLOCKS, MOST_COUNT, MOST_POINTS
+from tarsus.studio.physics.walk import COMMAND_RATE, MOST_SIMULATED
 from tarsus.studio.robots import MOST_LEGS
 from tarsus.studio.server.settings import Limits
 from tarsus.studio.walks import MOST_SAMPLES
@@ -28,6 +30,10 @@ def test_the_limits_are_those_of_the_code():
     assert row("time without messages").startswith(f"{limits.idle_s / 3600:g} hour")
     assert row("planned walk").startswith(f"{MOST_SAMPLES:,} samples")
     assert row("legs").startswith(f"{MOST_LEGS};")
+    assert row("simulated walk").startswith(f"{MOST_SIMULATED:,} samples at {COMMAND_RATE:g} Hz")
+    assert row("terrain").startswith(
+        f"{MOST_BLOCKS:,} blocks, {MOST_POINTS:,} points of smooth ground, {MOST_COUNT} steps"
+    )
 
 
 def test_the_socket_and_its_codes_are_those_of_the_code():

@@ -38,6 +38,7 @@ keys = st.sampled_from(
         "joints",
         "body",
         "walk",
+        "physics",
         "loads",
         "leg",
         "position_mm",

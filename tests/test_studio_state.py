@@ -12,6 +12,7 @@ from hypothesis.stateful import RuleBasedStateMachine, invariant, precondition, 
 from tarsus import InputError, list_robots, load_robot
 from tarsus.robot.file import robot_to_dict
 from tarsus.studio.history import History
+from tarsus.studio.messages.physics import PhysicsOptions, TerrainChoice
 from tarsus.studio.messages.state import (
     BodyState,
     Curve,
@@ -36,6 +37,11 @@ states = st.builds(
     | st.just(RobotChoice(preset=None, document=robot_to_dict(load_robot("strider")))),
     joints=st.builds(JointsState, angles_deg=st.none() | st.tuples(*[numbers] * 18)),
     body=st.builds(BodyState, x_mm=numbers, yaw_deg=numbers, knee=st.sampled_from(["up", "down"])),
+    physics=st.builds(
+        PhysicsOptions,
+        on=st.booleans(),
+        terrain=st.builds(TerrainChoice, kind=st.sampled_from(["flat", "blocks"]), values=st.just({"rise": 20.5})),
+    ),
     walk=st.builds(
         WalkOptions,
         gait=st.sampled_from([None, "wave", OwnGait(duty_factor=0.6, offsets=(0.1,) * 6)]),

@@ -150,7 +150,7 @@ export interface Drive {
   on: boolean;
 }
 
-/** State of the live robot after a tick; sent 60 times a second while driving. */
+/** State of the live robot after a tick, as commanded; sent 60 times a second while driving. */
 export interface DriveFrame {
   id: number;
   type: "frame";
@@ -181,6 +181,8 @@ export interface DriveFrame {
   intervention_count: number;
   /** The latest interventions, newest first, at most five. */
   interventions: string[];
+  /** Null as planned, without physics. */
+  physics: FramePhysics | null;
 }
 
 /** An equation of a source document with live values. */
@@ -233,6 +235,26 @@ export interface FileMessage {
   name: string;
   mime: string;
   text: string;
+}
+
+/** A driven robot in physics, where the frame itself has what is commanded. */
+export interface FramePhysics {
+  position_mm: number[];
+  rpy_deg: number[];
+  angles_deg: number[];
+  contacts: string;
+  /** Legs x (x, y, z), ground on foot in G. */
+  forces_n: number[];
+  /** Of each foot. */
+  slip_mm_s: number[];
+  /** A character per joint, 1 for a servo at its maximum torque. */
+  saturated: string;
+  /** Angle between the body and the commanded one. */
+  tilt_deg: number;
+  /** Horizontal distance from where it is commanded to be. */
+  deviation_mm: number;
+  /** Falls, and servos at their maximum torque within the last half second. */
+  problems: string[];
 }
 
 /** The first message. Answers: welcome, and the answers to `open`. */
@@ -349,6 +371,23 @@ export interface OwnGait {
   duty_factor: number;
   /** Phase of the touch-down of each leg, from 0 to 1. */
   offsets: number[];
+}
+
+/** What physics the server has. */
+export interface PhysicsOffer {
+  /** Why there is no physics, and what to install; null where there is. */
+  missing: string | null;
+  terrains: TerrainKind[];
+}
+
+/** Physics in the views Walk and Drive. */
+export interface PhysicsOptions {
+  /** Whether the robot is shown in physics. */
+  on: boolean;
+  terrain: TerrainChoice;
+  servos: "catalogue" | "ideal";
+  /** What the controller reads while driving. */
+  sensors: "ideal" | "hobby" | "smart" | "blind";
 }
 
 /** Camera and time of the 3D view, which the server stores for links only. */
@@ -547,6 +586,15 @@ export interface SetLoads {
   loads: LoadOptions;
 }
 
+/** Change the options of physics; a robot that is driven stops being so. Answer: terrain, where physics is on. */
+export interface SetPhysics {
+  id: number;
+  /** Whether undo returns to the state after this change. */
+  commit?: boolean;
+  type: "physics";
+  physics: PhysicsOptions;
+}
+
 /** Select a preset, and reset poses and walk. Answers: robot, state, content of the view. */
 export interface SetRobot {
   id: number;
@@ -591,6 +639,68 @@ export interface ShowWorkspace {
   id: number;
   type: "workspace";
   leg: number;
+}
+
+/** Simulate the walk in physics, which takes a second or two. Answer: simulated. */
+export interface Simulate {
+  id: number;
+  type: "simulate";
+}
+
+/** Torques of one kind of joint, of the leg where each is greatest. */
+export interface SimulatedJoint {
+  joint: "coxa" | "femur" | "tibia";
+  peak_nm: number;
+  rms_nm: number;
+  planned_peak_nm: number | null;
+  planned_rms_nm: number | null;
+  /** Of the time, at the servo's maximum torque. */
+  saturated_fraction: number;
+}
+
+/** The planned walk in physics, without feedback; the samples are those of the plan at `rate_hz`. */
+export interface SimulatedMessage {
+  id: number;
+  type: "simulated";
+  rate_hz: number;
+  /** Number of samples n. */
+  count: number;
+  /** n x (x, y, z) of B in G. */
+  position_mm: number[];
+  /** n x (roll, pitch, yaw), yaw unwrapped. */
+  rpy_deg: number[];
+  /** n x legs x (coxa, femur, tibia). */
+  angles_deg: number[];
+  /** n texts, a character per leg, 1 for a foot in contact. */
+  contacts: string[];
+  /** n; null without a foot in contact. */
+  margin_mm: (number | null)[];
+  /** n x (x, y) of the centre of mass in G. */
+  com_mm: number[];
+  /** n x legs x (x, y, z), ground on foot in G. */
+  forces_n: number[];
+  /** n x legs: speed of the contact point over the ground. */
+  slip_mm_s: number[];
+  /** n texts, a character per joint, 1 for a servo at its maximum torque. */
+  saturated: string[];
+  /** n: angle between the body and the planned one. */
+  tilt_deg: number[];
+  /** Whether it neither fell nor stalled. */
+  ok: boolean;
+  verdict: string;
+  problems: string[];
+  /** Way over the planned one; null for a walk on the spot. */
+  way_ratio: number | null;
+  turn_ratio: number | null;
+  /** Greatest horizontal distance from the plan. */
+  deviation_mm: number;
+  sag_mm: number;
+  /** Way that a foot slides, mean of all feet. */
+  slip_mm: number;
+  joints: SimulatedJoint[];
+  energy_j: number;
+  fell_at_s: number | null;
+  assumed: string[];
 }
 
 /** Size servos for the walk and the payload, which takes a second or two. Answer: servos. */
@@ -639,9 +749,58 @@ export interface StudioState {
   joints: JointsState;
   body: BodyState;
   walk: WalkOptions;
+  physics: PhysicsOptions;
   loads: LoadOptions;
   source: SourceChoice;
   picture: Picture;
+}
+
+/** Choice of the terrain. */
+export interface TerrainChoice {
+  kind: "flat" | "ramp" | "step" | "stairs" | "blocks" | "smooth" | "gaps";
+  /** Parameters of the kind [mm, deg]; those left out have their default. */
+  values: Record<string, number>;
+}
+
+/** A height field: each cell is two triangles, which share the edge from its least x, y to its greatest. */
+export interface TerrainField {
+  rows: number;
+  columns: number;
+  /** Least x and y, greatest x and y. */
+  corners_mm: number[];
+  /** Rows along y x columns along x, ascending. */
+  heights_mm: number[];
+}
+
+/** A kind of terrain. */
+export interface TerrainKind {
+  kind: "flat" | "ramp" | "step" | "stairs" | "blocks" | "smooth" | "gaps";
+  parameters: TerrainParameterRange[];
+}
+
+/** The terrain as the physics engine has it. */
+export interface TerrainMessage {
+  id: number;
+  type: "terrain";
+  kind: "flat" | "ramp" | "step" | "stairs" | "blocks" | "smooth" | "gaps";
+  friction: number;
+  /** Whether there is level ground without end at height 0. */
+  level: boolean;
+  /** n x (least x, y, z, greatest x, y, z). */
+  boxes_mm: number[];
+  /** n x 3 x (x, y, z), counter-clockwise seen from outside. */
+  triangles_mm: number[];
+  field: TerrainField | null;
+}
+
+/** A parameter of a kind of terrain, and the range of its slider. */
+export interface TerrainParameterRange {
+  name: string;
+  unit: "mm" | "deg" | "";
+  default: number;
+  least: number;
+  most: number;
+  step: number;
 }
 
 /** A length and its time. */
@@ -745,6 +904,7 @@ export interface Welcome {
   /** Whether this is a public server, without access to hardware. */
   public: boolean;
   bounds: Bounds;
+  physics: PhysicsOffer;
   /** JSON schema of a robot file: descriptions and bounds of its keys. */
   robot_schema: Record<string, unknown>;
 }
@@ -775,6 +935,8 @@ export type ClientMessage =
   | DragFoot
   | SetWalk
   | SetLoads
+  | SetPhysics
+  | Simulate
   | SizeServos
   | ShowWorkspace
   | ChooseSource
@@ -794,6 +956,8 @@ export type ServerMessage =
   | WalkMessage
   | LoadsMessage
   | ServosMessage
+  | TerrainMessage
+  | SimulatedMessage
   | DriveFrame
   | SourceMessage
   | FileMessage

@@ -9,7 +9,7 @@ import numpy as np
 
 from tarsus.control.command import Command
 from tarsus.control.control_output import ControlOutput
-from tarsus.control.plant import IdealPlant
+from tarsus.control.plant import IdealPlant, Plant
 from tarsus.control.robot_controller import RobotController
 from tarsus.control.states.robot_state import next_state, requested_state
 from tarsus.errors import TarsusError
@@ -18,9 +18,11 @@ from tarsus.kinematics.convex_hull import origin_margin
 from tarsus.kinematics.leg import forward_kinematics
 from tarsus.kinematics.mass import MassWeights
 from tarsus.robot.robot import Robot
+from tarsus.simulation.simulated_plant import PlantState
 from tarsus.studio.encoding import degrees, flags, millimetres, or_null, plain
 from tarsus.studio.messages import client as ask
 from tarsus.studio.messages.motion import DriveFrame
+from tarsus.studio.physics.live import LivePhysics, contacts_of
 
 __all__ = ["Driver"]
 
@@ -29,27 +31,30 @@ _LISTED = 5
 
 
 class Driver:
-    """A robot controller with an ideal plant, and the command that holds.
+    """A robot controller with an ideal or a simulated plant, and the command that holds.
 
     Parameters
     ----------
     robot : Robot
         A single robot; it stands at first.
+    physics : LivePhysics, optional
+        The robot in physics, on which the commands are executed.
     id : int
         Id of the message that started driving; all frames carry it.
 
     Raises
     ------
     TarsusError
-        If the robot can't stand.
+        If the robot can't stand, or can't be simulated.
     """
 
-    def __init__(self, robot: Robot, *, id: int) -> None:
+    def __init__(self, robot: Robot, *, physics: LivePhysics | None = None, id: int) -> None:
         self.id = id
         self._robot = robot
         self._masses = MassWeights.of(robot)
         self._controller = RobotController(robot)
-        self._plant = IdealPlant(robot)
+        self._physics = physics
+        self._plant: Plant = IdealPlant(robot) if physics is None else physics.plant
         self._plant.start(self._controller.output)
         self._command = self._accepted = Command()
         self._interventions: deque[str] = deque(maxlen=_LISTED)
@@ -110,7 +115,8 @@ class Driver:
         return self._frame(output)
 
     def _frame(self, output: ControlOutput) -> DriveFrame:
-        margin, com = (None, None) if output.belly else self._stability(output)
+        state, physics = (None, None) if self._physics is None else self._physics.frame(output)
+        margin, com = (None, None) if output.belly else self._stability(output, state)
         vx, vy, wz = output.twist
         rpy = degrees(output.body.rpy)
         return DriveFrame(
@@ -133,13 +139,19 @@ class Driver:
             limitations=[limitation.text() for limitation in output.limitations],
             intervention_count=self._intervention_count,
             interventions=list(self._interventions),
+            physics=physics,
         )
 
-    def _stability(self, output: ControlOutput) -> tuple[float | None, list[float]]:
+    def _stability(self, output: ControlOutput, state: PlantState | None) -> tuple[float | None, list[float]]:
         """Return the static stability margin [mm] and the centre of mass projected onto the ground [mm]."""
-        points = forward_kinematics(self._robot, output.angles)
+        angles, body, contacts = (
+            (output.angles, output.body, output.contacts)
+            if state is None
+            else (state.joint_angles, state.body, contacts_of(state))
+        )
+        points = forward_kinematics(self._robot, angles)
         com = self._masses.centre_of_mass(points)
-        placed = np.asarray(output.body @ np.concatenate([points[output.contacts, 3], com[None]]))
+        placed = np.asarray(body @ np.concatenate([points[contacts, 3], com[None]]))
         margin = origin_margin((placed[:-1, :2] - placed[-1, :2]).tolist())[0]
         return or_null(margin * 1000, decimals=2), millimetres(placed[-1, :2])
 

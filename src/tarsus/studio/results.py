@@ -12,8 +12,12 @@ from tarsus.kinematics.mass import MassWeights
 from tarsus.kinematics.pose import Pose
 from tarsus.load.loads import JointLoads
 from tarsus.robot.robot import Robot
+from tarsus.simulation.terrain.protocol import Terrain
+from tarsus.simulation.truth.comparison import Truth, compare
 from tarsus.studio.loads import loads_of
 from tarsus.studio.messages.state import StudioState
+from tarsus.studio.physics.terrains import chosen_terrain
+from tarsus.studio.physics.walk import COMMAND_RATE, check_length
 from tarsus.studio.poses import resting, standing
 from tarsus.studio.robots import robot_of
 from tarsus.studio.standing import OnFootholds, Resting
@@ -74,6 +78,24 @@ class Results:
         """Return the joint loads of the walk."""
         motion = self.walk(state)
         return self._once("loads", (motion, state.loads), lambda: loads_of(motion, state.loads))
+
+    def terrain(self, state: StudioState) -> Terrain:
+        """Return the chosen terrain."""
+        choice = state.physics.terrain
+        return self._once("terrain", (choice,), lambda: chosen_terrain(choice))
+
+    def simulated(self, state: StudioState) -> Truth:
+        """Return the walk in physics, commanded at a rate of its own."""
+        options = state.walk.model_copy(update={"rate_hz": COMMAND_RATE})
+        robot, servos, terrain = self.robot(state), state.physics.servos, self.terrain(state)
+        if options == state.walk:
+            motion = self.walk(state)
+        else:
+            motion = self._once("commanded", (robot, options), lambda: plan(robot, options))
+        check_length(motion)
+        return self._once(
+            "simulated", (motion, servos, terrain), lambda: compare(motion, terrain=terrain, servos=servos)
+        )
 
     def shown(self, state: StudioState) -> tuple[Pose, Float[np.ndarray, "..."]]:
         """Return body pose and joint angles that the view shows; for a walk, those at its start."""

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from tarsus import __version__
-from tarsus.errors import TarsusError
+from tarsus.errors import SimulationError, TarsusError
 from tarsus.gait.gait import GAITS
 from tarsus.robot.catalogue import list_servos
 from tarsus.robot.file import list_robots
@@ -20,6 +20,7 @@ from tarsus.studio.messages.motion import DriveFrame
 from tarsus.studio.messages.pose import Bounds, StateMessage, Welcome
 from tarsus.studio.messages.state import BodyState, JointsState, RobotChoice, StudioState, WalkOptions
 from tarsus.studio.parsing import read
+from tarsus.studio.physics.terrains import physics_offer
 from tarsus.studio.poses import drag_foothold, drag_joints
 from tarsus.studio.robots import choice_of_document, choice_of_preset, choice_of_text, robot_message
 from tarsus.studio.state_text import state_of, text_of
@@ -125,7 +126,7 @@ class Session:
             return self._driver.step(dt)
         except Exception as error:  # as above; a refused command leaves the robot as it is
             answer = error_message(error, id=self._driver.id)
-            if not isinstance(error, TarsusError):
+            if isinstance(error, SimulationError) or not isinstance(error, TarsusError):
                 self._driver = None
             return answer
 
@@ -161,6 +162,7 @@ class Session:
             servos=list(list_servos()),
             public=self._public,
             bounds=self._bounds,
+            physics=physics_offer(),
             robot_schema=robot_schema(),
         )
         state = self.state
@@ -262,6 +264,16 @@ class Session:
         yield from walk
         yield answer
 
+    def _physics(self, message: ask.SetPhysics) -> Answers:
+        state = self.state.model_copy(update={"physics": message.physics})
+        answers = list(self._views.terrain(state, id=message.id))
+        self._driver = None
+        self._history.change(state, commit=message.commit)
+        yield from answers
+
+    def _simulate(self, message: ask.Simulate) -> Answers:
+        yield self._views.simulated(self.state, id=message.id)
+
     def _servos(self, message: ask.SizeServos) -> Answers:
         yield self._views.servos(self.state, id=message.id)
 
@@ -275,7 +287,11 @@ class Session:
         yield answer
 
     def _drive(self, message: ask.Drive) -> Answers:
-        self._driver = Driver(self._views.results.robot(self.state), id=message.id) if message.on else None
+        self._driver = None
+        if message.on:
+            self._driver = Driver(
+                self._views.results.robot(self.state), physics=self._views.live(self.state), id=message.id
+            )
         yield from ()
 
     def _command(self, message: ask.Command) -> Answers:
@@ -310,6 +326,8 @@ _HANDLERS: dict[type[Any], Callable[[Session, Any], Answers]] = {
     ask.DragFoot: Session._drag,
     ask.SetWalk: Session._walk,
     ask.SetLoads: Session._loads,
+    ask.SetPhysics: Session._physics,
+    ask.Simulate: Session._simulate,
     ask.SizeServos: Session._servos,
     ask.ShowWorkspace: Session._workspace,
     ask.ChooseSource: Session._source,

@@ -12,8 +12,12 @@ from tarsus.studio.leg_workspace import workspace_message
 from tarsus.studio.loads import loads_message, servos_message
 from tarsus.studio.messages.general import FileMessage, SourceMessage
 from tarsus.studio.messages.motion import LoadsMessage, ServosMessage, WalkMessage
+from tarsus.studio.messages.physics import SimulatedMessage, TerrainMessage
 from tarsus.studio.messages.pose import PoseMessage, WorkspaceMessage
 from tarsus.studio.messages.state import BodyState, JointsState, OwnGait, StudioState
+from tarsus.studio.physics.live import LivePhysics
+from tarsus.studio.physics.terrains import terrain_message
+from tarsus.studio.physics.walk import simulated_message
 from tarsus.studio.player import player_data, player_page
 from tarsus.studio.poses import require_leg
 from tarsus.studio.results import Results
@@ -74,6 +78,7 @@ class Views:
             Id of the message that is answered.
         """
         try:
+            yield from self.terrain(state, id=id)
             if state.view in ("walk", "loads"):
                 yield self.walk(state, id=id)
             else:
@@ -112,6 +117,21 @@ class Views:
     def has_sent_walk(self, state: StudioState) -> bool:
         """Return whether the walk of the state was sent last."""
         return self.results.walk(state) is self._sent
+
+    def terrain(self, state: StudioState, *, id: int) -> Iterator[TerrainMessage]:
+        """Yield the terrain where physics is on, in the views that have it."""
+        if state.physics.on and state.view in ("walk", "drive"):
+            yield terrain_message(self.results.terrain(state), state.physics.terrain, id=id)
+
+    def simulated(self, state: StudioState, *, id: int) -> SimulatedMessage:
+        """Return the walk in physics."""
+        return simulated_message(self.results.simulated(state), id=id)
+
+    def live(self, state: StudioState) -> LivePhysics | None:
+        """Return a driven robot in physics; None where physics is off."""
+        if not state.physics.on:
+            return None
+        return LivePhysics(self.results.robot(state), state.physics, self.results.terrain(state))
 
     def loads(self, state: StudioState, *, id: int) -> LoadsMessage:
         """Return the joint loads of the walk."""

@@ -8,6 +8,7 @@ import { SceneCanvas } from "../scene/SceneCanvas";
 import { useOptions } from "../state/options";
 import { look } from "../state/session";
 import { useStudio, type View } from "../state/store";
+import { useInPhysics, useTerrain } from "../views/physics/usePhysics";
 import { CameraBar } from "./CameraBar";
 import { PlayerBar } from "./PlayerBar";
 import { SceneExtras } from "./SceneExtras";
@@ -27,6 +28,8 @@ const DESCRIPTIONS: Record<View, string> = {
   sources: "The robot whose values are used in the equations.",
 };
 
+const PHYSICAL = "The robot in physics on its terrain, with the plan as a translucent robot.";
+
 /** The 3D view, shared by all views, with its overlays. */
 export function PicturePane({ view }: { view: View }) {
   const robot = useStudio((studio) => studio.robot);
@@ -43,10 +46,13 @@ export function PicturePane({ view }: { view: View }) {
   const colours = useMemo(() => (shape ? legColours(shape.mounts) : []), [shape]);
   const walking = WALKING.has(view);
   const forces = useOptions((options) => options.forces);
+  const physical = useInPhysics(view);
+  const terrain = useTerrain(view);
+  const simulated = useStudio((studio) => (physical && view === "walk" ? studio.simulated : null));
   const loaded = view === "loads" || (forces && (view === "joints" || view === "body"));
   const trails = useMemo(
-    () => (walking && robot && walk ? footTrails(robot, walk) : undefined),
-    [walking, robot, walk],
+    () => (walking && robot && walk ? footTrails(robot, simulated ?? walk) : undefined),
+    [walking, robot, walk, simulated],
   );
   if (!shape || !picture) return <Waiting />;
   const place =
@@ -61,10 +67,11 @@ export function PicturePane({ view }: { view: View }) {
         view={framing}
         place={place}
         trails={trails}
-        forces={loaded}
+        forces={loaded || physical}
         torques={loaded}
+        ground={terrain?.level ?? true}
         driven={view === "drive"}
-        description={DESCRIPTIONS[view]}
+        description={physical ? PHYSICAL : DESCRIPTIONS[view]}
         onFloor={onFloor}
         onRest={keepPlace}
       >

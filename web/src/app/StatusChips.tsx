@@ -1,7 +1,7 @@
 import { useEffect, useState } from "react";
 
 import { fixed } from "../controls/numbers";
-import type { Frame } from "../scene/frame";
+import { SLIDING, type Frame } from "../scene/frame";
 import { stage } from "../scene/stage";
 import { motionText } from "../views/drive/robotState";
 
@@ -14,9 +14,14 @@ interface Status {
   belly: boolean;
   limitations: number;
   margin: string;
-  stable: boolean;
+  /** Null where it is not a matter of statics. */
+  stable: boolean | null;
   feet: string;
   troubled: number;
+  tilt: string | null;
+  sliding: number;
+  saturated: number;
+  fallen: boolean;
 }
 
 /** State, stability and contacts of the robot, over the picture. */
@@ -52,7 +57,7 @@ export function StatusChips() {
         <span className="chip" data-testid="chip-margin">
           body on the ground
         </span>
-      ) : (
+      ) : status.stable === null ? null : (
         <span className={`chip ${status.stable ? "good" : "bad"}`} data-testid="chip-margin">
           {status.stable ? "✓ stable" : "⚠ unstable"}
           {status.margin && ` · ${status.margin}`}
@@ -64,6 +69,26 @@ export function StatusChips() {
       {status.limitations > 0 && (
         <span className="chip warn" data-testid="chip-limitations">
           △ {status.limitations === 1 ? "1 limitation" : `${status.limitations} limitations`}
+        </span>
+      )}
+      {status.tilt !== null && (
+        <span className="chip" data-testid="chip-tilt">
+          {status.tilt}
+        </span>
+      )}
+      {status.sliding > 0 && (
+        <span className="chip warn" data-testid="chip-slip">
+          △ {status.sliding === 1 ? "1 foot slides" : `${status.sliding} feet slide`}
+        </span>
+      )}
+      {status.saturated > 0 && (
+        <span className="chip warn" data-testid="chip-saturated">
+          △ {status.saturated === 1 ? "1 servo" : `${status.saturated} servos`} at maximum torque
+        </span>
+      )}
+      {status.fallen && (
+        <span className="chip bad" data-testid="chip-fallen">
+          ⚠ fallen
         </span>
       )}
       {status.troubled > 0 && (
@@ -83,8 +108,12 @@ function statusOf(frame: Frame): Status {
     belly: frame.belly,
     limitations: frame.limitations,
     margin: frame.margin === null ? "" : `${fixed(frame.margin, 0)} mm`,
-    stable: frame.margin !== null && frame.margin >= 0,
+    stable: frame.physical && frame.margin === null ? null : frame.margin !== null && frame.margin >= 0,
     feet: `${down} ${down === 1 ? "foot" : "feet"} on the ground`,
     troubled: frame.trouble.filter(Boolean).length,
+    tilt: frame.physical && `tilt ${frame.physical.tilt.toFixed(1)}°`,
+    sliding: frame.physical?.slip.filter((speed) => speed > SLIDING).length ?? 0,
+    saturated: frame.physical?.saturated.filter(Boolean).length ?? 0,
+    fallen: frame.physical?.fallen ?? false,
   };
 }

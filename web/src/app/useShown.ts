@@ -5,6 +5,7 @@ import { prefersReducedMotion, stage } from "../scene/stage";
 import { playWalk } from "../scene/walking";
 import { usePlayback } from "../state/playback";
 import { useStudio, type View } from "../state/store";
+import { useInPhysics, useSimulation } from "../views/physics/usePhysics";
 import { WALKING } from "./useFraming";
 
 /** Show the pose or the walk of a view in the scene. Frames of driving are shown by `state/driving`. */
@@ -13,6 +14,8 @@ export function useShown(view: View): void {
   const pose = useStudio(({ poses }) => poses[view] ?? poses.body ?? poses.joints ?? null);
   const walk = useStudio((studio) => studio.walk);
   const loads = useStudio((studio) => studio.loads);
+  const physical = useInPhysics(view);
+  const simulated = useStudio((studio) => (physical && view === "walk" ? studio.simulated : null));
   const walking = WALKING.has(view) && walk !== null;
   const standing = !walking && view !== "drive";
 
@@ -25,8 +28,10 @@ export function useShown(view: View): void {
   useEffect(() => {
     if (!robot || !walk || !walking || walk.angles_deg.length !== walk.count * robot.leg_names.length * 3)
       return;
-    return playWalk(robot, walk, loads);
-  }, [robot, walk, loads, walking]);
+    return playWalk(robot, walk, loads, simulated);
+  }, [robot, walk, loads, simulated, walking]);
+
+  useSimulation(view);
 
   useFirstWalk(walk !== null);
 }

@@ -5,11 +5,12 @@ interface Props<T extends string> {
   value: T;
   options: readonly { value: T; label: string; hint?: string }[];
   testId?: string;
+  disabled?: boolean;
   onChange: (value: T) => void;
 }
 
 /** Radio buttons shown as a segmented control. */
-export function Segments<T extends string>({ label, value, options, testId, onChange }: Props<T>) {
+export function Segments<T extends string>({ label, value, options, testId, disabled, onChange }: Props<T>) {
   const name = useId();
   return (
     <div role="radiogroup" aria-label={label} className="segments" data-testid={testId}>
@@ -20,6 +21,7 @@ export function Segments<T extends string>({ label, value, options, testId, onCh
             name={name}
             value={option.value}
             checked={option.value === value}
+            disabled={disabled}
             data-testid={testId && `${testId}-${option.value}`}
             onChange={() => onChange(option.value)}
           />

@@ -17,7 +17,8 @@ interface Props {
   typedMax?: number;
   /** Accessible name, where the label alone is ambiguous. */
   name?: string;
-  compact?: boolean;
+  /** Whether label, slider and field share a row; with "wide" there is room for a word as the label. */
+  compact?: boolean | "wide";
   bad?: boolean;
   disabled?: boolean;
   testId?: string;
@@ -38,7 +39,9 @@ export function Slider(props: Props) {
   const full = name ?? label;
   const digits = decimalsOf(step);
   return (
-    <div className={`slider${compact ? " compact" : ""}${bad ? " bad" : ""}`}>
+    <div
+      className={`slider${compact ? " compact" : ""}${compact === "wide" ? " wide" : ""}${bad ? " bad" : ""}`}
+    >
       <label htmlFor={id}>
         {bad && <span aria-hidden="true">⚠ </span>}
         {label}

@@ -2,7 +2,7 @@ import { useRef, type RefObject } from "react";
 import { Quaternion, Vector3, type Group, type Mesh, type MeshStandardMaterial } from "three";
 
 import type { Palette } from "./palette";
-import { pointOf, turn, type Frame } from "./frame";
+import { pointOf, turn, type Frame, type Placed } from "./frame";
 import { useStage } from "./useStage";
 
 const UP = new Vector3(0, 1, 0);
@@ -29,7 +29,14 @@ export function LegModel({ leg, colour, footRadius, thick, palette }: Props) {
   useStage((frame) => {
     const troubled = frame.trouble[leg] != null;
     links.forEach((link, i) => placeLink(link, frame, leg, i, troubled ? palette.trouble : palette.link));
-    joints.forEach((joint, i) => placeJoint(joint, frame, leg, i));
+    joints.forEach((joint, i) => {
+      placeJoint(joint, frame, leg, i);
+      const strained = frame.physical?.saturated[leg * 3 + i] ?? false;
+      const mesh = joint.current?.children[0] as Mesh | undefined;
+      (mesh?.material as MeshStandardMaterial | undefined)?.color.set(
+        strained ? palette.trouble : palette.joint,
+      );
+    });
     foot.current?.position.set(...pointOf(frame, leg, 3));
   });
 
@@ -53,7 +60,7 @@ export function LegModel({ leg, colour, footRadius, thick, palette }: Props) {
         <group key={i} ref={joint}>
           <mesh castShadow>
             <cylinderGeometry args={[thick * 1.25, thick * 1.25, thick * 2.3, 24]} />
-            <meshStandardMaterial color={palette.joint} roughness={0.5} metalness={0.25} />
+            <meshStandardMaterial roughness={0.5} metalness={0.25} />
           </mesh>
         </group>
       ))}
@@ -68,17 +75,21 @@ export function LegModel({ leg, colour, footRadius, thick, palette }: Props) {
 function placeLink(ref: RefObject<Mesh | null>, frame: Frame, leg: number, i: number, colour: string) {
   const mesh = ref.current;
   if (!mesh) return;
+  span(mesh, frame, leg, i);
+  (mesh.material as MeshStandardMaterial).color.set(colour);
+}
+
+/** Place a cylinder of length 1 along a link; a coxa of length zero is not drawn. */
+export function span(mesh: Mesh, frame: Placed, leg: number, i: number): void {
   from.set(...pointOf(frame, leg, i));
   to.set(...pointOf(frame, leg, i + 1));
   along.subVectors(to, from);
   const length = along.length();
-  // A coxa of length zero is not drawn.
   mesh.visible = length > 0.01;
   if (!mesh.visible) return;
   mesh.position.addVectors(from, to).multiplyScalar(0.5);
   mesh.quaternion.setFromUnitVectors(UP, along.divideScalar(length));
   mesh.scale.set(1, length, 1);
-  (mesh.material as MeshStandardMaterial).color.set(colour);
 }
 
 /** Joints are cylinders along their axes: the body's z axis for the coxa, across the leg for the others. */

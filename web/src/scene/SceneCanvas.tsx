@@ -32,6 +32,8 @@ export interface SceneProps {
   trails?: readonly ArrayLike<number>[];
   forces?: boolean;
   torques?: boolean;
+  /** Whether there is level ground at height 0. */
+  ground?: boolean;
   /** Whether arrow keys drive the robot: then they turn the camera with Shift only. */
   driven?: boolean;
   /** Description for screen readers. */
@@ -64,6 +66,7 @@ function Scene(props: SceneProps) {
     trails,
     forces,
     torques,
+    ground = true,
     driven,
     onFloor,
   } = props;
@@ -96,7 +99,7 @@ function Scene(props: SceneProps) {
         <fog attach="fog" args={[palette.background, view.radius * 6 + 1200, view.radius * 10 + 3600]} />
         <FrameLoop />
         <Lights palette={palette} reach={shape.reach} />
-        <Ground palette={palette} />
+        {ground && <Ground palette={palette} />}
         {onFloor && (
           <mesh
             name="floor-pick"
@@ -109,7 +112,7 @@ function Scene(props: SceneProps) {
             <meshBasicMaterial transparent opacity={0} depthWrite={false} />
           </mesh>
         )}
-        <Support palette={palette} />
+        <Support palette={palette} shape={shape} />
         <Contacts shape={shape} palette={palette} />
         {trails && <Trails paths={trails} colours={colours} />}
         <Robot shape={shape} colours={colours} palette={palette} />
@@ -121,7 +124,7 @@ function Scene(props: SceneProps) {
         <LabelPositions layer={notes} />
       </Canvas>
       <Labels layer={notes} shape={shape} colours={colours} forces={forces ?? false} />
-      {forces && <ForceLegend />}
+      {forces && torques && <ForceLegend />}
     </div>
   );
 }

@@ -3,7 +3,7 @@ import { BufferAttribute, BufferGeometry, type Group, type Mesh, type MeshBasicM
 
 import { setLine, useLine } from "./lines";
 import type { Palette } from "./palette";
-import { footOf, type Frame } from "./frame";
+import { footOf, type Frame, type Shape } from "./frame";
 import { convexHull, nearestOnEdge, type Point2 } from "./polygon";
 import { useStage } from "./useStage";
 
@@ -12,7 +12,7 @@ const OVER = 0.6;
 const MOST = 16;
 
 /** Support polygon, projected centre of mass, and the shortest line from it to the edge of the polygon. */
-export function Support({ palette }: { palette: Palette }) {
+export function Support({ palette, shape }: { palette: Palette; shape: Shape }) {
   const edge = useLine({ colour: palette.support, width: 2.5 });
   const badEdge = useLine({ colour: palette.unstable, width: 2.5 });
   const plumb = useLine({ colour: palette.mark, width: 2 });
@@ -29,10 +29,11 @@ export function Support({ palette }: { palette: Palette }) {
     const hull = supportOf(frame);
     const bad = frame.margin !== null && frame.margin < 0;
     const ring = hull.length > 1 ? [...hull, hull[0] ?? ([0, 0] as const)] : [];
-    const flat = ring.flatMap(([x, y]) => [x, y, OVER]);
+    const over = OVER + groundOf(frame, shape);
+    const flat = ring.flatMap(([x, y]) => [x, y, over]);
     setLine(edge, bad ? [] : flat);
     setLine(badEdge, bad ? flat : []);
-    fillFan(geometry, hull);
+    fillFan(geometry, hull, over - 0.3 * OVER);
     const material = fill.current?.material as MeshBasicMaterial | undefined;
     material?.color.set(bad ? palette.unstable : palette.support);
     const { com } = frame;
@@ -42,10 +43,10 @@ export function Support({ palette }: { palette: Palette }) {
       setLine(reach, []);
       return;
     }
-    dot.current?.position.set(com[0], com[1], OVER + 0.4);
-    setLine(plumb, [...com, com[0], com[1], OVER]);
+    dot.current?.position.set(com[0], com[1], over + 0.4);
+    setLine(plumb, [...com, com[0], com[1], over]);
     const near = hull.length > 1 ? nearestOnEdge(hull, [com[0], com[1]]) : null;
-    setLine(reach, near ? [com[0], com[1], OVER + 0.6, near[0], near[1], OVER + 0.6] : []);
+    setLine(reach, near ? [com[0], com[1], over + 0.6, near[0], near[1], over + 0.6] : []);
   });
 
   return (
@@ -76,11 +77,20 @@ function supportOf(frame: Frame): Point2[] {
   return convexHull(feet).slice(0, MOST);
 }
 
+/** Height at which the polygon is drawn [mm]: in physics that of the highest foot on the ground, to be seen. */
+function groundOf(frame: Frame, shape: Shape): number {
+  if (!frame.physical) return 0;
+  const heights = frame.contacts.flatMap((down, leg) =>
+    down ? [footOf(frame, leg)[2] - (shape.footRadius[leg] ?? 0)] : [],
+  );
+  return heights.length > 0 ? Math.max(...heights) : 0;
+}
+
 /** Write a triangle fan into the existing buffer, so that frames allocate nothing. */
-function fillFan(geometry: BufferGeometry, hull: readonly Point2[]) {
+function fillFan(geometry: BufferGeometry, hull: readonly Point2[], height: number) {
   const position = geometry.getAttribute("position");
   const corners = hull.slice(2).flatMap((_, i) => [hull[0], hull[i + 1], hull[i + 2]]);
-  corners.forEach((corner, i) => position.setXYZ(i, corner?.[0] ?? 0, corner?.[1] ?? 0, OVER * 0.7));
+  corners.forEach((corner, i) => position.setXYZ(i, corner?.[0] ?? 0, corner?.[1] ?? 0, height));
   position.needsUpdate = true;
   geometry.setDrawRange(0, corners.length);
 }

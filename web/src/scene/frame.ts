@@ -17,11 +17,32 @@ export interface LegTrouble {
   goal: Vec3 | null;
 }
 
-export interface Frame {
+/** Speed above which a foot counts as sliding [mm/s]: friction in the physics engine creeps more slowly. */
+export const SLIDING = 15;
+
+/** Where a robot is. */
+export interface Placed {
   /** Legs x 4 points x 3 coordinates [mm]. */
   points: Float32Array;
   position: Vec3;
   rotation: Quaternion;
+}
+
+/** What only physics tells. */
+export interface Physical {
+  /** Speed of each foot's contact point over the ground [mm/s]. */
+  slip: Float32Array;
+  /** Legs x (coxa, femur, tibia): whether the servo is at its maximum torque. */
+  saturated: readonly boolean[];
+  /** Angle between the body and the planned one [deg]. */
+  tilt: number;
+  fallen: boolean;
+}
+
+export interface Frame extends Placed {
+  /** The robot as planned or commanded, where this frame is of physics. */
+  ghost: Placed | null;
+  physical: Physical | null;
   contacts: readonly boolean[];
   /** Points of the legs, other than feet, that touch the ground [mm]. */
   touching: readonly Vec3[];
@@ -63,13 +84,13 @@ export interface Shape {
 }
 
 /** Coordinates of one point of one leg. */
-export function pointOf(frame: Frame, leg: number, point: number): Vec3 {
+export function pointOf(frame: Placed, leg: number, point: number): Vec3 {
   const at = (leg * POINTS + point) * 3;
   const { points } = frame;
   return [points[at] ?? 0, points[at + 1] ?? 0, points[at + 2] ?? 0];
 }
 
-export function footOf(frame: Frame, leg: number): Vec3 {
+export function footOf(frame: Placed, leg: number): Vec3 {
   return pointOf(frame, leg, POINTS - 1);
 }
 
@@ -111,6 +132,14 @@ function blendVec(a: Vec3, b: Vec3, t: number): Vec3 {
   return [a[0] + (b[0] - a[0]) * t, a[1] + (b[1] - a[1]) * t, a[2] + (b[2] - a[2]) * t];
 }
 
+function blendPlaced(a: Placed, b: Placed, t: number): Placed {
+  return {
+    points: blendNumbers(a.points, b.points, t),
+    position: blendVec(a.position, b.position, t),
+    rotation: blendRotation(a.rotation, b.rotation, t),
+  };
+}
+
 /**
  * Interpolate between two frames: positions and forces linearly, everything discrete from the second one.
  * Between neighbouring samples the lengths of the links change by less than a pixel.
@@ -119,9 +148,8 @@ export function blend(a: Frame, b: Frame, t: number): Frame {
   if (t >= 1 || a.points.length !== b.points.length) return b;
   return {
     ...b,
-    points: blendNumbers(a.points, b.points, t),
-    position: blendVec(a.position, b.position, t),
-    rotation: blendRotation(a.rotation, b.rotation, t),
+    ...blendPlaced(a, b, t),
+    ghost: a.ghost && b.ghost ? blendPlaced(a.ghost, b.ghost, t) : b.ghost,
     com: a.com && b.com ? blendVec(a.com, b.com, t) : b.com,
     margin: a.margin !== null && b.margin !== null ? a.margin + (b.margin - a.margin) * t : b.margin,
     forces: a.forces && b.forces ? blendNumbers(a.forces, b.forces, t) : b.forces,

@@ -1,5 +1,13 @@
-import type { DriveFrame, LoadsMessage, PoseMessage, RobotMessage, WalkMessage } from "../protocol";
-import { POINTS, quaternionOf, type Frame, type LegTrouble } from "./frame";
+import type {
+  DriveFrame,
+  FramePhysics,
+  LoadsMessage,
+  PoseMessage,
+  RobotMessage,
+  SimulatedMessage,
+  WalkMessage,
+} from "../protocol";
+import { POINTS, quaternionOf, type Frame, type LegTrouble, type Placed } from "./frame";
 import { legPoints, rotationOf, triple } from "./kinematics";
 
 const REACH_TEXTS: Record<string, string> = {
@@ -41,6 +49,7 @@ export function frameOfPose(robot: RobotMessage, pose: PoseMessage): Frame {
     motion: null,
     belly: false,
     limitations: 0,
+    ...AS_PLANNED,
     trouble: troubles(robot, pose),
     forces: pose.forces_n ? new Float32Array(pose.forces_n) : null,
     torques: pose.torques_nm ? new Float32Array(pose.torques_nm) : null,
@@ -65,10 +74,16 @@ function troubles(robot: RobotMessage, pose: PoseMessage): (LegTrouble | null)[]
   });
 }
 
+/** What a planned walk and one in physics have in common. */
+export type Samples = Pick<
+  WalkMessage,
+  "rate_hz" | "count" | "position_mm" | "rpy_deg" | "angles_deg" | "contacts" | "margin_mm" | "com_mm"
+> & { reach?: string[] | null };
+
 /** A walk at a time [s], interpolated between its samples; with loads also forces and torques. */
 export function frameOfWalk(
   robot: RobotMessage,
-  walk: WalkMessage,
+  walk: Samples,
   loads: LoadsMessage | null,
   time: number,
 ): Frame {
@@ -95,9 +110,42 @@ export function frameOfWalk(
     motion: null,
     belly: false,
     limitations: 0,
+    ...AS_PLANNED,
     trouble: codeTroubles(walk.reach?.[i], legs),
     forces: loads ? mix(loads.forces_n, legs * 3) : null,
     torques: loads ? mix(loads.torques_nm, legs * 3) : null,
+  };
+}
+
+/**
+ * The stability margin in physics; null where it is negative: for a moment too few feet may bear the robot, which does
+ * not fall by that. Whether it does is not a matter of statics then.
+ */
+function physicalMargin(margin: number | null): number | null {
+  return margin !== null && margin >= 0 ? margin : null;
+}
+
+/** A walk in physics at a time [s], with the plan as its ghost. */
+export function frameOfSimulated(
+  robot: RobotMessage,
+  simulated: SimulatedMessage,
+  walk: WalkMessage,
+  time: number,
+): Frame {
+  const legs = robot.leg_names.length;
+  const i = Math.min(simulated.count - 1, Math.max(0, Math.round(time * simulated.rate_hz)));
+  const frame = frameOfWalk(robot, simulated, null, time);
+  return {
+    ...frame,
+    margin: physicalMargin(frame.margin),
+    ghost: frameOfWalk(robot, walk, null, time),
+    forces: new Float32Array(simulated.forces_n.slice(i * legs * 3, (i + 1) * legs * 3)),
+    physical: {
+      slip: new Float32Array(simulated.slip_mm_s.slice(i * legs, (i + 1) * legs)),
+      saturated: contactsOf(simulated.saturated[i] ?? ""),
+      tilt: simulated.tilt_deg[i] ?? 0,
+      fallen: simulated.fell_at_s !== null && time >= simulated.fell_at_s,
+    },
   };
 }
 
@@ -119,15 +167,19 @@ function codeTroubles(codes: string | undefined, legs: number): (LegTrouble | nu
   });
 }
 
+/** What a frame without physics has. */
+const AS_PLANNED = { ghost: null, physical: null };
+
 /** The robot that is driven, after a tick. */
 export function frameOfDrive(robot: RobotMessage, drive: DriveFrame): Frame {
-  const position = triple(drive.position_mm, 0);
-  const rotation = rotationOf(drive.rpy_deg);
+  const shown = drive.physics ?? drive;
+  const position = triple(shown.position_mm, 0);
+  const rotation = rotationOf(shown.rpy_deg);
   return {
-    points: legPoints(robot, drive.angles_deg, position, rotation),
+    points: legPoints(robot, shown.angles_deg, position, rotation),
     position,
     rotation,
-    contacts: contactsOf(drive.contacts),
+    contacts: contactsOf(shown.contacts),
     touching: [],
     support: drive.belly ? [] : null,
     com: drive.com_mm && [drive.com_mm[0] ?? 0, drive.com_mm[1] ?? 0, position[2]],
@@ -137,7 +189,29 @@ export function frameOfDrive(robot: RobotMessage, drive: DriveFrame): Frame {
     belly: drive.belly,
     limitations: drive.limitations.length,
     trouble: robot.leg_names.map(() => null),
-    forces: null,
+    forces: drive.physics && new Float32Array(drive.physics.forces_n),
     torques: null,
+    ...(drive.physics ? drivenInPhysics(robot, drive, drive.physics) : AS_PLANNED),
   };
+}
+
+function drivenInPhysics(robot: RobotMessage, drive: DriveFrame, physics: FramePhysics) {
+  return {
+    margin: physicalMargin(drive.margin_mm),
+    ghost: commandedAt(robot, drive, physics),
+    physical: {
+      slip: new Float32Array(physics.slip_mm_s),
+      saturated: contactsOf(physics.saturated),
+      tilt: physics.tilt_deg,
+      fallen: physics.problems.some((problem) => problem.startsWith("fell")),
+    },
+  };
+}
+
+/** The commanded robot over the place where it is: far from there, nothing could be compared. */
+function commandedAt(robot: RobotMessage, drive: DriveFrame, physics: FramePhysics): Placed {
+  const position = triple(physics.position_mm, 0);
+  const [roll, pitch] = triple(drive.rpy_deg, 0);
+  const rotation = quaternionOf(roll, pitch, triple(physics.rpy_deg, 0)[2]);
+  return { points: legPoints(robot, drive.angles_deg, position, rotation), position, rotation };
 }

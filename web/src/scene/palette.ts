@@ -16,6 +16,8 @@ export interface Palette {
   trouble: string;
   force: string;
   workspace: string;
+  ghost: string;
+  terrain: string;
   mark: string;
   shadow: number;
   sun: number;
@@ -39,6 +41,8 @@ export const LIGHT: Palette = {
   trouble: "#d01c2c",
   force: "#7a3fb0",
   workspace: "#0b6e8f",
+  ghost: "#1d6fd1",
+  terrain: "#dfe7ec",
   mark: "#ffb000",
   shadow: 0.28,
   sun: 2.4,
@@ -62,6 +66,8 @@ export const DARK: Palette = {
   trouble: "#ff5a63",
   force: "#c39bf0",
   workspace: "#4cc2e0",
+  ghost: "#6fb1ff",
+  terrain: "#33414b",
   mark: "#ffc24d",
   shadow: 0.55,
   sun: 2.0,

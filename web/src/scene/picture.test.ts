@@ -8,6 +8,8 @@ import { blend, blendRotation, quaternionOf, turn, type Frame } from "./frame";
 function aFrame(x: number): Frame {
   return {
     points: new Float32Array(12).fill(x),
+    ghost: null,
+    physical: null,
     position: [x, 0, 0],
     rotation: quaternionOf(0, 0, x),
     contacts: [x > 5],

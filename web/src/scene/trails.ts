@@ -1,10 +1,10 @@
 import type { RobotMessage, WalkMessage } from "../protocol";
 import type { Vec3 } from "./frame";
-import { frameOfWalk } from "./frames";
+import { frameOfWalk, type Samples } from "./frames";
 import { triple } from "./kinematics";
 
 /** Path of each foot over a walk: x, y, z of at most `most` points for each leg [mm]. */
-export function footTrails(robot: RobotMessage, walk: WalkMessage, most = 600): Float32Array[] {
+export function footTrails(robot: RobotMessage, walk: Samples, most = 600): Float32Array[] {
   const every = Math.max(1, Math.ceil(walk.count / most));
   const samples = Array.from({ length: Math.ceil(walk.count / every) }, (_, n) => n * every);
   const legs = robot.leg_names.length;

@@ -1,13 +1,21 @@
-import type { LoadsMessage, RobotMessage, WalkMessage } from "../protocol";
+import type { LoadsMessage, RobotMessage, SimulatedMessage, WalkMessage } from "../protocol";
 import { advanced, usePlayback } from "../state/playback";
-import { frameOfWalk } from "./frames";
+import { frameOfSimulated, frameOfWalk } from "./frames";
 import { lengthOf } from "./trails";
 import { stage } from "./stage";
 
-/** Show a walk at the time of the playback; returns a function that ends this. */
-export function playWalk(robot: RobotMessage, walk: WalkMessage, loads: LoadsMessage | null): () => void {
+/** Show a walk at the time of the playback, planned or in physics; returns a function that ends this. */
+export function playWalk(
+  robot: RobotMessage,
+  walk: WalkMessage,
+  loads: LoadsMessage | null,
+  simulated: SimulatedMessage | null = null,
+): () => void {
   const duration = lengthOf(walk);
-  const frameNow = () => frameOfWalk(robot, walk, loads, usePlayback.getState().time);
+  const frameNow = () => {
+    const { time } = usePlayback.getState();
+    return simulated ? frameOfSimulated(robot, simulated, walk, time) : frameOfWalk(robot, walk, loads, time);
+  };
   let stop: (() => void) | null = null;
   const start = () => {
     stop = stage.play((dt) => {

@@ -24,7 +24,17 @@ export function received(
     case "pose":
       return { poses: { ...studio.poses, [message.view]: message } };
     case "walk":
-      return { walk: message, loads: null, failures: { ...studio.failures, walk: undefined } };
+      return {
+        walk: message,
+        loads: null,
+        simulated: null,
+        failures: { ...studio.failures, walk: undefined, simulate: undefined },
+      };
+    case "terrain":
+      // Servos or terrain have changed.
+      return { terrain: message, simulated: null, failures: { ...studio.failures, simulate: undefined } };
+    case "simulated":
+      return { simulated: message };
     case "loads":
       return { loads: message, failures: { ...studio.failures, loads: undefined } };
     case "servos":
@@ -51,7 +61,7 @@ function keepingNewer(
 ): StudioState {
   if (!here) return sent;
   const kept: Partial<StudioState> = isNewer("view") ? { view: here.view, picture: here.picture } : {};
-  for (const part of ["joints", "body", "walk", "loads", "source"] as const) {
+  for (const part of ["joints", "body", "walk", "physics", "loads", "source"] as const) {
     if (isNewer(part)) Object.assign(kept, { [part]: here[part] });
   }
   return { ...sent, ...kept };
@@ -86,6 +96,7 @@ function finished(studio: Studio, done: Done, asked: ClientType | null): Partial
     const old = (answer: { id: number } | null) => answer !== null && answer.id !== done.id;
     if (old(studio.walk)) changes.walk = null;
     if (old(studio.loads)) changes.loads = null;
+    if (old(studio.simulated)) changes.simulated = null;
     if (old(studio.workspace)) changes.workspace = null;
     changes.servos = null;
     changes.poses = Object.fromEntries(Object.entries(studio.poses).filter(([, pose]) => !old(pose)));

@@ -7,8 +7,10 @@ import type {
   PoseMessage,
   RobotMessage,
   ServosMessage,
+  SimulatedMessage,
   SourceMessage,
   StudioState,
+  TerrainMessage,
   WalkMessage,
   Welcome,
   WorkspaceMessage,
@@ -33,6 +35,10 @@ export interface Studio {
   walk: WalkMessage | null;
   /** Loads of that walk; null where they are not computed yet. */
   loads: LoadsMessage | null;
+  /** That walk in physics; null where it is not simulated yet. */
+  simulated: SimulatedMessage | null;
+  /** The terrain of physics; null where physics has not been on. */
+  terrain: TerrainMessage | null;
   servos: ServosMessage | null;
   workspace: WorkspaceMessage | null;
   source: SourceMessage | null;
@@ -59,6 +65,8 @@ export const useStudio = create<Studio>(() => ({
   poses: {},
   walk: null,
   loads: null,
+  simulated: null,
+  terrain: null,
   servos: null,
   workspace: null,
   source: null,

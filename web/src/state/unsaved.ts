@@ -2,8 +2,15 @@ import type { StudioState } from "../protocol";
 import type { ClientType, Draft } from "./outbox";
 
 /** Parts of the state that are set by a message of the same name. */
-export type Settable = "joints" | "body" | "walk" | "loads" | "source";
-const SETTABLE: ReadonlySet<string> = new Set<Settable>(["joints", "body", "walk", "loads", "source"]);
+export type Settable = "joints" | "body" | "walk" | "physics" | "loads" | "source";
+const SETTABLE: ReadonlySet<string> = new Set<Settable>([
+  "joints",
+  "body",
+  "walk",
+  "physics",
+  "loads",
+  "source",
+]);
 
 export function isSettable(type: ClientType): type is Settable {
   return SETTABLE.has(type);

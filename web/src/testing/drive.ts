@@ -22,6 +22,7 @@ export function aDriveFrame(changes: Partial<DriveFrame> = {}): DriveFrame {
     limitations: [],
     intervention_count: 0,
     interventions: [],
+    physics: null,
     ...changes,
   };
 }

@@ -9,6 +9,7 @@ from pydantic import Field, TypeAdapter
 from tarsus.studio.messages.client import ClientMessage
 from tarsus.studio.messages.general import Done, ErrorMessage, FileMessage, SourceMessage
 from tarsus.studio.messages.motion import DriveFrame, LoadsMessage, ServosMessage, WalkMessage
+from tarsus.studio.messages.physics import SimulatedMessage, TerrainMessage
 from tarsus.studio.messages.pose import PoseMessage, RobotMessage, StateMessage, Welcome, WorkspaceMessage
 
 __all__ = ["CLOSED", "SOCKET", "ClientMessage", "ServerMessage", "client_message"]
@@ -34,6 +35,8 @@ ServerMessage: TypeAlias = Annotated[
     | WalkMessage
     | LoadsMessage
     | ServosMessage
+    | TerrainMessage
+    | SimulatedMessage
     | DriveFrame
     | SourceMessage
     | FileMessage

@@ -11,6 +11,7 @@ from typing import Annotated, Any, Literal, TypeAlias
 from pydantic import Field
 
 from tarsus.studio.messages.base import MOST_LEGS, Angle, Coordinate, Message, Name, Number, Positive, Triple
+from tarsus.studio.messages.physics import PhysicsOptions
 from tarsus.studio.messages.state import (
     BodyState,
     JointsState,
@@ -36,11 +37,13 @@ __all__ = [
     "SetDocument",
     "SetJoints",
     "SetLoads",
+    "SetPhysics",
     "SetRobot",
     "SetToml",
     "SetView",
     "SetWalk",
     "ShowWorkspace",
+    "Simulate",
     "SizeServos",
     "Undo",
 ]
@@ -147,6 +150,19 @@ class SetLoads(Change):
     loads: LoadOptions
 
 
+class SetPhysics(Change):
+    """Change the options of physics; a robot that is driven stops being so. Answer: terrain, where physics is on."""
+
+    type: Literal["physics"]
+    physics: PhysicsOptions
+
+
+class Simulate(Message):
+    """Simulate the walk in physics, which takes a second or two. Answer: simulated."""
+
+    type: Literal["simulate"]
+
+
 class SizeServos(Message):
     """Size servos for the walk and the payload, which takes a second or two. Answer: servos."""
 
@@ -228,6 +244,8 @@ ClientMessage: TypeAlias = Annotated[
     | DragFoot
     | SetWalk
     | SetLoads
+    | SetPhysics
+    | Simulate
     | SizeServos
     | ShowWorkspace
     | ChooseSource

@@ -7,6 +7,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Field
 
 from tarsus.studio.messages.base import Message, Part
+from tarsus.studio.messages.physics import FramePhysics
 
 __all__ = [
     "Candidate",
@@ -153,7 +154,7 @@ class ServosMessage(Message):
 
 
 class DriveFrame(Message):
-    """State of the live robot after a tick; sent 60 times a second while driving."""
+    """State of the live robot after a tick, as commanded; sent 60 times a second while driving."""
 
     type: Literal["frame"]
     time_s: float
@@ -175,3 +176,4 @@ class DriveFrame(Message):
     limitations: list[str] = Field(description="Why the command is not met in full.")
     intervention_count: int = Field(description="Number of interventions of the guard since driving started.")
     interventions: list[str] = Field(description="The latest interventions, newest first, at most five.")
+    physics: FramePhysics | None = Field(default=None, description="Null as planned, without physics.")

@@ -7,6 +7,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Field
 
 from tarsus.studio.messages.base import Message, Part
+from tarsus.studio.messages.physics import PhysicsOffer
 from tarsus.studio.messages.state import StudioState, View
 
 __all__ = [
@@ -43,6 +44,7 @@ class Welcome(Message):
     servos: list[str] = Field(description="Names in the servo catalogue.")
     public: bool = Field(description="Whether this is a public server, without access to hardware.")
     bounds: Bounds
+    physics: PhysicsOffer
     robot_schema: Schema = Field(description="JSON schema of a robot file: descriptions and bounds of its keys.")
 
 

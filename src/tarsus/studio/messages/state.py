@@ -7,6 +7,7 @@ from typing import Annotated, Any, Literal, TypeAlias
 from pydantic import Field
 
 from tarsus.studio.messages.base import MOST_LEGS, Angle, Coordinate, Name, Number, Part, Positive, Triple
+from tarsus.studio.messages.physics import PhysicsOptions
 
 __all__ = [
     "BodyState",
@@ -154,6 +155,7 @@ class StudioState(Part):
     joints: JointsState = JointsState()
     body: BodyState = BodyState()
     walk: WalkOptions = WalkOptions()
+    physics: PhysicsOptions = PhysicsOptions()
     loads: LoadOptions = LoadOptions()
     source: SourceChoice = SourceChoice()
     picture: Picture = Picture()

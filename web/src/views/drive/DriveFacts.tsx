@@ -4,8 +4,14 @@ import { withUnit } from "../../controls/numbers";
 import type { DriveFrame } from "../../protocol";
 import { headingText } from "./robotState";
 
-/** Limitations of the command, and interventions of the guard. */
-export function DriveRemarks({ frame }: { frame: DriveFrame }) {
+interface Props {
+  frame: DriveFrame;
+  onRestart: () => void;
+}
+
+/** Limitations of the command, interventions of the guard, and what goes wrong in physics. */
+export function DriveRemarks({ frame, onRestart }: Props) {
+  const problems = frame.physics?.problems ?? [];
   return (
     <div className="remarks" aria-live="polite">
       <Remarks kind="warn" items={frame.limitations} testId="drive-limitations" />
@@ -14,13 +20,20 @@ export function DriveRemarks({ frame }: { frame: DriveFrame }) {
         items={frame.interventions.map((text) => `Guard: ${text}`)}
         testId="drive-interventions"
       />
+      <Remarks kind="bad" items={problems} testId="drive-physics" />
+      {problems.some((problem) => problem.startsWith("fell")) && (
+        <button type="button" className="button" data-testid="drive-restart" onClick={onRestart}>
+          Start anew
+        </button>
+      )}
     </div>
   );
 }
 
 /** The present values. */
 export function DriveFacts({ frame }: { frame: DriveFrame }) {
-  const [x, y] = frame.position_mm;
+  const { physics } = frame;
+  const [x, y] = (physics ?? frame).position_mm;
   return (
     <Facts
       testId="drive-facts"
@@ -33,6 +46,12 @@ export function DriveFacts({ frame }: { frame: DriveFrame }) {
         ["Gait", frame.gait],
         ["Stability margin", frame.belly ? "body on the ground" : withUnit(frame.margin_mm, 0, "mm")],
         ["Guard interventions", frame.intervention_count],
+        ...(physics
+          ? ([
+              ["Tilt from the commanded pose", withUnit(physics.tilt_deg, 1, "°")],
+              ["Distance from the commanded place", withUnit(physics.deviation_mm, 0, "mm")],
+            ] as const)
+          : []),
       ]}
     />
   );

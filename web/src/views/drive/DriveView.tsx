@@ -6,6 +6,7 @@ import { Slider } from "../../controls/Slider";
 import { useTouch } from "../../controls/useTouch";
 import { useStudio } from "../../state/store";
 import { AngleTable } from "../AngleTable";
+import { PhysicsFields } from "../physics/PhysicsFields";
 import { useInputs } from "../useInputs";
 import { ViewHead } from "../ViewHead";
 import { BodyPose } from "./BodyPose";
@@ -35,7 +36,8 @@ function DriveControls() {
   const { robot } = useInputs();
   const drive = useStudio((studio) => studio.drive);
   const [settings, setSettings] = useState<Settings>(DEFAULTS);
-  const sticks = useDriving(settings);
+  const [attempt, setAttempt] = useState(0);
+  const sticks = useDriving(settings, attempt);
   const touch = useTouch();
   const set = (values: Partial<Settings>) => setSettings((before) => ({ ...before, ...values }));
   return (
@@ -64,7 +66,8 @@ function DriveControls() {
           <figcaption>Turn</figcaption>
         </figure>
       </div>
-      {drive && <DriveRemarks frame={drive} />}
+      {drive && <DriveRemarks frame={drive} onRestart={() => setAttempt(attempt + 1)} />}
+      <PhysicsFields driven />
       <fieldset>
         <Slider
           label="Top speed"

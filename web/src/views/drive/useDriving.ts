@@ -4,6 +4,7 @@ import { isTyping } from "../../app/useShortcuts";
 import type { Command } from "../../protocol";
 import { ask } from "../../state/session";
 import { useStudio } from "../../state/store";
+import { keyOf } from "../physics/usePhysics";
 import {
   CENTRED,
   gamepadDeflection,
@@ -35,25 +36,29 @@ export interface Sticks {
   turn: (x: number) => void;
 }
 
-/** Drive the robot while the view is open: keys, sticks and gamepads together set the twist. */
-export function useDriving(settings: Settings): Sticks {
+/**
+ * Drive the robot while the view is open: keys, sticks and gamepads together set the twist. Another `attempt` starts it
+ * anew.
+ */
+export function useDriving(settings: Settings, attempt: number): Sticks {
   const pressed = useRef(new Set<string>());
   const sticks = useRef<Deflection>(CENTRED);
   const latest = useRef(settings);
   const robot = useStudio((studio) => studio.robot?.id);
   const open = useStudio((studio) => studio.link.kind === "open");
+  const physics = useStudio((studio) => keyOf(studio.state?.physics));
 
-  // A new session (after a broken connection) and another robot have to be started. Before the first command is sent.
+  // A new session (after a broken connection), another robot and other physics have to be started. Before the first command is sent.
   useEffect(() => {
     if (!open) return;
     ask({ type: "drive", on: true });
     return () => ask({ type: "drive", on: false });
-  }, [open, robot]);
+  }, [open, robot, physics, attempt]);
 
   useEffect(() => {
     latest.current = settings;
     if (open) ask(commandOf(sumOf([keyDeflection(pressed.current), sticks.current]), settings));
-  }, [settings, open, robot]);
+  }, [settings, open, robot, physics, attempt]);
 
   useEffect(() => {
     const keys = pressed.current;

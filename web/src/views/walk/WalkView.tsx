@@ -2,6 +2,9 @@ import { Failure } from "../../controls/Failure";
 import { Icon } from "../../controls/icons";
 import { ask, change } from "../../state/session";
 import { useStudio } from "../../state/store";
+import { PhysicsFields } from "../physics/PhysicsFields";
+import { SimulatedSummary } from "../physics/SimulatedSummary";
+import { useInPhysics } from "../physics/usePhysics";
 import { useInputs } from "../useInputs";
 import { ViewHead } from "../ViewHead";
 import { GaitChoice } from "./GaitChoice";
@@ -19,18 +22,23 @@ export function WalkView() {
   const walk = useStudio((studio) => studio.walk);
   const refused = useStudio((studio) => studio.failures.walk !== undefined);
   const busy = useStudio((studio) => studio.busy.walk === true);
+  const simulating = useStudio((studio) => studio.busy.simulate === true);
+  const physical = useInPhysics("walk");
+  const simulated = useStudio((studio) => studio.simulated);
   return (
     <div className="view">
       <ViewHead title="Walk">Plan a walk and play it back.</ViewHead>
       <Failure of={["walk"]}>
         <WalkRemedies />
       </Failure>
+      <PhysicsFields />
       <GaitChoice />
       <PathInputs />
       <StepInputs />
       <p className="busy" aria-live="polite">
-        {busy ? "Planning …" : " "}
+        {busy ? "Planning …" : simulating ? "Simulating …" : " "}
       </p>
+      {physical && simulated && <SimulatedSummary simulated={simulated} />}
       {walk && <WalkSummary walk={walk} refused={refused} />}
       {walk && <GaitDiagram walk={walk} />}
       {walk && <WalkPlots walk={walk} />}

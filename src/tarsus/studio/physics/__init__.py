@@ -1,0 +1,1 @@
+"""Physics in the studio: terrain, the planned walk simulated, and a driven robot."""
