@@ -16,6 +16,12 @@ def preset(name):
     return load_robot(name)
 
 
+@functools.cache
+def point_feet(name):
+    """A preset whose feet are points: they stay in place while they stand, where balls roll."""
+    return load_robot(name).replace(foot_radius=np.zeros(load_robot(name).legs))
+
+
 def ring(legs, **changes):
     """A robot of `legs` like legs around a circle of 120 mm, every joint free in a wide range."""
     yaw = np.pi / legs + 2 * np.pi * np.arange(legs) / legs

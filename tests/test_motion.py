@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gait_robots import preset, ring
+from gait_robots import point_feet, ring
 from tarsus.errors import InputError
 from tarsus.gait.gait import Gait
 from tarsus.gait.motion import Motion
@@ -25,7 +25,7 @@ TRIPOD = Gait.named("tripod")
 
 def walk(gait=TRIPOD, robot="strider", **more):
     more = {"stroke": 0.08, "cycle_time": 2.0, "rate": 50} | more
-    return plan_walk(preset(robot), gait, more.pop("path", straight_path(0.3)), **more)
+    return plan_walk(point_feet(robot), gait, more.pop("path", straight_path(0.3)), **more)
 
 
 def kinds(motion):

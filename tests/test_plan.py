@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.linalg import expm
 
-from gait_robots import HEXAPOD_GAITS, PRESETS, in_heading_frame, preset, ring
+from gait_robots import HEXAPOD_GAITS, PRESETS, in_heading_frame, point_feet, ring
 from tarsus.errors import CollisionError, InputError, StrokeError, TarsusError, UnreachableError
 from tarsus.gait import plan
 from tarsus.gait.cycle import cycle_feet
@@ -75,7 +75,7 @@ def rest_of(robot, **more):
 @pytest.mark.parametrize("path", PATHS)
 @pytest.mark.parametrize("name", HEXAPOD_GAITS)
 def test_a_walk_starts_and_ends_in_the_rest_stance(name, path):
-    robot = preset("strider")
+    robot = point_feet("strider")
     motion = plan_walk(robot, Gait.named(name), PATHS[path], stroke=0.09)
     check_walk(motion, PATHS[path], rest=rest_of(robot))
     assert motion.reach.max() == 0
@@ -86,7 +86,7 @@ def test_a_walk_starts_and_ends_in_the_rest_stance(name, path):
 
 @pytest.mark.parametrize("robot", PRESETS)
 def test_the_default_walk_of_every_preset_is_possible(robot):
-    robot = preset(robot)
+    robot = point_feet(robot)
     path = straight_path(0.5)
     motion = plan_walk(robot, Gait.named(robot.gait.name), path)
     check_walk(motion, path, rest=rest_of(robot))
@@ -104,19 +104,19 @@ def test_the_number_of_feet_on_the_ground_does_not_depend_on_the_rate(name, rate
     gait, path = Gait.named(name), straight_path(0.25)
     if (1 - gait.duty_factor) * cycle_time * rate < 1:
         with pytest.raises(InputError, match="it would fall between two samples; rate must be at least"):
-            plan_walk(preset("strider"), gait, path, stroke=0.06, cycle_time=cycle_time, rate=rate)
+            plan_walk(point_feet("strider"), gait, path, stroke=0.06, cycle_time=cycle_time, rate=rate)
         return
-    motion = plan_walk(preset("strider"), gait, path, stroke=0.06, cycle_time=cycle_time, rate=rate)
-    check_walk(motion, path, rest=rest_of(preset("strider")))
+    motion = plan_walk(point_feet("strider"), gait, path, stroke=0.06, cycle_time=cycle_time, rate=rate)
+    check_walk(motion, path, rest=rest_of(point_feet("strider")))
     np.testing.assert_allclose(motion.time, np.arange(motion.time.size) / rate)
     # As often as at a rate that shows everything.
-    fine = plan_walk(preset("strider"), gait, path, stroke=0.06, cycle_time=cycle_time, rate=1000)
+    fine = plan_walk(point_feet("strider"), gait, path, stroke=0.06, cycle_time=cycle_time, rate=1000)
     assert motion.steps == fine.steps
     assert 0 <= motion.duration - fine.duration < 1 / rate + 1e-3
 
 
 def test_a_rate_that_falls_on_the_events_adds_no_sample():
-    motion = plan_walk(preset("strider"), TRIPOD, straight_path(0.4), stroke=0.1, cycle_time=1.0, rate=100)
+    motion = plan_walk(point_feet("strider"), TRIPOD, straight_path(0.4), stroke=0.1, cycle_time=1.0, rate=100)
     # 2 strokes of 0.1 m a cycle: 2 cycles of path at speed, one more for the ramps, from the first lift-off on.
     first = motion.contacts.all(-1).argmin()
     last = motion.time.size - motion.contacts[::-1].all(-1).argmin()
@@ -127,7 +127,7 @@ def test_a_rate_that_falls_on_the_events_adds_no_sample():
 @pytest.mark.parametrize("name", HEXAPOD_GAITS)
 @pytest.mark.parametrize("direction", [(1.0, 0, 0), (0.4, -1.0, 3.0), (0, 0, -1.0)])
 def test_cruise_is_the_steady_cycle(name, direction):
-    robot, gait, stroke = preset("strider"), Gait.named(name), 0.08
+    robot, gait, stroke = point_feet("strider"), Gait.named(name), 0.08
     rest = rest_of(robot)
     twist = unit_twist(rest, direction) * stroke
     path = BodyPath(tuple(twist / gait.duty_factor * 4))
@@ -149,7 +149,7 @@ def test_cruise_is_the_steady_cycle(name, direction):
 
 
 def test_while_cruising_touchdown_and_lift_off_are_symmetric_about_rest():
-    robot, stroke = preset("strider"), 0.1
+    robot, stroke = point_feet("strider"), 0.1
     motion = plan_walk(robot, TRIPOD, straight_path(0.9), stroke=stroke, cycle_time=1.0, rate=200)
     seen = in_heading_frame(motion) - rest_of(robot)
     for leg in range(6):
@@ -167,7 +167,7 @@ def test_while_cruising_touchdown_and_lift_off_are_symmetric_about_rest():
 @pytest.mark.parametrize("centre", [(0.0, 0.0), (0.0, 0.5), (-0.2, 0.1)])
 def test_stances_on_a_curve_are_arcs_about_the_centre_by_the_same_angle(centre):
     """Source 001: T = P / max(CP), every foot on its own circle."""
-    robot, stroke = preset("strider"), 0.07
+    robot, stroke = point_feet("strider"), 0.07
     rest = rest_of(robot)
     motion = plan_walk(robot, TRIPOD, curved_path(1.5, centre), stroke=stroke, cycle_time=1.0)
     radius = np.hypot(*(rest[:, :2] - centre).T)
@@ -186,7 +186,7 @@ def test_feet_leave_and_meet_the_ground_without_velocity_and_acceleration(end):
     """With finer samples the foot's displacement near the ground shrinks with the cube: order 3."""
     ways = []
     for rate in (400, 800, 1600, 3200):
-        motion = plan_walk(preset("strider"), TRIPOD, straight_path(0.3), stroke=0.1, cycle_time=1.0, rate=rate)
+        motion = plan_walk(point_feet("strider"), TRIPOD, straight_path(0.3), stroke=0.1, cycle_time=1.0, rate=rate)
         down = motion.contacts[:, 0]
         if end == "lift-off":
             last = np.flatnonzero(down[:-1] & ~down[1:])[1]
@@ -201,7 +201,7 @@ def test_feet_leave_and_meet_the_ground_without_velocity_and_acceleration(end):
 
 def test_swinging_feet_reach_the_swing_height():
     motion = plan_walk(
-        preset("strider"), Gait.named("ripple"), straight_path(0.5), stroke=0.08, cycle_time=1.2, rate=500
+        point_feet("strider"), Gait.named("ripple"), straight_path(0.5), stroke=0.08, cycle_time=1.2, rate=500
     )
     np.testing.assert_allclose(motion.feet[..., 2].max(0), motion.swing_height, rtol=1e-3)
 
@@ -209,7 +209,7 @@ def test_swinging_feet_reach_the_swing_height():
 def test_a_tilted_body_keeps_its_tilt_over_flat_ground():
     """Source 001's plane: seen from the body, the ground rises with the tilt's tangents; in G it is flat."""
     roll, pitch = 0.12, -0.08
-    robot, path = preset("strider"), curved_path(0.8, (0.0, 0.5))
+    robot, path = point_feet("strider"), curved_path(0.8, (0.0, 0.5))
     motion = plan_walk(robot, TRIPOD, path, stroke=0.05, body_tilt=(roll, pitch))
     check_walk(motion, path, rest=rest_of(robot))
     np.testing.assert_allclose(motion.body.rpy[:, 0], roll, atol=1e-12)
@@ -274,13 +274,13 @@ def test_robots_with_other_numbers_of_legs(legs, gait):
 
 def test_a_long_walk_has_the_exact_distance():
     path = straight_path(20.0, 0.3)
-    motion = plan_walk(preset("strider"), TRIPOD, path, stroke=0.1, cycle_time=1.0, rate=20)
-    check_walk(motion, path, rest=rest_of(preset("strider")))
+    motion = plan_walk(point_feet("strider"), TRIPOD, path, stroke=0.1, cycle_time=1.0, rate=20)
+    check_walk(motion, path, rest=rest_of(point_feet("strider")))
     assert motion.duration == pytest.approx(20 / 0.2 + 1 + 0.5, abs=0.6)
 
 
 def test_a_robot_of_another_array_library_walks():
-    robot = preset("strider")
+    robot = point_feet("strider")
     traced = robot.replace(femur=jnp.asarray(robot.femur), tibia=jnp.asarray(robot.tibia))
     one, other = (plan_walk(r, TRIPOD, straight_path(0.1), stroke=0.05, cycle_time=1.0) for r in (robot, traced))
     assert isinstance(other.angles, np.ndarray)
@@ -292,7 +292,7 @@ def test_a_robot_of_another_array_library_walks():
 
 def test_any_two_of_stroke_speed_and_cycle_time_determine_the_third():
     def pace(**given):
-        motion = plan_walk(preset("strider"), Gait.named("ripple"), straight_path(0.2), **given)
+        motion = plan_walk(point_feet("strider"), Gait.named("ripple"), straight_path(0.2), **given)
         return motion.stroke, motion.speed, motion.cycle_time
 
     expected = (0.06, pytest.approx(0.06 / (2 / 3 * 1.2)), pytest.approx(1.2))
@@ -304,25 +304,25 @@ def test_any_two_of_stroke_speed_and_cycle_time_determine_the_third():
 
 
 def test_cruising_speed_is_that_of_the_body():
-    motion = plan_walk(preset("strider"), TRIPOD, straight_path(0.8), stroke=0.1, cycle_time=1.0)
+    motion = plan_walk(point_feet("strider"), TRIPOD, straight_path(0.8), stroke=0.1, cycle_time=1.0)
     middle = motion.time.size // 2
     assert (motion.body.position[middle + 1] - motion.body.position[middle])[0] * 100 == pytest.approx(motion.speed)
 
 
 def test_inconsistent_arguments_are_refused():
     with pytest.raises(InputError, match=r"are inconsistent: with duty factor 0.500 the stroke would be 0.0500 m"):
-        plan_walk(preset("strider"), TRIPOD, straight_path(0.2), stroke=0.06, speed=0.1, cycle_time=1.0)
+        plan_walk(point_feet("strider"), TRIPOD, straight_path(0.2), stroke=0.06, speed=0.1, cycle_time=1.0)
 
 
 def test_a_twist_path_is_walked_at_its_speed():
     path = twist_path(0.1, 0, 0, 5.0)
-    free = plan_walk(preset("strider"), TRIPOD, path)
+    free = plan_walk(point_feet("strider"), TRIPOD, path)
     assert free.speed == pytest.approx(0.1)
     assert free.cycle_time == pytest.approx(free.stroke / (0.1 * 0.5))
-    assert plan_walk(preset("strider"), TRIPOD, path, cycle_time=1.0).stroke == pytest.approx(0.05)
-    assert plan_walk(preset("strider"), TRIPOD, path, stroke=0.05).cycle_time == pytest.approx(1.0)
+    assert plan_walk(point_feet("strider"), TRIPOD, path, cycle_time=1.0).stroke == pytest.approx(0.05)
+    assert plan_walk(point_feet("strider"), TRIPOD, path, stroke=0.05).cycle_time == pytest.approx(1.0)
     # Both given, the duration has no say.
-    assert plan_walk(preset("strider"), TRIPOD, path, stroke=0.06, cycle_time=1.0).speed == pytest.approx(0.12)
+    assert plan_walk(point_feet("strider"), TRIPOD, path, stroke=0.06, cycle_time=1.0).speed == pytest.approx(0.12)
 
 
 @pytest.mark.parametrize("name", HEXAPOD_GAITS)
@@ -330,7 +330,7 @@ def test_a_twist_path_is_walked_at_its_speed():
 @pytest.mark.parametrize("path", [straight_path(0.4), curved_path(0.8, (0.0, 0.4))])
 def test_the_default_cycle_time_keeps_joints_at_half_the_servo_speed(robot, name, path):
     """To 0.5 %: the maximum lies between the samples of the planner."""
-    motion = plan_walk(preset(robot), Gait.named(name), path, rate=400)
+    motion = plan_walk(point_feet(robot), Gait.named(name), path, rate=400)
     assert motion.cycle_time > 1
     assert 0.48 < np.nanmax(motion.speed_ratio) <= 0.5 * 1.005
     assert any("half the no-load speed of its servo" in line for line in motion.assumed)
@@ -338,7 +338,7 @@ def test_the_default_cycle_time_keeps_joints_at_half_the_servo_speed(robot, name
 
 @pytest.mark.parametrize("name", ["mithi", "freenove"])
 def test_without_known_servos_a_walk_keeps_half_the_joint_speed_limit_of_live_walking(name):
-    robot = preset(name)
+    robot = point_feet(name)
     motion = plan_walk(robot, Gait.named("wave"), curved_path(np.pi), rate=200)
     assert 0.47 * UNKNOWN_SPEED < np.abs(motion.joint_speed).max() <= 0.5 * UNKNOWN_SPEED * 1.005
     assert "joint speed limit 286 deg/s where the robot file gives no servo speed" in motion.assumed
@@ -352,7 +352,7 @@ def test_without_known_servos_a_walk_keeps_half_the_joint_speed_limit_of_live_wa
 
 @pytest.mark.parametrize("width", [-0.03, 0.02])
 def test_a_stance_width_moves_the_feet_away_from_their_coxa_axes(width):
-    robot = preset("strider")
+    robot = point_feet("strider")
     motion = plan_walk(robot, TRIPOD, straight_path(0.2), stance_width=width)
     usual = plan_walk(robot, TRIPOD, straight_path(0.2))
     mounts = np.asarray(robot.mount_position)[:, :2]
@@ -363,14 +363,14 @@ def test_a_stance_width_moves_the_feet_away_from_their_coxa_axes(width):
 
 
 def test_a_stance_width_that_brings_a_foot_to_its_coxa_axis_is_refused():
-    robot = preset("strider")
+    robot = point_feet("strider")
     for bad in (-0.3, math.nan, math.inf):
         with pytest.raises(InputError, match=r"stance_width is .* and more than -0.22"):
             plan_walk(robot, TRIPOD, straight_path(0.2), stance_width=bad)
 
 
 def test_the_default_cycle_time_is_at_least_a_second():
-    motion = plan_walk(preset("strider"), TRIPOD, straight_path(0.05), stroke=0.01, swing_height=0.003)
+    motion = plan_walk(point_feet("strider"), TRIPOD, straight_path(0.05), stroke=0.01, swing_height=0.003)
     assert motion.cycle_time == 1
     assert "cycle time 1 s" in motion.assumed
 
@@ -391,12 +391,12 @@ def test_assumptions_are_listed():
     )
     assert given_all.assumed == ("joint speed limit 286 deg/s where the robot file gives no servo speed",)
     own = ring(6, gait=GaitDefaults(body_height=0.08, swing_height=0.02))
-    own = own.replace(servos=preset("strider").servos)
+    own = own.replace(servos=point_feet("strider").servos)
     assert plan_walk(own, TRIPOD, straight_path(0.2), stroke=0.03, cycle_time=1.0).assumed == ()
 
 
 def test_the_default_stroke_is_a_fraction_of_the_longest():
-    robot = preset("strider")
+    robot = point_feet("strider")
     motion = plan_walk(robot, TRIPOD, straight_path(0.4, 0.7))
     assert motion.stroke == pytest.approx(0.6 * max_stroke(robot, TRIPOD, 0.7), rel=1e-9)
 
@@ -408,22 +408,22 @@ def test_the_default_stroke_is_a_fraction_of_the_longest():
 def test_numbers_must_be_finite_and_not_negative(name):
     for bad in (math.nan, math.inf, -math.inf, -0.1, "fast", (1, 2)):
         with pytest.raises(InputError, match=f"{name} is"):
-            plan_walk(preset("strider"), TRIPOD, straight_path(0.1), **{name: bad})
+            plan_walk(point_feet("strider"), TRIPOD, straight_path(0.1), **{name: bad})
 
 
 @pytest.mark.parametrize("name", ["stroke", "speed", "cycle_time", "rate"])
 def test_some_numbers_must_not_be_zero(name):
     with pytest.raises(InputError, match=f"{name} is 0; it must be greater than 0"):
-        plan_walk(preset("strider"), TRIPOD, straight_path(0.1), **{name: 0})
+        plan_walk(point_feet("strider"), TRIPOD, straight_path(0.1), **{name: 0})
 
 
 def test_a_swing_height_of_0_is_allowed():
-    motion = plan_walk(preset("strider"), TRIPOD, straight_path(0.1), stroke=0.05, cycle_time=1.0, swing_height=0)
+    motion = plan_walk(point_feet("strider"), TRIPOD, straight_path(0.1), stroke=0.05, cycle_time=1.0, swing_height=0)
     assert motion.feet[..., 2].max() == 0
 
 
 def test_extreme_sizes_are_refused():
-    robot = preset("strider")
+    robot = point_feet("strider")
     for bad, match in (
         ({"stroke": 1e4}, "stroke is 10000 m; it must be at most 1000 m"),
         ({"speed": 1e300, "cycle_time": 1e300}, "stroke is inf"),
@@ -443,7 +443,7 @@ def test_extreme_sizes_are_refused():
 
 
 def test_batches_and_other_gaits_are_refused():
-    robot = preset("strider")
+    robot = point_feet("strider")
     with pytest.raises(InputError, match=r"not for a batch \(2,\) of designs"):
         plan_walk(stack_robots([robot, robot]), TRIPOD, straight_path(0.1))
     with pytest.raises(InputError, match="gait 'wave' is for 5 legs, the robot has 6"):
@@ -452,14 +452,14 @@ def test_batches_and_other_gaits_are_refused():
 
 def test_an_unreachable_body_height_names_the_reachable_ones():
     with pytest.raises(UnreachableError, match=r"body height 400.0 mm: leg .*all legs do at body heights between"):
-        plan_walk(preset("strider"), TRIPOD, straight_path(0.1), body_height=0.4)
+        plan_walk(point_feet("strider"), TRIPOD, straight_path(0.1), body_height=0.4)
     for bad in (math.nan, math.inf, -math.inf):
         with pytest.raises(InputError, match="body_height is"):
-            plan_walk(preset("strider"), TRIPOD, straight_path(0.1), body_height=bad)
+            plan_walk(point_feet("strider"), TRIPOD, straight_path(0.1), body_height=bad)
 
 
 def test_a_stroke_too_long_names_leg_reason_and_longest_stroke():
-    robot = preset("strider")
+    robot = point_feet("strider")
     with pytest.raises(StrokeError, match=r"300.0 mm is too long: at .* s front .* mm too far\.") as refused:
         plan_walk(robot, TRIPOD, straight_path(1.0), stroke=0.3, cycle_time=1.0)
     assert refused.value.longest == max_stroke(robot, TRIPOD)
@@ -471,11 +471,11 @@ def test_a_stroke_impossible_only_in_other_walks_is_refused():
     with pytest.raises(
         StrokeError, match=r"during start or stop, .* can't reach .* mm too far\. In the heading frame \("
     ):
-        plan_walk(preset("strider"), TRIPOD, straight_path(0.001), stroke=0.3, cycle_time=1.0)
+        plan_walk(point_feet("strider"), TRIPOD, straight_path(0.001), stroke=0.3, cycle_time=1.0)
 
 
 def test_a_leg_that_would_jump_is_refused():
-    robot = preset("mithi")
+    robot = point_feet("mithi")
     longest = max_stroke(robot, TRIPOD, (0, 0, 1))
     with pytest.raises(StrokeError, match="jumps: ") as refused:
         plan_walk(robot, TRIPOD, curved_path(6.0), stroke=1.04 * longest, cycle_time=1.0, foot_distance=0, rate=400)
@@ -487,7 +487,7 @@ def test_a_leg_that_would_jump_is_refused():
 
 
 def test_where_no_stroke_is_possible_the_message_says_why():
-    robot = preset("strider")
+    robot = point_feet("strider")
     path = straight_path(0.2)
     with pytest.raises(
         StrokeError, match=r"in the rest stance two feet are .* less than the required foot distance of 1000.0 mm"
@@ -506,7 +506,7 @@ def test_where_no_stroke_is_possible_the_message_says_why():
 
 @pytest.mark.parametrize("rate", [10.0, 400.0])
 def test_close_feet_are_refused_with_legs_distance_and_time(rate):
-    robot, path = preset("strider"), straight_path(0.7)
+    robot, path = point_feet("strider"), straight_path(0.7)
     free = plan_walk(robot, Gait.named("ripple"), path, stroke=0.12, cycle_time=1.0, rate=2000)
     distance, pair = feet_distance(free.feet)
     closest = distance.min()
@@ -527,7 +527,7 @@ def test_close_feet_are_refused_with_legs_distance_and_time(rate):
 
 
 def test_not_strict_returns_the_motion_with_its_problems():
-    motion = plan_walk(preset("strider"), TRIPOD, straight_path(1.0), stroke=0.35, cycle_time=1.0, strict=False)
+    motion = plan_walk(point_feet("strider"), TRIPOD, straight_path(1.0), stroke=0.35, cycle_time=1.0, strict=False)
     assert motion.reach.max() > 0
     assert np.isfinite(motion.angles).all()
     assert motion.problems[0].startswith("out of reach")
@@ -542,18 +542,18 @@ def test_samples_out_of_reach_are_refused_even_if_the_stroke_is_feasible(monkeyp
     with pytest.raises(
         UnreachableError, match=r"a stroke of 300.0 mm is not possible here: at .* s front left can.t reach"
     ):
-        plan_walk(preset("strider"), TRIPOD, straight_path(1.0), stroke=0.3, cycle_time=1.0)
+        plan_walk(point_feet("strider"), TRIPOD, straight_path(1.0), stroke=0.3, cycle_time=1.0)
 
 
 def test_rest_footholds_allow_the_swing_height():
-    robot = preset("phoenix")
+    robot = point_feet("phoenix")
     np.testing.assert_allclose(
         rest_of(robot)[:, :2], default_stance(robot, swing_height=robot.gait.swing_height)[:, :2]
     )
 
 
 def test_an_unreachable_stroke_does_not_affect_the_pace():
-    robot = preset("strider")
+    robot = point_feet("strider")
     motion = plan_walk(robot, Gait.named("tripod"), straight_path(0.5), stroke=0.3, strict=False)
     assert motion.cycle_time == 1.0
     assert not motion.ok

@@ -3,7 +3,7 @@ import math
 import numpy as np
 import pytest
 
-from gait_robots import HEXAPOD_GAITS, PRESETS, preset, ring
+from gait_robots import HEXAPOD_GAITS, PRESETS, point_feet, ring
 from tarsus.errors import CollisionError, InputError, StrokeError, UnreachableError
 from tarsus.gait.branch import branches
 from tarsus.gait.excursion import extreme_excursions, walk_excursions
@@ -45,7 +45,7 @@ def works(robot, gait, direction, *, stroke, cycles, of, **more):
 @pytest.mark.parametrize("name", HEXAPOD_GAITS)
 @pytest.mark.parametrize("robot", PRESETS)
 def test_walks_are_possible_up_to_the_longest_stroke_and_refused_beyond(robot, name, direction):
-    robot, gait, direction = preset(robot), Gait.named(name), DIRECTIONS[direction]
+    robot, gait, direction = point_feet(robot), Gait.named(name), DIRECTIONS[direction]
     longest = max_stroke(robot, gait, direction)
     assert longest > 0.02
     # A different length of walk for every case: start and stop meet the cycle at other moments.
@@ -67,7 +67,7 @@ def test_walks_are_possible_up_to_the_longest_stroke_and_refused_beyond(robot, n
 @pytest.mark.parametrize("direction", ["forward", "curve", "turn"])
 def test_the_longest_stroke_equals_a_bisection_over_whole_walks(robot, name, direction):
     """Over walks of several lengths, the shortest limit: never less than `max_stroke`, at most 2 per cent more."""
-    robot, gait, direction = preset(robot), Gait.named(name), DIRECTIONS[direction]
+    robot, gait, direction = point_feet(robot), Gait.named(name), DIRECTIONS[direction]
     longest = max_stroke(robot, gait, direction)
     limits = []
     for cycles in (1.0, 1.25, 2.0, 3.1, 3.55, 3.7):
@@ -82,7 +82,7 @@ def test_the_longest_stroke_equals_a_bisection_over_whole_walks(robot, name, dir
 
 @pytest.mark.parametrize("robot", PRESETS)
 def test_every_shorter_stroke_is_possible(robot):
-    robot, gait = preset(robot), Gait.named("tripod")
+    robot, gait = point_feet(robot), Gait.named("tripod")
     for direction in DIRECTIONS.values():
         longest = max_stroke(robot, gait, direction)
         for share in (0.02, 0.3, 0.7, 0.9):
@@ -115,7 +115,7 @@ def scan(robot, gait, heading, body_height, swing_height):
 @pytest.mark.parametrize("robot", ["strider", "ch3r", "makeyourpet", "phantomx-mk2"])
 def test_the_longest_stroke_against_an_independent_scan_of_the_steady_cycle(robot, heading):
     """Excursions during start and stop exceed those of the steady cycle scanned: at most 5 per cent of the stroke."""
-    robot, gait = preset(robot), Gait.named("tetrapod")
+    robot, gait = point_feet(robot), Gait.named("tetrapod")
     steady = scan(robot, gait, heading, robot.gait.body_height, robot.gait.swing_height)
     assert 0.95 * steady <= max_stroke(robot, gait, heading) <= steady + 1e-3
 
@@ -135,7 +135,7 @@ def test_the_worst_leg_of_a_direction_limits_the_stroke():
 
 
 def test_headings_and_twists_of_any_size_are_equivalent():
-    robot, gait = preset("strider"), Gait.named("ripple")
+    robot, gait = point_feet("strider"), Gait.named("ripple")
     expected = max_stroke(robot, gait, (math.cos(0.4), math.sin(0.4), 0.0))
     assert max_stroke(robot, gait, 0.4) == expected
     assert max_stroke(robot, gait, np.float64(0.4)) == expected
@@ -144,14 +144,14 @@ def test_headings_and_twists_of_any_size_are_equivalent():
 
 
 def test_strokes_of_a_symmetric_robot_are_symmetric():
-    robot, gait = preset("strider"), Gait.named("wave")
+    robot, gait = point_feet("strider"), Gait.named("wave")
     assert max_stroke(robot, gait, math.pi) == pytest.approx(max_stroke(robot, gait, 0.0), rel=2e-3)
     assert max_stroke(robot, gait, 0.5) == pytest.approx(max_stroke(robot, gait, -0.5), rel=2e-3)
     assert max_stroke(robot, gait, (1, 0, 3)) == pytest.approx(max_stroke(robot, gait, (1, 0, -3)), rel=2e-3)
 
 
 def test_swing_height_tilt_and_foot_distance_shorten_the_stroke():
-    robot, gait = preset("strider"), Gait.named("tripod")
+    robot, gait = point_feet("strider"), Gait.named("tripod")
     usual = max_stroke(robot, gait)
     assert max_stroke(robot, gait, swing_height=0.09) < usual
     assert max_stroke(robot, gait, body_tilt=(0.2, 0.1)) < usual
@@ -165,7 +165,7 @@ def test_swing_height_tilt_and_foot_distance_shorten_the_stroke():
 
 
 def test_the_stroke_is_0_where_stepping_on_the_spot_is_impossible():
-    robot, gait = preset("strider"), Gait.named("tripod")
+    robot, gait = point_feet("strider"), Gait.named("tripod")
     assert max_stroke(robot, gait, foot_distance=1.0) == 0
     assert max_stroke(robot, gait, body_tilt=(0.9, 0.0)) == 0
 
@@ -190,7 +190,7 @@ def test_robots_with_other_numbers_of_legs(legs, gait):
 
 def test_no_foot_moves_behind_its_coxa_axis():
     """mithi has no limits: it could reach behind its coxa axes, with a jump of half a turn."""
-    robot, gait = preset("mithi"), Gait.named("tripod")
+    robot, gait = point_feet("mithi"), Gait.named("tripod")
     for direction in ((0, 0, 1), (0, 1, 1), (0.9, 0.5, 0)):
         longest = max_stroke(robot, gait, direction)
         path = walk_of(robot, gait, direction, stroke=longest, cycles=2.0)
@@ -216,7 +216,7 @@ def test_no_walk_exceeds_the_extreme_excursions(duty_factor, curved):
 
 
 def test_feet_of_excursions():
-    rest = default_stance(preset("strider"), swing_height=0.03) * [1, 1, 0]
+    rest = default_stance(point_feet("strider"), swing_height=0.03) * [1, 1, 0]
     moments = walk_excursions(Gait.named("tripod"))
     feet = moments.feet(rest, np.array([[0.1, 0.0, 0.0], [0.0, 0.2, 0.0]]), 0.03)
     assert feet.shape == (2, len(moments.up), 6, 3)
@@ -237,7 +237,7 @@ def test_branches_distinguish_facing_and_knee():
 
 
 def test_default_swing_height_and_foot_distance():
-    robot = preset("strider")
+    robot = point_feet("strider")
     assert default_swing_height(robot) == robot.gait.swing_height
     assert default_foot_distance(robot) == 2 * float(np.max(robot.foot_radius)) + 0.01
     assert default_swing_height(ring(6)) == pytest.approx((0.12 - 0.04) / 4)
@@ -263,7 +263,7 @@ def test_feet_that_pass_each_other_between_samples_are_found():
 
 
 def test_invalid_arguments_are_refused():
-    robot, gait = preset("strider"), Gait.named("tripod")
+    robot, gait = point_feet("strider"), Gait.named("tripod")
     with pytest.raises(InputError, match="single robot, not for a batch"):
         max_stroke(stack_robots([robot, robot]), gait)
     with pytest.raises(InputError, match="for 8 legs, the robot has 6"):
@@ -286,7 +286,7 @@ def test_invalid_arguments_are_refused():
 
 
 def test_the_stroke_of_a_curve_is_that_of_the_outermost_foot():
-    rest = default_stance(preset("strider"), swing_height=0.03)
+    rest = default_stance(point_feet("strider"), swing_height=0.03)
     for centre in ((0.0, 0.0), (0.0, 0.5), (0.2, -0.1)):
         twist = unit_twist(rest, curved_path(2.0, centre).displacement)
         assert abs(twist[2]) * np.hypot(*(rest[:, :2] - centre).T).max() == pytest.approx(1.0)

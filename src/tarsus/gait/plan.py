@@ -18,6 +18,7 @@ from tarsus.gait.pace import choose_pace
 from tarsus.gait.path import BodyPath, heading_to_ground
 from tarsus.gait.shifted_walk import shifted_pose, walk_shift
 from tarsus.gait.spacing import passing_distance
+from tarsus.gait.rolling_feet import roll_feet
 from tarsus.gait.stroke import first_failure, leg_feasibility, longest_stroke, unit_twist
 from tarsus.gait.swing import horizontal_profile, swing_position
 from tarsus.gait.timing import BodyClock, Steps, least_step_fraction, plan_steps
@@ -190,7 +191,7 @@ def _sample(
         share = horizontal_profile(np.clip(np.minimum(time, duration - time) / lead, 0.0, 1.0))
         displacement = share * shift_at(shift, (time - lead + steps.start) / steps.cycle_time)
         planar_pose = shifted_pose(planar_pose, displacement)
-    solution = setup.solve(feet, planar_pose)
+    feet, solution = roll_feet(setup, feet, contacts, planar_pose)
     return Motion(
         robot=setup.robot,
         gait=setup.gait,
