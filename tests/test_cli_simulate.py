@@ -89,7 +89,7 @@ def test_a_scenario_runs_through_the_controller():
         ("simulate strider --terrain hills", 2, "no terrain is called 'hills'"),
         ("simulate strider --distance 100 --cycle 0.2", 1, "the walk is not possible: "),
         ("simulate mithi", 1, "the servo of the coxa is unknown"),
-        (f"{SHORT} --terrain step:rise=60,start=0", 1, "failed\n  covered 18 mm of 60 mm"),
+        (f"{SHORT} --terrain step:rise=60,start=0", 1, "failed\n  covered 17 mm of 60 mm"),
     ],
 )
 def test_what_is_wrong_is_named(arguments, code, message):

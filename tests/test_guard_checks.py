@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gait_robots import preset, ring
+from gait_robots import point_feet, preset, ring
 from sample_guard import ALL_STANCE, INVALID_ANGLES, NAN, TICK, feet_at, kinds_of, only, run, stance_feet, standing
 from sample_robots import random_hexapod
 from tarsus.control.safety import Guard
@@ -147,7 +147,7 @@ def test_rounding_beyond_a_limit_is_clamped(side):
 
 
 def test_foot_drag_is_reported_with_its_distance():
-    robot = preset("strider")
+    robot = point_feet("strider")
     feet = np.array(
         [stance_feet() + fraction * np.eye(6)[:, 4:5] * [0.005, 0, 0] for fraction in np.linspace(0, 1, 50)]
     )

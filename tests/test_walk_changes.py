@@ -52,7 +52,7 @@ def test_every_factor_is_that_of_the_walk_with_the_change(name):
 
 def test_a_higher_body_helps_the_strider_most_of_the_single_changes():
     changes = {change.text: change.factor for change in walk_changes(sample_loads(), planner("strider"))}
-    raised = changes["raise the body by 30 mm to 140 mm"]
+    (raised,) = (factor for text, factor in changes.items() if text.startswith("raise") and ", " not in text)
     assert raised == max(factor for text, factor in changes.items() if ", " not in text)
     assert raised / sample_loads().factor.min() > 1.5
 

@@ -50,7 +50,8 @@ class GuardBounds:
     margin : float
         Least stability margin [m]; minus infinity disables the check.
     foot_drag : float
-        Greatest change of the distance between two feet while both are in stance [m]; infinity disables the check.
+        Greatest change of the distance between two feet while both are in stance, besides what spherical feet roll
+        [m]; infinity disables the check.
     foot_height : float
         Greatest distance of a stance foot above or below the ground plane [m]; infinity disables the check.
     ground_slope : float

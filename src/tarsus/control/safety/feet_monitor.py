@@ -38,6 +38,9 @@ class FeetMonitor:
         self._pairs = tuple(combinations(range(robot.legs), 2))
         self._unknown: list[float | None] = [None] * len(self._pairs)
         self._distances = self._new_distances = self._unknown
+        self._radius = [float(radius) for radius in robot.foot_radius]
+        # Tibia angles relative to B's plane at which the distance of each pair was stored [rad].
+        self._tilts = self._new_tilts = [(0.0, 0.0)] * len(self._pairs)
         self._margin, self._drag, self._height = bounds.margin, bounds.foot_drag, bounds.foot_height
         self._slope = math.tan(bounds.ground_slope)
         self.stance: list[bool] | None = None
@@ -66,7 +69,8 @@ class FeetMonitor:
         stance_feet = [foot for foot, is_down in zip(feet, stance, strict=True) if is_down]
         up = plane_normal(stance_feet) if rows is None else (rows[2][0], rows[2][1], rows[2][2])
         self._new_up = up
-        found = self._drag_violations(feet, stance)
+        tilts = [femur + tibia for femur, tibia in zip(angles[1::3], angles[2::3], strict=True)]
+        found = self._drag_violations(feet, stance, tilts)
         x, y, heights = project(stance_feet, com, up)
         margin = polygon_margin(x, y)
         if not margin >= self._margin:
@@ -77,25 +81,36 @@ class FeetMonitor:
 
     def accept(self) -> None:
         """Store the last checked command as the one that is sent."""
-        self.stance, self.up, self._distances = self._new_stance, self._new_up, self._new_distances
+        self.stance, self.up = self._new_stance, self._new_up
+        self._distances, self._tilts = self._new_distances, self._new_tilts
 
     def reset_distances(self) -> None:
         """Discard the distances between the feet; the next command sets them anew."""
         self._distances = self._unknown
 
-    def _drag_violations(self, feet: list[Point], stance: list[bool]) -> list[Violation]:
-        """Return the pairs of feet whose distance has changed too much since both came into stance."""
+    def _drag_violations(self, feet: list[Point], stance: list[bool], tilts: list[float]) -> list[Violation]:
+        """Return the pairs of feet whose distance has changed too much since both came into stance.
+
+        A ball that rolls moves by at most its radius times the angle by which its tibia turns.
+        """
         distances: list[float | None] = []
+        references = self._tilts.copy()
         found = []
-        for (i, j), before in zip(self._pairs, self._distances, strict=True):
+        for pair, ((i, j), before) in enumerate(zip(self._pairs, self._distances, strict=True)):
             if not (stance[i] and stance[j]):
                 distances.append(None)
                 continue
             now = math.dist(feet[i], feet[j])
             distances.append(now if before is None else before)
-            if before is not None and abs(now - before) > self._drag:
-                found.append(Violation(InterventionKind.FOOT_DRAG, j, -1, abs(now - before), self._drag))
-        self._new_distances = distances
+            if before is None:
+                references[pair] = (tilts[i], tilts[j])
+            elif abs(now - before) > self._drag:
+                tilt_i, tilt_j = references[pair]
+                rolled = self._radius[i] * abs(tilts[i] - tilt_i) + self._radius[j] * abs(tilts[j] - tilt_j)
+                bound = self._drag + rolled
+                if abs(now - before) > bound:
+                    found.append(Violation(InterventionKind.FOOT_DRAG, j, -1, abs(now - before), bound))
+        self._new_distances, self._new_tilts = distances, references
         return found
 
     def _height_violations(
