@@ -89,7 +89,9 @@ def test_a_ball_rolls_by_its_radius_times_the_tilt_and_does_not_move_by_its_spin
     angles[2, :, 0] = 0.3
     moved = rolling_displacements(robot, angles, Pose.from_rpy([0, 0, 0], [0, 0, 0], [0, 0, 0], np.zeros((3, 3))))
     yaw = robot.mount_yaw
-    np.testing.assert_allclose(moved[0], 1e-4 * np.stack([np.cos(yaw), np.sin(yaw), 0 * yaw], axis=-1), rtol=1e-4, atol=1e-15)
+    np.testing.assert_allclose(
+        moved[0], 1e-4 * np.stack([np.cos(yaw), np.sin(yaw), 0 * yaw], axis=-1), rtol=1e-4, atol=1e-15
+    )
     np.testing.assert_allclose(moved[1], 0, atol=1e-15)
 
 
@@ -108,5 +110,7 @@ def test_in_physics_the_way_is_that_of_the_plan(name, gait, heading):
     plan = plan_walk(robot, Gait.named(gait), straight_path(0.2, heading), rate=100.0)
     assert compare(plan, servos="ideal").outcome.way_ratio == pytest.approx(1.0, abs=0.01)
     # With footholds that stay in place the ball carries the body beyond its way.
-    points = dataclasses.replace(plan_walk(point_feet(name), Gait.named(gait), straight_path(0.2, heading)), robot=robot)
+    points = dataclasses.replace(
+        plan_walk(point_feet(name), Gait.named(gait), straight_path(0.2, heading)), robot=robot
+    )
     assert compare(points, servos="ideal").outcome.way_ratio > 1.01

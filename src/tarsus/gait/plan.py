@@ -16,9 +16,9 @@ from tarsus.gait.gait import Gait
 from tarsus.gait.motion import Motion
 from tarsus.gait.pace import choose_pace
 from tarsus.gait.path import BodyPath, heading_to_ground
+from tarsus.gait.rolling_feet import roll_feet
 from tarsus.gait.shifted_walk import shifted_pose, walk_shift
 from tarsus.gait.spacing import passing_distance
-from tarsus.gait.rolling_feet import roll_feet
 from tarsus.gait.stroke import first_failure, leg_feasibility, longest_stroke, unit_twist
 from tarsus.gait.swing import horizontal_profile, swing_position
 from tarsus.gait.timing import BodyClock, Steps, least_step_fraction, plan_steps

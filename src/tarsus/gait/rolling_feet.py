@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from tarsus.gait.cycle import tilted_body
 from tarsus.gait.swing import horizontal_profile
 from tarsus.gait.walk_setup import WalkSetup
 from tarsus.kinematics.reach import Reach
@@ -56,9 +58,10 @@ def roll_feet(
     solution = setup.solve(feet, planar_pose)
     if not np.any(setup.robot.foot_radius):
         return feet, solution
+    body = tilted_body(planar_pose, body_height=np.asarray(setup.body_height), body_tilt=setup.body_tilt)
     rolled = feet
     for _ in range(_PASSES):
-        steps = rolling_displacements(setup.robot, np.asarray(solution.angles), solution.body)
+        steps = rolling_displacements(setup.robot, np.asarray(solution.angles), body)
         offsets = np.zeros_like(feet)
         for leg in range(setup.robot.legs):
             offsets[:, leg] = _offsets(steps[:, leg], contacts[:, leg])
@@ -81,7 +84,7 @@ def _offsets(steps: Float[np.ndarray, "_ 3"], contacts: Bool[np.ndarray, "n"]) -
         # A walk begins and ends in the rest stance.
         middle = 0 if start == 0 else end - 1 - start if end == len(contacts) else (end - start) // 2
         offsets[start:end] = rolled - rolled[middle]
-    for (_, lift_off), (touchdown, _) in zip(stances[:-1], stances[1:], strict=True):
+    for (_, lift_off), (touchdown, _) in itertools.pairwise(stances):
         before, after = lift_off - 1, touchdown
         span = after - before
         s = np.arange(1, span)[:, None] / span
@@ -93,6 +96,6 @@ def _runs(contacts: Bool[np.ndarray, "n"]) -> Iterator[tuple[int, int]]:
     """Yield the first sample of each stance, and the one after its last."""
     edges = np.flatnonzero(np.diff(contacts.astype(int))) + 1
     bounds = [0, *edges.tolist(), len(contacts)]
-    for start, end in zip(bounds[:-1], bounds[1:], strict=True):
+    for start, end in itertools.pairwise(bounds):
         if contacts[start]:
             yield start, end

@@ -233,8 +233,14 @@ class SequenceBuilder:
         if self.stages:
             self.stages[-1] = replace(self.stages[-1], angles_end=self.angles)
 
-    def sequence(self) -> MotionSequence:
-        """Return the sequence, moved in G so that the body ends over the origin with yaw 0."""
+    def sequence(self, robot: Robot) -> MotionSequence:
+        """Return the sequence, moved in G so that the body ends over the origin with yaw 0.
+
+        Parameters
+        ----------
+        robot : Robot
+            The robot that moves; the builder's differs from it in the thickness of its body.
+        """
         stages = self.stages or [replace(self.hold("hold"), duration=0.0)]
         yaw = float(self.body.rpy[2])
         rotation = Pose.from_rpy(0.0, 0.0, -yaw).rotation
@@ -242,7 +248,8 @@ class SequenceBuilder:
         if yaw or offset.any():
             home = Pose(rotation, -offset)
             stages = [stage.transformed(home) for stage in stages]
-        return MotionSequence(robot=self.robot, stages=tuple(stages), joint_limits=self.joint_limits)
+        stages = [replace(stage, robot=robot) for stage in stages]
+        return MotionSequence(robot=robot, stages=tuple(stages), joint_limits=self.joint_limits)
 
     def _add(self, name: str, *, margin: float = 0.0, **changes: Any) -> None:
         """Add a stage of the shortest duration that differs from `hold` by `changes`; omit it if no joint moves."""

@@ -20,13 +20,34 @@ from tarsus.robot.robot import Robot
 if TYPE_CHECKING:
     from jaxtyping import Float
 
-__all__ = ["initial_state", "lying_state"]
+__all__ = ["initial_state", "lying_state", "over_feet"]
 
 
 # With a greater tilt, the robot has fallen over.
 _MAX_TILT = math.radians(60)
 # Tilt below which the body counts as level [rad].
 _LEVEL_TOLERANCE = 1e-7
+# Least thickness of a body as seen from the plane of the feet [m].
+_THINNEST = 1e-3
+
+
+def over_feet(robot: Robot) -> Robot:
+    """Return the robot as seen from the plane of its feet: with points as feet, and a body that is thinner by as much.
+
+    Foot balls of radius `r` on the ground have their centres `r` above it: while they stand, the ground is `r` nearer
+    to the underside of the body than the plane of the feet is. Feet of different radii count with the least one. The
+    thickness of a body without a box is not known, and stays.
+
+    Parameters
+    ----------
+    robot : Robot
+        A single robot.
+    """
+    radius = float(np.min(robot.foot_radius))
+    if radius == 0 or robot.body_size is None:
+        return robot
+    length, width, height = np.asarray(robot.body_size).tolist()
+    return robot.replace(body_size=np.array([length, width, max(height - 2 * radius, _THINNEST)]))
 
 
 def initial_state(robot: Robot, angles: Float[Array, "legs 3"], joint_limits: JointLimits) -> SequenceBuilder:

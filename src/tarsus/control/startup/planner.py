@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from tarsus.arrays import Array
 from tarsus.control.sequence.sequence import MotionSequence
 from tarsus.control.sequence.sequence_limits import sequence_limits
@@ -12,7 +14,7 @@ from tarsus.control.startup.body_targets import BodyTarget, body_targets
 from tarsus.control.startup.builder import SequenceBuilder
 from tarsus.control.startup.folded_pose import belly_depth, folded_pose
 from tarsus.control.startup.foothold_stations import foothold_distances, footholds
-from tarsus.control.startup.initial_state import initial_state, lying_state
+from tarsus.control.startup.initial_state import initial_state, lying_state, over_feet
 from tarsus.control.startup.level_body import level_body
 from tarsus.control.startup.raise_body import lower_body, raise_body
 from tarsus.errors import InputError, TarsusError, UnreachableError
@@ -79,23 +81,24 @@ def stand_up(
     """
     swing_height, margin = _checked(robot, swing_height, margin)
     height = default_body_height(robot) if body_height is None else float(body_height)
-    lowest = belly_depth(robot)
+    lowest = belly_depth(over_feet(robot))
     if height < lowest:
         raise UnreachableError(
             f"body_height is {height * 1000:.1f} mm; it must be at least {lowest * 1000:.1f} mm, the height with the "
             "belly on the ground"
         )
-    start = initial_state(robot, angles, sequence_limits(robot, joint_speed, joint_acceleration))
+    folded = folded_pose(robot)
+    start = initial_state(over_feet(robot), angles, sequence_limits(robot, joint_speed, joint_acceleration))
     feet = default_stance(robot, height, swing_height=swing_height)
     stance = inverse_kinematics(robot, feet).require().angles
 
     def plan(builder: SequenceBuilder, target: BodyTarget) -> None:
         level_body(builder, target, feet, margin=margin)
         if builder.belly:
-            _fold(builder)
+            _fold(builder, folded)
         raise_body(builder, feet, stance, swing_height=swing_height, margin=margin)
 
-    return _first_feasible(start, list(body_targets(start, height)), plan)
+    return _first_feasible(robot, start, list(body_targets(start, height)), plan)
 
 
 def sit_down(
@@ -143,7 +146,7 @@ def sit_down(
     joint_limits = sequence_limits(robot, joint_speed, joint_acceleration)
     if angles is None:
         angles = inverse_kinematics(robot, default_stance(robot, swing_height=swing_height)).require().angles
-    start = initial_state(robot, angles, joint_limits)
+    start = initial_state(over_feet(robot), angles, joint_limits)
     feet = footholds(robot, foothold_distances(robot, start.body.inverse() @ start.feet), start.height)
 
     def plan(builder: SequenceBuilder, target: BodyTarget) -> None:
@@ -152,7 +155,7 @@ def sit_down(
             lower_body(builder, swing_height=swing_height, margin=margin)
 
     lying_first = sorted(body_targets(start, start.height), key=lambda target: not target.belly)
-    return _first_feasible(start, lying_first, plan)
+    return _first_feasible(robot, start, lying_first, plan)
 
 
 def fold(
@@ -184,9 +187,9 @@ def fold(
         If the robot does not lie on its belly.
     """
     joint_limits = sequence_limits(robot, joint_speed, joint_acceleration)
-    builder = lying_state(robot, angles, joint_limits, purpose="folding its legs")
-    _fold(builder)
-    return builder.sequence()
+    builder = lying_state(over_feet(robot), angles, joint_limits, purpose="folding its legs")
+    _fold(builder, folded_pose(robot))
+    return builder.sequence(robot)
 
 
 def _checked(robot: Robot, swing_height: float | None, margin: float) -> tuple[float, float]:
@@ -201,7 +204,10 @@ def _checked(robot: Robot, swing_height: float | None, margin: float) -> tuple[f
 
 
 def _first_feasible(
-    start: SequenceBuilder, targets: list[BodyTarget], plan: Callable[[SequenceBuilder, BodyTarget], None]
+    robot: Robot,
+    start: SequenceBuilder,
+    targets: list[BodyTarget],
+    plan: Callable[[SequenceBuilder, BodyTarget], None],
 ) -> MotionSequence:
     """Return the first feasible plan; if there is none, raise the error of the most promising one."""
     errors: list[TarsusError] = []
@@ -212,12 +218,11 @@ def _first_feasible(
         except TarsusError as error:
             errors.append(error)
         else:
-            return builder.sequence()
+            return builder.sequence(robot)
     others = f" ({len(errors) - 1} alternatives fail too)" if len(errors) > 1 else ""
     raise type(errors[0])(f"{start.robot.name}: {errors[0]}{others}") from errors[0]
 
 
-def _fold(builder: SequenceBuilder) -> None:
+def _fold(builder: SequenceBuilder, folded: Float[np.ndarray, "legs 3"]) -> None:
     """Fold all legs of a lying robot."""
-    folded = folded_pose(builder.robot)
     builder.move_legs("fold", (builder.angles != folded).any(-1), folded, landed=False)

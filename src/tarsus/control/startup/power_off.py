@@ -9,7 +9,7 @@ import numpy as np
 
 from tarsus.arrays import Array
 from tarsus.control.sequence.sequence_limits import sequence_limits
-from tarsus.control.startup.initial_state import lying_state
+from tarsus.control.startup.initial_state import lying_state, over_feet
 from tarsus.control.startup.leg_path import LegFreeSpace
 from tarsus.representation import represented
 from tarsus.robot.robot import JOINTS, Robot
@@ -68,6 +68,7 @@ def power_off_order(robot: Robot, angles: Float[Array, "legs 3"]) -> PowerOffOrd
     TarsusError
         If the robot does not lie on its belly.
     """
+    robot = over_feet(robot)
     state = lying_state(robot, angles, sequence_limits(robot), purpose="switching its joints off")
     drop = np.zeros((robot.legs, 3))
     for leg in range(robot.legs):
