@@ -2,6 +2,7 @@
 
 import errno
 import os
+import subprocess
 import sys
 import types
 
@@ -9,6 +10,7 @@ import pytest
 
 from tarsus import hardware
 from tarsus.errors import NoAnswerError, PortError
+from tarsus.hardware.emulation.__main__ import main
 from tarsus.hardware.transport.i2c import SmbusTransport
 
 IDS = range(1, 19)
@@ -153,3 +155,17 @@ def test_clocks():
 def test_servos_in_memory_run_on_the_machines_clock_too():
     bus, _ = hardware.emulated_bus("feetech-sts", IDS, clock=hardware.SystemClock())
     assert set(bus.read_positions((1, 2)).require()) == {1, 2}
+
+
+def test_emulated_servos_run_as_a_process_of_their_own(capsys):
+    command = [sys.executable, "-m", "tarsus.hardware.emulation", "lx16a", "3-5"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
+        bus = hardware.open_bus("lx16a", process.stdout.readline().strip(), timeout=1.0)
+        assert bus.read_positions((3, 4, 5)).require() == dict.fromkeys((3, 4, 5), 500.0)
+        process.kill()
+        with pytest.raises(PortError):
+            often(lambda: bus.read_positions((3,)))
+    assert main(["ssc32", "0-17", "--baud", "9600", "--seconds", "0"]) == 0
+    assert capsys.readouterr().out.startswith("/dev/")
+    assert main(["ssc32", "all"]) == 1
+    assert "invalid literal" in capsys.readouterr().err

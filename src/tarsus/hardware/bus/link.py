@@ -113,9 +113,16 @@ class Link:
             if not data:
                 break
         self._doubtful = len(found) < len(ids) or bool(noise or rest or twice)
+        if noise or rest:
+            noise += self._withdrawn(found, received + self.transport.discard())
         refused = [id for id in ids if id not in found or id in twice]
         errors = [self._error(id, count, received, noise, echo=echo, twice=id in twice) for id in refused]
         return Answers({id: found[id] for id in ids if id not in refused}, tuple(errors))
+
+    def _withdrawn(self, found: dict[int, Frame], received: bytes) -> bytes:
+        """Remove answers that are not to be believed, and return their bytes."""
+        suspect = [one for one in self._scan(received, ended=True).suspect if found.get(one.id) == one]
+        return b"".join(found.pop(one.id).raw for one in suspect)
 
     def ask_board(self, frame: bytes, *, size: int | None = None, end: bytes = b"") -> bytes:
         """Send a frame, and return the answer of a board, which has no frame of its own.

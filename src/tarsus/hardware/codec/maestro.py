@@ -113,7 +113,7 @@ def crc(data: bytes) -> int:
     for byte in data:
         value ^= byte
         for _ in range(8):
-            value = value >> 1 ^ (0x91 if value & 1 else 0)
+            value = (value ^ 0x91 if value & 1 else value) >> 1
     return value
 
 

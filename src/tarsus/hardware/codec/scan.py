@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import itertools
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -37,17 +38,28 @@ class Scanned:
 
     Attributes
     ----------
-    frames : tuple of Frame
-        Whole frames, in their order.
+    parts : tuple of Frame or bytes
+        In their order, whole frames and what is no frame: noise, and frames with a wrong checksum.
     rest : bytes
         The beginning of a frame that is not complete yet.
-    damaged : tuple of bytes
-        What is no frame: noise, and frames with a wrong checksum.
+    suspect : tuple of Frame
+        Frames that bytes follow which belong to no frame. Where a byte was inserted into a frame or lost from it, what
+        is left may have the right checksum by chance, but then something is left over behind it.
     """
 
-    frames: tuple[Frame, ...]
+    parts: tuple[Frame | bytes, ...]
     rest: bytes
-    damaged: tuple[bytes, ...]
+    suspect: tuple[Frame, ...] = ()
+
+    @property
+    def frames(self) -> tuple[Frame, ...]:
+        """Whole frames."""
+        return tuple(part for part in self.parts if isinstance(part, Frame))
+
+    @property
+    def damaged(self) -> tuple[bytes, ...]:
+        """What is no frame."""
+        return tuple(part for part in self.parts if isinstance(part, bytes))
 
 
 class Scanner(Protocol):
@@ -99,8 +111,7 @@ def scan_frames(received: bytes, framing: Framing, *, ended: bool) -> Scanned:
     ended : bool
         Whether nothing more comes, so that an incomplete frame is a damaged one.
     """
-    frames: list[Frame] = []
-    damaged: list[bytes] = []
+    parts: list[Frame | bytes] = []
     at = noise = 0
     while at < len(received):
         end = at + _size(received[at : at + framing.known], framing)
@@ -108,15 +119,24 @@ def scan_frames(received: bytes, framing: Framing, *, ended: bool) -> Scanned:
             break
         frame = framing.decode(received[at:end]) if at < end <= len(received) else None
         if frame is not None:
-            damaged += [received[noise:at]] if at > noise else []
-            frames.append(frame)
+            parts += [received[noise:at]] if at > noise else []
+            parts.append(frame)
             at = noise = end
         else:
             # Where another frame follows, the length is right: bytes inside a damaged frame are no frames.
             follows = at < end and received[end:].startswith(framing.header)
             at = end if follows or end == len(received) > at else at + 1
-    damaged += [received[noise:at]] if at > noise else []
-    return Scanned(tuple(frames), received[at:], tuple(damaged))
+    parts += [received[noise:at]] if at > noise else []
+    return Scanned(tuple(parts), received[at:], _suspect(parts, framing.header))
+
+
+def _suspect(parts: Sequence[Frame | bytes], header: bytes) -> tuple[Frame, ...]:
+    """Return frames behind which something is left over that is not a damaged frame with its header."""
+    return tuple(
+        one
+        for one, after in itertools.pairwise(parts)
+        if isinstance(one, Frame) and isinstance(after, bytes) and not after.startswith(header)
+    )
 
 
 def _size(begin: bytes, framing: Framing) -> int:

@@ -15,6 +15,19 @@ __all__ = ["EmulatedLx16a"]
 _TRAITS = ServoTraits(per_turn=1500, lowest=0, highest=1000, speed=1560, play=2, stall_current=1.5)
 
 
+# Settings that are kept and told, and do nothing here: by the command that reads them, the one that writes them and
+# what they are at first. Offset, limits of voltage and temperature, mode and speed, LED, and what makes it blink.
+_SETTINGS = {
+    19: (17, b"\x00"),
+    23: (22, codec.encode_words(4500, 12000)),
+    25: (24, b"\x55"),
+    30: (29, b"\x00\x00\x00\x00"),
+    34: (33, b"\x00"),
+    36: (35, b"\x07"),
+}
+_WRITES = {write: read for read, (write, _) in _SETTINGS.items()}
+
+
 class EmulatedLx16a(EmulatedLine):
     """LX-16A servos on a line.
 
@@ -33,6 +46,7 @@ class EmulatedLx16a(EmulatedLine):
         super().__init__({id: EmulatedServo(traits) for id in ids}, **{"turnaround": 300e-6, **line})
         self._limits = dict.fromkeys(self.servos, (0, 1000))
         self._waiting: dict[int, tuple[int, int]] = {}
+        self._settings = {id: {read: initial for read, (_, initial) in _SETTINGS.items()} for id in self.servos}
 
     def _answers(self) -> Iterator[tuple[int, bytes]]:
         scanned = codec.scan(self._buffer)
@@ -57,7 +71,9 @@ class EmulatedLx16a(EmulatedLine):
             low, high = codec.decode_unsigned(data[:2]), codec.decode_unsigned(data[2:])
             if low < high <= 1000:
                 self._limits[id] = (low, high)
-        return self._read(id, command)
+        elif command in _WRITES:
+            self._settings[id][_WRITES[command]] = data
+        return self._settings[id].get(command, b"") or self._read(id, command)
 
     def _read(self, id: int, command: int) -> bytes:
         servo = self.servos[id]
