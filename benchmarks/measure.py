@@ -7,10 +7,11 @@ import statistics
 import subprocess
 import time
 import tracemalloc
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 
-__all__ = ["Row", "medians", "peak_bytes", "start_time", "use_one_core"]
+__all__ = ["Row", "all_cores", "medians", "peak_bytes", "start_time", "use_one_core"]
 
 # Mathematics libraries read these variables when they are loaded.
 for _library in ("OMP", "OPENBLAS", "MKL"):
@@ -51,6 +52,20 @@ def use_one_core() -> None:
     """Restrict this process and its children to one core, if the system supports it."""
     if hasattr(os, "sched_setaffinity"):
         os.sched_setaffinity(0, {max(os.sched_getaffinity(0))})
+
+
+@contextmanager
+def all_cores() -> Iterator[None]:
+    """Allow all cores, for measurements with several processes."""
+    if not hasattr(os, "sched_setaffinity"):
+        yield
+        return
+    previous = os.sched_getaffinity(0)
+    os.sched_setaffinity(0, range(os.cpu_count() or 1))
+    try:
+        yield
+    finally:
+        os.sched_setaffinity(0, previous)
 
 
 def medians(

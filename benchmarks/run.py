@@ -20,6 +20,7 @@ import numpy as np
 
 from loads import load_rows
 from native import FLAGS, CLoop
+from servo_buses import servo_bus_rows
 from simulation import simulation_rows
 from studio import studio_rows
 from tarsus import (
@@ -259,6 +260,7 @@ def rows(robot: Robot, c_loop: CLoop | None) -> Iterator[Row]:
         yield from group(robot)
     yield from start_rows()
     yield from simulation_rows()
+    yield from servo_bus_rows()
     yield from studio_rows()
 
 

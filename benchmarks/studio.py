@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any
 
 # Must be imported before NumPy: it sets the number of threads.
-from measure import Row  # isort: split
+from measure import Row, all_cores  # isort: split
 
 from websockets.asyncio.client import ClientConnection, connect
 
@@ -71,20 +71,6 @@ def server() -> Iterator[tuple[str, int]]:
     finally:
         process.terminate()
         process.communicate()
-
-
-@contextmanager
-def all_cores() -> Iterator[None]:
-    """Allow all cores, for a server and its visitors in several processes."""
-    if not hasattr(os, "sched_setaffinity"):
-        yield
-        return
-    previous = os.sched_getaffinity(0)
-    os.sched_setaffinity(0, range(os.cpu_count() or 1))
-    try:
-        yield
-    finally:
-        os.sched_setaffinity(0, previous)
 
 
 def processor_time(pid: int) -> float | None:

@@ -9,6 +9,7 @@ from pathlib import Path
 
 from click.testing import CliRunner
 
+from bus_tables import with_buses
 from mistyped import table as mistakes_table
 from tarsus import load_robot
 from tarsus.cli import main as tarsus
@@ -55,6 +56,9 @@ def main() -> None:
     check = ROOT / "docs" / "robot-check.md"
     check.write_text(with_mistakes(check.read_text(encoding="utf-8")), encoding="utf-8")
     print(f"refreshed {check.name}")
+    buses = ROOT / "docs" / "buses.md"
+    buses.write_text(with_buses(refreshed(buses.read_text(encoding="utf-8"))), encoding="utf-8")
+    print(f"refreshed {buses.name}")
     handbook = ROOT / "docs" / "handbook.md"
     handbook.write_text(docs_page(handbook.read_text(encoding="utf-8"), load_robot("strider")), encoding="utf-8")
     print(f"refreshed {handbook.name}")

@@ -274,6 +274,31 @@ def test_the_watchdog_acts_where_there_is_one(any_bus):
         assert all(servo.torque for servo in device.servos.values())
 
 
+@pytest.mark.parametrize("name", ["dynamixel-x", "lines"])
+def test_the_watchdog_acts_in_time_also_if_nobody_looks(name):
+    bus, device = opened(name)
+    bus.set_watchdog(IDS, 0.2)
+    drive(bus, dict.fromkeys(IDS, middle(bus)), 0.6)
+    begin = shafts(bus, device)[2]
+    slow = device.servos[2].traits.speed / 20
+    device.servos[2].speed_limit = slow
+    bus.write_goals({2: middle(bus) + 400})
+    device.servos[2].speed_limit = slow
+    way = device.positions(clock(bus).now() + 2.5)[2] - begin
+    assert way == pytest.approx(0.2 * slow, abs=0.03 * slow + device.servos[2].traits.play)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_answers_that_are_damaged_by_chance_are_refused_or_right(smart, seed):
+    bus, device = smart
+    drive(bus, {id: middle(bus) + 8 * (id - 9) for id in IDS}, 0.6)
+    truth = bus.read_positions((3, 4)).require()
+    device.faults.corrupt = {3: 0.7}
+    answers = [bus.read_positions((3, 4)) for _ in range(20)]
+    assert all(one.values[id] == truth[id] for one in answers for id in one.values)
+    assert any(one.errors for one in answers)
+
+
 def test_a_maestro_ends_pulses_after_its_serial_timeout():
     bus, device = hardware.emulated_bus("maestro", IDS, serial_timeout=0.1)
     bus.write_goals({0: 1500})
@@ -339,8 +364,9 @@ def test_impossible_goals_are_refused_and_nothing_is_sent(any_bus, bad):
     before = {id: servo.goal for id, servo in device.servos.items()}
     with pytest.raises(InputError, match="goal of id 1"):
         bus.write_goals({2: middle(bus) + 50, 1: bad})
-    with pytest.raises(InputError, match="has no id 300"):
-        bus.write_goals({2: middle(bus) + 50, 300: middle(bus)})
+    for unknown in (300, -1, 1.5, "1"):
+        with pytest.raises(InputError, match=f"has no id {unknown!r}"):
+            bus.write_goals({2: middle(bus) + 50, unknown: middle(bus)})
     device.advance(clock(bus).now() + 0.05)
     assert {id: servo.goal for id, servo in device.servos.items()} == before
 
@@ -393,6 +419,8 @@ def test_the_time_of_a_tick_is_what_it_takes_in_memory(any_bus):
     assert written - begin == pytest.approx(timing.goals, rel=1e-6)
     assert clock(bus).now() - written == pytest.approx(timing.positions, rel=0.02, abs=1e-9)
     assert timing.rate == pytest.approx(1 / (timing.goals + timing.positions))
+    assert bus.timing(()).positions == 0
+    assert bus.timing(()).rate > timing.rate or bus.name == "lines"
 
 
 def test_fast_reading_takes_less_time_and_survives_a_missing_servo():

@@ -104,6 +104,7 @@ def hardware_values():
     yield from (bus.capabilities, bus.ping(1), bus.timing(range(1, 19)), bus.read_positions(range(1, 19)))
     yield from (bus.read_telemetry((1,)).values[1], hardware.ManualClock(), hardware.SystemClock())
     yield from (hardware.MemoryTransport(line), hardware.EmulatedLine({}, baud=9600))
+    yield hardware.MemoryI2c(hardware.emulate("pca9685", range(18)))
     with hardware.PtyServer(line) as server:
         yield server
         yield hardware.SerialTransport(server.port, 1_000_000)

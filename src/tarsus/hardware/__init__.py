@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from tarsus.hardware.emulation.servo import EmulatedServo, ServoTraits
     from tarsus.hardware.emulation.supply import Supply
     from tarsus.hardware.transport.clock import ManualClock, SystemClock
-    from tarsus.hardware.transport.memory import MemoryTransport
+    from tarsus.hardware.transport.memory import MemoryI2c, MemoryTransport
     from tarsus.hardware.transport.pty import PtyServer
     from tarsus.hardware.transport.serial import SerialTransport, list_ports
 
@@ -56,7 +56,7 @@ _HOMES = {
     "tarsus.hardware.emulation.servo": ("EmulatedServo", "ServoTraits"),
     "tarsus.hardware.emulation.supply": ("Supply",),
     "tarsus.hardware.transport.clock": ("ManualClock", "SystemClock"),
-    "tarsus.hardware.transport.memory": ("MemoryTransport",),
+    "tarsus.hardware.transport.memory": ("MemoryI2c", "MemoryTransport"),
     "tarsus.hardware.transport.pty": ("PtyServer",),
     "tarsus.hardware.transport.serial": ("SerialTransport", "list_ports"),
 }
@@ -80,6 +80,7 @@ __all__ = [
     "FootSwitches",
     "JointCalibration",
     "ManualClock",
+    "MemoryI2c",
     "MemoryTransport",
     "Mounting",
     "PtyServer",

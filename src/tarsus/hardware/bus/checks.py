@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import operator
 from collections.abc import Iterable, Mapping
 
 from tarsus.errors import InputError
@@ -28,11 +29,13 @@ def checked_ids(bus: str, can: Capabilities, ids: Iterable[int]) -> tuple[int, .
     InputError
         If one of them is none of this bus.
     """
-    found = tuple(dict.fromkeys(ids))
-    for id in found:
-        if id not in can.ids:
+    found: dict[int, None] = {}
+    for id in ids:
+        number = operator.index(id) if hasattr(id, "__index__") else -1
+        if number not in can.ids:
             raise InputError(f"{bus} has no id {id!r}: ids are {can.ids.start} to {can.ids.stop - 1}")
-    return found
+        found[number] = None
+    return tuple(found)
 
 
 def _checked(bus: str, can: Capabilities, what: str, value: float) -> float:
@@ -58,8 +61,7 @@ def checked_goals(bus: str, can: Capabilities, goals: Mapping[int, float]) -> di
     InputError
         If an id is none of this bus, or a goal is NaN or outside its range.
     """
-    ids = checked_ids(bus, can, goals)
-    return {id: _checked(bus, can, f"goal of id {id}", goals[id]) for id in ids}
+    return {id: _checked(bus, can, f"goal of id {id}", goals[id]) for id in checked_ids(bus, can, goals)}
 
 
 def checked_range(bus: str, can: Capabilities, id: int, lowest: float, highest: float) -> tuple[int, int]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Generic, Literal, Protocol, TypeVar
@@ -171,7 +172,7 @@ class BusTiming:
     @property
     def rate(self) -> float:
         """Goals and positions of all servos per second, at most [Hz]."""
-        return 1.0 / (self.goals + self.positions)
+        return 1.0 / (self.goals + self.positions) if self.goals + self.positions else math.inf
 
 
 class Bus(Protocol):
@@ -248,7 +249,8 @@ class Bus(Protocol):
     def set_torque(self, ids: Sequence[int] | None, on: bool) -> bool:
         """Switch the torque of servos, or their pulses, on or off; return whether the bus can.
 
-        Pulses begin with the next goal.
+        Pulses begin with the next goal. A smart servo that is switched on may go to its last goal at once: send the
+        goal first.
 
         Parameters
         ----------

@@ -272,6 +272,8 @@ class RegisterBus:
         ids : sequence of int
             The servos.
         """
+        if not ids:
+            return BusTiming(0.0, 0.0, 0.0)
         goals = self._dialect.sync_write(self._registers["goal"].address, {id: self._goal(id, 0) for id in ids})
         positions, telemetry = (
             self._read_seconds(ids, self._block(*names)) for names in (("position", "position"), self._series.telemetry)

@@ -26,12 +26,15 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("bus", choices=[name for name, kind in BUSES.items() if kind.transport == "serial"])
     parser.add_argument("ids", nargs="?", default="1-18", help="first and last id or channel, such as 1-18")
     parser.add_argument("--baud", type=int, help="bits per second")
+    parser.add_argument("--return-delay", type=float, help="of Dynamixel servos, in microseconds; 500 as delivered")
     parser.add_argument("--seconds", type=float, help="how long; until Ctrl-C if left out")
     options = parser.parse_args(arguments)
     first, _, last = options.ids.partition("-")
     try:
         ids = range(int(first), int(last or first) + 1)
-        line = {"baud": options.baud} if options.baud else {}
+        line: dict[str, float] = {"baud": options.baud} if options.baud else {}
+        if options.return_delay is not None:
+            line["return_delay"] = options.return_delay * 1e-6
         with PtyServer(emulate(options.bus, ids, **line)) as server:
             sys.stdout.write(f"{server.port}\n")
             sys.stdout.flush()

@@ -215,18 +215,11 @@ class EmulatedLines(EmulatedBoard):
         self._outputs, self._limit = outputs, 0.5
         self._good: float | None = None
 
-    def advance(self, now: float) -> None:
-        """Move the servos on to a time; pulses end if no good line came for too long.
-
-        Parameters
-        ----------
-        now : float
-            The time [s].
-        """
+    def _step(self, now: float) -> None:
         self._now = now
         if self._good is not None and now - self._good > self._limit:
             self.pulses.update(dict.fromkeys(self.pulses, 0.0))
-        super().advance(now)
+        super()._step(now)
 
     def _answers(self) -> Iterator[tuple[int, bytes]]:
         while b"\n" in self._buffer:

@@ -93,15 +93,8 @@ class EmulatedPca9685(EmulatedServos):
         self.advance(now)
         return bytes(self._boards[address][register : register + count])
 
-    def advance(self, now: float) -> None:
-        """Move the servos on to a time, as at each transfer.
-
-        Parameters
-        ----------
-        now : float
-            The time [s].
-        """
-        super().advance(now)
+    def _step(self, now: float) -> None:
+        super()._step(now)
         if self.supply.up(now):
             for channel, width in self.pulses.items():
                 follow(self, channel, width)

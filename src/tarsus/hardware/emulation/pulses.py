@@ -61,15 +61,8 @@ class EmulatedBoard(EmulatedLine):
 
     _fed_by_port = True
 
-    def advance(self, now: float) -> None:
-        """Move the servos on to a time, as at each request.
-
-        Parameters
-        ----------
-        now : float
-            The time [s].
-        """
-        super().advance(now)
+    def _step(self, now: float) -> None:
+        super()._step(now)
         if self.supply.up(now):
             # After their supply was gone, servos follow the pulses that are there.
             for channel, width in self.pulses.items():

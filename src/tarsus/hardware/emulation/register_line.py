@@ -44,6 +44,8 @@ class EmulatedRegisters(EmulatedLine):
         Name of their bus.
     traits : ServoTraits, optional
         What they are like.
+    return_delay : float, optional
+        Time until they answer, of Dynamixel servos [s]; by default as they are delivered.
     **line
         Passed on to `EmulatedLine`.
 
@@ -53,7 +55,15 @@ class EmulatedRegisters(EmulatedLine):
         The servos' registers.
     """
 
-    def __init__(self, ids: Iterable[int], name: str, *, traits: ServoTraits | None = None, **line: Any) -> None:
+    def __init__(
+        self,
+        ids: Iterable[int],
+        name: str,
+        *,
+        traits: ServoTraits | None = None,
+        return_delay: float | None = None,
+        **line: Any,
+    ) -> None:
         traits = traits or TRAITS[name]
         if name.startswith("dynamixel") and line.get("supply") is None:
             line["supply"] = Supply(12.0, least=6.5)
@@ -67,6 +77,8 @@ class EmulatedRegisters(EmulatedLine):
             "highest": int(traits.highest),
             "hottest": round(traits.hottest),
         }
+        if return_delay is not None:
+            initial["return_delay"] = round(return_delay / 2e-6)
         byteorder = "big" if name == "feetech-scs" else "little"
         self.memory = {
             id: ServoMemory(servo, registers, self.supply, byteorder=byteorder, initial={**initial, "id": id})

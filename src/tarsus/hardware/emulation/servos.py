@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 
 from tarsus.hardware.emulation.faults import Faults
@@ -10,6 +11,8 @@ from tarsus.hardware.emulation.supply import Supply
 from tarsus.representation import represented
 
 __all__ = ["EmulatedServos"]
+
+_STEP, _WATCHED = 0.02, 3.0
 
 
 @represented("ids", "supply", "faults")
@@ -45,6 +48,7 @@ class EmulatedServos:
         self.servos = dict(servos)
         self.supply, self.faults = supply or Supply(), faults or Faults()
         self._heard: float | None = None
+        self._time: float | None = None
 
     @property
     def ids(self) -> tuple[int, ...]:
@@ -62,12 +66,14 @@ class EmulatedServos:
         Parameters
         ----------
         now : float
-            The time [s].
+            The time [s], on the transport's clock: behind a pseudo-terminal that of `time.monotonic`.
         """
-        self._watch(0.0 if self._heard is None else now - self._heard)
-        self.supply.advance(now, self.servos.values())
-        if not self.supply.up(now):
-            self._started_anew()
+        before = now if self._time is None else self._time
+        # In steps while a watchdog may act, so that it acts when it should.
+        steps = math.ceil(min(now - before, _WATCHED) / _STEP)
+        for step in range(1, steps):
+            self._step(before + step * _STEP)
+        self._step(now)
 
     def positions(self, now: float) -> dict[int, float]:
         """Return where the shafts are, by id.
@@ -79,6 +85,13 @@ class EmulatedServos:
         """
         self.advance(now)
         return {id: servo.position for id, servo in self.servos.items()}
+
+    def _step(self, now: float) -> None:
+        self._time = now
+        self._watch(0.0 if self._heard is None else now - self._heard)
+        self.supply.advance(now, self.servos.values())
+        if not self.supply.up(now):
+            self._started_anew()
 
     def _watch(self, silent: float) -> None:
         """Carry out what the watchdog does after a time without requests; by default there is none."""

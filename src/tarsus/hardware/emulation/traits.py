@@ -24,8 +24,8 @@ _FEETECH = {"status_level": 1, "most_torque": 1000, "lock": 1}
 _DYNAMIXEL = {"status_level": 2, "return_delay": 250}
 
 INITIAL = {
-    "feetech-sts": {**_FEETECH, "model": 777, "torque_limit": 1000},
-    "feetech-scs": {**_FEETECH, "model": 1284},
+    "feetech-sts": {**_FEETECH, "model": 777, "firmware": 0x0A03, "torque_limit": 1000},
+    "feetech-scs": {**_FEETECH, "model": 1284, "firmware": 0x0305},
     "dynamixel-x": {**_DYNAMIXEL, "model": 1060, "firmware": 46, "mode": 3, "torque_limit": 885},
     "dynamixel-mx": {**_DYNAMIXEL, "model": 29, "firmware": 36, "torque_limit": 1023},
     "dynamixel-ax": {**_DYNAMIXEL, "model": 12, "firmware": 24, "torque_limit": 1023},

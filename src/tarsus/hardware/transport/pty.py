@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import heapq
 import itertools
+import math
 import os
 import select
 import sys
@@ -27,12 +28,15 @@ _IDLE = 0.05
 class PtyServer:
     """Serves an emulated device behind a pseudo-terminal, from a thread of its own.
 
-    A pseudo-terminal has no baud rate: what the device receives and sends is delayed by its time on the wire.
+    A pseudo-terminal has no baud rate: what the device receives and sends is delayed by its time on the wire, and what
+    it sends arrives in the frames of USB.
 
     Parameters
     ----------
     device : Device
         The far end. While the server runs, use it only under `lock`.
+    frame : float
+        Time between two frames of USB, in which adapters pass bytes on [s].
 
     Attributes
     ----------
@@ -42,7 +46,7 @@ class PtyServer:
         Held while the device works.
     """
 
-    def __init__(self, device: Device) -> None:
+    def __init__(self, device: Device, *, frame: float = 1e-3) -> None:
         if sys.platform == "win32":  # pragma: no cover
             raise PortError(
                 "emulation",
@@ -53,7 +57,7 @@ class PtyServer:
             )
         import tty
 
-        self._device = device
+        self._device, self._frame = device, frame
         self.lock = threading.Lock()
         self._master, self._slave = os.openpty()
         # Without raw mode the terminal echoes, and turns some bytes into others.
@@ -110,7 +114,14 @@ class PtyServer:
                 with self.lock:
                     deliveries = self._device.receive(data, line_free)
                 for delivery in deliveries:
-                    heapq.heappush(waiting, (delivery.at, next(order), delivery.data))
+                    heapq.heappush(waiting, (self._arrival(delivery.at), next(order), delivery.data))
+            arrived = b""
             while waiting and waiting[0][0] <= now:
+                arrived += heapq.heappop(waiting)[2]
+            if arrived:
                 with contextlib.suppress(BlockingIOError):
-                    os.write(self._master, heapq.heappop(waiting)[2])
+                    os.write(self._master, arrived)
+
+    def _arrival(self, at: float) -> float:
+        """Return when the frame of USB ends in which bytes are passed on [s]."""
+        return math.ceil(at / self._frame) * self._frame if self._frame else at
