@@ -80,6 +80,14 @@ def calibration_values():
     yield from (hardware.BUS_COMMANDS["feetech-sts"], hardware.new_calibration(robot, "strider"))
     yield from (calibration := hardware.nominal_calibration(robot, "strider"), *calibration.buses)
     yield from (calibration.joints[0][0], hardware.SupplySettings(voltage=7.4, least_voltage=6.0))
+    bus, _ = hardware.emulated_bus("servo2040", range(18))
+    recorded = []
+    plant = hardware.ServoPlant(
+        robot, calibration, buses={"main": bus}, clock=hardware.ManualClock(), observer=recorded.append
+    )
+    plant.start(tarsus.RobotController(robot).output)
+    yield from (plant, plant.timing, plant.settings, recorded[0])
+    yield hardware.ServoFault(kind=hardware.FaultKind.STUCK, text="it stands still", joint="front left femur")
     yield from (hardware.FootSwitches(bus="main", inputs=(0, 1, 2, 3, 4, None)), hardware.Mounting(port="COM3"))
 
 

@@ -12,6 +12,7 @@
     │   └── StrokeError     the stroke leaves the workspace; `.longest` is the longest possible
     ├── CollisionError      two feet come closer to each other than allowed
     ├── SimulationError     the physics of a simulated robot becomes unstable
+    ├── ServoFaultError     a servo, its bus or the supply fails while the robot runs; `.fault` says which
     └── BusError            communication with servos fails
         ├── PortError           a port can't be opened, or is gone
         ├── NoAnswerError       a servo or board does not answer in time
@@ -37,6 +38,7 @@ __all__ = [
     "NoAnswerError",
     "PortError",
     "RobotFileError",
+    "ServoFaultError",
     "ServoStatusError",
     "SimulationError",
     "StrokeError",
@@ -133,6 +135,20 @@ class CollisionError(TarsusError):
 
 class SimulationError(TarsusError):
     """The physics of a simulated robot becomes unstable."""
+
+
+class ServoFaultError(TarsusError):
+    """A servo, its bus or the supply fails while the robot runs.
+
+    Attributes
+    ----------
+    fault : ServoFault
+        What failed, which joint, what the robot did, and what would help.
+    """
+
+    def __init__(self, message: str, fault: object) -> None:
+        self.fault = fault
+        super().__init__(message)
 
 
 class BusError(TarsusError):

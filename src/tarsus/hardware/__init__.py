@@ -35,6 +35,11 @@ if TYPE_CHECKING:
     from tarsus.hardware.emulation.registry import emulate, emulated_bus
     from tarsus.hardware.emulation.servo import EmulatedServo, ServoTraits
     from tarsus.hardware.emulation.supply import Supply
+    from tarsus.hardware.plant.fault import FaultKind, Reaction, ServoFault
+    from tarsus.hardware.plant.pacer import Timing
+    from tarsus.hardware.plant.servo_plant import ServoPlant
+    from tarsus.hardware.plant.settings import PlantSettings
+    from tarsus.hardware.plant.tick_record import TickRecord
     from tarsus.hardware.transport.clock import ManualClock, SystemClock
     from tarsus.hardware.transport.memory import MemoryI2c, MemoryTransport
     from tarsus.hardware.transport.pty import PtyServer
@@ -55,6 +60,11 @@ _HOMES = {
     "tarsus.hardware.emulation.registry": ("emulate", "emulated_bus"),
     "tarsus.hardware.emulation.servo": ("EmulatedServo", "ServoTraits"),
     "tarsus.hardware.emulation.supply": ("Supply",),
+    "tarsus.hardware.plant.fault": ("FaultKind", "Reaction", "ServoFault"),
+    "tarsus.hardware.plant.pacer": ("Timing",),
+    "tarsus.hardware.plant.servo_plant": ("ServoPlant",),
+    "tarsus.hardware.plant.settings": ("PlantSettings",),
+    "tarsus.hardware.plant.tick_record": ("TickRecord",),
     "tarsus.hardware.transport.clock": ("ManualClock", "SystemClock"),
     "tarsus.hardware.transport.memory": ("MemoryI2c", "MemoryTransport"),
     "tarsus.hardware.transport.pty": ("PtyServer",),
@@ -76,6 +86,7 @@ __all__ = [
     "Capabilities",
     "EmulatedLine",
     "EmulatedServo",
+    "FaultKind",
     "Faults",
     "FootSwitches",
     "JointCalibration",
@@ -83,13 +94,19 @@ __all__ = [
     "MemoryI2c",
     "MemoryTransport",
     "Mounting",
+    "PlantSettings",
     "PtyServer",
+    "Reaction",
     "SerialTransport",
+    "ServoFault",
+    "ServoPlant",
     "ServoTraits",
     "Supply",
     "SupplySettings",
     "SystemClock",
     "Telemetry",
+    "TickRecord",
+    "Timing",
     "bus_over",
     "calibration_schema",
     "emulate",

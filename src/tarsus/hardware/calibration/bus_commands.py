@@ -119,7 +119,8 @@ def usual_bus(servo: Servo | None) -> BusCommands:
     servo : Servo or None
         The servo.
     """
-    for (model, bus), kind in _OF_SERVOS.items() if servo is not None else ():
-        if servo.name.startswith(model) and any(name.startswith(bus) for name in servo.buses):
+    name, buses = ("", frozenset[str]()) if servo is None else (servo.name, servo.buses)
+    for (model, start), kind in _OF_SERVOS.items():
+        if name.startswith(model) and any(bus.startswith(start) for bus in buses):
             return BUS_COMMANDS[kind]
     return BUS_COMMANDS["servo2040"]

@@ -1,0 +1,102 @@
+"""Faults of servos, buses and supply, and how the robot reacts to each."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from enum import StrEnum
+from types import MappingProxyType
+
+from tarsus.errors import ServoFaultError
+from tarsus.representation import represented
+
+__all__ = ["REACTIONS", "FaultKind", "Reaction", "ServoFault"]
+
+
+class FaultKind(StrEnum):
+    """What failed."""
+
+    NO_ANSWER = "no answer"
+    CORRUPT = "corrupt answers"
+    PORT_GONE = "port gone"
+    BROWN_OUT = "brown-out"
+    LOW_VOLTAGE = "low voltage"
+    STUCK = "stuck"
+    OVERHEATED = "overheated"
+    OVERLOADED = "overloaded"
+    INVALID_COMMAND = "invalid command"
+
+
+class Reaction(StrEnum):
+    """What the robot does, before it is without torque."""
+
+    SIT = "sit"
+    LIMP = "limp"
+
+
+REACTIONS: Mapping[FaultKind, tuple[Reaction, str]] = MappingProxyType(
+    {
+        FaultKind.NO_ANSWER: (Reaction.SIT, "Check the cable to this servo, its id and its supply."),
+        FaultKind.CORRUPT: (
+            Reaction.SIT,
+            "Look for a second servo with this id, a loose cable, or cables of servos and data side by side.",
+        ),
+        FaultKind.PORT_GONE: (Reaction.LIMP, "Check the USB cable and the adapter's supply."),
+        FaultKind.BROWN_OUT: (
+            Reaction.LIMP,
+            "Use a battery and cables that carry the peak current, which tarsus loads gives.",
+        ),
+        FaultKind.LOW_VOLTAGE: (Reaction.SIT, "Charge the battery."),
+        FaultKind.STUCK: (
+            Reaction.SIT,
+            "Free the joint, and check its gears, its limits in the calibration and that no cable blocks it.",
+        ),
+        FaultKind.OVERHEATED: (Reaction.SIT, "Let it cool, walk slower or with less payload (tarsus loads)."),
+        FaultKind.OVERLOADED: (Reaction.SIT, "Walk with less payload or a higher body (tarsus loads)."),
+        FaultKind.INVALID_COMMAND: (Reaction.SIT, "Look for a division by zero in what commands the joints."),
+    }
+)
+"""For each kind of fault what the robot does, and what would help."""
+
+
+@represented()
+@dataclass(frozen=True, kw_only=True)
+class ServoFault:
+    """A fault.
+
+    Attributes
+    ----------
+    kind : FaultKind
+        What failed.
+    text : str
+        What was noticed: the number against its bound.
+    joint : str
+        Name of the joint; empty for a whole bus or the supply.
+    leg, number : int
+        Numbers of the leg and the joint; -1 for a whole bus or the supply.
+    time : float
+        When it was noticed, on the plant's clock [s].
+    """
+
+    kind: FaultKind
+    text: str
+    joint: str = ""
+    leg: int = -1
+    number: int = -1
+    time: float = 0.0
+
+    @property
+    def reaction(self) -> Reaction:
+        """What the robot does."""
+        return REACTIONS[self.kind][0]
+
+    @property
+    def remedy(self) -> str:
+        """What would help."""
+        return REACTIONS[self.kind][1]
+
+    def error(self) -> ServoFaultError:
+        """Return the error that ends the run."""
+        what = f"{self.joint}: {self.kind}" if self.joint else str(self.kind)
+        did = "sits down, then all servos are released" if self.reaction is Reaction.SIT else "all servos are released"
+        return ServoFaultError(f"{what}: {self.text}; the robot {did}. {self.remedy}", self)

@@ -1,0 +1,80 @@
+"""Keeps the ticks of a run in time with a clock, and measures how well."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from tarsus.hardware.transport.clock import Clock
+from tarsus.representation import represented
+
+__all__ = ["Pacer", "Timing"]
+
+
+@represented()
+class Timing(NamedTuple):
+    """How well the ticks were kept.
+
+    Attributes
+    ----------
+    ticks, missed : int
+        Ticks, and those that could not begin in time and were left out.
+    rate : float
+        Ticks per second [1/s].
+    median, worst : float
+        How late a tick began [s].
+    """
+
+    ticks: int
+    missed: int
+    rate: float
+    median: float
+    worst: float
+
+
+class Pacer:
+    """Waits until a tick begins. A tick that is missed is left out: two never follow each other in haste.
+
+    Parameters
+    ----------
+    clock : Clock
+        The clock.
+    """
+
+    def __init__(self, clock: Clock) -> None:
+        self._clock = clock
+        self._next: float | None = None
+        self._first = 0.0
+        self._missed = 0
+        self._late: list[float] = []
+
+    def wait(self, dt: float) -> float:
+        """Wait for the beginning of the next tick, and return the time [s].
+
+        Parameters
+        ----------
+        dt : float
+            Duration of the tick that begins [s].
+        """
+        now = self._clock.now()
+        if self._next is None:
+            self._next = self._first = now
+        if now < self._next:
+            self._clock.sleep(self._next - now)
+            now = self._clock.now()
+        late = now - self._next
+        self._late.append(max(late, 0.0))
+        if late >= dt:
+            self._missed += int(late / dt)
+            self._next = now
+        self._next += dt
+        return now
+
+    @property
+    def timing(self) -> Timing:
+        """How well the ticks were kept until now."""
+        late = np.array(self._late or [0.0])
+        elapsed = self._clock.now() - self._first
+        rate = len(self._late) / elapsed if elapsed > 0 else 0.0
+        return Timing(len(self._late), self._missed, rate, float(np.median(late)), float(late.max()))

@@ -1,0 +1,147 @@
+"""Reads positions and telemetry of servos, as many in a tick as the wire carries."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Collection, Iterator, Mapping
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from tarsus.errors import BusError, PortError
+from tarsus.hardware.bus.protocol import Bus, Telemetry
+from tarsus.hardware.calibration.calibration import Calibration
+from tarsus.hardware.plant.joint_map import JointMap
+from tarsus.hardware.transport.clock import Clock
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
+
+__all__ = ["Reading", "ServoReader"]
+
+# Share of a tick that reading positions may take.
+_SHARE = 0.5
+
+
+class Reading(NamedTuple):
+    """An attempt to read positions.
+
+    Attributes
+    ----------
+    bus : str
+        Name of the bus.
+    asked, answered : collection of int
+        Who was asked, and who answered.
+    errors : tuple of BusError
+        Why the others did not.
+    """
+
+    bus: str
+    asked: Collection[int]
+    answered: Collection[int]
+    errors: tuple[BusError, ...]
+
+
+class ServoReader:
+    """Reads servos, and keeps what was read last.
+
+    Parameters
+    ----------
+    buses : mapping of str to Bus
+        The buses by name.
+    joints : JointMap
+        The joints.
+    calibration : Calibration
+        A complete calibration.
+    clock : Clock
+        The clock.
+
+    Attributes
+    ----------
+    angles, speeds : array, shape (legs, 3)
+        Joint angles and speeds as last measured; NaN where never [rad, rad/s].
+    fresh : bool
+        Whether all joints that are measured were so in the last tick.
+    """
+
+    def __init__(self, buses: Mapping[str, Bus], joints: JointMap, calibration: Calibration, clock: Clock) -> None:
+        self._buses, self._joints, self._calibration, self._clock = buses, joints, calibration, clock
+        shape = (calibration.robot.legs, 3)
+        self.angles, self.speeds = np.full(shape, np.nan), np.full(shape, np.nan)
+        self._times = np.full(shape, np.nan)
+        self._turns = {
+            name: itertools.cycle(joints.numbers(name))
+            for name, bus in buses.items()
+            if bus.capabilities.positions and joints.numbers(name)
+        }
+        self._telemetry = {
+            name: itertools.cycle(joints.numbers(name))
+            for name, bus in buses.items()
+            if bus.capabilities.telemetry and joints.numbers(name)
+        }
+        self.fresh = False
+
+    def all_positions(self) -> Float[np.ndarray, "legs 3"]:
+        """Return the measured joint angles; NaN for joints whose bus does not measure them [rad].
+
+        Raises
+        ------
+        BusError
+            If a servo gives no valid answer, even when asked again.
+        """
+        for name in self._turns:
+            bus, numbers = self._buses[name], self._joints.numbers(name)
+            found = dict(bus.read_positions(numbers).values)
+            left = [number for number in numbers if number not in found]
+            if left:
+                found |= bus.read_positions(left).require()
+            self._keep(name, found)
+        return self.angles.copy()
+
+    def positions(self, dt: float) -> Iterator[Reading]:
+        """Read positions, and yield who answered.
+
+        Parameters
+        ----------
+        dt : float
+            Duration of the tick [s].
+        """
+        self.fresh = bool(self._turns)
+        for name, turn in self._turns.items():
+            bus, numbers = self._buses[name], self._joints.numbers(name)
+            whole = bus.timing(numbers).positions
+            if whole > _SHARE * dt:
+                count = max(1, int(len(numbers) * _SHARE * dt / whole))
+                numbers = tuple(dict.fromkeys(next(turn) for _ in range(count)))
+                self.fresh = False
+            answers = bus.read_positions(numbers)
+            self._keep(name, answers.values)
+            self.fresh = self.fresh and not answers.errors
+            yield Reading(name, numbers, answers.values.keys(), answers.errors)
+
+    def telemetry(self) -> Iterator[tuple[str, Mapping[int, Telemetry]]]:
+        """Read the telemetry of one servo of each bus, and yield it by the bus's name."""
+        for name, turn in self._telemetry.items():
+            try:
+                yield name, self._buses[name].read_telemetry((next(turn),)).values
+            except PortError:
+                raise
+            except BusError:
+                # Whether it answers is judged by its positions.
+                continue
+
+    @property
+    def age(self) -> float:
+        """Time since the oldest of the last positions was measured [s]."""
+        return max(0.0, self._clock.now() - float(np.nanmin(self._times)))
+
+    def _keep(self, bus: str, values: Mapping[int, float]) -> None:
+        now = self._clock.now()
+        zeros, slopes = self._calibration.zeros, self._calibration.slopes
+        for number, value in values.items():
+            place = self._joints.joint(bus, number)
+            angle = (value - zeros[place]) / slopes[place]
+            passed = now - self._times[place]
+            if passed > 0:
+                self.speeds[place] = (angle - self.angles[place]) / passed
+            self.angles[place], self._times[place] = angle, now

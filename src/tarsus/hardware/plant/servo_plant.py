@@ -1,0 +1,326 @@
+"""A plant of real servos: starts slowly, keeps limits, notices faults, sits down before it lets go."""
+
+from __future__ import annotations
+
+import atexit
+import math
+from collections.abc import Callable, Mapping
+from types import TracebackType
+from typing import TYPE_CHECKING, Any, Self
+
+import numpy as np
+
+from tarsus.control.control_output import ControlOutput
+from tarsus.control.readings import SensorReadings
+from tarsus.errors import BusError, InputError, PortError, TarsusError
+from tarsus.hardware.bus.protocol import Bus
+from tarsus.hardware.calibration.calibration import Calibration
+from tarsus.hardware.plant.fault import FaultKind, Reaction, ServoFault
+from tarsus.hardware.plant.joint_map import JointMap, open_buses
+from tarsus.hardware.plant.monitor import ServoMonitor
+from tarsus.hardware.plant.pacer import Pacer, Timing
+from tarsus.hardware.plant.reader import ServoReader
+from tarsus.hardware.plant.servo_output import ServoOutput
+from tarsus.hardware.plant.settings import PlantSettings
+from tarsus.hardware.plant.sit_down import SITTING_TICK, sitting_angles
+from tarsus.hardware.plant.soft_start import glide
+from tarsus.hardware.plant.tick_record import TickRecord
+from tarsus.hardware.transport.clock import Clock, SystemClock
+from tarsus.representation import represented
+from tarsus.robot.robot import Robot
+
+if TYPE_CHECKING:
+    from jaxtyping import Bool, Float
+
+__all__ = ["ServoPlant"]
+
+# Longest time until an answer begins: two of them are less than the time in which a fault must be noticed [s].
+_TIMEOUT = 0.01
+_START_TICK = 0.02
+# A joint that is measured farther than this beyond its limits has a wrong zero or direction [rad].
+_BEYOND = math.radians(20)
+
+
+@represented("robot", "calibration", "timing", "fault")
+class ServoPlant:
+    """Executes joint angles with servos: a `Plant`.
+
+    What is sent is within the limits of the calibration, and no faster than the joints: whatever comes in. A fault
+    ends the run with `ServoFaultError`; `stop` then sits down before the servos are released, unless they can't.
+
+    Parameters
+    ----------
+    robot : Robot
+        The robot of the calibration.
+    calibration : Calibration
+        A complete calibration.
+    buses : mapping of str to Bus, optional
+        The buses by their names in the calibration; opened from its ports where left out, and closed at the end.
+    declared : array, shape (legs, 3), optional
+        Joint angles at the start where positions are not measured [rad]; those with which the controller starts.
+    settings : PlantSettings, optional
+        Bounds.
+    clock : Clock, optional
+        The machine's, unless emulated servos have one of their own.
+    observer : callable, optional
+        Takes a `TickRecord` for every tick, also of soft start and sitting down.
+
+    Attributes
+    ----------
+    calibration : Calibration
+        The calibration.
+    fault : ServoFault or None
+        What ended the run; None without a fault.
+    notes : list of str
+        What could not be done at the end, a line each.
+
+    Raises
+    ------
+    CalibrationError
+        If the calibration is not complete.
+    InputError
+        If it is for another robot, or a bus is missing.
+    PortError
+        If a port can't be opened.
+    """
+
+    def __init__(
+        self,
+        robot: Robot,
+        calibration: Calibration,
+        *,
+        buses: Mapping[str, Bus] | None = None,
+        declared: Float[np.ndarray, "legs 3"] | None = None,
+        settings: PlantSettings | None = None,
+        clock: Clock | None = None,
+        observer: Callable[[TickRecord], None] | None = None,
+    ) -> None:
+        calibration.require_complete()
+        if robot.leg_names != calibration.robot.leg_names:
+            raise InputError(f"the calibration is for {calibration.robot.name!r}; the robot is {robot.name!r}")
+        self.robot, self.calibration = robot, calibration
+        self.settings = settings or PlantSettings()
+        self.fault: ServoFault | None = None
+        self.notes: list[str] = []
+        self._declared = declared
+        self._clock: Clock = clock or SystemClock()
+        self._observer = observer
+        joints = JointMap(calibration)
+        self._monitor = ServoMonitor(calibration, joints, self.settings)
+        self._pacer = Pacer(self._clock)
+        self._belly = True
+        self._own = buses is None
+        self._buses = open_buses(calibration, timeout=_TIMEOUT) if buses is None else dict(buses)
+        missing = [bus.name for bus in calibration.buses if bus.name not in self._buses]
+        if missing:
+            raise InputError(f"no bus is given for {', '.join(missing)} of the calibration")
+        self._rates = [bus.timing(joints.numbers(name)) for name, bus in self._buses.items()]
+        self._servos = ServoOutput(calibration, self._buses, joints, self.settings, self._clock)
+        self._reader = ServoReader(self._buses, joints, calibration, self._clock)
+        # Torque ends with the program, however that ends; only a kill leaves it to the watchdog.
+        atexit.register(self.release)
+
+    def __enter__(self) -> Self:
+        """Return the plant itself."""
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        """Stop, and close the ports."""
+        self.stop()
+
+    @property
+    def timing(self) -> Timing:
+        """How well the ticks were kept until now."""
+        return self._pacer.timing
+
+    @property
+    def greatest_rate(self) -> float:
+        """Ticks per second that the wires carry: goals of all servos, and positions of half of them [1/s]."""
+        return 1.0 / max(*(each.goals + each.positions / 2 for each in self._rates), 1e-6)
+
+    @property
+    def speed_factor(self) -> float:
+        """Share of the speed that the servos' temperatures allow."""
+        return self._monitor.speed_factor
+
+    def start(self, output: ControlOutput) -> None:
+        """Find the servos, switch them on where they are, and move them slowly to where the controller starts.
+
+        Without measured positions the servos of one leg after the other get their pulses, at the declared angles.
+
+        Parameters
+        ----------
+        output : ControlOutput
+            What the controller starts with.
+
+        Raises
+        ------
+        NoAnswerError
+            If servos are missing; the message names the joints.
+        InputError
+            If a joint is far beyond its limits, or an angle is not finite.
+        PortError
+            If a port is gone.
+        """
+        self._servos.find()
+        measured = self._reader.all_positions()
+        known = ~np.isnan(measured)
+        declared = output.angles if self._declared is None else np.asarray(self._declared, dtype=float)
+        begin = np.where(known, measured, declared)
+        self._check_start(begin, known)
+        self._belly = output.belly
+        try:
+            self._servos.switch_on(begin, measured=bool(known.all()))
+            for angles in glide(begin, output.angles, speed=self.settings.start_speed, dt=_START_TICK):
+                self._tick(angles, _START_TICK)
+        except BaseException:
+            # Whoever starts a plant in vain does not stop it.
+            self.release()
+            raise
+        self._monitor.forget_motion()
+        self._pacer = Pacer(self._clock)
+
+    def step(self, output: ControlOutput, dt: float) -> SensorReadings:
+        """Send joint angles at the beginning of a tick, and return what is measured then.
+
+        Parameters
+        ----------
+        output : ControlOutput
+            What the controller gave out.
+        dt : float
+            Duration of the tick [s].
+
+        Raises
+        ------
+        ServoFaultError
+            If something fails; the message names the joint, what was measured, and what would help.
+        InputError
+            If the plant was not started, or the duration is not finite.
+        """
+        if not self._servos.powered:
+            raise InputError("the servo plant has not been started; call start(output) before step(output, dt)")
+        if not 0 < dt < math.inf:
+            raise InputError(f"dt is {dt:g} s; it must be a finite number greater than 0")
+        self._belly = output.belly
+        return self._tick(output.angles, dt)
+
+    def stop(self) -> None:
+        """Sit down if the robot stands and its servos allow it, then release all servos and close the ports.
+
+        May be called more than once. An interrupt while the robot sits down releases the servos at once.
+        """
+        try:
+            limp = self.fault is not None and self.fault.reaction is Reaction.LIMP
+            if self._servos.powered and not self._belly and not limp:
+                self._sit_down()
+        finally:
+            self.release()
+            if self._own:
+                for bus in self._buses.values():
+                    bus.close()
+
+    def release(self) -> None:
+        """Release all servos at once. May be called more than once, and never raises."""
+        atexit.unregister(self.release)
+        if self._servos.powered:
+            self.notes += self._servos.release()
+
+    def _check_start(self, angles: Float[np.ndarray, "legs 3"], known: Bool[np.ndarray, "legs 3"]) -> None:
+        limits = self.calibration.limits
+        beyond = np.where(known, np.maximum(limits[..., 0] - angles, angles - limits[..., 1]), 0.0)
+        if float(beyond.max()) <= _BEYOND:
+            return
+        leg, j = np.unravel_index(int(np.argmax(beyond)), beyond.shape)
+        low, high = np.degrees(limits[leg, j])
+        raise InputError(
+            f"the {self.calibration.joint_name(int(leg), int(j))} is measured at {math.degrees(angles[leg, j]):.1f} "
+            f"deg, far beyond its limits of {low:.1f} to {high:.1f} deg: move it there by hand, or correct its zero or "
+            "direction in the calibration"
+        )
+
+    def _tick(self, angles: Float[np.ndarray, "legs 3"], dt: float) -> SensorReadings:
+        """Wait for the tick, send joint angles, measure, and raise the error of a fault."""
+        now = self._pacer.wait(dt)
+        fault: ServoFault | None
+        try:
+            self._servos.send(angles, dt, now)
+            fault = self._measure(dt)
+        except InputError as error:
+            # Nothing was sent: the servos hold where they are.
+            fault = ServoFault(kind=FaultKind.INVALID_COMMAND, text=str(error), time=now)
+        except PortError as error:
+            fault = ServoFault(kind=FaultKind.PORT_GONE, text=str(error), time=now)
+        except BusError as error:
+            fault = ServoFault(kind=FaultKind.NO_ANSWER, text=str(error), time=now)
+        self._observe(now, angles, fault)
+        if fault is not None:
+            self.fault = fault
+            raise fault.error()
+        return self._readings()
+
+    def _measure(self, dt: float) -> ServoFault | None:
+        """Read positions and some telemetry, and return the first fault."""
+        monitor, found, complete = self._monitor, None, True
+        for reading in self._reader.positions(dt):
+            complete = complete and not reading.errors
+            fault = monitor.answered(reading.bus, reading.asked, reading.answered, reading.errors, self._clock.now())
+            found = found or fault
+        if found is None and self._reader.fresh:
+            found = monitor.followed(self._servos.angles, self._reader.angles.copy(), self._clock.now())
+        # A line in doubt is slow: whether it recovers is more urgent.
+        for name, values in self._reader.telemetry() if complete else ():
+            found = found or monitor.measured(name, values, self._clock.now())
+        return found
+
+    def _readings(self) -> SensorReadings:
+        """Return the last values of all channels of which every joint was measured."""
+        reader, monitor = self._reader, self._monitor
+        channels = {
+            "joint_angles": reader.angles,
+            "joint_speeds": reader.speeds,
+            "temperatures": monitor.temperatures,
+            "voltages": monitor.voltages,
+            "currents": monitor.currents,
+        }
+        known: dict[str, Any] = {name: array.copy() for name, array in channels.items() if not np.isnan(array).any()}
+        ages: dict[str, float] = {name: reader.age for name in ("joint_angles", "joint_speeds") if name in known}
+        return SensorReadings(**known, age=ages)
+
+    def _observe(self, now: float, asked: Float[np.ndarray, "..."], fault: ServoFault | None) -> None:
+        if self._observer is None:
+            return
+        shape = (self.robot.legs, 3)
+        given = np.asarray(asked, dtype=float) if np.shape(asked) == shape else np.full(shape, np.nan)
+        self._observer(
+            TickRecord(
+                time=now,
+                asked=given,
+                sent=self._servos.angles,
+                measured=self._reader.angles.copy(),
+                temperatures=self._monitor.temperatures.copy(),
+                voltage=self._monitor.lowest_voltage,
+                loads=self._monitor.loads.copy(),
+                fault="" if fault is None else str(fault.error()),
+            )
+        )
+
+    # How it ends.
+
+    def _sit_down(self) -> None:
+        """Lower the body to the ground, as far as the servos do it; what failed is known already."""
+        self._belly = True
+        if self.fault is not None and self.fault.kind is FaultKind.STUCK:
+            # A servo that can't move must not burn while the others sit down.
+            self._servos.release_one(self.fault)
+        try:
+            for angles in sitting_angles(self.calibration.limited_robot, self._servos.angles):
+                now = self._pacer.wait(SITTING_TICK)
+                self._servos.send(angles, SITTING_TICK, now)
+                for _ in self._reader.positions(SITTING_TICK) if self.fault is None else ():
+                    pass
+                self._observe(now, angles, None)
+        except TarsusError as error:
+            self.notes.append(f"the robot could not sit down: {error}")
+            self._servos.let_down()

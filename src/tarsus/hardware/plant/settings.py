@@ -1,0 +1,76 @@
+"""Settings of a servo plant: how it starts, what it takes for a fault, when it is derated."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, fields
+
+from tarsus.errors import InputError
+from tarsus.representation import represented
+
+__all__ = ["PlantSettings"]
+
+
+@represented()
+@dataclass(frozen=True, kw_only=True)
+class PlantSettings:
+    """Bounds of a servo plant, in SI units.
+
+    Attributes
+    ----------
+    start_speed : float
+        Greatest joint speed of the soft start [rad/s].
+    start_interval : float
+        Time between the servos of a leg that get their first pulse, where positions are not measured [s].
+    longest_tick : float
+        Longest tick; joints move no farther than in this time [s].
+    silence : float
+        How long a servo may give no valid answer [s].
+    least_failures : int
+        How many answers in a row must fail.
+    delay : float
+        Time after which a servo begins to follow a command [s].
+    stuck_window : float
+        How long a joint that is commanded to move must stand still to be taken for stuck [s].
+    stuck_angle : float
+        How far it is commanded to move in that time, and how far it is behind then [rad].
+    lag : float
+        How far a joint may be behind its command, in any case [rad].
+    warm, hot : float
+        Temperatures from which the robot walks slower, and at which it sits down [deg C].
+    heavy_load : float
+        Share of the full drive that is too much for longer than `heavy_time`.
+    heavy_time : float
+        See `heavy_load` [s].
+    low_time : float
+        How long the voltage may be below its least value [s].
+    brown_out : float
+        Share of the least voltage at which a brown-out is suspected at once.
+    watchdog : float
+        Time after which servos or board stop by themselves, where they can [s].
+    """
+
+    start_speed: float = math.radians(45)
+    start_interval: float = 0.08
+    longest_tick: float = 0.05
+    silence: float = 0.04
+    least_failures: int = 2
+    delay: float = 0.04
+    stuck_window: float = 0.06
+    stuck_angle: float = math.radians(2.5)
+    lag: float = math.radians(25)
+    warm: float = 60.0
+    hot: float = 70.0
+    heavy_load: float = 0.95
+    heavy_time: float = 1.0
+    low_time: float = 0.5
+    brown_out: float = 0.85
+    watchdog: float = 0.5
+
+    def __post_init__(self) -> None:
+        for field in fields(self):
+            value = getattr(self, field.name)
+            if not 0 < value < math.inf:
+                raise InputError(f"{field.name} of a servo plant is {value}; it must be a finite number greater than 0")
+        if self.hot <= self.warm:
+            raise InputError(f"hot is {self.hot:g} deg C, not above warm, {self.warm:g} deg C")

@@ -1,0 +1,397 @@
+"""The plant of servos: limits, soft start, faults in the middle of a walk, and how it lets go."""
+
+import dataclasses
+import itertools
+import math
+
+import numpy as np
+import pytest
+
+import tarsus
+from tarsus import Command, RobotController
+from tarsus.errors import CalibrationError, InputError, NoAnswerError, ServoFaultError
+from tarsus.hardware import BUSES, ManualClock, MemoryTransport, ServoPlant, bus_over, emulated_bus, nominal_calibration
+from tarsus.hardware.plant.command_limiter import CommandLimiter
+from tarsus.hardware.plant.fault import REACTIONS, FaultKind, Reaction
+from tarsus.hardware.plant.settings import PlantSettings
+from tarsus.hardware.plant.soft_start import release_order
+
+STRIDER = tarsus.load_robot("strider")
+WALK = [(0.0, Command(twist=(0.08, 0.0, 0.0)))]
+# Buses on which 18 servos are told their goals, and say where they are, within a tick.
+SMART = ("feetech-sts", "feetech-scs", "dynamixel-x", "dynamixel-mx", "dynamixel-ax", "lx16a")
+
+
+class Watched:
+    """A bus whose goals are noted with their times."""
+
+    def __init__(self, bus, clock):
+        self._bus, self._clock, self.sent = bus, clock, []
+
+    def __getattr__(self, name):
+        return getattr(self._bus, name)
+
+    def write_goals(self, goals):
+        self.sent.append((self._clock.now(), dict(goals)))
+        self._bus.write_goals(goals)
+
+
+class Rig:
+    """A plant on emulated servos, in their own time."""
+
+    def __init__(self, kind="feetech-sts", *, calibration=None, away=0.0, start="standing", timeout=None, **more):
+        self.calibration = calibration or nominal_calibration(STRIDER, "strider", kind=kind)
+        self.clock = ManualClock()
+        self.ids = [joint.number for row in self.calibration.joints for joint in row]
+        baud = {} if kind == "pca9685" else {"baud": max(BUSES[kind].baud, 500_000)}
+        bus, self.line = emulated_bus(kind, self.ids, clock=self.clock, **baud)
+        if timeout is not None:
+            bus = bus_over(kind, MemoryTransport(self.line, self.clock), timeout=timeout)
+        self.bus = Watched(bus, self.clock)
+        self.robot = self.calibration.limited_robot
+        self.controller = RobotController(self.robot, start=start)
+        self.place(self.controller.output.angles + away)
+        self.records = []
+        self.plant = ServoPlant(
+            self.robot,
+            self.calibration,
+            buses={"main": self.bus},
+            clock=self.clock,
+            observer=self.records.append,
+            **more,
+        )
+
+    def place(self, angles):
+        for number, command in zip(self.ids, self.calibration.commands(angles).ravel().tolist(), strict=True):
+            self.line.servos[number].place(command)
+
+    def run(self, commands=WALK, duration=1.0):
+        return tarsus.run(self.controller, self.plant, commands, duration=duration)
+
+    def check_sent(self):
+        """Every command within the limits, and no faster than the joints."""
+        limits = self.calibration.command_limits.reshape(-1, 2)
+        speed = (tarsus.robot.joint_limits.joint_limits(STRIDER).speed * np.abs(self.calibration.slopes)).ravel()
+        last = {}
+        for time, goals in self.bus.sent:
+            for number, goal in goals.items():
+                i = self.ids.index(number)
+                assert limits[i, 0] <= goal <= limits[i, 1]
+                assert goal == round(goal)
+                if number in last:
+                    assert abs(goal - last[number][1]) <= speed[i] * (time - last[number][0]) + 1e-6
+                last[number] = time, goal
+
+    @property
+    def holding(self):
+        return [number for number in self.ids if self.line.servos[number].torque]
+
+
+@pytest.mark.parametrize("kind", BUSES)
+def test_a_robot_walks_on_every_bus_sits_down_and_lets_go(kind):
+    rig = Rig(kind)
+    recording = rig.run(duration=0.5)
+    assert recording.problems == ()
+    assert recording.states[-1] == "walking"
+    rig.check_sent()
+    walked = rig.records[:-1]
+    asked, sent = (np.array([getattr(each, name) for each in walked]) for name in ("asked", "sent"))
+    step = 1 / np.abs(rig.calibration.slopes).min()
+    assert np.abs(asked - sent).max() < 0.51 * step + 1e-9
+    assert rig.holding == []
+    assert rig.plant.notes == []
+    # It sits: the body is lower than the feet can hold it.
+    feet = tarsus.forward_kinematics(STRIDER, rig.records[-1].sent)[..., 3, 2]
+    assert feet.min() > -0.06
+    if kind in SMART:
+        measured = np.array([each.measured for each in walked[20:50]])
+        assert np.degrees(np.abs(measured - sent[20:50]).max()) < 8
+        np.testing.assert_array_equal(recording.measured_angles[30].shape, (6, 3))
+        assert not np.isnan(recording.measured_angles[30]).any()
+
+
+FAULTS = {
+    "missing": (lambda rig: rig.line.faults.missing.add(5), FaultKind.NO_ANSWER, "middle left femur"),
+    "duplicate": (lambda rig: rig.line.faults.duplicate.add(5), FaultKind.CORRUPT, "middle left femur"),
+    "corrupt": (lambda rig: rig.line.faults.corrupt.update({5: 1.0}), None, "middle left femur"),
+    "late": (lambda rig: rig.line.faults.late.update({18: 0.2}), None, "front right tibia"),
+    "unplugged": (lambda rig: setattr(rig.line.faults, "unplugged", True), FaultKind.PORT_GONE, ""),
+    "brown-out": (lambda rig: setattr(rig.line.supply, "source", 3.0), FaultKind.BROWN_OUT, ""),
+    "stuck": (lambda rig: setattr(rig.line.servos[6], "stuck", True), FaultKind.STUCK, "middle left tibia"),
+    "hot": (lambda rig: setattr(rig.line.servos[9], "temperature", 74.0), FaultKind.OVERHEATED, "rear left tibia"),
+}
+
+
+@pytest.mark.parametrize("name", FAULTS)
+def test_a_fault_in_the_middle_of_a_walk_ends_it(name):
+    cause, kind, joint = FAULTS[name]
+    rig = Rig()
+    began = []
+
+    class Source:
+        def command(self, time, output, note):
+            # In the middle of a swing of the leg, so that each of its joints moves.
+            if time > 1.64 and not began:
+                began.append(rig.clock.now())
+                cause(rig)
+            return Command(twist=(0.08, 0.0, 0.0))
+
+        def over(self, time, output):
+            return time > 4
+
+    with pytest.raises(ServoFaultError) as caught:
+        tarsus.run(rig.controller, rig.plant, Source())
+    fault = caught.value.fault
+    assert fault is rig.plant.fault
+    assert kind is None or fault.kind is kind
+    assert fault.joint == joint
+    # Each servo tells its temperature in turn: 18 ticks.
+    assert fault.time - began[0] <= (0.2 if name == "hot" else 0.1)
+    assert fault.remedy in str(caught.value)
+    assert joint in str(caught.value)
+    assert [each.fault for each in rig.records if each.fault] == [str(caught.value)]
+    rig.check_sent()
+    if name == "unplugged":
+        assert "may still hold" in rig.plant.notes[0]
+        return
+    assert [number for number in rig.holding if number not in rig.line.faults.missing] == []
+    sat = tarsus.forward_kinematics(STRIDER, rig.records[-1].sent)[..., 3, 2].min() > -0.06
+    assert sat == (fault.reaction is Reaction.SIT)
+
+
+def test_every_kind_of_fault_has_a_reaction_and_a_remedy():
+    assert set(REACTIONS) == set(FaultKind)
+    assert all(remedy.endswith(".") for _, remedy in REACTIONS.values())
+
+
+def test_a_lost_answer_now_and_then_is_no_fault():
+    # As plants open their buses.
+    rig = Rig(timeout=0.01)
+    rig.line.faults.corrupt = dict.fromkeys(rig.ids, 0.02)
+    assert rig.run().problems == ()
+    assert rig.plant.fault is None
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_whatever_comes_in_no_command_leaves_beyond_limits_or_speeds(seed):
+    random = np.random.default_rng(seed)
+    calibration = nominal_calibration(STRIDER, "strider", kind="feetech-sts").with_joint(0, 1, soft_limits=(-0.2, 0.9))
+    rig = Rig(calibration=calibration)
+    output = rig.controller.output
+    rig.plant.start(output)
+    kinds = set()
+    for _ in range(400):
+        scale = 10.0 ** random.uniform(-3, 3)
+        angles = output.angles + random.normal(0, scale, (6, 3))
+        if random.random() < 0.1:
+            angles = np.where(random.random((6, 3)) < 0.1, random.choice([np.inf, -np.inf, np.nan, 1e308]), angles)
+        dt = float(random.choice([0.01, 0.001, 1e-7, 0.3, -1.0, math.nan]))
+        rig.clock.sleep(float(random.exponential(0.01)))
+        try:
+            rig.plant.step(dataclasses.replace(output, angles=angles, belly=False), dt)
+        except InputError as error:
+            kinds.add(str(error)[:5])
+        except ServoFaultError as error:
+            kinds.add(error.fault.kind)
+    rig.check_sent()
+    # What is not finite ends a run; that servos don't follow noise may be taken for a fault.
+    assert {"dt is", FaultKind.INVALID_COMMAND} <= kinds <= {"dt is", *FaultKind}
+    assert len(rig.bus.sent) > 200
+
+
+def test_the_limiter_moves_nothing_without_a_time():
+    limiter = CommandLimiter(nominal_calibration(STRIDER, "strider", kind="feetech-sts"))
+    with pytest.raises(InputError, match="call begin"):
+        limiter.limited(np.zeros((6, 3)), 0.01)
+    before = limiter.begin(np.zeros((6, 3)))
+    for elapsed in (0.0, -1.0, math.nan, math.inf):
+        np.testing.assert_array_equal(limiter.limited(np.full((6, 3), 0.5), elapsed), before)
+    for wrong, message in [
+        (np.zeros(3), r"shape \(3,\)"),
+        ("x", "must be numbers"),
+        (np.full((6, 3), np.nan), "is nan"),
+    ]:
+        with pytest.raises(InputError, match=message):
+            limiter.limited(wrong, 0.01)
+    narrow = nominal_calibration(STRIDER, "strider", kind="feetech-sts").with_joint(0, 0, limits=(2000.2, 2000.8))
+    with pytest.raises(InputError, match="front left coxa contain no whole command"):
+        CommandLimiter(narrow)
+
+
+def test_a_soft_start_moves_slowly_from_where_the_servos_are():
+    away = np.radians(20) * np.sign(np.arange(18).reshape(6, 3) % 2 - 0.5)
+    rig = Rig(start="lying", away=0.0)
+    start = np.clip(rig.controller.output.angles + away, rig.robot.limits[..., 0], rig.robot.limits[..., 1])
+    rig.place(start)
+    rig.plant.start(rig.controller.output)
+    first = [goals for _, goals in rig.bus.sent[:6]]
+    assert [len(goals) for goals in first] == [3] * 6
+    for number, goal in (pair for goals in first for pair in goals.items()):
+        place = divmod(rig.ids.index(number), 3)
+        assert rig.calibration.angles(np.full((6, 3), goal))[place] == pytest.approx(start[place], abs=0.02)
+    sent = np.array([each.sent for each in rig.records])
+    times = np.array([each.time for each in rig.records])
+    speeds = np.abs(np.diff(sent, axis=0)) / np.diff(times)[:, None, None]
+    assert speeds.max() <= PlantSettings().start_speed * 1.1
+    np.testing.assert_allclose(rig.records[-1].measured, rig.controller.output.angles, atol=0.02)
+    rig.check_sent()
+    rig.plant.stop()
+
+
+def test_pulses_begin_servo_by_servo_and_leg_by_leg_at_the_declared_angles():
+    declared = np.tile([0.1, 0.2, -0.5], (6, 1))
+    rig = Rig("servo2040", start="lying", declared=declared)
+    rig.plant.start(rig.controller.output)
+    first = rig.bus.sent[:18]
+    assert all(len(goals) == 1 for _, goals in first)
+    order = [next(iter(goals)) // 3 for _, goals in first]
+    assert order == [leg for leg in release_order(6) for _ in range(3)]
+    assert np.diff([time for time, _ in first]).min() >= PlantSettings().start_interval
+    angles = np.empty(18)
+    for _, goals in first:
+        for number, goal in goals.items():
+            angles[number] = rig.calibration.angles(np.full((6, 3), goal)).ravel()[number]
+    np.testing.assert_allclose(angles.reshape(6, 3), declared, atol=0.01)
+    rig.check_sent()
+    rig.plant.stop()
+
+
+@pytest.mark.parametrize("legs", [4, 5, 6, 8])
+def test_neighbours_are_never_switched_on_one_after_the_other(legs):
+    order = list(release_order(legs))
+    assert sorted(order) == list(range(legs))
+    assert all((b - a) % legs not in (1, legs - 1) for a, b in itertools.pairwise(order) if legs > 5)
+
+
+def test_what_keeps_a_plant_from_starting():
+    made = nominal_calibration(STRIDER, "strider", kind="feetech-sts")
+    with pytest.raises(CalibrationError, match="not calibrated yet"):
+        ServoPlant(STRIDER, made.with_joint(0, 0, zero=None), buses={})
+    with pytest.raises(InputError, match="no bus is given for main"):
+        ServoPlant(STRIDER, made, buses={})
+    with pytest.raises(InputError, match="the calibration is for 'strider'"):
+        ServoPlant(STRIDER.replace(leg_names=tuple("abcdef")), made)
+    with pytest.raises(InputError, match="has no port in the calibration"):
+        ServoPlant(STRIDER, made)
+    with pytest.raises(tarsus.PortError, match="/dev/none"):
+        ServoPlant(STRIDER, made.replace(buses=(dataclasses.replace(made.buses[0], port="/dev/none"),)))
+    rig = Rig()
+    with pytest.raises(InputError, match="has not been started"):
+        rig.plant.step(rig.controller.output, 0.01)
+    rig.line.faults.missing |= {2, 9}
+    with pytest.raises(NoAnswerError, match=r"front left femur \(id 2 on main\), rear left tibia \(id 9 on main\)"):
+        rig.plant.start(rig.controller.output)
+    assert rig.bus.sent == []
+    rig = Rig()
+    rig.line.servos[4].place(100)
+    with pytest.raises(
+        InputError, match=r"middle left coxa is measured at -171.* far beyond its limits of -60.0 to 60"
+    ):
+        rig.plant.start(rig.controller.output)
+    assert rig.bus.sent == []
+    for wrong in ({"warm": 0.0}, {"hot": 50.0}, {"silence": math.nan}):
+        with pytest.raises(InputError):
+            PlantSettings(**wrong)
+
+
+def test_an_interrupt_sits_down_and_a_second_one_lets_go_at_once():
+    rig = Rig()
+    with pytest.raises(KeyboardInterrupt):
+        tarsus.run(rig.controller, rig.plant, _Interrupting(0.5))
+    assert rig.holding == []
+    assert rig.records[-1].time - rig.records[0].time > 1.0
+    rig = Rig()
+    rig.plant.start(rig.controller.output)
+    rig.plant.step(rig.controller.output, 0.01)
+    write = rig.bus.write_goals
+
+    def interrupted(goals):
+        if len(rig.records) > 20:
+            raise KeyboardInterrupt
+        write(goals)
+
+    rig.bus.write_goals = interrupted
+    with pytest.raises(KeyboardInterrupt):
+        rig.plant.stop()
+    assert rig.holding == []
+    rig.plant.stop()
+
+
+class _Interrupting:
+    def __init__(self, at):
+        self._at = at
+
+    def command(self, time, output, note):
+        if time >= self._at:
+            raise KeyboardInterrupt
+        return Command(twist=(0.05, 0.0, 0.0))
+
+    def over(self, time, output):
+        return False
+
+
+def test_an_error_in_the_soft_start_lets_go():
+    rig = Rig(start="lying")
+    rig.place(rig.controller.output.angles * 0.9)
+    write = rig.bus.write_goals
+
+    def failing(goals):
+        if len(rig.bus.sent) > 10:
+            raise RuntimeError
+        write(goals)
+
+    rig.bus.write_goals = failing
+    with pytest.raises(RuntimeError):
+        rig.plant.start(rig.controller.output)
+    assert rig.holding == []
+
+
+def test_warm_servos_make_the_robot_slower():
+    rig = Rig()
+    for servo in rig.line.servos.values():
+        servo.temperature = 65.0
+    assert rig.plant.speed_factor == 1.0
+    rig.plant.start(rig.controller.output)
+    for _ in range(20):
+        rig.plant.step(rig.controller.output, 0.01)
+    assert rig.plant.speed_factor == pytest.approx(0.65, abs=0.1)
+    rig.plant.stop()
+
+
+def test_two_boards_and_a_rig_that_can_t_sit_down():
+    made = nominal_calibration(STRIDER, "strider", kind="feetech-sts")
+    rows = [[dataclasses.replace(j, bus="b") if leg > 2 else j for j in row] for leg, row in enumerate(made.joints)]
+    second = dataclasses.replace(made.buses[0], name="b")
+    made = made.replace(buses=(made.buses[0], second), joints=tuple(map(tuple, rows)))
+    clock = ManualClock()
+    halves = {"main": range(1, 10), "b": range(10, 19)}
+    rigs = {name: emulated_bus("feetech-sts", ids, clock=clock) for name, ids in halves.items()}
+    controller = RobotController(made.limited_robot)
+    for name, ids in halves.items():
+        for number in ids:
+            goal = made.commands(controller.output.angles).ravel()[number - 1]
+            rigs[name][1].servos[number].place(float(goal))
+    buses = {name: bus for name, (bus, _) in rigs.items()}
+    plant = ServoPlant(made.limited_robot, made, buses=buses, clock=clock)
+    with plant:
+        assert tarsus.run(controller, plant, WALK, duration=0.2).problems == ()
+        # Left standing, with legs from which nobody can sit down: the torque fades.
+        plant._servos.switch_on(np.add(controller.output.angles, [0, -3, 3]), measured=True)
+        plant._belly = False
+        rigs["b"][1].faults.unplugged = True
+    assert "could not sit down" in plant.notes[0] or "may still hold" in plant.notes[0]
+    assert not any(servo.torque for servo in rigs["main"][1].servos.values())
+
+
+def test_readings_have_what_every_servo_told():
+    rig = Rig()
+    rig.plant.start(rig.controller.output)
+    first = rig.plant.step(rig.controller.output, 0.01)
+    assert first.temperatures is None
+    for _ in range(20):
+        readings = rig.plant.step(rig.controller.output, 0.01)
+    for channel in ("joint_angles", "joint_speeds", "temperatures", "voltages", "currents"):
+        assert getattr(readings, channel).shape == (6, 3)
+    assert readings.age["joint_angles"] < 0.005
+    assert rig.plant.greatest_rate > 200
+    rig.plant.stop()
