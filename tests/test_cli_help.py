@@ -11,7 +11,9 @@ import pytest
 from sample_commands import run
 from tarsus import __version__
 from tarsus.cli import main
+from tarsus.export import to_urdf
 from tarsus.report.animation import animate
+from tarsus.robot.file import load_robot
 
 ANGLES = "[" + ", ".join(["0, 40, -100"] * 6) + "]"
 
@@ -64,6 +66,8 @@ def test_examples_run(example, tmp_path, monkeypatch):
     if " Hex_Cfg.h" in example:
         assert run("calibration", "new", "phoenix", "--nominal", "--bus", "ssc32").exit_code == 0
         assert run("calibration", "to-phoenix", "phoenix.calibration.toml").exit_code == 0
+    if "robots import" in example:
+        Path("hexapod.urdf").write_text(to_urdf(load_robot("strider")), encoding="utf-8")
     Path("angles.json").write_text(ANGLES, encoding="utf-8")
     result = run(*shlex.split(example)[1:])
     assert result.exit_code == 0, result.output
