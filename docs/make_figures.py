@@ -10,6 +10,7 @@ import numpy as np
 import tarsus
 from draw_hill import plot_hill
 from draw_states import plot_states
+from draw_terrains import plot_terrains
 from tarsus.report.angles import plot_angles
 from tarsus.report.animation import animate
 from tarsus.report.footpaths import plot_footpaths
@@ -19,6 +20,9 @@ from tarsus.report.style import save_figure
 from tarsus.report.timeline import plot_timeline
 from tarsus.scenario.file import load_scenario
 from tarsus.scenario.runner import run_scenario
+from tarsus.simulation import compare
+from tarsus.simulation.terrain import Blocks
+from tarsus.simulation.truth.as_motion import trace_motion
 
 FIGURES = Path(__file__).parent / "figures"
 
@@ -30,12 +34,22 @@ def standing(robot: tarsus.Robot) -> tuple[Any, tarsus.Pose]:
     return tarsus.inverse_kinematics(robot, feet, body).require().angles, body
 
 
+def animate_physics(robot: tarsus.Robot) -> None:
+    """A planned walk over blocks, as physics makes it; small, as it is the first that readers load."""
+    blocks = Blocks(rise=0.03, size=0.1, clear=0.3, seed=3)
+    gait, path = tarsus.Gait.named("tripod"), tarsus.straight_path(0.7)
+    plan = tarsus.plan_walk(robot, gait, path, swing_height=0.045, body_height=0.12)
+    truth = compare(plan, terrain=blocks)
+    motion = trace_motion(truth.trace, plan)
+    animate(motion, FIGURES / "physics.gif", max_duration=4.5, size=(500, 390), height=blocks.height)
+
+
 def main() -> None:
     FIGURES.mkdir(exist_ok=True)
     strider = tarsus.load_robot("strider")
     tripod = tarsus.Gait.named("tripod")
     walk = tarsus.plan_walk(strider, tripod, tarsus.straight_path(1.0))
-    animate(walk, FIGURES / "walk.gif", max_duration=6.0)
+    animate_physics(strider)
     save_figure(plot_angles(walk), FIGURES / "angles.png")
     save_figure(plot_gait(walk), FIGURES / "gait.png")
     curve = tarsus.plan_walk(strider, tarsus.Gait.named("ripple"), tarsus.curved_path(np.pi / 2, (0, 0.4)))
@@ -48,6 +62,7 @@ def main() -> None:
     save_figure(plot_timeline(run_scenario(day)), FIGURES / "timeline.png")
     save_figure(plot_hill(), FIGURES / "hill.png")
     save_figure(plot_states(), FIGURES / "states.png")
+    save_figure(plot_terrains(), FIGURES / "terrains.png")
     limp = np.radians(np.tile([0.0, 20.0, -60.0], (6, 1)))
     limp[:3] = np.radians([0.0, -30.0, -30.0])
     rest = tarsus.resting_pose(strider, limp)

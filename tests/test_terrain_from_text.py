@@ -1,6 +1,8 @@
 """Terrain from a line of text, in mm and degrees."""
 
 import math
+import re
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -70,3 +72,12 @@ def test_parameters_have_the_values_of_the_terrain_in_mm_and_degrees(kind):
     assert terrain_of(kind, given) == terrain_of(kind, {}) == terrain_from_text(kind)
     assert {parameter.name for parameter in parameters if parameter.unit == "deg"} <= {"slope"}
     assert {parameter.name for parameter in parameters if parameter.whole} <= {"seed", "steps", "count"}
+
+
+def test_the_documents_have_every_parameter_with_its_default():
+    page = (Path(__file__).parents[1] / "docs" / "simulation.md").read_text(encoding="utf-8")
+    rows = dict(re.findall(r"^\| `(\w+)` \| (.*) \|$", page, flags=re.MULTILINE))
+    for kind in TERRAINS:
+        for parameter in terrain_parameters(kind):
+            where = rows["Flat" if parameter.name == "friction" else kind.capitalize()]
+            assert f"{parameter.name} {parameter.default:g}" in where, (kind, parameter)

@@ -1,4 +1,4 @@
-"""Ground grid that fills the view and stays fixed while the view follows the robot."""
+"""Ground that fills the view and stays fixed while the view follows the robot: a grid, or the faces of a terrain."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from tarsus.report.relief import relief_of
 from tarsus.report.view import View
 
 if TYPE_CHECKING:
@@ -18,12 +19,15 @@ __all__ = ["Ground"]
 _GRID_MM = 100.0
 _MAX_LINES = 80
 _COLOUR = "#e3e3e3"
-# Points along a line of the grid on ground that is not flat.
-_POINTS = 160
+# Colour of faces in full light.
+_EARTH = np.array([0.93, 0.94, 0.92])
+# Edge of a cell of ground that is not flat [m], and how far beyond the view ground may rise into it [m].
+_CELL, _BEYOND = 0.025, 0.3
+_MOST_CELLS = 40_000
 
 
 class Ground:
-    """Grid on the ground.
+    """The ground: a grid where it is flat, else its faces.
 
     Parameters
     ----------
@@ -36,27 +40,39 @@ class Ground:
     """
 
     def __init__(self, axes: Axes, view: View, height: Callable[[Any, Any], Any] | None = None) -> None:
-        from matplotlib.collections import LineCollection
+        from matplotlib.collections import LineCollection, PolyCollection
 
         self._axes, self._view, self._height = axes, view, height
         self._lines = LineCollection([], colors=_COLOUR, linewidths=0.8, zorder=0)
         axes.add_collection(self._lines, autolim=False)
+        self._faces = PolyCollection([], zorder=0, linewidths=0.4)
+        axes.add_collection(self._faces, autolim=False)
 
     def update(self) -> None:
-        """Draw the grid lines within the current limits of the axes."""
+        """Draw the ground within the current limits of the axes."""
         (left, right), (low, high) = self._axes.get_xlim(), self._axes.get_ylim()
         visible = self._view.ground_under(np.array([[left, low], [right, low], [right, high], [left, high]]))[:, :2]
-        lines = _grid(visible.min(0), visible.max(0))
-        if self._height is not None:
-            lines = [self._raised(line) for line in lines]
-        self._lines.set_segments([self._view.project(line) for line in lines])
+        if self._height is None:
+            self._lines.set_segments([self._view.project(line) for line in _grid(visible.min(0), visible.max(0))])
+        else:
+            self._draw_faces(visible.min(0) / 1000 - _BEYOND, visible.max(0) / 1000 + _BEYOND)
 
-    def _raised(self, line: Float[np.ndarray, "2 3"]) -> Float[np.ndarray, "k 3"]:
-        """Return points along a line of the grid, at the height of the ground."""
+    def _draw_faces(self, low: Float[np.ndarray, "2"], high: Float[np.ndarray, "2"]) -> None:
         assert self._height is not None
-        points: np.ndarray = line[0] + (line[1] - line[0]) * np.linspace(0, 1, _POINTS)[:, None]
-        points[:, 2] = 1000 * self._height(points[:, 0] / 1000, points[:, 1] / 1000)
-        return points
+        step = _CELL
+        while float(np.prod((high - low) / step)) > _MOST_CELLS:
+            step *= 2
+        relief = relief_of(self._height, low, high, step=step, view=self._view)
+        corners = self._view.project(relief.corners * 1000)
+        # Faces out of sight are left out, as most are.
+        (left, right), (bottom, top) = self._axes.get_xlim(), self._axes.get_ylim()
+        least, most = corners.min(axis=1), corners.max(axis=1)
+        seen = (most[:, 0] > left) & (least[:, 0] < right) & (most[:, 1] > bottom) & (least[:, 1] < top)
+        colours = np.clip(relief.brightness[seen, None] * _EARTH, 0.0, 1.0)
+        self._faces.set_verts(list(corners[seen]))
+        self._faces.set_facecolor(colours)
+        # Edges of the same colour close the seams between faces.
+        self._faces.set_edgecolor(colours)
 
 
 def _grid(low: Float[np.ndarray, "n"], high: Float[np.ndarray, "m"]) -> list[Float[np.ndarray, "k 3"]]:
