@@ -7,7 +7,7 @@ OUT ?= walk
 # JAX takes half the time to compile so; an XLA that does not know the option ends with an error, hence not in the tests.
 COMPILE_FAST := XLA_FLAGS=--xla_cpu_use_fusion_emitters=false
 
-.PHONY: studio walk test lint types tests web web-check browser protocol bench figures truth schema clean
+.PHONY: studio walk test lint types tests web web-check browser protocol bench figures truth train schema clean
 
 studio: $(VENV)/.run web
 	$(BIN)/tarsus studio $(ROBOT)
@@ -62,6 +62,11 @@ figures: $(VENV)/.dev web browser
 truth: $(VENV)/.dev
 	$(BIN)/python docs/how_true.py
 	$(BIN)/python docs/faults.py
+
+# Trains policies for a few minutes each: the figure and the tables of docs/reinforcement-learning.md.
+train: $(VENV)/.dev
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[rl]'
+	$(BIN)/python examples/train_walk.py --actions residual joint --page docs/reinforcement-learning.md
 
 schema: $(VENV)/.dev
 	$(BIN)/tarsus robots schema > src/tarsus/robot/robot.schema.json

@@ -1,7 +1,8 @@
-"""Cost of physics: the shares of MuJoCo, of the plant around it and of the controller, in a simulated walk."""
+"""Cost of physics: shares of MuJoCo, plant and controller in a simulated walk; steps of environments a second."""
 
 from __future__ import annotations
 
+import os
 import time
 from collections.abc import Iterator
 from typing import Any
@@ -12,10 +13,12 @@ from measure import Row
 from tarsus import Command, RobotController, load_robot
 from tarsus.simulation import SimulatedPlant
 from tarsus.simulation.engine import mujoco_module
+from tarsus.simulation.environment import EPISODE_STEPS, WalkVectorEnv
 
 __all__ = ["simulation_rows"]
 
 TICKS, ROUNDS = 300, 5
+STEPS, MANY = 1000, 64
 MOST, MOST_ADDED = 1000 / 15, 0.4
 """Targets: processor time for a second of one robot [ms], and what the plant adds to MuJoCo's steps."""
 
@@ -60,8 +63,43 @@ def _walk(sensors: str) -> tuple[float, float, float]:
     return engine.spent / seconds, around / seconds, spent[1] / seconds
 
 
+def _steps_a_second(envs: int, actions: str) -> float:
+    """Return how many steps environments take in a second, altogether, on all cores; resets are not counted."""
+    env = WalkVectorEnv(envs, max_episode_steps=EPISODE_STEPS, actions=actions)
+    env.reset(seed=1)
+    # With joint actions the robots stand, with residuals they walk.
+    nothing, rounds = np.zeros((envs, *(env.single_action_space.shape or ()))), max(20, STEPS // envs)
+    times = []
+    for _ in range(ROUNDS):
+        start = time.perf_counter()
+        for _ in range(rounds // ROUNDS):
+            env.step(nothing)
+        times.append((time.perf_counter() - start) / (rounds // ROUNDS))
+    env.close()
+    return envs / float(np.median(times))
+
+
+def _environment_rows() -> Iterator[Row]:
+    cores = os.sched_getaffinity(0)
+    os.sched_setaffinity(0, range(os.cpu_count() or 1))
+    threads = len(os.sched_getaffinity(0))
+    try:
+        for actions in ("residual", "joint"):
+            one = _steps_a_second(1, actions)
+            yield Row(what=f"tarsus/Walk-v0, {actions} actions, 1 environment", measured=f"{one:.0f} steps/s")
+            many = _steps_a_second(MANY, actions)
+            yield Row(
+                what=f"tarsus/Walk-v0, {actions} actions, {MANY} environments on {threads} threads",
+                measured=f"{many:.0f} steps/s",
+                compared=f"1 environment: {one:.0f} steps/s; {many / one:.1f} times as many",
+            )
+    finally:
+        os.sched_setaffinity(0, cores)
+
+
 def simulation_rows() -> Iterator[Row]:
     """Yield the rows."""
+    yield from _environment_rows()
     for sensors in ("blind", "hobby", "smart"):
         physics, around, controller = np.median([_walk(sensors) for _ in range(ROUNDS)], axis=0).tolist()
         whole = physics + around + controller

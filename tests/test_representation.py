@@ -16,9 +16,9 @@ from sample_loads import sample_loads, sample_motion
 from sample_robots import hexapod
 from tarsus import hardware, simulation
 from tarsus.representation import represented
-from tarsus.simulation import terrain
+from tarsus.simulation import environment, terrain
 
-PUBLIC = (tarsus, simulation, terrain, hardware)
+PUBLIC = (tarsus, simulation, terrain, environment, hardware)
 LINES, WIDTH = 10, 100
 
 
@@ -42,6 +42,7 @@ def values():
         *load_values(),
         *control_values(),
         *simulation_values(),
+        *environment_values(),
         *hardware_values(),
         *calibration_values(),
     ]
@@ -131,6 +132,14 @@ def simulation_values():
     yield from (terrain.Blocks(), terrain.Flat(), terrain.Gaps(), terrain.Ramp(slope=0.1), terrain.Smooth())
     yield from (terrain.Stairs(rise=0.02), terrain.Step(rise=0.02))
     yield terrain.HeightField(heights=np.eye(50), size=(1.0, 1.0))
+
+
+def environment_values():
+    env = environment.WalkEnv("strider", actions="joint", sensors="blind")
+    policy = environment.ScriptedPolicy(env)
+    yield from (env, env.motion, env.curriculum, policy, environment.WalkVectorEnv(1, threads=1))
+    yield from (environment.CommandSampler(), environment.DomainRandomisation(), environment.RewardWeights())
+    yield environment.Evaluation(episodes=1, reward=1.0, error=0.1, falls=0.0, reward_terms={"velocity": 1.0})
 
 
 def reachable(start):

@@ -18,11 +18,12 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from tarsus.simulation import terrain
+    from tarsus.simulation import environment, terrain
+    from tarsus.simulation.plant_state import PlantState
     from tarsus.simulation.robot_model import model, model_assumptions
     from tarsus.simulation.sensors.suite import FootSwitch, Sensor, SensorSuite
     from tarsus.simulation.servos.servo_model import ServoModel
-    from tarsus.simulation.simulated_plant import PlantState, SimulatedPlant
+    from tarsus.simulation.simulated_plant import SimulatedPlant
     from tarsus.simulation.terrain.from_text import terrain_from_text
     from tarsus.simulation.truth.comparison import Truth, compare
     from tarsus.simulation.truth.outcome import Outcome
@@ -32,7 +33,7 @@ if TYPE_CHECKING:
 _HOMES = {
     "FootSwitch": "tarsus.simulation.sensors.suite",
     "Outcome": "tarsus.simulation.truth.outcome",
-    "PlantState": "tarsus.simulation.simulated_plant",
+    "PlantState": "tarsus.simulation.plant_state",
     "Sensor": "tarsus.simulation.sensors.suite",
     "SensorSuite": "tarsus.simulation.sensors.suite",
     "ServoModel": "tarsus.simulation.servos.servo_model",
@@ -61,6 +62,7 @@ __all__ = [
     "TracedPlant",
     "Truth",
     "compare",
+    "environment",
     "model",
     "model_assumptions",
     "play",
@@ -73,8 +75,8 @@ __all__ = [
 
 def __getattr__(name: str) -> Any:
     """Import a public name from where it lives."""
-    if name == "terrain":
-        return import_module("tarsus.simulation.terrain")
+    if name in ("environment", "terrain"):
+        return import_module(f"tarsus.simulation.{name}")
     if name not in _HOMES:
         raise AttributeError(f"module 'tarsus.simulation' has no attribute {name!r}")
     value = getattr(import_module(_HOMES[name]), name)

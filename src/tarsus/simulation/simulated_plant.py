@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -17,6 +17,7 @@ from tarsus.robot.robot import Robot
 from tarsus.simulation.engine import mujoco_module
 from tarsus.simulation.initial_state import check_stability, place
 from tarsus.simulation.measurement import Measurement
+from tarsus.simulation.plant_state import PlantState
 from tarsus.simulation.robot_model import model, model_assumptions
 from tarsus.simulation.sensors.sampler import Sampler
 from tarsus.simulation.sensors.suite import SensorSuite
@@ -28,9 +29,9 @@ from tarsus.simulation.terrain.flat import Flat
 from tarsus.simulation.terrain.protocol import Terrain
 
 if TYPE_CHECKING:
-    from jaxtyping import Bool, Float, Shaped
+    from jaxtyping import Float, Shaped
 
-__all__ = ["PlantState", "SimulatedPlant"]
+__all__ = ["SimulatedPlant"]
 
 
 # Settling ends when nothing moves faster than this [m/s, rad/s], or after the longest time [s].
@@ -38,41 +39,6 @@ _AT_REST, _LONGEST_SETTLING = 2e-3, 3.0
 _SETTLING_CHECK = 25  # steps
 # A simulation in which anything is faster than this is unstable [m/s, rad/s].
 _UNSTABLE = 1e3
-
-
-@represented()
-class PlantState(NamedTuple):
-    """What a simulated robot does, exactly.
-
-    Attributes
-    ----------
-    time : float
-        Since the start [s].
-    body : Pose
-        Pose of B in G.
-    joint_angles, joint_speeds : array, shape (legs, 3)
-        Of the joints [rad, rad/s].
-    torques : array, shape (legs, 3)
-        Of the servos in the last physics step [N m].
-    saturated : array of bool, shape (legs, 3)
-        Whether the servos gave all the torque that they can at their speed.
-    foot_forces : array, shape (legs, 3)
-        Of the ground on the feet in the last physics step, in G [N].
-    slip_speeds : array, shape (legs,)
-        Of the feet's contact points over the ground; 0 for a foot that rolls, or is in the air [m/s].
-    body_touches : bool
-        Whether the body is in contact with the ground.
-    """
-
-    time: float
-    body: Pose
-    joint_angles: Float[np.ndarray, "legs 3"]
-    joint_speeds: Float[np.ndarray, "legs 3"]
-    torques: Float[np.ndarray, "legs 3"]
-    saturated: Bool[np.ndarray, "legs 3"]
-    foot_forces: Float[np.ndarray, "legs 3"]
-    slip_speeds: Float[np.ndarray, "legs"]
-    body_touches: bool
 
 
 @represented("robot", "terrain", "sensors", "assumed")
@@ -149,7 +115,7 @@ class SimulatedPlant:
         self._sampler: Sampler | None = None
         self._time, self._steps = 0.0, 0
 
-    def start(self, output: ControlOutput) -> None:
+    def start(self, output: ControlOutput, *, seed: int | None = None) -> None:
         """Place the robot on the terrain in the controller's pose, and let it settle.
 
         Its lowest foot touches the ground; a robot on its belly lies on it.
@@ -158,6 +124,8 @@ class SimulatedPlant:
         ----------
         output : ControlOutput
             What the controller starts with.
+        seed : int, optional
+            Seed of what is random in the sensors from now on; that of the plant where left out.
 
         Raises
         ------
@@ -178,7 +146,7 @@ class SimulatedPlant:
                 break
         self._timing = CommandTiming(self._table, TIMESTEP, angles)
         self._time, self._steps = 0.0, 0
-        self._sampler = Sampler(self.sensors, self._exact(), seed=self._seed)
+        self._sampler = Sampler(self.sensors, self._exact(), seed=self._seed if seed is None else seed)
 
     def step(self, output: ControlOutput, dt: float) -> SensorReadings:
         """Execute joint angles for one tick, and measure.
@@ -197,17 +165,57 @@ class SimulatedPlant:
         SimulationError
             If the simulation becomes unstable.
         """
+        return self.execute(output.angles, dt)
+
+    def execute(self, angles: Float[np.ndarray, "legs 3"], dt: float) -> SensorReadings:
+        """Execute joint angles that no controller gave out, as `step` does.
+
+        Parameters
+        ----------
+        angles : array, shape (legs, 3)
+            The joint angles [rad].
+        dt : float
+            Duration of the tick [s].
+        """
         if self._timing is None or self._sampler is None:
             raise InputError("the simulated plant has not been started; call start(output) before step(output, dt)")
         if not 0 < dt < math.inf:
             raise InputError(f"dt is {dt:g} s; it must be a finite number greater than 0")
-        self._timing.command(self._steps, _checked(output.angles))
+        self._timing.command(self._steps, _checked(angles))
         self._time += dt
         self._advance(round(self._time / TIMESTEP) - self._steps)
         return self._sampler.read(self._time, self._exact())
 
     def stop(self) -> None:
         """Do nothing: the robot stays as it is."""
+
+    @property
+    def readings(self) -> SensorReadings:
+        """What is measured at the start; afterwards the last readings are those that `step` returned.
+
+        Raises
+        ------
+        InputError
+            If the plant has not been started.
+        """
+        if self._sampler is None:
+            raise InputError("the simulated plant has not been started; call start(output) before")
+        return self._sampler.first
+
+    @property
+    def torques(self) -> Float[np.ndarray, "legs 3"]:
+        """The servos' torques in the last physics step ``(legs, 3)`` [N m]."""
+        return self._torques()
+
+    @property
+    def stall_torques(self) -> Float[np.ndarray, "joints"]:
+        """The servos' stall torques, leg by leg ``(3 * legs,)`` [N m]; may be infinite."""
+        return self._table.stall_torque
+
+    @property
+    def body_touches(self) -> bool:
+        """Whether the body is in contact with the ground."""
+        return self._measurement.body_touches()
 
     @property
     def state(self) -> PlantState:

@@ -18,7 +18,7 @@ from tarsus.kinematics.convex_hull import origin_margin
 from tarsus.kinematics.leg import forward_kinematics
 from tarsus.kinematics.mass import MassWeights
 from tarsus.robot.robot import Robot
-from tarsus.simulation.simulated_plant import PlantState
+from tarsus.simulation.plant_state import PlantState
 from tarsus.studio.encoding import degrees, flags, millimetres, or_null, plain
 from tarsus.studio.messages import client as ask
 from tarsus.studio.messages.motion import DriveFrame

@@ -42,6 +42,11 @@ class Sampler:
             if sensor is not None and name in exact
         ]
 
+    @property
+    def first(self) -> SensorReadings:
+        """The readings at the start."""
+        return SensorReadings(**{channel.name: channel.first for channel in self._channels})
+
     def read(self, time: float, exact: Mapping[str, Any]) -> SensorReadings:
         """Return the readings at a time.
 
@@ -70,7 +75,8 @@ class _Channel:
         self._resolution = sensor.resolution if isinstance(sensor, Sensor) else 0.0
         self._errors, self._lost = _errors(sensor, np.shape(exact), random), _losses(sensor, random)
         self._taken = 0.0
-        self._waiting = deque([(0.0, self._disturbed(exact))])
+        self.first = self._disturbed(exact)
+        self._waiting = deque([(0.0, self.first)])
 
     def read(self, time: float, exact: Any) -> tuple[Any, float]:
         """Take a measurement, unless it is not due yet or is lost; return the newest that has arrived, and its age."""

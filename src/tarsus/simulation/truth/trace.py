@@ -14,7 +14,7 @@ from tarsus.errors import InputError
 from tarsus.gait.storage import labels, write_table
 from tarsus.kinematics.pose import Pose
 from tarsus.robot.robot import JOINTS, Robot
-from tarsus.simulation.simulated_plant import PlantState
+from tarsus.simulation.plant_state import PlantState
 
 if TYPE_CHECKING:
     import xarray

@@ -8,7 +8,8 @@ from tarsus.control.states.robot_state import RobotState
 from tarsus.errors import InputError
 from tarsus.gait.motion import Motion
 from tarsus.representation import represented
-from tarsus.simulation.simulated_plant import PlantState, SimulatedPlant
+from tarsus.simulation.plant_state import PlantState
+from tarsus.simulation.simulated_plant import SimulatedPlant
 from tarsus.simulation.truth.trace import Trace
 
 __all__ = ["TracedPlant", "play"]

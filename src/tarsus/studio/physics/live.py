@@ -10,7 +10,8 @@ import numpy as np
 from tarsus.control.control_output import ControlOutput
 from tarsus.control.states.robot_state import RobotState
 from tarsus.robot.robot import JOINTS, Robot
-from tarsus.simulation.simulated_plant import PlantState, SimulatedPlant
+from tarsus.simulation.plant_state import PlantState
+from tarsus.simulation.simulated_plant import SimulatedPlant
 from tarsus.simulation.terrain.protocol import Terrain
 from tarsus.simulation.truth.as_motion import CONTACT_FORCE
 from tarsus.simulation.truth.outcome import FALLEN
