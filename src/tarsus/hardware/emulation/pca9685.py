@@ -72,9 +72,9 @@ class EmulatedPca9685(EmulatedServos):
         memory = self._boards[address]
         register = data[0]
         counting = memory[0] & codec.AUTO_INCREMENT
+        self.advance(now)
         for at, byte in enumerate(data[1:]):
             self._put(memory, register + (at if counting else 0), byte)
-        self.advance(now)
 
     def read(self, address: int, register: int, count: int, now: float) -> bytes:
         """Return the content of consecutive registers.
@@ -93,11 +93,9 @@ class EmulatedPca9685(EmulatedServos):
         self.advance(now)
         return bytes(self._boards[address][register : register + count])
 
-    def _step(self, now: float) -> None:
-        super()._step(now)
-        if self.supply.up(now):
-            for channel, width in self.pulses.items():
-                follow(self, channel, width)
+    def _follow(self) -> None:
+        for channel, width in self.pulses.items():
+            follow(self, channel, width)
 
     @property
     def pulses(self) -> dict[int, float]:

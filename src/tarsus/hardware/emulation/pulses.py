@@ -61,12 +61,10 @@ class EmulatedBoard(EmulatedLine):
 
     _fed_by_port = True
 
-    def _step(self, now: float) -> None:
-        super()._step(now)
-        if self.supply.up(now):
-            # After their supply was gone, servos follow the pulses that are there.
-            for channel, width in self.pulses.items():
-                follow(self, channel, width)
+    def _follow(self) -> None:
+        # Also after their supply was gone: the pulses are still there.
+        for channel, width in self.pulses.items():
+            follow(self, channel, width)
 
     @property
     def pulses(self) -> dict[int, float]:

@@ -89,12 +89,17 @@ class EmulatedServos:
     def _step(self, now: float) -> None:
         self._time = now
         self._watch(0.0 if self._heard is None else now - self._heard)
+        if self.supply.up(now):
+            self._follow()
         self.supply.advance(now, self.servos.values())
         if not self.supply.up(now):
             self._started_anew()
 
     def _watch(self, silent: float) -> None:
         """Carry out what the watchdog does after a time without requests; by default there is none."""
+
+    def _follow(self) -> None:
+        """Let servos follow the pulses that they have; by default they have none."""
 
     def _started_anew(self) -> None:
         """Forget what is lost without supply."""
