@@ -1,5 +1,6 @@
 """Codecs: the makers' own example frames, and what is left of frames that are damaged."""
 
+import random
 import struct
 from itertools import pairwise
 
@@ -244,6 +245,29 @@ def test_a_damaged_answer_is_never_believed(name, position, hurt, telemetry):
     # And afterwards everything is as before.
     del device.faults.delivered
     assert bus.read_telemetry(IDS).require() == truth
+
+
+@pytest.mark.parametrize("name", CHECKED)
+def test_no_mix_of_faults_makes_a_wrong_value_look_right(name):
+    chance = random.Random(1)
+    bus, device = hardware.emulated_bus(name, range(1, 7))
+    for id, servo in device.servos.items():
+        servo.place(100 + 31 * id)
+    got = 0
+    for _ in range(80):
+        faults = device.faults
+        faults.missing = {id for id in device.ids if chance.random() < 0.05}
+        faults.corrupt = {id: 0.5 for id in device.ids if chance.random() < 0.2}
+        faults.late = {id: chance.uniform(0, 0.08) for id in device.ids if chance.random() < 0.15}
+        faults.echo = chance.random() < 0.3
+        ids = chance.sample(device.ids, chance.randint(1, 6))
+        if chance.random() < 0.6:
+            positions = bus.read_positions(ids).values
+        else:
+            positions = {id: one.position for id, one in bus.read_telemetry(ids).values.items()}
+        assert positions == {id: 100 + 31 * id for id in positions}
+        got += len(positions)
+    assert got > 80
 
 
 @pytest.mark.parametrize("name", sorted(hardware.BUSES))

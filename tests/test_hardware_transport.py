@@ -4,6 +4,7 @@ import errno
 import os
 import subprocess
 import sys
+import time
 import types
 
 import pytest
@@ -169,3 +170,33 @@ def test_emulated_servos_run_as_a_process_of_their_own(capsys):
     assert capsys.readouterr().out.startswith("/dev/")
     assert main(["ssc32", "all"]) == 1
     assert "invalid literal" in capsys.readouterr().err
+
+
+CLIENT = """
+import sys, time
+from tarsus import hardware
+bus = hardware.open_bus("dynamixel-x", sys.argv[1], baud=1_000_000, timeout=1.0)
+bus.set_watchdog((1, 2), 0.5)
+bus.set_torque(None, True)
+bus.set_speed_limit((1, 2), 50)
+while True:
+    bus.write_goals({1: 4000, 2: 4000})
+    bus.read_positions((1, 2)).require()
+    print("driven", flush=True)
+    time.sleep(0.02)
+"""
+
+
+def test_when_the_driving_process_is_killed_the_servos_watchdog_stops_them():
+    device = hardware.emulate("dynamixel-x", (1, 2), baud=1_000_000)
+    with hardware.PtyServer(device) as server:
+        command = [sys.executable, "-c", CLIENT, server.port]
+        with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
+            assert process.stdout.readline() == "driven\n"
+            process.kill()
+        with server.lock:
+            stopped = device.positions(time.monotonic() + 0.6)
+            later = device.positions(time.monotonic() + 5.0)
+    assert all(memory.get("watchdog") == -1 for memory in device.memory.values())
+    assert later == stopped
+    assert all(2048 < position < 2500 for position in later.values())
