@@ -20,7 +20,7 @@ SUPPLY = SupplySettings(voltage=7.4, least_voltage=6.0)
 
 def monitor(supply=SUPPLY, robot=STRIDER):
     made = nominal_calibration(robot, "strider", kind="feetech-sts").replace(supply=supply)
-    return ServoMonitor(made, JointMap(made), PlantSettings())
+    return ServoMonitor(made, JointMap(made), PlantSettings(least_failures=2))
 
 
 def no_answer(number, kind=NoAnswerError):

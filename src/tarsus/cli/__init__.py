@@ -22,6 +22,7 @@ from tarsus.cli.loads import loads
 from tarsus.cli.pose import pose
 from tarsus.cli.rest import rest
 from tarsus.cli.robots import robots
+from tarsus.cli.run import run
 from tarsus.cli.servos import servos
 from tarsus.cli.simulate import simulate
 from tarsus.cli.studio import studio
@@ -59,6 +60,7 @@ for command in (
     walk,
     drive,
     simulate,
+    run,
     pose,
     fk,
     ik,

@@ -79,6 +79,7 @@ class ServoReader:
             for name, bus in buses.items()
             if bus.capabilities.telemetry and joints.numbers(name)
         }
+        self._failed: dict[str, tuple[int, ...]] = {}
         self.fresh = False
 
     def all_positions(self) -> Float[np.ndarray, "legs 3"]:
@@ -112,9 +113,12 @@ class ServoReader:
             whole = bus.timing(numbers).positions
             if whole > _SHARE * dt:
                 count = max(1, int(len(numbers) * _SHARE * dt / whole))
-                numbers = tuple(dict.fromkeys(next(turn) for _ in range(count)))
+                # Who did not answer is asked again at once.
+                again = self._failed.get(name, ())
+                numbers = tuple(dict.fromkeys([*again, *(next(turn) for _ in range(count))]))[: max(count, len(again))]
                 self.fresh = False
             answers = bus.read_positions(numbers)
+            self._failed[name] = tuple(number for number in numbers if number not in answers.values)
             self._keep(name, answers.values)
             self.fresh = self.fresh and not answers.errors
             yield Reading(name, numbers, answers.values.keys(), answers.errors)

@@ -27,7 +27,8 @@ class PlantSettings:
     silence : float
         How long a servo may give no valid answer [s].
     least_failures : int
-        How many answers in a row must fail.
+        How many answers in a row must fail; 2 are enough for the plant where it did not open the buses itself, and they
+        may take longer to fail.
     delay : float
         Time after which a servo begins to follow a command [s].
     stuck_window : float
@@ -54,7 +55,7 @@ class PlantSettings:
     start_interval: float = 0.08
     longest_tick: float = 0.05
     silence: float = 0.04
-    least_failures: int = 2
+    least_failures: int = 3
     delay: float = 0.04
     stuck_window: float = 0.06
     stuck_angle: float = math.radians(2.5)

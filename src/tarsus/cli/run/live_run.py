@@ -1,0 +1,266 @@
+"""What `tarsus run` does: makes plant, controller and source of commands, runs them, and records."""
+
+from __future__ import annotations
+
+import contextlib
+import dataclasses
+import signal
+import threading
+from collections.abc import Iterator
+from pathlib import Path
+from types import FrameType
+from typing import Any
+
+import numpy as np
+
+from tarsus.cli.pulses import calibration_of
+from tarsus.cli.run.status_line import StatusLine
+from tarsus.cli.timeline import timeline_of
+from tarsus.control.loop.recording import Recording
+from tarsus.control.loop.run import CommandSource
+from tarsus.control.loop.run import run as run_loop
+from tarsus.control.plant import Plant
+from tarsus.control.robot_controller import RobotController
+from tarsus.control.states.robot_state import RobotState
+from tarsus.errors import InputError, ServoFaultError
+from tarsus.gait.gait import Gait
+from tarsus.hardware.calibration.blank import nominal_calibration
+from tarsus.hardware.calibration.bus_commands import BUS_COMMANDS, usual_bus
+from tarsus.hardware.calibration.calibration import Calibration
+from tarsus.hardware.live.emulated_robot import EmulatedRobot
+from tarsus.hardware.live.gamepad import Gamepad
+from tarsus.hardware.live.keyboard import KEYS, Keyboard
+from tarsus.hardware.live.live_commands import InputDevice, LiveCommands
+from tarsus.hardware.live.supervision import Rising, Supervised
+from tarsus.hardware.plant.servo_plant import ServoPlant
+from tarsus.hardware.telemetry.log import TelemetryLog
+from tarsus.robot.file import load_robot
+from tarsus.robot.robot import Robot
+from tarsus.scenario.active_commands import ScenarioCommands
+from tarsus.scenario.drivable import require_drivable
+from tarsus.scenario.scenario import Scenario
+
+__all__ = ["perform"]
+
+_DEMO = "at 0 s: walk 60 mm/s; at 2 s: walk turn 20 deg/s; at 3 s: stop"
+_RATE = 100.0
+# Share of what the wires carry that a run uses.
+_SHARE = 0.8
+# Greatest speeds for keys and gamepads [m/s, m/s, rad/s].
+_SPEEDS = (0.06, 0.05, 0.4)
+_REAL, _EMULATED, _SIMULATED = "real", "emulated", "simulated"
+
+
+def perform(robot: str, options: dict[str, Any], *, out: Path | None, quiet: bool) -> dict[str, Any]:
+    """Run a robot, and return what happened.
+
+    Parameters
+    ----------
+    robot : str
+        Name of the robot, or path of its file.
+    options : dict
+        Options of `tarsus run`.
+    out : Path, optional
+        Existing folder for the records.
+    quiet : bool
+        Whether nothing is shown meanwhile.
+
+    Raises
+    ------
+    TarsusError
+        If the run can't begin.
+    """
+    where, _, kind = (options["bus"] or (_REAL if options["calibration"] else _EMULATED)).partition(":")
+    if where not in (_REAL, _EMULATED, _SIMULATED):
+        raise InputError(f"--bus {options['bus']}: it must be real, emulated, emulated:KIND or simulated")
+    chosen = load_robot(robot)
+    if where == _SIMULATED:
+        return _simulated(chosen, options, out=out)
+    calibration = _calibration(robot, chosen, options, where, kind)
+    calibration.require_complete()
+    start = options["start"] or ("lying" if where == _REAL else "standing")
+    with _signals(), contextlib.ExitStack() as stack:
+        scenario = _scenario(options)
+        controller = _controller(calibration.limited_robot, scenario, RobotState(start))
+        buses = None
+        if where == _EMULATED:
+            emulated = stack.enter_context(EmulatedRobot(calibration, controller.output.angles))
+            calibration, buses = emulated.calibration, emulated.buses
+        log = None if out is None else stack.enter_context(TelemetryLog(chosen, out))
+        line = stack.enter_context(StatusLine(quiet=quiet))
+        plant = ServoPlant(
+            calibration.limited_robot, calibration, buses=buses, observer=line.observer(log.write if log else None)
+        )
+        line.plant = plant
+        with plant:
+            rate = options["rate"] or min(_RATE, float(np.floor(_SHARE * plant.greatest_rate)))
+            source = _source(controller, scenario, options, stack, line)
+            if start == "lying":
+                source = Rising(source)
+            outcome = _run(controller, plant, Supervised(source, plant), rate, options["duration"], line)
+    bus = f"{where}: {', '.join(each.properties.text for each in calibration.buses)}"
+    return _summary(chosen, bus, plant, outcome, line, out)
+
+
+@dataclasses.dataclass
+class _Outcome:
+    recording: Recording | None = None
+    fault: ServoFaultError | None = None
+
+
+def _run(
+    controller: RobotController,
+    plant: Plant,
+    source: CommandSource,
+    rate: float,
+    duration: float | None,
+    line: StatusLine,
+) -> _Outcome:
+    outcome = _Outcome()
+    try:
+        outcome.recording = run_loop(controller, plant, line.watched(_limited(source, duration)), rate=rate)
+    except ServoFaultError as error:
+        outcome.fault = error
+    return outcome
+
+
+def _limited(source: CommandSource, duration: float | None) -> CommandSource:
+    """Return a source that is over after a time."""
+    if duration is None:
+        return source
+    end = duration
+
+    class Limited:
+        command = staticmethod(source.command)
+
+        def over(self, time: float, output: Any) -> bool:
+            """Return whether the run is over."""
+            return time >= end or source.over(time, output)
+
+    return Limited()
+
+
+def _calibration(name: str, robot: Robot, options: dict[str, Any], where: str, kind: str) -> Calibration:
+    if options["calibration"] is not None:
+        found = calibration_of(robot, options["calibration"])
+    elif where == _REAL:
+        raise InputError("a real robot needs its calibration: --calibration FILE; tarsus bring-up makes one")
+    else:
+        # Without servos of a bus in the robot file, such that measure their positions show more.
+        usual = usual_bus(robot.servos[0][0])
+        found = nominal_calibration(robot, name, kind=kind or (usual.name if usual.feedback else "feetech-sts"))
+    if kind and kind not in BUS_COMMANDS:
+        raise InputError(f"--bus emulated:{kind}: there are {', '.join(BUS_COMMANDS)}")
+    if options["port"]:
+        buses = (dataclasses.replace(found.buses[0], port=options["port"]), *found.buses[1:])
+        found = found.replace(buses=buses)
+    return found
+
+
+def _scenario(options: dict[str, Any]) -> Scenario:
+    if options["keys"] or options["gamepad"]:
+        return Scenario()
+    return timeline_of(options["scenario"] or _DEMO, None)
+
+
+def _controller(robot: Robot, scenario: Scenario, start: RobotState) -> RobotController:
+    require_drivable(scenario, robot)
+    levelling: Any = scenario.levelling or None
+    return RobotController(
+        robot,
+        Gait.named(scenario.gait or robot.gait.name, legs=robot.legs),
+        start=start,
+        body_height=scenario.body_height,
+        swing_height=scenario.swing_height,
+        levelling=levelling,
+    )
+
+
+def _source(
+    controller: RobotController,
+    scenario: Scenario,
+    options: dict[str, Any],
+    stack: contextlib.ExitStack,
+    line: StatusLine,
+) -> CommandSource:
+    device: InputDevice
+    if options["keys"]:
+        device = stack.enter_context(Keyboard())
+        line.say("  ".join(f"{key if key != ' ' else 'space'}: {text}" for key, (_, text) in KEYS.items()))
+    elif options["gamepad"]:
+        device = stack.enter_context(Gamepad(options["gamepad"]))
+    else:
+        return ScenarioCommands(scenario, controller.robot, None)
+    return LiveCommands(device, speeds=_SPEEDS)
+
+
+@contextlib.contextmanager
+def _signals() -> Iterator[None]:
+    """Treat a closed terminal and a request to end as Ctrl-C."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+
+    def interrupt(_number: int, _frame: FrameType | None) -> None:
+        raise KeyboardInterrupt
+
+    names = [name for name in ("SIGHUP", "SIGTERM") if hasattr(signal, name)]
+    before = {name: signal.signal(getattr(signal, name), interrupt) for name in names}
+    try:
+        yield
+    finally:
+        for name, handler in before.items():
+            signal.signal(getattr(signal, name), handler)
+
+
+def _simulated(robot: Robot, options: dict[str, Any], *, out: Path | None) -> dict[str, Any]:
+    """Run in physics, as fast as that is."""
+    from tarsus.simulation.simulated_plant import SimulatedPlant
+
+    if options["keys"] or options["gamepad"]:
+        raise InputError("physics does not run in real time: use --bus emulated with --keys or --gamepad")
+    scenario = _scenario(options)
+    controller = _controller(robot, scenario, RobotState(options["start"] or "standing"))
+    source: CommandSource = ScenarioCommands(scenario, robot, None)
+    if options["start"] == "lying":
+        source = Rising(source)
+    plant = SimulatedPlant(robot)
+    with StatusLine(quiet=True) as line:
+        outcome = _run(controller, plant, source, options["rate"] or _RATE, options["duration"], line)
+    return _summary(robot, "simulated", None, outcome, line, out)
+
+
+def _summary(
+    robot: Robot, bus: str, plant: ServoPlant | None, outcome: _Outcome, line: StatusLine, out: Path | None
+) -> dict[str, Any]:
+    from tarsus.cli.run.figures import write_figures
+
+    recording, fault = outcome.recording, outcome.fault
+    problems = [str(fault)] if fault else list(recording.problems if recording else ())
+    if plant is not None:
+        problems += [note for note in plant.notes if fault is None]
+    timing = None if plant is None else line.timing
+    way = None if recording is None else np.asarray(recording.motion.body.position)[:, :2]
+    return {
+        "robot": robot.name,
+        "bus": bus,
+        "possible": not problems,
+        "problems": problems,
+        "duration_s": line.duration if recording is None else recording.motion.duration,
+        "distance_mm": None if way is None else float(np.hypot(*(way[-1] - way[0]))) * 1000,
+        "timing": None
+        if timing is None
+        else {
+            "ticks": timing.ticks,
+            "missed": timing.missed,
+            "rate_hz": timing.rate,
+            "median_late_ms": timing.median * 1e3,
+            "worst_late_ms": timing.worst * 1e3,
+        },
+        "tracking_deg": line.tracking,
+        "voltage_v": line.lowest_voltage,
+        "fault": None if plant is None or plant.fault is None else str(plant.fault.kind),
+        "joint": None if plant is None or plant.fault is None else plant.fault.joint,
+        "notes": [] if plant is None else [*plant.notes],
+        "files": [] if out is None else [str(file) for file in write_figures(robot, recording, plant is not None, out)],
+    }

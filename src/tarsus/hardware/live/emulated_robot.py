@@ -1,0 +1,91 @@
+"""An emulated robot: servos behind pseudo-terminals, on which the same drivers run as on real ones."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Mapping
+from types import TracebackType
+from typing import TYPE_CHECKING, Any, Self
+
+import numpy as np
+
+from tarsus.hardware.bus.dialect import SERIES
+from tarsus.hardware.bus.protocol import Bus
+from tarsus.hardware.bus.registry import bus_kind, bus_over
+from tarsus.hardware.calibration.calibration import Calibration
+from tarsus.hardware.emulation.registry import emulate
+from tarsus.hardware.transport.clock import SystemClock
+from tarsus.hardware.transport.memory import MemoryI2c
+from tarsus.hardware.transport.pty import PtyServer
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
+
+__all__ = ["EmulatedRobot"]
+
+# Servos whose rate can be set get one at which 18 of them keep up with 100 ticks a second.
+_FAST = 1_000_000
+
+
+class EmulatedRobot:
+    """The servos of a calibration, emulated at the level of bytes; serial ones behind pseudo-terminals.
+
+    Parameters
+    ----------
+    calibration : Calibration
+        A complete calibration.
+    angles : array, shape (legs, 3)
+        Where the joints are at first [rad].
+
+    Attributes
+    ----------
+    calibration : Calibration
+        The calibration with the ports of the emulated buses.
+    lines : mapping of str to EmulatedLine
+        The emulated servos, by the names of their buses.
+    """
+
+    def __init__(self, calibration: Calibration, angles: Float[np.ndarray, "legs 3"]) -> None:
+        self.lines: dict[str, Any] = {}
+        self._servers: dict[str, PtyServer] = {}
+        self._i2c: dict[str, Bus] = {}
+        commands = calibration.commands(angles).tolist()
+        buses = []
+        for settings in calibration.buses:
+            numbers = {
+                joint.number: commands[leg][j]
+                for leg, row in enumerate(calibration.joints)
+                for j, joint in enumerate(row)
+                if joint.bus == settings.name and joint.number is not None
+            }
+            kind = bus_kind(settings.kind)
+            serial = kind.transport == "serial"
+            baud = _FAST if settings.kind in SERIES else kind.baud
+            line = emulate(settings.kind, numbers, **({"baud": baud} if serial else {}))
+            for number, command in numbers.items():
+                line.servos[number].place(command)
+            self.lines[settings.name] = line
+            if serial:
+                self._servers[settings.name] = PtyServer(line)
+                port = self._servers[settings.name].port
+            else:
+                port = "emulated I2C"
+                self._i2c[settings.name] = bus_over(settings.kind, MemoryI2c(line, SystemClock()))
+            buses.append(dataclasses.replace(settings, port=port, baud=baud if serial else None))
+        self.calibration = calibration.replace(buses=tuple(buses))
+
+    @property
+    def buses(self) -> Mapping[str, Bus] | None:
+        """Buses for a `ServoPlant` that can't be opened by their ports: those of I2C; None where there are none."""
+        return self._i2c or None
+
+    def __enter__(self) -> Self:
+        """Return the robot itself."""
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        """End the emulation."""
+        for server in self._servers.values():
+            server.close()

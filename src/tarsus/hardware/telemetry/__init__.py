@@ -1,0 +1,1 @@
+"""Telemetry of runs: tables and MCAP files, written tick by tick."""

@@ -1,0 +1,231 @@
+"""`tarsus run`: emulated servos behind terminals, faults, records, and what a kill leaves behind."""
+
+import csv
+import json
+import os
+import pty
+import re
+import signal
+import struct
+import subprocess
+import sys
+import time
+
+import numpy as np
+import pytest
+
+import tarsus
+from sample_commands import run, run_json
+from tarsus import Command, RobotController
+from tarsus.errors import InputError
+from tarsus.hardware import BUSES, ManualClock, PtyServer, emulate, nominal_calibration
+from tarsus.hardware.live.gamepad import Gamepad
+from tarsus.hardware.live.keyboard import KEYS, Keyboard
+from tarsus.hardware.live.live_commands import Input, LiveCommands
+from tarsus.hardware.live.supervision import Rising, Supervised
+from tarsus.hardware.telemetry.log import read_log
+
+STRIDER = tarsus.load_robot("strider")
+FAST = 1_000_000
+
+
+def served(kind, tmp_path, **faults):
+    """Emulated servos behind a terminal, standing, and the calibration file of them."""
+    made = nominal_calibration(STRIDER, "strider", kind=kind)
+    baud = FAST if kind.startswith(("feetech", "dynamixel")) else BUSES[kind].baud
+    line = emulate(kind, [joint.number for row in made.joints for joint in row], baud=baud, **faults)
+    commands = made.commands(RobotController(made.limited_robot).output.angles)
+    for row, goals in zip(made.joints, commands.tolist(), strict=True):
+        for joint, goal in zip(row, goals, strict=True):
+            line.servos[joint.number].place(goal)
+    server = PtyServer(line)
+    bus = tarsus.hardware.BusSettings(name="main", kind=kind, port=server.port, baud=baud)
+    made.replace(buses=(bus,)).save(tmp_path / "c.toml")
+    return line, server
+
+
+def test_an_emulated_robot_walks_and_is_recorded(tmp_path):
+    code, found = run_json("run", "strider", "--bus", "emulated", "--duration", "0.4", "--out", tmp_path)
+    assert (code, found["problems"]) == (0, [])
+    assert found["timing"]["ticks"] > 10
+    assert found["tracking_deg"]["worst"] < 10
+    assert {os.path.basename(file) for file in found["files"]} == {
+        *("telemetry.csv", "telemetry.mcap", "joints.png", "log.csv", "timeline.png")
+    }
+    times, sent, measured = read_log(tmp_path / "telemetry.csv", STRIDER)
+    assert len(times) > 40
+    assert np.nanmax(np.abs(sent - measured)) < np.radians(12)
+    messages = mcap_messages(tmp_path / "telemetry.mcap")
+    assert len(messages) == len(times)
+    assert messages[5]["name"][4] == "LM_femur"
+    np.testing.assert_allclose(messages[5]["sent_deg"], np.degrees(sent[5]).ravel(), atol=1e-3)
+    with pytest.raises(InputError, match="no table of telemetry"):
+        read_log(tmp_path / "log.csv", STRIDER)
+
+
+def mcap_messages(path):
+    from mcap.reader import make_reader
+
+    with open(path, "rb") as file:
+        return [json.loads(message.data) for _, _, message in make_reader(file).iter_messages()]
+
+
+def test_a_fault_ends_with_an_exit_code_its_joint_and_a_complete_log(tmp_path):
+    line, server = served("feetech-sts", tmp_path)
+    with server:
+        line.servos[5].temperature = 90.0
+        result = run("run", "strider", "--calibration", tmp_path / "c.toml", "--start", "standing", "--out", tmp_path)
+    assert result.exit_code == 1
+    assert "middle left femur: overheated" in result.stdout
+    assert "Let it cool" in result.stdout
+    assert not any(servo.torque for servo in line.servos.values())
+    with open(tmp_path / "telemetry.csv", encoding="utf-8", newline="") as file:
+        faults = [row["fault"] for row in csv.DictReader(file)]
+    assert "middle left femur: overheated" in "".join(faults)
+
+
+def test_physics_runs_the_same_controller():
+    code, found = run_json("run", "strider", "--bus", "simulated", "--duration", "0.3", "--start", "standing")
+    assert (code, found["bus"], found["timing"]) == (0, "simulated", None)
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (("--bus", "real"), "needs its calibration"),
+        (("--bus", "usb"), "must be real, emulated"),
+        (("--bus", "emulated:usb"), "no kind of bus is called 'usb'"),
+        (("--keys",), "the standard input is none"),
+        (("--gamepad", "/dev/none"), "no gamepad at /dev/none"),
+        (("--keys", "--gamepad"), "exclude each other"),
+        (("--keys", "--scenario", "at 0 s: stop"), "--scenario excludes"),
+        (("--bus", "simulated", "--keys"), "physics does not run in real time"),
+    ],
+)
+def test_what_is_no_run(options, message):
+    result = run("run", "strider", *options)
+    assert result.exit_code == 2
+    assert message in result.stderr
+
+
+@pytest.mark.parametrize(
+    ("kind", "number", "code"), [("lines", signal.SIGKILL, -9), ("feetech-sts", signal.SIGHUP, 130)]
+)
+def test_servos_let_go_when_the_program_is_killed_or_its_terminal_closed(kind, number, code, tmp_path):
+    line, server = served(kind, tmp_path)
+    program = "from tarsus.cli import main; main()"
+    scenario = "at 0 s: walk 50 mm/s; at 60 s: stop"
+    arguments = ["run", "strider", "--calibration", tmp_path / "c.toml", "--start", "standing", "--scenario", scenario]
+    with server:
+        began = line.servos[4].position
+        with subprocess.Popen([sys.executable, "-c", program, *arguments], stdout=subprocess.DEVNULL) as process:
+            await_until(lambda: abs(line.servos[4].position - began) > 5, server, line)
+            process.send_signal(number)
+            assert process.wait(timeout=60) == code
+        await_until(lambda: not any(servo.torque for servo in line.servos.values()), server, line)
+
+
+def await_until(condition, server, line):
+    for _ in range(600):
+        time.sleep(0.05)
+        with server.lock:
+            line.advance(time.monotonic())
+            if condition():
+                return
+    pytest.fail("it did not happen within 30 s")
+
+
+class Scripted:
+    def __init__(self, *inputs):
+        self._inputs = list(inputs)
+
+    def read(self):
+        return self._inputs.pop(0) if self._inputs else []
+
+
+def test_a_driver_who_falls_silent_stops_the_robot():
+    clock, notes = ManualClock(), []
+    output = RobotController(STRIDER).output
+    live = LiveCommands(
+        Scripted([Input(twist=(1, 0, -1))], [], [Input(gait="wave", body_height=0.01)]),
+        speeds=(0.1, 0.05, 0.5),
+        deadman=0.5,
+        clock=clock,
+    )
+
+    def step():
+        clock.sleep(0.3)
+        return live.command(0.0, output, lambda kind, text: notes.append(text))
+
+    assert step().twist == (0.1, 0.0, -0.5)
+    assert step().twist == (0.1, 0.0, -0.5)
+    third = step()
+    assert (third.gait, third.twist) == ("wave", (0.1, 0.0, -0.5))
+    assert third.body_height == pytest.approx(float(output.body.position[2]) + 0.01)
+    assert step().twist == (0.1, 0.0, -0.5)
+    assert step().twist == (0.0, 0.0, 0.0)
+    assert notes == ["nothing heard for 0.5 s: stop"]
+    assert not live.over(0.0, output)
+    gone = LiveCommands(Scripted([Input(twist=(1, 0, 0), state="lying")], None), speeds=(1, 1, 1), clock=clock)
+    assert gone.command(0.0, output, lambda *_: None).state == "lying"
+    assert gone.command(0.0, output, lambda *_: None).twist == (0.0, 0.0, 0.0)
+    assert gone.over(0.0, output)
+
+
+def test_keys_of_a_terminal(monkeypatch):
+    master, slave = pty.openpty()
+    with os.fdopen(slave, "r") as terminal:
+        monkeypatch.setattr(sys, "stdin", terminal)
+        with Keyboard() as keyboard:
+            assert keyboard.read() == []
+            os.write(master, b"w\x1b[Cz x")
+            time.sleep(0.05)
+            assert keyboard.read() == [KEYS[key][0] for key in "wd x"]
+            os.close(master)
+            assert keyboard.read() is None
+
+
+def test_sticks_and_buttons_of_a_gamepad(tmp_path):
+    path = tmp_path / "js0"
+    os.mkfifo(path)
+    with Gamepad(str(path)) as pad:
+        # A fifo without a writer ends at once; a pad that is unplugged, too.
+        assert pad.read() is None
+        with open(path, "wb", buffering=0) as writer:
+            for value, kind, number in [
+                (-32767, 2, 1),
+                (20000, 0x82, 3),
+                (1500, 2, 0),
+                (1, 1, 3),
+                (0, 1, 3),
+                (9, 2, 9),
+            ]:
+                writer.write(struct.pack("IhBB", 0, value, kind, number))
+            writer.write(b"abc")
+            stick, button = pad.read()
+            assert stick.twist == pytest.approx((1.0, 0.0, -20000 / 32767))
+            assert button == Input(gait="ripple")
+            assert pad.read() == [stick]
+
+
+def test_warm_servos_and_a_robot_that_lies_come_first():
+    class Plant:
+        speed_factor = 0.5
+
+    class Source:
+        def command(self, time, output, note):
+            return Command(twist=(0.1, 0.0, 0.0)) if time < 1 else Command()
+
+        def over(self, time, output):
+            return time > 2
+
+    controller, notes = RobotController(STRIDER, start="lying"), []
+    source = Supervised(Rising(Source()), Plant())
+    first = source.command(0.0, controller.output, lambda kind, text: notes.append(text))
+    assert first.state == "standing"
+    assert not source.over(9.0, controller.output)
+    standing = RobotController(STRIDER).output
+    assert source.command(3.0, standing, lambda *_: None).twist == (0.05, 0.0, 0.0)
+    assert source.command(4.5, standing, lambda *_: None).twist == (0.0, 0.0, 0.0)
+    assert source.over(5.5, standing)
+    assert re.match("servos are warm: 50 % of", notes[0])
