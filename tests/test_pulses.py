@@ -1,6 +1,7 @@
 """Commands without a bus: tables of a walk and a pose, and a cycle for firmware."""
 
 import csv
+import dataclasses
 import re
 import subprocess
 
@@ -12,7 +13,7 @@ from sample_commands import run, run_json
 from sample_loads import sample_motion
 from tarsus.errors import InputError
 from tarsus.hardware import Calibration, new_calibration, nominal_calibration
-from tarsus.hardware.pulses.gait_cycle import gait_cycle, gait_cycle_header
+from tarsus.hardware.pulses.gait_cycle import GaitCycle, gait_cycle, gait_cycle_header
 from tarsus.hardware.pulses.table import whole_commands
 
 STRIDER = tarsus.load_robot("strider")
@@ -69,8 +70,7 @@ def test_a_cycle_for_firmware_repeats_and_walks_like_the_plan(path, tmp_path, mo
     swing = feet[..., 2] > feet[..., 2].min() + 0.003
     assert (swing.sum(axis=0) > 0.3 * frames).all()
     assert frame == pytest.approx(20_000, rel=0.05)
-    assert table(text, "gait_boards")[0] == [0] * 9 + [1] * 9
-    assert table(text, "gait_numbers")[0] == [*range(9), *range(9)]
+    assert table(text, "gait_numbers")[0] == [*range(18)]
 
 
 def test_the_header_compiles_and_holds_the_same_numbers(tmp_path):
@@ -87,6 +87,19 @@ def test_the_header_compiles_and_holds_the_same_numbers(tmp_path):
     printed = subprocess.run([tmp_path / "main"], capture_output=True, text=True, check=True).stdout
     expected = whole_commands(made, cycle.angles)
     np.testing.assert_array_equal(np.array(printed.split(), dtype=int).reshape(expected.shape), expected)
+
+
+def test_servos_of_two_boards_have_the_number_of_theirs():
+    made = nominal_calibration(STRIDER, "strider", kind="ssc32")
+    other = dataclasses.replace(made.buses[0], name="other")
+    rows = [
+        [dataclasses.replace(joint, bus="other", number=joint.number - 9) if leg > 2 else joint for joint in row]
+        for leg, row in enumerate(made.joints)
+    ]
+    made = made.replace(buses=(made.buses[0], other), joints=tuple(map(tuple, rows)))
+    text = gait_cycle_header(made, GaitCycle(0.02, sample_motion().angles[:3]), title="two boards")
+    assert table(text, "gait_boards")[0] == [0] * 9 + [1] * 9
+    assert table(text, "gait_numbers")[0] == [*range(9), *range(9)]
 
 
 def test_a_walk_without_a_constant_speed_has_no_cycle():
