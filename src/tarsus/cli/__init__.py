@@ -12,6 +12,7 @@ except ImportError:  # installed without the extra
 
 from tarsus import __version__
 from tarsus.cli.calibration import calibration
+from tarsus.cli.check_servos import check_servos
 from tarsus.cli.drive import drive
 from tarsus.cli.export import export
 from tarsus.cli.fk import fk
@@ -61,6 +62,7 @@ for command in (
     drive,
     simulate,
     run,
+    check_servos,
     pose,
     fk,
     ik,

@@ -1,0 +1,1 @@
+"""Why nothing moves: a decision tree whose answers are measured."""
