@@ -185,7 +185,7 @@ def test_what_is_missing_or_does_not_fit_is_named():
         "front left: the femur axis is inclined by 3.00 deg to the horizontal",
         "front left: the femur has no limits: -180 to 180 deg assumed",
         "rear left: the limits of the tibia, -257.8 to 10.0 deg, are cut at 180 deg",
-        "middle left: the centre of mass behind 'middle_left_tibia' lies 20.0 mm beside the line of its link",
+        "middle left: the centre of mass of the tibia lies 20.0 mm beside its line",
         "the mass of the body is missing",
         "masses of links are missing",
         "the box of the body is 10.0 mm off its origin",
@@ -330,3 +330,29 @@ def test_the_command_writes_a_robot_file(tmp_path, monkeypatch):
     assert len(found["legs"]) == 6
     assert json.dumps(found["remarks"])
     assert run("robots", "import", "crawler.urdf", "--out", "no/such/folder.toml").exit_code == 2
+
+
+def test_an_origin_beside_the_legs_can_be_moved():
+    def change(root):
+        for one in root.iter("joint"):
+            if one.find("parent").get("link") == "body":
+                x, y, z = map(float, one.find("origin").get("xyz").split())
+                one.find("origin").set("xyz", f"{x + 0.1} {y} {z - 0.02}")
+        element(root, "link", "body").find("inertial").find("origin").set("xyz", "0.1 0 -0.02")
+
+    text = changed(change)
+    off, moved = urdf_robot(text), urdf_robot(text, centre=True)
+    assert any("the origin lies 100 mm beside the middle of the coxa axes" in remark for remark in off.remarks)
+    assert not any("the origin lies" in remark for remark in moved.remarks)
+    np.testing.assert_allclose(moved.robot.mount_position, STRIDER.mount_position, atol=1e-9)
+    np.testing.assert_allclose(moved.robot.body_com, 0, atol=1e-9)
+    assert moved.deviation < 1e-9
+
+
+@pytest.mark.parametrize(("codes", "wrong"), [("lf lm lr rr rm rf", 0), ("fr r2 br bl l2 fl", 1), ("a b c d e f", 0)])
+def test_short_names_of_legs_are_understood(codes, wrong):
+    text = URDF
+    for name, code in zip(STRIDER.leg_names, codes.split(), strict=True):
+        text = text.replace(name.replace(" ", "_"), f"j_{code}")
+    found = urdf_robot(text)
+    assert sum("names of joints contradict" in remark for remark in found.remarks) == wrong

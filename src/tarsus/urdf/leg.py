@@ -141,7 +141,7 @@ def fitted_leg(
     places = (points[0], points[1], points[2])
     centres, off_line = zip(
         *(
-            _centre(part, T_robot_body, frame, place, step, chain.joints[joint].name)
+            _centre(part, T_robot_body, frame, place, step, JOINTS[joint])
             for joint, (part, place, step) in enumerate(zip(chain.parts, places, steps, strict=True))
         ),
         strict=True,
@@ -237,7 +237,7 @@ def _centre(
     at = frame @ (T_robot_body[:3, :3] @ centre + T_robot_body[:3, 3] - place)
     along = float(at @ step) / length
     beside = float(np.linalg.norm(at - along * step / length))
-    remark = f"the centre of mass behind {name!r} lies {1000 * beside:.1f} mm beside the line of its link"
+    remark = f"the centre of mass of the {name} lies {1000 * beside:.1f} mm beside its line"
     return along, remark if beside > _LENGTH else ""
 
 

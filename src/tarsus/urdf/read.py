@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import os
+import re
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -33,6 +34,8 @@ DIRECTIONS = {"x": 0.0, "y": 90.0, "-x": 180.0, "-y": -90.0}
 # Boxes thinner than this stand for a body whose height is unknown [m].
 _PLATE = 0.005
 _SAMPLES, _SEED = 200, 0
+# Distance of the origin from the middle of the coxa axes that is worth a remark [m].
+_OFF_CENTRE = 0.02
 # Decimals in mm and degrees: a tenth of a nanometre; for degrees one more, 1.7e-10 rad.
 _DIGITS = 7
 _SIX = ("front", "middle", "rear")
@@ -71,6 +74,7 @@ def robot_from_urdf(
     path: str | os.PathLike[str],
     *,
     forward: str = "x",
+    centre: bool = False,
     foot: tuple[float, float, float] | None = None,
     name: str | None = None,
 ) -> ImportedRobot:
@@ -82,6 +86,8 @@ def robot_from_urdf(
         The file.
     forward : str
         Which axis of the body's link points forward: ``"x"``, ``"-x"``, ``"y"`` or ``"-y"``.
+    centre : bool
+        Whether B's origin is moved to the middle of the coxa joints.
     foot : (float, float, float), optional
         Foot point in the frame of each leg's last link, for a file that does not say where the feet are [m].
     name : str, optional
@@ -98,7 +104,7 @@ def robot_from_urdf(
         reason = error.strerror if isinstance(error, OSError) else "it is not text in UTF-8"
         raise InputError(f"{os.fspath(path)} can't be read: {reason}") from None
     file = Path(path)
-    return urdf_robot(text, where=str(path), folder=file.parent, forward=forward, foot=foot, name=name)
+    return urdf_robot(text, where=str(path), folder=file.parent, forward=forward, centre=centre, foot=foot, name=name)
 
 
 def urdf_robot(
@@ -107,13 +113,14 @@ def urdf_robot(
     where: str = "the URDF file",
     folder: Path | None = None,
     forward: str = "x",
+    centre: bool = False,
     foot: tuple[float, float, float] | None = None,
     name: str | None = None,
 ) -> ImportedRobot:
     """Return the robot of a URDF document.
 
     The legs are found by how links hang together, whatever their names and frames: chains of three revolute joints from
-    one link. B is the frame of that link, turned so that x points forward.
+    one link. B is the frame of that link, turned so that x points forward, and with `centre` moved.
 
     Parameters
     ----------
@@ -123,7 +130,7 @@ def urdf_robot(
         What to call it in messages.
     folder : Path, optional
         Folder of its meshes.
-    forward, foot, name
+    forward, centre, foot, name
         As for `robot_from_urdf`.
 
     Raises
@@ -138,12 +145,21 @@ def urdf_robot(
     T_robot_body = _turn(-math.radians(DIRECTIONS[forward]))
     feet = [_foot(chain, foot, folder=folder, where=where) for chain in tree.legs]
     middle = np.mean([(T_robot_body @ chain.parts[0].links[0].T_body_link)[:3, 3] for chain in tree.legs], axis=0)
+    if centre:
+        T_robot_body[:3, 3] -= middle
+        middle = np.zeros(3)
     legs = [fitted_leg(chain, foot, T_robot_body, middle) for chain, foot in zip(tree.legs, feet, strict=True)]
     order = _ring(legs, middle)
     legs, feet, chains = [legs[i] for i in order], [feet[i] for i in order], [tree.legs[i] for i in order]
     names = _leg_names(legs)
     robot, remarks = _robot(document, tree, legs, names, T_robot_body, where, name)
     remarks += _remarks(tree, legs, feet, names, forward)
+    away = float(np.hypot(*middle[:2]))
+    if away > _OFF_CENTRE:
+        remarks.append(
+            f"the origin lies {1000 * away:.0f} mm beside the middle of the coxa axes, about which robots turn; "
+            "--centre moves it there"
+        )
     signs, zeros = np.array([leg.signs for leg in legs]), np.array([leg.zeros for leg in legs])
     return ImportedRobot(
         robot=robot,
@@ -246,7 +262,7 @@ def _robot(
         link_com=_lengths([leg.centres for leg in legs]),
         link_mass=np.array(known) if len(known) == len(legs) else None,
         body_mass=np.array(body_mass) if body_mass else None,
-        body_com=_lengths(np.zeros(3) if centre is None else T_robot_body[:3, :3] @ centre),
+        body_com=_lengths(np.zeros(3) if centre is None else T_robot_body[:3, :3] @ centre + T_robot_body[:3, 3]),
         body_size=size,
         sources=(Source(of=("legs", "leg", "body"), source=f"{Path(where).name}, a URDF file", confidence="B"),),
     )
@@ -313,12 +329,23 @@ def _contradictions(legs: list[FittedLeg], names: tuple[str, ...], forward: str)
     wrong = []
     for leg, name in zip(legs, names, strict=True):
         words = " ".join(leg.joints).replace("_", " ")
-        side, end = side_in_name(words), end_in_name(words)
+        side, end = (in_words(words) or _in_codes(words, marks) for in_words, marks in _MARKS)
         if side * side_in_name(name) < 0 or end * end_in_name(name) < 0:
             wrong.append(f"{leg.joints[0]!r} is the {name} leg")
     if not wrong:
         return []
     return [f"names of joints contradict {forward} as forward: {', '.join(wrong)}; try another --forward"]
+
+
+def _in_codes(words: str, marks: str) -> int:
+    """Return 1 or -1 for a leg that codes such as LF or R2 put at the first or a further letter of `marks`, else 0."""
+    codes = re.findall(r"\b(?:[lr][fmbh\d]|[fmbh][lr])\b", words.lower())
+    found = {sign for code in codes for mark, sign in ((marks[0], 1), (marks[1:], -1)) if set(code) & set(mark)}
+    return found.pop() if len(found) == 1 else 0
+
+
+# Words and letters for left and right, and for front and rear.
+_MARKS = ((side_in_name, "lr"), (end_in_name, "fbh"))
 
 
 def _deviation(

@@ -22,7 +22,7 @@ __all__ = ["import_urdf"]
     epilog=examples(
         "tarsus robots import hexapod.urdf",
         "tarsus robots import hexapod.urdf --name my-hexapod --out my-hexapod.toml",
-        "tarsus robots import hexapod.urdf --forward y --foot 181,0,0 --json",
+        "tarsus robots import hexapod.urdf --forward y --centre --foot 181,0,0 --json",
     ),
 )
 @click.argument("urdf", metavar="URDF", type=click.Path(path_type=Path, dir_okay=False))
@@ -34,6 +34,7 @@ __all__ = ["import_urdf"]
     show_default=True,
     help="Axis of the body's link that points forward.",
 )
+@click.option("--centre", is_flag=True, help="Move the body frame to the middle of the coxa axes.")
 @click.option(
     "--foot",
     type=Numbers("X", "Y", "Z"),
@@ -45,7 +46,13 @@ __all__ = ["import_urdf"]
 )
 @json_option
 def import_urdf(
-    urdf: Path, name: str | None, forward: str, foot: tuple[float, ...] | None, out: Path | None, as_json: bool
+    urdf: Path,
+    name: str | None,
+    forward: str,
+    centre: bool,
+    foot: tuple[float, ...] | None,
+    out: Path | None,
+    as_json: bool,
 ) -> int:
     """Write a robot file from the URDF file of a robot with legs of three joints.
 
@@ -56,7 +63,7 @@ def import_urdf(
     from tarsus.urdf import robot_from_urdf
 
     point = None if foot is None else (foot[0] / 1000, foot[1] / 1000, foot[2] / 1000)
-    found = robot_from_urdf(urdf, forward=forward, foot=point, name=name)
+    found = robot_from_urdf(urdf, forward=forward, centre=centre, foot=point, name=name)
     path = Path(f"{_file_name(found.robot.name)}.toml") if out is None else out
     text = _with_comments(robot_text(found.robot), found, urdf)
     try:
