@@ -5,27 +5,22 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-from tarsus import __version__
 from tarsus.errors import SimulationError, TarsusError
-from tarsus.gait.gait import GAITS
-from tarsus.robot.catalogue import list_servos
-from tarsus.robot.file import list_robots
-from tarsus.robot.schema import robot_schema
 from tarsus.studio.driving import Driver
 from tarsus.studio.error_messages import error_message
 from tarsus.studio.history import History
 from tarsus.studio.messages import client as ask
 from tarsus.studio.messages.general import Done, ErrorMessage
 from tarsus.studio.messages.motion import DriveFrame
-from tarsus.studio.messages.pose import Bounds, StateMessage, Welcome
+from tarsus.studio.messages.pose import Bounds, StateMessage
 from tarsus.studio.messages.state import BodyState, JointsState, RobotChoice, StudioState, WalkOptions
 from tarsus.studio.parsing import read
-from tarsus.studio.physics.terrains import physics_offer
 from tarsus.studio.poses import drag_foothold, drag_joints
 from tarsus.studio.robots import choice_of_document, choice_of_preset, choice_of_text, robot_message
 from tarsus.studio.state_text import state_of, text_of
 from tarsus.studio.views import Views, fitted
 from tarsus.studio.walks import MOST_SAMPLES
+from tarsus.studio.welcome import welcome_message
 
 if TYPE_CHECKING:
     from tarsus.studio.messages import ClientMessage, ServerMessage
@@ -153,18 +148,7 @@ class Session:
         yield from answers
 
     def _hello(self, message: ask.Hello) -> Answers:
-        yield Welcome(
-            type="welcome",
-            id=message.id,
-            version=__version__,
-            robots=list(list_robots()),
-            gaits=list(GAITS),
-            servos=list(list_servos()),
-            public=self._public,
-            bounds=self._bounds,
-            physics=physics_offer(),
-            robot_schema=robot_schema(),
-        )
+        yield welcome_message(self._bounds, public=self._public, id=message.id)
         state = self.state
         if message.state is not None:
             try:

@@ -12,6 +12,8 @@ interface Props {
 }
 
 const LINKS = [0, 1, 2] as const;
+/** Scale of the body, so that it is inside the one in physics where they coincide. */
+const INSET = 0.97;
 
 /** The robot as planned or commanded, translucent, beside the one in physics. */
 export function Ghost({ shape, palette }: Props) {
@@ -36,7 +38,7 @@ export function Ghost({ shape, palette }: Props) {
     <group ref={all} name="ghost">
       <group ref={body}>
         <mesh renderOrder={3}>
-          <boxGeometry args={[size[0], size[1], size[2]]} />
+          <boxGeometry args={[INSET * size[0], INSET * size[1], INSET * size[2]]} />
           <GhostMaterial palette={palette} />
         </mesh>
       </group>
