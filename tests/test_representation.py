@@ -14,11 +14,12 @@ import pytest
 import tarsus
 from sample_loads import sample_loads, sample_motion
 from sample_robots import hexapod
-from tarsus import hardware, simulation
+from tarsus import hardware, simulation, urdf
+from tarsus.export import to_urdf
 from tarsus.representation import represented
 from tarsus.simulation import environment, terrain
 
-PUBLIC = (tarsus, simulation, terrain, environment, hardware)
+PUBLIC = (tarsus, simulation, terrain, environment, hardware, urdf)
 LINES, WIDTH = 10, 100
 
 
@@ -124,7 +125,7 @@ def simulation_values():
     plant = simulation.SimulatedPlant(robot, servos="ideal")
     traced = simulation.TracedPlant(plant)
     traced.start(tarsus.RobotController(robot).output)
-    yield from (traced, plant, plant.state, plant.servos[0][0])
+    yield from (traced, plant, plant.state, plant.servos[0][0], urdf.urdf_robot(to_urdf(robot)))
     short = tarsus.plan_walk(robot, tarsus.Gait.named("tripod"), tarsus.straight_path(0.02), stroke=0.02, rate=50)
     truth = simulation.compare(short, servos="ideal")
     yield from (truth, truth.trace, truth.outcome)

@@ -16,8 +16,10 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from tarsus import export as export
     from tarsus import hardware as hardware
     from tarsus import simulation as simulation
+    from tarsus import urdf as urdf
     from tarsus.control.command import Command
     from tarsus.control.control_output import ControlOutput
     from tarsus.control.limitation import Limitation, LimitationKind
@@ -194,7 +196,7 @@ _HOMES = {
     ),
 }
 # Packages of heavier parts, each with public names of its own.
-_PACKAGES = ("hardware", "simulation")
+_PACKAGES = ("export", "hardware", "simulation", "urdf")
 _HOME_OF = {name: module for module, names in _HOMES.items() for name in names}
 
 __all__ = [
