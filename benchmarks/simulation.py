@@ -80,9 +80,8 @@ def _steps_a_second(envs: int, actions: str) -> float:
 
 
 def _environment_rows() -> Iterator[Row]:
-    cores = os.sched_getaffinity(0)
-    os.sched_setaffinity(0, range(os.cpu_count() or 1))
-    threads = len(os.sched_getaffinity(0))
+    cores, threads = os.sched_getaffinity(0), os.cpu_count() or 1
+    os.sched_setaffinity(0, range(threads))
     try:
         for actions in ("residual", "joint"):
             one = _steps_a_second(1, actions)

@@ -66,7 +66,7 @@ class WalkVectorEnv(VectorEnv[Any, Any, Any]):
         autoreset_mode: AutoresetMode | str = AutoresetMode.NEXT_STEP,
         **options: Any,
     ) -> None:
-        self.threads = len(os.sched_getaffinity(0)) if threads is None else threads
+        self.threads = _cores() if threads is None else threads
         for name, value in (("num_envs", num_envs), ("threads", self.threads)):
             if value < 1:
                 raise InputError(f"{name} is {value}; it must be at least 1")
@@ -102,7 +102,7 @@ class WalkVectorEnv(VectorEnv[Any, Any, Any]):
         """
         seeds: Sequence[int | None] = [None] * self.num_envs if seed is None else []
         if seed is not None:
-            seeds = [seed + number for number in range(self.num_envs)] if isinstance(seed, int) else seed
+            seeds = [seed + number for number in range(self.num_envs)] if isinstance(seed, int | np.integer) else seed
         if len(seeds) != self.num_envs:
             raise InputError(f"there are {len(seeds)} seeds for {self.num_envs} environments; one for each is needed")
         wanted = dict(options or {})
@@ -194,3 +194,8 @@ class WalkVectorEnv(VectorEnv[Any, Any, Any]):
     def close_extras(self, **_options: Any) -> None:
         """End the threads."""
         self._pool.shutdown()
+
+
+def _cores() -> int:
+    """Return how many cores this process may use; not every system says."""
+    return len(getattr(os, "sched_getaffinity", lambda _: range(os.cpu_count() or 1))(0))
