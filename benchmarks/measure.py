@@ -10,8 +10,9 @@ import tracemalloc
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
+from pathlib import Path
 
-__all__ = ["Row", "all_cores", "medians", "peak_bytes", "start_time", "use_one_core"]
+__all__ = ["Row", "all_cores", "medians", "peak_bytes", "processor_time", "start_time", "use_one_core"]
 
 # Mathematics libraries read these variables when they are loaded.
 for _library in ("OMP", "OPENBLAS", "MKL"):
@@ -66,6 +67,15 @@ def all_cores() -> Iterator[None]:
         yield
     finally:
         os.sched_setaffinity(0, previous)
+
+
+def processor_time(pid: int) -> float | None:
+    """Return the processor time of a process [s]; None if the system does not provide it."""
+    try:
+        fields = Path(f"/proc/{pid}/stat").read_text(encoding="ascii").rpartition(")")[2].split()
+    except OSError:
+        return None
+    return (int(fields[11]) + int(fields[12])) / float(os.sysconf("SC_CLK_TCK"))
 
 
 def medians(

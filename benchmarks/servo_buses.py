@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import math
+import os
 import statistics
 import subprocess
 import sys
@@ -13,7 +14,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 # Must be imported before NumPy: it sets the number of threads.
-from measure import Row, all_cores  # isort: split
+from measure import Row, all_cores, processor_time  # isort: split
 
 from tarsus import hardware
 from tarsus.hardware.transport.serial import SerialTransport
@@ -66,6 +67,8 @@ class Outcome:
     lost: int
     took: tuple[float, float]
     begun: tuple[float, float]
+    driver: float
+    emulation: float
 
 
 def measured(setting: Setting) -> Outcome:
@@ -77,12 +80,12 @@ def measured(setting: Setting) -> Outcome:
     with all_cores(), subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
         assert process.stdout is not None
         try:
-            return driven(setting, process.stdout.readline().strip())
+            return driven(setting, process.stdout.readline().strip(), process.pid)
         finally:
             process.kill()
 
 
-def driven(setting: Setting, port: str) -> Outcome:
+def driven(setting: Setting, port: str, emulation: int) -> Outcome:
     """Send goals and read positions at a constant rate."""
     reading: dict[str, object] = {}
     if setting.bus.startswith("dynamixel"):
@@ -92,7 +95,7 @@ def driven(setting: Setting, port: str) -> Outcome:
     bus.set_torque(None, True)
     begun, took = [], []
     lost, tick, ticks = 0, 0, round(setting.seconds * setting.hertz)
-    start = time.monotonic() + 0.1
+    start, own, others = time.monotonic() + 0.1, time.process_time(), processor_time(emulation)
     while tick < ticks:
         due = start + tick / setting.hertz
         time.sleep(max(due - time.monotonic(), 0.0))
@@ -105,6 +108,7 @@ def driven(setting: Setting, port: str) -> Outcome:
         # Those that should have begun meanwhile are missed, not made up for.
         tick = max(tick + 1, math.ceil((end - start) * setting.hertz))
     missed = ticks - len(begun)
+    own, after = time.process_time() - own, processor_time(emulation)
     timing = bus.timing(ids)
     bus.close()
     return Outcome(
@@ -114,6 +118,8 @@ def driven(setting: Setting, port: str) -> Outcome:
         lost=lost,
         took=quantiles(took),
         begun=quantiles(begun),
+        driver=1e3 * own / len(begun),
+        emulation=math.nan if others is None or after is None else 1e3 * (after - others) / len(begun),
     )
 
 
@@ -140,8 +146,8 @@ def servo_bus_rows() -> Iterator[Row]:
 def table() -> str:
     """Return the table of all buses."""
     lines = [
-        "| bus | baud | rate | on the wire | a tick takes, median | 99 % | begins late, 99 % | missed | answers lost |",
-        "|---|---|---|---|---|---|---|---|---|",
+        "| bus | baud | rate | wire | tick, median | 99 % | begins late, 99 % | missed | lost | driver | emulation |",
+        "|---|---|---|---|---|---|---|---|---|---|---|",
     ]
     for setting in SETTINGS:
         outcome = measured(setting)
@@ -155,10 +161,13 @@ def table() -> str:
             f"{outcome.begun[1]:.1f} ms",
             f"{outcome.missed} of {outcome.ticks}",
             f"{outcome.lost}",
+            f"{outcome.driver:.2f} ms",
+            f"{outcome.emulation:.2f} ms",
         )
         lines.append("| " + " | ".join(cells) + " |")
         print(lines[-1], flush=True)
-    return "\n".join(lines) + "\n"
+    load = f"Load average meanwhile: {os.getloadavg()[0]:.1f}, on {os.cpu_count()} cores.\n\n"
+    return load + "\n".join(lines) + "\n"
 
 
 def main() -> None:

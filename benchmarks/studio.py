@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import asyncio
 import json
-import os
 import statistics
 import subprocess
 import sys
@@ -16,7 +15,7 @@ from pathlib import Path
 from typing import Any
 
 # Must be imported before NumPy: it sets the number of threads.
-from measure import Row, all_cores  # isort: split
+from measure import Row, all_cores, processor_time  # isort: split
 
 from websockets.asyncio.client import ClientConnection, connect
 
@@ -71,15 +70,6 @@ def server() -> Iterator[tuple[str, int]]:
     finally:
         process.terminate()
         process.communicate()
-
-
-def processor_time(pid: int) -> float | None:
-    """Return the processor time of a process [s]; None if the system does not provide it."""
-    try:
-        fields = Path(f"/proc/{pid}/stat").read_text(encoding="ascii").rpartition(")")[2].split()
-    except OSError:
-        return None
-    return (int(fields[11]) + int(fields[12])) / float(os.sysconf("SC_CLK_TCK"))
 
 
 async def ask(socket: ClientConnection, number: int, **message: Any) -> None:

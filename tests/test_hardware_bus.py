@@ -1,6 +1,7 @@
 """Servo buses on emulated servos: what is measured, what is refused, and what is said about faults."""
 
 import math
+import random
 
 import pytest
 
@@ -14,6 +15,7 @@ from tarsus.errors import (
     ServoStatusError,
     UnknownNameError,
 )
+from tarsus.hardware.codec import lx16a
 
 IDS = range(18)
 SMART = ("feetech-sts", "feetech-scs", "dynamixel-x", "dynamixel-mx", "dynamixel-ax", "lx16a")
@@ -132,6 +134,26 @@ def test_a_missing_servo_is_named_and_the_others_are_read(smart):
     with pytest.raises(NoAnswerError, match=r"id 3: expected an answer with \d bytes of data, received nothing"):
         answers.require()
     assert [error.id for error in bus.read_telemetry((2, 3)).errors] == [3]
+
+
+def test_a_missing_servo_is_told_from_a_damaged_answer(smart):
+    bus, device = smart
+    device.faults.missing, device.faults.corrupt = {3}, {5: 1.0}
+    device.faults._random = random.Random(4)
+    seen = set()
+    for _ in range(20):
+        answers = bus.read_positions((2, 3, 4, 5, 6))
+        assert 3 in {error.id for error in answers.errors}
+        seen.add(tuple(type(error) for error in answers.errors if error.id in (3, 5)))
+    assert (NoAnswerError, CorruptAnswerError) in seen
+
+
+def test_an_answer_to_something_else_is_shown():
+    bus, device = opened("lx16a")
+    device._answers = lambda: [(4, lx16a.frame(4, lx16a.POSITION_READ, b"\x00\x01"))]
+    (error,) = bus.read_positions((3,)).errors
+    assert isinstance(error, NoAnswerError)
+    assert "55 55 04 05 1C 00 01 D9, which answers something else" in str(error)
 
 
 def test_a_missing_servo_is_noticed_in_time(smart):

@@ -20,6 +20,8 @@ class Dialect:
     ----------
     scan : callable
         Finds packets in bytes.
+    header : bytes
+        With which packets begin, before the id.
     read, write, sync_write : callable
         Packets that read registers of a servo, write them, and write those of several servos.
     errors_in : callable
@@ -31,6 +33,7 @@ class Dialect:
     """
 
     scan: Scanner
+    header: bytes
     read: Callable[[int, int, int], bytes]
     write: Callable[[int, int, bytes], bytes]
     sync_write: Callable[[int, Mapping[int, bytes]], bytes]
@@ -41,6 +44,7 @@ class Dialect:
 
 _FEETECH = Dialect(
     scan=packet.scan,
+    header=packet.HEADER,
     read=feetech.read,
     write=feetech.write,
     sync_write=feetech.sync_write,
@@ -50,6 +54,7 @@ _FEETECH = Dialect(
 _FEETECH_BIG = Dialect(**{**vars(_FEETECH), "byteorder": "big"})
 _DYNAMIXEL_1 = Dialect(
     scan=packet.scan,
+    header=packet.HEADER,
     read=dynamixel1.read,
     write=dynamixel1.write,
     sync_write=dynamixel1.sync_write,
@@ -58,6 +63,7 @@ _DYNAMIXEL_1 = Dialect(
 )
 _DYNAMIXEL_2 = Dialect(
     scan=dynamixel2.scan,
+    header=dynamixel2.HEADER,
     read=dynamixel2.read,
     write=dynamixel2.write,
     sync_write=dynamixel2.sync_write,

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Collection
 
 from tarsus.errors import BusError, CorruptAnswerError, NoAnswerError
+from tarsus.hardware.bus.exchange import Exchange
 from tarsus.hardware.bus.protocol import Answers
 from tarsus.hardware.codec.scan import Frame, Scanner
 from tarsus.hardware.transport.protocol import Transport
@@ -14,6 +15,7 @@ __all__ = ["Link", "hexadecimal"]
 
 _WIRING = "Check that it has this id and baud rate, its supply, and the cable to it."
 _NOISE = "Look for two servos with one id, a loose cable or a wrong baud rate; a lower baud rate helps against noise."
+_TWICE = "Look for two servos with this id: connect them one at a time, and give one another id."
 _MOST_SETTLING = 8
 _LONGEST_LINE = 64
 _MOST_ECHO = 2048
@@ -48,13 +50,17 @@ class Link:
         The codec's function that finds frames in bytes.
     timeout : float
         Longest time until an answer begins, beyond its time on the wire [s].
+    header : bytes
+        With which frames begin, before the id.
     delay : float
         Time that each servo takes before it answers, as it is delivered [s].
     """
 
-    def __init__(self, transport: Transport, bus: str, scan: Scanner, *, timeout: float, delay: float = 0.0) -> None:
+    def __init__(
+        self, transport: Transport, bus: str, scan: Scanner, *, timeout: float, header: bytes = b"", delay: float = 0.0
+    ) -> None:
         self.transport, self.bus, self.timeout, self._delay = transport, bus, timeout, delay
-        self._scan = scan
+        self._scan, self._header = scan, header
         self._doubtful = False
         self._sent = b""
 
@@ -90,39 +96,20 @@ class Link:
         sent, self._sent = self._sent, b""
         most = serial_seconds(len(frame) + len(ids) * (count + 12), self.transport.baud)
         deadline = self.transport.now() + most + len(ids) * self._delay + self.timeout
-        found: dict[int, Frame] = {}
-        twice: set[int] = set()
-        received, rest, noise, echo = b"", b"", b"", False
-        while len(found) < len(ids):
+        exchange = Exchange(frame, ids, count, sent=sent, belongs=belongs)
+        received = rest = b""
+        while not exchange.complete:
             data = self.transport.read(deadline - self.transport.now())
             scanned = self._scan(rest + data, ended=not data)
             received, rest = received + data, scanned.rest
-            noise += b"".join(scanned.damaged)
-            for answer in scanned.frames:
-                if answer.raw == frame and not echo:
-                    echo = True
-                elif answer.raw in sent:
-                    # The echo of what nobody answers.
-                    continue
-                elif answer.id in found:
-                    twice.add(answer.id)
-                elif answer.id in ids and len(answer.data) == count and (belongs is None or belongs(answer)):
-                    found[answer.id] = answer
-                else:
-                    noise += answer.raw
+            exchange.take(scanned)
             if not data:
                 break
-        self._doubtful = len(found) < len(ids) or bool(noise or rest or twice)
-        if noise or rest:
-            noise += self._withdrawn(found, received + self.transport.discard())
-        refused = [id for id in ids if id not in found or id in twice]
-        errors = [self._error(id, count, received, noise, echo=echo, twice=id in twice) for id in refused]
-        return Answers({id: found[id] for id in ids if id not in refused}, tuple(errors))
-
-    def _withdrawn(self, found: dict[int, Frame], received: bytes) -> bytes:
-        """Remove answers that are not to be believed, and return their bytes."""
-        suspect = [one for one in self._scan(received, ended=True).suspect if found.get(one.id) == one]
-        return b"".join(found.pop(one.id).raw for one in suspect)
+        self._doubtful = not exchange.clean or bool(rest)
+        if exchange.noise or rest:
+            exchange.withdraw(self._scan(received + self.transport.discard(), ended=True).suspect)
+        errors = tuple(self._error(id, count, received, exchange) for id in exchange.refused)
+        return Answers({id: exchange.found[id] for id in ids if id not in exchange.refused}, errors)
 
     def ask_board(self, frame: bytes, *, size: int | None = None, end: bytes = b"") -> bytes:
         """Send a frame, and return the answer of a board, which has no frame of its own.
@@ -181,25 +168,20 @@ class Link:
             remedy="Check that this is the board's port and baud rate, and that the board has its supply.",
         )
 
-    def _error(self, id: int, count: int, received: bytes, noise: bytes, *, echo: bool, twice: bool) -> BusError:
+    def _error(self, id: int, count: int, received: bytes, exchange: Exchange) -> BusError:
+        """Return why a servo has no answer that is believed."""
         expected = f"an answer with {count} byte{'s' * (count != 1)} of data"
-        if twice:
-            return CorruptAnswerError(
-                self.bus,
-                self.transport.port,
-                id=id,
-                expected="one answer",
-                received=f"two: {hexadecimal(received)}",
-                remedy="Look for two servos with this id: connect them one at a time, and give one another id.",
-            )
-        late = f" within {self.timeout * 1e3:.0f} ms"
-        if noise:
-            text = f"{hexadecimal(noise)}, which is no such answer"
-            return CorruptAnswerError(
-                self.bus, self.transport.port, id=id, expected=expected, received=text, remedy=_NOISE
-            )
-        text = f"only the echo of the request{late}" if echo else f"nothing{late}"
-        return NoAnswerError(self.bus, self.transport.port, id=id, expected=expected, received=text, remedy=_WIRING)
+        kind: type[BusError] = CorruptAnswerError
+        if id in exchange.twice:
+            expected, text, remedy = "one answer", f"two: {hexadecimal(received)}", _TWICE
+        elif exchange.damaged(id, self._header):
+            text, remedy = f"{hexadecimal(exchange.noise)}, which is no such answer", _NOISE
+        else:
+            kind, remedy = NoAnswerError, _WIRING
+            came = "only the echo of the request" if exchange.echo else "nothing"
+            came = f"{hexadecimal(exchange.foreign)}, which answers something else," if exchange.foreign else came
+            text = f"{came} within {self.timeout * 1e3:.0f} ms"
+        return kind(self.bus, self.transport.port, id=id, expected=expected, received=text, remedy=remedy)
 
     def _settle(self) -> None:
         """Empty the input; wait until the line is silent if it is in doubt."""

@@ -59,7 +59,7 @@ class Lx16aBus:
     def __init__(self, transport: Transport, *, timeout: float = 0.02) -> None:
         self.name, self.port, self.capabilities = "lx16a", transport.port, _CAPABILITIES
         self._transport = transport
-        self._link = Link(transport, self.name, codec.scan, timeout=timeout)
+        self._link = Link(transport, self.name, codec.scan, timeout=timeout, header=codec.HEADER)
 
     def ping(self, id: int) -> BusServo | None:
         """Return a servo that answers, or None.

@@ -76,7 +76,14 @@ class RegisterBus:
         self._fast = fast and self._series.read_fast is not None
         self._turnaround = self._series.turnaround if turnaround is None else turnaround
         # The answering delay counts as part of the answer's time.
-        self._link = Link(transport, name, self._dialect.scan, timeout=timeout, delay=self._series.turnaround)
+        self._link = Link(
+            transport,
+            name,
+            self._dialect.scan,
+            timeout=timeout,
+            header=self._dialect.header,
+            delay=self._series.turnaround,
+        )
         self._speed: dict[int, int] = {}
 
     def ping(self, id: int) -> BusServo | None:

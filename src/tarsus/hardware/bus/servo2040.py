@@ -41,7 +41,7 @@ class Servo2040Bus(BoardBus):
     def __init__(self, transport: Transport, *, timeout: float = 0.02) -> None:
         super().__init__("servo2040", transport, _CAPABILITIES)
         self._transport = transport
-        self._link = Link(transport, self.name, codec.scan, timeout=timeout)
+        self._link = Link(transport, self.name, codec.scan, timeout=timeout, header=bytes((codec.GET,)))
 
     def read_touch(self) -> tuple[float, ...]:
         """Return the voltages of the six touch sensors [V].
