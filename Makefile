@@ -7,7 +7,7 @@ OUT ?= walk
 # JAX takes half the time to compile so; an XLA that does not know the option ends with an error, hence not in the tests.
 COMPILE_FAST := XLA_FLAGS=--xla_cpu_use_fusion_emitters=false
 
-.PHONY: studio walk test lint types tests web web-check browser protocol bench figures truth train schema clean
+.PHONY: studio walk test lint types tests web web-check browser protocol bench figures truth train sketch schema clean
 
 studio: $(VENV)/.run web
 	$(BIN)/tarsus studio $(ROBOT)
@@ -68,6 +68,10 @@ train: $(VENV)/.dev
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[rl]'
 	$(BIN)/python examples/train_walk.py --actions residual joint --page docs/reinforcement-learning.md
 
+# The Arduino sketch, compiled with g++, against the emulated board.
+sketch: $(VENV)/.dev
+	$(BIN)/python examples/pulse_lines/check/check.py
+
 schema: $(VENV)/.dev
 	$(BIN)/tarsus robots schema > src/tarsus/robot/robot.schema.json
 
@@ -80,7 +84,7 @@ $(VENV)/bin/python:
 	$(PYTHON) -m venv $(VENV)
 
 $(VENV)/.run: pyproject.toml constraints.txt | $(VENV)/bin/python
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[cli,plots,studio]'
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[cli,plots,hardware,studio]'
 	@touch $@
 
 $(VENV)/.dev: pyproject.toml constraints.txt | $(VENV)/bin/python

@@ -5,6 +5,7 @@ import sys
 from pathlib import Path
 
 from tarsus import hardware
+from tarsus.hardware.codec import lines
 
 DOCS = Path(__file__).parents[1] / "docs"
 PAGE = (DOCS / "buses.md").read_text(encoding="utf-8")
@@ -30,3 +31,24 @@ def test_the_other_examples_run(capsys):
 def test_every_bus_is_described():
     described = set(re.findall(r"^- `([a-z0-9-]+)`(?:, `([a-z0-9-]+)`)?:", PAGE, flags=re.MULTILINE))
     assert {name for names in described for name in names if name} == set(hardware.BUSES)
+
+
+def test_the_sketch_and_its_bus_agree():
+    sketch = (DOCS.parent / "examples" / "pulse_lines" / "pulse_lines.ino").read_text(encoding="utf-8")
+    can = hardware.emulated_bus("lines", range(18))[0].capabilities
+    assert f"CHANNELS = {len(can.ids)};" in sketch
+    assert f"SHORTEST = {can.lowest}, LONGEST = {can.highest};" in sketch
+    assert f"Serial.begin({hardware.BUSES['lines'].baud});" in sketch
+    pins = re.search(r"PINS\[CHANNELS\] = \{(.*)\}", sketch)[1].split(", ")
+    assert len(set(pins)) == len(can.ids)
+    # What the emulated board begins with.
+    assert "limit = 500;" in sketch
+    assert hardware.emulate("lines", range(18))._limit == 0.5
+    # The longest line that the bus sends has to fit.
+    longest = len(lines.pulses([2500] * len(can.ids)).rstrip())
+    assert longest <= int(re.search(r"LONGEST_LINE = (\d+);", sketch)[1])
+
+
+def test_every_bus_says_what_it_was_compared_with():
+    table = PAGE.split("## What the codecs are compared with")[1].split("\n\n")[1]
+    assert set(re.findall(r"`([a-z0-9-]+)`", table)) == set(hardware.BUSES)
