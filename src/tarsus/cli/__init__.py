@@ -11,6 +11,7 @@ except ImportError:  # installed without the extra
     raise SystemExit("the command line needs click and rich: pip install 'tarsus[cli]'") from None
 
 from tarsus import __version__
+from tarsus.cli.bring_up import bring_up
 from tarsus.cli.calibration import calibration
 from tarsus.cli.check_servos import check_servos
 from tarsus.cli.drive import drive
@@ -62,6 +63,7 @@ for command in (
     drive,
     simulate,
     run,
+    bring_up,
     check_servos,
     pose,
     fk,

@@ -1,0 +1,147 @@
+"""The servos under bring-up: little and slow motions of one servo, with little torque."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+
+from tarsus.errors import BusError, NoAnswerError
+from tarsus.hardware.bus.protocol import Bus
+from tarsus.hardware.calibration.calibration import Calibration
+from tarsus.hardware.transport.clock import Clock
+
+__all__ = ["Bench"]
+
+# How far and how fast a servo moves to be seen [rad, rad/s], with which share of its torque.
+_WIGGLE, _SPEED, _TORQUE = math.radians(8), math.radians(30), 0.35
+_TICK = 0.02
+
+
+class Bench:
+    """Moves single servos of a bus whose joints are not known yet.
+
+    Parameters
+    ----------
+    bus : Bus
+        The bus.
+    calibration : Calibration
+        The calibration as far as it is known: scales and limits.
+    clock : Clock
+        The clock.
+    """
+
+    def __init__(self, bus: Bus, calibration: Calibration, clock: Clock) -> None:
+        self.bus, self._clock = bus, clock
+        joint = calibration.joints[0][0]
+        if joint.scale is None or joint.limits is None:
+            raise NoAnswerError(
+                bus.name, bus.port, expected="scale and limits of the servos", received="none", remedy="Add them."
+            )
+        self._scale, self._limits = joint.scale, joint.limits
+        self._goals: dict[int, float] = {}
+
+    @property
+    def measures(self) -> bool:
+        """Whether the servos tell where they are."""
+        return self.bus.capabilities.positions
+
+    def position(self, number: int) -> float:
+        """Return the position of a servo: measured, or the last one that it was told [us or ticks].
+
+        Parameters
+        ----------
+        number : int
+            Id or channel.
+
+        Raises
+        ------
+        BusError
+            If it does not answer.
+        """
+        if self.measures:
+            return self.bus.read_positions((number,)).require()[number]
+        return self._goals.get(number, sum(self._limits) / 2)
+
+    def hold(self, number: int) -> None:
+        """Let a servo hold where it is, with little torque; without measured positions at the last goal.
+
+        Parameters
+        ----------
+        number : int
+            Id or channel.
+        """
+        start = self.position(number)
+        self.bus.set_torque_limit((number,), _TORQUE)
+        self._write(number, start)
+        self.bus.set_torque((number,), True)
+        self._write(number, start)
+
+    def move(self, number: int, goal: float, *, each: Callable[[], None] | None = None) -> None:
+        """Move a servo slowly to a command within the limits.
+
+        Parameters
+        ----------
+        number : int
+            Id or channel.
+        goal : float
+            Where to [us or ticks].
+        each : callable, optional
+            Called in every tick.
+        """
+        goal = min(max(goal, self._limits[0]), self._limits[1])
+        at = self._goals[number]
+        step = _SPEED * self._scale * _TICK
+        while abs(goal - at) > 0.5:
+            at += min(max(goal - at, -step), step)
+            self._write(number, at)
+            self._clock.sleep(_TICK)
+            if each is not None:
+                each()
+
+    def wiggle(self, number: int) -> None:
+        """Move a servo by 8 deg to a greater command, and back, then release it.
+
+        Parameters
+        ----------
+        number : int
+            Id or channel.
+        """
+        self.hold(number)
+        start = self._goals[number]
+        room = self._limits[1] - start
+        way = min(_WIGGLE * self._scale, max(room, 0.0))
+        if way < _WIGGLE * self._scale / 2:
+            # At the end of its travel it comes back first, so that what is seen is a greater command.
+            self.move(number, start - _WIGGLE * self._scale)
+            way = _WIGGLE * self._scale
+        begin = self._goals[number]
+        self.move(number, begin + way)
+        self._clock.sleep(0.3)
+        self.move(number, begin)
+        self.release((number,))
+
+    def release(self, numbers: Sequence[int] | None) -> None:
+        """Release servos, as far as the bus can.
+
+        Parameters
+        ----------
+        numbers : sequence of int, or None
+            Ids or channels; None for all.
+        """
+        self.bus.set_torque(numbers, False)
+        if numbers:
+            self.bus.set_torque_limit(numbers, 1.0)
+
+    def close(self) -> None:
+        """Release all, and close the port; never raises a bus's error."""
+        try:
+            self.release(None)
+        except BusError:
+            pass
+        finally:
+            self.bus.close()
+
+    def _write(self, number: int, command: float) -> None:
+        whole = round(min(max(command, self._limits[0]), self._limits[1]))
+        self.bus.write_goals({number: float(whole)})
+        self._goals[number] = command
