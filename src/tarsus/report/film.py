@@ -44,7 +44,7 @@ class Film:
         dpi = 100
         self.figure = new_figure(width=size[0] / dpi, height=size[1] / dpi, dpi=dpi, manual_layout=True)
         self._canvas = cast("Any", self.figure.canvas)  # FigureCanvasAgg, whose methods have no types
-        self.motion, self._view = motion, view
+        self.motion, self._view, self._level = motion, view, height is None
         strip = min(0.021 * motion.robot.legs, 0.3)
         self.axes = self.figure.add_axes((0.0, strip + 0.1, 1.0, 0.8 - strip))
         self.strip = self.figure.add_axes((0.075, 0.105, 0.9, strip))
@@ -53,7 +53,7 @@ class Film:
         self._origin = view.project(self._sample(0).centre * 1000)
         self._limits = np.array([self.axes.get_xlim(), self.axes.get_ylim()])
         self._ground = Ground(self.axes, view, height)
-        self.drawing = RobotDrawing(self.axes, motion.robot, view=view, names=True, shadows=height is None)
+        self.drawing = RobotDrawing(self.axes, motion.robot, view=view, names=True, shadows=self._level)
         self.caption = self.figure.text(0.015, 0.975, "", color=INK, fontsize=11, va="top")
         self._make_strip()
 
@@ -93,10 +93,12 @@ class Film:
         time = float(self.motion.time[sample_index])
         self._time_line.set_xdata([time, time])
         feet_down = int(sample.contacts.sum())
-        margin = f"{sample.margin * 1000:.0f} mm" if math.isfinite(sample.margin) else "none"
+        # On terrain there is no support polygon to measure the margin in.
+        margin = ""
+        if self._level:
+            distance = f"{sample.margin * 1000:.0f} mm" if math.isfinite(sample.margin) else "none"
+            margin = f"   stability margin {distance}"
         name, gait = self.motion.robot.name, self.motion.gait.name
-        self.caption.set_text(
-            f"{name}, {gait} gait\n{time:.2f} s   {feet_down} feet on the ground   stability margin {margin}"
-        )
+        self.caption.set_text(f"{name}, {gait} gait\n{time:.2f} s   {feet_down} feet on the ground{margin}")
         self._canvas.draw()
         return Image.fromarray(np.asarray(self._canvas.buffer_rgba())).convert("RGB")
