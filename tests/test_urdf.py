@@ -356,3 +356,41 @@ def test_short_names_of_legs_are_understood(codes, wrong):
         text = text.replace(name.replace(" ", "_"), f"j_{code}")
     found = urdf_robot(text)
     assert sum("names of joints contradict" in remark for remark in found.remarks) == wrong
+
+
+def test_other_numbers_of_legs_are_numbered_in_the_ring():
+    yaw = np.radians([25.0, 70.0, 115.0, 160.0, -155.0, -110.0, -65.0, -20.0])
+    limits = np.radians([[[-60, 60], [-80, 100], [-160, 10]]] * 8)
+    spider = tarsus.Robot(
+        name="spider",
+        leg_names=tuple(f"leg {number}" for number in range(1, 9)),
+        mount_position=0.1 * np.stack([np.cos(yaw), np.sin(yaw), 0 * yaw], axis=-1),
+        mount_yaw=yaw,
+        coxa=np.full(8, 0.05),
+        femur=np.full(8, 0.08),
+        tibia=np.full(8, 0.12),
+        limits=limits,
+        body_mass=np.array(1.0),
+        link_mass=np.full((8, 3), 0.05),
+    )
+    found = urdf_robot(framed_urdf(spider, seed=2).text)
+    assert found.robot.leg_names == spider.leg_names
+    assert found.deviation < 1e-7
+
+
+def test_a_leg_whose_foot_is_over_its_coxa_axis_points_outward():
+    tip = np.array([0.068 + 0.098, 0.0, 0.0])
+    text = changed(
+        lambda root: [
+            element(root, "joint", f"{name.replace(' ', '_')}_foot").find("origin").set("xyz", f"{-tip[0]} 0 0.05")
+            for name in STRIDER.leg_names
+        ]
+    )
+    found = urdf_robot(text)
+    np.testing.assert_allclose(found.robot.mount_yaw, STRIDER.mount_yaw, atol=1e-9)
+    assert found.deviation < 1e-9
+
+
+def test_a_file_of_unreasonable_size_is_refused():
+    with pytest.raises(InputError, match="at most 20000000 are read"):
+        urdf_robot("<robot>" + " " * 20_000_000)
