@@ -19,8 +19,10 @@ from tarsus.simulation.terrain import Blocks, Ramp
 from tarsus.simulation.terrain.kinds import TERRAINS, terrain_parameters
 from tarsus.studio.messages.client import SetPhysics
 from tarsus.studio.messages.physics import PhysicsOptions, TerrainChoice
+from tarsus.studio.messages.state import StudioState
 from tarsus.studio.physics.terrains import chosen_terrain, terrain_message
 from tarsus.studio.session import Session
+from tarsus.studio.state_text import text_of
 
 DT = 1 / 60
 SHORT = {"path": {"kind": "straight", "distance_mm": 60}}
@@ -216,6 +218,11 @@ def test_without_the_engine_it_is_said_what_to_install(monkeypatch):
     asked = Asked()
     assert asked("hello", "welcome")["physics"]["missing"] == missing
     assert asked.error("physics", physics=options())["text"] == missing
+    # A link from a server with physics shows the walk all the same.
+    link = text_of(StudioState(physics=PhysicsOptions(on=True)))
+    answers = {answer["type"]: answer for answer in asked.all("hello", state=link)}
+    assert answers["error"]["text"] == missing
+    assert answers["walk"]["possible"]
 
 
 def test_a_walk_too_long_to_be_simulated_is_refused():

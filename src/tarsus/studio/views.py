@@ -79,6 +79,10 @@ class Views:
         """
         try:
             yield from self.terrain(state, id=id)
+        except TarsusError as error:
+            # The rest of the view does not need physics.
+            yield error_message(error, id=id)
+        try:
             if state.view in ("walk", "loads"):
                 yield self.walk(state, id=id)
             else:
