@@ -69,7 +69,7 @@ def test_commands_are_those_of_the_firmware_for_the_same_feet(phantomx):
     text = header(phantomx=phantomx)
     robot = robot_from_hex_cfg(text, name="mine")
     made = calibration_from_hex_cfg(text, robot=robot, robot_file="mine.toml")
-    feet = np.asarray(tarsus.default_stance(robot, 0.06)) + [0.004, -0.003, 0.002]
+    feet = np.asarray(tarsus.default_stance(robot, 0.06)) + np.array([0.004, -0.003, 0.002])
     solution = tarsus.inverse_kinematics(robot, feet)
     assert solution.ok
     commands = made.commands(np.asarray(solution.angles))
