@@ -151,7 +151,7 @@ def test_a_driven_robot_is_the_controller_with_the_simulated_plant():
         assert shown.contacts == "".join(str(int(down)) for down in contacts)
         margin = tarsus.stability_margin(robot, state.joint_angles, state.body, contacts)
         assert frame.margin_mm == pytest.approx(1000 * float(margin), abs=0.006)
-    assert shown.problems == []
+    assert (shown.fallen, shown.problems) == (False, [])
     assert asked.session.driving
 
 
@@ -163,6 +163,7 @@ def test_a_fall_and_servos_at_their_limit_are_said_while_driving():
     asked.all("drive", on=True)
     frames = [asked.session.frame(DT) for _ in range(60)]
     fell, servos = frames[-1].physics.problems
+    assert frames[-1].physics.fallen
     assert fell.startswith("fell at ")
     assert fell.endswith("its body touched the ground")
     assert servos.startswith("servos at their maximum torque: front left femur, ")

@@ -253,6 +253,8 @@ export interface FramePhysics {
   tilt_deg: number;
   /** Horizontal distance from where it is commanded to be. */
   deviation_mm: number;
+  /** Whether it has fallen since driving started. */
+  fallen: boolean;
   /** Falls, and servos at their maximum torque within the last half second. */
   problems: string[];
 }

@@ -203,7 +203,7 @@ function drivenInPhysics(robot: RobotMessage, drive: DriveFrame, physics: FrameP
       slip: new Float32Array(physics.slip_mm_s),
       saturated: contactsOf(physics.saturated),
       tilt: physics.tilt_deg,
-      fallen: physics.problems.some((problem) => problem.startsWith("fell")),
+      fallen: physics.fallen,
     },
   };
 }

@@ -49,7 +49,7 @@ describe("a driven robot in physics", () => {
   it("takes its ghost along between frames", () => {
     const next = {
       ...drive,
-      physics: aFramePhysics({ position_mm: [110, 0, 105], problems: ["fell at 1 s"] }),
+      physics: aFramePhysics({ position_mm: [110, 0, 105], fallen: true }),
     };
     const between = blend(frameOfDrive(aRobot(), drive), frameOfDrive(aRobot(), next), 0.5);
     expect(between.ghost?.position[0]).toBe(105);

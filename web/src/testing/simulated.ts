@@ -46,6 +46,7 @@ export function aFramePhysics(changes: Partial<FramePhysics> = {}): FramePhysics
     saturated: `1${"0".repeat(17)}`,
     tilt_deg: 3,
     deviation_mm: 100,
+    fallen: false,
     problems: [],
     ...changes,
   };

@@ -143,4 +143,5 @@ class FramePhysics(Part):
     saturated: str = Field(description="A character per joint, 1 for a servo at its maximum torque.")
     tilt_deg: float = Field(description="Angle between the body and the commanded one.")
     deviation_mm: float = Field(description="Horizontal distance from where it is commanded to be.")
+    fallen: bool = Field(description="Whether it has fallen since driving started.")
     problems: list[str] = Field(description="Falls, and servos at their maximum torque within the last half second.")

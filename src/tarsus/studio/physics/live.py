@@ -78,6 +78,7 @@ class LivePhysics:
             saturated=flags(state.saturated),
             tilt_deg=round(math.degrees(tilt), 2),
             deviation_mm=round(1000 * float(np.hypot(*away)), 1),
+            fallen=self._fell is not None,
             problems=self._problems(state.time),
         )
 

@@ -21,7 +21,7 @@ export function DriveRemarks({ frame, onRestart }: Props) {
         testId="drive-interventions"
       />
       <Remarks kind="bad" items={problems} testId="drive-physics" />
-      {problems.some((problem) => problem.startsWith("fell")) && (
+      {frame.physics?.fallen === true && (
         <button type="button" className="button" data-testid="drive-restart" onClick={onRestart}>
           Start anew
         </button>
