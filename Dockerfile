@@ -3,11 +3,11 @@ FROM python:3.12-slim AS build
 WORKDIR /tarsus
 COPY . .
 # The build fetches a Node of its own for the pages; nothing of it comes into the image below.
-RUN pip wheel --no-cache-dir --wheel-dir /wheels --constraint constraints.txt '.[studio]'
+RUN pip wheel --no-cache-dir --wheel-dir /wheels --constraint constraints.txt '.[sim,studio]'
 
 FROM python:3.12-slim
 COPY --from=build /wheels /wheels
-RUN pip install --no-cache-dir --no-index --find-links /wheels 'tarsus[studio]' \
+RUN pip install --no-cache-dir --no-index --find-links /wheels 'tarsus[sim,studio]' \
     && rm -rf /wheels \
     && useradd --system --no-create-home tarsus
 USER tarsus
