@@ -12,14 +12,20 @@ from tarsus.control.loop.run import run
 from tarsus.control.plant import Plant
 from tarsus.control.robot_controller import RobotController
 from tarsus.errors import InputError, SimulationError
+from tarsus.gait.gait import Gait
+from tarsus.gait.path import straight_path
+from tarsus.gait.plan import plan_walk
 from tarsus.kinematics.inverse import inverse_kinematics
 from tarsus.kinematics.leg import forward_kinematics
 from tarsus.kinematics.mass import total_mass
 from tarsus.kinematics.pose import Pose
+from tarsus.load.acceleration import differences
+from tarsus.load.inverse_dynamics import motion_torques
 from tarsus.load.torque import joint_torques
 from tarsus.robot.file import load_robot
 from tarsus.simulation import SensorSuite, ServoModel, SimulatedPlant
 from tarsus.simulation.terrain import Blocks, Flat, HeightField, Ramp, Smooth, Step
+from tarsus.simulation.truth.traced_plant import play
 
 STRIDER = load_robot("strider")
 GRAVITY = 9.80665
@@ -132,6 +138,19 @@ def test_on_flat_ground_with_ideal_servos_the_walk_is_that_of_the_ideal_plant(na
     assert (state.body.position - before)[:2] == pytest.approx(expected[:2], rel=0.02, abs=0.001)
     assert np.abs(state.body.rpy) == pytest.approx(0, abs=0.01)
     assert state.body.position[2] == pytest.approx(expected[2] + before[2], abs=0.002)
+
+
+def test_torques_of_a_swinging_leg_are_those_of_inverse_dynamics():
+    motion = plan_walk(STRIDER, Gait.named("tripod"), straight_path(0.2), rate=100.0)
+    plant = SimulatedPlant(STRIDER, servos="ideal", sensors="blind")
+    trace = play(motion, plant)
+    acceleration = differences(motion.time, motion.angles)[1]
+    expected = motion_torques(STRIDER, motion).torques + plant.servos[0][0].rotor_inertia * acceleration
+    air, settled = ~motion.contacts, 12  # the servos lag by 10 ms, and vibrate after lift-off
+    inside = np.all([np.roll(air, shift, axis=0) for shift in range(-5, settled)], axis=0)[: len(motion.time) - 5]
+    assert inside.any(axis=0).all()
+    error = (trace.torques[: len(expected)] - expected)[:-5][inside]
+    assert np.sqrt((error**2).mean(axis=0)) == pytest.approx([0, 0, 0], abs=0.04)
 
 
 def test_servos_of_the_catalogue_walk_within_their_torque_and_shorter():

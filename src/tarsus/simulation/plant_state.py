@@ -28,7 +28,7 @@ class PlantState(NamedTuple):
     joint_angles, joint_speeds : array, shape (legs, 3)
         Of the joints [rad, rad/s].
     torques : array, shape (legs, 3)
-        Of the servos in the last physics step [N m].
+        Of the servos in the last physics step; with `SimulatedPlant.average_torques`, means over the last tick [N m].
     saturated : array of bool, shape (legs, 3)
         Whether the servos gave all the torque that they can at their speed.
     foot_forces : array, shape (legs, 3)

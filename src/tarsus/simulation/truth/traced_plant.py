@@ -37,6 +37,7 @@ class TracedPlant:
 
     def __init__(self, plant: SimulatedPlant) -> None:
         self.robot, self.plant = plant.robot, plant
+        plant.average_torques()
         self._commanded: list[ControlOutput] = []
         self._states: list[PlantState] = []
 
