@@ -11,10 +11,10 @@ from tarsus.errors import InputError, MissingDataError, UnknownNameError
 from tarsus.load.servo_limits import utilisation
 from tarsus.robot.catalogue import list_servos, load_servo
 from tarsus.robot.file import load_robot
+from tarsus.robot.known_servos import KNOWN_SERVOS
 from tarsus.robot.servo import Servo
 from tarsus.simulation import ServoModel, model
 from tarsus.simulation.servos.command_timing import CommandTiming
-from tarsus.simulation.servos.known_servos import KNOWN_SERVOS
 from tarsus.simulation.servos.servo_table import ServoTable
 
 STRIDER = load_robot("strider")

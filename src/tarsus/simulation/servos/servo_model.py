@@ -12,27 +12,13 @@ from tarsus.errors import InputError, MissingDataError
 from tarsus.load.servo_limits import at_supply
 from tarsus.representation import represented
 from tarsus.robot.servo import Servo
-from tarsus.simulation.servos.known_servos import KNOWN_SERVOS, KnownServo
+from tarsus.robot.servo_dynamics import NO_LOAD_SPEED, ROTOR_INERTIA, servo_dynamics
 from tarsus.simulation.servos.torque_law import drive_torque
 
 if TYPE_CHECKING:
     from jaxtyping import Float
 
 __all__ = ["ServoModel"]
-
-
-# What is assumed where no source says more. Position error at which a servo gives its stall torque [rad]: servos whose
-# gain is known have 0.11 to 0.19, stiff digital ones less. With it, and the twist of the gears, the presets' joints
-# have 9-24 N m/rad, in the lower part of what was measured on the loaded joints of a hexapod (10-79 N m/rad).
-_FULL_TORQUE_ERROR = math.radians(5.0)
-# Twist of the gears under stall torque [rad].
-_GEAR_TWIST = math.radians(1.0)
-_BACKLASH = math.radians(0.5)
-_DEAD_BAND = math.radians(0.5)
-_ROTOR_INERTIA = 0.005  # [kg m^2]
-_PWM_RATE, _BUS_RATE = 50.0, 100.0  # [1/s]
-_PWM_DELAY, _BUS_DELAY = 0.004, 0.006  # [s]
-_NO_LOAD_SPEED = 5.0  # [rad/s]
 
 
 @represented()
@@ -85,7 +71,7 @@ class ServoModel:
     control_stiffness: float = 100.0
     gear_stiffness: float = math.inf
     damping: float = 1.0
-    rotor_inertia: float = 0.005
+    rotor_inertia: float = ROTOR_INERTIA
     backlash: float = 0.0
     dead_band: float = 0.0
     delay: float = 0.0
@@ -118,7 +104,7 @@ class ServoModel:
             control_stiffness=stiffness,
             damping=damping,
             assumed=(
-                f"ideal servo: {stiffness:g} N m/rad, {damping:g} N m s/rad, rotor inertia {_ROTOR_INERTIA:g} kg m^2",
+                f"ideal servo: {stiffness:g} N m/rad, {damping:g} N m s/rad, rotor inertia {ROTOR_INERTIA:g} kg m^2",
             ),
         )
 
@@ -143,10 +129,9 @@ class ServoModel:
                 "a joint has no servo; give one in the robot's file ([leg] servo), or simulate with ideal servos"
             )
         stall, speed = at_supply(servo, supply)
-        known = KNOWN_SERVOS.get(servo.name, KnownServo(source=""))
-        values, assumed = _figures(servo, known, stall)
+        values, assumed = servo_dynamics(servo, stall)
         if math.isnan(speed):
-            speed = _NO_LOAD_SPEED
+            speed = NO_LOAD_SPEED
             assumed.append(f"no-load speed {speed:g} rad/s")
         assumed.append("no damping beyond the torque-speed line, no dry friction, constant supply")
         return cls(
@@ -217,26 +202,3 @@ _FINITE = {
     "dead_band": "rad",
     "delay": "s",
 }
-
-
-def _figures(servo: Servo, known: KnownServo, stall: float) -> tuple[dict[str, float], list[str]]:
-    """Return what the catalogue does not say, known or assumed, and a line for each."""
-    pulses = "pwm" in servo.control.lower()
-    guesses = {
-        "control_stiffness": (stall / _FULL_TORQUE_ERROR, "N m/rad", "stall torque at an error of 5 deg"),
-        "rotor_inertia": (_ROTOR_INERTIA, "kg m^2", "assumed"),
-        "backlash": (_BACKLASH, "rad", "0.5 deg, assumed"),
-        "dead_band": (_DEAD_BAND, "rad", "0.5 deg, assumed"),
-        "update_rate": (_PWM_RATE if pulses else _BUS_RATE, "1/s", "pulses" if pulses else "a bus message a tick"),
-    }
-    values: dict[str, float] = {"gear_stiffness": stall / _GEAR_TWIST, "delay": _PWM_DELAY if pulses else _BUS_DELAY}
-    lines = [
-        f"gear stiffness {values['gear_stiffness']:.3g} N m/rad: 1 deg under stall torque",
-        f"delay {1000 * values['delay']:g} ms after a command is taken over",
-    ]
-    for name, (guess, unit, why) in guesses.items():
-        found = getattr(known, name)
-        values[name] = guess if found is None else found
-        origin = why if found is None else f"from {known.source}"
-        lines.append(f"{name.replace('_', ' ')} {values[name]:.3g} {unit}: {origin}")
-    return values, lines
