@@ -69,6 +69,8 @@ def static_values():
 def load_values():
     robot, motion, loads = tarsus.load_robot("strider"), sample_motion(), sample_loads()
     yield from (loads, tarsus.supply_load(loads), tarsus.Payload(0.5))
+    compliant = tarsus.compliant_loads(robot, motion)
+    yield from (compliant, compliant.springs, compliant.contact)
     sizing = tarsus.size_servos(robot, loads)
     yield from (sizing, sizing.verdicts[0])
     yield tarsus.WalkChange(text="wave gait", options={"gait": motion.gait}, factor=2.0, thermal_ratio=1.5)

@@ -75,6 +75,10 @@ if TYPE_CHECKING:
         default_swing_height,
         reachable_band,
     )
+    from tarsus.load.compliant.compliant_loads import compliant_loads
+    from tarsus.load.compliant.foot_contact import FootContact
+    from tarsus.load.compliant.joint_springs import JointSprings
+    from tarsus.load.compliant.result import CompliantLoads
     from tarsus.load.contact import ContactForces, contact_forces
     from tarsus.load.cycle_torques import CycleTorques, cycle_torques
     from tarsus.load.friction import contact_forces_with_friction
@@ -163,6 +167,10 @@ _HOMES = {
     "tarsus.kinematics.rest": ("RestingPose", "resting_pose"),
     "tarsus.kinematics.stability": ("stability_margin",),
     "tarsus.kinematics.stance": ("default_body_height", "default_stance", "default_swing_height", "reachable_band"),
+    "tarsus.load.compliant.compliant_loads": ("compliant_loads",),
+    "tarsus.load.compliant.foot_contact": ("FootContact",),
+    "tarsus.load.compliant.joint_springs": ("JointSprings",),
+    "tarsus.load.compliant.result": ("CompliantLoads",),
     "tarsus.load.contact": ("ContactForces", "contact_forces"),
     "tarsus.load.cycle_torques": ("CycleTorques", "cycle_torques"),
     "tarsus.load.friction": ("contact_forces_with_friction",),
@@ -209,11 +217,13 @@ __all__ = [
     "CalibrationError",
     "CollisionError",
     "Command",
+    "CompliantLoads",
     "ContactForces",
     "ControlOutput",
     "CorruptAnswerError",
     "CycleTorques",
     "Firmware",
+    "FootContact",
     "Gait",
     "GaitDefaults",
     "GaitTrial",
@@ -227,6 +237,7 @@ __all__ = [
     "Intervention",
     "InterventionKind",
     "JointLoads",
+    "JointSprings",
     "JointVerdict",
     "Limitation",
     "LimitationKind",
@@ -267,6 +278,7 @@ __all__ = [
     "animate",
     "centre_of_mass",
     "compare_with_statics",
+    "compliant_loads",
     "contact_forces",
     "contact_forces_with_friction",
     "convert_limits",

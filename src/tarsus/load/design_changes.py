@@ -108,7 +108,13 @@ def _mass(servo: Servo | None) -> float:
     return 0.0 if servo is None or servo.mass is None else servo.mass
 
 
-def largest_payload(base: JointLoads, *, safety_factor: float = SAFETY_FACTOR, rule: Rule = "factor") -> float:
+def largest_payload(
+    base: JointLoads,
+    *,
+    safety_factor: float = SAFETY_FACTOR,
+    rule: Rule = "factor",
+    friction: Float[np.ndarray, "n legs 3"] | None = None,
+) -> float:
     """Return the heaviest payload that the robot's servos carry through the same motion.
 
     Parameters
@@ -119,6 +125,8 @@ def largest_payload(base: JointLoads, *, safety_factor: float = SAFETY_FACTOR, r
         Required stall torque over peak torque.
     rule : {"factor", "continuous"}
         Sizing rule, as for `size_servos`.
+    friction : array, shape (n, legs, 3), optional
+        Torques that friction between the feet adds, in proportion to the weight [N m].
 
     Returns
     -------
@@ -142,6 +150,8 @@ def largest_payload(base: JointLoads, *, safety_factor: float = SAFETY_FACTOR, r
 
     def carried(mass: float) -> bool:
         loads = joint_loads(base.robot, base.motion, payload=Payload(mass, base.payload.position), **base.conditions)
+        if friction is not None:
+            loads = replace(loads, torques=loads.torques + friction * (loads.weight / base.weight))
         verdicts = joint_verdicts(loads, safety_factor=safety_factor)
         return loads.balanced and all(verdict.satisfies(rule) for verdict in verdicts)
 

@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tarsus.kinematics.mass import total_mass
+from tarsus.load.compliant.decisive_loads import decisive_loads
+from tarsus.load.compliant.result import CompliantLoads
 from tarsus.load.design_changes import largest_payload, length_sensitivity, why_masses_stay, with_servos
 from tarsus.load.loads import JointLoads, joint_loads
 from tarsus.load.verdict import (
@@ -34,6 +36,9 @@ __all__ = ["Candidate", "ServoSizing", "size_servos"]
 
 _COXA_CAUTION = (
     "friction between the feet, slopes and obstacles are not included: the coxa servos may need more torque than shown"
+)
+_SAME_FRICTION = (
+    "other servos: what friction between the feet adds is that of the robot's own servos, in proportion to the weight"
 )
 
 
@@ -133,7 +138,12 @@ class ServoSizing:
 
 
 def size_servos(
-    robot: Robot, loads: JointLoads, *, safety_factor: float = SAFETY_FACTOR, rule: Rule = "factor"
+    robot: Robot,
+    loads: JointLoads,
+    *,
+    safety_factor: float = SAFETY_FACTOR,
+    rule: Rule = "factor",
+    compliant: CompliantLoads | None = None,
 ) -> ServoSizing:
     """Judge a robot's servos, and find sufficient ones in the catalogue.
 
@@ -148,6 +158,9 @@ def size_servos(
     rule : {"factor", "continuous"}
         Sizing rule: the safety factor, or the manufacturer's continuous load limit (root mean square torque at most 1/5
         of the stall torque, peak torque below it). The servo must be fast enough in either case.
+    compliant : CompliantLoads, optional
+        Compliant statics of the same robot and motion. Each joint is sized by the higher of both loads; without it, the
+        coxa servos are sized as if the feet did not press against each other.
 
     Raises
     ------
@@ -161,8 +174,10 @@ def size_servos(
     require_rule(rule)
     robot.require_masses()
     base = loads if loads.robot == robot else _reloaded(loads, robot)
-    evaluation = _Evaluation(base, safety_factor, rule)
-    verdicts = joint_verdicts(base, safety_factor=safety_factor)
+    decisive = decisive_loads(base, compliant)
+    friction = decisive.torques - base.torques
+    evaluation = _Evaluation(base, friction, safety_factor, rule)
+    verdicts = joint_verdicts(decisive, safety_factor=safety_factor)
     candidates, excluded = evaluation.candidates()
     known = all(verdict.servo is not None for verdict in verdicts)
     return ServoSizing(
@@ -170,12 +185,16 @@ def size_servos(
         candidates=candidates,
         sets=evaluation.sets(candidates, excluded),
         excluded=excluded,
-        payload=largest_payload(base, safety_factor=safety_factor, rule=rule) if known else None,
-        maximum_payload=largest_payload(base, safety_factor=BURNOUT_FACTOR) if known else None,
+        payload=largest_payload(base, safety_factor=safety_factor, rule=rule, friction=friction) if known else None,
+        maximum_payload=largest_payload(base, safety_factor=BURNOUT_FACTOR, friction=friction) if known else None,
         sensitivity=length_sensitivity(base),
         safety_factor=safety_factor,
         rule=rule,
-        assumed=(*base.assumed, _COXA_CAUTION, _servo_placement(robot)),
+        assumed=(
+            *decisive.assumed,
+            _COXA_CAUTION if compliant is None else _SAME_FRICTION,
+            _servo_placement(robot),
+        ),
     )
 
 
@@ -194,9 +213,10 @@ def _servo_placement(robot: Robot) -> str:
 
 @dataclass(frozen=True)
 class _Evaluation:
-    """Evaluates servos in the robot, recomputing its loads with their masses."""
+    """Evaluates servos in the robot, recomputing its loads with their masses; `friction` is added to the torques."""
 
     base: JointLoads
+    friction: Float[np.ndarray, "n legs 3"]
     safety_factor: float
     rule: Rule
 
@@ -204,7 +224,8 @@ class _Evaluation:
         """Return the loads with other servos, their masses included."""
         conditions = {**self.base.conditions, "supply": supply}
         robot = with_servos(self.base.robot, servos)
-        return joint_loads(robot, self.base.motion, payload=self.base.payload, **conditions)
+        loads = joint_loads(robot, self.base.motion, payload=self.base.payload, **conditions)
+        return replace(loads, torques=loads.torques + self.friction * (loads.weight / self.base.weight))
 
     def verdicts(self, loads: JointLoads) -> tuple[JointVerdict, ...]:
         return joint_verdicts(loads, safety_factor=self.safety_factor)

@@ -1,0 +1,139 @@
+"""Solution of the equilibrium at one sample.
+
+Each step is a Newton step with the limits of friction following the normal forces. If it does not reduce the residual,
+it is repeated with frozen limits (Tresca friction): then the equations are those of a potential, and a line search
+along the step finds where it is nearly lowest. The limits are renewed after each such step.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from tarsus.load.compliant.equilibrium import Balance, Compliant, Configuration, Demand, Past
+from tarsus.load.compliant.tangent import contact_jacobian, newton_step
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
+
+__all__ = ["Equilibrium", "solve_equilibrium"]
+
+_MOST_STEPS = 40
+_MOST_TRIALS = 8
+# Residual over the last one up to which a step is taken as it is.
+_ENOUGH = 0.7
+# Slope of the potential at the end of a step over that at its start, up to which the step is taken.
+_FLAT = 0.5
+# Longest step [m, rad, rad].
+_LONGEST = np.array([0.03, 0.2, 0.2])
+# Steps with frozen limits before another is tried first.
+_FROZEN = 3
+
+
+class Equilibrium(NamedTuple):
+    """Where the search ended.
+
+    Attributes
+    ----------
+    at : Configuration
+        The configuration.
+    balance : Balance
+        Its balance.
+    """
+
+    at: Configuration
+    balance: Balance
+
+
+def solve_equilibrium(
+    compliant: Compliant,
+    pose: tuple[Float[np.ndarray, "3 3"], Float[np.ndarray, "3"]],
+    angles: Float[np.ndarray, "legs 3"],
+    past: Past,
+    demand: Demand,
+    *,
+    tolerance: float,
+) -> Equilibrium:
+    """Return the equilibrium near a pose.
+
+    Parameters
+    ----------
+    compliant : Compliant
+        The robot.
+    pose : rotation and position
+        Of B in G, to start from.
+    angles : array, shape (legs, 3)
+        Joint angles to start from [rad].
+    past : Past
+        The last equilibrium.
+    demand : Demand
+        Commanded angles and loads.
+    tolerance : float
+        Size of the residual that is small enough [N m].
+    """
+    at = compliant.configuration(pose, angles, past, demand.step)
+    balance = compliant.balance(at, demand)
+    frozen, steps = 0, 0
+    while balance.size > tolerance and steps < _MOST_STEPS:
+        steps += 1
+        jacobian = contact_jacobian(compliant, at, balance)
+        if not frozen:
+            step = newton_step(compliant, at, balance, jacobian, demand.step, frozen=False)
+            moved = compliant.configuration(*_moved(at, step, _scale(step)), past, demand.step)
+            reached = compliant.balance(moved, demand)
+            if reached.size < _ENOUGH * balance.size:
+                at, balance = moved, reached
+                continue
+            frozen = _FROZEN
+        step = newton_step(compliant, at, balance, jacobian, demand.step, frozen=True)
+        at = _line_search(compliant, at, balance, step, past, demand)
+        balance = compliant.balance(at, demand)
+        frozen -= 1
+    return Equilibrium(at, balance)
+
+
+def _line_search(
+    compliant: Compliant,
+    at: Configuration,
+    balance: Balance,
+    step: tuple[Float[np.ndarray, "6"], Float[np.ndarray, "legs 3"]],
+    past: Past,
+    demand: Demand,
+) -> Configuration:
+    """Return where along a step the potential, with the limits of friction as they are, is nearly lowest."""
+    limit = compliant.contact.friction * at.normal
+    slope = float(balance.body @ step[0] + np.vdot(balance.joints, step[1]))
+    enough = _FLAT * abs(slope)
+    low, high, length = 0.0, 0.0, _scale(step)
+    below, above, moved = slope, 0.0, at
+    for _ in range(_MOST_TRIALS):
+        moved = compliant.configuration(*_moved(at, step, length), past, demand.step)
+        reached = compliant.balance(moved, demand, limit)
+        rise = float(reached.body @ step[0] + np.vdot(reached.joints, step[1]))
+        if abs(rise) <= enough or (rise < 0 and not high):
+            break
+        if rise > 0:
+            high, above = length, rise
+        else:
+            low, below = length, rise
+        length = low + (high - low) * min(max(below / (below - above), 0.1), 0.9)
+    return moved
+
+
+def _scale(step: tuple[Float[np.ndarray, "6"], Float[np.ndarray, "legs 3"]]) -> float:
+    body, joints = np.abs(step[0]), np.abs(step[1])
+    longest = max(body[:3].max() / _LONGEST[0], body[3:].max() / _LONGEST[1], joints.max() / _LONGEST[2])
+    return float(min(1.0, 1.0 / longest)) if longest > 0 else 1.0
+
+
+def _moved(
+    at: Configuration, step: tuple[Float[np.ndarray, "6"], Float[np.ndarray, "legs 3"]], length: float
+) -> tuple[tuple[Float[np.ndarray, "3 3"], Float[np.ndarray, "3"]], Float[np.ndarray, "legs 3"]]:
+    x, y, z = (length * step[0][3:]).tolist()
+    turn = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    square = x * x + y * y + z * z
+    # Series of the exponential map; the steps are short.
+    rotation = np.eye(3) + (1.0 - square / 6.0) * turn + (0.5 - square / 24.0) * (turn @ turn)
+    position = at.position + at.rotation @ (length * step[0][:3])
+    return (at.rotation @ rotation, position), at.angles + length * step[1]

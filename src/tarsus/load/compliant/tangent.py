@@ -1,0 +1,117 @@
+"""Newton steps of the equilibrium: its tangent, with the joints of each leg condensed out.
+
+The unknowns of a leg's joints couple with those of the body alone. Eliminating them, three at a time, leaves six
+equations of the body (static condensation: R. J. Guyan, "Reduction of stiffness and mass matrices", AIAA Journal 3,
+1965).
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from tarsus.load.compliant.equilibrium import Balance, Compliant, Configuration
+from tarsus.load.compliant.friction import friction_tangent
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
+
+__all__ = ["contact_jacobian", "newton_step"]
+
+# Permutation symbol: row b of `_CROSS` holds, for each k, e_k x e_b.
+_EPSILON = np.zeros((3, 3, 3))
+_EPSILON[0, 1, 2] = _EPSILON[1, 2, 0] = _EPSILON[2, 0, 1] = 1.0
+_EPSILON[0, 2, 1] = _EPSILON[2, 1, 0] = _EPSILON[1, 0, 2] = -1.0
+_CROSS = np.einsum("akb->bka", _EPSILON).reshape(3, 9)
+_BY_FORCE = _EPSILON.reshape(3, 9)
+# Places of the second derivatives cc, cf, ct, ff, ft, tt in a symmetric matrix.
+_SYMMETRIC = np.array([0, 1, 2, 1, 3, 4, 2, 4, 5])
+_DIAGONAL = np.arange(3)
+# Keeps the body's equations regular where it is free to move [N/m, N m/rad].
+_FLOOR = 1e-3
+
+
+def contact_jacobian(compliant: Compliant, at: Configuration, balance: Balance) -> Float[np.ndarray, "legs 9 3"]:
+    """Return the displacements of the contact points in G by body translation, rotation and joint angles.
+
+    Parameters
+    ----------
+    compliant : Compliant
+        The robot.
+    at : Configuration
+        The configuration.
+    balance : Balance
+        Its balance.
+
+    Returns
+    -------
+    array, shape (legs, 9, 3)
+        Rows: translation of B along its axes, rotation about them, coxa, femur and tibia [1, m/rad].
+    """
+    legs = compliant.legs
+    within = np.empty((legs, 9, 3))
+    within[:, :3] = np.eye(3)
+    within[:, 3:6] = ((at.points[:, 0, 6:] - compliant.radius[:, None] * at.rotation[2]) @ _CROSS).reshape(legs, 3, 3)
+    within[:, 6:] = at.points[:, 1:4, 6:] - balance.rolling
+    in_ground: np.ndarray = within.reshape(-1, 3) @ at.rotation.T
+    return in_ground.reshape(legs, 9, 3)
+
+
+def newton_step(
+    compliant: Compliant,
+    at: Configuration,
+    balance: Balance,
+    jacobian: Float[np.ndarray, "legs 9 3"],
+    step: float,
+    *,
+    frozen: bool,
+) -> tuple[Float[np.ndarray, "6"], Float[np.ndarray, "legs 3"]]:
+    """Return the Newton step of the body, along and about its own axes, and of the joint angles.
+
+    Parameters
+    ----------
+    compliant : Compliant
+        The robot.
+    at : Configuration
+        The configuration.
+    balance : Balance
+        Its balance.
+    jacobian : array, shape (legs, 9, 3)
+        `contact_jacobian`.
+    step : float
+        Time since the last equilibrium [s].
+    frozen : bool
+        Whether the limits of friction are frozen.
+    """
+    legs, contact = compliant.legs, compliant.contact
+    stiffness = np.zeros((legs, 3, 3))
+    normal = np.where(at.normal > 0, contact.normal_stiffness, 0.0)
+    stiffness[:, 2, 2] = normal
+    stiffness[:, :2] += friction_tangent(
+        at.trial,
+        balance.slip.fraction,
+        np.full(legs, contact.relaxation(step) * contact.tangential_stiffness),
+        None if frozen else contact.friction * normal,
+    )
+    # Forces on the leg points do not turn with the body: in its axes they turn back.
+    turning = at.points[:, 1:4] @ (balance.points.reshape(-1, 3) @ _BY_FORCE).reshape(legs, 9, 3)
+    stiff = jacobian @ stiffness
+    across = np.swapaxes(jacobian, 1, 2)
+    joint = stiff[:, 6:] @ across
+    own = joint[:, :, 6:] - balance.generalised[:, 3:][:, _SYMMETRIC].reshape(legs, 3, 3)
+    own[:, _DIAGONAL, _DIAGONAL] += balance.slopes
+    right = np.empty((legs, 3, 7))
+    right[:, :, :6], right[:, :, 6] = joint[:, :, :6], balance.joints
+    right[:, :, 3:6] += turning
+    left = stiff[:, :6] @ across[:, :, 6:]
+    left[:, 3:] += np.swapaxes(turning, 1, 2)
+    solved = np.linalg.solve(own, right)
+    body = stiff[:, :6].transpose(1, 0, 2).reshape(6, -1) @ jacobian[:, :6].transpose(0, 2, 1).reshape(-1, 6)
+    moments = balance.moments
+    body[3:, 3:] += np.trace(moments) * np.eye(3) - moments.T
+    condensed = left.transpose(1, 0, 2).reshape(6, -1) @ solved.reshape(-1, 7)
+    body -= condensed[:, :6]
+    body.flat[::7] += _FLOOR
+    moved = np.linalg.solve(body, condensed[:, 6] - balance.body)
+    return moved, -solved[:, :, 6] - solved[:, :, :6] @ moved
