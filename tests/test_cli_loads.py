@@ -1,6 +1,7 @@
 """`tarsus loads` and `tarsus servos`: output matches the functions, and the exit code the verdict."""
 
 import csv
+import dataclasses
 import json
 
 import numpy as np
@@ -11,9 +12,14 @@ from sample_loads import EXAMPLES
 from tarsus.gait.gait import Gait
 from tarsus.gait.path import straight_path
 from tarsus.gait.plan import plan_walk
+from tarsus.load.compliant.compliant_loads import compliant_loads
+from tarsus.load.compliant.decisive_loads import decisive_loads
 from tarsus.load.loads import joint_loads
 from tarsus.load.sizing import size_servos
-from tarsus.report.loads_summary import servos_summary
+from tarsus.load.supply import supply_load
+from tarsus.report.loads_summary import loads_summary, servos_summary
+from tarsus.report.loads_table import load_rows, loads_lines, motion_line
+from tarsus.report.walk_summary import walk_summary
 from tarsus.robot.file import load_robot, save_robot
 
 SHORT = ("--distance", "150", "--rate", "40")
@@ -36,14 +42,20 @@ def test_numbers_match_the_functions(options, conditions):
     code, document = run_json("loads", "strider", *SHORT, *options.split())
     motion = short_walk()
     found = joint_loads(motion.robot, motion, **conditions)
-    assert code == (0 if found.factor.min() >= 1.5 else 1)
+    pressed = compliant_loads(motion.robot, motion, **conditions)
+    factors = decisive_loads(found, pressed).factor
+    assert code == (0 if factors.min() >= 1.5 else 1)
     assert document["carried"] is (code == 0)
     for row, peak, rms, factor in zip(
-        document["joints"], found.peak.ravel(), found.rms.ravel(), found.factor.ravel(), strict=True
+        document["joints"], found.peak.ravel(), found.rms.ravel(), factors.ravel(), strict=True
     ):
         assert row["peak_nm"] == pytest.approx(peak, abs=1e-6)
         assert row["rms_nm"] == pytest.approx(rms, abs=1e-6)
         assert row["factor"] == (pytest.approx(factor, abs=1e-6) if np.isfinite(factor) else None)
+    peaks = [row["compliant_peak_nm"] for row in document["joints"]]
+    assert peaks == pytest.approx(pressed.loads.peak.ravel(), abs=1e-6)
+    assert document["possible"] is True
+    assert document["compliant"]["carried"] is pressed.ok
     assert document["cost_of_transport"] == pytest.approx(found.cost_of_transport, abs=1e-6)
     assert document["files"] == []
 
@@ -146,7 +158,8 @@ def test_servos_match_size_servos(monkeypatch):
     code, document = run_json("servos", "strider", *SHORT, "--factor", "1.5", "--payload", "0.1")
     motion = short_walk()
     found = joint_loads(motion.robot, motion, payload=0.1)
-    expected = servos_summary(size_servos(motion.robot, found, safety_factor=1.5), found)
+    pressed = compliant_loads(motion.robot, motion, payload=0.1)
+    expected = servos_summary(size_servos(motion.robot, found, safety_factor=1.5, compliant=pressed), found)
     assert code == 0
     assert document["candidates"]
     assert [c["name"] for c in document["candidates"]] == [c["name"] for c in expected["candidates"]]
@@ -209,12 +222,30 @@ def test_advice_comes_first_with_a_factor_for_each_change_and_payload_in_plain_w
 
 
 def test_a_joint_that_bears_nothing_has_no_factor():
-    text = run("loads", "strider", *SHORT, "--static").stdout
-    assert "e+" not in text
-    assert "no load" in text
-    _, document = run_json("loads", "strider", *SHORT, "--static")
-    assert max(row["factor"] or 0.0 for row in document["joints"]) < 1e3
-    assert {row["text"] for row in document["joints"] if row["joint"] == "coxa"} == {"no load"}
+    motion = short_walk()
+    found = joint_loads(motion.robot, motion, inertial=False)
+    summary = loads_summary(found, supply_load(found), None, "the servos are unknown")
+    assert {row[6] for row in load_rows(summary) if row[0].endswith("coxa")} == {"no load"}
+    assert max(row["factor"] or 0.0 for row in summary["joints"]) < 1e3
+    assert {row["text"] for row in summary["joints"] if row["joint"] == "coxa"} == {"no load"}
+    assert "compliant statics: not computed: the servos are unknown" in loads_lines(summary)
+
+
+def test_possible_and_carried_are_two_verdicts():
+    assert "walk: possible\n" in run("loads", "strider", *SHORT).stdout
+    text = run("walk", EXAMPLES / "burnt-5kg.toml", *SHORT).stdout
+    assert "servos: cannot stand: " in text
+    assert text.rstrip().endswith("possible")
+    for name, why in (("mithi", "has no masses"), ("strider", "does not name them all")):
+        robot = load_robot(name)
+        planned = plan_walk(robot, Gait.named("tripod"), straight_path(0.02), rate=40)
+        if name == "strider":
+            planned = dataclasses.replace(planned, robot=robot.replace(servos=((None,) * 3,) * 6))
+        assert why in walk_summary(planned)["servos"]["text"]
+    airborne = dataclasses.replace(planned, robot=robot, contacts=np.zeros_like(planned.contacts))
+    assert walk_summary(airborne)["servos"]["carried"] is None
+    impossible = loads_summary(found := joint_loads(robot, short_walk()), supply_load(found))
+    assert motion_line({**impossible, "possible": False, "problems": ["tips over"]}) == "walk: not possible: tips over"
 
 
 def test_loads_explains_its_columns():

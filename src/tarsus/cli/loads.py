@@ -50,24 +50,29 @@ def loads(
 ) -> int:
     """Compute the joint loads over a walk, with a verdict on each servo.
 
+    Peak torques are given twice: with vertical contact forces, and by compliant statics, in which servos give way like
+    springs and feet press against each other through friction. The higher one counts.
+
     The factor is stall torque over peak torque: below 1 the robot cannot stand, below 1.5 its servos stall or burn,
     below 3 they run warm and have no reserve. The exit code is 0 only if every factor is at least 1.5 and the robot
     does not tip.
     """
     from tarsus.cli.planning import plan
+    from tarsus.load.compliant.for_loads import compliant_or_missing
     from tarsus.load.loads import joint_loads
     from tarsus.load.supply import supply_load
     from tarsus.report.loads_summary import loads_summary
-    from tarsus.report.loads_table import LEGEND, loads_lines, loads_table, loads_verdict
+    from tarsus.report.loads_table import LEGEND, loads_lines, loads_table, loads_verdict, motion_line
 
     if out is not None:
         make_folder(out)
     motion = plan(robot, options)
     joint_load_results = joint_loads(motion.robot, motion, payload=payload, supply=supply, inertial=not static)
     currents = supply_load(joint_load_results, capacity=capacity)
-    summary = loads_summary(joint_load_results, currents)
+    compliant, missing = compliant_or_missing(joint_load_results)
+    summary = loads_summary(joint_load_results, currents, compliant, missing)
     if not as_json:
-        show(loads_table(summary), *LEGEND, "", *loads_lines(summary), loads_verdict(summary))
+        show(loads_table(summary), *LEGEND, "", *loads_lines(summary), motion_line(summary), loads_verdict(summary))
     files: list[Path] = []
     if out is not None:
         from tarsus.report.loads_files import write_loads

@@ -59,6 +59,7 @@ def servos(
     from rich.text import Text
 
     from tarsus.cli.planning import plan, with_changes
+    from tarsus.load.compliant.for_loads import compliant_or_missing
     from tarsus.load.loads import joint_loads
     from tarsus.load.sizing import size_servos
     from tarsus.load.walk_changes import walk_changes
@@ -70,7 +71,8 @@ def servos(
 
     motion = plan(robot, options)
     loads = joint_loads(motion.robot, motion, payload=payload, supply=supply, inertial=not static)
-    sizing = size_servos(motion.robot, loads, safety_factor=factor, rule=rule)
+    compliant, missing = compliant_or_missing(loads)
+    sizing = size_servos(motion.robot, loads, safety_factor=factor, rule=rule, compliant=compliant)
     changes = () if sizing.ok else walk_changes(loads, plan_with, safety_factor=factor)
     summary = servos_summary(sizing, loads, changes)
     sufficient = bool(summary["sufficient"] and summary["balanced"])
@@ -83,6 +85,8 @@ def servos(
             show(table)
     if not summary["candidates"] and not summary["sets"]:
         show("no servo of the catalogue is sufficient in all joints")
+    if missing:
+        show(f"compliant statics: not computed: {missing}")
     show(*SERVO_LEGEND, "", *servo_lines(summary))
     tipping = "" if summary["balanced"] else "; the robot tips"
     text = "the robot's servos are sufficient" if sufficient else f"the robot's servos are not sufficient{tipping}"

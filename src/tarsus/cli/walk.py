@@ -69,7 +69,7 @@ def walk(
     motion = plan(robot, options)
     summary = walk_summary(motion)
     if not as_json:
-        show(walk_table(summary), verdict(summary))
+        show(walk_table(summary), f"servos: {summary['servos']['text']}", verdict(summary))
     files = [] if out is None else _write(motion, out, animation=not no_animation, quiet=as_json)
     if html is not None:
         files.append(_write_page(motion, html))

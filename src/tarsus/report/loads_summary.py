@@ -8,6 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from tarsus.load.compliant.decisive_loads import decisive_loads
+from tarsus.load.compliant.result import CompliantLoads
 from tarsus.load.loads import JointLoads
 from tarsus.load.sizing import Candidate, ServoSizing
 from tarsus.load.supply import SupplyLoad
@@ -23,7 +25,9 @@ _NEGLIGIBLE = 0.05
 _STEP = 0.01
 
 
-def loads_summary(loads: JointLoads, supply: SupplyLoad) -> dict[str, Any]:
+def loads_summary(
+    loads: JointLoads, supply: SupplyLoad, compliant: CompliantLoads | None = None, missing: str = ""
+) -> dict[str, Any]:
     """Return loads, verdicts and currents as plain numbers with units in the keys; None if unknown.
 
     Parameters
@@ -32,10 +36,19 @@ def loads_summary(loads: JointLoads, supply: SupplyLoad) -> dict[str, Any]:
         Joint loads.
     supply : SupplyLoad
         Supply current of the same loads.
+    compliant : CompliantLoads, optional
+        Compliant statics of the same motion; classes and verdicts are then those of the higher loads.
+    missing : str
+        Why there is none.
     """
     document = loads.to_dict()
-    verdicts = joint_verdicts(loads)
-    for row, verdict in zip(document["joints"], verdicts, strict=True):
+    decisive = decisive_loads(loads, compliant)
+    verdicts = joint_verdicts(decisive)
+    pressed = [None] * len(verdicts) if compliant is None else list(joint_verdicts(compliant.loads))
+    for row, verdict, other in zip(document["joints"], verdicts, pressed, strict=True):
+        row["compliant_peak_nm"] = None if other is None else other.peak
+        row["compliant_rms_nm"] = None if other is None else other.rms
+        row["factor"], row["utilisation"] = _number(verdict.factor), _number(verdict.utilisation)
         row["class"] = verdict.class_name
         row["thermal_ratio"] = _number(verdict.thermal_ratio)
         row["text"] = verdict.text()
@@ -49,6 +62,11 @@ def loads_summary(loads: JointLoads, supply: SupplyLoad) -> dict[str, Any]:
         "worst": [f"{v.leg} {v.joint}" for v in worst_of_each(verdicts)],
         "class": min(verdicts, key=_rank).class_name,
         "carried": loads.balanced and all(verdict.factor >= BURNOUT_FACTOR for verdict in verdicts),
+        "possible": loads.motion.ok,
+        "problems": list(loads.motion.problems),
+        "compliant": None if compliant is None else _compliant(compliant),
+        "compliant_missing": missing,
+        "assumed": list(decisive.assumed),
         "supply": {
             "peak_a": supply.peak_current,
             "mean_a": supply.mean_current,
@@ -57,6 +75,18 @@ def loads_summary(loads: JointLoads, supply: SupplyLoad) -> dict[str, Any]:
             "peak_legs": list(supply.peak_legs),
             "warning": supply.warning,
         },
+    }
+
+
+def _compliant(compliant: CompliantLoads) -> dict[str, Any]:
+    """Return what compliant statics adds to the loads of the joints."""
+    saturated = compliant.saturated.any((1, 2)).mean()
+    return {
+        "carried": compliant.ok,
+        "problems": list(compliant.problems),
+        "slip_mm": dict(zip(compliant.loads.robot.leg_codes, (1000 * compliant.slip[-1]).tolist(), strict=True)),
+        "saturated_fraction": float(saturated),
+        "friction": compliant.contact.friction,
     }
 
 

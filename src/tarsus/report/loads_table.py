@@ -25,6 +25,7 @@ __all__ = [
     "loads_lines",
     "loads_table",
     "loads_verdict",
+    "motion_line",
     "on_estimates",
     "servo_lines",
 ]
@@ -33,6 +34,7 @@ LOAD_COLUMNS = (
     "joint",
     "servo",
     "peak N m",
+    "pressed",
     "RMS N m",
     "of stall",
     "factor",
@@ -46,7 +48,8 @@ LOAD_COLUMNS = (
 _FACTOR = "stall torque over peak torque (below 1 cannot stand, below 1.5 stalls or burns, below 3 marginal)"
 _THERMAL = "RMS torque over 1/5 of the stall torque, the limit of continuous load"
 LEGEND = (
-    "of stall: peak torque over stall torque, full at 100 %",
+    "pressed: peak torque by compliant statics, in which the feet press against each other through friction",
+    "of stall: the higher peak torque over stall torque, full at 100 %",
     f"factor: {_FACTOR}",
     "utilisation: peak load relative to the servo's torque-speed line, from stall torque to no-load speed",
     f"thermal: {_THERMAL}",
@@ -117,11 +120,13 @@ def is_worst(row: tuple[str, ...], summary: dict[str, Any]) -> bool:
 
 
 def _row(joint: dict[str, Any]) -> tuple[str, ...]:
-    fraction = None if joint["stall_nm"] is None else joint["peak_nm"] / joint["stall_nm"]
+    pressed = joint["compliant_peak_nm"]
+    fraction = None if joint["stall_nm"] is None else max(joint["peak_nm"], pressed or 0.0) / joint["stall_nm"]
     return (
         f"{joint['leg']} {joint['joint']}",
         joint["servo"] or "none",
         f"{joint['peak_nm']:.3f}",
+        "unknown" if pressed is None else f"{pressed:.3f}",
         f"{joint['rms_nm']:.3f}",
         load_bar(fraction),
         _factor(joint),
@@ -145,7 +150,18 @@ def _percent(value: float | None) -> str:
 
 # Payloads below this are none [kg].
 _NO_PAYLOAD = 0.005
-_RIGHT = {"supply", "peak N m", "RMS N m", "factor", "deg/s", "utilisation", "thermal", "servos kg", "robot kg"}
+_RIGHT = {
+    "supply",
+    "peak N m",
+    "pressed",
+    "RMS N m",
+    "factor",
+    "deg/s",
+    "utilisation",
+    "thermal",
+    "servos kg",
+    "robot kg",
+}
 
 
 def loads_table(summary: dict[str, Any]) -> Table:
@@ -176,6 +192,7 @@ def loads_lines(summary: dict[str, Any]) -> list[str]:
     """
     by_name = {f"{joint['leg']} {joint['joint']}": joint for joint in summary["joints"]}
     lines = [f"{name}: {by_name[name]['text']}; peak {by_name[name]['peak_cause']}" for name in summary["worst"]]
+    lines += _compliant_lines(summary)
     supply = summary["supply"]
     if supply["stall_current_unknown"]:
         lines.append(
@@ -195,6 +212,24 @@ def loads_lines(summary: dict[str, Any]) -> list[str]:
         how = "loses contact" if margin is None else f"tips: the load is {-margin:.1f} mm outside the support polygon"
         lines.append(f"the robot {how}")
     return [*lines, *(f"assumed: {text}" for text in summary["assumed"])]
+
+
+def _compliant_lines(summary: dict[str, Any]) -> list[str]:
+    """Return what compliant statics says beyond the torques."""
+    if summary["compliant"] is None:
+        return [f"compliant statics: not computed: {summary['compliant_missing']}"]
+    return [f"compliant statics: {text}" for text in summary["compliant"]["problems"]]
+
+
+def motion_line(summary: dict[str, Any]) -> str:
+    """Return whether the walk itself is possible, apart from its servos.
+
+    Parameters
+    ----------
+    summary : dict
+        Summary from `tarsus.report.loads_summary.loads_summary`.
+    """
+    return "walk: possible" if summary["possible"] else f"walk: not possible: {'; '.join(summary['problems'])}"
 
 
 def loads_verdict(summary: dict[str, Any]) -> RenderableType:

@@ -8,6 +8,8 @@ from typing import Any
 import numpy as np
 
 from tarsus.gait.motion import Motion
+from tarsus.load.loads import joint_loads
+from tarsus.load.verdict import BURNOUT_FACTOR, joint_verdicts
 from tarsus.robot.joint_limits import joint_limits, servo_speeds
 from tarsus.robot.robot import JOINTS
 
@@ -46,8 +48,25 @@ def walk_summary(motion: Motion) -> dict[str, Any]:
         "nearest_feet": _nearest_feet(motion),
         "possible": motion.ok,
         "problems": list(motion.problems),
+        "servos": _servos(motion),
         "assumed": list(motion.assumed),
     }
+
+
+def _servos(motion: Motion) -> dict[str, Any]:
+    """Return whether the servos carry the robot through the motion, with vertical contact forces; None if unknown."""
+    robot = motion.robot
+    if not robot.has_masses:
+        return {"carried": None, "text": "unknown, as the robot's file has no masses"}
+    if not motion.contacts.any(axis=1).all():
+        return {"carried": None, "text": "unknown, as at times no foot is on the ground"}
+    verdicts = joint_verdicts(joint_loads(robot, motion))
+    if any(verdict.servo is None for verdict in verdicts):
+        return {"carried": None, "text": "unknown, as the robot's file does not name them all"}
+    worst = min(verdicts, key=lambda verdict: verdict.factor)
+    carried = worst.factor >= BURNOUT_FACTOR
+    text = f"{worst.class_name}: {worst.leg} {worst.joint}, safety factor {worst.factor:.2f}"
+    return {"carried": carried, "text": f"{text}; `tarsus loads` shows every joint, and friction between the feet"}
 
 
 def _end(motion: Motion) -> dict[str, float]:
