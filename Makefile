@@ -61,6 +61,7 @@ figures: $(VENV)/.dev web browser
 # How far plans are true in physics: the tables of docs/how-true.md.
 truth: $(VENV)/.dev
 	$(BIN)/python docs/how_true.py
+	$(BIN)/python docs/statics_true.py
 	$(BIN)/python docs/faults.py
 
 # Trains policies for a few minutes each: the figure and the tables of docs/reinforcement-learning.md.

@@ -150,7 +150,7 @@ def _reach(
     if found.balance.size <= tolerance or demand_before is None or depth == _HALVINGS:
         return found, _slid(compliant, found, past)
     means = ((early + late) / 2 for early, late in zip(demand_before[:-1], demand[:-1], strict=True))
-    middle, second = Demand(*means, demand.step / 2), demand._replace(step=demand.step / 2)
+    middle, second = Demand._make((*means, demand.step / 2)), demand._replace(step=demand.step / 2)
     again = Start(past.rotation, past.position, past.angles)
     half, slid = _reach(compliant, again, before, middle, tolerance, depth + 1)
     again = Start(half.at.rotation, half.at.position, half.at.angles)
