@@ -104,6 +104,13 @@ def test_a_scan_finds_who_is_there(smart):
     assert set(bus.scan((2, 3, 4, 200)).require()) == {2, 4}
 
 
+def test_a_scan_waits_once_for_each_id_that_is_missing(smart):
+    bus, _ = smart
+    begin = clock(bus).now()
+    bus.scan(range(100, 120))
+    assert clock(bus).now() - begin < 20 * 0.03
+
+
 def test_a_scan_finds_channels_of_boards(board):
     bus, device = board
     assert set(bus.scan().require()) == set(bus.capabilities.ids)

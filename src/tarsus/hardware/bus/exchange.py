@@ -59,11 +59,6 @@ class Exchange:
         return len(self.found) == len(self._ids)
 
     @property
-    def clean(self) -> bool:
-        """Whether everybody has answered, and nothing else came."""
-        return self.complete and not (self.noise or self.foreign or self.twice)
-
-    @property
     def refused(self) -> list[int]:
         """Who has no answer that is believed."""
         return [id for id in self._ids if id not in self.found or id in self.twice]

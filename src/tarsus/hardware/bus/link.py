@@ -62,6 +62,7 @@ class Link:
         self.transport, self.bus, self.timeout, self._delay = transport, bus, timeout, delay
         self._scan, self._header = scan, header
         self._doubtful = False
+        self._awaited: set[int] = set()
         self._sent = b""
 
     def send(self, frame: bytes) -> None:
@@ -91,7 +92,7 @@ class Link:
         belongs : callable
             Whether a frame answers this request, as far as the protocol tells.
         """
-        self._settle()
+        self._settle(ids)
         self.transport.write(frame)
         sent, self._sent = self._sent, b""
         most = serial_seconds(len(frame) + len(ids) * (count + 12), self.transport.baud)
@@ -105,7 +106,8 @@ class Link:
             exchange.take(scanned)
             if not data:
                 break
-        self._doubtful = not exchange.clean or bool(rest)
+        self._awaited |= set(ids) - exchange.found.keys()
+        self._doubtful = bool(exchange.noise or exchange.foreign or exchange.twice or rest)
         if exchange.noise or rest:
             exchange.withdraw(self._scan(received + self.transport.discard(), ended=True).suspect)
         errors = tuple(self._error(id, count, received, exchange) for id in exchange.refused)
@@ -183,13 +185,16 @@ class Link:
             text = f"{came} within {self.timeout * 1e3:.0f} ms"
         return kind(self.bus, self.transport.port, id=id, expected=expected, received=text, remedy=remedy)
 
-    def _settle(self) -> None:
-        """Empty the input; wait until the line is silent if it is in doubt."""
+    def _settle(self, ids: Collection[int] | None = None) -> None:
+        """Empty the input; wait for silence if the line is in doubt, or if answers of the same servos may be late."""
         self.transport.discard()
-        if self._doubtful:
-            for _ in range(_MOST_SETTLING):
-                if not self.transport.read(self.timeout):
-                    break
+        late = self._awaited if ids is None else self._awaited.intersection(ids)
+        if not self._doubtful and not late:
+            return
+        for _ in range(_MOST_SETTLING):
+            if not self.transport.read(self.timeout):
+                break
+        self._awaited.clear()
         self._doubtful = False
 
 
