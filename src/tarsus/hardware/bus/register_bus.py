@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
-from tarsus.errors import BusError, CorruptAnswerError, ServoStatusError
+from tarsus.errors import CorruptAnswerError, ServoStatusError
 from tarsus.hardware.bus.checks import (
     checked_goals,
     checked_ids,
@@ -17,10 +17,10 @@ from tarsus.hardware.bus.checks import (
 from tarsus.hardware.bus.dialect import SERIES
 from tarsus.hardware.bus.link import Link
 from tarsus.hardware.bus.protocol import Answers, BusServo, BusTiming, Telemetry
+from tarsus.hardware.bus.register_reader import RegisterReader
 from tarsus.hardware.bus.scanning import scanned
-from tarsus.hardware.codec.dynamixel2 import split_fast
 from tarsus.hardware.codec.packet import BROADCAST
-from tarsus.hardware.codec.registers import load_models, load_registers
+from tarsus.hardware.codec.registers import RegisterTable, load_models
 from tarsus.hardware.codec.scan import Frame
 from tarsus.hardware.transport.protocol import Transport
 from tarsus.hardware.transport.wire import serial_seconds
@@ -71,10 +71,8 @@ class RegisterBus:
         self._series = SERIES[name]
         self._dialect = self._series.dialect
         self.capabilities = self._series.capabilities
-        self._registers = load_registers(name)
+        self._table = RegisterTable(name, byteorder=self._dialect.byteorder)
         self._transport = transport
-        self._fast = fast and self._series.read_fast is not None
-        self._turnaround = self._series.turnaround if turnaround is None else turnaround
         # The answering delay counts as part of the answer's time.
         self._link = Link(
             transport,
@@ -84,6 +82,7 @@ class RegisterBus:
             header=self._dialect.header,
             delay=self._series.turnaround,
         )
+        self._reader = RegisterReader(self._link, self._series, fast=fast, turnaround=turnaround)
         self._speed: dict[int, int] = {}
 
     def ping(self, id: int) -> BusServo | None:
@@ -101,14 +100,14 @@ class RegisterBus:
         """
         checked_ids(self.name, self.capabilities, (id,))
         # In protocol 1.0 an answer to a ping may look like the ping's echo; one with data never does.
-        block = self._block("firmware", "model")
-        answer = self._read((id,), block)
+        block = self._table.block("firmware", "model")
+        answer = self._reader.read((id,), block)
         for error in answer.errors:
             if isinstance(error, CorruptAnswerError):
                 raise error
             return None
-        model = self._decoded("model", answer.values[id].data, block[0])
-        one = self._registers["firmware"]
+        model = self._table.decode("model", answer.values[id].data, block[0])
+        one = self._table["firmware"]
         firmware = answer.values[id].data[one.address - block[0] :][: one.size]
         name = load_models(self.name).get(model, "")
         return BusServo(id, model, name, ".".join(str(byte) for byte in firmware))
@@ -132,9 +131,11 @@ class RegisterBus:
             The servos.
         """
         ids = checked_ids(self.name, self.capabilities, ids)
-        block = self._block("position", "position")
-        answers = self._read(ids, block)
-        values = {id: float(self._decoded("position", frame.data, block[0])) for id, frame in answers.values.items()}
+        block = self._table.block("position", "position")
+        answers = self._reader.read(ids, block)
+        values = {
+            id: float(self._table.decode("position", frame.data, block[0])) for id, frame in answers.values.items()
+        }
         return Answers(values, answers.errors)
 
     def read_telemetry(self, ids: Sequence[int]) -> Answers[Telemetry]:
@@ -146,8 +147,8 @@ class RegisterBus:
             The servos.
         """
         ids = checked_ids(self.name, self.capabilities, ids)
-        block = self._block(*self._series.telemetry)
-        answers = self._read(ids, block)
+        block = self._table.block(*self._series.telemetry)
+        answers = self._reader.read(ids, block)
         return Answers({id: self._telemetry(frame, block[0]) for id, frame in answers.values.items()}, answers.errors)
 
     def write_goals(self, goals: Mapping[int, float]) -> None:
@@ -161,7 +162,7 @@ class RegisterBus:
         checked = checked_goals(self.name, self.capabilities, goals)
         if checked:
             content = {id: self._goal(id, round(goal)) for id, goal in checked.items()}
-            self._link.send(self._dialect.sync_write(self._registers["goal"].address, content))
+            self._link.send(self._dialect.sync_write(self._table["goal"].address, content))
 
     def set_torque(self, ids: Sequence[int] | None, on: bool) -> bool:
         """Switch the torque of servos on or off; all of them at once with a broadcast.
@@ -174,8 +175,8 @@ class RegisterBus:
             Whether they hold.
         """
         if ids is None:
-            content = self._encoded("torque", int(on))
-            self._link.send(self._dialect.write(BROADCAST, self._registers["torque"].address, content))
+            content = self._table.encode("torque", int(on))
+            self._link.send(self._dialect.write(BROADCAST, self._table["torque"].address, content))
         else:
             self._write_all("torque", dict.fromkeys(checked_ids(self.name, self.capabilities, ids), int(on)))
         return True
@@ -200,12 +201,12 @@ class RegisterBus:
         limits = dict(
             zip(("lowest", "highest"), checked_range(self.name, self.capabilities, id, lowest, highest), strict=True)
         )
-        lockable = "lock" in self._registers
+        lockable = "lock" in self._table
         steps = [*([("lock", _UNLOCKED)] * lockable), *limits.items(), *([("lock", _LOCKED)] * lockable)]
         refused: tuple[str, ...] = ()
         for name, value in steps:
             # Whether servos answer to this depends on their status level: what counts is what can be read back.
-            frame = self._dialect.write(id, self._registers[name].address, self._encoded(name, value))
+            frame = self._dialect.write(id, self._table[name].address, self._table.encode(name, value))
             for answer in self._link.ask(frame, (id,), 0).values.values():
                 refused += self._dialect.errors_in(answer.code)
         for name, value in limits.items():
@@ -246,7 +247,7 @@ class RegisterBus:
         chosen = checked_ids(self.name, self.capabilities, ids)
         if not self.capabilities.torque_limit:
             return False
-        value = round(share / self._registers["torque_limit"].scale)
+        value = round(share / self._table["torque_limit"].scale)
         self._write_all("torque_limit", dict.fromkeys(chosen, value))
         return True
 
@@ -268,7 +269,7 @@ class RegisterBus:
         seconds = checked_time(self.name, self.capabilities, seconds)
         self._write_all("watchdog", dict.fromkeys(chosen, 0))
         if seconds is not None:
-            self._write_all("watchdog", dict.fromkeys(chosen, round(seconds / self._registers["watchdog"].scale)))
+            self._write_all("watchdog", dict.fromkeys(chosen, round(seconds / self._table["watchdog"].scale)))
         return True
 
     def timing(self, ids: Sequence[int]) -> BusTiming:
@@ -281,9 +282,10 @@ class RegisterBus:
         """
         if not ids:
             return BusTiming(0.0, 0.0, 0.0)
-        goals = self._dialect.sync_write(self._registers["goal"].address, {id: self._goal(id, 0) for id in ids})
+        goals = self._dialect.sync_write(self._table["goal"].address, {id: self._goal(id, 0) for id in ids})
         positions, telemetry = (
-            self._read_seconds(ids, self._block(*names)) for names in (("position", "position"), self._series.telemetry)
+            self._reader.seconds(ids, self._table.block(*names))
+            for names in (("position", "position"), self._series.telemetry)
         )
         return BusTiming(serial_seconds(len(goals), self._transport.baud), positions, telemetry)
 
@@ -291,66 +293,27 @@ class RegisterBus:
         """Close the port; torque stays as it is."""
         self._transport.close()
 
-    def _block(self, first: str, last: str) -> tuple[int, int]:
-        """Return the first address and the number of bytes from one register to another."""
-        one, other = sorted((self._registers[first], self._registers[last]), key=lambda register: register.address)
-        return one.address, other.address + other.size - one.address
-
-    def _encoded(self, register: str, value: int) -> bytes:
-        return self._registers[register].encode(value, byteorder=self._dialect.byteorder)
-
-    def _decoded(self, register: str, data: bytes, first: int) -> int:
-        one = self._registers[register]
-        begin = one.address - first
-        return one.decode(data[begin : begin + one.size], byteorder=self._dialect.byteorder)
-
     def _unit(self, register: str) -> float:
         """Return what 1 in a register means, in ticks where it is a speed."""
-        one = self._registers[register]
+        one = self._table[register]
         return one.scale * ((self.capabilities.per_turn or 0.0) / 60.0 if one.unit == "rpm" else 1.0)
 
     def _goal(self, id: int, goal: int) -> bytes:
         # Without the speed in the same packet, Feetech's servos move at the speed of the last one.
         values = {"goal": goal, "goal_speed": self._speed.get(id, 0)}
-        return b"".join(self._encoded(name, values.get(name, 0)) for name in self._series.goal)
+        return b"".join(self._table.encode(name, values.get(name, 0)) for name in self._series.goal)
 
     def _write_all(self, register: str, values: Mapping[int, int]) -> None:
         """Write a register of several servos in one packet that nobody answers."""
         if values:
-            content = {id: self._encoded(register, value) for id, value in values.items()}
-            self._link.send(self._dialect.sync_write(self._registers[register].address, content))
-
-    def _read(self, ids: Sequence[int], block: tuple[int, int]) -> Answers[Frame]:
-        many, fast = self._series.read_many, self._series.read_fast
-        if self._fast and fast is not None and len(ids) > 1:
-            whole = self._link.ask(fast(ids, *block), (BROADCAST,), len(ids) * (block[1] + 4) - 3)
-            parts = [one for frame in whole.values.values() for one in split_fast(frame, block[1])]
-            if [one.id for one in parts] == list(ids):
-                return Answers({one.id: one for one in parts})
-        # If one servo is missing, the shared packet is not complete: asked one by one, the others answer.
-        if many is not None and len(ids) > 1:
-            return self._link.ask(many(ids, *block), ids, block[1])
-        answers: dict[int, Frame] = {}
-        errors: list[BusError] = []
-        for id in ids:
-            answer = self._link.ask(self._dialect.read(id, *block), (id,), block[1])
-            answers.update(answer.values)
-            errors += answer.errors
-        return Answers(answers, tuple(errors))
-
-    def _read_seconds(self, ids: Sequence[int], block: tuple[int, int]) -> float:
-        series, baud, count = self._series, self._transport.baud, block[1]
-        if self._fast and series.read_fast is not None and len(ids) > 1:
-            size = len(series.read_fast(ids, *block)) + 8 + len(ids) * (count + 4)
-            return serial_seconds(size, baud) + self._turnaround
-        answers = len(ids) * (serial_seconds(self._dialect.answer + count, baud) + self._turnaround)
-        if series.read_many is not None and len(ids) > 1:
-            return answers + serial_seconds(len(series.read_many(ids, *block)), baud)
-        return answers + len(ids) * serial_seconds(len(self._dialect.read(1, *block)), baud)
+            content = {id: self._table.encode(register, value) for id, value in values.items()}
+            self._link.send(self._dialect.sync_write(self._table[register].address, content))
 
     def _telemetry(self, frame: Frame, first: int) -> Telemetry:
         names = self.capabilities.telemetry - {"alarms"}
-        values: dict[str, Any] = {name: self._decoded(name, frame.data, first) * self._unit(name) for name in names}
+        values: dict[str, Any] = {
+            name: self._table.decode(name, frame.data, first) * self._unit(name) for name in names
+        }
         return Telemetry(**values, alarms=self._alarms(frame))
 
     def _alarms(self, frame: Frame) -> tuple[str, ...]:
@@ -358,15 +321,15 @@ class RegisterBus:
         if "hardware" not in found or self._series.alarms is None:
             return found
         # The answer only tells that there is an alarm; a register tells which.
-        answer = self._read((frame.id,), self._block("hardware_error", "hardware_error"))
+        answer = self._reader.read((frame.id,), self._table.block("hardware_error", "hardware_error"))
         bits = [one.data[0] for one in answer.values.values()]
         named = tuple(text for bit, text in self._series.alarms.items() if any(one >> bit & 1 for one in bits))
         return named or found
 
     def _confirm(self, id: int, register: str, wanted: int, refused: tuple[str, ...]) -> None:
         """Read a register back, and refuse if it does not hold what was written."""
-        block = self._block(register, register)
-        read = self._decoded(register, self._read((id,), block).require()[id].data, block[0])
+        block = self._table.block(register, register)
+        read = self._table.decode(register, self._reader.read((id,), block).require()[id].data, block[0])
         if read != wanted:
             raise ServoStatusError(
                 self.name,

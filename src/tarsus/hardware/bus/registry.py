@@ -7,14 +7,14 @@ from dataclasses import dataclass
 from typing import Any
 
 from tarsus.errors import UnknownNameError
-from tarsus.hardware.bus.lines import LineBus
+from tarsus.hardware.bus.boards.lines import LineBus
+from tarsus.hardware.bus.boards.maestro import MaestroBus
+from tarsus.hardware.bus.boards.pca9685 import Pca9685Bus
+from tarsus.hardware.bus.boards.servo2040 import Servo2040Bus
+from tarsus.hardware.bus.boards.ssc32 import Ssc32Bus
 from tarsus.hardware.bus.lx16a import Lx16aBus
-from tarsus.hardware.bus.maestro import MaestroBus
-from tarsus.hardware.bus.pca9685 import Pca9685Bus
 from tarsus.hardware.bus.protocol import Bus
 from tarsus.hardware.bus.register_bus import RegisterBus
-from tarsus.hardware.bus.servo2040 import Servo2040Bus
-from tarsus.hardware.bus.ssc32 import Ssc32Bus
 from tarsus.hardware.transport.i2c import SmbusTransport
 from tarsus.hardware.transport.serial import SerialTransport
 from tarsus.representation import represented

@@ -10,7 +10,7 @@ from importlib import resources
 from tarsus.errors import InputError
 from tarsus.representation import represented
 
-__all__ = ["Register", "load_models", "load_registers"]
+__all__ = ["Register", "RegisterTable", "load_models", "load_registers"]
 
 
 @represented("name", "address", "size", "unit")
@@ -86,6 +86,71 @@ class Register:
         if value < 0:
             raw = -value | 1 << bits if self.sign != "two" else value + (1 << 8 * self.size)
         return raw.to_bytes(self.size, "big" if byteorder == "big" else "little")
+
+
+class RegisterTable:
+    """The registers of a kind of servo, with the order of bytes that it uses.
+
+    Parameters
+    ----------
+    name : str
+        Name of the table, such as ``"feetech-sts"``.
+    byteorder : str
+        ``"little"`` or ``"big"``.
+    """
+
+    def __init__(self, name: str, *, byteorder: str = "little") -> None:
+        self._registers, self._byteorder = load_registers(name), byteorder
+
+    def __contains__(self, register: str) -> bool:
+        return register in self._registers
+
+    def __getitem__(self, register: str) -> Register:
+        return self._registers[register]
+
+    def block(self, first: str, last: str) -> tuple[int, int]:
+        """Return the first address and the number of bytes from one register to another.
+
+        Parameters
+        ----------
+        first, last : str
+            Their names, in any order.
+        """
+        one, other = sorted((self[first], self[last]), key=lambda register: register.address)
+        return one.address, other.address + other.size - one.address
+
+    def encode(self, register: str, value: int) -> bytes:
+        """Return a register's content for a number.
+
+        Parameters
+        ----------
+        register : str
+            Its name.
+        value : int
+            The number.
+
+        Raises
+        ------
+        InputError
+            If the register can't hold it.
+        """
+        return self[register].encode(value, byteorder=self._byteorder)
+
+    def decode(self, register: str, data: bytes, first: int) -> int:
+        """Return the number that a register holds.
+
+        Parameters
+        ----------
+        register : str
+            Its name.
+        data : bytes
+            Content of consecutive registers.
+        first : int
+            Address of the first of them.
+        """
+        one = self[register]
+        begin = one.address - first
+        return one.decode(data[begin : begin + one.size], byteorder=self._byteorder)
 
 
 @cache

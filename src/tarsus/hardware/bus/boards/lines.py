@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from tarsus.errors import CorruptAnswerError, InputError
-from tarsus.hardware.bus.board_bus import BoardBus
+from tarsus.hardware.bus.boards.board_bus import BoardBus
 from tarsus.hardware.bus.checks import checked_time
 from tarsus.hardware.bus.link import Link, hexadecimal
 from tarsus.hardware.bus.protocol import Capabilities

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from tarsus.errors import InputError
-from tarsus.hardware.bus.board_bus import LONGEST_PULSE, SHORTEST_PULSE, BoardBus, runs
+from tarsus.hardware.bus.boards.board_bus import LONGEST_PULSE, SHORTEST_PULSE, BoardBus, runs
 from tarsus.hardware.bus.protocol import Capabilities
 from tarsus.hardware.codec import pca9685 as codec
 from tarsus.hardware.transport.protocol import I2cTransport

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from tarsus.errors import CorruptAnswerError
-from tarsus.hardware.bus.board_bus import LONGEST_PULSE, SHORTEST_PULSE, BoardBus, runs
+from tarsus.hardware.bus.boards.board_bus import LONGEST_PULSE, SHORTEST_PULSE, BoardBus, runs
 from tarsus.hardware.bus.checks import checked_ids, checked_speed
 from tarsus.hardware.bus.link import Link, hexadecimal
 from tarsus.hardware.bus.protocol import Capabilities, Telemetry

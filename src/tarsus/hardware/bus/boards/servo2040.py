@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from tarsus.hardware.bus.board_bus import LONGEST_PULSE, SHORTEST_PULSE, BoardBus, runs
+from tarsus.hardware.bus.boards.board_bus import LONGEST_PULSE, SHORTEST_PULSE, BoardBus, runs
 from tarsus.hardware.bus.link import Link
 from tarsus.hardware.bus.protocol import Capabilities, Telemetry
 from tarsus.hardware.codec import servo2040 as codec

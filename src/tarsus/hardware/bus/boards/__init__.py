@@ -1,0 +1,1 @@
+"""Boards that send pulses to analogue or digital servos."""
