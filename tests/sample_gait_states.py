@@ -24,7 +24,6 @@ def step_inputs_of(setup, rest, twist, **changes):
         "posture_bandwidth": 4.0,
         "may_lift": np.ones(len(rest), dtype=bool),
         "hold_feet": False,
-        "may_land": np.ones(len(rest), dtype=bool),
         "rest": rest,
         "placement_bounds": np.full((len(rest), 16), np.inf),
         "placement_radii": [np.inf] * len(rest),

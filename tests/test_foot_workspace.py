@@ -7,14 +7,13 @@ import pytest
 from scipy.spatial import HalfspaceIntersection
 
 from gait_robots import PRESETS, ring
-from sample_stances import POSTURES, feet_at, polygon_radii, polygons, pose_of, posture_of, setup_of, standing
+from sample_stances import POSTURES, feet_at, polygon_radii, polygons, pose_of, setup_of, standing
 from tarsus.control.incremental import complete
 from tarsus.control.transition.stages.workspace import foot_workspace
 from tarsus.control.workspace.polygon import NORMALS, polygon_ends, polygon_margin
-from tarsus.control.workspace.stance_geometry import TerrainEstimate, joint_margin, stance_geometry_of
+from tarsus.control.workspace.stance_geometry import joint_margin
 from tarsus.kinematics.inverse import inverse_kinematics
 from tarsus.kinematics.leg import forward_kinematics
-from tarsus.kinematics.pose import Pose
 
 every_stand = pytest.mark.parametrize(("name", "body"), list(itertools.product(PRESETS, POSTURES)))
 
@@ -159,54 +158,6 @@ def test_the_leg_margin_is_negative_where_inverse_kinematics_fails(name):
     low, high = setup.robot.limits[..., 0], setup.robot.limits[..., 1]
     inside = np.minimum(found.angles - low, high - found.angles).min(axis=-1)
     assert (inside[slack >= 0] >= 0.01 - 1e-9).all()
-
-
-# A hill that the body does not follow; one that it follows, feet up to half a lift lower than that.
-TERRAINS = [
-    (TerrainEstimate(0.12 - 0.08j, 0.0), (0.0,) * 6),
-    (TerrainEstimate(0.15 + 0.05j, 0.5), (0.0, 0.0, 0.0, 0.05, -0.15, 0.0)),
-    (TerrainEstimate(0j, 0.6), POSTURES[1]),
-]
-
-
-@pytest.mark.parametrize("case", range(len(TERRAINS)))
-@pytest.mark.parametrize("name", ["strider", "phantomx"])
-def test_polygons_on_a_slope_are_reachable_above_on_and_below_it(name, case):
-    setup = setup_of(name)
-    terrain, body = TERRAINS[case]
-    posture, rest = posture_of(setup, body), setup.rest[:, 0] + 1j * setup.rest[:, 1]
-    stand = stance_geometry_of(posture, rest, terrain)
-    bounds = complete(foot_workspace(setup.robot, stand, foot_distance=setup.foot_distance))
-    assert polygon_margin(bounds, rest).min() > 0.005
-    points = random_points(np.random.default_rng(7), corners_of(bounds, rest), 400)
-    pose = Pose.from_rpy(*posture[3:6], posture[:3])
-    ground = (terrain.slope.conjugate() * points).real
-    for above, inner in ((0.0, 1.0), (-terrain.depth * setup.swing_height, 1.0), (setup.swing_height, 0.4)):
-        places = rest + inner * (points - rest)
-        height = (terrain.slope.conjugate() * places).real + above
-        feet = np.stack([places.real, places.imag, height], axis=-1)
-        found = inverse_kinematics(setup.robot, pose.inverse() @ feet)
-        assert found.ok.all()
-    feet = np.stack([points.real, points.imag, ground], axis=-1)
-    knees = (
-        pose @ forward_kinematics(setup.robot, inverse_kinematics(setup.robot, pose.inverse() @ feet).angles)[..., 2, :]
-    )
-    over = knees[..., 2] - (terrain.slope.conjugate() * (knees[..., 0] + 1j * knees[..., 1])).real
-    assert over.min() > 0
-
-
-def test_a_body_parallel_to_a_slope_has_the_polygons_of_level_ground():
-    setup = setup_of("strider")
-    angle = 0.2
-    flat = standing(setup)
-    # The ground leans about the y axis, and with it everything that stands on it; seen from above it is shorter.
-    lean = Pose.from_rpy(0.0, -angle, 0.0, (0.0, 0.0, 0.0))
-    rest = lean.rotation[0, 0] * flat.rest.real + 1j * flat.rest.imag
-    posture = np.array([*(lean @ flat.position), 0.0, -angle, 0.0, setup.swing_height])
-    stand = stance_geometry_of(posture, rest, TerrainEstimate(complex(np.tan(angle)), 0.0))
-    level = flat.solve(setup.robot, flat.rest.real, flat.rest.imag, np.zeros(6))
-    leaning = stand.solve(setup.robot, rest.real, rest.imag, np.zeros(6))
-    np.testing.assert_allclose(np.array(leaning[:3]), np.array(level[:3]), atol=1e-12)
 
 
 def test_it_is_computed_incrementally():

@@ -9,9 +9,9 @@ from tarsus import Gait, load_robot
 from tarsus.control.command import Command
 from tarsus.control.limitation import Limitation, LimitationKind
 from tarsus.control.limiter.pending_transition import PendingTransitionLimiter
-from tarsus.control.limiter.protocol import RateGrant, TwistGrant, TwistRequest, granted_rate, granted_twist
+from tarsus.control.limiter.protocol import TwistGrant, TwistRequest, granted_twist
 from tarsus.control.limiter.reference_governor import GovernorLimiter
-from tarsus.control.tick.limit import rate_limiters, twist_limiters
+from tarsus.control.tick.limit import twist_limiters
 from tarsus.control.walk_controller import WalkController
 
 DT = 0.02
@@ -19,11 +19,9 @@ LIMITATION = Limitation(kind=LimitationKind.TWIST, cause="test", asked=1.0, gran
 
 
 class Half:
-    """Allows half of the twist, and of the rate."""
+    """Allows half."""
 
     def limit(self, _, grant):
-        if isinstance(grant, RateGrant):
-            return grant._replace(rate=min(grant.rate, 0.5))
         return grant.at_most(0.5, LIMITATION)
 
 
@@ -54,7 +52,6 @@ def test_the_smallest_fraction_counts_and_all_limitations():
     assert grant.target is None
     assert grant.scaled((0.3, 0.0, 0.6)) == pytest.approx([0.1, 0.0, 0.2])
     assert granted_twist([], request(controller, (0.3, 0.0, 0.6))) == TwistGrant()
-    assert granted_rate([Half()], controller._tick.gait) == RateGrant(0.5)
 
 
 def test_a_further_limiter_is_one_more_item_in_the_list():
@@ -66,22 +63,11 @@ def test_a_further_limiter_is_one_more_item_in_the_list():
     assert controller.limitations == (LIMITATION,)
 
 
-def test_a_further_rate_limiter_slows_the_walk_down():
-    fast, slow = (WalkController(load_robot("strider"), Gait.named("tripod")) for _ in range(2))
-    slow._rate_limiters.append(Half())
-    for _ in range(200):
-        fast.step((0.1, 0.0, 0.0), DT)
-        slow.step((0.1, 0.0, 0.0), DT)
-    assert slow.place[0] == pytest.approx(fast.place[0] / 2, rel=0.1)
-
-
 def test_without_feedback_and_transitions_only_workspace_and_governor_limit():
     controller = walking((0.1, 0.0, 0.0))
     asked = request(controller, (0.1, 0.0, 0.0))
     for limiter in twist_limiters(controller._walk)[:-1]:
         assert limiter.limit(asked, TwistGrant()) == TwistGrant()
-    for limiter in rate_limiters(controller._walk):
-        assert limiter.limit(asked.state, RateGrant()) == RateGrant()
     fast = granted_twist(twist_limiters(controller._walk), request(controller, (3.0, 0.0, 0.0)))
     assert fast.fraction == pytest.approx(controller.top_speed((3.0, 0.0, 0.0)))
     (limitation,) = fast.limitations
@@ -92,7 +78,7 @@ def test_without_feedback_and_transitions_only_workspace_and_governor_limit():
 def test_the_governor_keeps_a_target_that_another_limiter_set():
     controller = walking((0.1, 0.0, 0.0))
     kept = TwistGrant(target=np.array([0.0, 0.0, 0.1]))
-    governor = GovernorLimiter(controller._walk.transitions, controller._walk.terrain)
+    governor = GovernorLimiter(controller._walk.transitions)
     assert governor.limit(request(controller, (0.1, 0.0, 0.0)), kept) is kept
 
 

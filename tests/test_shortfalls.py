@@ -8,7 +8,6 @@ import pytest
 from tarsus.control.limitation import Cause, LimitationKind
 from tarsus.control.transition.parameters import WalkParameters
 from tarsus.control.transition.shortfalls import rejection_limitations, stance_limitations
-from tarsus.control.workspace.stance_geometry import TerrainEstimate
 from tarsus.gait.gait import Gait
 
 CAUSE = Cause("the reason", "front left")
@@ -53,10 +52,10 @@ def test_a_height_missing_from_a_commanded_body_pose_is_the_poses():
     assert limitations(posture, asked=asked) == {LimitationKind.BODY: (1.0, pytest.approx(0.8))}
 
 
-def test_a_missing_correction_for_the_ground_is_one_of_the_attitude():
+def test_a_missing_correction_is_one_of_the_body_pose():
     (found,) = stance_limitations(ASKED, changed(3, -0.05), CAUSE, stance_width=0.01)
-    assert found.kind is LimitationKind.ATTITUDE
-    assert found.cause == "the correction for the ground is not met: the reason"
+    assert found.kind is LimitationKind.BODY
+    assert found.cause == "the shift over the feet that bear load is not met: the reason"
 
 
 def test_each_rejected_parameter_has_a_limitation():
@@ -69,4 +68,3 @@ def test_each_rejected_parameter_has_a_limitation():
     assert list(kinds(None, gait=Gait.named("wave"), cycle_time=None)) == [LimitationKind.GAIT]
     assert kinds(sway=(0.1,) * 6) == {LimitationKind.SWAY: 1.0}
     assert kinds(body_height=0.2, correction=(0.0,) * 6) == {LimitationKind.BODY_HEIGHT: 0.2}
-    assert list(kinds(terrain=TerrainEstimate(0.2 + 0j, 0.0))) == [LimitationKind.GROUND]

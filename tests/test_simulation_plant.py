@@ -24,6 +24,7 @@ from tarsus.load.inverse_dynamics import motion_torques
 from tarsus.load.torque import joint_torques
 from tarsus.robot.file import load_robot
 from tarsus.simulation import SensorSuite, ServoModel, SimulatedPlant
+from tarsus.simulation.sensors import suite
 from tarsus.simulation.terrain import Blocks, Flat, HeightField, Ramp, Smooth, Step
 from tarsus.simulation.truth.traced_plant import play
 
@@ -155,7 +156,7 @@ def test_torques_of_a_swinging_leg_are_those_of_inverse_dynamics():
 
 def test_servos_of_the_catalogue_walk_within_their_torque_and_shorter():
     commands = [(0.0, Command(twist=(0.05, 0.0, 0.0)))]
-    _, plant = started(sensors="ideal")
+    _, plant = started(sensors=SensorSuite(joint_angles=suite.Sensor()))
     recording = run(RobotController(STRIDER), plant, commands, duration=4.0)
     way, planned = plant.state.body.position[0], recording.motion.body.position[-1, 0]
     assert 0.8 * planned < way < planned

@@ -12,10 +12,8 @@ from gait_robots import HEXAPOD_GAITS, PRESETS
 from sample_gait_states import EARTH, FACING, begun, moment_of, rest_of, step_inputs_of
 from sample_stances import setup_of
 from tarsus.control.filters import CriticallyDamped
-from tarsus.control.sensing.ground_plane import GroundPlane
-from tarsus.control.terrain.early_contact import stop_on_contact
 from tarsus.control.walk.foothold import final_footholds
-from tarsus.control.walk.state import EARLY_STOP_FRACTION, POSITION_TOLERANCE, chord_factor, integrate_twist
+from tarsus.control.walk.state import POSITION_TOLERANCE, chord_factor, integrate_twist
 from tarsus.control.walk.stepper import TARGET_FREEZE, advance
 from tarsus.control.workspace.stance_geometry import with_sway
 from tarsus.gait.cycle import cycle_feet
@@ -229,43 +227,6 @@ def test_final_rest_is_where_the_lag_leaves_the_body():
     assert now.yaw == FACING
 
 
-@pytest.mark.parametrize("share", [0.3, 0.65, 0.95])
-def test_a_foot_that_meets_the_ground_comes_to_rest_on_it_without_a_jump(share):
-    setup, rest = setup_of("strider"), rest_of("strider")
-    inputs = step_inputs_of(setup, rest, (0.1, 0.0, 0.0))
-    now = walked(begun(setup, rest), inputs, 2.0, 0.01)
-    while not (~now.down & (now.swing_phase > share)).any():
-        now = advance(now, inputs, 0.002)
-    met = ~now.down
-    rate = 1 / (1 - setup.gait.duty_factor)
-    found = stop_on_contact(setup.robot, now, met, acceleration=np.full((6, 3), 1e4), swing_rate=np.full(6, rate))
-    assert (found.stop_phase[met] <= EARLY_STOP_FRACTION).all()
-    np.testing.assert_allclose(found.height(setup.swing_height), now.height(setup.swing_height), atol=1e-12)
-    np.testing.assert_array_equal(found.foot, now.foot)
-    heights = []
-    while (~found.down & met).any():
-        heights.append(found.height(setup.swing_height)[met])
-        found = advance(found, inputs, 0.001)
-    heights.append(found.height(setup.swing_height)[met])
-    np.testing.assert_allclose(heights[-1], found.ground_height[met], atol=1e-12)
-    speeds = np.diff(heights, axis=0)
-    # As fast as before at first, and ever more slowly.
-    unmet = advance(now, inputs, 0.001).height(setup.swing_height) - now.height(setup.swing_height)
-    np.testing.assert_allclose(speeds[0], unmet[met], atol=1e-4)
-    assert np.abs(np.diff(speeds, axis=0)).max() < 2e-4
-
-
-def test_a_foot_that_does_not_land_waits_over_its_target():
-    setup, rest = setup_of("strider"), rest_of("strider")
-    inputs = step_inputs_of(setup, rest, (0.05, 0.0, 0.0), may_land=np.zeros(6, dtype=bool))
-    now = walked(begun(setup, rest), inputs, 0.7, 0.01)
-    waiting = ~now.down & (now.swing_phase >= 1)
-    assert waiting.any()
-    later = advance(now, inputs, 0.01)
-    np.testing.assert_array_equal(later.foot[waiting], now.foot[waiting])
-    assert not later.down[waiting].any()
-
-
 def test_a_sway_is_within_its_amplitudes_and_takes_each_of_them():
     amplitude = np.array([0.01, 0.02, 0.0, 0.05, 0.06, 0.0])
     row = np.array([0.0, 0.0, 0.1, 0.0, 0.0, 0.0, 0.03, *amplitude])
@@ -273,33 +234,6 @@ def test_a_sway_is_within_its_amplitudes_and_takes_each_of_them():
     np.testing.assert_allclose(np.abs(seen[:, :6]).max(axis=0), amplitude, atol=1e-9)
     assert not seen[:, 6].any()
     np.testing.assert_array_equal(with_sway(np.array([*row[:7], *np.zeros(6)]), 0.3, 0.6), row[:7])
-
-
-def test_a_foot_is_put_down_on_the_slope_where_it_lands():
-    setup, rest = setup_of("strider"), rest_of("strider")
-    hill = GroundPlane(z=0.02, slope_x=0.15, slope_y=-0.1)
-    inputs = step_inputs_of(setup, rest, (0.08, 0.02, 0.2), ground_plane=hill, lowest_ground=np.full(len(rest), -1.0))
-    now = begun(setup, rest)
-    up = set()
-    for _ in range(800):
-        after = advance(now, inputs, 0.005)
-        # Wherever it is bound for by now, the ground there is where it will land.
-        off = after.ground_height - hill.height(after.foothold.real, after.foothold.imag)
-        assert np.abs(off[~after.down]).max(initial=0.0) < 1e-12
-        up |= set(np.flatnonzero(now.down & ~after.down).tolist())
-        now = after
-    assert up == set(range(6))
-    np.testing.assert_allclose(
-        now.height(setup.swing_height)[now.down], hill.height(now.foot.real, now.foot.imag)[now.down]
-    )
-
-
-def test_no_foot_is_put_down_lower_than_it_may_be():
-    setup, rest = setup_of("strider"), rest_of("strider")
-    inputs = step_inputs_of(setup, rest, (0.0, 0.0, 0.0), frequency=1.0, ground_plane=GroundPlane(z=-0.05))
-    inputs = inputs._replace(lowest_ground=np.full(len(rest), -0.01), twist=np.array([0.05, 0.0, 0.0]))
-    now = walked(begun(setup, rest), inputs, 3.0, 0.01)
-    np.testing.assert_allclose(now.ground_height[now.down], -0.01)
 
 
 def test_what_a_foot_has_given_way_is_part_of_its_swing():
@@ -313,16 +247,3 @@ def test_what_a_foot_has_given_way_is_part_of_its_swing():
     before, later = (m.height(setup.swing_height) + m.admittance_offset.value for m in (now, after))
     np.testing.assert_allclose(later, before, atol=1e-9)
     assert not after.admittance_offset.value[~after.down].any()
-
-
-def test_the_heading_frame_rides_over_the_ground():
-    setup, rest = setup_of("strider"), rest_of("strider")
-    high = np.array([0.05])
-    inputs = step_inputs_of(setup, rest, (0.0, 0.0, 0.0), frequency=0.0, elevation=high)
-    now = moment_of(setup, rest)
-    heights = []
-    for _ in range(400):
-        now = advance(now, inputs, 0.02)
-        heights.append(float(now.elevation.value[0]))
-    assert (np.diff(heights) >= 0).all()
-    assert now.elevation.value is high

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tarsus.control.walk.swing_trajectory import quintic, stopping_fraction, stopping_height, swinging_height
+from tarsus.control.walk.swing_trajectory import quintic, swinging_height
 from tarsus.gait.swing import swing_position
 
 number = st.floats(-1, 1)
@@ -34,22 +34,3 @@ def test_from_rest_it_is_the_planned_swing():
     np.testing.assert_allclose(found, planned[:, 0] + 1j * planned[:, 1], atol=1e-15)
     heights = [swinging_height(x, start=0.01, ground=0.03, swing_height=0.04) for x in fractions.tolist()]
     np.testing.assert_allclose(heights, planned[:, 2], atol=1e-15)
-
-
-@given(st.floats(0.5, 0.9), st.floats(0.05, 0.8), st.floats(-0.5, 0.0), st.floats(-0.01, 0.0))
-def test_a_stop_begins_with_the_speed_at_contact_and_ends_at_rest(contact, duration, speed, sink):
-    stop = {"contact": contact, "duration": duration, "height": 0.02, "speed": speed, "ground": 0.02 + sink}
-    end, step = min(contact + duration, 1.0), 1e-7
-    assert stopping_height(contact, **stop) == pytest.approx(0.02)
-    assert (stopping_height(contact + step, **stop) - 0.02) / step == pytest.approx(speed, abs=1e-4)
-    assert stopping_height(end, **stop) == pytest.approx(0.02 + sink)
-    assert (stopping_height(end - step, **stop) - stopping_height(end, **stop)) / step == pytest.approx(0.0, abs=1e-4)
-    assert stopping_height(contact - 0.1, **stop) == 0.02
-
-
-def test_stopping_covers_a_third_of_the_distance_at_constant_speed():
-    progress = np.linspace(0, 1, 1001)
-    distance = stopping_fraction(progress)
-    assert distance[0] == 0.0
-    assert distance[-1] == 1 / 3
-    np.testing.assert_allclose(np.gradient(distance, progress)[1:-1], (1 - progress[1:-1]) ** 2, atol=1e-6)

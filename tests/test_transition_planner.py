@@ -42,7 +42,7 @@ def planned(setup, parameters, now=None, rest=None, **options):
     speed, acceleration = joint_limits(setup.robot, None, None)
     bounds = {"speed": speed, "acceleration": acceleration}
     planner = TransitionPlanner(setup.robot, **bounds, foot_distance=setup.foot_distance)
-    present = None if now is None else StanceTarget(now, rest, parameters.terrain)
+    present = None if now is None else StanceTarget(now, rest)
     return complete(planner.plan(parameters, present, **options))
 
 

@@ -18,7 +18,6 @@ import pytest
 from gait_robots import PRESETS, preset, ring
 from tarsus.control.command import Command
 from tarsus.control.limitation import Limitation, LimitationKind
-from tarsus.control.readings import SensorReadings
 from tarsus.control.safety import Guard
 from tarsus.control.walk_controller import WalkController
 from tarsus.errors import InputError, UnknownNameError, UnreachableError
@@ -26,7 +25,6 @@ from tarsus.gait.gait import Gait
 from tarsus.gait.path import twist_path
 from tarsus.gait.plan import plan_walk
 from tarsus.kinematics.inverse import inverse_kinematics
-from tarsus.kinematics.leg import forward_kinematics
 from tarsus.kinematics.pose import Pose
 from walk_trace import GAITS, Trace, drive
 
@@ -499,21 +497,6 @@ def test_the_body_sways_with_the_steps_and_is_still_when_it_stands():
     stopped(trace).assert_sound()
     trace.run(STOP, 3)
     assert w.body.position[2] == pytest.approx(level, abs=1e-4)
-
-
-@pytest.mark.parametrize("step", [0.008, -0.008])
-def test_feet_meet_ground_that_is_higher_or_lower(step):
-    """A step across the way, felt by contacts alone: feet stop on it, or look for it."""
-    w = controller("strider", "wave", levelling="level")
-    trace = Trace(w)
-    for _ in range(1200):
-        feet = trace.controller.body @ forward_kinematics(w.robot, w.angles)[..., 3, :]
-        ground = np.where(feet[:, 0] > 0.3, step, 0.0)
-        trace.step((0.05, 0, 0), 0.025, readings=SensorReadings(contacts=feet[:, 2] <= ground + 1e-3))
-    trace.assert_sound(flat=False)
-    assert w.place[0] > 0.6
-    feet, down = trace.feet[-1], trace.contacts[-1]
-    np.testing.assert_allclose(feet[down & (feet[:, 0] > 0.3), 2], step, atol=2.5e-3)
 
 
 # Time.

@@ -184,7 +184,7 @@ def test_a_quadruped_stands_up_walks_and_sits_down_without_interventions():
 
 def test_in_physics_a_quadruped_keeps_level_and_goes_where_it_is_told():
     robot = robot_from_dict(QUADRUPED)
-    plant, tilts = SimulatedPlant(robot, servos="ideal"), []
+    plant, tilts = SimulatedPlant(robot, servos="ideal", sensors="blind"), []
 
     class Watched:
         """The plant, with the attitude that the body really has."""

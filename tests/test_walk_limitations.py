@@ -119,20 +119,6 @@ def test_a_body_pose_waits_for_the_legs_out_of_the_gait_and_that_is_reported():
     assert controller.body.position[2] == pytest.approx(0.13, abs=1e-3)
 
 
-@pytest.mark.parametrize("degrees", [0, 15, 25, 52])
-def test_a_tilt_beyond_what_levelling_corrects_is_reported(degrees):
-    controller = controller_of()
-    readings = SensorReadings(attitude=(0.0, math.radians(degrees)))
-    run(controller, (0.05, 0.0, 0.0), 1, readings)
-    if degrees <= 20:
-        assert controller.limitations == ()
-        return
-    (limitation,) = controller.limitations
-    assert limitation.kind is LimitationKind.ATTITUDE
-    assert limitation.granted == pytest.approx(math.radians(degrees))
-    assert f"{degrees} deg instead of 0 deg, bound 20 deg" in limitation.text()
-
-
 def test_a_commanded_tilt_is_no_limitation():
     controller = controller_of()
     run(controller, Command(body=(0, 0, 0, 0, math.radians(12), 0)), 4)

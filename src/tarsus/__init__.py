@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from tarsus.control.sequence import MotionSequence, SequencePlayer
     from tarsus.control.startup import fold, folded_pose, power_off_order, sit_down, stand_up
     from tarsus.control.states.robot_state import RobotState
+    from tarsus.control.terrain.roughness import GroundAdaptation
     from tarsus.control.walk_controller import WalkController
     from tarsus.errors import (
         BusError,
@@ -133,6 +134,7 @@ _HOMES = {
     "tarsus.gait.cycle": ("cycle_feet",),
     "tarsus.gait.gait": ("GAITS", "Gait"),
     "tarsus.control.pose.admittance": ("Admittance",),
+    "tarsus.control.terrain.roughness": ("GroundAdaptation",),
     "tarsus.control.safety": ("Guard", "GuardBounds", "GuardOutput", "GuardState", "Intervention", "InterventionKind"),
     "tarsus.control.startup": ("fold", "folded_pose", "power_off_order", "sit_down", "stand_up"),
     "tarsus.control.control_output": ("ControlOutput",),
@@ -227,6 +229,7 @@ __all__ = [
     "Gait",
     "GaitDefaults",
     "GaitTrial",
+    "GroundAdaptation",
     "Guard",
     "GuardBounds",
     "GuardOutput",

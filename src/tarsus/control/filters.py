@@ -1,4 +1,4 @@
-"""Filters that smooth every command before the robot follows it: the critically damped filter, and a rate limit.
+"""The filter that smooths every command before the robot follows it.
 
 The critically damped filter is ``value'' = w^2 (target - value) - 2 w value'``, of bandwidth `w`. Its impulse response
 ``w^2 t exp(-w t)`` is never negative and has the integral 1: the value is a weighted mean of the targets so far. It
@@ -17,7 +17,7 @@ import numpy as np
 if TYPE_CHECKING:
     from jaxtyping import Float
 
-__all__ = ["PEAK_RATE", "CriticallyDamped", "RateLimitedFilter", "integral_factors"]
+__all__ = ["PEAK_RATE", "CriticallyDamped", "integral_factors"]
 
 PEAK_RATE = 2 / math.e
 """Greatest rate over bandwidth and half the range of the targets."""
@@ -130,84 +130,3 @@ def integral_factors(time: Any, *, bandwidth: float) -> tuple[Any, Any, Any]:
     settled = decayed + decay * exponent
     of_value = (decayed + settled) / bandwidth
     return time - of_value, of_value, settled / (bandwidth * bandwidth)
-
-
-# Values and rates below this are 0 [unit of the values].
-_NOTHING = 1e-12
-
-
-class RateLimitedFilter:
-    """A pair of values that approaches a target: within a circle, no faster than a rate, with a continuous rate.
-
-    A point moves to the target in a straight line at most at the given rate; the values follow the point through a
-    critically damped filter, exactly, since the point moves linearly within a tick. As the filter's response is
-    positive with gain 1, the values have the point's bounds: the same circle, the same rate.
-
-    Parameters
-    ----------
-    radius : float
-        Greatest distance from (0, 0).
-    rate : float
-        Greatest change per second.
-    frequency : float
-        Bandwidth of the filter [rad/s]; the rate changes by at most ``2 / e * frequency * rate`` per second and value.
-
-    Attributes
-    ----------
-    values : (float, float)
-        The values.
-    """
-
-    def __init__(self, radius: float, *, rate: float, frequency: float) -> None:
-        self.radius, self.rate, self.frequency = radius, rate, frequency
-        self.values = (0.0, 0.0)
-        self._speeds = (0.0, 0.0)
-        self._point = (0.0, 0.0)
-
-    def step(self, target: tuple[float, float], dt: float) -> tuple[float, float]:
-        """Return the values after a tick.
-
-        Parameters
-        ----------
-        target : (float, float)
-            The target; the nearest point within the circle counts. Not finite: (0, 0).
-        dt : float
-            Length of the tick [s]; the values stay unless it is finite and positive.
-        """
-        if not 0.0 < dt < math.inf:
-            return self.values
-        start, end = self._point, self._moved(target, dt)
-        self._point = end
-        keep = math.exp(-self.frequency * dt)
-        x, v = _follow(start[0], end[0], self.values[0], self._speeds[0], self.frequency, dt, keep)
-        y, w = _follow(start[1], end[1], self.values[1], self._speeds[1], self.frequency, dt, keep)
-        if end == (0.0, 0.0) and abs(x) + abs(y) < _NOTHING and abs(v) + abs(w) < _NOTHING:
-            x = y = v = w = 0.0
-        self.values, self._speeds = (x, y), (v, w)
-        return self.values
-
-    def _moved(self, target: tuple[float, float], dt: float) -> tuple[float, float]:
-        """Return the point after a tick."""
-        x, y = target
-        far = math.hypot(x, y)
-        if not far < math.inf:
-            x = y = 0.0
-        elif far > self.radius:
-            x, y = x * self.radius / far, y * self.radius / far
-        dx, dy = x - self._point[0], y - self._point[1]
-        distance, most = math.hypot(dx, dy), self.rate * dt
-        if distance <= most:
-            return x, y
-        return self._point[0] + dx * most / distance, self._point[1] + dy * most / distance
-
-
-def _follow(
-    start: float, end: float, value: float, speed: float, frequency: float, dt: float, keep: float
-) -> tuple[float, float]:
-    """Return value and speed of ``x'' = w^2 (p - x) - 2 w x'`` after a tick in which p goes from start to end."""
-    rate = (end - start) / dt
-    lag = 2.0 * rate / frequency
-    # The deviation from the steady motion behind a moving point fades as (away + turn t) e^-wt.
-    away = value - start + lag
-    turn = speed - rate + frequency * away
-    return end - lag + (away + turn * dt) * keep, rate + (turn - frequency * (away + turn * dt)) * keep

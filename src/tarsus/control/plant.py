@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 
 import numpy as np
@@ -121,9 +122,18 @@ class Environment:
         """
         return {
             "contacts": feet[:, 2] <= self._height + _TOUCH if self._contacts else None,
-            "attitude": tuple(np.asarray(body.rpy)[:2] + self._tilt) if self._attitude else None,
+            "attitude": self._tilted(feet, body, contacts) if self._attitude else None,
             "forces": self._loads(feet, contacts) if self._forces else None,
         }
+
+    def _tilted(
+        self, feet: Float[np.ndarray, "legs 3"], body: Pose, contacts: Bool[np.ndarray, "legs"]
+    ) -> tuple[float, float]:
+        """Return roll and pitch: those in G, of the ground, and of its plane against that of the feet [rad]."""
+        roll, pitch = (np.asarray(body.rpy)[:2] + self._tilt).tolist()
+        over = feet[contacts] - feet[contacts].mean(axis=0)
+        slope_x, slope_y = np.linalg.lstsq(over[:, :2], over[:, 2] - self._height[contacts], rcond=None)[0].tolist()
+        return roll - math.atan(slope_y), pitch + math.atan(slope_x)
 
     def _loads(
         self, feet: Float[np.ndarray, "legs 3"], contacts: Bool[np.ndarray, "legs"]
@@ -131,8 +141,9 @@ class Environment:
         """Return the ground's vertical forces on the feet ``(legs,)`` [N]."""
         # The walk controller takes the centre of mass to be in the middle of the feet; only so is a share no error.
         centre = feet[:, :2].mean(axis=0)
-        share = balanced_forces(feet.tolist(), contacts.tolist(), centre.tolist(), self._weight)
-        return np.where(contacts, np.array(share) + self._force, 0.0)
+        bears = contacts | (feet[:, 2] <= self._height + _TOUCH)
+        share = balanced_forces(feet.tolist(), bears.tolist(), centre.tolist(), self._weight)
+        return np.where(bears, np.array(share) + self._force, 0.0)
 
 
 @represented("robot")

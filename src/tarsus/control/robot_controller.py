@@ -12,7 +12,6 @@ from tarsus.control.command import Command
 from tarsus.control.control_output import ControlOutput
 from tarsus.control.limitation import Limitation, LimitationKind
 from tarsus.control.pose.admittance import Admittance
-from tarsus.control.pose.levelling import LevellingMode
 from tarsus.control.readings import SensorReadings
 from tarsus.control.safety import Guard, GuardBounds, GuardState, Intervention
 from tarsus.control.sequence import MotionSequence
@@ -20,6 +19,8 @@ from tarsus.control.startup import fold, sit_down, stand_up
 from tarsus.control.states.activity import Activity, Playing, Resting, Snapshot, Walking
 from tarsus.control.states.persistent_command import PersistentCommand
 from tarsus.control.states.robot_state import RobotState, next_state, requested_state
+from tarsus.control.terrain.posture_feedback import Levelling
+from tarsus.control.terrain.roughness import GroundAdaptation
 from tarsus.control.walk.ground_pose import ground_frame
 from tarsus.control.walk_controller import WalkController
 from tarsus.errors import TarsusError
@@ -61,8 +62,10 @@ class RobotController:
         folding) ends in.
     body_height, swing_height : float, optional
         Of the stance that it starts in or stands up to [m]; the robot's own where left out.
-    levelling : "level", "follow" or None
-        Whether the body stays level on ground that is not, or follows its slope.
+    levelling : "level", "between", "follow" or None
+        The attitude to keep on sloping ground where an attitude is measured; None for no use of it.
+    adaptation : GroundAdaptation, optional
+        How far swing height and body height may adapt to rough ground; its default where left out.
     admittance : Admittance, optional
         How the feet comply with the forces on them; left out, they don't.
     guard : bool or GuardBounds
@@ -76,7 +79,7 @@ class RobotController:
         If the robot can't stand or lie so.
     """
 
-    def __init__(
+    def __init__(  # noqa: PLR0913 - all that a robot is controlled with, all of it optional
         self,
         robot: Robot,
         gait: Gait | None = None,
@@ -85,7 +88,8 @@ class RobotController:
         angles: Sequence[Any] | Float[np.ndarray, "legs 3"] | None = None,
         body_height: float | None = None,
         swing_height: float | None = None,
-        levelling: LevellingMode | None = None,
+        levelling: Levelling | None = "level",
+        adaptation: GroundAdaptation | None = None,
         admittance: Admittance | None = None,
         guard: bool | GuardBounds = True,
     ) -> None:
@@ -93,7 +97,7 @@ class RobotController:
         self.body_height, self.swing_height = body_height, swing_height
         self._gait = Gait.named(robot.gait.name, legs=robot.legs) if gait is None else gait
         self.compliant = admittance is not None
-        self._ground: dict[str, Any] = {"levelling": levelling, "admittance": admittance}
+        self._ground: dict[str, Any] = {"levelling": levelling, "adaptation": adaptation, "admittance": admittance}
         self._command = PersistentCommand(robot)
         # Pose of the activity's ground frame in G; None where they are the same.
         self._base: Pose | None = None
@@ -254,7 +258,7 @@ class RobotController:
         now = self._now
         if self.guard is None:
             return now.angles, ()
-        told = self.guard.check(now.angles, dt, *((None, None) if now.belly else (now.contacts, now.body)))
+        told = self.guard.check(now.angles, dt, *((None, None) if now.belly or now.felt else (now.contacts, now.body)))
         began = tuple(each for each in told.interventions if each.kind not in self._present)
         self._present = {each.kind for each in told.interventions}
         return told.angles, began

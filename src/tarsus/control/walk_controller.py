@@ -11,14 +11,14 @@ from tarsus.control.command import Command
 from tarsus.control.limitation import Limitation
 from tarsus.control.limiter.workspace import top_speed
 from tarsus.control.pose.admittance import Admittance
-from tarsus.control.pose.levelling import LevellingMode
 from tarsus.control.readings import SensorReadings
-from tarsus.control.terrain.limitations import ground_limitations
+from tarsus.control.terrain.posture_feedback import Levelling
+from tarsus.control.terrain.roughness import GroundAdaptation
 from tarsus.control.tick.command_intake import CommandIntake
 from tarsus.control.tick.components import WalkComponents
 from tarsus.control.tick.estimate import estimated
 from tarsus.control.tick.integrate import integrated
-from tarsus.control.tick.limit import limited, rate_limiters, twist_limiters
+from tarsus.control.tick.limit import limited, twist_limiters
 from tarsus.control.tick.plan import planned
 from tarsus.control.tick.state import TickState
 from tarsus.control.walk.ground_pose import body_pose, foot_positions
@@ -60,8 +60,11 @@ class WalkController:
         Greatest of every joint [rad/s], [rad/s^2]; left out, each servo's no-load speed, reached in 0.05 s.
     foot_distance : float, optional
         Least distance between two feet [m]; two foot radii and 10 mm where left out.
-    levelling : "level", "follow" or None
-        Whether the body stays level on sloping ground, or follows its slope.
+    levelling : "level", "between", "follow" or None
+        The attitude to keep on sloping ground where an attitude is measured: level, along the slope, or in the middle;
+        None for no use of the measured attitude.
+    adaptation : GroundAdaptation, optional
+        How far swing height and body height may adapt to rough ground; its default where left out.
     admittance : Admittance, optional
         How the feet yield to the forces on them; left out, they don't.
 
@@ -95,7 +98,8 @@ class WalkController:
         joint_speed: float | None = None,
         joint_acceleration: float | None = None,
         foot_distance: float | None = None,
-        levelling: LevellingMode | None = None,
+        levelling: Levelling | None = "level",
+        adaptation: GroundAdaptation | None = None,
         admittance: Admittance | None = None,
     ) -> None:
         walk, state = WalkComponents.standing(
@@ -109,13 +113,14 @@ class WalkController:
             joint_acceleration=joint_acceleration,
             foot_distance=foot_distance,
             levelling=levelling,
+            adaptation=GroundAdaptation() if adaptation is None else adaptation,
             admittance=admittance,
         )
         self.robot, self.joint_speed, self.joint_acceleration = walk.robot, walk.joint_speed, walk.joint_acceleration
         self.time = 0.0
         self._walk, self._tick = walk, TickState(state, np.zeros(3))
-        self._intake = CommandIntake(walk.robot, walk.transitions, walk.terrain)
-        self._twist_limiters, self._rate_limiters = twist_limiters(walk), rate_limiters(walk)
+        self._intake = CommandIntake(walk.robot, walk.transitions)
+        self._twist_limiters = twist_limiters(walk)
 
     def step(
         self, command: Command | Sequence[float], dt: float, readings: SensorReadings | None = None
@@ -150,7 +155,7 @@ class WalkController:
         tick = estimated(self._walk, self._tick, readings, dt)
         tick = planned(self._walk, tick, command, dt, body=self._body_now)
         tick = limited(self._walk, tick, command, dt, self._twist_limiters)
-        self._tick = integrated(self._walk, tick, dt, self._rate_limiters)
+        self._tick = integrated(self._walk, tick, dt)
         self.time += dt
         return self.angles
 
@@ -165,12 +170,12 @@ class WalkController:
     @property
     def limitations(self) -> tuple[Limitation, ...]:
         """Why the command is not met in full."""
-        walk, names = self._walk, self.robot.leg_names
+        walk = self._walk
         return (
             *walk.transitions.limitations,
             *walk.foot_targets.limitations,
             *self._tick.limitations,
-            *ground_limitations(walk.terrain.estimate, walk.terrain.searches.failed_legs, names),
+            *walk.ground.limitations,
         )
 
     @property
@@ -205,6 +210,11 @@ class WalkController:
         return self._walk.standing_feet(self._tick.gait)
 
     @property
+    def feels_ground(self) -> bool:
+        """Whether readings have told anything of the ground: the feet follow it from then on."""
+        return self._tick.gait.felt is not None
+
+    @property
     def angles(self) -> Float[np.ndarray, "legs 3"]:
         """The joint angles: array, shape (legs, 3) [rad]."""
         return self._walk.time_scaling.angles
@@ -232,4 +242,4 @@ class WalkController:
         InputError
             If `direction` is not three finite numbers, or all are 0.
         """
-        return top_speed(self._walk.transitions, direction, hold=self._walk.terrain.hold_time)
+        return top_speed(self._walk.transitions, direction)

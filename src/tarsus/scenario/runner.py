@@ -62,7 +62,7 @@ def run_scenario(
                 f"at {command.at:g} s: {command_text(command)}: only an ideal plant simulates what sensors measure; "
                 f"leave the command out for a {type(plant).__name__}"
             )
-    levelling: Any = scenario.levelling or None
+    levelling: Any = None if scenario.levelling == "none" else scenario.levelling or "level"
     controller = RobotController(
         chosen,
         Gait.named(scenario.gait or chosen.gait.name, legs=chosen.legs),

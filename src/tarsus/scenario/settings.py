@@ -16,7 +16,7 @@ __all__ = ["ADMITTANCE", "LEVELLINGS", "NUMBERS", "SETTINGS", "STARTS", "Setting
 STARTS = ("standing", "sitting", "folded")
 """Initial states of the robot."""
 
-LEVELLINGS = ("level", "follow")
+LEVELLINGS = ("level", "between", "follow", "none")
 """Body attitudes on ground that is not level: level, or parallel to the ground."""
 
 NUMBERS = (

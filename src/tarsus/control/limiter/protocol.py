@@ -18,7 +18,7 @@ from tarsus.control.walk.state import GaitState
 if TYPE_CHECKING:
     from jaxtyping import Float
 
-__all__ = ["RateGrant", "RateLimiter", "TwistGrant", "TwistLimiter", "TwistRequest", "granted_rate", "granted_twist"]
+__all__ = ["TwistGrant", "TwistLimiter", "TwistRequest", "granted_twist"]
 
 
 class TwistRequest(NamedTuple):
@@ -95,38 +95,7 @@ class TwistLimiter(Protocol):
         ...
 
 
-class RateGrant(NamedTuple):
-    """How fast the walk may advance along its trajectories.
-
-    Attributes
-    ----------
-    rate : float
-        Greatest rate of its time, 0 to 1.
-    stop : bool
-        Whether it stops.
-    """
-
-    rate: float = 1.0
-    stop: bool = False
-
-
-class RateLimiter(Protocol):
-    """Limits the rate of the walk's time."""
-
-    def limit(self, state: GaitState, grant: RateGrant, /) -> RateGrant:
-        """Return the rate after this limiter.
-
-        Parameters
-        ----------
-        state : GaitState
-            The gait state at the start of the tick.
-        grant : RateGrant
-            What the limiters before this one have left.
-        """
-        ...
-
-
-_WHOLE_TWIST, _FULL_RATE = TwistGrant(), RateGrant()
+_WHOLE_TWIST = TwistGrant()
 
 
 def granted_twist(limiters: Sequence[TwistLimiter], request: TwistRequest) -> TwistGrant:
@@ -142,20 +111,4 @@ def granted_twist(limiters: Sequence[TwistLimiter], request: TwistRequest) -> Tw
     grant = _WHOLE_TWIST
     for limiter in limiters:
         grant = limiter.limit(request, grant)
-    return grant
-
-
-def granted_rate(limiters: Sequence[RateLimiter], state: GaitState) -> RateGrant:
-    """Return the time rate that all rate limiters leave.
-
-    Parameters
-    ----------
-    limiters : sequence of RateLimiter
-        The limiters.
-    state : GaitState
-        The gait state at the start of the tick.
-    """
-    grant = _FULL_RATE
-    for limiter in limiters:
-        grant = limiter.limit(state, grant)
     return grant

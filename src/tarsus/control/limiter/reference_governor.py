@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import cmath
+
 import numpy as np
 
 from tarsus.control.limiter.protocol import TwistGrant, TwistRequest
-from tarsus.control.terrain.adaptation import TerrainAdaptation
 from tarsus.control.transition.executor import TransitionExecutor
 from tarsus.control.walk.reference_governor import governed_twist
+from tarsus.control.walk.state import GaitState
+from tarsus.control.workspace.polygon import NORMALS_CONJUGATE
 
 __all__ = ["GovernorLimiter"]
 
@@ -22,12 +25,10 @@ class GovernorLimiter:
     ----------
     transitions : TransitionExecutor
         The stance and its transitions.
-    terrain : TerrainAdaptation
-        Decides how much longer than planned feet may have to stand.
     """
 
-    def __init__(self, transitions: TransitionExecutor, terrain: TerrainAdaptation) -> None:
-        self._transitions, self._terrain = transitions, terrain
+    def __init__(self, transitions: TransitionExecutor) -> None:
+        self._transitions = transitions
 
     def limit(self, request: TwistRequest, grant: TwistGrant) -> TwistGrant:
         """Return the grant with the twist to follow."""
@@ -37,7 +38,7 @@ class GovernorLimiter:
         # In steady walking nothing changes; before, feet may be put down where the target leaves them no margin.
         if command == request.target.tolist() and self._is_steady(request, command):
             return TwistGrant(grant.fraction, request.target, grant.limitations)
-        begins, ends = transitions.stance_intervals(request.state, self._terrain.hold_time)
+        begins, ends = transitions.stance_intervals(request.state)
         target = governed_twist(
             request.state,
             request.target,
@@ -53,4 +54,10 @@ class GovernorLimiter:
         """Return whether the robot walks at the twist and at its cycle time."""
         value = request.state.twist.value.tolist()
         difference = max(abs(a - b) for a, b in zip(value, twist, strict=True))
-        return self._transitions.timing_is_steady and difference <= _STEADY * max(map(abs, twist))
+        steady = self._transitions.timing_is_steady and difference <= _STEADY * max(map(abs, twist))
+        return steady and not (request.state.felt is not None and self._is_behind(request.state))
+
+    def _is_behind(self, state: GaitState) -> bool:
+        """Return whether a foot that stands is outside its polygon: one that has landed short of its foothold."""
+        place = (state.foot - state.origin) * cmath.exp(-1j * state.yaw)
+        return bool(((NORMALS_CONJUGATE * place[state.down, None]).real > self._transitions.bounds[state.down]).any())

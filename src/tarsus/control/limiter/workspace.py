@@ -9,7 +9,6 @@ import numpy as np
 
 from tarsus.control.limitation import Limitation, LimitationKind
 from tarsus.control.limiter.protocol import TwistGrant, TwistRequest
-from tarsus.control.terrain.adaptation import TerrainAdaptation
 from tarsus.control.transition.executor import TransitionExecutor
 from tarsus.errors import InputError
 
@@ -32,12 +31,10 @@ class WorkspaceLimiter:
         The names of the legs.
     transitions : TransitionExecutor
         The stance and its transitions.
-    terrain : TerrainAdaptation
-        Decides how much longer than planned feet may have to stand.
     """
 
-    def __init__(self, names: Sequence[str], transitions: TransitionExecutor, terrain: TerrainAdaptation) -> None:
-        self._names, self._transitions, self._terrain = names, transitions, terrain
+    def __init__(self, names: Sequence[str], transitions: TransitionExecutor) -> None:
+        self._names, self._transitions = names, transitions
         self._key: tuple[Any, ...] = ()
         self._found: tuple[float, Limitation | None] = (1.0, None)
 
@@ -46,7 +43,7 @@ class WorkspaceLimiter:
         transitions = self._transitions
         frequency = min(transitions.timing.frequency, 1 / transitions.current.cycle_timing.cycle_time)
         limits, pending = transitions.footholds.limits, transitions.pending
-        key = (request.twist, frequency, self._terrain.hold_time, limits, pending)
+        key = (request.twist, frequency, limits, pending)
         if key != self._key:
             self._key, self._found = key, self._largest(np.array(request.twist), frequency)
         return grant.at_most(*self._found)
@@ -61,9 +58,7 @@ class WorkspaceLimiter:
         for transition, limits in stances:
             duty_factor = transition.parameters.gait.duty_factor
             stance_time = duty_factor * max(1 / frequency, transition.cycle_timing.cycle_time)
-            allowed, which = limits.feasible_fraction(
-                twist, stance_time=stance_time, duty_factor=duty_factor, hold=self._terrain.hold_time
-            )
+            allowed, which = limits.feasible_fraction(twist, stance_time=stance_time, duty_factor=duty_factor)
             if allowed < fraction:
                 fraction, leg = allowed, which
         if fraction == 1:
@@ -73,7 +68,7 @@ class WorkspaceLimiter:
         )
 
 
-def top_speed(transitions: TransitionExecutor, direction: Sequence[float], *, hold: float) -> float:
+def top_speed(transitions: TransitionExecutor, direction: Sequence[float]) -> float:
     """Return the largest multiple of a twist that the robot can sustain as it stands.
 
     Parameters
@@ -82,8 +77,6 @@ def top_speed(transitions: TransitionExecutor, direction: Sequence[float], *, ho
         The stance.
     direction : (vx, vy, wz)
         The twist [m/s, m/s, rad/s].
-    hold : float
-        How much longer than planned feet may have to stand [s].
 
     Raises
     ------
@@ -99,7 +92,5 @@ def top_speed(transitions: TransitionExecutor, direction: Sequence[float], *, ho
     current = transitions.current
     duty_factor = transitions.timing.gait.duty_factor
     stance_time = duty_factor * current.cycle_timing.cycle_time
-    fraction, _ = current.final_limits.feasible_fraction(
-        twist, stance_time=stance_time, duty_factor=duty_factor, hold=hold
-    )
+    fraction, _ = current.final_limits.feasible_fraction(twist, stance_time=stance_time, duty_factor=duty_factor)
     return fraction

@@ -12,14 +12,12 @@ from tarsus.control.workspace.stance_geometry import SWING_HEIGHT, sway_fraction
 if TYPE_CHECKING:
     from jaxtyping import Complex, Float
 
-__all__ = ["ELEVATION_BANDWIDTH", "PoseController", "elevation_bandwidth"]
+__all__ = ["PoseController"]
 
 
 # Greatest bandwidth of the posture [rad/s], and the greatest speed and turning rate of the body [m/s, rad/s].
 _BANDWIDTH = 4.0
 _BODY_SPEED, _BODY_TURN = 0.08, 0.5
-ELEVATION_BANDWIDTH = _BANDWIDTH
-"""Greatest bandwidth with which the heading frame follows the height of the ground [rad/s]."""
 
 # Tolerances within which a posture and a sway count as reached [m, rad].
 _POSTURE_TOLERANCE, _SWAY_TOLERANCE = 2e-4, 1e-3
@@ -147,17 +145,6 @@ class PoseController:
             return _NO_DISTANCE
         posture, current = self.posture.tolist(), value[: SWING_HEIGHT + 1].tolist()
         return [abs(a - b) for a, b in zip(posture, current, strict=True)]
-
-
-def elevation_bandwidth(gap: float) -> float:
-    """Return the bandwidth of the heading frame's height at which the body keeps to its greatest speed [rad/s].
-
-    Parameters
-    ----------
-    gap : float
-        Height of the ground over the heading frame [m].
-    """
-    return _bandwidth_for(abs(gap) / _BODY_SPEED)
 
 
 def _bandwidth_for(time: float) -> float:

@@ -50,6 +50,8 @@ class Snapshot(NamedTuple):
         Speed of the walk: forward, left [m/s], turning [rad/s].
     limitations : tuple of Limitation
         Why the command is not met in full.
+    felt : bool
+        Whether the feet follow ground that is felt, which need not be a plane.
     """
 
     angles: Float[np.ndarray, "legs 3"]
@@ -61,6 +63,7 @@ class Snapshot(NamedTuple):
     activity: str
     twist: tuple[float, float, float] = _NO_TWIST
     limitations: tuple[Limitation, ...] = ()
+    felt: bool = False
 
 
 class Activity(Protocol):
@@ -111,6 +114,7 @@ class Walking:
             activity=walk.walk_state.value,
             twist=(vx, vy, wz),
             limitations=walk.limitations,
+            felt=walk.feels_ground,
         )
 
 

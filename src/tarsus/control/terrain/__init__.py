@@ -1,1 +1,1 @@
-"""What the feet do on uneven ground: early contact, ground search, hole recovery."""
+"""Felt ground: contacts of the feet, their vertical motion, height and tilt of the body, support."""

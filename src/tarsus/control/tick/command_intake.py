@@ -1,4 +1,4 @@
-"""What a command and the ground ask of the stance."""
+"""What a command asks of the stance."""
 
 from __future__ import annotations
 
@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tarsus.control.command import Command
-from tarsus.control.terrain.adaptation import TerrainAdaptation
 from tarsus.control.transition.executor import TransitionExecutor
 from tarsus.control.walk.foot_target_motion import best_body_shift
 from tarsus.control.walk.foot_targets import excluded_legs
@@ -24,7 +23,7 @@ _NO_MOTION = (0.0,) * 6
 
 
 class CommandIntake:
-    """Passes commands to the transition scheduler, with the corrections of the body pose.
+    """Passes commands to the transition scheduler, with the correction of the body pose.
 
     Parameters
     ----------
@@ -32,12 +31,10 @@ class CommandIntake:
         A single robot.
     transitions : TransitionExecutor
         The stance transitions.
-    terrain : TerrainAdaptation
-        Slope and roughness of the ground, and the correction for them.
     """
 
-    def __init__(self, robot: Robot, transitions: TransitionExecutor, terrain: TerrainAdaptation) -> None:
-        self._robot, self._transitions, self._terrain = robot, transitions, terrain
+    def __init__(self, robot: Robot, transitions: TransitionExecutor) -> None:
+        self._robot, self._transitions = robot, transitions
         self._last: Command | None = None
         self._shifted_for: tuple[int, ...] = ()
         self._shift = 0j
@@ -62,24 +59,19 @@ class CommandIntake:
         scheduler = self._transitions.scheduler
         requested = scheduler.requested
         excluded = excluded_legs(command, requested.excluded, self._robot.legs)
-        correction, terrain = self._correction(excluded, angles), self._terrain.terrain
+        correction = self._correction(excluded, angles)
         known = command.only_twist or command is self._last
-        if not known or (excluded, correction, terrain) != (
-            requested.excluded,
-            requested.correction,
-            requested.terrain,
-        ):
-            scheduler.request(command, excluded, correction, terrain)
+        if not known or (excluded, correction) != (requested.excluded, requested.correction):
+            scheduler.request(command, excluded, correction)
             self._last = command
 
     def _correction(self, excluded: tuple[int, ...], angles: Float[np.ndarray, "legs 3"]) -> tuple[float, ...]:
-        """Return the correction of the body pose for the ground, and for legs that bear no load."""
-        estimate = self._terrain.estimate.correction if self._terrain.estimate else _NO_MOTION
+        """Return the correction of the body pose for legs that bear no load."""
         if not excluded:
-            return estimate
+            return _NO_MOTION
         if excluded != self._shifted_for:
             com = centre_of_mass(self._robot, angles)
             sets = support_sets(self._transitions.scheduler.requested.gait, excluded)
             shift = best_body_shift(self._transitions.footholds.new_rest, complex(com[0], com[1]), sets)
             self._shifted_for, self._shift = excluded, shift
-        return (estimate[0] + self._shift.real, estimate[1] + self._shift.imag, *estimate[2:])
+        return (self._shift.real, self._shift.imag, 0.0, 0.0, 0.0, 0.0)

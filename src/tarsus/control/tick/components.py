@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tarsus.control.pose.admittance import Admittance
-from tarsus.control.pose.levelling import LevellingMode
-from tarsus.control.terrain.adaptation import TerrainAdaptation
+from tarsus.control.terrain.felt_ground import FeltGround
+from tarsus.control.terrain.posture_feedback import Levelling
+from tarsus.control.terrain.roughness import GroundAdaptation
 from tarsus.control.transition.executor import TransitionExecutor
 from tarsus.control.transition.initial_stance import initial_stance
 from tarsus.control.transition.planner import TransitionPlanner
 from tarsus.control.walk.foot_targets import FootTargets
-from tarsus.control.walk.ground_pose import foot_positions
 from tarsus.control.walk.joint_solver import JointSolver
 from tarsus.control.walk.state import GaitState
 from tarsus.control.walk.time_scaling import TimeScaling
@@ -45,8 +45,8 @@ class WalkComponents:
         The stance, the gait, and the transitions to others.
     foot_targets : FootTargets
         The legs that are taken out of the gait.
-    terrain : TerrainAdaptation
-        What is known of the ground, and the feet that search for it.
+    ground : FeltGround
+        What is felt of the ground.
     solver : JointSolver
         Solves gait states for joint angles.
     time_scaling : TimeScaling
@@ -63,7 +63,7 @@ class WalkComponents:
     planner: TransitionPlanner
     transitions: TransitionExecutor
     foot_targets: FootTargets
-    terrain: TerrainAdaptation
+    ground: FeltGround
     solver: JointSolver
     time_scaling: TimeScaling
     every_leg: Bool[np.ndarray, "legs"]
@@ -94,7 +94,8 @@ class WalkComponents:
         joint_speed: float | None,
         joint_acceleration: float | None,
         foot_distance: float | None,
-        levelling: LevellingMode | None,
+        levelling: Levelling | None,
+        adaptation: GroundAdaptation,
         admittance: Admittance | None,
     ) -> tuple[WalkComponents, GaitState]:
         """Return the components of a robot that stands, and its gait state; arguments as of `WalkController`.
@@ -125,14 +126,9 @@ class WalkComponents:
         foot_targets, solver = FootTargets(robot.leg_names), JointSolver(robot)
         transitions = TransitionExecutor(stance, foot_targets)
         state = GaitState.standing(stance.rest, transitions.pose.target)
-        time_scaling = TimeScaling(solver.angles(state), speed, acceleration)
-        terrain = TerrainAdaptation(
-            robot,
-            time_scaling.angles,
-            foot_positions(state),
-            acceleration=acceleration,
-            levelling=levelling,
-            admittance=admittance,
+        time_scaling = TimeScaling(solver.angles(state), speed, acceleration, robot.limits)
+        ground = FeltGround(
+            robot, time_scaling.angles, levelling=levelling, adaptation=adaptation, admittance=admittance
         )
         components = cls(
             robot=robot,
@@ -141,7 +137,7 @@ class WalkComponents:
             planner=planner,
             transitions=transitions,
             foot_targets=foot_targets,
-            terrain=terrain,
+            ground=ground,
             solver=solver,
             time_scaling=time_scaling,
             every_leg=np.ones(robot.legs, dtype=bool),

@@ -1,24 +1,23 @@
-"""Estimate: what valid readings tell of the ground and of the robot's attitude."""
+"""Estimate: what readings tell of the ground; feet that meet it land, or rise over it."""
 
 from __future__ import annotations
 
-from tarsus.control.pose.attitude import CommandedAttitude
+import numpy as np
+
 from tarsus.control.readings import SensorReadings
-from tarsus.control.terrain.early_contact import stop_on_contact
 from tarsus.control.tick.components import WalkComponents
 from tarsus.control.tick.state import TickState
-from tarsus.control.walk.ground_pose import foot_positions
 
 __all__ = ["estimated"]
 
 
 def estimated(walk: WalkComponents, tick: TickState, readings: SensorReadings | None, dt: float) -> TickState:
-    """Return the state after readings: feet that touch ground early stop on it.
+    """Return the state after readings; the same one for a walk that has never had any.
 
     Parameters
     ----------
     walk : WalkComponents
-        The components; the terrain adaptation takes in the readings.
+        The components.
     tick : TickState
         The state.
     readings : SensorReadings or None
@@ -26,23 +25,12 @@ def estimated(walk: WalkComponents, tick: TickState, readings: SensorReadings | 
     dt : float
         Length of the tick [s].
     """
-    terrain, transitions = walk.terrain, walk.transitions
-    if readings is None and not terrain.has_feedback:
+    if readings is None and tick.gait.felt is None:
         return tick
-    state, body = tick.gait, transitions.scheduler.requested.body
-    height = float(state.posture.value[2]) - transitions.current.parameters.correction[2]
-    terrain.sense(
-        readings,
-        dt,
-        state,
-        feet=foot_positions(state),
-        contacts=walk.standing_feet(state),
-        angles=walk.time_scaling.angles,
-        commanded=CommandedAttitude(body[3], body[4], state.yaw + body[5], height),
-    )
-    met = terrain.early_contacts(state)
-    if not met.any():
-        return tick
-    swing_rate = transitions.timing.frequency / state.swings(transitions.timing.gait.duty_factor)
-    stopped = stop_on_contact(walk.robot, state, met, acceleration=walk.joint_acceleration, swing_rate=swing_rate)
-    return tick._replace(gait=stopped)
+    timing, angles = walk.transitions.timing, walk.time_scaling.angles
+    state, legs = walk.ground.sense(readings, dt, tick.gait, timing=timing, angles=angles)
+    if legs:
+        landed = np.zeros(len(state.down), dtype=bool)
+        landed[legs] = True
+        walk.transitions.footholds.feet_landed(landed)
+    return tick._replace(gait=state)

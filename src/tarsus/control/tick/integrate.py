@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
-from tarsus.control.limiter.protocol import RateLimiter, granted_rate
+from tarsus.control.terrain.vertical_motion import moved_vertically
 from tarsus.control.tick.components import WalkComponents
 from tarsus.control.tick.state import TickState
-from tarsus.control.walk.state import PHASE_TOLERANCE, GaitState, StepInputs
+from tarsus.control.walk.state import GaitState, StepInputs
 from tarsus.control.walk.stepper import advance
 from tarsus.control.walk_state import next_walk_state
 
@@ -16,7 +14,7 @@ __all__ = ["integrated"]
 _NO_MOTION = (0.0,) * 6
 
 
-def integrated(walk: WalkComponents, tick: TickState, dt: float, limiters: Sequence[RateLimiter]) -> TickState:
+def integrated(walk: WalkComponents, tick: TickState, dt: float) -> TickState:
     """Return the state after the tick; the time scaling has its joint angles.
 
     Parameters
@@ -27,18 +25,17 @@ def integrated(walk: WalkComponents, tick: TickState, dt: float, limiters: Seque
         The state.
     dt : float
         Length of the tick [s].
-    limiters : sequence of RateLimiter
-        The limiters of the walk's time rate.
     """
-    timing, targets, terrain = walk.transitions.timing, walk.foot_targets, walk.transitions.current.terrain
+    timing, targets = walk.transitions.timing, walk.foot_targets
     inputs = _step_inputs(walk, tick, dt)
-    state = walk.terrain.search(tick.gait, dt, terrain=terrain, stance_time=timing.stance_time)
-    grant = granted_rate(limiters, state)
 
     def integrate(time: float) -> GaitState:
-        return targets.apply(advance(state, inputs, time), time, swing_time=timing.swing_time)
+        return targets.apply(
+            moved_vertically(advance(tick.gait, inputs, time), inputs, time), time, swing_time=timing.swing_time
+        )
 
-    after = walk.time_scaling.advance(integrate, walk.solver.angles, dt, stop=grant.stop, fastest=grant.rate)
+    scaling = walk.time_scaling
+    after = (scaling.advance if inputs.felt is None else scaling.follow)(integrate, walk.solver.angles, dt)
     targets.step(dt * walk.time_scaling.rate, after.down)
     return _finished(walk, tick, after, dt)
 
@@ -46,20 +43,30 @@ def integrated(walk: WalkComponents, tick: TickState, dt: float, limiters: Seque
 def _step_inputs(walk: WalkComponents, tick: TickState, dt: float) -> StepInputs:
     """Return what the stepper is given for a tick."""
     state, standing = tick.gait, tick.standing
-    transitions, terrain = walk.transitions, walk.terrain
+    transitions = walk.transitions
     timing, pose, current = transitions.timing, transitions.pose, transitions.current
     sway = _NO_MOTION if standing or timing.gait.body_shift else current.parameters.sway
     pose.set_sway(sway, frequency=timing.frequency, beats=timing.beats)
     every = walk.every_leg
-    may_lift, may_land, hold_feet = every, every, transitions.changes_gait
+    may_lift, hold_feet = every, transitions.changes_gait
     if walk.foot_targets:
         may_lift = every.copy()
         may_lift[list(current.parameters.excluded)] = False
-    if terrain.estimate is not None:
-        phase = state.swing_phase + dt * timing.frequency / state.swings(timing.gait.duty_factor)
-        may_land, waits = terrain.may_land(state, phase >= 1.0 - PHASE_TOLERANCE)
-        hold_feet = hold_feet or waits
-    inputs = StepInputs(
+    felt, offsets = None, walk.no_offset
+    if state.felt is not None:
+        felt = walk.ground.inputs(
+            state,
+            dt,
+            timing=timing,
+            twist=tick.twist,
+            rest=transitions.footholds.rest,
+            excluded=walk.foot_targets.legs,
+            standing=standing,
+        )
+        hold_feet = hold_feet or walk.ground.support.waits
+        if walk.ground.offsets is not None:
+            offsets = walk.ground.offsets * state.down
+    return StepInputs(
         gait=timing.gait,
         frequency=0.0 if standing else timing.frequency,
         twist=tick.twist,
@@ -67,24 +74,22 @@ def _step_inputs(walk: WalkComponents, tick: TickState, dt: float) -> StepInputs
         bandwidth=transitions.bandwidth,
         posture_bandwidth=pose.bandwidth(state.posture.value),
         may_lift=may_lift,
-        may_land=may_land,
         rest=transitions.footholds.rest,
         placement_bounds=transitions.footholds.placement_bounds,
         placement_radii=transitions.footholds.placement_radii,
-        admittance_offset=walk.no_offset,
+        admittance_offset=offsets,
         hold_feet=hold_feet,
         beats=timing.beats,
         swaying=pose.is_swaying(state.posture.value),
         shift=pose.shift,
+        felt=felt,
     )
-    return inputs if terrain.estimate is None else inputs._replace(**terrain.step_inputs(state, current.terrain))
 
 
 def _finished(walk: WalkComponents, tick: TickState, state: GaitState, dt: float) -> TickState:
     """Return the state, once steps, transitions and searches that end with the tick have ended."""
     landed = None if state.down is tick.gait.down else state.down & ~tick.gait.down
     if landed is not None and landed.any():
-        walk.terrain.feet_landed(landed)
         walk.transitions.footholds.feet_landed(landed)
     state = walk.transitions.finish(state, dt)
     if tick.standing:
@@ -96,6 +101,6 @@ def _finished(walk: WalkComponents, tick: TickState, state: GaitState, dt: float
         follows_twist=follows_twist,
         at_rest=still and walk.transitions.at_rest(state),
         changes_gait=walk.transitions.changes_gait,
-        searches=bool(walk.terrain.searches),
+        searches=walk.ground.waits,
     )
     return TickState(state, tick.twist, following, tick.limitations)

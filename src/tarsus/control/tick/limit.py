@@ -5,19 +5,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from tarsus.control.command import Command
-from tarsus.control.limiter.early_contact import EarlyContactLimiter
-from tarsus.control.limiter.ground_search import GroundSearchLimiter
-from tarsus.control.limiter.hole_recovery import HoleRecoveryLimiter
 from tarsus.control.limiter.pending_transition import PendingTransitionLimiter
-from tarsus.control.limiter.protocol import RateLimiter, TwistLimiter, TwistRequest, granted_twist
+from tarsus.control.limiter.protocol import TwistLimiter, TwistRequest, granted_twist
 from tarsus.control.limiter.reference_governor import GovernorLimiter
-from tarsus.control.limiter.slope import SlopeLimiter
 from tarsus.control.limiter.workspace import WorkspaceLimiter
 from tarsus.control.tick.components import WalkComponents
 from tarsus.control.tick.state import TickState
 from tarsus.control.walk_state import next_walk_state
 
-__all__ = ["limited", "rate_limiters", "twist_limiters"]
+__all__ = ["limited", "twist_limiters"]
 
 
 def twist_limiters(walk: WalkComponents) -> list[TwistLimiter]:
@@ -29,23 +25,10 @@ def twist_limiters(walk: WalkComponents) -> list[TwistLimiter]:
         The components.
     """
     return [
-        WorkspaceLimiter(walk.robot.leg_names, walk.transitions, walk.terrain),
+        WorkspaceLimiter(walk.robot.leg_names, walk.transitions),
         PendingTransitionLimiter(walk.transitions),
-        SlopeLimiter(walk.transitions),
-        HoleRecoveryLimiter(walk.terrain),
-        GovernorLimiter(walk.transitions, walk.terrain),
+        GovernorLimiter(walk.transitions),
     ]
-
-
-def rate_limiters(walk: WalkComponents) -> list[RateLimiter]:
-    """Return the limiters of the walk's time rate.
-
-    Parameters
-    ----------
-    walk : WalkComponents
-        The components.
-    """
-    return [EarlyContactLimiter(walk.transitions, walk.terrain), GroundSearchLimiter(walk.terrain)]
 
 
 def limited(

@@ -1,15 +1,13 @@
-"""Plan: stance transitions, recovery from holes, and the targets of legs that are taken out of the gait."""
+"""Plan: stance transitions, and the targets of legs that are taken out of the gait."""
 
 from __future__ import annotations
 
-import dataclasses
 from collections.abc import Callable
 from functools import partial
 
 import numpy as np
 
 from tarsus.control.command import Command
-from tarsus.control.filters import CriticallyDamped
 from tarsus.control.incremental import Incremental
 from tarsus.control.limitation import Cause
 from tarsus.control.tick.components import WalkComponents
@@ -22,13 +20,12 @@ from tarsus.control.transition.target_stance import sway_extremes
 from tarsus.control.walk.foot_target_motion import reachable_fraction
 from tarsus.control.walk.state import GaitState
 from tarsus.control.workspace.stability import support_sets
-from tarsus.control.workspace.stance_geometry import LEVEL_TERRAIN, SWING_HEIGHT
+from tarsus.control.workspace.stance_geometry import SWING_HEIGHT
 from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.stability import stability_margin
 
 __all__ = ["planned"]
 
-_NO_MOTION = (0.0,) * 6
 # Least static stability margin on the remaining feet when a leg is taken out of the gait [m].
 _LEAST_MARGIN = 0.01
 
@@ -51,12 +48,9 @@ def planned(
     body : callable
         The pose of B in G at the time that it is called.
     """
-    situation = WalkSituation(tick.gait, tick.twist, tick.standing, walk.terrain.hold_time)
+    situation = WalkSituation(tick.gait, tick.twist, tick.standing)
     state = walk.transitions.advance(partial(_plan_transition, walk, body), situation)
-    again = _recovered(walk, state, command) if walk.terrain.searches else None
-    if again is not None:
-        tick = tick._replace(gait=again, twist=np.zeros(3))
-    elif state is not tick.gait:
+    if state is not tick.gait:
         tick = tick._replace(gait=state)
     _set_foot_targets(walk, tick.gait, command, dt)
     return tick
@@ -76,20 +70,8 @@ def _plan_transition(
             names = " and ".join(walk.robot.leg_names[leg] for leg in excluded)
             return Cause(reason, names, margin, _LEAST_MARGIN)
     transitions = walk.transitions
-    present = StanceTarget(transitions.pose.posture, transitions.footholds.new_rest, parameters.terrain)
+    present = StanceTarget(transitions.pose.posture, transitions.footholds.new_rest)
     return (yield from walk.planner.plan(parameters, present, stay=stay))
-
-
-def _recovered(walk: WalkComponents, state: GaitState, command: Command) -> GaitState | None:
-    """Return the gait state, standing still, if feet over a hole are drawn back: another command lets them swing."""
-    terrain = walk.terrain
-    standing = walk.time_scaling.rate == 0 or terrain.recovering
-    if not (standing and terrain.searches.all_failed):
-        return None
-    requested = walk.transitions.scheduler.requested
-    commanded = dataclasses.replace(requested, correction=_NO_MOTION, terrain=LEVEL_TERRAIN)
-    again = terrain.recover(state, (tuple(command.twist), commanded), walk.transitions.timing.gait)
-    return None if again is None else again._replace(twist=CriticallyDamped.still(np.zeros(3)))
 
 
 def _set_foot_targets(walk: WalkComponents, state: GaitState, command: Command, dt: float) -> None:

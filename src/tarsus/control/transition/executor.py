@@ -17,6 +17,7 @@ from tarsus.control.walk.foothold import final_footholds
 from tarsus.control.walk.reference_governor import lift_delays, polygon_excess, stance_intervals, time_to_touchdown
 from tarsus.control.walk.state import POSITION_TOLERANCE, GaitState
 from tarsus.control.walk.step_timing import StepTiming
+from tarsus.control.walk.stepper import stance_tolerance
 from tarsus.control.workspace.stance_geometry import sway_fraction
 
 if TYPE_CHECKING:
@@ -106,7 +107,7 @@ class TransitionExecutor:
         return self._foot_targets.without_bounds(self.footholds.bounds)
 
     def stance_intervals(
-        self, state: GaitState, hold: float, *, frequency: float | None = None
+        self, state: GaitState, *, frequency: float | None = None
     ) -> tuple[Float[np.ndarray, "legs"], Float[np.ndarray, "legs"]]:
         """Return from when until when each foot stands where it is, or where it will touch down.
 
@@ -114,8 +115,6 @@ class TransitionExecutor:
         ----------
         state : GaitState
             The gait state.
-        hold : float
-            How much longer than planned feet may have to stand [s].
         frequency : float, optional
             Cycles per second; the present ones where left out [1/s].
 
@@ -126,9 +125,9 @@ class TransitionExecutor:
         """
         gait = self.timing.gait
         if not self.changes_gait:
-            return stance_intervals(state, gait, frequency or self.timing.frequency, hold)
+            return stance_intervals(state, gait, frequency or self.timing.frequency)
         begins = time_to_touchdown(state, gait, self.timing.frequency)
-        return begins, begins.max() + self._delays + hold
+        return begins, begins.max() + self._delays
 
     def is_settled(self, state: GaitState) -> bool:
         """Return whether the last transition is over: posture reached, returning legs on the ground.
@@ -154,7 +153,7 @@ class TransitionExecutor:
         assert rest is not None  # only of a robot that is fast
         off = np.abs(state.foot - rest)
         off[list(self.current.parameters.excluded)] = 0.0
-        return bool(off.max() <= POSITION_TOLERANCE)
+        return bool(off.max() <= stance_tolerance(state))
 
     # Beginning a transition.
 
@@ -206,7 +205,7 @@ class TransitionExecutor:
         """Return whether the feet could step to their new rest footholds at the present twist."""
         duty_factor = planned.parameters.gait.duty_factor
         fraction, _ = planned.stepping_limits.feasible_fraction(
-            now.state.twist.value, stance_time=duty_factor / frequency, duty_factor=duty_factor, hold=now.hold
+            now.state.twist.value, stance_time=duty_factor / frequency, duty_factor=duty_factor
         )
         return fraction >= 1
 
@@ -214,7 +213,7 @@ class TransitionExecutor:
         """Let all feet touch down, if they may stand for so long; the leg that suits best then lifts first."""
         cycle_time, gait = planned.cycle_timing.cycle_time, planned.parameters.gait
         timing, delays = StepTiming.of(gait, cycle_time), lift_delays(gait, cycle_time)
-        ends = time_to_touchdown(now.state, self.timing.gait, self.timing.frequency).max() + delays + now.hold
+        ends = time_to_touchdown(now.state, self.timing.gait, self.timing.frequency).max() + delays
         bounds = self._foot_targets.without_bounds(self.footholds.bounds_with(planned))
         bounds = np.minimum(bounds, planned.final_limits.bounds)
         over = self._excess(np.zeros(delays.shape), ends, bounds, now, timing.bandwidth).max(axis=(1, 2, 3, 4))
@@ -240,7 +239,7 @@ class TransitionExecutor:
     def _stays_within(
         self, bounds: Float[np.ndarray, "legs 16"], now: WalkSituation, *, frequency: float, bandwidth: float
     ) -> bool:
-        begins, ends = self.stance_intervals(now.state, now.hold, frequency=frequency)
+        begins, ends = self.stance_intervals(now.state, frequency=frequency)
         return bool(self._excess(begins, ends, bounds, now, bandwidth).max() <= POSITION_TOLERANCE)
 
     def _excess(

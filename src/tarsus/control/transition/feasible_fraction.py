@@ -11,11 +11,8 @@ from tarsus.control.limitation import Cause
 from tarsus.control.workspace.foot_workspace import rest_margin
 from tarsus.control.workspace.stability import StabilityCheck
 from tarsus.control.workspace.stance_geometry import (
-    LEVEL_TERRAIN,
     SWING_HEIGHT,
     StanceGeometry,
-    TerrainEstimate,
-    ground_rise,
     joint_margin,
     rotation_rows,
     stance_geometry_of,
@@ -61,13 +58,10 @@ class StanceTarget(NamedTuple):
         The posture.
     rest : complex array, shape (legs,)
         The rest footholds in the heading frame [m].
-    terrain : TerrainEstimate
-        Slope and roughness of the ground.
     """
 
     posture: Float[np.ndarray, "7"]
     rest: Complex[np.ndarray, "legs"]
-    terrain: TerrainEstimate = LEVEL_TERRAIN
 
     def towards(self, other: StanceTarget, fraction: float) -> StanceTarget:
         """Return the stance at a fraction of the straight path to another.
@@ -87,7 +81,7 @@ class StanceTarget(NamedTuple):
     @property
     def stand(self) -> StanceGeometry:
         """The body and the feet at rest."""
-        return stance_geometry_of(self.posture, self.rest, self.terrain)
+        return stance_geometry_of(self.posture, self.rest)
 
 
 class Bracket(NamedTuple):
@@ -184,14 +178,14 @@ def first_increment(robot: Robot, start: StanceTarget, end: StanceTarget, fracti
 
 
 def reach_margin(robot: Robot, stances: list[StanceTarget]) -> Float[np.ndarray, "n legs"]:
-    """Return the margin of each leg at its rest foothold: on the ground, at the lowest ground, and lifted.
+    """Return the margin of each leg at its rest foothold: on the ground, and lifted.
 
     Parameters
     ----------
     robot : Robot
         A single robot.
     stances : list of StanceTarget
-        Stances on the same terrain.
+        The stances.
 
     Returns
     -------
@@ -200,10 +194,9 @@ def reach_margin(robot: Robot, stances: list[StanceTarget]) -> Float[np.ndarray,
     """
     rows, rest = np.array([p.posture for p in stances]), np.array([p.rest for p in stances])
     rotation = np.array([rotation_rows(*row) for row in rows[:, 3:SWING_HEIGHT].tolist()])
-    (slope, depth), position, swing_height = stances[0].terrain, rows[:, :3].T[..., None], rows[:, SWING_HEIGHT:]
-    above = position[2] - ground_rise(slope, position[0], position[1])
-    stand = StanceGeometry(rest, rotation[:, None], np.stack([position[0], position[1], above]), 0.0, slope)
-    height = np.stack([-depth * swing_height, 0 * swing_height, swing_height][0 if depth else 1 :])
+    swing_height = rows[:, SWING_HEIGHT:]
+    stand = StanceGeometry(rest, rotation[:, None], rows[:, :3].T[..., None], 0.0)
+    height = np.stack([0 * swing_height, swing_height])
     return np.asarray(joint_margin(robot.geometry, stand.solve(robot, rest.real, rest.imag, height)).min(axis=0))
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from tarsus.control.workspace.stance_geometry import LEVEL_TERRAIN, TerrainEstimate
 from tarsus.gait.gait import Gait
 
 __all__ = ["WalkParameters"]
@@ -29,11 +28,9 @@ class WalkParameters:
     sway : tuple of float
         Amplitudes of the body's sway, axes as in `body`.
     correction : tuple of float
-        Correction for the ground, added to `body`.
+        Shift over the feet that bear load, added to `body`.
     excluded : tuple of int
         Legs that are taken out of the gait.
-    terrain : TerrainEstimate
-        Slope and roughness of the ground.
     """
 
     gait: Gait
@@ -45,9 +42,8 @@ class WalkParameters:
     sway: tuple[float, ...] = (0.0,) * 6
     correction: tuple[float, ...] = (0.0,) * 6
     excluded: tuple[int, ...] = ()
-    terrain: TerrainEstimate = LEVEL_TERRAIN
 
     @property
     def corrected_body(self) -> tuple[float, ...]:
-        """The body pose with the correction for the ground."""
+        """The body pose with its correction."""
         return tuple(a + b for a, b in zip(self.body, self.correction, strict=True))

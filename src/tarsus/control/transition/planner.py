@@ -151,7 +151,6 @@ class TransitionPlanner:
                 *(() if keeps_posture else self._shortfalls(parameters, path)),
                 *_timing_limitations(parameters, timing),
             ),
-            terrain=goal.terrain,
         )
 
     def _limits(

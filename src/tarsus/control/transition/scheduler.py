@@ -12,7 +12,6 @@ from tarsus.control.limitation import Cause, Limitation, LimitationKind
 from tarsus.control.transition.parameters import WalkParameters
 from tarsus.control.transition.shortfalls import rejection_limitations
 from tarsus.control.transition.stance_transition import StanceTransition
-from tarsus.control.workspace.stance_geometry import TerrainEstimate
 from tarsus.errors import InputError, UnreachableError
 from tarsus.gait.gait import Gait
 
@@ -75,9 +74,7 @@ class TransitionScheduler:
         valid = (found for found, name in fields if getattr(now, name) == getattr(then, name))
         return (*(found for found in valid if found.kind not in newer), *self._shortfalls)
 
-    def request(
-        self, command: Command, excluded: tuple[int, ...], correction: tuple[float, ...], terrain: TerrainEstimate
-    ) -> None:
+    def request(self, command: Command, excluded: tuple[int, ...], correction: tuple[float, ...]) -> None:
         """Take note of a command.
 
         Parameters
@@ -87,9 +84,7 @@ class TransitionScheduler:
         excluded : tuple of int
             Legs to take out of the gait.
         correction : tuple of float
-            Correction of the body pose for the ground.
-        terrain : TerrainEstimate
-            Slope and roughness of the ground.
+            Shift of the body over the feet that bear load.
 
         Raises
         ------
@@ -109,7 +104,6 @@ class TransitionScheduler:
             sway=before.sway if command.sway is None else tuple(command.sway),
             correction=correction,
             excluded=excluded,
-            terrain=terrain,
         )
         if asked.swing_height < 0:
             raise InputError(f"the command's swing_height is {asked.swing_height} m; it must not be negative")
@@ -117,7 +111,7 @@ class TransitionScheduler:
             raise InputError(f"the command's cycle_time is {asked.cycle_time} s; it must be greater than 0")
         if asked != before:
             self.requested, self.rejections = asked, {}
-            if dataclasses.replace(asked, correction=before.correction, terrain=before.terrain) != before:
+            if dataclasses.replace(asked, correction=before.correction) != before:
                 self._shortfalls = ()
 
     def advance_planning(self, plan: PlanTransition, *, idle: bool) -> None:
@@ -190,7 +184,7 @@ class TransitionScheduler:
         # Standing otherwise has to wait until all legs are back in the gait.
         deferred = dataclasses.replace(
             self.requested,
-            **{name: getattr(current, name) for name in ("gait", "cycle_time", "excluded", "correction", "terrain")},
+            **{name: getattr(current, name) for name in ("gait", "cycle_time", "excluded", "correction")},
         )
         if current.excluded and deferred not in (
             dataclasses.replace(current, correction=deferred.correction),

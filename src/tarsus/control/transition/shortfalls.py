@@ -55,15 +55,15 @@ def stance_limitations(
 
 
 def _body_limitations(parameters: WalkParameters, gap: Float[np.ndarray, "legs"], cause: Cause) -> list[Limitation]:
-    """Return what of the body pose is missing; where only the correction for the ground is, the attitude."""
+    """Return what of the body pose is missing; where only its correction is, that."""
     missing = [axis for axis in range(SWING_HEIGHT) if abs(gap[axis]) > _TOLERANCE]
     commanded = [axis for axis in missing if parameters.body[axis]]
     if commanded:
         fraction = min(1 - abs(float(gap[axis]) / parameters.body[axis]) for axis in commanded)
         return [cause.limitation(LimitationKind.BODY, asked=1.0, granted=max(fraction, 0.0))]
     if missing:
-        reason = f"the correction for the ground is not met: {cause.reason}"
-        return [cause._replace(reason=reason).limitation(LimitationKind.ATTITUDE)]
+        reason = f"the shift over the feet that bear load is not met: {cause.reason}"
+        return [cause._replace(reason=reason).limitation(LimitationKind.BODY)]
     return []
 
 
@@ -97,6 +97,4 @@ def rejection_limitations(
     corrected = posture.copy()
     corrected[:SWING_HEIGHT] += np.subtract(asked.correction, current.correction)
     found += stance_limitations(asked, corrected, cause, stance_width=current.stance_width)
-    if not found:
-        found.append(cause.limitation(LimitationKind.GROUND))
     return tuple(found)

@@ -38,11 +38,8 @@ class WalkSituation(NamedTuple):
         The twist that is followed [m/s, m/s, rad/s].
     standing : bool
         Whether the robot stands.
-    hold : float
-        How much longer than planned feet may have to stand [s].
     """
 
     state: GaitState
     target: Float[np.ndarray, "3"]
     standing: bool
-    hold: float

@@ -10,7 +10,6 @@ import numpy as np
 from tarsus.control.limitation import Limitation
 from tarsus.control.transition.parameters import WalkParameters
 from tarsus.control.workspace.cycle_time import CycleTiming
-from tarsus.control.workspace.stance_geometry import TerrainEstimate
 from tarsus.control.workspace.velocity_limits import VelocityLimits
 
 if TYPE_CHECKING:
@@ -43,8 +42,6 @@ class StanceTransition:
         The limits while the feet step to their new rest footholds, while the body moves, and in the new stance.
     limitations : tuple of Limitation
         What of the commanded parameters is not feasible.
-    terrain : TerrainEstimate
-        The ground for which it was planned.
     """
 
     parameters: WalkParameters
@@ -57,4 +54,3 @@ class StanceTransition:
     path_limits: VelocityLimits
     final_limits: VelocityLimits
     limitations: tuple[Limitation, ...]
-    terrain: TerrainEstimate

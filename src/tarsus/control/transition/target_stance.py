@@ -44,7 +44,7 @@ def target_stance(robot: Robot, parameters: WalkParameters, posture: Float[np.nd
     target = np.array([*parameters.corrected_body, swing_height])
     target[2] += body_height
     rest = _widened(robot, stance[:, 0] + 1j * stance[:, 1], parameters.stance_width)
-    return StanceTarget(target, rest, parameters.terrain)
+    return StanceTarget(target, rest)
 
 
 def _footholds(

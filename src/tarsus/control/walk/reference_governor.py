@@ -178,7 +178,7 @@ def _last_feasible(excess: Float[np.ndarray, "n 3 legs 16"]) -> int | None:
 
 
 def stance_intervals(
-    state: GaitState, gait: Gait, frequency: float, hold: float
+    state: GaitState, gait: Gait, frequency: float
 ) -> tuple[Float[np.ndarray, "legs"], Float[np.ndarray, "legs"]]:
     """Return from when until when each foot stands where it is, or where it will be put down: shape (legs,) each [s].
 
@@ -190,18 +190,18 @@ def stance_intervals(
         Order of the steps.
     frequency : float
         Cycles per second [1/s].
-    hold : float
-        How much longer than planned feet may have to stand [s].
     """
     duty_factor = gait.duty_factor
-    over = (stance_overhang(duty_factor) - 0.5) * duty_factor / frequency + hold
-    begins: list[float] = []
+    over = (stance_overhang(duty_factor) - 0.5) * duty_factor / frequency
+    felt, begins = state.felt is not None, list[float]()
     ends: list[float] = []
     for down, phase, number, offset in zip(
         state.down.tolist(), state.swing_phase.tolist(), state.step_number.tolist(), gait.offsets, strict=True
     ):
-        begins.append(0.0 if down else (1 - phase) * (1 - duty_factor) / frequency)
-        lift_off = (offset + duty_factor + number - state.clock) / frequency
+        touchdown = offset + number - state.clock
+        # A foot that has met the ground before its planned touchdown is where it may be from then on.
+        begins.append(((max(touchdown, 0.0) if felt else 0.0) if down else (1 - phase) * (1 - duty_factor)) / frequency)
+        lift_off = (touchdown + duty_factor) / frequency
         # A foot that waits already is past its lift-off.
         ends.append((max(lift_off, 0.0) if down else begins[-1] + duty_factor / frequency) + over)
     return np.array(begins), np.array(ends)

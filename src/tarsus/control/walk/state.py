@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from tarsus.control.filters import CriticallyDamped
-from tarsus.control.sensing.ground_plane import FLAT, GroundPlane
-from tarsus.control.walk.swing_trajectory import stopping_height, swinging_height
+from tarsus.control.walk.felt_feet import FeltFeet, FeltInputs
+from tarsus.control.walk.swing_trajectory import swinging_height
 from tarsus.control.workspace.body_shift import NO_SHIFT
 from tarsus.gait.gait import Gait
 
@@ -22,7 +22,6 @@ if TYPE_CHECKING:
     from jaxtyping import Bool, Complex, Float
 
 __all__ = [
-    "EARLY_STOP_FRACTION",
     "PHASE_TOLERANCE",
     "POSITION_TOLERANCE",
     "ZERO_ELEVATION",
@@ -40,9 +39,6 @@ POSITION_TOLERANCE = 1e-6
 
 ZERO_ELEVATION = np.zeros(1)
 """Elevation of the heading frame without feedback from the ground [m]."""
-
-EARLY_STOP_FRACTION = 0.0625
-"""Shortest part of the swing, as a fraction, in which a foot stops after early contact."""
 
 
 class GaitState(NamedTuple):
@@ -64,14 +60,6 @@ class GaitState(NamedTuple):
         First and second derivative of a swinging foot's position by its swing phase [m].
     ground_height, start_height : array, shape (legs,)
         Height of the ground at each foothold, and of the foot at its lift-off, in G [m].
-    height_factor : array, shape (legs,)
-        Fraction of the swing height that the swing has.
-    contact_phase : array, shape (legs,)
-        Swing phase of an early contact; infinite without one.
-    stop_phase : array, shape (legs,)
-        Fraction of the swing in which the foot stops after an early contact.
-    contact_height, contact_speed : array, shape (legs,)
-        Height of the foot at an early contact [m], and its derivative by the swing phase [m].
     origin : complex
         Origin of the heading frame in G [m].
     yaw : float
@@ -92,6 +80,8 @@ class GaitState(NamedTuple):
         Upward offset of each foot on the ground, shape (legs,) [m].
     cycles, beats : float
         Cycles and beats of the gait so far: the phases of the body's sway.
+    felt : FeltFeet or None
+        The feet of a walk that feels the ground: `ground_height` is then the height of every foot, in the air too.
     """
 
     clock: float
@@ -104,11 +94,6 @@ class GaitState(NamedTuple):
     swing_acceleration: Complex[np.ndarray, "legs"]
     ground_height: Float[np.ndarray, "legs"]
     start_height: Float[np.ndarray, "legs"]
-    height_factor: Float[np.ndarray, "legs"]
-    contact_phase: Float[np.ndarray, "legs"]
-    stop_phase: Float[np.ndarray, "legs"]
-    contact_height: Float[np.ndarray, "legs"]
-    contact_speed: Float[np.ndarray, "legs"]
     origin: complex
     yaw: float
     twist: CriticallyDamped
@@ -120,6 +105,7 @@ class GaitState(NamedTuple):
     cycles: float = 0.0
     beats: float = 0.0
     shift: CriticallyDamped = NO_SHIFT
+    felt: FeltFeet | None = None
 
     @classmethod
     def standing(cls, rest: Complex[np.ndarray, "legs"], posture: Float[np.ndarray, "n"]) -> GaitState:
@@ -144,11 +130,6 @@ class GaitState(NamedTuple):
             swing_acceleration=zero,
             ground_height=none,
             start_height=none,
-            height_factor=np.ones(len(rest)),
-            contact_phase=np.full(len(rest), np.inf),
-            stop_phase=np.full(len(rest), EARLY_STOP_FRACTION),
-            contact_height=none,
-            contact_speed=none,
             origin=0j,
             yaw=0.0,
             twist=CriticallyDamped.still(np.zeros(3)),
@@ -188,29 +169,16 @@ class GaitState(NamedTuple):
             Height of a swinging foot over its foothold [m].
         """
         heights: list[float] = self.ground_height.tolist()
-        for leg, down in enumerate(self.down.tolist()):
-            if not down:
-                heights[leg] = self._height(leg, swing_height)
+        if self.felt is None:
+            for leg, down in enumerate(self.down.tolist()):
+                if not down:
+                    heights[leg] = swinging_height(
+                        float(self.swing_phase[leg]),
+                        start=float(self.start_height[leg]),
+                        ground=heights[leg],
+                        swing_height=swing_height,
+                    )
         return heights
-
-    def _height(self, leg: int, swing_height: float) -> float:
-        """Return the height of a foot in the air."""
-        fraction, ground, contact = (
-            float(self.swing_phase[leg]),
-            float(self.ground_height[leg]),
-            float(self.contact_phase[leg]),
-        )
-        if contact == math.inf:
-            rise = swing_height * float(self.height_factor[leg])
-            return swinging_height(fraction, start=float(self.start_height[leg]), ground=ground, swing_height=rise)
-        return stopping_height(
-            fraction,
-            contact=contact,
-            duration=float(self.stop_phase[leg]),
-            height=float(self.contact_height[leg]),
-            speed=float(self.contact_speed[leg]),
-            ground=ground,
-        )
 
 
 class StepInputs(NamedTuple):
@@ -226,8 +194,8 @@ class StepInputs(NamedTuple):
         Targets of the twist and of the posture.
     bandwidth, posture_bandwidth : float
         Bandwidths of their filters [rad/s].
-    may_lift, may_land : array of bool, shape (legs,)
-        Which feet may lift off, and which may touch down at the end of their swing.
+    may_lift : array of bool, shape (legs,)
+        Which feet may lift off.
     rest : complex array, shape (legs,)
         Rest footholds in the heading frame [m].
     placement_bounds : array, shape (legs, 16)
@@ -242,15 +210,8 @@ class StepInputs(NamedTuple):
         How many times per cycle feet lift off.
     swaying : bool
         Whether the body sways.
-    ground_plane : GroundPlane
-        The expected ground.
-    lowest_ground, highest_ground : array, shape (legs,)
-        Lowest height at which each foot may be put down, and the greatest from which it may lift by the whole swing
-        height [m].
-    elevation : array, shape (1,)
-        Target of the heading frame's elevation [m].
-    elevation_bandwidth : float
-        Bandwidth of its filter [rad/s].
+    felt : FeltInputs or None
+        What is felt of the ground; None for a walk without readings.
     shift : array, shape (14,), or None
         Target of the body shift's coefficients [m]; None where the state has none.
     """
@@ -262,7 +223,6 @@ class StepInputs(NamedTuple):
     bandwidth: float
     posture_bandwidth: float
     may_lift: Bool[np.ndarray, "legs"]
-    may_land: Bool[np.ndarray, "legs"]
     rest: Complex[np.ndarray, "legs"]
     placement_bounds: Float[np.ndarray, "legs 16"]
     placement_radii: list[float]
@@ -270,11 +230,7 @@ class StepInputs(NamedTuple):
     hold_feet: bool = False
     beats: int = 2
     swaying: bool = True
-    ground_plane: GroundPlane = FLAT
-    lowest_ground: Float[np.ndarray, "legs"] | float = -math.inf
-    highest_ground: Float[np.ndarray, "legs"] | float = math.inf
-    elevation: Float[np.ndarray, "1"] = ZERO_ELEVATION
-    elevation_bandwidth: float = 4.0
+    felt: FeltInputs | None = None
     shift: Float[np.ndarray, "14"] | None = None
 
 

@@ -2,22 +2,19 @@
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from tarsus.control.filters import CriticallyDamped
-from tarsus.control.sensing.ground_plane import FLAT
 from tarsus.control.walk.foothold import FootholdPredictor, final_footholds
 from tarsus.control.walk.state import PHASE_TOLERANCE, POSITION_TOLERANCE, GaitState, StepInputs, integrate_twist
 from tarsus.control.walk.swing_trajectory import quintic
-from tarsus.control.workspace.stance_geometry import SWING_HEIGHT
 
 if TYPE_CHECKING:
     from jaxtyping import Bool, Float
 
-__all__ = ["LATEST_LIFT_OFF", "TARGET_FREEZE", "advance"]
+__all__ = ["LATEST_LIFT_OFF", "TARGET_FREEZE", "advance", "land", "stance_tolerance"]
 
 TARGET_FREEZE = 0.6
 """Swing phase from which on the foothold stays: the rest of the swing suffices to reach it smoothly."""
@@ -29,8 +26,10 @@ LATEST_LIFT_OFF = 0.5
 _ADMITTANCE_BANDWIDTH = 20.0
 # Bandwidth of the body shift's coefficients [rad/s].
 _SHIFT_BANDWIDTH = 5.0
-# Least fraction of the swing height.
-_LEAST_HEIGHT_FACTOR = 0.3
+# Fraction of its swing in which a foot that feels the ground travels: it goes straight down in the rest.
+_FELT_TRAVEL = 0.85
+# A foot that feels the ground is at its rest foothold within this distance [m].
+_FELT_TOLERANCE = 0.015
 # A speed below the first is 0 [m/s]; a filter this close to its target, and as slow, is at it [m, m/s, rad, rad/s].
 _NO_SPEED, _NO_DIFFERENCE = 3e-7, 1e-11
 
@@ -47,6 +46,8 @@ def advance(state: GaitState, inputs: StepInputs, dt: float) -> GaitState:
     dt : float
         The time [s].
     """
+    if inputs.felt is not None:
+        dt *= inputs.felt.pace
     twist, travel = state.twist.step_with_integral(inputs.twist, dt, bandwidth=inputs.bandwidth)
     origin, yaw = integrate_twist(state.origin, state.yaw, travel)
     stopping = not any(inputs.twist.tolist())
@@ -65,7 +66,6 @@ def advance(state: GaitState, inputs: StepInputs, dt: float) -> GaitState:
         twist=twist,
         posture=_settled(state.posture, inputs.posture, dt, inputs.posture_bandwidth),
         rhythm=rhythm,
-        elevation=_settled(state.elevation, inputs.elevation, dt, inputs.elevation_bandwidth),
         admittance_offset=_settled(state.admittance_offset, inputs.admittance_offset, dt, _ADMITTANCE_BANDWIDTH),
         shift=state.shift if inputs.shift is None else _settled(state.shift, inputs.shift, dt, _SHIFT_BANDWIDTH),
         cycles=state.cycles + cycles,
@@ -106,36 +106,37 @@ def _lift(
 
     `late` is the time since each was due at the start of the tick [cycles].
     """
-    lifts = due & inputs.may_lift
+    lifts, tolerance = due & inputs.may_lift, stance_tolerance(state)
     final = final_footholds(state, rest=inputs.rest, bandwidth=inputs.bandwidth) if stopping else None
     if final is not None:
-        lifts = lifts & (np.abs(state.foot - final) > POSITION_TOLERANCE)
+        lifts = lifts & (np.abs(state.foot - final) > tolerance)
     missed = due & ~lifts
     start, offset = state.ground_height, state.admittance_offset
     if offset.value.any():
         # The admittance offset becomes the start of the swing.
         start = start + offset.value
         offset = offset._replace(value=np.where(lifts, 0.0, offset.value))
-    ground = inputs.ground_plane.height(state.foot.real, state.foot.imag)
     return state._replace(
         step_number=state.step_number + missed,
         down=state.down & ~lifts,
         swing_phase=np.where(lifts, 0.0, state.swing_phase),
         start_height=np.where(lifts, start, state.start_height),
-        ground_height=np.where(lifts, ground, state.ground_height),
-        height_factor=np.where(lifts, _height_factor(state, inputs, np.maximum(start, ground)), state.height_factor),
+        ground_height=np.where(lifts, 0.0 if state.felt is None else start, state.ground_height),
         admittance_offset=offset,
         # Feet that lift off late swing shorter.
         lift_delay=np.where(due, np.clip(late, 0.0, LATEST_LIFT_OFF * (1 - inputs.gait.duty_factor)), state.lift_delay),
     )
 
 
-def _height_factor(
-    state: GaitState, inputs: StepInputs, height: Float[np.ndarray, "batch"]
-) -> Float[np.ndarray, "batch"]:
-    """Return the fraction of the swing height for feet that lift from a height, to rise no higher than necessary."""
-    over = np.maximum(height - inputs.highest_ground, 0.0)
-    return np.asarray(np.maximum(1 - over / max(float(state.posture.value[SWING_HEIGHT]), 1e-6), _LEAST_HEIGHT_FACTOR))
+def stance_tolerance(state: GaitState) -> float:
+    """Return how close to its rest foothold a foot is at it [m].
+
+    Parameters
+    ----------
+    state : GaitState
+        The gait state.
+    """
+    return POSITION_TOLERANCE if state.felt is None else _FELT_TOLERANCE
 
 
 def _swing(
@@ -148,14 +149,18 @@ def _swing(
     final = final_footholds(state, rest=inputs.rest, bandwidth=inputs.bandwidth) if stopping else None
     phases, feet, targets = state.swing_phase.copy(), state.foot.copy(), state.foothold.copy()
     velocities, accelerations = state.swing_velocity.copy(), state.swing_acceleration.copy()
-    flat, ground, landed = inputs.ground_plane is FLAT, state.ground_height, []
+    travel, landed = 1.0 if state.felt is None else _FELT_TRAVEL, []
     for leg in [leg for leg, on in enumerate(down) if not on]:
         late, since = float(state.lift_delay[leg]), since_lift[leg]
-        phase, target, contact = float(phases[leg]), complex(targets[leg]), float(state.contact_phase[leg])
+        phase, target = float(phases[leg]), complex(targets[leg])
         reached = min(max((since - late) / (swing - late), 0.0), 1.0)
-        if phase <= TARGET_FREEZE and contact == math.inf:
+        end, drawn_back = travel, None
+        if state.felt is not None and (drawn_back := state.felt.drawn_back[leg]) is not None:
+            over = phase >= state.felt.top_phase[leg]
+            end = 1.0 if over else state.felt.top_phase[leg]
+            target = target if over else drawn_back
+        elif phase <= TARGET_FREEZE * travel:
             until = (swing - since) / inputs.frequency
-            before = target
             target = (
                 predictor.foothold(
                     complex(inputs.rest[leg]),
@@ -168,13 +173,9 @@ def _swing(
                 else complex(final[leg])
             )
             targets[leg] = target
-            if not flat:
-                ground = _with_ground_at(ground, leg, target - before, inputs, just_lifted=phase == 0)
         path = (complex(feet[leg]), complex(velocities[leg]), complex(accelerations[leg]))
-        # After early contact the foot stops on the ground.
-        left = min(contact + float(state.stop_phase[leg]), 1.0) - phase
-        lands = bool(inputs.may_land[leg]) and since >= swing - PHASE_TOLERANCE
-        if lands:
+        left = end - phase
+        if since >= swing - PHASE_TOLERANCE:
             landed.append(leg)
             reached, path = 0.0, (target, 0j, 0j)
         elif left > 0:
@@ -189,25 +190,21 @@ def _swing(
         foothold=targets,
         swing_velocity=velocities,
         swing_acceleration=accelerations,
-        ground_height=ground,
     )
-    return _land(after, landed) if landed else after
+    return land(after, landed) if landed else after
 
 
-def _with_ground_at(
-    ground: Float[np.ndarray, "legs"], leg: int, moved: complex, inputs: StepInputs, *, just_lifted: bool
-) -> Float[np.ndarray, "legs"]:
-    """Return the ground heights, that of one foot for a foothold that has moved."""
-    changed = ground.copy()
-    changed[leg] += inputs.ground_plane.slope_x * moved.real + inputs.ground_plane.slope_y * moved.imag
-    if just_lifted:
-        changed[leg] = max(changed[leg], np.broadcast_to(inputs.lowest_ground, ground.shape)[leg])
-    return changed
+def land(state: GaitState, landed: list[int]) -> GaitState:
+    """Return the state with feet put down where they are.
 
-
-def _land(state: GaitState, landed: list[int]) -> GaitState:
-    """Put feet down at their footholds."""
-    number, down, contact = state.step_number.copy(), state.down.copy(), state.contact_phase.copy()
+    Parameters
+    ----------
+    state : GaitState
+        The gait state.
+    landed : list of int
+        The legs.
+    """
+    number, down, phase = state.step_number.copy(), state.down.copy(), state.swing_phase.copy()
     number[landed] += 1
-    down[landed], contact[landed] = True, np.inf
-    return state._replace(step_number=number, down=down, contact_phase=contact)
+    down[landed], phase[landed] = True, 0.0
+    return state._replace(step_number=number, down=down, swing_phase=phase)

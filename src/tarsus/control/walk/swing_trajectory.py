@@ -1,4 +1,4 @@
-"""Swing trajectories: the position over the ground, the height, and the stop after early ground contact.
+"""Swing trajectories: the position over the ground, and the height.
 
 The swing phase goes from 0 at lift-off to 1 at touchdown. Derivatives are with respect to it, and so
 independent of the duration of the swing. Positions are complex numbers, x + iy in G.
@@ -10,7 +10,7 @@ from typing import Any
 
 from tarsus.gait.swing import horizontal_profile, vertical_profile
 
-__all__ = ["quintic", "stopping_fraction", "stopping_height", "swinging_height"]
+__all__ = ["quintic", "swinging_height"]
 
 
 def quintic(state: tuple[Any, Any, Any], target: Any, remaining: Any, fraction: Any) -> tuple[Any, Any, Any]:
@@ -62,44 +62,3 @@ def swinging_height(phase: float, *, start: float, ground: float, swing_height: 
         Greatest height above the line from the one to the other [m].
     """
     return float(start + (ground - start) * horizontal_profile(phase) + swing_height * vertical_profile(phase))
-
-
-def stopping_height(
-    phase: float, *, contact: float, duration: float, height: float, speed: float, ground: float
-) -> float:
-    """Return the height of a foot that stops after early ground contact [m].
-
-    Parameters
-    ----------
-    phase : float
-        Swing phase.
-    contact : float
-        Swing phase at which the foot touched the ground.
-    duration : float
-        Duration of the stop in swing phase; it ends with the swing at the latest.
-    height, speed : float
-        Height at contact, and its derivative by the swing phase [m].
-    ground : float
-        Height at which the foot comes to rest [m].
-    """
-    duration = min(1 - contact, duration)
-    progress = min(max((phase - contact) / duration, 0.0), 1.0)
-    speed = speed * duration
-    stopped: float = (
-        height + speed * stopping_fraction(progress) + (ground - height - speed / 3) * horizontal_profile(progress)
-    )
-    return stopped
-
-
-def stopping_fraction(progress: Any) -> Any:
-    """Return the distance covered while stopping, over initial speed times duration of the stop; 1/3 at its end.
-
-    The speed falls with the square of the time that remains: it is never negative, and the acceleration ends at 0.
-
-    Parameters
-    ----------
-    progress : float or array
-        Fraction of the stop that has passed.
-    """
-    remaining = 1 - progress
-    return (1 - remaining * remaining * remaining) / 3

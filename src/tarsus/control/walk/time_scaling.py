@@ -11,17 +11,19 @@ import numpy as np
 if TYPE_CHECKING:
     from jaxtyping import Float
 
-__all__ = ["STOP_DURATION", "TimeScaling"]
+__all__ = ["TimeScaling"]
 
 _T = TypeVar("_T")
 
-# How fast the rate may rise, how fast it falls ahead of high accelerations, and how fast to a stop [1/s].
-_RISE, _FALL, _STOP = 3.0, 5.0, 10.0
-STOP_DURATION = 0.5 / _STOP
-"""Time of the walk that passes until it has stopped [s]."""
+# How fast the rate may rise, and how fast it falls ahead of high accelerations [1/s].
+_RISE, _FALL = 3.0, 5.0
 
 # Number of rates that are tried in a tick, and the fraction of the joints' speed and acceleration that is used.
 _TRIES, _USED = 5, 0.98
+# Distance that a joint keeps from its limits where it catches up [rad].
+_SPARE = 1e-3
+# How far a joint may be behind before the walk becomes slower, and before it stands still [rad].
+_LEAST_LAG, _MOST_LAG = 0.1, 0.5
 # Fraction of the joints' acceleration from which on to look ahead, the one to aim at then, and how far to look [s].
 _HIGH, _AIM, _AHEAD = 0.5, 0.75, 0.02
 
@@ -38,6 +40,8 @@ class TimeScaling:
         Joint angles at the start, at rest [rad].
     speed, acceleration : array, shape (legs, 3)
         Greatest of each joint [rad/s], [rad/s^2].
+    limits : array, shape (legs, 3, 2)
+        Lower and upper limit of each joint [rad].
 
     Attributes
     ----------
@@ -52,22 +56,21 @@ class TimeScaling:
         angles: Float[np.ndarray, "legs 3"],
         speed: Float[np.ndarray, "legs 3"],
         acceleration: Float[np.ndarray, "legs 3"],
+        limits: Float[np.ndarray, "legs 3 2"],
     ) -> None:
         self.angles = angles
         self.rate = 1.0
-        self._speed, self._acceleration = speed, acceleration
+        self._speed, self._acceleration, self._limits = speed, acceleration, limits
         self._speeds = np.zeros_like(angles)
         self._last_dt = 0.01
         self._used = 0.0
+        self._target = angles
 
     def advance(
         self,
         integrate: Callable[[float], _T],
         solve: Callable[[_T], np.ndarray],
         dt: float,
-        *,
-        stop: bool,
-        fastest: float = 1.0,
     ) -> _T:
         """Return the state of the walk after a tick.
 
@@ -79,14 +82,10 @@ class TimeScaling:
             Returns the joint angles of a state: array, shape (legs, 3) [rad].
         dt : float
             Length of the tick [s].
-        stop : bool
-            Whether the walk stops.
-        fastest : float
-            Greatest rate; the walk slows down to it gradually.
         """
-        rate = max(self.rate - _STOP * dt, 0.0) if stop else min(1.0, self.rate + _RISE * dt)
+        rate, fastest = min(1.0, self.rate + _RISE * dt), 1.0
         if self._used > _HIGH:
-            fastest = min(fastest, self._relaxed_rate(integrate, solve))
+            fastest = self._relaxed_rate(integrate, solve)
         rate = min(rate, max(fastest, self.rate - _FALL * dt))
         between = (dt + self._last_dt) / 2
         after = integrate(dt * rate)
@@ -103,6 +102,41 @@ class TimeScaling:
             speeds, used, works = self._demand(angles, dt, between)
         self._used = used
         self.angles, self._speeds, self.rate, self._last_dt = angles, speeds, rate, dt
+        self._target = angles
+        return after
+
+    def follow(self, integrate: Callable[[float], _T], solve: Callable[[_T], np.ndarray], dt: float) -> _T:
+        """Return the state of a walk that feels the ground after a tick: its joints follow on their own.
+
+        The feet's trajectories change with every contact, at once. Where that asks for more than a joint's speed or
+        acceleration, the joint lags behind and catches up, and the walk advances more slowly meanwhile.
+
+        Parameters
+        ----------
+        integrate, solve, dt
+            As for `advance`.
+        """
+        behind = self._target - self.angles
+        lag = float(np.abs(behind).max())
+        fastest = max(1 - max(lag - _LEAST_LAG, 0.0) / (_MOST_LAG - _LEAST_LAG), 0.0)
+        rate = self.rate = min(self.rate + _RISE * dt, max(fastest, self.rate - _FALL * dt), 1.0)
+        after = integrate(dt * rate)
+        target, hardest = solve(after), _USED * self._acceleration
+        # The speed of the target, and the one from which a joint can still stop where it catches up.
+        catching = np.minimum(np.abs(behind) / dt, np.sqrt(hardest * np.abs(behind)))
+        speeds = (target - self._target) / dt + np.copysign(catching, behind)
+        softest = hardest / 2
+        for sign, limit in ((1.0, self._limits[..., 1]), (-1.0, self._limits[..., 0])):
+            # A joint stops before its limit.
+            left = np.maximum(sign * (limit - self.angles) - _SPARE, 0.0)
+            stopping = np.sqrt((softest * dt) ** 2 + 2 * softest * left) - softest * dt
+            speeds = sign * np.minimum(sign * speeds, stopping)
+        reach = hardest * ((dt + self._last_dt) / 2)
+        speeds = np.clip(speeds, self._speeds - reach, self._speeds + reach)
+        speeds = np.clip(speeds, -_USED * self._speed, _USED * self._speed)
+        angles = self.angles + speeds * dt
+        angles.setflags(write=False)
+        self.angles, self._speeds, self._last_dt, self._target = angles, speeds, dt, target
         return after
 
     def _demand(
@@ -130,5 +164,9 @@ class TimeScaling:
         highest = float((np.minimum(speed, was + reach) / size).min())
         lowest = float(((was - reach) / size).max())
         if highest < lowest:
-            return min(rate * 0.999 * (max(highest, 0.0) + lowest) / 2, max(rate, self.rate))
-        return rate * 0.999 * max(highest, 0.0) if highest < 1 else min(rate * 1.001 * lowest, max(rate, self.rate))
+            return min(rate * 0.999 * (max(highest, 0.0) + max(lowest, 0.0)) / 2, max(rate, self.rate))
+        return (
+            rate * 0.999 * max(highest, 0.0)
+            if highest < 1
+            else min(rate * 1.001 * max(lowest, 0.0), max(rate, self.rate))
+        )

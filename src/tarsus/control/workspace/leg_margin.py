@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tarsus.control.workspace.stance_geometry import RAISED_FRACTION, StanceGeometry, joint_margin
+from tarsus.control.workspace.stance_geometry import StanceGeometry, joint_margin
 from tarsus.kinematics.triangle import Triangle, solve_triangle, to_leg_frame
 from tarsus.robot.geometry import LegGeometry
 from tarsus.robot.robot import Robot
@@ -50,22 +50,19 @@ class LegMargin:
         self._sideways = bool(g.side.any())
         p, rest = stance.position, stance.rest
         swing_heights = [(part * stance.swing_height, narrower) for part, narrower in _HEIGHTS]
-        # On uneven ground the whole polygon must also be feasible for stances below the plane and swings from above it.
-        uneven = [(stance.swing_height + RAISED_FRACTION * stance.depth, swing_heights[-1][1]), (-stance.depth, 1.0)]
-        heights = [*swing_heights[:-1], *uneven] if stance.depth else swing_heights
-        height, self._narrower = (np.array(column)[:, None, None] for column in zip(*heights, strict=True))
+        height, self._narrower = (np.array(column)[:, None, None] for column in zip(*swing_heights, strict=True))
         at_rest = stance.to_body(rest.real - p[0], rest.imag - p[1], height[:, 0] - p[2])
         self._at_rest = [part[:, None] for part in to_leg_frame(g, *at_rest)]
         # Unit steps over the ground along x and y of the heading frame, and the ground's normal, in the legs' frames.
-        slope, r = stance.slope, stance.rotation
-        rows = (r[0] + slope.real * r[2], r[1] + slope.imag * r[2]) if slope else (r[0], r[1])
+        rows = stance.rotation[:2]
         self._along_x, self._along_y = (_in_legs(g, *row.tolist()) for row in rows)
-        up, above = _over_ground(stance)
+        # The ground's normal in B, and the height of B's origin over it.
+        up, above = stance.rotation[2], float(stance.position[2])
         self._up = _in_legs(g, *up.tolist())
         self._rising, self._tilted = bool(rows[0][2] or rows[1][2]), bool(up[:2].any())
         self._axis_height = up[0] * g.mount_x + up[1] * g.mount_y + up[2] * (g.mount_z + g.up) + above
         self._lowest_femur = _lowest_femur(g, up, above) if knees else -math.inf
-        self._no_knees = np.zeros(len(heights), dtype=bool)
+        self._no_knees = np.zeros(len(_HEIGHTS), dtype=bool)
         self._speed_at_rest = self._joint_speed(self._solve(np.zeros((1, len(rest))), np.zeros((1, len(rest)))))[0, 0]
 
     def __call__(self, out: Complex[np.ndarray, "*#batch #legs"]) -> Float[np.ndarray, "*batch legs"]:
@@ -142,16 +139,6 @@ def _in_legs(
 ) -> tuple[Float[np.ndarray, "legs"], Float[np.ndarray, "legs"], float]:
     """Return the components of a vector of B in each leg's frame."""
     return g.cos_yaw * x + g.sin_yaw * y, g.cos_yaw * y - g.sin_yaw * x, z
-
-
-def _over_ground(stance: StanceGeometry) -> tuple[Float[np.ndarray, "3"], float]:
-    """Return the normal of the ground in B, and the distance of B's origin from the ground [m]."""
-    up, above = stance.rotation[2], float(stance.position[2])
-    if not stance.slope:
-        return up, above
-    normal = up - stance.slope.real * stance.rotation[0] - stance.slope.imag * stance.rotation[1]
-    size = float(np.linalg.norm(normal))
-    return normal / size, above / size
 
 
 def _lowest_femur(g: LegGeometry, up: Float[np.ndarray, "3"], above: float) -> float:

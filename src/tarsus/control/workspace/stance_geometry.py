@@ -8,7 +8,7 @@ amplitudes of the sway.
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -20,13 +20,9 @@ if TYPE_CHECKING:
     from jaxtyping import Complex, Float
 
 __all__ = [
-    "LEVEL_TERRAIN",
-    "RAISED_FRACTION",
     "SWING_HEIGHT",
     "Rows",
     "StanceGeometry",
-    "TerrainEstimate",
-    "ground_rise",
     "joint_margin",
     "rotation_rows",
     "stance_geometry_of",
@@ -38,28 +34,6 @@ __all__ = [
 # Margin kept to every joint limit [rad], and least angle of the knee from straight or folded [rad].
 _LIMIT_MARGIN = 0.01
 _LEAST_BEND = 0.2
-
-
-class TerrainEstimate(NamedTuple):
-    """Slope and unevenness of the ground that a stance must allow for.
-
-    Attributes
-    ----------
-    slope : complex
-        Rise along x and y of the heading frame [m/m].
-    depth : float
-        How far below the plane feet may have to stand, in swing heights.
-    """
-
-    slope: complex = 0j
-    depth: float = 0.0
-
-
-RAISED_FRACTION = 0.5
-"""How far the ground may be above the plane, over how far it may be below."""
-
-LEVEL_TERRAIN = TerrainEstimate()
-"""Flat and level ground at its expected height."""
 
 
 class StanceGeometry(NamedTuple):
@@ -75,18 +49,12 @@ class StanceGeometry(NamedTuple):
         Of the body's origin [m].
     swing_height : float
         Swing height [m].
-    slope : complex
-        Rise of the ground along x and y [m/m].
-    depth : float
-        How far below the ground plane feet may have to stand [m].
     """
 
     rest: Complex[np.ndarray, "*batch legs"]
     rotation: Float[np.ndarray, "... 3 3"]
     position: Float[np.ndarray, "..."]
     swing_height: float
-    slope: complex = 0j
-    depth: float = 0.0
 
     def solve(
         self,
@@ -119,23 +87,8 @@ class StanceGeometry(NamedTuple):
             Components, z relative to the ground plane [m].
         """
         r = self.rotation
-        if self.slope:
-            z = z + ground_rise(self.slope, x, y)
         in_x, in_y, in_z = (x * r[..., 0, i] + y * r[..., 1, i] + z * r[..., 2, i] for i in range(3))
         return in_x, in_y, in_z
-
-
-def ground_rise(slope: complex, x: Any, y: Any) -> Any:
-    """Return the height of a sloped plane through the origin at points [m].
-
-    Parameters
-    ----------
-    slope : complex
-        Rise along x and y [m/m].
-    x, y : float or array, shape (...)
-        Points [m].
-    """
-    return slope.real * x + slope.imag * y
 
 
 def joint_margin(geometry: LegGeometry, solution: Triangle) -> Float[np.ndarray, "*batch legs"]:
@@ -183,9 +136,7 @@ def rotation_rows(roll: float, pitch: float, yaw: float) -> Rows:
     )
 
 
-def stance_geometry_of(
-    posture: Float[np.ndarray, "_"], rest: Complex[np.ndarray, "legs"], terrain: TerrainEstimate = LEVEL_TERRAIN
-) -> StanceGeometry:
+def stance_geometry_of(posture: Float[np.ndarray, "_"], rest: Complex[np.ndarray, "legs"]) -> StanceGeometry:
     """Return the stance geometry of a posture.
 
     Parameters
@@ -194,16 +145,9 @@ def stance_geometry_of(
         The posture; its sway is ignored.
     rest : complex array, shape (legs,)
         Rest footholds in the heading frame [m].
-    terrain : TerrainEstimate
-        Slope and unevenness of the ground.
     """
-    x, y, z, roll, pitch, yaw, swing_height = posture[: SWING_HEIGHT + 1].tolist()
-    slope, position = terrain.slope, posture[:3]
-    if slope:
-        position = np.array([x, y, z - ground_rise(slope, x, y)])
-    return StanceGeometry(
-        rest, np.array(rotation_rows(roll, pitch, yaw)), position, swing_height, slope, terrain.depth * swing_height
-    )
+    roll, pitch, yaw, swing_height = posture[3 : SWING_HEIGHT + 1].tolist()
+    return StanceGeometry(rest, np.array(rotation_rows(roll, pitch, yaw)), posture[:3], swing_height)
 
 
 def with_sway(posture: Float[np.ndarray, "_"], cycles: float, beats: float) -> Float[np.ndarray, "7"]:

@@ -82,7 +82,7 @@ class VelocityLimits:
         )
 
     def feasible_fraction(
-        self, twist: Float[np.ndarray, "3"], *, stance_time: float, duty_factor: float, hold: float = 0.0
+        self, twist: Float[np.ndarray, "3"], *, stance_time: float, duty_factor: float
     ) -> tuple[float, int]:
         """Return the largest multiple of a twist that can be walked steadily, and the leg that limits it.
 
@@ -94,8 +94,6 @@ class VelocityLimits:
             Duration of a stance [s].
         duty_factor : float
             Duty factor.
-        hold : float
-            By how much a stance may be extended [s].
 
         Returns
         -------
@@ -108,7 +106,7 @@ class VelocityLimits:
         scale = max(1.0, float(np.abs(twist).max()))
         forward, left, turn = (np.asarray(twist) / scale).tolist()
         fraction = self._fraction_by_side(
-            complex(forward, left), turn, (stance_overhang(duty_factor) * stance_time + hold) / _USED_FRACTION
+            complex(forward, left), turn, stance_overhang(duty_factor) * stance_time / _USED_FRACTION
         )
         worst = int(fraction.argmin())
         straight, turning = math.hypot(forward, left), abs(turn)

@@ -1,0 +1,81 @@
+"""Contact estimator: which feet bear load, with probabilities, from readings that are wrong now and then."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+__all__ = ["ContactEstimator"]
+
+# Bound of the log odds: what a foot has been doing is forgotten by evidence of this size.
+_BOUND = 6.0
+# Fraction of wrong readings that is assumed at first, with the weight of so many readings, and the greatest one.
+_ERROR, _WEIGHT, _GREATEST_ERROR = 0.001, 600.0, 0.2
+# Readings after which half of what is known of the errors is forgotten.
+_MEMORY = 3000.0
+# A contact that has not been measured for longer is unknown [s].
+_TIMEOUT = 0.5
+
+
+class ContactEstimator:
+    """Estimates contacts by Bayes' rule in log odds; how often readings are wrong is estimated as well.
+
+    A reading that differs from the one before and the one after it was wrong. The more of them there are, the more
+    readings in agreement it takes to change an estimate: one below 0.25 % of wrong readings, two up to 4.7 %, three up
+    to 12 %.
+
+    Parameters
+    ----------
+    legs : int
+        Number of legs.
+
+    Attributes
+    ----------
+    touching : list of bool
+        Whether a foot bears load, more probably than not.
+    known : list of bool
+        Whether the contact is measured.
+    error : float
+        Estimated fraction of wrong readings.
+    """
+
+    def __init__(self, legs: int) -> None:
+        self.touching, self.known = [True] * legs, [False] * legs
+        self.error = _ERROR
+        self._odds = [_BOUND] * legs
+        self._ages = [math.inf] * legs
+        self._last: list[tuple[bool, bool]] = [(True, True)] * legs
+        self._wrong, self._read = _ERROR * _WEIGHT, _WEIGHT
+
+    @property
+    def probabilities(self) -> list[float]:
+        """Probability that each foot bears load."""
+        return [1 / (1 + math.exp(-odds)) for odds in self._odds]
+
+    def step(self, readings: Sequence[bool | None] | None, dt: float) -> None:
+        """Take in the contacts of one tick.
+
+        Parameters
+        ----------
+        readings : sequence of (bool or None), or None
+            Which feet touch the ground, as measured; None where nothing is.
+        dt : float
+            Time since the last tick [s].
+        """
+        evidence = math.log((1 - self.error) / self.error)
+        for leg, reading in enumerate(readings or (None,) * len(self.touching)):
+            if reading is None:
+                self._ages[leg] += dt
+                self.known[leg] = self._ages[leg] <= _TIMEOUT
+                continue
+            self._ages[leg], self.known[leg] = 0.0, True
+            odds = self._odds[leg] + (evidence if reading else -evidence)
+            self._odds[leg] = odds = min(max(odds, -_BOUND), _BOUND)
+            self.touching[leg] = odds > 0
+            before, last = self._last[leg]
+            self._wrong += before == reading != last
+            self._read += 1
+            self._last[leg] = (last, reading)
+        if self._read > _MEMORY:
+            self._wrong, self._read = self._wrong / 2, self._read / 2
+        self.error = min(self._wrong / self._read, _GREATEST_ERROR)

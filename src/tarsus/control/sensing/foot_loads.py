@@ -1,0 +1,101 @@
+"""Loads of the feet: contacts and forces from whichever sensors a robot has, and how compliant feet yield to them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from tarsus.control.pose.admittance import Admittance, AdmittanceFilter
+from tarsus.control.readings import ValidReadings, Vector
+from tarsus.control.sensing.foot_force import FootForceEstimator, balanced_forces
+from tarsus.kinematics.mass import STANDARD_GRAVITY, total_mass
+from tarsus.robot.robot import Robot
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
+
+__all__ = ["FootLoads"]
+
+# A foot that bears this share of the robot's weight is on the ground.
+_CONTACT_SHARE = 0.04
+
+
+class FootLoads:
+    """Contacts and compliance of the feet, from foot switches, load cells or joint torques.
+
+    Parameters
+    ----------
+    robot : Robot
+        A single robot.
+    admittance : Admittance, optional
+        Compliance of the feet; left out, they are stiff.
+    """
+
+    def __init__(self, robot: Robot, admittance: Admittance | None) -> None:
+        self._weight = float(total_mass(robot)) * STANDARD_GRAVITY if robot.has_masses else 0.0
+        self._torques = FootForceEstimator(robot) if robot.has_masses else None
+        self._filter = AdmittanceFilter(admittance, robot.legs) if admittance else None
+
+    def forces(self, valid: ValidReadings, angles: Float[np.ndarray, "legs 3"]) -> Sequence[Vector | None] | None:
+        """Return the forces of the ground on the feet [N], measured or from joint torques; None where unknown.
+
+        Parameters
+        ----------
+        valid : ValidReadings
+            The readings.
+        angles : array, shape (legs, 3)
+            Joint angles [rad].
+        """
+        if valid.forces is None and valid.torques is not None and self._torques is not None:
+            return self._torques.forces(angles.tolist(), valid.torques)
+        return valid.forces
+
+    def contacts(self, valid: ValidReadings, forces: Sequence[Vector | None] | None) -> Sequence[bool | None] | None:
+        """Return which feet touch the ground: from switches, or else from forces; None where unknown.
+
+        Parameters
+        ----------
+        valid : ValidReadings
+            The readings.
+        forces : sequence of ((x, y, z) or None), or None
+            Forces on the feet [N].
+        """
+        if valid.contacts is not None or forces is None or not self._weight:
+            return valid.contacts
+        least = _CONTACT_SHARE * self._weight
+        return [None if force is None else force[2] > least for force in forces]
+
+    def offsets(
+        self,
+        forces: Sequence[Vector | None] | None,
+        dt: float,
+        *,
+        feet: Sequence[Sequence[float]],
+        stands: Sequence[bool],
+    ) -> Float[np.ndarray, "legs"] | None:
+        """Return the upward offsets of compliant feet [m]; None of stiff ones.
+
+        Parameters
+        ----------
+        forces : sequence of ((x, y, z) or None), or None
+            Forces on the feet [N].
+        dt : float
+            Length of the tick [s].
+        feet : sequence of (x, y)
+            The feet [m].
+        stands : sequence of bool
+            Which feet stand.
+        """
+        if self._filter is None:
+            return None
+        if forces is None or not self._weight:
+            return np.array(self._filter.step((None,) * len(feet), dt))
+        middle = [sum(foot[axis] for foot in feet) / len(feet) for axis in range(2)]
+        expected = balanced_forces([[*foot, 0.0] for foot in feet], list(stands), middle, self._weight)
+        errors = [
+            force[2] - float(share) if force is not None and down else None
+            for force, share, down in zip(forces, expected, stands, strict=True)
+        ]
+        return np.array(self._filter.step(errors, dt))

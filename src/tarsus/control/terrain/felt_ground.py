@@ -1,0 +1,256 @@
+"""Felt ground: what a walk does with readings, tick by tick, all of it relative to the body."""
+
+from __future__ import annotations
+
+import cmath
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from tarsus.control.limitation import Limitation, LimitationKind
+from tarsus.control.pose.admittance import Admittance
+from tarsus.control.readings import SensorReadings
+from tarsus.control.sensing.foot_loads import FootLoads
+from tarsus.control.sensing.validation import ReadingsValidator
+from tarsus.control.terrain.foot_contacts import FootContacts
+from tarsus.control.terrain.foot_plane import FootPlane, fitted_plane
+from tarsus.control.terrain.ground_contact import met_ground
+from tarsus.control.terrain.posture_feedback import Levelling, PostureFeedback
+from tarsus.control.terrain.reach import reachable_heights
+from tarsus.control.terrain.roughness import GroundAdaptation, Roughness
+from tarsus.control.terrain.support import Support, holds
+from tarsus.control.walk.felt_feet import FeltFeet, FeltInputs
+from tarsus.control.walk.ground_pose import body_posture
+from tarsus.control.walk.state import PHASE_TOLERANCE, GaitState
+from tarsus.control.walk.step_timing import StepTiming
+from tarsus.control.workspace.stance_geometry import SWING_HEIGHT
+from tarsus.kinematics.mass import centre_of_mass
+from tarsus.robot.robot import Robot
+
+if TYPE_CHECKING:
+    from jaxtyping import Complex, Float
+
+__all__ = ["FeltGround"]
+
+# How fast the slope follows the feet [1/s].
+_SLOPE_RATE = 2.0
+# How far below the expected ground feet go by the end of their swing, over the roughness.
+_DEPTH_SHARE = 0.6
+# Change of a stroke that changes the heights that a leg reaches [m]; turning counts at this distance [m].
+_STROKE_STEP, _TURNING_ARM = 0.01, 0.2
+# Below this pace the robot waits for support.
+_WAITING = 0.5
+
+
+class FeltGround:
+    """Estimates contacts and tilt from readings, and decides what the feet and the body do about them.
+
+    Parameters
+    ----------
+    robot : Robot
+        A single robot.
+    angles : array, shape (legs, 3)
+        Joint angles in the initial stance [rad].
+    levelling : "level", "between", "follow" or None
+        The attitude to keep on slopes; None for no use of the measured attitude.
+    adaptation : GroundAdaptation
+        How far swing height and body height may adapt.
+    admittance : Admittance, optional
+        Compliance of the feet; left out, they are stiff.
+
+    Attributes
+    ----------
+    contacts : FootContacts
+        Which feet bear load.
+    posture : PostureFeedback
+        Height and tilt of the body.
+    roughness : Roughness
+        How uneven the ground is.
+    support : Support
+        Whether feet may lift off, and at which pace the walk goes on.
+    plane : FootPlane
+        The plane through the standing feet, in the heading frame.
+    offsets : array, shape (legs,), or None
+        Upward offsets of compliant feet [m]; None of stiff ones.
+    """
+
+    def __init__(
+        self,
+        robot: Robot,
+        angles: Float[np.ndarray, "legs 3"],
+        *,
+        levelling: Levelling | None,
+        adaptation: GroundAdaptation,
+        admittance: Admittance | None,
+    ) -> None:
+        self.contacts, self.support = FootContacts(robot.legs), Support()
+        self.posture, self.roughness = PostureFeedback(levelling), Roughness(adaptation)
+        self.plane = FootPlane()
+        self.offsets: Float[np.ndarray, "legs"] | None = None
+        self._robot = robot
+        self._validator, self._loads = ReadingsValidator(robot), FootLoads(robot, admittance)
+        com = centre_of_mass(robot, angles)
+        self._centre = complex(com[0], com[1])
+        self._rejected: tuple[str, ...] = ()
+        self._tilt: tuple[float, float] | None = None
+        self._reach_key: tuple[object, ...] = ()
+        self._lowest, self._highest = [0.0] * robot.legs, [0.0] * robot.legs
+
+    @property
+    def waits(self) -> bool:
+        """Whether the robot waits until its feet hold it."""
+        return self.support.pace < _WAITING
+
+    def sense(
+        self,
+        readings: SensorReadings | None,
+        dt: float,
+        state: GaitState,
+        *,
+        timing: StepTiming,
+        angles: Float[np.ndarray, "legs 3"],
+    ) -> tuple[GaitState, list[int]]:
+        """Return the gait state after the readings of a tick, and the legs whose feet have landed by them.
+
+        Parameters
+        ----------
+        readings : SensorReadings or None
+            The readings.
+        dt : float
+            Time since the last tick [s].
+        state : GaitState
+            The gait state.
+        timing : StepTiming
+            The gait and its frequency.
+        angles : array, shape (legs, 3)
+            Joint angles [rad].
+        """
+        valid = self._validator.validate(readings, dt)
+        self._rejected = valid.rejected
+        forces = self._loads.forces(valid, angles)
+        if valid.attitude is not None:
+            roll, pitch = state.posture.value[3:5].tolist()
+            self._tilt = (valid.attitude[0] - roll, valid.attitude[1] - pitch)
+        measured = self._loads.contacts(valid, forces)
+        if state.felt is None:
+            if measured is None and valid.attitude is None:
+                return state, []
+            heights = np.array(state.heights(float(state.posture.value[SWING_HEIGHT])))
+            state = state._replace(ground_height=heights, felt=FeltFeet.still(len(heights)))
+        down = state.down.tolist()
+        self.contacts.step(measured, down, dt)
+        feet = [(foot.real, foot.imag) for foot in state.foot.tolist()]
+        self.offsets = self._loads.offsets(forces, dt, feet=feet, stands=down)
+        return met_ground(
+            state,
+            self.contacts,
+            self.plane,
+            self.roughness,
+            highest=self._highest,
+            timing=timing,
+            pace=self.support.pace,
+        )
+
+    def inputs(
+        self,
+        state: GaitState,
+        dt: float,
+        *,
+        timing: StepTiming,
+        twist: Float[np.ndarray, "3"],
+        rest: Complex[np.ndarray, "legs"],
+        excluded: list[int],
+        standing: bool,
+    ) -> FeltInputs:
+        """Return what the feet and the body do in a tick.
+
+        Parameters
+        ----------
+        state : GaitState
+            The gait state.
+        dt : float
+            Length of the tick [s].
+        timing : StepTiming
+            The gait and its frequency.
+        twist : array, shape (3,)
+            The twist that is followed.
+        rest : complex array, shape (legs,)
+            Rest footholds in the heading frame [m].
+        excluded : list of int
+            Legs that bear no load.
+        standing : bool
+            Whether the robot stands.
+        """
+        legs, elevation = range(len(rest)), float(state.elevation.value[0])
+        turn, contacts = cmath.exp(-1j * state.yaw), self.contacts
+        places = [(foot - state.origin) * turn for foot in state.foot.tolist()]
+        over = [height - elevation for height in state.ground_height.tolist()]
+        down = [on and leg not in excluded for leg, on in enumerate(state.down.tolist())]
+        bears = [leg for leg in legs if down[leg] and contacts.touches(leg)]
+        self.plane = fitted_plane(
+            [places[leg] for leg in bears], [over[leg] for leg in bears], self.plane, min(_SLOPE_RATE * dt, 1.0)
+        )
+        self._update_reach(state, timing, twist, rest)
+        rises = [(over[leg] if leg in bears else self.plane.at(complex(rest[leg]))) - self.plane.height for leg in legs]
+        self.posture.fit_to_reach(
+            rises,
+            self.roughness.body_rise,
+            dt,
+            reach=(self._lowest, self._highest),
+            height=float(state.posture.value[2]),
+        )
+        velocity = complex(*state.twist.value[:2].tolist()) * self.support.pace
+        margins = [(places[leg], over[leg] - self._lowest[leg]) for leg in bears]
+        climb, turning = self.posture.rates(self.plane, self._tilt, velocity, feet=margins)
+        supports = {leg: places[leg] for leg in legs if down[leg] and contacts.supports(leg)}
+        self._decide_on_support(state, dt, supports, timing=timing, standing=standing)
+        self.roughness.decay(0.0 if standing else dt * timing.frequency)
+        ground = [elevation + self.plane.at((foothold - state.origin) * turn) for foothold in state.foothold.tolist()]
+        searches = [contacts.estimator.known[leg] and (down[leg] or contacts.lifted[leg]) for leg in legs]
+        return FeltInputs(
+            stands=tuple(contacts.stands(leg) for leg in legs),
+            steps=tuple(leg not in excluded for leg in legs),
+            ground=tuple(ground),
+            lowest=tuple(elevation + self._lowest[leg] if searches[leg] else ground[leg] for leg in legs),
+            highest=tuple(elevation + height for height in self._highest),
+            depth=_DEPTH_SHARE * self.roughness.value,
+            climb=climb,
+            turn=turning,
+            pace=self.support.pace,
+            swing_height=float(state.posture.value[SWING_HEIGHT]) + self.roughness.swing_rise,
+        )
+
+    def _update_reach(
+        self, state: GaitState, timing: StepTiming, twist: Float[np.ndarray, "3"], rest: Complex[np.ndarray, "legs"]
+    ) -> None:
+        """Update the least and greatest height of each foot, where its stroke or the posture has changed."""
+        (vx, vy, wz), time = twist.tolist(), timing.stance_time
+        strokes = (round(speed * time / _STROKE_STEP) for speed in (vx, vy, wz * _TURNING_ARM))
+        key = (*strokes, id(rest), *state.posture.value[:SWING_HEIGHT].round(3).tolist())
+        if key != self._reach_key:
+            self._reach_key = key
+            self._lowest, self._highest = reachable_heights(
+                self._robot, state.posture.value, rest, (complex(vx, vy) + 1j * wz * rest) * time
+            )
+
+    def _decide_on_support(
+        self, state: GaitState, dt: float, supports: dict[int, complex], *, timing: StepTiming, standing: bool
+    ) -> None:
+        """Decide whether feet may lift off, and at which pace the walk goes on."""
+        duty_factor, clock = timing.gait.duty_factor, state.clock + timing.frequency * dt + PHASE_TOLERANCE
+        steps = zip(state.down.tolist(), timing.gait.offsets, state.step_number.tolist(), strict=True)
+        due = [not standing and down and clock > offset + duty_factor + number for down, offset, number in steps]
+        centre = self._centre + complex(*body_posture(state)[:2].tolist())
+        stays = standing or holds([place for leg, place in supports.items() if not due[leg]], centre)
+        self.support.step(stays=stays, lifts=any(due), dt=dt, swing_time=timing.swing_time)
+
+    @property
+    def limitations(self) -> tuple[Limitation, ...]:
+        """Readings that are rejected, and what the ground does not allow."""
+        kinds = LimitationKind
+        found = [Limitation(kind=kinds.READINGS, cause=reason) for reason in self._rejected]
+        if self.posture.given_way > 0.0:
+            found.append(Limitation(kind=kinds.ATTITUDE, cause="end of the legs' reach on this slope"))
+        if self.waits:
+            found.append(Limitation(kind=kinds.GROUND, cause="the feet on the ground do not hold the robot"))
+        return tuple(found)

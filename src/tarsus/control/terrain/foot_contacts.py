@@ -1,0 +1,74 @@
+"""Contacts of the feet over time: which bear load and for how long, and which have left the ground."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from tarsus.control.sensing.contact_estimator import ContactEstimator
+
+__all__ = ["FootContacts"]
+
+# A foot that has been without contact for longer has left the ground, or has lost it [s].
+_LOST = 0.03
+# A foot that has been without contact for no longer still counts as support [s].
+_GRACE = 0.1
+# A switch that has been closed for longer is stuck [s].
+_STUCK = 3.0
+
+
+class FootContacts:
+    """What the estimated contacts tell of each foot.
+
+    Parameters
+    ----------
+    legs : int
+        Number of legs.
+
+    Attributes
+    ----------
+    estimator : ContactEstimator
+        Estimates the contacts.
+    lifted : list of bool
+        Whether a swinging foot has been without contact since it lifted off.
+    """
+
+    def __init__(self, legs: int) -> None:
+        self.estimator = ContactEstimator(legs)
+        self.lifted = [False] * legs
+        self._without, self._with = [0.0] * legs, [0.0] * legs
+
+    def step(self, readings: Sequence[bool | None] | None, down: Sequence[bool], dt: float) -> None:
+        """Take in the contacts of one tick.
+
+        Parameters
+        ----------
+        readings : sequence of (bool or None), or None
+            Which feet touch the ground, as measured; None where nothing is.
+        down : sequence of bool
+            Which feet should stand.
+        dt : float
+            Time since the last tick [s].
+        """
+        self.estimator.step(readings, dt)
+        for leg, on in enumerate(down):
+            if self.estimator.known[leg] and not self.estimator.touching[leg]:
+                self._without[leg], self._with[leg] = self._without[leg] + dt, 0.0
+            else:
+                self._without[leg], self._with[leg] = 0.0, self._with[leg] + dt
+            self.lifted[leg] = not on and (self.lifted[leg] or self._without[leg] > _LOST)
+
+    def touches(self, leg: int) -> bool:
+        """Return whether a foot bears load now; True where nothing is known."""
+        return self._without[leg] <= 0.0
+
+    def stands(self, leg: int) -> bool:
+        """Return whether a foot that should stand does, but for the shortest of interruptions."""
+        return self._without[leg] <= _LOST
+
+    def supports(self, leg: int) -> bool:
+        """Return whether a foot that should stand counts as support."""
+        return self._without[leg] <= _GRACE
+
+    def is_stuck(self, leg: int) -> bool:
+        """Return whether a contact has lasted for so long that it tells nothing."""
+        return self._with[leg] > _STUCK

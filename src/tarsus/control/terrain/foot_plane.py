@@ -1,0 +1,61 @@
+"""The plane through the standing feet, in the heading frame."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+__all__ = ["FootPlane", "fitted_plane"]
+
+# Least determinant of the feet's spread over the square of its trace; feet in a line define no plane.
+_LEAST_SPREAD = 0.02
+
+
+class FootPlane(NamedTuple):
+    """A plane ``z = height + x slope_x + y slope_y`` in the heading frame.
+
+    Attributes
+    ----------
+    height : float
+        At the origin [m].
+    slope_x, slope_y : float
+        Rise along x and y [m/m].
+    """
+
+    height: float = 0.0
+    slope_x: float = 0.0
+    slope_y: float = 0.0
+
+    def at(self, point: complex) -> float:
+        """Return the height at a point x + iy [m]."""
+        return self.height + self.slope_x * point.real + self.slope_y * point.imag
+
+
+def fitted_plane(points: Sequence[complex], heights: Sequence[float], before: FootPlane, share: float) -> FootPlane:
+    """Return the plane through feet: their mean height, and a slope that follows the fitted one.
+
+    Parameters
+    ----------
+    points : sequence of complex
+        Where the feet stand, x + iy [m].
+    heights : sequence of float
+        Their heights [m].
+    before : FootPlane
+        The plane so far; its slope stays where fewer than three feet stand, or all in a line.
+    share : float
+        Share of the fitted slope in the new one, 0 to 1.
+    """
+    count = len(points)
+    if not count:
+        return before
+    middle, mean = sum(points) / count, sum(heights) / count
+    slope_x, slope_y = before.slope_x, before.slope_y
+    xx = xy = yy = xz = yz = 0.0
+    for point, height in zip(points, heights, strict=True):
+        x, y, z = point.real - middle.real, point.imag - middle.imag, height - mean
+        xx, xy, yy, xz, yz = xx + x * x, xy + x * y, yy + y * y, xz + x * z, yz + y * z
+    spread = xx * yy - xy * xy
+    if count >= 3 and spread > _LEAST_SPREAD * (xx + yy) ** 2:
+        slope_x += share * ((yy * xz - xy * yz) / spread - slope_x)
+        slope_y += share * ((xx * yz - xy * xz) / spread - slope_y)
+    return FootPlane(mean - slope_x * middle.real - slope_y * middle.imag, slope_x, slope_y)

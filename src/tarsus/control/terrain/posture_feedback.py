@@ -1,0 +1,139 @@
+"""Posture feedback: two slow feedbacks move all standing feet at once, for the body's height and for its tilt."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Literal, NamedTuple, TypeAlias
+
+from tarsus.control.terrain.foot_plane import FootPlane
+
+__all__ = ["LEVELLING_SHARES", "Levelling", "PostureFeedback", "PostureRates"]
+
+Levelling: TypeAlias = Literal["level", "between", "follow"]
+"""The attitude to keep: level, along the slope, or in the middle between both."""
+
+LEVELLING_SHARES = {"level": 0.0, "between": 0.5, "follow": 1.0}
+"""How much of the slope the body follows."""
+
+# Gains [1/s] and greatest rates of height [m/s] and tilt [rad/s]; without a measured attitude the tilt follows slower.
+_HEIGHT_GAIN, _MOST_CLIMB = 1.2, 0.05
+_TILT_GAIN, _MOST_TURN, _UNMEASURED_GAIN = 2.0, 0.15, 0.5
+# Speed with which a foot may approach the end of its reach, over the distance from there [1/s].
+_BARRIER = 8.0
+# How fast the height to keep changes [m/s], and how much of the body height it may be lower.
+_RAISING, _LOWERING, _MOST_LOWER = 0.04, 0.02, 0.25
+
+
+class PostureRates(NamedTuple):
+    """How the body is to move over its standing feet.
+
+    Attributes
+    ----------
+    climb : float
+        Upward speed [m/s].
+    turn : tuple of float
+        Angular velocity of the feet about the body, along x and y of the heading frame [rad/s].
+    """
+
+    climb: float
+    turn: tuple[float, float]
+
+
+class PostureFeedback:
+    """Keeps the body at its height over the feet, and level, along the slope or between.
+
+    Parameters
+    ----------
+    levelling : "level", "between", "follow" or None
+        What to keep; None for no use of the measured attitude.
+
+    Attributes
+    ----------
+    raised : float
+        How much higher over the ground than commanded the body is to be [m].
+    short : float
+        How far the ground is out of the legs' reach in the attitude to keep [m].
+    given_way : float
+        Share of the slope that the body follows because the legs do not reach otherwise, 0 to 1.
+    """
+
+    def __init__(self, levelling: Levelling | None) -> None:
+        self._share = None if levelling is None else LEVELLING_SHARES[levelling]
+        self.raised = self.short = self.given_way = 0.0
+
+    def fit_to_reach(
+        self,
+        rises: Sequence[float],
+        raise_by: float,
+        dt: float,
+        *,
+        reach: tuple[Sequence[float], Sequence[float]],
+        height: float,
+    ) -> None:
+        """Change the height to keep towards the one at which all legs reach the plane of the feet.
+
+        Parameters
+        ----------
+        rises : sequence of float
+            Height of each foot over the plane's height at the origin [m].
+        raise_by : float
+            How much higher than commanded the body should be [m].
+        dt : float
+            Length of the tick [s].
+        reach : tuple of sequence of float
+            Least and greatest height of each foot [m].
+        height : float
+            Commanded height of the body [m].
+        """
+        # Feet are between their least and greatest heights for heights over the ground between these.
+        most = min(rise - low for low, rise in zip(reach[0], rises, strict=True))
+        least = max(rise - high for high, rise in zip(reach[1], rises, strict=True))
+        wanted = max(min(raise_by, most), least) if most >= least else (most + least) / 2
+        wanted = max(wanted, -_MOST_LOWER * height)
+        self.short = max(wanted - most, least - wanted, 0.0)
+        steepest = max(*map(abs, rises), 1e-6)
+        self.given_way = min(self.short / steepest, 1.0)
+        self.raised += min(max(wanted - self.raised, -_LOWERING * dt), _RAISING * dt)
+
+    def rates(
+        self,
+        plane: FootPlane,
+        tilt: tuple[float, float] | None,
+        velocity: complex,
+        *,
+        feet: Sequence[tuple[complex, float]],
+    ) -> PostureRates:
+        """Return how the body is to move.
+
+        Parameters
+        ----------
+        plane : FootPlane
+            The plane of the standing feet, in the heading frame.
+        tilt : (roll, pitch) or None
+            By how much the body is tilted more than commanded [rad]; None where it is not measured.
+        velocity : complex
+            Velocity of the body [m/s].
+        feet : sequence of (complex, float)
+            The feet that stand: where, x + iy in the heading frame, and how much lower they could be [m].
+        """
+        if not feet:
+            return PostureRates(0.0, (0.0, 0.0))
+        climb = min(max(_HEIGHT_GAIN * (plane.height + self.raised), -_MOST_CLIMB), _MOST_CLIMB)
+        climb += plane.slope_x * velocity.real + plane.slope_y * velocity.imag
+        along = (-math.atan(plane.slope_y), math.atan(plane.slope_x))
+        if tilt is None or self._share is None:
+            turn = [_UNMEASURED_GAIN * angle for angle in along]
+        else:
+            share = max(self._share, self.given_way)
+            turn = [_TILT_GAIN * ((1 - share) * a + share * b) for a, b in zip(tilt, along, strict=True)]
+        roll, pitch = (min(max(rate, -_MOST_TURN), _MOST_TURN) for rate in turn)
+        # The nearer a foot is to the end of its reach, the slower it goes there.
+        share = 1.0
+        for place, margin in feet:
+            sinks = pitch * place.real - roll * place.imag
+            if sinks > 0:
+                share = min(share, max(_BARRIER * margin, 0.0) / sinks)
+        roll, pitch = share * roll, share * pitch
+        climb = min(climb, *(_BARRIER * margin + roll * place.imag - pitch * place.real for place, margin in feet))
+        return PostureRates(max(climb, -2 * _MOST_CLIMB), (roll, pitch))

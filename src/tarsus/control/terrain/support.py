@@ -1,0 +1,72 @@
+"""Support: whether the feet that bear load hold the robot, and how fast the walk may go on."""
+
+from __future__ import annotations
+
+import cmath
+import math
+from collections.abc import Sequence
+
+__all__ = ["Support", "holds"]
+
+# Rates at which the pace falls and rises [1/s].
+_FALL, _RISE = 6.0, 3.0
+# Part of a swing for which feet may wait before the steps slow down.
+_PATIENCE = 0.3
+# How long the robot may be without support between two footholds [s].
+_GRACE = 0.15
+# Least angle by which the centre of mass is inside the support polygon, as seen from it [rad].
+_LEAST_ANGLE = 0.02
+
+
+def holds(feet: Sequence[complex], centre: complex) -> bool:
+    """Return whether a point is inside the polygon of some feet.
+
+    Parameters
+    ----------
+    feet : sequence of complex
+        The feet, x + iy [m].
+    centre : complex
+        The point [m].
+    """
+    angles = sorted(cmath.phase(foot - centre) for foot in feet)
+    if len(angles) < 3:
+        return False
+    gaps = [after - before for before, after in zip(angles, [*angles[1:], angles[0] + math.tau], strict=True)]
+    return max(gaps) < math.pi - _LEAST_ANGLE
+
+
+class Support:
+    """Decides whether feet may lift off, and at which pace the walk goes on.
+
+    Attributes
+    ----------
+    pace : float
+        Rate of steps and twist, 0 to 1.
+    waits : bool
+        Whether feet that are due stay on the ground.
+    """
+
+    def __init__(self) -> None:
+        self.pace, self.waits = 1.0, False
+        self._waited = self._unsupported = 0.0
+
+    def step(self, *, stays: bool, lifts: bool, dt: float, swing_time: float) -> None:
+        """Decide for a tick.
+
+        Parameters
+        ----------
+        stays : bool
+            Whether the feet that bear load and are not due to lift off hold the robot.
+        lifts : bool
+            Whether any foot is due to lift off.
+        dt : float
+            Length of the tick [s].
+        swing_time : float
+            Duration of a swing [s].
+        """
+        self.waits = lifts and not stays
+        self._waited = self._waited + dt if self.waits else 0.0
+        self._unsupported = 0.0 if stays or lifts else self._unsupported + dt
+        late = max((self._waited - _GRACE / 3) / (_PATIENCE * swing_time), (self._unsupported - _GRACE) / _GRACE)
+        wanted = 1 - min(max(late, 0.0), 1.0)
+        self.pace += min(max(wanted - self.pace, -_FALL * dt), _RISE * dt)
