@@ -9,8 +9,9 @@ import numpy as np
 
 from tarsus.control.limitation import Limitation, LimitationKind
 from tarsus.control.pose.admittance import Admittance
-from tarsus.control.readings import SensorReadings
+from tarsus.control.readings import SensorReadings, ValidReadings
 from tarsus.control.sensing.foot_loads import FootLoads
+from tarsus.control.sensing.leg_odometry import LegOdometry
 from tarsus.control.sensing.validation import ReadingsValidator
 from tarsus.control.terrain.foot_contacts import FootContacts
 from tarsus.control.terrain.foot_plane import FootPlane, fitted_plane
@@ -36,6 +37,8 @@ __all__ = ["FeltGround"]
 _SLOPE_RATE = 2.0
 # How far below the expected ground feet go by the end of their swing, over the roughness.
 _DEPTH_SHARE = 0.6
+# Fraction of the swing in which a foot travels, up to half the longest stroke and with the longest one.
+_SLOW_TRAVEL, _FAST_TRAVEL = 0.75, 0.92
 # Change of a stroke that changes the heights that a leg reaches [m]; turning counts at this distance [m].
 _STROKE_STEP, _TURNING_ARM = 0.01, 0.2
 # Below this pace the robot waits for support.
@@ -91,9 +94,11 @@ class FeltGround:
         self._validator, self._loads = ReadingsValidator(robot), FootLoads(robot, admittance)
         com = centre_of_mass(robot, angles)
         self._centre = complex(com[0], com[1])
+        self._odometry, self._measured = LegOdometry(robot), ValidReadings()
         self._rejected: tuple[str, ...] = ()
         self._tilt: tuple[float, float] | None = None
         self._reach_key: tuple[object, ...] = ()
+        self._stroke = 0.0
         self._lowest, self._highest = [0.0] * robot.legs, [0.0] * robot.legs
 
     @property
@@ -126,7 +131,7 @@ class FeltGround:
             Joint angles [rad].
         """
         valid = self._validator.validate(readings, dt)
-        self._rejected = valid.rejected
+        self._rejected, self._measured = valid.rejected, valid
         forces = self._loads.forces(valid, angles)
         if valid.attitude is not None:
             roll, pitch = state.posture.value[3:5].tolist()
@@ -159,6 +164,7 @@ class FeltGround:
         timing: StepTiming,
         twist: Float[np.ndarray, "3"],
         rest: Complex[np.ndarray, "legs"],
+        radii: list[float],
         excluded: list[int],
         standing: bool,
     ) -> FeltInputs:
@@ -176,6 +182,8 @@ class FeltGround:
             The twist that is followed.
         rest : complex array, shape (legs,)
             Rest footholds in the heading frame [m].
+        radii : list of float
+            Greatest distance from its rest foothold at which each foot may be put down [m].
         excluded : list of int
             Legs that bear no load.
         standing : bool
@@ -200,6 +208,14 @@ class FeltGround:
             height=float(state.posture.value[2]),
         )
         velocity = complex(*state.twist.value[:2].tolist()) * self.support.pace
+        drift = self._odometry.step(
+            self._measured.joint_angles,
+            [leg in bears for leg in legs],
+            velocity,
+            dt,
+            tilt=self._measured.attitude or (0.0, 0.0),
+            yaw=float(state.posture.value[5]),
+        )
         margins = [(places[leg], over[leg] - self._lowest[leg]) for leg in bears]
         climb, turning = self.posture.rates(self.plane, self._tilt, velocity, feet=margins)
         supports = {leg: places[leg] for leg in legs if down[leg] and contacts.supports(leg)}
@@ -216,6 +232,8 @@ class FeltGround:
             depth=_DEPTH_SHARE * self.roughness.value,
             climb=climb,
             turn=turning,
+            drift=drift,
+            travel=_SLOW_TRAVEL + (_FAST_TRAVEL - _SLOW_TRAVEL) * max(2 * self._stroke / max(*radii, 1e-6) - 1, 0.0),
             pace=self.support.pace,
             swing_height=float(state.posture.value[SWING_HEIGHT]) + self.roughness.swing_rise,
         )
@@ -225,13 +243,12 @@ class FeltGround:
     ) -> None:
         """Update the least and greatest height of each foot, where its stroke or the posture has changed."""
         (vx, vy, wz), time = twist.tolist(), timing.stance_time
-        strokes = (round(speed * time / _STROKE_STEP) for speed in (vx, vy, wz * _TURNING_ARM))
-        key = (*strokes, id(rest), *state.posture.value[:SWING_HEIGHT].round(3).tolist())
+        rounded = (round(speed * time / _STROKE_STEP) for speed in (vx, vy, wz * _TURNING_ARM))
+        key = (*rounded, id(rest), *state.posture.value[:SWING_HEIGHT].round(3).tolist())
         if key != self._reach_key:
-            self._reach_key = key
-            self._lowest, self._highest = reachable_heights(
-                self._robot, state.posture.value, rest, (complex(vx, vy) + 1j * wz * rest) * time
-            )
+            self._reach_key, strokes = key, (complex(vx, vy) + 1j * wz * rest) * time
+            self._stroke = float(np.abs(strokes).max()) / 2
+            self._lowest, self._highest = reachable_heights(self._robot, state.posture.value, rest, strokes)
 
     def _decide_on_support(
         self, state: GaitState, dt: float, supports: dict[int, complex], *, timing: StepTiming, standing: bool

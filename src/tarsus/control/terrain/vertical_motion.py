@@ -23,7 +23,7 @@ _LOWERING, _FASTEST_LOWERING, _SEARCHING = 0.12, 0.4, 0.08
 # Time in which a foot that should stand goes down to the expected ground [s].
 _SEARCH_TIME = 0.1
 # Greatest changes of speed, of feet and of the body, and how fast a foot that has landed early stops [m/s^2].
-_FOOT_ACCELERATION, _BODY_ACCELERATION, _STOPPING = 6.0, 1.0, 6.0
+_FOOT_ACCELERATION, _BODY_ACCELERATION, _STOPPING = 6.0, 1.0, 12.0
 
 
 def moved_vertically(state: GaitState, inputs: StepInputs, dt: float) -> GaitState:
@@ -63,11 +63,12 @@ def moved_vertically(state: GaitState, inputs: StepInputs, dt: float) -> GaitSta
 
 
 def _carried(state: GaitState, feet: FeltFeet, felt: FeltInputs, leg: int, dt: float) -> complex:
-    """Return how far a foot on the ground moves in G: by its slide, and by the turn about the body [m]."""
+    """Return how far a foot on the ground moves in G: by its slide, its turn about the body and its drift [m]."""
     moved = _slide_way(feet.slide[leg], dt)
-    if felt.stands[leg] and any(felt.turn):
+    if felt.stands[leg]:
         under = float(state.ground_height[leg] - state.elevation.value[0] - state.posture.value[2])
-        moved += complex(felt.turn[1], -felt.turn[0]) * under * dt * cmath.exp(1j * state.yaw)
+        turned = complex(felt.turn[1], -felt.turn[0]) * under
+        moved += (turned - felt.drift) * dt * cmath.exp(1j * state.yaw)
     return moved
 
 

@@ -60,6 +60,7 @@ def _step_inputs(walk: WalkComponents, tick: TickState, dt: float) -> StepInputs
             timing=timing,
             twist=tick.twist,
             rest=transitions.footholds.rest,
+            radii=transitions.footholds.placement_radii,
             excluded=walk.foot_targets.legs,
             standing=standing,
         )

@@ -84,6 +84,10 @@ class FeltInputs(NamedTuple):
         Upward speed of the body over the standing feet [m/s].
     turn : tuple of float
         Angular velocity of the standing feet about the body, along x and y of the heading frame [rad/s].
+    drift : complex
+        Velocity of the standing feet against the body's, in the heading frame, that makes up for lost way [m/s].
+    travel : float
+        Fraction of its swing in which a foot travels: in the rest it goes straight down.
     pace : float
         Rate of the steps and of the twist, 0 to 1.
     swing_height : float
@@ -98,5 +102,7 @@ class FeltInputs(NamedTuple):
     depth: float
     climb: float
     turn: tuple[float, float]
+    drift: complex
+    travel: float
     pace: float
     swing_height: float

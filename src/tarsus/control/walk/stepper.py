@@ -26,8 +26,6 @@ LATEST_LIFT_OFF = 0.5
 _ADMITTANCE_BANDWIDTH = 20.0
 # Bandwidth of the body shift's coefficients [rad/s].
 _SHIFT_BANDWIDTH = 5.0
-# Fraction of its swing in which a foot that feels the ground travels: it goes straight down in the rest.
-_FELT_TRAVEL = 0.85
 # A foot that feels the ground is at its rest foothold within this distance [m].
 _FELT_TOLERANCE = 0.015
 # A speed below the first is 0 [m/s]; a filter this close to its target, and as slow, is at it [m, m/s, rad, rad/s].
@@ -149,7 +147,7 @@ def _swing(
     final = final_footholds(state, rest=inputs.rest, bandwidth=inputs.bandwidth) if stopping else None
     phases, feet, targets = state.swing_phase.copy(), state.foot.copy(), state.foothold.copy()
     velocities, accelerations = state.swing_velocity.copy(), state.swing_acceleration.copy()
-    travel, landed = 1.0 if state.felt is None else _FELT_TRAVEL, []
+    travel, landed = 1.0 if inputs.felt is None else inputs.felt.travel, []
     for leg in [leg for leg, on in enumerate(down) if not on]:
         late, since = float(state.lift_delay[leg]), since_lift[leg]
         phase, target = float(phases[leg]), complex(targets[leg])

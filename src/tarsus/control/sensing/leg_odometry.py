@@ -1,0 +1,100 @@
+"""Leg odometry: how far the body is behind where it is commanded to be, by the measured angles of the standing legs."""
+
+from __future__ import annotations
+
+import cmath
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from tarsus.control.readings import Vector
+from tarsus.robot.robot import Robot
+
+if TYPE_CHECKING:
+    from jaxtyping import Complex, Float
+
+__all__ = ["LegOdometry"]
+
+# Speed that makes up for what is missing, over that [1/s], and its greatest share of the commanded speed.
+_GAIN, _MOST = 1.5, 0.25
+# What is missing for longer than this speed lasts is given up [s].
+_MEMORY = 0.3
+
+
+class LegOdometry:
+    """Compares the commanded motion of the body with that over the feet that stand, by their measured joint angles.
+
+    Legs give way when load shifts to them, uphill and downhill always to the same side: without a correction the robot
+    covers less or more of the way than commanded.
+
+    Parameters
+    ----------
+    robot : Robot
+        A single robot.
+
+    Attributes
+    ----------
+    behind : complex
+        Where the body should be, as seen from where it is, in the heading frame [m].
+    """
+
+    def __init__(self, robot: Robot) -> None:
+        self.behind = 0j
+        self._g = robot.geometry
+        self._before: Complex[np.ndarray, "legs"] | None = None
+        self._stood: list[bool] = []
+
+    def step(
+        self,
+        angles: Sequence[Vector | None] | None,
+        stands: list[bool],
+        velocity: complex,
+        dt: float,
+        *,
+        tilt: tuple[float, float],
+        yaw: float,
+    ) -> complex:
+        """Return the velocity that makes up for what is missing, in the heading frame [m/s].
+
+        Parameters
+        ----------
+        angles : sequence of ((coxa, femur, tibia) or None), or None
+            Measured joint angles [rad]; without all of them nothing is corrected.
+        stands : list of bool
+            Which feet bear load.
+        velocity : complex
+            Commanded velocity of the body in the heading frame [m/s].
+        dt : float
+            Time since the last tick [s].
+        tilt : (roll, pitch)
+            Of the body against gravity [rad].
+        yaw : float
+            Of the body in the heading frame [rad].
+        """
+        feet = None if angles is None or None in angles else self._feet(np.array(angles), *tilt) * cmath.exp(1j * yaw)
+        if feet is None:
+            self.behind, self._before = 0j, None
+            return 0j
+        both = [now and then for now, then in zip(stands, self._stood, strict=False)]
+        if self._before is not None and any(both):
+            moved = -complex((feet - self._before)[both].mean())
+            most = abs(velocity) * _MEMORY
+            self.behind += velocity * dt - moved
+            self.behind *= min(1.0, most / max(abs(self.behind), 1e-12))
+        self._before, self._stood = feet, stands
+        wanted, most = _GAIN * self.behind, _MOST * abs(velocity)
+        return wanted * min(1.0, most / max(abs(wanted), 1e-12))
+
+    def _feet(self, angles: Float[np.ndarray, "legs 3"], roll: float, pitch: float) -> Complex[np.ndarray, "legs"]:
+        """Return the horizontal positions of the feet from the body, x + iy in axes with its yaw [m]."""
+        g = self._g
+        reach = g.coxa + g.femur * np.cos(angles[:, 1]) + g.tibia * np.cos(angles[:, 1] + angles[:, 2])
+        down = g.femur * np.sin(angles[:, 1]) + g.tibia * np.sin(angles[:, 1] + angles[:, 2]) + g.mount_z + g.up
+        out = (reach + 1j * g.side) * np.exp(1j * angles[:, 0]) * (g.cos_yaw + 1j * g.sin_yaw)
+        x, y = g.mount_x + out.real, g.mount_y + out.imag
+        across = y * math.cos(roll) - down * math.sin(roll)
+        up = y * math.sin(roll) + down * math.cos(roll)
+        found: np.ndarray = x * math.cos(pitch) + up * math.sin(pitch) + 1j * across
+        return found
