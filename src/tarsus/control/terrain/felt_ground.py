@@ -41,6 +41,8 @@ _DEPTH_SHARE = 0.6
 _SLOW_TRAVEL, _FAST_TRAVEL = 0.75, 0.92
 # Change of a stroke that changes the heights that a leg reaches [m]; turning counts at this distance [m].
 _STROKE_STEP, _TURNING_ARM = 0.01, 0.2
+# A foot this close to its least height hangs [m], and how much lower the ground under it is then expected [m].
+_HANGING, _LOWER = 0.002, 0.03
 # Below this pace the robot waits for support.
 _WAITING = 0.5
 
@@ -199,7 +201,13 @@ class FeltGround:
             [places[leg] for leg in bears], [over[leg] for leg in bears], self.plane, min(_SLOPE_RATE * dt, 1.0)
         )
         self._update_reach(state, timing, twist, rest)
-        rises = [(over[leg] if leg in bears else self.plane.at(complex(rest[leg]))) - self.plane.height for leg in legs]
+        rises = [
+            (over[leg] if leg in bears else self.plane.at(complex(rest[leg]))) - self.plane.height for leg in legs
+        ]
+        for leg in legs:
+            if down[leg] and not contacts.stands(leg) and over[leg] < self._lowest[leg] + _HANGING:
+                # The foot hangs at the end of its reach: with the body lower it may find ground.
+                rises[leg] = self._lowest[leg] - self.plane.height - _LOWER
         self.posture.fit_to_reach(
             rises,
             self.roughness.body_rise,
