@@ -21,6 +21,7 @@ import numpy as np
 from loads import load_rows
 from native import FLAGS, CLoop
 from servo_buses import servo_bus_rows
+from servo_plant import servo_plant_rows
 from simulation import simulation_rows
 from studio import studio_rows
 from tarsus import (
@@ -261,6 +262,7 @@ def rows(robot: Robot, c_loop: CLoop | None) -> Iterator[Row]:
     yield from start_rows()
     yield from simulation_rows()
     yield from servo_bus_rows()
+    yield from servo_plant_rows()
     yield from studio_rows()
 
 

@@ -11,6 +11,7 @@ import tarsus
 from draw_hill import plot_hill
 from draw_states import plot_states
 from draw_terrains import plot_terrains
+from tarsus.hardware.bringup.wizard import reference_angles
 from tarsus.report.angles import plot_angles
 from tarsus.report.animation import animate
 from tarsus.report.footpaths import plot_footpaths
@@ -58,6 +59,7 @@ def main() -> None:
         robot = tarsus.load_robot(name)
         angles, body = standing(robot)
         save_figure(plot_robot(robot, angles, body=body), FIGURES / f"robot-{name}.png")
+    save_figure(plot_robot(strider, reference_angles(strider)), FIGURES / "reference-pose.png")
     day = load_scenario(FIGURES.parents[1] / "examples" / "whole-day.toml")
     save_figure(plot_timeline(run_scenario(day)), FIGURES / "timeline.png")
     save_figure(plot_hill(), FIGURES / "hill.png")

@@ -18,7 +18,10 @@ from tarsus.load.handbook.page import docs_page
 ROOT = Path(__file__).parents[1]
 PAGES = (
     ROOT / "README.md",
-    *(ROOT / "docs" / name for name in ("commands.md", "loads.md", "walking-live.md", "firmware.md")),
+    *(
+        ROOT / "docs" / name
+        for name in ("commands.md", "loads.md", "walking-live.md", "firmware.md", "calibration.md", "first-hour.md")
+    ),
 )
 
 

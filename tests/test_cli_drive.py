@@ -66,7 +66,7 @@ def test_files_are_named_after_they_are_written(tmp_path):
 def test_without_dry_servos_are_refused():
     result = run("drive", TIMELINE)
     assert result.exit_code == 2
-    assert "servos are not supported yet; --dry" in result.stderr
+    assert "give --dry, which runs the scenario on an ideal plant; tarsus run drives servos" in result.stderr
 
 
 def test_a_rejected_command_is_reported_with_exit_code_1():

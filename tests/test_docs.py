@@ -70,7 +70,10 @@ def refresh_module():
     return module
 
 
-@pytest.mark.parametrize("page", ["README.md", "docs/commands.md", "docs/loads.md", "docs/firmware.md"])
+@pytest.mark.parametrize(
+    "page",
+    ["README.md", "docs/commands.md", "docs/loads.md", "docs/firmware.md", "docs/calibration.md", "docs/first-hour.md"],
+)
 def test_what_the_pages_show_is_what_is_printed(page):
     text = (DOCS.parent / page).read_text(encoding="utf-8")
     assert refresh_module().refreshed(text) == text, "run: make figures"
@@ -81,3 +84,26 @@ def test_the_table_of_mistakes_is_what_is_said():
     assert refresh_module().with_mistakes(text) == text, "run: make figures"
     rows = [line for line in text.splitlines() if line.startswith("| ") and "| strider |" in line]
     assert len(rows) >= 40
+
+
+def test_every_key_of_a_calibration_is_described_and_its_example_loads(tmp_path):
+    text = (DOCS / "calibration.md").read_text(encoding="utf-8")
+    schema = tarsus.hardware.calibration_schema()
+    tables = [schema, *schema["$defs"].values()]
+    keys = {key for table in tables for key in table.get("properties", {})}
+    assert [key for key in sorted(keys) if not re.search(rf"`{key}`", text)] == []
+    (tmp_path / "c.toml").write_text(re.search(r"```toml\n(.*?)```", text, re.DOTALL)[1], encoding="utf-8")
+    found = tarsus.hardware.Calibration.load(tmp_path / "c.toml")
+    assert found.joints[0][2].missing == ()
+    assert len(found.missing) == 15
+
+
+def test_the_faults_of_the_page_are_those_there_are():
+    text = (DOCS / "first-hour.md").read_text(encoding="utf-8")
+    table = text.split("| fault | noticed by")[1]
+    rows = dict(re.findall(r"^\| ([a-z -]+) \| [^|]* \| ([a-z, ]+)", table, flags=re.MULTILINE))
+    from tarsus.hardware.plant.fault import REACTIONS
+
+    assert set(rows) == {str(kind) for kind in REACTIONS}
+    for kind, (reaction, _) in REACTIONS.items():
+        assert ("limp" in rows[str(kind)]) == (reaction == "limp")

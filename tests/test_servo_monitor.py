@@ -20,7 +20,7 @@ SUPPLY = SupplySettings(voltage=7.4, least_voltage=6.0)
 
 def monitor(supply=SUPPLY, robot=STRIDER):
     made = nominal_calibration(robot, "strider", kind="feetech-sts").replace(supply=supply)
-    return ServoMonitor(made, JointMap(made), PlantSettings(least_failures=2))
+    return ServoMonitor(made, JointMap(made), PlantSettings())
 
 
 def no_answer(number, kind=NoAnswerError):
@@ -35,9 +35,10 @@ def test_a_silent_servo_is_a_fault_after_some_time_and_answers():
     assert watch.answered("main", asked, answered, [no_answer(7)], 0.03) is None
     assert watch.answered("main", asked, asked, [], 0.035) is None
     assert watch.answered("main", asked, answered, [no_answer(7, CorruptAnswerError)], 0.04) is None
-    fault = watch.answered("main", asked, answered, [no_answer(7, CorruptAnswerError)], 0.09)
+    assert watch.answered("main", asked, answered, [no_answer(7, CorruptAnswerError)], 0.05) is None
+    fault = watch.answered("main", asked, answered, [no_answer(7, CorruptAnswerError)], 0.1)
     assert (fault.kind, fault.joint, fault.leg, fault.number) == (FaultKind.CORRUPT, "rear left coxa", 2, 0)
-    assert "2 answers in a row failed, for 50 ms: nothing" in fault.text
+    assert "3 answers in a row failed, none for 65 ms: nothing" in fault.text
     # Errors of what was not asked, and of no servo, are none of a joint.
     assert watch.answered("main", [1, 2], [1], [no_answer(None), no_answer(9)], 0.1) is None
 
@@ -45,8 +46,10 @@ def test_a_silent_servo_is_a_fault_after_some_time_and_answers():
 def test_a_silent_bus_is_a_brown_out_with_the_last_voltage():
     watch = monitor()
     asked = range(1, 19)
-    assert watch.answered("main", asked, [], [], 0.0) is None
-    fault = watch.answered("main", asked, [], [], 0.02)
+    assert watch.answered("main", asked, asked, [], 0.0) is None
+    assert watch.answered("main", asked, [], [], 0.02) is None
+    assert watch.answered("main", asked, [], [], 0.04) is None
+    fault = watch.answered("main", asked, [], [], 0.065)
     assert fault.kind is FaultKind.BROWN_OUT
     assert "all 18 servos on main fell silent at once: the supply" in fault.text
     assert watch.answered("main", [], [], [], 0.03) is None

@@ -166,7 +166,7 @@ def test_every_kind_of_fault_has_a_reaction_and_a_remedy():
 
 def test_a_lost_answer_now_and_then_is_no_fault():
     # As plants open their buses.
-    rig = Rig(timeout=0.01, settings=PlantSettings())
+    rig = Rig(timeout=0.015)
     rig.line.faults.corrupt = dict.fromkeys(rig.ids, 0.02)
     assert rig.run().problems == ()
     assert rig.plant.fault is None

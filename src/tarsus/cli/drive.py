@@ -60,7 +60,7 @@ def drive(
     from tarsus.scenario.summary import drive_summary
 
     if not dry:
-        raise click.UsageError("servos are not supported yet; --dry runs the scenario on an ideal plant")
+        raise click.UsageError("give --dry, which runs the scenario on an ideal plant; tarsus run drives servos")
     if out is not None:
         make_folder(out)
     timeline = timeline_of(scenario, rate)

@@ -98,5 +98,6 @@ class ServoFault:
     def error(self) -> ServoFaultError:
         """Return the error that ends the run."""
         what = f"{self.joint}: {self.kind}" if self.joint else str(self.kind)
-        did = "sits down, then all servos are released" if self.reaction is Reaction.SIT else "all servos are released"
-        return ServoFaultError(f"{what}: {self.text}; the robot {did}. {self.remedy}", self)
+        sits = self.reaction is Reaction.SIT
+        did = "the robot sits down, then all servos are released" if sits else "all servos are released"
+        return ServoFaultError(f"{what}: {self.text}; {did}. {self.remedy}", self)

@@ -46,11 +46,14 @@ class ServoMonitor:
         shape = (calibration.robot.legs, 3)
         self._failures = np.zeros(shape, dtype=int)
         self._failing_since = np.full(shape, np.nan)
+        self._answered = np.full(shape, np.nan)
         self._silent_reads: dict[str, int] = {}
         self._history: deque[tuple[float, Float[np.ndarray, "legs 3"], Float[np.ndarray, "legs 3"]]] = deque(maxlen=200)
         self._behind_since = np.full(shape, np.nan)
         self._heavy_since = np.full(shape, np.nan)
         self._low_since: float | None = None
+        # On a computer that is late itself, what is late to answer is not silent yet [s].
+        self.grace = 0.0
         self.temperatures = np.full(shape, np.nan)
         self.voltages = np.full(shape, np.nan)
         self.currents = np.full(shape, np.nan)
@@ -87,13 +90,14 @@ class ServoMonitor:
         """
         for number in answered:
             place = self._joints.joint(bus, number)
-            self._failures[place], self._failing_since[place] = 0, math.nan
+            self._failures[place], self._failing_since[place], self._answered[place] = 0, math.nan, now
         if not asked or len(answered) == len(asked):
             self._silent_reads[bus] = 0
             return None
         if not answered and len(asked) > _FEW:
             self._silent_reads[bus] = self._silent_reads.get(bus, 0) + 1
-            if self._silent_reads[bus] > 1:
+            heard = max(float(self._answered[self._joints.joint(bus, number)]) for number in asked)
+            if self._silent_reads[bus] > 1 and not now - heard < self._settings.silence + self.grace:
                 return self._all_silent(bus, len(asked), now)
         for error in errors:
             if error.id is not None and error.id in asked:
@@ -107,12 +111,18 @@ class ServoMonitor:
         self._failures[place] += 1
         if self._failures[place] == 1:
             self._failing_since[place] = now
-        since = now - float(self._failing_since[place])
-        if self._failures[place] < settings.least_failures or since < settings.silence:
+        doubted = now - float(self._failing_since[place])
+        # Of a servo that has never answered, the time of the first failure counts.
+        since = doubted if math.isnan(self._answered[place]) else now - float(self._answered[place])
+        if (
+            self._failures[place] < settings.least_failures
+            or doubted < settings.least_doubt
+            or since < settings.silence
+        ):
             return None
         kind = FaultKind.CORRUPT if isinstance(error, CorruptAnswerError) else FaultKind.NO_ANSWER
         number_of = int(self._failures[place])
-        text = f"{number_of} answers in a row failed, for {since * 1e3:.0f} ms: {error.received}"
+        text = f"{number_of} answers in a row failed, none for {since * 1e3:.0f} ms: {error.received}"
         return self._of_joint(kind, place, text, now)
 
     def _all_silent(self, bus: str, number: int, now: float) -> ServoFault:

@@ -12,6 +12,10 @@ from tarsus.representation import represented
 __all__ = ["Pacer", "Timing"]
 
 
+# How much of a lateness is remembered from tick to tick.
+_FADING = 0.97
+
+
 @represented()
 class Timing(NamedTuple):
     """How well the ticks were kept.
@@ -48,6 +52,7 @@ class Pacer:
         self._first = 0.0
         self._missed = 0
         self._late: list[float] = []
+        self._recent = 0.0
 
     def wait(self, dt: float) -> float:
         """Wait for the beginning of the next tick, and return the time [s].
@@ -65,11 +70,17 @@ class Pacer:
             now = self._clock.now()
         late = now - self._next
         self._late.append(max(late, 0.0))
+        self._recent = max(late, self._recent * _FADING)
         if late >= dt:
             self._missed += int(late / dt)
             self._next = now
         self._next += dt
         return now
+
+    @property
+    def recently_late(self) -> float:
+        """How late ticks began of late: the worst, fading within a second or so [s]."""
+        return self._recent
 
     @property
     def timing(self) -> Timing:

@@ -92,10 +92,12 @@ class ServoReader:
         """
         for name in self._turns:
             bus, numbers = self._buses[name], self._joints.numbers(name)
-            found = dict(bus.read_positions(numbers).values)
-            left = [number for number in numbers if number not in found]
-            if left:
-                found |= bus.read_positions(left).require()
+            found: dict[int, float] = {}
+            for last in (False, False, True):
+                answers = bus.read_positions([number for number in numbers if number not in found])
+                found |= answers.require() if last else answers.values
+                if len(found) == len(numbers):
+                    break
             self._keep(name, found)
         return self.angles.copy()
 

@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 
 __all__ = ["ServoOutput"]
 
+# How often a servo is looked for before the first motion.
+_TRIES = 3
 # Shares of the torque with which a robot that can't sit down sinks to the ground, and how long each lasts [s].
 _FADING, _FADE = (0.5, 0.35, 0.25, 0.15, 0.08), 0.25
 
@@ -83,8 +85,12 @@ class ServoOutput:
             numbers = self._joints.numbers(name)
             if bus.capabilities.ping == "none" or not numbers:
                 continue
-            found = bus.scan(numbers)
-            missing = [number for number in numbers if number not in found.values]
+            missing = list(numbers)
+            for _ in range(_TRIES):
+                found = bus.scan(missing).values
+                missing = [number for number in missing if number not in found]
+                if not missing:
+                    break
             if missing:
                 listed = ", ".join(self._joints.describe(name, number) for number in missing)
                 raise NoAnswerError(

@@ -34,11 +34,11 @@ if TYPE_CHECKING:
 
 __all__ = ["ServoPlant"]
 
-# Longest time until an answer begins: two of them are less than the time in which a fault must be noticed [s].
-_TIMEOUT = 0.01
+# Longest time until an answer begins: three of them are less than the time in which a fault must be noticed [s].
+_TIMEOUT = 0.025
 _START_TICK = 0.02
-# Of buses that the plant did not open: two failures take about 60 ms with their usual timeout of 20 ms.
-_FEW_FAILURES = 2
+# How much longer servos may be silent on a computer whose ticks begin later than usual, per lateness [s].
+_GRACE, _USUAL = 3.0, 0.01
 # A joint that is measured farther than this beyond its limits has a wrong zero or direction [rad].
 _BEYOND = math.radians(20)
 
@@ -101,7 +101,7 @@ class ServoPlant:
         if robot.leg_names != calibration.robot.leg_names:
             raise InputError(f"the calibration is for {calibration.robot.name!r}; the robot is {robot.name!r}")
         self.robot, self.calibration = robot, calibration
-        self.settings = settings or (PlantSettings() if buses is None else PlantSettings(least_failures=_FEW_FAILURES))
+        self.settings = settings or PlantSettings()
         self.fault: ServoFault | None = None
         self.notes: list[str] = []
         self._declared = declared
@@ -268,6 +268,7 @@ class ServoPlant:
     def _measure(self, dt: float) -> ServoFault | None:
         """Read positions and some telemetry, and return the first fault."""
         monitor, found, complete = self._monitor, None, True
+        monitor.grace = _GRACE * max(0.0, self._pacer.recently_late - _USUAL)
         for reading in self._reader.positions(dt):
             complete = complete and not reading.errors
             fault = monitor.answered(reading.bus, reading.asked, reading.answered, reading.errors, self._clock.now())

@@ -26,9 +26,8 @@ class PlantSettings:
         Longest tick; joints move no farther than in this time [s].
     silence : float
         How long a servo may give no valid answer [s].
-    least_failures : int
-        How many answers in a row must fail; 2 are enough for the plant where it did not open the buses itself, and they
-        may take longer to fail.
+    least_failures, least_doubt : int, float
+        How many answers in a row must have failed, and for how long [s].
     delay : float
         Time after which a servo begins to follow a command [s].
     stuck_window : float
@@ -54,8 +53,9 @@ class PlantSettings:
     start_speed: float = math.radians(45)
     start_interval: float = 0.08
     longest_tick: float = 0.05
-    silence: float = 0.04
-    least_failures: int = 3
+    silence: float = 0.06
+    least_failures: int = 2
+    least_doubt: float = 0.015
     delay: float = 0.04
     stuck_window: float = 0.06
     stuck_angle: float = math.radians(2.5)
