@@ -137,7 +137,7 @@ def _row(physics: Physics, way: str, values: Any) -> str:
             cells.append(f"{np.median(each):.2f} ({each.min():.2f}-{each.max():.2f})")
         each = values[:, 2, joint]
         cells.append(f"{np.median(each):.2f} ({each.min():.2f})")
-    return f"| {physics.name} | {way} | {' | '.join(cells)} |\n"
+    return f"| {physics.name}, {len(values)} walks | {way} | {' | '.join(cells)} |\n"
 
 
 def table() -> str:
