@@ -90,6 +90,8 @@ def calibration_values():
         robot, calibration, buses={"main": bus}, clock=hardware.ManualClock(), observer=recorded.append
     )
     plant.start(tarsus.RobotController(robot).output)
+    line = hardware.MemoryTransport(hardware.emulate("servo2040", range(18)))
+    yield hardware.AttitudeLine(hardware.Mounting(port="COM3"), line)
     yield from (plant, plant.timing, plant.settings, recorded[0])
     yield hardware.ServoFault(kind=hardware.FaultKind.STUCK, text="it stands still", joint="front left femur")
     yield from (hardware.FootSwitches(bus="main", inputs=(0, 1, 2, 3, 4, None)), hardware.Mounting(port="COM3"))

@@ -40,6 +40,7 @@ if TYPE_CHECKING:
     from tarsus.hardware.plant.servo_plant import ServoPlant
     from tarsus.hardware.plant.settings import PlantSettings
     from tarsus.hardware.plant.tick_record import TickRecord
+    from tarsus.hardware.sensors.attitude_line import AttitudeLine
     from tarsus.hardware.transport.clock import ManualClock, SystemClock
     from tarsus.hardware.transport.memory import MemoryI2c, MemoryTransport
     from tarsus.hardware.transport.pty import PtyServer
@@ -65,6 +66,7 @@ _HOMES = {
     "tarsus.hardware.plant.servo_plant": ("ServoPlant",),
     "tarsus.hardware.plant.settings": ("PlantSettings",),
     "tarsus.hardware.plant.tick_record": ("TickRecord",),
+    "tarsus.hardware.sensors.attitude_line": ("AttitudeLine",),
     "tarsus.hardware.transport.clock": ("ManualClock", "SystemClock"),
     "tarsus.hardware.transport.memory": ("MemoryI2c", "MemoryTransport"),
     "tarsus.hardware.transport.pty": ("PtyServer",),
@@ -76,6 +78,7 @@ __all__ = [
     "BUSES",
     "BUS_COMMANDS",
     "Answers",
+    "AttitudeLine",
     "Bus",
     "BusCommands",
     "BusKind",

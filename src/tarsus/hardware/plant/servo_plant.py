@@ -25,6 +25,7 @@ from tarsus.hardware.plant.settings import PlantSettings
 from tarsus.hardware.plant.sit_down import SITTING_TICK, sitting_angles
 from tarsus.hardware.plant.soft_start import glide
 from tarsus.hardware.plant.tick_record import TickRecord
+from tarsus.hardware.sensors.attitude_line import AttitudeLine
 from tarsus.hardware.transport.clock import Clock, SystemClock
 from tarsus.representation import represented
 from tarsus.robot.robot import Robot
@@ -62,6 +63,8 @@ class ServoPlant:
         Joint angles at the start where positions are not measured [rad]; those with which the controller starts.
     settings : PlantSettings, optional
         Bounds.
+    imu : AttitudeLine, optional
+        The inertial sensor; that of the calibration where the plant opens the buses.
     clock : Clock, optional
         The machine's, unless emulated servos have one of their own.
     observer : callable, optional
@@ -94,6 +97,7 @@ class ServoPlant:
         buses: Mapping[str, Bus] | None = None,
         declared: Float[np.ndarray, "legs 3"] | None = None,
         settings: PlantSettings | None = None,
+        imu: AttitudeLine | None = None,
         clock: Clock | None = None,
         observer: Callable[[TickRecord], None] | None = None,
     ) -> None:
@@ -113,6 +117,7 @@ class ServoPlant:
         self._belly = True
         self._own = buses is None
         self._buses = open_buses(calibration, timeout=_TIMEOUT) if buses is None else dict(buses)
+        self._imu = AttitudeLine(calibration.imu) if self._own and imu is None and calibration.imu else imu
         missing = [bus.name for bus in calibration.buses if bus.name not in self._buses]
         if missing:
             raise InputError(f"no bus is given for {', '.join(missing)} of the calibration")
@@ -223,6 +228,8 @@ class ServoPlant:
             if self._own:
                 for bus in self._buses.values():
                     bus.close()
+                if self._imu is not None:
+                    self._imu.close()
 
     def release(self) -> None:
         """Release all servos at once. May be called more than once, and never raises."""
@@ -292,7 +299,22 @@ class ServoPlant:
         }
         known: dict[str, Any] = {name: array.copy() for name, array in channels.items() if not np.isnan(array).any()}
         ages: dict[str, float] = {name: reader.age for name in ("joint_angles", "joint_speeds") if name in known}
+        if self._imu is not None:
+            known |= self._attitude(self._imu, ages)
         return SensorReadings(**known, age=ages)
+
+    def _attitude(self, imu: AttitudeLine, ages: dict[str, float]) -> dict[str, Any]:
+        """Return the channel of the inertial sensor; without it the robot walks on, and is not levelled."""
+        try:
+            age = imu.read()
+        except BusError as error:
+            self.notes.append(f"the inertial sensor is gone: {error}")
+            self._imu = None
+            return {}
+        if imu.attitude is None:
+            return {}
+        ages["attitude"] = age
+        return {"attitude": imu.attitude}
 
     def _observe(self, now: float, asked: Float[np.ndarray, "..."], fault: ServoFault | None) -> None:
         if self._observer is None:
