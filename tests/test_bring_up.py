@@ -132,6 +132,7 @@ def drive(arguments, human, monkeypatch):
 
     monkeypatch.setattr(registry, "open_bus", machine.open)
     monkeypatch.setattr(wizard, "SystemClock", lambda: machine.clock)
+    monkeypatch.setattr(wizard, "_WALK_TIME", 0.5)
     watcher = threading.Thread(target=look, daemon=True)
     watcher.start()
     with os.fdopen(os.dup(slave), "r") as stdin, os.fdopen(os.dup(slave), "w") as stdout:

@@ -43,13 +43,28 @@ def test_a_silent_servo_is_a_fault_after_some_time_and_answers():
     assert watch.answered("main", [1, 2], [1], [no_answer(None), no_answer(9)], 0.1) is None
 
 
+def test_a_pause_without_requests_is_no_silence():
+    watch = monitor()
+    asked = range(1, 19)
+    assert watch.answered("main", asked, asked, [], 0.0) is None
+    assert watch.answered("main", asked, range(2, 19), [no_answer(1)], 1.0) is None
+    assert watch.answered("main", asked, range(2, 19), [no_answer(1)], 1.02) is None
+    assert watch.answered("main", asked, range(2, 19), [no_answer(1)], 1.035).kind is FaultKind.NO_ANSWER
+    assert watch.answered("main", asked, asked, [], 2.0) is None
+    errors = [no_answer(number) for number in asked]
+    assert watch.answered("main", asked, [], errors, 3.0) is None
+    assert watch.answered("main", asked, [], errors, 3.02) is None
+    assert watch.answered("main", asked, [], errors, 3.035).kind is FaultKind.BROWN_OUT
+
+
 def test_a_silent_bus_is_a_brown_out_with_the_last_voltage():
     watch = monitor()
     asked = range(1, 19)
     assert watch.answered("main", asked, asked, [], 0.0) is None
-    assert watch.answered("main", asked, [], [], 0.02) is None
-    assert watch.answered("main", asked, [], [], 0.04) is None
-    fault = watch.answered("main", asked, [], [], 0.065)
+    errors = [no_answer(number) for number in asked]
+    assert watch.answered("main", asked, [], errors, 0.02) is None
+    assert watch.answered("main", asked, [], errors, 0.04) is None
+    fault = watch.answered("main", asked, [], errors, 0.065)
     assert fault.kind is FaultKind.BROWN_OUT
     assert "all 18 servos on main fell silent at once: the supply" in fault.text
     assert watch.answered("main", [], [], [], 0.03) is None

@@ -24,6 +24,8 @@ __all__ = ["ServoMonitor"]
 # Of a whole bus with fewer servos than these nothing follows from their common silence.
 _FEW = 3
 _SAME = 1e-6
+# Between two requests passes a tick; where more passes, nobody was asked [s].
+_TICK = 0.03
 # A servo whose alarm says so lets go by itself.
 _HOT_ALARMS, _HEAVY_ALARMS = ("temperature", "overheating"), ("overload",)
 
@@ -47,7 +49,6 @@ class ServoMonitor:
         self._failures = np.zeros(shape, dtype=int)
         self._failing_since = np.full(shape, np.nan)
         self._answered = np.full(shape, np.nan)
-        self._silent_reads: dict[str, int] = {}
         self._history: deque[tuple[float, Float[np.ndarray, "legs 3"], Float[np.ndarray, "legs 3"]]] = deque(maxlen=200)
         self._behind_since = np.full(shape, np.nan)
         self._heavy_since = np.full(shape, np.nan)
@@ -92,18 +93,13 @@ class ServoMonitor:
             place = self._joints.joint(bus, number)
             self._failures[place], self._failing_since[place], self._answered[place] = 0, math.nan, now
         if not asked or len(answered) == len(asked):
-            self._silent_reads[bus] = 0
             return None
-        if not answered and len(asked) > _FEW:
-            self._silent_reads[bus] = self._silent_reads.get(bus, 0) + 1
-            heard = max(float(self._answered[self._joints.joint(bus, number)]) for number in asked)
-            if self._silent_reads[bus] > 1 and not now - heard < self._settings.silence + self.grace:
-                return self._all_silent(bus, len(asked), now)
         for error in errors:
             if error.id is not None and error.id in asked:
                 fault = self._failed(bus, error.id, error, now)
                 if fault is not None:
-                    return fault
+                    common = not answered and len(asked) > _FEW and fault.kind is FaultKind.NO_ANSWER
+                    return self._all_silent(bus, len(asked), now) if common else fault
         return None
 
     def _failed(self, bus: str, number: int, error: BusError, now: float) -> ServoFault | None:
@@ -112,8 +108,7 @@ class ServoMonitor:
         if self._failures[place] == 1:
             self._failing_since[place] = now
         doubted = now - float(self._failing_since[place])
-        # Of a servo that has never answered, the time of the first failure counts.
-        since = doubted if math.isnan(self._answered[place]) else now - float(self._answered[place])
+        since = now - _began(float(self._answered[place]), float(self._failing_since[place]))
         if (
             self._failures[place] < settings.least_failures
             or doubted < settings.least_doubt
@@ -273,3 +268,8 @@ class ServoMonitor:
     def _worst(self, values: Float[np.ndarray, "legs 3"]) -> Joint:
         leg, j = np.unravel_index(int(np.argmax(values)), values.shape)
         return int(leg), int(j)
+
+
+def _began(answered: float, failed: float) -> float:
+    """Return when silence began: at the last answer, unless nobody was asked for a while before the first failure."""
+    return failed if math.isnan(answered) else max(answered, failed - _TICK)

@@ -47,7 +47,8 @@ class PlantSettings:
     brown_out : float
         Share of the least voltage at which a brown-out is suspected at once.
     watchdog : float
-        Time after which servos or board stop by themselves, where they can [s].
+        Time after which servos or board stop by themselves, where they can; longer than a controller takes to plan how
+        it stands up [s].
     """
 
     start_speed: float = math.radians(45)
@@ -66,7 +67,7 @@ class PlantSettings:
     heavy_time: float = 1.0
     low_time: float = 0.5
     brown_out: float = 0.85
-    watchdog: float = 0.5
+    watchdog: float = 1.5
 
     def __post_init__(self) -> None:
         for field in fields(self):
