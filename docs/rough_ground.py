@@ -1,0 +1,159 @@
+"""Write the tables of ground.md: walks over rough ground in physics, felt and blind, and with each mechanism off.
+
+python docs/rough_ground.py --jobs 16 --seeds 10
+python docs/rough_ground.py --cases felt blind --grounds flat blocks40 --robots strider --seeds 2 --print
+"""
+
+from __future__ import annotations
+
+import argparse
+import itertools
+import math
+from collections.abc import Callable
+from concurrent.futures import ProcessPoolExecutor
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+import tarsus
+from tarsus.simulation import SensorSuite, SimulatedPlant, terrain
+from tarsus.simulation.sensors.suite import FootSwitch, Sensor
+
+PAGE = Path(__file__).parent / "ground.md"
+ROBOTS = ("strider", "phantomx", "makeyourpet")
+# Way that is commanded in each walk [m], and how near to the start the ground is level [m].
+WAY, CLEAR = 1.2, 0.35
+GROUNDS: dict[str, Callable[[int], Any]] = {
+    "flat": lambda _: terrain.Flat(),
+    **{
+        f"smooth{mm}": lambda seed, mm=mm: terrain.Smooth(amplitude=mm / 1e3, clear=CLEAR, seed=seed)
+        for mm in (40, 60, 100)
+    },
+    **{
+        f"blocks{mm}": lambda seed, mm=mm: terrain.Blocks(rise=mm / 1e3, clear=CLEAR, seed=seed) for mm in (40, 60, 100)
+    },
+    **{f"step{mm:+d}": lambda _, mm=mm: terrain.Step(rise=mm / 1e3) for mm in (25, 40, -25, -40)},
+    **{f"ramp{deg:+d}": lambda _, deg=deg: terrain.Ramp(slope=math.radians(deg)) for deg in (10, 20, 30, -10, -20)},
+    "stairs": lambda _: terrain.Stairs(rise=0.035),
+}
+RANDOM = ("smooth", "blocks")
+
+
+def switches(**faults: float) -> SensorSuite:
+    """Return foot switches with faults, and an exact attitude."""
+    return SensorSuite(contacts=FootSwitch(**faults), attitude=Sensor())
+
+
+class Case(NamedTuple):
+    """What a walk is made with."""
+
+    sensors: Any = "ideal"
+    servos: str = "catalogue"
+    options: dict[str, Any] = {}  # noqa: RUF012 - never changed
+
+
+NOT_ADAPTED = {"adaptation": tarsus.GroundAdaptation(swing_height=0.0, body_height=0.0)}
+CASES: dict[str, Case] = {
+    "blind": Case(sensors="blind"),
+    "felt": Case(),
+    "felt, ideal servos": Case(servos="ideal"),
+    "hobby sensors": Case(sensors="hobby"),
+    "estimated contacts": Case(sensors="smart"),
+    "50 ms late": Case(sensors=switches(delay=0.05)),
+    "1 % wrong": Case(sensors=switches(flips=0.01)),
+    "5 % wrong": Case(sensors=switches(flips=0.05)),
+    "1 deg noise": Case(
+        sensors=SensorSuite(contacts=FootSwitch(), attitude=Sensor(noise=math.radians(1), bias=math.radians(1)))
+    ),
+    "without levelling": Case(options={"levelling": None}),
+    "without adaptation": Case(options=NOT_ADAPTED),
+    "without odometry": Case(sensors=switches()),
+}
+
+
+class Outcome(NamedTuple):
+    """What became of a walk: way over the commanded one, RMS tilt [deg], slip [m/m], whether it fell."""
+
+    way: float
+    tilt: float
+    slip: float
+    fell: bool
+
+
+def walk(job: tuple[str, str, str, int]) -> Outcome:
+    """Return the outcome of one walk at half the top speed."""
+    name, ground, key, seed = job
+    robot, case = tarsus.load_robot(name), CASES[key]
+    speed = 0.5 * tarsus.WalkController(robot).top_speed((1, 0, 0))
+    plant = SimulatedPlant(robot, terrain=GROUNDS[ground](seed), sensors=case.sensors, servos=case.servos, seed=seed)
+    controller = tarsus.RobotController(robot, **case.options)
+    output, dt = controller.output, 0.01
+    plant.start(output)
+    start, tilts, slip, fell = plant.state.body.position[0], [], 0.0, False
+    ticks = round(WAY / speed / dt)
+    for _ in range(ticks):
+        readings = plant.step(output, dt)
+        state = plant.state
+        roll, pitch, _ = np.asarray(state.body.rpy).tolist()
+        tilts.append(math.hypot(roll, pitch))
+        slip += float(state.slip_speeds.mean()) * dt
+        fell = state.body_touches or tilts[-1] > math.pi / 4
+        if fell:
+            break
+        output = controller.step((speed, 0.0, 0.0), dt, readings)
+    way = float(plant.state.body.position[0] - start)
+    return Outcome(
+        way / (speed * dt * ticks), math.degrees(math.sqrt(np.mean(np.square(tilts)))), slip / max(way, 1e-3), fell
+    )
+
+
+def cell(found: list[Outcome]) -> str:
+    """Return medians: way, tilt and slip, with the number of falls."""
+    way, tilt, slip = (float(np.median([getattr(each, name) for each in found])) for name in ("way", "tilt", "slip"))
+    falls = sum(each.fell for each in found)
+    return f"{way:.2f}, {tilt:.1f}, {1000 * slip:.0f}" + (f" ({falls} of {len(found)} fell)" if falls else "")
+
+
+def table(robot: str, grounds: list[str], cases: list[str], found: dict[tuple[str, str, str], list[Outcome]]) -> str:
+    """Return the table of a robot: a row for each ground, a column for each case."""
+    lines = [f"| {robot} | {' | '.join(cases)} |", f"|---|{'---|' * len(cases)}"]
+    for ground in grounds:
+        lines.append(f"| {ground} | {' | '.join(cell(found[robot, ground, case]) for case in cases)} |")
+    return "\n".join(lines)
+
+
+def main() -> None:
+    """Measure, and replace the tables on the page or print them."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--robots", nargs="+", default=ROBOTS)
+    parser.add_argument("--grounds", nargs="+", default=list(GROUNDS), choices=list(GROUNDS))
+    parser.add_argument("--cases", nargs="+", default=list(CASES), choices=list(CASES))
+    parser.add_argument("--seeds", type=int, default=3)
+    parser.add_argument("--jobs", type=int, default=1)
+    parser.add_argument("--print", action="store_true", help="print the tables, and leave the page as it is")
+    asked = parser.parse_args()
+    jobs = [
+        (robot, ground, case, seed)
+        for robot, ground, case in itertools.product(asked.robots, asked.grounds, asked.cases)
+        for seed in range(asked.seeds if ground.startswith(RANDOM) else 1)
+    ]
+    if asked.jobs > 1:
+        with ProcessPoolExecutor(asked.jobs) as pool:
+            outcomes = list(pool.map(walk, jobs))
+    else:
+        outcomes = [walk(job) for job in jobs]
+    found: dict[tuple[str, str, str], list[Outcome]] = {}
+    for (robot, ground, case, _), outcome in zip(jobs, outcomes, strict=True):
+        found.setdefault((robot, ground, case), []).append(outcome)
+    text = "\n\n".join(table(robot, asked.grounds, asked.cases, found) for robot in asked.robots)
+    if asked.print:
+        print(text)
+        return
+    page = PAGE.read_text(encoding="utf-8")
+    before, start, rest = page.partition("<!-- table: rough ground -->\n")
+    PAGE.write_text(f"{before}{start}{text}\n<!-- end -->{rest.partition('<!-- end -->')[2]}", encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
