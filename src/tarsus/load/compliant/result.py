@@ -24,7 +24,7 @@ __all__ = ["CompliantLoads"]
 _ALL = 0.99
 
 
-@represented("loads", "ok", "slip", "contact", "assumed")
+@represented("loads", "ok", "slip", "contact")
 @dataclass(frozen=True, eq=False, kw_only=True)
 class CompliantLoads:
     """Loads and deformation of a robot with elastic joints along a motion.
