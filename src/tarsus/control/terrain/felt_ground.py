@@ -201,9 +201,7 @@ class FeltGround:
             [places[leg] for leg in bears], [over[leg] for leg in bears], self.plane, min(_SLOPE_RATE * dt, 1.0)
         )
         self._update_reach(state, timing, twist, rest)
-        rises = [
-            (over[leg] if leg in bears else self.plane.at(complex(rest[leg]))) - self.plane.height for leg in legs
-        ]
+        rises = [(over[leg] if leg in bears else self.plane.at(complex(rest[leg]))) - self.plane.height for leg in legs]
         for leg in legs:
             if down[leg] and not contacts.stands(leg) and over[leg] < self._lowest[leg] + _HANGING:
                 # The foot hangs at the end of its reach: with the body lower it may find ground.

@@ -44,15 +44,17 @@ class Pacer:
     ----------
     clock : Clock
         The clock.
+    recently_late : float
+        How late ticks began before [s].
     """
 
-    def __init__(self, clock: Clock) -> None:
+    def __init__(self, clock: Clock, *, recently_late: float = 0.0) -> None:
         self._clock = clock
         self._next: float | None = None
         self._first = 0.0
         self._missed = 0
         self._late: list[float] = []
-        self._recent = 0.0
+        self._recent = recently_late
 
     def wait(self, dt: float) -> float:
         """Wait for the beginning of the next tick, and return the time [s].

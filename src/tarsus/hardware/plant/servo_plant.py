@@ -39,7 +39,9 @@ __all__ = ["ServoPlant"]
 _TIMEOUT = 0.025
 _START_TICK = 0.02
 # How much longer servos may be silent on a computer whose ticks begin later than usual, per lateness [s].
-_GRACE, _USUAL = 3.0, 0.01
+_GRACE, _USUAL = 5.0, 0.003
+# How late a computer may be of which nothing is known yet [s].
+_UNKNOWN = 0.02
 # A joint that is measured farther than this beyond its limits has a wrong zero or direction [rad].
 _BEYOND = math.radians(20)
 
@@ -113,7 +115,7 @@ class ServoPlant:
         self._observer = observer
         joints = JointMap(calibration)
         self._monitor = ServoMonitor(calibration, joints, self.settings)
-        self._pacer = Pacer(self._clock)
+        self._pacer = Pacer(self._clock, recently_late=_UNKNOWN)
         self._belly = True
         self._own = buses is None
         self._buses = open_buses(calibration, timeout=_TIMEOUT) if buses is None else dict(buses)
@@ -188,7 +190,7 @@ class ServoPlant:
             self.release()
             raise
         self._monitor.forget_motion()
-        self._pacer = Pacer(self._clock)
+        self._pacer = Pacer(self._clock, recently_late=self._pacer.recently_late)
 
     def step(self, output: ControlOutput, dt: float) -> SensorReadings:
         """Send joint angles at the beginning of a tick, and return what is measured then.
