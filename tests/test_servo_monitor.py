@@ -43,6 +43,17 @@ def test_a_silent_servo_is_a_fault_after_some_time_and_answers():
     assert watch.answered("main", [1, 2], [1], [no_answer(None), no_answer(9)], 0.1) is None
 
 
+def test_a_computer_that_is_late_itself_waits_longer():
+    watch = monitor()
+    asked = range(1, 19)
+    watch.grace = 0.2
+    errors = [no_answer(number) for number in asked]
+    assert watch.answered("main", asked, asked, [], 0.0) is None
+    for time in (0.02, 0.1, 0.25):
+        assert watch.answered("main", asked, [], errors, time) is None
+    assert watch.answered("main", asked, [], errors, 0.27).kind is FaultKind.BROWN_OUT
+
+
 def test_a_pause_without_requests_is_no_silence():
     watch = monitor()
     asked = range(1, 19)

@@ -112,7 +112,7 @@ class ServoMonitor:
         if (
             self._failures[place] < settings.least_failures
             or doubted < settings.least_doubt
-            or since < settings.silence
+            or since < settings.silence + self.grace
         ):
             return None
         kind = FaultKind.CORRUPT if isinstance(error, CorruptAnswerError) else FaultKind.NO_ANSWER

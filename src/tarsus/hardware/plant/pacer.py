@@ -56,13 +56,15 @@ class Pacer:
         self._late: list[float] = []
         self._recent = recently_late
 
-    def wait(self, dt: float) -> float:
+    def wait(self, dt: float, *, excused: bool = False) -> float:
         """Wait for the beginning of the next tick, and return the time [s].
 
         Parameters
         ----------
         dt : float
             Duration of the tick that begins [s].
+        excused : bool
+            Whether a lateness is not the computer's: the last tick waited for answers.
         """
         now = self._clock.now()
         if self._next is None:
@@ -72,7 +74,7 @@ class Pacer:
             now = self._clock.now()
         late = now - self._next
         self._late.append(max(late, 0.0))
-        self._recent = max(late, self._recent * _FADING)
+        self._recent = max(0.0 if excused else late, self._recent * _FADING)
         if late >= dt:
             self._missed += int(late / dt)
             self._next = now

@@ -39,7 +39,7 @@ __all__ = ["ServoPlant"]
 _TIMEOUT = 0.025
 _START_TICK = 0.02
 # How much longer servos may be silent on a computer whose ticks begin later than usual, per lateness [s].
-_GRACE, _USUAL = 5.0, 0.003
+_GRACE, _USUAL = 3.0, 0.005
 # How late a computer may be of which nothing is known yet [s].
 _UNKNOWN = 0.02
 # A joint that is measured farther than this beyond its limits has a wrong zero or direction [rad].
@@ -116,7 +116,7 @@ class ServoPlant:
         joints = JointMap(calibration)
         self._monitor = ServoMonitor(calibration, joints, self.settings)
         self._pacer = Pacer(self._clock, recently_late=_UNKNOWN)
-        self._belly = True
+        self._belly = self._complete = True
         self._own = buses is None
         self._buses = open_buses(calibration, timeout=_TIMEOUT) if buses is None else dict(buses)
         self._imu = AttitudeLine(calibration.imu) if self._own and imu is None and calibration.imu else imu
@@ -254,7 +254,7 @@ class ServoPlant:
 
     def _tick(self, angles: Float[np.ndarray, "legs 3"], dt: float) -> SensorReadings:
         """Wait for the tick, send joint angles, measure, and raise the error of a fault."""
-        now = self._pacer.wait(dt)
+        now = self._pacer.wait(dt, excused=not self._complete)
         fault: ServoFault | None
         try:
             self._servos.send(angles, dt, now)
@@ -277,13 +277,15 @@ class ServoPlant:
     def _measure(self, dt: float) -> ServoFault | None:
         """Read positions and some telemetry, and return the first fault."""
         monitor, found, complete = self._monitor, None, True
-        monitor.grace = _GRACE * max(0.0, self._pacer.recently_late - _USUAL)
+        if self._complete:
+            monitor.grace = _GRACE * max(0.0, self._pacer.recently_late - _USUAL)
         for reading in self._reader.positions(dt):
             complete = complete and not reading.errors
             fault = monitor.answered(reading.bus, reading.asked, reading.answered, reading.errors, self._clock.now())
             found = found or fault
         if found is None and self._reader.fresh:
             found = monitor.followed(self._servos.angles, self._reader.angles.copy(), self._clock.now())
+        self._complete = complete
         # A line in doubt is slow: whether it recovers is more urgent.
         for name, values in self._reader.telemetry() if complete else ():
             found = found or monitor.measured(name, values, self._clock.now())
