@@ -11,6 +11,7 @@ import itertools
 import math
 from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
+from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -24,17 +25,30 @@ PAGE = Path(__file__).parent / "ground.md"
 ROBOTS = ("strider", "phantomx", "makeyourpet")
 # Way that is commanded in each walk [m], and how near to the start the ground is level [m].
 WAY, CLEAR = 1.2, 0.35
+
+
+def smooth(seed: int, height: float) -> Any:
+    return terrain.Smooth(amplitude=height / 1e3, clear=CLEAR, seed=seed)
+
+
+def blocks(seed: int, height: float) -> Any:
+    return terrain.Blocks(rise=height / 1e3, clear=CLEAR, seed=seed)
+
+
+def step(_: int, height: float) -> Any:
+    return terrain.Step(rise=height / 1e3)
+
+
+def ramp(_: int, degrees: float) -> Any:
+    return terrain.Ramp(slope=math.radians(degrees))
+
+
 GROUNDS: dict[str, Callable[[int], Any]] = {
     "flat": lambda _: terrain.Flat(),
-    **{
-        f"smooth{mm}": lambda seed, mm=mm: terrain.Smooth(amplitude=mm / 1e3, clear=CLEAR, seed=seed)
-        for mm in (40, 60, 100)
-    },
-    **{
-        f"blocks{mm}": lambda seed, mm=mm: terrain.Blocks(rise=mm / 1e3, clear=CLEAR, seed=seed) for mm in (40, 60, 100)
-    },
-    **{f"step{mm:+d}": lambda _, mm=mm: terrain.Step(rise=mm / 1e3) for mm in (25, 40, -25, -40)},
-    **{f"ramp{deg:+d}": lambda _, deg=deg: terrain.Ramp(slope=math.radians(deg)) for deg in (10, 20, 30, -10, -20)},
+    **{f"smooth{mm}": partial(smooth, height=mm) for mm in (40, 60, 100)},
+    **{f"blocks{mm}": partial(blocks, height=mm) for mm in (40, 60, 100)},
+    **{f"step{mm:+d}": partial(step, height=mm) for mm in (25, 40, -25, -40)},
+    **{f"ramp{angle:+d}": partial(ramp, degrees=angle) for angle in (10, 20, 30, -10, -20)},
     "stairs": lambda _: terrain.Stairs(rise=0.035),
 }
 RANDOM = ("smooth", "blocks")

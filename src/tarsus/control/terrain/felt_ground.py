@@ -228,7 +228,7 @@ class FeltGround:
         self._decide_on_support(state, dt, supports, timing=timing, standing=standing)
         self.roughness.decay(0.0 if standing else dt * timing.frequency)
         ground = [elevation + self.plane.at((foothold - state.origin) * turn) for foothold in state.foothold.tolist()]
-        searches = [contacts.estimator.known[leg] and (down[leg] or contacts.lifted[leg]) for leg in legs]
+        searches = [contacts.is_known(leg) and (down[leg] or contacts.lifted[leg]) for leg in legs]
         return FeltInputs(
             stands=tuple(contacts.stands(leg) for leg in legs),
             steps=tuple(leg not in excluded for leg in legs),

@@ -12,6 +12,8 @@ __all__ = ["FootContacts"]
 _LOST = 0.03
 # A foot that has been without contact for no longer still counts as support [s].
 _GRACE = 0.1
+# How long other feet lose contact, while a foot that should stand has none, until its switch is taken to be open [s].
+_CONVICTED = 0.4
 # A switch that has been closed for longer is stuck [s].
 _STUCK = 3.0
 
@@ -35,7 +37,7 @@ class FootContacts:
     def __init__(self, legs: int) -> None:
         self.estimator = ContactEstimator(legs)
         self.lifted = [False] * legs
-        self._without, self._with = [0.0] * legs, [0.0] * legs
+        self._without, self._with, self._suspicion = ([0.0] * legs for _ in range(3))
 
     def step(self, readings: Sequence[bool | None] | None, down: Sequence[bool], dt: float) -> None:
         """Take in the contacts of one tick.
@@ -56,18 +58,36 @@ class FootContacts:
             else:
                 self._without[leg], self._with[leg] = 0.0, self._with[leg] + dt
             self.lifted[leg] = not on and (self.lifted[leg] or self._without[leg] > _LOST)
+        self._suspect(down, dt)
+
+    def _suspect(self, down: Sequence[bool], dt: float) -> None:
+        """Find switches that stay open: a foot that pushes on the ground unknown to it takes the load off others."""
+        shaken = any(on and 0.0 < time <= _GRACE for on, time in zip(down, self._without, strict=True))
+        for leg, on in enumerate(down):
+            if self._without[leg] <= 0.0:
+                self._suspicion[leg] = 0.0
+            elif on and shaken and self._without[leg] > _GRACE:
+                self._suspicion[leg] += dt
+
+    def is_open(self, leg: int) -> bool:
+        """Return whether a contact is missing that other feet tell of: that of a switch that stays open."""
+        return self._suspicion[leg] > _CONVICTED
+
+    def is_known(self, leg: int) -> bool:
+        """Return whether a contact is measured, by a switch that works."""
+        return self.estimator.known[leg] and not self.is_open(leg)
 
     def touches(self, leg: int) -> bool:
         """Return whether a foot bears load now; True where nothing is known."""
-        return self._without[leg] <= 0.0
+        return self._without[leg] <= 0.0 or self.is_open(leg)
 
     def stands(self, leg: int) -> bool:
         """Return whether a foot that should stand does, but for the shortest of interruptions."""
-        return self._without[leg] <= _LOST
+        return self._without[leg] <= _LOST or self.is_open(leg)
 
     def supports(self, leg: int) -> bool:
         """Return whether a foot that should stand counts as support."""
-        return self._without[leg] <= _GRACE
+        return self._without[leg] <= _GRACE or self.is_open(leg)
 
     def is_stuck(self, leg: int) -> bool:
         """Return whether a contact has lasted for so long that it tells nothing."""

@@ -64,12 +64,13 @@ def met_ground(
         expected = plane.at((complex(state.foot[leg]) - state.origin) * cmath.exp(-1j * state.yaw))
         if phase > _LANDING:
             # Contact that has not ceased since lift-off tells nothing: the foot lands where ground is expected.
-            if contacts.touches(leg) if contacts.lifted[leg] else over <= expected:
-                if contacts.lifted[leg]:
+            tells = contacts.lifted[leg] and not contacts.is_open(leg)
+            if contacts.touches(leg) if tells else over <= expected:
+                if tells:
                     roughness.landed(over - expected)
                 state = _landed(state, leg, timing, pace)
                 landed.append(leg)
-        elif phase > _CLEAR and contacts.touches(leg) and _collides(state, leg, contacts):
+        elif phase > _CLEAR and contacts.estimator.touching[leg] and _collides(state, leg, contacts):
             roughness.collided()
             state = _rising_again(state, leg, elevation + highest[leg], timing)
     return state, landed

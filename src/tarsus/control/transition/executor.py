@@ -153,7 +153,8 @@ class TransitionExecutor:
         assert rest is not None  # only of a robot that is fast
         off = np.abs(state.foot - rest)
         off[list(self.current.parameters.excluded)] = 0.0
-        return bool(off.max() <= stance_tolerance(state))
+        returned = state.felt is None or not self._foot_targets.returning
+        return returned and bool(off.max() <= stance_tolerance(state))
 
     # Beginning a transition.
 
@@ -240,7 +241,7 @@ class TransitionExecutor:
         self, bounds: Float[np.ndarray, "legs 16"], now: WalkSituation, *, frequency: float, bandwidth: float
     ) -> bool:
         begins, ends = self.stance_intervals(now.state, frequency=frequency)
-        return bool(self._excess(begins, ends, bounds, now, bandwidth).max() <= POSITION_TOLERANCE)
+        return bool(self._excess(begins, ends, bounds, now, bandwidth).max() <= stance_tolerance(now.state))
 
     def _excess(
         self,

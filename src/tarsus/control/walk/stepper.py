@@ -107,7 +107,9 @@ def _lift(
     lifts, tolerance = due & inputs.may_lift, stance_tolerance(state)
     final = final_footholds(state, rest=inputs.rest, bandwidth=inputs.bandwidth) if stopping else None
     if final is not None:
-        lifts = lifts & (np.abs(state.foot - final) > tolerance)
+        away = np.abs(state.foot - final) > tolerance
+        # A leg that returns to the gait is over its foothold at best.
+        lifts = lifts & (away if inputs.felt is None else away | ~np.array(inputs.felt.steps))
     missed = due & ~lifts
     start, offset = state.ground_height, state.admittance_offset
     if offset.value.any():

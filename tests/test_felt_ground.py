@@ -1,0 +1,259 @@
+"""The parts of a walk that feels the ground: contacts, posture, reach, support, odometry."""
+
+import math
+
+import numpy as np
+import pytest
+
+import tarsus
+from tarsus.control.pose.admittance import Admittance
+from tarsus.control.readings import SensorReadings, ValidReadings
+from tarsus.control.sensing.contact_estimator import ContactEstimator
+from tarsus.control.sensing.foot_loads import FootLoads
+from tarsus.control.sensing.leg_odometry import LegOdometry
+from tarsus.control.terrain.foot_contacts import FootContacts
+from tarsus.control.terrain.foot_plane import FootPlane, fitted_plane
+from tarsus.control.terrain.posture_feedback import PostureFeedback
+from tarsus.control.terrain.reach import reachable_heights
+from tarsus.control.terrain.roughness import Roughness
+from tarsus.control.terrain.support import Support, holds
+from tarsus.control.walk_controller import WalkController
+from tarsus.kinematics.leg import forward_kinematics
+
+STRIDER = tarsus.load_robot("strider")
+FEET = [0.27 + 0.15j, 0.31j, -0.27 + 0.15j, -0.27 - 0.15j, -0.31j, 0.27 - 0.15j]
+
+
+def test_a_good_switch_is_believed_at_once_and_a_noisy_one_takes_longer():
+    rng = np.random.default_rng(1)
+    for wrong, most in ((0.0, 1), (0.01, 2), (0.05, 3)):
+        estimator = ContactEstimator(6)
+        for tick in range(4000):
+            truth = np.full(6, tick // 50 % 2 == 0)
+            estimator.step((truth ^ (rng.random(6) < wrong)).tolist(), 0.01)
+        assert estimator.error == pytest.approx(wrong, abs=0.02)
+        estimator.step([True] * 6, 0.01)
+        for _ in range(20):
+            estimator.step([True] * 6, 0.01)
+        assert min(estimator.probabilities) > 0.9
+        needed = 0
+        while any(estimator.touching):
+            estimator.step([False] * 6, 0.01)
+            needed += 1
+        assert needed <= most
+
+
+def test_an_error_estimate_is_bounded_and_a_contact_that_is_not_measured_becomes_unknown():
+    estimator = ContactEstimator(2)
+    for tick in range(5000):
+        estimator.step([tick % 2 == 0, True], 0.01)
+    assert estimator.error == 0.2
+    assert estimator.known == [True, True]
+    for _ in range(60):
+        estimator.step([None, True], 0.01)
+    assert estimator.known == [False, True]
+    estimator.step(None, 0.01)
+    assert estimator.known == [False, True]
+
+
+def test_contacts_are_followed_over_time():
+    contacts = FootContacts(2)
+    for _ in range(5):
+        contacts.step([True, False], [True, False], 0.01)
+    assert contacts.touches(0)
+    assert not contacts.touches(1)
+    assert contacts.lifted == [False, True]
+    assert not contacts.stands(1)
+    assert contacts.supports(1)
+    for _ in range(400):
+        contacts.step([True, False], [True, True], 0.01)
+    assert contacts.is_stuck(0)
+    assert not contacts.supports(1)
+    assert contacts.lifted == [False, False]
+
+
+def test_a_plane_is_the_least_squares_fit_and_stays_where_feet_define_none():
+    heights = [0.02 + 0.1 * foot.real - 0.2 * foot.imag for foot in FEET]
+    plane = fitted_plane(FEET, heights, FootPlane(), 1.0)
+    np.testing.assert_allclose(plane, (0.02, 0.1, -0.2), atol=1e-12)
+    assert plane.at(1 + 1j) == pytest.approx(-0.08)
+    assert fitted_plane([], [], plane, 1.0) is plane
+    on_a_line = fitted_plane([0j, 0.1 + 0j, 0.2 + 0j], [0.0, 0.1, 0.5], plane, 1.0)
+    assert on_a_line[1:] == plane[1:]
+    followed = fitted_plane(FEET, [0.0] * 6, plane, 0.25)
+    np.testing.assert_allclose(followed[1:], (0.075, -0.15), atol=1e-12)
+
+
+@pytest.mark.parametrize("levelling", ["level", "between", "follow", None])
+def test_the_tilt_to_keep_is_where_the_turn_ends(levelling):
+    slope, share = 0.2, {"level": 0.0, "between": 0.5, "follow": 1.0, None: 1.0}[levelling]
+    posture = PostureFeedback(levelling)
+    tilted = (0.0, -math.atan(slope) * share)
+    along = math.tan(math.atan(slope) * (1 - share))
+    feet = [(foot, 0.1) for foot in FEET]
+    rates = posture.rates(FootPlane(0.0, along, 0.0), tilted, 0j, feet=feet)
+    np.testing.assert_allclose(rates.turn, 0.0, atol=1e-12)
+    assert posture.rates(FootPlane(0.0, 0.0, 0.0), (0.0, 0.0), 0.1 + 0j, feet=[]).climb == 0.0
+
+
+def test_feet_at_the_end_of_their_reach_are_not_pushed_beyond_it():
+    posture = PostureFeedback("level")
+    free = posture.rates(FootPlane(0.05), (0.1, 0.1), 0j, feet=[(foot, 0.2) for foot in FEET])
+    assert free.climb == pytest.approx(0.05)
+    assert free.turn == pytest.approx((0.15, 0.15))
+    ended = posture.rates(FootPlane(0.05), (0.1, 0.1), 0j, feet=[(foot, 0.0) for foot in FEET])
+    assert ended.climb == 0.0
+    assert ended.turn == (0.0, 0.0)
+
+
+def test_the_body_fits_itself_to_the_reach_and_gives_way_where_it_cannot():
+    posture = PostureFeedback("level")
+    rises = [0.3 * foot.real for foot in FEET]
+    for _ in range(300):
+        posture.fit_to_reach(rises, 0.0, 0.02, reach=([-0.06] * 6, [0.2] * 6), height=0.2)
+    assert posture.raised == pytest.approx(-0.021, abs=1e-6)
+    assert posture.given_way == 0.0
+    for _ in range(300):
+        posture.fit_to_reach(rises, 0.0, 0.02, reach=([-0.06] * 6, [0.06] * 6), height=0.2)
+    assert posture.short == pytest.approx(0.021)
+    assert 0 < posture.given_way < 0.5
+
+
+def test_what_a_leg_reaches_is_what_kinematics_says():
+    controller = WalkController(STRIDER)
+    posture, rest = controller._tick.gait.posture.value, controller._tick.gait.foot
+    lowest, highest = reachable_heights(STRIDER, posture, rest, np.full(6, 0.05 + 0j))
+    for leg in range(6):
+        for height, works in ((lowest[leg], True), (highest[leg], True), (lowest[leg] - 0.03, False)):
+            ahead = np.stack([rest.real + 0.025, rest.imag, np.full(6, height)], axis=-1)
+            found = (
+                tarsus.inverse_kinematics(STRIDER, points, tarsus.Pose.from_rpy(position=posture[:3]))
+                for points in (ahead, ahead - [0.05, 0.0, 0.0])
+            )
+            assert all(np.asarray(solution.reach)[leg] == 0 for solution in found) == works
+    nowhere, _ = reachable_heights(STRIDER, posture, rest + 0.5, np.zeros(6, dtype=complex))
+    assert nowhere == [0.0] * 6
+
+
+def test_support_slows_the_walk_down_only_where_feet_wait_for_long():
+    assert holds(FEET, 0j)
+    assert not holds(FEET[:2], 0j)
+    assert not holds(FEET[:3], 0.5 + 0j)
+    support = Support()
+    support.step(stays=False, lifts=True, dt=0.02, swing_time=0.5)
+    assert support.waits
+    assert support.pace == 1.0
+    for _ in range(40):
+        support.step(stays=False, lifts=True, dt=0.02, swing_time=0.5)
+    assert support.pace == 0.0
+    for _ in range(40):
+        support.step(stays=True, lifts=False, dt=0.02, swing_time=0.5)
+    assert support.pace == 1.0
+    for _ in range(40):
+        support.step(stays=False, lifts=False, dt=0.02, swing_time=0.5)
+    assert not support.waits
+    assert support.pace == 0.0
+
+
+def test_roughness_rises_at_once_falls_slowly_and_is_bounded():
+    roughness = Roughness(tarsus.GroundAdaptation(swing_height=0.03, body_height=0.01))
+    roughness.landed(0.005)
+    assert roughness.value == 0.0
+    roughness.collided()
+    assert roughness.swing_rise == pytest.approx(0.02)
+    assert roughness.body_rise == 0.01
+    roughness.landed(-0.1)
+    assert roughness.swing_rise == 0.03
+    roughness.decay(4.0)
+    assert roughness.value == pytest.approx(0.092 / math.e)
+    with pytest.raises(tarsus.TarsusError, match="swing_height is -1"):
+        tarsus.GroundAdaptation(swing_height=-1.0)
+
+
+def test_odometry_makes_up_for_what_the_legs_lose():
+    odometry = LegOdometry(STRIDER)
+    angles = WalkController(STRIDER).angles
+    still = {"tilt": (0.0, 0.0), "yaw": 0.0}
+    for _ in range(50):
+        correction = odometry.step(angles.tolist(), [True] * 6, 0.1 + 0j, 0.01, **still)
+    # Legs that stand still: all of the way is lost, and the correction is at its bound.
+    assert correction == pytest.approx(0.025)
+    assert odometry.step(None, [True] * 6, 0.1 + 0j, 0.01, **still) == 0j
+    assert odometry.behind == 0j
+    feet = odometry._feet(np.asarray(angles), 0.1, -0.2)
+    level = tarsus.Pose.from_rpy(0.1, -0.2, 0.0) @ forward_kinematics(STRIDER, angles)[:, 3]
+    np.testing.assert_allclose(feet, level[:, 0] + 1j * level[:, 1], atol=1e-12)
+
+
+def test_contacts_come_from_switches_or_else_from_forces():
+    loads = FootLoads(STRIDER, None)
+    angles = WalkController(STRIDER).angles
+    pressed = ValidReadings(forces=((0.0, 0.0, 5.0), None, *((0.0, 0.0, 0.1),) * 4))
+    assert loads.contacts(pressed, loads.forces(pressed, angles)) == [True, None, *[False] * 4]
+    switched = pressed._replace(contacts=(False,) * 6)
+    assert loads.contacts(switched, loads.forces(switched, angles)) == (False,) * 6
+    driven = ValidReadings(torques=tuple((0.0, 1.0, 0.5) for _ in range(6)))
+    assert loads.forces(driven, angles) is not None
+    assert loads.contacts(ValidReadings(), None) is None
+    assert loads.offsets(None, 0.01, feet=[(0.0, 0.0)], stands=[True]) is None
+    soft = FootLoads(STRIDER, Admittance(mass=1.0, damping=400.0, stiffness=400.0))
+    np.testing.assert_array_equal(soft.offsets(None, 0.01, feet=[(0.0, 0.0)] * 6, stands=[True] * 6), np.zeros(6))
+
+
+def test_a_switch_that_stays_open_is_told_by_the_feet_that_its_foot_lifts_off():
+    contacts = FootContacts(6)
+    for tick in range(60):
+        contacts.step([False, tick % 4 > 1, *[True] * 4], [True] * 6, 0.02)
+    assert contacts.is_open(0)
+    assert contacts.stands(0)
+    assert contacts.touches(0)
+    assert contacts.supports(0)
+    assert not contacts.is_known(0)
+    assert contacts.is_known(1)
+    contacts.step([True] * 6, [True] * 6, 0.02)
+    assert contacts.is_known(0)
+    over_a_hole = FootContacts(6)
+    for _ in range(60):
+        over_a_hole.step([False, *[True] * 5], [True] * 6, 0.02)
+    assert not over_a_hole.is_open(0)
+
+
+def test_a_switch_that_is_stuck_does_not_stop_the_robot():
+    controller = WalkController(STRIDER)
+    for _ in range(500):
+        contacts = controller.feet[:, 2] <= 1e-4
+        contacts[1] = True
+        controller.step((0.1, 0.0, 0.0), 0.02, SensorReadings(contacts=contacts, attitude=(0.0, 0.0)))
+    assert controller.place[0] > 0.8
+
+
+def test_a_foot_that_meets_an_obstacle_rises_over_it():
+    controller = WalkController(STRIDER)
+    tops = []
+    for tick in range(200):
+        contacts = controller.feet[:, 2] <= 1e-4
+        gait = controller._tick.gait
+        if 20 < tick < 60 and not gait.down[0] and 0.25 < gait.swing_phase[0] < 0.4:
+            contacts[0] = True
+        controller.step((0.1, 0.0, 0.0), 0.02, SensorReadings(contacts=contacts, attitude=(0.0, 0.0)))
+        tops.append(controller.feet[0, 2])
+    assert max(tops) > 0.045
+    assert controller.limitations == ()
+
+
+def test_a_foot_that_rises_waits_where_it_is_while_the_walk_stands_still():
+    controller = WalkController(STRIDER)
+    for _ in range(30):
+        contacts = controller.feet[:, 2] <= 1e-4
+        controller.step((0.1, 0.0, 0.0), 0.02, SensorReadings(contacts=contacts, attitude=(0.0, 0.0)))
+    while not 0.1 < controller._tick.gait.swing_phase.max() < 0.3:
+        contacts = controller.feet[:, 2] <= 1e-4
+        controller.step((0.1, 0.0, 0.0), 0.02, SensorReadings(contacts=contacts, attitude=(0.0, 0.0)))
+    controller._walk.ground.support.pace = 0.0
+    rising = ~controller._tick.gait.down
+    # No foot bears load any more: the steps wait, and so do feet that rise.
+    for _ in range(30):
+        controller.step((0.1, 0.0, 0.0), 0.02, SensorReadings(contacts=(False,) * 6, attitude=(0.0, 0.0)))
+    assert controller._walk.ground.support.pace == 0.0
+    assert (~controller._tick.gait.down == rising).all()
+    assert controller.walk_state == "searching"
