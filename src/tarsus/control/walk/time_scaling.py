@@ -20,6 +20,10 @@ _RISE, _FALL = 3.0, 5.0
 
 # Number of rates that are tried in a tick, and the fraction of the joints' speed and acceleration that is used.
 _TRIES, _USED = 5, 0.98
+# A joint this far from its limits can stop before them, whatever its speed [rad].
+_STOPPING_ROOM = 0.3
+# A joint this close to its target has caught up [rad].
+_CAUGHT_UP = 1e-9
 # Distance that a joint keeps from its limits where it catches up [rad].
 _SPARE = 1e-3
 # How far a joint may be behind before the walk becomes slower, and before it stands still [rad].
@@ -116,12 +120,21 @@ class TimeScaling:
         integrate, solve, dt
             As for `advance`.
         """
-        behind = self._target - self.angles
-        lag = float(np.abs(behind).max())
+        behind = None if self._target is self.angles else self._target - self.angles
+        lag = 0.0 if behind is None else float(np.abs(behind).max())
         fastest = max(1 - max(lag - _LEAST_LAG, 0.0) / (_MOST_LAG - _LEAST_LAG), 0.0)
         rate = self.rate = min(self.rate + _RISE * dt, max(fastest, self.rate - _FALL * dt), 1.0)
         after = integrate(dt * rate)
-        target, hardest = solve(after), _USED * self._acceleration
+        target, between = solve(after), (dt + self._last_dt) / 2
+        if behind is None:
+            speeds, _, works = self._demand(target, dt, between)
+            room = np.minimum(target - self._limits[..., 0], self._limits[..., 1] - target)
+            if works and float(room.min()) > _STOPPING_ROOM:
+                self.angles = self._target = target
+                self._speeds, self._last_dt = speeds, dt
+                return after
+            behind = np.zeros_like(target)
+        hardest = _USED * self._acceleration
         # The speed of the target, and the one from which a joint can still stop where it catches up.
         catching = np.minimum(np.abs(behind) / dt, np.sqrt(hardest * np.abs(behind)))
         speeds = (target - self._target) / dt + np.copysign(catching, behind)
@@ -131,12 +144,15 @@ class TimeScaling:
             left = np.maximum(sign * (limit - self.angles) - _SPARE, 0.0)
             stopping = np.sqrt((softest * dt) ** 2 + 2 * softest * left) - softest * dt
             speeds = sign * np.minimum(sign * speeds, stopping)
-        reach = hardest * ((dt + self._last_dt) / 2)
+        reach = hardest * between
         speeds = np.clip(speeds, self._speeds - reach, self._speeds + reach)
         speeds = np.clip(speeds, -_USED * self._speed, _USED * self._speed)
         angles = self.angles + speeds * dt
         angles.setflags(write=False)
-        self.angles, self._speeds, self._last_dt, self._target = angles, speeds, dt, target
+        # Within rounding, the joints have caught up.
+        caught_up = float(np.abs(target - angles).max()) < _CAUGHT_UP
+        self.angles, self._target = target if caught_up else angles, target
+        self._speeds, self._last_dt = speeds, dt
         return after
 
     def _demand(
