@@ -14,6 +14,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from gait_robots import point_feet
 from tarsus import (
     Gait,
     Pose,
@@ -291,7 +292,7 @@ def stance_ends(motion: object, leg: int) -> tuple[np.ndarray, np.ndarray]:
 
 def test_001_straight_walk_is_a_stroke_centred_on_the_rest_foothold() -> None:
     """With a cycle of 2 s sampled at 100 Hz, the stances begin and end on samples."""
-    robot, heading, stroke, body_height = load_robot("strider"), 0.7, 0.04, 0.11
+    robot, heading, stroke, body_height = point_feet("strider"), 0.7, 0.04, 0.11
     path = straight_path(0.4, heading)
     motion = plan_walk(robot, Gait.named("tripod"), path, stroke=stroke, body_height=body_height, cycle_time=2.0)
     rest = default_stance(robot, body_height, swing_height=motion.swing_height)
@@ -306,7 +307,7 @@ def test_001_straight_walk_is_a_stroke_centred_on_the_rest_foothold() -> None:
 
 def test_001_number_of_cycles_is_distance_over_stroke() -> None:
     """A cycle of a gait with duty factor `d` carries the body `P / d`: cruising, `d L / P` of our cycles."""
-    robot, gait, stroke = load_robot("strider"), Gait.named("tripod"), 0.04
+    robot, gait, stroke = point_feet("strider"), Gait.named("tripod"), 0.04
     times = [
         plan_walk(robot, gait, straight_path(distance), stroke=stroke, body_height=0.11, cycle_time=2.0).duration
         for distance in (0.8, 1.6)
@@ -316,7 +317,7 @@ def test_001_number_of_cycles_is_distance_over_stroke() -> None:
 
 @pytest.mark.parametrize("centre", [(0.0, 0.4), (-0.1, -0.3), (0.0, 0.0)])
 def test_001_curved_walk_turns_every_foot_by_the_same_angle(centre: tuple[float, float]) -> None:
-    robot, stroke, body_height = load_robot("strider"), 0.04, 0.11
+    robot, stroke, body_height = point_feet("strider"), 0.04, 0.11
     path = curved_path(1.0, centre)
     motion = plan_walk(robot, Gait.named("tripod"), path, stroke=stroke, body_height=body_height, cycle_time=2.0)
     arm = default_stance(robot, body_height, swing_height=motion.swing_height)[:, :2] - centre
@@ -401,7 +402,7 @@ def test_001_erratum_arctan_of_a_quotient_loses_the_quadrant() -> None:
 
 
 def test_001_erratum_a_step_is_the_stroke_not_the_distance() -> None:
-    robot, distance, stroke = load_robot("strider"), 0.8, 0.04
+    robot, distance, stroke = point_feet("strider"), 0.8, 0.04
     motion = plan_walk(
         robot, Gait.named("tripod"), straight_path(distance), stroke=stroke, body_height=0.11, cycle_time=2.0
     )
