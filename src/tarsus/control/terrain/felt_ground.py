@@ -16,7 +16,7 @@ from tarsus.control.sensing.validation import ReadingsValidator
 from tarsus.control.terrain.foot_contacts import FootContacts
 from tarsus.control.terrain.foot_plane import FootPlane, fitted_plane
 from tarsus.control.terrain.ground_contact import met_ground
-from tarsus.control.terrain.posture_feedback import Levelling, PostureFeedback
+from tarsus.control.terrain.posture_feedback import Levelling, PostureFeedback, PostureRates
 from tarsus.control.terrain.reach import reachable_heights
 from tarsus.control.terrain.roughness import GroundAdaptation, Roughness
 from tarsus.control.terrain.support import Support, holds
@@ -43,6 +43,8 @@ _SLOW_TRAVEL, _FAST_TRAVEL = 0.75, 0.92
 _STROKE_STEP, _TURNING_ARM = 0.01, 0.2
 # A foot this close to its least height hangs [m], and how much lower the ground under it is then expected [m].
 _HANGING, _LOWER = 0.002, 0.03
+# How often height, tilt and lost way are looked at [s].
+_SLOW_PERIOD = 0.03
 # Below this pace the robot waits for support.
 _WAITING = 0.5
 
@@ -99,6 +101,7 @@ class FeltGround:
         self._odometry, self._measured = LegOdometry(robot), ValidReadings()
         self._rejected: tuple[str, ...] = ()
         self._tilt: tuple[float, float] | None = None
+        self._since, self._drift, self._rates = _SLOW_PERIOD, 0j, PostureRates(0.0, (0.0, 0.0))
         self._reach_key: tuple[object, ...] = ()
         self._stroke = 0.0
         self._lowest, self._highest = [0.0] * robot.legs, [0.0] * robot.legs
@@ -196,6 +199,43 @@ class FeltGround:
         places = [(foot - state.origin) * turn for foot in state.foot.tolist()]
         over = [height - elevation for height in state.ground_height.tolist()]
         down = [on and leg not in excluded for leg, on in enumerate(state.down.tolist())]
+        self._since += dt
+        if self._since >= _SLOW_PERIOD - PHASE_TOLERANCE:
+            self._update_posture(state, places, over, down, timing=timing, twist=twist, rest=rest)
+            self._since = 0.0
+        supports = {leg: places[leg] for leg in legs if down[leg] and contacts.supports(leg)}
+        self._decide_on_support(state, dt, supports, timing=timing, standing=standing)
+        self.roughness.decay(0.0 if standing else dt * timing.frequency)
+        ground = [elevation + self.plane.at((foothold - state.origin) * turn) for foothold in state.foothold.tolist()]
+        searches = [contacts.is_known(leg) and (down[leg] or contacts.lifted[leg]) for leg in legs]
+        return FeltInputs(
+            stands=tuple(contacts.stands(leg) for leg in legs),
+            steps=tuple(leg not in excluded for leg in legs),
+            ground=tuple(ground),
+            lowest=tuple(elevation + self._lowest[leg] if searches[leg] else ground[leg] for leg in legs),
+            highest=tuple(elevation + height for height in self._highest),
+            depth=_DEPTH_SHARE * self.roughness.value,
+            climb=self._rates.climb,
+            turn=self._rates.turn,
+            drift=self._drift,
+            travel=_SLOW_TRAVEL + (_FAST_TRAVEL - _SLOW_TRAVEL) * max(2 * self._stroke / max(*radii, 1e-6) - 1, 0.0),
+            pace=self.support.pace,
+            swing_height=float(state.posture.value[SWING_HEIGHT]) + self.roughness.swing_rise,
+        )
+
+    def _update_posture(
+        self,
+        state: GaitState,
+        places: list[complex],
+        over: list[float],
+        down: list[bool],
+        *,
+        timing: StepTiming,
+        twist: Float[np.ndarray, "3"],
+        rest: Complex[np.ndarray, "legs"],
+    ) -> None:
+        """Update plane, reach, and how the body is to move over the standing feet: not needed in each tick."""
+        legs, contacts, dt = range(len(rest)), self.contacts, self._since
         bears = [leg for leg in legs if down[leg] and contacts.touches(leg)]
         self.plane = fitted_plane(
             [places[leg] for leg in bears], [over[leg] for leg in bears], self.plane, min(_SLOPE_RATE * dt, 1.0)
@@ -214,7 +254,7 @@ class FeltGround:
             height=float(state.posture.value[2]),
         )
         velocity = complex(*state.twist.value[:2].tolist()) * self.support.pace
-        drift = self._odometry.step(
+        self._drift = self._odometry.step(
             self._measured.joint_angles,
             [leg in bears for leg in legs],
             velocity,
@@ -223,26 +263,7 @@ class FeltGround:
             yaw=float(state.posture.value[5]),
         )
         margins = [(places[leg], over[leg] - self._lowest[leg]) for leg in bears]
-        climb, turning = self.posture.rates(self.plane, self._tilt, velocity, feet=margins)
-        supports = {leg: places[leg] for leg in legs if down[leg] and contacts.supports(leg)}
-        self._decide_on_support(state, dt, supports, timing=timing, standing=standing)
-        self.roughness.decay(0.0 if standing else dt * timing.frequency)
-        ground = [elevation + self.plane.at((foothold - state.origin) * turn) for foothold in state.foothold.tolist()]
-        searches = [contacts.is_known(leg) and (down[leg] or contacts.lifted[leg]) for leg in legs]
-        return FeltInputs(
-            stands=tuple(contacts.stands(leg) for leg in legs),
-            steps=tuple(leg not in excluded for leg in legs),
-            ground=tuple(ground),
-            lowest=tuple(elevation + self._lowest[leg] if searches[leg] else ground[leg] for leg in legs),
-            highest=tuple(elevation + height for height in self._highest),
-            depth=_DEPTH_SHARE * self.roughness.value,
-            climb=climb,
-            turn=turning,
-            drift=drift,
-            travel=_SLOW_TRAVEL + (_FAST_TRAVEL - _SLOW_TRAVEL) * max(2 * self._stroke / max(*radii, 1e-6) - 1, 0.0),
-            pace=self.support.pace,
-            swing_height=float(state.posture.value[SWING_HEIGHT]) + self.roughness.swing_rise,
-        )
+        self._rates = self.posture.rates(self.plane, self._tilt, velocity, feet=margins)
 
     def _update_reach(
         self, state: GaitState, timing: StepTiming, twist: Float[np.ndarray, "3"], rest: Complex[np.ndarray, "legs"]
