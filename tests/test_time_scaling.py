@@ -6,14 +6,15 @@ import pytest
 from tarsus.control.walk.time_scaling import TimeScaling
 
 SPEED, ACCELERATION = np.full((1, 3), 5.0), np.full((1, 3), 100.0)
+ANYWHERE = np.broadcast_to([-np.inf, np.inf], (1, 3, 2))
 
 
 def driven(way, ticks, dt):
     """Go along a way; return the own times and the joints' speed and acceleration over the greatest."""
-    own = TimeScaling(way(0.0), SPEED, ACCELERATION)
+    own = TimeScaling(way(0.0), SPEED, ACCELERATION, ANYWHERE)
     time, times, angles = 0.0, [0.0], [own.angles]
     for _ in range(ticks):
-        time = own.advance(lambda step, time=time: time + step, way, dt, stop=False)
+        time = own.advance(lambda step, time=time: time + step, way, dt)
         times.append(time)
         angles.append(own.angles)
         np.testing.assert_array_equal(own.angles, way(time))
@@ -41,25 +42,15 @@ def test_where_they_do_not_it_is_slower_and_they_do(fast, dt):
     assert change <= 1.001
 
 
-def test_commanded_to_stop_it_comes_to_rest():
-    own = TimeScaling(np.zeros((1, 3)), SPEED, ACCELERATION)
-    time, rates = 0.0, []
-    for _ in range(20):
-        time = own.advance(lambda step, time=time: time + step, lambda t: np.full((1, 3), t), 0.01, stop=True)
-        rates.append(own.rate)
-    assert rates == pytest.approx(np.maximum(1 - 0.1 * np.arange(1, 21), 0))
-    assert time == pytest.approx(0.01 * sum(rates))
-
-
 def test_a_path_beyond_the_joints_is_followed_as_far_as_possible():
-    own = TimeScaling(np.zeros((1, 3)), SPEED, ACCELERATION)
+    own = TimeScaling(np.zeros((1, 3)), SPEED, ACCELERATION, ANYWHERE)
     tried = []
 
     def jumping(time):
         tried.append(time)
         return np.full((1, 3), (-1.0) ** len(tried))
 
-    own.advance(lambda step: step, jumping, 0.01, stop=False)
+    own.advance(lambda step: step, jumping, 0.01)
     # Six times in all, never for longer than before.
     assert len(tried) == 6
     assert (np.diff(tried) <= 0).all()

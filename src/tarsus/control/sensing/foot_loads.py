@@ -23,7 +23,7 @@ _CONTACT_SHARE = 0.04
 
 
 class FootLoads:
-    """Contacts and compliance of the feet, from foot switches, load cells or joint torques.
+    """Contacts of the feet from foot switches or load cells, and their compliance, from load cells or joint torques.
 
     Parameters
     ----------
@@ -52,20 +52,20 @@ class FootLoads:
             return self._torques.forces(angles.tolist(), valid.torques)
         return valid.forces
 
-    def contacts(self, valid: ValidReadings, forces: Sequence[Vector | None] | None) -> Sequence[bool | None] | None:
-        """Return which feet touch the ground: from switches, or else from forces; None where unknown.
+    def contacts(self, valid: ValidReadings) -> Sequence[bool | None] | None:
+        """Return which feet touch the ground: from switches, or else from load cells; None where unknown.
+
+        Joint torques do not tell: position-controlled legs press against each other, and a swinging leg is accelerated.
 
         Parameters
         ----------
         valid : ValidReadings
             The readings.
-        forces : sequence of ((x, y, z) or None), or None
-            Forces on the feet [N].
         """
-        if valid.contacts is not None or forces is None or not self._weight:
+        if valid.contacts is not None or valid.forces is None or not self._weight:
             return valid.contacts
         least = _CONTACT_SHARE * self._weight
-        return [None if force is None else force[2] > least for force in forces]
+        return [None if force is None else force[2] > least for force in valid.forces]
 
     def offsets(
         self,

@@ -141,7 +141,7 @@ class FeltGround:
         if valid.attitude is not None:
             roll, pitch = state.posture.value[3:5].tolist()
             self._tilt = (valid.attitude[0] - roll, valid.attitude[1] - pitch)
-        measured = self._loads.contacts(valid, forces)
+        measured = self._loads.contacts(valid)
         if state.felt is None:
             if measured is None and valid.attitude is None:
                 return state, []

@@ -100,8 +100,6 @@ def _swinging(
     if phase < feet.top_phase[leg]:
         time = dt * felt.pace
         whole = (feet.top_phase[leg] - phase) * swing_time + time
-        if time <= 0:
-            return height, feet
         found, after, acceleration = quintic((height, speed, feet.acceleration[leg]), top, whole, time / whole)
         return found, feet.replaced(leg, speed=after, acceleration=acceleration)
     descent = (top - felt.ground[leg] + felt.depth) / (_DESCENT * swing_time) * felt.pace

@@ -111,8 +111,7 @@ class TransitionScheduler:
             raise InputError(f"the command's cycle_time is {asked.cycle_time} s; it must be greater than 0")
         if asked != before:
             self.requested, self.rejections = asked, {}
-            if dataclasses.replace(asked, correction=before.correction) != before:
-                self._shortfalls = ()
+            self._shortfalls = ()
 
     def advance_planning(self, plan: PlanTransition, *, idle: bool) -> None:
         """Do one stage of planning.

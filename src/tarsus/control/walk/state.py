@@ -140,16 +140,6 @@ class GaitState(NamedTuple):
             admittance_offset=CriticallyDamped.still(none),
         )
 
-    def swings(self, duty_factor: float) -> Float[np.ndarray, "legs"]:
-        """Return the duration of each foot's swing: array, shape (legs,); for feet on the ground, as planned [cycles].
-
-        Parameters
-        ----------
-        duty_factor : float
-            Duty factor.
-        """
-        return np.asarray(1 - duty_factor - np.where(self.down, 0.0, self.lift_delay))
-
     def height(self, swing_height: float) -> Float[np.ndarray, "legs"]:
         """Return the heights of the feet in G: array, shape (legs,) [m].
 

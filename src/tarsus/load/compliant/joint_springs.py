@@ -25,19 +25,19 @@ _SOFT = 1e-3
 @represented()
 @dataclass(frozen=True, eq=False, kw_only=True)
 class JointSprings:
-    """Springs between commanded and achieved joint angles; all arrays have the shape ``(legs, 3)``.
+    """Springs between commanded and achieved joint angles.
 
     Attributes
     ----------
-    stiffness : array
+    stiffness : array, shape (legs, 3)
         Torque per position error, of control loop and gears in series [N m/rad].
-    damping : array
+    damping : array, shape (legs, 3)
         Torque per speed: stall torque over no-load speed, the slope of the torque-speed line [N m s/rad].
-    play : array
+    play : array, shape (legs, 3)
         Half the backlash [rad].
-    stall_torque : array
+    stall_torque : array, shape (legs, 3)
         Greatest torque [N m]; may be infinite.
-    rotor_inertia : array
+    rotor_inertia : array, shape (legs, 3)
         Inertia of rotors and gears, reflected to the joints [kg m^2].
     assumed : tuple of str
         What is assumed beyond the catalogue.
