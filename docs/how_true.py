@@ -95,7 +95,8 @@ def main() -> None:
     text = PAGE.read_text(encoding="utf-8")
     for name in ("ideal", "fast", "catalogue"):
         before, start, rest = text.partition(f"<!-- table: {name} -->\n")
-        text = f"{before}{start}{fast_table() if name == 'fast' else table(name)}<!-- end -->{rest.partition('<!-- end -->')[2]}"
+        written = fast_table() if name == "fast" else table(name)
+        text = f"{before}{start}{written}<!-- end -->{rest.partition('<!-- end -->')[2]}"
     PAGE.write_text(text, encoding="utf-8")
 
 
