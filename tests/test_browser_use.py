@@ -274,6 +274,15 @@ def test_two_visitors_are_independent(arrive):
     assert other.at("robot-choice").input_value() == "strider"
 
 
+def settled_facts(visitor):
+    """The facts on how the robot stands, once they stay the same: the server answers each keystroke."""
+    seen = None
+    while (now := visitor.facts("standing-facts")) != seen:
+        seen = now
+        visitor.page.wait_for_timeout(500)
+    return seen
+
+
 def test_the_state_survives_a_restart_of_the_server(arrive):
     settings = Settings()
     with Serving(settings) as first:
@@ -281,7 +290,7 @@ def test_the_state_survives_a_restart_of_the_server(arrive):
         port = first.settings.port
         visitor.type("joint-RM-femur", 33)
         expect(visitor.at("undo")).to_be_enabled()
-        before = visitor.facts("standing-facts")
+        before = settled_facts(visitor)
     expect(visitor.at("banner")).to_contain_text("kept")
     # What is set meanwhile is not lost either.
     visitor.type("joint-RM-coxa", 9)
