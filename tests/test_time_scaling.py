@@ -54,3 +54,23 @@ def test_a_path_beyond_the_joints_is_followed_as_far_as_possible():
     # Six times in all, never for longer than before.
     assert len(tried) == 6
     assert (np.diff(tried) <= 0).all()
+
+
+@pytest.mark.parametrize("others", [0.0, 1.0])
+def test_a_joint_that_reverses_at_once_brakes_as_hard_as_it_may(others):
+    """Alone, or while another joint must go on at its speed: whatever rate is tried, a joint is too sudden."""
+
+    def way(time):
+        ahead = 30 * min(time, 0.07) ** 2 + 4.2 * max(time - 0.07, 0.0)
+        back = 30 * min(time, 0.07) ** 2 - 4.2 * max(time - 0.07, 0.0)
+        return np.array([[back, others * ahead, 0.0]])
+
+    own, time, angles = TimeScaling(way(0.0), SPEED, ACCELERATION, ANYWHERE), 0.0, []
+    for _ in range(30):
+        time = own.advance(lambda step, time=time: time + step, way, 0.01)
+        angles.append(own.angles)
+    speeds = np.diff(angles, axis=0) / 0.01
+    # Slower or not, no joint moves faster than along the way, and all of them go on afterwards.
+    assert np.abs(speeds).max() < 4.3
+    assert speeds[-1, 0, 0] < 0
+    assert time > 0.1
