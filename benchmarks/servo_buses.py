@@ -146,7 +146,10 @@ def servo_bus_rows() -> Iterator[Row]:
 def table() -> str:
     """Return the table of all buses."""
     lines = [
-        "| bus | baud | rate | wire | tick, median | 99 % | begins late, 99 % | missed | lost | driver | emulation |",
+        (
+            "| bus | baud | rate | on the wire | a tick takes, median | 99 % | begins late, 99 % | missed | answers lost "
+            "| processor time: driver | emulated servos |"
+        ),
         "|---|---|---|---|---|---|---|---|---|---|---|",
     ]
     for setting in SETTINGS:
