@@ -145,11 +145,9 @@ def servo_bus_rows() -> Iterator[Row]:
 
 def table() -> str:
     """Return the table of all buses."""
+    times = "missed | answers lost | processor time: driver | emulated servos"
     lines = [
-        (
-            "| bus | baud | rate | on the wire | a tick takes, median | 99 % | begins late, 99 % | missed | answers lost "
-            "| processor time: driver | emulated servos |"
-        ),
+        f"| bus | baud | rate | on the wire | a tick takes, median | 99 % | begins late, 99 % | {times} |",
         "|---|---|---|---|---|---|---|---|---|---|---|",
     ]
     for setting in SETTINGS:
