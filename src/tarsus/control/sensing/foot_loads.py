@@ -38,6 +38,11 @@ class FootLoads:
         self._torques = FootForceEstimator(robot) if robot.has_masses else None
         self._filter = AdmittanceFilter(admittance, robot.legs) if admittance else None
 
+    @property
+    def compliant(self) -> bool:
+        """Whether the feet yield to forces; only then are forces of use."""
+        return self._filter is not None
+
     def forces(self, valid: ValidReadings, angles: Float[np.ndarray, "legs 3"]) -> Sequence[Vector | None] | None:
         """Return the forces of the ground on the feet [N], measured or from joint torques; None where unknown.
 

@@ -99,10 +99,10 @@ class FeltGround:
         com = centre_of_mass(robot, angles)
         self._centre = complex(com[0], com[1])
         self._odometry, self._measured = LegOdometry(robot), ValidReadings()
-        self._rejected: tuple[str, ...] = ()
         self._tilt: tuple[float, float] | None = None
         self._since, self._drift, self._rates = _SLOW_PERIOD, 0j, PostureRates(0.0, (0.0, 0.0))
-        self._reach_key: tuple[object, ...] = ()
+        self._reach_key: tuple[float, ...] = ()
+        self._reach_rest: Complex[np.ndarray, "legs"] | None = None
         self._stroke = 0.0
         self._lowest, self._highest = [0.0] * robot.legs, [0.0] * robot.legs
 
@@ -136,8 +136,7 @@ class FeltGround:
             Joint angles [rad].
         """
         valid = self._validator.validate(readings, dt)
-        self._rejected, self._measured = valid.rejected, valid
-        forces = self._loads.forces(valid, angles)
+        self._measured = valid
         if valid.attitude is not None:
             roll, pitch = state.posture.value[3:5].tolist()
             self._tilt = (valid.attitude[0] - roll, valid.attitude[1] - pitch)
@@ -149,8 +148,9 @@ class FeltGround:
             state = state._replace(ground_height=heights, felt=FeltFeet.still(len(heights)))
         down = state.down.tolist()
         self.contacts.step(measured, down, dt)
-        feet = [(foot.real, foot.imag) for foot in state.foot.tolist()]
-        self.offsets = self._loads.offsets(forces, dt, feet=feet, stands=down)
+        if self._loads.compliant:
+            forces, feet = self._loads.forces(valid, angles), [(foot.real, foot.imag) for foot in state.foot.tolist()]
+            self.offsets = self._loads.offsets(forces, dt, feet=feet, stands=down)
         return met_ground(
             state,
             self.contacts,
@@ -271,9 +271,9 @@ class FeltGround:
         """Update the least and greatest height of each foot, where its stroke or the posture has changed."""
         (vx, vy, wz), time = twist.tolist(), timing.stance_time
         rounded = (round(speed * time / _STROKE_STEP) for speed in (vx, vy, wz * _TURNING_ARM))
-        key = (*rounded, id(rest), *state.posture.value[:SWING_HEIGHT].round(3).tolist())
-        if key != self._reach_key:
-            self._reach_key, strokes = key, (complex(vx, vy) + 1j * wz * rest) * time
+        key = (*rounded, *state.posture.value[:SWING_HEIGHT].round(3).tolist())
+        if key != self._reach_key or rest is not self._reach_rest:
+            self._reach_key, self._reach_rest, strokes = key, rest, (complex(vx, vy) + 1j * wz * rest) * time
             self._stroke = float(np.abs(strokes).max()) / 2
             self._lowest, self._highest = reachable_heights(self._robot, state.posture.value, rest, strokes)
 
@@ -292,7 +292,7 @@ class FeltGround:
     def limitations(self) -> tuple[Limitation, ...]:
         """Readings that are rejected, and what the ground does not allow."""
         kinds = LimitationKind
-        found = [Limitation(kind=kinds.READINGS, cause=reason) for reason in self._rejected]
+        found = [Limitation(kind=kinds.READINGS, cause=reason) for reason in self._measured.rejected]
         if self.posture.given_way > 0.0:
             found.append(Limitation(kind=kinds.ATTITUDE, cause="end of the legs' reach on this slope"))
         if self.waits:
