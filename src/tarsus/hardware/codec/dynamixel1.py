@@ -5,10 +5,22 @@ Source: ROBOTIS e-Manual, DYNAMIXEL Protocol 1.0.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Final
 
-from tarsus.hardware.codec.packet import BROADCAST, packet
+from tarsus.hardware.codec.packet import (
+    BROADCAST,
+    PING,
+    READ,
+    SYNC_WRITE,
+    WRITE,
+    bits_set,
+    packet,
+    ping,
+    read,
+    sync_write,
+    write,
+)
 
 __all__ = [
     "BULK_READ",
@@ -25,10 +37,6 @@ __all__ = [
     "write",
 ]
 
-PING: Final = 0x01
-READ: Final = 0x02
-WRITE: Final = 0x03
-SYNC_WRITE: Final = 0x83
 BULK_READ: Final = 0x92
 
 ERRORS = {
@@ -51,63 +59,7 @@ def errors_in(code: int) -> tuple[str, ...]:
     code : int
         The error byte.
     """
-    return tuple(ERRORS.get(bit, f"bit {bit}") for bit in range(8) if code >> bit & 1)
-
-
-def ping(id: int) -> bytes:
-    """Return the packet that asks a servo for an answer.
-
-    Parameters
-    ----------
-    id : int
-        Id of the servo.
-    """
-    return packet(id, PING)
-
-
-def read(id: int, address: int, count: int) -> bytes:
-    """Return the packet that asks a servo for registers.
-
-    Parameters
-    ----------
-    id : int
-        Id of the servo.
-    address : int
-        The first register.
-    count : int
-        How many bytes.
-    """
-    return packet(id, READ, bytes((address, count)))
-
-
-def write(id: int, address: int, data: bytes) -> bytes:
-    """Return the packet that writes registers of a servo; of all servos with the broadcast id.
-
-    Parameters
-    ----------
-    id : int
-        Id of the servo.
-    address : int
-        The first register.
-    data : bytes
-        Their content.
-    """
-    return packet(id, WRITE, bytes((address,)) + data)
-
-
-def sync_write(address: int, contents: Mapping[int, bytes]) -> bytes:
-    """Return the packet that writes the same registers of several servos; none of them answers.
-
-    Parameters
-    ----------
-    address : int
-        The first register.
-    contents : mapping of int to bytes
-        Their content, by the servos' ids, of equal length.
-    """
-    length = len(next(iter(contents.values())))
-    data = b"".join(bytes((id,)) + content for id, content in contents.items())
-    return packet(BROADCAST, SYNC_WRITE, bytes((address, length)) + data)
+    return bits_set(code, ERRORS)
 
 
 def bulk_read(ids: Sequence[int], address: int, count: int) -> bytes:

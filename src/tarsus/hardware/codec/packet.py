@@ -1,16 +1,38 @@
-"""Packets ``FF FF id length code parameters checksum``: those of Dynamixel 1.0 and of Feetech.
+"""Packets ``FF FF id length code parameters checksum`` and the instructions that Dynamixel 1.0 and Feetech share.
 
 Sources: ROBOTIS e-Manual, DYNAMIXEL Protocol 1.0; Feetech, SMS/STS communication protocol manual.
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import Final
+
 from tarsus.hardware.codec.scan import Frame, Framing, Scanned, scan_frames
 
-__all__ = ["BROADCAST", "HEADER", "checksum", "packet", "scan"]
+__all__ = [
+    "BROADCAST",
+    "HEADER",
+    "PING",
+    "READ",
+    "SYNC_WRITE",
+    "WRITE",
+    "bits_set",
+    "checksum",
+    "packet",
+    "ping",
+    "read",
+    "scan",
+    "sync_write",
+    "write",
+]
 
 HEADER = b"\xff\xff"
 BROADCAST = 0xFE
+PING: Final = 0x01
+READ: Final = 0x02
+WRITE: Final = 0x03
+SYNC_WRITE: Final = 0x83
 # A packet with instruction and checksum alone has a length of 2.
 _MOST_LENGTH = 250
 
@@ -40,6 +62,75 @@ def packet(id: int, code: int, data: bytes = b"") -> bytes:
     """
     body = bytes((id, len(data) + 2, code)) + data
     return HEADER + body + bytes((checksum(body),))
+
+
+def ping(id: int) -> bytes:
+    """Return the packet that asks a servo for an answer.
+
+    Parameters
+    ----------
+    id : int
+        Id of the servo.
+    """
+    return packet(id, PING)
+
+
+def read(id: int, address: int, count: int) -> bytes:
+    """Return the packet that asks a servo for registers.
+
+    Parameters
+    ----------
+    id : int
+        Id of the servo.
+    address : int
+        The first register.
+    count : int
+        How many bytes.
+    """
+    return packet(id, READ, bytes((address, count)))
+
+
+def write(id: int, address: int, data: bytes) -> bytes:
+    """Return the packet that writes registers of a servo; of all servos with the broadcast id.
+
+    Parameters
+    ----------
+    id : int
+        Id of the servo.
+    address : int
+        The first register.
+    data : bytes
+        Their content.
+    """
+    return packet(id, WRITE, bytes((address,)) + data)
+
+
+def sync_write(address: int, contents: Mapping[int, bytes]) -> bytes:
+    """Return the packet that writes the same registers of several servos; none of them answers.
+
+    Parameters
+    ----------
+    address : int
+        The first register.
+    contents : mapping of int to bytes
+        Their content, by the servos' ids, of equal length.
+    """
+    length = len(next(iter(contents.values())))
+    data = b"".join(bytes((id,)) + content for id, content in contents.items())
+    return packet(BROADCAST, SYNC_WRITE, bytes((address, length)) + data)
+
+
+def bits_set(code: int, meanings: Mapping[int, str]) -> tuple[str, ...]:
+    """Return the meanings of the bits that are set in an error byte.
+
+    Parameters
+    ----------
+    code : int
+        The error byte.
+    meanings : mapping of int to str
+        What the bits mean; others are named by their number.
+    """
+    return tuple(meanings.get(bit, f"bit {bit}") for bit in range(8) if code >> bit & 1)
 
 
 def scan(received: bytes, *, ended: bool = False) -> Scanned:
