@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 
 from tarsus.errors import BusError, CorruptAnswerError, ServoStatusError
-from tarsus.hardware.bus.checks import checked_goals, checked_ids, checked_range, checked_share, checked_speed
+from tarsus.hardware.bus.checks import checked_goals, checked_ids, checked_range
 from tarsus.hardware.bus.link import Link
 from tarsus.hardware.bus.protocol import Answers, BusServo, BusTiming, Capabilities, Telemetry
 from tarsus.hardware.bus.scanning import scanned
+from tarsus.hardware.bus.without_servo_settings import WithoutServoSettings
 from tarsus.hardware.codec import lx16a as codec
 from tarsus.hardware.transport.protocol import Transport
 from tarsus.hardware.transport.wire import serial_seconds
@@ -34,7 +35,7 @@ _TURNAROUND = 300e-6
 
 
 @represented("name", "port")
-class Lx16aBus:
+class Lx16aBus(WithoutServoSettings):
     """Servos of the kinds LX-16A, LX-224, LX-15D, HTS-35H and alike, through Hiwonder's half-duplex adapter.
 
     Servos are asked one at a time: reading all of 18 takes longer than a tick of 10 ms.
@@ -186,48 +187,6 @@ class Lx16aBus:
                 remedy="Write them again; the lower limit must be below the upper one.",
             )
         return True
-
-    def set_speed_limit(self, ids: Sequence[int], speed: float | None) -> bool:
-        """Do nothing: these servos take times of movements, not speeds.
-
-        Parameters
-        ----------
-        ids : sequence of int
-            The servos.
-        speed : float or None
-            Speed [tick/s].
-        """
-        checked_speed(self.name, self.capabilities, speed)
-        checked_ids(self.name, self.capabilities, ids)
-        return False
-
-    def set_torque_limit(self, ids: Sequence[int], share: float) -> bool:
-        """Do nothing: these servos have no torque limit.
-
-        Parameters
-        ----------
-        ids : sequence of int
-            The servos.
-        share : float
-            Share of the highest torque.
-        """
-        checked_share(self.name, share)
-        checked_ids(self.name, self.capabilities, ids)
-        return False
-
-    def set_watchdog(self, ids: Sequence[int], seconds: float | None) -> bool:
-        """Do nothing: these servos have no watchdog.
-
-        Parameters
-        ----------
-        ids : sequence of int
-            The servos.
-        seconds : float or None
-            The time [s].
-        """
-        checked_ids(self.name, self.capabilities, ids)
-        del seconds
-        return False
 
     def timing(self, ids: Sequence[int]) -> BusTiming:
         """Return how long the bytes of a tick take on the wire.

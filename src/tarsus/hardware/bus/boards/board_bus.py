@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 
 from tarsus.errors import NoAnswerError
-from tarsus.hardware.bus.checks import checked_goals, checked_ids, checked_range, checked_share, checked_speed
+from tarsus.hardware.bus.checks import checked_goals, checked_ids, checked_range
 from tarsus.hardware.bus.protocol import Answers, BusServo, BusTiming, Capabilities, Telemetry
 from tarsus.hardware.bus.scanning import scanned
+from tarsus.hardware.bus.without_servo_settings import WithoutServoSettings
 from tarsus.hardware.transport.protocol import I2cTransport, Transport
 from tarsus.representation import represented
 
@@ -37,7 +38,7 @@ def runs(channels: Iterable[int], most: int) -> list[list[int]]:
 
 
 @represented("name", "port")
-class BoardBus:
+class BoardBus(WithoutServoSettings):
     """A board that sends pulses to analogue or digital servos; a kind of it for each board.
 
     Attributes
@@ -145,48 +146,6 @@ class BoardBus:
             Range [us].
         """
         checked_range(self.name, self.capabilities, id, lowest, highest)
-        return False
-
-    def set_speed_limit(self, ids: Sequence[int], speed: float | None) -> bool:
-        """Do nothing: the board has no speed limit.
-
-        Parameters
-        ----------
-        ids : sequence of int
-            The channels.
-        speed : float or None
-            Speed [us/s].
-        """
-        checked_speed(self.name, self.capabilities, speed)
-        checked_ids(self.name, self.capabilities, ids)
-        return False
-
-    def set_torque_limit(self, ids: Sequence[int], share: float) -> bool:
-        """Do nothing: pulses have no torque limit.
-
-        Parameters
-        ----------
-        ids : sequence of int
-            The channels.
-        share : float
-            Share of the highest torque.
-        """
-        checked_share(self.name, share)
-        checked_ids(self.name, self.capabilities, ids)
-        return False
-
-    def set_watchdog(self, ids: Sequence[int], seconds: float | None) -> bool:
-        """Do nothing: the board has no watchdog that can be set from here.
-
-        Parameters
-        ----------
-        ids : sequence of int
-            The channels.
-        seconds : float or None
-            The time [s].
-        """
-        checked_ids(self.name, self.capabilities, ids)
-        del seconds
         return False
 
     def timing(self, ids: Sequence[int]) -> BusTiming:
