@@ -7,6 +7,7 @@ import math
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
 import click
@@ -14,7 +15,7 @@ import click
 if TYPE_CHECKING:
     from rich.console import RenderableType
 
-__all__ = ["Progress", "fail", "print_json", "progress_bar", "show"]
+__all__ = ["Progress", "fail", "file_name", "print_json", "progress_bar", "show", "write_new"]
 
 _PIPE_WIDTH = 120
 
@@ -44,6 +45,22 @@ def fail(message: str, *, code: int, as_json: bool, details: dict[str, Any] | No
     else:
         click.echo(f"Error: {message}", err=True)
     return code
+
+
+def file_name(name: str) -> str:
+    """Return a name without separators or characters that are special to a shell."""
+    return "".join(letter if letter.isalnum() or letter in "-_" else "-" for letter in name)[:100]
+
+
+def write_new(path: Path, text: str) -> None:
+    """Write a text file; one that exists already is not overwritten, but a wrong use of the command."""
+    try:
+        with path.open("x", encoding="utf-8", newline="\n") as file:
+            file.write(text)
+    except FileExistsError:
+        raise click.UsageError(f"{path} already exists; choose another file with --out") from None
+    except (OSError, ValueError) as error:
+        raise click.UsageError(f"{path} can't be written: {error}") from None
 
 
 def show(*items: RenderableType) -> None:

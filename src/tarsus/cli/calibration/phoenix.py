@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from tarsus.cli.output import print_json
+from tarsus.cli.output import print_json, write_new
 from tarsus.cli.values import examples, json_option
 
 __all__ = ["from_phoenix", "to_phoenix"]
@@ -73,13 +73,7 @@ def to_phoenix(file: Path, out: Path, as_json: bool) -> int:
     from tarsus.hardware.phoenix.hex_cfg_text import hex_cfg_text
 
     text = hex_cfg_text(Calibration.load(file))
-    try:
-        with out.open("x", encoding="utf-8") as written:
-            written.write(text)
-    except FileExistsError:
-        raise click.UsageError(f"{out} already exists; choose another file with --out") from None
-    except (OSError, ValueError) as error:
-        raise click.UsageError(f"{out} can't be written: {error}") from None
+    write_new(out, text)
     notes = [line.removeprefix("// ") for line in text.splitlines()[3:] if line.startswith("// ")]
     if as_json:
         print_json({"file": str(out), "notes": notes})

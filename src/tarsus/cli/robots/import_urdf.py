@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from tarsus.cli.output import print_json, show
+from tarsus.cli.output import file_name, print_json, show, write_new
 from tarsus.cli.values import Numbers, examples, json_option
 
 if TYPE_CHECKING:
@@ -64,25 +64,15 @@ def import_urdf(
 
     point = None if foot is None else (foot[0] / 1000, foot[1] / 1000, foot[2] / 1000)
     found = robot_from_urdf(urdf, forward=forward, centre=centre, foot=point, name=name)
-    path = Path(f"{_file_name(found.robot.name)}.toml") if out is None else out
+    path = Path(f"{file_name(found.robot.name)}.toml") if out is None else out
     text = _with_comments(robot_text(found.robot), found, urdf)
-    try:
-        with path.open("x", encoding="utf-8", newline="\n") as file:
-            file.write(text)
-    except FileExistsError:
-        raise click.UsageError(f"{path} already exists; choose another file with --out") from None
-    except (OSError, ValueError) as error:
-        raise click.UsageError(f"{path} can't be written: {error}") from None
+    write_new(path, text)
     if as_json:
         print_json(_summary(found, path))
         return 0
     show(*_lines(found))
     click.echo(f"wrote {path}; check it with: tarsus robots check {path}")
     return 0
-
-
-def _file_name(name: str) -> str:
-    return "".join(letter if letter.isalnum() or letter in "-_" else "-" for letter in name)[:100]
 
 
 def _lines(found: ImportedRobot) -> list[str]:

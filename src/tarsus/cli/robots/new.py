@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from tarsus.cli.output import print_json
+from tarsus.cli.output import file_name, print_json, write_new
 from tarsus.cli.values import examples, json_option
 
 __all__ = ["new"]
@@ -36,14 +36,8 @@ def new(name: str, source: str | None, out: Path | None, as_json: bool) -> int:
     text = template_text(name) if source is None else copied_text(source, name)
     # Rejects names that are not valid in a robot file.
     robot = robot_from_text(text, where=f"a robot called {name!r}")
-    path = Path(f"{_as_file_name(name)}.toml") if out is None else out
-    try:
-        with path.open("x", encoding="utf-8", newline="\n") as file:
-            file.write(text)
-    except FileExistsError:
-        raise click.UsageError(f"{path} already exists; choose another file with --out") from None
-    except (OSError, ValueError) as error:
-        raise click.UsageError(f"{path} can't be written: {error}") from None
+    path = Path(f"{file_name(name)}.toml") if out is None else out
+    write_new(path, text)
     if as_json:
         print_json({"name": name, "file": str(path), "from": source, "has_masses": robot.has_masses})
         return 0
@@ -51,8 +45,3 @@ def new(name: str, source: str | None, out: Path | None, as_json: bool) -> int:
     if not robot.has_masses:
         click.echo("its masses are not known: the file says what to weigh; without them there are no torques")
     return 0
-
-
-def _as_file_name(name: str) -> str:
-    """Return a name without separators or characters that are special to a shell."""
-    return "".join(letter if letter.isalnum() or letter in "-_" else "-" for letter in name)[:100]
