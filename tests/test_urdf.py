@@ -273,6 +273,10 @@ REFUSED = {
         one_of("joint", "rear_left_tibia", "xyz", "0 0 0", "origin")
     ),
 }
+REFUSED["has no <link>"] = '<robot name="empty"/>'
+REFUSED["lower of 'rear_left_coxa' is '1e200'; expected a number up to 1e+12"] = changed(
+    one_of("joint", "rear_left_coxa", "lower", "1e200", "limit")
+)
 REFUSED["found 3 legs"] = REFUSED.pop("found 4 legs")
 
 

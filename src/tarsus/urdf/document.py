@@ -20,6 +20,7 @@ MOVING = ("revolute", "continuous")
 """Types of joints that a leg has."""
 
 _LARGEST = 20_000_000
+_LARGEST_NUMBER = 1e12
 _DEFAULTS = {"origin": {"xyz": "0 0 0", "rpy": "0 0 0"}, "axis": {"xyz": "1 0 0"}, "mesh": {"scale": "1 1 1"}}
 
 
@@ -146,6 +147,8 @@ def parse_urdf(text: str, *, where: str) -> UrdfDocument:
     if any("/wiki/xacro}" in element.tag or "${" in str(element.attrib) for element in root.iter()):
         raise InputError(f"{where} has macros of xacro; expand it first: xacro {where} > robot.urdf")
     reader = _Reader(where)
+    if root.find("link") is None:
+        raise InputError(f"{where} has no <link>; a robot has a body and the links of its legs")
     links = {link.name: link for link in map(reader.link, root.findall("link"))}
     joints = tuple(reader.joint(element) for element in root.findall("joint"))
     for joint in joints:
@@ -238,8 +241,8 @@ class _Reader:
             values = np.array([float(word) for word in text.split()])
         except ValueError:
             values = np.array([math.nan])
-        if values.shape != (count,) or not np.isfinite(values).all():
-            wanted = "a number" if count == 1 else f"{count} numbers"
+        if values.shape != (count,) or not (np.abs(values) <= _LARGEST_NUMBER).all():
+            wanted = f"{'a number' if count == 1 else f'{count} numbers'} up to {_LARGEST_NUMBER:g}"
             raise InputError(f"{self._where}: {key} of {name!r} is {text!r}; expected {wanted}")
         return values
 
