@@ -11,7 +11,7 @@ import tarsus
 from draw_hill import plot_hill
 from draw_states import plot_states
 from draw_terrains import plot_terrains
-from tarsus.hardware.bringup.wizard import reference_angles
+from tarsus.hardware.bringup.reference_pose import reference_angles
 from tarsus.report.angles import plot_angles
 from tarsus.report.animation import animate
 from tarsus.report.footpaths import plot_footpaths

@@ -14,9 +14,10 @@ from sample_commands import run
 from tarsus.cli import main
 from tarsus.cli.bring_up import _Terminal
 from tarsus.hardware import Calibration, ManualClock, MemoryTransport, bus_over, emulate, new_calibration
-from tarsus.hardware.bringup import wizard
+from tarsus.hardware.bringup import trial, wizard
 from tarsus.hardware.bringup.dialogue import Left
-from tarsus.hardware.bringup.wizard import BringUp, reference_angles
+from tarsus.hardware.bringup.reference_pose import reference_angles
+from tarsus.hardware.bringup.wizard import BringUp
 from tarsus.hardware.bus import registry
 
 STRIDER = tarsus.load_robot("strider")
@@ -132,7 +133,7 @@ def drive(arguments, human, monkeypatch):
 
     monkeypatch.setattr(registry, "open_bus", machine.open)
     monkeypatch.setattr(wizard, "SystemClock", lambda: machine.clock)
-    monkeypatch.setattr(wizard, "_WALK_TIME", 0.5)
+    monkeypatch.setattr(trial, "_WALK_TIME", 0.5)
     watcher = threading.Thread(target=look, daemon=True)
     watcher.start()
     with os.fdopen(os.dup(slave), "r") as stdin, os.fdopen(os.dup(slave), "w") as stdout:

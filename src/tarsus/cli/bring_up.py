@@ -110,7 +110,7 @@ def bring_up(
 
 def _draw(robot: str, path: Path) -> Path:
     """Draw the reference pose beside the calibration file."""
-    from tarsus.hardware.bringup.wizard import reference_angles
+    from tarsus.hardware.bringup.reference_pose import reference_angles
     from tarsus.report.skeleton import plot_robot
     from tarsus.report.style import save_figure
     from tarsus.robot.file import load_robot
