@@ -10,7 +10,9 @@ from tarsus.errors import CorruptAnswerError, NoAnswerError
 from tarsus.hardware import ManualClock, SupplySettings, Telemetry, nominal_calibration
 from tarsus.hardware.plant.fault import FaultKind
 from tarsus.hardware.plant.joint_map import JointMap
-from tarsus.hardware.plant.monitor import ServoMonitor
+from tarsus.hardware.plant.monitor.answer_monitor import AnswerMonitor
+from tarsus.hardware.plant.monitor.motion_monitor import MotionMonitor
+from tarsus.hardware.plant.monitor.telemetry_monitor import TelemetryMonitor
 from tarsus.hardware.plant.pacer import Pacer
 from tarsus.hardware.plant.settings import PlantSettings
 
@@ -18,9 +20,23 @@ STRIDER = tarsus.load_robot("strider")
 SUPPLY = SupplySettings(voltage=7.4, least_voltage=6.0)
 
 
-def monitor(supply=SUPPLY, robot=STRIDER):
-    made = nominal_calibration(robot, "strider", kind="feetech-sts").replace(supply=supply)
-    return ServoMonitor(made, JointMap(made), PlantSettings())
+def calibration(supply=SUPPLY, robot=STRIDER):
+    return nominal_calibration(robot, "strider", kind="feetech-sts").replace(supply=supply)
+
+
+def monitor(supply=SUPPLY, robot=STRIDER, kind=TelemetryMonitor):
+    made = calibration(supply, robot)
+    return kind(made, JointMap(made), PlantSettings())
+
+
+class Answering:
+    """An answer monitor on one bus."""
+
+    def __init__(self):
+        self.watch = monitor(kind=AnswerMonitor)
+
+    def __call__(self, asked, answered, errors, now, **more):
+        return self.watch.answered("main", asked, answered=answered, errors=errors, now=now, **more)
 
 
 def no_answer(number, kind=NoAnswerError):
@@ -28,57 +44,57 @@ def no_answer(number, kind=NoAnswerError):
 
 
 def test_a_silent_servo_is_a_fault_after_some_time_and_answers():
-    watch = monitor()
+    watch = Answering()
     asked = range(1, 19)
     answered = [number for number in asked if number != 7]
-    assert watch.answered("main", asked, answered, [no_answer(7)], 0.0) is None
-    assert watch.answered("main", asked, answered, [no_answer(7)], 0.03) is None
-    assert watch.answered("main", asked, asked, [], 0.035) is None
-    assert watch.answered("main", asked, answered, [no_answer(7, CorruptAnswerError)], 0.04) is None
-    assert watch.answered("main", asked, answered, [no_answer(7, CorruptAnswerError)], 0.05) is None
-    fault = watch.answered("main", asked, answered, [no_answer(7, CorruptAnswerError)], 0.1)
+    assert watch(asked, answered, [no_answer(7)], 0.0) is None
+    assert watch(asked, answered, [no_answer(7)], 0.03) is None
+    assert watch(asked, asked, [], 0.035) is None
+    assert watch(asked, answered, [no_answer(7, CorruptAnswerError)], 0.04) is None
+    assert watch(asked, answered, [no_answer(7, CorruptAnswerError)], 0.05) is None
+    fault = watch(asked, answered, [no_answer(7, CorruptAnswerError)], 0.1)
     assert (fault.kind, fault.joint, fault.leg, fault.number) == (FaultKind.CORRUPT, "rear left coxa", 2, 0)
     assert "3 answers in a row failed, none for 65 ms: nothing" in fault.text
     # Errors of what was not asked, and of no servo, are none of a joint.
-    assert watch.answered("main", [1, 2], [1], [no_answer(None), no_answer(9)], 0.1) is None
+    assert watch([1, 2], [1], [no_answer(None), no_answer(9)], 0.1) is None
 
 
 def test_a_computer_that_is_late_itself_waits_longer():
-    watch = monitor()
+    watch = Answering()
     asked = range(1, 19)
-    watch.grace = 0.2
+    watch.watch.grace = 0.2
     errors = [no_answer(number) for number in asked]
-    assert watch.answered("main", asked, asked, [], 0.0) is None
+    assert watch(asked, asked, [], 0.0) is None
     for time in (0.02, 0.1, 0.25):
-        assert watch.answered("main", asked, [], errors, time) is None
-    assert watch.answered("main", asked, [], errors, 0.27).kind is FaultKind.BROWN_OUT
+        assert watch(asked, [], errors, time) is None
+    assert watch(asked, [], errors, 0.27).kind is FaultKind.BROWN_OUT
 
 
 def test_a_pause_without_requests_is_no_silence():
-    watch = monitor()
+    watch = Answering()
     asked = range(1, 19)
-    assert watch.answered("main", asked, asked, [], 0.0) is None
-    assert watch.answered("main", asked, range(2, 19), [no_answer(1)], 1.0) is None
-    assert watch.answered("main", asked, range(2, 19), [no_answer(1)], 1.02) is None
-    assert watch.answered("main", asked, range(2, 19), [no_answer(1)], 1.035).kind is FaultKind.NO_ANSWER
-    assert watch.answered("main", asked, asked, [], 2.0) is None
+    assert watch(asked, asked, [], 0.0) is None
+    assert watch(asked, range(2, 19), [no_answer(1)], 1.0) is None
+    assert watch(asked, range(2, 19), [no_answer(1)], 1.02) is None
+    assert watch(asked, range(2, 19), [no_answer(1)], 1.035).kind is FaultKind.NO_ANSWER
+    assert watch(asked, asked, [], 2.0) is None
     errors = [no_answer(number) for number in asked]
-    assert watch.answered("main", asked, [], errors, 3.0) is None
-    assert watch.answered("main", asked, [], errors, 3.02) is None
-    assert watch.answered("main", asked, [], errors, 3.035).kind is FaultKind.BROWN_OUT
+    assert watch(asked, [], errors, 3.0) is None
+    assert watch(asked, [], errors, 3.02) is None
+    assert watch(asked, [], errors, 3.035).kind is FaultKind.BROWN_OUT
 
 
 def test_a_silent_bus_is_a_brown_out_with_the_last_voltage():
-    watch = monitor()
+    watch = Answering()
     asked = range(1, 19)
-    assert watch.answered("main", asked, asked, [], 0.0) is None
+    assert watch(asked, asked, [], 0.0) is None
     errors = [no_answer(number) for number in asked]
-    assert watch.answered("main", asked, [], errors, 0.02) is None
-    assert watch.answered("main", asked, [], errors, 0.04) is None
-    fault = watch.answered("main", asked, [], errors, 0.065)
+    assert watch(asked, [], errors, 0.02) is None
+    assert watch(asked, [], errors, 0.04) is None
+    fault = watch(asked, [], errors, 0.065)
     assert fault.kind is FaultKind.BROWN_OUT
     assert "all 18 servos on main fell silent at once: the supply" in fault.text
-    assert watch.answered("main", [], [], [], 0.03) is None
+    assert watch([], [], [], 0.03) is None
 
 
 @pytest.mark.parametrize(
@@ -87,8 +103,8 @@ def test_a_silent_bus_is_a_brown_out_with_the_last_voltage():
 )
 def test_the_voltage_of_the_supply(volts, seconds, kind):
     watch = monitor()
-    found = watch.measured("main", {3: Telemetry(voltage=volts)}, 0.0)
-    found = found or watch.measured("main", {4: Telemetry(voltage=volts)}, seconds)
+    found = watch.measured("main", {3: Telemetry(voltage=volts)}, now=0.0)
+    found = found or watch.measured("main", {4: Telemetry(voltage=volts)}, now=seconds)
     assert (found and found.kind) == kind
     assert watch.lowest_voltage == volts
 
@@ -97,7 +113,7 @@ def test_without_a_supply_the_servos_own_least_voltage_counts():
     assert monitor(None).least_voltage == 4.8
     unknown = monitor(None, STRIDER.replace(servos=()))
     assert unknown.least_voltage is None
-    assert unknown.measured("main", {3: Telemetry(voltage=0.1)}, 0.0) is None
+    assert unknown.measured("main", {3: Telemetry(voltage=0.1)}, now=0.0) is None
     assert unknown.lowest_voltage == 0.1
 
 
@@ -113,7 +129,7 @@ def test_without_a_supply_the_servos_own_least_voltage_counts():
 )
 def test_what_a_servo_tells(telemetry, kind):
     watch = monitor()
-    fault = watch.measured("main", {18: telemetry}, 0.0)
+    fault = watch.measured("main", {18: telemetry}, now=0.0)
     assert (fault and fault.kind) == kind
     assert kind is None or fault.joint == "front right tibia"
 
@@ -121,10 +137,10 @@ def test_what_a_servo_tells(telemetry, kind):
 def test_full_drive_is_a_fault_after_a_second():
     watch = monitor()
     full, half = {1: Telemetry(load=0.97)}, {1: Telemetry(load=0.5)}
-    assert watch.measured("main", full, 0.0) is None
-    assert watch.measured("main", half, 0.9) is None
-    assert watch.measured("main", full, 1.0) is None
-    fault = watch.measured("main", full, 2.1)
+    assert watch.measured("main", full, now=0.0) is None
+    assert watch.measured("main", half, now=0.9) is None
+    assert watch.measured("main", full, now=1.0) is None
+    fault = watch.measured("main", full, now=2.1)
     assert "97 % of its full drive for 1.1 s" in fault.text
 
 
@@ -132,47 +148,106 @@ def test_a_warm_servo_allows_less_speed():
     watch = monitor()
     assert watch.speed_factor == 1.0
     for temperature, factor in ((50, 1.0), (60, 1.0), (65, 0.65), (69.9, 0.307)):
-        watch.measured("main", {2: Telemetry(temperature=temperature)}, 0.0)
+        watch.measured("main", {2: Telemetry(temperature=temperature)}, now=0.0)
         assert watch.speed_factor == pytest.approx(factor)
 
 
-def motion(watch, sent, measured, dt=0.01):
-    """Return when a fault is noticed of one joint that moves, and the fault."""
-    for i, (a, b) in enumerate(zip(sent, measured, strict=True)):
-        angles, found = np.zeros((6, 3)), np.zeros((6, 3))
-        angles[2, 1], found[2, 1] = a, b
-        fault = watch.followed(angles, found, i * dt)
-        if fault is not None:
-            return i * dt, fault
-    return None, None
+class Following:
+    """A motion monitor, and one joint of six legs that moves."""
+
+    def __init__(self, place=(2, 1), dt=0.01):
+        self.watch, self.place, self.dt = MotionMonitor(calibration(), PlantSettings()), place, dt
+        self.time = 0.0
+
+    def __call__(self, sent, measured, *, every=1):
+        """Return when a fault is noticed, after the beginning of this motion, and the fault."""
+        for i, (a, b) in enumerate(zip(sent, measured, strict=True)):
+            angles, found, read = np.zeros((6, 3)), np.zeros((6, 3)), np.zeros((6, 3), dtype=bool)
+            angles[self.place], found[self.place] = a, b
+            read[self.place] = i % every == 0
+            fault = self.watch.followed(angles, found, read=read, now=self.time)
+            self.time += self.dt
+            if fault is not None:
+                return i * self.dt, fault
+        return None, None
 
 
-def test_joints_that_lag_as_servos_do_are_none_that_are_stuck():
-    time = np.arange(0, 2, 0.01)
-    for rate in (0.5, 1.0, 2.0):
-        sent = 0.5 * np.sin(2 * math.pi * rate * time)
-        # 40 ms behind, with a gear play of 1 deg and a sag of 4 deg.
-        lagging = np.interp(time - 0.04, time, sent) - math.radians(4)
-        play = math.radians(0.5)
-        shaft = [lagging[0]]
-        for motor in lagging[1:]:
-            shaft.append(min(max(shaft[-1], motor - play), motor + play))
-        assert motion(monitor(), sent, shaft) == (None, None)
+def swinging(seconds, rate=1.0, amplitude=0.5):
+    return amplitude * np.sin(2 * math.pi * rate * np.arange(0, seconds, 0.01))
 
 
-def test_a_joint_that_stands_still_is_stuck_within_100_ms_of_its_command():
+def follows(sent, delay=0.04, play=0.5, sag=4.0, load=0.0):
+    """Where a healthy shaft is: late, in the play of its gears, below its command, by more where the load changes."""
+    time = 0.01 * np.arange(len(sent))
+    motor = np.interp(time - delay, time, sent) - math.radians(sag) + math.radians(load) * np.sin(9 * time)
+    shaft = [motor[0]]
+    for at in motor[1:]:
+        shaft.append(min(max(shaft[-1], at - math.radians(play)), at + math.radians(play)))
+    return np.array(shaft)
+
+
+@pytest.mark.parametrize("rate", [0.2, 0.5, 1.0, 2.0])
+@pytest.mark.parametrize("machine", [{}, {"play": 1.0}, {"play": 0.2, "load": 1.5}, {"delay": 0.02, "sag": 0.0}])
+def test_joints_that_lag_as_servos_do_are_none_that_are_stuck(rate, machine):
+    sent = swinging(8.0, rate)
+    assert Following()(sent, follows(sent, **machine)) == (None, None)
+
+
+def test_a_joint_that_stands_still_in_a_swing_is_stuck_within_100_ms():
+    follow = Following()
     time = np.arange(0, 1, 0.01)
     sent = np.clip(time - 0.3, 0, None) * math.radians(100)
-    noticed, fault = motion(monitor(), sent, np.zeros_like(sent))
-    assert noticed - 0.3 <= 0.1
+    noticed, fault = follow(sent, np.zeros_like(sent))
+    # Of a machine of which nothing is known yet, the command must go farther.
+    assert noticed - 0.3 <= 0.13
     assert (fault.kind, fault.joint) == (FaultKind.STUCK, "rear left femur")
-    # Far behind and still moving: it follows, but not its command.
-    noticed, fault = motion(monitor(), sent * 3, sent)
-    assert "deg behind its command" in fault.text
-    watch = monitor()
-    motion(watch, sent[:40], sent[:40])
-    watch.forget_motion()
-    assert watch.followed(np.ones((6, 3)), np.zeros((6, 3)), 0.5) is None
+    assert "while its command moved by" in fault.text
+    follow = Following()
+    before = swinging(10.0, 0.5)
+    assert follow(before, follows(before)) == (None, None)
+    noticed, _ = follow(sent, np.full_like(sent, math.radians(-4)))
+    assert noticed - 0.3 <= 0.1
+
+
+def test_the_dead_zone_of_the_machine_decides_how_soon_a_slow_joint_is_stuck():
+    noticed = []
+    for play in (0.2, 1.2):
+        follow = Following()
+        before = swinging(20.0, 0.5)
+        assert follow(before, follows(before, play=play, sag=0.0)) == (None, None)
+        sent = math.radians(20) * np.arange(0, 2, 0.01)
+        time, _ = follow(sent, np.zeros_like(sent))
+        noticed.append((time, np.degrees(follow.watch.bound[1])))
+    (stiff, small), (soft, large) = noticed
+    assert stiff < 0.17 < soft
+    assert small < 2.5 < 3 < large
+    # What nothing is known of begins anew.
+    follow.watch.forget()
+    assert np.degrees(follow.watch.bound) == pytest.approx([5.3] * 3)
+
+
+def test_a_leg_that_is_relieved_of_its_load_is_none_that_is_stuck():
+    # Bent by 4 deg, it stands still while its command comes to where it is.
+    sent = math.radians(15) * np.arange(0, 0.3, 0.01)
+    assert Following()(sent, np.full_like(sent, math.radians(4))) == (None, None)
+
+
+def test_joints_that_are_read_now_and_then_are_watched_too():
+    sent = math.radians(60) * np.arange(0, 1, 0.01)
+    assert Following()(sent, follows(sent, sag=0.0), every=4) == (None, None)
+    noticed, _ = Following()(sent, np.zeros_like(sent), every=4)
+    assert noticed <= 0.2
+
+
+def test_a_joint_that_falls_far_behind_is_stuck():
+    # It follows, but not its command.
+    sent = math.radians(300) * np.arange(0, 1, 0.01)
+    noticed, fault = Following()(sent, sent / 3)
+    assert noticed < 0.3
+    assert fault.text.endswith("more than 25 deg for 80 ms")
+    far = Following()
+    assert far(np.full(6, 1.0), np.zeros(6)) == (None, None)
+    assert far(np.full(20, 1.0), np.zeros(20))[1].kind is FaultKind.STUCK
 
 
 def test_a_missed_tick_is_left_out_and_never_made_up_for():

@@ -121,7 +121,7 @@ class Telemetry:
     alarms: tuple[str, ...] = ()
 
 
-@represented("values", "errors")
+@represented("values", "errors", "alarms")
 @dataclass(frozen=True)
 class Answers(Generic[_Value_co]):
     """Answers of several servos, each with a value or an error.
@@ -132,10 +132,13 @@ class Answers(Generic[_Value_co]):
         Values by the servos' ids.
     errors : tuple of BusError
         Why the other servos that were asked have none: each error has the servo's `id`.
+    alarms : mapping of int to tuple of str
+        What servos complain of in the same answers, where a protocol has that; `Bus.read_telemetry` tells details.
     """
 
     values: Mapping[int, _Value_co] = field(default_factory=dict)
     errors: tuple[BusError, ...] = ()
+    alarms: Mapping[int, tuple[str, ...]] = field(default_factory=dict)
 
     def require(self) -> Mapping[int, _Value_co]:
         """Return the values.
@@ -220,7 +223,7 @@ class Bus(Protocol):
         """
 
     def read_positions(self, ids: Sequence[int]) -> Answers[float]:
-        """Return measured positions, or nothing if the bus does not measure them.
+        """Return measured positions, with alarms of the servos, or nothing if the bus does not measure them.
 
         Parameters
         ----------

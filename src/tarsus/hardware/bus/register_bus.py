@@ -123,7 +123,7 @@ class RegisterBus:
         return scanned(self, ids)
 
     def read_positions(self, ids: Sequence[int]) -> Answers[float]:
-        """Return measured positions [tick].
+        """Return measured positions [tick], with what the servos report in the error bytes of their answers.
 
         Parameters
         ----------
@@ -136,7 +136,8 @@ class RegisterBus:
         values = {
             id: float(self._table.decode("position", frame.data, block[0])) for id, frame in answers.values.items()
         }
-        return Answers(values, answers.errors)
+        codes = {id: self._dialect.errors_in(frame.code) for id, frame in answers.values.items() if frame.code}
+        return Answers(values, answers.errors, codes)
 
     def read_telemetry(self, ids: Sequence[int]) -> Answers[Telemetry]:
         """Return what servos measure.

@@ -6,8 +6,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 from types import MappingProxyType
+from typing import Self
 
 from tarsus.errors import ServoFaultError
+from tarsus.hardware.calibration.calibration import Calibration
 from tarsus.representation import represented
 
 __all__ = ["REACTIONS", "FaultKind", "Reaction", "ServoFault"]
@@ -84,6 +86,29 @@ class ServoFault:
     leg: int = -1
     number: int = -1
     time: float = 0.0
+
+    @classmethod
+    def of_joint(
+        cls, kind: FaultKind, calibration: Calibration, place: tuple[int, int], *, text: str, time: float
+    ) -> Self:
+        """Return a fault of one joint.
+
+        Parameters
+        ----------
+        kind : FaultKind
+            What failed.
+        calibration : Calibration
+            The calibration, which has the joint's name.
+        place : tuple of int
+            Numbers of the leg and the joint.
+        text : str
+            What was noticed.
+        time : float
+            When [s].
+        """
+        leg, number = place
+        joint = calibration.joint_name(leg, number)
+        return cls(kind=kind, text=text, joint=joint, leg=leg, number=number, time=time)
 
     @property
     def reaction(self) -> Reaction:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import itertools
+import math
+from collections import deque
 from collections.abc import Collection, Iterator, Mapping
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -19,8 +21,12 @@ if TYPE_CHECKING:
 
 __all__ = ["Reading", "ServoReader"]
 
-# Share of a tick that reading positions may take.
-_SHARE = 0.5
+# Share of a tick that reading positions may take, and reading all together.
+_SHARE, _WHOLE = 0.5, 0.9
+# Within this time the telemetry of each servo is read, where the wire carries it [s].
+_TELEMETRY_TIME = 0.08
+# How much of a measured duration is believed at once.
+_NEW = 0.2
 
 
 class Reading(NamedTuple):
@@ -60,8 +66,8 @@ class ServoReader:
     ----------
     angles, speeds : array, shape (legs, 3)
         Joint angles and speeds as last measured; NaN where never [rad, rad/s].
-    fresh : bool
-        Whether all joints that are measured were so in the last tick.
+    read : array of bool, shape (legs, 3)
+        Which joints were measured in the last tick.
     """
 
     def __init__(self, buses: Mapping[str, Bus], joints: JointMap, calibration: Calibration, clock: Clock) -> None:
@@ -75,12 +81,12 @@ class ServoReader:
             if bus.capabilities.positions and joints.numbers(name)
         }
         self._telemetry = {
-            name: itertools.cycle(joints.numbers(name))
+            name: _TelemetryTurn(bus, joints.numbers(name))
             for name, bus in buses.items()
             if bus.capabilities.telemetry and joints.numbers(name)
         }
         self._failed: dict[str, tuple[int, ...]] = {}
-        self.fresh = False
+        self.read = np.zeros(shape, dtype=bool)
 
     def all_positions(self) -> Float[np.ndarray, "legs 3"]:
         """Return the measured joint angles; NaN for joints whose bus does not measure them [rad].
@@ -109,7 +115,7 @@ class ServoReader:
         dt : float
             Duration of the tick [s].
         """
-        self.fresh = bool(self._turns)
+        self.read[:] = False
         for name, turn in self._turns.items():
             bus, numbers = self._buses[name], self._joints.numbers(name)
             whole = bus.timing(numbers).positions
@@ -118,23 +124,36 @@ class ServoReader:
                 # Who did not answer is asked again at once.
                 again = self._failed.get(name, ())
                 numbers = tuple(dict.fromkeys([*again, *(next(turn) for _ in range(count))]))[: max(count, len(again))]
-                self.fresh = False
             answers = bus.read_positions(numbers)
             self._failed[name] = tuple(number for number in numbers if number not in answers.values)
             self._keep(name, answers.values)
-            self.fresh = self.fresh and not answers.errors
+            if name in self._telemetry:
+                self._telemetry[name].alarmed(answers.alarms)
             yield Reading(name, numbers, answers.values.keys(), answers.errors)
 
-    def telemetry(self) -> Iterator[tuple[str, Mapping[int, Telemetry]]]:
-        """Read the telemetry of one servo of each bus, and yield it by the bus's name."""
+    def telemetry(self, dt: float, *, begun: float) -> Iterator[tuple[str, Mapping[int, Telemetry]]]:
+        """Read the telemetry of as many servos as the tick has time for, and yield it by the name of their bus.
+
+        Servos that report an alarm with their position come first.
+
+        Parameters
+        ----------
+        dt : float
+            Duration of the tick [s].
+        begun : float
+            When it began [s].
+        """
         for name, turn in self._telemetry.items():
+            start = self._clock.now()
+            chosen = turn.next(dt, left=begun + _WHOLE * dt - start)
             try:
-                yield name, self._buses[name].read_telemetry((next(turn),)).values
+                yield name, self._buses[name].read_telemetry(chosen).values
             except PortError:
                 raise
             except BusError:
                 # Whether it answers is judged by its positions.
                 continue
+            turn.took(len(chosen), self._clock.now() - start)
 
     @property
     def age(self) -> float:
@@ -150,4 +169,37 @@ class ServoReader:
             passed = now - self._times[place]
             if passed > 0:
                 self.speeds[place] = (angle - self.angles[place]) / passed
-            self.angles[place], self._times[place] = angle, now
+            self.angles[place], self._times[place], self.read[place] = angle, now, True
+
+
+class _TelemetryTurn:
+    """Whose telemetry is read next."""
+
+    def __init__(self, bus: Bus, numbers: tuple[int, ...]) -> None:
+        self._numbers = deque(numbers)
+        every, one = bus.timing(numbers).telemetry, bus.timing(numbers[:1]).telemetry
+        # Boards measure the same for all of their channels.
+        self._together = len(numbers) > 1 and every == one
+        self._seconds = every / len(numbers)
+        self._alarms: dict[int, tuple[str, ...]] = {}
+        self._urgent: list[int] = []
+
+    def alarmed(self, alarms: Mapping[int, tuple[str, ...]]) -> None:
+        """Take note of alarms; what a servo has reported before is known."""
+        self._urgent += [number for number, names in alarms.items() if names != self._alarms.get(number)]
+        self._alarms = dict(alarms)
+
+    def next(self, dt: float, *, left: float) -> tuple[int, ...]:
+        """Return the next servos, as many as are needed in a tick and fit into the time that is left of it."""
+        if self._together:
+            return tuple(self._numbers)
+        wanted = math.ceil(len(self._numbers) * min(dt / _TELEMETRY_TIME, 1.0))
+        count = max(1, min(wanted, int(left / self._seconds)))
+        chosen = dict.fromkeys((*self._urgent, *itertools.islice(self._numbers, count)))
+        self._urgent = []
+        self._numbers.rotate(-count)
+        return tuple(chosen)
+
+    def took(self, servos: int, seconds: float) -> None:
+        """Take note of how long reading took: adapters add to the time on the wire."""
+        self._seconds += _NEW * (seconds / servos - self._seconds)

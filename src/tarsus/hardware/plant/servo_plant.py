@@ -6,7 +6,7 @@ import atexit
 import math
 from collections.abc import Callable, Mapping
 from types import TracebackType
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Self
 
 import numpy as np
 
@@ -17,9 +17,8 @@ from tarsus.hardware.bus.protocol import Bus
 from tarsus.hardware.calibration.calibration import Calibration
 from tarsus.hardware.plant.fault import FaultKind, Reaction, ServoFault
 from tarsus.hardware.plant.joint_map import JointMap, open_buses
-from tarsus.hardware.plant.monitor import ServoMonitor
 from tarsus.hardware.plant.pacer import Pacer, Timing
-from tarsus.hardware.plant.reader import ServoReader
+from tarsus.hardware.plant.servo_input import ServoInput
 from tarsus.hardware.plant.servo_output import ServoOutput
 from tarsus.hardware.plant.settings import PlantSettings
 from tarsus.hardware.plant.sit_down import SITTING_TICK, sitting_angles
@@ -38,8 +37,6 @@ __all__ = ["ServoPlant"]
 # Longest time until an answer begins: three of them are less than the time in which a fault must be noticed [s].
 _TIMEOUT = 0.025
 _START_TICK = 0.02
-# How much longer servos may be silent on a computer whose ticks begin later than usual, per lateness [s].
-_GRACE, _USUAL = 3.0, 0.005
 # How late a computer may be of which nothing is known yet [s].
 _UNKNOWN = 0.02
 # A joint that is measured farther than this beyond its limits has a wrong zero or direction [rad].
@@ -109,24 +106,24 @@ class ServoPlant:
         self.robot, self.calibration = robot, calibration
         self.settings = settings or PlantSettings()
         self.fault: ServoFault | None = None
-        self.notes: list[str] = []
         self._declared = declared
         self._clock: Clock = clock or SystemClock()
         self._observer = observer
         joints = JointMap(calibration)
-        self._monitor = ServoMonitor(calibration, joints, self.settings)
         self._pacer = Pacer(self._clock, recently_late=_UNKNOWN)
-        self._belly = self._complete = True
+        self._belly = True
         self._own = buses is None
         self._buses = open_buses(calibration, timeout=_TIMEOUT) if buses is None else dict(buses)
-        self._imu = AttitudeLine(calibration.imu) if self._own and imu is None and calibration.imu else imu
+        if self._own and imu is None and calibration.imu:
+            imu = AttitudeLine(calibration.imu)
         missing = [bus.name for bus in calibration.buses if bus.name not in self._buses]
         if missing:
             raise InputError(f"no bus is given for {', '.join(missing)} of the calibration")
         self._rates = [bus.timing(joints.numbers(name)) for name, bus in self._buses.items()]
         self._writing = max(each.goals for each in self._rates)
         self._servos = ServoOutput(calibration, self._buses, joints, self.settings, self._clock)
-        self._reader = ServoReader(self._buses, joints, calibration, self._clock)
+        self._input = ServoInput(calibration, self._buses, joints, settings=self.settings, imu=imu, clock=self._clock)
+        self.notes = self._input.notes
         # Torque ends with the program, however that ends; only a kill leaves it to the watchdog.
         atexit.register(self.release)
 
@@ -153,7 +150,7 @@ class ServoPlant:
     @property
     def speed_factor(self) -> float:
         """Share of the speed that the servos' temperatures allow."""
-        return self._monitor.speed_factor
+        return self._input.telemetry.speed_factor
 
     def start(self, output: ControlOutput) -> None:
         """Find the servos, switch them on where they are, and move them slowly to where the controller starts.
@@ -175,7 +172,7 @@ class ServoPlant:
             If a port is gone.
         """
         self._servos.find()
-        measured = self._reader.all_positions()
+        measured = self._input.all_positions()
         known = ~np.isnan(measured)
         declared = output.angles if self._declared is None else np.asarray(self._declared, dtype=float)
         begin = np.where(known, measured, declared)
@@ -189,7 +186,7 @@ class ServoPlant:
             # Whoever starts a plant in vain does not stop it.
             self.release()
             raise
-        self._monitor.forget_motion()
+        self._input.forget_motion()
         self._pacer = Pacer(self._clock, recently_late=self._pacer.recently_late)
 
     def step(self, output: ControlOutput, dt: float) -> SensorReadings:
@@ -230,8 +227,7 @@ class ServoPlant:
             if self._own:
                 for bus in self._buses.values():
                     bus.close()
-                if self._imu is not None:
-                    self._imu.close()
+                self._input.close()
 
     def release(self) -> None:
         """Release all servos at once. May be called more than once, and never raises."""
@@ -254,13 +250,13 @@ class ServoPlant:
 
     def _tick(self, angles: Float[np.ndarray, "legs 3"], dt: float) -> SensorReadings:
         """Wait for the tick, send joint angles, measure, and raise the error of a fault."""
-        now = self._pacer.wait(dt, excused=not self._complete)
+        now = self._pacer.wait(dt, excused=not self._input.complete)
         fault: ServoFault | None
         try:
             self._servos.send(angles, dt, now)
             # Ports take commands at once; whoever is asked answers once they have left.
             self._clock.sleep(now + self._writing - self._clock.now())
-            fault = self._measure(dt)
+            fault = self._input.measure(self._servos.angles, dt, begun=now, late=self._pacer.recently_late)
         except InputError as error:
             # Nothing was sent: the servos hold where they are.
             fault = ServoFault(kind=FaultKind.INVALID_COMMAND, text=str(error), time=now)
@@ -272,68 +268,23 @@ class ServoPlant:
         if fault is not None:
             self.fault = fault
             raise fault.error()
-        return self._readings()
-
-    def _measure(self, dt: float) -> ServoFault | None:
-        """Read positions and some telemetry, and return the first fault."""
-        monitor, found, complete = self._monitor, None, True
-        if self._complete:
-            monitor.grace = _GRACE * max(0.0, self._pacer.recently_late - _USUAL)
-        for reading in self._reader.positions(dt):
-            complete = complete and not reading.errors
-            fault = monitor.answered(reading.bus, reading.asked, reading.answered, reading.errors, self._clock.now())
-            found = found or fault
-        if found is None and self._reader.fresh:
-            found = monitor.followed(self._servos.angles, self._reader.angles.copy(), self._clock.now())
-        self._complete = complete
-        # A line in doubt is slow: whether it recovers is more urgent.
-        for name, values in self._reader.telemetry() if complete else ():
-            found = found or monitor.measured(name, values, self._clock.now())
-        return found
-
-    def _readings(self) -> SensorReadings:
-        """Return the last values of all channels of which every joint was measured."""
-        reader, monitor = self._reader, self._monitor
-        channels = {
-            "joint_angles": reader.angles,
-            "joint_speeds": reader.speeds,
-            "temperatures": monitor.temperatures,
-            "voltages": monitor.voltages,
-            "currents": monitor.currents,
-        }
-        known: dict[str, Any] = {name: array.copy() for name, array in channels.items() if not np.isnan(array).any()}
-        ages: dict[str, float] = {name: reader.age for name in ("joint_angles", "joint_speeds") if name in known}
-        if self._imu is not None:
-            known |= self._attitude(self._imu, ages)
-        return SensorReadings(**known, age=ages)
-
-    def _attitude(self, imu: AttitudeLine, ages: dict[str, float]) -> dict[str, Any]:
-        """Return the channel of the inertial sensor; without it the robot walks on, and is not levelled."""
-        try:
-            age = imu.read()
-        except BusError as error:
-            self.notes.append(f"the inertial sensor is gone: {error}")
-            self._imu = None
-            return {}
-        if imu.attitude is None:
-            return {}
-        ages["attitude"] = age
-        return {"attitude": imu.attitude}
+        return self._input.readings()
 
     def _observe(self, now: float, asked: Float[np.ndarray, "..."], fault: ServoFault | None) -> None:
         if self._observer is None:
             return
         shape = (self.robot.legs, 3)
+        telemetry = self._input.telemetry
         given = np.asarray(asked, dtype=float) if np.shape(asked) == shape else np.full(shape, np.nan)
         self._observer(
             TickRecord(
                 time=now,
                 asked=given,
                 sent=self._servos.angles,
-                measured=self._reader.angles.copy(),
-                temperatures=self._monitor.temperatures.copy(),
-                voltage=self._monitor.lowest_voltage,
-                loads=self._monitor.loads.copy(),
+                measured=self._input.angles,
+                temperatures=telemetry.temperatures.copy(),
+                voltage=telemetry.lowest_voltage,
+                loads=telemetry.loads.copy(),
                 fault="" if fault is None else str(fault.error()),
             )
         )
@@ -350,8 +301,8 @@ class ServoPlant:
             for angles in sitting_angles(self.calibration.limited_robot, self._servos.angles):
                 now = self._pacer.wait(SITTING_TICK)
                 self._servos.send(angles, SITTING_TICK, now)
-                for _ in self._reader.positions(SITTING_TICK) if self.fault is None else ():
-                    pass
+                if self.fault is None:
+                    self._input.settle(SITTING_TICK)
                 self._observe(now, angles, None)
         except TarsusError as error:
             self.notes.append(f"the robot could not sit down: {error}")

@@ -33,7 +33,9 @@ class PlantSettings:
     stuck_window : float
         How long a joint that is commanded to move must stand still to be taken for stuck [s].
     stuck_angle : float
-        How far it is commanded to move in that time, and how far it is behind then [rad].
+        How far it must be commanded to move in that time, beyond one and a half times the dead zone [rad].
+    dead_zone, widest_dead_zone : float
+        How far commands move while healthy joints stand still, before that is measured, and at most [rad].
     lag : float
         How far a joint may be behind its command, in any case [rad].
     warm, hot : float
@@ -57,9 +59,11 @@ class PlantSettings:
     silence: float = 0.06
     least_failures: int = 2
     least_doubt: float = 0.015
-    delay: float = 0.04
-    stuck_window: float = 0.06
-    stuck_angle: float = math.radians(2.5)
+    delay: float = 0.03
+    stuck_window: float = 0.08
+    stuck_angle: float = math.radians(0.8)
+    dead_zone: float = math.radians(3)
+    widest_dead_zone: float = math.radians(6)
     lag: float = math.radians(25)
     warm: float = 60.0
     hot: float = 70.0

@@ -1,0 +1,117 @@
+"""Notices servos that do not answer, or whose answers are damaged."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection, Iterable
+
+import numpy as np
+
+from tarsus.errors import BusError, CorruptAnswerError
+from tarsus.hardware.calibration.calibration import Calibration
+from tarsus.hardware.plant.fault import FaultKind, ServoFault
+from tarsus.hardware.plant.joint_map import JointMap
+from tarsus.hardware.plant.settings import PlantSettings
+
+__all__ = ["AnswerMonitor"]
+
+# Of a whole bus with fewer servos than these nothing follows from their common silence.
+_FEW = 3
+# Between two requests passes a tick; where more passes, nobody was asked [s].
+_TICK = 0.03
+
+
+class AnswerMonitor:
+    """Notices silence and damaged answers.
+
+    Parameters
+    ----------
+    calibration : Calibration
+        A complete calibration.
+    joints : JointMap
+        Its joints.
+    settings : PlantSettings
+        The bounds.
+
+    Attributes
+    ----------
+    grace : float
+        On a computer that is late itself, what is late to answer is not silent yet [s].
+    """
+
+    def __init__(self, calibration: Calibration, joints: JointMap, settings: PlantSettings) -> None:
+        self._calibration, self._joints, self._settings = calibration, joints, settings
+        shape = (calibration.robot.legs, 3)
+        self._failures = np.zeros(shape, dtype=int)
+        self._failing_since = np.full(shape, np.nan)
+        self._answered = np.full(shape, np.nan)
+        self.grace = 0.0
+
+    def answered(
+        self,
+        bus: str,
+        asked: Collection[int],
+        *,
+        answered: Collection[int],
+        errors: Iterable[BusError],
+        now: float,
+        voltage: float | None = None,
+    ) -> ServoFault | None:
+        """Take note of who answered, and return a fault.
+
+        Parameters
+        ----------
+        bus : str
+            Name of the bus.
+        asked, answered : collection of int
+            Who was asked, and who gave a valid answer.
+        errors : iterable of BusError
+            Why the others did not.
+        now : float
+            The time [s].
+        voltage : float, optional
+            The last voltage of the supply that was measured, for messages [V].
+        """
+        for number in answered:
+            place = self._joints.joint(bus, number)
+            self._failures[place], self._failing_since[place], self._answered[place] = 0, math.nan, now
+        if not asked or len(answered) == len(asked):
+            return None
+        for error in errors:
+            if error.id is not None and error.id in asked:
+                fault = self._failed(bus, error.id, error, now)
+                if fault is not None:
+                    common = not answered and len(asked) > _FEW and fault.kind is FaultKind.NO_ANSWER
+                    return _all_silent(bus, len(asked), voltage, now) if common else fault
+        return None
+
+    def _failed(self, bus: str, number: int, error: BusError, now: float) -> ServoFault | None:
+        place, settings = self._joints.joint(bus, number), self._settings
+        self._failures[place] += 1
+        if self._failures[place] == 1:
+            self._failing_since[place] = now
+        doubted = now - float(self._failing_since[place])
+        since = now - _began(float(self._answered[place]), float(self._failing_since[place]))
+        if (
+            self._failures[place] < settings.least_failures
+            or doubted < settings.least_doubt
+            or since < settings.silence + self.grace
+        ):
+            return None
+        kind = FaultKind.CORRUPT if isinstance(error, CorruptAnswerError) else FaultKind.NO_ANSWER
+        number_of = int(self._failures[place])
+        text = f"{number_of} answers in a row failed, none for {since * 1e3:.0f} ms: {error.received}"
+        return ServoFault.of_joint(kind, self._calibration, place, text=text, time=now)
+
+
+def _all_silent(bus: str, number: int, voltage: float | None, now: float) -> ServoFault:
+    last = "" if voltage is None else f", last voltage {voltage:.1f} V"
+    text = (
+        f"all {number} servos on {bus} fell silent at once{last}: the supply has broken down, or the data line is cut"
+    )
+    return ServoFault(kind=FaultKind.BROWN_OUT, text=text, time=now)
+
+
+def _began(answered: float, failed: float) -> float:
+    """Return when silence began: at the last answer, unless nobody was asked for a while before the first failure."""
+    return failed if math.isnan(answered) else max(answered, failed - _TICK)

@@ -1,0 +1,136 @@
+"""Notices servos that are too hot or carry too much, and a failing supply."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+import numpy as np
+
+from tarsus.hardware.bus.protocol import Telemetry
+from tarsus.hardware.calibration.calibration import Calibration
+from tarsus.hardware.plant.fault import FaultKind, ServoFault
+from tarsus.hardware.plant.joint_map import Joint, JointMap
+from tarsus.hardware.plant.settings import PlantSettings
+
+__all__ = ["TelemetryMonitor"]
+
+# A servo whose alarm says so lets go by itself.
+_ALARMS = ((FaultKind.OVERHEATED, ("temperature", "overheating")), (FaultKind.OVERLOADED, ("overload",)))
+
+
+class TelemetryMonitor:
+    """Keeps what servos report, and notices what is beyond its bound.
+
+    Parameters
+    ----------
+    calibration : Calibration
+        A complete calibration.
+    joints : JointMap
+        Its joints.
+    settings : PlantSettings
+        The bounds.
+
+    Attributes
+    ----------
+    temperatures, voltages, currents, loads : array, shape (legs, 3)
+        The last values; NaN where never measured [deg C, V, A, share of the full drive].
+    """
+
+    def __init__(self, calibration: Calibration, joints: JointMap, settings: PlantSettings) -> None:
+        self._calibration, self._joints, self._settings = calibration, joints, settings
+        shape = (calibration.robot.legs, 3)
+        self._heavy_since = np.full(shape, np.nan)
+        self._low_since: float | None = None
+        self.temperatures = np.full(shape, np.nan)
+        self.voltages = np.full(shape, np.nan)
+        self.currents = np.full(shape, np.nan)
+        self.loads = np.full(shape, np.nan)
+
+    @property
+    def least_voltage(self) -> float | None:
+        """Voltage below which the servos must not run [V]; None where unknown."""
+        if self._calibration.supply is not None:
+            return self._calibration.supply.least_voltage
+        known = [s.supply[0] for row in self._calibration.robot.servos for s in row if s is not None and s.supply]
+        return max(known) if known else None
+
+    @property
+    def lowest_voltage(self) -> float | None:
+        """The lowest voltage among the last that were measured [V]; None where none was."""
+        return None if np.isnan(self.voltages).all() else float(np.nanmin(self.voltages))
+
+    @property
+    def speed_factor(self) -> float:
+        """Share of the speed that the temperatures allow: 1, and less from `PlantSettings.warm` on."""
+        settings = self._settings
+        if np.isnan(self.temperatures).all():
+            return 1.0
+        hottest = float(np.nanmax(self.temperatures))
+        share = (hottest - settings.warm) / (settings.hot - settings.warm)
+        return 1.0 - 0.7 * min(max(share, 0.0), 1.0)
+
+    def measured(self, bus: str, values: Mapping[int, Telemetry], *, now: float) -> ServoFault | None:
+        """Take note of telemetry, and return a fault.
+
+        Parameters
+        ----------
+        bus : str
+            Name of the bus.
+        values : mapping of int to Telemetry
+            Telemetry by id.
+        now : float
+            The time [s].
+        """
+        for number, telemetry in values.items():
+            place = self._joints.joint(bus, number)
+            for array, value in (
+                (self.temperatures, telemetry.temperature),
+                (self.voltages, telemetry.voltage),
+                (self.currents, telemetry.current),
+                (self.loads, telemetry.load),
+            ):
+                if value is not None:
+                    array[place] = value
+            fault = self._of_voltage(telemetry.voltage, now) or self._of_servo(place, telemetry, now)
+            if fault is not None:
+                return fault
+        return None
+
+    def _of_voltage(self, voltage: float | None, now: float) -> ServoFault | None:
+        least, settings = self.least_voltage, self._settings
+        if voltage is None or least is None:
+            return None
+        if voltage < least * settings.brown_out:
+            text = f"the supply has {voltage:.1f} V, below {least * settings.brown_out:.1f} V"
+            return ServoFault(kind=FaultKind.BROWN_OUT, text=f"{text}: a brown-out is suspected", time=now)
+        if voltage >= least:
+            self._low_since = None
+            return None
+        self._low_since = now if self._low_since is None else self._low_since
+        if now - self._low_since < settings.low_time:
+            return None
+        text = f"the supply has {voltage:.1f} V, less than {least:.1f} V for {now - self._low_since:.1f} s"
+        return ServoFault(kind=FaultKind.LOW_VOLTAGE, text=text, time=now)
+
+    def _of_servo(self, place: Joint, telemetry: Telemetry, now: float) -> ServoFault | None:
+        settings, temperature = self._settings, telemetry.temperature
+        if temperature is not None and temperature >= settings.hot:
+            text = f"{temperature:.0f} deg C, at most {settings.hot:.0f} deg C"
+            return self._of_joint(FaultKind.OVERHEATED, place, text, now)
+        for kind, alarms in _ALARMS:
+            if any(name in alarms for name in telemetry.alarms):
+                return self._of_joint(kind, place, f"the servo reports {', '.join(telemetry.alarms)}", now)
+        if telemetry.load is None or abs(telemetry.load) < settings.heavy_load:
+            self._heavy_since[place] = math.nan
+            return None
+        if math.isnan(self._heavy_since[place]):
+            self._heavy_since[place] = now
+        lasted = now - float(self._heavy_since[place])
+        if lasted < settings.heavy_time:
+            return None
+        text = f"{abs(telemetry.load) * 100:.0f} % of its full drive for {lasted:.1f} s"
+        return self._of_joint(FaultKind.OVERLOADED, place, text, now)
+
+    def _of_joint(self, kind: FaultKind, place: Joint, text: str, now: float) -> ServoFault:
+        return ServoFault.of_joint(kind, self._calibration, place, text=text, time=now)

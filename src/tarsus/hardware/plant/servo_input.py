@@ -1,0 +1,182 @@
+"""What comes in from servos and sensors: positions, telemetry, attitude, and the faults that they tell of."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tarsus.control.readings import SensorReadings
+from tarsus.errors import BusError
+from tarsus.hardware.bus.protocol import Bus
+from tarsus.hardware.calibration.calibration import Calibration
+from tarsus.hardware.plant.fault import ServoFault
+from tarsus.hardware.plant.joint_map import JointMap
+from tarsus.hardware.plant.monitor.answer_monitor import AnswerMonitor
+from tarsus.hardware.plant.monitor.motion_monitor import MotionMonitor
+from tarsus.hardware.plant.monitor.telemetry_monitor import TelemetryMonitor
+from tarsus.hardware.plant.reader import ServoReader
+from tarsus.hardware.plant.settings import PlantSettings
+from tarsus.hardware.sensors.attitude_line import AttitudeLine
+from tarsus.hardware.transport.clock import Clock
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
+
+__all__ = ["ServoInput"]
+
+# How much longer servos may be silent on a computer whose ticks begin later than usual, per lateness [s].
+_GRACE, _USUAL = 3.0, 0.005
+
+
+class ServoInput:
+    """Measures, and judges what is measured.
+
+    Parameters
+    ----------
+    calibration : Calibration
+        A complete calibration.
+    buses : mapping of str to Bus
+        The buses by name.
+    joints : JointMap
+        The joints.
+    settings : PlantSettings
+        Bounds.
+    imu : AttitudeLine or None
+        The inertial sensor.
+    clock : Clock
+        The clock.
+
+    Attributes
+    ----------
+    telemetry : TelemetryMonitor
+        What servos reported last.
+    complete : bool
+        Whether everybody who was asked in the last tick has answered.
+    notes : list of str
+        What is no longer measured, a line each.
+    """
+
+    def __init__(
+        self,
+        calibration: Calibration,
+        buses: Mapping[str, Bus],
+        joints: JointMap,
+        *,
+        settings: PlantSettings,
+        imu: AttitudeLine | None,
+        clock: Clock,
+    ) -> None:
+        self._reader = ServoReader(buses, joints, calibration, clock)
+        self._answers = AnswerMonitor(calibration, joints, settings)
+        self._motion = MotionMonitor(calibration, settings)
+        self.telemetry = TelemetryMonitor(calibration, joints, settings)
+        self._imu, self._clock = imu, clock
+        self.complete = True
+        self.notes: list[str] = []
+
+    @property
+    def angles(self) -> Float[np.ndarray, "legs 3"]:
+        """Joint angles as last measured; NaN where never [rad]."""
+        return self._reader.angles.copy()
+
+    def all_positions(self) -> Float[np.ndarray, "legs 3"]:
+        """Return the measured joint angles; NaN for joints whose bus does not measure them [rad].
+
+        Raises
+        ------
+        BusError
+            If a servo gives no valid answer, even when asked again.
+        """
+        return self._reader.all_positions()
+
+    def forget_motion(self) -> None:
+        """Begin anew with comparing motion, after a pause."""
+        self._motion.forget()
+
+    def measure(self, sent: Float[np.ndarray, "legs 3"], dt: float, *, begun: float, late: float) -> ServoFault | None:
+        """Read positions and some telemetry, and return the first fault.
+
+        Parameters
+        ----------
+        sent : array, shape (legs, 3)
+            Joint angles of the last commands [rad].
+        dt : float
+            Duration of the tick [s].
+        begun : float
+            When it began [s].
+        late : float
+            How late ticks began of late [s].
+
+        Raises
+        ------
+        PortError
+            If a port is gone.
+        """
+        reader, found, complete = self._reader, None, True
+        if self.complete:
+            self._answers.grace = _GRACE * max(0.0, late - _USUAL)
+        for reading in reader.positions(dt):
+            complete = complete and not reading.errors
+            fault = self._answers.answered(
+                reading.bus,
+                reading.asked,
+                answered=reading.answered,
+                errors=reading.errors,
+                now=self._clock.now(),
+                voltage=self.telemetry.lowest_voltage,
+            )
+            found = found or fault
+        if found is None and reader.read.any():
+            found = self._motion.followed(sent, reader.angles.copy(), read=reader.read, now=self._clock.now())
+        self.complete = complete
+        # A line in doubt is slow: whether it recovers is more urgent.
+        for name, values in reader.telemetry(dt, begun=begun) if complete else ():
+            found = found or self.telemetry.measured(name, values, now=self._clock.now())
+        return found
+
+    def settle(self, dt: float) -> None:
+        """Read positions, and judge nothing.
+
+        Parameters
+        ----------
+        dt : float
+            Duration of the tick [s].
+        """
+        for _ in self._reader.positions(dt):
+            pass
+
+    def readings(self) -> SensorReadings:
+        """Return the last values of all channels of which every joint was measured."""
+        reader, telemetry = self._reader, self.telemetry
+        channels = {
+            "joint_angles": reader.angles,
+            "joint_speeds": reader.speeds,
+            "temperatures": telemetry.temperatures,
+            "voltages": telemetry.voltages,
+            "currents": telemetry.currents,
+        }
+        known: dict[str, Any] = {name: array.copy() for name, array in channels.items() if not np.isnan(array).any()}
+        ages: dict[str, float] = {name: reader.age for name in ("joint_angles", "joint_speeds") if name in known}
+        if self._imu is not None:
+            known |= self._attitude(self._imu, ages)
+        return SensorReadings(**known, age=ages)
+
+    def close(self) -> None:
+        """Close the ports of sensors that have one of their own."""
+        if self._imu is not None:
+            self._imu.close()
+
+    def _attitude(self, imu: AttitudeLine, ages: dict[str, float]) -> dict[str, Any]:
+        """Return the channel of the inertial sensor; without it the robot walks on, and is not levelled."""
+        try:
+            age = imu.read()
+        except BusError as error:
+            self.notes.append(f"the inertial sensor is gone: {error}")
+            self._imu = None
+            return {}
+        if imu.attitude is None:
+            return {}
+        ages["attitude"] = age
+        return {"attitude": imu.attitude}
