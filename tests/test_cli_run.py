@@ -98,7 +98,7 @@ def test_physics_runs_the_same_controller():
         (("--keys",), "the standard input is none"),
         (("--gamepad", "/dev/none"), "no gamepad at /dev/none"),
         (("--keys", "--gamepad"), "exclude each other"),
-        (("--keys", "--scenario", "at 0 s: stop"), "--scenario excludes"),
+        (("--keys", "--scenario", "at 0 s: stop"), "--scenario and --keys exclude each other"),
         (("--bus", "simulated", "--keys"), "physics does not run in real time"),
     ],
 )

@@ -183,6 +183,14 @@ export interface DriveFrame {
   interventions: string[];
   /** Null as planned, without physics. */
   physics: FramePhysics | null;
+  /** Null without servos. */
+  machine: FrameMachine | null;
+}
+
+/** Stop the robot that is driven, and end the run that this server belongs to. Answer: done. */
+export interface EndRun {
+  id: number;
+  type: "end_run";
 }
 
 /** An equation of a source document with live values. */
@@ -235,6 +243,28 @@ export interface FileMessage {
   name: string;
   mime: string;
   text: string;
+}
+
+/** What the servos of a robot that runs measure, where the frame itself has what is commanded. */
+export interface FrameMachine {
+  /** Legs x (coxa, femur, tibia); null for a joint that is not measured. */
+  angles_deg: (number | null)[];
+  /** Greatest difference of commanded and measured angles. */
+  behind_deg: number | null;
+  behind_joint: string | null;
+  /** Lowest of the supply. */
+  voltage_v: number | null;
+  /** Of the warmest servo. */
+  temperature_c: number | null;
+  temperature_joint: string | null;
+  /** Ticks per second. */
+  rate_hz: number;
+  /** Ticks that came too late. */
+  missed: number;
+  /** Whether the deadman has stopped the robot, as nothing was heard of the driver. */
+  stopped: boolean;
+  /** Faults, and what else the servos report. */
+  problems: string[];
 }
 
 /** A driven robot in physics, where the frame itself has what is commanded. */
@@ -526,6 +556,12 @@ export interface RobotMessage {
   missing: string[];
   /** Why the robot can't walk; empty if it can. */
   problems: string[];
+}
+
+/** The run that this server belongs to; then only the view Drive is available. */
+export interface RunOffer {
+  /** Servos: real or emulated, and their buses. */
+  bus: string;
 }
 
 /** Result of the servo sizing. */
@@ -907,6 +943,8 @@ export interface Welcome {
   public: boolean;
   bounds: Bounds;
   physics: PhysicsOffer;
+  /** Null without a run: then all views are available. */
+  run: RunOffer | null;
   /** JSON schema of a robot file: descriptions and bounds of its keys. */
   robot_schema: Record<string, unknown>;
 }
@@ -944,6 +982,7 @@ export type ClientMessage =
   | ChooseSource
   | Drive
   | Command
+  | EndRun
   | Undo
   | Redo
   | OpenState

@@ -7,13 +7,14 @@ from tarsus.gait.gait import GAITS
 from tarsus.robot.catalogue import list_servos
 from tarsus.robot.file import list_robots
 from tarsus.robot.schema import robot_schema
+from tarsus.studio.messages.machine import RunOffer
 from tarsus.studio.messages.pose import Bounds, Welcome
 from tarsus.studio.physics.terrains import physics_offer
 
 __all__ = ["welcome_message"]
 
 
-def welcome_message(bounds: Bounds, *, public: bool, id: int) -> Welcome:
+def welcome_message(bounds: Bounds, *, public: bool, run: RunOffer | None = None, id: int) -> Welcome:
     """Return presets, gaits, servos, terrains and limits.
 
     Parameters
@@ -22,6 +23,8 @@ def welcome_message(bounds: Bounds, *, public: bool, id: int) -> Welcome:
         Limits of the session.
     public : bool
         Whether this is a public server.
+    run : RunOffer, optional
+        The run that the server belongs to.
     id : int
         Id of the message that is answered.
     """
@@ -35,5 +38,6 @@ def welcome_message(bounds: Bounds, *, public: bool, id: int) -> Welcome:
         public=public,
         bounds=bounds,
         physics=physics_offer(),
+        run=run,
         robot_schema=robot_schema(),
     )

@@ -58,7 +58,9 @@ export function Header() {
 function RobotChoice() {
   const robots = useStudio((studio) => studio.welcome?.robots);
   const robot = useStudio((studio) => studio.robot);
+  const runs = useStudio((studio) => studio.welcome?.run != null);
   if (!robots || !robot) return null;
+  if (runs) return <span data-testid="run-robot">{robot.name}</span>;
   const options = robots.map((name) => ({ value: name, label: name }));
   const own = robot.preset === null ? [{ value: "", label: `${robot.name} (custom)` }] : [];
   return (

@@ -28,6 +28,7 @@ const DESCRIPTIONS: Record<View, string> = {
   sources: "The robot whose values are used in the equations.",
 };
 
+const RUNNING = "The robot that runs, with measured joint angles; as commanded, it is translucent.";
 const PHYSICAL = "The robot in physics on its terrain, with the plan as a translucent robot.";
 
 /** The 3D view, shared by all views, with its overlays. */
@@ -48,6 +49,7 @@ export function PicturePane({ view }: { view: View }) {
   const forces = useOptions((options) => options.forces);
   const physical = useInPhysics(view);
   const terrain = useTerrain(view);
+  const runs = useStudio((studio) => studio.welcome?.run != null);
   const simulated = useStudio((studio) => (physical && view === "walk" ? studio.simulated : null));
   const loaded = view === "loads" || (forces && (view === "joints" || view === "body"));
   const trails = useMemo(
@@ -71,7 +73,7 @@ export function PicturePane({ view }: { view: View }) {
         torques={loaded}
         ground={terrain?.level ?? true}
         driven={view === "drive"}
-        description={physical ? PHYSICAL : DESCRIPTIONS[view]}
+        description={runs ? RUNNING : physical ? PHYSICAL : DESCRIPTIONS[view]}
         onFloor={onFloor}
         onRest={keepPlace}
       >

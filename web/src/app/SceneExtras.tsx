@@ -24,6 +24,7 @@ export function SceneExtras({ view, shape, palette, colours }: Props) {
   const path = useStudio((studio) => studio.state?.walk.path);
   const physical = useInPhysics(view);
   const terrain = useTerrain(view);
+  const runs = useStudio((studio) => studio.welcome?.run != null);
   const posing = view === "joints" || view === "body";
   return (
     <>
@@ -32,7 +33,7 @@ export function SceneExtras({ view, shape, palette, colours }: Props) {
         <Workspace ground={workspace.ground_mm} plane={workspace.plane_mm} palette={palette} />
       )}
       {terrain && <TerrainModel terrain={terrain} palette={palette} />}
-      {physical && <Ghost shape={shape} palette={palette} />}
+      {(physical || runs) && <Ghost shape={shape} palette={palette} />}
       {view === "drive" && <LiveTrails colours={colours} />}
       {view === "walk" && path?.kind === "curve" && <Centre at={path.centre_mm} palette={palette} />}
     </>

@@ -2,7 +2,7 @@ import { useRef, type KeyboardEvent } from "react";
 
 import { Icon } from "../controls/icons";
 import { look } from "../state/session";
-import type { View } from "../state/store";
+import { useStudio, type View } from "../state/store";
 import { TABS } from "./tabList";
 
 const STEPS: Record<string, number> = { ArrowDown: 1, ArrowRight: 1, ArrowUp: -1, ArrowLeft: -1 };
@@ -10,16 +10,19 @@ const STEPS: Record<string, number> = { ArrowDown: 1, ArrowRight: 1, ArrowUp: -1
 /** Tabs of the views, with the usual arrow keys. */
 export function Tabs({ view }: { view: View }) {
   const list = useRef<HTMLDivElement>(null);
+  // A server that belongs to a run has the view Drive only.
+  const runs = useStudio((studio) => studio.welcome?.run != null);
+  const tabs = runs ? TABS.filter((tab) => tab.view === "drive") : TABS;
   const go = (to: View) => {
     openView(to);
     list.current?.querySelector<HTMLButtonElement>(`#tab-${to}`)?.focus();
   };
   const keys = (event: KeyboardEvent) => {
-    const at = TABS.findIndex((tab) => tab.view === view);
-    const ends: Record<string, number> = { Home: 0, End: TABS.length - 1 };
+    const at = tabs.findIndex((tab) => tab.view === view);
+    const ends: Record<string, number> = { Home: 0, End: tabs.length - 1 };
     const step = STEPS[event.key];
-    const next = step === undefined ? ends[event.key] : (at + step + TABS.length) % TABS.length;
-    const tab = next === undefined ? undefined : TABS[next];
+    const next = step === undefined ? ends[event.key] : (at + step + tabs.length) % tabs.length;
+    const tab = next === undefined ? undefined : tabs[next];
     if (!tab) return;
     event.preventDefault();
     go(tab.view);
@@ -27,7 +30,7 @@ export function Tabs({ view }: { view: View }) {
   return (
     <nav className="tabs" aria-label="Views">
       <div role="tablist" aria-label="Views" ref={list}>
-        {TABS.map((tab) => (
+        {tabs.map((tab) => (
           <button
             key={tab.view}
             id={`tab-${tab.view}`}

@@ -1,5 +1,6 @@
 import type {
   DriveFrame,
+  FrameMachine,
   FramePhysics,
   LoadsMessage,
   PoseMessage,
@@ -192,7 +193,21 @@ export function frameOfDrive(robot: RobotMessage, drive: DriveFrame): Frame {
     forces: drive.physics && new Float32Array(drive.physics.forces_n),
     torques: null,
     ...(drive.physics ? drivenInPhysics(robot, drive, drive.physics) : AS_PLANNED),
+    ...(drive.machine && asMeasured(robot, drive, drive.machine)),
   };
+}
+
+/** The joint angles that are measured, with the commanded ones as the ghost; where the body is is not measured. */
+function asMeasured(robot: RobotMessage, drive: DriveFrame, machine: FrameMachine): Partial<Frame> {
+  const position = triple(drive.position_mm, 0);
+  const rotation = rotationOf(drive.rpy_deg);
+  const placed = (angles: number[]): Placed => ({
+    points: legPoints(robot, angles, position, rotation),
+    position,
+    rotation,
+  });
+  const measured = drive.angles_deg.map((angle, i) => machine.angles_deg[i] ?? angle);
+  return { ...placed(measured), ghost: placed(drive.angles_deg) };
 }
 
 function drivenInPhysics(robot: RobotMessage, drive: DriveFrame, physics: FramePhysics) {

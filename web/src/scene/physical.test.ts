@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 
-import { aDriveFrame } from "../testing/drive";
+import { aDriveFrame, aFrameMachine } from "../testing/drive";
 import { aRobot } from "../testing/robot";
 import { aFramePhysics, aSimulatedWalk } from "../testing/simulated";
 import { aWalk } from "../testing/walk";
@@ -44,6 +44,16 @@ describe("a driven robot in physics", () => {
     expect(frame.ghost?.points).not.toEqual(frame.points);
     expect(frame.physical).toMatchObject({ tilt: 3, fallen: false });
     expect(frameOfDrive(aRobot(), aDriveFrame()).ghost).toBeNull();
+  });
+
+  it("takes the angles of the servos, as far as they are measured, and the commanded ones as the ghost", () => {
+    const measured = Array.from({ length: 18 }, (_, i) => (i === 0 ? null : 2));
+    const frame = frameOfDrive(aRobot(), aDriveFrame({ machine: aFrameMachine({ angles_deg: measured }) }));
+    const asAsked = frameOfDrive(aRobot(), aDriveFrame());
+    const moved = aDriveFrame({ angles_deg: measured.map((angle) => angle ?? 0) });
+    expect(frame.points).toEqual(frameOfDrive(aRobot(), moved).points);
+    expect(frame.ghost?.points).toEqual(asAsked.points);
+    expect(frame.ghost?.position).toEqual(frame.position);
   });
 
   it("takes its ghost along between frames", () => {

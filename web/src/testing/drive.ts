@@ -1,4 +1,4 @@
-import type { DriveFrame } from "../protocol";
+import type { DriveFrame, FrameMachine } from "../protocol";
 
 /** A frame of driving for tests: a standing robot, with the given fields changed. */
 export function aDriveFrame(changes: Partial<DriveFrame> = {}): DriveFrame {
@@ -23,6 +23,24 @@ export function aDriveFrame(changes: Partial<DriveFrame> = {}): DriveFrame {
     intervention_count: 0,
     interventions: [],
     physics: null,
+    machine: null,
+    ...changes,
+  };
+}
+
+/** What the servos of a robot that runs measure, for tests. */
+export function aFrameMachine(changes: Partial<FrameMachine> = {}): FrameMachine {
+  return {
+    angles_deg: Array.from({ length: 18 }, () => 0),
+    behind_deg: 1.5,
+    behind_joint: "LF femur",
+    voltage_v: 7.4,
+    temperature_c: 40,
+    temperature_joint: "LF tibia",
+    rate_hz: 100,
+    missed: 0,
+    stopped: false,
+    problems: [],
     ...changes,
   };
 }

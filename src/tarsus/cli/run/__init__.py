@@ -1,4 +1,4 @@
-"""`tarsus run`: a real, emulated or simulated robot, driven by a scenario, keys or a gamepad."""
+"""`tarsus run`: a real, emulated or simulated robot, driven by a scenario, keys, a gamepad or the studio."""
 
 from __future__ import annotations
 
@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     from rich.table import Table
 
 __all__ = ["run"]
+
+_STUDIO = "127.0.0.1:8600"
 
 
 @click.command(
@@ -39,6 +41,13 @@ __all__ = ["run"]
 @click.option("--keys", is_flag=True, help="Drive with the keys of this terminal: keep w, a, s, d pressed.")
 @click.option("--gamepad", is_flag=False, flag_value="/dev/input/js0", metavar="DEVICE", help="Drive with a gamepad.")
 @click.option(
+    "--studio",
+    is_flag=False,
+    flag_value=_STUDIO,
+    metavar="HOST:PORT",
+    help=f"Drive with the view Drive of the studio.  [default address: {_STUDIO}]",
+)
+@click.option(
     "--start",
     type=click.Choice(["lying", "standing"]),
     help="How the robot is found.  [default: lying if it is real, else standing]",
@@ -57,10 +66,9 @@ def run(robot: str, out: Path | None, as_json: bool, **options: Any) -> int:
     """
     from tarsus.cli.run.live_run import perform
 
-    if options["keys"] and options["gamepad"]:
-        raise click.UsageError("--keys and --gamepad exclude each other")
-    if options["scenario"] and (options["keys"] or options["gamepad"]):
-        raise click.UsageError("--scenario excludes --keys and --gamepad")
+    given = [name for name in ("scenario", "keys", "gamepad", "studio") if options[name]]
+    if len(given) > 1:
+        raise click.UsageError(f"--{given[0]} and --{given[1]} exclude each other")
     if out is not None:
         make_folder(out)
     summary = perform(robot, options, out=out, quiet=as_json)

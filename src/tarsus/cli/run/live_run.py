@@ -6,7 +6,7 @@ import contextlib
 import dataclasses
 import signal
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from types import FrameType
 from typing import Any
@@ -15,6 +15,7 @@ import numpy as np
 
 from tarsus.cli.pulses import calibration_of
 from tarsus.cli.run.status_line import StatusLine
+from tarsus.cli.run.studio_drive import driven_from_studio
 from tarsus.cli.timeline import timeline_of
 from tarsus.control.loop.recording import Recording
 from tarsus.control.loop.run import CommandSource
@@ -33,6 +34,7 @@ from tarsus.hardware.live.keyboard import KEYS, Keyboard
 from tarsus.hardware.live.live_commands import InputDevice, LiveCommands
 from tarsus.hardware.live.supervision import Rising, Supervised
 from tarsus.hardware.plant.servo_plant import ServoPlant
+from tarsus.hardware.plant.tick_record import TickRecord
 from tarsus.hardware.telemetry.log import TelemetryLog
 from tarsus.robot.file import load_robot
 from tarsus.robot.robot import Robot
@@ -88,18 +90,33 @@ def perform(robot: str, options: dict[str, Any], *, out: Path | None, quiet: boo
             calibration, buses = emulated.calibration, emulated.buses
         log = None if out is None else stack.enter_context(TelemetryLog(chosen, out))
         line = stack.enter_context(StatusLine(quiet=quiet))
+        bus = f"{where}: {', '.join(each.properties.text for each in calibration.buses)}"
+        driven = None
+        observers = [] if log is None else [log.write]
+        if options["studio"]:
+            driven = stack.enter_context(driven_from_studio(controller, chosen, options["studio"], bus))
+            observers.append(driven.observe)
         plant = ServoPlant(
-            calibration.limited_robot, calibration, buses=buses, observer=line.observer(log.write if log else None)
+            calibration.limited_robot, calibration, buses=buses, observer=line.observer(_each_of(observers))
         )
         line.plant = plant
+        if driven is not None:
+            driven.plant = plant
         with plant:
             rate = options["rate"] or min(_RATE, float(np.floor(_SHARE * plant.greatest_rate)))
-            source = _source(controller, scenario, options, stack, line)
+            source = _source(controller, scenario, options, stack, line) if driven is None else driven
             if start == "lying":
                 source = Rising(source)
             outcome = _run(controller, plant, Supervised(source, plant), rate, options["duration"], line)
-    bus = f"{where}: {', '.join(each.properties.text for each in calibration.buses)}"
     return _summary(chosen, bus, plant, outcome, line, out)
+
+
+def _each_of(observers: Sequence[Callable[[TickRecord], None]]) -> Callable[[TickRecord], None]:
+    def observe(record: TickRecord) -> None:
+        for each in observers:
+            each(record)
+
+    return observe
 
 
 @dataclasses.dataclass
@@ -158,7 +175,7 @@ def _calibration(name: str, robot: Robot, options: dict[str, Any], where: str, k
 
 
 def _scenario(options: dict[str, Any]) -> Scenario:
-    if options["keys"] or options["gamepad"]:
+    if options["keys"] or options["gamepad"] or options["studio"]:
         return Scenario()
     return timeline_of(options["scenario"] or _DEMO, None)
 
@@ -217,8 +234,8 @@ def _simulated(robot: Robot, options: dict[str, Any], *, out: Path | None) -> di
     """Run in physics, as fast as that is."""
     from tarsus.simulation.simulated_plant import SimulatedPlant
 
-    if options["keys"] or options["gamepad"]:
-        raise InputError("physics does not run in real time: use --bus emulated with --keys or --gamepad")
+    if options["keys"] or options["gamepad"] or options["studio"]:
+        raise InputError("physics does not run in real time: use --bus emulated with --keys, --gamepad or --studio")
     scenario = _scenario(options)
     controller = _controller(robot, scenario, RobotState(options["start"] or "standing"))
     source: CommandSource = ScenarioCommands(scenario, robot, None)

@@ -29,6 +29,7 @@ __all__ = [
     "Download",
     "DragFoot",
     "Drive",
+    "EndRun",
     "Hello",
     "OpenState",
     "Ping",
@@ -190,6 +191,12 @@ class Drive(Message):
     on: bool
 
 
+class EndRun(Message):
+    """Stop the robot that is driven, and end the run that this server belongs to. Answer: done."""
+
+    type: Literal["end_run"]
+
+
 class Command(Message):
     """A command to the live robot, which holds until the next; null leaves a quantity unchanged. Answer: done."""
 
@@ -251,6 +258,7 @@ ClientMessage: TypeAlias = Annotated[
     | ChooseSource
     | Drive
     | Command
+    | EndRun
     | Undo
     | Redo
     | OpenState

@@ -7,6 +7,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Field
 
 from tarsus.studio.messages.base import Message, Part
+from tarsus.studio.messages.machine import FrameMachine
 from tarsus.studio.messages.physics import FramePhysics
 
 __all__ = [
@@ -177,3 +178,4 @@ class DriveFrame(Message):
     intervention_count: int = Field(description="Number of interventions of the guard since driving started.")
     interventions: list[str] = Field(description="The latest interventions, newest first, at most five.")
     physics: FramePhysics | None = Field(default=None, description="Null as planned, without physics.")
+    machine: FrameMachine | None = Field(default=None, description="Null without servos.")

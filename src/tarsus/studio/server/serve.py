@@ -168,7 +168,7 @@ def _why(host: str, port: int, error: OSError) -> str:
     if isinstance(error, socket.gaierror):
         return f"cannot listen on {host!r}: {error.strerror}"
     if error.errno == errno.EADDRINUSE:
-        return f"port {port} at {host} is in use; choose another with --port, or --port 0 for a free one"
+        return f"port {port} at {host} is in use; choose another, or 0 for a free one"
     if error.errno in (errno.EACCES, errno.EPERM):
         return f"port {port} requires more privileges; choose a port of at least 1024 with --port"
     return f"cannot listen on {host}, port {port}: {os.strerror(error.errno) if error.errno else error}"

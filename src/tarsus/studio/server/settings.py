@@ -8,6 +8,7 @@ import secrets
 from dataclasses import dataclass, field
 
 from tarsus.errors import InputError
+from tarsus.studio.machine.driven_run import DrivenRun
 from tarsus.studio.messages.pose import Bounds
 from tarsus.studio.messages.state import StudioState
 from tarsus.studio.walks import MOST_SAMPLES
@@ -77,6 +78,8 @@ class Settings:
         Initial state of sessions.
     limits : Limits
         Limits per visitor and of the server.
+    run : DrivenRun or None
+        The run of a machine that this server belongs to.
 
     Raises
     ------
@@ -90,6 +93,7 @@ class Settings:
     token: str | None = None
     start: StudioState = field(default_factory=StudioState)
     limits: Limits = field(default_factory=Limits)
+    run: DrivenRun | None = None
 
     def __post_init__(self) -> None:
         if self.token is not None and not re.fullmatch(r"[A-Za-z0-9._~-]{1,200}", self.token):

@@ -66,7 +66,7 @@ class Visitor:
         self._socket = socket
         self._limits = settings.limits
         self._threads = threads
-        self._session = Session(settings.start, bounds=settings.limits.bounds, public=settings.public)
+        self._session = Session(settings.start, bounds=settings.limits.bounds, public=settings.public, run=settings.run)
         self._inbox = Inbox(settings.limits.waiting)
         self._called = asyncio.Event()
         self._sending = asyncio.Lock()
@@ -89,6 +89,7 @@ class Visitor:
             for task in tasks:
                 task.cancel()
             await asyncio.gather(*tasks, return_exceptions=True)
+            self._session.close()
 
     async def _read(self) -> None:
         rate = Rate(self._limits.messages_per_s, _now())

@@ -1,6 +1,6 @@
 import { Icon } from "../../controls/icons";
 import { Slider } from "../../controls/Slider";
-import type { Settings } from "./useDriving";
+import type { BodyPoseValues } from "./useDriving";
 
 const ROWS = [
   ["Forward", 60, 1, "mm"],
@@ -12,8 +12,8 @@ const ROWS = [
 ] as const;
 
 interface Props {
-  body: Settings["body"];
-  onChange: (body: Settings["body"]) => void;
+  body: BodyPoseValues;
+  onChange: (body: BodyPoseValues) => void;
 }
 
 /** Body pose while standing and walking, relative to the level body. */

@@ -11,10 +11,13 @@ import { useInputs } from "../useInputs";
 import { ViewHead } from "../ViewHead";
 import { BodyPose } from "./BodyPose";
 import { DriveFacts, DriveRemarks } from "./DriveFacts";
+import { RunPart } from "./RunPart";
 import { stateText } from "./robotState";
 import { StateButtons } from "./StateButtons";
 import { Stick } from "./Stick";
-import { useDriving, type Settings } from "./useDriving";
+import { useDriving, type BodyPoseValues, type Settings } from "./useDriving";
+
+const LEVEL: BodyPoseValues = [0, 0, 0, 0, 0, 0];
 
 const DEFAULTS: Settings = {
   speed: 120,
@@ -22,9 +25,12 @@ const DEFAULTS: Settings = {
   gait: null,
   bodyHeight: null,
   swingHeight: null,
-  body: [0, 0, 0, 0, 0, 0],
+  body: LEVEL,
   state: "standing",
 };
+
+/** A machine stays as it is until something else is asked for. */
+const AS_IT_IS: Settings = { ...DEFAULTS, speed: 60, turn: 20, body: null, state: null };
 
 /** Drive the robot live; another robot starts with the default settings. */
 export function DriveView() {
@@ -35,7 +41,8 @@ export function DriveView() {
 function DriveControls() {
   const { robot } = useInputs();
   const drive = useStudio((studio) => studio.drive);
-  const [settings, setSettings] = useState<Settings>(DEFAULTS);
+  const run = useStudio((studio) => studio.welcome?.run ?? null);
+  const [settings, setSettings] = useState<Settings>(run ? AS_IT_IS : DEFAULTS);
   const [attempt, setAttempt] = useState(0);
   const sticks = useDriving(settings, attempt);
   const touch = useTouch();
@@ -47,7 +54,19 @@ function DriveControls() {
           ? "Push the sticks to walk and turn. The robot stops when they are released."
           : "Keys W, A, S, D walk, Q and E turn; the arrow keys walk and turn. So do the sticks and a gamepad. The robot stops when they are released."}
       </ViewHead>
-      <Failure of={["drive", "command"]} />
+      <Failure of={["drive", "command", "end_run"]}>
+        {run && !drive && (
+          <button
+            type="button"
+            className="button small"
+            data-testid="drive-again"
+            onClick={() => setAttempt(attempt + 1)}
+          >
+            Try again
+          </button>
+        )}
+      </Failure>
+      {run && <RunPart bus={run.bus} frame={drive} />}
       <StateButtons
         requested={settings.state}
         present={drive?.state ?? "standing"}
@@ -67,7 +86,7 @@ function DriveControls() {
         </figure>
       </div>
       {drive && <DriveRemarks frame={drive} onRestart={() => setAttempt(attempt + 1)} />}
-      <PhysicsFields driven />
+      {!run && <PhysicsFields driven />}
       <fieldset>
         <Slider
           label="Top speed"
@@ -119,12 +138,16 @@ function DriveControls() {
           testId="drive-swing-height"
           onChange={(swingHeight) => set({ swingHeight })}
         />
-        <BodyPose body={settings.body} onChange={(body) => set({ body })} />
+        <BodyPose body={settings.body ?? LEVEL} onChange={(body) => set({ body })} />
       </fieldset>
       {drive && (
         <>
           <DriveFacts frame={drive} />
-          <AngleTable codes={robot.leg_codes} angles={drive.angles_deg} />
+          <AngleTable
+            codes={robot.leg_codes}
+            angles={drive.angles_deg}
+            measured={drive.machine?.angles_deg}
+          />
         </>
       )}
     </div>

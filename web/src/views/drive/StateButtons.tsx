@@ -1,7 +1,7 @@
 import { canRequest, REQUESTS, type RequestedState, type RobotState } from "./robotState";
 
 interface Props {
-  requested: RequestedState;
+  requested: RequestedState | null;
   present: RobotState;
   onRequest: (state: RequestedState) => void;
 }

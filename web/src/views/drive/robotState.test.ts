@@ -10,6 +10,11 @@ describe("requests for a state", () => {
     expect(canRequest("standing", "folded", "folding")).toBe(true);
   });
 
+  it("are possible for any other state where none was requested yet", () => {
+    expect(canRequest("standing", null, "lying")).toBe(true);
+    expect(canRequest("standing", null, "standing")).toBe(false);
+  });
+
   it("can't unfold the legs without standing up", () => {
     expect(canRequest("lying", "folded", "folding")).toBe(true);
     expect(canRequest("lying", "folded", "folded")).toBe(false);

@@ -12,8 +12,12 @@ export const REQUESTS: readonly { state: RequestedState; label: string; hint: st
 ];
 
 /** Whether a request for a state would change anything: folded legs are unfolded by standing up only. */
-export function canRequest(state: RequestedState, requested: RequestedState, present: RobotState): boolean {
-  return state !== requested && !(state === "lying" && present === "folded");
+export function canRequest(
+  state: RequestedState,
+  requested: RequestedState | null,
+  present: RobotState,
+): boolean {
+  return state !== (requested ?? present) && !(state === "lying" && present === "folded");
 }
 
 /** The state in words, with the walk state or the stage where they say more. */

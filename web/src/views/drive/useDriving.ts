@@ -19,6 +19,8 @@ import type { RequestedState } from "./robotState";
 /** Interval at which commands are sent while a stick is deflected [ms]. */
 const INTERVAL = 50;
 
+export type BodyPoseValues = readonly [number, number, number, number, number, number];
+
 /** Top speeds, and what is commanded besides the twist. */
 export interface Settings {
   speed: number;
@@ -26,9 +28,10 @@ export interface Settings {
   gait: string | null;
   bodyHeight: number | null;
   swingHeight: number | null;
-  /** x, y, z [mm], roll, pitch, yaw [deg] relative to the level body. */
-  body: readonly [number, number, number, number, number, number];
-  state: RequestedState;
+  /** x, y, z [mm], roll, pitch, yaw [deg] relative to the level body; null to leave it as it is. */
+  body: BodyPoseValues | null;
+  /** Null to leave it as it is. */
+  state: RequestedState | null;
 }
 
 export interface Sticks {
@@ -118,7 +121,7 @@ function commandOf(
     gait,
     body_height_mm: bodyHeight,
     swing_height_mm: swingHeight,
-    body: [...body],
+    body: body && [...body],
     state,
   };
 }

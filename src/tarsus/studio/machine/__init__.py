@@ -1,0 +1,1 @@
+"""Real and emulated machines in the studio: a run that the view Drive drives, bring-up, pulses."""
