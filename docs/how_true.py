@@ -12,6 +12,7 @@ from tarsus.control.walk_controller import WalkController
 from tarsus.gait.gait import Gait
 from tarsus.gait.path import BodyPath, curved_path, straight_path
 from tarsus.gait.plan import plan_walk
+from tarsus.load.deflection import compensate_deflection
 from tarsus.robot.file import list_robots, load_robot
 from tarsus.robot.robot import Robot
 from tarsus.simulation.truth.comparison import Truth, compare
@@ -31,17 +32,18 @@ HEADER = (
 )
 
 
-def truths(robot: Robot, gait: str, servos: str) -> dict[str, Truth]:
+def truths(robot: Robot, gait: str, kind: str) -> dict[str, Truth]:
     """Return all kinds of walk of a robot in physics."""
-    return {
-        name: compare(plan_walk(robot, Gait.named(gait), path, rate=100.0), servos=servos)
-        for name, path in WALKS.items()
-    }
+    plans = {name: plan_walk(robot, Gait.named(gait), path, rate=100.0) for name, path in WALKS.items()}
+    if kind == "compensated":
+        plans = {name: compensate_deflection(motion) for name, motion in plans.items()}
+    servos = "ideal" if kind == "ideal" else "catalogue"
+    return {name: compare(motion, servos=servos) for name, motion in plans.items()}
 
 
-def row(robot: Robot, gait: str, servos: str) -> str:
+def row(robot: Robot, gait: str, kind: str) -> str:
     """Return a row of the table: ratios of the way and the turn, greatest tilt and slip, torques over statics."""
-    found = truths(robot, gait, servos)
+    found = truths(robot, gait, kind)
     outcomes = {name: truth.outcome for name, truth in found.items()}
     problems = [problem for outcome in outcomes.values() for problem in outcome.problems]
     cells = [f"{outcomes[name].way_ratio:.3f}" for name in ("straight", "sideways", "curve")]
@@ -56,9 +58,9 @@ def row(robot: Robot, gait: str, servos: str) -> str:
     return f"| {robot.name} | {gait} | {' | '.join(cells)} |{note}\n"
 
 
-def table(servos: str) -> str:
+def table(kind: str) -> str:
     """Return the table of all presets with masses."""
-    return HEADER + "".join(row(robot, gait, servos) for robot, gait in itertools.product(able_robots(), SIX_LEGGED))
+    return HEADER + "".join(row(robot, gait, kind) for robot, gait in itertools.product(able_robots(), SIX_LEGGED))
 
 
 def able_robots() -> list[Robot]:
@@ -93,7 +95,7 @@ def fast_table() -> str:
 def main() -> None:
     """Replace the tables on the page."""
     text = PAGE.read_text(encoding="utf-8")
-    for name in ("ideal", "fast", "catalogue"):
+    for name in ("ideal", "fast", "catalogue", "compensated"):
         before, start, rest = text.partition(f"<!-- table: {name} -->\n")
         written = fast_table() if name == "fast" else table(name)
         text = f"{before}{start}{written}<!-- end -->{rest.partition('<!-- end -->')[2]}"

@@ -41,6 +41,15 @@ def test_numbers_are_those_of_the_comparison():
     assert found["terrain"] == "flat"
 
 
+@pytest.mark.parametrize("servos", ["catalogue", "ideal"])
+def test_feet_slide_less_with_commands_that_compensate(servos):
+    options = f"{SHORT} --servos {servos} --seed 3"
+    (_, before), (code, after) = run_json(options), run_json(f"{options} --compensate")
+    assert code == 0
+    assert after["slip_mm"] < before["slip_mm"]
+    assert any("compensate for the deflection" in line for line in after["assumed"])
+
+
 def test_the_table_has_plan_and_physics():
     code, text = run(SHORT)
     assert code == 0

@@ -82,6 +82,7 @@ if TYPE_CHECKING:
     from tarsus.load.compliant.result import CompliantLoads
     from tarsus.load.contact import ContactForces, contact_forces
     from tarsus.load.cycle_torques import CycleTorques, cycle_torques
+    from tarsus.load.deflection import compensate_deflection, joint_deflections
     from tarsus.load.friction import contact_forces_with_friction
     from tarsus.load.handbook.method import handbook
     from tarsus.load.handbook.statics import compare_with_statics
@@ -175,6 +176,7 @@ _HOMES = {
     "tarsus.load.compliant.result": ("CompliantLoads",),
     "tarsus.load.contact": ("ContactForces", "contact_forces"),
     "tarsus.load.cycle_torques": ("CycleTorques", "cycle_torques"),
+    "tarsus.load.deflection": ("compensate_deflection", "joint_deflections"),
     "tarsus.load.friction": ("contact_forces_with_friction",),
     "tarsus.load.handbook.method": ("handbook",),
     "tarsus.load.handbook.statics": ("compare_with_statics",),
@@ -281,6 +283,7 @@ __all__ = [
     "animate",
     "centre_of_mass",
     "compare_with_statics",
+    "compensate_deflection",
     "compliant_loads",
     "contact_forces",
     "contact_forces_with_friction",
@@ -297,6 +300,7 @@ __all__ = [
     "forward_kinematics",
     "handbook",
     "inverse_kinematics",
+    "joint_deflections",
     "joint_loads",
     "joint_torques",
     "joint_verdicts",

@@ -11,6 +11,7 @@ from tarsus.gait.gait import Gait
 from tarsus.gait.motion import Motion
 from tarsus.gait.path import BodyPath, curved_path, straight_path, twist_path
 from tarsus.gait.plan import plan_walk
+from tarsus.load.deflection import compensate_deflection
 from tarsus.robot.file import load_robot
 from tarsus.robot.robot import Robot
 
@@ -39,14 +40,14 @@ def plan(name: str | Robot, options: dict[str, Any]) -> Motion:
     UsageError
         If options contradict each other.
     TarsusError
-        If the robot, the gait or the walk is not possible.
+        If the robot, the gait or the walk is not possible, or the stiffness of its joints is unknown and needed.
     """
     path = path_of(options)
     robot = name if isinstance(name, Robot) else load_robot(name)
     gait = Gait.named(options["gait"] or robot.gait.name, legs=robot.legs, turning=path.angle)
     tilt = options["tilt"] or (0.0, 0.0)
     lengths: dict[str, Any] = {key: None if options[key] is None else options[key] / 1000 for key in _LENGTHS}
-    return plan_walk(
+    motion = plan_walk(
         robot,
         gait,
         path,
@@ -56,6 +57,7 @@ def plan(name: str | Robot, options: dict[str, Any]) -> Motion:
         rate=options["rate"],
         **lengths,
     )
+    return compensate_deflection(motion) if options.get("compensate") else motion
 
 
 def with_changes(options: dict[str, Any], changes: dict[str, Any]) -> dict[str, Any]:

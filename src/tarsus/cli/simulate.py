@@ -10,7 +10,7 @@ import click
 from tarsus.cli.folder import make_folder
 from tarsus.cli.output import print_json, progress_bar, show
 from tarsus.cli.values import examples, json_option, number_option, robot_argument
-from tarsus.cli.walk_options import walk_options
+from tarsus.cli.walk_options import compensate_option, walk_options
 
 if TYPE_CHECKING:
     from tarsus.cli.simulated_run import SimulatedRun
@@ -24,6 +24,7 @@ _VIDEOS = (".mp4", ".gif")
     epilog=examples(
         "tarsus simulate strider",
         "tarsus simulate phantomx --gait wave --distance 200 --servos ideal",
+        "tarsus simulate ch3r --compensate",
         "tarsus simulate strider --twist 40,0,10 --duration 3 --terrain ramp:slope=5",
         'tarsus simulate strider --scenario "at 0 s: walk 50 mm/s; at 4 s: stop; at 6 s: sit"',
         "tarsus simulate strider --terrain blocks:rise=20,seed=1 --out simulated --video walk.gif",
@@ -31,6 +32,7 @@ _VIDEOS = (".mp4", ".gif")
 )
 @robot_argument
 @walk_options
+@compensate_option
 @click.option(
     "--scenario",
     metavar="SCENARIO",

@@ -14,9 +14,12 @@ from tarsus.cli.planning import plan
 from tarsus.cli.timeline import timeline_of
 from tarsus.errors import InputError, TarsusError
 from tarsus.gait.motion import Motion
+from tarsus.load.compliant.joint_springs import JointSprings
+from tarsus.load.deflection import compensate_deflection
 from tarsus.report.animation import animate
 from tarsus.robot.file import load_robot
 from tarsus.scenario.runner import run_scenario
+from tarsus.simulation.servos.servo_model import ServoModel
 from tarsus.simulation.simulated_plant import SimulatedPlant
 from tarsus.simulation.terrain.flat import Flat
 from tarsus.simulation.truth.as_motion import trace_motion
@@ -78,9 +81,12 @@ def run_plan(robot: str, options: dict[str, Any], settings: dict[str, Any], prog
     TarsusError
         If the walk is not possible, or can't be simulated.
     """
-    motion = plan(robot, options)
+    motion = plan(robot, {**options, "compensate": None})
     if not motion.ok:
         raise TarsusError(f"the walk is not possible: {motion.problems[0]}; `tarsus walk` shows the whole verdict")
+    if options["compensate"]:
+        ideal = JointSprings.uniform(motion.robot, ServoModel.ideal().stiffness)
+        motion = compensate_deflection(motion, springs=ideal if settings["servos"] == "ideal" else None)
     progress("physics", 0.1)
     truth = compare(motion, **settings)
     return SimulatedRun(

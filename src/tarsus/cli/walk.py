@@ -11,7 +11,7 @@ from tarsus.cli.folder import make_folder
 from tarsus.cli.output import print_json, progress_bar, show
 from tarsus.cli.pulses import pulses_option, walk_pulses
 from tarsus.cli.values import examples, json_option, robot_argument
-from tarsus.cli.walk_options import walk_options
+from tarsus.cli.walk_options import compensate_option, walk_options
 
 if TYPE_CHECKING:
     from tarsus.gait.motion import Motion
@@ -34,6 +34,7 @@ __all__ = ["walk"]
 )
 @robot_argument
 @walk_options
+@compensate_option
 @click.option(
     "--out", type=click.Path(path_type=Path), metavar="DIR", help="Write joint angles (CSV) and figures to this folder."
 )

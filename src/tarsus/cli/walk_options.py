@@ -9,7 +9,7 @@ import click
 
 from tarsus.cli.values import Numbers, number_option
 
-__all__ = ["walk_options"]
+__all__ = ["compensate_option", "walk_options"]
 
 _F = TypeVar("_F", bound=Callable[..., Any])
 
@@ -19,6 +19,16 @@ def walk_options(function: _F) -> _F:
     for option in reversed(_OPTIONS):
         function = option(function)
     return function
+
+
+def compensate_option(function: _F) -> _F:
+    """Add the option for commands that compensate for the deflection of the joints."""
+    return click.option(
+        "--compensate",
+        is_flag=True,
+        default=None,
+        help="Command loaded feet lower by what the servos yield under vertical forces.",
+    )(function)
 
 
 _OPTIONS = (

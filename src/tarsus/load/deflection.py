@@ -1,0 +1,120 @@
+"""Deflection of loaded joints, and commands that compensate for it."""
+
+from __future__ import annotations
+
+import dataclasses
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from tarsus.errors import InputError
+from tarsus.gait.motion import Motion
+from tarsus.load.compliant.joint_springs import JointSprings
+from tarsus.load.loads import joint_loads
+from tarsus.load.payload import Payload
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
+
+__all__ = ["TRANSFER_TIME", "compensate_deflection", "joint_deflections"]
+
+TRANSFER_TIME = 0.08
+"""Time in which a foot takes over its load, centred on touch-down and lift-off [s]."""
+
+
+def joint_deflections(
+    motion: Motion,
+    *,
+    springs: JointSprings | None = None,
+    payload: Payload | float = 0.0,
+    transfer_time: float = TRANSFER_TIME,
+) -> Float[np.ndarray, "n legs 3"]:
+    """Return by how much loads turn the joints from their commands: torque over stiffness, with vertical forces.
+
+    Loads that a plan transfers in an instant are transferred linearly within `transfer_time`.
+
+    Parameters
+    ----------
+    motion : Motion
+        The motion of a robot with masses.
+    springs : JointSprings, optional
+        Elasticity of the joints. Default: the robot's servos.
+    payload : Payload or float
+        Payload on the body; a number is a mass at the body's origin [kg].
+    transfer_time : float
+        Time in which a foot takes over its load [s]; 0 for an instant.
+
+    Returns
+    -------
+    array, shape (n, legs, 3)
+        Command less joint angle [rad].
+
+    Raises
+    ------
+    MissingDataError
+        If masses are unknown, or a servo without `springs`.
+    InputError
+        If `transfer_time` is negative or not finite.
+    """
+    if not 0 <= transfer_time < np.inf:
+        raise InputError(f"transfer_time is {transfer_time:g} s; it must be a finite number, not negative")
+    springs = JointSprings.of(motion.robot) if springs is None else springs
+    deflection: np.ndarray = joint_loads(motion.robot, motion, payload=payload).torques / springs.stiffness
+    # The mean over the time of transfer, by trapezes: exact for any sampling, and constant where the load is.
+    time = motion.time
+    steps = np.diff(time)[:, None, None] * (deflection[1:] + deflection[:-1]) / 2
+    total = np.concatenate([np.zeros_like(deflection[:1]), np.cumsum(steps, axis=0)])
+    start = np.maximum(time - transfer_time / 2, time[0])
+    end = np.minimum(time + transfer_time / 2, time[-1])
+    if not (end > start).all():
+        return deflection
+    flat = total.reshape(time.size, -1).T
+    mean = [(np.interp(end, time, each) - np.interp(start, time, each)) / (end - start) for each in flat]
+    return np.stack(mean, axis=-1).reshape(deflection.shape)
+
+
+def compensate_deflection(
+    motion: Motion,
+    *,
+    springs: JointSprings | None = None,
+    payload: Payload | float = 0.0,
+    transfer_time: float = TRANSFER_TIME,
+) -> Motion:
+    """Return a motion whose commands compensate for the deflection of its joints under load.
+
+    Feet that bear load are commanded lower by what the joints yield, so that the body sags less and swinging feet keep
+    their clearance. The feet no longer lean against each other, which takes load from the femurs: their torques
+    become those of vertical forces. Within the joint limits.
+
+    Parameters
+    ----------
+    motion : Motion
+        The motion of a robot with masses.
+    springs : JointSprings, optional
+        Elasticity of the joints. Default: the robot's servos.
+    payload : Payload or float
+        Payload on the body; a number is a mass at the body's origin [kg].
+    transfer_time : float
+        Time in which a foot takes over its load [s]; 0 for an instant.
+
+    Returns
+    -------
+    Motion
+        The same body and feet; its joint angles are commands.
+
+    Raises
+    ------
+    MissingDataError
+        If masses are unknown, or a servo without `springs`.
+    InputError
+        If `transfer_time` is negative or not finite.
+    """
+    deflection = joint_deflections(motion, springs=springs, payload=payload, transfer_time=transfer_time)
+    lower, upper = np.moveaxis(np.asarray(motion.robot.limits), -1, 0)
+    # A plan that breaks a limit has said so.
+    lower, upper = np.minimum(lower, motion.angles), np.maximum(upper, motion.angles)
+    return dataclasses.replace(
+        motion,
+        angles=np.clip(motion.angles + deflection, lower, upper),
+        assumed=(*motion.assumed, "commands compensate for the deflection of the joints under vertical forces"),
+    )
