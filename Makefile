@@ -64,6 +64,7 @@ truth: $(VENV)/.dev
 	$(BIN)/python docs/statics_true.py
 	$(BIN)/python docs/faults.py
 	$(BIN)/python docs/rough_ground.py
+	$(BIN)/python docs/sensor_faults.py
 
 # Trains policies for a few minutes each: the figure and the tables of docs/reinforcement-learning.md.
 train: $(VENV)/.dev

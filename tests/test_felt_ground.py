@@ -11,6 +11,7 @@ from tarsus.control.readings import SensorReadings, ValidReadings
 from tarsus.control.sensing.contact_estimator import ContactEstimator
 from tarsus.control.sensing.foot_loads import FootLoads
 from tarsus.control.sensing.leg_odometry import LegOdometry
+from tarsus.control.sensing.validation import ReadingsValidator
 from tarsus.control.terrain.foot_contacts import FootContacts
 from tarsus.control.terrain.foot_plane import FootPlane, fitted_plane
 from tarsus.control.terrain.posture_feedback import PostureFeedback
@@ -218,6 +219,49 @@ def test_a_switch_that_stays_open_is_told_by_the_feet_that_its_foot_lifts_off():
     for _ in range(60):
         over_a_hole.step([False, *[True] * 5], [True] * 6, 0.02)
     assert not over_a_hole.is_open(0)
+
+
+def test_a_switch_that_stays_open_is_told_by_a_robot_that_does_not_tip():
+    def suspected(tilts, readings, down=(False, True) * 3):
+        contacts = FootContacts(6)
+        for tilt in tilts:
+            contacts.step(readings, down, 0.01)
+            contacts.balance(down, FEET, 0j, tilt, 0.01)
+        return [leg for leg in range(6) if contacts.is_open(leg)]
+
+    standing, noise = [(0.0, 0.0)] * 25, np.random.default_rng(2).normal(0.0, 0.003, (25, 2)).tolist()
+    for still in (standing, noise):
+        assert suspected(still, [False, False, False, True, False, True]) == [1]
+        assert suspected(still, [False, True, False, True, False, True]) == []
+        # A robot in the air has no contact at all, and one that stands on its other feet tells nothing of this one.
+        assert suspected(still, [False] * 6) == []
+        assert suspected(still, [True, False, True, True, True, True], [True] * 6) == []
+    # Without a foot on its left, the robot tips to the left.
+    tips = [(-3.0 * (0.01 * tick) ** 2, 0.0) for tick in range(25)]
+    assert suspected(tips, [False, False, False, True, False, True]) == []
+
+
+def test_contacts_that_come_late_cost_no_way_and_are_no_obstacles():
+    controller = WalkController(STRIDER, swing_height=0.06)
+    waiting = [np.ones(6, dtype=bool)] * 2
+    for _ in range(400):
+        waiting.append(controller.feet[:, 2] <= 1e-4)
+        readings = SensorReadings(contacts=waiting.pop(0), attitude=(0.0, 0.0), age=0.04)
+        controller.step((0.06, 0.0, 0.0), 0.02, readings)
+    assert controller._walk.ground.roughness.value < 0.005
+    assert controller.place[0] > 0.97 * 0.06 * 7.8
+
+
+def test_the_age_of_contacts_is_known():
+    validator = ReadingsValidator(STRIDER)
+    touching, forces = (True,) * 6, np.ones(6)
+    for readings, age in (
+        (SensorReadings(contacts=touching), 0.0),
+        (SensorReadings(contacts=touching, age=0.03), 0.03),
+        (SensorReadings(contacts=touching, forces=forces, age={"contacts": 0.02, "forces": 0.01}), 0.02),
+        (SensorReadings(forces=forces, age={"contacts": 0.02, "forces": 0.01}), 0.01),
+    ):
+        assert validator.validate(readings, 0.01).contact_age == age
 
 
 def test_a_switch_that_is_stuck_does_not_stop_the_robot():

@@ -96,6 +96,8 @@ class ValidReadings(NamedTuple):
         Roll and pitch of B in the world [rad].
     angular_rates : (x, y, z), or None
         Angular velocity of B in the world, components along B's axes [rad/s].
+    contact_age : float
+        Time since the measurement of contacts, or else of forces [s].
     rejected : tuple of str
         Rejected channels, or legs of them, with the reason.
     """
@@ -110,4 +112,5 @@ class ValidReadings(NamedTuple):
     torques: tuple[Vector | None, ...] | None = None
     attitude: tuple[float, float] | None = None
     angular_rates: Vector | None = None
+    contact_age: float = 0.0
     rejected: tuple[str, ...] = ()

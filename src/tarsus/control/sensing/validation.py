@@ -133,7 +133,9 @@ class ReadingsValidator:
                     channel.reset()
                 else:
                     accepted[name] = channel.read(value, rejected)
-            valid = ValidReadings(**accepted, rejected=tuple(rejected))
+            common = 0.0 if ages else as_number(readings.age)
+            age = as_number(ages.get("forces" if readings.contacts is None else "contacts", common))
+            valid = ValidReadings(**accepted, contact_age=age if age > 0 else 0.0, rejected=tuple(rejected))
         for reason in rejected:
             self.counts[reason] = self.counts.get(reason, 0) + 1
         return valid

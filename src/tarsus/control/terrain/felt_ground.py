@@ -135,8 +135,7 @@ class FeltGround:
         angles : array, shape (legs, 3)
             Joint angles [rad].
         """
-        valid = self._validator.validate(readings, dt)
-        self._measured = valid
+        valid = self._measured = self._validator.validate(readings, dt)
         if valid.attitude is not None:
             roll, pitch = state.posture.value[3:5].tolist()
             self._tilt = (valid.attitude[0] - roll, valid.attitude[1] - pitch)
@@ -147,7 +146,7 @@ class FeltGround:
             heights = np.array(state.heights(float(state.posture.value[SWING_HEIGHT])))
             state = state._replace(ground_height=heights, felt=FeltFeet.still(len(heights)))
         down = state.down.tolist()
-        self.contacts.step(measured, down, dt)
+        self.contacts.step(measured, down, dt, age=valid.contact_age)
         if self._loads.compliant:
             forces, feet = self._loads.forces(valid, angles), [(foot.real, foot.imag) for foot in state.foot.tolist()]
             self.offsets = self._loads.offsets(forces, dt, feet=feet, stands=down)
@@ -203,8 +202,9 @@ class FeltGround:
         if self._since >= _SLOW_PERIOD - PHASE_TOLERANCE:
             self._update_posture(state, places, over, down, timing=timing, twist=twist, rest=rest)
             self._since = 0.0
-        supports = {leg: places[leg] for leg in legs if down[leg] and contacts.supports(leg)}
-        self._decide_on_support(state, dt, supports, timing=timing, standing=standing)
+        due = None if standing else timing.due(state, dt)
+        centre = self._centre + complex(*body_posture(state)[:2].tolist())
+        self._decide_on_support(places, centre, down, due, dt=dt, swing_time=timing.swing_time)
         self.roughness.decay(0.0 if standing else dt * timing.frequency)
         ground = [elevation + self.plane.at((foothold - state.origin) * turn) for foothold in state.foothold.tolist()]
         searches = [contacts.is_known(leg) and (down[leg] or contacts.lifted[leg]) for leg in legs]
@@ -278,15 +278,15 @@ class FeltGround:
             self._lowest, self._highest = reachable_heights(self._robot, state.posture.value, rest, strokes)
 
     def _decide_on_support(
-        self, state: GaitState, dt: float, supports: dict[int, complex], *, timing: StepTiming, standing: bool
+        self, places: list[complex], centre: complex, down: list[bool], due: list[bool] | None, **time: float
     ) -> None:
-        """Decide whether feet may lift off, and at which pace the walk goes on."""
-        duty_factor, clock = timing.gait.duty_factor, state.clock + timing.frequency * dt + PHASE_TOLERANCE
-        steps = zip(state.down.tolist(), timing.gait.offsets, state.step_number.tolist(), strict=True)
-        due = [not standing and down and clock > offset + duty_factor + number for down, offset, number in steps]
-        centre = self._centre + complex(*body_posture(state)[:2].tolist())
-        stays = standing or holds([place for leg, place in supports.items() if not due[leg]], centre)
-        self.support.step(stays=stays, lifts=any(due), dt=dt, swing_time=timing.swing_time)
+        """Decide whether feet may lift off, and at which pace the walk goes on; None is due while the robot stands."""
+        contacts, tilt = self.contacts, self._measured.attitude
+        if tilt is not None:
+            contacts.balance(down, places, centre, tilt, time["dt"])
+        legs = [leg for leg, on in enumerate(down) if on and not (due and due[leg]) and contacts.supports(leg)]
+        stays = due is None or holds([places[leg] for leg in legs], centre)
+        self.support.step(stays=stays, lifts=any(due or ()), **time)
 
     @property
     def limitations(self) -> tuple[Limitation, ...]:

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 from tarsus.control.sensing.contact_estimator import ContactEstimator
+from tarsus.control.terrain.support import holds
 
 __all__ = ["FootContacts"]
 
@@ -14,6 +16,10 @@ _LOST = 0.03
 _GRACE = 0.1
 # How long other feet lose contact, while a foot that should stand has none, until its switch is taken to be open [s].
 _CONVICTED = 0.4
+# How long feet that do not hold the robot bear it, until another one does [s], and how far it sinks there if not [m].
+_UNHELD, _TIPS = 0.15, 0.012
+# Fewer feet bear no robot, unless something else holds it.
+_FEWEST = 2
 # A switch that has been closed for longer is stuck [s].
 _STUCK = 3.0
 
@@ -32,14 +38,19 @@ class FootContacts:
         Estimates the contacts.
     lifted : list of bool
         Whether a swinging foot has been without contact since it lifted off.
+    age : float
+        Age of the readings [s].
     """
 
     def __init__(self, legs: int) -> None:
         self.estimator = ContactEstimator(legs)
-        self.lifted = [False] * legs
+        self.lifted, self.age = [False] * legs, 0.0
+        self._unheld, self._tilt = 0.0, (0.0, 0.0)
         self._without, self._with, self._suspicion = ([0.0] * legs for _ in range(3))
 
-    def step(self, readings: Sequence[bool | None] | None, down: Sequence[bool], dt: float) -> None:
+    def step(
+        self, readings: Sequence[bool | None] | None, down: Sequence[bool], dt: float, *, age: float = 0.0
+    ) -> None:
         """Take in the contacts of one tick.
 
         Parameters
@@ -50,7 +61,10 @@ class FootContacts:
             Which feet should stand.
         dt : float
             Time since the last tick [s].
+        age : float
+            Time since the measurement [s].
         """
+        self.age = age
         self.estimator.step(readings, dt)
         for leg, on in enumerate(down):
             if self.estimator.known[leg] and not self.estimator.touching[leg]:
@@ -68,6 +82,38 @@ class FootContacts:
                 self._suspicion[leg] = 0.0
             elif on and shaken and self._without[leg] > _GRACE:
                 self._suspicion[leg] += dt
+
+    def balance(
+        self, down: Sequence[bool], places: Sequence[complex], centre: complex, tilt: tuple[float, float], dt: float
+    ) -> None:
+        """Find a switch that stays open: a robot that does not tip stands on a foot that it does not feel.
+
+        Parameters
+        ----------
+        down : sequence of bool
+            Which feet should stand.
+        places : sequence of complex
+            The feet, x + iy in the heading frame [m].
+        centre : complex
+            The centre of mass [m].
+        tilt : (roll, pitch)
+            Measured [rad].
+        dt : float
+            Time since the last tick [s].
+        """
+        missing = [leg for leg, on in enumerate(down) if on and not self.stands(leg)]
+        standing = [places[leg] for leg, on in enumerate(down) if on and leg not in missing]
+        if not missing or len(standing) < _FEWEST or holds(standing, centre):
+            self._unheld = 0.0
+            return
+        longest = max(missing, key=self._without.__getitem__)
+        place = places[longest]
+        sunk = place.real * (tilt[1] - self._tilt[1]) - place.imag * (tilt[0] - self._tilt[0])
+        if self._unheld <= 0.0 or sunk > _TIPS:
+            self._unheld, self._tilt = 0.0, tilt
+        self._unheld += dt
+        if self._unheld > _UNHELD:
+            self._suspicion[longest] = math.inf
 
     def is_open(self, leg: int) -> bool:
         """Return whether a contact is missing that other feet tell of: that of a switch that stays open."""

@@ -24,6 +24,8 @@ __all__ = ["met_ground"]
 _CLEAR, _LANDING = 0.12, 0.55
 # How far a foot has risen that meets an obstacle, after contact has ceased or without that [m].
 _LIFTED, _RISEN = 0.004, 0.01
+# Time in which a leg gives up its load, and its joints follow their commands [s].
+_UNLOADING = 0.05
 # After a collision: how much higher the foot rises [m], in which time [s], and how far it is drawn back [m].
 _HIGHER, _RISING, _DRAWN_BACK = 0.025, 0.12, 0.008
 
@@ -93,8 +95,10 @@ def _landed(state: GaitState, leg: int, timing: StepTiming, pace: float) -> Gait
 def _collides(state: GaitState, leg: int, contacts: FootContacts) -> bool:
     """Return whether a foot that feels contact in the first half of its swing has met an obstacle."""
     assert state.felt is not None  # a walk that feels the ground
-    risen = float(state.ground_height[leg]) - float(state.start_height[leg])
-    least = _LIFTED if contacts.lifted[leg] else _RISEN
+    least, delay = (_LIFTED, 0.0) if contacts.lifted[leg] else (_RISEN, _UNLOADING)
+    # A contact is that of a moment ago, when the foot was lower.
+    then = float(state.ground_height[leg]) - max(state.felt.speed[leg], 0.0) * (contacts.age + delay)
+    risen = then - float(state.start_height[leg])
     return state.felt.drawn_back[leg] is None and risen > least and not contacts.is_stuck(leg)
 
 

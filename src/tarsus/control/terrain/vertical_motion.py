@@ -44,7 +44,7 @@ def moved_vertically(state: GaitState, inputs: StepInputs, dt: float) -> GaitSta
     rate = float(state.elevation.rate[0])
     climb = _towards(rate, felt.climb, _BODY_ACCELERATION * dt)
     elevation = float(state.elevation.value[0]) + (rate + climb) / 2 * dt
-    swing_time = (1 - inputs.gait.duty_factor) / inputs.frequency if inputs.frequency else math.inf
+    swing, delays = 1 - inputs.gait.duty_factor, state.lift_delay.tolist()
     heights, feet_at = state.ground_height.tolist(), state.foot.tolist()
     for leg, (down, phase) in enumerate(zip(state.down.tolist(), state.swing_phase.tolist(), strict=True)):
         if not felt.steps[leg]:
@@ -53,6 +53,7 @@ def moved_vertically(state: GaitState, inputs: StepInputs, dt: float) -> GaitSta
             feet_at[leg] += _carried(state, feet, felt, leg, dt)
             heights[leg], feet = _standing(state, feet, felt, leg, dt)
         else:
+            swing_time = (swing - delays[leg]) / inputs.frequency if inputs.frequency else math.inf
             heights[leg], feet = _swinging(feet, felt, leg, heights[leg], phase, dt, swing_time)
     return state._replace(
         foot=np.array(feet_at),

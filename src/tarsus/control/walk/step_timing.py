@@ -84,6 +84,20 @@ class StepTiming(NamedTuple):
         """
         return (gait.body_shift or self.gait.body_shift) and not self.steps_like(gait)
 
+    def due(self, state: GaitState, dt: float) -> list[bool]:
+        """Return which feet on the ground are due to lift off within a time.
+
+        Parameters
+        ----------
+        state : GaitState
+            The gait state.
+        dt : float
+            The time [s].
+        """
+        clock = state.clock + self.frequency * dt + PHASE_TOLERANCE - self.gait.duty_factor
+        steps = zip(state.down.tolist(), self.gait.offsets, state.step_number.tolist(), strict=True)
+        return [down and clock > offset + number for down, offset, number in steps]
+
     def with_first_lift(self, state: GaitState, leg: int) -> GaitState:
         """Return the gait state with the clock at the lift-off of a leg; while the body is shifted, the clock stays.
 

@@ -1,0 +1,112 @@
+"""Write the table of sensor faults in ground.md: what walks with readings that are late, wrong or missing cost.
+
+python docs/sensor_faults.py --seeds 5
+python docs/sensor_faults.py --robots strider --faults hobby --print
+"""
+
+from __future__ import annotations
+
+import argparse
+import dataclasses
+import math
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+import tarsus
+from rough_ground import GROUNDS, PAGE, RANDOM, WAY
+from tarsus.simulation import SensorSuite, SimulatedPlant
+from tarsus.simulation.sensors.suite import FootSwitch, Sensor
+
+GROUND = ("flat", "blocks40")
+IDEAL = SensorSuite.named("ideal")
+
+
+def with_sensors(**sensors: Any) -> SensorSuite:
+    """Return the ideal sensors with others in some of their places."""
+    return dataclasses.replace(IDEAL, **sensors)
+
+
+LATE = with_sensors(contacts=FootSwitch(delay=0.05), attitude=Sensor(delay=0.05), joint_angles=Sensor(delay=0.05))
+ONE_DEGREE = Sensor(noise=math.radians(1), bias=math.radians(1))
+SUITES: dict[str, Any] = {
+    "hobby sensors": "hobby",
+    "50 ms late": LATE,
+    "1 % of contacts wrong": with_sensors(contacts=FootSwitch(flips=0.01)),
+    "5 % of contacts wrong": with_sensors(contacts=FootSwitch(flips=0.05)),
+    "attitude with 1 deg of noise and bias": with_sensors(attitude=ONE_DEGREE),
+}
+# The switch that is stuck, and what it reads.
+STUCK: dict[str, tuple[int, bool]] = {
+    "switch of the front left foot open": (0, False),
+    "switch of the middle left foot open": (1, False),
+    "switch of the front left foot closed": (0, True),
+}
+LAG = "50 ms of servo lag"
+FAULTS = ("none", *SUITES, LAG, *STUCK)
+
+
+def walk(name: str, ground: str, fault: str, seed: int) -> tuple[float, float]:
+    """Return the way of one walk at half the top speed, over the commanded one, and the RMS of its tilt [deg]."""
+    robot = tarsus.load_robot(name)
+    speed, dt = 0.5 * tarsus.WalkController(robot).top_speed((1, 0, 0)), 0.01
+    setup: dict[str, Any] = {"terrain": GROUNDS[ground](seed), "sensors": SUITES.get(fault, IDEAL), "seed": seed}
+    plant = SimulatedPlant(robot, **setup)
+    if fault == LAG:
+        servos = [[dataclasses.replace(each, delay=each.delay + 0.05) for each in row] for row in plant.servos]
+        plant = SimulatedPlant(robot, servos=servos, **setup)
+    controller = tarsus.RobotController(robot)
+    output = controller.output
+    plant.start(output)
+    start, tilts, ticks = plant.state.body.position[0], [], round(WAY / speed / dt)
+    for _ in range(ticks):
+        readings = plant.step(output, dt)
+        if fault in STUCK:
+            leg, value = STUCK[fault]
+            contacts = np.array(readings.contacts)
+            contacts[leg] = value
+            readings = dataclasses.replace(readings, contacts=contacts)
+        tilts.append(math.hypot(*np.asarray(plant.state.body.rpy).tolist()[:2]))
+        output = controller.step((speed, 0.0, 0.0), dt, readings)
+    way = float(plant.state.body.position[0] - start)
+    return way / (speed * dt * ticks), math.degrees(math.sqrt(np.mean(np.square(tilts))))
+
+
+def table(robot: str, faults: list[str], seeds: int, cell: Callable[[list[tuple[float, float]]], str]) -> str:
+    """Return the table of a robot: a row for each fault, a column for each ground."""
+    lines = [f"| {robot} | {' | '.join(GROUND)} |", f"|---|{'---|' * len(GROUND)}"]
+    for fault in faults:
+        cells = []
+        for ground in GROUND:
+            draws = seeds if ground.startswith(RANDOM) or fault in SUITES else 1
+            cells.append(cell([walk(robot, ground, fault, seed) for seed in range(draws)]))
+        lines.append(f"| {fault} | {' | '.join(cells)} |")
+    return "\n".join(lines)
+
+
+def medians(found: list[tuple[float, float]]) -> str:
+    """Return the medians of way and tilt."""
+    way, tilt = np.median(found, axis=0).tolist()
+    return f"{way:.2f}, {tilt:.1f}"
+
+
+def main() -> None:
+    """Measure, and replace the tables on the page or print them."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--robots", nargs="+", default=["strider"])
+    parser.add_argument("--faults", nargs="+", default=list(FAULTS), choices=list(FAULTS))
+    parser.add_argument("--seeds", type=int, default=3)
+    parser.add_argument("--print", action="store_true", help="print the tables, and leave the page as it is")
+    asked = parser.parse_args()
+    text = "\n\n".join(table(robot, asked.faults, asked.seeds, medians) for robot in asked.robots)
+    if asked.print:
+        print(text)
+        return
+    page = PAGE.read_text(encoding="utf-8")
+    before, start, rest = page.partition("<!-- table: sensor faults -->\n")
+    PAGE.write_text(f"{before}{start}{text}\n<!-- end -->{rest.partition('<!-- end -->')[2]}", encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
