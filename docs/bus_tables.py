@@ -46,18 +46,18 @@ def yes(value: object) -> str:
 
 
 def capability_rows() -> Iterator[str]:
-    yield "| bus | for | goals in | measures | torque off | limits, speed, torque | watchdog |"
-    yield "|---|---|---|---|---|---|---|"
+    yield "| bus | for | goals in | measures | inputs | torque off | limits, speed, torque | watchdog |"
+    yield "|---|---|---|---|---|---|---|---|"
     for name, kind in hardware.BUSES.items():
         can = bus_at(name, kind.baud).capabilities
         measured = sorted({*can.telemetry, *(("position",) if can.positions else ())})
         limits = ", ".join(yes(one) for one in (can.limits, can.speed_limit, can.torque_limit))
-        watchdog = "-"
+        watchdog, inputs = "-", str(hardware.BUS_COMMANDS[name].inputs or "-")
         if can.watchdog:
             watchdog = f"{can.watchdog[0]:g} to {can.watchdog[1]:g} s, then {can.watchdog_action}"
         unit = f"{can.unit}, {can.lowest:g} to {can.highest:g}"
         unit += f", {can.per_turn:g} a turn" if can.per_turn else ""
-        cells = (f"`{name}`", kind.title, unit, ", ".join(measured) or "-", can.torque_off, limits, watchdog)
+        cells = (f"`{name}`", kind.title, unit, ", ".join(measured) or "-", inputs, can.torque_off, limits, watchdog)
         yield "| " + " | ".join(cells) + " |"
 
 

@@ -158,7 +158,7 @@ EDITS = {
     "bus": (("id = 1,", 'bus = "arm", id = 1,'), "there is no bus 'arm'; there are: main"),
     "date": (('robot = "strider"', 'robot = "strider"\ndate = "soon"'), "must be a date such as 2026-05-31"),
     "robot": (('robot = "strider"', 'robot = "stridr"'), r"c.toml \(line 2\): 1 problem\n  the robot file"),
-    "two buses": (("[[legs]]", '[[buses]]\nname = "b"\nkind = "maestro"\n[[legs]]'), "bus: missing; there are 2"),
+    "two buses": (("[[legs]]", '[[buses]]\nname = "b"\nkind = "lx16a"\n[[legs]]'), "bus: missing; there are 2"),
     "same buses": (("[[legs]]", '[[buses]]\nname = "main"\nkind = "maestro"\n[[legs]]'), None),
     "no TOML": (("[[legs]]", "[[legs"), "not valid TOML"),
 }
@@ -201,9 +201,16 @@ def test_what_is_wrong_in_python_is_refused():
         (FootSwitches(bus="x", inputs=(0, 1, 2, 3, 4, 5)), "there is no bus 'x'"),
         (FootSwitches(bus="main", inputs=(0, 1)), "2 inputs; the robot has 6 legs"),
         (FootSwitches(bus="main", inputs=(0, 0, 1, 2, 3, 4)), "two legs have the same input"),
+        (FootSwitches(bus="main", inputs=(0, 1, 2, 3, 4, 5)), "a feetech-sts bus has no inputs; .* maestro, ssc32, "),
     ]:
         with pytest.raises(CalibrationError, match=message):
             made.replace(foot_switches=switches)
+    for kind, inputs, message in [
+        ("servo2040", (0, 1, 2, 3, 4, 6), "servo2040 has no input 6; inputs are 0 to 5"),
+        ("maestro", (17, 18, 19, 20, 21, 22), "channel 17 is that of a servo"),
+    ]:
+        with pytest.raises(CalibrationError, match=message):
+            nominal(kind, foot_switches=FootSwitches(bus="main", inputs=inputs))
     with pytest.raises(InputError, match="single robot"):
         made.replace(robot=tarsus.stack_robots([STRIDER, STRIDER]))
     with pytest.raises(UnknownNameError, match="kind of bus"):
@@ -326,6 +333,7 @@ def test_dates_numbers_and_ports_as_other_writers_write_them(tmp_path):
     (tmp_path / "c.toml").write_text(text.replace("id = 1.0,", "id = 1.5,"), encoding="utf-8")
     with pytest.raises(CalibrationError, match="must be a whole number from 0 to 253"):
         Calibration.load(tmp_path / "c.toml")
+    text = calibration_text(nominal("lines"))
     for inputs, switches in [("[0, 1, 2, 3, -1, 5]", (0, 1, 2, 3, None, 5)), ("[]", None)]:
         (tmp_path / "c.toml").write_text(f"{text}\n[sensors]\nfoot_switches = {{ inputs = {inputs} }}")
         if switches is None:
@@ -333,6 +341,20 @@ def test_dates_numbers_and_ports_as_other_writers_write_them(tmp_path):
                 Calibration.load(tmp_path / "c.toml")
         else:
             assert Calibration.load(tmp_path / "c.toml").foot_switches.inputs == switches
+
+
+def test_joints_and_switches_find_the_bus_that_fits(tmp_path):
+    feet = tarsus.hardware.BusSettings(name="feet", kind="lines")
+    made = nominal()
+    made = made.replace(buses=(*made.buses, feet), foot_switches=FootSwitches(bus="feet", inputs=(0, 1, 2, 3, 4, 5)))
+    text = calibration_text(made).replace('bus = "main", ', "").replace('bus = "feet", ', "")
+    (tmp_path / "c.toml").write_text(text, encoding="utf-8")
+    read = Calibration.load(tmp_path / "c.toml")
+    assert (read.joints, read.foot_switches) == (made.joints, made.foot_switches)
+    text = text.replace('kind = "lines"', 'kind = "feetech-sts"')
+    (tmp_path / "c.toml").write_text(text, encoding="utf-8")
+    with pytest.raises(CalibrationError, match="bus: missing; there are 2: main, feet"):
+        Calibration.load(tmp_path / "c.toml")
 
 
 def test_lines_of_tables_and_keys():

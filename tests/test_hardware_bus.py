@@ -481,7 +481,7 @@ def test_boards_that_answer_something_else_are_refused():
 
 def test_touch_sensors_of_a_servo2040_are_read():
     bus, device = opened("servo2040")
-    device.touch[2] = 3.0
+    device.levels = {2: 3.0 / 3.3}
     assert bus.read_touch() == pytest.approx((0, 0, 3.0, 0, 0, 0), abs=0.01)
 
 

@@ -7,6 +7,10 @@
 //   1500 1500 ... 1500*5A   pulse widths of all channels in microseconds; 0 ends the pulses
 //   W 500*10                end all pulses after 500 ms without a good line; 0: never
 //   ?*3F                    answered with "tarsus 18*.."
+//   I*49                    answered with the levels of the inputs, "I 111111*.."
+//
+// Inputs have a pull-up: connect each foot switch between its input and ground. A foot on the ground is
+// then a 0: foot_switches = { inputs = [0, 1, 2, 3, 4, 5], closed = false } in the calibration file.
 //
 // Supply the servos from their own battery, with its ground connected to the board's, never from the
 // board's 5 V pin.
@@ -15,6 +19,8 @@
 
 const uint8_t CHANNELS = 18;
 const uint8_t PINS[CHANNELS] = {22, 23, 24, 25, 26, 27, 28, 29, 30, 31, 32, 33, 34, 35, 36, 37, 38, 39};
+const uint8_t INPUTS = 6;
+const uint8_t INPUT_PINS[INPUTS] = {44, 45, 46, 47, 48, 49};
 const uint16_t SHORTEST = 500, LONGEST = 2500;
 const uint8_t LONGEST_LINE = 160;
 
@@ -82,9 +88,7 @@ void takePulses() {
   for (uint8_t channel = 0; channel < CHANNELS; channel++) setPulse(channel, widths[channel]);
 }
 
-void answer() {
-  char text[16];
-  snprintf(text, sizeof text, "tarsus %u", (unsigned)CHANNELS);
+void answer(const char *text) {
   uint8_t sum = 0;
   for (const char *c = text; *c; c++) sum ^= (uint8_t)*c;
   char end[5];
@@ -93,12 +97,27 @@ void answer() {
   Serial.print(end);
 }
 
+void answerIdentity() {
+  char text[16];
+  snprintf(text, sizeof text, "tarsus %u", (unsigned)CHANNELS);
+  answer(text);
+}
+
+void answerInputs() {
+  char text[INPUTS + 3] = "I ";
+  for (uint8_t input = 0; input < INPUTS; input++) text[input + 2] = digitalRead(INPUT_PINS[input]) == HIGH ? '1' : '0';
+  text[INPUTS + 2] = 0;
+  answer(text);
+}
+
 void takeLine() {
   if (tooLong || !checked()) return;
   lastGoodLine = millis();
   uint32_t value;
   if (line[0] == '?' && length == 1) {
-    answer();
+    answerIdentity();
+  } else if (line[0] == 'I' && length == 1) {
+    answerInputs();
   } else if (line[0] == 'W' && line[1] == ' ') {
     const char *end = number(line + 2, value);
     if (end && *end == 0) limit = value;
@@ -108,6 +127,7 @@ void takeLine() {
 }
 
 void setup() {
+  for (uint8_t input = 0; input < INPUTS; input++) pinMode(INPUT_PINS[input], INPUT_PULLUP);
   Serial.begin(115200);
 }
 

@@ -24,6 +24,11 @@ struct Port {
   void print(const char *text) { out += text; }
 };
 
+constexpr int LOW = 0, HIGH = 1, INPUT_PULLUP = 2;
+extern int levels[64];
+inline void pinMode(int pin, int mode) { levels[pin] = mode == INPUT_PULLUP; }
+inline int digitalRead(int pin) { return levels[pin]; }
+
 extern std::uint32_t now;
 extern Port Serial;
 inline std::uint32_t millis() { return now; }

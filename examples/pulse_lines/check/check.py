@@ -12,7 +12,7 @@ from tarsus import hardware
 from tarsus.hardware.codec import lines
 
 HERE = Path(__file__).parent
-LINES, CHANNELS = 3000, 18
+LINES, CHANNELS, INPUTS = 3000, 18, 6
 
 
 def random_line(chance: random.Random) -> bytes:
@@ -25,7 +25,7 @@ def random_line(chance: random.Random) -> bytes:
     if kind < 0.65:
         return lines.watchdog(chance.choice([0, 55, 505, 60_000]))
     if kind < 0.7:
-        return lines.ASK
+        return chance.choice([lines.ASK, lines.INPUTS])
     if kind < 0.85:
         damaged = bytearray(lines.pulses([1500] * CHANNELS))
         damaged[chance.randrange(len(damaged))] ^= 1 << chance.randrange(7)
@@ -47,9 +47,10 @@ def main() -> None:
             milliseconds = 0
             for number in range(LINES):
                 milliseconds += chance.choice([10, 20, 300, 700])
-                line = random_line(chance)
+                line, levels = random_line(chance), [chance.randrange(2) for _ in range(INPUTS)]
+                board.levels = dict(enumerate(levels))
                 sent = b"".join(one.data for one in board.receive(line, milliseconds / 1e3))
-                sketch.stdin.write(f"{milliseconds} {line.hex()}\n")
+                sketch.stdin.write(f"{milliseconds} {''.join(map(str, levels))} {line.hex()}\n")
                 sketch.stdin.flush()
                 answer = sketch.stdout.readline().strip()
                 expected = " ".join([f"[{sent.hex()}]", *(f"{width:.0f}" for width in board.pulses.values())])

@@ -1,5 +1,6 @@
-// Runs the sketch on a computer. A line of input is a time in ms and the bytes that arrive then, in hexadecimal digits;
-// a line of output is what the sketch sent, in hexadecimal digits, and the pulse widths of all channels.
+// Runs the sketch on a computer. A line of input is a time in ms, the levels of the inputs as binary digits, and the
+// bytes that arrive then, in hexadecimal digits; a line of output is what the sketch sent, in hexadecimal digits, and
+// the pulse widths of all channels.
 #include "Servo.h"
 
 #include "../pulse_lines.ino"
@@ -9,13 +10,15 @@
 
 std::uint32_t now = 0;
 Port Serial;
+int levels[64];
 
 int main() {
   setup();
   for (std::string line; std::getline(std::cin, line);) {
     std::istringstream words(line);
-    std::string bytes;
-    words >> now >> bytes;
+    std::string high, bytes;
+    words >> now >> high >> bytes;
+    for (std::size_t i = 0; i < high.size(); i++) levels[INPUT_PINS[i]] = high[i] - '0';
     Serial = Port();
     loop();
     for (std::size_t i = 0; i + 1 < bytes.size(); i += 2) Serial.in += static_cast<char>(std::stoi(bytes.substr(i, 2), nullptr, 16));

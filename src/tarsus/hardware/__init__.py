@@ -17,6 +17,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from tarsus.hardware.bus.inputs import InputBoard
     from tarsus.hardware.bus.protocol import Answers, Bus, BusServo, BusTiming, Capabilities, Telemetry
     from tarsus.hardware.bus.registry import BUSES, BusKind, bus_over, open_bus
     from tarsus.hardware.calibration.blank import new_calibration, nominal_calibration
@@ -47,6 +48,7 @@ if TYPE_CHECKING:
     from tarsus.hardware.transport.serial import SerialTransport, list_ports
 
 _HOMES = {
+    "tarsus.hardware.bus.inputs": ("InputBoard",),
     "tarsus.hardware.bus.protocol": ("Answers", "Bus", "BusServo", "BusTiming", "Capabilities", "Telemetry"),
     "tarsus.hardware.bus.registry": ("BUSES", "BusKind", "bus_over", "open_bus"),
     "tarsus.hardware.calibration.blank": ("new_calibration", "nominal_calibration"),
@@ -92,6 +94,7 @@ __all__ = [
     "FaultKind",
     "Faults",
     "FootSwitches",
+    "InputBoard",
     "JointCalibration",
     "ManualClock",
     "MemoryI2c",

@@ -30,6 +30,8 @@ class BusCommands:
         Least and greatest command that it can carry.
     numbers : (int, int)
         First and last number of a servo: its id, or the channel of the board.
+    inputs : int
+        How many inputs its board has, for foot switches.
     steps : (int, float) or None
         Positions of its usual servos, and the angle over which they are [deg]; None for pulse widths.
     """
@@ -39,6 +41,7 @@ class BusCommands:
     unit: str
     commands: tuple[float, float]
     numbers: tuple[int, int]
+    inputs: int = 0
     steps: tuple[int, float] | None = None
 
     @property
@@ -52,8 +55,10 @@ class BusCommands:
         return self.unit == "ticks"
 
 
-def _pulses(name: str, text: str, channels: int, commands: tuple[float, float] = (400.0, 2600.0)) -> BusCommands:
-    return BusCommands(name=name, text=text, unit="us", commands=commands, numbers=(0, channels - 1))
+def _pulses(
+    name: str, text: str, channels: int, commands: tuple[float, float] = (400.0, 2600.0), *, inputs: int = 0
+) -> BusCommands:
+    return BusCommands(name=name, text=text, unit="us", commands=commands, numbers=(0, channels - 1), inputs=inputs)
 
 
 def _ticks(name: str, text: str, steps: tuple[int, float], last: int, *, greatest: int | None = None) -> BusCommands:
@@ -66,10 +71,10 @@ BUS_COMMANDS: Mapping[str, BusCommands] = MappingProxyType(
         kind.name: kind
         for kind in (
             _pulses("pca9685", "PCA9685 boards on I2C", 32),
-            _pulses("maestro", "Pololu Mini Maestro", 24),
-            _pulses("ssc32", "Lynxmotion SSC-32 and SSC-32U", 32, (500.0, 2500.0)),
-            _pulses("servo2040", "Pimoroni Servo 2040", 18),
-            _pulses("lines", "an Arduino that reads lines of pulse widths", 32, (500.0, 2500.0)),
+            _pulses("maestro", "Pololu Mini Maestro", 24, inputs=24),
+            _pulses("ssc32", "Lynxmotion SSC-32 and SSC-32U", 32, (500.0, 2500.0), inputs=6),
+            _pulses("servo2040", "Pimoroni Servo 2040", 18, inputs=6),
+            _pulses("lines", "an Arduino that reads lines of pulse widths", 32, (500.0, 2500.0), inputs=8),
             _ticks("dynamixel-ax", "Dynamixel AX", (1024, 300.0), 253),
             _ticks("dynamixel-mx", "Dynamixel MX with protocol 1.0", (4096, 360.0), 253),
             _ticks("dynamixel-x", "Dynamixel X, and MX with protocol 2.0", (4096, 360.0), 252),

@@ -72,7 +72,8 @@ def contradictions(
             found += [Contradiction(("legs", leg, JOINTS[j]), f"{name}: {text}") for text in texts]
     if foot_switches is not None:
         found += [
-            Contradiction(("sensors", "foot_switches"), text) for text in _of_switches(robot, foot_switches, known)
+            Contradiction(("sensors", "foot_switches"), text)
+            for text in _of_switches(robot, foot_switches, known, joints)
         ]
     return found
 
@@ -179,14 +180,34 @@ def _of_angles(robot: Robot, leg: int, j: int, joint: JointCalibration, kind: Bu
             )
 
 
-def _of_switches(robot: Robot, switches: FootSwitches, buses: dict[str, BusSettings]) -> Iterator[str]:
-    if switches.bus not in buses:
-        yield f"foot switches: there is no bus {switches.bus!r}; there are: {', '.join(buses) or 'none'}"
+def _of_switches(
+    robot: Robot,
+    switches: FootSwitches,
+    buses: dict[str, BusSettings],
+    joints: Sequence[Sequence[JointCalibration]],
+) -> Iterator[str]:
     if len(switches.inputs) != robot.legs:
         yield f"foot switches: {len(switches.inputs)} inputs; the robot has {robot.legs} legs"
     used = [number for number in switches.inputs if number is not None]
     if len(set(used)) < len(used):
         yield "foot switches: two legs have the same input"
+    if switches.bus not in buses:
+        yield f"foot switches: there is no bus {switches.bus!r}; there are: {', '.join(buses) or 'none'}"
+        return
+    kind = buses[switches.bus].properties
+    if not kind.inputs:
+        able = ", ".join(name for name, one in BUS_COMMANDS.items() if one.inputs)
+        yield (
+            f"foot switches: a {kind.name} bus has no inputs; connect them to a board of the kind {able}, as a second "
+            "bus if need be"
+        )
+        return
+    channels = {joint.number for row in joints for joint in row if joint.bus == switches.bus} - {None}
+    for number in used:
+        if number >= kind.inputs:
+            yield f"foot switches: {kind.name} has no input {number}; inputs are 0 to {kind.inputs - 1}"
+        elif kind.name == "maestro" and number in channels:
+            yield f"foot switches: channel {number} is that of a servo; a Maestro's channel is a servo's or an input"
 
 
 def _degrees(pair: Sequence[float]) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from decimal import Decimal
 from pathlib import Path
 from typing import Any
@@ -10,7 +10,7 @@ from typing import Any
 from pydantic import BaseModel, ValidationError
 
 from tarsus.errors import CalibrationError, RobotFileError, nearest_name
-from tarsus.hardware.calibration.bus_commands import BUS_COMMANDS
+from tarsus.hardware.calibration.bus_commands import BUS_COMMANDS, BusCommands
 from tarsus.hardware.calibration.contradictions import contradictions
 from tarsus.hardware.calibration.fields import CalibrationFields
 from tarsus.hardware.calibration.lines import Place, line_of
@@ -213,15 +213,20 @@ def _in_file(place: Place, entries: dict[int, int]) -> Place:
     return place
 
 
-def _only_bus(buses: list[BusEntry], given: str | None) -> str:
-    if given is None and len(buses) > 1:
+def _only_bus(buses: list[BusEntry], given: str | None, fits: Callable[[BusCommands], bool]) -> str:
+    """Return the name of the bus that is given, or that of the only one that there is, or that fits."""
+    if given is not None:
+        return given
+    fitting = [bus for bus in buses if bus.kind in BUS_COMMANDS and fits(BUS_COMMANDS[bus.kind])]
+    if len(buses) > 1 and len(fitting) != 1:
         raise ValueError(f"bus: missing; there are {len(buses)}: {', '.join(bus.name for bus in buses)}")
-    return buses[0].name if given is None else given
+    return fitting[0].name if len(buses) > 1 else buses[0].name
 
 
 def _joint(table: JointTable, buses: list[BusEntry]) -> JointCalibration:
     """Return a joint; raise ValueError for keys that don't fit the bus."""
-    name = _only_bus(buses, table.bus)
+    pulses = any(getattr(table, key) is not None for key in ("channel", "zero_us", "us_per_deg", "limits_us"))
+    name = _only_bus(buses, table.bus, lambda kind: (kind.unit == "us") == pulses)
     kind = next((BUS_COMMANDS[bus.kind] for bus in buses if bus.name == name), None)
     if kind is None:
         return JointCalibration(bus=name)
@@ -265,7 +270,9 @@ def _switches(file: CalibrationFile) -> FootSwitches | None:
     if table is None:
         return None
     inputs = tuple(None if number < 0 else number for number in table.inputs)
-    return FootSwitches(bus=table.bus or file.buses[0].name, inputs=inputs, closed=table.closed)
+    with_inputs = [bus.name for bus in file.buses if bus.kind in BUS_COMMANDS and BUS_COMMANDS[bus.kind].inputs]
+    name = table.bus or (with_inputs or [file.buses[0].name])[0]
+    return FootSwitches(bus=name, inputs=inputs, closed=table.closed)
 
 
 def _imu(table: ImuTable | None) -> Mounting | None:

@@ -117,7 +117,7 @@ class FootSwitches:
     inputs : tuple of (int or None)
         Number of the input of each leg; None for a leg without a switch.
     closed : bool
-        Value of an input whose foot is on the ground.
+        Whether an input whose foot is on the ground is high; False for switches to ground with a pull-up.
     """
 
     bus: str

@@ -123,7 +123,9 @@ class BusEntry(Table):
 class JointTable(Table):
     """How a joint is driven: command = zero + direction * scale * angle. What is not known yet is left out."""
 
-    bus: Name | None = Field(default=None, description="Name of its bus. Default: the only one.")
+    bus: Name | None = Field(
+        default=None, description="Name of its bus. Default: the only one, or the only one with such numbers."
+    )
     id: Annotated[int, Whole(0, 253, "a whole number")] | None = Field(default=None, description="Id of the servo.")
     channel: Annotated[int, Whole(0, 255, "a whole number")] | None = Field(
         default=None, description="Channel of the board."
@@ -168,7 +170,9 @@ class SupplyTable(Table):
 class FootSwitchTable(Table):
     """Inputs of the foot switches."""
 
-    bus: Name | None = Field(default=None, description="Name of the bus whose board has them. Default: the only one.")
+    bus: Name | None = Field(
+        default=None, description="Name of the bus whose board has them. Default: the first one with inputs."
+    )
     inputs: list[Annotated[int, Whole(-1, 255, "a whole number")]] = Field(
         description="Input of each leg, in the robot's order; -1 for a leg without a switch."
     )

@@ -9,8 +9,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import reduce
 from operator import xor
+from typing import Final
 
-__all__ = ["ASK", "END", "checked", "content", "identity", "pulses", "watchdog"]
+__all__ = ["ASK", "END", "INPUTS", "MOST_INPUTS", "checked", "content", "identity", "levels", "pulses", "watchdog"]
 
 END = b"\n"
 _DIGITS = b"0123456789ABCDEF"
@@ -30,6 +31,11 @@ def checked(text: str) -> bytes:
 
 ASK = checked("?")
 """The line that asks who is there."""
+
+
+MOST_INPUTS: Final = 8
+INPUTS: Final = checked("I")
+"""The line that asks for the levels of the inputs."""
 
 
 def content(line: bytes) -> str | None:
@@ -78,3 +84,15 @@ def identity(text: str) -> int | None:
     """
     name, _, count = text.partition(" ")
     return int(count) if name == "tarsus" and count.isascii() and count.isdigit() else None
+
+
+def levels(text: str) -> tuple[int, ...] | None:
+    """Return the levels of the inputs, or None if that is no answer to `INPUTS`.
+
+    Parameters
+    ----------
+    text : str
+        Content of a line, such as ``"I 011011"``.
+    """
+    name, _, digits = text.partition(" ")
+    return tuple(map(int, digits)) if name == "I" and digits and set(digits) <= set("01") else None

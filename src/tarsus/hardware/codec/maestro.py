@@ -13,6 +13,7 @@ from tarsus.errors import InputError
 
 __all__ = [
     "ERRORS",
+    "FULL_LEVEL",
     "GET_ERRORS",
     "GET_MOVING",
     "GET_POSITION",
@@ -27,6 +28,7 @@ __all__ = [
     "errors_in",
     "get_errors",
     "get_position",
+    "levels_in",
     "quarters",
     "set_speed",
     "set_targets",
@@ -43,6 +45,8 @@ GET_ERRORS: Final = 0xA1
 GO_HOME: Final = 0xA2
 
 MOST_CHANNELS: Final = 24
+FULL_LEVEL: Final = 1023
+"""What an input answers at its highest voltage; digital ones, from channel 12 on, know only 0 and this."""
 _POLOLU = 0xAA
 _MOST_WORD = 0x3FFF
 
@@ -173,7 +177,7 @@ def set_speed(channel: int, speed: int, *, device: int | None = None, checked: b
 
 
 def get_position(channel: int, *, device: int | None = None, checked: bool = False) -> bytes:
-    """Return the command that asks for the pulse width that a channel sends; it answers two bytes.
+    """Return the command that asks for the pulse width that a channel sends, or its level; it answers two bytes.
 
     Parameters
     ----------
@@ -185,6 +189,17 @@ def get_position(channel: int, *, device: int | None = None, checked: bool = Fal
         Whether a CRC is appended.
     """
     return command(GET_POSITION, bytes((channel,)), device=device, checked=checked)
+
+
+def levels_in(answer: bytes) -> tuple[int, ...]:
+    """Return the numbers that channels answer to `get_position`: 0 to 1023 of those that are inputs.
+
+    Parameters
+    ----------
+    answer : bytes
+        The answers of all channels.
+    """
+    return tuple(int.from_bytes(answer[at : at + 2], "little") for at in range(0, len(answer), 2))
 
 
 def get_errors(*, device: int | None = None, checked: bool = False) -> bytes:

@@ -8,11 +8,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-__all__ = ["END", "MOVING", "VERSION", "move", "query_pulses", "read_pulses"]
+__all__ = ["END", "INPUTS", "MOVING", "VERSION", "move", "query_inputs", "query_pulses", "read_inputs", "read_pulses"]
 
 END = b"\r"
 VERSION = b"VER\r"
 MOVING = b"Q\r"
+INPUTS = "ABCDEF"
+"""Names of the digital inputs; they have a pull-up, and are debounced for 15 ms."""
 
 
 def move(pulses: Mapping[int, int], *, speeds: Mapping[int, int] | None = None) -> bytes:
@@ -42,6 +44,28 @@ def query_pulses(*channels: int) -> bytes:
         The channels.
     """
     return "".join(f"QP{channel}" for channel in channels).encode("ascii") + END
+
+
+def query_inputs(*inputs: int) -> bytes:
+    """Return the query for the levels of digital inputs; a character for each of them answers.
+
+    Parameters
+    ----------
+    *inputs : int
+        Numbers of the inputs, 0 for A.
+    """
+    return " ".join(INPUTS[number] for number in inputs).encode("ascii") + END
+
+
+def read_inputs(answer: bytes) -> tuple[int, ...] | None:
+    """Return levels, 0 or 1; None if that is no answer to `query_inputs`.
+
+    Parameters
+    ----------
+    answer : bytes
+        The answer.
+    """
+    return tuple(byte - ord("0") for byte in answer) if set(answer) <= set(b"01") else None
 
 
 def read_pulses(answer: bytes) -> tuple[int, ...]:

@@ -7,7 +7,7 @@ import re
 from collections.abc import Iterable, Iterator
 from typing import Any
 
-from tarsus.hardware.codec import lines, maestro, servo2040
+from tarsus.hardware.codec import lines, maestro, servo2040, ssc32
 from tarsus.hardware.emulation.pulses import BOARD, EmulatedBoard, pulse_servos
 from tarsus.hardware.emulation.servo import ServoTraits
 
@@ -22,8 +22,12 @@ _SIZES = {
     maestro.GET_ERRORS: 1,
     maestro.GO_HOME: 1,
 }
+# Inputs from this channel on are digital.
+_ANALOGUE = 12
 _TIMEOUT_ERROR = 1 << 5
 _PROTOCOL_ERROR = 1 << 4
+# Of the sketch.
+_INPUTS = 6
 
 
 class EmulatedMaestro(EmulatedBoard):
@@ -83,13 +87,19 @@ class EmulatedMaestro(EmulatedBoard):
             # In units of 0.25 us in 10 ms.
             self.servos[data[0]].speed_limit = (data[1] | data[2] << 7) * 25.0 or math.inf
         elif code == maestro.GET_POSITION:
-            return round(4 * self.pulses.get(data[0], 0.0)).to_bytes(2, "little")
+            return self._position(data[0]).to_bytes(2, "little")
         elif code == maestro.GET_MOVING:
             return bytes((any(servo.speed for servo in self.servos.values()),))
         elif code == maestro.GET_ERRORS:
             errors, self._errors = self._errors, 0
             return errors.to_bytes(2, "little")
         return b""
+
+    def _position(self, channel: int) -> int:
+        if channel in self.levels:
+            level = self.levels[channel] if channel < _ANALOGUE else round(self.levels[channel])
+            return round(maestro.FULL_LEVEL * level)
+        return round(4 * self.pulses.get(channel, 0.0))
 
     def _set(self, first: int, data: bytes) -> None:
         for at in range(0, len(data), 2):
@@ -122,8 +132,14 @@ class EmulatedSsc32(EmulatedBoard):
                 yield BOARD, b"+" if any(servo.speed for servo in self.servos.values()) else b"."
             elif asked := re.findall(r"QP(\d+)", text):
                 yield BOARD, bytes(int(self.pulses.get(int(channel), 0.0) // 10) for channel in asked)
+            elif re.fullmatch(f"[{ssc32.INPUTS}]+", text):
+                yield BOARD, "".join(str(self._level(ssc32.INPUTS.index(one))) for one in text).encode("ascii")
             else:
                 self._move(text)
+
+    def _level(self, number: int) -> int:
+        # Inputs have a pull-up.
+        return round(self.levels.get(number, 1.0))
 
     def _move(self, text: str) -> None:
         if not re.fullmatch(r"(#\d+P\d+(S\d+)?)+(T\d+)?", text):
@@ -145,16 +161,10 @@ class EmulatedServo2040(EmulatedBoard):
         What the servos are like.
     **line
         Passed on to `EmulatedLine`.
-
-    Attributes
-    ----------
-    touch : list of float
-        Voltages of the touch sensors [V].
     """
 
     def __init__(self, channels: Iterable[int], *, traits: ServoTraits | None = None, **line: Any) -> None:
         super().__init__(pulse_servos(channels, traits), **line)
-        self.touch = [0.0] * 6
         self._widths = [1500] * servo2040.CHANNELS
         self._on = False
 
@@ -184,8 +194,8 @@ class EmulatedServo2040(EmulatedBoard):
     def _value(self, pin: int) -> bytes:
         if pin < servo2040.CHANNELS:
             value = self._widths[pin]
-        elif pin < servo2040.TOUCH + len(self.touch):
-            value = round(self.touch[pin - servo2040.TOUCH] * 310.3)
+        elif pin < servo2040.CURRENT:
+            value = round(3.3 * self.levels.get(pin - servo2040.TOUCH, 0.0) * 310.3)
         elif pin == servo2040.CURRENT:
             value = round(sum(servo.current for servo in self.servos.values()) / 0.0814) + 512
         else:
@@ -231,10 +241,16 @@ class EmulatedLines(EmulatedBoard):
             words = text.split()
             if words == ["?"]:
                 yield BOARD, lines.checked(f"tarsus {self._outputs}")
+            elif words == ["I"]:
+                yield BOARD, lines.checked("I " + "".join(map(self._level, range(_INPUTS))))
             elif words[:1] == ["W"] and len(words) == 2 and words[1].isdigit():
                 self._limit = int(words[1]) / 1e3 or math.inf
             else:
                 self._set(words)
+
+    def _level(self, number: int) -> str:
+        # Inputs have a pull-up.
+        return str(round(self.levels.get(number, 1.0)))
 
     def _set(self, words: list[str]) -> None:
         if len(words) != self._outputs or not all(word.isdigit() for word in words):

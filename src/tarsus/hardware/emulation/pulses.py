@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
+from types import MappingProxyType
 
 from tarsus.hardware.emulation.line import EmulatedLine
 from tarsus.hardware.emulation.servo import EmulatedServo, ServoTraits
@@ -57,9 +58,12 @@ class EmulatedBoard(EmulatedLine):
     ----------
     pulses : dict of int to float
         Pulse widths by channel [us]; 0 for none.
+    levels : mapping of int to float
+        Levels of the inputs by their numbers, 0 to 1; 0 for those that it does not have.
     """
 
     _fed_by_port = True
+    levels: Mapping[int, float] = MappingProxyType({})
 
     def _follow(self) -> None:
         # Also after their supply was gone: the pulses are still there.

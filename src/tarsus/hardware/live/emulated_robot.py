@@ -14,6 +14,7 @@ from tarsus.hardware.bus.protocol import Bus
 from tarsus.hardware.bus.registry import bus_kind, bus_over
 from tarsus.hardware.calibration.calibration import Calibration
 from tarsus.hardware.emulation.registry import emulate
+from tarsus.hardware.live.emulated_feet import EmulatedFeet
 from tarsus.hardware.transport.clock import SystemClock
 from tarsus.hardware.transport.memory import MemoryI2c
 from tarsus.hardware.transport.pty import PtyServer
@@ -73,6 +74,8 @@ class EmulatedRobot:
                 self._i2c[settings.name] = bus_over(settings.kind, MemoryI2c(line, SystemClock()))
             buses.append(dataclasses.replace(settings, port=port, baud=baud if serial else None))
         self.calibration = calibration.replace(buses=tuple(buses))
+        if calibration.foot_switches is not None:
+            self.lines[calibration.foot_switches.bus].levels = EmulatedFeet(calibration, self.lines)
 
     @property
     def buses(self) -> Mapping[str, Bus] | None:

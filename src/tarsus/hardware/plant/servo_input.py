@@ -12,6 +12,7 @@ from tarsus.errors import BusError
 from tarsus.hardware.bus.protocol import Bus
 from tarsus.hardware.calibration.calibration import Calibration
 from tarsus.hardware.plant.fault import ServoFault
+from tarsus.hardware.plant.foot_contacts import FootContacts
 from tarsus.hardware.plant.joint_map import JointMap
 from tarsus.hardware.plant.monitor.answer_monitor import AnswerMonitor
 from tarsus.hardware.plant.monitor.motion_monitor import MotionMonitor
@@ -22,7 +23,7 @@ from tarsus.hardware.sensors.attitude_line import AttitudeLine
 from tarsus.hardware.transport.clock import Clock
 
 if TYPE_CHECKING:
-    from jaxtyping import Float
+    from jaxtyping import Bool, Float
 
 __all__ = ["ServoInput"]
 
@@ -72,8 +73,10 @@ class ServoInput:
         self._answers = AnswerMonitor(calibration, joints, settings)
         self._motion = MotionMonitor(calibration, settings)
         self.telemetry = TelemetryMonitor(calibration, joints, settings)
+        switches = calibration.foot_switches
+        self._feet = None if switches is None else FootContacts(switches, buses[switches.bus], clock)
         self._imu, self._clock = imu, clock
-        self.complete = True
+        self.complete, self._troubled = True, False
         self.notes: list[str] = []
 
     @property
@@ -131,6 +134,11 @@ class ServoInput:
         if found is None and reader.read.any():
             found = self._motion.followed(sent, reader.angles.copy(), read=reader.read, now=self._clock.now())
         self.complete = complete
+        if complete and self._feet is not None:
+            trouble = self._feet.read()
+            if trouble and not self._troubled:
+                self.notes.append(f"foot switches can't be read: {trouble}")
+            self._troubled = self._troubled or bool(trouble)
         # A line in doubt is slow: whether it recovers is more urgent.
         for name, values in reader.telemetry(dt, begun=begun) if complete else ():
             found = found or self.telemetry.measured(name, values, now=self._clock.now())
@@ -147,8 +155,19 @@ class ServoInput:
         for _ in self._reader.positions(dt):
             pass
 
-    def readings(self) -> SensorReadings:
-        """Return the last values of all channels of which every joint was measured."""
+    @property
+    def seconds(self) -> float:
+        """How long the foot switches take on the wire in a tick [s]."""
+        return 0.0 if self._feet is None else self._feet.seconds
+
+    def readings(self, planned: Bool[np.ndarray, "legs"]) -> SensorReadings:
+        """Return the last values of all channels of which every joint was measured.
+
+        Parameters
+        ----------
+        planned : array of bool, shape (legs,)
+            Which feet should be on the ground.
+        """
         reader, telemetry = self._reader, self.telemetry
         channels = {
             "joint_angles": reader.angles,
@@ -159,6 +178,9 @@ class ServoInput:
         }
         known: dict[str, Any] = {name: array.copy() for name, array in channels.items() if not np.isnan(array).any()}
         ages: dict[str, float] = {name: reader.age for name in ("joint_angles", "joint_speeds") if name in known}
+        age = None if self._feet is None else self._feet.age
+        if self._feet is not None and age is not None:
+            known["contacts"], ages["contacts"] = self._feet.contacts(planned), age
         if self._imu is not None:
             known |= self._attitude(self._imu, ages)
         return SensorReadings(**known, age=ages)

@@ -145,7 +145,7 @@ class ServoPlant:
     @property
     def greatest_rate(self) -> float:
         """Ticks per second that the wires carry: goals of all servos, and positions of half of them [1/s]."""
-        return 1.0 / max(*(each.goals + each.positions / 2 for each in self._rates), 1e-6)
+        return 1.0 / max(*(each.goals + each.positions / 2 + self._input.seconds for each in self._rates), 1e-6)
 
     @property
     def speed_factor(self) -> float:
@@ -211,7 +211,8 @@ class ServoPlant:
         if not 0 < dt < math.inf:
             raise InputError(f"dt is {dt:g} s; it must be a finite number greater than 0")
         self._belly = output.belly
-        return self._tick(output.angles, dt)
+        self._tick(output.angles, dt)
+        return self._input.readings(output.contacts)
 
     def stop(self) -> None:
         """Sit down if the robot stands and its servos allow it, then release all servos and close the ports.
@@ -248,7 +249,7 @@ class ServoPlant:
             "direction in the calibration"
         )
 
-    def _tick(self, angles: Float[np.ndarray, "legs 3"], dt: float) -> SensorReadings:
+    def _tick(self, angles: Float[np.ndarray, "legs 3"], dt: float) -> None:
         """Wait for the tick, send joint angles, measure, and raise the error of a fault."""
         now = self._pacer.wait(dt, excused=not self._input.complete)
         fault: ServoFault | None
@@ -268,7 +269,6 @@ class ServoPlant:
         if fault is not None:
             self.fault = fault
             raise fault.error()
-        return self._input.readings()
 
     def _observe(self, now: float, asked: Float[np.ndarray, "..."], fault: ServoFault | None) -> None:
         if self._observer is None:

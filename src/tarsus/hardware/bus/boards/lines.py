@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from tarsus.errors import CorruptAnswerError, InputError
 from tarsus.hardware.bus.boards.board_bus import BoardBus
 from tarsus.hardware.bus.checks import checked_time
+from tarsus.hardware.bus.inputs import checked_inputs
 from tarsus.hardware.bus.link import Link, hexadecimal
 from tarsus.hardware.bus.protocol import Capabilities
 from tarsus.hardware.codec import lines as codec
@@ -36,6 +37,8 @@ class LineBus(BoardBus):
     InputError
         If there are not 1 to 32 channels.
     """
+
+    inputs = range(codec.MOST_INPUTS)
 
     def __init__(self, transport: Transport, *, channels: int = 18, timeout: float = 0.05) -> None:
         if not 1 <= channels <= _MOST_CHANNELS:
@@ -72,6 +75,47 @@ class LineBus(BoardBus):
         limit = checked_time(self.name, self.capabilities, seconds)
         self._link.send(codec.watchdog(0 if limit is None else round(1e3 * limit)))
         return True
+
+    def read_inputs(self, numbers: Sequence[int]) -> tuple[float, ...]:
+        """Return the levels of inputs, 0 or 1.
+
+        Parameters
+        ----------
+        numbers : sequence of int
+            The inputs.
+
+        Raises
+        ------
+        NoAnswerError, CorruptAnswerError
+            If the board does not answer, its answer is damaged, or its sketch has fewer inputs.
+        """
+        numbers = checked_inputs(self.name, self.inputs, numbers)
+        if not numbers:
+            return ()
+        answer = self._link.ask_board(codec.INPUTS, end=codec.END)
+        text = codec.content(answer)
+        levels = None if text is None else codec.levels(text)
+        if levels is None or max(numbers) >= len(levels):
+            raise CorruptAnswerError(
+                self.name,
+                self.port,
+                expected=f"'I' and the levels of {max(numbers) + 1} inputs or more, with its checksum",
+                received=hexadecimal(answer) if text is None else repr(text),
+                remedy="Check the baud rate, the sketch on the board, and its number of inputs.",
+            )
+        return tuple(float(levels[number]) for number in numbers)
+
+    def input_seconds(self, numbers: Sequence[int]) -> float:
+        """Return how long reading inputs takes on the wire [s].
+
+        Parameters
+        ----------
+        numbers : sequence of int
+            The inputs; all are read together.
+        """
+        del numbers
+        size = len(codec.INPUTS) + len(codec.checked("I " + "0" * codec.MOST_INPUTS))
+        return serial_seconds(size, self._transport.baud)
 
     def _goal_seconds(self, ids: Sequence[int]) -> float:
         # A line has all channels.

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from tarsus.errors import CorruptAnswerError
 from tarsus.hardware.bus.boards.board_bus import LONGEST_PULSE, SHORTEST_PULSE, BoardBus, runs
 from tarsus.hardware.bus.checks import checked_ids, checked_speed
+from tarsus.hardware.bus.inputs import checked_inputs
 from tarsus.hardware.bus.link import Link, hexadecimal
 from tarsus.hardware.bus.protocol import Capabilities, Telemetry
 from tarsus.hardware.codec import maestro as codec
@@ -32,6 +33,8 @@ _ERROR_BITS = 9
 class MaestroBus(BoardBus):
     """A Mini Maestro with 12, 18 or 24 channels.
 
+    Channels are inputs whose mode was set to *Input* in the Maestro Control Center.
+
     Its own watchdog is the serial timeout, and what channels do "on startup or error"; both are set in Pololu's Maestro
     Control Center.
 
@@ -46,6 +49,8 @@ class MaestroBus(BoardBus):
     timeout : float
         Longest time until an answer begins, beyond its time on the wire [s].
     """
+
+    inputs = range(codec.MOST_CHANNELS)
 
     def __init__(
         self, transport: Transport, *, device: int | None = None, checked: bool = False, timeout: float = 0.02
@@ -71,6 +76,47 @@ class MaestroBus(BoardBus):
         for channel in checked_ids(self.name, self.capabilities, ids):
             self._link.send(codec.set_speed(channel, value, device=self._device, checked=self._checked))
         return True
+
+    def read_inputs(self, numbers: Sequence[int]) -> tuple[float, ...]:
+        """Return the levels of channels that are inputs, as shares of 5 V.
+
+        Parameters
+        ----------
+        numbers : sequence of int
+            The channels.
+
+        Raises
+        ------
+        NoAnswerError, CorruptAnswerError
+            If the board does not answer, or a channel is no input.
+        """
+        numbers = checked_inputs(self.name, self.inputs, numbers)
+        if not numbers:
+            return ()
+        levels = codec.levels_in(self._link.ask_board(self._asking(numbers), size=2 * len(numbers)))
+        for number, level in zip(numbers, levels, strict=True):
+            if level > codec.FULL_LEVEL:
+                raise CorruptAnswerError(
+                    self.name,
+                    self.port,
+                    expected=f"a level of channel {number} from 0 to {codec.FULL_LEVEL}",
+                    received=f"{level}",
+                    remedy="Set the mode of this channel to Input in the Maestro Control Center.",
+                )
+        return tuple(level / codec.FULL_LEVEL for level in levels)
+
+    def input_seconds(self, numbers: Sequence[int]) -> float:
+        """Return how long reading inputs takes on the wire [s].
+
+        Parameters
+        ----------
+        numbers : sequence of int
+            The channels.
+        """
+        return serial_seconds(len(self._asking(numbers)) + 2 * len(numbers), self._transport.baud)
+
+    def _asking(self, numbers: Sequence[int]) -> bytes:
+        return b"".join(codec.get_position(one, device=self._device, checked=self._checked) for one in numbers)
 
     def _goal_seconds(self, ids: Sequence[int]) -> float:
         size = sum(len(frame) for frame in self._frames(dict.fromkeys(ids, 0.0)))

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from tarsus.hardware.bus.boards.board_bus import LONGEST_PULSE, SHORTEST_PULSE, BoardBus, runs
+from tarsus.hardware.bus.inputs import checked_inputs
 from tarsus.hardware.bus.link import Link
 from tarsus.hardware.bus.protocol import Capabilities, Telemetry
 from tarsus.hardware.codec import servo2040 as codec
@@ -22,7 +23,7 @@ _CAPABILITIES = Capabilities(
     telemetry=frozenset(("current", "voltage")),
     torque_off="pulses",
 )
-_TOUCH_SENSORS = 6
+_TOUCH_SENSORS, _FULL_VOLTAGE = 6, 3.3
 
 
 class Servo2040Bus(BoardBus):
@@ -38,6 +39,8 @@ class Servo2040Bus(BoardBus):
         Longest time until an answer begins, beyond its time on the wire [s].
     """
 
+    inputs = range(_TOUCH_SENSORS)
+
     def __init__(self, transport: Transport, *, timeout: float = 0.02) -> None:
         super().__init__("servo2040", transport, _CAPABILITIES)
         self._transport = transport
@@ -52,6 +55,36 @@ class Servo2040Bus(BoardBus):
             If the board does not answer, or its answer is damaged.
         """
         return tuple(codec.voltage(value) for value in self._get(codec.TOUCH, _TOUCH_SENSORS))
+
+    def read_inputs(self, numbers: Sequence[int]) -> tuple[float, ...]:
+        """Return the voltages of touch sensors, as shares of 3.3 V.
+
+        Parameters
+        ----------
+        numbers : sequence of int
+            The sensors.
+
+        Raises
+        ------
+        NoAnswerError, CorruptAnswerError
+            If the board does not answer, or its answer is damaged.
+        """
+        numbers = checked_inputs(self.name, self.inputs, numbers)
+        voltages = self.read_touch() if numbers else ()
+        return tuple(min(voltages[number] / _FULL_VOLTAGE, 1.0) for number in numbers)
+
+    def input_seconds(self, numbers: Sequence[int]) -> float:
+        """Return how long reading inputs takes on the wire [s].
+
+        Parameters
+        ----------
+        numbers : sequence of int
+            The sensors; all are read together.
+        """
+        del numbers
+        return serial_seconds(
+            len(codec.get(codec.TOUCH, _TOUCH_SENSORS)) + 3 + 2 * _TOUCH_SENSORS, self._transport.baud
+        )
 
     def _goal_seconds(self, ids: Sequence[int]) -> float:
         # Over USB it takes less than at the rate of the port, which means nothing there.

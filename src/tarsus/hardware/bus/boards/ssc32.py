@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from tarsus.errors import CorruptAnswerError
 from tarsus.hardware.bus.boards.board_bus import BoardBus
 from tarsus.hardware.bus.checks import checked_ids, checked_speed
+from tarsus.hardware.bus.inputs import checked_inputs
 from tarsus.hardware.bus.link import Link, hexadecimal
 from tarsus.hardware.bus.protocol import Capabilities
 from tarsus.hardware.codec import ssc32 as codec
@@ -29,7 +30,7 @@ _CAPABILITIES = Capabilities(
 
 
 class Ssc32Bus(BoardBus):
-    """An SSC-32 or SSC-32U with 32 channels.
+    """An SSC-32 or SSC-32U with 32 channels, and the digital inputs A to F as inputs 0 to 5.
 
     Parameters
     ----------
@@ -38,6 +39,8 @@ class Ssc32Bus(BoardBus):
     timeout : float
         Longest time until an answer begins, beyond its time on the wire [s].
     """
+
+    inputs = range(len(codec.INPUTS))
 
     def __init__(self, transport: Transport, *, timeout: float = 0.02) -> None:
         super().__init__("ssc32", transport, _CAPABILITIES)
@@ -61,6 +64,44 @@ class Ssc32Bus(BoardBus):
             if limit is not None:
                 self._speeds[channel] = min(max(round(limit), 1), 65535)
         return True
+
+    def read_inputs(self, numbers: Sequence[int]) -> tuple[float, ...]:
+        """Return the levels of digital inputs, 0 or 1.
+
+        Parameters
+        ----------
+        numbers : sequence of int
+            The inputs: 0 for A.
+
+        Raises
+        ------
+        NoAnswerError, CorruptAnswerError
+            If the board does not answer, or its answer is damaged.
+        """
+        numbers = checked_inputs(self.name, self.inputs, numbers)
+        if not numbers:
+            return ()
+        answer = self._link.ask_board(codec.query_inputs(*numbers), size=len(numbers))
+        levels = codec.read_inputs(answer)
+        if levels is None:
+            raise CorruptAnswerError(
+                self.name,
+                self.port,
+                expected=f"{len(numbers)} times 0 or 1",
+                received=hexadecimal(answer),
+                remedy="Check the baud rate: buttons and lamps of the SSC-32U tell and set it.",
+            )
+        return tuple(map(float, levels))
+
+    def input_seconds(self, numbers: Sequence[int]) -> float:
+        """Return how long reading inputs takes on the wire [s].
+
+        Parameters
+        ----------
+        numbers : sequence of int
+            The inputs.
+        """
+        return serial_seconds(len(codec.query_inputs(*numbers)) + len(numbers), self._transport.baud)
 
     def _goal_seconds(self, ids: Sequence[int]) -> float:
         size = len(codec.move(dict.fromkeys(ids, 1500), speeds=self._speeds))

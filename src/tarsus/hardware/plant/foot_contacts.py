@@ -1,0 +1,98 @@
+"""Contacts of the feet, from switches on the inputs of a board."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from tarsus.errors import BusError, InputError, PortError
+from tarsus.hardware.bus.inputs import InputBoard
+from tarsus.hardware.bus.protocol import Bus
+from tarsus.hardware.calibration.parts import FootSwitches
+from tarsus.hardware.transport.clock import Clock
+
+if TYPE_CHECKING:
+    from jaxtyping import Bool
+
+__all__ = ["FootContacts"]
+
+_HALF = 0.5
+# A board that does not answer is asked again after this time, as asking it takes most of a tick [s].
+_PAUSE = 0.2
+
+
+class FootContacts:
+    """Reads foot switches, and keeps what was read last.
+
+    Parameters
+    ----------
+    switches : FootSwitches
+        The inputs of the legs.
+    bus : Bus
+        The bus whose board has them.
+    clock : Clock
+        The clock.
+
+    Raises
+    ------
+    InputError
+        If the bus has no inputs.
+    """
+
+    def __init__(self, switches: FootSwitches, bus: Bus, clock: Clock) -> None:
+        if not isinstance(bus, InputBoard):
+            raise InputError(f"the bus {switches.bus!r} of the foot switches has no inputs: {bus.name}")
+        self._switches, self._board, self._clock = switches, bus, clock
+        self._numbers = tuple(number for number in switches.inputs if number is not None)
+        self._closed: dict[int, bool] = {}
+        self._read: float | None = None
+        self._resume = -np.inf
+
+    @property
+    def seconds(self) -> float:
+        """How long reading them takes on the wire [s]."""
+        return self._board.input_seconds(self._numbers)
+
+    @property
+    def age(self) -> float | None:
+        """Time since they were read [s]; None if they never were."""
+        return None if self._read is None else max(0.0, self._clock.now() - self._read)
+
+    def read(self) -> str:
+        """Read the switches, and return why they can't be read now: empty where they can.
+
+        Raises
+        ------
+        PortError
+            If the port is gone.
+        """
+        if self._clock.now() < self._resume:
+            return ""
+        try:
+            levels = self._board.read_inputs(self._numbers)
+        except PortError:
+            raise
+        except BusError as error:
+            self._resume = self._clock.now() + _PAUSE
+            return str(error)
+        self._read = self._clock.now()
+        closed = self._switches.closed
+        self._closed = {number: (level > _HALF) == closed for number, level in zip(self._numbers, levels, strict=True)}
+        return ""
+
+    def contacts(self, planned: Bool[np.ndarray, "legs"]) -> Bool[np.ndarray, "legs"]:
+        """Return which feet touch the ground: as planned where a leg has no switch.
+
+        Parameters
+        ----------
+        planned : array of bool, shape (legs,)
+            Which feet should be on the ground.
+        """
+        inputs = self._switches.inputs
+        return np.array(
+            [
+                bool(plan) if number is None else self._closed.get(number, bool(plan))
+                for number, plan in zip(inputs, planned, strict=True)
+            ]
+        )
