@@ -454,6 +454,22 @@ def test_the_time_of_a_tick_is_what_it_takes_in_memory(any_bus):
     assert bus.timing(()).rate > timing.rate or bus.name == "lines"
 
 
+@pytest.mark.parametrize(("pause", "waits"), [(0.0, 0.02), (0.012, 0.008), (0.05, 0.0)])
+def test_silence_since_an_answer_was_waited_for_counts_before_the_same_servo_is_asked_again(pause, waits):
+    clock = hardware.ManualClock()
+    bus, device = hardware.emulated_bus("feetech-sts", IDS, clock=clock)
+    device.faults.missing = {IDS[0]}
+
+    def duration():
+        began = clock.now()
+        assert isinstance(bus.read_positions((IDS[0],)).errors[0], NoAnswerError)
+        return clock.now() - began
+
+    first = duration()
+    clock.sleep(pause)
+    assert duration() == pytest.approx(first + waits, abs=1e-3)
+
+
 def test_fast_reading_takes_less_time_and_survives_a_missing_servo():
     bus, device = hardware.emulated_bus("dynamixel-x", IDS, baud=1_000_000)
     fast = hardware.bus_over("dynamixel-x", bus._transport, fast=True)

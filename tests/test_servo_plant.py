@@ -195,6 +195,26 @@ def test_the_telemetry_of_all_servos_is_read_in_80_ms_also_where_one_keeps_its_a
     rig.plant.stop()
 
 
+@pytest.mark.parametrize("kind", ["feetech-scs", "lx16a"])
+def test_servos_that_are_asked_one_by_one_are_noticed_to_be_silent_together_or_alone(kind):
+    # The supply is gone: 18 servos are not waited for. At first the computer may be late itself.
+    rig = Rig(kind, timeout=0.02)
+    rig.plant.start(rig.controller.output)
+    rig.stand(100)
+    rig.line.supply.source, began = 1.0, rig.clock.now()
+    with pytest.raises(ServoFaultError, match="brown-out") as caught:
+        rig.stand(20)
+    assert caught.value.fault.time - began < (0.1 if kind == "feetech-scs" else 0.2)
+    # The cable of a leg is gone, that of the first servos: others are asked.
+    rig = Rig(kind, timeout=0.02)
+    rig.plant.start(rig.controller.output)
+    rig.stand(3)
+    rig.line.faults.missing |= set(rig.ids[:3])
+    with pytest.raises(ServoFaultError, match="front left coxa: no answer"):
+        rig.stand(60)
+    rig.plant.stop()
+
+
 def test_every_kind_of_fault_has_a_reaction_and_a_remedy():
     assert set(REACTIONS) == set(FaultKind)
     assert all(remedy.endswith(".") for _, remedy in REACTIONS.values())

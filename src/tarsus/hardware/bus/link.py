@@ -62,7 +62,8 @@ class Link:
         self.transport, self.bus, self.timeout, self._delay = transport, bus, timeout, delay
         self._scan, self._header = scan, header
         self._doubtful = False
-        self._awaited: set[int] = set()
+        # Whose answer has not come, and since when nobody waits for it any more; None for a board's [s].
+        self._awaited: dict[int | None, float] = {}
         self._sent = b""
 
     def send(self, frame: bytes) -> None:
@@ -106,7 +107,8 @@ class Link:
             exchange.take(scanned)
             if not data:
                 break
-        self._awaited |= set(ids) - exchange.found.keys()
+        now = self.transport.now()
+        self._awaited.update(dict.fromkeys(set(ids) - exchange.found.keys(), now))
         self._doubtful = bool(exchange.noise or exchange.foreign or exchange.twice or rest)
         if exchange.noise or rest:
             exchange.withdraw(self._scan(received + self.transport.discard(), ended=True).suspect)
@@ -146,7 +148,8 @@ class Link:
             if len(received) == size:
                 # An answer that begins like the request, without an echo before it.
                 return received
-            self._doubtful = True
+            self._doubtful = bool(received)
+            self._awaited[None] = self.transport.now()
             raise self._silent(size, received, echo=received == frame)
         answer = received.removeprefix(frame)
         self._doubtful = size is not None and len(answer) > size
@@ -187,13 +190,16 @@ class Link:
 
     def _settle(self, ids: Collection[int] | None = None) -> None:
         """Empty the input; wait for silence if the line is in doubt, or if answers of the same servos may be late."""
-        self.transport.discard()
-        late = self._awaited if ids is None else self._awaited.intersection(ids)
+        came, now = self.transport.discard(), self.transport.now()
+        late = [since for id, since in self._awaited.items() if ids is None or id is None or id in ids]
         if not self._doubtful and not late:
             return
+        # Silence since an answer was waited for in vain counts, unless something came or the line is in doubt.
+        quiet = 0.0 if came or self._doubtful else now - max(late)
         for _ in range(_MOST_SETTLING):
-            if not self.transport.read(self.timeout):
+            if quiet >= self.timeout or not self.transport.read(self.timeout - quiet):
                 break
+            quiet = 0.0
         self._awaited.clear()
         self._doubtful = False
 

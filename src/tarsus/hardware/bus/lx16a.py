@@ -7,10 +7,12 @@ from collections.abc import Iterable, Mapping, Sequence
 from tarsus.errors import BusError, CorruptAnswerError, ServoStatusError
 from tarsus.hardware.bus.checks import checked_goals, checked_ids, checked_range
 from tarsus.hardware.bus.link import Link
+from tarsus.hardware.bus.one_by_one import one_by_one
 from tarsus.hardware.bus.protocol import Answers, BusServo, BusTiming, Capabilities, Telemetry
 from tarsus.hardware.bus.scanning import scanned
 from tarsus.hardware.bus.without_servo_settings import WithoutServoSettings
 from tarsus.hardware.codec import lx16a as codec
+from tarsus.hardware.codec.scan import Frame
 from tarsus.hardware.transport.protocol import Transport
 from tarsus.hardware.transport.wire import serial_seconds
 from tarsus.representation import represented
@@ -212,10 +214,8 @@ class Lx16aBus(WithoutServoSettings):
         return b"".join(waiting) + codec.frame(codec.BROADCAST, codec.MOVE_START)
 
     def _read(self, ids: Sequence[int], command: int, count: int) -> Answers[bytes]:
-        values: dict[int, bytes] = {}
-        errors: list[BusError] = []
-        for id in ids:
-            answer = self._link.ask(codec.frame(id, command), (id,), count, belongs=lambda frame: frame.code == command)
-            values.update({id: frame.data for id, frame in answer.values.items()})
-            errors += answer.errors
-        return Answers(values, tuple(errors))
+        def asked(id: int) -> Answers[Frame]:
+            return self._link.ask(codec.frame(id, command), (id,), count, belongs=lambda frame: frame.code == command)
+
+        answers = one_by_one(ids, asked)
+        return Answers({id: frame.data for id, frame in answers.values.items()}, answers.errors)

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from tarsus.errors import BusError
 from tarsus.hardware.bus.dialect import Series
 from tarsus.hardware.bus.link import Link
+from tarsus.hardware.bus.one_by_one import one_by_one
 from tarsus.hardware.bus.protocol import Answers
 from tarsus.hardware.codec.dynamixel2 import split_fast
 from tarsus.hardware.codec.packet import BROADCAST
@@ -55,13 +55,7 @@ class RegisterReader:
         # If one servo is missing, the shared packet is not complete: asked for packets of their own, the others answer.
         if many is not None and len(ids) > 1:
             return self._link.ask(many(ids, *block), ids, block[1])
-        answers: dict[int, Frame] = {}
-        errors: list[BusError] = []
-        for id in ids:
-            answer = self._link.ask(self._series.dialect.read(id, *block), (id,), block[1])
-            answers.update(answer.values)
-            errors += answer.errors
-        return Answers(answers, tuple(errors))
+        return one_by_one(ids, lambda id: self._link.ask(self._series.dialect.read(id, *block), (id,), block[1]))
 
     def seconds(self, ids: Sequence[int], block: tuple[int, int]) -> float:
         """Return how long reading takes on the wire [s].

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 __all__ = ["ServoPlant"]
 
 # Longest time until an answer begins: three of them are less than the time in which a fault must be noticed [s].
-_TIMEOUT = 0.025
+_TIMEOUT = 0.02
 _START_TICK = 0.02
 # How late a computer may be of which nothing is known yet [s].
 _UNKNOWN = 0.02
