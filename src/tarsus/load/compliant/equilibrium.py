@@ -33,12 +33,12 @@ _ARM = 0.2
 
 
 class Past(NamedTuple):
-    """What counts of the last equilibrium: pose, angles, centres of the feet along the ground, friction forces."""
+    """What counts of the last equilibrium: pose, angles, centres of the feet, friction forces."""
 
     rotation: Float[np.ndarray, "3 3"]
     position: Float[np.ndarray, "3"]
     angles: Float[np.ndarray, "legs 3"]
-    feet: Float[np.ndarray, "legs 2"]
+    feet: Float[np.ndarray, "legs 3"]
     friction: Float[np.ndarray, "legs 2"]
 
 
@@ -179,7 +179,7 @@ class Compliant:
         body_turned = np.array([turn[2, 1] - turn[1, 2], turn[0, 2] - turn[2, 0]]) / 2
         turned = angles - past.angles
         joints_turned = (turned[:, None, :] @ (axes @ rotation[:2].T))[:, 0]
-        displacement = contact_displacement(feet[:, :2] - past.feet, body_turned + joints_turned, self.radius)
+        displacement = contact_displacement(feet[:, :2] - past.feet[:, :2], body_turned + joints_turned, self.radius)
         trial = self.contact.relaxation(step) * (past.friction - self.contact.tangential_stiffness * displacement)
         normal = normal_force(feet[:, 2], self.radius, self.contact.normal_stiffness)
         return Configuration(rotation, position, angles, turned, points, axes, feet, normal, displacement, trial)

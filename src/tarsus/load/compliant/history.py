@@ -109,6 +109,8 @@ def equilibria(
             loads.rotors[sample],
             step,
         )
+        if row:
+            past = _touched_down(compliant, start, past, step)
         found, slid = _reach(compliant, start, (past, demand_before), demand, tolerance)
         _record(history, row, found, tolerance)
         history.slip[row] = history.slip[row - 1] + slid if row else 0.0
@@ -158,9 +160,25 @@ def _reach(
     return found, slid + slid_after
 
 
+def _touched_down(compliant: Compliant, start: Start, past: Past, step: float) -> Past:
+    """Return the last equilibrium with the feet that touch down since then where they first meet the ground.
+
+    A foot that was in the air would else be dragged over the ground all the way since the last sample. When it meets
+    the ground follows from its heights in the last equilibrium and where the search starts, which continues its motion
+    as if there were no ground.
+    """
+    predicted = compliant.configuration((start.rotation, start.position), start.angles, past, step)
+    before, after = past.feet[:, 2] - compliant.radius, predicted.feet[:, 2] - compliant.radius
+    landing = (before > 0) & (after < before)
+    share = np.where(landing, np.minimum(before / np.where(landing, before - after, 1.0), 1.0), 0.0)
+    feet = past.feet.copy()
+    feet[:, :2] += share[:, None] * predicted.displacement
+    return past._replace(feet=feet)
+
+
 def _past(found: Equilibrium) -> Past:
     at = found.at
-    return Past(_orthonormal(at.rotation), at.position, at.angles, at.feet[:, :2], found.balance.slip.force)
+    return Past(_orthonormal(at.rotation), at.position, at.angles, at.feet, found.balance.slip.force)
 
 
 def _set_down(
@@ -174,7 +192,7 @@ def _set_down(
     feet = compliant.feet(rotation, position, angles)
     raised = float((compliant.radius - feet[:, 2]).max()) - weight / (_FIRST_FEET * compliant.contact.normal_stiffness)
     start = Start(rotation, position + np.array([0.0, 0.0, raised]), angles)
-    return start, Past(*start, feet[:, :2], np.zeros((compliant.legs, 2)))
+    return start, Past(*start, feet, np.zeros((compliant.legs, 2)))
 
 
 def _record(history: History, row: int, found: Equilibrium, tolerance: float) -> None:
