@@ -23,7 +23,9 @@ __all__ = ["from_phoenix", "to_phoenix"]
 @click.argument("header", type=click.Path(path_type=Path, exists=True, dir_okay=False))
 @click.argument("name")
 @click.option(
-    "--driver", type=click.Choice(["ssc32", "ax12"]), help="Servo driver of the firmware.  [default: the header's]"
+    "--driver",
+    type=click.Choice(["ssc32", "maestro", "ax12"]),
+    help="Servo driver of the firmware.  [default: the header's]",
 )
 @json_option
 def from_phoenix(header: Path, name: str, driver: str | None, as_json: bool) -> int:
@@ -65,7 +67,9 @@ def from_phoenix(header: Path, name: str, driver: str | None, as_json: bool) -> 
 )
 @json_option
 def to_phoenix(file: Path, out: Path, as_json: bool) -> int:
-    """Write the calibration FILE and its robot as a header for the Phoenix firmware, for an SSC-32 or AX-12 servos.
+    """Write the calibration FILE and its robot as a header for the Phoenix firmware.
+
+    The bus must be an SSC-32, a Maestro, or one of AX-12 servos.
 
     Existing files are not overwritten.
     """

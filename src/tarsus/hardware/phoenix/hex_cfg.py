@@ -1,7 +1,8 @@
 """Reads `Hex_Cfg.h` of the Phoenix firmware as a robot and a calibration.
 
 Source: github.com/KurtE/Arduino_Phoenix_Parts: Phoenix/Phoenix_Code.h (angles, limits, inversion) and its drivers for
-the SSC-32 and AX-12 (pulse widths and ticks).
+the SSC-32 and AX-12 (pulse widths and ticks); for the Maestro Phoenix_Driver_Maestro.h at 081eb21, which is
+not in its main branch.
 """
 
 from __future__ import annotations
@@ -48,23 +49,48 @@ class Driver(NamedTuple):
         Units of the command for a degree.
     limits : (float, float)
         Commands of the servos' travel.
+    baud : str
+        Name of the constant with the bits per second; empty without.
+    mirrors : bool
+        Whether it negates the angles of the right legs, beside what the header says.
     """
 
     kind: str
     middle: float
     per_degree: float
     limits: tuple[float, float]
+    baud: str = ""
+    mirrors: bool = False
+
+    def turned(self, *, inverted: bool, right: bool) -> int:
+        """Return the sign of a servo's angle.
+
+        Parameters
+        ----------
+        inverted : bool
+            Whether the header inverts the servo.
+        right : bool
+            Whether it is one of a right leg.
+        """
+        return -1 if inverted is not (self.mirrors and right) else 1
 
 
 DRIVERS: Mapping[str, Driver] = MappingProxyType(
     {
         # cPwmDiv = 991, cPFConst = 592 for tenths of a degree + 900.
-        "ssc32": Driver("ssc32", 900 * 1000 / 991 + 592, 10_000 / 991, (500.0, 2500.0)),
+        "ssc32": Driver("ssc32", 900 * 1000 / 991 + 592, 10_000 / 991, (500.0, 2500.0), baud="cSSC_BAUD"),
+        "maestro": Driver(
+            "maestro", 900 * 1000 / 991 + 592, 10_000 / 991, (500.0, 2500.0), baud="cMAESTRO_BAUD", mirrors=True
+        ),
         # cPwmMult = 128, cPwmDiv = 375, cPFConst = 512.
         "ax12": Driver("dynamixel-ax", 512.0, 10 * 128 / 375, (0.0, 1023.0)),
     }
 )
 """Servo drivers of the firmware."""
+
+
+# What a header defines for its driver; without, it is for an SSC-32.
+_FLAGS = {"USE_AX12_DRIVER": "ax12", "USE_MAESTRO": "maestro"}
 
 
 def robot_from_hex_cfg(text: str, *, name: str, where: str = "Hex_Cfg.h") -> Robot:
@@ -134,7 +160,7 @@ def calibration_from_hex_cfg(
         If the calibration contradicts the robot.
     """
     defines = read_defines(text, where=where)
-    chosen = DRIVERS[driver or ("ax12" if "USE_AX12_DRIVER" in defines else "ssc32")]
+    chosen = DRIVERS[driver or next((name for flag, name in _FLAGS.items() if flag in defines), "ssc32")]
     legs = _legs(defines, where)
     by_name = {LEGS[code]: code for code in legs}
     if set(by_name) != set(robot.leg_names):
@@ -143,7 +169,7 @@ def calibration_from_hex_cfg(
         tuple(_joint(defines, by_name[name], j, joint, chosen) for j, joint in enumerate(JOINTS))
         for name in robot.leg_names
     )
-    baud = defines.number("cSSC_BAUD", 0) if chosen.kind == "ssc32" else 0
+    baud = defines.number(chosen.baud, 0) if chosen.baud else 0
     return Calibration(
         name=robot.name,
         robot=robot,
@@ -204,7 +230,7 @@ def _joint(defines: Defines, code: str, j: int, joint: str, driver: Driver) -> J
     horn = _horn(defines, code, joint)
     # The code's angle at an angle of 0 here, and its sign.
     at_zero, sign = ((0.0, -1 if right else 1), (horn, -1), (90.0 - horn, 1))[j]
-    turned = -1 if inverted else 1
+    turned = driver.turned(inverted=bool(inverted), right=right)
     return JointCalibration(
         bus="main",
         number=defines.number(f"c{code}{joint.capitalize()}Pin"),

@@ -52,7 +52,7 @@ def hex_cfg_text(calibration: Calibration) -> str:
     parts = [
         ["#ifndef HEX_CFG_H", "#define HEX_CFG_H", f"// {robot.name}; angles in tenths of a degree, lengths in mm"],
         ["#define QUADMODE"] if robot.legs == 4 else [],
-        ["#define USE_AX12_DRIVER"] if driver.kind == "dynamixel-ax" else _board(calibration),
+        _flags(calibration, driver),
         *(list(part(calibration, driver)) for part in (_servos, _joint_limits, _dimensions, _start)),
         ["#endif"],
     ]
@@ -68,8 +68,12 @@ def _driver(calibration: Calibration) -> Driver:
     return found[0]
 
 
-def _board(calibration: Calibration) -> list[str]:
-    return ["#define USE_SSC32", f"#define cSSC_BAUD {calibration.buses[0].baud or 38400}"]
+def _flags(calibration: Calibration, driver: Driver) -> list[str]:
+    """Return what tells the driver, and the baud rate of a board."""
+    flag = {"ssc32": "USE_SSC32", "maestro": "USE_MAESTRO", "dynamixel-ax": "USE_AX12_DRIVER"}[driver.kind]
+    usual = 115_200 if driver.kind == "maestro" else 38_400
+    rate = [f"#define {driver.baud} {calibration.buses[0].baud or usual}"] if driver.baud else []
+    return [f"#define {flag}", *rate]
 
 
 def _each(calibration: Calibration) -> Iterator[tuple[str, int, int, str]]:
@@ -87,7 +91,8 @@ def _servo(calibration: Calibration, leg: int, j: int, driver: Driver) -> tuple[
     right = calibration.robot.leg_names[leg].endswith("right")
     sign = (-1 if right else 1, -1, 1)[j]
     turned = joint.direction * sign
-    return int(turned < 0), turned * (joint.zero - driver.middle) / driver.per_degree
+    inverted = turned != driver.turned(inverted=False, right=right)
+    return int(inverted), turned * (joint.zero - driver.middle) / driver.per_degree
 
 
 def _horn_tenths(calibration: Calibration, leg: int, j: int, driver: Driver) -> int:
