@@ -144,3 +144,20 @@ def test_a_port_error_is_no_traceback():
     made = nominal_calibration(STRIDER, "strider", kind="feetech-sts", port="COM9")
     (finding,) = check_servos(made, open_port=refused)
     assert (finding.ok, finding.measured, finding.remedy) == (False, "Access is denied", "Ask.")
+
+
+def test_an_interrupt_releases_the_joint_that_is_moved():
+    bench = Bench()
+    sleep = bench.clock.sleep
+
+    def interrupted(seconds):
+        # While it is watched, not while an answer is waited for.
+        if seconds > 0.1:
+            assert sum(servo.torque for servo in bench.line.servos.values()) == 1
+            raise KeyboardInterrupt
+        sleep(seconds)
+
+    bench.clock.sleep = interrupted
+    with pytest.raises(KeyboardInterrupt):
+        bench.findings(move=True)
+    assert not any(servo.torque for servo in bench.line.servos.values())

@@ -1,5 +1,6 @@
 """`tarsus run`: emulated servos behind terminals, faults, records, and what a kill leaves behind."""
 
+import contextlib
 import csv
 import json
 import os
@@ -7,7 +8,6 @@ import pty
 import re
 import signal
 import struct
-import subprocess
 import sys
 import time
 
@@ -108,21 +108,56 @@ def test_what_is_no_run(options, message):
     assert message in result.stderr
 
 
-@pytest.mark.parametrize(
-    ("kind", "number", "code"), [("lines", signal.SIGKILL, -9), ("feetech-sts", signal.SIGHUP, 130)]
-)
-def test_servos_let_go_when_the_program_is_killed_or_its_terminal_closed(kind, number, code, tmp_path):
-    line, server = served(kind, tmp_path)
-    program = "from tarsus.cli import main; main()"
-    scenario = "at 0 s: walk 50 mm/s; at 60 s: stop"
-    arguments = ["run", "strider", "--calibration", tmp_path / "c.toml", "--start", "standing", "--scenario", scenario]
-    with server:
-        began = line.servos[4].position
-        with subprocess.Popen([sys.executable, "-c", program, *arguments], stdout=subprocess.DEVNULL) as process:
-            await_until(lambda: abs(line.servos[4].position - began) > 5, server, line)
-            process.send_signal(number)
-            assert process.wait(timeout=60) == code
-        await_until(lambda: not any(servo.torque for servo in line.servos.values()), server, line)
+class Walking:
+    """`tarsus run` in a process of its own that walks on emulated servos, on a terminal."""
+
+    def __init__(self, kind, tmp_path):
+        self.line, self.server = served(kind, tmp_path)
+        self._began = {number: servo.position for number, servo in self.line.servos.items()}
+        scenario = "at 0 s: walk 50 mm/s; at 60 s: stop"
+        options = ["--calibration", tmp_path / "c.toml", "--start", "standing", "--scenario", scenario]
+        program = [sys.executable, "-c", "from tarsus.cli import main; main()", "run", "strider", *map(str, options)]
+        self.pid, self.terminal = pty.fork()
+        if self.pid == 0:
+            os.execv(program[0], program)
+        os.set_blocking(self.terminal, False)
+        await_until(self._moved, self.server, self.line)
+
+    def _moved(self):
+        with contextlib.suppress(BlockingIOError):
+            os.read(self.terminal, 65536)
+        return any(abs(servo.position - self._began[number]) > 5 for number, servo in self.line.servos.items())
+
+    def exit_code(self):
+        return os.waitstatus_to_exitcode(os.waitpid(self.pid, 0)[1])
+
+
+def test_servos_let_go_after_sitting_down_when_the_terminal_is_closed(tmp_path):
+    walking = Walking("feetech-sts", tmp_path)
+    with walking.server:
+        os.close(walking.terminal)
+        assert walking.exit_code() == 130
+        servos = walking.line.servos.values()
+        assert not any(servo.torque for servo in servos)
+    made = nominal_calibration(STRIDER, "strider", kind="feetech-sts")
+    angles = made.angles(np.array([servo.position for servo in servos]).reshape(6, 3))
+    assert tarsus.forward_kinematics(STRIDER, angles)[..., 3, 2].min() > -0.06
+
+
+@pytest.mark.parametrize("kind", ["lines", "dynamixel-x"])
+def test_a_watchdog_ends_what_a_killed_program_has_begun(kind, tmp_path):
+    walking = Walking(kind, tmp_path)
+    line = walking.line
+    with walking.server:
+        os.kill(walking.pid, signal.SIGKILL)
+        assert walking.exit_code() == -9
+        os.close(walking.terminal)
+        if kind == "lines":
+            await_until(lambda: not any(servo.torque for servo in line.servos.values()), walking.server, line)
+            return
+        # X servos stop and hold, and take no goals until the watchdog is set anew.
+        await_until(lambda: all(one.get("watchdog") == -1 for one in line.memory.values()), walking.server, line)
+        assert all(servo.torque and servo.speed == 0 for servo in line.servos.values())
 
 
 def await_until(condition, server, line):

@@ -11,6 +11,7 @@ from pathlib import Path
 import click
 
 from tarsus.cli.output import print_json, show
+from tarsus.cli.signals import as_interrupts
 from tarsus.cli.values import examples, json_option, robot_argument
 from tarsus.hardware.bringup.dialogue import Left
 
@@ -96,7 +97,8 @@ def bring_up(
         ports=list_ports,
     )
     try:
-        wizard.perform()
+        with as_interrupts():
+            wizard.perform()
     except Left:
         left = len(wizard.calibration.missing)
         show(f"left; {left} joints are not complete. Resume with: tarsus bring-up {robot} {path}")

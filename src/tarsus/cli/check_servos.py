@@ -8,6 +8,7 @@ from pathlib import Path
 import click
 
 from tarsus.cli.output import print_json, show
+from tarsus.cli.signals import as_interrupts
 from tarsus.cli.values import examples, json_option
 
 __all__ = ["check_servos"]
@@ -46,14 +47,15 @@ def check_servos(calibration: Path, port: str | None, move: bool, emulated: bool
     if port:
         found = found.replace(buses=(dataclasses.replace(found.buses[0], port=port), *found.buses[1:]))
     findings = []
-    with contextlib.ExitStack() as stack:
+    with as_interrupts(), contextlib.ExitStack() as stack:
         opener = None
         if emulated:
             robot = stack.enter_context(EmulatedRobot(found, np.asarray(found.limits).mean(axis=-1)))
             found, buses = robot.calibration, robot.buses
             if buses is not None:
                 opener = lambda settings, _baud: buses[settings.name]  # noqa: E731
-        for finding in findings_of(found, move=move, open_port=opener):
+        # Servos are released at its end, whatever ends it.
+        for finding in stack.enter_context(contextlib.closing(findings_of(found, move=move, open_port=opener))):
             findings.append(finding)
             if not as_json:
                 mark, colour = {True: ("yes", "green"), False: ("NO ", "red"), None: ("?  ", "yellow")}[finding.ok]

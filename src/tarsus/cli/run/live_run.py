@@ -4,11 +4,8 @@ from __future__ import annotations
 
 import contextlib
 import dataclasses
-import signal
-import threading
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
-from types import FrameType
 from typing import Any
 
 import numpy as np
@@ -16,6 +13,7 @@ import numpy as np
 from tarsus.cli.pulses import calibration_of
 from tarsus.cli.run.status_line import StatusLine
 from tarsus.cli.run.studio_drive import driven_from_studio
+from tarsus.cli.signals import as_interrupts
 from tarsus.cli.timeline import timeline_of
 from tarsus.control.loop.recording import Recording
 from tarsus.control.loop.run import CommandSource
@@ -81,7 +79,7 @@ def perform(robot: str, options: dict[str, Any], *, out: Path | None, quiet: boo
     calibration = _calibration(robot, chosen, options, where, kind)
     calibration.require_complete()
     start = options["start"] or ("lying" if where == _REAL else "standing")
-    with _signals(), contextlib.ExitStack() as stack:
+    with as_interrupts(), contextlib.ExitStack() as stack:
         scenario = _scenario(options)
         controller = _controller(calibration.limited_robot, scenario, RobotState(start))
         buses = None
@@ -209,25 +207,6 @@ def _source(
     else:
         return ScenarioCommands(scenario, controller.robot, None)
     return LiveCommands(device, speeds=_SPEEDS)
-
-
-@contextlib.contextmanager
-def _signals() -> Iterator[None]:
-    """Treat a closed terminal and a request to end as Ctrl-C."""
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
-
-    def interrupt(_number: int, _frame: FrameType | None) -> None:
-        raise KeyboardInterrupt
-
-    names = [name for name in ("SIGHUP", "SIGTERM") if hasattr(signal, name)]
-    before = {name: signal.signal(getattr(signal, name), interrupt) for name in names}
-    try:
-        yield
-    finally:
-        for name, handler in before.items():
-            signal.signal(getattr(signal, name), handler)
 
 
 def _simulated(robot: Robot, options: dict[str, Any], *, out: Path | None) -> dict[str, Any]:

@@ -57,12 +57,12 @@ class StatusLine:
     ) -> None:
         """End the line."""
         if not self._quiet and self._shown >= 0:
-            sys.stderr.write("\n")
+            self._put("\n")
 
     def say(self, text: str) -> None:
         """Write a line of its own."""
         if not self._quiet:
-            sys.stderr.write(f"{text}\n")
+            self._put(f"{text}\n")
 
     @property
     def tracking(self) -> dict[str, float] | None:
@@ -138,5 +138,12 @@ class StatusLine:
         ]
         if self.lowest_voltage is not None:
             parts.append(f"{self.lowest_voltage:.1f} V")
-        sys.stderr.write("\r" + "  ".join(parts).ljust(110)[:140])
-        sys.stderr.flush()
+        self._put("\r" + "  ".join(parts).ljust(110)[:140])
+
+    def _put(self, text: str) -> None:
+        try:
+            sys.stderr.write(text)
+            sys.stderr.flush()
+        except OSError:
+            # A robot does not stop because its terminal was closed: the signal of that makes it sit down.
+            self._quiet = True

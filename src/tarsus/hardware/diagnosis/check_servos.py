@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Generator, Iterator, Mapping
 from typing import TypeAlias
 
 from tarsus.errors import BusError, NoAnswerError, PortError
@@ -34,7 +34,7 @@ def check_servos(
     move: bool = False,
     open_port: _Opener | None = None,
     clock: Clock | None = None,
-) -> Iterator[Finding]:
+) -> Generator[Finding, None, None]:
     """Ask why nothing moves, and answer by measuring; yields a finding for each question.
 
     Parameters
@@ -297,14 +297,16 @@ class _Check:
         goal = start + step if start + step <= high else start - step
         bus.set_torque_limit((number,), _TORQUE)
         bus.write_goals({number: round(min(max(start, low), high))})
-        bus.set_torque((number,), True)
-        bus.set_speed_limit((number,), step / _LASTS * 2)
-        bus.write_goals({number: round(min(max(goal, low), high))})
-        self._clock.sleep(_LASTS)
-        end = bus.read_positions((number,)).values.get(number, start)
-        bus.write_goals({number: round(min(max(start, low), high))})
-        self._clock.sleep(_LASTS)
-        bus.set_torque((number,), False)
+        try:
+            bus.set_torque((number,), True)
+            bus.set_speed_limit((number,), step / _LASTS * 2)
+            bus.write_goals({number: round(min(max(goal, low), high))})
+            self._clock.sleep(_LASTS)
+            end = bus.read_positions((number,)).values.get(number, start)
+            bus.write_goals({number: round(min(max(start, low), high))})
+            self._clock.sleep(_LASTS)
+        finally:
+            bus.set_torque((number,), False)
         bus.set_torque_limit((number,), 1.0)
         bus.set_speed_limit((number,), None)
         return abs(end - start) / abs(slope)
