@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import contextlib
 import io
 import itertools
+import re
 import shutil
+import tempfile
 from pathlib import Path
 
 from PIL import Image
 from playwright.sync_api import Browser, Page, ViewportSize, sync_playwright
 
+from tarsus.studio.machine.hardware import Hardware
 from tarsus.studio.messages.physics import PhysicsOptions, TerrainChoice
 from tarsus.studio.messages.state import BodyState, Curve, JointsState, Picture, SourceChoice, StudioState, WalkOptions
 from tarsus.studio.server.serve import Serving
@@ -59,9 +63,37 @@ def take(browser: Browser, url: str, state: StudioState, name: str) -> Path:
     if state.view == "drive":
         drive(page)
     page.wait_for_timeout(1500)
-    picture = Image.open(io.BytesIO(page.screenshot())).convert("RGB")
+    path = save(page, f"{'physics' if state.physics.on else state.view}-{name}")
     context.close()
-    path = FIGURES / f"studio-{'physics' if state.physics.on else state.view}-{name}.png"
+    return path
+
+
+def bring_up(browser: Browser) -> Path:
+    """Take the screenshot of a question of the bring-up, with emulated servos."""
+    with (
+        tempfile.TemporaryDirectory() as folder,
+        contextlib.chdir(folder),
+        Serving(Settings(hardware=Hardware(Path()))) as server,
+    ):
+        page = browser.new_page(viewport=SIZES["desktop"], reduced_motion="reduce", color_scheme="light")
+        page.goto(f"{server.url}#s={text_of(StudioState(view='robot'))}")
+        page.get_by_text("Bring-up of the servos").click()
+        page.get_by_test_id("bring-up").click()
+        for name in ("Feetech STS", "emulated servos", "front left"):
+            page.locator(".choices").get_by_role("button", name=re.compile(f"^{name}")).click()
+        page.get_by_test_id("choice-f").wait_for()
+        page.wait_for_timeout(1000)
+        path = save(page, "bring-up-desktop")
+        page.get_by_test_id("bring-up-leave").click()
+        page.get_by_test_id("bring-up-end").wait_for()
+        page.close()
+    return path
+
+
+def save(page: Page, name: str) -> Path:
+    """Save what a page shows as a figure."""
+    picture = Image.open(io.BytesIO(page.screenshot())).convert("RGB")
+    path = FIGURES / f"studio-{name}.png"
     # 256 colours are sufficient and keep the file small.
     picture.quantize(256, method=Image.Quantize.MAXCOVERAGE, kmeans=4, dither=Image.Dither.NONE).save(
         path, optimize=True
@@ -77,6 +109,8 @@ def main() -> None:
         for state, name in [*itertools.product(STATES, SIZES), (PHYSICS, "desktop")]:
             path = take(browser, server.url, state, name)
             print(f"{path.name}: {path.stat().st_size // 1000} kB")
+        path = bring_up(browser)
+        print(f"{path.name}: {path.stat().st_size // 1000} kB")
         browser.close()
 
 

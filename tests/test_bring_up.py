@@ -15,7 +15,7 @@ from tarsus.cli import main
 from tarsus.cli.bring_up import _Terminal
 from tarsus.hardware import Calibration, ManualClock, MemoryTransport, bus_over, emulate, new_calibration
 from tarsus.hardware.bringup import trial, wizard
-from tarsus.hardware.bringup.dialogue import Left
+from tarsus.hardware.bringup.dialogue import Left, Topic
 from tarsus.hardware.bringup.reference_pose import reference_angles
 from tarsus.hardware.bringup.wizard import BringUp
 from tarsus.hardware.bus import registry
@@ -238,7 +238,7 @@ class Answers:
     def say(self, text):
         self.said.append(text)
 
-    def choose(self, question, options):
+    def choose(self, question, options, *, topic):
         self.said.append(question)
         if not self.answers:
             raise Left
@@ -275,6 +275,6 @@ def test_a_terminal_that_ends_leaves(monkeypatch, tmp_path):
     with open(os.devnull, encoding="utf-8") as nothing:
         monkeypatch.setattr(sys, "stdin", nothing)
         with pytest.raises(Left):
-            _Terminal().choose("What?", {"": "yes"})
+            _Terminal().choose("What?", {"": "yes"}, topic=Topic())
     assert run("bring-up", "strider", "--drawing-only", "--json").exit_code == 0
     assert (tmp_path / "strider.reference-pose.png").exists()

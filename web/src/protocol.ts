@@ -17,6 +17,15 @@ export const CLOSED = {
   LARGE: 1009,
 } as const;
 
+/** Answer a question of the bring-up. Answer: done; the next question follows when it is asked. */
+export interface Answer {
+  id: number;
+  type: "answer";
+  number: number;
+  /** Key of one of the choices. */
+  key: string;
+}
+
 /** The view Body: body pose relative to the feet, and footholds that were dragged. */
 export interface BodyState {
   x_mm: number;
@@ -41,6 +50,34 @@ export interface Bounds {
   idle_s: number;
 }
 
+/** Begin, resume or leave the bring-up of this robot's servos. While it is on, bring_up is sent with this id. */
+export interface BringUp {
+  id: number;
+  type: "bring_up";
+  on: boolean;
+}
+
+/** How far a bring-up is; sent whenever that changes. */
+export interface BringUpMessage {
+  id: number;
+  type: "bring_up";
+  state: "asking" | "moving" | "done" | "left" | "failed";
+  /** The calibration file, saved after every answer. */
+  file: string;
+  /** What was told lately, the latest last. */
+  said: string[];
+  /** Null while servos move, and in the end. */
+  question: Question | null;
+  /** Number of joints that are calibrated. */
+  known: number;
+  joints: number;
+  /** Legs x (coxa, femur, tibia): where emulated servos are; of real ones the reference pose. */
+  angles_deg: number[];
+  emulated: boolean;
+  /** Why it failed. */
+  problem: string | null;
+}
+
 /** A joint beyond its limits. */
 export interface BrokenLimit {
   leg: number;
@@ -61,6 +98,12 @@ export interface Candidate {
   thermal_ratio: number | null;
   servo_mass_kg: number;
   robot_mass_kg: number;
+}
+
+/** A possible answer. */
+export interface Choice {
+  key: string;
+  text: string;
 }
 
 /** Show the equations of a source document with live values. Answer: source. */
@@ -289,6 +332,12 @@ export interface FramePhysics {
   problems: string[];
 }
 
+/** Whether this session has access to servos. */
+export interface HardwareOffer {
+  /** Why it has none; null if it has. */
+  missing: string | null;
+}
+
 /** The first message. Answers: welcome, and the answers to `open`. */
 export interface Hello {
   id: number;
@@ -490,6 +539,20 @@ export interface Problem {
   /** Path of the key, such as legs[2].position_mm; null if the problem has no key. */
   key: string | null;
   text: string;
+}
+
+/** A question with its possible answers, of which the first is the usual one. */
+export interface Question {
+  /** Answers have the number of their question. */
+  number: number;
+  /** The step to which it belongs. */
+  title: string;
+  text: string;
+  choices: Choice[];
+  /** Leg to highlight. */
+  leg: number | null;
+  /** Joint of that leg to highlight: coxa, femur, tibia. */
+  joint: number | null;
 }
 
 /** Revert an undo. Answers: as for undo. */
@@ -945,6 +1008,7 @@ export interface Welcome {
   physics: PhysicsOffer;
   /** Null without a run: then all views are available. */
   run: RunOffer | null;
+  hardware: HardwareOffer;
   /** JSON schema of a robot file: descriptions and bounds of its keys. */
   robot_schema: Record<string, unknown>;
 }
@@ -983,6 +1047,8 @@ export type ClientMessage =
   | Drive
   | Command
   | EndRun
+  | BringUp
+  | Answer
   | Undo
   | Redo
   | OpenState
@@ -1001,6 +1067,7 @@ export type ServerMessage =
   | SimulatedMessage
   | DriveFrame
   | SourceMessage
+  | BringUpMessage
   | FileMessage
   | ErrorMessage
   | Done;

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import datetime
 import os
 import sys
 from collections.abc import Mapping
@@ -13,7 +12,7 @@ import click
 from tarsus.cli.output import print_json, show
 from tarsus.cli.signals import as_interrupts
 from tarsus.cli.values import examples, json_option, robot_argument
-from tarsus.hardware.bringup.dialogue import Left
+from tarsus.hardware.bringup.dialogue import Left, Topic
 
 __all__ = ["bring_up"]
 
@@ -27,7 +26,7 @@ class _Terminal:
         """Print a line."""
         show(text)
 
-    def choose(self, question: str, options: Mapping[str, str]) -> str:
+    def choose(self, question: str, options: Mapping[str, str], *, topic: Topic) -> str:  # noqa: ARG002
         """Ask until the answer is one of the options."""
         words = "  ".join(f"[{key or 'Enter'}] {text}" for key, text in options.items())
         for _ in range(_AGAIN):
@@ -51,12 +50,12 @@ class _Terminal:
 )
 @robot_argument
 @click.argument("calibration", type=click.Path(path_type=Path), required=False)
-@click.option("--bus", metavar="KIND", help="Kind of servo bus or board.  [default: that of the robot's servos]")
-@click.option("--port", default="", metavar="PORT", help="Serial port or I2C device.  [default: searched for]")
+@click.option("--bus", metavar="KIND", help="Kind of servo bus or board.  [default: asked for]")
+@click.option("--port", metavar="PORT", help="Serial port or I2C device.  [default: asked for]")
 @click.option("--drawing-only", is_flag=True, help="Only draw the reference pose.")
 @json_option
 def bring_up(
-    robot: str, calibration: Path | None, bus: str | None, port: str, drawing_only: bool, as_json: bool
+    robot: str, calibration: Path | None, bus: str | None, port: str | None, drawing_only: bool, as_json: bool
 ) -> int:
     """Bring up the servos of ROBOT: port, ids, directions, zeros and limits, then a slow walk in the air.
 
@@ -64,11 +63,8 @@ def bring_up(
     saved to CALIBRATION (default: ROBOT.calibration.toml); leave with q, and resume with the same command. Put the
     robot on a box, so that all feet are in the air.
     """
-    from tarsus.hardware.bringup.wizard import BringUp
-    from tarsus.hardware.bus.registry import open_bus
-    from tarsus.hardware.calibration.blank import new_calibration
-    from tarsus.hardware.calibration.calibration import Calibration
-    from tarsus.hardware.transport.serial import list_ports
+    from tarsus.hardware.bringup.beginning import begin
+    from tarsus.hardware.bringup.opening import bring_up_of
     from tarsus.robot.file import load_robot
     from tarsus.robot.preset_names import preset_names
 
@@ -80,34 +76,29 @@ def bring_up(
         else:
             click.echo(f"wrote {drawing}")
         return 0
-    if path.exists():
-        found = Calibration.load(path)
-        show(f"resumed from {path}: {len(found.missing)} joints are not complete")
-    else:
-        written = robot if robot in preset_names() else os.path.relpath(robot, path.parent)
-        found = new_calibration(load_robot(robot), written, kind=bus, port=port)
-        found = found.replace(date=datetime.datetime.now(tz=datetime.UTC).date())
-        found.save(path)
+    written = robot if robot in preset_names() else os.path.relpath(robot, path.parent)
+    terminal, again = _Terminal(), f"Resume with: tarsus bring-up {robot} {path}"
     show(f"the reference pose is drawn in {drawing}")
-    wizard = BringUp(
-        found,
-        path,
-        _Terminal(),
-        open_bus=lambda settings: open_bus(settings.kind, settings.port, baud=settings.baud),
-        ports=list_ports,
-    )
     try:
         with as_interrupts():
+            found = begin(load_robot(robot), written, path, terminal, kind=bus, port=port)
+            wizard = bring_up_of(found, path, terminal)
             wizard.perform()
     except Left:
-        left = len(wizard.calibration.missing)
-        show(f"left; {left} joints are not complete. Resume with: tarsus bring-up {robot} {path}")
+        show(f"left; {_unknown(path)} {again}")
         return 1
     if as_json:
         print_json({"calibration": str(path), "complete": not wizard.calibration.missing})
     else:
         show(f"wrote {path}; next: tarsus run {robot} --calibration {path}")
     return 0
+
+
+def _unknown(path: Path) -> str:
+    """Return how many joints of a calibration are not complete, in words."""
+    from tarsus.hardware.calibration.calibration import Calibration
+
+    return f"{len(Calibration.load(path).missing)} joints are not complete." if path.exists() else "nothing was saved."
 
 
 def _draw(robot: str, path: Path) -> Path:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
@@ -56,6 +57,8 @@ def studio(
     The server accepts connections from this machine only, unless --host is given; then visitors need the printed link
     with its token.
     """
+    from tarsus.robot.preset_names import preset_names
+    from tarsus.studio.machine.hardware import Hardware
     from tarsus.studio.server.serve import Serving
     from tarsus.studio.server.settings import Settings, is_loopback
 
@@ -65,7 +68,8 @@ def studio(
         token = Settings.new_token()
     # A check must not fail because a studio is already running.
     chosen_port = port if port is not None else 0 if check else _PORT
-    settings = Settings(host=host, port=chosen_port, public=public, token=token, start=_start(robot))
+    hardware = None if public else Hardware(Path(), robot_file=None if robot in preset_names() else Path(robot))
+    settings = Settings(host=host, port=chosen_port, public=public, token=token, start=_start(robot), hardware=hardware)
     serving = Serving(settings)
     if check:
         return _check(serving, as_json=as_json)

@@ -5,15 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-from tarsus.errors import InputError, SimulationError, TarsusError
-from tarsus.studio.driving import Driven, Driver
+from tarsus.studio.driving import Driver
 from tarsus.studio.error_messages import error_message
 from tarsus.studio.history import History
+from tarsus.studio.live import Live
 from tarsus.studio.machine.driven_run import DrivenRun
-from tarsus.studio.machine.run_driver import RunDriver
+from tarsus.studio.machine.hardware import Hardware
 from tarsus.studio.messages import client as ask
 from tarsus.studio.messages.general import Done, ErrorMessage
-from tarsus.studio.messages.machine import RunOffer
+from tarsus.studio.messages.machine import BringUpMessage
 from tarsus.studio.messages.motion import DriveFrame
 from tarsus.studio.messages.pose import Bounds, StateMessage
 from tarsus.studio.messages.state import BodyState, JointsState, RobotChoice, StudioState, WalkOptions
@@ -52,6 +52,8 @@ class Session:
         Whether this is a public server, which is sent to the client.
     run : DrivenRun, optional
         The run of a machine that the view Drive drives; then only that view is available.
+    hardware : Hardware, optional
+        The servos of the computer on which the session runs; left out, it has no access to any.
     """
 
     def __init__(
@@ -61,15 +63,14 @@ class Session:
         bounds: Bounds = BOUNDS,
         public: bool = False,
         run: DrivenRun | None = None,
+        hardware: Hardware | None = None,
     ) -> None:
         self._start = StudioState() if start is None else start
-        self._run = run
         self._history = History(self._start)
         self._views = Views()
         self._bounds = bounds
         self._public = public
-        self._driver: Driven | None = None
-        self._closed = False
+        self._live = Live(run, hardware, public=public)
         self._sent_state: StudioState | None = None
 
     @property
@@ -79,13 +80,13 @@ class Session:
 
     @property
     def driving(self) -> bool:
-        """Whether a robot is being driven, so that `frame` returns frames."""
-        return self._driver is not None
+        """Whether a robot is being driven, or its servos are brought up, so that `frame` returns messages."""
+        return self._live.is_on
 
     @property
     def is_planning(self) -> bool:
         """Whether the next frame may take longer, because a change of state has to be planned."""
-        return self._driver is not None and self._driver.is_planning
+        return self._live.is_planning
 
     def receive(self, text: str | bytes) -> list[ServerMessage]:
         """Answer a message in JSON.
@@ -115,49 +116,28 @@ class Session:
         """
         answers: list[ServerMessage] = []
         try:
-            self._require_available(message)
+            self._live.require_available(message)
             answers.extend(_HANDLERS[type(message)](self, message))
         except Exception as error:  # every error is answered, and the session continues
             answers.append(error_message(error, id=message.id))
-        if self._closed:  # while this was handled in another thread
-            self._end_driving()
+        if self._live.closed:  # while this was handled in another thread
+            self._live.close()
         answers.append(self._done(message.id, with_state=getattr(message, "commit", True)))
         return answers
 
-    def frame(self, dt: float) -> DriveFrame | ErrorMessage | None:
-        """Return the live robot after another tick, or None if no robot is being driven.
+    def frame(self, dt: float) -> DriveFrame | BringUpMessage | ErrorMessage | None:
+        """Return the live robot after another tick, or what has changed in its bring-up; None if there is neither.
 
         Parameters
         ----------
         dt : float
             Time since the last frame [s].
         """
-        if self._driver is None:
-            return None
-        try:
-            return self._driver.step(dt)
-        except Exception as error:  # as above; a refused command leaves the robot as it is
-            answer = error_message(error, id=self._driver.id)
-            if isinstance(error, SimulationError) or not isinstance(error, TarsusError):
-                self._end_driving()
-            return answer
+        return self._live.frame(dt)
 
     def close(self) -> None:
-        """End driving, so that a machine stops; to be called when the visitor leaves."""
-        self._closed = True
-        self._end_driving()
-
-    def _end_driving(self) -> None:
-        if self._driver is not None:
-            self._driver.close()
-            self._driver = None
-
-    def _require_available(self, message: ClientMessage) -> None:
-        """Refuse what a session of a run does not have: another robot, and long computations beside the run."""
-        if self._run is None or isinstance(message, _WHILE_RUNNING):
-            return
-        if not (isinstance(message, ask.SetView) and message.view == "drive"):
-            raise InputError("a robot runs: only the view Drive is available until the run ends")
+        """End driving and bring-up, so that a machine stops; to be called when the visitor leaves."""
+        self._live.close()
 
     def _done(self, id: int | None, *, with_state: bool = False) -> Done:
         text = None
@@ -177,15 +157,16 @@ class Session:
         """Change to a state, after everything that it needs has been computed."""
         state = fitted(state, self._views.results.robot(state))
         answers = list(self._everything(state, id=id))
-        self._end_driving()
+        self._live.end_driving()
         self._history.change(state, commit=commit)
         yield from answers
 
     def _hello(self, message: ask.Hello) -> Answers:
-        run = None if self._run is None else RunOffer(bus=self._run.bus)
-        yield welcome_message(self._bounds, public=self._public, run=run, id=message.id)
+        live = self._live
+        offers: dict[str, Any] = {"hardware": live.hardware_offer, "run": live.run_offer}
+        yield welcome_message(self._bounds, public=self._public, **offers, id=message.id)
         state = self.state
-        if message.state is not None and self._run is None:
+        if message.state is not None and live.run is None:
             try:
                 state = state_of(message.state)
                 state = fitted(state, self._views.results.robot(state))
@@ -204,7 +185,7 @@ class Session:
         state = self.state.model_copy(update={"view": message.view, "picture": picture})
         answers = [] if message.view == self.state.view else list(self._views.shown(state, id=message.id))
         if message.view != "drive":
-            self._end_driving()
+            self._live.end_driving()
         self._history.look(message.view, picture)
         yield from answers
 
@@ -286,7 +267,7 @@ class Session:
     def _physics(self, message: ask.SetPhysics) -> Answers:
         state = self.state.model_copy(update={"physics": message.physics})
         answers = list(self._views.terrain(state, id=message.id))
-        self._end_driving()
+        self._live.end_driving()
         self._history.change(state, commit=message.commit)
         yield from answers
 
@@ -306,33 +287,34 @@ class Session:
         yield answer
 
     def _drive(self, message: ask.Drive) -> Answers:
-        self._end_driving()
-        if message.on:
-            self._driver = self._new_driver(message.id)
+        self._live.drive(message, self._driver)
         yield from ()
 
-    def _new_driver(self, id: int) -> Driven:
-        if self._run is not None:
-            return RunDriver(self._run, id=id)
+    def _driver(self, id: int) -> Driver:
         return Driver(self._views.results.robot(self.state), physics=self._views.live(self.state), id=id)
 
-    def _end_run(self, _message: ask.EndRun) -> Answers:
-        if not isinstance(self._driver, RunDriver):
-            raise InputError("no run is driven from this page, so there is none to end")
-        self._driver.end_run()
+    def _command(self, message: ask.Command) -> Answers:
+        self._live.command(message)
         yield from ()
 
-    def _command(self, message: ask.Command) -> Answers:
-        if self._driver is not None:
-            self._driver.command(message)
+    def _end_run(self, _message: ask.EndRun) -> Answers:
+        self._live.end_run()
+        yield from ()
+
+    def _bring_up(self, message: ask.BringUp) -> Answers:
+        self._live.bring_up_servos(message, self._views.results.robot(self.state))
+        yield from ()
+
+    def _answer(self, message: ask.Answer) -> Answers:
+        self._live.answer(message)
         yield from ()
 
     def _undo(self, message: ask.Undo) -> Answers:
-        self._end_driving()
+        self._live.end_driving()
         yield from self._everything(self._history.undo(), id=message.id)
 
     def _redo(self, message: ask.Redo) -> Answers:
-        self._end_driving()
+        self._live.end_driving()
         yield from self._everything(self._history.redo(), id=message.id)
 
     def _open(self, message: ask.OpenState) -> Answers:
@@ -342,7 +324,6 @@ class Session:
         yield self._views.file(self.state, message.what, id=message.id)
 
 
-_WHILE_RUNNING = (ask.Hello, ask.Ping, ask.Drive, ask.Command, ask.EndRun)
 _HANDLERS: dict[type[Any], Callable[[Session, Any], Answers]] = {
     ask.Hello: Session._hello,
     ask.Ping: Session._ping,
@@ -363,6 +344,8 @@ _HANDLERS: dict[type[Any], Callable[[Session, Any], Answers]] = {
     ask.Drive: Session._drive,
     ask.Command: Session._command,
     ask.EndRun: Session._end_run,
+    ask.BringUp: Session._bring_up,
+    ask.Answer: Session._answer,
     ask.Undo: Session._undo,
     ask.Redo: Session._redo,
     ask.OpenState: Session._open,

@@ -7,14 +7,16 @@ from tarsus.gait.gait import GAITS
 from tarsus.robot.catalogue import list_servos
 from tarsus.robot.file import list_robots
 from tarsus.robot.schema import robot_schema
-from tarsus.studio.messages.machine import RunOffer
+from tarsus.studio.messages.machine import HardwareOffer, RunOffer
 from tarsus.studio.messages.pose import Bounds, Welcome
 from tarsus.studio.physics.terrains import physics_offer
 
 __all__ = ["welcome_message"]
 
 
-def welcome_message(bounds: Bounds, *, public: bool, run: RunOffer | None = None, id: int) -> Welcome:
+def welcome_message(
+    bounds: Bounds, *, public: bool, hardware: HardwareOffer, run: RunOffer | None = None, id: int
+) -> Welcome:
     """Return presets, gaits, servos, terrains and limits.
 
     Parameters
@@ -23,6 +25,8 @@ def welcome_message(bounds: Bounds, *, public: bool, run: RunOffer | None = None
         Limits of the session.
     public : bool
         Whether this is a public server.
+    hardware : HardwareOffer
+        Whether the session has access to servos.
     run : RunOffer, optional
         The run that the server belongs to.
     id : int
@@ -39,5 +43,6 @@ def welcome_message(bounds: Bounds, *, public: bool, run: RunOffer | None = None
         bounds=bounds,
         physics=physics_offer(),
         run=run,
+        hardware=hardware,
         robot_schema=robot_schema(),
     )

@@ -108,7 +108,10 @@ function statusOf(frame: Frame): Status {
     belly: frame.belly,
     limitations: frame.limitations,
     margin: frame.margin === null ? "" : `${fixed(frame.margin, 0)} mm`,
-    stable: frame.physical && frame.margin === null ? null : frame.margin !== null && frame.margin >= 0,
+    stable:
+      (frame.physical ?? frame.highlight) && frame.margin === null
+        ? null
+        : frame.margin !== null && frame.margin >= 0,
     feet: `${down} ${down === 1 ? "foot" : "feet"} on the ground`,
     troubled: frame.trouble.filter(Boolean).length,
     tilt: frame.physical && `tilt ${frame.physical.tilt.toFixed(1)}°`,

@@ -1,6 +1,6 @@
 import { useEffect } from "react";
 
-import { frameOfPose } from "../scene/frames";
+import { frameOfBringUp, frameOfPose } from "../scene/frames";
 import { prefersReducedMotion, stage } from "../scene/stage";
 import { playWalk } from "../scene/walking";
 import { usePlayback } from "../state/playback";
@@ -17,13 +17,20 @@ export function useShown(view: View): void {
   const physical = useInPhysics(view);
   const simulated = useStudio((studio) => (physical && view === "walk" ? studio.simulated : null));
   const walking = WALKING.has(view) && walk !== null;
-  const standing = !walking && view !== "drive";
+  const bringUp = useStudio((studio) => (view === "robot" ? studio.bringUp : null));
+  const standing = !walking && view !== "drive" && !bringUp;
 
   useEffect(() => {
     if (robot && pose && standing && pose.angles_deg.length === robot.leg_names.length * 3) {
       stage.show(frameOfPose(robot, pose));
     }
   }, [robot, pose, standing]);
+
+  useEffect(() => {
+    if (robot && bringUp?.angles_deg.length === robot.leg_names.length * 3) {
+      stage.show(frameOfBringUp(robot, bringUp));
+    }
+  }, [robot, bringUp]);
 
   useEffect(() => {
     if (!robot || !walk || !walking || walk.angles_deg.length !== walk.count * robot.leg_names.length * 3)

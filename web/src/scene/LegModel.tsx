@@ -28,13 +28,16 @@ export function LegModel({ leg, colour, footRadius, thick, palette }: Props) {
 
   useStage((frame) => {
     const troubled = frame.trouble[leg] != null;
-    links.forEach((link, i) => placeLink(link, frame, leg, i, troubled ? palette.trouble : palette.link));
+    const marked = (i: number) =>
+      frame.highlight?.leg === leg && (frame.highlight.joint === null || frame.highlight.joint === i);
+    const colourOf = (i: number) => (troubled ? palette.trouble : marked(i) ? palette.mark : palette.link);
+    links.forEach((link, i) => placeLink(link, frame, leg, i, colourOf(i)));
     joints.forEach((joint, i) => {
       placeJoint(joint, frame, leg, i);
       const strained = frame.physical?.saturated[leg * 3 + i] ?? false;
       const mesh = joint.current?.children[0] as Mesh | undefined;
       (mesh?.material as MeshStandardMaterial | undefined)?.color.set(
-        strained ? palette.trouble : palette.joint,
+        strained ? palette.trouble : marked(i) ? palette.mark : palette.joint,
       );
     });
     foot.current?.position.set(...pointOf(frame, leg, 3));

@@ -39,7 +39,15 @@ export interface Physical {
   fallen: boolean;
 }
 
+/** A leg, or one of its joints, that a question is about; none where it is about all. */
+export interface Highlight {
+  leg: number | null;
+  joint: number | null;
+}
+
 export interface Frame extends Placed {
+  /** Of a robot whose servos are brought up, on a box; null in all other cases. */
+  highlight: Highlight | null;
   /** The robot as planned or commanded, where this frame is of physics. */
   ghost: Placed | null;
   physical: Physical | null;

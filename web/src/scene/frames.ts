@@ -1,4 +1,5 @@
 import type {
+  BringUpMessage,
   DriveFrame,
   FrameMachine,
   FramePhysics,
@@ -8,7 +9,7 @@ import type {
   SimulatedMessage,
   WalkMessage,
 } from "../protocol";
-import { POINTS, quaternionOf, type Frame, type LegTrouble, type Placed } from "./frame";
+import { POINTS, quaternionOf, type Frame, type LegTrouble, type Placed, type Vec3 } from "./frame";
 import { legPoints, rotationOf, triple } from "./kinematics";
 
 const REACH_TEXTS: Record<string, string> = {
@@ -169,7 +170,37 @@ function codeTroubles(codes: string | undefined, legs: number): (LegTrouble | nu
 }
 
 /** What a frame without physics has. */
-const AS_PLANNED = { ghost: null, physical: null };
+const AS_PLANNED = { ghost: null, physical: null, highlight: null };
+
+/** Height over the ground of the feet of a robot on a box [mm], in its default stance. */
+const BOX = 90;
+
+/** A robot on a box, whose servos are brought up. */
+export function frameOfBringUp(robot: RobotMessage, bringUp: BringUpMessage): Frame {
+  const position: Vec3 = [0, 0, robot.body_height_mm + BOX];
+  const rotation = quaternionOf(0, 0, 0);
+  const legs = robot.leg_names.map(() => null);
+  const { leg = null, joint = null } = bringUp.question ?? {};
+  return {
+    ...AS_PLANNED,
+    points: legPoints(robot, bringUp.angles_deg, position, rotation),
+    position,
+    rotation,
+    contacts: legs.map(() => false),
+    touching: [],
+    support: [],
+    com: null,
+    margin: null,
+    state: null,
+    motion: null,
+    belly: false,
+    limitations: 0,
+    trouble: legs,
+    forces: null,
+    torques: null,
+    highlight: { leg, joint },
+  };
+}
 
 /** The robot that is driven, after a tick. */
 export function frameOfDrive(robot: RobotMessage, drive: DriveFrame): Frame {
@@ -213,6 +244,7 @@ function asMeasured(robot: RobotMessage, drive: DriveFrame, machine: FrameMachin
 function drivenInPhysics(robot: RobotMessage, drive: DriveFrame, physics: FramePhysics) {
   return {
     margin: physicalMargin(drive.margin_mm),
+    highlight: null,
     ghost: commandedAt(robot, drive, physics),
     physical: {
       slip: new Float32Array(physics.slip_mm_s),

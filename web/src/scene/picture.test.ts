@@ -8,6 +8,7 @@ import { blend, blendRotation, quaternionOf, turn, type Frame } from "./frame";
 function aFrame(x: number): Frame {
   return {
     points: new Float32Array(12).fill(x),
+    highlight: null,
     ghost: null,
     physical: null,
     position: [x, 0, 0],

@@ -43,6 +43,8 @@ export function received(
       return { workspace: message };
     case "source":
       return { source: message };
+    case "bring_up":
+      return { bringUp: message, failures: { ...studio.failures, answer: undefined } };
     case "error":
       return refused(studio, message, asked);
     case "done":

@@ -25,12 +25,15 @@ const REPORTED: ReadonlySet<ClientType> = new Set([
   "toml",
   "download",
   "servos",
+  "bring_up",
+  "answer",
 ]);
 
 const link = new Link({
   status: (status) => {
     if (status.kind !== "open") greeted = false;
-    useStudio.setState(status.kind === "open" ? { link: status } : { link: status, busy: {} });
+    // A bring-up ends with its session; what was answered is saved.
+    useStudio.setState(status.kind === "open" ? { link: status } : { link: status, busy: {}, bringUp: null });
   },
   message: receive,
   state: () => useStudio.getState().stateText ?? readAddress(window.location.href).state,

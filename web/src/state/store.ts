@@ -1,6 +1,7 @@
 import { create } from "zustand";
 
 import type {
+  BringUpMessage,
   DriveFrame,
   ErrorMessage,
   LoadsMessage,
@@ -44,6 +45,8 @@ export interface Studio {
   source: SourceMessage | null;
   /** A recent frame of the driven robot, for the panel; the 3D view has its own. */
   drive: DriveFrame | null;
+  /** The bring-up of the servos; null without one. */
+  bringUp: BringUpMessage | null;
   /** Errors by the type of the request; removed when a request of the type succeeds. */
   failures: Partial<Record<ClientType, ErrorMessage>>;
   /** The input of each type that was changed last, such as stroke_mm. */
@@ -71,6 +74,7 @@ export const useStudio = create<Studio>(() => ({
   workspace: null,
   source: null,
   drive: null,
+  bringUp: null,
   failures: {},
   edited: {},
   busy: {},

@@ -8,6 +8,7 @@ from typing import TypeAlias, TypeVar
 
 from tarsus.errors import BusError, CorruptAnswerError, PortError
 from tarsus.hardware.bringup.bench import Bench
+from tarsus.hardware.bringup.dialogue import Topic
 from tarsus.hardware.bringup.progress import Progress
 from tarsus.hardware.bus.protocol import Bus
 from tarsus.hardware.calibration.parts import BusSettings
@@ -21,6 +22,7 @@ Opener: TypeAlias = Callable[[BusSettings], Bus]
 _Result = TypeVar("_Result")
 # Ids beyond those that are needed, as makers deliver servos with others.
 _SPARE = 12
+_TOPIC = Topic(title="Port and servos")
 
 
 class Connection:
@@ -61,10 +63,10 @@ class Connection:
             except PortError as error:
                 self.close()
                 ask.say(str(error))
-                ask.choose("Plug it in again.", {"": "go on"})
+                ask.choose("Plug it in again.", {"": "go on"}, topic=_TOPIC)
             except BusError as error:
                 ask.say(str(error))
-                ask.choose("Look at the cable and the supply.", {"": "try again"})
+                ask.choose("Look at the cable and the supply.", {"": "try again"}, topic=_TOPIC)
 
     def close(self) -> None:
         """Release all servos, and close the port."""
@@ -97,7 +99,7 @@ class Connection:
                 bus.close()
             names = ", ".join(self._ports()) or "none"
             ask.say(f"no servo answers; ports found: {names}. Check the USB cable and switch the servos on.")
-            ask.choose("Search again?", {"": "yes"})
+            ask.choose("Search again?", {"": "yes"}, topic=_TOPIC)
 
 
 def find_servos(progress: Progress, bench: Bench) -> tuple[int, ...]:
@@ -123,7 +125,8 @@ def find_servos(progress: Progress, bench: Bench) -> tuple[int, ...]:
         ask.say(f"{len(numbers)} of {needed} servos answer: {_listed(numbers)}")
         if len(numbers) >= needed:
             return numbers
-        if ask.choose("Some are missing.", {"": "search again", "c": "continue without them"}) == "c":
+        options = {"": "search again", "c": "continue without them"}
+        if ask.choose("Some are missing.", options, topic=_TOPIC) == "c":
             return numbers
 
 

@@ -1,15 +1,37 @@
-"""How the bring-up asks: what a terminal, or a test, must be able to do."""
+"""How the bring-up asks: what a terminal, a page of the studio, or a test, must be able to do."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Protocol
+from dataclasses import dataclass
+from typing import Literal, Protocol
 
-__all__ = ["Dialogue", "Left"]
+__all__ = ["Dialogue", "Left", "Topic"]
 
 
 class Left(Exception):  # noqa: N818 - no error: the user went away
     """The bring-up was left; what was answered is saved."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Topic:
+    """What a question is about, for those who show it in a picture.
+
+    Attributes
+    ----------
+    title : str
+        The step: ``"Zeros"``.
+    leg, joint : int or None
+        Numbers of the leg and of the joint; None where it is about all or none.
+    pose : str
+        What a hand, or steps, are to bring the leg or the joint to: the reference pose, or an end of its travel; empty
+        where nothing is to be moved.
+    """
+
+    title: str = ""
+    leg: int | None = None
+    joint: int | None = None
+    pose: Literal["", "reference", "one end", "the other end"] = ""
 
 
 class Dialogue(Protocol):
@@ -24,7 +46,7 @@ class Dialogue(Protocol):
             What.
         """
 
-    def choose(self, question: str, options: Mapping[str, str]) -> str:
+    def choose(self, question: str, options: Mapping[str, str], *, topic: Topic) -> str:
         """Ask, and return the key of an option; raise `Left` where whoever answers goes away.
 
         Parameters
@@ -33,4 +55,6 @@ class Dialogue(Protocol):
             The question.
         options : mapping of str to str
             Keys, and what they mean; an empty key is the Enter key alone.
+        topic : Topic
+            What the question is about.
         """

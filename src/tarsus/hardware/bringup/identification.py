@@ -7,10 +7,13 @@ import math
 import numpy as np
 
 from tarsus.hardware.bringup.bench import Bench
+from tarsus.hardware.bringup.dialogue import Topic
 from tarsus.hardware.bringup.progress import Progress
 from tarsus.robot.robot import Robot
 
 __all__ = ["identify"]
+
+_TITLE = "Which servo is which joint"
 
 
 def identify(progress: Progress, bench: Bench, *, number: int) -> None:
@@ -31,13 +34,15 @@ def identify(progress: Progress, bench: Bench, *, number: int) -> None:
     while True:
         ask.say(f"{key} {number} moves a little, and back.")
         bench.wiggle(number)
-        answer = ask.choose("Which leg moved?", {**progress.leg_options, "a": "move again", "n": "none"})
+        options = {**progress.leg_options, "a": "move again", "n": "none"}
+        answer = ask.choose("Which leg moved?", options, topic=Topic(title=_TITLE))
         if answer == "n":
             return
         if answer == "a":
             continue
         leg = int(answer) - 1
-        joint = ask.choose("Which joint?", {"c": "coxa", "f": "femur", "t": "tibia", "b": "back"})
+        options = {"c": "coxa", "f": "femur", "t": "tibia", "b": "back"}
+        joint = ask.choose("Which joint?", options, topic=Topic(title=_TITLE, leg=leg))
         if joint == "b":
             continue
         j = "cft".index(joint)
@@ -46,7 +51,8 @@ def identify(progress: Progress, bench: Bench, *, number: int) -> None:
             ask.say(f"that is {key} {other} already; look again, or start anew with another file")
             continue
         first, second, positive = _ways(progress.calibration.robot, leg, j)
-        way = ask.choose("Which way did it go first?", {first[0]: first, second[0]: second, "b": "back"})
+        options, topic = {first[0]: first, second[0]: second, "b": "back"}, Topic(title=_TITLE, leg=leg, joint=j)
+        way = ask.choose("Which way did it go first?", options, topic=topic)
         if way == "b":
             continue
         direction = positive if way == first[0] else -positive

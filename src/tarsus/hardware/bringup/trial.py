@@ -10,6 +10,7 @@ from tarsus.control.loop.run import run
 from tarsus.control.robot_controller import RobotController
 from tarsus.errors import TarsusError
 from tarsus.hardware.bringup.connection import Connection
+from tarsus.hardware.bringup.dialogue import Topic
 from tarsus.hardware.bringup.progress import Progress
 from tarsus.hardware.bringup.reference_pose import reference_angles
 from tarsus.hardware.bringup.zeros import set_zeros
@@ -19,6 +20,8 @@ from tarsus.robot.robot import JOINTS
 
 __all__ = ["check_pose", "walk_in_the_air"]
 
+_TOPIC = Topic(title="Check pose and walk")
+_ON_A_BOX = "All legs go slowly to the reference pose; put the robot on a box, feet in the air."
 _WALK, _WALK_TIME = (0.03, 0.0, 0.0), 4.0
 
 
@@ -36,15 +39,17 @@ def check_pose(progress: Progress, connection: Connection, *, clock: Clock) -> N
     """
     ask, robot = progress.ask, progress.calibration.limited_robot
     while True:
-        ask.choose("All legs go slowly to the reference pose; put the robot on a box, feet in the air.", {"": "go"})
+        ask.choose(_ON_A_BOX, {"": "go"}, topic=_TOPIC)
         plant = _plant(progress, connection, clock)
         try:
             output = RobotController(robot).output
             plant.start(dataclasses.replace(output, angles=reference_angles(robot), belly=True))
-            answer = ask.choose("Does every leg look like the drawing?", {"": "yes", **progress.leg_options})
+            options = {"": "yes", **progress.leg_options}
+            answer = ask.choose("Does every leg look like the drawing?", options, topic=_TOPIC)
         except TarsusError as error:
             ask.say(str(error))
-            answer = ask.choose("Which leg is wrong?", {"": "none: try again", **progress.leg_options})
+            options = {"": "none: try again", **progress.leg_options}
+            answer = ask.choose("Which leg is wrong?", options, topic=_TOPIC)
             if not answer:
                 continue
         finally:
@@ -69,7 +74,8 @@ def walk_in_the_air(progress: Progress, connection: Connection, *, clock: Clock)
     clock : Clock
         The clock.
     """
-    if progress.ask.choose("A slow walk in the air, feet free?", {"": "yes", "n": "no"}) == "n":
+    options = {"": "yes", "n": "no"}
+    if progress.ask.choose("A slow walk in the air, feet free?", options, topic=_TOPIC) == "n":
         return
     plant = _plant(progress, connection, clock)
     robot = progress.calibration.limited_robot

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from tarsus.hardware.bringup.bench import Bench
+from tarsus.hardware.bringup.dialogue import Topic
 from tarsus.hardware.bringup.progress import Progress
 from tarsus.hardware.bringup.reference_pose import reference_angles
 from tarsus.robot.robot import JOINTS
@@ -40,7 +41,7 @@ def set_zeros(progress: Progress, bench: Bench, *, leg: int) -> None:
         pass
 
 
-def step_to(progress: Progress, bench: Bench, *, number: int, what: str) -> None:
+def step_to(progress: Progress, bench: Bench, *, number: int, what: str, topic: Topic) -> None:
     """Move a servo by small steps until whoever looks says so.
 
     Parameters
@@ -53,26 +54,31 @@ def step_to(progress: Progress, bench: Bench, *, number: int, what: str) -> None
         Id or channel of the servo.
     what : str
         What is to be reached.
+    topic : Topic
+        What the question is about.
     """
     bench.hold(number)
     scale = progress.calibration.joints[0][0].scale or 0.0
     steps = {"+": _FINE, "-": -_FINE, "++": _COARSE, "--": -_COARSE}
     words = {key: f"{math.degrees(step):+.1f} deg" for key, step in steps.items()}
-    while answer := progress.ask.choose(f"{what}.", {"": "it is there", **words}):
+    while answer := progress.ask.choose(f"{what}.", {"": "it is there", **words}, topic=topic):
         bench.move(number, bench.position(number) + steps[answer] * scale)
 
 
 def _held(progress: Progress, bench: Bench, leg: int, reference: Float[np.ndarray, "3"]) -> bool:
     """Ask for the reference pose of a leg, and return whether its zeros can be."""
     ask, name = progress.ask, progress.calibration.robot.leg_names[leg]
+    at: dict[str, Any] = {"title": "Zeros", "leg": leg, "pose": "reference"}
     if bench.measures:
         bench.release([number for _, number in progress.numbers(leg)])
-        ask.choose(f"The {name} leg is limp: hold it in the reference pose.", {"": "it is"})
+        ask.choose(f"The {name} leg is limp: hold it in the reference pose.", {"": "it is"}, topic=Topic(**at))
     for j, number in progress.numbers(leg):
         if not bench.measures:
-            step_to(progress, bench, number=number, what=f"{name} {JOINTS[j]}: move it to the reference pose")
+            what, topic = f"{name} {JOINTS[j]}: move it to the reference pose", Topic(**at, joint=j)
+            step_to(progress, bench, number=number, what=what, topic=topic)
         if not _zero(progress, leg, j, bench.position(number), float(reference[j])):
-            wrong = ask.choose("That can't be.", {"": "hold the leg again", "d": "its direction is wrong"})
+            options = {"": "hold the leg again", "d": "its direction is wrong"}
+            wrong = ask.choose("That can't be.", options, topic=Topic(title="Zeros", leg=leg, joint=j))
             if wrong == "d":
                 joint = progress.calibration.joints[leg][j]
                 progress.keep_joint(leg, j, zero=None, direction=-(joint.direction or 1))

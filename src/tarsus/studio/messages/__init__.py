@@ -8,6 +8,7 @@ from pydantic import Field, TypeAdapter
 
 from tarsus.studio.messages.client import ClientMessage
 from tarsus.studio.messages.general import Done, ErrorMessage, FileMessage, SourceMessage
+from tarsus.studio.messages.machine import BringUpMessage
 from tarsus.studio.messages.motion import DriveFrame, LoadsMessage, ServosMessage, WalkMessage
 from tarsus.studio.messages.physics import SimulatedMessage, TerrainMessage
 from tarsus.studio.messages.pose import PoseMessage, RobotMessage, StateMessage, Welcome, WorkspaceMessage
@@ -39,6 +40,7 @@ ServerMessage: TypeAlias = Annotated[
     | SimulatedMessage
     | DriveFrame
     | SourceMessage
+    | BringUpMessage
     | FileMessage
     | ErrorMessage
     | Done,

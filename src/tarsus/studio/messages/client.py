@@ -23,6 +23,8 @@ from tarsus.studio.messages.state import (
 )
 
 __all__ = [
+    "Answer",
+    "BringUp",
     "ChooseSource",
     "ClientMessage",
     "Command",
@@ -213,6 +215,21 @@ class Command(Message):
     state: Literal["standing", "lying", "folded"] | None = Field(default=None, description="Requested state.")
 
 
+class BringUp(Message):
+    """Begin, resume or leave the bring-up of this robot's servos. While it is on, bring_up is sent with this id."""
+
+    type: Literal["bring_up"]
+    on: bool
+
+
+class Answer(Message):
+    """Answer a question of the bring-up. Answer: done; the next question follows when it is asked."""
+
+    type: Literal["answer"]
+    number: int
+    key: Annotated[str, Field(max_length=20)] = Field(description="Key of one of the choices.")
+
+
 class Undo(Message):
     """Return to the previous commit. Answers: robot, state, content of the view."""
 
@@ -259,6 +276,8 @@ ClientMessage: TypeAlias = Annotated[
     | Drive
     | Command
     | EndRun
+    | BringUp
+    | Answer
     | Undo
     | Redo
     | OpenState

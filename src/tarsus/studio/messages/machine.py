@@ -1,12 +1,20 @@
-"""Messages of the server on machines: what the servos of a robot that runs measure."""
+"""Messages of the server on machines: what the servos of a robot that runs measure, and the bring-up of a new one."""
 
 from __future__ import annotations
 
+from typing import Literal
+
 from pydantic import Field
 
-from tarsus.studio.messages.base import Part
+from tarsus.studio.messages.base import Message, Part
 
-__all__ = ["FrameMachine", "RunOffer"]
+__all__ = ["BringUpMessage", "Choice", "FrameMachine", "HardwareOffer", "Question", "RunOffer"]
+
+
+class HardwareOffer(Part):
+    """Whether this session has access to servos."""
+
+    missing: str | None = Field(description="Why it has none; null if it has.")
 
 
 class RunOffer(Part):
@@ -30,3 +38,38 @@ class FrameMachine(Part):
     missed: int = Field(description="Ticks that came too late.")
     stopped: bool = Field(description="Whether the deadman has stopped the robot, as nothing was heard of the driver.")
     problems: list[str] = Field(description="Faults, and what else the servos report.")
+
+
+class Choice(Part):
+    """A possible answer."""
+
+    key: str
+    text: str
+
+
+class Question(Part):
+    """A question with its possible answers, of which the first is the usual one."""
+
+    number: int = Field(description="Answers have the number of their question.")
+    title: str = Field(description="The step to which it belongs.")
+    text: str
+    choices: list[Choice]
+    leg: int | None = Field(description="Leg to highlight.")
+    joint: int | None = Field(description="Joint of that leg to highlight: coxa, femur, tibia.")
+
+
+class BringUpMessage(Message):
+    """How far a bring-up is; sent whenever that changes."""
+
+    type: Literal["bring_up"]
+    state: Literal["asking", "moving", "done", "left", "failed"]
+    file: str = Field(description="The calibration file, saved after every answer.")
+    said: list[str] = Field(description="What was told lately, the latest last.")
+    question: Question | None = Field(description="Null while servos move, and in the end.")
+    known: int = Field(description="Number of joints that are calibrated.")
+    joints: int
+    angles_deg: list[float] = Field(
+        description="Legs x (coxa, femur, tibia): where emulated servos are; of real ones the reference pose."
+    )
+    emulated: bool
+    problem: str | None = Field(description="Why it failed.")

@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Field
 
 from tarsus.studio.messages.base import Message, Part
-from tarsus.studio.messages.machine import RunOffer
+from tarsus.studio.messages.machine import HardwareOffer, RunOffer
 from tarsus.studio.messages.physics import PhysicsOffer
 from tarsus.studio.messages.state import StudioState, View
 
@@ -47,6 +47,7 @@ class Welcome(Message):
     bounds: Bounds
     physics: PhysicsOffer
     run: RunOffer | None = Field(description="Null without a run: then all views are available.")
+    hardware: HardwareOffer
     robot_schema: Schema = Field(description="JSON schema of a robot file: descriptions and bounds of its keys.")
 
 

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 
 from tarsus.errors import InputError
 from tarsus.studio.machine.driven_run import DrivenRun
+from tarsus.studio.machine.hardware import Hardware
 from tarsus.studio.messages.pose import Bounds
 from tarsus.studio.messages.state import StudioState
 from tarsus.studio.walks import MOST_SAMPLES
@@ -80,11 +81,13 @@ class Settings:
         Limits per visitor and of the server.
     run : DrivenRun or None
         The run of a machine that this server belongs to.
+    hardware : Hardware or None
+        The servos of this computer; None for no access to them.
 
     Raises
     ------
     InputError
-        If the token has characters that links or cookies do not allow.
+        If the token has characters that links or cookies do not allow, or a public server has access to hardware.
     """
 
     host: str = "127.0.0.1"
@@ -94,10 +97,13 @@ class Settings:
     start: StudioState = field(default_factory=StudioState)
     limits: Limits = field(default_factory=Limits)
     run: DrivenRun | None = None
+    hardware: Hardware | None = None
 
     def __post_init__(self) -> None:
         if self.token is not None and not re.fullmatch(r"[A-Za-z0-9._~-]{1,200}", self.token):
             raise InputError("the token must have 1 to 200 letters, digits, dots, dashes, underscores or tildes")
+        if self.public and (self.hardware is not None or self.run is not None):
+            raise InputError("a public server has no access to hardware: any visitor could move the servos")
 
     @property
     def loopback(self) -> bool:

@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from pydantic import BaseModel
 
     from tarsus.studio.messages import ClientMessage
+    from tarsus.studio.messages.machine import BringUpMessage
     from tarsus.studio.messages.motion import DriveFrame
 
 __all__ = ["Visitor"]
@@ -66,7 +67,13 @@ class Visitor:
         self._socket = socket
         self._limits = settings.limits
         self._threads = threads
-        self._session = Session(settings.start, bounds=settings.limits.bounds, public=settings.public, run=settings.run)
+        self._session = Session(
+            settings.start,
+            bounds=settings.limits.bounds,
+            public=settings.public,
+            run=settings.run,
+            hardware=settings.hardware,
+        )
         self._inbox = Inbox(settings.limits.waiting)
         self._called = asyncio.Event()
         self._sending = asyncio.Lock()
@@ -149,7 +156,7 @@ class Visitor:
                 last, due = now, max(due + 1 / self._limits.frame_hz, now)
                 await self._send([] if frame is None else [frame])
 
-    async def _frame(self, dt: float) -> DriveFrame | ErrorMessage | None:
+    async def _frame(self, dt: float) -> DriveFrame | BringUpMessage | ErrorMessage | None:
         """Return the next frame; while one visitor's change of state is planned, the others' frames continue."""
         if not self._session.is_planning:
             return self._session.frame(dt)

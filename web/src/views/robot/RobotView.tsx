@@ -6,6 +6,8 @@ import { Remarks } from "../../controls/Message";
 import { withUnit } from "../../controls/numbers";
 import { Slider } from "../../controls/Slider";
 import { useTouch } from "../../controls/useTouch";
+import { useStudio } from "../../state/store";
+import { BringUpOffer, BringUpView } from "../bringUp/BringUpView";
 import { useInputs } from "../useInputs";
 import { ViewHead } from "../ViewHead";
 import { numberAt, pathText, withValue } from "./document";
@@ -22,6 +24,8 @@ export function RobotView() {
   const { robot } = useInputs();
   const { document } = robot;
   const touch = useTouch();
+  const bringUp = useStudio((studio) => studio.bringUp);
+  if (bringUp) return <BringUpView bringUp={bringUp} />;
   return (
     <div className="view">
       <ViewHead title="Robot">
@@ -61,6 +65,9 @@ export function RobotView() {
           <DocumentField key={field.label} field={field} />
         ))}
       </fieldset>
+      <Group title="Bring-up of the servos">
+        <BringUpOffer />
+      </Group>
       <Group title="Body">
         {BODY.map((field) => (
           <DocumentField key={field.label} field={field} />
