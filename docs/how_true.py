@@ -8,6 +8,9 @@ from pathlib import Path
 
 import numpy as np
 
+from tarsus.control.command import Command
+from tarsus.control.loop.run import run
+from tarsus.control.robot_controller import RobotController
 from tarsus.control.walk_controller import WalkController
 from tarsus.gait.gait import Gait
 from tarsus.gait.path import BodyPath, curved_path, straight_path
@@ -15,7 +18,10 @@ from tarsus.gait.plan import plan_walk
 from tarsus.load.deflection import compensate_deflection
 from tarsus.robot.file import list_robots, load_robot
 from tarsus.robot.robot import Robot
+from tarsus.simulation.simulated_plant import SimulatedPlant
 from tarsus.simulation.truth.comparison import Truth, compare
+from tarsus.simulation.truth.outcome import Outcome
+from tarsus.simulation.truth.traced_plant import TracedPlant
 
 PAGE = Path(__file__).parent / "how-true.md"
 WALKS: dict[str, BodyPath] = {
@@ -92,13 +98,45 @@ def fast_table() -> str:
     return header + "".join(fast_row(robot, gait) for robot, gait in itertools.product(able_robots(), SIX_LEGGED))
 
 
+def live_ratio(robot: Robot, gait: str, path: BodyPath, share: float) -> float:
+    """Return the ratio of the way, or of the turn in place, of live walking at a share of the top speed."""
+    controller = RobotController(robot, Gait.named(gait))
+    walk = WalkController(robot, Gait.named(gait))
+    speed = share * walk.top_speed(path.displacement)
+    twist = tuple(speed * np.asarray(path.displacement))
+    walked = max(2 * walk.cycle_time, 1 / speed)
+    plant = TracedPlant(SimulatedPlant(robot, servos="ideal", sensors="blind"))
+    commands = [(0.0, Command(twist=twist)), (walked, Command(twist=(0.0, 0.0, 0.0)))]
+    run(controller, plant, commands, duration=walked + 1.5 * walk.cycle_time)
+    outcome = Outcome.of(plant.trace)
+    return outcome.turn_ratio if path == WALKS["turn"] else outcome.way_ratio
+
+
+def live_row(robot: Robot, gait: str) -> str:
+    """Return a row of the table of live walking: ratios at half the top speed and at 0.95 of it."""
+    cells = [[f"{live_ratio(robot, gait, path, share):.3f}" for share in (0.5, SHARE)] for path in WALKS.values()]
+    return f"| {robot.name} | {gait} | {' | '.join(', '.join(cell) for cell in cells)} |\n"
+
+
+def live_table() -> str:
+    """Return the table of live walking."""
+    header = "| robot | gait | straight | sideways | curve | turn |\n|---|---|---|---|---|---|\n"
+    return header + "".join(live_row(robot, gait) for robot, gait in itertools.product(able_robots(), SIX_LEGGED))
+
+
 def main() -> None:
     """Replace the tables on the page."""
+    tables = {
+        "ideal": lambda: table("ideal"),
+        "fast": fast_table,
+        "catalogue": lambda: table("catalogue"),
+        "compensated": lambda: table("compensated"),
+        "live": live_table,
+    }
     text = PAGE.read_text(encoding="utf-8")
-    for name in ("ideal", "fast", "catalogue", "compensated"):
+    for name, written in tables.items():
         before, start, rest = text.partition(f"<!-- table: {name} -->\n")
-        written = fast_table() if name == "fast" else table(name)
-        text = f"{before}{start}{written}<!-- end -->{rest.partition('<!-- end -->')[2]}"
+        text = f"{before}{start}{written()}<!-- end -->{rest.partition('<!-- end -->')[2]}"
     PAGE.write_text(text, encoding="utf-8")
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from tarsus import Pose, default_stance, inverse_kinematics, list_robots, load_robot
+from tarsus import Pose, default_stance, forward_kinematics, inverse_kinematics, list_robots, load_robot
 from tarsus.kinematics.scalar_solver import ScalarSolver
 
 UP = np.array([0, 0, 1.0])
@@ -55,3 +55,12 @@ def test_feet_too_near_or_too_far_have_no_solution():
     feet = default_stance(robot)
     for scale in (3.0, 0.4):
         assert ScalarSolver(robot).angles((feet * scale).tolist(), np.eye(3).tolist(), (0.0, 0.0, 0.0)) is None
+
+
+@pytest.mark.parametrize("name", ["strider", "phantomx"])
+def test_feet_are_those_of_the_forward_kinematics(name):
+    robot, rng = load_robot(name), np.random.default_rng(2)
+    angles = rng.uniform(robot.limits[..., 0], robot.limits[..., 1])
+    body = Pose.from_rpy(0.1, -0.2, 0.7, (0.3, -0.2, 0.1))
+    found = ScalarSolver(robot).feet(angles.tolist(), body.rotation.tolist(), body.position.tolist())
+    np.testing.assert_allclose(found, body @ forward_kinematics(robot, angles)[..., 3, :], atol=1e-12)

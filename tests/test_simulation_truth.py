@@ -273,6 +273,10 @@ def test_the_pages_rows_are_reproduced(servos, gait):
     assert docs_module("how_true").row(STRIDER, gait, servos) in table_on_the_page(servos)
 
 
+def test_the_pages_live_walk_is_reproduced():
+    assert docs_module("how_true").live_row(STRIDER, "tripod") in table_on_the_page("live")
+
+
 @pytest.mark.parametrize(
     ("robot", "fault"),
     [("strider", "one servo dead (middle left femur)"), ("phantomx", "push of half the weight for 0.2 s")],

@@ -33,7 +33,7 @@ def walked(now, inputs, seconds, dt):
 
 def seen(now, swing_height):
     feet = (now.foot - now.origin) * np.exp(-1j * now.yaw)
-    return np.stack([feet.real, feet.imag, now.height(swing_height)], axis=-1)
+    return np.stack([feet.real, feet.imag, now.heights(swing_height)], axis=-1)
 
 
 @every_walk
@@ -96,7 +96,7 @@ def test_a_swing_lands_exactly_on_its_target_and_gently(seed, dt):
         np.testing.assert_array_equal(after.foot[landed], after.foothold[landed])
         assert not after.swing_velocity[landed].any()
         assert not after.swing_acceleration[landed].any()
-        np.testing.assert_array_equal(after.height(setup.swing_height)[after.down], 0.0)
+        np.testing.assert_array_equal(np.array(after.heights(setup.swing_height))[after.down], 0.0)
         # Standing feet stand, and what is bound for somewhere late in its swing stays bound for it.
         still = now.down & after.down
         np.testing.assert_array_equal(after.foot[still], now.foot[still])
@@ -244,6 +244,6 @@ def test_what_a_foot_has_given_way_is_part_of_its_swing():
     inputs = step_inputs_of(setup, rest, (0.05, 0.0, 0.0), admittance_offset=given)
     after = advance(now, inputs, 1e-6)
     assert not after.down.all()
-    before, later = (m.height(setup.swing_height) + m.admittance_offset.value for m in (now, after))
+    before, later = (np.array(m.heights(setup.swing_height)) + m.admittance_offset.value for m in (now, after))
     np.testing.assert_allclose(later, before, atol=1e-9)
     assert not after.admittance_offset.value[~after.down].any()

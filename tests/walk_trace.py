@@ -14,10 +14,13 @@ from tarsus.control.walk_controller import WalkController
 from tarsus.control.workspace.polygon import NORMALS
 from tarsus.kinematics.leg import forward_kinematics
 from tarsus.kinematics.pose import Pose
+from tarsus.kinematics.rolling import rolling_displacements
 from tarsus.kinematics.stability import stability_margin
 
 ROUNDING = 1.001
 STILL = 1e-6
+# Of its radius: how far a ball may slip while the posture changes, which moves what it rolls about.
+SLIP_OF_BALLS = 0.7
 GAITS = ("tripod", "tetrapod", "ripple", "wave")
 LONGEST_TICK = 0.05
 
@@ -87,8 +90,10 @@ class Trace:
         return np.abs(speed) / fastest, np.abs(change / between[:, None, None]) / hardest
 
     def slip(self) -> np.ndarray:
-        """How far every foot that is down is from where it came down ``(n, legs)`` [m]."""
+        """How far every foot that is down has slipped, beyond rolling, since it came down ``(n, legs)`` [m]."""
         feet, down = self.feet, self.contacts
+        rolled = rolling_displacements(self.controller.robot, self.angles, self.body)
+        feet[1:] -= np.cumsum(rolled, axis=0)
         begins = down & ~np.concatenate([np.zeros_like(down[:1]), down[:-1]])
         since = np.maximum.accumulate(np.where(begins, np.arange(len(down))[:, None], 0), axis=0)
         moved = np.abs(feet - np.take_along_axis(feet, since[..., None], axis=0)).max(-1)
@@ -105,12 +110,13 @@ class Trace:
         speed, acceleration = self.joint_shares()
         beyond = np.maximum(limits[..., 0] - angles, angles - limits[..., 1])
         down = self.contacts.sum(-1)
+        radius = float(np.max(self.controller.robot.foot_radius))
         found = [
             *_over("beyond a joint's limit [rad]", beyond, 1e-9),
             *_over("joint speed over the greatest", speed, ROUNDING),
             *_over("joint acceleration over the greatest", acceleration, ROUNDING),
             *_over("feet missing of three that are down", 3 - down, 0),
-            *_over("slip of a foot that is down [m]", self.slip(), STILL),
+            *_over("slip of a foot that is down [m]", self.slip(), STILL + SLIP_OF_BALLS * radius),
         ]
         if flat:
             height = self.feet[..., 2]

@@ -21,7 +21,7 @@ from tarsus.control.tick.integrate import integrated
 from tarsus.control.tick.limit import limited, twist_limiters
 from tarsus.control.tick.plan import planned
 from tarsus.control.tick.state import TickState
-from tarsus.control.walk.ground_pose import body_pose, foot_positions
+from tarsus.control.walk.ground_pose import body_pose
 from tarsus.control.walk_state import WalkState
 from tarsus.gait.gait import Gait
 from tarsus.gait.walk_setup import require_number
@@ -201,8 +201,8 @@ class WalkController:
 
     @property
     def feet(self) -> Float[np.ndarray, "legs 3"]:
-        """The feet in G: array, shape (legs, 3) [m]."""
-        return foot_positions(self._tick.gait)
+        """The feet in G, the centres of their balls: array, shape (legs, 3) [m]."""
+        return self._walk.solver.feet(self._tick.gait, self.angles)
 
     @property
     def contacts(self) -> Bool[np.ndarray, "legs"]:

@@ -1,9 +1,9 @@
-"""Closed-form inverse kinematics of one robot in plain floats: for a control loop, where array calls cost more."""
+"""Closed-form kinematics of one robot in plain floats: for a control loop, where array calls cost more."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import atan2, sqrt
+from math import atan2, cos, sin, sqrt
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -17,7 +17,7 @@ __all__ = ["ScalarSolver"]
 
 
 class ScalarSolver:
-    """Inverse kinematics of the legs of one robot, knee up.
+    """Inverse kinematics of the legs of one robot, knee up, and where its feet are.
 
     Parameters
     ----------
@@ -31,6 +31,7 @@ class ScalarSolver:
             *(g.mount_x, g.mount_y, g.mount_z + g.up, g.cos_yaw, g.sin_yaw, g.coxa, g.side, g.side2),
             *(g.farthest2, g.nearest2, g.sum2, g.difference2),
         )
+        self._links = _rows((np.asarray(robot.mount_yaw), *columns[:3], g.coxa, g.side, g.femur, g.tibia))
         limits = (g.coxa_lower, g.coxa_upper, g.femur_lower, g.femur_upper, g.tibia_lower, g.tibia_upper)
         self._legs, self._limits = _rows(columns), _rows(limits)
 
@@ -57,11 +58,11 @@ class ScalarSolver:
         px, py, pz = position
         found = []
         for (fx, fy, fz), leg, limits in zip(feet, self._legs, self._limits, strict=True):
-            mx, my, mz, cos, sin, coxa, side, side2, farthest2, nearest2, sum2, difference2 = leg
+            mx, my, mz, cos_yaw, sin_yaw, coxa, side, side2, farthest2, nearest2, sum2, difference2 = leg
             dx, dy, dz = fx - px, fy - py, fz - pz
             bx, by = dx * r00 + dy * r10 + dz * r20 - mx, dx * r01 + dy * r11 + dz * r21 - my
             z = dx * r02 + dy * r12 + dz * r22 - mz
-            x, y = cos * bx + sin * by, cos * by - sin * bx
+            x, y = cos_yaw * bx + sin_yaw * by, cos_yaw * by - sin_yaw * bx
             beside = x * x + y * y - side2
             if beside < 0:
                 return None
@@ -79,6 +80,43 @@ class ScalarSolver:
             if not (l0 <= q0 <= u0 and l1 <= q1 <= u1 and l2 <= q2 <= u2):
                 return None
             found.append((q0, q1, q2))
+        return found
+
+    def feet(
+        self, angles: Sequence[Sequence[float]], rotation: Sequence[Sequence[float]], position: Sequence[float]
+    ) -> list[tuple[float, float, float]]:
+        """Return the feet, by forward kinematics.
+
+        Parameters
+        ----------
+        angles : sequence of (coxa, femur, tibia)
+            Joint angles of each leg [rad].
+        rotation : sequence of three rows
+            Rotation of the body in any frame.
+        position : (x, y, z)
+            Position of the body's origin in that frame [m].
+
+        Returns
+        -------
+        list of (x, y, z)
+            Positions in that frame [m].
+        """
+        (r00, r01, r02), (r10, r11, r12), (r20, r21, r22) = rotation
+        px, py, pz = position
+        found = []
+        for (q0, q1, q2), (mount_yaw, mx, my, mz, coxa, side, femur, tibia) in zip(angles, self._links, strict=True):
+            yaw, inclination = mount_yaw + q0, q1 + q2
+            c, s = cos(yaw), sin(yaw)
+            out = coxa + femur * cos(q1) + tibia * cos(inclination)
+            x, y = mx + c * out - s * side, my + s * out + c * side
+            z = mz + femur * sin(q1) + tibia * sin(inclination)
+            found.append(
+                (
+                    px + r00 * x + r01 * y + r02 * z,
+                    py + r10 * x + r11 * y + r12 * z,
+                    pz + r20 * x + r21 * y + r22 * z,
+                )
+            )
         return found
 
 

@@ -43,7 +43,8 @@ class LegOdometry:
     def __init__(self, robot: Robot) -> None:
         self.behind = 0j
         self._g = robot.geometry
-        self._before: Complex[np.ndarray, "legs"] | None = None
+        self._radius = np.asarray(robot.foot_radius, dtype=float)
+        self._before: tuple[Complex[np.ndarray, "legs"], Float[np.ndarray, "legs"]] | None = None
         self._stood: list[bool] = []
 
     def step(
@@ -73,26 +74,43 @@ class LegOdometry:
         yaw : float
             Of the body in the heading frame [rad].
         """
-        feet = None if angles is None or None in angles else self._feet(np.array(angles), *tilt) * cmath.exp(1j * yaw)
-        if feet is None:
+        if angles is None or None in angles:
             self.behind, self._before = 0j, None
             return 0j
+        measured, turn = np.array(angles), cmath.exp(1j * yaw)
+        feet, legs = self._feet(measured, *tilt) * turn, self._directions(measured)
+        inclinations = self._inclinations(measured, legs, *tilt)
         both = [now and then for now, then in zip(stands, self._stood, strict=False)]
         if self._before is not None and any(both):
-            moved = -complex((feet - self._before)[both].mean())
+            # The centre of a ball moves with the body as the ball rolls.
+            rolled = self._radius * (self._before[1] - inclinations) * legs * turn
+            moved = complex((rolled - (feet - self._before[0]))[both].mean())
             most = abs(velocity) * _MEMORY
             self.behind += velocity * dt - moved
             self.behind *= min(1.0, most / max(abs(self.behind), 1e-12))
-        self._before, self._stood = feet, stands
+        self._before, self._stood = (feet, inclinations), stands
         wanted, most = _GAIN * self.behind, _MOST * abs(velocity)
         return wanted * min(1.0, most / max(abs(wanted), 1e-12))
+
+    def _directions(self, angles: Float[np.ndarray, "legs 3"]) -> Complex[np.ndarray, "legs"]:
+        """Return the directions of the legs in B, x + iy."""
+        found: np.ndarray = np.exp(1j * angles[:, 0]) * (self._g.cos_yaw + 1j * self._g.sin_yaw)
+        return found
+
+    @staticmethod
+    def _inclinations(
+        angles: Float[np.ndarray, "legs 3"], legs: Complex[np.ndarray, "legs"], roll: float, pitch: float
+    ) -> Float[np.ndarray, "legs"]:
+        """Return the inclinations of the tibiae over the ground, upwards [rad]."""
+        rise = legs.imag * (math.cos(pitch) * math.sin(roll)) - legs.real * math.sin(pitch)
+        return np.asarray(angles[:, 1] + angles[:, 2] + rise)
 
     def _feet(self, angles: Float[np.ndarray, "legs 3"], roll: float, pitch: float) -> Complex[np.ndarray, "legs"]:
         """Return the horizontal positions of the feet from the body, x + iy in axes with its yaw [m]."""
         g = self._g
         reach = g.coxa + g.femur * np.cos(angles[:, 1]) + g.tibia * np.cos(angles[:, 1] + angles[:, 2])
         down = g.femur * np.sin(angles[:, 1]) + g.tibia * np.sin(angles[:, 1] + angles[:, 2]) + g.mount_z + g.up
-        out = (reach + 1j * g.side) * np.exp(1j * angles[:, 0]) * (g.cos_yaw + 1j * g.sin_yaw)
+        out = (reach + 1j * g.side) * self._directions(angles)
         x, y = g.mount_x + out.real, g.mount_y + out.imag
         across = y * math.cos(roll) - down * math.sin(roll)
         up = y * math.sin(roll) + down * math.cos(roll)

@@ -67,6 +67,7 @@ def _step_inputs(walk: WalkComponents, tick: TickState, dt: float) -> StepInputs
         hold_feet = hold_feet or walk.ground.support.waits
         if walk.ground.offsets is not None:
             offsets = walk.ground.offsets * state.down
+    walk.solver.rolling.step(state.posture.value, transitions.footholds.rest, walk.foot_targets.legs, dt)
     return StepInputs(
         gait=timing.gait,
         frequency=0.0 if standing else timing.frequency,

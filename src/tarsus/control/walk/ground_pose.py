@@ -1,4 +1,4 @@
-"""Body pose and foot positions in G that follow from a gait state."""
+"""Body pose in G that follows from a gait state."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ import numpy as np
 
 from tarsus.control.walk.state import GaitState
 from tarsus.control.workspace.body_shift import NO_SHIFT
-from tarsus.control.workspace.stance_geometry import SWING_HEIGHT, rotation_rows, with_sway
+from tarsus.control.workspace.stance_geometry import rotation_rows, with_sway
 from tarsus.gait.body_shift import shift_at
 from tarsus.kinematics.pose import Pose
 
 if TYPE_CHECKING:
     from jaxtyping import Float
 
-__all__ = ["body_pose", "body_posture", "foot_positions", "ground_frame"]
+__all__ = ["body_pose", "body_posture", "ground_frame"]
 
 
 def body_posture(state: GaitState) -> Float[np.ndarray, "7"]:
@@ -46,23 +46,6 @@ def body_pose(state: GaitState) -> Pose:
     origin = state.origin + cmath.exp(1j * state.yaw) * complex(x, y)
     rotation = np.array(rotation_rows(roll, pitch, state.yaw + yaw))
     return Pose.unchecked(rotation, np.array([origin.real, origin.imag, float(state.elevation.value[0]) + z]))
-
-
-def foot_positions(state: GaitState) -> Float[np.ndarray, "legs 3"]:
-    """Return the positions of the feet in G.
-
-    Parameters
-    ----------
-    state : GaitState
-        The gait state.
-
-    Returns
-    -------
-    array, shape (legs, 3)
-        In G [m].
-    """
-    height = state.height(float(state.posture.value[SWING_HEIGHT])) + state.admittance_offset.value
-    return np.stack([state.foot.real, state.foot.imag, height], axis=-1)
 
 
 def ground_frame(body: Pose) -> Pose:

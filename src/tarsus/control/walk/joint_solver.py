@@ -1,4 +1,4 @@
-"""Joint angles of a gait state, computed in plain numbers: the inverse kinematics of every tick."""
+"""Joint angles of a gait state and its feet, computed in plain numbers: the kinematics of every tick."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tarsus.control.filters import CriticallyDamped
+from tarsus.control.pose.foot_rolling import FootRolling
 from tarsus.control.walk.ground_pose import body_posture
 from tarsus.control.walk.state import GaitState
 from tarsus.control.workspace.body_shift import NO_SHIFT
@@ -23,16 +24,21 @@ __all__ = ["JointSolver"]
 
 
 class JointSolver:
-    """Computes the joint angles of one robot for the states of its walk.
+    """Computes the joint angles and the feet of one robot for the states of its walk.
 
     Parameters
     ----------
     robot : Robot
         A single robot.
+
+    Attributes
+    ----------
+    rolling : FootRolling
+        How the balls of the feet roll; at first not at all.
     """
 
     def __init__(self, robot: Robot) -> None:
-        self._robot = robot
+        self._robot, self.rolling = robot, FootRolling(robot)
         self._scalar_solver = ScalarSolver(robot)
         # Rotation, position and swing height are kept for as long as the posture stays the same object.
         self._posture: CriticallyDamped | None = None
@@ -54,12 +60,15 @@ class JointSolver:
         rotation, position, swing_height = self._body_at(state)
         turn, origin = cmath.exp(-1j * state.yaw), state.origin
         elevation = float(state.elevation.value[0])
+        offsets = state.admittance_offset.value.tolist()
         feet = []
-        for foot, height, offset in zip(
-            state.foot.tolist(), state.heights(swing_height), state.admittance_offset.value.tolist(), strict=True
-        ):
+        for foot, height, offset in zip(state.foot.tolist(), state.heights(swing_height), offsets, strict=True):
             in_heading = (foot - origin) * turn
             feet.append((in_heading.real, in_heading.imag, height + offset - elevation))
+        if self.rolling.balls is not None:
+            bottoms = zip(state.ground_height.tolist(), offsets, strict=True)
+            standing = [height + offset - elevation for height, offset in bottoms]
+            feet = self.rolling.rolled(feet, standing, rotation, position)
         found = self._scalar_solver.angles(feet, rotation, position)
         if found is None:
             in_body = (np.array(feet) - position) @ np.array(rotation)
@@ -68,6 +77,30 @@ class JointSolver:
             angles = np.array(found)
         angles.setflags(write=False)
         return angles
+
+    def feet(self, state: GaitState, angles: Float[np.ndarray, "legs 3"]) -> Float[np.ndarray, "legs 3"]:
+        """Return the feet, the centres of their balls, by forward kinematics.
+
+        Parameters
+        ----------
+        state : GaitState
+            The state of the walk.
+        angles : array, shape (legs, 3)
+            Its joint angles [rad].
+
+        Returns
+        -------
+        array, shape (legs, 3)
+            Positions in G [m].
+        """
+        rotation, position, _ = self._body_at(state)
+        turn, origin = cmath.exp(1j * state.yaw), state.origin
+        elevation = float(state.elevation.value[0])
+        feet = []
+        for x, y, z in self._scalar_solver.feet(angles.tolist(), rotation, position):
+            place = origin + turn * complex(x, y)
+            feet.append((place.real, place.imag, z + elevation))
+        return np.array(feet)
 
     def _body_at(self, state: GaitState) -> tuple[Rows, list[float], float]:
         if state.posture is not self._posture or state.shift is not NO_SHIFT:

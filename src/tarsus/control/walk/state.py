@@ -140,16 +140,6 @@ class GaitState(NamedTuple):
             admittance_offset=CriticallyDamped.still(none),
         )
 
-    def height(self, swing_height: float) -> Float[np.ndarray, "legs"]:
-        """Return the heights of the feet in G: array, shape (legs,) [m].
-
-        Parameters
-        ----------
-        swing_height : float
-            Height of a swinging foot over its foothold [m].
-        """
-        return np.array(self.heights(swing_height))
-
     def heights(self, swing_height: float) -> list[float]:
         """Return the heights of the feet in G as a list of floats [m].
 

@@ -1,0 +1,174 @@
+"""Rolling of the foot balls of a live walk: what the legs roll about in a stance."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import atan2, sqrt
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from tarsus.control.filters import CriticallyDamped
+from tarsus.control.workspace.stance_geometry import Rows, stance_geometry_of
+from tarsus.robot.robot import Robot
+
+if TYPE_CHECKING:
+    from jaxtyping import Complex, Float
+
+__all__ = ["FootRolling", "RollingBall"]
+
+# Bandwidth with which other rest footholds, or a leg out of the gait, are followed [rad/s]; no difference [m].
+_BANDWIDTH, _NO_DIFFERENCE = 5.0, 1e-12
+# Keeps quotients finite for a straight leg, and for a foot on its femur axis [m^2].
+_TINY = 1e-12
+
+
+class RollingBall(NamedTuple):
+    """A foot ball that rolls in the plane of its leg.
+
+    Attributes
+    ----------
+    radius : float
+        Its radius [m]; 0 for a leg out of the gait.
+    at_rest : float
+        The radius times the inclination of the tibia over the ground at the rest foothold [m].
+    """
+
+    radius: float
+    at_rest: float
+
+
+class FootRolling:
+    """Displaces the feet by how far their balls have rolled.
+
+    A ball of radius `r` rolls by ``-r`` times the change of its tibia's inclination, along the direction in which the
+    leg points. With the inclination at the rest foothold as the origin, the displacement of the foot is a function of
+    the posture and of the foothold: the same at lift-off and at touchdown, continuous from stance to swing, towards the
+    rest foothold, and zero there. It leaves out that the leg turns while the ball rolls, which is of second order: less
+    than 0.3 % of a stroke. Where posture or rest footholds change, the origin follows, so that a foot at rest is at
+    its rest foothold again.
+
+    Parameters
+    ----------
+    robot : Robot
+        A single robot.
+
+    Attributes
+    ----------
+    balls : list of RollingBall or None
+        One for each foot; None for a robot whose feet are points, and before the first tick.
+
+    Notes
+    -----
+    `tarsus.gait.rolling_feet` integrates the rolling over a plan, which is known in advance.
+    """
+
+    def __init__(self, robot: Robot) -> None:
+        self._robot, self._radius = robot, np.asarray(robot.foot_radius, dtype=float)
+        self._rolls = bool(self._radius.any())
+        self.balls: list[RollingBall] | None = None
+        self._posture = self._rest = np.zeros(0)
+        self._out: list[int] = []
+        g = robot.geometry
+        rows = (g.mount_x, g.mount_y, g.mount_z + g.up, g.coxa, g.side, g.side2)
+        columns = [column.tolist() for column in (*rows, g.farthest2, g.nearest2, g.difference2)]
+        self._legs: list[tuple[float, ...]] = list(zip(*columns, strict=True))
+        # Rest footholds, x and y, and the radius of each ball, 0 for legs out of the gait [m].
+        self._goal = np.zeros(3 * robot.legs)
+        self._filter = CriticallyDamped.still(self._goal)
+
+    def step(
+        self,
+        posture: Float[np.ndarray, "_"],
+        rest: Complex[np.ndarray, "legs"],
+        out_of_gait: list[int],
+        dt: float,
+    ) -> None:
+        """Advance by a tick; a stance that stays the same is not solved again.
+
+        Parameters
+        ----------
+        posture : array, shape (7,) or more
+            The posture.
+        rest : complex array, shape (legs,)
+            Rest footholds in the heading frame [m].
+        out_of_gait : list of int
+            Legs that are taken out of the gait: their feet are where they are commanded to be.
+        dt : float
+            Length of the tick [s].
+        """
+        if not self._rolls:
+            return
+        if rest is not self._rest or out_of_gait != self._out:
+            radius = self._radius.copy()
+            radius[out_of_gait] = 0.0
+            goal = np.concatenate([rest.real, rest.imag, radius])
+            self._goal = self._goal if np.array_equal(goal, self._goal) else goal
+            self._rest, self._out = rest, out_of_gait
+        if self.balls is None:
+            self._filter = CriticallyDamped.still(self._goal)
+        if self._filter.value is not self._goal:
+            after = self._filter.step(self._goal, dt, bandwidth=_BANDWIDTH)
+            off = max(float(np.abs(after.value - self._goal).max()), float(np.abs(after.rate).max()))
+            self._filter = after if off > _NO_DIFFERENCE else CriticallyDamped.still(self._goal)
+        elif posture is self._posture:
+            return
+        self._posture = posture
+        self.balls = self._balls(posture)
+
+    def rolled(
+        self,
+        feet: Sequence[tuple[float, float, float]],
+        standing: Sequence[float],
+        rotation: Rows,
+        position: Sequence[float],
+    ) -> list[tuple[float, float, float]]:
+        """Return the feet with their balls rolled.
+
+        Parameters
+        ----------
+        feet : sequence of (x, y, z)
+            Where the feet would be as points, in a frame whose z axis is vertical [m].
+        standing : sequence of float
+            The height in that frame at which each foot stands [m]: how far a foot has rolled does not depend on how
+            high it is lifted, so that it leaves the ground and lands as it stands.
+        rotation : three rows
+            Rotation of the body in that frame.
+        position : (x, y, z)
+            Position of the body's origin in that frame [m].
+        """
+        (r00, r01, r02), (r10, r11, r12), (r20, r21, r22) = rotation
+        px, py, pz = position
+        found = []
+        for (fx, fy, fz), height, (radius, at_rest), leg in zip(
+            feet, standing, self.balls or (), self._legs, strict=True
+        ):
+            mx, my, mz, coxa, side, side2, farthest2, nearest2, difference2 = leg
+            dx, dy, dz = fx - px, fy - py, height - pz
+            bx, by = dx * r00 + dy * r10 + dz * r20 - mx, dx * r01 + dy * r11 + dz * r21 - my
+            z = dx * r02 + dy * r12 + dz * r22 - mz
+            across2 = bx * bx + by * by + _TINY
+            along = sqrt(across2 - side2) if across2 > side2 else 0.0
+            # The direction of the leg in B, and how far its axis rises over the ground.
+            x, y = (bx * along + by * side) / across2, (by * along - bx * side) / across2
+            rise = r20 * x + r21 * y
+            r = along - coxa
+            distance2 = r * r + z * z + _TINY
+            area2, base = (farthest2 - distance2) * (distance2 - nearest2), distance2 + difference2
+            bend, half = sqrt(area2) if area2 > 0.0 else 0.0, 0.5 / distance2
+            # The knee, from the femur axis: the triangle of `tarsus.kinematics.triangle`.
+            out, up = (r * base - z * bend) * half, (z * base + r * bend) * half
+            inclination = atan2(z - up, r - out) + rise
+            # A Newton step: the tibia turns further as the foot moves.
+            gain = bend / (bend + 2.0 * radius * (out if out > 0.0 else 0.0) + _TINY)
+            distance = gain * (at_rest - radius * inclination)
+            found.append((fx + distance * (r00 * x + r01 * y), fy + distance * (r10 * x + r11 * y), fz))
+        return found
+
+    def _balls(self, posture: Float[np.ndarray, "_"]) -> list[RollingBall]:
+        x, y, radius = self._filter.value.reshape(3, -1)
+        stance = stance_geometry_of(posture, x + 1j * y)
+        found = stance.solve(self._robot, x, y, np.zeros_like(x))
+        yaw, up = np.asarray(self._robot.mount_yaw) + found.coxa, stance.rotation[2]
+        inclination = found.femur + found.tibia + up[0] * np.cos(yaw) + up[1] * np.sin(yaw)
+        return [RollingBall(*ball) for ball in np.stack([radius, radius * inclination], axis=-1).tolist()]

@@ -1,0 +1,180 @@
+"""Feet of live walks roll: their balls do not slip, and a simulated robot walks the commanded way."""
+
+import numpy as np
+import pytest
+
+from gait_robots import point_feet, preset
+from sample_gait_states import moment_of, rest_of, setup_of
+from tarsus import Pose, forward_kinematics, inverse_kinematics
+from tarsus.control.command import Command
+from tarsus.control.pose.foot_rolling import FootRolling
+from tarsus.control.robot_controller import RobotController
+from tarsus.control.sensing.leg_odometry import LegOdometry
+from tarsus.control.walk.joint_solver import JointSolver
+from tarsus.control.walk_controller import WalkController
+from tarsus.gait.gait import Gait
+from tarsus.kinematics.rolling import rolling_displacements
+from tarsus.simulation.simulated_plant import SimulatedPlant
+from walk_trace import Trace
+
+ON_BALLS = ("strider", "makeyourpet")
+TWISTS = {"straight": (1, 0, 0), "sideways": (0, 1, 0), "curve": (1, 0, 2.5), "turn": (0, 0, 1)}
+# What the map of posture and foothold leaves out of the rolling: the turn of the leg [m].
+SLIP = 0.4e-3
+
+
+def walking(robot, gait, direction, share=0.9):
+    w = WalkController(robot, Gait.named(gait))
+    return w, share * w.top_speed(direction) * np.array(direction, dtype=float)
+
+
+@pytest.mark.parametrize(("name", "gait"), [("strider", "wave"), ("makeyourpet", "tripod")])
+@pytest.mark.parametrize("kind", TWISTS)
+def test_a_standing_foot_rolls_without_slip(name, gait, kind):
+    w, twist = walking(preset(name), gait, TWISTS[kind])
+    trace = Trace(w).run(twist, 2.2 * w.cycle_time, 0.02)
+    assert trace.slip().max() < SLIP
+    # Rolling moves the centres by more than that where the legs lean over.
+    rolled = np.linalg.norm(rolling_displacements(w.robot, trace.angles, trace.body), axis=-1).sum(0)
+    assert kind == "turn" or rolled.max() > 4 * SLIP
+    np.testing.assert_allclose(trace.feet[-1], w.feet, atol=1e-12)
+
+
+@pytest.mark.parametrize("name", ON_BALLS)
+def test_a_robot_that_stops_stands_as_before(name):
+    w, twist = walking(preset(name), "tripod", (1, 0.3, 1))
+    angles = w.angles
+    trace = Trace(w).run(twist, 2 * w.cycle_time).run((0, 0, 0), 4 * w.cycle_time)
+    assert w.walk_state == "standing"
+    np.testing.assert_allclose(w.angles, angles, atol=1e-5)
+    trace.assert_sound()
+
+
+def test_the_displacement_is_continuous_in_speed_from_swing_to_stance():
+    dt = 0.005
+    w, twist = walking(preset("strider"), "tripod", (0, 1, 0), 0.5)
+    rolled = []
+    for _ in range(round(2.5 * w.cycle_time / dt)):
+        w.step(twist, dt)
+        rolled.append(w.feet[:, 0] + 1j * w.feet[:, 1] - w._tick.gait.foot)
+    speed = np.diff(rolled, axis=0) / dt
+    assert np.abs(speed).max() > 0.01
+    # From one tick to the next by less than 1 m/s^2: a jump at touchdown would be several times that.
+    assert np.abs(np.diff(speed, axis=0)).max() / dt < 1.0
+
+
+def test_a_tilted_and_swaying_body_keeps_the_feet_on_the_ground():
+    w = WalkController(preset("strider"))
+    trace = Trace(w).run(Command(body=(0.01, 0.005, 0.0, 0.06, -0.05, 0.1), sway=(0.005,) * 3 + (0.02,) * 3), 3)
+    trace.run((0.04, 0.02, 0.1), 3).assert_sound()
+
+
+def test_a_leg_out_of_the_gait_has_its_foot_where_it_is_commanded():
+    w = WalkController(preset("strider"), Gait.named("wave"))
+    point = w.feet[0] + [0.02, 0.03, 0.05]
+    trace = Trace(w).run(Command(foot_targets={0: tuple(point)}), 8)
+    np.testing.assert_allclose(w.feet[0], point, atol=1e-6)
+    trace.run(Command(foot_targets={0: None}), 4).assert_sound()
+
+
+def test_a_lower_body_has_its_feet_at_rest_again():
+    w, points = (WalkController(robot("strider")) for robot in (preset, point_feet))
+    for _ in range(400):
+        for each in (w, points):
+            each.step(Command(body_height=0.08), 0.02)
+    np.testing.assert_allclose(w.feet, points.feet, atol=1e-9)
+
+
+def solver_of(setup, rest, out=()):
+    solver = JointSolver(setup.robot)
+    now = moment_of(setup, rest)
+    solver.rolling.step(now.posture.value, rest, list(out), 0.02)
+    return solver, now
+
+
+def test_out_of_reach_the_other_legs_roll_as_before():
+    setup, rest = setup_of("strider"), rest_of("strider")
+    solver, now = solver_of(setup, rest)
+    near = now._replace(foot=now.foot + 0.03)
+    foot = near.foot.copy()
+    foot[2] = now.origin + 3 * (foot[2] - now.origin)
+    expected, found = solver.angles(near), solver.angles(near._replace(foot=foot))
+    others = [0, 1, 3, 4, 5]
+    np.testing.assert_allclose(found[others], expected[others], atol=1e-9)
+    assert np.abs(found[2] - expected[2]).max() > 0.1
+    # Without rolling it is another foot.
+    still = JointSolver(setup.robot)
+    assert np.abs(still.angles(near) - expected).max() > 1e-3
+
+
+def test_the_feet_are_those_of_the_forward_kinematics():
+    setup, rest = setup_of("strider"), rest_of("strider")
+    solver, now = solver_of(setup, rest, out=[1])
+    now = now._replace(foot=now.foot + 0.02)
+    angles = solver.angles(now)
+    x, y, z, roll, pitch, yaw, _ = now.posture.value[:7]
+    heading = Pose.from_rpy(0, 0, now.yaw, (now.origin.real, now.origin.imag, 0.0))
+    body = heading @ Pose.from_rpy(roll, pitch, yaw, (x, y, z))
+    feet = solver.feet(now, angles)
+    np.testing.assert_allclose(feet, body @ forward_kinematics(setup.robot, angles)[..., 3, :], atol=1e-12)
+    moved = np.abs(feet[:, 0] + 1j * feet[:, 1] - now.foot)
+    assert moved[1] < 1e-12
+    assert (np.delete(moved, 1) > 1e-4).all()
+
+
+def test_a_stance_is_solved_once():
+    setup, rest = setup_of("strider"), rest_of("strider")
+    posture = moment_of(setup, rest).posture.value
+    rolling = FootRolling(setup.robot)
+    rolling.step(posture, rest, [], 0.02)
+    balls = rolling.balls
+    for same in (rest, rest.copy()):
+        rolling.step(posture, same, [], 0.02)
+        assert rolling.balls is balls
+    rolling.step(posture.copy(), rest, [], 0.02)
+    assert rolling.balls is not balls
+    assert rolling.balls == balls
+    for _ in range(400):
+        rolling.step(posture, 1.05 * rest, [], 0.02)
+    fresh = FootRolling(setup.robot)
+    fresh.step(posture, 1.05 * rest, [], 0.02)
+    np.testing.assert_array_equal(rolling.balls, fresh.balls)
+    assert np.abs(np.array(rolling.balls) - balls).max() > 1e-4
+    points = FootRolling(point_feet("strider"))
+    points.step(posture, rest, [], 0.02)
+    assert points.balls is None
+
+
+def test_odometry_knows_that_balls_roll():
+    robot, speed, dt = preset("makeyourpet"), 0.02, 0.02
+    rolling, sliding = LegOdometry(robot), LegOdometry(point_feet("makeyourpet"))
+    w = WalkController(robot)
+    feet, angles, position = w.feet, w.angles, w.body.position
+    for _ in range(40):
+        for odometry in (rolling, sliding):
+            odometry.step(angles.tolist(), [True] * 6, speed * 1j, dt, tilt=(0.0, 0.0), yaw=0.0)
+        # The body moves sideways over feet that roll.
+        position = position + np.array([0, speed * dt, 0])
+        before, step = angles, np.zeros((6, 3))
+        for _pass in range(4):
+            angles = np.asarray(inverse_kinematics(robot, feet + step - position).angles)
+            both = Pose(np.stack([np.eye(3)] * 2), np.stack([position] * 2))
+            step = rolling_displacements(robot, np.stack([before, angles]), both)[0]
+        feet = feet + step
+    assert abs(rolling.behind) < 3e-5
+    assert sliding.behind.imag > 3e-4
+
+
+@pytest.mark.parametrize("kind", ["straight", "sideways"])
+def test_a_simulated_robot_walks_the_commanded_way(kind):
+    robot, dt = preset("makeyourpet"), 0.01
+    _, twist = walking(robot, "tripod", TWISTS[kind], 0.6)
+    controller = RobotController(robot, Gait.named("tripod"))
+    plant, out = SimulatedPlant(robot, servos="ideal", sensors="blind"), controller.output
+    plant.start(out)
+    for tick in range(500):
+        if tick == 50:
+            start, asked = plant.state.body.position, out.body.position
+        out = controller.step(Command(twist=tuple(twist) if 50 <= tick < 350 else (0, 0, 0)), dt, plant.step(out, dt))
+    way = np.linalg.norm((plant.state.body.position - start)[:2])
+    assert way / np.linalg.norm((out.body.position - asked)[:2]) == pytest.approx(1.0, abs=0.01)
