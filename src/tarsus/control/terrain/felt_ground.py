@@ -17,7 +17,7 @@ from tarsus.control.terrain.foot_contacts import FootContacts
 from tarsus.control.terrain.foot_plane import FootPlane, fitted_plane
 from tarsus.control.terrain.ground_contact import met_ground
 from tarsus.control.terrain.posture_feedback import Levelling, PostureFeedback, PostureRates
-from tarsus.control.terrain.reach import reachable_heights
+from tarsus.control.terrain.reach import Reach, reachable_share
 from tarsus.control.terrain.roughness import GroundAdaptation, Roughness
 from tarsus.control.terrain.support import Support, holds
 from tarsus.control.walk.felt_feet import FeltFeet, FeltInputs
@@ -39,8 +39,6 @@ _SLOPE_RATE = 2.0
 _DEPTH_SHARE = 0.6
 # Fraction of the swing in which a foot travels, up to half the longest stroke and with the longest one.
 _SLOW_TRAVEL, _FAST_TRAVEL = 0.75, 0.92
-# Change of a stroke that changes the heights that a leg reaches [m]; turning counts at this distance [m].
-_STROKE_STEP, _TURNING_ARM = 0.01, 0.2
 # A foot this close to its least height hangs [m], and how much lower the ground under it is then expected [m].
 _HANGING, _LOWER = 0.002, 0.03
 # How often height, tilt and lost way are looked at [s].
@@ -94,17 +92,13 @@ class FeltGround:
         self.posture, self.roughness = PostureFeedback(levelling), Roughness(adaptation)
         self.plane = FootPlane()
         self.offsets: Float[np.ndarray, "legs"] | None = None
-        self._robot = robot
+        self._reach = Reach(robot)
         self._validator, self._loads = ReadingsValidator(robot), FootLoads(robot, admittance)
         com = centre_of_mass(robot, angles)
         self._centre = complex(com[0], com[1])
         self._odometry, self._measured = LegOdometry(robot), ValidReadings()
         self._tilt: tuple[float, float] | None = None
         self._since, self._drift, self._rates = _SLOW_PERIOD, 0j, PostureRates(0.0, (0.0, 0.0))
-        self._reach_key: tuple[float, ...] = ()
-        self._reach_rest: Complex[np.ndarray, "legs"] | None = None
-        self._stroke = 0.0
-        self._lowest, self._highest = [0.0] * robot.legs, [0.0] * robot.legs
 
     @property
     def waits(self) -> bool:
@@ -155,7 +149,7 @@ class FeltGround:
             self.contacts,
             self.plane,
             self.roughness,
-            highest=self._highest,
+            highest=self._reach.highest,
             timing=timing,
             pace=self.support.pace,
         )
@@ -212,13 +206,14 @@ class FeltGround:
             stands=tuple(contacts.stands(leg) for leg in legs),
             steps=tuple(leg not in excluded for leg in legs),
             ground=tuple(ground),
-            lowest=tuple(elevation + self._lowest[leg] if searches[leg] else ground[leg] for leg in legs),
-            highest=tuple(elevation + height for height in self._highest),
+            lowest=tuple(elevation + self._reach.lowest[leg] if searches[leg] else ground[leg] for leg in legs),
+            highest=tuple(elevation + height for height in self._reach.highest),
             depth=_DEPTH_SHARE * self.roughness.value,
             climb=self._rates.climb,
             turn=self._rates.turn,
             drift=self._drift,
-            travel=_SLOW_TRAVEL + (_FAST_TRAVEL - _SLOW_TRAVEL) * max(2 * self._stroke / max(*radii, 1e-6) - 1, 0.0),
+            travel=_SLOW_TRAVEL
+            + (_FAST_TRAVEL - _SLOW_TRAVEL) * max(2 * self._reach.stroke / max(*radii, 1e-6) - 1, 0.0),
             pace=self.support.pace,
             swing_height=float(state.posture.value[SWING_HEIGHT]) + self.roughness.swing_rise,
         )
@@ -240,18 +235,22 @@ class FeltGround:
         self.plane = fitted_plane(
             [places[leg] for leg in bears], [over[leg] for leg in bears], self.plane, min(_SLOPE_RATE * dt, 1.0)
         )
-        self._update_reach(state, timing, twist, rest)
+        reach = self._reach
+        reach.update(state.posture.value, rest, twist, timing.stance_time)
         rises = [(over[leg] if leg in bears else self.plane.at(complex(rest[leg]))) - self.plane.height for leg in legs]
         for leg in legs:
-            if down[leg] and not contacts.stands(leg) and over[leg] < self._lowest[leg] + _HANGING:
+            if down[leg] and not contacts.stands(leg) and over[leg] < reach.lowest[leg] + _HANGING:
                 # The foot hangs at the end of its reach: with the body lower it may find ground.
-                rises[leg] = self._lowest[leg] - self.plane.height - _LOWER
+                rises[leg] = reach.lowest[leg] - self.plane.height - _LOWER
+        highest = reach.highest_stand(float(state.posture.value[SWING_HEIGHT]))
+        level = self.plane.levelled(self._tilt)
         self.posture.fit_to_reach(
             rises,
             self.roughness.body_rise,
             dt,
-            reach=(self._lowest, self._highest),
+            reach=(reach.lowest, highest),
             height=float(state.posture.value[2]),
+            share=reachable_share([level.at(foot) for foot in rest.tolist()], reach.lowest, highest),
         )
         velocity = complex(*state.twist.value[:2].tolist()) * self.support.pace
         self._drift = self._odometry.step(
@@ -262,20 +261,8 @@ class FeltGround:
             tilt=self._measured.attitude or (0.0, 0.0),
             yaw=float(state.posture.value[5]),
         )
-        margins = [(places[leg], over[leg] - self._lowest[leg]) for leg in bears]
+        margins = [(places[leg], over[leg] - reach.lowest[leg]) for leg in bears]
         self._rates = self.posture.rates(self.plane, self._tilt, velocity, feet=margins)
-
-    def _update_reach(
-        self, state: GaitState, timing: StepTiming, twist: Float[np.ndarray, "3"], rest: Complex[np.ndarray, "legs"]
-    ) -> None:
-        """Update the least and greatest height of each foot, where its stroke or the posture has changed."""
-        (vx, vy, wz), time = twist.tolist(), timing.stance_time
-        rounded = (round(speed * time / _STROKE_STEP) for speed in (vx, vy, wz * _TURNING_ARM))
-        key = (*rounded, *state.posture.value[:SWING_HEIGHT].round(3).tolist())
-        if key != self._reach_key or rest is not self._reach_rest:
-            self._reach_key, self._reach_rest, strokes = key, rest, (complex(vx, vy) + 1j * wz * rest) * time
-            self._stroke = float(np.abs(strokes).max()) / 2
-            self._lowest, self._highest = reachable_heights(self._robot, state.posture.value, rest, strokes)
 
     def _decide_on_support(
         self, places: list[complex], centre: complex, down: list[bool], due: list[bool] | None, **time: float

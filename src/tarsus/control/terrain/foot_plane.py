@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -29,6 +30,17 @@ class FootPlane(NamedTuple):
     def at(self, point: complex) -> float:
         """Return the height at a point x + iy [m]."""
         return self.height + self.slope_x * point.real + self.slope_y * point.imag
+
+    def levelled(self, tilt: tuple[float, float] | None) -> FootPlane:
+        """Return the plane through the origin as a level body sees it.
+
+        Parameters
+        ----------
+        tilt : (roll, pitch) or None
+            By how much the body is tilted [rad]; None for not at all.
+        """
+        roll, pitch = tilt or (0.0, 0.0)
+        return FootPlane(0.0, math.tan(math.atan(self.slope_x) - pitch), math.tan(math.atan(self.slope_y) + roll))
 
 
 def fitted_plane(points: Sequence[complex], heights: Sequence[float], before: FootPlane, share: float) -> FootPlane:

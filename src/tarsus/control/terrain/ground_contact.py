@@ -23,7 +23,7 @@ __all__ = ["met_ground"]
 # Swing phases from which on contact is a collision, and from which on it is the ground.
 _CLEAR, _LANDING = 0.12, 0.55
 # How far a foot has risen that meets an obstacle, after contact has ceased or without that [m].
-_LIFTED, _RISEN = 0.004, 0.01
+_LIFTED, _RISEN = 0.01, 0.03
 # Time in which a leg gives up its load, and its joints follow their commands [s].
 _UNLOADING = 0.05
 # After a collision: how much higher the foot rises [m], in which time [s], and how far it is drawn back [m].

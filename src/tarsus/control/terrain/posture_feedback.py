@@ -17,12 +17,12 @@ LEVELLING_SHARES = {"level": 0.0, "between": 0.5, "follow": 1.0}
 """How much of the slope the body follows."""
 
 # Gains [1/s] and greatest rates of height [m/s] and tilt [rad/s]; without a measured attitude the tilt follows slower.
-_HEIGHT_GAIN, _MOST_CLIMB = 1.2, 0.05
+_HEIGHT_GAIN, _MOST_CLIMB = 2.5, 0.1
 _TILT_GAIN, _MOST_TURN, _UNMEASURED_GAIN = 2.0, 0.15, 0.5
 # Speed with which a foot may approach the end of its reach, over the distance from there [1/s].
 _BARRIER = 8.0
 # How fast the height to keep changes [m/s], and how much of the body height it may be lower.
-_RAISING, _LOWERING, _MOST_LOWER = 0.04, 0.02, 0.25
+_RAISING, _LOWERING, _MOST_LOWER = 0.04, 0.08, 0.25
 
 
 class PostureRates(NamedTuple):
@@ -70,6 +70,7 @@ class PostureFeedback:
         *,
         reach: tuple[Sequence[float], Sequence[float]],
         height: float,
+        share: float,
     ) -> None:
         """Change the height to keep towards the one at which all legs reach the plane of the feet.
 
@@ -85,6 +86,8 @@ class PostureFeedback:
             Least and greatest height of each foot [m].
         height : float
             Commanded height of the body [m].
+        share : float
+            Share of the slope that the legs reach, 0 to 1.
         """
         # Feet are between their least and greatest heights for heights over the ground between these.
         most = min(rise - low for low, rise in zip(reach[0], rises, strict=True))
@@ -93,7 +96,7 @@ class PostureFeedback:
         wanted = max(wanted, -_MOST_LOWER * height)
         self.short = max(wanted - most, least - wanted, 0.0)
         steepest = max(*map(abs, rises), 1e-6)
-        self.given_way = min(self.short / steepest, 1.0)
+        self.given_way = max(1 - share, min(self.short / steepest, 1.0))
         self.raised += min(max(wanted - self.raised, -_LOWERING * dt), _RAISING * dt)
 
     def rates(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,11 +13,92 @@ from tarsus.robot.robot import Robot
 if TYPE_CHECKING:
     from jaxtyping import Complex, Float
 
-__all__ = ["reachable_heights"]
+__all__ = ["Reach", "reachable_heights", "reachable_share"]
 
 # Heights that are tried about the level ground, over the length of femur and tibia.
-_TRIED = np.linspace(-0.8, 0.8, 41)
+_TRIED = np.linspace(-0.8, 0.8, 121)
 _LEVEL = len(_TRIED) // 2
+# Change of a stroke that changes the heights that a leg reaches [m]; turning counts at this distance [m].
+_STROKE_STEP, _TURNING_ARM = 0.01, 0.2
+# Room over the ground that a leg's greatest height leaves for its swing, over the swing height.
+_CLEARANCE = 1.5
+
+
+class Reach:
+    """The heights at which each leg reaches its stroke, computed anew where stroke or posture have changed.
+
+    Parameters
+    ----------
+    robot : Robot
+        A single robot.
+
+    Attributes
+    ----------
+    lowest, highest : list of float
+        Least and greatest height of each foot in the heading frame [m].
+    stroke : float
+        Half the longest stroke [m].
+    """
+
+    def __init__(self, robot: Robot) -> None:
+        self.lowest, self.highest = [0.0] * robot.legs, [0.0] * robot.legs
+        self.stroke = 0.0
+        self._robot = robot
+        self._key: tuple[float, ...] = ()
+        self._rest: Complex[np.ndarray, "legs"] | None = None
+
+    def update(
+        self,
+        posture: Float[np.ndarray, "_"],
+        rest: Complex[np.ndarray, "legs"],
+        twist: Float[np.ndarray, "3"],
+        stance_time: float,
+    ) -> None:
+        """Update the heights.
+
+        Parameters
+        ----------
+        posture : array, shape (7,) or more
+            Posture of the body.
+        rest : complex array, shape (legs,)
+            Rest footholds in the heading frame [m].
+        twist : array, shape (3,)
+            The twist that is followed [m/s, m/s, rad/s].
+        stance_time : float
+            Duration of a stance [s].
+        """
+        vx, vy, wz = twist.tolist()
+        rounded = (round(speed * stance_time / _STROKE_STEP) for speed in (vx, vy, wz * _TURNING_ARM))
+        key = (*rounded, *posture[:SWING_HEIGHT].round(3).tolist())
+        if key != self._key or rest is not self._rest:
+            self._key, self._rest, strokes = key, rest, (complex(vx, vy) + 1j * wz * rest) * stance_time
+            self.stroke = float(np.abs(strokes).max()) / 2
+            self.lowest, self.highest = reachable_heights(self._robot, posture, rest, strokes)
+
+    def highest_stand(self, swing_height: float) -> list[float]:
+        """Return the greatest height of each foot on the ground that leaves room for its swing [m].
+
+        Parameters
+        ----------
+        swing_height : float
+            The swing height [m].
+        """
+        return [height - _CLEARANCE * swing_height for height in self.highest]
+
+
+def reachable_share(rises: Sequence[float], lowest: Sequence[float], highest: Sequence[float]) -> float:
+    """Return how much of a slope legs reach, 0 to 1: the rest of it the body has to follow.
+
+    Parameters
+    ----------
+    rises : sequence of float
+        Height of the slope at each foot, over that at the body [m].
+    lowest, highest : sequence of float
+        Least and greatest height of each foot [m].
+    """
+    uphill, downhill = zip(rises, highest, strict=True), list(zip(rises, lowest, strict=True))
+    pairs = ((up - down, max(high - low, 0.0)) for up, high in uphill for down, low in downhill)
+    return min([1.0, *(room / rise for rise, room in pairs if rise > room)])
 
 
 def reachable_heights(

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 __all__ = ["Support", "holds"]
 
 # Rates at which the pace falls and rises [1/s].
-_FALL, _RISE = 6.0, 3.0
+_FALL, _RISE = 6.0, 6.0
 # Part of a swing for which feet may wait before the steps slow down.
 _PATIENCE = 0.3
 # How long the robot may be without support between two footholds [s].

@@ -19,11 +19,11 @@ _TOP_PHASE = 0.45
 # Fraction of a swing in which a foot goes down from its top to the expected ground.
 _DESCENT = 0.4
 # Least and greatest speed of a descending foot, and least one of a foot that should stand and feels nothing [m/s].
-_LOWERING, _FASTEST_LOWERING, _SEARCHING = 0.12, 0.4, 0.08
+_LOWERING, _FASTEST_LOWERING, _SEARCHING = 0.12, 0.4, 0.15
 # Time in which a foot that should stand goes down to the expected ground [s].
 _SEARCH_TIME = 0.1
-# Greatest changes of speed, of feet and of the body, and how fast a foot that has landed early stops [m/s^2].
-_FOOT_ACCELERATION, _BODY_ACCELERATION, _STOPPING = 6.0, 1.0, 12.0
+# Greatest changes of speed: of feet in the air, of the body, of feet on the ground, and of their slide [m/s^2].
+_FOOT_ACCELERATION, _BODY_ACCELERATION, _STANDING_ACCELERATION, _STOPPING = 6.0, 1.0, 15.0, 12.0
 
 
 def moved_vertically(state: GaitState, inputs: StepInputs, dt: float) -> GaitState:
@@ -46,7 +46,7 @@ def moved_vertically(state: GaitState, inputs: StepInputs, dt: float) -> GaitSta
     elevation = float(state.elevation.value[0]) + (rate + climb) / 2 * dt
     swing, delays = 1 - inputs.gait.duty_factor, state.lift_delay.tolist()
     heights, feet_at = state.ground_height.tolist(), state.foot.tolist()
-    for leg, (down, phase) in enumerate(zip(state.down.tolist(), state.swing_phase.tolist(), strict=True)):
+    for leg, down in enumerate(state.down.tolist()):
         if not felt.steps[leg]:
             feet = feet.replaced(leg, speed=0.0, acceleration=0.0)
         elif down:
@@ -54,7 +54,7 @@ def moved_vertically(state: GaitState, inputs: StepInputs, dt: float) -> GaitSta
             heights[leg], feet = _standing(state, feet, felt, leg, dt)
         else:
             swing_time = (swing - delays[leg]) / inputs.frequency if inputs.frequency else math.inf
-            heights[leg], feet = _swinging(feet, felt, leg, heights[leg], phase, dt, swing_time)
+            heights[leg], feet = _swinging(state, feet, felt, leg, dt, swing_time)
     return state._replace(
         foot=np.array(feet_at),
         ground_height=np.array(heights),
@@ -80,7 +80,7 @@ def _standing(state: GaitState, feet: FeltFeet, felt: FeltInputs, leg: int, dt: 
     wanted = felt.turn[0] * place.imag - felt.turn[1] * place.real
     if not felt.stands[leg]:
         wanted -= min(max(_SEARCHING, (height - felt.ground[leg]) / _SEARCH_TIME), _FASTEST_LOWERING)
-    after = _towards(speed, wanted, _FOOT_ACCELERATION * dt)
+    after = _towards(speed, wanted, (_STANDING_ACCELERATION if felt.stands[leg] else _FOOT_ACCELERATION) * dt)
     found = height + (speed + after) / 2 * dt
     if not felt.stands[leg]:
         found, after = _no_lower(found, after, height, felt.lowest[leg])
@@ -89,14 +89,15 @@ def _standing(state: GaitState, feet: FeltFeet, felt: FeltInputs, leg: int, dt: 
 
 
 def _swinging(
-    feet: FeltFeet, felt: FeltInputs, leg: int, height: float, phase: float, dt: float, swing_time: float
+    state: GaitState, feet: FeltFeet, felt: FeltInputs, leg: int, dt: float, swing_time: float
 ) -> tuple[float, FeltFeet]:
     """Return the height of a foot in the air, and the state of the feet: it rises to its top, then goes down."""
-    if math.isnan(feet.top[leg]):
+    height, phase = float(state.ground_height[leg]), float(state.swing_phase[leg])
+    if math.isnan(feet.top[leg]) or (phase < feet.top_phase[leg] and feet.drawn_back[leg] is None):
         # No higher than the foot can be down again from by the end of its swing.
         fits = felt.ground[leg] - felt.depth + _FASTEST_LOWERING * _DESCENT * swing_time
-        top = min(max(height, felt.ground[leg]) + felt.swing_height, max(felt.highest[leg], height), max(fits, height))
-        feet = feet.replaced(leg, top=top, top_phase=_TOP_PHASE)
+        over = max(float(state.start_height[leg]), felt.ground[leg]) + felt.swing_height
+        feet = feet.replaced(leg, top=max(min(over, felt.highest[leg], fits), height), top_phase=_TOP_PHASE)
     top, speed = feet.top[leg], feet.speed[leg]
     if phase < feet.top_phase[leg]:
         time = dt * felt.pace

@@ -1,0 +1,96 @@
+"""Walks that feel slopes: clearance of swings, attitude where legs do not reach, and what physics makes of it."""
+
+import math
+
+import numpy as np
+import pytest
+
+from gait_robots import preset
+from tarsus.control.readings import SensorReadings
+from tarsus.control.robot_controller import RobotController
+from tarsus.control.terrain.foot_plane import FootPlane
+from tarsus.control.terrain.posture_feedback import PostureFeedback
+from tarsus.control.terrain.reach import Reach, reachable_share
+from tarsus.control.walk_controller import WalkController
+from tarsus.simulation import SimulatedPlant, terrain
+
+
+def test_a_swing_clears_the_ground_ahead_by_the_swing_height_on_a_slope():
+    controller, slope, dt = WalkController(preset("strider"), swing_height=0.03), 0.15, 0.01
+
+    def ground(x):
+        return slope * x
+
+    clear = []
+    for tick in range(1500):
+        feet = controller.feet
+        contacts = tuple(feet[:, 2] <= ground(feet[:, 0]) + 1e-4)
+        before = controller.contacts
+        controller.step((0.1, 0.0, 0.0), dt, SensorReadings(contacts=contacts, attitude=(0.0, 0.0)))
+        if tick > 1000:
+            over = controller.feet[:, 2] - ground(controller.feet[:, 0])
+            clear += [(leg, over[leg]) for leg in np.flatnonzero(~before)]
+    highest = [max(height for leg, height in clear if leg == each) for each in range(6)]
+    assert min(highest) > 0.024
+
+
+def test_legs_reach_as_much_of_a_slope_as_their_heights_allow():
+    rises = [0.1, 0.0, -0.1]
+    assert reachable_share(rises, [-0.2] * 3, [0.2] * 3) == 1.0
+    assert reachable_share(rises, [-0.05] * 3, [0.05] * 3) == pytest.approx(0.5)
+    assert reachable_share(rises, [-0.02] * 3, [0.1] * 3) == pytest.approx(0.6)
+    assert reachable_share(rises, [-0.01] * 3, [-0.02] * 3) == 0.0
+
+
+def test_a_plane_is_levelled_by_the_attitude_of_the_body():
+    plane = FootPlane(0.02, math.tan(0.2), math.tan(0.1))
+    levelled = plane.levelled((0.05, -0.1))
+    assert levelled.height == 0.0
+    assert math.atan(levelled.slope_x) == pytest.approx(0.3)
+    assert math.atan(levelled.slope_y) == pytest.approx(0.15)
+    assert plane.levelled(None)[1:] == pytest.approx(plane[1:])
+
+
+def test_the_body_follows_the_share_of_a_slope_that_the_legs_do_not_reach():
+    posture, slope = PostureFeedback("level"), 0.5
+    posture.fit_to_reach([0.0] * 6, 0.0, 0.02, reach=([-0.1] * 6, [0.1] * 6), height=0.1, share=0.7)
+    pitch = 0.0
+    for _ in range(2000):
+        plane = FootPlane(0.0, math.tan(slope + pitch), 0.0)
+        rates = posture.rates(plane, (0.0, pitch), 0j, feet=[(0.2 + 0j, 0.1), (-0.2 + 0j, 0.1)])
+        pitch -= rates.turn[1] * 0.01
+    assert pitch == pytest.approx(-0.3 * slope, abs=0.005)
+
+
+def test_reach_is_computed_anew_only_where_stroke_or_posture_change():
+    controller = WalkController(preset("strider"))
+    state = controller._tick.gait
+    reach, rest = Reach(preset("strider")), state.foot
+    reach.update(state.posture.value, rest, np.array([0.1, 0.0, 0.0]), 0.5)
+    lowest = reach.lowest
+    reach.update(state.posture.value, rest, np.array([0.1005, 0.0, 0.0]), 0.5)
+    assert reach.lowest is lowest
+    reach.update(state.posture.value, rest, np.array([0.2, 0.0, 0.0]), 0.5)
+    assert reach.lowest is not lowest
+    assert max(reach.highest_stand(0.03)) < max(reach.highest)
+
+
+def climbed(degrees, *, seconds=9.0, speed=0.146, start=0.35):
+    """Return way over the commanded one, tilt [deg] and slip [m/m] of a walk up a long ramp."""
+    robot = preset("strider")
+    plant = SimulatedPlant(robot, terrain=terrain.Ramp(slope=math.radians(degrees), start=start, length=5.0))
+    controller, dt = RobotController(robot), 0.01
+    output, slip = controller.output, 0.0
+    plant.start(output)
+    for _ in range(round(seconds / dt)):
+        output = controller.step((speed, 0.0, 0.0), dt, plant.step(output, dt))
+        slip += float(plant.state.slip_speeds.mean()) * dt
+        assert not plant.body_touches
+    way = plant.state.body.position[0]
+    return way / (speed * seconds), slip / way
+
+
+def test_a_slope_of_ten_degrees_costs_next_to_nothing():
+    way, slip = climbed(10.0)
+    assert way > 0.94
+    assert slip < 0.03
