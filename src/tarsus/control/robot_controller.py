@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -17,7 +16,8 @@ from tarsus.control.safety import Guard, GuardBounds, GuardState, Intervention
 from tarsus.control.sequence import MotionSequence
 from tarsus.control.startup import fold, sit_down, stand_up
 from tarsus.control.states.activity import Activity, Playing, Resting, Snapshot, Walking
-from tarsus.control.states.persistent_command import PersistentCommand
+from tarsus.control.states.persistent_command import PersistentCommand, stopped
+from tarsus.control.states.reduced_walking import LegFailures
 from tarsus.control.states.robot_state import RobotState, next_state, requested_state
 from tarsus.control.terrain.posture_feedback import Levelling
 from tarsus.control.terrain.roughness import GroundAdaptation
@@ -36,9 +36,8 @@ if TYPE_CHECKING:
 
 __all__ = ["RobotController"]
 
-# A robot whose joints are all slower than this is at rest [rad/s].
-_AT_REST = 1e-3
-_NO_TWIST = (0.0, 0.0, 0.0)
+# A robot whose joints are all slower than this is at rest, with all legs and without some [rad/s].
+_AT_REST, _AT_REST_DAMAGED = 1e-3, 0.05
 
 
 @represented("robot", "state", "output.time", "output.activity", "output.angles", "output.twist", "output.limitations")
@@ -97,7 +96,9 @@ class RobotController:
         self.body_height, self.swing_height = body_height, swing_height
         self._gait = Gait.named(robot.gait.name, legs=robot.legs) if gait is None else gait
         self.compliant = admittance is not None
-        self._ground: dict[str, Any] = {"levelling": levelling, "adaptation": adaptation, "admittance": admittance}
+        heights: dict[str, Any] = {"body_height": body_height, "swing_height": swing_height}
+        self._options = heights | {"levelling": levelling, "adaptation": adaptation, "admittance": admittance}
+        self.leg_failures = LegFailures(robot, **self._options)
         self._command = PersistentCommand(robot)
         # Pose of the activity's ground frame in G; None where they are the same.
         self._base: Pose | None = None
@@ -124,8 +125,7 @@ class RobotController:
         self._output = self._shown(self._now.angles, ())
 
     def _new_walk(self) -> Walking:
-        heights: dict[str, Any] = {"body_height": self.body_height, "swing_height": self.swing_height}
-        return Walking(WalkController(self.robot, self._gait, **heights, **self._ground))
+        return Walking(WalkController(self.robot, self._gait, **self._options))
 
     @property
     def output(self) -> ControlOutput:
@@ -173,10 +173,14 @@ class RobotController:
         self._begin_change(command)
         before, activity = self._now.angles, self._activity
         upright = self._goal is RobotState.STANDING
-        activity.step(command if upright else _stopped(command, self.robot.legs), dt, readings)
-        self._now = self._placed(activity.snapshot)
-        self._rate = float(np.abs(self._now.angles - before).max()) / dt
+        activity.step(command if upright else stopped(command, self.robot.legs), dt, readings)
         if isinstance(activity, Walking):
+            self._activity = self.leg_failures.following(activity, self._now, dt)
+        if self._activity is not activity:
+            self._base = ground_frame(self._now.body) @ ground_frame(self._activity.snapshot.body).inverse()
+        self._now = self._placed(self._activity.snapshot)
+        self._rate = float(np.abs(self._now.angles - before).max()) / dt
+        if type(activity) is Walking:
             self._gait, self._cycle_time = activity.controller.gait, activity.controller.cycle_time
         if isinstance(activity, Playing) and activity.done:
             self._end_change(activity)
@@ -186,20 +190,21 @@ class RobotController:
         moves = isinstance(self._activity, Playing) or (
             isinstance(self._activity, Walking) and not self._activity.stands
         )
-        return not moves and self._rate < _AT_REST
+        return not moves and self._rate < (_AT_REST_DAMAGED if self.leg_failures.failed else _AT_REST)
 
     # Changes of state.
 
     def _begin_change(self, command: Command) -> None:
         """Begin the next change on the way to the state that is wanted, once the robot is at rest."""
         goal = self._goal if command.state is None else requested_state(command.state)
+        goal = RobotState.LYING if self.leg_failures.sits and goal is RobotState.STANDING else goal
         if goal is not self._goal:
             self._goal, self._rejected = goal, None
         if isinstance(self._activity, Playing):
             self._activity.turn(back=not self._activity.leads_to(goal))
             return
         change = self._next_change()
-        if change is None or not self._at_rest:
+        if change is None or not (self._at_rest or self.leg_failures.sits):
             return
         try:
             sequence = self._plan(change[0])
@@ -239,6 +244,7 @@ class RobotController:
 
     def _own_limitations(self) -> Iterator[Limitation]:
         """Yield what of the command does not fit the state."""
+        yield from self.leg_failures.limitations
         if self._rejected is not None:
             yield self._rejected
         if self._goal is RobotState.STANDING and self._now.state.upright:
@@ -292,9 +298,3 @@ class RobotController:
             cycle_time=self._cycle_time,
             at_rest=self._at_rest and self._next_change() is None,
         )
-
-
-def _stopped(command: Command, legs: int) -> Command:
-    """Return the command to stand with every foot in the gait: what a robot does before it sits down."""
-    targets = dict.fromkeys(range(legs)) if command.foot_targets or command.foot_velocities else None
-    return dataclasses.replace(command, twist=_NO_TWIST, foot_targets=targets, foot_velocities=None)

@@ -11,7 +11,7 @@ from tarsus.control.command import Command
 from tarsus.control.limitation import Limitation
 from tarsus.control.limiter.workspace import top_speed
 from tarsus.control.pose.admittance import Admittance
-from tarsus.control.readings import SensorReadings
+from tarsus.control.readings import SensorReadings, ValidReadings
 from tarsus.control.terrain.posture_feedback import Levelling
 from tarsus.control.terrain.roughness import GroundAdaptation
 from tarsus.control.tick.command_intake import CommandIntake
@@ -213,6 +213,11 @@ class WalkController:
     def feels_ground(self) -> bool:
         """Whether readings have told anything of the ground: the feet follow it from then on."""
         return self._tick.gait.felt is not None
+
+    @property
+    def measured(self) -> ValidReadings:
+        """The readings that were used last."""
+        return self._walk.ground.measured
 
     @property
     def angles(self) -> Float[np.ndarray, "legs 3"]:

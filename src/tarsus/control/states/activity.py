@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, Self
 
 import numpy as np
 
 from tarsus.control.command import Command
 from tarsus.control.limitation import Limitation
-from tarsus.control.readings import SensorReadings
+from tarsus.control.readings import SensorReadings, Vector
 from tarsus.control.sequence import MotionSequence, SequencePlayer, SequenceSample
 from tarsus.control.startup import fold, sit_down
 from tarsus.control.states.robot_state import RobotState
@@ -84,15 +85,22 @@ class Walking:
     ----------
     controller : WalkController
         The walk controller.
+
+    Attributes
+    ----------
+    joint_angles : sequence of ((coxa, femur, tibia) or None), or None
+        Measured in the last tick [rad].
     """
 
     def __init__(self, controller: WalkController) -> None:
         self.controller = controller
+        self.joint_angles: Sequence[Vector | None] | None = None
 
     def step(self, command: Command, dt: float, readings: SensorReadings | None) -> None:
         """Advance by one tick."""
         felt = readings if readings is not None and readings.has_ground_feedback else None
         self.controller.step(command, dt, readings=felt)
+        self.joint_angles = None if felt is None else self.controller.measured.joint_angles
 
     @property
     def stands(self) -> bool:

@@ -11,7 +11,7 @@ from tarsus.errors import InputError
 from tarsus.gait.gait import Gait
 from tarsus.robot.robot import Robot
 
-__all__ = ["PersistentCommand"]
+__all__ = ["PersistentCommand", "stopped"]
 
 _HELD = ("body", "gait", "body_height", "swing_height", "stance_width", "cycle_time", "sway", "state")
 """What holds until it is changed; twist and foot velocities hold for the ticks in which they are given."""
@@ -89,3 +89,9 @@ class PersistentCommand:
         """Forget the feet that are to be put back into the gait: after standing up, every foot is in it."""
         targets = {leg: point for leg, point in (self._full.foot_targets or {}).items() if point is not None}
         self._full, self._last = dataclasses.replace(self._full, foot_targets=targets or None), None
+
+
+def stopped(command: Command, legs: int) -> Command:
+    """Return the command to stand with every foot in the gait: what a robot does before it sits down."""
+    targets = dict.fromkeys(range(legs)) if command.foot_targets or command.foot_velocities else None
+    return dataclasses.replace(command, twist=(0.0, 0.0, 0.0), foot_targets=targets, foot_velocities=None)

@@ -96,7 +96,7 @@ class FeltGround:
         self._validator, self._loads = ReadingsValidator(robot), FootLoads(robot, admittance)
         com = centre_of_mass(robot, angles)
         self._centre = complex(com[0], com[1])
-        self._odometry, self._measured = LegOdometry(robot), ValidReadings()
+        self._odometry, self.measured = LegOdometry(robot), ValidReadings()
         self._tilt: tuple[float, float] | None = None
         self._since, self._drift, self._rates = _SLOW_PERIOD, 0j, PostureRates(0.0, (0.0, 0.0))
 
@@ -129,7 +129,7 @@ class FeltGround:
         angles : array, shape (legs, 3)
             Joint angles [rad].
         """
-        valid = self._measured = self._validator.validate(readings, dt)
+        valid = self.measured = self._validator.validate(readings, dt)
         if valid.attitude is not None:
             roll, pitch = state.posture.value[3:5].tolist()
             self._tilt = (valid.attitude[0] - roll, valid.attitude[1] - pitch)
@@ -254,11 +254,11 @@ class FeltGround:
         )
         velocity = complex(*state.twist.value[:2].tolist()) * self.support.pace
         self._drift = self._odometry.step(
-            self._measured.joint_angles,
+            self.measured.joint_angles,
             [leg in bears for leg in legs],
             velocity,
             dt,
-            tilt=self._measured.attitude or (0.0, 0.0),
+            tilt=self.measured.attitude or (0.0, 0.0),
             yaw=float(state.posture.value[5]),
         )
         margins = [(places[leg], over[leg] - reach.lowest[leg]) for leg in bears]
@@ -268,7 +268,7 @@ class FeltGround:
         self, places: list[complex], centre: complex, down: list[bool], due: list[bool] | None, **time: float
     ) -> None:
         """Decide whether feet may lift off, and at which pace the walk goes on; None is due while the robot stands."""
-        contacts, tilt = self.contacts, self._measured.attitude
+        contacts, tilt = self.contacts, self.measured.attitude
         if tilt is not None:
             contacts.balance(down, places, centre, tilt, time["dt"])
         legs = [leg for leg, on in enumerate(down) if on and not (due and due[leg]) and contacts.supports(leg)]
@@ -279,7 +279,7 @@ class FeltGround:
     def limitations(self) -> tuple[Limitation, ...]:
         """Readings that are rejected, and what the ground does not allow."""
         kinds = LimitationKind
-        found = [Limitation(kind=kinds.READINGS, cause=reason) for reason in self._measured.rejected]
+        found = [Limitation(kind=kinds.READINGS, cause=reason) for reason in self.measured.rejected]
         if self.posture.given_way > 0.0:
             found.append(Limitation(kind=kinds.ATTITUDE, cause="end of the legs' reach on this slope"))
         if self.waits:

@@ -1,0 +1,74 @@
+"""Joint monitor: finds servos that do not follow their commands, by the measured joint angles."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from tarsus.control.readings import Vector
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
+
+__all__ = ["JointMonitor"]
+
+# A joint may lag behind its command for so long [s].
+_LAG = 0.15
+# Error beyond which a servo gives more than its stall torque, if it works [rad]. Hobby servos give it at 0.1 rad.
+_ERROR = 0.15
+# How long a joint has to be off by this error until it has failed, a quarter of it at twice the error, and in which time
+# half of it is forgotten [s].
+_CONVICTED, _MEMORY = 0.9, 2.0
+
+
+class JointMonitor:
+    """Compares measured joint angles with those that were commanded a moment ago.
+
+    A servo that is loaded gives way, and one that is slow lags behind. One that is dead, limp or stuck is off by more
+    than its stall torque explains, for longer than any lag; the more it is off, the sooner it is found.
+
+    Attributes
+    ----------
+    failed : dict of int to int
+        Legs with a joint that has failed, and the joint.
+    """
+
+    def __init__(self) -> None:
+        self.failed: dict[int, int] = {}
+        self._commands: deque[tuple[float, Float[np.ndarray, "legs 3"]]] = deque()
+        self._suspicion: Float[np.ndarray, "legs 3"] | None = None
+
+    def step(self, commanded: Float[np.ndarray, "legs 3"], measured: Sequence[Vector | None] | None, dt: float) -> None:
+        """Take in the joint angles of a tick.
+
+        Parameters
+        ----------
+        commanded : array, shape (legs, 3)
+            Commanded until now [rad].
+        measured : sequence of ((coxa, femur, tibia) or None), or None
+            As measured [rad]; legs without a measurement are not monitored.
+        dt : float
+            Time since the last tick [s].
+        """
+        commands = self._commands
+        commands.append((dt, commanded))
+        if sum(time for time, _ in commands) > _LAG + dt:
+            commands.popleft()
+        if measured is None:
+            return
+        found = np.array([(np.nan,) * 3 if leg is None else leg for leg in measured])
+        with np.errstate(invalid="ignore"):
+            off = np.abs(found - commanded) > _ERROR
+        if not off.any() and self._suspicion is None:
+            return
+        if self._suspicion is None:
+            self._suspicion = np.zeros_like(commanded)
+        recent = [angles for _, angles in commands]
+        error = np.fmax(np.fmax(found - np.max(recent, axis=0), np.min(recent, axis=0) - found), 0.0)
+        weight = np.where(error > _ERROR, (error / _ERROR) ** 2, 0.0)
+        self._suspicion = self._suspicion * 0.5 ** (dt / _MEMORY) + dt * weight
+        for leg, joint in np.argwhere(self._suspicion > _CONVICTED).tolist():
+            self.failed.setdefault(leg, joint)

@@ -1,0 +1,231 @@
+"""Walking without legs that have failed: the robot that is left, its gait, and the way to its stance."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tarsus.control.command import Command
+from tarsus.control.limitation import Limitation, LimitationKind
+from tarsus.control.readings import CHANNELS, SensorReadings
+from tarsus.control.sensing.joint_monitor import JointMonitor
+from tarsus.control.states.activity import Snapshot, Walking
+from tarsus.control.states.robot_state import RobotState
+from tarsus.control.walk_controller import WalkController
+from tarsus.errors import TarsusError
+from tarsus.gait.gait import Gait
+from tarsus.robot.robot import Robot
+
+if TYPE_CHECKING:
+    from jaxtyping import Float, Shaped
+
+__all__ = ["LegFailures", "ReducedWalking", "remaining_robot"]
+
+_JOINTS = ("coxa", "femur", "tibia")
+_SITS = "the robot sits down: it can't walk without"
+_CAUSE = "the joint has failed: the robot walks on without this leg"
+# Values of a robot that it has for each leg.
+_OF_LEGS = (
+    *("mount_position", "mount_yaw", "coxa", "femur", "tibia", "limits"),
+    *("femur_axis_offset", "foot_radius", "link_com", "link_mass"),
+)
+# A leg that has failed is held up at this angle of its femur, with its tibia this far from its limit [rad].
+_FEMUR_UP, _FROM_LIMIT = 1.0, 0.1
+# Fraction of the joints' speed with which the legs move to their new stance, and the least time [s].
+_SPEED_SHARE, _LEAST_TIME = 0.15, 1.0
+# Time in which the joints lose the speed that they have [s].
+_STOPPING = 0.3
+# Channels that are not measured for each leg.
+_OF_BODY = ("attitude", "angular_rates")
+
+
+def remaining_robot(robot: Robot, legs: list[int]) -> Robot:
+    """Return the robot with some of its legs; the masses of the others are part of its body.
+
+    Parameters
+    ----------
+    robot : Robot
+        A single robot.
+    legs : list of int
+        The legs that are left, four or more.
+    """
+    lost = [leg for leg in range(robot.legs) if leg not in legs]
+    values: dict[str, Any] = {name: np.asarray(getattr(robot, name))[legs] for name in _OF_LEGS if name != "link_mass"}
+    if robot.link_mass is not None:
+        values["link_mass"] = np.asarray(robot.link_mass)[legs]
+    if robot.has_masses:
+        masses, mass = np.asarray(robot.link_mass)[lost].sum(axis=-1), np.asarray(robot.body_mass)
+        moment = mass * np.asarray(robot.body_com) + masses @ np.asarray(robot.mount_position)[lost]
+        values |= {"body_mass": mass + masses.sum(), "body_com": moment / (mass + masses.sum())}
+    return dataclasses.replace(
+        robot,
+        leg_names=tuple(robot.leg_names[leg] for leg in legs),
+        servos=tuple(robot.servos[leg] for leg in legs),
+        **values,
+    )
+
+
+class ReducedWalking(Walking):
+    """Standing and walking on the legs that are left, one of them in the air at a time, with a body shift.
+
+    Parameters
+    ----------
+    robot : Robot
+        The robot with all of its legs.
+    failed : mapping of int to int
+        Legs that have failed, and the joint.
+    now : Snapshot
+        The robot now.
+    speeds : array, shape (legs, 3)
+        Joint speeds now [rad/s].
+    options
+        As for `WalkController`.
+
+    Attributes
+    ----------
+    failed : dict of int to int
+        Legs that have failed, and the joint.
+
+    Raises
+    ------
+    TarsusError
+        If fewer than four legs are left, or those do not hold the robot.
+    """
+
+    def __init__(
+        self,
+        robot: Robot,
+        failed: Mapping[int, int],
+        now: Snapshot,
+        speeds: Float[np.ndarray, "legs 3"],
+        **options: Any,
+    ) -> None:
+        self.failed = dict(failed)
+        self._robot, self._legs = robot, [leg for leg in range(robot.legs) if leg not in failed]
+        count = len(self._legs)
+        gait = Gait(1 - 2 / (3 * count), tuple(leg / count for leg in range(count)), body_shift=True)
+        super().__init__(WalkController(remaining_robot(robot, self._legs), gait, **options))
+        self._limitations = tuple(
+            Limitation(kind=LimitationKind.GAIT, cause=_CAUSE, leg=robot.leg_names[leg], joint=_JOINTS[joint])
+            for leg, joint in failed.items()
+        )
+        self._start, self._end, self._speeds = now.angles, np.array(now.angles), speeds
+        for leg in failed:
+            low, high = np.asarray(robot.limits)[leg].T
+            self._end[leg, 1:] = min(_FEMUR_UP, high[1]), low[2] + _FROM_LIMIT
+        self._end[self._legs] = self.controller.angles
+        speed = _SPEED_SHARE * float(self.controller.joint_speed.min())
+        self._duration = max(float(np.abs(self._end - self._start).max()) / speed, _LEAST_TIME)
+        self._time, self._readings = 0.0, SensorReadings()
+
+    def step(self, command: Command, dt: float, readings: SensorReadings | None) -> None:
+        """Advance by one tick; until the legs are in their new stance, nothing is followed."""
+        if self._time < self._duration:
+            self._time += dt
+            return
+        legs = {leg: index for index, leg in enumerate(self._legs)}
+        targets = {legs[leg]: point for leg, point in (command.foot_targets or {}).items() if leg in legs} or None
+        velocities = {legs[leg]: each for leg, each in (command.foot_velocities or {}).items() if leg in legs} or None
+        command = dataclasses.replace(command, gait=None, foot_targets=targets, foot_velocities=velocities)
+        super().step(command, dt, None if readings is None else self._of_legs(readings))
+        if self.joint_angles is not None:
+            measured = dict(zip(self._legs, self.joint_angles, strict=True))
+            self.joint_angles = [measured.get(leg) for leg in range(self._robot.legs)]
+
+    @property
+    def stands(self) -> bool:
+        """Whether the robot stands, every foot that is left on the ground and no step under way."""
+        return self._time >= self._duration and super().stands
+
+    @property
+    def snapshot(self) -> Snapshot:
+        """The robot now."""
+        now = super().snapshot
+        share, contacts = min(self._time / self._duration, 1.0), np.zeros(self._robot.legs, dtype=bool)
+        smooth = share**3 * (10 - 15 * share + 6 * share**2)
+        coasted = self._time * max(1 - self._time / _STOPPING, 0.0) ** 3
+        angles = self._start + smooth * (self._end - self._start) + coasted * self._speeds
+        contacts[self._legs] = now.contacts
+        if share >= 1:
+            angles[self._legs] = now.angles
+        angles.setflags(write=False)
+        return now._replace(
+            angles=angles,
+            feet=None,
+            contacts=contacts,
+            state=now.state if share >= 1 else RobotState.WALKING,
+            limitations=(*self._limitations, *now.limitations),
+            # The feet slide to their new stance.
+            felt=now.felt or share < 1,
+        )
+
+    def _of_legs(self, readings: SensorReadings) -> SensorReadings:
+        """Return the readings of the legs that are left."""
+        values: dict[str, Any] = {}
+        for name in CHANNELS:
+            value: Shaped[np.ndarray, "..."] | None = getattr(readings, name)
+            if value is not None and name not in _OF_BODY and np.shape(value)[:1] == (self._robot.legs,):
+                value = np.asarray(value)[self._legs]
+            values[name] = value
+        return SensorReadings(**values, age=readings.age)
+
+
+class LegFailures:
+    """Legs that have failed, found by their measured joint angles or told; a robot that can't walk without them sits.
+
+    Parameters
+    ----------
+    robot : Robot
+        A single robot.
+    options
+        As for `WalkController`.
+
+    Attributes
+    ----------
+    failed : dict of int to int
+        Legs that have failed, and the joint; to be changed by who knows better. A leg that is removed from it is used
+        again once the robot has lain.
+    """
+
+    def __init__(self, robot: Robot, **options: Any) -> None:
+        self._robot, self._options, self._monitor = robot, options, JointMonitor()
+        self.failed, self._cause = self._monitor.failed, ""
+        self._hopeless: dict[int, int] = {}
+
+    def following(self, activity: Walking, now: Snapshot, dt: float) -> Walking:
+        """Return the activity that follows after a tick: another one where another leg has failed.
+
+        Parameters
+        ----------
+        activity : Walking
+            The present one.
+        now : Snapshot
+            The robot before the tick.
+        dt : float
+            Length of the tick [s].
+        """
+        self._monitor.step(now.angles, activity.joint_angles, dt)
+        lost = activity.failed if isinstance(activity, ReducedWalking) else {}
+        if self.sits or self.failed.keys() <= lost.keys():
+            return activity
+        after = activity.snapshot
+        try:
+            return ReducedWalking(self._robot, self.failed, after, (after.angles - now.angles) / dt, **self._options)
+        except TarsusError as error:
+            self._hopeless, self._cause = dict(self.failed), str(error)
+        return activity
+
+    @property
+    def sits(self) -> bool:
+        """Whether the robot has to sit down."""
+        return bool(self._hopeless) and self._hopeless.keys() <= self.failed.keys()
+
+    @property
+    def limitations(self) -> tuple[Limitation, ...]:
+        """Why the robot sits down."""
+        names = " and ".join(self._robot.leg_names[leg] for leg in self.failed)
+        kind = LimitationKind.STATE
+        return (Limitation(kind=kind, cause=f"{_SITS}: {self._cause}", leg=names),) if self.sits else ()

@@ -1,0 +1,119 @@
+"""Legs that fail: found by measured joint angles or told, and what the robot does without them."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+import tarsus
+from tarsus.control.sensing.joint_monitor import JointMonitor
+from tarsus.control.states.reduced_walking import remaining_robot
+from tarsus.kinematics.mass import centre_of_mass, total_mass
+from tarsus.simulation import SimulatedPlant
+
+STRIDER = tarsus.load_robot("strider")
+DT = 0.02
+
+
+def swung(tick):
+    """Joint angles that swing with half a radian."""
+    return np.full((6, 3), 0.5 * np.sin(6 * 0.01 * tick))
+
+
+@pytest.mark.parametrize("lag", [0, 5, 12])
+def test_joints_that_lag_and_give_way_have_not_failed(lag):
+    monitor = JointMonitor()
+    for tick in range(400):
+        measured = swung(tick - lag) - 0.1
+        monitor.step(swung(tick), measured.tolist(), 0.01)
+    assert monitor.failed == {}
+
+
+@pytest.mark.parametrize("fault", ["limp", "stuck"])
+def test_a_joint_that_does_not_follow_is_found(fault):
+    monitor = JointMonitor()
+    for tick in range(400):
+        measured = swung(tick).tolist()
+        measured[2][1] = -0.8 if fault == "limp" else 0.3
+        monitor.step(swung(tick), [None, *measured[1:]], 0.01)
+        if monitor.failed:
+            break
+    assert monitor.failed == {2: 1}
+    assert tick < (30 if fault == "limp" else 150)
+    before = dict(monitor.failed)
+    monitor.step(swung(0), None, 0.01)
+    assert monitor.failed == before
+
+
+def test_a_robot_without_a_leg_has_its_mass_and_its_other_legs():
+    rest = remaining_robot(STRIDER, [0, 2, 3, 4, 5])
+    assert rest.leg_codes[1:] == ("LR", "RR", "RM", "RF")
+    assert total_mass(rest) == pytest.approx(total_mass(STRIDER))
+    angles = tarsus.WalkController(STRIDER).angles
+    shift = (centre_of_mass(rest, angles[[0, 2, 3, 4, 5]]) - centre_of_mass(STRIDER, angles))[:2]
+    # The leg that is left out hangs at its coxa axis in the model.
+    assert np.abs(shift).max() < 0.02
+    without_masses = dataclasses.replace(STRIDER, link_mass=None, link_com=None, body_mass=None)
+    assert not remaining_robot(without_masses, [0, 2, 3, 5]).has_masses
+
+
+def test_a_limp_servo_is_found_in_physics_and_the_robot_walks_on():
+    plant = SimulatedPlant(STRIDER)
+    controller = tarsus.RobotController(STRIDER)
+    plant.start(controller.output)
+    limp = slice(3 * 4, 3 * 5)  # the actuators of the middle left femur
+    tilt, joints, start = 0.0, [], 0.0
+    for tick in range(600):
+        if tick == 50:
+            plant.mj_model.actuator_gainprm[limp] = plant.mj_model.actuator_biasprm[limp] = 0.0
+        readings = plant.step(controller.output, DT)
+        joints.append(controller.output.angles)
+        tilt = max(tilt, *np.abs(np.asarray(plant.state.body.rpy)[:2]))
+        assert not plant.state.body_touches
+        if tick == 250:
+            start = plant.state.body.position[0]
+        controller.step((0.12, 0.0, 0.0), DT, readings)
+    assert controller.leg_failures.failed == {1: 1}
+    assert tilt < np.deg2rad(20)
+    assert plant.state.body.position[0] - start > 0.1
+    found = [each for each in controller.output.limitations if each.kind == "gait"]
+    assert [(each.leg, each.joint) for each in found] == [("middle left", "femur")]
+    assert "failed" in found[0].text()
+    assert not controller.output.contacts[1]
+
+
+def test_told_of_it_a_robot_walks_stands_and_sits_without_a_leg():
+    controller = tarsus.RobotController(STRIDER)
+    for _ in range(50):
+        controller.step((0.1, 0.0, 0.0), DT)
+    controller.leg_failures.failed[1] = 2
+    before, steps = controller.output.angles, []
+    targets = tarsus.Command(twist=(0.05, 0.0, 0.0), foot_targets={1: (0.0, 0.3, 0.05)})
+    for tick in range(600):
+        output = controller.step(targets if tick == 0 else (0.05, 0.0, 0.0), DT)
+        steps.append(np.abs(output.angles - before).max())
+        before = output.angles
+        assert output.interventions == ()
+    assert output.state == "walking"
+    assert output.angles.shape == (6, 3)
+    assert max(steps) / DT < controller.guard.bounds.speed.max()
+    for _ in range(800):
+        output = controller.step(tarsus.Command(state="lying"), DT)
+    assert output.state == "lying"
+    assert not [each for each in output.limitations if each.kind == "gait"]
+
+
+def test_a_robot_that_cannot_walk_without_its_legs_sits_down_until_told_otherwise():
+    controller = tarsus.RobotController(STRIDER)
+    controller.step((0.1, 0.0, 0.0), DT)
+    controller.leg_failures.failed.update({0: 0, 1: 1, 2: 2})
+    for _ in range(500):
+        output = controller.step((0.1, 0.0, 0.0), DT)
+    assert output.state == "lying"
+    (why,) = [each for each in output.limitations if each.kind == "state"]
+    assert why.text().startswith("state: front left and middle left and rear left: the robot sits down")
+    assert controller.step(tarsus.Command(state="standing"), DT).state == "lying"
+    controller.leg_failures.failed.clear()
+    for _ in range(500):
+        output = controller.step(tarsus.Command(state="standing"), DT)
+    assert output.state == "standing"
