@@ -303,3 +303,36 @@ def test_a_foot_that_rises_waits_where_it_is_while_the_walk_stands_still():
     assert controller._walk.ground.support.pace == 0.0
     assert (~controller._tick.gait.down == rising).all()
     assert controller.walk_state == "searching"
+
+
+def test_a_robot_that_is_picked_up_or_has_fallen_stops_and_goes_on_once_it_stands_again():
+    controller = WalkController(STRIDER)
+
+    def walked(seconds, attitude=(0.0, 0.0), *, held=False):
+        before = controller.place[0]
+        for _ in range(round(seconds / 0.02)):
+            contacts = (controller.feet[:, 2] <= 1e-4) & (not held)
+            controller.step((0.1, 0.0, 0.0), 0.02, SensorReadings(contacts=contacts, attitude=attitude))
+        return controller.place[0] - before, [each.text() for each in controller.limitations]
+
+    assert walked(2.0)[1] == []
+    walked(1.5, held=True)
+    lowest = controller.feet[:, 2].min()
+    way, why = walked(3.0, held=True)
+    assert way == pytest.approx(0.0, abs=1e-6)
+    assert why == ["ground: no foot touches it: the robot is in the air"]
+    # The feet do not search any more.
+    assert controller.feet[:, 2].min() == pytest.approx(lowest, abs=1e-6)
+    walked(1.0)
+    way, why = walked(3.0)
+    assert way > 0.25
+    assert why == []
+    walked(1.0, (0.0, 0.9))
+    way, why = walked(2.0, (0.0, 0.9))
+    assert way == pytest.approx(0.0, abs=1e-6)
+    assert "attitude: 51.57 deg instead of 0 deg, bound 45 deg; the robot has fallen" in why
+    # Beyond 60 degrees an attitude is rejected, and the robot has fallen still.
+    assert walked(1.0, (2.0, 0.0))[0] == pytest.approx(0.0, abs=1e-6)
+    walked(2.0)
+    assert walked(3.0)[0] > 0.25
+    assert controller._walk.ground.condition.tilt == 0.0

@@ -10,6 +10,7 @@ import numpy as np
 from tarsus.control.limitation import Limitation, LimitationKind
 from tarsus.control.pose.admittance import Admittance
 from tarsus.control.readings import SensorReadings, ValidReadings
+from tarsus.control.sensing.body_condition import BodyCondition
 from tarsus.control.sensing.foot_loads import FootLoads
 from tarsus.control.sensing.leg_odometry import LegOdometry
 from tarsus.control.sensing.validation import ReadingsValidator
@@ -71,6 +72,8 @@ class FeltGround:
         Height and tilt of the body.
     roughness : Roughness
         How uneven the ground is.
+    condition : BodyCondition
+        Whether the robot is in the air or has fallen.
     support : Support
         Whether feet may lift off, and at which pace the walk goes on.
     plane : FootPlane
@@ -88,7 +91,7 @@ class FeltGround:
         adaptation: GroundAdaptation,
         admittance: Admittance | None,
     ) -> None:
-        self.contacts, self.support = FootContacts(robot.legs), Support()
+        self.contacts, self.support, self.condition = FootContacts(robot.legs), Support(), BodyCondition()
         self.posture, self.roughness = PostureFeedback(levelling), Roughness(adaptation)
         self.plane = FootPlane()
         self.offsets: Float[np.ndarray, "legs"] | None = None
@@ -141,6 +144,7 @@ class FeltGround:
             state = state._replace(ground_height=heights, felt=FeltFeet.still(len(heights)))
         down = state.down.tolist()
         self.contacts.step(measured, down, dt, age=valid.contact_age)
+        self.condition.step([self.contacts.touches(leg) for leg in range(len(down))], valid.attitude, dt)
         if self._loads.compliant:
             forces, feet = self._loads.forces(valid, angles), [(foot.real, foot.imag) for foot in state.foot.tolist()]
             self.offsets = self._loads.offsets(forces, dt, feet=feet, stands=down)
@@ -201,9 +205,10 @@ class FeltGround:
         self._decide_on_support(places, centre, down, due, dt=dt, swing_time=timing.swing_time)
         self.roughness.decay(0.0 if standing else dt * timing.frequency)
         ground = [elevation + self.plane.at((foothold - state.origin) * turn) for foothold in state.foothold.tolist()]
-        searches = [contacts.is_known(leg) and (down[leg] or contacts.lifted[leg]) for leg in legs]
+        in_air = self.condition.in_air
+        searches = [not in_air and contacts.is_known(leg) and (down[leg] or contacts.lifted[leg]) for leg in legs]
         return FeltInputs(
-            stands=tuple(contacts.stands(leg) for leg in legs),
+            stands=tuple(in_air or contacts.stands(leg) for leg in legs),
             steps=tuple(leg not in excluded for leg in legs),
             ground=tuple(ground),
             lowest=tuple(elevation + self._reach.lowest[leg] if searches[leg] else ground[leg] for leg in legs),
@@ -272,8 +277,8 @@ class FeltGround:
         if tilt is not None:
             contacts.balance(down, places, centre, tilt, time["dt"])
         legs = [leg for leg, on in enumerate(down) if on and not (due and due[leg]) and contacts.supports(leg)]
-        stays = due is None or holds([places[leg] for leg in legs], centre)
-        self.support.step(stays=stays, lifts=any(due or ()), **time)
+        stays = (due is None or holds([places[leg] for leg in legs], centre)) and not self.condition.fallen
+        self.support.step(stays=stays, lifts=any(due or ()) and not self.condition.fallen, **time)
 
     @property
     def limitations(self) -> tuple[Limitation, ...]:
@@ -282,6 +287,7 @@ class FeltGround:
         found = [Limitation(kind=kinds.READINGS, cause=reason) for reason in self.measured.rejected]
         if self.posture.given_way > 0.0:
             found.append(Limitation(kind=kinds.ATTITUDE, cause="end of the legs' reach on this slope"))
-        if self.waits:
+        found += self.condition.limitations
+        if self.waits and not self.condition.in_air:
             found.append(Limitation(kind=kinds.GROUND, cause="the feet on the ground do not hold the robot"))
         return tuple(found)

@@ -1,0 +1,71 @@
+"""Condition of the body: in the air, or fallen, by contacts and attitude."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+from tarsus.control.limitation import Limitation, LimitationKind
+
+__all__ = ["BodyCondition"]
+
+# Without any contact for longer, the robot is in the air [s].
+_IN_AIR = 0.5
+# Tilt from which on the robot has fallen, below which it stands again, and for how long [rad], [s].
+_FALLEN, _UPRIGHT, _LASTS = math.radians(45.0), math.radians(30.0), 0.2
+
+
+class BodyCondition:
+    """Tells whether the robot is held in the air, and whether it has fallen: it does not step then.
+
+    Attributes
+    ----------
+    airborne : float
+        Time since a foot has touched the ground [s]; 0 where no contact is measured.
+    tilt : float
+        Angle of the body against gravity, as measured last [rad].
+    fallen : bool
+        Whether the robot lies on its side or its back.
+    """
+
+    def __init__(self) -> None:
+        self.airborne = self.tilt = self._time = 0.0
+        self.fallen = False
+
+    @property
+    def in_air(self) -> bool:
+        """Whether the robot is held in the air: feet do not search the ground."""
+        return self.airborne > _IN_AIR
+
+    def step(self, touching: Sequence[bool], attitude: tuple[float, float] | None, dt: float) -> None:
+        """Take in contacts and attitude of a tick.
+
+        Parameters
+        ----------
+        touching : sequence of bool
+            Which feet touch the ground; True where nothing is known.
+        attitude : (roll, pitch) or None
+            Measured [rad]; None where it is not, as beyond 60 degrees.
+        dt : float
+            Time since the last tick [s].
+        """
+        self.airborne = 0.0 if any(touching) else self.airborne + dt
+        if attitude is not None:
+            self.tilt = math.acos(math.cos(attitude[0]) * math.cos(attitude[1]))
+        changes = self.tilt < _UPRIGHT if self.fallen else self.tilt > _FALLEN
+        self._time = self._time + dt if changes else 0.0
+        if self._time > _LASTS:
+            self.fallen, self._time = not self.fallen, 0.0
+
+    @property
+    def limitations(self) -> list[Limitation]:
+        """Why the robot does not step."""
+        found = []
+        if self.in_air:
+            found.append(Limitation(kind=LimitationKind.GROUND, cause="no foot touches it: the robot is in the air"))
+        if self.fallen:
+            cause = "the robot has fallen"
+            found.append(
+                Limitation(kind=LimitationKind.ATTITUDE, cause=cause, asked=0.0, granted=self.tilt, bound=_FALLEN)
+            )
+        return found
