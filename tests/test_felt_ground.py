@@ -186,6 +186,29 @@ def test_odometry_makes_up_for_what_the_legs_lose():
     np.testing.assert_allclose(feet, level[:, 0] + 1j * level[:, 1], atol=1e-12)
 
 
+def test_a_foot_that_slides_is_told_by_the_others():
+    odometry, walk = LegOdometry(STRIDER), WalkController(STRIDER)
+    feet, body = np.array(walk.feet), walk.body
+    for tick in range(60):
+        # The body turns and moves over its feet, and one of them slides forward with 50 mm/s.
+        moved = tarsus.Pose.from_rpy(yaw=0.002 * tick, position=(0.001 * tick, 0.0, 0.0)) @ body
+        feet[0, 0] += 0.0005
+        angles = tarsus.inverse_kinematics(STRIDER, feet, moved).angles
+        odometry.step(np.asarray(angles).tolist(), [True] * 6, 0.1 + 0j, 0.01, tilt=(0.0, 0.0), yaw=0.002 * tick)
+    assert int(odometry.slip.argmax()) == 0
+    # A sixth of a foot's slip is taken for motion of the body, and some for its turn.
+    assert 0.025 < odometry.slip[0] < 0.05
+    assert odometry.slip[1:].max() < 0.02
+    walk.step((0.0, 0.0, 0.0), 0.01, SensorReadings(contacts=(True,) * 6, attitude=(0.0, 0.0)))
+    walk._walk.ground.odometry.slip = odometry.slip
+    (found,) = walk.limitations
+    assert found.leg == "front left"
+    assert found.text().startswith("ground: 3")
+    assert found.text().endswith("mm/s, bound 30 mm/s; front left: the foot slips")
+    odometry.step(np.asarray(angles).tolist(), [True, True, *[False] * 4], 0.1 + 0j, 0.2, tilt=(0.0, 0.0), yaw=0.0)
+    assert odometry.slip.max() == 0.0
+
+
 def test_contacts_come_from_switches_or_else_from_load_cells():
     loads = FootLoads(STRIDER, None)
     angles = WalkController(STRIDER).angles

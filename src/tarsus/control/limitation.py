@@ -43,6 +43,7 @@ _UNITS = {
     LimitationKind.CYCLE_TIME: ("s", 1.0),
     LimitationKind.SWAY: _FRACTION,
     LimitationKind.FOOT_TARGET: _FRACTION,
+    LimitationKind.GROUND: ("mm/s", 1000.0),
     LimitationKind.ATTITUDE: ("deg", 180 / math.pi),
 }
 

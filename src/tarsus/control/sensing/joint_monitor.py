@@ -19,8 +19,8 @@ __all__ = ["JointMonitor"]
 _LAG = 0.15
 # Error beyond which a servo gives more than its stall torque, if it works [rad]. Hobby servos give it at 0.1 rad.
 _ERROR = 0.15
-# How long a joint has to be off by this error until it has failed, a quarter of it at twice the error, and in which time
-# half of it is forgotten [s].
+# How long a joint has to be off by this error until it has failed, a quarter of it at twice the error, and the time in
+# which half of it is forgotten [s].
 _CONVICTED, _MEMORY = 0.9, 2.0
 
 

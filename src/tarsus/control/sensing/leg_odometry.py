@@ -9,11 +9,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from tarsus.control.limitation import Limitation, LimitationKind
 from tarsus.control.readings import Vector
 from tarsus.robot.robot import Robot
 
 if TYPE_CHECKING:
-    from jaxtyping import Complex, Float
+    from jaxtyping import Bool, Complex, Float
 
 __all__ = ["LegOdometry"]
 
@@ -21,6 +22,10 @@ __all__ = ["LegOdometry"]
 _GAIN, _MOST = 1.5, 0.25
 # What is missing for longer than this speed lasts is given up [s].
 _MEMORY = 0.3
+# A foot that slides faster slips [m/s].
+_SLIPS, _CAUSE = 0.03, "the foot slips"
+# Time over which slip is averaged [s], and the fewest feet of which some may slip against others.
+_SLIP_TIME, _LEAST_FEET = 0.2, 3
 
 
 class LegOdometry:
@@ -38,14 +43,24 @@ class LegOdometry:
     ----------
     behind : complex
         Where the body should be, as seen from where it is, in the heading frame [m].
+    slip : array, shape (legs,)
+        How fast each standing foot slides, as far as it differs from the others [m/s].
     """
 
     def __init__(self, robot: Robot) -> None:
-        self.behind = 0j
+        self.behind, self.slip = 0j, np.zeros(robot.legs)
+        self._names = robot.leg_names
         self._g = robot.geometry
         self._radius = np.asarray(robot.foot_radius, dtype=float)
         self._before: tuple[Complex[np.ndarray, "legs"], Float[np.ndarray, "legs"]] | None = None
         self._stood: list[bool] = []
+
+    @property
+    def limitations(self) -> list[Limitation]:
+        """The foot that slips most, if any does."""
+        leg, slip = int(self.slip.argmax()), float(self.slip.max())
+        kind, name = LimitationKind.GROUND, self._names[leg]
+        return [Limitation(kind=kind, cause=_CAUSE, leg=name, granted=slip, bound=_SLIPS)] if slip > _SLIPS else []
 
     def step(
         self,
@@ -84,13 +99,30 @@ class LegOdometry:
         if self._before is not None and any(both):
             # The centre of a ball moves with the body as the ball rolls.
             rolled = self._radius * (self._before[1] - inclinations) * legs * turn
-            moved = complex((rolled - (feet - self._before[0]))[both].mean())
+            over_feet = rolled - (feet - self._before[0])
+            moved = complex(over_feet[both].mean())
+            self._note_slip(feet, over_feet - moved, np.array(both), dt)
             most = abs(velocity) * _MEMORY
             self.behind += velocity * dt - moved
             self.behind *= min(1.0, most / max(abs(self.behind), 1e-12))
         self._before, self._stood = (feet, inclinations), stands
         wanted, most = _GAIN * self.behind, _MOST * abs(velocity)
         return wanted * min(1.0, most / max(abs(wanted), 1e-12))
+
+    def _note_slip(
+        self,
+        feet: Complex[np.ndarray, "legs"],
+        moved: Complex[np.ndarray, "legs"],
+        stand: Bool[np.ndarray, "legs"],
+        dt: float,
+    ) -> None:
+        """Take note of what the motion over each foot differs by from that of a body that turns over all of them."""
+        speeds, share = np.zeros(len(feet)), min(dt / _SLIP_TIME, 1.0)
+        if stand.sum() >= _LEAST_FEET:
+            places = feet - feet[stand].mean()
+            turned = (places.conj() * moved)[stand].imag.sum() / np.square(np.abs(places[stand])).sum()
+            speeds[stand] = np.abs(moved - 1j * turned * places)[stand] / dt
+        self.slip = self.slip + share * (speeds - self.slip)
 
     def _directions(self, angles: Float[np.ndarray, "legs 3"]) -> Complex[np.ndarray, "legs"]:
         """Return the directions of the legs in B, x + iy."""

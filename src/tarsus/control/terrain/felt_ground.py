@@ -99,7 +99,7 @@ class FeltGround:
         self._validator, self._loads = ReadingsValidator(robot), FootLoads(robot, admittance)
         com = centre_of_mass(robot, angles)
         self._centre = complex(com[0], com[1])
-        self._odometry, self.measured = LegOdometry(robot), ValidReadings()
+        self.odometry, self.measured = LegOdometry(robot), ValidReadings()
         self._tilt: tuple[float, float] | None = None
         self._since, self._drift, self._rates = _SLOW_PERIOD, 0j, PostureRates(0.0, (0.0, 0.0))
 
@@ -258,7 +258,7 @@ class FeltGround:
             share=reachable_share([level.at(foot) for foot in rest.tolist()], reach.lowest, highest),
         )
         velocity = complex(*state.twist.value[:2].tolist()) * self.support.pace
-        self._drift = self._odometry.step(
+        self._drift = self.odometry.step(
             self.measured.joint_angles,
             [leg in bears for leg in legs],
             velocity,
@@ -287,7 +287,7 @@ class FeltGround:
         found = [Limitation(kind=kinds.READINGS, cause=reason) for reason in self.measured.rejected]
         if self.posture.given_way > 0.0:
             found.append(Limitation(kind=kinds.ATTITUDE, cause="end of the legs' reach on this slope"))
-        found += self.condition.limitations
+        found += self.condition.limitations + self.odometry.limitations
         if self.waits and not self.condition.in_air:
             found.append(Limitation(kind=kinds.GROUND, cause="the feet on the ground do not hold the robot"))
         return tuple(found)
