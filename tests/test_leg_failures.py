@@ -7,8 +7,8 @@ import pytest
 
 import tarsus
 from tarsus.control.sensing.joint_monitor import JointMonitor
-from tarsus.control.states.reduced_walking import remaining_robot
 from tarsus.kinematics.mass import centre_of_mass, total_mass
+from tarsus.robot.remaining import remaining_robot
 from tarsus.simulation import SimulatedPlant
 
 STRIDER = tarsus.load_robot("strider")

@@ -17,21 +17,17 @@ from tarsus.control.states.robot_state import RobotState
 from tarsus.control.walk_controller import WalkController
 from tarsus.errors import TarsusError
 from tarsus.gait.gait import Gait
+from tarsus.robot.remaining import remaining_robot
 from tarsus.robot.robot import Robot
 
 if TYPE_CHECKING:
     from jaxtyping import Float, Shaped
 
-__all__ = ["LegFailures", "ReducedWalking", "remaining_robot"]
+__all__ = ["LegFailures", "ReducedWalking"]
 
 _JOINTS = ("coxa", "femur", "tibia")
 _SITS = "the robot sits down: it can't walk without"
 _CAUSE = "the joint has failed: the robot walks on without this leg"
-# Values of a robot that it has for each leg.
-_OF_LEGS = (
-    *("mount_position", "mount_yaw", "coxa", "femur", "tibia", "limits"),
-    *("femur_axis_offset", "foot_radius", "link_com", "link_mass"),
-)
 # A leg that has failed is held up at this angle of its femur, with its tibia this far from its limit [rad].
 _FEMUR_UP, _FROM_LIMIT = 1.0, 0.1
 # Fraction of the joints' speed with which the legs move to their new stance, and the least time [s].
@@ -40,32 +36,6 @@ _SPEED_SHARE, _LEAST_TIME = 0.15, 1.0
 _STOPPING = 0.3
 # Channels that are not measured for each leg.
 _OF_BODY = ("attitude", "angular_rates")
-
-
-def remaining_robot(robot: Robot, legs: list[int]) -> Robot:
-    """Return the robot with some of its legs; the masses of the others are part of its body.
-
-    Parameters
-    ----------
-    robot : Robot
-        A single robot.
-    legs : list of int
-        The legs that are left, four or more.
-    """
-    lost = [leg for leg in range(robot.legs) if leg not in legs]
-    values: dict[str, Any] = {name: np.asarray(getattr(robot, name))[legs] for name in _OF_LEGS if name != "link_mass"}
-    if robot.link_mass is not None:
-        values["link_mass"] = np.asarray(robot.link_mass)[legs]
-    if robot.has_masses:
-        masses, mass = np.asarray(robot.link_mass)[lost].sum(axis=-1), np.asarray(robot.body_mass)
-        moment = mass * np.asarray(robot.body_com) + masses @ np.asarray(robot.mount_position)[lost]
-        values |= {"body_mass": mass + masses.sum(), "body_com": moment / (mass + masses.sum())}
-    return dataclasses.replace(
-        robot,
-        leg_names=tuple(robot.leg_names[leg] for leg in legs),
-        servos=tuple(robot.servos[leg] for leg in legs),
-        **values,
-    )
 
 
 class ReducedWalking(Walking):
