@@ -100,7 +100,7 @@ def test_every_key_of_a_calibration_is_described_and_its_example_loads(tmp_path)
 
 def test_the_faults_of_the_page_are_those_there_are():
     text = (DOCS / "first-hour.md").read_text(encoding="utf-8")
-    table = text.split("| fault | noticed by")[1]
+    table = text.split("| fault | noticed by")[1].split("\n\n")[0]
     rows = dict(re.findall(r"^\| ([a-z -]+) \| [^|]* \| ([a-z, ]+)", table, flags=re.MULTILINE))
     from tarsus.hardware.plant.fault import REACTIONS
 

@@ -33,6 +33,18 @@ def test_every_bus_is_described():
     assert {name for names in described for name in names if name} == set(hardware.BUSES)
 
 
+def test_faults_are_measured_as_the_page_says(monkeypatch):
+    monkeypatch.syspath_prepend(str(DOCS))
+    from fault_times import FAULTS, RATES, Walk
+
+    page = (DOCS / "first-hour.md").read_text(encoding="utf-8")
+    table = page.split("<!-- fault times -->\n")[1].split("<!-- end of fault times -->")[0].splitlines()
+    assert [cell.strip() for cell in table[0].strip("|").split("|")] == ["bus", "rate", *FAULTS]
+    assert [re.match(r"\| `([a-z0-9-]+)`", row)[1] for row in table[2:]] == list(RATES)
+    assert 0 < Walk("feetech-sts", FAULTS["unplugged"], 0.1, 4).noticed("unplugged") < 0.02
+    sys.modules.pop("fault_times", None)
+
+
 def test_the_sketch_and_its_bus_agree():
     sketch = (DOCS.parent / "examples" / "pulse_lines" / "pulse_lines.ino").read_text(encoding="utf-8")
     can = hardware.emulated_bus("lines", range(18))[0].capabilities
