@@ -270,6 +270,19 @@ def test_the_port_is_found_and_missing_servos_are_named(tmp_path):
     assert any("id 9: damaged answers" in text for text in answers.said)
 
 
+def test_a_file_of_another_robot_or_bus_is_not_resumed(tmp_path):
+    new_calibration(STRIDER, "strider", kind="feetech-sts").save(tmp_path / "c.toml")
+    for robot, options, message in [
+        ("phantomx", (), "is the calibration of strider, which is not the robot 'phantomx'"),
+        ("strider", ("--bus", "lx16a"), "is for the bus feetech-sts, not lx16a"),
+    ]:
+        result = run("bring-up", robot, tmp_path / "c.toml", *options)
+        assert result.exit_code == 2
+        assert message in result.stderr
+    # Nothing was drawn over the picture of the right robot.
+    assert [path.name for path in tmp_path.iterdir()] == ["c.toml"]
+
+
 def test_a_terminal_that_ends_leaves(monkeypatch, tmp_path):
     monkeypatch.chdir(tmp_path)
     with open(os.devnull, encoding="utf-8") as nothing:

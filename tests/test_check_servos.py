@@ -7,7 +7,7 @@ import pytest
 import tarsus
 from sample_commands import run, run_json
 from tarsus.errors import PortError
-from tarsus.hardware import ManualClock, MemoryTransport, bus_over, emulate, nominal_calibration
+from tarsus.hardware import FootSwitches, ManualClock, MemoryTransport, bus_over, emulate, nominal_calibration
 from tarsus.hardware.diagnosis.check_servos import check_servos
 
 STRIDER = tarsus.load_robot("strider")
@@ -161,3 +161,45 @@ def test_an_interrupt_releases_the_joint_that_is_moved():
     with pytest.raises(KeyboardInterrupt):
         bench.findings(move=True)
     assert not any(servo.torque for servo in bench.line.servos.values())
+
+
+def test_a_board_of_foot_switches_alone_tells_their_levels(tmp_path):
+    made = nominal_calibration(STRIDER, "strider", kind="feetech-sts")
+    feet = dataclasses.replace(made.buses[0], name="feet", kind="lines", baud=None)
+    switches = FootSwitches(bus="feet", inputs=(0, 1, 2, 3, 4, None), closed=False)
+    made.replace(buses=(*made.buses, feet), foot_switches=switches).save(tmp_path / "c.toml")
+    code, found = run_json("check-servos", tmp_path / "c.toml", "--emulated")
+    assert code == 0
+    last = found["findings"][-1]
+    assert (last["question"], last["ok"]) == ("Do the foot switches answer?", None)
+    assert "levels: front left 0.0, " in last["measured"]
+    assert "front right" not in last["measured"]
+
+
+def test_switches_that_do_not_answer_and_servos_that_fall_silent_are_said():
+    bench = Bench("servo2040")
+    switches = FootSwitches(bus="main", inputs=(0, 1, 2, 3, 4, 5))
+    bench.calibration = bench.calibration.replace(foot_switches=switches)
+    answers, asked = bench.line._answers, []
+
+    def silent_at_the_second():
+        asked.append(1)
+        if len(asked) > 1:
+            bench.line._buffer = b""
+            return []
+        return list(answers())
+
+    bench.line._answers = silent_at_the_second
+    (wrong,) = bench.wrong()
+    assert (wrong.question, wrong.measured) == ("Do the foot switches answer?", "nothing within 20 ms")
+    bench = Bench()
+    sleep = bench.clock.sleep
+
+    def gone(seconds):
+        sleep(seconds)
+        if seconds > 0.1:
+            bench.line.faults.missing.add(bench.ids[0])
+
+    bench.clock.sleep = gone
+    (wrong,) = bench.wrong(move=True)
+    assert wrong.measured == "front left coxa (id 1 on main): no answer"

@@ -100,6 +100,11 @@ def test_physics_runs_the_same_controller():
         (("--keys", "--gamepad"), "exclude each other"),
         (("--keys", "--scenario", "at 0 s: stop"), "--scenario and --keys exclude each other"),
         (("--bus", "simulated", "--keys"), "physics does not run in real time"),
+        (("--bus", "simulated", "--rate", "1e9"), "at most 500 Hz in physics"),
+        (("--duration", "-1"), "--duration is -1 s; it must be greater than 0"),
+        (("--rate", "0"), "--rate is 0 Hz"),
+        (("--rate", "5"), "from 20 Hz, below which joints are slowed down, to the 379 Hz that the wires carry"),
+        (("--rate", "1e6"), "--rate is 1e+06 Hz"),
     ],
 )
 def test_what_is_no_run(options, message):

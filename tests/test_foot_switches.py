@@ -162,7 +162,7 @@ def test_a_board_that_falls_silent_leaves_old_contacts_and_a_note_and_an_unplugg
     assert rig.ages[-1] == pytest.approx(rig.clock.now() - began, abs=0.03)
     assert [note[:30] for note in rig.plant.notes] == ["foot switches can't be read: l"]
     # It is asked now and then only: the ticks go on in time.
-    assert rig.clock.now() - began < 0.9
+    assert rig.clock.now() - began < 1.0
     rig.board.faults.unplugged = True
     with pytest.raises(ServoFaultError, match="port gone"):
         rig.stand(30)

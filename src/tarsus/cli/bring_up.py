@@ -69,8 +69,8 @@ def bring_up(
     from tarsus.robot.preset_names import preset_names
 
     path = calibration or Path(f"{Path(robot).stem}.calibration.toml")
-    drawing = _draw(robot, path)
     if drawing_only:
+        drawing = _draw(robot, path)
         if as_json:
             print_json({"files": [str(drawing)]})
         else:
@@ -78,10 +78,10 @@ def bring_up(
         return 0
     written = robot if robot in preset_names() else os.path.relpath(robot, path.parent)
     terminal, again = _Terminal(), f"Resume with: tarsus bring-up {robot} {path}"
-    show(f"the reference pose is drawn in {drawing}")
     try:
         with as_interrupts():
             found = begin(load_robot(robot), written, path, terminal, kind=bus, port=port)
+            show(f"the reference pose is drawn in {_draw(robot, path)}")
             wizard = bring_up_of(found, path, terminal)
             wizard.perform()
     except Left:

@@ -51,9 +51,7 @@ def check_servos(calibration: Path, port: str | None, move: bool, emulated: bool
         opener = None
         if emulated:
             robot = stack.enter_context(EmulatedRobot(found, np.asarray(found.limits).mean(axis=-1)))
-            found, buses = robot.calibration, robot.buses
-            if buses is not None:
-                opener = lambda settings, _baud: buses[settings.name]  # noqa: E731
+            found, opener = robot.calibration, robot.open
         # Servos are released at its end, whatever ends it.
         for finding in stack.enter_context(contextlib.closing(findings_of(found, move=move, open_port=opener))):
             findings.append(finding)

@@ -69,6 +69,9 @@ def run(robot: str, out: Path | None, as_json: bool, **options: Any) -> int:
     given = [name for name in ("scenario", "keys", "gamepad", "studio") if options[name]]
     if len(given) > 1:
         raise click.UsageError(f"--{given[0]} and --{given[1]} exclude each other")
+    for name, unit in (("duration", "s"), ("rate", "Hz")):
+        if options[name] is not None and options[name] <= 0:
+            raise click.UsageError(f"--{name} is {options[name]:g} {unit}; it must be greater than 0")
     if out is not None:
         make_folder(out)
     summary = perform(robot, options, out=out, quiet=as_json)

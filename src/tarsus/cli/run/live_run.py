@@ -26,12 +26,13 @@ from tarsus.gait.gait import Gait
 from tarsus.hardware.calibration.blank import nominal_calibration
 from tarsus.hardware.calibration.bus_commands import BUS_COMMANDS, usual_bus
 from tarsus.hardware.calibration.calibration import Calibration
-from tarsus.hardware.live.emulated_robot import EmulatedRobot
+from tarsus.hardware.live.emulated_robot import PATIENCE, EmulatedRobot
 from tarsus.hardware.live.gamepad import Gamepad
 from tarsus.hardware.live.keyboard import KEYS, Keyboard
 from tarsus.hardware.live.live_commands import InputDevice, LiveCommands
 from tarsus.hardware.live.supervision import Rising, Supervised
 from tarsus.hardware.plant.servo_plant import ServoPlant
+from tarsus.hardware.plant.settings import PlantSettings
 from tarsus.hardware.plant.tick_record import TickRecord
 from tarsus.hardware.telemetry.log import TelemetryLog
 from tarsus.robot.file import load_robot
@@ -43,11 +44,13 @@ from tarsus.scenario.scenario import Scenario
 __all__ = ["perform"]
 
 _DEMO = "at 0 s: walk 60 mm/s; at 2 s: walk turn 20 deg/s; at 3 s: stop"
-_RATE = 100.0
+_RATE, _FASTEST = 100.0, 500.0
 # Share of what the wires carry that a run uses.
 _SHARE = 0.8
 # Greatest speeds for keys and gamepads [m/s, m/s, rad/s].
 _SPEEDS = (0.06, 0.05, 0.4)
+# Emulated servos share the computer with everything else, which may keep them from answering for long.
+_PATIENT = PlantSettings(timeout=PATIENCE, silence=0.5)
 _REAL, _EMULATED, _SIMULATED = "real", "emulated", "simulated"
 
 
@@ -95,13 +98,17 @@ def perform(robot: str, options: dict[str, Any], *, out: Path | None, quiet: boo
             driven = stack.enter_context(driven_from_studio(controller, chosen, options["studio"], bus))
             observers.append(driven.observe)
         plant = ServoPlant(
-            calibration.limited_robot, calibration, buses=buses, observer=line.observer(_each_of(observers))
+            calibration.limited_robot,
+            calibration,
+            buses=buses,
+            settings=_PATIENT if where == _EMULATED else None,
+            observer=line.observer(_each_of(observers)),
         )
         line.plant = plant
         if driven is not None:
             driven.plant = plant
         with plant:
-            rate = options["rate"] or min(_RATE, float(np.floor(_SHARE * plant.greatest_rate)))
+            rate = _rate(options["rate"], plant)
             source = _source(controller, scenario, options, stack, line) if driven is None else driven
             if start == "lying":
                 source = Rising(source)
@@ -115,6 +122,19 @@ def _each_of(observers: Sequence[Callable[[TickRecord], None]]) -> Callable[[Tic
             each(record)
 
     return observe
+
+
+def _rate(asked: float | None, plant: ServoPlant) -> float:
+    """Return the ticks per second [1/s]: what was asked for, or what the wires carry with a reserve."""
+    greatest, least = plant.greatest_rate, 1.0 / plant.settings.longest_tick
+    if asked is None:
+        return min(_RATE, float(np.floor(_SHARE * greatest)))
+    if not least <= asked <= greatest:
+        raise InputError(
+            f"--rate is {asked:g} Hz; it must be from {least:g} Hz, below which joints are slowed down, to the "
+            f"{greatest:.0f} Hz that the wires carry"
+        )
+    return asked
 
 
 @dataclasses.dataclass
@@ -220,9 +240,12 @@ def _simulated(robot: Robot, options: dict[str, Any], *, out: Path | None) -> di
     source: CommandSource = ScenarioCommands(scenario, robot, None)
     if options["start"] == "lying":
         source = Rising(source)
+    rate = options["rate"] or _RATE
+    if rate > _FASTEST:
+        raise InputError(f"--rate is {rate:g} Hz; it must be at most {_FASTEST:g} Hz in physics, whose steps are 2 ms")
     plant = SimulatedPlant(robot)
     with StatusLine(quiet=True) as line:
-        outcome = _run(controller, plant, source, options["rate"] or _RATE, options["duration"], line)
+        outcome = _run(controller, plant, source, rate, options["duration"], line)
     return _summary(robot, "simulated", None, outcome, line, out)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import datetime
 from collections.abc import Mapping
 from glob import glob
@@ -60,7 +61,7 @@ def begin(
     CalibrationError
         If the file is wrong, or can't be written.
     InputError
-        If the file is for another robot.
+        If the file is for another robot, or another kind of bus.
     UnknownNameError
         If there is no such kind of bus.
     """
@@ -71,6 +72,10 @@ def begin(
                 f"{path} is the calibration of {found.robot_file}, which is not the robot {robot.name!r}: name another "
                 "file, or move this one away"
             )
+        if kind is not None and kind != found.buses[0].kind:
+            raise InputError(f"{path} is for the bus {found.buses[0].kind}, not {kind}: name another file for {kind}")
+        if port:
+            found = found.replace(buses=(dataclasses.replace(found.buses[0], port=port), *found.buses[1:]))
         dialogue.say(f"resumed from {path}: {len(found.missing)} joints are not complete")
         return found
     if kind is None:

@@ -8,6 +8,7 @@ from collections.abc import Callable, Generator, Iterator, Mapping
 from typing import TypeAlias
 
 from tarsus.errors import BusError, NoAnswerError, PortError
+from tarsus.hardware.bus.inputs import InputBoard
 from tarsus.hardware.bus.protocol import Bus, Telemetry
 from tarsus.hardware.bus.registry import bus_kind, open_bus
 from tarsus.hardware.calibration.calibration import Calibration
@@ -26,6 +27,8 @@ _RATES = (1_000_000, 57_600, 115_200, 500_000, 9_600, 38_400)
 # A small motion: how far, how much of it must be seen, how long it takes [rad, s].
 _STEP, _SEEN, _LASTS = math.radians(4), 0.5, 0.6
 _TORQUE = 0.4
+# An answer may be lost.
+_TRIES = 3
 
 
 def check_servos(
@@ -114,12 +117,15 @@ class _Check:
         if bus.capabilities.ping == "none":
             yield Finding(question=question, ok=None, measured="it never does")
         else:
-            answer = bus.ping(self._numbers[0])
+            answer = bus.ping(self._numbers[0] if self._numbers else bus.capabilities.ids.start)
             remedy = "Check the supply of the board, its cable, and its mode: it must take commands from this port."
             if answer is None:
                 yield Finding(question=question, ok=False, measured="nothing", remedy=remedy)
                 return
             yield Finding(question=question, ok=True, measured=answer.name or "yes")
+        yield from self._switches(bus)
+        if not self._numbers:
+            return
         yield Finding(
             question="Do the servos have supply, and get pulses?",
             ok=None,
@@ -128,6 +134,30 @@ class _Check:
                 "Measure the voltage between + and - of a servo's plug; the board's own supply does not feed servos. "
                 "Connect the grounds of board and supply. Try the servo on another channel."
             ),
+        )
+
+    def _switches(self, bus: Bus) -> Iterator[Finding]:
+        """Yield which foot switches are closed."""
+        switches = self._calibration.foot_switches
+        if switches is None or switches.bus != self._settings.name or not isinstance(bus, InputBoard):
+            return
+        question = "Do the foot switches answer?"
+        legs = [(leg, number) for leg, number in enumerate(switches.inputs) if number is not None]
+        try:
+            levels = bus.read_inputs([number for _, number in legs])
+        except PortError:
+            raise
+        except BusError as error:
+            yield Finding(question=question, ok=False, measured=error.received, remedy=error.remedy)
+            return
+        names = self._calibration.robot.leg_names
+        felt = [f"{names[leg]} {level:.1f}" for (leg, _), level in zip(legs, levels, strict=True)]
+        side = "above" if switches.closed else "below"
+        yield Finding(
+            question=question,
+            ok=None,
+            measured=f"levels: {', '.join(felt)}; a foot is on the ground {side} 0.5",
+            remedy="Press one foot after the other, and look whether its level changes.",
         )
 
     def _nobody(self, bus: Bus) -> Finding:
@@ -273,8 +303,10 @@ class _Check:
         still = []
         for number in alive:
             moved = self._moved(bus, number)
-            if moved < _SEEN * _STEP:
-                name = self._joints.describe(self._settings.name, number)
+            name = self._joints.describe(self._settings.name, number)
+            if moved is None:
+                still.append(f"{name}: no answer")
+            elif moved < _SEEN * _STEP:
                 still.append(f"{name}: {math.degrees(moved):.1f} of {math.degrees(_STEP):.0f} deg")
         yield Finding(
             question="Does each joint move when it is told to?",
@@ -285,14 +317,14 @@ class _Check:
             else "",
         )
 
-    def _moved(self, bus: Bus, number: int) -> float:
-        """Return how far a joint moves that is told to move by a small step [rad]."""
+    def _moved(self, bus: Bus, number: int) -> float | None:
+        """Return how far a joint moves that is told to move by a small step [rad]; None if it does not answer."""
         place = self._joints.joint(self._settings.name, number)
         slope = float(self._calibration.slopes[place])
         low, high = self._calibration.command_limits[place]
-        start = bus.read_positions((number,)).values.get(number)
+        start = _position(bus, number)
         if start is None:
-            return 0.0
+            return None
         step = _STEP * abs(slope)
         goal = start + step if start + step <= high else start - step
         bus.set_torque_limit((number,), _TORQUE)
@@ -302,11 +334,20 @@ class _Check:
             bus.set_speed_limit((number,), step / _LASTS * 2)
             bus.write_goals({number: round(min(max(goal, low), high))})
             self._clock.sleep(_LASTS)
-            end = bus.read_positions((number,)).values.get(number, start)
+            end = _position(bus, number)
             bus.write_goals({number: round(min(max(start, low), high))})
             self._clock.sleep(_LASTS)
         finally:
             bus.set_torque((number,), False)
         bus.set_torque_limit((number,), 1.0)
         bus.set_speed_limit((number,), None)
-        return abs(end - start) / abs(slope)
+        return None if end is None else abs(end - start) / abs(slope)
+
+
+def _position(bus: Bus, number: int) -> float | None:
+    """Return where a servo is; None if it does not answer, even when asked again."""
+    for _ in range(_TRIES):
+        found = bus.read_positions((number,)).values
+        if found:
+            return found[number]
+    return None

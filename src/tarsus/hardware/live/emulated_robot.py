@@ -11,8 +11,9 @@ import numpy as np
 
 from tarsus.hardware.bus.dialect import SERIES
 from tarsus.hardware.bus.protocol import Bus
-from tarsus.hardware.bus.registry import bus_kind, bus_over
+from tarsus.hardware.bus.registry import bus_kind, bus_over, open_bus
 from tarsus.hardware.calibration.calibration import Calibration
+from tarsus.hardware.calibration.parts import BusSettings
 from tarsus.hardware.emulation.registry import emulate
 from tarsus.hardware.live.emulated_feet import EmulatedFeet
 from tarsus.hardware.transport.clock import SystemClock
@@ -22,7 +23,10 @@ from tarsus.hardware.transport.pty import PtyServer
 if TYPE_CHECKING:
     from jaxtyping import Float
 
-__all__ = ["EmulatedRobot"]
+__all__ = ["PATIENCE", "EmulatedRobot"]
+
+PATIENCE = 0.2
+"""Longest time until an answer of emulated servos begins [s]."""
 
 # Servos whose rate can be set get one at which 18 of them keep up with 100 ticks a second.
 _FAST = 1_000_000
@@ -80,7 +84,21 @@ class EmulatedRobot:
     @property
     def buses(self) -> Mapping[str, Bus] | None:
         """Buses for a `ServoPlant` that can't be opened by their ports: those of I2C; None where there are none."""
-        return self._i2c or None
+        return {each.name: self.open(each) for each in self.calibration.buses} if self._i2c else None
+
+    def open(self, settings: BusSettings, baud: int | None = None) -> Bus:
+        """Return a bus of the robot that waits long for answers: emulated servos share the computer with all else.
+
+        Parameters
+        ----------
+        settings : BusSettings
+            Its settings, as in `calibration`.
+        baud : int, optional
+            Another rate than that of the settings.
+        """
+        if settings.name in self._i2c:
+            return self._i2c[settings.name]
+        return open_bus(settings.kind, settings.port, baud=baud or settings.baud, timeout=PATIENCE)
 
     def __enter__(self) -> Self:
         """Return the robot itself."""

@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 __all__ = ["FootContacts"]
 
 _HALF = 0.5
-# A board that does not answer is asked again after this time, as asking it takes most of a tick [s].
-_PAUSE = 0.2
+# A board that did not answer several times is asked again after a pause [s], as asking it takes most of a tick.
+_SEVERAL, _PAUSE = 3, 0.2
 
 
 class FootContacts:
@@ -47,7 +47,7 @@ class FootContacts:
         self._numbers = tuple(number for number in switches.inputs if number is not None)
         self._closed: dict[int, bool] = {}
         self._read: float | None = None
-        self._resume = -np.inf
+        self._resume, self._failures = -np.inf, 0
 
     @property
     def seconds(self) -> float:
@@ -60,7 +60,7 @@ class FootContacts:
         return None if self._read is None else max(0.0, self._clock.now() - self._read)
 
     def read(self) -> str:
-        """Read the switches, and return why they can't be read now: empty where they can.
+        """Read the switches, and return why they could not be read several times in a row: empty where they could.
 
         Raises
         ------
@@ -74,9 +74,12 @@ class FootContacts:
         except PortError:
             raise
         except BusError as error:
+            self._failures += 1
+            if self._failures < _SEVERAL:
+                return ""
             self._resume = self._clock.now() + _PAUSE
             return str(error)
-        self._read = self._clock.now()
+        self._read, self._failures = self._clock.now(), 0
         closed = self._switches.closed
         self._closed = {number: (level > _HALF) == closed for number, level in zip(self._numbers, levels, strict=True)}
         return ""

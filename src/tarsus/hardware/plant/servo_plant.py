@@ -34,8 +34,6 @@ if TYPE_CHECKING:
 
 __all__ = ["ServoPlant"]
 
-# Longest time until an answer begins: three of them are less than the time in which a fault must be noticed [s].
-_TIMEOUT = 0.02
 _START_TICK = 0.02
 # How late a computer may be of which nothing is known yet [s].
 _UNKNOWN = 0.02
@@ -113,7 +111,7 @@ class ServoPlant:
         self._pacer = Pacer(self._clock, recently_late=_UNKNOWN)
         self._belly = True
         self._own = buses is None
-        self._buses = open_buses(calibration, timeout=_TIMEOUT) if buses is None else dict(buses)
+        self._buses = open_buses(calibration, timeout=self.settings.timeout) if buses is None else dict(buses)
         if self._own and imu is None and calibration.imu:
             imu = AttitudeLine(calibration.imu)
         missing = [bus.name for bus in calibration.buses if bus.name not in self._buses]

@@ -24,6 +24,8 @@ class PlantSettings:
         Time between the servos of a leg that get their first pulse, where positions are not measured [s].
     longest_tick : float
         Longest tick; joints move no farther than in this time [s].
+    timeout : float
+        Longest time until an answer begins [s]; three of them are less than the time in which a fault must be noticed.
     silence : float
         How long a servo may give no valid answer [s].
     least_failures, least_doubt : int, float
@@ -56,6 +58,7 @@ class PlantSettings:
     start_speed: float = math.radians(45)
     start_interval: float = 0.08
     longest_tick: float = 0.05
+    timeout: float = 0.02
     silence: float = 0.06
     least_failures: int = 2
     least_doubt: float = 0.015

@@ -55,7 +55,7 @@ class SerialTransport:
         try:
             self._serial: serial.Serial = serial.Serial(port, baud, timeout=0, write_timeout=1.0, exclusive=_POSIX)
         except (serial.SerialException, OSError, ValueError) as error:
-            raise _port_error(port, "a port that opens", str(error), _open_remedy(port)) from error
+            raise _port_error(port, "a port that opens", _reason(error), _open_remedy(port)) from error
         with contextlib.suppress(AttributeError, OSError, ValueError, NotImplementedError):
             # Adapters otherwise hold answers back for up to 16 ms; a pseudo-terminal knows no such mode.
             self._serial.set_low_latency_mode(True)
@@ -125,6 +125,12 @@ def _open_remedy(port: str) -> str:
     if _POSIX and os.path.exists(port) and not os.access(port, os.R_OK | os.W_OK):
         return "You may not use this port: add yourself to its group (dialout or uucp), then log in again."
     return f"Serial ports found: {', '.join(found) or 'none; check the USB cable and the driver'}."
+
+
+def _reason(error: Exception) -> str:
+    """Return why a port can't be opened; pyserial's text says it twice, with numbers."""
+    number = getattr(error, "errno", None)
+    return os.strerror(number) if number else str(error)
 
 
 def _port_error(port: str, expected: str, received: str, remedy: str) -> PortError:
