@@ -8,7 +8,7 @@ import numpy as np
 
 from tarsus.gait.motion import Motion
 from tarsus.load.compliant.applied_loads import AppliedLoads
-from tarsus.load.compliant.equilibrium import Compliant, Demand, Past
+from tarsus.load.compliant.equilibrium import Compliant, Configuration, Demand, Past
 from tarsus.load.compliant.newton import Equilibrium, solve_equilibrium
 
 if TYPE_CHECKING:
@@ -23,6 +23,7 @@ TOLERANCE = 1e-4
 _FIRST_FEET = 3
 # How often the time between two samples is halved where the search fails.
 _HALVINGS = 2
+_TINY = 1e-12
 
 
 class Start(NamedTuple):
@@ -109,8 +110,6 @@ def equilibria(
             loads.rotors[sample],
             step,
         )
-        if row:
-            past = _touched_down(compliant, start, past, step)
         found, slid = _reach(compliant, start, (past, demand_before), demand, tolerance)
         _record(history, row, found, tolerance)
         history.slip[row] = history.slip[row - 1] + slid if row else 0.0
@@ -146,9 +145,9 @@ def _reach(
     Where the search fails, the time since the last equilibrium is halved, with the means of commands and loads between.
     """
     past, demand_before = before
-    found = solve_equilibrium(
-        compliant, (start.rotation, start.position), start.angles, past, demand, tolerance=tolerance
-    )
+    at = compliant.configuration((start.rotation, start.position), start.angles, past, demand.step)
+    past, at = _touched_down(compliant, at, past, demand.step)
+    found = solve_equilibrium(compliant, at, past, demand, tolerance=tolerance)
     if found.balance.size <= tolerance or demand_before is None or depth == _HALVINGS:
         return found, _slid(compliant, found, past)
     means = ((early + late) / 2 for early, late in zip(demand_before[:-1], demand[:-1], strict=True))
@@ -160,20 +159,24 @@ def _reach(
     return found, slid + slid_after
 
 
-def _touched_down(compliant: Compliant, start: Start, past: Past, step: float) -> Past:
-    """Return the last equilibrium with the feet that touch down since then where they first meet the ground.
+def _touched_down(
+    compliant: Compliant, predicted: Configuration, past: Past, step: float
+) -> tuple[Past, Configuration]:
+    """Return the last equilibrium with the feet in the air where they will first meet the ground, and the prediction.
 
     A foot that was in the air would else be dragged over the ground all the way since the last sample. When it meets
-    the ground follows from its heights in the last equilibrium and where the search starts, which continues its motion
-    as if there were no ground.
+    the ground follows from its heights then and in the configuration where the search starts, which continues its
+    motion as if there were no ground.
     """
-    predicted = compliant.configuration((start.rotation, start.position), start.angles, past, step)
     before, after = past.feet[:, 2] - compliant.radius, predicted.feet[:, 2] - compliant.radius
-    landing = (before > 0) & (after < before)
-    share = np.where(landing, np.minimum(before / np.where(landing, before - after, 1.0), 1.0), 0.0)
+    if (before <= 0).all():
+        return past, predicted
+    share = np.where(before > 0, before / np.maximum(before - after, np.maximum(before, _TINY)), 0.0)
+    along = share[:, None] * predicted.displacement
     feet = past.feet.copy()
-    feet[:, :2] += share[:, None] * predicted.displacement
-    return past._replace(feet=feet)
+    feet[:, :2] += along
+    trial = predicted.trial + compliant.contact.relaxation(step) * compliant.contact.tangential_stiffness * along
+    return past._replace(feet=feet), predicted._replace(displacement=predicted.displacement - along, trial=trial)
 
 
 def _past(found: Equilibrium) -> Past:

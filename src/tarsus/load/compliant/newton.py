@@ -7,11 +7,13 @@ along the step finds where it is nearly lowest. The limits are renewed after eac
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from tarsus.load.compliant.equilibrium import Balance, Compliant, Configuration, Demand, Past
+from tarsus.load.compliant.foot_contact import normal_force
 from tarsus.load.compliant.tangent import contact_jacobian, newton_step
 
 if TYPE_CHECKING:
@@ -27,6 +29,8 @@ _ENOUGH = 0.7
 _FLAT = 0.5
 # Longest step [m, rad, rad].
 _LONGEST = np.array([0.03, 0.2, 0.2])
+# Fraction of the limit of friction from which on a foot counts as sliding.
+_SLID = 0.999
 # Steps with frozen limits before another is tried first.
 _FROZEN = 3
 
@@ -47,24 +51,16 @@ class Equilibrium(NamedTuple):
 
 
 def solve_equilibrium(
-    compliant: Compliant,
-    pose: tuple[Float[np.ndarray, "3 3"], Float[np.ndarray, "3"]],
-    angles: Float[np.ndarray, "legs 3"],
-    past: Past,
-    demand: Demand,
-    *,
-    tolerance: float,
+    compliant: Compliant, at: Configuration, past: Past, demand: Demand, *, tolerance: float
 ) -> Equilibrium:
-    """Return the equilibrium near a pose.
+    """Return the equilibrium near a configuration.
 
     Parameters
     ----------
     compliant : Compliant
         The robot.
-    pose : rotation and position
-        Of B in G, to start from.
-    angles : array, shape (legs, 3)
-        Joint angles to start from [rad].
+    at : Configuration
+        Where to start.
     past : Past
         The last equilibrium.
     demand : Demand
@@ -72,8 +68,9 @@ def solve_equilibrium(
     tolerance : float
         Size of the residual that is small enough [N m].
     """
-    at = compliant.configuration(pose, angles, past, demand.step)
     balance = compliant.balance(at, demand)
+    if balance.size > tolerance:
+        at, balance = _first_step(compliant, at, balance, past, demand, tolerance)
     frozen, steps = 0, 0
     while balance.size > tolerance and steps < _MOST_STEPS:
         steps += 1
@@ -91,6 +88,54 @@ def solve_equilibrium(
         balance = compliant.balance(at, demand)
         frozen -= 1
     return Equilibrium(at, balance)
+
+
+def _first_step(
+    compliant: Compliant, at: Configuration, balance: Balance, past: Past, demand: Demand, tolerance: float
+) -> tuple[Configuration, Balance]:
+    """Return where a search begins that would start with feet that lift or begin to slide; else its start.
+
+    A start that continues the last motion is often wrong about which feet hold. The search rather begins after a step
+    in which the feet that were on the ground stay on it, in tension if need be, and hold; or after one in which those
+    that slid before slide, if that is closer to the equilibrium.
+    """
+    held = _held(compliant, at, past)
+    if held is None:
+        return at, balance
+    start, found = at, []
+    for limit in _first_limits(compliant, held, past):
+        guess = compliant.balance(held, demand, limit)
+        step = newton_step(compliant, held, guess, contact_jacobian(compliant, held, guess), demand.step, frozen=False)
+        moved = compliant.configuration(*_moved(start, step, _scale(step)), past, demand.step)
+        found.append(Equilibrium(moved, compliant.balance(moved, demand)))
+        if found[-1].balance.size <= tolerance:
+            break
+    return min(found, key=lambda each: each.balance.size)
+
+
+def _held(compliant: Compliant, at: Configuration, past: Past) -> Configuration | None:
+    """Return a configuration with all feet on the ground that were on it before; None if no foot lifts or slides."""
+    depth = compliant.radius - at.feet[:, 2]
+    lifting = (depth <= 0) & (past.feet[:, 2] < compliant.radius)
+    sliding = (at.normal > 0) & (_size(at.trial) > compliant.contact.friction * at.normal)
+    if not (lifting | sliding).any():
+        return None
+    return at._replace(normal=np.where(lifting, compliant.contact.normal_stiffness * depth, at.normal))
+
+
+def _first_limits(compliant: Compliant, held: Configuration, past: Past) -> Iterator[Float[np.ndarray, "legs"]]:
+    """Yield limits of friction: without any, and with those of the feet that slid before."""
+    contact, unlimited = compliant.contact, np.full(compliant.legs, np.inf)
+    yield unlimited
+    before = normal_force(past.feet[:, 2], compliant.radius, contact.normal_stiffness)
+    slid = _size(past.friction) > _SLID * contact.friction * before
+    if slid.any():
+        yield np.where(slid, contact.friction * np.maximum(held.normal, 0.0), unlimited)
+
+
+def _size(force: Float[np.ndarray, "legs 2"]) -> Float[np.ndarray, "legs"]:
+    size: np.ndarray = np.sqrt((force * force).sum(axis=1))
+    return size
 
 
 def _line_search(

@@ -86,7 +86,7 @@ def newton_step(
     """
     legs, contact = compliant.legs, compliant.contact
     stiffness = np.zeros((legs, 3, 3))
-    normal = np.where(at.normal > 0, contact.normal_stiffness, 0.0)
+    normal = np.where(at.normal != 0, contact.normal_stiffness, 0.0)
     stiffness[:, 2, 2] = normal
     stiffness[:, :2] += friction_tangent(
         at.trial,
