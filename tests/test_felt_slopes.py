@@ -6,12 +6,16 @@ import numpy as np
 import pytest
 
 from gait_robots import preset
+from tarsus.control.limitation import LimitationKind
 from tarsus.control.readings import SensorReadings
 from tarsus.control.robot_controller import RobotController
 from tarsus.control.terrain.foot_plane import FootPlane
 from tarsus.control.terrain.posture_feedback import PostureFeedback
 from tarsus.control.terrain.reach import Reach, reachable_share
+from tarsus.control.terrain.roughness import GroundAdaptation
+from tarsus.control.terrain.slope_limit import SlopeLimit
 from tarsus.control.walk_controller import WalkController
+from tarsus.errors import InputError
 from tarsus.simulation import SimulatedPlant, terrain
 
 
@@ -94,3 +98,52 @@ def test_a_slope_of_ten_degrees_costs_next_to_nothing():
     way, slip = climbed(10.0)
     assert way > 0.94
     assert slip < 0.03
+
+
+def test_a_slippery_slope_is_refused_with_its_angle_and_the_way_back_stays_open():
+    limit = SlopeLimit(0.8)
+    steep, gentle = (FootPlane(0.0, math.tan(math.radians(angle)), 0.0) for angle in (25.0, 15.0))
+    limit.step(gentle, 0.1 + 0j)
+    assert not limit.refuses
+    limit.step(steep, 0.1 + 0j)
+    assert limit.refuses
+    assert "25 deg" in limit.reason
+    limit.step(FootPlane(0.0, math.tan(limit.steepest - 0.01), 0.0), 0.1 + 0.02j)
+    assert limit.refuses
+    assert "25 deg" in limit.reason
+    limit.step(steep, -0.1 + 0j)
+    assert not limit.refuses
+    limit.step(steep, 0.1 + 0j)
+    assert limit.refuses
+    limit.step(gentle, 0.1 + 0j)
+    assert not limit.refuses
+    # Down a slope that is too steep, down is refused, and up again is not.
+    limit.step(FootPlane(0.0, -0.6, 0.0), 0.1 + 0j)
+    assert limit.refuses
+    limit.step(FootPlane(0.0, -0.6, 0.0), -0.1 + 0j)
+    assert not limit.refuses
+
+
+def test_less_friction_refuses_gentler_slopes():
+    steepest = [SlopeLimit(friction).steepest for friction in (0.3, 0.6, 0.8, 1.0)]
+    assert steepest[0] == 0.0
+    assert steepest == sorted(steepest)
+    with pytest.raises(InputError, match="friction is -1"):
+        GroundAdaptation(friction=-1.0)
+
+
+def test_a_robot_stops_on_a_slope_that_is_too_steep_says_so_and_walks_back():
+    robot, dt = preset("strider"), 0.01
+    plant = SimulatedPlant(robot, terrain=terrain.Ramp(slope=math.radians(15), start=0.3, length=5.0))
+    controller = RobotController(robot, adaptation=GroundAdaptation(friction=0.55))
+    output, places = controller.output, []
+    plant.start(output)
+    for twist, seconds in ((0.146, 7.0), (0.146, 2.0), (-0.146, 3.0)):
+        for _ in range(round(seconds / dt)):
+            output = controller.step((twist, 0.0, 0.0), dt, plant.step(output, dt))
+        places.append(plant.state.body.position[0])
+        if twist > 0:
+            causes = [found.cause for found in output.limitations if found.kind is LimitationKind.GROUND]
+            assert ["slope" in cause for cause in causes] == [True]
+    assert places[1] == pytest.approx(places[0], abs=0.005)
+    assert places[2] < places[1] - 0.15

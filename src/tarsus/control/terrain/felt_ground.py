@@ -20,6 +20,7 @@ from tarsus.control.terrain.ground_contact import met_ground
 from tarsus.control.terrain.posture_feedback import Levelling, PostureFeedback, PostureRates
 from tarsus.control.terrain.reach import Reach, reachable_share
 from tarsus.control.terrain.roughness import GroundAdaptation, Roughness
+from tarsus.control.terrain.slope_limit import SlopeLimit
 from tarsus.control.terrain.support import Support, holds
 from tarsus.control.walk.felt_feet import FeltFeet, FeltInputs
 from tarsus.control.walk.ground_pose import body_posture
@@ -76,6 +77,8 @@ class FeltGround:
         Whether the robot is in the air or has fallen.
     support : Support
         Whether feet may lift off, and at which pace the walk goes on.
+    slope : SlopeLimit
+        Whether the slope is too slippery.
     plane : FootPlane
         The plane through the standing feet, in the heading frame.
     offsets : array, shape (legs,), or None
@@ -93,7 +96,7 @@ class FeltGround:
     ) -> None:
         self.contacts, self.support, self.condition = FootContacts(robot.legs), Support(), BodyCondition()
         self.posture, self.roughness = PostureFeedback(levelling), Roughness(adaptation)
-        self.plane = FootPlane()
+        self.slope, self.plane = SlopeLimit(adaptation.friction), FootPlane()
         self.offsets: Float[np.ndarray, "legs"] | None = None
         self._reach = Reach(robot)
         self._validator, self._loads = ReadingsValidator(robot), FootLoads(robot, admittance)
@@ -249,6 +252,8 @@ class FeltGround:
                 rises[leg] = reach.lowest[leg] - self.plane.height - _LOWER
         highest = reach.highest_stand(float(state.posture.value[SWING_HEIGHT]))
         level = self.plane.levelled(self._tilt)
+        if self._tilt is not None:
+            self.slope.step(level, complex(*twist[:2].tolist()))
         self.posture.fit_to_reach(
             rises,
             self.roughness.body_rise,
@@ -277,8 +282,9 @@ class FeltGround:
         if tilt is not None:
             contacts.balance(down, places, centre, tilt, time["dt"])
         legs = [leg for leg, on in enumerate(down) if on and not (due and due[leg]) and contacts.supports(leg)]
-        stays = (due is None or holds([places[leg] for leg in legs], centre)) and not self.condition.fallen
-        self.support.step(stays=stays, lifts=any(due or ()) and not self.condition.fallen, **time)
+        lifts, fallen = any(due or ()), self.condition.fallen
+        held = due is None or (not (lifts and self.slope.refuses) and holds([places[leg] for leg in legs], centre))
+        self.support.step(stays=held and not fallen, lifts=lifts and not fallen, **time)
 
     @property
     def limitations(self) -> tuple[Limitation, ...]:
@@ -289,5 +295,6 @@ class FeltGround:
             found.append(Limitation(kind=kinds.ATTITUDE, cause="end of the legs' reach on this slope"))
         found += self.condition.limitations + self.odometry.limitations
         if self.waits and not self.condition.in_air:
-            found.append(Limitation(kind=kinds.GROUND, cause="the feet on the ground do not hold the robot"))
+            reason = self.slope.reason if self.slope.refuses else "the feet on the ground do not hold the robot"
+            found.append(Limitation(kind=kinds.GROUND, cause=reason))
         return tuple(found)

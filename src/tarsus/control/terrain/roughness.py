@@ -23,7 +23,7 @@ _SWING_SHARE, _BODY_SHARE = 1.0, 1.0
 @represented()
 @dataclass(frozen=True, kw_only=True)
 class GroundAdaptation:
-    """How far a walk may adapt to rough ground.
+    """How far a walk may adapt to rough ground, and how slippery the ground may be.
 
     Attributes
     ----------
@@ -31,6 +31,8 @@ class GroundAdaptation:
         Greatest addition to the swing height [m].
     body_height : float
         Greatest addition to the body height [m].
+    friction : float
+        Coefficient of friction that feet are sure of: slopes on which they would slip with it are refused.
 
     Raises
     ------
@@ -40,12 +42,13 @@ class GroundAdaptation:
 
     swing_height: float = 0.05
     body_height: float = 0.06
+    friction: float = 0.8
 
     def __post_init__(self) -> None:
-        for name in ("swing_height", "body_height"):
+        for name in ("swing_height", "body_height", "friction"):
             value = getattr(self, name)
             if not 0 <= value < math.inf:
-                raise InputError(f"ground adaptation: {name} is {value} m; it must be a finite number, not negative")
+                raise InputError(f"ground adaptation: {name} is {value}; it must be a finite number, not negative")
 
 
 class Roughness:
