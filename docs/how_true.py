@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from tarsus.control.command import Command
+from tarsus.control.compensated_plant import CompensatedPlant
 from tarsus.control.loop.run import run
 from tarsus.control.robot_controller import RobotController
 from tarsus.control.walk_controller import WalkController
@@ -98,17 +99,19 @@ def fast_table() -> str:
     return header + "".join(fast_row(robot, gait) for robot, gait in itertools.product(able_robots(), SIX_LEGGED))
 
 
-def live_ratio(robot: Robot, gait: str, path: BodyPath, share: float) -> float:
+def live_ratio(robot: Robot, gait: str, path: BodyPath, share: float, kind: str = "ideal") -> float:
     """Return the ratio of the way, or of the turn in place, of live walking at a share of the top speed."""
     controller = RobotController(robot, Gait.named(gait))
     walk = WalkController(robot, Gait.named(gait))
     speed = share * walk.top_speed(path.displacement)
     twist = tuple(speed * np.asarray(path.displacement))
     walked = max(2 * walk.cycle_time, 1 / speed)
-    plant = TracedPlant(SimulatedPlant(robot, servos="ideal", sensors="blind"))
+    servos = "ideal" if kind == "ideal" else "catalogue"
+    traced = TracedPlant(SimulatedPlant(robot, servos=servos, sensors="blind"))
+    plant = CompensatedPlant(traced) if kind == "compensated" else traced
     commands = [(0.0, Command(twist=twist)), (walked, Command(twist=(0.0, 0.0, 0.0)))]
     run(controller, plant, commands, duration=walked + 1.5 * walk.cycle_time)
-    outcome = Outcome.of(plant.trace)
+    outcome = Outcome.of(traced.trace)
     return outcome.turn_ratio if path == WALKS["turn"] else outcome.way_ratio
 
 
@@ -124,6 +127,21 @@ def live_table() -> str:
     return header + "".join(live_row(robot, gait) for robot, gait in itertools.product(able_robots(), SIX_LEGGED))
 
 
+def soft_row(robot: Robot, gait: str) -> str:
+    """Return a row of the table of live walking on servos of the catalogue: ratios without and with compensation."""
+    kinds = ("catalogue", "compensated")
+    cells = [[f"{live_ratio(robot, gait, path, 0.5, kind):.3f}" for kind in kinds] for path in WALKS.values()]
+    return f"| {robot.name} | {gait} | {' | '.join(', '.join(cell) for cell in cells)} |\n"
+
+
+def soft_table() -> str:
+    """Return the table of live walking on servos of the catalogue."""
+    header = "| robot | gait | straight | sideways | curve | turn |\n|---|---|---|---|---|---|\n"
+    return header + "".join(
+        soft_row(robot, gait) for robot, gait in itertools.product(able_robots(), ("tripod", "wave"))
+    )
+
+
 def main() -> None:
     """Replace the tables on the page."""
     tables = {
@@ -132,6 +150,7 @@ def main() -> None:
         "catalogue": lambda: table("catalogue"),
         "compensated": lambda: table("compensated"),
         "live": live_table,
+        "soft": soft_table,
     }
     text = PAGE.read_text(encoding="utf-8")
     for name, written in tables.items():

@@ -47,7 +47,16 @@ def test_feet_slide_less_with_commands_that_compensate(servos):
     (_, before), (code, after) = run_json(options), run_json(f"{options} --compensate")
     assert code == 0
     assert after["slip_mm"] < before["slip_mm"]
-    assert any("compensate for the deflection" in line for line in after["assumed"])
+    assert any("compensate for 75% of the deflection" in line for line in after["assumed"])
+
+
+@pytest.mark.parametrize("servos", ["catalogue", "ideal"])
+def test_a_scenario_is_compensated_too(servos):
+    options = f'simulate strider --scenario "at 0 s: walk 50 mm/s; at 0.3 s: stop" --servos {servos} --sensors blind'
+    (_, before), (code, after) = run_json(options), run_json(f"{options} --compensate")
+    assert code == 0
+    assert after["slip_mm"] < before["slip_mm"]
+    assert any("compensate for 75% of the deflection" in line for line in after["assumed"])
 
 
 def test_the_table_has_plan_and_physics():

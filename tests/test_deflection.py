@@ -5,7 +5,7 @@ import pytest
 
 import tarsus
 from tarsus.errors import InputError, MissingDataError
-from tarsus.load.deflection import compensate_deflection, joint_deflections
+from tarsus.load.deflection import SHARE, compensate_deflection, joint_deflections
 from tarsus.simulation import compare
 
 
@@ -54,6 +54,17 @@ def test_feet_slide_less_and_the_way_is_longer_in_physics():
     assert after.slip < 0.3 * before.slip
     assert abs(after.way_ratio - 1) < 0.5 * abs(before.way_ratio - 1)
     assert after.tilt < before.tilt
+
+
+def test_a_share_of_the_deflection_is_compensated_for():
+    motion = walk()
+    deflection = joint_deflections(motion)
+    for given, share in (({}, SHARE), ({"share": 1.0}, 1.0), ({"share": 0.0}, 0.0)):
+        commands = compensate_deflection(motion, **given)
+        assert commands.angles - motion.angles == pytest.approx(share * deflection, abs=1e-12)
+        assert f"{share:.0%} of the deflection" in commands.assumed[-1]
+    with pytest.raises(InputError, match=r"share is 1.2; it must be a number from 0 to 1"):
+        compensate_deflection(motion, share=1.2)
 
 
 @pytest.mark.parametrize("time", [-0.01, np.nan, np.inf])

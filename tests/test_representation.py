@@ -108,6 +108,7 @@ def control_values():
     scenario = tarsus.scenario_from_text(timeline, robot="strider")
     yield from (controller, guard, guard.bounds, jump, *jump.interventions, too_fast, *too_fast.limitations, walk)
     yield from (sequence, tarsus.SequencePlayer(sequence), tarsus.WalkController(robot), tarsus.IdealPlant(robot))
+    yield tarsus.CompensatedPlant(tarsus.IdealPlant(robot))
     yield from (tarsus.SensorReadings(contacts=[True] * 6), tarsus.Admittance(mass=1.0, damping=40.0, stiffness=400.0))
     yield tarsus.GroundAdaptation(swing_height=0.03)
     yield from (scenario, tarsus.run_scenario(scenario))

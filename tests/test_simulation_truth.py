@@ -277,6 +277,10 @@ def test_the_pages_live_walk_is_reproduced():
     assert docs_module("how_true").live_row(STRIDER, "tripod") in table_on_the_page("live")
 
 
+def test_the_pages_live_walk_on_soft_servos_is_reproduced():
+    assert docs_module("how_true").soft_row(STRIDER, "tripod") in table_on_the_page("soft")
+
+
 @pytest.mark.parametrize(
     ("robot", "fault"),
     [("strider", "one servo dead (middle left femur)"), ("phantomx", "push of half the weight for 0.2 s")],

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from tarsus import simulation as simulation
     from tarsus import urdf as urdf
     from tarsus.control.command import Command
+    from tarsus.control.compensated_plant import CompensatedPlant
     from tarsus.control.control_output import ControlOutput
     from tarsus.control.limitation import Limitation, LimitationKind
     from tarsus.control.loop.recording import Recording
@@ -154,6 +155,7 @@ _HOMES = {
     "tarsus.control.sequence": ("MotionSequence", "SequencePlayer"),
     "tarsus.control.walk_controller": ("WalkController",),
     "tarsus.control.command": ("Command",),
+    "tarsus.control.compensated_plant": ("CompensatedPlant",),
     "tarsus.gait.motion": ("Motion",),
     "tarsus.gait.path": ("BodyPath", "curved_path", "straight_path", "twist_path"),
     "tarsus.gait.plan": ("plan_walk",),
@@ -221,6 +223,7 @@ __all__ = [
     "CalibrationError",
     "CollisionError",
     "Command",
+    "CompensatedPlant",
     "CompliantLoads",
     "ContactForces",
     "ControlOutput",

@@ -12,12 +12,15 @@ import numpy as np
 from tarsus.cli.output import Progress
 from tarsus.cli.planning import plan
 from tarsus.cli.timeline import timeline_of
+from tarsus.control.compensated_plant import CompensatedPlant
+from tarsus.control.plant import Plant
 from tarsus.errors import InputError, TarsusError
 from tarsus.gait.motion import Motion
 from tarsus.load.compliant.joint_springs import JointSprings
-from tarsus.load.deflection import compensate_deflection
+from tarsus.load.deflection import SHARE, compensate_deflection, what_is_compensated
 from tarsus.report.animation import animate
 from tarsus.robot.file import load_robot
+from tarsus.robot.robot import Robot
 from tarsus.scenario.runner import run_scenario
 from tarsus.simulation.servos.servo_model import ServoModel
 from tarsus.simulation.simulated_plant import SimulatedPlant
@@ -85,8 +88,7 @@ def run_plan(robot: str, options: dict[str, Any], settings: dict[str, Any], prog
     if not motion.ok:
         raise TarsusError(f"the walk is not possible: {motion.problems[0]}; `tarsus walk` shows the whole verdict")
     if options["compensate"]:
-        ideal = JointSprings.uniform(motion.robot, ServoModel.ideal().stiffness)
-        motion = compensate_deflection(motion, springs=ideal if settings["servos"] == "ideal" else None)
+        motion = compensate_deflection(motion, springs=_springs(motion.robot, settings["servos"]))
     progress("physics", 0.1)
     truth = compare(motion, **settings)
     return SimulatedRun(
@@ -109,7 +111,7 @@ def run_timeline(
     scenario : str
         Path of a scenario file, or a timeline.
     robot, options, settings, progress
-        As for `run_plan`; no option of a walk may be given.
+        As for `run_plan`; no option of a walk may be given but the compensation.
 
     Raises
     ------
@@ -118,13 +120,18 @@ def run_timeline(
     TarsusError
         If the scenario can't be run.
     """
-    given = [name for name, value in options.items() if value is not None and name != "rate"]
+    given = [name for name, value in options.items() if value is not None and name not in ("rate", "compensate")]
     if given:
         raise click.UsageError(f"--{given[0].replace('_', '-')} and --scenario exclude each other")
     plant = SimulatedPlant(load_robot(robot), **settings)
     traced = TracedPlant(plant)
     progress("physics", 0.1)
-    recording = run_scenario(timeline_of(scenario, None), robot=plant.robot, plant=traced)
+    executing: Plant = traced
+    assumed = plant.assumed
+    if options["compensate"]:
+        executing = CompensatedPlant(traced, springs=_springs(plant.robot, settings["servos"]))
+        assumed = (*assumed, what_is_compensated(SHARE))
+    recording = run_scenario(timeline_of(scenario, None), robot=plant.robot, plant=executing)
     trace = traced.trace
     standing = recording.longest_standing
     planned = None if standing is None else planned_torques(standing)
@@ -134,7 +141,7 @@ def run_timeline(
         trace=trace,
         outcome=Outcome.of(trace),
         planned=planned,
-        assumed=plant.assumed,
+        assumed=assumed,
     )
 
 
@@ -178,6 +185,11 @@ def write_run(
         )
         written.append(video)
     return written
+
+
+def _springs(robot: Robot, servos: str) -> JointSprings | None:
+    """Return the springs of ideal servos; None for those of the robot's own."""
+    return JointSprings.uniform(robot, ServoModel.ideal().stiffness) if servos == "ideal" else None
 
 
 def _write_zarr(trace: Trace, path: Path) -> None:

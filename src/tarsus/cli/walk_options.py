@@ -27,7 +27,7 @@ def compensate_option(function: _F) -> _F:
         "--compensate",
         is_flag=True,
         default=None,
-        help="Command loaded feet lower by what the servos yield under vertical forces.",
+        help="Command loaded feet lower by most of what the servos yield under vertical forces.",
     )(function)
 
 
