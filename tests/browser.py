@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import shutil
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 from urllib.parse import urlsplit
 
@@ -14,6 +15,7 @@ from tarsus.studio.messages.state import StudioState
 from tarsus.studio.server.serve import Serving
 from tarsus.studio.state_text import text_of
 
+AXE = Path(__file__).parents[1] / "web" / "node_modules" / "axe-core" / "axe.min.js"
 VIEWS = ("joints", "body", "walk", "drive", "loads", "robot", "sources")
 PHONE = {"width": 390, "height": 844}
 # Small: every pixel is drawn without a graphics card.
@@ -92,6 +94,18 @@ class Visitor:
         """Read a table's rows, without its head."""
         rows = "[...table.querySelectorAll('tbody tr')].map(row => [...row.cells].map(cell => cell.textContent))"
         return self.at(name).evaluate(f"table => {rows}")
+
+    def barriers(self) -> list[Any]:
+        """Return what axe finds serious in the page; the visitor must have arrived with ``bypass_csp=True``."""
+        if not self.page.evaluate("'axe' in window"):
+            self.page.add_script_tag(path=AXE)
+        found = self.page.evaluate("axe.run(document, { resultTypes: ['violations'] })")
+        assert len(found["passes"]) > 15
+        return [
+            (one["id"], [node["html"][:120] for node in one["nodes"]])
+            for one in found["violations"]
+            if one["impact"] in ("serious", "critical")
+        ]
 
     def check(self) -> None:
         """Refuse a page that complained, or asked anybody but its own server."""

@@ -64,12 +64,13 @@ def identify(visitor, truth):
 def test_a_machine_is_brought_up_in_the_page(arrive, truth, tmp_path):
     hardware = Hardware(tmp_path, clock=ManualClock())
     with Serving(Settings(hardware=hardware)) as server:
-        visitor = arrive(at=server).open(ROBOT)
+        visitor = arrive(at=server, bypass_csp=True).open(ROBOT)
         visitor.unfold()
         visitor.at("bring-up").click()
         expect(visitor.at("bring-up-known")).to_have_text("15 of 18 joints are calibrated")
         identify(visitor, truth)
         asked(visitor, "Which leg moved?")
+        assert visitor.barriers() == []
         # Left in the middle; a second visitor is refused before, and may go on afterwards.
         other = arrive(at=server).open(ROBOT)
         other.unfold()

@@ -13,7 +13,7 @@ pytest_plugins = "browser_fixtures"
 def test_a_page_drives_the_servos_of_a_run_and_ends_it(arrive):
     machine = Machine()
     with machine.going() as server:
-        first = arrive(at=server).open()
+        first = arrive(at=server, bypass_csp=True).open()
         expect(first.page.get_by_role("tab")).to_have_count(1)
         expect(first.at("run-bus")).to_have_text("emulated: feetech-sts")
         expect(first.at("run-robot")).to_have_text("strider")
@@ -32,6 +32,7 @@ def test_a_page_drives_the_servos_of_a_run_and_ends_it(arrive):
         assert 0 < number(facts["Farthest behind"]) < 30
         assert number(facts["Supply"]) > 6
         first.unfold()
+        assert first.barriers() == []
         expect(first.at("angles")).to_contain_text("measured ones in brackets")
         # The page is closed with the key down: the robot stops, and stands when the next page drives.
         first.context.close()

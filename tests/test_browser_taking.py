@@ -15,6 +15,8 @@ import tarsus
 from browser import Visitor
 from tarsus.errors import RobotFileError
 from tarsus.gait.storage import motion_to_csv
+from tarsus.hardware import nominal_calibration
+from tarsus.hardware.pulses.table import whole_commands
 from tarsus.robot.file import load_robot, robot_from_dict, robot_to_dict
 from tarsus.studio.messages.state import BodyState, Curve, Picture, StudioState, WalkOptions
 from tarsus.studio.state_text import state_of
@@ -48,6 +50,50 @@ def test_angles_are_copied_as_tab_separated_text(visitor):
     assert head == ["leg", "coxa_deg", "femur_deg", "tibia_deg"]
     assert [row[0] for row in rows] == list(STRIDER.leg_codes)
     assert np.array([row[1:] for row in rows], dtype=float) == pytest.approx(angles, abs=1e-3)
+
+
+def test_pulses_of_a_calibration_stand_beside_the_angles_and_are_copied(arrive, tmp_path):
+    visitor = arrive(bypass_csp=True)
+    made = nominal_calibration(STRIDER, "strider", kind="feetech-sts")
+    narrow = made.with_joint(0, 0, soft_limits=(-0.2, 0.2))
+    narrow.save(tmp_path / "mine.toml")
+    visitor.open(StudioState(view="joints"))
+    expect(visitor.at("copy-angles")).to_have_count(1)
+    visitor.at("calibration-file").set_input_files(tmp_path / "mine.toml")
+    expect(visitor.at("remove-calibration")).to_have_text("Remove mine.toml")
+    visitor.unfold()
+    visitor.at("copy-pulses").click()
+    expect(visitor.at("toast")).to_contain_text("Pulses copied")
+    head, *rows = [line.split("\t") for line in clipboard(visitor).splitlines()]
+    height = tarsus.default_body_height(STRIDER)
+    feet = np.asarray(tarsus.default_stance(STRIDER)) + np.array([0, 0, height])
+    angles = tarsus.inverse_kinematics(STRIDER, feet, tarsus.Pose.from_rpy(position=(0, 0, height))).require().angles
+    assert head == ["leg", "coxa_ticks", "femur_ticks", "tibia_ticks"]
+    commands = whole_commands(narrow, np.asarray(angles))
+    # Angles have three decimals in the page.
+    assert np.abs(np.array([row[1:] for row in rows], dtype=int) - commands).max() <= 1
+    expect(visitor.at("angles").locator("tbody tr").first).to_contain_text(f"{rows[0][2]} ticks")
+
+    # Beyond its limits, a joint has no pulse to be copied.
+    visitor.type("joint-LF-coxa", 20)
+    expect(visitor.at("pulses-beyond")).to_contain_text("LF coxa is at 20.0°; the calibration allows -11.5° to 11.5°")
+    expect(visitor.at("copy-pulses")).to_be_disabled()
+    assert visitor.barriers() == []
+    visitor.type("joint-LF-coxa", 10)
+    expect(visitor.at("copy-pulses")).to_be_enabled()
+
+    # A file for another robot is refused, and the first one stays; with another robot it does not fit.
+    nominal_calibration(tarsus.load_robot("phantomx"), "phantomx").save(tmp_path / "other.toml")
+    visitor.at("calibration-file").set_input_files(tmp_path / "other.toml")
+    expect(visitor.at("failure")).to_contain_text("the calibration of 'phantomx'; the robot is 'strider'")
+    expect(visitor.at("remove-calibration")).to_have_text("Remove mine.toml")
+    visitor.at("robot-choice").select_option("phantomx")
+    expect(visitor.at("calibration-problem")).to_contain_text("the robot is 'phantomx'")
+    expect(visitor.at("copy-pulses")).to_have_count(0)
+    visitor.at("undo").click()
+    expect(visitor.at("copy-pulses")).to_have_count(1)
+    visitor.at("remove-calibration").click()
+    expect(visitor.at("copy-pulses")).to_have_count(0)
 
 
 def test_csv_of_a_walk_equals_that_of_python(visitor, tmp_path):

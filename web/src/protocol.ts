@@ -88,6 +88,32 @@ export interface BrokenLimit {
   text: string;
 }
 
+/**
+ * The calibration whose pulses are shown: the command of a joint at an angle is zero + per_deg * angle.
+ *
+ * All lists are legs x (coxa, femur, tibia), and empty without a calibration that fits the robot.
+ */
+export interface CalibrationMessage {
+  id: number;
+  type: "calibration";
+  /** Name of its file; null for none. */
+  name: string | null;
+  /** Why it does not fit the robot. */
+  problem: string | null;
+  /** us or ticks. */
+  unit: string[];
+  zero: number[];
+  per_deg: number[];
+  /** Least command. */
+  low: number[];
+  /** Greatest command. */
+  high: number[];
+  /** Least angle. */
+  low_deg: number[];
+  /** Greatest angle. */
+  high_deg: number[];
+}
+
 /** Suitable servos of the catalogue. */
 export interface Candidate {
   name: string;
@@ -658,6 +684,15 @@ export interface SetBody {
   body: BodyState;
 }
 
+/** Show the pulses of a calibration beside joint angles, or, for null, no longer. Answer: calibration. */
+export interface SetCalibration {
+  id: number;
+  type: "calibration";
+  /** Name of its file. */
+  name?: string | null;
+  text?: string | null;
+}
+
 /** Change the robot by the keys of its file; poses and walk are kept. Answers: robot, state, content of the view. */
 export interface SetDocument {
   id: number;
@@ -1034,6 +1069,7 @@ export type ClientMessage =
   | SetRobot
   | SetDocument
   | SetToml
+  | SetCalibration
   | SetJoints
   | SetBody
   | DragFoot
@@ -1068,6 +1104,7 @@ export type ServerMessage =
   | DriveFrame
   | SourceMessage
   | BringUpMessage
+  | CalibrationMessage
   | FileMessage
   | ErrorMessage
   | Done;

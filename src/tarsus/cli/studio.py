@@ -12,6 +12,8 @@ from tarsus.cli.output import print_json
 from tarsus.cli.values import examples, json_option
 
 if TYPE_CHECKING:
+    from tarsus.robot.robot import Robot
+    from tarsus.studio.machine.calibration import CalibrationText
     from tarsus.studio.messages.state import StudioState
     from tarsus.studio.server.serve import Serving
 
@@ -29,7 +31,7 @@ _PORT = 8600
         "tarsus studio --host 0.0.0.0 --public --check",
     )
 )
-@click.argument("robot", metavar="[ROBOT]", default="strider")
+@click.argument("robot", metavar="[ROBOT]", required=False)
 @click.option("--port", type=click.IntRange(0, 65535), help=f"Port; 0 for a free one.  [default: {_PORT}]")
 @click.option(
     "--host",
@@ -39,15 +41,22 @@ _PORT = 8600
 )
 @click.option("--public", is_flag=True, help="Serve without a token, restricted to the simulator.")
 @click.option("--token", help="Access token.  [default: a new one if --host needs one]")
+@click.option(
+    "--calibration",
+    type=click.Path(path_type=Path),
+    metavar="FILE",
+    help="Calibration file: pulses beside joint angles; its robot, where ROBOT is left out.",
+)
 @click.option("--no-browser", is_flag=True, help="Print the link without opening a browser.")
 @click.option("--check", is_flag=True, help="Start the server, check that it responds, and stop.")
 @json_option
 def studio(
-    robot: str,
+    robot: str | None,
     port: int | None,
     host: str,
     public: bool,
     token: str | None,
+    calibration: Path | None,
     no_browser: bool,
     check: bool,
     as_json: bool,
@@ -68,8 +77,17 @@ def studio(
         token = Settings.new_token()
     # A check must not fail because a studio is already running.
     chosen_port = port if port is not None else 0 if check else _PORT
-    hardware = None if public else Hardware(Path(), robot_file=None if robot in preset_names() else Path(robot))
-    settings = Settings(host=host, port=chosen_port, public=public, token=token, start=_start(robot), hardware=hardware)
+    chosen = _robot(robot, calibration)
+    own = None if robot is None or robot in preset_names() else Path(robot)
+    settings = Settings(
+        host=host,
+        port=chosen_port,
+        public=public,
+        token=token,
+        start=_start(chosen),
+        hardware=None if public else Hardware(Path(), robot_file=own, calibration=calibration),
+        calibration=None if calibration is None else _text(calibration),
+    )
     serving = Serving(settings)
     if check:
         return _check(serving, as_json=as_json)
@@ -80,12 +98,31 @@ def studio(
     return 0
 
 
-def _start(robot: str) -> StudioState:
-    from tarsus.robot.file import load_robot, robot_to_dict
+def _robot(name: str | None, calibration: Path | None) -> Robot:
+    """Return the robot that is named, else that of the calibration, else the first example."""
+    from tarsus.cli.pulses import calibration_of
+    from tarsus.hardware.calibration.calibration import Calibration
+    from tarsus.robot.file import load_robot
+
+    if calibration is None:
+        return load_robot(name or "strider")
+    found = Calibration.load(calibration) if name is None else calibration_of(load_robot(name), calibration)
+    found.require_complete()
+    return found.robot
+
+
+def _text(calibration: Path) -> CalibrationText:
+    from tarsus.studio.machine.calibration import CalibrationText
+
+    return CalibrationText(calibration.name, calibration.read_text(encoding="utf-8-sig"))
+
+
+def _start(robot: Robot) -> StudioState:
+    from tarsus.robot.file import robot_to_dict
     from tarsus.studio.messages.state import StudioState
     from tarsus.studio.robots import choice_of_document, robot_of
 
-    choice = choice_of_document(robot_to_dict(load_robot(robot)))
+    choice = choice_of_document(robot_to_dict(robot))
     robot_of(choice)
     return StudioState(robot=choice)
 

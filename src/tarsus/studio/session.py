@@ -9,6 +9,7 @@ from tarsus.studio.driving import Driver
 from tarsus.studio.error_messages import error_message
 from tarsus.studio.history import History
 from tarsus.studio.live import Live
+from tarsus.studio.machine.calibration import CalibrationText, calibration_message, calibration_or_problem
 from tarsus.studio.machine.driven_run import DrivenRun
 from tarsus.studio.machine.hardware import Hardware
 from tarsus.studio.messages import client as ask
@@ -54,6 +55,8 @@ class Session:
         The run of a machine that the view Drive drives; then only that view is available.
     hardware : Hardware, optional
         The servos of the computer on which the session runs; left out, it has no access to any.
+    calibration : CalibrationText, optional
+        The calibration whose pulses are shown beside joint angles.
     """
 
     def __init__(
@@ -64,12 +67,14 @@ class Session:
         public: bool = False,
         run: DrivenRun | None = None,
         hardware: Hardware | None = None,
+        calibration: CalibrationText | None = None,
     ) -> None:
         self._start = StudioState() if start is None else start
         self._history = History(self._start)
         self._views = Views()
         self._bounds = bounds
         self._public = public
+        self._calibration = calibration
         self._live = Live(run, hardware, public=public)
         self._sent_state: StudioState | None = None
 
@@ -149,7 +154,10 @@ class Session:
 
     def _everything(self, state: StudioState, *, id: int) -> Answers:
         """Yield the robot, the state, and the content of its view."""
-        yield robot_message(self._views.results.robot(state), state.robot, id=id)
+        robot = self._views.results.robot(state)
+        yield robot_message(robot, state.robot, id=id)
+        if self._calibration is not None:
+            yield calibration_or_problem(self._calibration, robot, id=id)
         yield StateMessage(type="state", id=id, state=state)
         yield from self._views.shown(state, id=id)
 
@@ -209,6 +217,17 @@ class Session:
         name = choice.preset if choice.document is None else choice.document["name"]
         present = self._views.results.robot(self.state).name
         yield from (self._same_robot if name == present else self._other_robot)(choice, message)
+
+    def _pulses(self, message: ask.SetCalibration) -> Answers:
+        robot = self._views.results.robot(self.state)
+        if message.text is None:
+            self._calibration = None
+            yield calibration_or_problem(None, robot, id=message.id)
+            return
+        found = CalibrationText(message.name or "the calibration", message.text)
+        answer = calibration_message(found.name, found.of(robot), id=message.id)
+        self._calibration = found
+        yield answer
 
     def _joints(self, message: ask.SetJoints) -> Answers:
         yield from self._posed({"joints": message.joints}, message)
@@ -331,6 +350,7 @@ _HANDLERS: dict[type[Any], Callable[[Session, Any], Answers]] = {
     ask.SetRobot: Session._preset,
     ask.SetDocument: Session._document,
     ask.SetToml: Session._toml,
+    ask.SetCalibration: Session._pulses,
     ask.SetJoints: Session._joints,
     ask.SetBody: Session._body,
     ask.DragFoot: Session._drag,

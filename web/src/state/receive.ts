@@ -45,6 +45,8 @@ export function received(
       return { source: message };
     case "bring_up":
       return { bringUp: message, failures: { ...studio.failures, answer: undefined } };
+    case "calibration":
+      return { calibration: message };
     case "error":
       return refused(studio, message, asked);
     case "done":

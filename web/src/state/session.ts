@@ -14,6 +14,8 @@ import { endsFileRefusal, Unsaved, withPart, type Settable } from "./unsaved";
 const ADDRESS_DELAY = 600;
 
 const unsaved = new Unsaved();
+/** The calibration that was loaded in this page; the state has none, so a new session is told of it. */
+let calibration: Draft | null = null;
 /** Whether the open session has sent its state. */
 let greeted = false;
 /** Types whose failure to be sent is reported to the user. */
@@ -60,6 +62,7 @@ export function retry(): void {
 export function ask(draft: Draft): void {
   if (endsFileRefusal(draft)) forgetFileRefusal();
   unsaved.add(draft);
+  if (draft.type === "calibration") calibration = draft;
   if (!link.send(draft)) {
     if (REPORTED.has(draft.type)) notify("Not connected to the server");
     return;
@@ -70,6 +73,7 @@ export function ask(draft: Draft): void {
 }
 
 function sendUnsaved(): void {
+  if (calibration) ask(calibration);
   for (const draft of unsaved.take()) {
     useStudio.setState(({ state }) => ({ state: state && withPart(state, draft) }));
     ask(draft);

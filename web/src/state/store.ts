@@ -2,6 +2,7 @@ import { create } from "zustand";
 
 import type {
   BringUpMessage,
+  CalibrationMessage,
   DriveFrame,
   ErrorMessage,
   LoadsMessage,
@@ -47,6 +48,8 @@ export interface Studio {
   drive: DriveFrame | null;
   /** The bring-up of the servos; null without one. */
   bringUp: BringUpMessage | null;
+  /** The calibration whose pulses are shown; null before one was loaded. */
+  calibration: CalibrationMessage | null;
   /** Errors by the type of the request; removed when a request of the type succeeds. */
   failures: Partial<Record<ClientType, ErrorMessage>>;
   /** The input of each type that was changed last, such as stroke_mm. */
@@ -75,6 +78,7 @@ export const useStudio = create<Studio>(() => ({
   source: null,
   drive: null,
   bringUp: null,
+  calibration: null,
   failures: {},
   edited: {},
   busy: {},

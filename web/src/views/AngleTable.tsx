@@ -1,7 +1,11 @@
 import { Icon } from "../controls/icons";
 import { fixed, withUnit } from "../controls/numbers";
+import type { CalibrationMessage } from "../protocol";
 import { copyText } from "../state/copyLink";
+import { Message } from "../controls/Message";
+import { useStudio } from "../state/store";
 import { angleText, JOINTS } from "./angleText";
+import { beyondTexts, pulseOf, pulseTable } from "./pulses";
 
 interface Props {
   codes: readonly string[];
@@ -16,6 +20,9 @@ interface Props {
 
 /** Table of the joint angles, with a button to copy it. */
 export function AngleTable({ codes, angles, measured, open, at }: Props) {
+  const loaded = useStudio((studio) => studio.calibration);
+  const calibration = loaded?.unit.length === codes.length * JOINTS.length ? loaded : null;
+  const beyond = calibration ? beyondTexts(codes, calibration, angles) : [];
   return (
     <details open={open}>
       <summary>{at === undefined ? "Joint angles" : `Joint angles at ${fixed(at, 2)} s`}</summary>
@@ -42,6 +49,9 @@ export function AngleTable({ codes, angles, measured, open, at }: Props) {
                   <td key={joint}>
                     {fixed(angles[leg * 3 + i] ?? 0, 2)}
                     {measured && ` (${withUnit(measured[leg * 3 + i] ?? null, 1, "")})`}
+                    {calibration && (
+                      <Pulse calibration={calibration} joint={leg * 3 + i} angle={angles[leg * 3 + i] ?? 0} />
+                    )}
                   </td>
                 ))}
               </tr>
@@ -57,8 +67,46 @@ export function AngleTable({ codes, angles, measured, open, at }: Props) {
           >
             <Icon name="copy" /> Copy
           </button>
+          {calibration && (
+            <button
+              type="button"
+              className="button small"
+              data-testid="copy-pulses"
+              disabled={beyond.length > 0}
+              onClick={() => void copyText(pulseTable(codes, calibration, angles), "Pulses copied")}
+            >
+              <Icon name="copy" /> Copy pulses
+            </button>
+          )}
         </div>
+        {beyond.length > 0 && (
+          <Message kind="bad" testId="pulses-beyond">
+            <span className="lines">{beyond.join("\n")}</span>
+          </Message>
+        )}
       </div>
     </details>
+  );
+}
+
+interface PulseProps {
+  calibration: CalibrationMessage;
+  joint: number;
+  angle: number;
+}
+
+function Pulse({ calibration, joint, angle }: PulseProps) {
+  const { command, beyond } = pulseOf(calibration, joint, angle);
+  const unit = calibration.unit[joint] === "us" ? "µs" : "ticks";
+  return (
+    <span className={`pulse${beyond ? " beyond" : ""}`}>
+      {beyond && (
+        <>
+          <span aria-hidden="true">⚠ </span>
+          <span className="hidden-text">beyond its limits: </span>
+        </>
+      )}
+      {command} {unit}
+    </span>
   );
 }

@@ -7,6 +7,7 @@ import { triple } from "../scene/kinematics";
 import { ask, change } from "../state/session";
 import { useStudio } from "../state/store";
 import { AngleTable } from "./AngleTable";
+import { CalibrationFile } from "./CalibrationFile";
 import { Standing } from "./Standing";
 import { useInputs } from "./useInputs";
 import { ViewHead } from "./ViewHead";
@@ -31,7 +32,7 @@ export function JointsView() {
       <ViewHead title="Joints">
         Set any joint angle; the resting pose on the ground is computed. Feet can be dragged in the 3D view.
       </ViewHead>
-      <Failure of={["joints", "drag_foot"]} />
+      <Failure of={["joints", "drag_foot", "calibration"]} />
       {pose && <Standing pose={pose} />}
       <div className="row">
         <button
@@ -72,6 +73,7 @@ export function JointsView() {
         </fieldset>
       ))}
       <WorkspaceChoice />
+      <CalibrationFile />
       <AngleTable codes={robot.leg_codes} angles={angles} />
     </div>
   );

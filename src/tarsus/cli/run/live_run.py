@@ -95,7 +95,7 @@ def perform(robot: str, options: dict[str, Any], *, out: Path | None, quiet: boo
         driven = None
         observers = [] if log is None else [log.write]
         if options["studio"]:
-            driven = stack.enter_context(driven_from_studio(controller, chosen, options["studio"], bus))
+            driven = stack.enter_context(driven_from_studio(controller, calibration, options["studio"], bus))
             observers.append(driven.observe)
         plant = ServoPlant(
             calibration.limited_robot,

@@ -11,7 +11,7 @@ import click
 
 from tarsus.control.robot_controller import RobotController
 from tarsus.errors import InputError
-from tarsus.robot.robot import Robot
+from tarsus.hardware.calibration.calibration import Calibration
 
 if TYPE_CHECKING:
     from tarsus.studio.machine.driven_run import DrivenRun
@@ -23,15 +23,17 @@ _FRAME_RATE = 30.0
 
 
 @contextlib.contextmanager
-def driven_from_studio(controller: RobotController, robot: Robot, address: str, bus: str) -> Iterator[DrivenRun]:
+def driven_from_studio(
+    controller: RobotController, calibration: Calibration, address: str, bus: str
+) -> Iterator[DrivenRun]:
     """Serve a studio whose view Drive drives a run, and yield its source of commands.
 
     Parameters
     ----------
     controller : RobotController
         The controller of the run.
-    robot : Robot
-        What the studio shows.
+    calibration : Calibration
+        Robot and servos that the studio shows.
     address : str
         Host and port: ``"127.0.0.1:8600"``.
     bus : str
@@ -42,7 +44,9 @@ def driven_from_studio(controller: RobotController, robot: Robot, address: str, 
     InputError
         If the address is not possible or in use.
     """
+    from tarsus.hardware.calibration.file import calibration_text
     from tarsus.robot.file import robot_to_dict
+    from tarsus.studio.machine.calibration import CalibrationText
     from tarsus.studio.machine.driven_run import DrivenRun
     from tarsus.studio.messages.state import Picture, StudioState
     from tarsus.studio.robots import choice_of_document, robot_of
@@ -50,7 +54,7 @@ def driven_from_studio(controller: RobotController, robot: Robot, address: str, 
     from tarsus.studio.server.settings import Limits, Settings, is_loopback
 
     host, port = _parts(address)
-    choice = choice_of_document(robot_to_dict(robot))
+    choice = choice_of_document(robot_to_dict(calibration.robot))
     robot_of(choice)
     run = DrivenRun(controller, bus)
     settings = Settings(
@@ -60,6 +64,7 @@ def driven_from_studio(controller: RobotController, robot: Robot, address: str, 
         start=StudioState(view="drive", robot=choice, picture=Picture(camera="follow")),
         limits=Limits(frame_hz=_FRAME_RATE),
         run=run,
+        calibration=CalibrationText(calibration.name, calibration_text(calibration)),
     )
     with Serving(settings) as serving:
         click.echo(f"drive it here: {serving.url}", err=True)

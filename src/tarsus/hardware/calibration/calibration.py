@@ -6,6 +6,7 @@ import dataclasses
 import os
 from dataclasses import dataclass
 from functools import cached_property
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
@@ -13,7 +14,7 @@ import numpy as np
 from tarsus.errors import CalibrationError, InputError
 from tarsus.hardware.calibration.contradictions import angle_range, contradictions
 from tarsus.hardware.calibration.fields import CalibrationFields
-from tarsus.hardware.calibration.file import read_calibration, write_calibration
+from tarsus.hardware.calibration.file import parse_calibration, read_calibration, write_calibration
 from tarsus.representation import represented
 from tarsus.robot.robot import JOINTS, Robot
 
@@ -250,6 +251,26 @@ class Calibration(CalibrationFields):
             a key, the line and what is allowed.
         """
         return cls(**vars(read_calibration(path, robot=robot)))
+
+    @classmethod
+    def from_text(cls, text: str, robot: Robot, *, where: str = "the calibration") -> Self:
+        """Return the calibration of a robot from the text of its file; the robot file that it names is not read.
+
+        Parameters
+        ----------
+        text : str
+            TOML.
+        robot : Robot
+            A single robot.
+        where : str
+            Name of the source in error messages.
+
+        Raises
+        ------
+        CalibrationError
+            If something in it is wrong, or it contradicts the robot.
+        """
+        return cls(**vars(parse_calibration(text, where=where, folder=Path(), robot=robot)))
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write a calibration file; `load` reads the same calibration back, to the bit.

@@ -16,7 +16,7 @@ from tarsus.robot.robot import Robot
 from tarsus.robot.special_file import is_pipe_or_device
 from tarsus.robot.writer import toml_text
 
-__all__ = ["calibration_text", "read_calibration", "write_calibration"]
+__all__ = ["calibration_text", "parse_calibration", "read_calibration", "write_calibration"]
 
 _LARGEST = 2**20
 
@@ -38,12 +38,34 @@ def read_calibration(path: str | os.PathLike[str], *, robot: Robot | None = None
         key, the line and what is allowed.
     """
     where = str(path)
-    text = _text(Path(path), where)
+    return parse_calibration(_text(Path(path), where), where=where, folder=Path(path).parent, robot=robot)
+
+
+def parse_calibration(text: str, *, where: str, folder: Path, robot: Robot | None = None) -> CalibrationFields:
+    """Return the values of a calibration from the text of its file.
+
+    Parameters
+    ----------
+    text : str
+        TOML.
+    where : str
+        Name of the source in error messages.
+    folder : Path
+        Folder from which the path of the robot file is taken.
+    robot : Robot, optional
+        The robot; that which the file names where left out.
+
+    Raises
+    ------
+    CalibrationError
+        If something in it is wrong, or it contradicts the robot; each line of the message names a key, the line and
+        what is allowed.
+    """
     try:
         document = tomllib.loads(text, parse_float=Decimal)
     except (ValueError, ArithmeticError, RecursionError) as error:
         raise CalibrationError(where, [f"not valid TOML: {error}"]) from None
-    return fields_from_document(document, where=where, folder=Path(path).parent, robot=robot, lines=key_lines(text))
+    return fields_from_document(document, where=where, folder=folder, robot=robot, lines=key_lines(text))
 
 
 def calibration_text(calibration: CalibrationFields) -> str:

@@ -8,7 +8,7 @@ from pydantic import Field, TypeAdapter
 
 from tarsus.studio.messages.client import ClientMessage
 from tarsus.studio.messages.general import Done, ErrorMessage, FileMessage, SourceMessage
-from tarsus.studio.messages.machine import BringUpMessage
+from tarsus.studio.messages.machine import BringUpMessage, CalibrationMessage
 from tarsus.studio.messages.motion import DriveFrame, LoadsMessage, ServosMessage, WalkMessage
 from tarsus.studio.messages.physics import SimulatedMessage, TerrainMessage
 from tarsus.studio.messages.pose import PoseMessage, RobotMessage, StateMessage, Welcome, WorkspaceMessage
@@ -41,6 +41,7 @@ ServerMessage: TypeAlias = Annotated[
     | DriveFrame
     | SourceMessage
     | BringUpMessage
+    | CalibrationMessage
     | FileMessage
     | ErrorMessage
     | Done,

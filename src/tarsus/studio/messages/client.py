@@ -37,6 +37,7 @@ __all__ = [
     "Ping",
     "Redo",
     "SetBody",
+    "SetCalibration",
     "SetDocument",
     "SetJoints",
     "SetLoads",
@@ -112,6 +113,14 @@ class SetToml(Change):
 
     type: Literal["toml"]
     text: Annotated[str, Field(max_length=200_000)]
+
+
+class SetCalibration(Message):
+    """Show the pulses of a calibration beside joint angles, or, for null, no longer. Answer: calibration."""
+
+    type: Literal["calibration"]
+    name: Name | None = Field(default=None, description="Name of its file.")
+    text: Annotated[str, Field(max_length=200_000)] | None = None
 
 
 class SetJoints(ChangePose):
@@ -263,6 +272,7 @@ ClientMessage: TypeAlias = Annotated[
     | SetRobot
     | SetDocument
     | SetToml
+    | SetCalibration
     | SetJoints
     | SetBody
     | DragFoot

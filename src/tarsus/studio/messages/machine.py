@@ -8,7 +8,7 @@ from pydantic import Field
 
 from tarsus.studio.messages.base import Message, Part
 
-__all__ = ["BringUpMessage", "Choice", "FrameMachine", "HardwareOffer", "Question", "RunOffer"]
+__all__ = ["BringUpMessage", "CalibrationMessage", "Choice", "FrameMachine", "HardwareOffer", "Question", "RunOffer"]
 
 
 class HardwareOffer(Part):
@@ -73,3 +73,21 @@ class BringUpMessage(Message):
     )
     emulated: bool
     problem: str | None = Field(description="Why it failed.")
+
+
+class CalibrationMessage(Message):
+    """The calibration whose pulses are shown: the command of a joint at an angle is zero + per_deg * angle.
+
+    All lists are legs x (coxa, femur, tibia), and empty without a calibration that fits the robot.
+    """
+
+    type: Literal["calibration"]
+    name: str | None = Field(description="Name of its file; null for none.")
+    problem: str | None = Field(description="Why it does not fit the robot.")
+    unit: list[str] = Field(description="us or ticks.")
+    zero: list[float]
+    per_deg: list[float]
+    low: list[int] = Field(description="Least command.")
+    high: list[int] = Field(description="Greatest command.")
+    low_deg: list[float] = Field(description="Least angle.")
+    high_deg: list[float] = Field(description="Greatest angle.")

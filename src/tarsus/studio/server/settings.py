@@ -8,6 +8,7 @@ import secrets
 from dataclasses import dataclass, field
 
 from tarsus.errors import InputError
+from tarsus.studio.machine.calibration import CalibrationText
 from tarsus.studio.machine.driven_run import DrivenRun
 from tarsus.studio.machine.hardware import Hardware
 from tarsus.studio.messages.pose import Bounds
@@ -83,6 +84,8 @@ class Settings:
         The run of a machine that this server belongs to.
     hardware : Hardware or None
         The servos of this computer; None for no access to them.
+    calibration : CalibrationText or None
+        The calibration whose pulses are shown.
 
     Raises
     ------
@@ -98,6 +101,7 @@ class Settings:
     limits: Limits = field(default_factory=Limits)
     run: DrivenRun | None = None
     hardware: Hardware | None = None
+    calibration: CalibrationText | None = None
 
     def __post_init__(self) -> None:
         if self.token is not None and not re.fullmatch(r"[A-Za-z0-9._~-]{1,200}", self.token):

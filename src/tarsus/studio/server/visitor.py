@@ -73,6 +73,7 @@ class Visitor:
             public=settings.public,
             run=settings.run,
             hardware=settings.hardware,
+            calibration=settings.calibration,
         )
         self._inbox = Inbox(settings.limits.waiting)
         self._called = asyncio.Event()

@@ -68,11 +68,13 @@ export function BringUpView({ bringUp }: { bringUp: BringUpMessage }) {
         </p>
       )}
       {over && <End state={state} file={file} problem={problem} />}
-      <ul className="log" role="log" aria-label="What was said" data-testid="bring-up-said">
-        {said.map((line, i) => (
-          <li key={`${i} ${line}`}>{line}</li>
-        ))}
-      </ul>
+      <div role="log" aria-label="What was said" data-testid="bring-up-said">
+        <ul className="log">
+          {said.map((line, i) => (
+            <li key={`${i} ${line}`}>{line}</li>
+          ))}
+        </ul>
+      </div>
       {!over && (
         <>
           <div className="row">

@@ -1,7 +1,12 @@
 /** The text of a robot file, or why it is none: in the words of the command line. */
 export function robotText(content: Uint8Array): { text: string } | { problem: string } {
+  return textOf(content, "a robot file");
+}
+
+/** The text of a file, or why it is none. */
+export function textOf(content: Uint8Array, what: string): { text: string } | { problem: string } {
   const end = validEnd(content);
-  if (end < content.length) return { problem: `byte ${end} is not UTF-8; a robot file is a text file` };
+  if (end < content.length) return { problem: `byte ${end} is not UTF-8; ${what} is a text file` };
   return { text: new TextDecoder().decode(content) };
 }
 
