@@ -65,6 +65,8 @@ class Machine:
         thread = threading.Thread(target=lambda: self.recordings.append(self.go(math.inf)), daemon=True)
         with Serving(Settings(start=START, run=self.run, limits=limits)) as server:
             thread.start()
-            yield server
-        self.until = 0.0
-        thread.join()
+            try:
+                yield server
+            finally:
+                self.until = 0.0
+                thread.join()

@@ -10,7 +10,7 @@ import pytest
 import tarsus
 from sample_studio import Asked
 from tarsus.hardware import BUSES, Calibration, ManualClock
-from tarsus.hardware.bringup import opening, trial
+from tarsus.hardware.bringup import beginning, opening, trial
 from tarsus.hardware.bringup.dialogue import Topic
 from tarsus.hardware.bringup.emulated_machine import EmulatedMachine
 from tarsus.hardware.bringup.reference_pose import reference_angles
@@ -255,6 +255,47 @@ def test_an_own_robot_gets_a_file_beside_its_calibration(tmp_path):
     assert Hardware(other, robot_file=mine).files(robot) == ("mine.toml", tmp_path / "mine.calibration.toml")
     given = Hardware(other, robot_file=mine, calibration=other / "c.toml").files(robot)
     assert given == (os.path.join("..", "mine.toml"), other / "c.toml")
+
+
+class Answers:
+    """A dialogue that gives prepared answers, and keeps what was offered."""
+
+    def __init__(self, *answers):
+        self.answers, self.offered = list(answers), []
+
+    def say(self, text):
+        self.offered.append(text)
+
+    def choose(self, question, options, *, topic):
+        assert topic.title == "Port and servos"
+        self.offered.append(options)
+        return self.answers.pop(0)
+
+
+def test_servos_and_ports_are_asked_for_where_they_are_not_given(tmp_path, monkeypatch):
+    monkeypatch.setattr(beginning, "list_ports", lambda: ("/dev/ttyUSB0", "/dev/ttyUSB1"))
+    monkeypatch.setattr(beginning, "glob", lambda pattern: [pattern.replace("*", "1")])
+    kinds = {title: key for key, title in _offered_kinds(tmp_path).items()}
+    assert set(kinds) == {kind.title for kind in BUSES.values()}
+    asked = Answers(kinds[BUSES["lx16a"].title], "2")
+    made = beginning.begin(STRIDER, "strider", tmp_path / "a.toml", asked)
+    assert (made.buses[0].kind, made.buses[0].port) == ("lx16a", "/dev/ttyUSB1")
+    assert "e" not in asked.offered[1]
+    asked = Answers("1")
+    made = beginning.begin(STRIDER, "strider", tmp_path / "b.toml", asked, kind="pca9685", emulated=True)
+    assert (made.buses[0].port, asked.offered[0]["e"]) == ("/dev/i2c-1", "emulated servos, without hardware")
+    given = Answers()
+    made = beginning.begin(STRIDER, "strider", tmp_path / "c.toml", given, kind="lines", port="")
+    assert (made.buses[0].port, given.offered) == ("", [])
+    again = beginning.begin(STRIDER, "strider", tmp_path / "c.toml", given)
+    assert again.joints == made.joints
+    assert "18 joints are not complete" in given.offered[0]
+
+
+def _offered_kinds(folder):
+    asked = Answers("", "")
+    beginning.begin(STRIDER, "strider", folder / "usual.toml", asked)
+    return asked.offered[0]
 
 
 def test_what_fails_is_said_in_the_page(tmp_path):
