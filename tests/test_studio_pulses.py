@@ -8,10 +8,11 @@ import pytest
 import tarsus
 from sample_commands import run, run_json
 from sample_studio import Asked, table
+from tarsus.cli.studio import _robot
 from tarsus.hardware import Calibration, nominal_calibration
 from tarsus.hardware.calibration.file import calibration_text
 from tarsus.hardware.pulses.table import whole_commands
-from tarsus.robot.file import robot_to_dict
+from tarsus.robot.file import robot_to_dict, save_robot
 from tarsus.studio.machine.calibration import CalibrationText
 from tarsus.studio.messages.state import StudioState
 from tarsus.studio.session import Session
@@ -91,6 +92,13 @@ def test_a_calibration_is_given_to_the_command(tmp_path):
     for arguments in ((), ("strider",)):
         code, found = run_json("studio", *arguments, "--calibration", file, "--check")
         assert (code, found["status"]) == (0, "ok")
+    # An own robot keeps its file: a bring-up in this studio writes no other one.
+    save_robot(STRIDER.replace(name="mine"), tmp_path / "mine.toml")
+    own = tarsus.load_robot(tmp_path / "mine.toml")
+    nominal_calibration(own, "mine.toml").save(tmp_path / "mine.calibration.toml")
+    assert _robot(None, tmp_path / "mine.calibration.toml") == (own, tmp_path / "mine.toml")
+    assert _robot(str(tmp_path / "mine.toml"), None) == (own, tmp_path / "mine.toml")
+    assert _robot(None, file)[1] is _robot(None, None)[1] is None
     for arguments, code, why in [
         (("strider", "--calibration", other), 2, "which is not the robot 'strider'"),
         (("--calibration", tmp_path / "none.toml"), 1, "can't be read"),

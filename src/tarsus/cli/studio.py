@@ -66,7 +66,6 @@ def studio(
     The server accepts connections from this machine only, unless --host is given; then visitors need the printed link
     with its token.
     """
-    from tarsus.robot.preset_names import preset_names
     from tarsus.studio.machine.hardware import Hardware
     from tarsus.studio.server.serve import Serving
     from tarsus.studio.server.settings import Settings, is_loopback
@@ -77,8 +76,7 @@ def studio(
         token = Settings.new_token()
     # A check must not fail because a studio is already running.
     chosen_port = port if port is not None else 0 if check else _PORT
-    chosen = _robot(robot, calibration)
-    own = None if robot is None or robot in preset_names() else Path(robot)
+    chosen, own = _robot(robot, calibration)
     settings = Settings(
         host=host,
         port=chosen_port,
@@ -98,17 +96,19 @@ def studio(
     return 0
 
 
-def _robot(name: str | None, calibration: Path | None) -> Robot:
-    """Return the robot that is named, else that of the calibration, else the first example."""
+def _robot(name: str | None, calibration: Path | None) -> tuple[Robot, Path | None]:
+    """Return the robot that is named, else that of the calibration, and its file where it is no preset."""
     from tarsus.cli.pulses import calibration_of
     from tarsus.hardware.calibration.calibration import Calibration
     from tarsus.robot.file import load_robot
+    from tarsus.robot.preset_names import preset_names
 
     if calibration is None:
-        return load_robot(name or "strider")
+        file = name or "strider"
+        return load_robot(file), None if file in preset_names() else Path(file)
     found = Calibration.load(calibration) if name is None else calibration_of(load_robot(name), calibration)
     found.require_complete()
-    return found.robot
+    return found.robot, None if found.robot_file in preset_names() else calibration.parent / found.robot_file
 
 
 def _text(calibration: Path) -> CalibrationText:
