@@ -13,7 +13,7 @@ from tarsus.hardware.bus.inputs import InputBoard
 from tarsus.hardware.calibration.bus_commands import BUS_COMMANDS
 from tarsus.hardware.codec import lines, maestro, ssc32
 from tarsus.hardware.live.emulated_feet import EmulatedFeet
-from tarsus.hardware.plant.foot_contacts import FootContacts
+from tarsus.hardware.plant.reading.foot_contacts import FootContacts
 
 STRIDER = tarsus.load_robot("strider")
 BOARDS = {

@@ -263,3 +263,41 @@ def test_a_missed_tick_is_left_out_and_never_made_up_for():
     assert timing.worst == pytest.approx(0.025)
     assert timing.rate == pytest.approx(10 / clock.now())
     assert Pacer(clock).timing.rate == 0.0
+
+
+@pytest.mark.parametrize(
+    ("name", "kind", "speed"), [("strider", "feetech-sts", 0.08), ("phantomx", "dynamixel-ax", 0.1)]
+)
+def test_no_joint_of_a_walk_in_physics_is_stuck_unless_it_is(name, kind, speed):
+    robot = tarsus.load_robot(name)
+    plant, made = tarsus.simulation.SimulatedPlant(robot), nominal_calibration(robot, name, kind=kind)
+    steps = np.abs(made.slopes)
+    sent, measured = [], []
+    step = plant.step
+
+    def noted(output, dt):
+        sent.append(output.angles.copy())
+        # As servos tell it, at the beginning of the tick.
+        measured.append(np.rint(plant.state.joint_angles * steps) / steps)
+        return step(output, dt)
+
+    plant.step = noted
+    walk = [(0.0, tarsus.Command(twist=(speed, 0.0, 0.0)))]
+    tarsus.run(tarsus.RobotController(robot), plant, walk, duration=3.3)
+
+    def noticed(angles):
+        watch = MotionMonitor(made, PlantSettings())
+        for tick, (a, b) in enumerate(zip(sent, angles, strict=True)):
+            fault = watch.followed(a, b, read=np.ones(b.shape, dtype=bool), now=0.01 * tick)
+            if fault is not None:
+                return 0.01 * tick, fault.joint
+        return None, None
+
+    assert noticed(measured) == (None, None)
+    # From 3 s on the joint whose command moves most in a tenth of a second stands still.
+    way = np.abs(sent[310] - sent[300])
+    place = np.unravel_index(np.argmax(way), way.shape)
+    stuck = np.array(measured)
+    stuck[300:, *place] = stuck[300][place]
+    time, joint = noticed(stuck)
+    assert (time, joint) == (pytest.approx(3.05, abs=0.06), made.joint_name(*place))

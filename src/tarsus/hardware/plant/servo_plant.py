@@ -18,11 +18,11 @@ from tarsus.hardware.calibration.calibration import Calibration
 from tarsus.hardware.plant.fault import FaultKind, Reaction, ServoFault
 from tarsus.hardware.plant.joint_map import JointMap, open_buses
 from tarsus.hardware.plant.pacer import Pacer, Timing
-from tarsus.hardware.plant.servo_input import ServoInput
+from tarsus.hardware.plant.reading.servo_input import ServoInput
 from tarsus.hardware.plant.servo_output import ServoOutput
 from tarsus.hardware.plant.settings import PlantSettings
 from tarsus.hardware.plant.sit_down import SITTING_TICK, sitting_angles
-from tarsus.hardware.plant.soft_start import glide
+from tarsus.hardware.plant.soft_start import check_start, glide
 from tarsus.hardware.plant.tick_record import TickRecord
 from tarsus.hardware.sensors.attitude_line import AttitudeLine
 from tarsus.hardware.transport.clock import Clock, SystemClock
@@ -30,15 +30,13 @@ from tarsus.representation import represented
 from tarsus.robot.robot import Robot
 
 if TYPE_CHECKING:
-    from jaxtyping import Bool, Float
+    from jaxtyping import Float
 
 __all__ = ["ServoPlant"]
 
 _START_TICK = 0.02
 # How late a computer may be of which nothing is known yet [s].
 _UNKNOWN = 0.02
-# A joint that is measured farther than this beyond its limits has a wrong zero or direction [rad].
-_BEYOND = math.radians(20)
 
 
 @represented("robot", "calibration", "timing", "fault")
@@ -174,7 +172,7 @@ class ServoPlant:
         known = ~np.isnan(measured)
         declared = output.angles if self._declared is None else np.asarray(self._declared, dtype=float)
         begin = np.where(known, measured, declared)
-        self._check_start(begin, known)
+        check_start(self.calibration, begin, known)
         self._belly = output.belly
         try:
             self._servos.switch_on(begin, measured=bool(known.all()))
@@ -233,19 +231,6 @@ class ServoPlant:
         atexit.unregister(self.release)
         if self._servos.powered:
             self.notes += self._servos.release()
-
-    def _check_start(self, angles: Float[np.ndarray, "legs 3"], known: Bool[np.ndarray, "legs 3"]) -> None:
-        limits = self.calibration.limits
-        beyond = np.where(known, np.maximum(limits[..., 0] - angles, angles - limits[..., 1]), 0.0)
-        if float(beyond.max()) <= _BEYOND:
-            return
-        leg, j = np.unravel_index(int(np.argmax(beyond)), beyond.shape)
-        low, high = np.degrees(limits[leg, j])
-        raise InputError(
-            f"the {self.calibration.joint_name(int(leg), int(j))} is measured at {math.degrees(angles[leg, j]):.1f} "
-            f"deg, far beyond its limits of {low:.1f} to {high:.1f} deg: move it there by hand, or correct its zero or "
-            "direction in the calibration"
-        )
 
     def _tick(self, angles: Float[np.ndarray, "legs 3"], dt: float) -> None:
         """Wait for the tick, send joint angles, measure, and raise the error of a fault."""

@@ -8,13 +8,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from jaxtyping import Float
+from tarsus.errors import InputError
+from tarsus.hardware.calibration.calibration import Calibration
 
-__all__ = ["glide", "glide_duration", "release_order"]
+if TYPE_CHECKING:
+    from jaxtyping import Bool, Float
+
+__all__ = ["check_start", "glide", "glide_duration", "release_order"]
 
 # Peak over mean speed of a minimum-jerk motion: 15/8.
 _PEAK = 1.875
+# A joint that is measured farther than this beyond its limits has a wrong zero or direction [rad].
+_BEYOND = math.radians(20)
 
 
 def glide_duration(start: Float[np.ndarray, "legs 3"], end: Float[np.ndarray, "legs 3"], speed: float) -> float:
@@ -63,3 +68,35 @@ def release_order(legs: int) -> Iterator[int]:
         yield leg
         if leg + half < legs:
             yield leg + half
+
+
+def check_start(
+    calibration: Calibration, angles: Float[np.ndarray, "legs 3"], known: Bool[np.ndarray, "legs 3"]
+) -> None:
+    """Refuse to start where a joint is measured far beyond its limits: its zero or direction is wrong.
+
+    Parameters
+    ----------
+    calibration : Calibration
+        The calibration.
+    angles : array, shape (legs, 3)
+        Where the joints are [rad].
+    known : array of bool, shape (legs, 3)
+        Which of them are measured.
+
+    Raises
+    ------
+    InputError
+        If a joint is there.
+    """
+    limits = calibration.limits
+    beyond = np.where(known, np.maximum(limits[..., 0] - angles, angles - limits[..., 1]), 0.0)
+    if float(beyond.max()) <= _BEYOND:
+        return
+    leg, j = np.unravel_index(int(np.argmax(beyond)), beyond.shape)
+    low, high = np.degrees(limits[leg, j])
+    raise InputError(
+        f"the {calibration.joint_name(int(leg), int(j))} is measured at {math.degrees(angles[leg, j]):.1f} deg, far "
+        f"beyond its limits of {low:.1f} to {high:.1f} deg: move it there by hand, or correct its zero or direction in "
+        "the calibration"
+    )

@@ -12,12 +12,12 @@ from tarsus.errors import BusError
 from tarsus.hardware.bus.protocol import Bus
 from tarsus.hardware.calibration.calibration import Calibration
 from tarsus.hardware.plant.fault import ServoFault
-from tarsus.hardware.plant.foot_contacts import FootContacts
 from tarsus.hardware.plant.joint_map import JointMap
 from tarsus.hardware.plant.monitor.answer_monitor import AnswerMonitor
 from tarsus.hardware.plant.monitor.motion_monitor import MotionMonitor
 from tarsus.hardware.plant.monitor.telemetry_monitor import TelemetryMonitor
-from tarsus.hardware.plant.reader import ServoReader
+from tarsus.hardware.plant.reading.foot_contacts import FootContacts
+from tarsus.hardware.plant.reading.reader import ServoReader
 from tarsus.hardware.plant.settings import PlantSettings
 from tarsus.hardware.sensors.attitude_line import AttitudeLine
 from tarsus.hardware.transport.clock import Clock

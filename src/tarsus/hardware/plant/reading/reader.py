@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import itertools
-import math
-from collections import deque
 from collections.abc import Collection, Iterator, Mapping
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -14,6 +12,7 @@ from tarsus.errors import BusError, PortError
 from tarsus.hardware.bus.protocol import Bus, Telemetry
 from tarsus.hardware.calibration.calibration import Calibration
 from tarsus.hardware.plant.joint_map import JointMap
+from tarsus.hardware.plant.reading.telemetry_turn import TelemetryTurn
 from tarsus.hardware.transport.clock import Clock
 
 if TYPE_CHECKING:
@@ -23,10 +22,6 @@ __all__ = ["Reading", "ServoReader"]
 
 # Share of a tick that reading positions may take, and reading all together.
 _SHARE, _WHOLE = 0.5, 0.9
-# Within this time the telemetry of each servo is read, where the wire carries it [s].
-_TELEMETRY_TIME = 0.08
-# How much of a measured duration is believed at once.
-_NEW = 0.2
 
 
 class Reading(NamedTuple):
@@ -81,7 +76,7 @@ class ServoReader:
             if bus.capabilities.positions and joints.numbers(name)
         }
         self._telemetry = {
-            name: _TelemetryTurn(bus, joints.numbers(name))
+            name: TelemetryTurn(bus, joints.numbers(name))
             for name, bus in buses.items()
             if bus.capabilities.telemetry and joints.numbers(name)
         }
@@ -170,36 +165,3 @@ class ServoReader:
             if passed > 0:
                 self.speeds[place] = (angle - self.angles[place]) / passed
             self.angles[place], self._times[place], self.read[place] = angle, now, True
-
-
-class _TelemetryTurn:
-    """Whose telemetry is read next."""
-
-    def __init__(self, bus: Bus, numbers: tuple[int, ...]) -> None:
-        self._numbers = deque(numbers)
-        every, one = bus.timing(numbers).telemetry, bus.timing(numbers[:1]).telemetry
-        # Boards measure the same for all of their channels.
-        self._together = len(numbers) > 1 and every == one
-        self._seconds = every / len(numbers)
-        self._alarms: dict[int, tuple[str, ...]] = {}
-        self._urgent: list[int] = []
-
-    def alarmed(self, alarms: Mapping[int, tuple[str, ...]]) -> None:
-        """Take note of alarms; what a servo has reported before is known."""
-        self._urgent += [number for number, names in alarms.items() if names != self._alarms.get(number)]
-        self._alarms = dict(alarms)
-
-    def next(self, dt: float, *, left: float) -> tuple[int, ...]:
-        """Return the next servos, as many as are needed in a tick and fit into the time that is left of it."""
-        if self._together:
-            return tuple(self._numbers)
-        wanted = math.ceil(len(self._numbers) * min(dt / _TELEMETRY_TIME, 1.0))
-        count = max(1, min(wanted, int(left / self._seconds)))
-        chosen = dict.fromkeys((*self._urgent, *itertools.islice(self._numbers, count)))
-        self._urgent = []
-        self._numbers.rotate(-count)
-        return tuple(chosen)
-
-    def took(self, servos: int, seconds: float) -> None:
-        """Take note of how long reading took: adapters add to the time on the wire."""
-        self._seconds += _NEW * (seconds / servos - self._seconds)

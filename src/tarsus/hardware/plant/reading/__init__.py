@@ -1,0 +1,1 @@
+"""What comes in from servos and sensors: positions, telemetry, contacts, attitude."""
