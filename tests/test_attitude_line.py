@@ -1,5 +1,6 @@
 """An inertial sensor that sends lines of text."""
 
+import dataclasses
 import math
 import os
 import pty
@@ -10,7 +11,17 @@ import numpy as np
 import pytest
 
 import tarsus
-from tarsus.hardware import AttitudeLine, ManualClock, Mounting, ServoPlant, emulated_bus, nominal_calibration
+from tarsus.hardware import (
+    AttitudeLine,
+    ManualClock,
+    Mounting,
+    PtyServer,
+    ServoPlant,
+    emulate,
+    emulated_bus,
+    nominal_calibration,
+    open_bus,
+)
 
 
 class Line:
@@ -108,3 +119,14 @@ def test_the_port_of_the_calibration_is_opened():
     imu.close()
     for file in (master, slave):
         os.close(file)
+
+
+def test_without_the_sensor_the_ports_of_the_servos_are_closed_again():
+    robot = tarsus.load_robot("strider")
+    made = nominal_calibration(robot, "strider", kind="lines")
+    with PtyServer(emulate("lines", range(18))) as server:
+        bus = dataclasses.replace(made.buses[0], port=server.port)
+        with pytest.raises(tarsus.PortError, match="/dev/none"):
+            ServoPlant(robot, made.replace(buses=(bus,), imu=Mounting(port="/dev/none")))
+        # A port that is open can't be opened again.
+        open_bus("lines", server.port).close()

@@ -13,6 +13,7 @@ from tarsus.hardware.bus.inputs import InputBoard
 from tarsus.hardware.calibration.bus_commands import BUS_COMMANDS
 from tarsus.hardware.codec import lines, maestro, ssc32
 from tarsus.hardware.live.emulated_feet import EmulatedFeet
+from tarsus.hardware.live.emulated_robot import EmulatedRobot
 from tarsus.hardware.plant.reading.foot_contacts import FootContacts
 
 STRIDER = tarsus.load_robot("strider")
@@ -187,3 +188,15 @@ def test_emulated_feet_touch_as_the_robot_rests():
     feet = EmulatedFeet(made, {"main": line})
     assert dict(feet) == {0: 1.0, 1: 0.0, 2: 1.0, 3: 1.0, 4: 1.0, 5: 1.0}
     assert 6 not in feet
+
+
+def test_an_emulated_robot_has_switches_behind_its_port():
+    made = nominal_calibration(STRIDER, "strider", kind="pca9685")
+    feet = dataclasses.replace(made.buses[0], name="feet", kind="lines", baud=None)
+    switches = FootSwitches(bus="feet", inputs=(5, 4, 3, 2, 1, 0), closed=False)
+    made = made.replace(buses=(*made.buses, feet), foot_switches=switches)
+    angles = np.array(RobotController(STRIDER).output.angles)
+    angles[4, 1] += 0.4
+    with EmulatedRobot(made, angles) as robot:
+        assert set(robot.buses) == {"main", "feet"}
+        assert robot.buses["feet"].read_inputs((5, 4, 3, 2, 1, 0)) == (0, 0, 0, 0, 1, 0)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Mapping
+from functools import cached_property
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Self
 
@@ -81,10 +82,10 @@ class EmulatedRobot:
         if calibration.foot_switches is not None:
             self.lines[calibration.foot_switches.bus].levels = EmulatedFeet(calibration, self.lines)
 
-    @property
-    def buses(self) -> Mapping[str, Bus] | None:
-        """Buses for a `ServoPlant` that can't be opened by their ports: those of I2C; None where there are none."""
-        return {each.name: self.open(each) for each in self.calibration.buses} if self._i2c else None
+    @cached_property
+    def buses(self) -> Mapping[str, Bus]:
+        """The buses by name, as for a `ServoPlant`; closed with the robot."""
+        return {each.name: self.open(each) for each in self.calibration.buses}
 
     def open(self, settings: BusSettings, baud: int | None = None) -> Bus:
         """Return a bus of the robot that waits long for answers: emulated servos share the computer with all else.
@@ -107,6 +108,8 @@ class EmulatedRobot:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        """End the emulation."""
+        """Close the buses, and end the emulation."""
+        for bus in self.__dict__.get("buses", {}).values():
+            bus.close()
         for server in self._servers.values():
             server.close()

@@ -15,6 +15,7 @@ from tarsus.control.readings import SensorReadings
 from tarsus.errors import BusError, InputError, PortError, TarsusError
 from tarsus.hardware.bus.protocol import Bus
 from tarsus.hardware.calibration.calibration import Calibration
+from tarsus.hardware.calibration.parts import Mounting
 from tarsus.hardware.plant.fault import FaultKind, Reaction, ServoFault
 from tarsus.hardware.plant.joint_map import JointMap, open_buses
 from tarsus.hardware.plant.pacer import Pacer, Timing
@@ -111,7 +112,7 @@ class ServoPlant:
         self._own = buses is None
         self._buses = open_buses(calibration, timeout=self.settings.timeout) if buses is None else dict(buses)
         if self._own and imu is None and calibration.imu:
-            imu = AttitudeLine(calibration.imu)
+            imu = self._opened_imu(calibration.imu)
         missing = [bus.name for bus in calibration.buses if bus.name not in self._buses]
         if missing:
             raise InputError(f"no bus is given for {', '.join(missing)} of the calibration")
@@ -231,6 +232,15 @@ class ServoPlant:
         atexit.unregister(self.release)
         if self._servos.powered:
             self.notes += self._servos.release()
+
+    def _opened_imu(self, mounting: Mounting) -> AttitudeLine:
+        """Return the inertial sensor; without it the ports of the servos are closed again."""
+        try:
+            return AttitudeLine(mounting)
+        except BusError:
+            for bus in self._buses.values():
+                bus.close()
+            raise
 
     def _tick(self, angles: Float[np.ndarray, "legs 3"], dt: float) -> None:
         """Wait for the tick, send joint angles, measure, and raise the error of a fault."""

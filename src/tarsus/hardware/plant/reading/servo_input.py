@@ -134,14 +134,15 @@ class ServoInput:
         if found is None and reader.read.any():
             found = self._motion.followed(sent, reader.angles.copy(), read=reader.read, now=self._clock.now())
         self.complete = complete
+        # A line in doubt is slow: whether it recovers is more urgent.
+        for name, values in reader.telemetry(dt, begun=begun - self.seconds) if complete else ():
+            found = found or self.telemetry.measured(name, values, now=self._clock.now())
+        # Last, so that contacts are fresh.
         if complete and self._feet is not None:
             trouble = self._feet.read()
             if trouble and not self._troubled:
                 self.notes.append(f"foot switches can't be read: {trouble}")
             self._troubled = self._troubled or bool(trouble)
-        # A line in doubt is slow: whether it recovers is more urgent.
-        for name, values in reader.telemetry(dt, begun=begun) if complete else ():
-            found = found or self.telemetry.measured(name, values, now=self._clock.now())
         return found
 
     def settle(self, dt: float) -> None:
