@@ -28,8 +28,12 @@ if TYPE_CHECKING:
 
 __all__ = ["Balance", "Compliant", "Configuration", "Demand", "Past"]
 
-# Weight of a force beside a moment in the size of a residual [m]: a lever arm of legs.
-_ARM = 0.2
+# Weights of forces [m] and moments in the size of a residual; that of forces is a lever arm of legs.
+_WEIGHTS = np.array([0.2, 0.2, 0.2, 1.0, 1.0, 1.0])
+# A vector times this, as a matrix of three columns, is the cross product with it from the right of row vectors.
+_SKEW = np.array([[0.0, 0, 0, 0, 0, -1, 0, 1, 0], [0, 0, 1, 0, 0, 0, -1, 0, 0], [0, -1, 0, 1, 0, 0, 0, 0, 0]])
+# The places in a matrix of moments whose differences are the moment.
+_LATER, _EARLIER = np.array([5, 6, 1]), np.array([7, 2, 3])
 
 
 class Past(NamedTuple):
@@ -144,6 +148,7 @@ class Compliant:
         self._legs_of = LegDerivatives(robot)
         radius = np.array(np.broadcast_to(robot.foot_radius, robot.legs), dtype=float)
         self.radius = np.where(radius > 0, radius, POINT_FOOT)
+        self._levers, self._ones = self.radius[:, None, None], np.ones(3 * robot.legs)
 
     def feet(
         self, rotation: Float[np.ndarray, "3 3"], position: Float[np.ndarray, "3"], angles: Float[np.ndarray, "legs 3"]
@@ -204,21 +209,17 @@ class Compliant:
         forces = demand.points @ rotation
         forces[:, 2] += contact_in_body
         generalised = (at.points[:, 1:] @ forces.reshape(-1, 9, 1))[:, :, 0]
-        x, y, z = rotation[2].tolist()
-        rolling = (at.axes @ np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])) * self.radius[:, None, None]
+        rolling = (at.axes.reshape(-1, 3) @ (rotation[2] @ _SKEW).reshape(3, 3)).reshape(-1, 3, 3) * self._levers
         torques, slopes = self.springs.torque(demand.angles - at.angles, at.turned, demand.step)
         rolled = (rolling @ contact_in_body[:, :, None])[:, :, 0]
         joints = demand.rotors - torques - generalised[:, :3] + rolled
         moments = at.points[:, 0].reshape(-1, 3).T @ forces.reshape(-1, 3)
-        moments -= np.outer(rotation[2], self.radius @ contact_in_body)
+        moments -= rotation[2][:, None] * (self.radius @ contact_in_body)
         on_body = np.empty(6)
-        on_body[:3] = demand.force @ rotation + forces.sum((0, 1))
-        on_body[3:] = demand.moment @ rotation
-        on_body[3] += moments[1, 2] - moments[2, 1]
-        on_body[4] += moments[2, 0] - moments[0, 2]
-        on_body[5] += moments[0, 1] - moments[1, 0]
-        force, moment = on_body[:3], on_body[3:]
-        square = np.vdot(joints, joints) + np.vdot(moment, moment) + _ARM**2 * np.vdot(force, force)
+        on_body[:3] = demand.force @ rotation + self._ones @ forces.reshape(-1, 3)
+        on_body[3:] = demand.moment @ rotation + moments.take(_LATER) - moments.take(_EARLIER)
+        weighted = on_body * _WEIGHTS
+        square = float(np.vdot(joints, joints) + weighted @ weighted)
         return Balance(
             slip, contact, forces, generalised, rolling, torques, slopes, moments, joints, -on_body, math.sqrt(square)
         )

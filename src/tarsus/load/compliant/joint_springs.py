@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING, Self
 
 import numpy as np
@@ -130,6 +131,11 @@ class JointSprings:
             ),
         )
 
+    @cached_property
+    def _unlimited(self) -> bool:
+        """Whether all springs are without play and give any torque."""
+        return bool(np.isinf(self.stall_torque).all() and not self.play.any())
+
     def torque(
         self, error: Float[np.ndarray, "legs 3"], turned: Float[np.ndarray, "legs 3"], step: float
     ) -> tuple[Float[np.ndarray, "legs 3"], Float[np.ndarray, "legs 3"]]:
@@ -153,6 +159,8 @@ class JointSprings:
         """
         damping = self.damping / step
         loss = damping * turned
+        if self._unlimited:
+            return self.stiffness * error - loss, self.stiffness + damping
         inside = np.minimum(np.maximum(error, -self.play), self.play)
         drive = self.stiffness * (error - (1.0 - _SOFT) * inside)
         lowest, highest = np.maximum(loss, 0.0) - self.stall_torque, np.minimum(loss, 0.0) + self.stall_torque

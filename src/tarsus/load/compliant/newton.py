@@ -84,6 +84,12 @@ def solve_equilibrium(
                 continue
             frozen = _FROZEN
         step = newton_step(compliant, at, balance, jacobian, demand.step, frozen=True)
+        if _slope(balance, step) >= 0:
+            # Joints in their play leave legs so soft that the loads on them tip the potential over.
+            springs = compliant.springs
+            loose = np.abs(demand.angles - at.angles) <= springs.play
+            stiff = balance._replace(slopes=np.where(loose, springs.stiffness, balance.slopes))
+            step = newton_step(compliant, at, stiff, jacobian, demand.step, frozen=True)
         at = _line_search(compliant, at, balance, step, past, demand)
         balance = compliant.balance(at, demand)
         frozen -= 1
@@ -148,14 +154,14 @@ def _line_search(
 ) -> Configuration:
     """Return where along a step the potential, with the limits of friction as they are, is nearly lowest."""
     limit = compliant.contact.friction * at.normal
-    slope = float(balance.body @ step[0] + np.vdot(balance.joints, step[1]))
+    slope = _slope(balance, step)
     enough = _FLAT * abs(slope)
     low, high, length = 0.0, 0.0, _scale(step)
     below, above, moved = slope, 0.0, at
     for _ in range(_MOST_TRIALS):
         moved = compliant.configuration(*_moved(at, step, length), past, demand.step)
         reached = compliant.balance(moved, demand, limit)
-        rise = float(reached.body @ step[0] + np.vdot(reached.joints, step[1]))
+        rise = _slope(reached, step)
         if abs(rise) <= enough or (rise < 0 and not high):
             break
         if rise > 0:
@@ -164,6 +170,11 @@ def _line_search(
             low, below = length, rise
         length = low + (high - low) * min(max(below / (below - above), 0.1), 0.9)
     return moved
+
+
+def _slope(balance: Balance, step: tuple[Float[np.ndarray, "6"], Float[np.ndarray, "legs 3"]]) -> float:
+    """Return the slope of the potential along a step."""
+    return float(balance.body @ step[0] + np.vdot(balance.joints, step[1]))
 
 
 def _scale(step: tuple[Float[np.ndarray, "6"], Float[np.ndarray, "legs 3"]]) -> float:
@@ -176,9 +187,16 @@ def _moved(
     at: Configuration, step: tuple[Float[np.ndarray, "6"], Float[np.ndarray, "legs 3"]], length: float
 ) -> tuple[tuple[Float[np.ndarray, "3 3"], Float[np.ndarray, "3"]], Float[np.ndarray, "legs 3"]]:
     x, y, z = (length * step[0][3:]).tolist()
-    turn = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
     square = x * x + y * y + z * z
-    # Series of the exponential map; the steps are short.
-    rotation = np.eye(3) + (1.0 - square / 6.0) * turn + (0.5 - square / 24.0) * (turn @ turn)
+    # Series of the exponential map; the steps are short. The second coefficient is that of turn @ turn.
+    a, b = 1.0 - square / 6.0, 0.5 - square / 24.0
+    xy, yz, zx = b * x * y, b * y * z, b * z * x
+    rotation = np.array(
+        [
+            [1.0 - b * (y * y + z * z), xy - a * z, zx + a * y],
+            [xy + a * z, 1.0 - b * (z * z + x * x), yz - a * x],
+            [zx - a * y, yz + a * x, 1.0 - b * (x * x + y * y)],
+        ]
+    )
     position = at.position + at.rotation @ (length * step[0][:3])
     return (at.rotation @ rotation, position), at.angles + length * step[1]

@@ -86,7 +86,7 @@ def newton_step(
     """
     legs, contact = compliant.legs, compliant.contact
     stiffness = np.zeros((legs, 3, 3))
-    normal = np.where(at.normal != 0, contact.normal_stiffness, 0.0)
+    normal = (at.normal != 0) * contact.normal_stiffness
     stiffness[:, 2, 2] = normal
     stiffness[:, :2] += friction_tangent(
         at.trial,
@@ -109,7 +109,8 @@ def newton_step(
     solved = np.linalg.solve(own, right)
     body = stiff[:, :6].transpose(1, 0, 2).reshape(6, -1) @ jacobian[:, :6].transpose(0, 2, 1).reshape(-1, 6)
     moments = balance.moments
-    body[3:, 3:] += np.trace(moments) * np.eye(3) - moments.T
+    body[3:, 3:] -= moments.T
+    body.flat[21::7] += moments[0, 0] + moments[1, 1] + moments[2, 2]
     condensed = left.transpose(1, 0, 2).reshape(6, -1) @ solved.reshape(-1, 7)
     body -= condensed[:, :6]
     body.flat[::7] += _FLOOR
