@@ -173,7 +173,7 @@ def test_an_inclined_robot_has_fallen():
     asked = in_physics(view="drive", sensors="blind")
     asked.all("drive", on=True)
     asked.session.frame(DT)
-    data = asked.session._driver._physics.plant.mj_data
+    data = asked.session._live._driver._physics.plant.mj_data
     data.qpos[2:7] = (1.0, math.cos(0.5), math.sin(0.5), 0, 0)
     assert asked.session.frame(DT).physics.problems == ["fell at 0.0 s: inclined by 57 deg"]
 
