@@ -39,10 +39,19 @@ def test_a_joint_that_does_not_follow_is_found(fault):
         if monitor.failed:
             break
     assert monitor.failed == {2: 1}
-    assert tick < (30 if fault == "limp" else 150)
+    assert tick < (65 if fault == "limp" else 150)
     before = dict(monitor.failed)
     monitor.step(swung(0), None, 0.01)
     assert monitor.failed == before
+
+
+def test_a_joint_that_is_stuck_where_its_command_moves_little_is_found_too():
+    monitor = JointMonitor()
+    for tick in range(250):
+        measured = (0.2 * swung(tick - 5)).tolist()
+        measured[4][0] = 0.02
+        monitor.step(0.2 * swung(tick), measured, 0.01)
+    assert monitor.failed == {4: 0}
 
 
 def test_a_robot_without_a_leg_has_its_mass_and_its_other_legs():

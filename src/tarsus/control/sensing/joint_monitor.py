@@ -11,7 +11,7 @@ import numpy as np
 from tarsus.control.readings import Vector
 
 if TYPE_CHECKING:
-    from jaxtyping import Float
+    from jaxtyping import Bool, Float
 
 __all__ = ["JointMonitor"]
 
@@ -19,9 +19,12 @@ __all__ = ["JointMonitor"]
 _LAG = 0.15
 # Error beyond which a servo gives more than its stall torque, if it works [rad]. Hobby servos give it at 0.1 rad.
 _ERROR = 0.15
-# How long a joint has to be off by this error until it has failed, a quarter of it at twice the error, and the time in
-# which half of it is forgotten [s].
-_CONVICTED, _MEMORY = 0.9, 2.0
+# How long a joint has to be off by this error until it has failed, and the time in which half of it is forgotten [s];
+# a greater error counts for more, by its square and up to this factor: a leg that is caught is far off for a moment.
+_CONVICTED, _MEMORY, _HEAVIEST = 1.5, 2.0, 3.0
+# A joint whose command moves by so much within a time [rad], [s], and that moves by less than this share of it, is
+# stuck; it has failed once that is so twice in a row.
+_COMMANDED, _WITHIN, _SHARE, _ONCE = 0.15, 1.0, 0.4, 1.0
 
 
 class JointMonitor:
@@ -40,6 +43,8 @@ class JointMonitor:
         self.failed: dict[int, int] = {}
         self._commands: deque[tuple[float, Float[np.ndarray, "legs 3"]]] = deque()
         self._suspicion: Float[np.ndarray, "legs 3"] | None = None
+        self._compared: list[Float[np.ndarray, "2 legs 3"]] = []
+        self._time = 0.0
 
     def step(self, commanded: Float[np.ndarray, "legs 3"], measured: Sequence[Vector | None] | None, dt: float) -> None:
         """Take in the joint angles of a tick.
@@ -60,15 +65,32 @@ class JointMonitor:
         if measured is None:
             return
         found = np.array([(np.nan,) * 3 if leg is None else leg for leg in measured])
+        stuck = self._stuck(found, commanded, dt)
         with np.errstate(invalid="ignore"):
             off = np.abs(found - commanded) > _ERROR
-        if not off.any() and self._suspicion is None:
+        if not (off.any() or stuck is not None) and self._suspicion is None:
             return
         if self._suspicion is None:
             self._suspicion = np.zeros_like(commanded)
+        if stuck is not None:
+            self._suspicion = self._suspicion + _ONCE * stuck
         recent = [angles for _, angles in commands]
         error = np.fmax(np.fmax(found - np.max(recent, axis=0), np.min(recent, axis=0) - found), 0.0)
-        weight = np.where(error > _ERROR, (error / _ERROR) ** 2, 0.0)
+        weight = np.where(error > _ERROR, np.fmin((error / _ERROR) ** 2, _HEAVIEST), 0.0)
         self._suspicion = self._suspicion * 0.5 ** (dt / _MEMORY) + dt * weight
         for leg, joint in np.argwhere(self._suspicion > _CONVICTED).tolist():
             self.failed.setdefault(leg, joint)
+
+    def _stuck(
+        self, found: Float[np.ndarray, "legs 3"], commanded: Float[np.ndarray, "legs 3"], dt: float
+    ) -> Bool[np.ndarray, "legs 3"] | None:
+        """Return which joints have not moved with their commands, at the end of a time in which any is so."""
+        self._compared.append(np.stack([found, commanded]))
+        self._time += dt
+        if self._time < _WITHIN:
+            return None
+        moved, wanted = np.ptp(self._compared, axis=0)
+        self._compared, self._time = [], 0.0
+        with np.errstate(invalid="ignore"):
+            stuck: np.ndarray = (wanted > _COMMANDED) & (moved < _SHARE * wanted)
+        return stuck if stuck.any() else None
