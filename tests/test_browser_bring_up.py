@@ -98,6 +98,9 @@ def test_a_machine_is_brought_up_in_the_page(arrive, truth, tmp_path):
         expect(visitor.at("bring-up-end")).to_contain_text("All joints are calibrated")
         visitor.at("bring-up-close").click()
         expect(visitor.at("robot-facts")).to_be_visible()
+        # A page that outlives its server complains that it can't connect.
+        for each in (visitor, other):
+            each.context.close()
     made = Calibration.load(tmp_path / FILE)
     assert [joint.number for joint in made.joints[0]] == [joint.number for joint in truth.joints[0]]
     assert [joint.direction for joint in made.joints[0]] == [joint.direction for joint in truth.joints[0]]
@@ -110,3 +113,4 @@ def test_a_public_studio_says_why_it_brings_up_nothing(arrive):
         visitor.unfold()
         expect(visitor.at("no-hardware")).to_contain_text("any visitor could move the servos")
         expect(visitor.at("bring-up")).to_be_disabled()
+        visitor.context.close()
