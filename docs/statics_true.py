@@ -1,6 +1,6 @@
 """Write the table of statics in how-true.md: joint torques by three ways of statics, over those of physics.
 
-All 128 walks take about half an hour; ``--walks 64`` takes half of them, spread over robots, gaits, paths and speeds.
+All 128 walks take about an hour; ``--walks 64`` takes half of them, spread over robots, gaits, paths and speeds.
 """
 
 from __future__ import annotations

@@ -6,8 +6,8 @@ import json
 import os
 import pty
 import re
-import signal
 import struct
+import subprocess
 import sys
 import time
 
@@ -113,6 +113,10 @@ def test_what_is_no_run(options, message):
     assert message in result.stderr
 
 
+# The program's input becomes the terminal that controls it: closing it hangs the program up.
+ON_A_TERMINAL = "import fcntl, termios; fcntl.ioctl(0, termios.TIOCSCTTY, 0); from tarsus.cli import main; main()"
+
+
 class Walking:
     """`tarsus run` in a process of its own that walks on emulated servos, on a terminal."""
 
@@ -121,10 +125,16 @@ class Walking:
         self._began = {number: servo.position for number, servo in self.line.servos.items()}
         scenario = "at 0 s: walk 50 mm/s; at 60 s: stop"
         options = ["--calibration", tmp_path / "c.toml", "--start", "standing", "--scenario", scenario]
-        program = [sys.executable, "-c", "from tarsus.cli import main; main()", "run", "strider", *map(str, options)]
-        self.pid, self.terminal = pty.fork()
-        if self.pid == 0:
-            os.execv(program[0], program)
+        # Not by a fork, which other libraries' threads do not survive.
+        self.terminal, inside = pty.openpty()
+        self.process = subprocess.Popen(
+            [sys.executable, "-c", ON_A_TERMINAL, "run", "strider", *map(str, options)],
+            stdin=inside,
+            stdout=inside,
+            stderr=inside,
+            start_new_session=True,
+        )
+        os.close(inside)
         os.set_blocking(self.terminal, False)
         await_until(self._moved, self.server, self.line)
 
@@ -134,7 +144,7 @@ class Walking:
         return any(abs(servo.position - self._began[number]) > 5 for number, servo in self.line.servos.items())
 
     def exit_code(self):
-        return os.waitstatus_to_exitcode(os.waitpid(self.pid, 0)[1])
+        return self.process.wait()
 
 
 def test_servos_let_go_after_sitting_down_when_the_terminal_is_closed(tmp_path):
@@ -154,7 +164,7 @@ def test_a_watchdog_ends_what_a_killed_program_has_begun(kind, tmp_path):
     walking = Walking(kind, tmp_path)
     line = walking.line
     with walking.server:
-        os.kill(walking.pid, signal.SIGKILL)
+        walking.process.kill()
         assert walking.exit_code() == -9
         os.close(walking.terminal)
         if kind == "lines":
