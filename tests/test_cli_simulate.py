@@ -47,7 +47,7 @@ def test_feet_slide_less_with_commands_that_compensate(servos):
     (_, before), (code, after) = run_json(options), run_json(f"{options} --compensate")
     assert code == 0
     assert after["slip_mm"] < before["slip_mm"]
-    assert any("compensate for 75% of the deflection" in line for line in after["assumed"])
+    assert any("compensate for 75 % of the deflection" in line for line in after["assumed"])
 
 
 @pytest.mark.parametrize("servos", ["catalogue", "ideal"])
@@ -56,7 +56,7 @@ def test_a_scenario_is_compensated_too(servos):
     (_, before), (code, after) = run_json(options), run_json(f"{options} --compensate")
     assert code == 0
     assert after["slip_mm"] < before["slip_mm"]
-    assert any("compensate for 75% of the deflection" in line for line in after["assumed"])
+    assert any("compensate for 75 % of the deflection" in line for line in after["assumed"])
 
 
 def test_the_table_has_plan_and_physics():

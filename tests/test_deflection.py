@@ -62,7 +62,7 @@ def test_a_share_of_the_deflection_is_compensated_for():
     for given, share in (({}, SHARE), ({"share": 1.0}, 1.0), ({"share": 0.0}, 0.0)):
         commands = compensate_deflection(motion, **given)
         assert commands.angles - motion.angles == pytest.approx(share * deflection, abs=1e-12)
-        assert f"{share:.0%} of the deflection" in commands.assumed[-1]
+        assert f"{100 * share:.0f} % of the deflection" in commands.assumed[-1]
     with pytest.raises(InputError, match=r"share is 1.2; it must be a number from 0 to 1"):
         compensate_deflection(motion, share=1.2)
 

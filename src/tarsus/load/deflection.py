@@ -111,7 +111,7 @@ def what_is_compensated(share: float) -> str:
     share : float
         Share of the deflection that is compensated for.
     """
-    return f"commands compensate for {share:.0%} of the deflection of the joints under vertical forces"
+    return f"commands compensate for {100 * share:.0f} % of the deflection of the joints under vertical forces"
 
 
 def compensate_deflection(
