@@ -247,7 +247,7 @@ class FeltGround:
         reach.update(state.posture.value, rest, twist, timing.stance_time)
         rises = [(over[leg] if leg in bears else self.plane.at(complex(rest[leg]))) - self.plane.height for leg in legs]
         for leg in legs:
-            if down[leg] and not contacts.stands(leg) and over[leg] < reach.lowest[leg] + _HANGING:
+            if down[leg] and contacts.seeks(leg) and over[leg] < reach.lowest[leg] + _HANGING:
                 # The foot hangs at the end of its reach: with the body lower it may find ground.
                 rises[leg] = reach.lowest[leg] - self.plane.height - _LOWER
         highest = reach.highest_stand(float(state.posture.value[SWING_HEIGHT]))

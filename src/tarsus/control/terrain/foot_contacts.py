@@ -14,6 +14,8 @@ __all__ = ["FootContacts"]
 _LOST = 0.03
 # A foot that has been without contact for no longer still counts as support [s].
 _GRACE = 0.1
+# How long the body is lowered for a foot that finds no ground [s].
+_SEARCH = 1.5
 # How long other feet lose contact, while a foot that should stand has none, until its switch is taken to be open [s].
 _CONVICTED = 0.4
 # How long feet that do not hold the robot bear it, until another one does [s], and how far it sinks there if not [m].
@@ -130,6 +132,10 @@ class FootContacts:
     def stands(self, leg: int) -> bool:
         """Return whether a foot that should stand does, but for the shortest of interruptions."""
         return self._without[leg] <= _LOST or self.is_open(leg)
+
+    def seeks(self, leg: int) -> bool:
+        """Return whether a foot that should stand has no contact, and has not looked for the ground for long."""
+        return not self.stands(leg) and self._without[leg] < _SEARCH
 
     def supports(self, leg: int) -> bool:
         """Return whether a foot that should stand counts as support."""
