@@ -359,3 +359,15 @@ def test_a_robot_that_is_picked_up_or_has_fallen_stops_and_goes_on_once_it_stand
     walked(2.0)
     assert walked(3.0)[0] > 0.25
     assert controller._walk.ground.condition.tilt == 0.0
+
+
+def test_the_body_is_lowered_only_for_a_while_for_a_foot_without_ground():
+    contacts = FootContacts(6)
+    sought = []
+    for _ in range(300):
+        contacts.step([True] * 5 + [False], [True] * 6, 0.01)
+        sought.append(contacts.seeks(5))
+    assert not sought[0]
+    assert 1.3 < 0.01 * sum(sought) < 1.5
+    assert not sought[-1]
+    assert not contacts.seeks(0)
