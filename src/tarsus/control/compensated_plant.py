@@ -12,7 +12,7 @@ from tarsus.control.filters import CriticallyDamped
 from tarsus.control.plant import Plant
 from tarsus.control.readings import SensorReadings
 from tarsus.load.compliant.joint_springs import JointSprings
-from tarsus.load.deflection import SHARE, checked_share
+from tarsus.load.deflection import SHARE, checked_share, commands_within_limits
 from tarsus.load.payload import Payload
 from tarsus.load.torque import joint_torques
 from tarsus.representation import represented
@@ -123,9 +123,6 @@ class CompensatedPlant:
         return np.asarray(torques).ravel() * self._compliance
 
     def _compensated(self, output: ControlOutput) -> ControlOutput:
-        limits = self.robot.limits
-        # Angles that are beyond a limit stay where they are.
-        lower, upper = np.minimum(limits[..., 0], output.angles), np.maximum(limits[..., 1], output.angles)
-        angles = np.clip(output.angles + self._offset.value.reshape(-1, 3), lower, upper)
+        angles = commands_within_limits(self.robot, output.angles, self._offset.value.reshape(-1, 3))
         angles.setflags(write=False)
         return dataclasses.replace(output, angles=angles)

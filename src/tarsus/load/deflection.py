@@ -12,6 +12,7 @@ from tarsus.gait.motion import Motion
 from tarsus.load.compliant.joint_springs import JointSprings
 from tarsus.load.loads import joint_loads
 from tarsus.load.payload import Payload
+from tarsus.robot.robot import Robot
 
 if TYPE_CHECKING:
     from jaxtyping import Float
@@ -20,6 +21,7 @@ __all__ = [
     "SHARE",
     "TRANSFER_TIME",
     "checked_share",
+    "commands_within_limits",
     "compensate_deflection",
     "joint_deflections",
     "what_is_compensated",
@@ -103,6 +105,26 @@ def checked_share(share: float) -> float:
     return float(share)
 
 
+def commands_within_limits(
+    robot: Robot, angles: Float[np.ndarray, "*batch legs 3"], offsets: Float[np.ndarray, "*batch legs 3"]
+) -> Float[np.ndarray, "*batch legs 3"]:
+    """Return joint angles with offsets added, within the joint limits; angles beyond a limit move no further out.
+
+    Parameters
+    ----------
+    robot : Robot
+        A single robot.
+    angles : array, shape (..., legs, 3)
+        Joint angles [rad].
+    offsets : array, shape (..., legs, 3)
+        What is added [rad].
+    """
+    limits = np.asarray(robot.limits)
+    # Angles that are beyond a limit have been named where they were planned.
+    lower, upper = np.minimum(limits[..., 0], angles), np.maximum(limits[..., 1], angles)
+    return np.asarray(np.clip(angles + offsets, lower, upper))
+
+
 def what_is_compensated(share: float) -> str:
     """Return the line about the compensation among what a result assumes.
 
@@ -155,11 +177,8 @@ def compensate_deflection(
     """
     share = checked_share(share)
     deflection = joint_deflections(motion, springs=springs, payload=payload, transfer_time=transfer_time)
-    lower, upper = np.moveaxis(np.asarray(motion.robot.limits), -1, 0)
-    # A plan that breaks a limit has said so.
-    lower, upper = np.minimum(lower, motion.angles), np.maximum(upper, motion.angles)
     return dataclasses.replace(
         motion,
-        angles=np.clip(motion.angles + share * deflection, lower, upper),
+        angles=commands_within_limits(motion.robot, motion.angles, share * deflection),
         assumed=(*motion.assumed, what_is_compensated(share)),
     )
