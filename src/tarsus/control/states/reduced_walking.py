@@ -17,15 +17,15 @@ from tarsus.control.states.robot_state import RobotState
 from tarsus.control.walk_controller import WalkController
 from tarsus.errors import TarsusError
 from tarsus.gait.gait import Gait
+from tarsus.gait.swing import horizontal_profile
 from tarsus.robot.remaining import remaining_robot
-from tarsus.robot.robot import Robot
+from tarsus.robot.robot import JOINTS, Robot
 
 if TYPE_CHECKING:
     from jaxtyping import Float, Shaped
 
 __all__ = ["LegFailures", "ReducedWalking"]
 
-_JOINTS = ("coxa", "femur", "tibia")
 _SITS = "the robot sits down: it can't walk without"
 _CAUSE = "the joint has failed: the robot walks on without this leg"
 # A leg that has failed is held up at this angle of its femur, with its tibia this far from its limit [rad].
@@ -79,7 +79,7 @@ class ReducedWalking(Walking):
         gait = Gait(1 - 2 / (3 * count), tuple(leg / count for leg in range(count)), body_shift=True)
         super().__init__(WalkController(remaining_robot(robot, self._legs), gait, **options))
         self._limitations = tuple(
-            Limitation(kind=LimitationKind.GAIT, cause=_CAUSE, leg=robot.leg_names[leg], joint=_JOINTS[joint])
+            Limitation(kind=LimitationKind.GAIT, cause=_CAUSE, leg=robot.leg_names[leg], joint=JOINTS[joint])
             for leg, joint in failed.items()
         )
         self._start, self._end, self._speeds = now.angles, np.array(now.angles), speeds
@@ -115,9 +115,8 @@ class ReducedWalking(Walking):
         """The robot now."""
         now = super().snapshot
         share, contacts = min(self._time / self._duration, 1.0), np.zeros(self._robot.legs, dtype=bool)
-        smooth = share**3 * (10 - 15 * share + 6 * share**2)
         coasted = self._time * max(1 - self._time / _STOPPING, 0.0) ** 3
-        angles = self._start + smooth * (self._end - self._start) + coasted * self._speeds
+        angles = self._start + horizontal_profile(share) * (self._end - self._start) + coasted * self._speeds
         contacts[self._legs] = now.contacts
         if share >= 1:
             angles[self._legs] = now.angles
@@ -163,7 +162,7 @@ class LegFailures:
     def __init__(self, robot: Robot, **options: Any) -> None:
         self._robot, self._options, self._monitor = robot, options, JointMonitor()
         self.failed, self._cause = self._monitor.failed, ""
-        self._hopeless: dict[int, int] = {}
+        self._not_walkable: dict[int, int] = {}
 
     def following(self, activity: Walking, now: Snapshot, dt: float) -> Walking:
         """Return the activity that follows after a tick: another one where another leg has failed.
@@ -185,13 +184,13 @@ class LegFailures:
         try:
             return ReducedWalking(self._robot, self.failed, after, (after.angles - now.angles) / dt, **self._options)
         except TarsusError as error:
-            self._hopeless, self._cause = dict(self.failed), str(error)
+            self._not_walkable, self._cause = dict(self.failed), str(error)
         return activity
 
     @property
     def sits(self) -> bool:
         """Whether the robot has to sit down."""
-        return bool(self._hopeless) and self._hopeless.keys() <= self.failed.keys()
+        return bool(self._not_walkable) and self._not_walkable.keys() <= self.failed.keys()
 
     @property
     def limitations(self) -> tuple[Limitation, ...]:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tarsus.errors import InputError
+from tarsus.gait.swing import horizontal_profile
 from tarsus.hardware.calibration.calibration import Calibration
 
 if TYPE_CHECKING:
@@ -51,8 +52,7 @@ def glide(
     """
     ticks = max(1, math.ceil(glide_duration(start, end, speed) / dt))
     for tick in range(1, ticks + 1):
-        t = tick / ticks
-        yield start + (end - start) * (t**3 * (10 - 15 * t + 6 * t * t))
+        yield start + (end - start) * horizontal_profile(tick / ticks)
 
 
 def release_order(legs: int) -> Iterator[int]:
