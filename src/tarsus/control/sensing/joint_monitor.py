@@ -21,7 +21,7 @@ _LAG = 0.15
 _ERROR = 0.15
 # How long a joint has to be off by this error until it has failed, and the time in which half of it is forgotten [s];
 # a greater error counts for more, by its square and up to this factor: a leg that is caught is far off for a moment.
-_CONVICTED, _MEMORY, _HEAVIEST = 1.5, 2.0, 3.0
+_FAILED_AFTER, _MEMORY, _MOST_WEIGHT = 1.5, 2.0, 3.0
 # A joint whose command moves by so much within a time [rad], [s], and that moves by less than this share of it, is
 # stuck; it has failed once that is so twice in a row.
 _COMMANDED, _WITHIN, _SHARE, _ONCE = 0.15, 1.0, 0.4, 1.0
@@ -42,7 +42,7 @@ class JointMonitor:
     def __init__(self) -> None:
         self.failed: dict[int, int] = {}
         self._commands: deque[tuple[float, Float[np.ndarray, "legs 3"]]] = deque()
-        self._suspicion: Float[np.ndarray, "legs 3"] | None = None
+        self._evidence: Float[np.ndarray, "legs 3"] | None = None
         self._compared: list[Float[np.ndarray, "2 legs 3"]] = []
         self._time = 0.0
 
@@ -68,17 +68,17 @@ class JointMonitor:
         stuck = self._stuck(found, commanded, dt)
         with np.errstate(invalid="ignore"):
             off = np.abs(found - commanded) > _ERROR
-        if not (off.any() or stuck is not None) and self._suspicion is None:
+        if not (off.any() or stuck is not None) and self._evidence is None:
             return
-        if self._suspicion is None:
-            self._suspicion = np.zeros_like(commanded)
+        if self._evidence is None:
+            self._evidence = np.zeros_like(commanded)
         if stuck is not None:
-            self._suspicion = self._suspicion + _ONCE * stuck
+            self._evidence = self._evidence + _ONCE * stuck
         recent = [angles for _, angles in commands]
         error = np.fmax(np.fmax(found - np.max(recent, axis=0), np.min(recent, axis=0) - found), 0.0)
-        weight = np.where(error > _ERROR, np.fmin((error / _ERROR) ** 2, _HEAVIEST), 0.0)
-        self._suspicion = self._suspicion * 0.5 ** (dt / _MEMORY) + dt * weight
-        for leg, joint in np.argwhere(self._suspicion > _CONVICTED).tolist():
+        weight = np.where(error > _ERROR, np.fmin((error / _ERROR) ** 2, _MOST_WEIGHT), 0.0)
+        self._evidence = self._evidence * 0.5 ** (dt / _MEMORY) + dt * weight
+        for leg, joint in np.argwhere(self._evidence > _FAILED_AFTER).tolist():
             self.failed.setdefault(leg, joint)
 
     def _stuck(

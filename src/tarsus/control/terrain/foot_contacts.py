@@ -17,7 +17,7 @@ _GRACE = 0.1
 # How long the body is lowered for a foot that finds no ground [s].
 _SEARCH = 1.5
 # How long other feet lose contact, while a foot that should stand has none, until its switch is taken to be open [s].
-_CONVICTED = 0.4
+_OPEN_AFTER = 0.4
 # How long feet that do not hold the robot bear it, until another one does [s], and how far it sinks there if not [m].
 _UNHELD, _TIPS = 0.15, 0.012
 # Fewer feet bear no robot, unless something else holds it.
@@ -48,7 +48,7 @@ class FootContacts:
         self.estimator = ContactEstimator(legs)
         self.lifted, self.age = [False] * legs, 0.0
         self._unheld, self._tilt = 0.0, (0.0, 0.0)
-        self._without, self._with, self._suspicion = ([0.0] * legs for _ in range(3))
+        self._without, self._with, self._evidence = ([0.0] * legs for _ in range(3))
 
     def step(
         self, readings: Sequence[bool | None] | None, down: Sequence[bool], dt: float, *, age: float = 0.0
@@ -74,16 +74,16 @@ class FootContacts:
             else:
                 self._without[leg], self._with[leg] = 0.0, self._with[leg] + dt
             self.lifted[leg] = not on and (self.lifted[leg] or self._without[leg] > _LOST)
-        self._suspect(down, dt)
+        self._find_open(down, dt)
 
-    def _suspect(self, down: Sequence[bool], dt: float) -> None:
+    def _find_open(self, down: Sequence[bool], dt: float) -> None:
         """Find switches that stay open: a foot that pushes on the ground unknown to it takes the load off others."""
         shaken = any(on and 0.0 < time <= _GRACE for on, time in zip(down, self._without, strict=True))
         for leg, on in enumerate(down):
             if self._without[leg] <= 0.0:
-                self._suspicion[leg] = 0.0
+                self._evidence[leg] = 0.0
             elif on and shaken and self._without[leg] > _GRACE:
-                self._suspicion[leg] += dt
+                self._evidence[leg] += dt
 
     def balance(
         self, down: Sequence[bool], places: Sequence[complex], centre: complex, tilt: tuple[float, float], dt: float
@@ -115,11 +115,11 @@ class FootContacts:
             self._unheld, self._tilt = 0.0, tilt
         self._unheld += dt
         if self._unheld > _UNHELD:
-            self._suspicion[longest] = math.inf
+            self._evidence[longest] = math.inf
 
     def is_open(self, leg: int) -> bool:
         """Return whether a contact is missing that other feet tell of: that of a switch that stays open."""
-        return self._suspicion[leg] > _CONVICTED
+        return self._evidence[leg] > _OPEN_AFTER
 
     def is_known(self, leg: int) -> bool:
         """Return whether a contact is measured, by a switch that works."""
