@@ -1,5 +1,6 @@
 import { useRef } from "react";
 
+import { FileInput } from "../controls/FileInput";
 import { Message } from "../controls/Message";
 import { ask } from "../state/session";
 import { notify, useStudio } from "../state/store";
@@ -34,19 +35,11 @@ export function CalibrationFile() {
             Remove {name}
           </button>
         )}
-        <input
-          ref={input}
-          type="file"
-          accept=".toml,text/plain"
-          className="hidden-text"
-          tabIndex={-1}
-          aria-label="Calibration file to load"
-          data-testid="calibration-file"
-          onChange={(event) => {
-            const file = event.target.files?.[0];
-            event.target.value = "";
-            if (file) void load(file);
-          }}
+        <FileInput
+          input={input}
+          label="Calibration file to load"
+          testId="calibration-file"
+          onFile={(file) => void load(file)}
         />
       </div>
       {calibration?.problem != null && (

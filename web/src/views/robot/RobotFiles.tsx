@@ -1,5 +1,6 @@
 import { useEffect, useId, useRef, useState } from "react";
 
+import { FileInput } from "../../controls/FileInput";
 import { Icon } from "../../controls/icons";
 import { useTouch } from "../../controls/useTouch";
 import type { ErrorMessage } from "../../protocol";
@@ -53,19 +54,11 @@ export function RobotFiles() {
         </button>
       </div>
       {!touch && <p className="hint">Or drop a .toml file anywhere on this page.</p>}
-      <input
-        ref={input}
-        type="file"
-        accept=".toml,text/plain"
-        className="hidden-text"
-        tabIndex={-1}
-        aria-label="Robot file to import"
-        data-testid="toml-file"
-        onChange={(event) => {
-          const file = event.target.files?.[0];
-          event.target.value = "";
-          if (file) void load(file);
-        }}
+      <FileInput
+        input={input}
+        label="Robot file to import"
+        testId="toml-file"
+        onFile={(file) => void load(file)}
       />
     </div>
   );
