@@ -2,8 +2,10 @@
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
 
 from gait_robots import point_feet, preset
+from robots import FULL_TURN, plain_hexapod, seeds
 from sample_gait_states import moment_of, rest_of, setup_of
 from tarsus import Pose, forward_kinematics, inverse_kinematics
 from tarsus.control.command import Command
@@ -178,3 +180,27 @@ def test_a_simulated_robot_walks_the_commanded_way(kind):
         out = controller.step(Command(twist=tuple(twist) if 50 <= tick < 350 else (0, 0, 0)), dt, plant.step(out, dt))
     way = np.linalg.norm((plant.state.body.position - start)[:2])
     assert way / np.linalg.norm((out.body.position - asked)[:2]) == pytest.approx(1.0, abs=0.01)
+
+
+@settings(deadline=None, max_examples=50)
+@given(seeds())
+def test_balls_roll_from_the_inclination_of_the_tibia_at_rest(seed):
+    rng = np.random.default_rng(seed)
+    sizes = {
+        name: size * rng.uniform(0.9, 1.1, 6) for name, size in {"coxa": 0.07, "femur": 0.1, "tibia": 0.18}.items()
+    }
+    offset, radius = rng.uniform(-0.02, 0.02, (6, 2)), rng.uniform(0.0, 0.03, 6)
+    limits = np.tile(FULL_TURN, (6, 1, 1))
+    robot = plain_hexapod(**sizes, femur_axis_offset=offset, foot_radius=radius, limits=limits)
+    x, y, z, roll, pitch, yaw = rng.uniform(-1, 1, 6) * (0.02, 0.02, 0.03, 0.1, 0.1, 0.1) + (0, 0, 0.11, 0, 0, 0)
+    rest = rng.uniform(0.22, 0.28, 6) * np.exp(1j * (robot.mount_yaw + rng.uniform(-0.3, 0.3, 6)))
+    rolling, pose = FootRolling(robot), Pose.from_rpy(roll, pitch, yaw, (x, y, z))
+    rolling.step(np.array([x, y, z, roll, pitch, yaw, 0.03]), rest, [], 0.02)
+    feet = np.stack([rest.real, rest.imag, np.zeros(6)], axis=-1)
+    coxa, femur, tibia = np.moveaxis(inverse_kinematics(robot, feet, pose).require().angles, -1, 0)
+    legs = np.stack([np.cos(robot.mount_yaw + coxa), np.sin(robot.mount_yaw + coxa), np.zeros(6)], axis=-1)
+    at_rest = radius * (femur + tibia + legs @ pose.rotation[2])
+    np.testing.assert_allclose(rolling.balls, np.stack([radius, at_rest], axis=-1), atol=1e-12)
+    rows = [tuple(row) for row in pose.rotation.tolist()]
+    found = rolling.rolled([tuple(foot) for foot in feet.tolist()], [0.0] * 6, tuple(rows), (x, y, z))
+    np.testing.assert_allclose(found, feet, atol=1e-14)

@@ -4,38 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from math import atan2, sqrt
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from tarsus.control.filters import CriticallyDamped
-from tarsus.control.workspace.stance_geometry import Rows, stance_geometry_of
+from tarsus.control.workspace.stance_geometry import SWING_HEIGHT, Rows, rotation_rows
 from tarsus.robot.robot import Robot
 
 if TYPE_CHECKING:
     from jaxtyping import Complex, Float
 
-__all__ = ["FootRolling", "RollingBall"]
+__all__ = ["FootRolling"]
 
 # Bandwidth with which other rest footholds, or a leg out of the gait, are followed [rad/s]; no difference [m].
 _BANDWIDTH, _NO_DIFFERENCE = 5.0, 1e-12
 # Keeps quotients finite for a straight leg, and for a foot on its femur axis [m^2].
 _TINY = 1e-12
-
-
-class RollingBall(NamedTuple):
-    """A foot ball that rolls in the plane of its leg.
-
-    Attributes
-    ----------
-    radius : float
-        Its radius [m]; 0 for a leg out of the gait.
-    at_rest : float
-        The radius times the inclination of the tibia over the ground at the rest foothold [m].
-    """
-
-    radius: float
-    at_rest: float
 
 
 class FootRolling:
@@ -55,8 +40,10 @@ class FootRolling:
 
     Attributes
     ----------
-    balls : list of RollingBall or None
-        One for each foot; None for a robot whose feet are points, and before the first tick.
+    balls : list of (radius, at_rest) or None
+        For each foot the radius of its ball, 0 for a leg out of the gait, and the radius times the inclination of the
+        tibia over the ground at the rest foothold [m]; None for a robot whose feet are points, and before the first
+        tick.
 
     Notes
     -----
@@ -66,7 +53,7 @@ class FootRolling:
     def __init__(self, robot: Robot) -> None:
         self._robot, self._radius = robot, np.asarray(robot.foot_radius, dtype=float)
         self._rolls = bool(self._radius.any())
-        self.balls: list[RollingBall] | None = None
+        self.balls: list[tuple[float, float]] | None = None
         self._posture = self._rest = np.zeros(0)
         self._out: list[int] = []
         g = robot.geometry
@@ -137,38 +124,51 @@ class FootRolling:
         position : (x, y, z)
             Position of the body's origin in that frame [m].
         """
+        legs = self._legs_over_ground(feet, standing, rotation, position)
+        found = []
+        for (fx, fy, fz), (radius, at_rest), (x, y, inclination, bend, out) in zip(
+            feet, self.balls or (), legs, strict=True
+        ):
+            # A Newton step: the tibia turns further as the foot moves.
+            gain = bend / (bend + 2.0 * radius * (out if out > 0.0 else 0.0) + _TINY)
+            distance = gain * (at_rest - radius * inclination)
+            found.append((fx + distance * x, fy + distance * y, fz))
+        return found
+
+    def _legs_over_ground(
+        self,
+        feet: Sequence[tuple[float, float, float]],
+        heights: Sequence[float],
+        rotation: Rows,
+        position: Sequence[float],
+    ) -> list[tuple[float, float, float, float, float]]:
+        """Return each leg's direction over the ground, its tibia's inclination, and the bend and reach of its knee."""
         (r00, r01, r02), (r10, r11, r12), (r20, r21, r22) = rotation
         px, py, pz = position
         found = []
-        for (fx, fy, fz), height, (radius, at_rest), leg in zip(
-            feet, standing, self.balls or (), self._legs, strict=True
-        ):
+        for (fx, fy, _), height, leg in zip(feet, heights, self._legs, strict=True):
             mx, my, mz, coxa, side, side2, farthest2, nearest2, difference2 = leg
             dx, dy, dz = fx - px, fy - py, height - pz
             bx, by = dx * r00 + dy * r10 + dz * r20 - mx, dx * r01 + dy * r11 + dz * r21 - my
             z = dx * r02 + dy * r12 + dz * r22 - mz
             across2 = bx * bx + by * by + _TINY
             along = sqrt(across2 - side2) if across2 > side2 else 0.0
-            # The direction of the leg in B, and how far its axis rises over the ground.
+            # The direction of the leg in B.
             x, y = (bx * along + by * side) / across2, (by * along - bx * side) / across2
-            rise = r20 * x + r21 * y
             r = along - coxa
             distance2 = r * r + z * z + _TINY
             area2, base = (farthest2 - distance2) * (distance2 - nearest2), distance2 + difference2
             bend, half = sqrt(area2) if area2 > 0.0 else 0.0, 0.5 / distance2
             # The knee, from the femur axis: the triangle of `tarsus.kinematics.triangle`.
             out, up = (r * base - z * bend) * half, (z * base + r * bend) * half
-            inclination = atan2(z - up, r - out) + rise
-            # A Newton step: the tibia turns further as the foot moves.
-            gain = bend / (bend + 2.0 * radius * (out if out > 0.0 else 0.0) + _TINY)
-            distance = gain * (at_rest - radius * inclination)
-            found.append((fx + distance * (r00 * x + r01 * y), fy + distance * (r10 * x + r11 * y), fz))
+            inclination = atan2(z - up, r - out) + r20 * x + r21 * y
+            found.append((r00 * x + r01 * y, r10 * x + r11 * y, inclination, bend, out))
         return found
 
-    def _balls(self, posture: Float[np.ndarray, "_"]) -> list[RollingBall]:
-        x, y, radius = self._filter.value.reshape(3, -1)
-        stance = stance_geometry_of(posture, x + 1j * y)
-        found = stance.solve(self._robot, x, y, np.zeros_like(x))
-        yaw, up = np.asarray(self._robot.mount_yaw) + found.coxa, stance.rotation[2]
-        inclination = found.femur + found.tibia + up[0] * np.cos(yaw) + up[1] * np.sin(yaw)
-        return [RollingBall(*ball) for ball in np.stack([radius, radius * inclination], axis=-1).tolist()]
+    def _balls(self, posture: Float[np.ndarray, "_"]) -> list[tuple[float, float]]:
+        x, y, radius = self._filter.value.reshape(3, -1).tolist()
+        *position, roll, pitch, yaw = posture[:SWING_HEIGHT].tolist()
+        level = [0.0] * len(x)
+        rest = list(zip(x, y, level, strict=True))
+        legs = self._legs_over_ground(rest, level, rotation_rows(roll, pitch, yaw), position)
+        return [(ball, ball * leg[2]) for ball, leg in zip(radius, legs, strict=True)]
