@@ -8,8 +8,8 @@ import pytest
 from gait_robots import PRESETS, preset, ring
 from sample_stances import cycle_timing_of, setup_of, standing, velocity_limits_of
 from tarsus.control.incremental import complete
-from tarsus.control.transition.stages.workspace import cycle_timing, velocity_limits
-from tarsus.control.workspace.cycle_time import SteadyCycle
+from tarsus.control.workspace.cycle_time import SteadyCycle, cycle_timing
+from tarsus.control.workspace.stance_limits import velocity_limits
 from tarsus.control.workspace.velocity_limits import with_stroke_limits
 from tarsus.gait.cycle import cycle_feet
 from tarsus.gait.gait import Gait

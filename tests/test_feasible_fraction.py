@@ -8,12 +8,12 @@ from sample_stances import feet_at, pose_of, posture_of, setup_of
 from tarsus.control.incremental import complete
 from tarsus.control.transition.feasible_fraction import (
     StanceTarget,
+    balanced_fraction,
     first_increment,
     reach_cause,
+    reachable_fraction,
 )
-from tarsus.control.transition.stages.reach import balanced_fraction, reachable_fraction
-from tarsus.control.transition.stages.workspace import foot_workspace
-from tarsus.control.workspace.foot_workspace import rest_margin
+from tarsus.control.workspace.foot_workspace import foot_workspace, rest_margin
 from tarsus.control.workspace.polygon import NORMALS
 from tarsus.control.workspace.stability import StabilityCheck, support_sets
 from tarsus.gait.gait import Gait

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from tarsus.control.incremental import Incremental
 from tarsus.control.limitation import Cause
 from tarsus.control.workspace.foot_workspace import rest_margin
 from tarsus.control.workspace.stability import StabilityCheck
@@ -23,29 +24,24 @@ if TYPE_CHECKING:
     from jaxtyping import Complex, Float
 
 __all__ = [
-    "HALVINGS",
     "TIPPING",
-    "Bracket",
     "StanceTarget",
+    "balanced_fraction",
     "first_increment",
-    "first_unreachable",
-    "is_balanced",
-    "is_reachable",
     "reach_cause",
-    "reach_margin",
+    "reachable_fraction",
 ]
 
 TIPPING = Cause("the robot would tip over")
 # The whole path is sampled at so many points; the interval that fails is then halved: to 1/2048 of the path.
-_SAMPLES = 16
-HALVINGS = 7
-"""Number of halvings of the interval in which a path ceases to be feasible."""
-
+_SAMPLES, _HALVINGS = 16, 7
+# How many stances are examined in one tick.
+_PER_TICK = 2
 # How far the rest footholds move in one transition at most [m], and the fractions of a step that are tried.
 _LONGEST_STEP, _SHORTER = 0.03, np.append(np.arange(16, 0, -1) / 16, (1 / 32, 1 / 64))
 # Rest footholds closer than this are the same [m].
 _SAME = 1e-9
-# Additional stability margin, as a fraction of the distance between feet, which leaves the feet room to step.
+# Additional stability margin, as a fraction of the greatest distance between neighbouring feet.
 _STEP_MARGIN = 0.03
 
 
@@ -84,35 +80,8 @@ class StanceTarget(NamedTuple):
         return stance_geometry_of(self.posture, self.rest)
 
 
-class Bracket(NamedTuple):
-    """Two fractions of a path: one that is feasible, or 0, and a greater one that is not."""
-
-    feasible: float
-    infeasible: float
-
-    @classmethod
-    def before(cls, infeasible: float) -> Bracket:
-        """Return a sample's bracket below a fraction that is not feasible."""
-        return cls(max(0.0, infeasible - 1 / _SAMPLES), infeasible)
-
-    def widened(self) -> Bracket:
-        """Return the bracket below, for a lower end that turned out not to be feasible; twice as wide."""
-        return Bracket(max(0.0, 2 * self.feasible - self.infeasible), self.feasible)
-
-    def halved(self, works: Callable[[float], bool]) -> Bracket:
-        """Return the half of the bracket in which feasibility ends.
-
-        Parameters
-        ----------
-        works : callable
-            Whether a fraction is feasible.
-        """
-        middle = (self.feasible + self.infeasible) / 2
-        return Bracket(middle, self.infeasible) if works(middle) else Bracket(self.feasible, middle)
-
-
-def first_unreachable(robot: Robot, start: StanceTarget, end: StanceTarget) -> float | None:
-    """Return the first sample of a path at which a leg does not reach its rest foothold; None where all do.
+def reachable_fraction(robot: Robot, start: StanceTarget, end: StanceTarget) -> Incremental[tuple[float, Cause | None]]:
+    """Find the fraction of a path up to which all legs have room about their rest footholds.
 
     Parameters
     ----------
@@ -120,40 +89,79 @@ def first_unreachable(robot: Robot, start: StanceTarget, end: StanceTarget) -> f
         A single robot.
     start, end : StanceTarget
         Both ends of the path.
+
+    Returns
+    -------
+    fraction : float
+        To a thousandth of the path; 1 where nothing limits it.
+    cause : Cause or None
+        What limits it.
     """
-    fractions = np.arange(1, _SAMPLES + 1) / _SAMPLES
-    stances = [start.towards(end, fraction) for fraction in fractions.tolist()]
-    fails = (reach_margin(robot, stances) < 0).any(axis=-1)
-    return float(fractions[fails.argmax()]) if fails.any() else None
+    unreachable = _first_unreachable(robot, start, end)
+    yield
+
+    def works(fraction: float) -> bool:
+        return bool((rest_margin(robot, start.towards(end, fraction).stand) >= 0).all())
+
+    if unreachable is None:
+        if works(1.0):
+            return 1.0, None
+        yield
+        unreachable = 1.0
+    feasible, infeasible = yield from _bracket(works, unreachable)
+    yield
+    return feasible, reach_cause(robot, start.towards(end, infeasible).stand)
 
 
-def is_reachable(robot: Robot, stance: StanceTarget) -> bool:
-    """Return whether all legs have room about their rest footholds.
-
-    Parameters
-    ----------
-    robot : Robot
-        A single robot.
-    stance : StanceTarget
-        The stance.
-    """
-    return bool((rest_margin(robot, stance.stand) >= 0).all())
-
-
-def is_balanced(check: StabilityCheck, stance: StanceTarget, footholds: Complex[np.ndarray, "legs"]) -> bool:
-    """Return whether a stance has stability margin to spare for steps.
+def balanced_fraction(
+    check: StabilityCheck, start: StanceTarget, end: StanceTarget, fraction: float
+) -> Incremental[float]:
+    """Find the fraction of a path up to which the robot stands with stability margin to spare; 0 for none of it.
 
     Parameters
     ----------
     check : StabilityCheck
         The check against tipping over.
-    stance : StanceTarget
-        The stance.
-    footholds : complex array, shape (legs,)
-        The present rest footholds, whose distances scale the additional margin [m].
+    start, end : StanceTarget
+        Both ends of the path.
+    fraction : float
+        A fraction at which it tips over.
     """
-    margin = check.least_margin + _STEP_MARGIN * float(np.abs(footholds - np.roll(footholds, 1)).max())
-    return check.margin_at_rest(stance.stand) >= margin
+    # Stability margin to spare leaves the feet room to step.
+    margin = check.least_margin + _STEP_MARGIN * float(np.abs(start.rest - np.roll(start.rest, 1)).max())
+
+    def works(fraction: float) -> bool:
+        return check.margin_at_rest(start.towards(end, fraction).stand) >= margin
+
+    feasible, _ = yield from _bracket(works, fraction)
+    return feasible
+
+
+def _bracket(works: Callable[[float], bool], infeasible: float) -> Incremental[tuple[float, float]]:
+    """Find two fractions close to each other: one that is feasible, or 0, and a greater one that is not."""
+    feasible = max(0.0, infeasible - 1 / _SAMPLES)
+    while feasible > 0 and not works(feasible):
+        # The interval below, twice as wide.
+        feasible, infeasible = max(0.0, 2 * feasible - infeasible), feasible
+        yield
+    yield
+    for count in range(_HALVINGS):
+        middle = (feasible + infeasible) / 2
+        if works(middle):
+            feasible = middle
+        else:
+            infeasible = middle
+        if count % _PER_TICK:
+            yield
+    return feasible, infeasible
+
+
+def _first_unreachable(robot: Robot, start: StanceTarget, end: StanceTarget) -> float | None:
+    """Return the first sample of a path at which a leg does not reach its rest foothold; None where all do."""
+    fractions = np.arange(1, _SAMPLES + 1) / _SAMPLES
+    stances = [start.towards(end, fraction) for fraction in fractions.tolist()]
+    fails = (_reach_margin(robot, stances) < 0).any(axis=-1)
+    return float(fractions[fails.argmax()]) if fails.any() else None
 
 
 def first_increment(robot: Robot, start: StanceTarget, end: StanceTarget, fraction: float) -> float:
@@ -172,26 +180,13 @@ def first_increment(robot: Robot, start: StanceTarget, end: StanceTarget, fracti
     moved = np.abs(end.rest - start.rest).max()
     if moved < _SAME:
         return fraction
-    margin = reach_margin(robot, [start._replace(rest=start.towards(end, part).rest) for part in parts.tolist()])
+    margin = _reach_margin(robot, [start._replace(rest=start.towards(end, part).rest) for part in parts.tolist()])
     works = (moved * parts <= _LONGEST_STEP) & (margin >= 0).all(axis=-1)
     return float(parts[works.argmax()] if works.any() else parts[-1])
 
 
-def reach_margin(robot: Robot, stances: list[StanceTarget]) -> Float[np.ndarray, "n legs"]:
-    """Return the margin of each leg at its rest foothold: on the ground, and lifted.
-
-    Parameters
-    ----------
-    robot : Robot
-        A single robot.
-    stances : list of StanceTarget
-        The stances.
-
-    Returns
-    -------
-    array, shape (n, legs)
-        Negative out of reach.
-    """
+def _reach_margin(robot: Robot, stances: list[StanceTarget]) -> Float[np.ndarray, "n legs"]:
+    """Return the margin of each leg at its rest foothold, on the ground and lifted; negative out of reach."""
     rows, rest = np.array([p.posture for p in stances]), np.array([p.rest for p in stances])
     rotation = np.array([rotation_rows(*row) for row in rows[:, 3:SWING_HEIGHT].tolist()])
     swing_height = rows[:, SWING_HEIGHT:]

@@ -8,15 +8,21 @@ import numpy as np
 
 from tarsus.control.incremental import Incremental
 from tarsus.control.limitation import Cause, Limitation, LimitationKind
-from tarsus.control.transition.feasible_fraction import TIPPING, StanceTarget, first_increment, reach_cause
+from tarsus.control.transition.feasible_fraction import (
+    TIPPING,
+    StanceTarget,
+    balanced_fraction,
+    first_increment,
+    reach_cause,
+    reachable_fraction,
+)
 from tarsus.control.transition.parameters import WalkParameters
 from tarsus.control.transition.shortfalls import stance_limitations
-from tarsus.control.transition.stages.reach import balanced_fraction, reachable_fraction
-from tarsus.control.transition.stages.workspace import cycle_timing, shifted_limits, velocity_limits
 from tarsus.control.transition.stance_transition import StanceTransition
 from tarsus.control.transition.target_stance import sway_extremes, target_stance
-from tarsus.control.workspace.cycle_time import CycleTiming
+from tarsus.control.workspace.cycle_time import CycleTiming, cycle_timing
 from tarsus.control.workspace.stability import StabilityCheck, support_sets
+from tarsus.control.workspace.stance_limits import shifted_limits, velocity_limits
 from tarsus.control.workspace.velocity_limits import VelocityLimits, with_stroke_limits
 from tarsus.robot.robot import Robot
 

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from tarsus.control.incremental import Incremental
 from tarsus.control.workspace.stance_geometry import StanceGeometry
 from tarsus.control.workspace.velocity_limits import VelocityLimits
 from tarsus.gait.gait import Gait
@@ -16,7 +16,7 @@ from tarsus.robot.robot import Robot
 if TYPE_CHECKING:
     from jaxtyping import Complex, Float
 
-__all__ = ["CycleTiming", "CycleTimingSearch", "SteadyCycle"]
+__all__ = ["CycleTiming", "SteadyCycle", "cycle_timing"]
 
 
 # Fractions of the joints' limits available to steady walking; the rest is for changes of the command.
@@ -29,8 +29,8 @@ _TWISTS = np.array([(np.cos(a), np.sin(a), 0.0) for a in np.arange(_STRAIGHT) * 
 _SAMPLES = 33
 # Cycle times among which the fastest walk is searched, in shortest ones.
 _TRIED = np.geomspace(1.0, 4.0, 33)
-# Number of foot positions solved at once: larger arrays take disproportionately long.
-_BLOCK = 1900
+# Number of foot positions solved at once: larger arrays take disproportionately long; and of such blocks in one tick.
+_BLOCK, _BLOCKS = 1900, 3
 
 
 class CycleTiming(NamedTuple):
@@ -52,8 +52,17 @@ class CycleTiming(NamedTuple):
     shortest_cycle_time: float
 
 
-class CycleTimingSearch:
-    """Search for the cycle time that the joints can follow: `examine` every block of motions, then take the `timing`.
+def cycle_timing(
+    robot: Robot,
+    gait: Gait,
+    stance: StanceGeometry,
+    limits: VelocityLimits,
+    *,
+    speed: Float[np.ndarray, "legs 3"],
+    acceleration: Float[np.ndarray, "legs 3"],
+    cycle_time: float | None = None,
+) -> Incremental[CycleTiming]:
+    """Find the cycle time that the joints can follow.
 
     Parameters
     ----------
@@ -67,80 +76,53 @@ class CycleTimingSearch:
         Polygons of the feet.
     speed, acceleration : array, shape (legs, 3)
         Limits of the joints [rad/s], [rad/s^2].
-
-    Attributes
-    ----------
-    blocks : int
-        Number of blocks of like cost.
+    cycle_time : float, optional
+        Commanded duration of a cycle [s]; left out, the one of the fastest walk: a shorter one is limited by the
+        joints to shorter strokes, a longer one by the reach of the legs.
     """
+    # Motions of the body during one stance: none, and fractions of the longest that the legs reach.
+    farthest = limits.feasible_fractions(_TWISTS, stance_time=1.0, duty_factor=gait.duty_factor)[:, None] * _TWISTS
+    stroke = np.abs(farthest[:, :1] + 1j * farthest[:, 1:2] + 1j * farthest[:, 2:] * limits.rest).max(-1)
+    moves = np.concatenate([np.zeros((1, 3)), (_SIZES[1:, None, None] * farthest).reshape(-1, 3)])
+    cycle = SteadyCycle(gait, moves, stance.swing_height)
+    size = max(_BLOCK // (robot.legs * len(cycle.shift)), 1)
+    times = []
+    for block, begin in enumerate(range(0, len(moves), size)):
+        times.append(cycle.shortest_times(robot, stance, slice(begin, begin + size), speed, acceleration))
+        # The first and the last stage also contain other work.
+        if block % _BLOCKS == 0:
+            yield
+    # (sizes, twists): the shortest cycle for each size of each stroke.
+    shortest = np.empty((len(_SIZES), len(_TWISTS)))
+    shortest[0] = times[0][0]
+    shortest[1:] = np.concatenate(times)[1:].reshape(len(_SIZES) - 1, -1)
+    return _timing(np.maximum.accumulate(shortest, axis=0), stroke, cycle_time)
 
-    def __init__(
-        self,
-        robot: Robot,
-        gait: Gait,
-        stance: StanceGeometry,
-        limits: VelocityLimits,
-        *,
-        speed: Float[np.ndarray, "legs 3"],
-        acceleration: Float[np.ndarray, "legs 3"],
-    ) -> None:
-        self._robot, self._stance, self._speed, self._acceleration = robot, stance, speed, acceleration
-        # Motions of the body during one stance: none, and fractions of the longest that the legs reach.
-        farthest = limits.feasible_fractions(_TWISTS, stance_time=1.0, duty_factor=gait.duty_factor)[:, None] * _TWISTS
-        self._stroke = np.abs(farthest[:, :1] + 1j * farthest[:, 1:2] + 1j * farthest[:, 2:] * limits.rest).max(-1)
-        moves = np.concatenate([np.zeros((1, 3)), (_SIZES[1:, None, None] * farthest).reshape(-1, 3)])
-        self._cycle = SteadyCycle(gait, moves, stance.swing_height)
-        self._block = max(_BLOCK // (robot.legs * len(self._cycle.shift)), 1)
-        self.blocks = math.ceil(len(moves) / self._block)
-        self._times: list[np.ndarray] = []
 
-    def examine(self, block: int) -> None:
-        """Find the shortest cycles of a block of motions; blocks in their order.
-
-        Parameters
-        ----------
-        block : int
-            Number of the block.
-        """
-        part = slice(block * self._block, (block + 1) * self._block)
-        times = self._cycle.shortest_times(self._robot, self._stance, part, self._speed, self._acceleration)
-        self._times.append(times)
-
-    def timing(self, cycle_time: float | None) -> CycleTiming:
-        """Return the timing, once every block is examined.
-
-        Parameters
-        ----------
-        cycle_time : float or None
-            Commanded duration of a cycle [s]; None for the one of the fastest walk: a shorter one is limited by the
-            joints to shorter strokes, a longer one by the reach of the legs.
-        """
-        stroke = self._stroke
-        # (sizes, twists): the shortest cycle for each size of each stroke.
-        shortest = np.empty((len(_SIZES), len(_TWISTS)))
-        shortest[0] = self._times[0][0]
-        shortest[1:] = np.concatenate(self._times)[1:].reshape(len(_SIZES) - 1, -1)
-        shortest = np.maximum.accumulate(shortest, axis=0)
-        # With less than a good fraction of the stroke, the robot would hardly advance.
-        least = _CYCLE_TIME_MARGIN * float(
-            np.array([np.interp(_LEAST_SIZE, _SIZES, column) for column in shortest.T]).max()
+def _timing(
+    shortest: Float[np.ndarray, "sizes twists"], stroke: Float[np.ndarray, "twists"], cycle_time: float | None
+) -> CycleTiming:
+    """Return the timing from the shortest cycle for each size of each stroke."""
+    # With less than a good fraction of the stroke, the robot would hardly advance.
+    least = _CYCLE_TIME_MARGIN * float(
+        np.array([np.interp(_LEAST_SIZE, _SIZES, column) for column in shortest.T]).max()
+    )
+    if cycle_time is None:
+        tried = least * _TRIED
+        straight = _sizes(shortest[:, :_STRAIGHT], tried)
+        # Optimised for walking straight, the most frequent command.
+        far = np.minimum(
+            straight[:, 0] * stroke[0],
+            _cap(straight, tried[:, None] / shortest[-1, :_STRAIGHT], stroke[:_STRAIGHT]),
         )
-        if cycle_time is None:
-            tried = least * _TRIED
-            straight = _sizes(shortest[:, :_STRAIGHT], tried)
-            # Optimised for walking straight, the most frequent command.
-            far = np.minimum(
-                straight[:, 0] * stroke[0],
-                _cap(straight, tried[:, None] / shortest[-1, :_STRAIGHT], stroke[:_STRAIGHT]),
-            )
-            cycle_time = float(tried[int((far / tried).argmax())])
-        cycle_time = max(cycle_time, least)
-        sizes = _sizes(shortest, cycle_time)
-        spare = cycle_time / shortest[-1]
-        straight_on, on_the_spot = (
-            float(_cap(sizes[part], spare[part], stroke[part])) for part in (slice(_STRAIGHT), slice(_STRAIGHT, None))
-        )
-        return CycleTiming(cycle_time, straight_on, on_the_spot, least)
+        cycle_time = float(tried[int((far / tried).argmax())])
+    cycle_time = max(cycle_time, least)
+    sizes = _sizes(shortest, cycle_time)
+    spare = cycle_time / shortest[-1]
+    straight_on, on_the_spot = (
+        float(_cap(sizes[part], spare[part], stroke[part])) for part in (slice(_STRAIGHT), slice(_STRAIGHT, None))
+    )
+    return CycleTiming(cycle_time, straight_on, on_the_spot, least)
 
 
 def _cap(

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from tarsus.control.incremental import Incremental
 from tarsus.control.workspace.leg_margin import RESERVED_MARGIN, LegMargin
 from tarsus.control.workspace.polygon import NORMALS, NORMALS_CONJUGATE, polygon_ends
 from tarsus.control.workspace.stance_geometry import StanceGeometry
@@ -22,15 +23,14 @@ from tarsus.robot.robot import Robot
 if TYPE_CHECKING:
     from jaxtyping import Complex, Float
 
-__all__ = ["PASSES", "FootWorkspaceSearch", "rest_margin"]
+__all__ = ["foot_workspace", "rest_margin"]
 
 _RAYS, _SIDES, _RINGS, _FINE = 24, len(NORMALS), 8, 5
 # Number of inner rings.
 _INNER = 5
 _DIRECTIONS = np.exp(2j * np.pi * np.arange(_RAYS) / _RAYS)
-PASSES = 6
-"""Greatest number of passes that move sides inwards."""
-
+# Greatest number of passes that move sides inwards, and how many points on edges are examined in one tick.
+_PASSES, _POINTS = 6, 600
 # The points tested on each side, and the fractions of the distance from the rest foothold to them that are tested.
 _ALONG = np.array([1, 2, 3])[:, None] / 3
 _FRACTIONS = np.array([0.3, 0.6, 0.8, 0.92, 1.0])[:, None, None]
@@ -38,11 +38,10 @@ _FRACTIONS = np.array([0.3, 0.6, 0.8, 0.92, 1.0])[:, None, None]
 _EXTRA, _TOLERANCE = 0.01, 1e-9
 
 
-class FootWorkspaceSearch:
-    """Search for the sides of each foot's polygon in one stance, in stages of similar cost.
-
-    The stages in order: `sample_inner`, `sample_outer`, `refine`; then up to `PASSES` times `test_edge`, `sample_edge`
-    where that says so, and `move_inwards` until it has nothing to do.
+def foot_workspace(
+    robot: Robot, stance: StanceGeometry, *, foot_distance: float
+) -> Incremental[Float[np.ndarray, "legs 16"]]:
+    """Find the sides of each foot's polygon in one stance.
 
     Parameters
     ----------
@@ -53,57 +52,43 @@ class FootWorkspaceSearch:
     foot_distance : float
         Least distance between two feet [m].
 
-    Attributes
-    ----------
-    bounds : array, shape (legs, 16)
+    Returns
+    -------
+    array, shape (legs, 16)
         Distances of the sides from the heading frame's origin along `NORMALS` [m]. If a foot cannot be at its rest
         foothold, a side lies before that foothold.
-    edge_points : int
-        Number of points that `test_edge` examines.
     """
-
-    def __init__(self, robot: Robot, stance: StanceGeometry, *, foot_distance: float) -> None:
-        self._margin, self._spacing = LegMargin(robot, stance), _FootSpacing(stance.rest, foot_distance)
-        self._rest, self._step = stance.rest, _ring(robot)
-        self._rays: np.ndarray = np.arange(_RINGS + 1)[:, None, None] * self._step
-        self._inner = self._edge = self._fraction = self._coarse = np.zeros(0)
-        self.bounds: Float[np.ndarray, "legs 16"] = np.zeros((robot.legs, _SIDES))
-        self.edge_points = len(_ALONG) * _SIDES * robot.legs
-
-    def sample_inner(self) -> None:
-        """Sample the inner rings."""
-        self._inner = self._margin(self._rays[:_INNER] * _DIRECTIONS[:, None])
-
-    def sample_outer(self) -> None:
-        """Sample the outer rings, and find the last feasible one on each ray."""
-        outer = self._margin(self._rays[_INNER:] * _DIRECTIONS[:, None])
-        self._coarse = _first_zero(self._rays, np.concatenate([self._inner, outer]), interpolation=0.0)
-
-    def refine(self) -> None:
-        """Sample between the last feasible and the first infeasible ring, and draw the sides."""
-        rays = self._coarse + np.arange(_FINE + 1)[:, None, None] * (self._step / _FINE)
-        reach = _first_zero(rays, self._margin(rays * _DIRECTIONS[:, None]), interpolation=1.0) - RESERVED_MARGIN
-        self.bounds = _sides(self._rest, np.minimum(reach, self._spacing(_DIRECTIONS[:, None])))
-
-    def test_edge(self) -> bool:
-        """Test the edges of the polygons, and return whether a leg can't reach somewhere on them."""
-        self._edge = _edge(self.bounds, self._rest)
-        self._fraction = self._spacing(self._edge)
-        return bool((self._margin(self._edge) < 0).any())
-
-    def sample_edge(self) -> None:
-        """Sample the rays to the edges, for how far each leg reaches."""
-        reached = _first_zero(_FRACTIONS, self._margin(_FRACTIONS * self._edge), interpolation=1.0)
-        self._fraction = np.minimum(self._fraction, reached)
-
-    def move_inwards(self) -> bool:
-        """Move the sides inwards that are out of reach, and return whether there were any."""
-        short = self._fraction < 1 - _TOLERANCE
+    margin, spacing = LegMargin(robot, stance), _FootSpacing(stance.rest, foot_distance)
+    step = _ring(robot)
+    rings = np.arange(_RINGS + 1)[:, None, None] * step
+    inner = margin(rings[:_INNER] * _DIRECTIONS[:, None])
+    yield
+    outer = margin(rings[_INNER:] * _DIRECTIONS[:, None])
+    last_feasible = _first_zero(rings, np.concatenate([inner, outer]), interpolation=0.0)
+    yield
+    rays = last_feasible + np.arange(_FINE + 1)[:, None, None] * (step / _FINE)
+    reach = _first_zero(rays, margin(rays * _DIRECTIONS[:, None]), interpolation=1.0) - RESERVED_MARGIN
+    bounds = _sides(stance.rest, np.minimum(reach, spacing(_DIRECTIONS[:, None])))
+    yield
+    edge_points, examined = len(_ALONG) * _SIDES * robot.legs, 0
+    for _ in range(_PASSES):
+        examined += edge_points
+        edge = _edge(bounds, stance.rest)
+        fraction = spacing(edge)
+        if (margin(edge) < 0).any():
+            yield
+            fraction = np.minimum(fraction, _first_zero(_FRACTIONS, margin(_FRACTIONS * edge), interpolation=1.0))
+            examined = _POINTS
+        short = fraction < 1 - _TOLERANCE
         if not short.any():
-            return False
-        inwards = np.where(short, self._fraction - _EXTRA, np.inf)
-        self.bounds = _moved_inwards(self.bounds, self._rest, self._edge, inwards)
-        return True
+            break
+        bounds = _moved_inwards(bounds, stance.rest, edge, np.where(short, fraction - _EXTRA, np.inf))
+        if examined + edge_points > _POINTS:
+            yield
+            examined = 0
+    if examined + edge_points > _POINTS:
+        yield
+    return bounds
 
 
 def rest_margin(robot: Robot, stance: StanceGeometry, *, knees: bool = True) -> Float[np.ndarray, "legs"]:
@@ -121,7 +106,7 @@ def rest_margin(robot: Robot, stance: StanceGeometry, *, knees: bool = True) -> 
     Returns
     -------
     array, shape (legs,)
-        Distances [m]; where negative, a side of the `FootWorkspaceSearch` lies before the rest foothold.
+        Distances [m]; where negative, a side of the `foot_workspace` lies before the rest foothold.
     """
     rays = np.arange(2)[:, None, None] * (_ring(robot) / _FINE)
     out = np.concatenate([[0j], rays[1, 0] * _DIRECTIONS])[:, None]

@@ -19,7 +19,7 @@ from tarsus.robot.robot import Robot
 if TYPE_CHECKING:
     from jaxtyping import Bool, Complex, Float, Int
 
-__all__ = ["StabilityCheck", "margin_at_rest", "safe_fraction", "support_sets"]
+__all__ = ["StabilityCheck", "safe_fraction", "support_sets"]
 
 _FRACTIONS = np.array([*np.linspace(1.0, 0.1, 10), 0.06, 0.03])
 _FIRST = 3
@@ -104,27 +104,6 @@ def safe_fraction(
     return float(_FRACTIONS[index]) if index < len(_FRACTIONS) else 0.0
 
 
-def margin_at_rest(sets: Bool[np.ndarray, "n legs"], rest: Complex[np.ndarray, "legs"], centre: complex) -> float:
-    """Return the least stability margin over all sets, with the feet at rest.
-
-    Parameters
-    ----------
-    sets : array of bool, shape (n, legs)
-        Feet that are in stance together.
-    rest : complex array, shape (legs,)
-        Rest footholds [m].
-    centre : complex
-        Projection of the centre of mass [m].
-
-    Returns
-    -------
-    float
-        Negative outside a support polygon; minus infinity with fewer than three feet in stance [m].
-    """
-    pairs = _edges_of(np.asarray(sets).tobytes(), sets.shape[1])
-    return -math.inf if pairs is None else _least_margin(pairs, (rest - centre)[:, None], np.zeros((len(rest), 1)))
-
-
 def _least_margin(
     pairs: Int[np.ndarray, "2 n"],
     feet: Complex[np.ndarray, "legs m"],
@@ -191,7 +170,7 @@ class StabilityCheck:
     """
 
     def __init__(self, robot: Robot, sets: Bool[np.ndarray, "n legs"], excluded: tuple[int, ...] = ()) -> None:
-        self._robot, self._sets, self.excluded = robot, sets, list(excluded)
+        self._robot, self._sets, self.excluded = robot, np.asarray(sets), list(excluded)
         self.least_margin = _LEAST_MARGIN
         # Masses of the legs' points and first moment of the body, over the total mass.
         self._weights, self._body = np.zeros((robot.legs, 4)), np.asarray(robot.body_com)
@@ -201,33 +180,6 @@ class StabilityCheck:
             self._body = self._body * (robot.body_mass / total)
             reach = np.asarray(robot.coxa + robot.femur + robot.tibia) * np.asarray(robot.link_mass).sum(-1) / 4
             self.least_margin += float(reach[self.excluded].sum() / total)
-
-    def safe_fraction(
-        self,
-        stance: StanceGeometry,
-        sides: Float[np.ndarray, "legs 16"],
-        centre: complex,
-        shift: Complex[np.ndarray, "legs 16"],
-    ) -> float:
-        """Return the factor by which the foot polygons must shrink towards the rest footholds for static stability.
-
-        Parameters
-        ----------
-        stance : StanceGeometry
-            The body and the rest footholds.
-        sides : array, shape (legs, 16)
-            The polygons' sides [m].
-        centre : complex
-            Projection of the centre of mass, from `centre_of_mass` [m].
-        shift : complex array, shape (legs, 16)
-            Its shift by each leg at each corner, from `centre_of_mass` [m].
-
-        Returns
-        -------
-        float
-            At most 1; 0 if the robot is unstable even with its feet at rest.
-        """
-        return safe_fraction(self._sets, sides, stance.rest, centre, margin=self.least_margin, shift=shift)
 
     def centre_of_mass(
         self, stance: StanceGeometry, sides: Float[np.ndarray, "legs 16"]
@@ -256,14 +208,18 @@ class StabilityCheck:
         return centre, shift
 
     def margin_at_rest(self, stance: StanceGeometry) -> float:
-        """Return the least stability margin with the feet at rest [m].
+        """Return the least stability margin with the feet at rest [m]; minus infinity with less than three of them.
 
         Parameters
         ----------
         stance : StanceGeometry
             The body and the rest footholds.
         """
-        return margin_at_rest(self._sets, stance.rest, self._moments(stance, np.zeros((1, len(stance.rest))))[1])
+        pairs, legs = _edges_of(self._sets.tobytes(), self._sets.shape[1]), len(stance.rest)
+        if pairs is None:
+            return -math.inf
+        centre = self._moments(stance, np.zeros((1, legs)))[1]
+        return _least_margin(pairs, (stance.rest - centre)[:, None], np.zeros((legs, 1)))
 
     def _moments(
         self,

@@ -11,14 +11,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tarsus.control.workspace.polygon import NORMALS, NORMALS_CONJUGATE
-from tarsus.control.workspace.stability import StabilityCheck
-from tarsus.control.workspace.stance_geometry import StanceGeometry
 from tarsus.gait.swing import horizontal_profile
 
 if TYPE_CHECKING:
     from jaxtyping import Complex, Float
 
-__all__ = ["VelocityLimits", "stance_limits", "stance_overhang", "with_stroke_limits"]
+__all__ = ["VelocityLimits", "stance_overhang", "with_stroke_limits"]
 
 
 # Fraction of the polygons that the fastest steady walk uses.
@@ -205,29 +203,3 @@ def with_stroke_limits(limits: VelocityLimits, stroke: float, turning: float, *,
     # Legs that do not step stay without bounds.
     bounds = np.where(np.isinf(limits.bounds), np.inf, bounds)
     return dataclasses.replace(limits, bounds=bounds, stroke=stroke, turning=turning)
-
-
-def stance_limits(
-    check: StabilityCheck, stance: StanceGeometry, sides: Float[np.ndarray, "legs 16"], fraction: float
-) -> VelocityLimits:
-    """Return the limits in one stance.
-
-    Parameters
-    ----------
-    check : StabilityCheck
-        The check against tipping over; legs that it excludes are not bounded.
-    stance : StanceGeometry
-        Body and rest footholds.
-    sides : array, shape (legs, 16)
-        Sides of the feet's polygons [m].
-    fraction : float
-        Fraction of the polygons' size in which no support tips over.
-    """
-    at_rest = (NORMALS_CONJUGATE * stance.rest[:, None]).real
-    free = sides - at_rest
-    free = np.where(free > 0, free * fraction, free)
-    # With the centre of mass outside a support polygon, no step is safe.
-    free = free if fraction > 0 else np.minimum(free, -1e-3)
-    bounds = at_rest + free
-    bounds[check.excluded], free[check.excluded] = np.inf, np.inf
-    return VelocityLimits(bounds, free, stance.rest, fraction > 0)

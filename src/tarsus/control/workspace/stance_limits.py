@@ -1,4 +1,4 @@
-"""Stages of finding the limits in a stance: generators that yield where their work continues in the next tick."""
+"""Limits that hold in the stances of a walk, found in stages of less than a tick each."""
 
 from __future__ import annotations
 
@@ -10,12 +10,11 @@ import numpy as np
 
 from tarsus.control.incremental import Incremental
 from tarsus.control.workspace.body_shift import displaced, shift_extremes, stance_shift, support_phases
-from tarsus.control.workspace.cycle_time import CycleTiming, CycleTimingSearch
-from tarsus.control.workspace.foot_workspace import PASSES, FootWorkspaceSearch
+from tarsus.control.workspace.foot_workspace import foot_workspace
 from tarsus.control.workspace.polygon import NORMALS_CONJUGATE
-from tarsus.control.workspace.stability import StabilityCheck
+from tarsus.control.workspace.stability import StabilityCheck, safe_fraction
 from tarsus.control.workspace.stance_geometry import StanceGeometry
-from tarsus.control.workspace.velocity_limits import VelocityLimits, stance_limits
+from tarsus.control.workspace.velocity_limits import VelocityLimits
 from tarsus.gait.body_shift import shift_at
 from tarsus.gait.gait import Gait
 from tarsus.robot.robot import Robot
@@ -23,54 +22,7 @@ from tarsus.robot.robot import Robot
 if TYPE_CHECKING:
     from jaxtyping import Bool, Float
 
-__all__ = ["cycle_timing", "foot_workspace", "shifted_limits", "velocity_limits"]
-
-
-# How many points on the polygons' edges, and how many blocks of motions, are examined in one tick.
-_POINTS, _BLOCKS = 600, 3
-
-
-def foot_workspace(
-    robot: Robot, stance: StanceGeometry, *, foot_distance: float
-) -> Incremental[Float[np.ndarray, "legs 16"]]:
-    """Find the sides of each foot's polygon in one stance.
-
-    Parameters
-    ----------
-    robot : Robot
-        A single robot.
-    stance : StanceGeometry
-        The body and the rest footholds.
-    foot_distance : float
-        Least distance between two feet [m].
-
-    Returns
-    -------
-    array, shape (legs, 16)
-        The sides, as of `FootWorkspaceSearch`.
-    """
-    search = FootWorkspaceSearch(robot, stance, foot_distance=foot_distance)
-    search.sample_inner()
-    yield
-    search.sample_outer()
-    yield
-    search.refine()
-    yield
-    examined = 0
-    for _ in range(PASSES):
-        examined += search.edge_points
-        if search.test_edge():
-            yield
-            search.sample_edge()
-            examined = _POINTS
-        if not search.move_inwards():
-            break
-        if examined + search.edge_points > _POINTS:
-            yield
-            examined = 0
-    if examined + search.edge_points > _POINTS:
-        yield
-    return search.bounds
+__all__ = ["shifted_limits", "velocity_limits"]
 
 
 def velocity_limits(
@@ -102,7 +54,8 @@ def velocity_limits(
         sides = yield from foot_workspace(robot, stance, foot_distance=foot_distance)
         centre, shift = check.centre_of_mass(stance, sides)
         yield
-        found = stance_limits(check, stance, sides, check.safe_fraction(stance, sides, centre, shift))
+        fraction = safe_fraction(sets, sides, stance.rest, centre, margin=check.least_margin, shift=shift)
+        found = _limits_in(check, stance, sides, fraction)
         limits = found if limits is None else limits.intersection(found)
         yield
     assert limits is not None  # there is at least one stance
@@ -127,7 +80,7 @@ def shifted_limits(
     """
     everywhere = StabilityCheck(robot, np.ones((1, robot.legs), dtype=bool))
     sides = yield from foot_workspace(robot, stance, foot_distance=foot_distance)
-    limits = stance_limits(everywhere, stance, sides, 1.0)
+    limits = _limits_in(everywhere, stance, sides, 1.0)
     centre, _ = everywhere.centre_of_mass(stance, sides)
     yield
     coefficients = stance_shift(gait, stance, centre, max(float(limits.margins.min()), 0.0))
@@ -135,41 +88,29 @@ def shifted_limits(
     for displacement in shift_extremes(coefficients).tolist():
         stand = displaced(stance, displacement)
         sides = yield from foot_workspace(robot, stand, foot_distance=foot_distance)
-        limits = limits.intersection(stance_limits(everywhere, stand, sides, 1.0))
+        limits = limits.intersection(_limits_in(everywhere, stand, sides, 1.0))
         yield
     # Longer polygons would have to shrink more for stability, in their short directions too.
     around = (NORMALS_CONJUGATE * stance.rest[:, None]).real + max(float(limits.margins.min()), 0.0)
     sides, fraction = np.minimum(limits.bounds, around), 1.0
     for phase, down in zip(*support_phases(gait), strict=True):
         check, stand = StabilityCheck(robot, down[None]), displaced(stance, complex(shift_at(coefficients, phase)))
-        fraction = min(fraction, check.safe_fraction(stand, sides, *check.centre_of_mass(stand, sides)))
+        centre, shift = check.centre_of_mass(stand, sides)
+        safe = safe_fraction(down[None], sides, stand.rest, centre, margin=check.least_margin, shift=shift)
+        fraction = min(fraction, safe)
         yield
-    return dataclasses.replace(stance_limits(everywhere, stance, sides, fraction), shift=coefficients)
+    return dataclasses.replace(_limits_in(everywhere, stance, sides, fraction), shift=coefficients)
 
 
-def cycle_timing(
-    robot: Robot,
-    gait: Gait,
-    stance: StanceGeometry,
-    limits: VelocityLimits,
-    *,
-    speed: Float[np.ndarray, "..."],
-    acceleration: Float[np.ndarray, "..."],
-    cycle_time: float | None = None,
-) -> Incremental[CycleTiming]:
-    """Find the cycle time that the joints can follow.
-
-    Parameters
-    ----------
-    robot, gait, stance, limits, speed, acceleration
-        As for `CycleTimingSearch`.
-    cycle_time : float, optional
-        Commanded duration of a cycle [s]; left out, the one of the fastest walk.
-    """
-    search = CycleTimingSearch(robot, gait, stance, limits, speed=speed, acceleration=acceleration)
-    for block in range(search.blocks):
-        search.examine(block)
-        # The first and the last stage also contain other work.
-        if block % _BLOCKS == 0:
-            yield
-    return search.timing(cycle_time)
+def _limits_in(
+    check: StabilityCheck, stance: StanceGeometry, sides: Float[np.ndarray, "legs 16"], fraction: float
+) -> VelocityLimits:
+    """Return the limits in one stance, for a fraction of the polygons in which no support tips over."""
+    at_rest = (NORMALS_CONJUGATE * stance.rest[:, None]).real
+    free = sides - at_rest
+    free = np.where(free > 0, free * fraction, free)
+    # With the centre of mass outside a support polygon, no step is safe.
+    free = free if fraction > 0 else np.minimum(free, -1e-3)
+    bounds = at_rest + free
+    bounds[check.excluded], free[check.excluded] = np.inf, np.inf
+    return VelocityLimits(bounds, free, stance.rest, fraction > 0)
