@@ -9,9 +9,9 @@ import numpy as np
 
 from tarsus.control.control_output import ControlOutput
 from tarsus.control.readings import SensorReadings
-from tarsus.control.sensing.foot_force import balanced_forces
 from tarsus.kinematics.mass import STANDARD_GRAVITY, total_mass
 from tarsus.kinematics.pose import Pose
+from tarsus.load.foot_force import balanced_forces
 from tarsus.representation import represented
 from tarsus.robot.robot import Robot
 

@@ -9,8 +9,8 @@ import numpy as np
 
 from tarsus.control.pose.admittance import Admittance, AdmittanceFilter
 from tarsus.control.readings import ValidReadings, Vector
-from tarsus.control.sensing.foot_force import FootForceEstimator, balanced_forces
 from tarsus.kinematics.mass import STANDARD_GRAVITY, total_mass
+from tarsus.load.foot_force import FootForceEstimator, balanced_forces
 from tarsus.robot.robot import Robot
 
 if TYPE_CHECKING:

@@ -1,4 +1,4 @@
-"""Foot forces: estimated from joint torques, and expected in static equilibrium.
+"""Forces on the feet of one robot at one time, in plain floats: from joint torques, and in static equilibrium.
 
 Joint torques tau balance a leg's weight w and the force f of the ground on its foot: ``tau + w + J^T f = 0``, so
 ``f = -J^-T (tau + w)``. In the vertical plane of the leg, with r outward, t sideways (to the left, seen outward) and
@@ -13,22 +13,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TypeAlias
 
 import numpy as np
 
-from tarsus.arrays import Array, as_floats, require_finite
-from tarsus.control.readings import Vector
 from tarsus.errors import InputError
-from tarsus.kinematics.leg import checked_angles
 from tarsus.kinematics.mass import STANDARD_GRAVITY, point_masses
 from tarsus.kinematics.planar_moments import PlanarMoments
 from tarsus.robot.robot import Robot
 
-if TYPE_CHECKING:
-    from jaxtyping import Float
+__all__ = ["FootForceEstimator", "balanced_forces"]
 
-__all__ = ["FootForceEstimator", "balanced_forces", "foot_forces_from_torques"]
+Vector: TypeAlias = tuple[float, float, float]
 
 # A leg counts as singular where the sine of its tibia angle, or the distance of its foot from the coxa axis over the
 # length of the leg, is below this: errors of the torques would be magnified twentyfold.
@@ -39,6 +35,9 @@ _LEAST_SPREAD = 1e-6
 
 class FootForceEstimator:
     """Estimates the forces on the feet of one robot from its joint torques.
+
+    Quasi-static: the inertia of an accelerating leg appears as a force on its foot, so the result is meaningless for
+    swinging feet.
 
     Parameters
     ----------
@@ -114,45 +113,6 @@ def _foot_force(leg: Sequence[float], q: Sequence[float], tau: Sequence[float], 
 
 def _weight_moment(weight: float, r: float, z: float, up_r: float, up_z: float) -> float:
     return weight * (r * up_z - z * up_r)
-
-
-def foot_forces_from_torques(
-    robot: Robot, angles: Float[Array, "legs 3"], torques: Float[Array, "legs 3"], *, up: Vector = (0.0, 0.0, 1.0)
-) -> tuple[Vector | None, ...]:
-    """Return the forces of the ground on the feet, from the joint torques; None for a leg that is singular.
-
-    Quasi-static: the inertia of an accelerating leg appears as a force on its foot, so the result is meaningless for
-    swinging feet. `FootForceEstimator` is faster for many states of one robot.
-
-    Parameters
-    ----------
-    robot : Robot
-        One robot. Without masses in its file, its links count as massless.
-    angles : array, shape (legs, 3)
-        Joint angles [rad].
-    torques : array, shape (legs, 3)
-        Torques exerted by the servos [N m].
-    up : (x, y, z)
-        Unit vector opposite to gravity, in B.
-
-    Returns
-    -------
-    tuple of ((x, y, z) or None)
-        Forces of the ground on the feet in B [N].
-
-    Raises
-    ------
-    InputError
-        If the robot is a batch of designs, a shape is wrong, or a value is not finite.
-    """
-    estimator = FootForceEstimator(robot)
-    angles = checked_angles(robot, angles)[1]
-    torques = as_floats(np, torques, name="torques")
-    require_finite("torques", torques)
-    for name, values in (("angles", angles), ("torques", torques)):
-        if values.shape != (robot.legs, 3):
-            raise InputError(f"{name} has shape {values.shape}; expected ({robot.legs}, 3)")
-    return estimator.forces(angles.tolist(), torques.tolist(), up)
 
 
 def balanced_forces(
