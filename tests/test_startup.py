@@ -9,7 +9,6 @@ from hypothesis import Phase, given, settings
 from hypothesis import strategies as st
 
 from gait_robots import PRESETS, preset
-from tarsus.control.sequence.sequence_limits import sequence_limits
 from tarsus.control.startup.folded_pose import belly_depth, folded_pose, underside_points
 from tarsus.control.startup.foothold_change import change_footholds
 from tarsus.control.startup.foothold_stations import foothold_stations
@@ -25,6 +24,7 @@ from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.rest import resting_pose
 from tarsus.kinematics.stability import stability_margin
 from tarsus.kinematics.stance import default_body_height, default_stance, default_swing_height
+from tarsus.robot.joint_limits import joint_limits
 from tarsus.robot.robot import stack_robots
 
 _DT = 0.004
@@ -352,7 +352,7 @@ def test_a_height_out_of_all_reach_is_reported():
 
 def test_the_error_says_if_no_lower_height_works():
     robot = preset("strider")
-    builder = initial_state(robot, folded_pose(robot), sequence_limits(robot))
+    builder = initial_state(robot, folded_pose(robot), joint_limits(robot))
     feet = default_stance(robot, 0.11) * [2, 2, 1]
     with pytest.raises(UnreachableError, match=r"raising the body to 110.0 mm: .*; no lower body height works either"):
         raise_body(builder, feet, stance_angles(robot), swing_height=10.0, margin=0.01)
@@ -360,7 +360,7 @@ def test_the_error_says_if_no_lower_height_works():
 
 def test_with_three_feet_on_the_ground_none_is_lifted():
     robot = preset("strider")
-    builder = initial_state(robot, stance_angles(robot), sequence_limits(robot))
+    builder = initial_state(robot, stance_angles(robot), joint_limits(robot))
     for leg in (0, 2, 4):
         builder.unload(leg)
     turned = stance_angles(robot) + 0.1 * np.array([[0], [1], [0], [1], [0], [1]])
@@ -371,14 +371,14 @@ def test_with_three_feet_on_the_ground_none_is_lifted():
 def test_a_final_stance_with_other_angles_is_rejected():
     robot = preset("strider")
     stance = stance_angles(robot)
-    builder = initial_state(robot, stance, sequence_limits(robot))
+    builder = initial_state(robot, stance, joint_limits(robot))
     with pytest.raises(UnreachableError, match=r"final joint angles differ from those of the stance by 0\.[0-9]+ deg"):
         raise_body(builder, default_stance(robot, swing_height=0.03), stance - 1e-5, swing_height=0.03, margin=0.01)
 
 
 def test_an_unloaded_foot_is_not_dragged():
     robot = preset("strider")
-    builder = initial_state(robot, stance_angles(robot), sequence_limits(robot))
+    builder = initial_state(robot, stance_angles(robot), joint_limits(robot))
     builder.unload(0)
     aside = Pose(builder.body.rotation, builder.body.position + np.array([0.02, 0.0, 0.001]))
     with pytest.raises(UnreachableError, match=r"foot of leg front left would drag .* rises by 1.0 mm"):

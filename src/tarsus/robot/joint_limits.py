@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from tarsus.arrays import Array
+from tarsus.errors import InputError
 from tarsus.robot.robot import Robot
 
 if TYPE_CHECKING:
@@ -46,19 +48,48 @@ def servo_speeds(robot: Robot) -> list[list[float | None]]:
     return [[(servo.no_load_speed or None) if servo else None for servo in row] for row in robot.servos]
 
 
-def joint_limits(robot: Robot, speed: float | None = None, acceleration: float | None = None) -> JointLimits:
+def joint_limits(
+    robot: Robot,
+    speed: Float[Array, "..."] | None = None,
+    acceleration: Float[Array, "..."] | None = None,
+    *,
+    share: float = 1.0,
+) -> JointLimits:
     """Return the greatest speed and acceleration of each joint.
 
     Parameters
     ----------
     robot : Robot
         A single robot.
-    speed : float, optional
-        For all joints [rad/s]. Default: the no-load speed of each servo, 5 rad/s where that is unknown.
-    acceleration : float, optional
-        For all joints [rad/s^2]. Default: that which reaches the speed limit in 0.05 s.
+    speed : array, optional
+        One number for all joints, one for each joint of a leg, shape (3,), or one for each joint, shape (legs, 3)
+        [rad/s]. Default: the no-load speed of each servo, 5 rad/s where that is unknown, times `share`.
+    acceleration : array, optional
+        In the same shapes [rad/s^2]. Default: that which reaches the speed limit in 0.05 s.
+    share : float
+        Share of the servos' no-load speed that is used by default.
+
+    Raises
+    ------
+    InputError
+        If a shape is wrong, or a number is not finite or not greater than 0.
     """
-    known = [[found or UNKNOWN_SPEED for found in row] for row in servo_speeds(robot)]
-    speeds = np.array(known) if speed is None else np.full((robot.legs, 3), float(speed))
-    accelerations = speeds / STOPPING_TIME if acceleration is None else np.full((robot.legs, 3), float(acceleration))
-    return JointLimits(speeds, accelerations)
+    if speed is None:
+        speed = share * np.array([[found or UNKNOWN_SPEED for found in row] for row in servo_speeds(robot)])
+    speeds = _per_joint("joint_speed", speed, robot.legs)
+    accelerations = speeds / STOPPING_TIME if acceleration is None else acceleration
+    return JointLimits(speeds, _per_joint("joint_acceleration", accelerations, robot.legs))
+
+
+def _per_joint(name: str, values: Float[Array, "..."], legs: int) -> Float[np.ndarray, "legs 3"]:
+    """Return positive numbers as a read-only array, one for each joint."""
+    try:
+        array = np.array(np.broadcast_to(np.asarray(values, dtype=np.float64), (legs, 3)))
+    except (TypeError, ValueError):
+        raise InputError(
+            f"{name} is {values!r:.80}; expected a number or an array of shape (3,) or {(legs, 3)}"
+        ) from None
+    if not (np.isfinite(array).all() and (array > 0).all()):
+        raise InputError(f"{name} contains {array.min():g}; every number must be finite and greater than 0")
+    array.setflags(write=False)
+    return array

@@ -1,7 +1,7 @@
 """Motion sequences: timed motions of the whole robot from rest to rest, and their playback.
 
-The public names are those listed in ``__all__``. `tarsus.control.startup` builds sequences from `stage` and
-`sequence_limits`; everything else is private to the package.
+The public names are those listed in ``__all__``. `tarsus.control.startup` builds sequences from `stage`; everything
+else is private to the package.
 """
 
 from tarsus.control.sequence.player import SequencePlayer

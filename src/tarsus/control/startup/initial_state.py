@@ -20,8 +20,11 @@ from tarsus.robot.robot import Robot
 if TYPE_CHECKING:
     from jaxtyping import Float
 
-__all__ = ["initial_state", "lying_state", "over_feet"]
+__all__ = ["SERVO_SPEED_SHARE", "initial_state", "lying_state", "over_feet"]
 
+
+SERVO_SPEED_SHARE = 0.5
+"""Default joint speed of motion sequences, as a share of the servo's no-load speed."""
 
 # With a greater tilt, the robot has fallen over.
 _MAX_TILT = math.radians(60)

@@ -9,18 +9,18 @@ import numpy as np
 
 from tarsus.arrays import Array
 from tarsus.control.sequence.sequence import MotionSequence
-from tarsus.control.sequence.sequence_limits import sequence_limits
 from tarsus.control.startup.body_targets import BodyTarget, body_targets
 from tarsus.control.startup.builder import SequenceBuilder
 from tarsus.control.startup.folded_pose import belly_depth, folded_pose
 from tarsus.control.startup.foothold_stations import foothold_distances, footholds
-from tarsus.control.startup.initial_state import initial_state, lying_state, over_feet
+from tarsus.control.startup.initial_state import SERVO_SPEED_SHARE, initial_state, lying_state, over_feet
 from tarsus.control.startup.level_body import level_body
 from tarsus.control.startup.raise_body import lower_body, raise_body
 from tarsus.errors import InputError, TarsusError, UnreachableError
 from tarsus.gait.walk_setup import require_number
 from tarsus.kinematics.inverse import inverse_kinematics
 from tarsus.kinematics.stance import default_body_height, default_stance, default_swing_height
+from tarsus.robot.joint_limits import joint_limits
 from tarsus.robot.robot import Robot
 
 if TYPE_CHECKING:
@@ -88,7 +88,8 @@ def stand_up(
             "belly on the ground"
         )
     folded = folded_pose(robot)
-    start = initial_state(over_feet(robot), angles, sequence_limits(robot, joint_speed, joint_acceleration))
+    limits = joint_limits(robot, joint_speed, joint_acceleration, share=SERVO_SPEED_SHARE)
+    start = initial_state(over_feet(robot), angles, limits)
     feet = default_stance(robot, height, swing_height=swing_height)
     stance = inverse_kinematics(robot, feet).require().angles
 
@@ -143,10 +144,10 @@ def sit_down(
         If the robot has fallen over, or would fall over.
     """
     swing_height, margin = _checked(robot, swing_height, margin)
-    joint_limits = sequence_limits(robot, joint_speed, joint_acceleration)
+    limits = joint_limits(robot, joint_speed, joint_acceleration, share=SERVO_SPEED_SHARE)
     if angles is None:
         angles = inverse_kinematics(robot, default_stance(robot, swing_height=swing_height)).require().angles
-    start = initial_state(over_feet(robot), angles, joint_limits)
+    start = initial_state(over_feet(robot), angles, limits)
     feet = footholds(robot, foothold_distances(robot, start.body.inverse() @ start.feet), start.height)
 
     def plan(builder: SequenceBuilder, target: BodyTarget) -> None:
@@ -186,8 +187,8 @@ def fold(
     TarsusError
         If the robot does not lie on its belly.
     """
-    joint_limits = sequence_limits(robot, joint_speed, joint_acceleration)
-    builder = lying_state(over_feet(robot), angles, joint_limits, purpose="folding its legs")
+    limits = joint_limits(robot, joint_speed, joint_acceleration, share=SERVO_SPEED_SHARE)
+    builder = lying_state(over_feet(robot), angles, limits, purpose="folding its legs")
     _fold(builder, folded_pose(robot))
     return builder.sequence(robot)
 

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tarsus.arrays import Array
-from tarsus.control.sequence.sequence_limits import sequence_limits
-from tarsus.control.startup.initial_state import lying_state, over_feet
+from tarsus.control.startup.initial_state import SERVO_SPEED_SHARE, lying_state, over_feet
 from tarsus.control.startup.leg_path import LegFreeSpace
 from tarsus.representation import represented
+from tarsus.robot.joint_limits import joint_limits
 from tarsus.robot.robot import JOINTS, Robot
 
 if TYPE_CHECKING:
@@ -69,7 +69,7 @@ def power_off_order(robot: Robot, angles: Float[Array, "legs 3"]) -> PowerOffOrd
         If the robot does not lie on its belly.
     """
     robot = over_feet(robot)
-    state = lying_state(robot, angles, sequence_limits(robot), purpose="switching its joints off")
+    state = lying_state(robot, angles, joint_limits(robot, share=SERVO_SPEED_SHARE), purpose="switching its joints off")
     drop = np.zeros((robot.legs, 3))
     for leg in range(robot.legs):
         drop[leg, 1:] = _drops(robot, leg, LegFreeSpace.of(robot, leg, state.body), state.angles[leg])

@@ -19,7 +19,7 @@ from tarsus.control.walk.joint_solver import JointSolver
 from tarsus.control.walk.state import GaitState
 from tarsus.control.walk.time_scaling import TimeScaling
 from tarsus.gait.gait import Gait
-from tarsus.gait.walk_setup import WalkSetup, require_number
+from tarsus.gait.walk_setup import WalkSetup
 from tarsus.robot.joint_limits import joint_limits
 from tarsus.robot.robot import Robot
 
@@ -108,9 +108,6 @@ class WalkComponents:
         UnreachableError
             If the robot can't stand and step so.
         """
-        for name, value in (("joint_speed", joint_speed), ("joint_acceleration", joint_acceleration)):
-            if value is not None:
-                require_number(name, value, zero=False)
         setup = WalkSetup.of(
             robot,
             Gait.named(robot.gait.name, legs=robot.legs) if gait is None else gait,
