@@ -17,7 +17,6 @@ import numpy as np
 
 from tarsus.gait.swing import horizontal_profile, vertical_profile
 from tarsus.kinematics.ground import points_in_body
-from tarsus.kinematics.leg import forward_kinematics
 from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.triangle import solve_triangle, to_leg_frame
 from tarsus.representation import represented
@@ -106,57 +105,6 @@ class Stage:
     contacts_end: Bool[np.ndarray, "legs"]
     supports: Float[np.ndarray, "n 3"]
     belly: bool
-
-    @classmethod
-    def hold(
-        cls,
-        name: str,
-        robot: Robot,
-        body: Pose,
-        angles: Float[np.ndarray, "legs 3"],
-        *,
-        contacts: Bool[np.ndarray, "legs"],
-        supports: Float[np.ndarray, "n 3"],
-        belly: bool,
-    ) -> Self:
-        """Return a stage of one second in which nothing moves.
-
-        Parameters
-        ----------
-        name : str
-            Name of the stage.
-        robot : Robot
-            A single robot.
-        body : Pose
-            Pose of B in G.
-        angles : array, shape (legs, 3)
-            Joint angles [rad].
-        contacts : array of bool, shape (legs,)
-            Feet on the ground.
-        supports : array, shape (n, 3)
-            Points in G other than feet that bear load [m].
-        belly : bool
-            Whether the body lies on the ground.
-        """
-        feet: np.ndarray = body @ forward_kinematics(robot, angles)[:, 3]
-        return cls(
-            name=name,
-            robot=robot,
-            duration=1.0,
-            start=body,
-            end=body,
-            pivot=np.zeros(3),
-            angles=angles,
-            angles_end=angles,
-            feet=feet,
-            feet_end=feet,
-            swing_height=0.0,
-            cartesian=np.zeros(robot.legs, dtype=bool),
-            contacts=contacts,
-            contacts_end=contacts,
-            supports=supports,
-            belly=belly,
-        )
 
     def transformed(self, pose: Pose) -> Self:
         """Return the stage moved in G.

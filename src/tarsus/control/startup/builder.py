@@ -102,12 +102,22 @@ class SequenceBuilder:
         name : str
             Name of the stage.
         """
-        return Stage.hold(
-            name,
-            self.robot,
-            self.body,
-            self.angles,
+        feet = self.feet
+        return Stage(
+            name=name,
+            robot=self.robot,
+            duration=1.0,
+            start=self.body,
+            end=self.body,
+            pivot=np.zeros(3),
+            angles=self.angles,
+            angles_end=self.angles,
+            feet=feet,
+            feet_end=feet,
+            swing_height=0.0,
+            cartesian=np.zeros(self.robot.legs, dtype=bool),
             contacts=self.contacts,
+            contacts_end=self.contacts,
             supports=self.supports,
             belly=self.belly,
         )
