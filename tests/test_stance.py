@@ -11,7 +11,14 @@ from hypothesis import strategies as st
 from robots import plain_hexapod, random_robot, robots, seeds
 from tarsus.errors import InputError, UnreachableError
 from tarsus.kinematics.inverse import inverse_kinematics
-from tarsus.kinematics.stance import default_body_height, default_stance, reachable_band, stance_or_nan
+from tarsus.kinematics.stance import (
+    default_body_height,
+    default_stance,
+    foothold_distances,
+    footholds_straight_out,
+    reachable_band,
+    stance_or_nan,
+)
 from tarsus.robot.robot import GaitDefaults, stack_robots
 
 STEPS = 4001
@@ -269,3 +276,11 @@ def test_the_gradient_with_respect_to_a_length_is_the_finite_difference():
 def test_invalid_arguments_are_refused(call, message):
     with pytest.raises(InputError, match=message):
         call(plain_hexapod())
+
+
+@given(robot=robots(), seed=seeds())
+def test_distances_are_those_of_the_footholds_straight_out(robot, seed):
+    distances = np.random.default_rng(seed).uniform(0.05, 0.3, (4, robot.legs))
+    feet = footholds_straight_out(robot, distances, np.linspace(-0.2, 0.0, 4))
+    assert (feet[..., 2] == np.linspace(-0.2, 0.0, 4)[:, None]).all()
+    np.testing.assert_allclose(foothold_distances(robot, feet), distances, rtol=0, atol=1e-9)

@@ -6,18 +6,26 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tarsus.arrays import Array, Namespace, as_floats, is_traced, namespace, require_finite, root, stack_last
+from tarsus.arrays import Array, Namespace, as_array, as_floats, is_traced, namespace, require_finite, root, stack_last
 from tarsus.errors import UnreachableError
 from tarsus.kinematics.nearest import tibia_bend, tibia_branch
 from tarsus.kinematics.reach import ANGLE_TOLERANCE
-from tarsus.kinematics.triangle import direction
+from tarsus.kinematics.triangle import direction, to_leg_frame
 from tarsus.robot.geometry import LegGeometry
 from tarsus.robot.robot import Robot
 
 if TYPE_CHECKING:
     from jaxtyping import Bool, Float
 
-__all__ = ["default_body_height", "default_stance", "default_swing_height", "reachable_band", "stance_or_nan"]
+__all__ = [
+    "default_body_height",
+    "default_stance",
+    "default_swing_height",
+    "foothold_distances",
+    "footholds_straight_out",
+    "reachable_band",
+    "stance_or_nan",
+]
 
 
 def default_body_height(robot: Robot) -> Float[Array, "..."]:
@@ -197,19 +205,62 @@ def stance_or_nan(
     InputError
         If the body height or the swing height is not a finite number.
     """
-    g = robot.geometry
-    xp = namespace(body_height, swing_height, *g)
-    g = g.to(xp)
+    xp = namespace(body_height, swing_height, *robot.geometry)
     z, rise = -as_floats(xp, body_height, name="body_height"), as_floats(xp, swing_height, name="swing_height")
     require_finite("body_height", -z)
     require_finite("swing_height", rise)
-    middle = _middle(xp, robot, z, rise)
-    zero = xp.zeros_like(middle)
+    return footholds_straight_out(robot, _middle(xp, robot, z, rise), z)
+
+
+def footholds_straight_out(
+    robot: Robot, distances: Float[Array, "*#batch legs"], height: Float[Array, "*#batch"]
+) -> Float[Array, "*batch legs 3"]:
+    """Return the footholds straight out from the coxa axes: with the coxa at 0, or at the limit nearest to 0.
+
+    Parameters
+    ----------
+    robot : Robot
+        The robot, or a batch of designs.
+    distances : array, shape (..., legs)
+        Distances as of `foothold_distances` [m].
+    height : array, shape (...)
+        Height of the feet in B [m].
+
+    Returns
+    -------
+    array, shape (..., legs, 3)
+        Footholds in B [m].
+    """
+    g = robot.geometry
+    xp = namespace(distances, height, *g)
+    g = g.to(xp)
+    zero = xp.zeros_like(distances)
     coxa = xp.minimum(xp.maximum(zero, g.coxa_lower), g.coxa_upper)
-    out_x, out_y = middle * xp.cos(coxa) - g.side * xp.sin(coxa), middle * xp.sin(coxa) + g.side * xp.cos(coxa)
+    out_x, out_y = distances * xp.cos(coxa) - g.side * xp.sin(coxa), distances * xp.sin(coxa) + g.side * xp.cos(coxa)
     x = g.mount_x + g.cos_yaw * out_x - g.sin_yaw * out_y
     y = g.mount_y + g.sin_yaw * out_x + g.cos_yaw * out_y
-    return stack_last(xp, (x, y, z[..., None] + zero))
+    return stack_last(xp, (x, y, as_array(xp, height)[..., None] + zero))
+
+
+def foothold_distances(robot: Robot, feet: Float[Array, "*#batch legs 3"]) -> Float[Array, "*batch legs"]:
+    """Return the distance of each foot from its coxa axis along the plane of the leg.
+
+    Parameters
+    ----------
+    robot : Robot
+        The robot, or a batch of designs.
+    feet : array, shape (..., legs, 3)
+        Feet in B [m].
+
+    Returns
+    -------
+    array, shape (..., legs)
+        Distances [m].
+    """
+    xp = namespace(feet, *robot.geometry)
+    g = robot.geometry.to(xp)
+    x, y, _ = to_leg_frame(g, feet[..., 0], feet[..., 1], feet[..., 2])
+    return root(xp, x * x + y * y - g.side2)
 
 
 def _middle(

@@ -15,14 +15,13 @@ import numpy as np
 
 from tarsus.control.startup.folded_pose import belly_depth
 from tarsus.errors import UnreachableError
-from tarsus.kinematics.stance import reachable_band
-from tarsus.kinematics.triangle import to_leg_frame
+from tarsus.kinematics.stance import foothold_distances, reachable_band
 from tarsus.robot.robot import Robot
 
 if TYPE_CHECKING:
     from jaxtyping import Float
 
-__all__ = ["FootholdStation", "foothold_distances", "foothold_stations", "footholds"]
+__all__ = ["FootholdStation", "foothold_stations"]
 
 
 # Spacing of the body heights that are evaluated [m].
@@ -43,7 +42,7 @@ class FootholdStation(NamedTuple):
     height : float
         Body height [m].
     distances : array, shape (legs,)
-        Footholds as `foothold_distances` [m].
+        Distance of each foothold from its coxa axis along the plane of the leg [m].
     """
 
     height: float
@@ -168,49 +167,3 @@ def _reason(robot: Robot, bands: _Bands, distances: Float[np.ndarray, "legs"], i
         f"{text} {distances[leg] * 1000:.1f} mm from its coxa axis: {excess[leg] * 1000:.1f} mm too {side}, it reaches "
         f"from {near:.1f} to {far:.1f} mm; no intermediate footholds lead past this height"
     )
-
-
-def foothold_distances(robot: Robot, feet: Float[np.ndarray, "legs 3"]) -> Float[np.ndarray, "legs"]:
-    """Return the distance of each foot from its coxa axis along the plane of the leg.
-
-    Parameters
-    ----------
-    robot : Robot
-        A single robot.
-    feet : array, shape (legs, 3)
-        Feet in B [m].
-
-    Returns
-    -------
-    array, shape (legs,)
-        Distances [m].
-    """
-    g = robot.geometry
-    x, y, _ = to_leg_frame(g, feet[:, 0], feet[:, 1], feet[:, 2])
-    distances: np.ndarray = np.sqrt(np.maximum(x * x + y * y - g.side2, 0.0))
-    return distances
-
-
-def footholds(robot: Robot, distances: Float[np.ndarray, "legs"], height: float) -> Float[np.ndarray, "legs 3"]:
-    """Return the footholds straight out from the coxa axes.
-
-    Parameters
-    ----------
-    robot : Robot
-        A single robot.
-    distances : array, shape (legs,)
-        Distances as `foothold_distances` [m].
-    height : float
-        Body height [m].
-
-    Returns
-    -------
-    array, shape (legs, 3)
-        Footholds in B [m].
-    """
-    g = robot.geometry
-    coxa = np.clip(0.0, g.coxa_lower, g.coxa_upper)
-    x = distances * np.cos(coxa) - g.side * np.sin(coxa)
-    y = distances * np.sin(coxa) + g.side * np.cos(coxa)
-    horizontal = (g.mount_x + g.cos_yaw * x - g.sin_yaw * y, g.mount_y + g.sin_yaw * x + g.cos_yaw * y)
-    return np.stack([*horizontal, np.full_like(x, -height)], axis=-1)

@@ -12,14 +12,19 @@ from tarsus.control.sequence.sequence import MotionSequence
 from tarsus.control.startup.body_targets import BodyTarget, body_targets
 from tarsus.control.startup.builder import SequenceBuilder
 from tarsus.control.startup.folded_pose import belly_depth, folded_pose
-from tarsus.control.startup.foothold_stations import foothold_distances, footholds
 from tarsus.control.startup.initial_state import SERVO_SPEED_SHARE, initial_state, lying_state, over_feet
 from tarsus.control.startup.level_body import level_body
 from tarsus.control.startup.raise_body import lower_body, raise_body
 from tarsus.errors import InputError, TarsusError, UnreachableError
 from tarsus.gait.walk_setup import require_number
 from tarsus.kinematics.inverse import inverse_kinematics
-from tarsus.kinematics.stance import default_body_height, default_stance, default_swing_height
+from tarsus.kinematics.stance import (
+    default_body_height,
+    default_stance,
+    default_swing_height,
+    foothold_distances,
+    footholds_straight_out,
+)
 from tarsus.robot.joint_limits import joint_limits
 from tarsus.robot.robot import Robot
 
@@ -148,7 +153,8 @@ def sit_down(
     if angles is None:
         angles = inverse_kinematics(robot, default_stance(robot, swing_height=swing_height)).require().angles
     start = initial_state(over_feet(robot), angles, limits)
-    feet = footholds(robot, foothold_distances(robot, start.body.inverse() @ start.feet), start.height)
+    distances = foothold_distances(robot, start.body.inverse() @ start.feet)
+    feet = footholds_straight_out(robot, distances, -start.height)
 
     def plan(builder: SequenceBuilder, target: BodyTarget) -> None:
         level_body(builder, target, feet, margin=margin)

@@ -11,16 +11,11 @@ import numpy as np
 from tarsus.control.startup.builder import SequenceBuilder
 from tarsus.control.startup.folded_pose import belly_depth
 from tarsus.control.startup.foothold_change import change_footholds
-from tarsus.control.startup.foothold_stations import (
-    FootholdStation,
-    foothold_distances,
-    foothold_stations,
-    footholds,
-)
+from tarsus.control.startup.foothold_stations import FootholdStation, foothold_stations
 from tarsus.errors import UnreachableError
 from tarsus.kinematics.inverse import inverse_kinematics
 from tarsus.kinematics.pose import Pose
-from tarsus.kinematics.stance import default_stance
+from tarsus.kinematics.stance import default_stance, foothold_distances, footholds_straight_out
 
 if TYPE_CHECKING:
     from jaxtyping import Float
@@ -66,7 +61,7 @@ def raise_body(
     stations = _stations(builder, feet, height, swing_height)
     for station, next_height in zip(stations, [*(s.height for s in stations[1:]), height], strict=True):
         last = station is stations[-1]
-        spots = feet * [1, 1, 0] if last else footholds(builder.robot, station.distances, 0.0)
+        spots = feet * [1, 1, 0] if last else footholds_straight_out(builder.robot, station.distances, 0.0)
         spots = spots - [0, 0, builder.height]
         exact = last and builder.height == height
         angles = stance if exact else inverse_kinematics(builder.robot, spots).require().angles
@@ -124,10 +119,10 @@ def lower_body(builder: SequenceBuilder, *, swing_height: float, margin: float) 
     """
     robot, lowest = builder.robot, belly_depth(builder.robot)
     distances = foothold_distances(robot, builder.body.inverse() @ builder.feet)
-    feet = footholds(robot, distances, builder.height)
+    feet = footholds_straight_out(robot, distances, -builder.height)
     stations = foothold_stations(robot, lowest, builder.height, feet, swing_height=swing_height)
     for station in stations[::-1]:
-        spots = footholds(robot, station.distances, builder.height)
+        spots = footholds_straight_out(robot, station.distances, -builder.height)
         angles = inverse_kinematics(robot, spots).require().angles
         change_footholds(builder, angles, swing_height=swing_height, margin=margin)
         builder.move_body("lower body", _at_height(builder.body, station.height))
