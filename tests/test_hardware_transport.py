@@ -13,6 +13,7 @@ from tarsus import hardware
 from tarsus.errors import NoAnswerError, PortError
 from tarsus.hardware.emulation.__main__ import main
 from tarsus.hardware.transport.i2c import SmbusTransport
+from tarsus.hardware.transport.served import ServedTransport
 
 IDS = range(1, 19)
 
@@ -52,6 +53,36 @@ def test_a_pseudo_terminal_takes_as_long_as_the_wire_would():
         bus.read_positions((1, 2, 3)).require()
         # At least that; a busy machine takes longer.
         assert bus._transport.now() - begin >= 0.99 * bus.timing((1, 2, 3)).positions
+
+
+class Busy:
+    """An emulated device that a busy computer gives its turn late."""
+
+    def __init__(self, device):
+        self._device = device
+
+    def __getattr__(self, name):
+        return getattr(self._device, name)
+
+    def receive(self, data, now):
+        time.sleep(0.06)
+        return self._device.receive(data, now)
+
+
+def test_emulated_servos_whose_turn_is_late_are_not_taken_for_silent():
+    device = hardware.emulate("feetech-sts", IDS)
+    with hardware.PtyServer(Busy(device)) as server:
+        bus = hardware.bus_over("feetech-sts", ServedTransport(server, 1_000_000), timeout=0.02)
+        bus.write_goals(dict.fromkeys(IDS, 2048.0))
+        assert bus.read_positions(IDS).require() == dict.fromkeys(IDS, 2048.0)
+        device.faults.missing = {3}
+        answers = bus.read_positions((2, 3))
+        assert (set(answers.values), [error.id for error in answers.errors]) == ({2}, [3])
+        device.faults.late = {4: 0.5}
+        assert [error.id for error in bus.read_positions((4,)).errors] == [4]
+        device.faults.unplugged = True
+        with pytest.raises(PortError):
+            often(lambda: bus.read_positions((1,)))
 
 
 def test_a_port_that_does_not_open_is_explained(tmp_path):
@@ -195,8 +226,8 @@ def test_when_the_driving_process_is_killed_the_servos_watchdog_stops_them():
             assert process.stdout.readline() == "driven\n"
             process.kill()
         with server.lock:
-            stopped = device.positions(time.monotonic() + 0.6)
-            later = device.positions(time.monotonic() + 5.0)
+            stopped = device.positions(time.perf_counter() + 0.6)
+            later = device.positions(time.perf_counter() + 5.0)
     assert all(memory.get("watchdog") == -1 for memory in device.memory.values())
     assert later == stopped
     assert all(2048 < position < 2500 for position in later.values())

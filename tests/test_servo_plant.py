@@ -36,12 +36,21 @@ class Watched:
         self._bus.write_goals(goals)
 
 
+class BusyClock(ManualClock):
+    """A clock of a process that other programs keep from running, so that each wait ends late."""
+
+    late = 0.0
+
+    def sleep(self, seconds):
+        super().sleep(seconds + (self.late if seconds > 0 else 0.0))
+
+
 class Rig:
     """A plant on emulated servos, in their own time."""
 
     def __init__(self, kind="feetech-sts", *, calibration=None, away=0.0, start="standing", timeout=None, **more):
         self.calibration = calibration or nominal_calibration(STRIDER, "strider", kind=kind)
-        self.clock = ManualClock()
+        self.clock = BusyClock()
         self.ids = [joint.number for row in self.calibration.joints for joint in row]
         baud = {} if kind == "pca9685" else {"baud": max(BUSES[kind].baud, 500_000)}
         bus, self.line = emulated_bus(kind, self.ids, clock=self.clock, **baud)
@@ -452,3 +461,28 @@ def test_readings_have_what_every_servo_told():
     assert readings.age["joint_angles"] < 0.005
     assert rig.plant.greatest_rate > 200
     rig.plant.stop()
+
+
+def test_a_process_that_is_kept_from_running_does_not_take_servos_for_silent():
+    rig = Rig()
+    rig.plant.start(rig.controller.output)
+    rig.stand(100)
+    rig.line.faults.missing, rig.clock.late = set(rig.ids), 0.3
+    rig.stand(2)
+    rig.line.faults.missing, rig.clock.late = set(), 0.0
+    rig.stand(300)
+    assert rig.plant.fault is None
+    # Servos that are silent while it runs are noticed as ever.
+    rig.line.faults.missing, silent = set(rig.ids), rig.clock.now()
+    with pytest.raises(ServoFaultError, match="all 18 servos on main fell silent at once"):
+        rig.stand(20)
+    assert rig.clock.now() - silent < 0.1
+
+
+def test_servos_that_stay_silent_on_a_busy_computer_are_noticed_in_the_time_in_which_it_runs():
+    rig = Rig()
+    rig.plant.start(rig.controller.output)
+    rig.stand(100)
+    rig.line.faults.missing, rig.clock.late = {rig.ids[4]}, 0.3
+    with pytest.raises(ServoFaultError, match=r"none for \d+ ms, beside \d+ ms in which this computer did not run"):
+        rig.stand(40)

@@ -166,12 +166,22 @@ class BusError(TarsusError):
         What should have come, and what came.
     remedy : str
         What would work.
+    late : float
+        How late this computer itself was when it looked for the answer, as other programs kept it from running [s].
     """
 
     def __init__(
-        self, bus: str, port: str, *, expected: str, received: str, remedy: str, id: int | None = None
+        self,
+        bus: str,
+        port: str,
+        *,
+        expected: str,
+        received: str,
+        remedy: str,
+        id: int | None = None,
+        late: float = 0.0,
     ) -> None:
-        self.bus, self.port, self.id = bus, port, id
+        self.bus, self.port, self.id, self.late = bus, port, id, late
         self.expected, self.received, self.remedy = expected, received, remedy
         where = f"{bus} on {port}" + (f", id {id}" if id is not None else "")
         super().__init__(f"{where}: expected {expected}, received {received}. {remedy}")

@@ -26,13 +26,12 @@ from tarsus.gait.gait import Gait
 from tarsus.hardware.calibration.blank import nominal_calibration
 from tarsus.hardware.calibration.bus_commands import BUS_COMMANDS, usual_bus
 from tarsus.hardware.calibration.calibration import Calibration
-from tarsus.hardware.live.emulated_robot import PATIENCE, EmulatedRobot
+from tarsus.hardware.live.emulated_robot import EmulatedRobot
 from tarsus.hardware.live.gamepad import Gamepad
 from tarsus.hardware.live.keyboard import KEYS, Keyboard
 from tarsus.hardware.live.live_commands import InputDevice, LiveCommands
 from tarsus.hardware.live.supervision import Rising, Supervised
 from tarsus.hardware.plant.servo_plant import ServoPlant
-from tarsus.hardware.plant.settings import PlantSettings
 from tarsus.hardware.plant.tick_record import TickRecord
 from tarsus.hardware.telemetry.log import TelemetryLog
 from tarsus.robot.file import load_robot
@@ -49,8 +48,6 @@ _RATE, _FASTEST = 100.0, 500.0
 _SHARE = 0.8
 # Greatest speeds for keys and gamepads [m/s, m/s, rad/s].
 _SPEEDS = (0.06, 0.05, 0.4)
-# Emulated servos share the computer with everything else, which may keep them from answering for long.
-_PATIENT = PlantSettings(timeout=PATIENCE, silence=0.5)
 _REAL, _EMULATED, _SIMULATED = "real", "emulated", "simulated"
 
 
@@ -101,7 +98,6 @@ def perform(robot: str, options: dict[str, Any], *, out: Path | None, quiet: boo
             calibration.limited_robot,
             calibration,
             buses=buses,
-            settings=_PATIENT if where == _EMULATED else None,
             observer=line.observer(_each_of(observers)),
         )
         line.plant = plant

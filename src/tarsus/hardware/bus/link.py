@@ -100,19 +100,21 @@ class Link:
         deadline = self.transport.now() + most + len(ids) * self._delay + self.timeout
         exchange = Exchange(frame, ids, count, sent=sent, belongs=belongs)
         received = rest = b""
+        late = 0.0
         while not exchange.complete:
             data = self.transport.read(deadline - self.transport.now())
             scanned = self._scan(rest + data, ended=not data)
             received, rest = received + data, scanned.rest
             exchange.take(scanned)
             if not data:
+                late = max(self.transport.now() - deadline, 0.0)
                 break
         now = self.transport.now()
         self._awaited.update(dict.fromkeys(set(ids) - exchange.found.keys(), now))
         self._doubtful = bool(exchange.noise or exchange.foreign or exchange.twice or rest)
         if exchange.noise or rest:
             exchange.withdraw(self._scan(received + self.transport.discard(), ended=True).suspect)
-        errors = tuple(self._error(id, count, received, exchange) for id in exchange.refused)
+        errors = tuple(self._error(id, count, received, exchange, late) for id in exchange.refused)
         return Answers({id: exchange.found[id] for id in ids if id not in exchange.refused}, errors)
 
     def ask_board(self, frame: bytes, *, size: int | None = None, end: bytes = b"") -> bytes:
@@ -173,7 +175,7 @@ class Link:
             remedy="Check that this is the board's port and baud rate, and that the board has its supply.",
         )
 
-    def _error(self, id: int, count: int, received: bytes, exchange: Exchange) -> BusError:
+    def _error(self, id: int, count: int, received: bytes, exchange: Exchange, late: float) -> BusError:
         """Return why a servo has no answer that is believed."""
         expected = f"an answer with {count} byte{'s' * (count != 1)} of data"
         kind: type[BusError] = CorruptAnswerError
@@ -186,7 +188,7 @@ class Link:
             came = "only the echo of the request" if exchange.echo else "nothing"
             came = f"{hexadecimal(exchange.foreign)}, which answers something else," if exchange.foreign else came
             text = f"{came} within {self.timeout * 1e3:.0f} ms"
-        return kind(self.bus, self.transport.port, id=id, expected=expected, received=text, remedy=remedy)
+        return kind(self.bus, self.transport.port, id=id, expected=expected, received=text, remedy=remedy, late=late)
 
     def _settle(self, ids: Collection[int] | None = None) -> None:
         """Empty the input; wait for silence if the line is in doubt, or if answers of the same servos may be late."""

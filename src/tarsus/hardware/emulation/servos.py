@@ -66,7 +66,7 @@ class EmulatedServos:
         Parameters
         ----------
         now : float
-            The time [s], on the transport's clock: behind a pseudo-terminal that of `time.monotonic`.
+            The time [s], on the transport's clock: behind a pseudo-terminal that of `time.perf_counter`.
         """
         before = now if self._time is None else self._time
         # In steps while a watchdog may act, so that it acts when it should.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import os
 from collections.abc import Mapping
 from functools import cached_property
 from types import TracebackType
@@ -12,29 +13,30 @@ import numpy as np
 
 from tarsus.hardware.bus.dialect import SERIES
 from tarsus.hardware.bus.protocol import Bus
-from tarsus.hardware.bus.registry import bus_kind, bus_over, open_bus
+from tarsus.hardware.bus.registry import bus_kind, bus_over
 from tarsus.hardware.calibration.calibration import Calibration
 from tarsus.hardware.calibration.parts import BusSettings
 from tarsus.hardware.emulation.registry import emulate
 from tarsus.hardware.live.emulated_feet import EmulatedFeet
 from tarsus.hardware.transport.clock import SystemClock
-from tarsus.hardware.transport.memory import MemoryI2c
+from tarsus.hardware.transport.memory import MemoryI2c, MemoryTransport
 from tarsus.hardware.transport.pty import PtyServer
+from tarsus.hardware.transport.served import ServedTransport
 
 if TYPE_CHECKING:
     from jaxtyping import Float
 
-__all__ = ["PATIENCE", "EmulatedRobot"]
+__all__ = ["EmulatedRobot"]
 
-PATIENCE = 0.2
-"""Longest time until an answer of emulated servos begins [s]."""
-
+_PSEUDO_TERMINALS = hasattr(os, "openpty")
 # Servos whose rate can be set get one at which 18 of them keep up with 100 ticks a second.
 _FAST = 1_000_000
 
 
 class EmulatedRobot:
     """The servos of a calibration, emulated at the level of bytes; serial ones behind pseudo-terminals.
+
+    Where the system has no pseudo-terminals the same bytes travel in memory.
 
     Parameters
     ----------
@@ -72,8 +74,10 @@ class EmulatedRobot:
                 line.servos[number].place(command)
             self.lines[settings.name] = line
             if serial:
-                self._servers[settings.name] = PtyServer(line)
-                port = self._servers[settings.name].port
+                port = f"emulated {settings.name}"
+                if _PSEUDO_TERMINALS:
+                    self._servers[settings.name] = PtyServer(line)
+                    port = self._servers[settings.name].port
             else:
                 port = "emulated I2C"
                 self._i2c[settings.name] = bus_over(settings.kind, MemoryI2c(line, SystemClock()))
@@ -88,7 +92,7 @@ class EmulatedRobot:
         return {each.name: self.open(each) for each in self.calibration.buses}
 
     def open(self, settings: BusSettings, baud: int | None = None) -> Bus:
-        """Return a bus of the robot that waits long for answers: emulated servos share the computer with all else.
+        """Return a bus of the robot.
 
         Parameters
         ----------
@@ -99,7 +103,13 @@ class EmulatedRobot:
         """
         if settings.name in self._i2c:
             return self._i2c[settings.name]
-        return open_bus(settings.kind, settings.port, baud=baud or settings.baud, timeout=PATIENCE)
+        rate = baud or settings.baud or bus_kind(settings.kind).baud
+        transport: ServedTransport | MemoryTransport
+        if settings.name in self._servers:
+            transport = ServedTransport(self._servers[settings.name], rate)
+        else:
+            transport = MemoryTransport(self.lines[settings.name], SystemClock(), port=settings.port)
+        return bus_over(settings.kind, transport)
 
     def __enter__(self) -> Self:
         """Return the robot itself."""

@@ -36,11 +36,11 @@ class SystemClock:
         Its shortest step [s].
     """
 
-    resolution = time.get_clock_info("monotonic").resolution
+    resolution = time.get_clock_info("perf_counter").resolution
 
     def now(self) -> float:
         """Return the time [s]; only differences mean something."""
-        return time.monotonic()
+        return time.perf_counter()
 
     def sleep(self, seconds: float) -> None:
         """Wait.

@@ -47,7 +47,7 @@ class SmbusTransport:
 
     def now(self) -> float:
         """Return the time of the machine's clock [s]."""
-        return time.monotonic()
+        return time.perf_counter()
 
     def sleep(self, seconds: float) -> None:
         """Wait.

@@ -7,10 +7,12 @@ import heapq
 import itertools
 import math
 import os
+import platform
 import select
 import sys
 import threading
 import time
+from collections import deque
 from types import TracebackType
 from typing import Self
 
@@ -22,6 +24,8 @@ from tarsus.representation import represented
 __all__ = ["PtyServer"]
 
 _IDLE = 0.05
+# A device that takes longer for its turn is not waited for [s].
+_LONGEST_TURN = 10.0
 
 
 @represented("port")
@@ -44,16 +48,18 @@ class PtyServer:
         Path of the terminal, to be opened as a serial port.
     lock : threading.Lock
         Held while the device works.
+    written : int
+        How many bytes the device has sent.
     """
 
     def __init__(self, device: Device, *, frame: float = 1e-3) -> None:
-        if sys.platform == "win32":  # pragma: no cover
+        if sys.platform == "win32" or not hasattr(os, "openpty"):
             raise PortError(
                 "emulation",
                 "pty",
                 expected="a system with pseudo-terminals",
-                received="Windows",
-                remedy="Use the emulated servos in memory.",
+                received=platform.system(),
+                remedy="Use emulated servos in memory: emulated_bus, or tarsus run --bus emulated.",
             )
         import tty
 
@@ -65,6 +71,10 @@ class PtyServer:
         os.set_blocking(self._master, False)
         self.port = os.ttyname(self._slave)
         self._stopping = threading.Event()
+        self._served = threading.Condition()
+        self._asked = self._answered = 0
+        self.written = 0
+        self._expected: deque[tuple[float, int]] = deque()
         self._wake_reader, self._wake_writer = os.pipe()
         self._thread = threading.Thread(target=self._serve, name=f"emulated servos on {self.port}", daemon=True)
         self._thread.start()
@@ -89,6 +99,27 @@ class PtyServer:
         for file in (self._wake_reader, self._wake_writer):
             os.close(file)
 
+    def expect(self, now: float, count: int) -> None:
+        """Take note that bytes are being sent: the device receives them at that time, however late they are read.
+
+        Parameters
+        ----------
+        now : float
+            The time [s].
+        count : int
+            How many.
+        """
+        self._expected.append((now, count))
+
+    def catch_up(self) -> None:
+        """Wait until the device has received what was sent, and has sent what is due."""
+        with self._served:
+            self._asked += 1
+            asked = self._asked
+            if not self._stopping.is_set():
+                os.write(self._wake_writer, b"x")
+            self._served.wait_for(lambda: self._answered >= asked, _LONGEST_TURN)
+
     def _serve(self) -> None:
         try:
             self._loop()
@@ -97,30 +128,53 @@ class PtyServer:
             for file in (self._master, self._slave):
                 with contextlib.suppress(OSError):
                     os.close(file)
+            self._had_turn(sys.maxsize)
 
     def _loop(self) -> None:
         waiting: list[tuple[float, int, bytes]] = []
         order = itertools.count()
         line_free = 0.0
         while not self._stopping.is_set() and self._device.plugged:
-            now = time.monotonic()
+            now = time.perf_counter()
             timeout = max(min(waiting[0][0] - now, _IDLE), 0.0) if waiting else _IDLE
             ready, _, _ = select.select([self._master, self._wake_reader], [], [], timeout)
-            now = time.monotonic()
+            asked = self._asked
+            if self._wake_reader in ready:
+                os.read(self._wake_reader, 64)
+            if asked > self._answered:
+                # What was sent before the turn was asked for may have come since.
+                ready, _, _ = select.select([self._master], [], [], 0.0)
             if self._master in ready:
                 data = os.read(self._master, 65536)
                 # The bytes are here at once; on a wire they would have taken until then.
-                line_free = max(now, line_free) + serial_seconds(len(data), self._device.baud)
+                line_free = max(self._sent_at(len(data)), line_free) + serial_seconds(len(data), self._device.baud)
                 with self.lock:
                     deliveries = self._device.receive(data, line_free)
                 for delivery in deliveries:
                     heapq.heappush(waiting, (self._arrival(delivery.at), next(order), delivery.data))
-            arrived = b""
+            arrived, now = b"", time.perf_counter()
             while waiting and waiting[0][0] <= now:
                 arrived += heapq.heappop(waiting)[2]
             if arrived:
                 with contextlib.suppress(BlockingIOError):
-                    os.write(self._master, arrived)
+                    self.written += os.write(self._master, arrived)
+            if asked > self._answered:
+                self._had_turn(asked)
+
+    def _sent_at(self, count: int) -> float:
+        """Return when the first of some bytes was sent: now, where nobody said so."""
+        first = self._expected[0][0] if self._expected else time.perf_counter()
+        while count > 0 and self._expected:
+            at, size = self._expected.popleft()
+            count -= size
+            if count < 0:
+                self._expected.appendleft((at, -count))
+        return first
+
+    def _had_turn(self, asked: int) -> None:
+        with self._served:
+            self._answered = asked
+            self._served.notify_all()
 
     def _arrival(self, at: float) -> float:
         """Return when the frame of USB ends in which bytes are passed on [s]."""

@@ -62,7 +62,7 @@ class SerialTransport:
 
     def now(self) -> float:
         """Return the time of the machine's clock [s]."""
-        return time.monotonic()
+        return time.perf_counter()
 
     def write(self, data: bytes) -> None:
         """Send bytes.

@@ -24,6 +24,9 @@ _TICK = 0.03
 class AnswerMonitor:
     """Notices silence and damaged answers.
 
+    Time during which this computer itself did not run, as other programs kept it from running, is none in which a servo
+    was silent.
+
     Parameters
     ----------
     calibration : Calibration
@@ -45,6 +48,7 @@ class AnswerMonitor:
         self._failures = np.zeros(shape, dtype=int)
         self._failing_since = np.full(shape, np.nan)
         self._answered = np.full(shape, np.nan)
+        self._late = np.zeros(shape)
         self.grace = 0.0
 
     def answered(
@@ -75,6 +79,7 @@ class AnswerMonitor:
         for number in answered:
             place = self._joints.joint(bus, number)
             self._failures[place], self._failing_since[place], self._answered[place] = 0, math.nan, now
+            self._late[place] = 0.0
         if not asked or len(answered) == len(asked):
             return None
         for error in errors:
@@ -88,10 +93,12 @@ class AnswerMonitor:
     def _failed(self, bus: str, number: int, error: BusError, now: float) -> ServoFault | None:
         place, settings = self._joints.joint(bus, number), self._settings
         self._failures[place] += 1
+        self._late[place] += error.late
         if self._failures[place] == 1:
             self._failing_since[place] = now
+        late = float(self._late[place])
         doubted = now - float(self._failing_since[place])
-        since = now - _began(float(self._answered[place]), float(self._failing_since[place]))
+        since = now - _began(float(self._answered[place]), float(self._failing_since[place])) - late
         if (
             self._failures[place] < settings.least_failures
             or doubted < settings.least_doubt
@@ -100,7 +107,8 @@ class AnswerMonitor:
             return None
         kind = FaultKind.CORRUPT if isinstance(error, CorruptAnswerError) else FaultKind.NO_ANSWER
         number_of = int(self._failures[place])
-        text = f"{number_of} answers in a row failed, none for {since * 1e3:.0f} ms: {error.received}"
+        beside = f", beside {late * 1e3:.0f} ms in which this computer did not run" if late >= _TICK else ""
+        text = f"{number_of} answers in a row failed, none for {since * 1e3:.0f} ms{beside}: {error.received}"
         return ServoFault.of_joint(kind, self._calibration, place, text=text, time=now)
 
 
