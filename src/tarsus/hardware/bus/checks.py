@@ -9,7 +9,43 @@ from collections.abc import Iterable, Mapping
 from tarsus.errors import InputError
 from tarsus.hardware.bus.protocol import Capabilities
 
-__all__ = ["checked_goals", "checked_ids", "checked_range", "checked_share", "checked_speed", "checked_time"]
+__all__ = [
+    "checked_goals",
+    "checked_ids",
+    "checked_numbers",
+    "checked_range",
+    "checked_share",
+    "checked_speed",
+    "checked_time",
+]
+
+
+def checked_numbers(bus: str, what: str, known: range, numbers: Iterable[int]) -> tuple[int, ...]:
+    """Return numbers of what a bus has.
+
+    Parameters
+    ----------
+    bus : str
+        Name of the bus, for messages.
+    what : str
+        What is numbered: ``"id"``, ``"input"``.
+    known : range
+        The numbers that there are.
+    numbers : iterable of int
+        Those that are asked for.
+
+    Raises
+    ------
+    InputError
+        If one of them is none of this bus.
+    """
+    found = []
+    for asked in numbers:
+        number = operator.index(asked) if hasattr(asked, "__index__") else -1
+        if number not in known:
+            raise InputError(f"{bus} has no {what} {asked!r}: {what}s are {known.start} to {known.stop - 1}")
+        found.append(number)
+    return tuple(found)
 
 
 def checked_ids(bus: str, can: Capabilities, ids: Iterable[int]) -> tuple[int, ...]:
@@ -29,13 +65,7 @@ def checked_ids(bus: str, can: Capabilities, ids: Iterable[int]) -> tuple[int, .
     InputError
         If one of them is none of this bus.
     """
-    found: dict[int, None] = {}
-    for id in ids:
-        number = operator.index(id) if hasattr(id, "__index__") else -1
-        if number not in can.ids:
-            raise InputError(f"{bus} has no id {id!r}: ids are {can.ids.start} to {can.ids.stop - 1}")
-        found[number] = None
-    return tuple(found)
+    return tuple(dict.fromkeys(checked_numbers(bus, "id", can.ids, ids)))
 
 
 def _checked(bus: str, can: Capabilities, what: str, value: float) -> float:

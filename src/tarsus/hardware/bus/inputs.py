@@ -5,9 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Protocol, runtime_checkable
 
-from tarsus.errors import InputError
-
-__all__ = ["InputBoard", "checked_inputs"]
+__all__ = ["InputBoard"]
 
 
 @runtime_checkable
@@ -48,26 +46,3 @@ class InputBoard(Protocol):
         numbers : sequence of int
             The inputs.
         """
-
-
-def checked_inputs(bus: str, inputs: range, numbers: Sequence[int]) -> tuple[int, ...]:
-    """Return numbers of inputs that a board has.
-
-    Parameters
-    ----------
-    bus : str
-        Name of the bus, for messages.
-    inputs : range
-        Numbers of its inputs.
-    numbers : sequence of int
-        The inputs.
-
-    Raises
-    ------
-    InputError
-        If one of them is none of this board.
-    """
-    for number in numbers:
-        if number not in inputs:
-            raise InputError(f"{bus} has no input {number!r}: inputs are {inputs.start} to {inputs.stop - 1}")
-    return tuple(numbers)

@@ -6,8 +6,7 @@ from collections.abc import Mapping, Sequence
 
 from tarsus.errors import CorruptAnswerError, InputError
 from tarsus.hardware.bus.boards.board_bus import BoardBus
-from tarsus.hardware.bus.checks import checked_time
-from tarsus.hardware.bus.inputs import checked_inputs
+from tarsus.hardware.bus.checks import checked_numbers, checked_time
 from tarsus.hardware.bus.link import Link, hexadecimal
 from tarsus.hardware.bus.protocol import Capabilities
 from tarsus.hardware.codec import lines as codec
@@ -89,7 +88,7 @@ class LineBus(BoardBus):
         NoAnswerError, CorruptAnswerError
             If the board does not answer, its answer is damaged, or its sketch has fewer inputs.
         """
-        numbers = checked_inputs(self.name, self.inputs, numbers)
+        numbers = checked_numbers(self.name, "input", self.inputs, numbers)
         if not numbers:
             return ()
         answer = self._link.ask_board(codec.INPUTS, end=codec.END)

@@ -6,8 +6,7 @@ from collections.abc import Mapping, Sequence
 
 from tarsus.errors import CorruptAnswerError
 from tarsus.hardware.bus.boards.board_bus import LONGEST_PULSE, SHORTEST_PULSE, BoardBus, runs
-from tarsus.hardware.bus.checks import checked_ids, checked_speed
-from tarsus.hardware.bus.inputs import checked_inputs
+from tarsus.hardware.bus.checks import checked_ids, checked_numbers, checked_speed
 from tarsus.hardware.bus.link import Link, hexadecimal
 from tarsus.hardware.bus.protocol import Capabilities, Telemetry
 from tarsus.hardware.codec import maestro as codec
@@ -90,7 +89,7 @@ class MaestroBus(BoardBus):
         NoAnswerError, CorruptAnswerError
             If the board does not answer, or a channel is no input.
         """
-        numbers = checked_inputs(self.name, self.inputs, numbers)
+        numbers = checked_numbers(self.name, "input", self.inputs, numbers)
         if not numbers:
             return ()
         levels = codec.levels_in(self._link.ask_board(self._asking(numbers), size=2 * len(numbers)))

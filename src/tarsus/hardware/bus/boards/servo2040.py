@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from tarsus.hardware.bus.boards.board_bus import LONGEST_PULSE, SHORTEST_PULSE, BoardBus, runs
-from tarsus.hardware.bus.inputs import checked_inputs
+from tarsus.hardware.bus.checks import checked_numbers
 from tarsus.hardware.bus.link import Link
 from tarsus.hardware.bus.protocol import Capabilities, Telemetry
 from tarsus.hardware.codec import servo2040 as codec
@@ -69,7 +69,7 @@ class Servo2040Bus(BoardBus):
         NoAnswerError, CorruptAnswerError
             If the board does not answer, or its answer is damaged.
         """
-        numbers = checked_inputs(self.name, self.inputs, numbers)
+        numbers = checked_numbers(self.name, "input", self.inputs, numbers)
         voltages = self.read_touch() if numbers else ()
         return tuple(min(voltages[number] / _FULL_VOLTAGE, 1.0) for number in numbers)
 

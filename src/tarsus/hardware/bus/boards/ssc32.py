@@ -6,8 +6,7 @@ from collections.abc import Mapping, Sequence
 
 from tarsus.errors import CorruptAnswerError
 from tarsus.hardware.bus.boards.board_bus import BoardBus
-from tarsus.hardware.bus.checks import checked_ids, checked_speed
-from tarsus.hardware.bus.inputs import checked_inputs
+from tarsus.hardware.bus.checks import checked_ids, checked_numbers, checked_speed
 from tarsus.hardware.bus.link import Link, hexadecimal
 from tarsus.hardware.bus.protocol import Capabilities
 from tarsus.hardware.codec import ssc32 as codec
@@ -78,7 +77,7 @@ class Ssc32Bus(BoardBus):
         NoAnswerError, CorruptAnswerError
             If the board does not answer, or its answer is damaged.
         """
-        numbers = checked_inputs(self.name, self.inputs, numbers)
+        numbers = checked_numbers(self.name, "input", self.inputs, numbers)
         if not numbers:
             return ()
         answer = self._link.ask_board(codec.query_inputs(*numbers), size=len(numbers))
