@@ -343,6 +343,37 @@ def test_dates_numbers_and_ports_as_other_writers_write_them(tmp_path):
             assert Calibration.load(tmp_path / "c.toml").foot_switches.inputs == switches
 
 
+def test_thresholds_of_sensors_of_force_are_kept_and_checked(tmp_path):
+    inputs, volts = (0, 1, 2, 3, 4, None), (0.5, 1.0, 1.5, 2.0, 2.5, 0.0)
+    switches = FootSwitches(bus="main", inputs=inputs, thresholds=volts, hysteresis=0.1)
+    made = nominal("servo2040", foot_switches=switches)
+    made.save(tmp_path / "c.toml")
+    assert Calibration.load(tmp_path / "c.toml").foot_switches == switches
+    text = (tmp_path / "c.toml").read_text(encoding="utf-8")
+    for wrong, message in [
+        (
+            "[0.5, 1.0, 1.5, 2.0, 3.28, 0]",
+            r"middle right leg is 3.28 V; .* between 0.05 and 3.25 V, as Pimoroni .*\(line",
+        ),
+        ("[0.5, 1.0]", "2 thresholds; the robot has 6 legs"),
+        ("[0.5, 1.0, 1.5, 2.0, 2.5, 6]", "from 0 to 5 V"),
+        ("[0.5, 1.0, 1.5, 2.0, nan, 1]", "from 0 to 5 V"),
+        ("1.5", "thresholds_v"),
+    ]:
+        changed = re.sub(r"thresholds_v = \[[^]]*\]", f"thresholds_v = {wrong}", text)
+        assert changed != text
+        (tmp_path / "d.toml").write_text(changed, encoding="utf-8")
+        with pytest.raises(CalibrationError, match=message):
+            Calibration.load(tmp_path / "d.toml")
+    with pytest.raises(CalibrationError, match="input 12 of Pololu Mini Maestro tells high or low"):
+        nominal("lines").replace(
+            buses=(*nominal("lines").buses, tarsus.hardware.BusSettings(name="feet", kind="maestro")),
+            foot_switches=FootSwitches(bus="feet", inputs=(0, 1, 2, 3, 4, 12), thresholds=(1.0,) * 6),
+        )
+    with pytest.raises(CalibrationError, match="has no threshold; none measures a voltage"):
+        nominal("lines", foot_switches=FootSwitches(bus="main", inputs=(0, 1, 2, 3, 4, 5), thresholds=(1.0,) * 6))
+
+
 def test_joints_and_switches_find_the_bus_that_fits(tmp_path):
     feet = tarsus.hardware.BusSettings(name="feet", kind="lines")
     made = nominal()

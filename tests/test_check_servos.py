@@ -176,6 +176,16 @@ def test_a_board_of_foot_switches_alone_tells_their_levels(tmp_path):
     assert "front right" not in last["measured"]
 
 
+def test_thresholds_of_sensors_of_force_are_told():
+    bench = Bench("servo2040")
+    switches = FootSwitches(bus="main", inputs=(0, 1, 2, 3, 4, 5), thresholds=(1.0, 1.1, 1.2, 1.3, 1.4, 1.5))
+    bench.calibration = bench.calibration.replace(foot_switches=switches)
+    bench.line.levels = {0: 0.4}
+    (found,) = [each for each in bench.findings() if "foot switches" in each.question]
+    assert "front left 0.4 (1.32 V), threshold 1.00 V, middle left 0.0 (0.00 V), threshold 1.10 V" in found.measured
+    assert found.measured.endswith("a foot is on the ground above its threshold")
+
+
 def test_switches_that_do_not_answer_and_servos_that_fall_silent_are_said():
     bench = Bench("servo2040")
     switches = FootSwitches(bus="main", inputs=(0, 1, 2, 3, 4, 5))

@@ -137,6 +137,27 @@ def test_a_robot_walks_with_what_its_feet_feel(kind):
     assert way == pytest.approx(planned, rel=0.1)
 
 
+@pytest.mark.parametrize(
+    ("kind", "highest", "closed"), [("servo2040", 3.3, True), ("maestro", 5.0, True), ("servo2040", 3.3, False)]
+)
+def test_sensors_of_force_have_thresholds_with_hysteresis(kind, highest, closed):
+    bus, device = emulated_bus(kind, ())
+    volts = (0.6, 0.8, 1.0, 1.2, 1.4, 1.6)
+    switches = FootSwitches(bus="main", inputs=(5, 4, 3, 2, 1, None), closed=closed, thresholds=volts, hysteresis=0.3)
+    feet = FootContacts(switches, bus, ManualClock())
+    planned = np.zeros(6, dtype=bool)
+
+    def high(offset):
+        device.levels = {5 - leg: (volts[leg] + offset) / highest for leg in range(5)}
+        feet.read()
+        return set(feet.contacts(planned)[:5] == closed)
+
+    # Between the two voltages an input stays as it was: at first low.
+    found = [high(offset) for offset in (0.1, 0.2, 0.0, -0.1, -0.2, 0.1, 0.17)]
+    assert found == [{False}, {True}, {True}, {True}, {False}, {False}, {True}]
+    assert feet.contacts(planned)[5] == planned[5]
+
+
 def second_board(inputs=(0, 1, 2, 3, 4, 5)):
     made = nominal_calibration(STRIDER, "strider", kind="feetech-sts")
     feet = dataclasses.replace(made.buses[0], name="feet", kind="lines", baud=None)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
+from typing import Any
 
 from tarsus.errors import UnknownNameError
 from tarsus.representation import represented
@@ -32,6 +33,9 @@ class BusCommands:
         First and last number of a servo: its id, or the channel of the board.
     inputs : int
         How many inputs its board has, for foot switches.
+    analogue : (int, float)
+        How many of them, from the first on, measure a voltage, and the highest that they measure [V]; the others tell
+        high or low.
     steps : (int, float) or None
         Positions of its usual servos, and the angle over which they are [deg]; None for pulse widths.
     """
@@ -42,6 +46,7 @@ class BusCommands:
     commands: tuple[float, float]
     numbers: tuple[int, int]
     inputs: int = 0
+    analogue: tuple[int, float] = (0, 0.0)
     steps: tuple[int, float] | None = None
 
     @property
@@ -56,9 +61,9 @@ class BusCommands:
 
 
 def _pulses(
-    name: str, text: str, channels: int, commands: tuple[float, float] = (400.0, 2600.0), *, inputs: int = 0
+    name: str, text: str, channels: int, commands: tuple[float, float] = (400.0, 2600.0), **inputs: Any
 ) -> BusCommands:
-    return BusCommands(name=name, text=text, unit="us", commands=commands, numbers=(0, channels - 1), inputs=inputs)
+    return BusCommands(name=name, text=text, unit="us", commands=commands, numbers=(0, channels - 1), **inputs)
 
 
 def _ticks(name: str, text: str, steps: tuple[int, float], last: int, *, greatest: int | None = None) -> BusCommands:
@@ -71,9 +76,9 @@ BUS_COMMANDS: Mapping[str, BusCommands] = MappingProxyType(
         kind.name: kind
         for kind in (
             _pulses("pca9685", "PCA9685 boards on I2C", 32),
-            _pulses("maestro", "Pololu Mini Maestro", 24, inputs=24),
+            _pulses("maestro", "Pololu Mini Maestro", 24, inputs=24, analogue=(12, 5.0)),
             _pulses("ssc32", "Lynxmotion SSC-32 and SSC-32U", 32, (500.0, 2500.0), inputs=6),
-            _pulses("servo2040", "Pimoroni Servo 2040", 18, inputs=6),
+            _pulses("servo2040", "Pimoroni Servo 2040", 18, inputs=6, analogue=(6, 3.3)),
             _pulses("lines", "an Arduino that reads lines of pulse widths", 32, (500.0, 2500.0), inputs=8),
             _ticks("dynamixel-ax", "Dynamixel AX", (1024, 300.0), 253),
             _ticks("dynamixel-mx", "Dynamixel MX with protocol 1.0", (4096, 360.0), 253),

@@ -208,6 +208,29 @@ def _of_switches(
             yield f"foot switches: {kind.name} has no input {number}; inputs are 0 to {kind.inputs - 1}"
         elif kind.name == "maestro" and number in channels:
             yield f"foot switches: channel {number} is that of a servo; a Maestro's channel is a servo's or an input"
+    if switches.thresholds:
+        yield from _of_thresholds(robot, switches, kind)
+
+
+def _of_thresholds(robot: Robot, switches: FootSwitches, kind: BusCommands) -> Iterator[str]:
+    """Yield what is wrong with the thresholds of inputs."""
+    if len(switches.thresholds) != robot.legs:
+        yield f"foot switches: {len(switches.thresholds)} thresholds; the robot has {robot.legs} legs"
+        return
+    count, highest = kind.analogue
+    margin = switches.hysteresis / 2
+    for name, number, threshold in zip(robot.leg_names, switches.inputs, switches.thresholds, strict=False):
+        if number is None:
+            continue
+        if number >= count:
+            able = f"inputs 0 to {count - 1} measure a voltage" if count else "none measures a voltage"
+            yield f"foot switches: input {number} of {kind.text} tells high or low and has no threshold; {able}"
+        elif not margin < threshold < highest - margin:
+            yield (
+                f"foot switches: the threshold of the {name} leg is {threshold:g} V; with a hysteresis of "
+                f"{switches.hysteresis:g} V it must be between {margin:g} and {highest - margin:g} V, as {kind.text} "
+                f"measures 0 to {highest:g} V"
+            )
 
 
 def _degrees(pair: Sequence[float]) -> str:

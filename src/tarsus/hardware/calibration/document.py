@@ -272,7 +272,10 @@ def _switches(file: CalibrationFile) -> FootSwitches | None:
     inputs = tuple(None if number < 0 else number for number in table.inputs)
     with_inputs = [bus.name for bus in file.buses if bus.kind in BUS_COMMANDS and BUS_COMMANDS[bus.kind].inputs]
     name = table.bus or (with_inputs or [file.buses[0].name])[0]
-    return FootSwitches(bus=name, inputs=inputs, closed=table.closed)
+    thresholds = tuple(float(volts) for volts in table.thresholds_v or ())
+    return FootSwitches(
+        bus=name, inputs=inputs, closed=table.closed, thresholds=thresholds, hysteresis=float(table.hysteresis_v)
+    )
 
 
 def _imu(table: ImuTable | None) -> Mounting | None:
@@ -317,7 +320,11 @@ def _sensor_table(calibration: CalibrationFields) -> dict[str, Any]:
     if switches is not None:
         inputs = [Decimal(-1 if number is None else number) for number in switches.inputs]
         table: dict[str, Any] = {"bus": switches.bus} if len(calibration.buses) > 1 else {}
-        sensors["foot_switches"] = table | {"inputs": inputs} | ({} if switches.closed else {"closed": False})
+        table |= {"inputs": inputs} | ({} if switches.closed else {"closed": False})
+        if switches.thresholds:
+            table["thresholds_v"] = [to_decimal(volts) for volts in switches.thresholds]
+            table["hysteresis_v"] = to_decimal(switches.hysteresis)
+        sensors["foot_switches"] = table
     if imu is not None:
         sensors["imu"] = {
             "port": imu.port,

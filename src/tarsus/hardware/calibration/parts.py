@@ -118,11 +118,18 @@ class FootSwitches:
         Number of the input of each leg; None for a leg without a switch.
     closed : bool
         Whether an input whose foot is on the ground is high; False for switches to ground with a pull-up.
+    thresholds : tuple of float
+        Voltage above which the input of each leg is high, for sensors of force on inputs that measure it [V]; half of
+        the highest voltage where empty.
+    hysteresis : float
+        By how much the voltage must pass the threshold, half of it to either side, before an input changes [V].
     """
 
     bus: str
     inputs: tuple[int | None, ...]
     closed: bool = True
+    thresholds: tuple[float, ...] = ()
+    hysteresis: float = 0.2
 
 
 @represented()

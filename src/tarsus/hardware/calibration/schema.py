@@ -177,6 +177,13 @@ class FootSwitchTable(Table):
         description="Input of each leg, in the robot's order; -1 for a leg without a switch."
     )
     closed: bool = Field(default=True, description="Value of an input whose foot is on the ground.")
+    thresholds_v: list[Annotated[Decimal, Number(0, 5, "V")]] | None = Field(
+        default=None,
+        description="Voltage above which the input of each leg is high [V]. Default: half of the highest one.",
+    )
+    hysteresis_v: Annotated[Decimal, Number(0, 5, "V")] = Field(
+        default=Decimal("0.2"), description="Distance of the voltages at which an input goes high and low [V]."
+    )
 
 
 class ImuTable(Table):

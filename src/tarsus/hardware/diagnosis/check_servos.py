@@ -15,6 +15,7 @@ from tarsus.hardware.calibration.calibration import Calibration
 from tarsus.hardware.calibration.parts import BusSettings
 from tarsus.hardware.diagnosis.finding import Finding
 from tarsus.hardware.plant.joint_map import JointMap
+from tarsus.hardware.plant.reading.foot_contacts import thresholds_of
 from tarsus.hardware.plant.settings import PlantSettings
 from tarsus.hardware.transport.clock import Clock, SystemClock
 from tarsus.hardware.transport.serial import list_ports
@@ -151,12 +152,21 @@ class _Check:
             yield Finding(question=question, ok=False, measured=error.received, remedy=error.remedy)
             return
         names = self._calibration.robot.leg_names
-        felt = [f"{names[leg]} {level:.1f}" for (leg, _), level in zip(legs, levels, strict=True)]
+        bounds, (count, highest) = (
+            thresholds_of(switches, self._settings.properties),
+            self._settings.properties.analogue,
+        )
         side = "above" if switches.closed else "below"
+        felt = []
+        for (leg, number), level in zip(legs, levels, strict=True):
+            volts = f" ({level * highest:.2f} V)" if number < count else ""
+            own = f", threshold {sum(bounds[number]) / 2 * highest:.2f} V" if switches.thresholds else ""
+            felt.append(f"{names[leg]} {level:.1f}{volts}{own}")
+        bound = "its threshold" if switches.thresholds else "0.5"
         yield Finding(
             question=question,
             ok=None,
-            measured=f"levels: {', '.join(felt)}; a foot is on the ground {side} 0.5",
+            measured=f"levels: {', '.join(felt)}; a foot is on the ground {side} {bound}",
             remedy="Press one foot after the other, and look whether its level changes.",
         )
 

@@ -9,17 +9,35 @@ import numpy as np
 from tarsus.errors import BusError, InputError, PortError
 from tarsus.hardware.bus.inputs import InputBoard
 from tarsus.hardware.bus.protocol import Bus
+from tarsus.hardware.calibration.bus_commands import BusCommands, bus_commands
 from tarsus.hardware.calibration.parts import FootSwitches
 from tarsus.hardware.transport.clock import Clock
 
 if TYPE_CHECKING:
     from jaxtyping import Bool
 
-__all__ = ["FootContacts"]
+__all__ = ["FootContacts", "thresholds_of"]
 
-_HALF = 0.5
 # A board that did not answer several times is asked again after a pause [s], as asking it takes most of a tick.
 _SEVERAL, _PAUSE = 3, 0.2
+
+
+def thresholds_of(switches: FootSwitches, kind: BusCommands) -> dict[int, tuple[float, float]]:
+    """Return the levels below which an input goes low and above which it goes high, as shares, by its number.
+
+    Parameters
+    ----------
+    switches : FootSwitches
+        The inputs of the legs.
+    kind : BusCommands
+        Kind of the board.
+    """
+    known = {number: (0.5, 0.5) for number in switches.inputs if number is not None}
+    margin, (_, highest) = switches.hysteresis / 2, kind.analogue
+    for number, volts in zip(switches.inputs, switches.thresholds, strict=False):
+        if number is not None:
+            known[number] = (volts - margin) / highest, (volts + margin) / highest
+    return known
 
 
 class FootContacts:
@@ -45,6 +63,7 @@ class FootContacts:
             raise InputError(f"the bus {switches.bus!r} of the foot switches has no inputs: {bus.name}")
         self._switches, self._board, self._clock = switches, bus, clock
         self._numbers = tuple(number for number in switches.inputs if number is not None)
+        self._thresholds = thresholds_of(switches, bus_commands(bus.name))
         self._closed: dict[int, bool] = {}
         self._read: float | None = None
         self._resume, self._failures = -np.inf, 0
@@ -80,8 +99,10 @@ class FootContacts:
             self._resume = self._clock.now() + _PAUSE
             return str(error)
         self._read, self._failures = self._clock.now(), 0
-        closed = self._switches.closed
-        self._closed = {number: (level > _HALF) == closed for number, level in zip(self._numbers, levels, strict=True)}
+        for number, level in zip(self._numbers, levels, strict=True):
+            low, high = self._thresholds[number]
+            was_high = self._closed.get(number) == self._switches.closed
+            self._closed[number] = (level > (low if was_high else high)) == self._switches.closed
         return ""
 
     def contacts(self, planned: Bool[np.ndarray, "legs"]) -> Bool[np.ndarray, "legs"]:
