@@ -22,7 +22,7 @@ from tarsus.control.terrain.reach import Reach, reachable_share
 from tarsus.control.terrain.roughness import GroundAdaptation, Roughness
 from tarsus.control.terrain.slope_limit import SlopeLimit
 from tarsus.control.terrain.support import Support, holds
-from tarsus.control.walk.felt_feet import FeltFeet, FeltInputs
+from tarsus.control.walk.felt_feet import FeltFoot, FeltInputs, GroundUnder
 from tarsus.control.walk.ground_pose import body_posture
 from tarsus.control.walk.state import PHASE_TOLERANCE, GaitState
 from tarsus.control.walk.step_timing import StepTiming
@@ -144,22 +144,15 @@ class FeltGround:
             if measured is None and valid.attitude is None:
                 return state, []
             heights = np.array(state.heights(float(state.posture.value[SWING_HEIGHT])))
-            state = state._replace(ground_height=heights, felt=FeltFeet.still(len(heights)))
+            state = state._replace(ground_height=heights, felt=[FeltFoot()] * len(heights))
         down = state.down.tolist()
         self.contacts.step(measured, down, dt, age=valid.contact_age)
         self.condition.step([self.contacts.touches(leg) for leg in range(len(down))], valid.attitude, dt)
         if self._loads.compliant:
             forces, feet = self._loads.forces(valid, angles), [(foot.real, foot.imag) for foot in state.foot.tolist()]
             self.offsets = self._loads.offsets(forces, dt, feet=feet, stands=down)
-        return met_ground(
-            state,
-            self.contacts,
-            self.plane,
-            self.roughness,
-            highest=self._reach.highest,
-            timing=timing,
-            pace=self.support.pace,
-        )
+        highest, pace = self._reach.highest, self.support.pace
+        return met_ground(state, self.contacts, self.plane, self.roughness, highest=highest, timing=timing, pace=pace)
 
     def inputs(
         self,
@@ -198,7 +191,8 @@ class FeltGround:
         turn, contacts = cmath.exp(-1j * state.yaw), self.contacts
         places = [(foot - state.origin) * turn for foot in state.foot.tolist()]
         over = [height - elevation for height in state.ground_height.tolist()]
-        down = [on and leg not in excluded for leg, on in enumerate(state.down.tolist())]
+        steps = [leg not in excluded for leg in legs]
+        down = [on and step for on, step in zip(state.down.tolist(), steps, strict=True)]
         self._since += dt
         if self._since >= _SLOW_PERIOD - PHASE_TOLERANCE:
             self._update_posture(state, places, over, down, timing=timing, twist=twist, rest=rest)
@@ -207,15 +201,20 @@ class FeltGround:
         centre = self._centre + complex(*body_posture(state)[:2].tolist())
         self._decide_on_support(places, centre, down, due, dt=dt, swing_time=timing.swing_time)
         self.roughness.decay(0.0 if standing else dt * timing.frequency)
-        ground = [elevation + self.plane.at((foothold - state.origin) * turn) for foothold in state.foothold.tolist()]
-        in_air = self.condition.in_air
-        searches = [not in_air and contacts.is_known(leg) and (down[leg] or contacts.lifted[leg]) for leg in legs]
+        in_air, under, footholds = self.condition.in_air, list[GroundUnder | None](), state.foothold.tolist()
+        stands = [in_air or contacts.stands(leg) for leg in legs]
+        for leg in legs:
+            if not steps[leg] or (down[leg] and stands[leg] and not (due and due[leg])):
+                under.append(None)
+                continue
+            expected = elevation + self.plane.at((footholds[leg] - state.origin) * turn)
+            searches = not in_air and contacts.is_known(leg) and (down[leg] or contacts.lifted[leg])
+            lowest = elevation + self._reach.lowest[leg] if searches else expected
+            under.append(GroundUnder(expected, lowest, elevation + self._reach.highest[leg]))
         return FeltInputs(
-            stands=tuple(in_air or contacts.stands(leg) for leg in legs),
-            steps=tuple(leg not in excluded for leg in legs),
-            ground=tuple(ground),
-            lowest=tuple(elevation + self._reach.lowest[leg] if searches[leg] else ground[leg] for leg in legs),
-            highest=tuple(elevation + height for height in self._reach.highest),
+            under=under,
+            stands=stands,
+            steps=steps,
             depth=_DEPTH_SHARE * self.roughness.value,
             climb=self._rates.climb,
             turn=self._rates.turn,
@@ -254,23 +253,13 @@ class FeltGround:
         level = self.plane.levelled(self._tilt)
         if self._tilt is not None:
             self.slope.step(level, complex(*twist[:2].tolist()))
-        self.posture.fit_to_reach(
-            rises,
-            self.roughness.body_rise,
-            dt,
-            reach=(reach.lowest, highest),
-            height=float(state.posture.value[2]),
-            share=reachable_share([level.at(foot) for foot in rest.tolist()], reach.lowest, highest),
-        )
+        share = reachable_share([level.at(foot) for foot in rest.tolist()], reach.lowest, highest)
+        height, room = float(state.posture.value[2]), (reach.lowest, highest)
+        self.posture.fit_to_reach(rises, self.roughness.body_rise, dt, reach=room, height=height, share=share)
         velocity = complex(*state.twist.value[:2].tolist()) * self.support.pace
-        self._drift = self.odometry.step(
-            self.measured.joint_angles,
-            [leg in bears for leg in legs],
-            velocity,
-            dt,
-            tilt=self.measured.attitude or (0.0, 0.0),
-            yaw=float(state.posture.value[5]),
-        )
+        tilt, yaw = self.measured.attitude or (0.0, 0.0), float(state.posture.value[5])
+        stands = [leg in bears for leg in legs]
+        self._drift = self.odometry.step(self.measured.joint_angles, stands, velocity, dt, tilt=tilt, yaw=yaw)
         margins = [(places[leg], over[leg] - reach.lowest[leg]) for leg in bears]
         self._rates = self.posture.rates(self.plane, self._tilt, velocity, feet=margins)
 

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import cmath
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from tarsus.control.terrain.foot_contacts import FootContacts
 from tarsus.control.terrain.foot_plane import FootPlane
 from tarsus.control.terrain.roughness import Roughness
+from tarsus.control.walk.felt_feet import FeltFoot
 from tarsus.control.walk.state import GaitState
 from tarsus.control.walk.step_timing import StepTiming
 from tarsus.control.walk.stepper import land
@@ -87,7 +88,7 @@ def _landed(state: GaitState, leg: int, timing: StepTiming, pace: float) -> Gait
         part.copy() for part in (state.foothold, state.swing_velocity, state.swing_acceleration)
     )
     foothold[leg], velocity[leg], acceleration[leg] = state.foot[leg], 0j, 0j
-    felt = state.felt.replaced(leg, slide=slide)
+    felt = _with(state.felt, leg, slide=slide)
     state = state._replace(foothold=foothold, swing_velocity=velocity, swing_acceleration=acceleration, felt=felt)
     return land(state, [leg])
 
@@ -97,21 +98,27 @@ def _collides(state: GaitState, leg: int, contacts: FootContacts) -> bool:
     assert state.felt is not None  # a walk that feels the ground
     least, delay = (_LIFTED, 0.0) if contacts.lifted[leg] else (_RISEN, _UNLOADING)
     # A contact is that of a moment ago, when the foot was lower.
-    then = float(state.ground_height[leg]) - max(state.felt.speed[leg], 0.0) * (contacts.age + delay)
+    then = float(state.ground_height[leg]) - max(state.felt[leg].speed, 0.0) * (contacts.age + delay)
     risen = then - float(state.start_height[leg])
-    return state.felt.drawn_back[leg] is None and risen > least and not contacts.is_stuck(leg)
+    return state.felt[leg].drawn_back is None and risen > least and not contacts.is_stuck(leg)
 
 
 def _rising_again(state: GaitState, leg: int, highest: float, timing: StepTiming) -> GaitState:
     """Return the state with a foot that draws back from an obstacle and rises higher."""
     assert state.felt is not None  # a walk that feels the ground
     height, foot = float(state.ground_height[leg]), complex(state.foot[leg])
-    top = state.felt.top[leg]
+    top = state.felt[leg].top
     way = complex(state.foothold[leg]) - foot
-    felt = state.felt.replaced(
+    felt = _with(
+        state.felt,
         leg,
         top=min((height if math.isnan(top) else max(top, height)) + _HIGHER, max(highest, height)),
         top_phase=min(float(state.swing_phase[leg]) + _RISING / timing.swing_time, 1.0),
         drawn_back=foot - _DRAWN_BACK * way / max(abs(way), 1e-9),
     )
     return state._replace(felt=felt)
+
+
+def _with(feet: Sequence[FeltFoot], leg: int, **values: Any) -> list[FeltFoot]:
+    """Return the feet with other values for one of them."""
+    return [foot._replace(**values) if index == leg else foot for index, foot in enumerate(feet)]

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import cmath
 import math
+from typing import Any
 
 import numpy as np
 
 from tarsus.control.filters import CriticallyDamped
-from tarsus.control.walk.felt_feet import FeltFeet, FeltInputs
+from tarsus.control.walk.felt_feet import FeltFoot, FeltInputs, GroundUnder
 from tarsus.control.walk.state import GaitState, StepInputs
 from tarsus.control.walk.swing_trajectory import quintic
 
@@ -38,76 +39,68 @@ def moved_vertically(state: GaitState, inputs: StepInputs, dt: float) -> GaitSta
     dt : float
         The time [s].
     """
-    felt, feet = inputs.felt, state.felt
-    if felt is None or feet is None:
+    felt = inputs.felt
+    if felt is None or state.felt is None:
         return state
-    rate = float(state.elevation.rate[0])
+    rate, start = float(state.elevation.rate[0]), float(state.elevation.value[0])
     climb = _towards(rate, felt.climb, _BODY_ACCELERATION * dt)
-    elevation = float(state.elevation.value[0]) + (rate + climb) / 2 * dt
-    swing, delays = 1 - inputs.gait.duty_factor, state.lift_delay.tolist()
-    heights, feet_at = state.ground_height.tolist(), state.foot.tolist()
+    moved = dict[str, Any]()
+    if rate or climb:
+        moved["elevation"] = CriticallyDamped(np.array([start + (rate + climb) / 2 * dt]), np.array([climb]))
+    heading, body = cmath.exp(1j * state.yaw), start + float(state.posture.value[2])
+    swing, delays, phases = 1 - inputs.gait.duty_factor, state.lift_delay.tolist(), state.swing_phase.tolist()
+    places, heights, feet = state.foot.tolist(), state.ground_height.tolist(), list(state.felt)
     for leg, down in enumerate(state.down.tolist()):
+        foot, under, height = feet[leg], felt.under[leg], heights[leg]
         if not felt.steps[leg]:
-            feet = feet.replaced(leg, speed=0.0, acceleration=0.0)
+            feet[leg] = foot._replace(speed=0.0, acceleration=0.0)
         elif down:
-            feet_at[leg] += _carried(state, feet, felt, leg, dt)
-            heights[leg], feet = _standing(state, feet, felt, leg, dt)
+            seen, left = (places[leg] - state.origin) * heading.conjugate(), _slide_left(foot.slide, dt)
+            # On the ground it moves in G by its slide, its turn about the body and its drift.
+            places[leg] += foot.slide * (1 + left) / 2 * dt
+            if felt.stands[leg]:
+                places[leg] += (complex(felt.turn[1], -felt.turn[0]) * (height - body) - felt.drift) * dt * heading
+            wanted = felt.turn[0] * seen.imag - felt.turn[1] * seen.real
+            heights[leg], speed = _standing(height, foot.speed, wanted, None if felt.stands[leg] else under, dt)
+            feet[leg] = FeltFoot(speed, slide=foot.slide * left)
         else:
+            assert under is not None  # known of each foot in the air
             swing_time = (swing - delays[leg]) / inputs.frequency if inputs.frequency else math.inf
-            heights[leg], feet = _swinging(state, feet, felt, leg, dt, swing_time)
-    return state._replace(
-        foot=np.array(feet_at),
-        ground_height=np.array(heights),
-        elevation=CriticallyDamped(np.array([elevation]), np.array([climb])),
-        felt=feet,
-    )
+            phase, lifted_at = phases[leg], float(state.start_height[leg])
+            heights[leg], feet[leg] = _swinging(height, foot, under, felt, dt, (phase, swing_time, lifted_at))
+    return state._replace(foot=np.array(places), ground_height=np.array(heights), felt=feet, **moved)
 
 
-def _carried(state: GaitState, feet: FeltFeet, felt: FeltInputs, leg: int, dt: float) -> complex:
-    """Return how far a foot on the ground moves in G: by its slide, its turn about the body and its drift [m]."""
-    moved = _slide_way(feet.slide[leg], dt)
-    if felt.stands[leg]:
-        under = float(state.ground_height[leg] - state.elevation.value[0] - state.posture.value[2])
-        turned = complex(felt.turn[1], -felt.turn[0]) * under
-        moved += (turned - felt.drift) * dt * cmath.exp(1j * state.yaw)
-    return moved
-
-
-def _standing(state: GaitState, feet: FeltFeet, felt: FeltInputs, leg: int, dt: float) -> tuple[float, FeltFeet]:
-    """Return the height of a foot on the ground, and the state of the feet."""
-    height, speed = float(state.ground_height[leg]), feet.speed[leg]
-    place = (complex(state.foot[leg]) - state.origin) * cmath.exp(-1j * state.yaw)
-    wanted = felt.turn[0] * place.imag - felt.turn[1] * place.real
-    if not felt.stands[leg]:
-        wanted -= min(max(_SEARCHING, (height - felt.ground[leg]) / _SEARCH_TIME), _FASTEST_LOWERING)
-    after = _towards(speed, wanted, (_STANDING_ACCELERATION if felt.stands[leg] else _FOOT_ACCELERATION) * dt)
-    found = height + (speed + after) / 2 * dt
-    if not felt.stands[leg]:
-        found, after = _no_lower(found, after, height, felt.lowest[leg])
-    slide = feet.slide[leg] * _slide_left(feet.slide[leg], dt)
-    return found, feet.replaced(leg, speed=after, acceleration=0.0, top=math.nan, slide=slide, drawn_back=None)
+def _standing(height: float, speed: float, wanted: float, under: GroundUnder | None, dt: float) -> tuple[float, float]:
+    """Return height and speed of a foot that should stand; one without contact goes down."""
+    if under is None:
+        after = _towards(speed, wanted, _STANDING_ACCELERATION * dt)
+        return height + (speed + after) / 2 * dt, after
+    wanted -= min(max(_SEARCHING, (height - under.expected) / _SEARCH_TIME), _FASTEST_LOWERING)
+    after = _towards(speed, wanted, _FOOT_ACCELERATION * dt)
+    return _no_lower(height + (speed + after) / 2 * dt, after, height, under.lowest)
 
 
 def _swinging(
-    state: GaitState, feet: FeltFeet, felt: FeltInputs, leg: int, dt: float, swing_time: float
-) -> tuple[float, FeltFeet]:
-    """Return the height of a foot in the air, and the state of the feet: it rises to its top, then goes down."""
-    height, phase = float(state.ground_height[leg]), float(state.swing_phase[leg])
-    if math.isnan(feet.top[leg]) or (phase < feet.top_phase[leg] and feet.drawn_back[leg] is None):
+    height: float, foot: FeltFoot, under: GroundUnder, felt: FeltInputs, dt: float, swing: tuple[float, float, float]
+) -> tuple[float, FeltFoot]:
+    """Return the height of a foot in the air, and its state: it rises to its top, then goes down."""
+    phase, swing_time, lifted_at = swing
+    speed, acceleration, top, top_phase, slide, drawn_back = foot
+    if math.isnan(top) or (phase < top_phase and drawn_back is None):
         # No higher than the foot can be down again from by the end of its swing.
-        fits = felt.ground[leg] - felt.depth + _FASTEST_LOWERING * _DESCENT * swing_time
-        over = max(float(state.start_height[leg]), felt.ground[leg]) + felt.swing_height
-        feet = feet.replaced(leg, top=max(min(over, felt.highest[leg], fits), height), top_phase=_TOP_PHASE)
-    top, speed = feet.top[leg], feet.speed[leg]
-    if phase < feet.top_phase[leg]:
+        fits = under.expected - felt.depth + _FASTEST_LOWERING * _DESCENT * swing_time
+        over = max(lifted_at, under.expected) + felt.swing_height
+        top, top_phase = max(min(over, under.highest, fits), height), _TOP_PHASE
+    if phase < top_phase:
         time = dt * felt.pace
-        whole = (feet.top_phase[leg] - phase) * swing_time + time
-        found, after, acceleration = quintic((height, speed, feet.acceleration[leg]), top, whole, time / whole)
-        return found, feet.replaced(leg, speed=after, acceleration=acceleration)
-    descent = (top - felt.ground[leg] + felt.depth) / (_DESCENT * swing_time) * felt.pace
+        whole = (top_phase - phase) * swing_time + time
+        height, speed, acceleration = quintic((height, speed, acceleration), top, whole, time / whole)
+        return height, FeltFoot(speed, acceleration, top, top_phase, slide, drawn_back)
+    descent = (top - under.expected + felt.depth) / (_DESCENT * swing_time) * felt.pace
     after = _towards(speed, -min(max(_LOWERING, descent), _FASTEST_LOWERING), _FOOT_ACCELERATION * dt)
-    found, after = _no_lower(height + (speed + after) / 2 * dt, after, height, felt.lowest[leg])
-    return found, feet.replaced(leg, speed=after, acceleration=0.0)
+    height, after = _no_lower(height + (speed + after) / 2 * dt, after, height, under.lowest)
+    return height, FeltFoot(after, 0.0, top, top_phase, slide, drawn_back)
 
 
 def _no_lower(height: float, speed: float, before: float, lowest: float) -> tuple[float, float]:
@@ -118,11 +111,6 @@ def _no_lower(height: float, speed: float, before: float, lowest: float) -> tupl
 def _slide_left(slide: complex, dt: float) -> float:
     """Return which share of the speed of a slide is left after a time."""
     return max(1 - _STOPPING * dt / abs(slide), 0.0) if slide else 0.0
-
-
-def _slide_way(slide: complex, dt: float) -> complex:
-    """Return the way that a foot slides in a time [m]."""
-    return slide * (1 + _slide_left(slide, dt)) / 2 * dt
 
 
 def _towards(value: float, target: float, step: float) -> float:

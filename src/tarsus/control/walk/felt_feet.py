@@ -3,81 +3,65 @@
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
-__all__ = ["FeltFeet", "FeltInputs"]
+__all__ = ["FeltFoot", "FeltInputs", "GroundUnder"]
 
 
-class FeltFeet(NamedTuple):
-    """What the feet of a walk that feels the ground do besides their step; tuples with a value for each leg.
+class FeltFoot(NamedTuple):
+    """What a foot of a walk that feels the ground does besides its step; by default it stands still.
 
     Attributes
     ----------
-    speed : tuple of float
+    speed : float
         Upward speed in G [m/s].
-    acceleration : tuple of float
+    acceleration : float
         Upward acceleration of a rising foot [m/s^2].
-    top : tuple of float
+    top : float
         Height in G to which a swinging foot rises [m]; NaN on the ground.
-    top_phase : tuple of float
+    top_phase : float
         Swing phase at which it is there; from then on it goes down.
-    slide : tuple of complex
+    slide : complex
         Velocity in G of a foot that has landed before the end of its way, which decays [m/s].
-    drawn_back : tuple of (complex or None)
+    drawn_back : complex or None
         Where in G a foot that has met an obstacle is drawn back to while it rises [m]; None without one.
     """
 
-    speed: tuple[float, ...]
-    acceleration: tuple[float, ...]
-    top: tuple[float, ...]
-    top_phase: tuple[float, ...]
-    slide: tuple[complex, ...]
-    drawn_back: tuple[complex | None, ...]
-
-    @classmethod
-    def still(cls, legs: int) -> FeltFeet:
-        """Return the state of feet that stand.
-
-        Parameters
-        ----------
-        legs : int
-            Number of legs.
-        """
-        none = (0.0,) * legs
-        return cls(none, none, (math.nan,) * legs, none, (0j,) * legs, (None,) * legs)
-
-    def replaced(self, leg: int, **values: Any) -> FeltFeet:
-        """Return the state with other values for one leg.
-
-        Parameters
-        ----------
-        leg : int
-            Index of the leg.
-        **values
-            Attributes and the leg's values.
-        """
-        changed = {}
-        for name, value in values.items():
-            old = getattr(self, name)
-            changed[name] = (*old[:leg], value, *old[leg + 1 :])
-        return self._replace(**changed)
+    speed: float = 0.0
+    acceleration: float = 0.0
+    top: float = math.nan
+    top_phase: float = 0.0
+    slide: complex = 0j
+    drawn_back: complex | None = None
 
 
-class FeltInputs(NamedTuple):
-    """What a walk that feels the ground is given for a tick; tuples with a value for each leg.
+class GroundUnder(NamedTuple):
+    """The ground under a foot in the air or without contact, and how far down and up the foot goes: heights in G [m].
 
     Attributes
     ----------
-    stands : tuple of bool
-        Whether a foot on the ground bears load, as far as is known.
-    steps : tuple of bool
-        Whether the leg is in the gait.
-    ground : tuple of float
-        Height in G at which the ground is expected under the foothold [m].
-    lowest : tuple of float
-        Height in G below which the foot does not go [m].
-    highest : tuple of float
-        Height in G above which the foot does not go [m].
+    expected : float
+        Where the ground is expected under the foothold.
+    lowest, highest : float
+        Below and above which the foot does not go.
+    """
+
+    expected: float
+    lowest: float
+    highest: float
+
+
+class FeltInputs(NamedTuple):
+    """What a walk that feels the ground is given for a tick.
+
+    Attributes
+    ----------
+    under : list of (GroundUnder or None)
+        For each foot that swings, lifts off, or should stand and does not; None for the others.
+    stands : list of bool
+        Whether each foot on the ground bears load, as far as is known.
+    steps : list of bool
+        Whether each leg is in the gait.
     depth : float
         How far below the expected ground a foot should be by the end of its swing [m].
     climb : float
@@ -94,11 +78,9 @@ class FeltInputs(NamedTuple):
         How high a foot rises over the higher of lift-off and expected ground [m].
     """
 
-    stands: tuple[bool, ...]
-    steps: tuple[bool, ...]
-    ground: tuple[float, ...]
-    lowest: tuple[float, ...]
-    highest: tuple[float, ...]
+    under: list[GroundUnder | None]
+    stands: list[bool]
+    steps: list[bool]
     depth: float
     climb: float
     turn: tuple[float, float]

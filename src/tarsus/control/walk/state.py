@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from tarsus.control.filters import CriticallyDamped
-from tarsus.control.walk.felt_feet import FeltFeet, FeltInputs
+from tarsus.control.walk.felt_feet import FeltFoot, FeltInputs
 from tarsus.control.walk.swing_trajectory import swinging_height
 from tarsus.control.workspace.body_shift import NO_SHIFT
 from tarsus.gait.gait import Gait
@@ -80,7 +80,7 @@ class GaitState(NamedTuple):
         Upward offset of each foot on the ground, shape (legs,) [m].
     cycles, beats : float
         Cycles and beats of the gait so far: the phases of the body's sway.
-    felt : FeltFeet or None
+    felt : list of FeltFoot, or None
         The feet of a walk that feels the ground: `ground_height` is then the height of every foot, in the air too.
     """
 
@@ -105,7 +105,7 @@ class GaitState(NamedTuple):
     cycles: float = 0.0
     beats: float = 0.0
     shift: CriticallyDamped = NO_SHIFT
-    felt: FeltFeet | None = None
+    felt: list[FeltFoot] | None = None
 
     @classmethod
     def standing(cls, rest: Complex[np.ndarray, "legs"], posture: Float[np.ndarray, "n"]) -> GaitState:

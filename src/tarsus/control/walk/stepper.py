@@ -155,9 +155,9 @@ def _swing(
         phase, target = float(phases[leg]), complex(targets[leg])
         reached = min(max((since - late) / (swing - late), 0.0), 1.0)
         end, drawn_back = travel, None
-        if state.felt is not None and (drawn_back := state.felt.drawn_back[leg]) is not None:
-            over = phase >= state.felt.top_phase[leg]
-            end = 1.0 if over else state.felt.top_phase[leg]
+        if state.felt is not None and (drawn_back := state.felt[leg].drawn_back) is not None:
+            over = phase >= state.felt[leg].top_phase
+            end = 1.0 if over else state.felt[leg].top_phase
             target = target if over else drawn_back
         elif phase <= TARGET_FREEZE * travel:
             until = (swing - since) / inputs.frequency
