@@ -59,5 +59,11 @@ class GovernorLimiter:
 
     def _is_behind(self, state: GaitState) -> bool:
         """Return whether a foot that stands is outside its polygon: one that has landed short of its foothold."""
-        place = (state.foot - state.origin) * cmath.exp(-1j * state.yaw)
-        return bool(((NORMALS_CONJUGATE * place[state.down, None]).real > self._transitions.bounds[state.down]).any())
+        footholds, turn = self._transitions.footholds, cmath.exp(-1j * state.yaw)
+        places = [(foot - state.origin) * turn for foot in state.foot.tolist()]
+        feet = zip(state.down.tolist(), places, footholds.rest.tolist(), footholds.standing_radii, strict=True)
+        far = [leg for leg, (down, at, rest, radius) in enumerate(feet) if down and abs(at - rest) > radius]
+        if not far:
+            return False
+        along = (NORMALS_CONJUGATE * np.array(places)[far, None]).real
+        return bool((along > self._transitions.bounds[far]).any())

@@ -78,6 +78,8 @@ def as_vector(value: Any) -> tuple[float, float, float] | None:
     """
     if type(value) is list and len(value) == 3:  # the common case, without a copy
         x, y, z = value
+        if type(x) is type(y) is type(z) is float:
+            return x, y, z
         return as_number(x), as_number(y), as_number(z)
     parts = as_items(value, (3,))
     return None if parts is None else (as_number(parts[0]), as_number(parts[1]), as_number(parts[2]))

@@ -104,6 +104,7 @@ class FeltGround:
         self._centre = complex(com[0], com[1])
         self.odometry, self.measured = LegOdometry(robot), ValidReadings()
         self._tilt: tuple[float, float] | None = None
+        self._bearing, self._held = list[int](), False
         self._since, self._drift, self._rates = _SLOW_PERIOD, 0j, PostureRates(0.0, (0.0, 0.0))
 
     @property
@@ -190,16 +191,14 @@ class FeltGround:
         legs, elevation = range(len(rest)), float(state.elevation.value[0])
         turn, contacts = cmath.exp(-1j * state.yaw), self.contacts
         places = [(foot - state.origin) * turn for foot in state.foot.tolist()]
-        over = [height - elevation for height in state.ground_height.tolist()]
         steps = [leg not in excluded for leg in legs]
         down = [on and step for on, step in zip(state.down.tolist(), steps, strict=True)]
         self._since += dt
         if self._since >= _SLOW_PERIOD - PHASE_TOLERANCE:
-            self._update_posture(state, places, over, down, timing=timing, twist=twist, rest=rest)
+            self._update_posture(state, places, down, timing=timing, twist=twist, rest=rest)
             self._since = 0.0
         due = None if standing else timing.due(state, dt)
-        centre = self._centre + complex(*body_posture(state)[:2].tolist())
-        self._decide_on_support(places, centre, down, due, dt=dt, swing_time=timing.swing_time)
+        self._decide_on_support(state, places, down, due, dt=dt, swing_time=timing.swing_time)
         self.roughness.decay(0.0 if standing else dt * timing.frequency)
         in_air, under, footholds = self.condition.in_air, list[GroundUnder | None](), state.foothold.tolist()
         stands = [in_air or contacts.stands(leg) for leg in legs]
@@ -229,7 +228,6 @@ class FeltGround:
         self,
         state: GaitState,
         places: list[complex],
-        over: list[float],
         down: list[bool],
         *,
         timing: StepTiming,
@@ -238,6 +236,7 @@ class FeltGround:
     ) -> None:
         """Update plane, reach, and how the body is to move over the standing feet: not needed in each tick."""
         legs, contacts, dt = range(len(rest)), self.contacts, self._since
+        over = (state.ground_height - state.elevation.value).tolist()
         bears = [leg for leg in legs if down[leg] and contacts.touches(leg)]
         self.plane = fitted_plane(
             [places[leg] for leg in bears], [over[leg] for leg in bears], self.plane, min(_SLOPE_RATE * dt, 1.0)
@@ -264,15 +263,18 @@ class FeltGround:
         self._rates = self.posture.rates(self.plane, self._tilt, velocity, feet=margins)
 
     def _decide_on_support(
-        self, places: list[complex], centre: complex, down: list[bool], due: list[bool] | None, **time: float
+        self, state: GaitState, places: list[complex], down: list[bool], due: list[bool] | None, **time: float
     ) -> None:
         """Decide whether feet may lift off, and at which pace the walk goes on; None is due while the robot stands."""
         contacts, tilt = self.contacts, self.measured.attitude
+        centre = self._centre + complex(*body_posture(state)[:2].tolist())
         if tilt is not None:
             contacts.balance(down, places, centre, tilt, time["dt"])
         legs = [leg for leg, on in enumerate(down) if on and not (due and due[leg]) and contacts.supports(leg)]
+        if legs != self._bearing or not self._since:
+            self._bearing, self._held = legs, holds([places[leg] for leg in legs], centre)
         lifts, fallen = any(due or ()), self.condition.fallen
-        held = due is None or (not (lifts and self.slope.refuses) and holds([places[leg] for leg in legs], centre))
+        held = due is None or (self._held and not (lifts and self.slope.refuses))
         self.support.step(stays=held and not fallen, lifts=lifts and not fallen, **time)
 
     @property

@@ -38,6 +38,8 @@ class FootholdTransfer:
         Distance from its rest foothold at which each foot may be put down next, along each side's normal [m].
     placement_radii : list of float
         The least of these distances of each foot [m].
+    standing_radii : list of float
+        Distance from its rest foothold within which each standing foot is inside its polygon [m].
     transferred : array of bool, shape (legs,)
         Which feet stand at their new rest footholds.
     """
@@ -54,10 +56,10 @@ class FootholdTransfer:
 
     def _update_placement(self) -> None:
         landing = np.where(self._lands_at_old[:, None], self.bounds, self._next_bounds)
-        self.placement_bounds: Float[np.ndarray, "legs 16"] = np.maximum(
-            landing - (NORMALS_CONJUGATE * self.rest[:, None]).real, 0.0
-        )
+        along = (NORMALS_CONJUGATE * self.rest[:, None]).real
+        self.placement_bounds: Float[np.ndarray, "legs 16"] = np.maximum(landing - along, 0.0)
         self.placement_radii: list[float] = self.placement_bounds.min(axis=1).tolist()
+        self.standing_radii: list[float] = (self.bounds - along).min(axis=1).tolist()
 
     @property
     def new_rest(self) -> Complex[np.ndarray, "legs"]:

@@ -65,6 +65,7 @@ class TimeScaling:
         self.angles = angles
         self.rate = 1.0
         self._speed, self._acceleration, self._limits = speed, acceleration, limits
+        self._limits_with_room = limits[..., 0] + _STOPPING_ROOM, limits[..., 1] - _STOPPING_ROOM
         self._speeds = np.zeros_like(angles)
         self._last_dt = 0.01
         self._used = 0.0
@@ -128,8 +129,7 @@ class TimeScaling:
         target, between = solve(after), (dt + self._last_dt) / 2
         if behind is None:
             speeds, _, works = self._demand(target, dt, between)
-            room = np.minimum(target - self._limits[..., 0], self._limits[..., 1] - target)
-            if works and float(room.min()) > _STOPPING_ROOM:
+            if works and ((target > self._limits_with_room[0]) & (target < self._limits_with_room[1])).all():
                 self.angles = self._target = target
                 self._speeds, self._last_dt = speeds, dt
                 return after
