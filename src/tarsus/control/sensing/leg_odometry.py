@@ -5,16 +5,10 @@ from __future__ import annotations
 import cmath
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
-
-import numpy as np
 
 from tarsus.control.limitation import Limitation, LimitationKind
 from tarsus.control.readings import Vector
 from tarsus.robot.robot import Robot
-
-if TYPE_CHECKING:
-    from jaxtyping import Bool, Complex, Float
 
 __all__ = ["LegOdometry"]
 
@@ -43,23 +37,24 @@ class LegOdometry:
     ----------
     behind : complex
         Where the body should be, as seen from where it is, in the heading frame [m].
-    slip : array, shape (legs,)
+    slip : list of float
         How fast each standing foot slides, as far as it differs from the others [m/s].
     """
 
     def __init__(self, robot: Robot) -> None:
-        self.behind, self.slip = 0j, np.zeros(robot.legs)
-        self._names = robot.leg_names
-        self._g = robot.geometry
-        self._radius = np.asarray(robot.foot_radius, dtype=float)
-        self._before: tuple[Complex[np.ndarray, "legs"], Float[np.ndarray, "legs"]] | None = None
-        self._stood: list[bool] = []
+        self.behind, self.slip = 0j, [0.0] * robot.legs
+        self._names, g = robot.leg_names, robot.geometry
+        mounts = (robot.mount_yaw, g.mount_x, g.mount_y, g.mount_z + g.up)
+        columns = (*mounts, g.coxa, g.side, g.femur, g.tibia, robot.foot_radius)
+        self._legs = list(zip(*(column.tolist() for column in columns), strict=True))
+        # Position and inclination of the feet that stood.
+        self._before = dict[int, tuple[complex, float]]()
 
     @property
     def limitations(self) -> list[Limitation]:
         """The foot that slips most, if any does."""
-        leg, slip = int(self.slip.argmax()), float(self.slip.max())
-        kind, name = LimitationKind.GROUND, self._names[leg]
+        slip = max(self.slip)
+        kind, name = LimitationKind.GROUND, self._names[self.slip.index(slip)]
         return [Limitation(kind=kind, cause=_CAUSE, leg=name, granted=slip, bound=_SLIPS)] if slip > _SLIPS else []
 
     def step(
@@ -89,62 +84,53 @@ class LegOdometry:
         yaw : float
             Of the body in the heading frame [rad].
         """
-        if angles is None or None in angles:
-            self.behind, self._before = 0j, None
+        measured = [each for each in angles or () if each is not None]
+        if len(measured) < len(self._legs):
+            self.behind, self._before = 0j, {}
             return 0j
-        measured, turn = np.array(angles), cmath.exp(1j * yaw)
-        feet, legs = self._feet(measured, *tilt) * turn, self._directions(measured)
-        inclinations = self._inclinations(measured, legs, *tilt)
-        both = [now and then for now, then in zip(stands, self._stood, strict=False)]
-        if self._before is not None and any(both):
-            # The centre of a ball moves with the body as the ball rolls.
-            rolled = self._radius * (self._before[1] - inclinations) * legs * turn
-            over_feet = rolled - (feet - self._before[0])
-            moved = complex(over_feet[both].mean())
-            self._note_slip(feet, over_feet - moved, np.array(both), dt)
+        before, self._before, turn = self._before, {}, cmath.exp(1j * yaw)
+        feet, over_feet = list[complex](), dict[int, complex]()
+        for leg in (leg for leg, on in enumerate(stands) if on):
+            foot, inclination, rolls = self._foot(leg, measured[leg], *tilt)
+            self._before[leg] = foot * turn, inclination
+            if leg in before:
+                # The centre of a ball moves with the body as the ball rolls.
+                then, was = before[leg]
+                over_feet[leg] = (rolls * (was - inclination) - foot) * turn + then
+                feet.append(foot * turn)
+        if over_feet:
+            moved = sum(over_feet.values()) / len(over_feet)
+            self._note_slip(feet, {leg: over - moved for leg, over in over_feet.items()}, dt)
             most = abs(velocity) * _MEMORY
             self.behind += velocity * dt - moved
             self.behind *= min(1.0, most / max(abs(self.behind), 1e-12))
-        self._before, self._stood = (feet, inclinations), stands
         wanted, most = _GAIN * self.behind, _MOST * abs(velocity)
         return wanted * min(1.0, most / max(abs(wanted), 1e-12))
 
-    def _note_slip(
-        self,
-        feet: Complex[np.ndarray, "legs"],
-        moved: Complex[np.ndarray, "legs"],
-        stand: Bool[np.ndarray, "legs"],
-        dt: float,
-    ) -> None:
+    def _note_slip(self, feet: list[complex], moved: dict[int, complex], dt: float) -> None:
         """Take note of what the motion over each foot differs by from that of a body that turns over all of them."""
-        speeds, share = np.zeros(len(feet)), min(dt / _SLIP_TIME, 1.0)
-        if stand.sum() >= _LEAST_FEET:
-            places = feet - feet[stand].mean()
-            turned = (places.conj() * moved)[stand].imag.sum() / np.square(np.abs(places[stand])).sum()
-            speeds[stand] = np.abs(moved - 1j * turned * places)[stand] / dt
-        self.slip = self.slip + share * (speeds - self.slip)
+        speeds, share = [0.0] * len(self.slip), min(dt / _SLIP_TIME, 1.0)
+        if len(feet) >= _LEAST_FEET:
+            middle = sum(feet) / len(feet)
+            places = {leg: foot - middle for leg, foot in zip(moved, feet, strict=True)}
+            turned = sum((place.conjugate() * moved[leg]).imag for leg, place in places.items())
+            turned /= sum(abs(place) ** 2 for place in places.values())
+            for leg, place in places.items():
+                speeds[leg] = abs(moved[leg] - 1j * turned * place) / dt
+        self.slip = [slip + share * (speed - slip) for slip, speed in zip(self.slip, speeds, strict=True)]
 
-    def _directions(self, angles: Float[np.ndarray, "legs 3"]) -> Complex[np.ndarray, "legs"]:
-        """Return the directions of the legs in B, x + iy."""
-        found: np.ndarray = np.exp(1j * angles[:, 0]) * (self._g.cos_yaw + 1j * self._g.sin_yaw)
-        return found
+    def _foot(self, leg: int, angles: Vector, roll: float, pitch: float) -> tuple[complex, float, complex]:
+        """Return where a foot is over the ground from the body, x + iy in axes with its yaw [m].
 
-    @staticmethod
-    def _inclinations(
-        angles: Float[np.ndarray, "legs 3"], legs: Complex[np.ndarray, "legs"], roll: float, pitch: float
-    ) -> Float[np.ndarray, "legs"]:
-        """Return the inclinations of the tibiae over the ground, upwards [rad]."""
-        rise = legs.imag * (math.cos(pitch) * math.sin(roll)) - legs.real * math.sin(pitch)
-        return np.asarray(angles[:, 1] + angles[:, 2] + rise)
-
-    def _feet(self, angles: Float[np.ndarray, "legs 3"], roll: float, pitch: float) -> Complex[np.ndarray, "legs"]:
-        """Return the horizontal positions of the feet from the body, x + iy in axes with its yaw [m]."""
-        g = self._g
-        reach = g.coxa + g.femur * np.cos(angles[:, 1]) + g.tibia * np.cos(angles[:, 1] + angles[:, 2])
-        down = g.femur * np.sin(angles[:, 1]) + g.tibia * np.sin(angles[:, 1] + angles[:, 2]) + g.mount_z + g.up
-        out = (reach + 1j * g.side) * self._directions(angles)
-        x, y = g.mount_x + out.real, g.mount_y + out.imag
-        across = y * math.cos(roll) - down * math.sin(roll)
-        up = y * math.sin(roll) + down * math.cos(roll)
-        found: np.ndarray = x * math.cos(pitch) + up * math.sin(pitch) + 1j * across
-        return found
+        Besides that, the inclination of its tibia over the ground, upwards [rad], and how far and where to its ball
+        rolls over that.
+        """
+        mount_yaw, mount_x, mount_y, mount_z, coxa, side, femur, tibia, radius = self._legs[leg]
+        inclination, direction = angles[1] + angles[2], cmath.rect(1.0, mount_yaw + angles[0])
+        out = complex(coxa + femur * math.cos(angles[1]) + tibia * math.cos(inclination), side) * direction
+        down = femur * math.sin(angles[1]) + tibia * math.sin(inclination) + mount_z
+        x, y, sine = mount_x + out.real, mount_y + out.imag, math.sin(roll)
+        place = complex(x * math.cos(pitch), y * math.cos(roll) - down * sine)
+        place += (y * sine + down * math.cos(roll)) * math.sin(pitch)
+        rise = direction.imag * math.cos(pitch) * sine - direction.real * math.sin(pitch)
+        return place, inclination + rise, radius * direction
