@@ -6,8 +6,6 @@ import cmath
 import math
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from tarsus.control.terrain.foot_contacts import FootContacts
 from tarsus.control.terrain.foot_plane import FootPlane
 from tarsus.control.terrain.roughness import Roughness
@@ -23,6 +21,8 @@ __all__ = ["met_ground"]
 
 # Swing phases from which on contact is a collision, and from which on it is the ground.
 _CLEAR, _LANDING = 0.12, 0.55
+# Rounding of a height [m].
+_ROUNDING = 1e-9
 # How far a foot has risen that meets an obstacle, after contact has ceased or without that [m].
 _LIFTED, _RISEN = 0.01, 0.03
 # Time in which a leg gives up its load, and its joints follow their commands [s].
@@ -62,18 +62,22 @@ def met_ground(
     """
     landed: list[int] = []
     elevation = float(state.elevation.value[0])
-    for leg in np.flatnonzero(~state.down).tolist():
-        phase, over = float(state.swing_phase[leg]), float(state.ground_height[leg]) - elevation
-        expected = plane.at((complex(state.foot[leg]) - state.origin) * cmath.exp(-1j * state.yaw))
+    for leg, (down, phase) in enumerate(zip(state.down.tolist(), state.swing_phase.tolist(), strict=True)):
+        if down or phase <= _CLEAR:
+            continue
         if phase > _LANDING:
             # Contact that has not ceased since lift-off tells nothing: the foot lands where ground is expected.
             tells = contacts.lifted[leg] and not contacts.is_open(leg)
-            if contacts.touches(leg) if tells else over <= expected:
+            if tells and not contacts.touches(leg):
+                continue
+            over = float(state.ground_height[leg]) - elevation
+            expected = plane.at((complex(state.foot[leg]) - state.origin) * cmath.exp(-1j * state.yaw))
+            if tells or over <= expected + _ROUNDING:
                 if tells:
                     roughness.landed(over - expected)
                 state = _landed(state, leg, timing, pace)
                 landed.append(leg)
-        elif phase > _CLEAR and contacts.estimator.touching[leg] and _collides(state, leg, contacts):
+        elif contacts.estimator.touching[leg] and _collides(state, leg, contacts):
             roughness.collided()
             state = _rising_again(state, leg, elevation + highest[leg], timing)
     return state, landed
