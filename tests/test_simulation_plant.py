@@ -256,3 +256,14 @@ def test_a_simulation_that_becomes_unstable_is_an_error():
     plant.mj_data.qvel[0] = 5e3
     with pytest.raises(SimulationError, match=r"became unstable by 0\.010 s: a speed of \d+"):
         plant.step(controller.output, 0.01)
+
+
+@pytest.mark.parametrize("ground", [Blocks(rise=0.001, clear=0.0, seed=3), Smooth(seed=2)])
+def test_uneven_ground_holds_no_foot_that_is_pressed_into_it(ground):
+    controller = RobotController(load_robot("phantomx"))
+    plant = SimulatedPlant(controller.robot, terrain=ground)
+    plant.start(controller.output)
+    plant.mj_data.qvel[2] = -0.6
+    for _ in range(30):
+        plant.step(controller.output, 0.01)
+        assert plant.state.foot_forces[:, 2].min() > -0.1

@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 __all__ = ["Blocks"]
 
 _MOST_BLOCKS = 4096
+# How far the blocks reach into the ground [m]: a foot that sinks into a low one is pushed up, not out of its underside.
+_UNDERGROUND = 0.1
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -90,5 +92,6 @@ class Blocks:
         for (column, row), height in np.ndenumerate(self.heights):
             if height > 0:
                 x, y = ((np.array([column, row]) + 0.5) * self.size - self.side * self.size / 2).tolist()
-                size, pos = (self.size / 2, self.size / 2, height / 2), (x, y, height / 2)
+                top, depth = height / 2, _UNDERGROUND / 2
+                size, pos = (self.size / 2, self.size / 2, top + depth), (x, y, top - depth)
                 spec.worldbody.add_geom(name=f"block {column} {row}", type=box, size=size, pos=pos, **attributes)
