@@ -41,8 +41,8 @@ FLOOR_OF_MASS = 1e-4
 """Least mass of a body or link that can be simulated [kg]."""
 
 # Foot radius where the robot's file has none [m]. A smaller ball that is pressed into uneven ground by more than its
-# radius is held there.
-_POINT_FOOT = 0.006
+# radius is held there; a greater one rolls on by more than 1 % of a step, which no plan for point feet makes up for.
+_POINT_FOOT = 0.003
 # Greatest radius of the links' contact geometry, and its ratio to the foot radius.
 _LINK_RADIUS, _LINK_RATIO = 0.006, 0.75
 # Half the thickness of a body that is the polygon of its coxa axes [m].
