@@ -64,7 +64,7 @@ def test_contacts_are_followed_over_time():
     assert contacts.touches(0)
     assert not contacts.touches(1)
     assert contacts.lifted == [False, True]
-    assert not contacts.stands(1)
+    assert not contacts.standing[1]
     assert contacts.supports(1)
     for _ in range(400):
         contacts.step([True, False], [True, True], 0.01)
@@ -231,7 +231,7 @@ def test_a_switch_that_stays_open_is_told_by_the_feet_that_its_foot_lifts_off():
     for tick in range(60):
         contacts.step([False, tick % 4 > 1, *[True] * 4], [True] * 6, 0.02)
     assert contacts.is_open(0)
-    assert contacts.stands(0)
+    assert contacts.standing[0]
     assert contacts.touches(0)
     assert contacts.supports(0)
     assert not contacts.is_known(0)

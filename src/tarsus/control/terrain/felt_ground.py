@@ -201,7 +201,7 @@ class FeltGround:
         self._decide_on_support(state, places, down, due, dt=dt, swing_time=timing.swing_time)
         self.roughness.decay(0.0 if standing else dt * timing.frequency)
         in_air, under, footholds = self.condition.in_air, list[GroundUnder | None](), state.foothold.tolist()
-        stands = [in_air or contacts.stands(leg) for leg in legs]
+        stands = [True] * len(rest) if in_air else contacts.standing
         for leg in legs:
             if not steps[leg] or (down[leg] and stands[leg] and not (due and due[leg])):
                 under.append(None)

@@ -40,13 +40,15 @@ class FootContacts:
         Estimates the contacts.
     lifted : list of bool
         Whether a swinging foot has been without contact since it lifted off.
+    standing : list of bool
+        Whether each foot that should stand does, but for the shortest of interruptions.
     age : float
         Age of the readings [s].
     """
 
     def __init__(self, legs: int) -> None:
         self.estimator = ContactEstimator(legs)
-        self.lifted, self.age = [False] * legs, 0.0
+        self.lifted, self.standing, self.age = [False] * legs, [True] * legs, 0.0
         self._unheld, self._tilt = 0.0, (0.0, 0.0)
         self._without, self._with, self._evidence = ([0.0] * legs for _ in range(3))
 
@@ -75,6 +77,7 @@ class FootContacts:
                 self._without[leg], self._with[leg] = 0.0, self._with[leg] + dt
             self.lifted[leg] = not on and (self.lifted[leg] or self._without[leg] > _LOST)
         self._find_open(down, dt)
+        self.standing = [t <= _LOST or e > _OPEN_AFTER for t, e in zip(self._without, self._evidence, strict=True)]
 
     def _find_open(self, down: Sequence[bool], dt: float) -> None:
         """Find switches that stay open: a foot that pushes on the ground unknown to it takes the load off others."""
@@ -103,7 +106,7 @@ class FootContacts:
         dt : float
             Time since the last tick [s].
         """
-        missing = [leg for leg, on in enumerate(down) if on and not self.stands(leg)]
+        missing = [leg for leg, on in enumerate(down) if on and not self.standing[leg]]
         standing = [places[leg] for leg, on in enumerate(down) if on and leg not in missing]
         if not missing or len(standing) < _FEWEST or holds(standing, centre):
             self._unheld = 0.0
@@ -115,7 +118,7 @@ class FootContacts:
             self._unheld, self._tilt = 0.0, tilt
         self._unheld += dt
         if self._unheld > _UNHELD:
-            self._evidence[longest] = math.inf
+            self._evidence[longest], self.standing[longest] = math.inf, True
 
     def is_open(self, leg: int) -> bool:
         """Return whether a contact is missing that other feet tell of: that of a switch that stays open."""
@@ -129,13 +132,9 @@ class FootContacts:
         """Return whether a foot bears load now; True where nothing is known."""
         return self._without[leg] <= 0.0 or self.is_open(leg)
 
-    def stands(self, leg: int) -> bool:
-        """Return whether a foot that should stand does, but for the shortest of interruptions."""
-        return self._without[leg] <= _LOST or self.is_open(leg)
-
     def seeks(self, leg: int) -> bool:
         """Return whether a foot that should stand has no contact, and has not looked for the ground for long."""
-        return not self.stands(leg) and self._without[leg] < _SEARCH
+        return not self.standing[leg] and self._without[leg] < _SEARCH
 
     def supports(self, leg: int) -> bool:
         """Return whether a foot that should stand counts as support."""

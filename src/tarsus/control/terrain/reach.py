@@ -96,6 +96,8 @@ def reachable_share(rises: Sequence[float], lowest: Sequence[float], highest: Se
     lowest, highest : sequence of float
         Least and greatest height of each foot [m].
     """
+    if max(rises) - min(rises) <= min(highest) - max(lowest):
+        return 1.0
     uphill, downhill = zip(rises, highest, strict=True), list(zip(rises, lowest, strict=True))
     pairs = ((up - down, max(high - low, 0.0)) for up, high in uphill for down, low in downhill)
     return min([1.0, *(room / rise for rise, room in pairs if rise > room)])

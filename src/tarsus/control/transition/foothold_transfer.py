@@ -113,6 +113,8 @@ class FootholdTransfer:
         landed : array of bool, shape (legs,)
             The feet.
         """
+        if self.bounds is self._next_bounds and self.transferred.all():
+            return
         self.rest = np.where(landed, self._new_rest, self.rest)
         counts, self._lands_at_old = landed & ~self._lands_at_old, self._lands_at_old & ~landed
         self.transferred = self.transferred | counts
