@@ -68,10 +68,10 @@ class Reach:
             Duration of a stance [s].
         """
         vx, vy, wz = twist.tolist()
-        rounded = (round(speed * stance_time / _STROKE_STEP) for speed in (vx, vy, wz * _TURNING_ARM))
-        key = (*rounded, *posture[:SWING_HEIGHT].round(3).tolist())
+        x, y, arc = (round(speed * stance_time / _STROKE_STEP) * _STROKE_STEP for speed in (vx, vy, wz * _TURNING_ARM))
+        key = (x, y, arc, *posture[:SWING_HEIGHT].round(3).tolist())
         if key != self._key or rest is not self._rest:
-            self._key, self._rest, strokes = key, rest, (complex(vx, vy) + 1j * wz * rest) * stance_time
+            self._key, self._rest, strokes = key, rest, complex(x, y) + 1j * arc / _TURNING_ARM * rest
             self.stroke = float(np.abs(strokes).max()) / 2
             self.lowest, self.highest = reachable_heights(self._robot, posture, rest, strokes)
 
