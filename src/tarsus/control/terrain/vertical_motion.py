@@ -47,7 +47,9 @@ def moved_vertically(state: GaitState, inputs: StepInputs, dt: float) -> GaitSta
     moved = dict[str, Any]()
     if rate or climb:
         moved["elevation"] = CriticallyDamped(np.array([start + (rate + climb) / 2 * dt]), np.array([climb]))
-    heading, body = cmath.exp(1j * state.yaw), start + float(state.posture.value[2])
+    body, heading = start + float(state.posture.value[2]), cmath.exp(1j * state.yaw)
+    # In G.
+    turning, drift = complex(felt.turn[1], -felt.turn[0]) * heading, felt.drift * heading
     swing, delays, phases = 1 - inputs.gait.duty_factor, state.lift_delay.tolist(), state.swing_phase.tolist()
     places, heights, feet = state.foot.tolist(), state.ground_height.tolist(), list(state.felt)
     for leg, down in enumerate(state.down.tolist()):
@@ -55,14 +57,17 @@ def moved_vertically(state: GaitState, inputs: StepInputs, dt: float) -> GaitSta
         if not felt.steps[leg]:
             feet[leg] = foot._replace(speed=0.0, acceleration=0.0)
         elif down:
-            seen, left = (places[leg] - state.origin) * heading.conjugate(), _slide_left(foot.slide, dt)
-            # On the ground it moves in G by its slide, its turn about the body and its drift.
-            places[leg] += foot.slide * (1 + left) / 2 * dt
-            if felt.stands[leg]:
-                places[leg] += (complex(felt.turn[1], -felt.turn[0]) * (height - body) - felt.drift) * dt * heading
-            wanted = felt.turn[0] * seen.imag - felt.turn[1] * seen.real
-            heights[leg], speed = _standing(height, foot.speed, wanted, None if felt.stands[leg] else under, dt)
-            feet[leg] = FeltFoot(speed, slide=foot.slide * left)
+            # On the ground it moves by its turn about the body, its drift and its slide.
+            stands, slide = felt.stands[leg], foot.slide
+            wanted = -((places[leg] - state.origin) * turning.conjugate()).real
+            if stands:
+                places[leg] += (turning * (height - body) - drift) * dt
+            if slide:
+                left = max(1 - _STOPPING * dt / abs(slide), 0.0)
+                places[leg] += slide * (1 + left) / 2 * dt
+                slide *= left
+            heights[leg], speed = _standing(height, foot.speed, wanted, None if stands else under, dt)
+            feet[leg] = FeltFoot(speed, slide=slide)
         else:
             assert under is not None  # known of each foot in the air
             swing_time = (swing - delays[leg]) / inputs.frequency if inputs.frequency else math.inf
@@ -106,11 +111,6 @@ def _swinging(
 def _no_lower(height: float, speed: float, before: float, lowest: float) -> tuple[float, float]:
     """Return height and speed of a foot that stops at a least height; below it, it stays where it was before."""
     return (height, speed) if height >= lowest else (min(lowest, max(before, height)), 0.0)
-
-
-def _slide_left(slide: complex, dt: float) -> float:
-    """Return which share of the speed of a slide is left after a time."""
-    return max(1 - _STOPPING * dt / abs(slide), 0.0) if slide else 0.0
 
 
 def _towards(value: float, target: float, step: float) -> float:
