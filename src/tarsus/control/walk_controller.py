@@ -12,6 +12,7 @@ from tarsus.control.limitation import Limitation
 from tarsus.control.limiter.workspace import top_speed
 from tarsus.control.pose.admittance import Admittance
 from tarsus.control.readings import SensorReadings, ValidReadings
+from tarsus.control.terrain.felt_ground import FeltGround
 from tarsus.control.terrain.posture_feedback import Levelling
 from tarsus.control.terrain.roughness import GroundAdaptation
 from tarsus.control.tick.command_intake import CommandIntake
@@ -20,14 +21,22 @@ from tarsus.control.tick.estimate import estimated
 from tarsus.control.tick.integrate import integrated
 from tarsus.control.tick.limit import limited, twist_limiters
 from tarsus.control.tick.plan import planned
-from tarsus.control.tick.state import TickState
+from tarsus.control.tick_state import TickState
+from tarsus.control.transition.executor import TransitionExecutor
+from tarsus.control.transition.initial_stance import initial_stance
+from tarsus.control.transition.planner import TransitionPlanner
+from tarsus.control.walk.foot_targets import FootTargets
 from tarsus.control.walk.ground_pose import body_pose
+from tarsus.control.walk.joint_solver import JointSolver
+from tarsus.control.walk.state import GaitState
+from tarsus.control.walk.time_scaling import TimeScaling
 from tarsus.control.walk_state import WalkState
 from tarsus.gait.gait import Gait
-from tarsus.gait.walk_setup import require_number
+from tarsus.gait.walk_setup import WalkSetup, require_number
 from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.stability import stability_margin
 from tarsus.representation import represented
+from tarsus.robot.joint_limits import joint_limits
 from tarsus.robot.robot import Robot
 
 if TYPE_CHECKING:
@@ -102,25 +111,44 @@ class WalkController:
         adaptation: GroundAdaptation | None = None,
         admittance: Admittance | None = None,
     ) -> None:
-        walk, state = WalkComponents.standing(
+        setup = WalkSetup.of(
             robot,
-            gait,
+            Gait.named(robot.gait.name, legs=robot.legs) if gait is None else gait,
             body_height=body_height,
             swing_height=swing_height,
-            stance_width=stance_width,
-            cycle_time=cycle_time,
-            joint_speed=joint_speed,
-            joint_acceleration=joint_acceleration,
+            body_tilt=(0.0, 0.0),
             foot_distance=foot_distance,
-            levelling=levelling,
-            adaptation=GroundAdaptation() if adaptation is None else adaptation,
-            admittance=admittance,
         )
-        self.robot, self.joint_speed, self.joint_acceleration = walk.robot, walk.joint_speed, walk.joint_acceleration
-        self.time = 0.0
-        self._walk, self._tick = walk, TickState(state, np.zeros(3))
-        self._intake = CommandIntake(walk.robot, walk.transitions)
-        self._twist_limiters = twist_limiters(walk)
+        self.robot, self.time = setup.robot, 0.0
+        self.joint_speed, self.joint_acceleration = speed, acceleration = joint_limits(
+            self.robot, joint_speed, joint_acceleration
+        )
+        planner = TransitionPlanner(
+            self.robot, speed=speed, acceleration=acceleration, foot_distance=setup.foot_distance
+        )
+        stance = initial_stance(planner, setup, stance_width=stance_width, cycle_time=cycle_time)
+        foot_targets, solver = FootTargets(self.robot.leg_names), JointSolver(self.robot)
+        transitions = TransitionExecutor(stance, foot_targets)
+        state = GaitState.standing(stance.rest, transitions.pose.target)
+        time_scaling = TimeScaling(solver.angles(state), speed, acceleration, self.robot.limits)
+        adaptation = GroundAdaptation() if adaptation is None else adaptation
+        ground = FeltGround(
+            self.robot, time_scaling.angles, levelling=levelling, adaptation=adaptation, admittance=admittance
+        )
+        self._walk = WalkComponents(
+            robot=self.robot,
+            planner=planner,
+            transitions=transitions,
+            foot_targets=foot_targets,
+            ground=ground,
+            solver=solver,
+            time_scaling=time_scaling,
+            every_leg=np.ones(self.robot.legs, dtype=bool),
+            no_offset=np.zeros(self.robot.legs),
+        )
+        self._tick = TickState(state, np.zeros(3))
+        self._intake = CommandIntake(self.robot, transitions)
+        self._twist_limiters = twist_limiters(self._walk)
 
     def step(
         self, command: Command | Sequence[float], dt: float, readings: SensorReadings | None = None
@@ -153,14 +181,11 @@ class WalkController:
         dt = min(float(dt), _LONGEST_TICK)
         self._intake.accept(command, self.angles)
         tick = estimated(self._walk, self._tick, readings, dt)
-        tick = planned(self._walk, tick, command, dt, body=self._body_now)
+        tick = planned(self._walk, tick, command, dt, body=lambda: self.body)
         tick = limited(self._walk, tick, command, dt, self._twist_limiters)
         self._tick = integrated(self._walk, tick, dt)
         self.time += dt
         return self.angles
-
-    def _body_now(self) -> Pose:
-        return self.body
 
     @property
     def walk_state(self) -> WalkState:

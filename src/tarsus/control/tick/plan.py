@@ -11,10 +11,9 @@ from tarsus.control.command import Command
 from tarsus.control.incremental import Incremental
 from tarsus.control.limitation import Cause
 from tarsus.control.tick.components import WalkComponents
-from tarsus.control.tick.state import TickState
+from tarsus.control.tick_state import TickState
 from tarsus.control.transition.feasible_fraction import StanceTarget
 from tarsus.control.transition.parameters import WalkParameters
-from tarsus.control.transition.situation import WalkSituation
 from tarsus.control.transition.stance_transition import StanceTransition
 from tarsus.control.transition.target_stance import sway_extremes
 from tarsus.control.walk.foot_target_motion import reachable_fraction
@@ -48,8 +47,7 @@ def planned(
     body : callable
         The pose of B in G at the time that it is called.
     """
-    situation = WalkSituation(tick.gait, tick.twist, tick.standing)
-    state = walk.transitions.advance(partial(_plan_transition, walk, body), situation)
+    state = walk.transitions.advance(partial(_plan_transition, walk, body), tick)
     if state is not tick.gait:
         tick = tick._replace(gait=state)
     _set_foot_targets(walk, tick.gait, command, dt)

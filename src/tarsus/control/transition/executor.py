@@ -8,9 +8,10 @@ import numpy as np
 
 from tarsus.control.limitation import Cause, Limitation, LimitationKind
 from tarsus.control.pose.pose_controller import PoseController
+from tarsus.control.tick_state import TickState
 from tarsus.control.transition.foothold_transfer import FootholdTransfer
+from tarsus.control.transition.phase import TransitionPhase
 from tarsus.control.transition.scheduler import PlanTransition, TransitionScheduler
-from tarsus.control.transition.situation import TransitionPhase, WalkSituation
 from tarsus.control.transition.stance_transition import StanceTransition
 from tarsus.control.walk.foot_targets import FootTargets
 from tarsus.control.walk.foothold import final_footholds
@@ -158,31 +159,31 @@ class TransitionExecutor:
 
     # Beginning a transition.
 
-    def advance(self, plan: PlanTransition, now: WalkSituation) -> GaitState:
+    def advance(self, plan: PlanTransition, now: TickState) -> GaitState:
         """Do one stage of planning, and begin what may begin.
 
         Parameters
         ----------
         plan : callable
             Plans a transition, as for `TransitionScheduler.advance_planning`.
-        now : WalkSituation
-            What decides whether a transition may begin.
+        now : TickState
+            The state of walking.
 
         Returns
         -------
         GaitState
             The gait state; its clock is set where another gait begins.
         """
-        self.scheduler.advance_planning(plan, idle=self.is_settled(now.state))
+        self.scheduler.advance_planning(plan, idle=self.is_settled(now.gait))
         if self.scheduler.planned is not None:
             return self._try_to_begin(self.scheduler.planned, now)
         if self.phase is TransitionPhase.FOOTHOLDS and self._active is not None:
             self._try_to_move_body(self._active, now)
-        return now.state
+        return now.gait
 
-    def _try_to_begin(self, planned: StanceTransition, now: WalkSituation) -> GaitState:
+    def _try_to_begin(self, planned: StanceTransition, now: TickState) -> GaitState:
         """Begin a planned transition as soon as the standing feet allow it."""
-        state, gait = now.state, planned.parameters.gait
+        state, gait = now.gait, planned.parameters.gait
         # The steps get faster only after the transition.
         frequency = min(self.timing.frequency, 1 / planned.cycle_timing.cycle_time)
         feasible = self._feasible(planned, frequency, now)
@@ -202,19 +203,19 @@ class TransitionExecutor:
                 self._begin(planned, state)
         return state
 
-    def _feasible(self, planned: StanceTransition, frequency: float, now: WalkSituation) -> bool:
+    def _feasible(self, planned: StanceTransition, frequency: float, now: TickState) -> bool:
         """Return whether the feet could step to their new rest footholds at the present twist."""
         duty_factor = planned.parameters.gait.duty_factor
         fraction, _ = planned.stepping_limits.feasible_fraction(
-            now.state.twist.value, stance_time=duty_factor / frequency, duty_factor=duty_factor
+            now.gait.twist.value, stance_time=duty_factor / frequency, duty_factor=duty_factor
         )
         return fraction >= 1
 
-    def _try_to_change_gait(self, planned: StanceTransition, now: WalkSituation) -> None:
+    def _try_to_change_gait(self, planned: StanceTransition, now: TickState) -> None:
         """Let all feet touch down, if they may stand for so long; the leg that suits best then lifts first."""
         cycle_time, gait = planned.cycle_timing.cycle_time, planned.parameters.gait
         timing, delays = StepTiming.of(gait, cycle_time), lift_delays(gait, cycle_time)
-        ends = time_to_touchdown(now.state, self.timing.gait, self.timing.frequency).max() + delays
+        ends = time_to_touchdown(now.gait, self.timing.gait, self.timing.frequency).max() + delays
         bounds = self._foot_targets.without_bounds(self.footholds.bounds_with(planned))
         bounds = np.minimum(bounds, planned.final_limits.bounds)
         over = self._excess(np.zeros(delays.shape), ends, bounds, now, timing.bandwidth).max(axis=(1, 2, 3, 4))
@@ -225,7 +226,7 @@ class TransitionExecutor:
             self._next_timing, self._first_leg, self._delays = timing, first, delays[first]
             self.footholds.restrict(planned.final_limits)
 
-    def _try_to_move_body(self, active: StanceTransition, now: WalkSituation) -> None:
+    def _try_to_move_body(self, active: StanceTransition, now: TickState) -> None:
         """Move the body once every foot is at its new rest foothold."""
         stepped = self.footholds.transferred.copy()
         stepped[list(self.current.parameters.excluded)] = True
@@ -238,20 +239,20 @@ class TransitionExecutor:
             self.phase, self._active = TransitionPhase.NONE, None
 
     def _stays_within(
-        self, bounds: Float[np.ndarray, "legs 16"], now: WalkSituation, *, frequency: float, bandwidth: float
+        self, bounds: Float[np.ndarray, "legs 16"], now: TickState, *, frequency: float, bandwidth: float
     ) -> bool:
-        begins, ends = self.stance_intervals(now.state, frequency=frequency)
-        return bool(self._excess(begins, ends, bounds, now, bandwidth).max() <= stance_tolerance(now.state))
+        begins, ends = self.stance_intervals(now.gait, frequency=frequency)
+        return bool(self._excess(begins, ends, bounds, now, bandwidth).max() <= stance_tolerance(now.gait))
 
     def _excess(
         self,
         begins: Float[np.ndarray, "*#batch legs"],
         ends: Float[np.ndarray, "*#batch legs"],
         bounds: Float[np.ndarray, "legs 16"],
-        now: WalkSituation,
+        now: TickState,
         bandwidth: float,
     ) -> Float[np.ndarray, "... 3 legs 16"]:
-        return polygon_excess(now.state, now.target[None], begins=begins, ends=ends, bounds=bounds, bandwidth=bandwidth)
+        return polygon_excess(now.gait, now.twist[None], begins=begins, ends=ends, bounds=bounds, bandwidth=bandwidth)
 
     def _begin(self, planned: StanceTransition, state: GaitState) -> None:
         """Transfer the feet to their new rest footholds; legs that leave the gait get foot targets."""

@@ -34,6 +34,8 @@ class FootholdTransfer:
         Sides of the polygons in which standing feet have to stay [m].
     rest : complex array, shape (legs,)
         Where each foot rests, or will be put down, in the heading frame [m].
+    new_rest : complex array, shape (legs,)
+        The rest footholds once all feet are transferred [m].
     placement_bounds : array, shape (legs, 16)
         Distance from its rest foothold at which each foot may be put down next, along each side's normal [m].
     placement_radii : list of float
@@ -50,7 +52,7 @@ class FootholdTransfer:
         self.rest: Complex[np.ndarray, "legs"] = transition.rest
         self.transferred = np.ones(len(self.rest), dtype=bool)
         self._next_bounds = self.bounds
-        self._new_rest = self.rest
+        self.new_rest = self.rest
         self._lands_at_old = ~self.transferred
         self._update_placement()
 
@@ -60,11 +62,6 @@ class FootholdTransfer:
         self.placement_bounds: Float[np.ndarray, "legs 16"] = np.maximum(landing - along, 0.0)
         self.placement_radii: list[float] = self.placement_bounds.min(axis=1).tolist()
         self.standing_radii: list[float] = (self.bounds - along).min(axis=1).tolist()
-
-    @property
-    def new_rest(self) -> Complex[np.ndarray, "legs"]:
-        """The rest footholds once all feet are transferred: complex array, shape (legs,) [m]."""
-        return self._new_rest
 
     def bounds_with(self, transition: StanceTransition) -> Float[np.ndarray, "legs 16"]:
         """Return the sides with which the feet would start to transfer.
@@ -83,7 +80,7 @@ class FootholdTransfer:
         return np.where(moved[:, None], self.bounds, np.minimum(self.bounds, transition.stepping_limits.bounds))
 
     def _moved(self, transition: StanceTransition) -> Bool[np.ndarray, "legs"]:
-        return np.asarray(np.abs(transition.rest - self._new_rest) > _SAME)
+        return np.asarray(np.abs(transition.rest - self.new_rest) > _SAME)
 
     def begin(self, transition: StanceTransition, down: Bool[np.ndarray, "legs"]) -> None:
         """Begin to transfer the feet to new rest footholds.
@@ -102,7 +99,7 @@ class FootholdTransfer:
         # A foot in the air lands at the foothold that it swings to; its next step is the one that counts.
         self._lands_at_old = moved & ~down
         self.rest = np.where(self._lands_at_old, self.rest, transition.rest)
-        self._next_bounds, self._new_rest = transition.stepping_limits.bounds, transition.rest
+        self._next_bounds, self.new_rest = transition.stepping_limits.bounds, transition.rest
         self._update_placement()
 
     def feet_landed(self, landed: Bool[np.ndarray, "legs"]) -> None:
@@ -115,7 +112,7 @@ class FootholdTransfer:
         """
         if self.bounds is self._next_bounds and self.transferred.all():
             return
-        self.rest = np.where(landed, self._new_rest, self.rest)
+        self.rest = np.where(landed, self.new_rest, self.rest)
         counts, self._lands_at_old = landed & ~self._lands_at_old, self._lands_at_old & ~landed
         self.transferred = self.transferred | counts
         self.bounds = np.where(counts[:, None], self._next_bounds, self.bounds)
