@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
@@ -21,7 +20,7 @@ from tarsus.kinematics.leg import forward_kinematics
 from tarsus.kinematics.pose import Pose
 
 if TYPE_CHECKING:
-    from jaxtyping import Bool, Float
+    from jaxtyping import Float
 
 __all__ = ["Recorder"]
 
@@ -30,19 +29,8 @@ _Key: TypeAlias = tuple[str, str, str, str]
 # A limitation that is absent for less than this is still the same one [s].
 _GAP = 0.1
 _CHANGES = (RobotState.RISING, RobotState.SITTING, RobotState.FOLDING)
-# Which parts of a command ask for what may be limited; a limitation of another kind is always a shortfall.
-_ASKED_BY: dict[LimitationKind, Callable[[Command], Any]] = {
-    LimitationKind.TWIST: lambda command: command.twist,
-    LimitationKind.BODY: lambda command: command.body,
-    LimitationKind.BODY_HEIGHT: lambda command: command.body_height,
-    LimitationKind.SWING_HEIGHT: lambda command: command.swing_height,
-    LimitationKind.STANCE_WIDTH: lambda command: command.stance_width,
-    LimitationKind.GAIT: lambda command: command.gait,
-    LimitationKind.CYCLE_TIME: lambda command: command.cycle_time,
-    LimitationKind.SWAY: lambda command: command.sway,
-    LimitationKind.FOOT_TARGET: lambda command: command.foot_targets or command.foot_velocities,
-    LimitationKind.STATE: lambda command: command.state,
-}
+# Limitations of these kinds are no part of a command: they are shortfalls whatever is commanded next.
+_NOT_COMMANDED = (LimitationKind.GROUND, LimitationKind.ATTITUDE, LimitationKind.READINGS)
 
 
 class Recorder:
@@ -93,9 +81,10 @@ class Recorder:
         if command is self._command:
             return
         for since, _, last, limitation in self._present.values():
-            asked = _ASKED_BY.get(limitation.kind)
-            if asked is not None and last > self.time - _GAP and _replaces(asked(command), asked(self._command)):
-                self._note_unmet(since, limitation)
+            if limitation.kind not in _NOT_COMMANDED and last > self.time - _GAP:
+                new, old = (_part(each, limitation.kind) for each in (command, self._command))
+                if new is not None and new != old:
+                    self._note_unmet(since, limitation)
         self._command = command
 
     def _note_unmet(self, since: float, limitation: Limitation) -> None:
@@ -145,7 +134,7 @@ class Recorder:
                 since, number, _, _ = known
             self._events[number] = self._events[number]._replace(until=time)
             present[limitation.key] = (since, number, time, limitation)
-            if limitation.kind not in _ASKED_BY:
+            if limitation.kind in _NOT_COMMANDED:
                 self._note_unmet(since, limitation)
         lately = {key: known for key, known in self._present.items() if known[2] > time - _GAP}
         self._present = {**lately, **present}
@@ -171,11 +160,11 @@ class Recorder:
             rate=rate,
             compliant=self._controller.compliant,
             motion=self._motion(twist),
-            twist_commanded=_locked(np.array(self._twists)),
-            twist=_locked(twist),
-            cycle_times=_locked(np.array([output.cycle_time for output in outputs])),
-            belly=_locked(np.array([output.belly for output in outputs])),
-            measured_angles=_locked(self._measured_angles()),
+            twist_commanded=np.array(self._twists),
+            twist=twist,
+            cycle_times=np.array([output.cycle_time for output in outputs]),
+            belly=np.array([output.belly for output in outputs]),
+            measured_angles=self._measured_angles(),
             states=tuple(str(output.state) for output in outputs),
             activities=tuple(output.activity for output in outputs),
             gaits=tuple(output.gait.name for output in outputs),
@@ -233,13 +222,8 @@ def _foot_speeds(twist: Float[np.ndarray, "n 3"], rest: Float[np.ndarray, "legs 
     return np.asarray(np.hypot(vx - wz * rest[:, 1], vy + wz * rest[:, 0]))
 
 
-def _replaces(new: Any, old: Any) -> bool:
-    """Return whether a part of a command replaces another; None leaves it as it is."""
-    return new is not None and bool(new != old)
-
-
-def _locked(
-    array: Bool[np.ndarray, "*batch"] | Float[np.ndarray, "*batch"],
-) -> Bool[np.ndarray, "*batch"] | Float[np.ndarray, "*batch"]:
-    array.setflags(write=False)
-    return array
+def _part(command: Command, kind: LimitationKind) -> Any:
+    """Return the part of a command that limitations of a kind are about; None leaves it as it is."""
+    if kind is LimitationKind.FOOT_TARGET:
+        return command.foot_targets or command.foot_velocities
+    return getattr(command, kind.value)

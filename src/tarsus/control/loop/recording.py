@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -129,6 +129,10 @@ class Recording:
     unmet: tuple[Unmet, ...]
     events: tuple[Event, ...]
 
+    def __post_init__(self) -> None:
+        for array in (self.twist_commanded, self.twist, self.cycle_times, self.belly, self.measured_angles):
+            array.setflags(write=False)
+
     @cached_property
     def upright(self) -> Bool[np.ndarray, "n"]:
         """Whether the robot stands or walks, and is not lying, rising, sitting down or folding ``(n,)``."""
@@ -155,22 +159,14 @@ class Recording:
         whole, rows = self.motion, slice(first, end)
         if end - first == len(whole.time):
             return whole
-        return Motion(
-            robot=whole.robot,
-            gait=whole.gait,
+        return replace(
+            whole,
             time=whole.time[rows] - whole.time[first],
             body=whole.body[rows],
             feet=whole.feet[rows],
             contacts=whole.contacts[rows],
             angles=whole.angles[rows],
             reach=whole.reach[rows],
-            cycle_time=whole.cycle_time,
-            stroke=whole.stroke,
-            speed=whole.speed,
-            body_height=whole.body_height,
-            swing_height=whole.swing_height,
-            foot_distance=whole.foot_distance,
-            assumed=whole.assumed,
         )
 
     @property

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from itertools import product
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,6 +11,7 @@ from tarsus.control.safety.bounds import GuardBounds
 from tarsus.control.safety.joint_monitor import JointMonitor
 from tarsus.control.safety.support_geometry import Point
 from tarsus.kinematics.leg import forward_kinematics, leg_jacobian
+from tarsus.kinematics.rest import CORNERS
 from tarsus.robot.robot import Robot
 
 if TYPE_CHECKING:
@@ -137,8 +137,4 @@ class SitDown:
 
 def _body_corners(robot: Robot) -> Float[np.ndarray, "n 3"]:
     """Return points of the body in B that include its lowest point in any attitude."""
-    if robot.body_size is None:
-        corners: np.ndarray = np.asarray(robot.mount_position)
-    else:
-        corners = np.array(list(product((-0.5, 0.5), repeat=3))) * np.asarray(robot.body_size)
-    return corners
+    return np.asarray(robot.mount_position if robot.body_size is None else CORNERS * robot.body_size)

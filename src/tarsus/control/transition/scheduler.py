@@ -20,13 +20,6 @@ __all__ = ["PlanTransition", "TransitionScheduler"]
 PlanTransition: TypeAlias = Callable[[WalkParameters, bool], Incremental[StanceTransition | Cause]]
 """Plans a transition to parameters; the second argument is whether the posture stays."""
 
-# The parameters that limitations of a stance are about; those of the body pose where not named.
-_FIELDS = {
-    LimitationKind.BODY_HEIGHT: "body_height",
-    LimitationKind.SWING_HEIGHT: "swing_height",
-    LimitationKind.STANCE_WIDTH: "stance_width",
-    LimitationKind.CYCLE_TIME: "cycle_time",
-}
 _UNREACHABLE = Cause("no leg reaches the ground at this height")
 _DEFERRED = Cause("not while a leg is taken out of the gait")
 
@@ -70,8 +63,8 @@ class TransitionScheduler:
         """What of the commanded parameters is not met, and will not be."""
         now, then = self.requested, self._planned_for
         newer = {found.kind for found in self._shortfalls}
-        fields = [(found, _FIELDS.get(found.kind, "body")) for found in self.current.limitations]
-        valid = (found for found, name in fields if getattr(now, name) == getattr(then, name))
+        # Each kind of limitation of a stance has the name of the parameter that it is about.
+        valid = (each for each in self.current.limitations if getattr(now, each.kind) == getattr(then, each.kind))
         return (*(found for found in valid if found.kind not in newer), *self._shortfalls)
 
     def request(self, command: Command, excluded: tuple[int, ...], correction: tuple[float, ...]) -> None:

@@ -25,6 +25,7 @@ _FRACTIONS = np.array([*np.linspace(1.0, 0.1, 10), 0.06, 0.03])
 _FIRST = 3
 
 
+@functools.lru_cache(maxsize=64)
 def support_sets(gait: Gait, excluded: tuple[int, ...] = ()) -> Bool[np.ndarray, "n legs"]:
     """Return the sets of feet that are in stance together, at the times when fewest are.
 
@@ -40,11 +41,6 @@ def support_sets(gait: Gait, excluded: tuple[int, ...] = ()) -> Bool[np.ndarray,
     array of bool, shape (n, legs)
         Minimal sets: none contains another. Where these support the robot, all sets of the gait do.
     """
-    return _support_sets(gait, tuple(excluded))
-
-
-@functools.lru_cache(maxsize=64)
-def _support_sets(gait: Gait, excluded: tuple[int, ...]) -> Float[np.ndarray, "..."]:
     after = np.asarray(gait.offsets) + gait.duty_factor + 1e-6
     down = gait.phase(after)[2]
     down[:, list(excluded)] = False
