@@ -218,7 +218,10 @@ class TransitionExecutor:
         ends = time_to_touchdown(now.gait, self.timing.gait, self.timing.frequency).max() + delays
         bounds = self._foot_targets.without_bounds(self.footholds.bounds_with(planned))
         bounds = np.minimum(bounds, planned.final_limits.bounds)
-        over = self._excess(np.zeros(delays.shape), ends, bounds, now, timing.bandwidth).max(axis=(1, 2, 3, 4))
+        begins, bandwidth = np.zeros(delays.shape), timing.bandwidth
+        over = polygon_excess(
+            now.gait, now.twist[None], begins=begins, ends=ends, bounds=bounds, bandwidth=bandwidth
+        ).max(axis=(1, 2, 3, 4))
         # Symmetric legs suit equally well but for rounding; the first of them lifts, on any machine.
         first = int((over <= over.min() + _ROUNDING).argmax())
         if over[first] <= POSITION_TOLERANCE:
@@ -242,17 +245,8 @@ class TransitionExecutor:
         self, bounds: Float[np.ndarray, "legs 16"], now: TickState, *, frequency: float, bandwidth: float
     ) -> bool:
         begins, ends = self.stance_intervals(now.gait, frequency=frequency)
-        return bool(self._excess(begins, ends, bounds, now, bandwidth).max() <= stance_tolerance(now.gait))
-
-    def _excess(
-        self,
-        begins: Float[np.ndarray, "*#batch legs"],
-        ends: Float[np.ndarray, "*#batch legs"],
-        bounds: Float[np.ndarray, "legs 16"],
-        now: TickState,
-        bandwidth: float,
-    ) -> Float[np.ndarray, "... 3 legs 16"]:
-        return polygon_excess(now.gait, now.twist[None], begins=begins, ends=ends, bounds=bounds, bandwidth=bandwidth)
+        excess = polygon_excess(now.gait, now.twist[None], begins=begins, ends=ends, bounds=bounds, bandwidth=bandwidth)
+        return bool(excess.max() <= stance_tolerance(now.gait))
 
     def _begin(self, planned: StanceTransition, state: GaitState) -> None:
         """Transfer the feet to their new rest footholds; legs that leave the gait get foot targets."""
