@@ -9,13 +9,13 @@ from hypothesis import Phase, given, settings
 from hypothesis import strategies as st
 
 from gait_robots import PRESETS, preset
-from tarsus.control.startup.folded_pose import belly_depth, folded_pose, underside_points
 from tarsus.control.startup.foothold_change import change_footholds
 from tarsus.control.startup.foothold_stations import foothold_stations
 from tarsus.control.startup.initial_state import initial_state, over_feet
 from tarsus.control.startup.planner import fold, sit_down, stand_up
 from tarsus.control.startup.raise_body import raise_body
 from tarsus.errors import InputError, TarsusError, UnreachableError
+from tarsus.kinematics.folded_pose import folded_pose
 from tarsus.kinematics.inverse import inverse_kinematics
 from tarsus.kinematics.leg import forward_kinematics
 from tarsus.kinematics.mass import centre_of_mass
@@ -24,6 +24,7 @@ from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.rest import resting_pose
 from tarsus.kinematics.stability import stability_margin
 from tarsus.kinematics.stance import default_body_height, default_stance, default_swing_height
+from tarsus.kinematics.underside import belly_depth, underside_points
 from tarsus.robot.joint_limits import joint_limits
 from tarsus.robot.robot import stack_robots
 

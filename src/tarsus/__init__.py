@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from tarsus.control.robot_controller import RobotController
     from tarsus.control.safety import Guard, GuardBounds, GuardOutput, GuardState, Intervention, InterventionKind
     from tarsus.control.sequence import MotionSequence, SequencePlayer
-    from tarsus.control.startup import fold, folded_pose, power_off_order, sit_down, stand_up
+    from tarsus.control.startup import fold, power_off_order, sit_down, stand_up
     from tarsus.control.states.robot_state import RobotState
     from tarsus.control.terrain.roughness import GroundAdaptation
     from tarsus.control.walk_controller import WalkController
@@ -62,6 +62,7 @@ if TYPE_CHECKING:
     from tarsus.gait.storage import load_motion, motion_to_csv, motion_to_dataset, save_motion
     from tarsus.gait.stroke import max_stroke
     from tarsus.kinematics.body import coxa_frames, reachable_fraction
+    from tarsus.kinematics.folded_pose import folded_pose
     from tarsus.kinematics.inverse import inverse_kinematics
     from tarsus.kinematics.leg import forward_kinematics, leg_jacobian
     from tarsus.kinematics.mass import centre_of_mass, total_mass
@@ -138,7 +139,7 @@ _HOMES = {
     "tarsus.control.pose.admittance": ("Admittance",),
     "tarsus.control.terrain.roughness": ("GroundAdaptation",),
     "tarsus.control.safety": ("Guard", "GuardBounds", "GuardOutput", "GuardState", "Intervention", "InterventionKind"),
-    "tarsus.control.startup": ("fold", "folded_pose", "power_off_order", "sit_down", "stand_up"),
+    "tarsus.control.startup": ("fold", "power_off_order", "sit_down", "stand_up"),
     "tarsus.control.control_output": ("ControlOutput",),
     "tarsus.control.limitation": (
         "Limitation",
@@ -162,6 +163,7 @@ _HOMES = {
     "tarsus.gait.storage": ("load_motion", "motion_to_csv", "motion_to_dataset", "save_motion"),
     "tarsus.gait.stroke": ("max_stroke",),
     "tarsus.kinematics.body": ("coxa_frames", "reachable_fraction"),
+    "tarsus.kinematics.folded_pose": ("folded_pose",),
     "tarsus.kinematics.inverse": ("inverse_kinematics",),
     "tarsus.kinematics.leg": ("forward_kinematics", "leg_jacobian"),
     "tarsus.kinematics.mass": ("centre_of_mass", "total_mass"),

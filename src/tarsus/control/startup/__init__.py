@@ -3,8 +3,8 @@
 The public names are those listed in ``__all__``; everything else is private to the package.
 """
 
-from tarsus.control.startup.folded_pose import folded_pose
 from tarsus.control.startup.planner import fold, sit_down, stand_up
 from tarsus.control.startup.power_off import PowerOffOrder, power_off_order
+from tarsus.kinematics.folded_pose import folded_pose
 
 __all__ = ["PowerOffOrder", "fold", "folded_pose", "power_off_order", "sit_down", "stand_up"]

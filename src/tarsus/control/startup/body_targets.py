@@ -9,9 +9,9 @@ import numpy as np
 
 from tarsus.control.sequence.stage import Stage
 from tarsus.control.startup.builder import SequenceBuilder
-from tarsus.control.startup.folded_pose import belly_depth, underside_points
 from tarsus.kinematics.mass import centre_of_mass
 from tarsus.kinematics.pose import Pose
+from tarsus.kinematics.underside import belly_depth, underside_points
 
 if TYPE_CHECKING:
     from jaxtyping import Bool, Float

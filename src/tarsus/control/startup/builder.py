@@ -10,10 +10,10 @@ import numpy as np
 from tarsus.control.sequence.sequence import MotionSequence
 from tarsus.control.sequence.stage import Stage
 from tarsus.control.startup.checks import check_stage
-from tarsus.control.startup.folded_pose import underside_points
 from tarsus.control.startup.leg_path import leg_paths
 from tarsus.kinematics.leg import forward_kinematics
 from tarsus.kinematics.pose import Pose
+from tarsus.kinematics.underside import underside_points
 from tarsus.robot.joint_limits import JointLimits
 from tarsus.robot.robot import Robot
 

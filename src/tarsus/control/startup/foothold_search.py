@@ -9,8 +9,8 @@ import numpy as np
 
 from tarsus.control.startup.body_targets import BodyTarget, stage_to
 from tarsus.control.startup.builder import SequenceBuilder
-from tarsus.control.startup.folded_pose import folded_pose
 from tarsus.errors import TarsusError
+from tarsus.kinematics.folded_pose import folded_pose
 from tarsus.kinematics.inverse import inverse_kinematics
 
 if TYPE_CHECKING:

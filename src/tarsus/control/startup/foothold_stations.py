@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING, NamedTuple, Self
 
 import numpy as np
 
-from tarsus.control.startup.folded_pose import belly_depth
 from tarsus.errors import UnreachableError
 from tarsus.kinematics.stance import foothold_distances, reachable_band
+from tarsus.kinematics.underside import belly_depth
 from tarsus.robot.robot import Robot
 
 if TYPE_CHECKING:

@@ -10,10 +10,10 @@ import numpy as np
 from tarsus.arrays import Array
 from tarsus.control.startup.body_targets import GROUND_TOLERANCE
 from tarsus.control.startup.builder import SequenceBuilder
-from tarsus.control.startup.folded_pose import belly_depth, underside_points
 from tarsus.errors import InputError, TarsusError
 from tarsus.kinematics.leg import checked_angles, forward_kinematics
 from tarsus.kinematics.rest import RestingPose, resting_pose
+from tarsus.kinematics.underside import belly_depth, underside_points
 from tarsus.robot.joint_limits import JointLimits
 from tarsus.robot.robot import Robot
 

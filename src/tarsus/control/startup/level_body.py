@@ -15,9 +15,10 @@ from tarsus.control.sequence.stage import GRID
 from tarsus.control.startup.body_targets import GROUND_TOLERANCE, BodyTarget, stage_to
 from tarsus.control.startup.builder import SequenceBuilder
 from tarsus.control.startup.checks import limit_excess
-from tarsus.control.startup.folded_pose import folded_pose, underside_points
 from tarsus.control.startup.foothold_search import place_feet
+from tarsus.kinematics.folded_pose import folded_pose
 from tarsus.kinematics.leg import forward_kinematics
+from tarsus.kinematics.underside import underside_points
 
 if TYPE_CHECKING:
     from jaxtyping import Bool, Float

@@ -11,12 +11,12 @@ from tarsus.arrays import Array
 from tarsus.control.sequence.sequence import MotionSequence
 from tarsus.control.startup.body_targets import BodyTarget, body_targets
 from tarsus.control.startup.builder import SequenceBuilder
-from tarsus.control.startup.folded_pose import belly_depth, folded_pose
 from tarsus.control.startup.initial_state import SERVO_SPEED_SHARE, initial_state, lying_state, over_feet
 from tarsus.control.startup.level_body import level_body
 from tarsus.control.startup.raise_body import lower_body, raise_body
 from tarsus.errors import InputError, TarsusError, UnreachableError
 from tarsus.gait.walk_setup import require_number
+from tarsus.kinematics.folded_pose import folded_pose
 from tarsus.kinematics.inverse import inverse_kinematics
 from tarsus.kinematics.stance import (
     default_body_height,
@@ -25,6 +25,7 @@ from tarsus.kinematics.stance import (
     foothold_distances,
     footholds_straight_out,
 )
+from tarsus.kinematics.underside import belly_depth
 from tarsus.robot.joint_limits import joint_limits
 from tarsus.robot.robot import Robot
 

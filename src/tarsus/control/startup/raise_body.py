@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tarsus.control.startup.builder import SequenceBuilder
-from tarsus.control.startup.folded_pose import belly_depth
 from tarsus.control.startup.foothold_change import change_footholds
 from tarsus.control.startup.foothold_stations import FootholdStation, foothold_stations
 from tarsus.errors import UnreachableError
 from tarsus.kinematics.inverse import inverse_kinematics
 from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.stance import default_stance, foothold_distances, footholds_straight_out
+from tarsus.kinematics.underside import belly_depth
 
 if TYPE_CHECKING:
     from jaxtyping import Float
