@@ -1,6 +1,7 @@
 """Standing up, sitting down and folding from any joint angles: properties of the planned motion at all times."""
 
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -353,10 +354,10 @@ def test_a_height_out_of_all_reach_is_reported():
 
 def test_the_error_says_if_no_lower_height_works():
     robot = preset("strider")
-    builder = initial_state(robot, folded_pose(robot), joint_limits(robot))
+    builder = replace(initial_state(robot, folded_pose(robot), joint_limits(robot)), swing_height=10.0)
     feet = default_stance(robot, 0.11) * [2, 2, 1]
     with pytest.raises(UnreachableError, match=r"raising the body to 110.0 mm: .*; no lower body height works either"):
-        raise_body(builder, feet, stance_angles(robot), swing_height=10.0, margin=0.01)
+        raise_body(builder, feet, stance_angles(robot))
 
 
 def test_with_three_feet_on_the_ground_none_is_lifted():
@@ -366,7 +367,7 @@ def test_with_three_feet_on_the_ground_none_is_lifted():
         builder.unload(leg)
     turned = stance_angles(robot) + 0.1 * np.array([[0], [1], [0], [1], [0], [1]])
     with pytest.raises(TarsusError, match=r"only 3 feet are on the ground; .* requires at least 4"):
-        change_footholds(builder, turned, swing_height=0.03, margin=0.0)
+        change_footholds(builder, turned)
 
 
 def test_a_final_stance_with_other_angles_is_rejected():
@@ -374,7 +375,7 @@ def test_a_final_stance_with_other_angles_is_rejected():
     stance = stance_angles(robot)
     builder = initial_state(robot, stance, joint_limits(robot))
     with pytest.raises(UnreachableError, match=r"final joint angles differ from those of the stance by 0\.[0-9]+ deg"):
-        raise_body(builder, default_stance(robot, swing_height=0.03), stance - 1e-5, swing_height=0.03, margin=0.01)
+        raise_body(builder, default_stance(robot, swing_height=0.03), stance - 1e-5)
 
 
 def test_an_unloaded_foot_is_not_dragged():

@@ -54,6 +54,10 @@ class SequenceBuilder:
         Points in G other than feet that bear load: points of the body, or knees [m].
     initial_margin : float
         Stability margin of the initial state [m].
+    swing_height : float
+        Swing height of feet that change their foothold [m].
+    margin : float
+        Least stability margin while feet that bear load change their footholds [m].
     stages : list of Stage
         The stages so far.
     """
@@ -66,6 +70,8 @@ class SequenceBuilder:
     belly: bool
     supports: Float[np.ndarray, "n 3"]
     initial_margin: float
+    swing_height: float = 0.0
+    margin: float = 0.0
     stages: list[Stage] = field(default_factory=list)
 
     def copy(self) -> Self:
@@ -157,13 +163,7 @@ class SequenceBuilder:
             self._add(name, margin=margin, angles_end=target, contacts=stationary, contacts_end=after)
 
     def swing(
-        self,
-        name: str,
-        legs: Bool[np.ndarray, "legs"],
-        feet: Float[np.ndarray, "legs 3"],
-        *,
-        swing_height: float,
-        margin: float,
+        self, name: str, legs: Bool[np.ndarray, "legs"], feet: Float[np.ndarray, "legs 3"], *, margin: float
     ) -> None:
         """Swing feet to new footholds, with the body stationary.
 
@@ -175,13 +175,11 @@ class SequenceBuilder:
             Legs to move.
         feet : array, shape (legs, 3)
             New footholds of these legs in G [m].
-        swing_height : float
-            Swing height [m].
         margin : float
             Least stability margin [m].
         """
         stance = self.contacts & ~legs
-        changes = {"cartesian": legs, "feet_end": feet, "swing_height": swing_height}
+        changes = {"cartesian": legs, "feet_end": feet, "swing_height": self.swing_height}
         self._add(name, margin=margin, contacts=stance, contacts_end=stance | legs, **changes)
 
     def move_body(

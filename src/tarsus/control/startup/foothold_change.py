@@ -23,9 +23,7 @@ _TOLERANCE = 1e-9
 _MIN_STANCE_FEET = 3
 
 
-def change_footholds(
-    builder: SequenceBuilder, angles: Float[np.ndarray, "legs 3"], *, swing_height: float, margin: float
-) -> None:
+def change_footholds(builder: SequenceBuilder, angles: Float[np.ndarray, "legs 3"]) -> None:
     """Move all legs to a new stance with the body stationary.
 
     Feet in the air are placed first. Then the tripods are moved, every second leg of the ring, and single legs where a
@@ -37,10 +35,6 @@ def change_footholds(
         The robot in its current state; stages are added to it.
     angles : array, shape (legs, 3)
         Joint angles of the new stance, all feet on the ground [rad].
-    swing_height : float
-        Swing height of the feet [m].
-    margin : float
-        Least stability margin while feet are in the air [m].
 
     Raises
     ------
@@ -50,26 +44,21 @@ def change_footholds(
     remaining = np.abs(angles - builder.angles).max(-1) > _TOLERANCE
     if (remaining & ~builder.contacts).any():
         # These legs bear no load, so the support of the body does not change.
-        _move(builder, remaining & ~builder.contacts, angles, swing_height=swing_height, margin=0.0)
+        _move(builder, remaining & ~builder.contacts, angles, margin=0.0)
         remaining &= np.abs(angles - builder.angles).max(-1) > _TOLERANCE
     while remaining.any():
-        group = _move_first_group(builder, remaining, angles, swing_height=swing_height, margin=margin)
+        group = _move_first_group(builder, remaining, angles)
         remaining = remaining & ~group
 
 
 def _move_first_group(
-    builder: SequenceBuilder,
-    remaining: Bool[np.ndarray, "legs"],
-    angles: Float[np.ndarray, "legs 3"],
-    *,
-    swing_height: float,
-    margin: float,
+    builder: SequenceBuilder, remaining: Bool[np.ndarray, "legs"], angles: Float[np.ndarray, "legs 3"]
 ) -> Bool[np.ndarray, "legs"]:
     """Move the first group of legs that can be lifted, and return it."""
     errors: list[TarsusError] = []
     for group in _groups(builder, remaining):
         try:
-            _move(builder, group, angles, swing_height=swing_height, margin=margin)
+            _move(builder, group, angles, margin=builder.margin)
         except TarsusError as error:
             errors.append(error)
         else:
@@ -91,12 +80,7 @@ def _groups(builder: SequenceBuilder, remaining: Bool[np.ndarray, "legs"]) -> It
 
 
 def _move(
-    builder: SequenceBuilder,
-    legs: Bool[np.ndarray, "legs"],
-    angles: Float[np.ndarray, "legs 3"],
-    *,
-    swing_height: float,
-    margin: float,
+    builder: SequenceBuilder, legs: Bool[np.ndarray, "legs"], angles: Float[np.ndarray, "legs 3"], *, margin: float
 ) -> None:
     """Move legs by a swing of their feet if possible, else along paths in joint space."""
     codes = [builder.robot.leg_codes[leg] for leg in np.flatnonzero(legs)]
@@ -107,7 +91,7 @@ def _move(
         if not same_branch:
             raise TarsusError(f"{name}: the knee must bend the other way")
         feet = builder.body @ forward_kinematics(builder.robot, angles)[:, 3]
-        trial.swing(name, legs, feet, swing_height=swing_height, margin=margin)
+        trial.swing(name, legs, feet, margin=margin)
     except TarsusError:
         trial = builder.copy()
         trial.move_legs(name, legs, np.where(legs[:, None], angles, builder.angles), landed=True, margin=margin)

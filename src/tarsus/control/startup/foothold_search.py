@@ -35,7 +35,6 @@ def place_feet(
     *,
     free: Bool[np.ndarray, "legs"],
     blocking: Bool[np.ndarray, "legs"],
-    margin: float,
 ) -> None:
     """Place the free legs on footholds that they can keep while the body moves, then the legs that block the motion.
 
@@ -49,8 +48,6 @@ def place_feet(
         Preferred footholds in B [m].
     free, blocking : array of bool, shape (legs,)
         Legs in the air, and legs on the ground that cannot stay where they are.
-    margin : float
-        Least stability margin while a blocking leg is lifted [m].
     """
     choices = _footholds(builder, target, stance)
     folded = folded_pose(builder.robot)
@@ -59,7 +56,8 @@ def place_feet(
         if not _place(builder, leg, choices[leg]):
             with contextlib.suppress(TarsusError):
                 _move_leg(builder, leg, folded[leg], "retract", landed=False)
-    remaining = np.flatnonzero(blocking).tolist()
+    # A robot that lies or stands unsteadily at first can't have more margin than that.
+    remaining, margin = np.flatnonzero(blocking).tolist(), min(builder.margin, builder.initial_margin)
     while (placed := next((leg for leg in remaining if _place(builder, leg, choices[leg], margin)), None)) is not None:
         remaining.remove(placed)
     for leg in remaining:

@@ -32,9 +32,7 @@ _ANGLE_TOLERANCE = 1e-7
 _NEAR_GROUND = 0.005
 
 
-def level_body(
-    builder: SequenceBuilder, target: BodyTarget, stance: Float[np.ndarray, "legs 3"], *, margin: float
-) -> None:
+def level_body(builder: SequenceBuilder, target: BodyTarget, stance: Float[np.ndarray, "legs 3"]) -> None:
     """Move the body to a level pose with the loaded feet stationary.
 
     Parameters
@@ -45,8 +43,6 @@ def level_body(
         Pose of the body at the end.
     stance : array, shape (legs, 3)
         Preferred footholds in B [m].
-    margin : float
-        Least stability margin while loaded feet are lifted, or the initial margin if that is less [m].
 
     Raises
     ------
@@ -66,8 +62,7 @@ def level_body(
         folded = np.where(free[:, None], folded_pose(builder.robot), builder.angles)
         builder.move_legs("retract free legs", free, folded, landed=False)
     else:
-        least = min(margin, builder.initial_margin)
-        place_feet(builder, target, stance, free=free, blocking=blocking, margin=least)
+        place_feet(builder, target, stance, free=free, blocking=blocking)
     supports = _body_contacts(builder) if target.belly else np.zeros((0, 3))
     name = "lie down" if target.belly else "level body"
     builder.move_body(name, target.body, pivot=target.pivot, supports=supports, stationary=near_ground)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -95,15 +96,15 @@ def stand_up(
         )
     folded = folded_pose(robot)
     limits = joint_limits(robot, joint_speed, joint_acceleration, share=SERVO_SPEED_SHARE)
-    start = initial_state(over_feet(robot), angles, limits)
+    start = replace(initial_state(over_feet(robot), angles, limits), swing_height=swing_height, margin=margin)
     feet = default_stance(robot, height, swing_height=swing_height)
     stance = inverse_kinematics(robot, feet).require().angles
 
     def plan(builder: SequenceBuilder, target: BodyTarget) -> None:
-        level_body(builder, target, feet, margin=margin)
+        level_body(builder, target, feet)
         if builder.belly:
             _fold(builder, folded)
-        raise_body(builder, feet, stance, swing_height=swing_height, margin=margin)
+        raise_body(builder, feet, stance)
 
     return _first_feasible(robot, start, list(body_targets(start, height)), plan)
 
@@ -153,14 +154,14 @@ def sit_down(
     limits = joint_limits(robot, joint_speed, joint_acceleration, share=SERVO_SPEED_SHARE)
     if angles is None:
         angles = inverse_kinematics(robot, default_stance(robot, swing_height=swing_height)).require().angles
-    start = initial_state(over_feet(robot), angles, limits)
+    start = replace(initial_state(over_feet(robot), angles, limits), swing_height=swing_height, margin=margin)
     distances = foothold_distances(robot, start.body.inverse() @ start.feet)
     feet = footholds_straight_out(robot, distances, -start.height)
 
     def plan(builder: SequenceBuilder, target: BodyTarget) -> None:
-        level_body(builder, target, feet, margin=margin)
+        level_body(builder, target, feet)
         if not builder.belly:
-            lower_body(builder, swing_height=swing_height, margin=margin)
+            lower_body(builder)
 
     lying_first = sorted(body_targets(start, start.height), key=lambda target: not target.belly)
     return _first_feasible(robot, start, lying_first, plan)

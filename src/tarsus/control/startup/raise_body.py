@@ -30,12 +30,7 @@ _ANGLE_TOLERANCE = 1e-6
 
 
 def raise_body(
-    builder: SequenceBuilder,
-    feet: Float[np.ndarray, "legs 3"],
-    stance: Float[np.ndarray, "legs 3"],
-    *,
-    swing_height: float,
-    margin: float,
+    builder: SequenceBuilder, feet: Float[np.ndarray, "legs 3"], stance: Float[np.ndarray, "legs 3"]
 ) -> None:
     """Move a level body, lying or standing, vertically to a stance.
 
@@ -47,10 +42,6 @@ def raise_body(
         Footholds of the stance in B [m].
     stance : array, shape (legs, 3)
         Joint angles of the stance [rad].
-    swing_height : float
-        Swing height of feet that change their foothold [m].
-    margin : float
-        Least stability margin during changes of footholds [m].
 
     Raises
     ------
@@ -58,7 +49,7 @@ def raise_body(
         If the body cannot be raised: which leg, at what height, by how much, and what would work.
     """
     height = -float(feet[0, 2])
-    stations = _stations(builder, feet, height, swing_height)
+    stations = _stations(builder, feet, height)
     for station, next_height in zip(stations, [*(s.height for s in stations[1:]), height], strict=True):
         last = station is stations[-1]
         spots = feet * [1, 1, 0] if last else footholds_straight_out(builder.robot, station.distances, 0.0)
@@ -68,7 +59,7 @@ def raise_body(
         if builder.belly:
             builder.move_legs("place feet", (builder.angles != angles).any(-1), angles, landed=True)
         else:
-            change_footholds(builder, angles, swing_height=swing_height, margin=margin)
+            change_footholds(builder, angles)
         if next_height != builder.height:
             name = "raise body" if next_height > builder.height else "lower body"
             builder.move_body(name, _at_height(builder.body, next_height))
@@ -81,10 +72,10 @@ def raise_body(
 
 
 def _stations(
-    builder: SequenceBuilder, feet: Float[np.ndarray, "legs 3"], height: float, swing_height: float
+    builder: SequenceBuilder, feet: Float[np.ndarray, "legs 3"], height: float
 ) -> tuple[FootholdStation, ...]:
     """Return the stations up to a height; if there are none, say which body heights would work."""
-    robot, start = builder.robot, builder.height
+    robot, start, swing_height = builder.robot, builder.height, builder.swing_height
     try:
         return foothold_stations(robot, start, height, feet, swing_height=swing_height)
     except UnreachableError as error:
@@ -100,17 +91,13 @@ def _stations(
         raise UnreachableError(f"raising the body to {height * 1000:.1f} mm: {error}; {advice}") from None
 
 
-def lower_body(builder: SequenceBuilder, *, swing_height: float, margin: float) -> None:
+def lower_body(builder: SequenceBuilder) -> None:
     """Lower a level, standing body until it lies on the ground.
 
     Parameters
     ----------
     builder : SequenceBuilder
         The robot; stages are added to it.
-    swing_height : float
-        Swing height of feet that change their foothold [m].
-    margin : float
-        Least stability margin during changes of footholds [m].
 
     Raises
     ------
@@ -120,11 +107,11 @@ def lower_body(builder: SequenceBuilder, *, swing_height: float, margin: float) 
     robot, lowest = builder.robot, belly_depth(builder.robot)
     distances = foothold_distances(robot, builder.body.inverse() @ builder.feet)
     feet = footholds_straight_out(robot, distances, -builder.height)
-    stations = foothold_stations(robot, lowest, builder.height, feet, swing_height=swing_height)
+    stations = foothold_stations(robot, lowest, builder.height, feet, swing_height=builder.swing_height)
     for station in stations[::-1]:
         spots = footholds_straight_out(robot, station.distances, -builder.height)
         angles = inverse_kinematics(robot, spots).require().angles
-        change_footholds(builder, angles, swing_height=swing_height, margin=margin)
+        change_footholds(builder, angles)
         builder.move_body("lower body", _at_height(builder.body, station.height))
     builder.set_lying()
 
