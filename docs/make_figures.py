@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 import tarsus
+from draw_films import draw_films
 from draw_hill import plot_hill
 from draw_states import plot_states
 from draw_terrains import plot_terrains
@@ -51,6 +52,7 @@ def main() -> None:
     tripod = tarsus.Gait.named("tripod")
     walk = tarsus.plan_walk(strider, tripod, tarsus.straight_path(1.0))
     animate_physics(strider)
+    draw_films()
     save_figure(plot_angles(walk), FIGURES / "angles.png")
     save_figure(plot_gait(walk), FIGURES / "gait.png")
     curve = tarsus.plan_walk(strider, tarsus.Gait.named("ripple"), tarsus.curved_path(np.pi / 2, (0, 0.4)))
