@@ -1,5 +1,6 @@
 """The bring-up, driven end to end over a terminal by someone who looks at an emulated machine."""
 
+import dataclasses
 import os
 import pty
 import re
@@ -268,6 +269,69 @@ def test_the_port_is_found_and_missing_servos_are_named(tmp_path):
     assert "servos answer on B" in answers.said
     assert "15 of 18 servos answer: 1 to 3, 6 to 8, 10 to 18" in answers.said
     assert any("id 9: damaged answers" in text for text in answers.said)
+
+
+class Watching(Answers):
+    """Answers as `Human` does, and notes which channels have pulses when the first one of a channel is asked for."""
+
+    def __init__(self, machine, script=()):
+        super().__init__()
+        self.human, self.first = Human(machine, script), []
+
+    def choose(self, question, options, *, topic):
+        self.said.append(question)
+        if "gets its first pulse" in question:
+            line = self.human.machine.line
+            number, pulse = (int(text) for text in re.search(r"channel (\d+) .* pulse, (\d+) us", question).groups())
+            self.first.append((number, pulse, [n for n, width in line.pulses.items() if width], topic))
+        answer = self.human.answer("\n".join(self.said[-2:]) if "Which leg moved" in question else question)
+        if answer == "q":
+            raise Left
+        assert answer in options
+        return answer
+
+
+def test_a_servo_of_pulses_gets_its_first_pulse_only_when_someone_says_so(tmp_path):
+    machine = Machine("servo2040")
+    # A board that still sends pulses, as after a crash.
+    machine.open("servo2040", "memory").write_goals(dict.fromkeys(range(18), 1500.0))
+    made = new_calibration(STRIDER, "strider", kind="servo2040", port="memory")
+    watching = Watching(machine, {r"channel 1 gets": "s", r"Zeros|move it to the reference": "q"})
+    up = BringUp(
+        made,
+        tmp_path / "c.toml",
+        watching,
+        open_bus=lambda settings: machine.open(settings.kind, settings.port),
+        ports=tuple,
+        clock=machine.clock,
+    )
+    with pytest.raises(Left):
+        up.perform()
+    assert [(number, pulse) for number, pulse, _, _ in watching.first] == [(number, 1500) for number in range(18)]
+    # No other servo is held meanwhile.
+    assert all(pulsed == [] for _, _, pulsed, _ in watching.first)
+    assert sum(joint.number is not None for row in up.calibration.joints for joint in row) == 17
+
+
+def test_resumed_servos_of_pulses_begin_where_they_were_left(tmp_path):
+    machine = Machine("servo2040")
+    truth = machine.truth
+    begun = truth.with_joint(2, 1, zero=None).replace(buses=(dataclasses.replace(truth.buses[0], port="memory"),))
+    script = {r"Limits of the front left": "h", r"front left coxa: move it to one end": "q"}
+    watching = Watching(machine, script)
+    up = BringUp(
+        begun,
+        tmp_path / "c.toml",
+        watching,
+        open_bus=lambda settings: machine.open(settings.kind, settings.port),
+        ports=tuple,
+        clock=machine.clock,
+    )
+    with pytest.raises(Left):
+        up.perform()
+    ((number, pulse, pulsed, topic),) = watching.first
+    assert (number, pulsed, topic.leg, topic.joint) == (truth.joints[0][0].number, [], 0, 0)
+    assert pulse == round(float(truth.commands(reference_angles(STRIDER))[0, 0]))
 
 
 def test_a_file_of_another_robot_or_bus_is_not_resumed(tmp_path):

@@ -342,3 +342,14 @@ def test_hands_bring_limp_joints_of_the_emulated_machine_where_they_are_asked_to
         machine.open(kind, "/dev/ttyUSB0")
     assert machine.open(kind, "emulated").port == "emulated"
     assert threading.active_count() < 20
+
+
+def test_foot_switches_are_found_from_a_page(tmp_path):
+    truth = EmulatedMachine(STRIDER, "servo2040").truth
+    truth.replace(foot_switches=None).save(tmp_path / FILE)
+    page = Page(tmp_path, kind="servo2040", answers={"Does the robot have foot switches": "y"})
+    page.begin()
+    assert page.go().state == "done"
+    assert Calibration.load(tmp_path / FILE).foot_switches == truth.foot_switches
+    feet = [message.question for message in page.seen[:-1] if "Press the" in message.question.text]
+    assert [(each.title, each.leg) for each in feet] == [("Foot switches", leg) for leg in range(6)]

@@ -62,6 +62,28 @@ class Bench:
             return self.bus.read_positions((number,)).require()[number]
         return self._goals.get(number, sum(self._limits) / 2)
 
+    def knows(self, number: int) -> bool:
+        """Return whether a servo had a pulse, so that it holds where it is with the same one.
+
+        Parameters
+        ----------
+        number : int
+            Id or channel.
+        """
+        return number in self._goals
+
+    def expect(self, number: int, pulse: float) -> None:
+        """Take a servo to be where a pulse would bring it.
+
+        Parameters
+        ----------
+        number : int
+            Id or channel.
+        pulse : float
+            The pulse [us or ticks].
+        """
+        self._goals[number] = min(max(pulse, self._limits[0]), self._limits[1])
+
     def hold(self, number: int) -> None:
         """Let a servo hold where it is, with little torque; without measured positions at the last goal.
 

@@ -45,6 +45,7 @@ class Connection:
     ) -> None:
         self._progress, self._open, self._ports, self._clock = progress, open_bus, ports, clock
         self._bench: Bench | None = None
+        self._boards: dict[str, Bus] = {}
 
     def perform(self, step: Callable[[Bench], _Result]) -> _Result:
         """Do a step and return its result; where the connection is lost, ask for the cable and begin the step again.
@@ -59,20 +60,48 @@ class Connection:
             try:
                 if self._bench is None:
                     self._bench = self._connect()
+                    if not self._bench.measures:
+                        # Pulses that a board still sends would hold servos which nobody knows yet.
+                        self._bench.release(None)
                 return step(self._bench)
             except PortError as error:
                 self.close()
                 ask.say(str(error))
                 ask.choose("Plug it in again.", {"": "go on"}, topic=_TOPIC)
             except BusError as error:
+                self.close()
                 ask.say(str(error))
                 ask.choose("Look at the cable and the supply.", {"": "try again"}, topic=_TOPIC)
 
     def close(self) -> None:
-        """Release all servos, and close the port."""
+        """Release all servos, and close the ports."""
         if self._bench is not None:
             self._bench.close()
             self._bench = None
+        for board in self._boards.values():
+            board.close()
+        self._boards.clear()
+
+    def board(self, bench: Bench, settings: BusSettings) -> Bus:
+        """Return the bus of settings: that of the bench, or a second one, which is opened.
+
+        Parameters
+        ----------
+        bench : Bench
+            The servos.
+        settings : BusSettings
+            Settings of a bus of the calibration.
+
+        Raises
+        ------
+        PortError
+            If its port can't be opened.
+        """
+        if settings.name == self._progress.calibration.buses[0].name:
+            return bench.bus
+        if settings.name not in self._boards:
+            self._boards[settings.name] = self._open(settings)
+        return self._boards[settings.name]
 
     def open_all(self) -> dict[str, Bus]:
         """Close the bench, and open all buses of the calibration, by their names."""

@@ -24,14 +24,14 @@ class Topic:
     leg, joint : int or None
         Numbers of the leg and of the joint; None where it is about all or none.
     pose : str
-        What a hand, or steps, are to bring the leg or the joint to: the reference pose, or an end of its travel; empty
-        where nothing is to be moved.
+        What a hand, or steps, are to bring the leg or the joint to: the reference pose, or an end of its travel, or
+        that its foot is to be pressed; empty where nothing is to be moved.
     """
 
     title: str = ""
     leg: int | None = None
     joint: int | None = None
-    pose: Literal["", "reference", "one end", "the other end"] = ""
+    pose: Literal["", "reference", "one end", "the other end", "pressed"] = ""
 
 
 class Dialogue(Protocol):

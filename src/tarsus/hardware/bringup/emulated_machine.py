@@ -1,4 +1,4 @@
-"""A machine to try a bring-up on: emulated servos with ids, directions and zeros mixed up, and hands that hold legs."""
+"""A machine to try a bring-up on: emulated servos with ids, directions and zeros mixed up, hands that hold legs."""
 
 from __future__ import annotations
 
@@ -15,6 +15,7 @@ from tarsus.hardware.bus.protocol import Bus
 from tarsus.hardware.bus.registry import bus_kind, bus_over
 from tarsus.hardware.calibration.blank import nominal_calibration
 from tarsus.hardware.calibration.calibration import Calibration
+from tarsus.hardware.calibration.parts import FootSwitches
 from tarsus.hardware.emulation.registry import emulate
 from tarsus.hardware.transport.clock import Clock, SystemClock
 from tarsus.hardware.transport.memory import MemoryI2c, MemoryTransport
@@ -63,6 +64,7 @@ class EmulatedMachine:
         self.servos = self._line.servos
         away = np.random.default_rng(1).uniform(-_AWAY, _AWAY, (robot.legs, len(JOINTS)))
         self._place(reference_angles(robot) + away)
+        self._press(None)
 
     @property
     def angles(self) -> Float[np.ndarray, "legs 3"]:
@@ -94,22 +96,32 @@ class EmulatedMachine:
         return bus_over(kind, MemoryTransport(self._line, self._clock, port=port))
 
     def hold(self, topic: Topic) -> None:
-        """Do what a question asks a hand to do: bring a limp leg to the reference pose, or a joint to an end.
+        """Do what a question asks a hand to do: hold a limp leg, turn a joint to an end of its travel, press a foot.
 
         Parameters
         ----------
         topic : Topic
             What the question is about.
         """
+        self._press(None)
         if topic.leg is None or not topic.pose:
             return
         robot, angles = self.truth.robot, self.angles.copy()
+        if topic.pose == "pressed":
+            self._press(topic.leg)
+            return
         if topic.pose == "reference":
             angles[topic.leg] = reference_angles(robot)[topic.leg]
         elif topic.joint is not None:
             low, high = self.truth.limits[topic.leg, topic.joint]
             angles[topic.leg, topic.joint] = low + _NEAR if topic.pose == "one end" else high - _NEAR
         self._place(angles)
+
+    def _press(self, leg: int | None) -> None:
+        switches = self.truth.foot_switches
+        if switches is not None:
+            on = {number: at == leg for at, number in enumerate(switches.inputs) if number is not None}
+            self._line.levels = {number: float(pressed == switches.closed) for number, pressed in on.items()}
 
     def _place(self, angles: Float[np.ndarray, "legs 3"]) -> None:
         for row, commands in zip(self.truth.joints, self.truth.commands(angles).tolist(), strict=True):
@@ -135,4 +147,11 @@ def _mixed_up(calibration: Calibration) -> Calibration:
             calibration = calibration.with_joint(leg, j, **changes)
     for at, number in enumerate(numbers.tolist()):
         calibration = calibration.with_joint(*divmod(at, len(JOINTS)), number=number)
-    return calibration
+    count, legs = calibration.buses[0].properties.inputs, calibration.robot.legs
+    if count < legs:
+        return calibration
+    # Of a Maestro the last channels, as the first ones are the servos'.
+    first = count - legs if calibration.buses[0].kind == "maestro" else 0
+    inputs = tuple(int(number) for number in random.permutation(range(first, first + legs)))
+    switches = FootSwitches(bus=calibration.buses[0].name, inputs=inputs, closed=bool(random.integers(2)))
+    return calibration.replace(foot_switches=switches)

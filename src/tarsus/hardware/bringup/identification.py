@@ -8,6 +8,7 @@ import numpy as np
 
 from tarsus.hardware.bringup.bench import Bench
 from tarsus.hardware.bringup.dialogue import Topic
+from tarsus.hardware.bringup.first_pulse import send_first_pulse
 from tarsus.hardware.bringup.progress import Progress
 from tarsus.robot.robot import Robot
 
@@ -30,6 +31,8 @@ def identify(progress: Progress, bench: Bench, *, number: int) -> None:
     """
     ask, key = progress.ask, progress.calibration.kind(0, 0).number_key
     if len(progress.assigned) == progress.joints:
+        return
+    if not send_first_pulse(progress, bench, number=number, topic=Topic(title=_TITLE)):
         return
     while True:
         ask.say(f"{key} {number} moves a little, and back.")

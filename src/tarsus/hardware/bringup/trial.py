@@ -22,6 +22,10 @@ __all__ = ["check_pose", "walk_in_the_air"]
 
 _TOPIC = Topic(title="Check pose and walk")
 _ON_A_BOX = "All legs go slowly to the reference pose; put the robot on a box, feet in the air."
+_AT_ONCE = (
+    "All legs go to the reference pose, one servo after the other, each at once and at full speed, as servos of pulses "
+    "do: put the robot on a box, feet in the air, bring the legs near that pose by hand, and take all hands away."
+)
 _WALK, _WALK_TIME = (0.03, 0.0, 0.0), 4.0
 
 
@@ -39,7 +43,8 @@ def check_pose(progress: Progress, connection: Connection, *, clock: Clock) -> N
     """
     ask, robot = progress.ask, progress.calibration.limited_robot
     while True:
-        ask.choose(_ON_A_BOX, {"": "go"}, topic=_TOPIC)
+        slowly = progress.calibration.kind(0, 0).feedback
+        ask.choose(_ON_A_BOX if slowly else _AT_ONCE, {"": "go"}, topic=_TOPIC)
         plant = _plant(progress, connection, clock)
         try:
             output = RobotController(robot).output

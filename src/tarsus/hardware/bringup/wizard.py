@@ -8,6 +8,7 @@ from pathlib import Path
 
 from tarsus.hardware.bringup.connection import Connection, Opener, find_servos
 from tarsus.hardware.bringup.dialogue import Dialogue
+from tarsus.hardware.bringup.feet import board_of_inputs, find_foot_switches
 from tarsus.hardware.bringup.identification import identify
 from tarsus.hardware.bringup.limits import set_limits
 from tarsus.hardware.bringup.progress import Progress
@@ -77,6 +78,9 @@ class BringUp:
                     connection.perform(partial(set_zeros, progress, leg=leg))
                 connection.perform(partial(set_limits, progress, leg=leg))
             self.calibration.require_complete()
+            settings = board_of_inputs(progress)
+            if settings is not None:
+                connection.perform(partial(find_foot_switches, progress, connection, settings=settings))
             check_pose(progress, connection, clock=self._clock)
             walk_in_the_air(progress, connection, clock=self._clock)
         finally:

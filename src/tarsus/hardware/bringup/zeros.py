@@ -9,6 +9,7 @@ import numpy as np
 
 from tarsus.hardware.bringup.bench import Bench
 from tarsus.hardware.bringup.dialogue import Topic
+from tarsus.hardware.bringup.first_pulse import send_first_pulse
 from tarsus.hardware.bringup.progress import Progress
 from tarsus.hardware.bringup.reference_pose import reference_angles
 from tarsus.robot.robot import JOINTS
@@ -57,6 +58,7 @@ def step_to(progress: Progress, bench: Bench, *, number: int, what: str, topic: 
     topic : Topic
         What the question is about.
     """
+    send_first_pulse(progress, bench, number=number, topic=topic, skippable=False)
     bench.hold(number)
     scale = progress.calibration.joints[0][0].scale or 0.0
     steps = {"+": _FINE, "-": -_FINE, "++": _COARSE, "--": -_COARSE}
