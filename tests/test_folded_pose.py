@@ -92,7 +92,7 @@ def test_a_path_has_no_point_below_the_ground():
         body = Pose.from_rpy(*rng.uniform(-0.15, 0.15, 2), 0.0, (0.0, 0.0, 0.06))
         space = LegFreeSpace.of(robot, 2, body)
         ends = rng.uniform(low, high, (400, 3))
-        start, end = ends[space.lowest(ends) > 0][:2]
+        start, end = ends[space.heights(ends).min(-1) > 0][:2]
         path = space.find_path(start, end)
         if path is None:
             continue
@@ -113,7 +113,7 @@ def test_without_a_free_path_it_returns_none():
     robot = preset("strider")
     space = LegFreeSpace.of(robot, 0, Pose(position=np.array([0, 0, 0.06])))
     start, end = np.deg2rad([0.0, 30.0, -159.0]), np.deg2rad([0.0, 60.0, -60.0])
-    assert space.lowest(end) > 0
+    assert space.heights(end).min() > 0
     assert space.find_path(np.array([0.0, -0.9, -2.2]), end) is None
     assert LegFreeSpace.of(robot, 0, Pose(position=np.array([0, 0, -0.5]))).find_path(start, end) is None
 

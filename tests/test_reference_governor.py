@@ -107,8 +107,8 @@ def test_what_was_allowed_stays_allowed(seed, dt):
     target = governed_twist(now, current, command, **given_as)
     if worst(now, target, given_as) > 1e-9:
         return
-    twist = now.twist.step(target, dt, bandwidth=BANDWIDTH)
-    origin, yaw = integrate_twist(now.origin, now.yaw, now.twist.integral(target, dt, bandwidth=BANDWIDTH))
+    twist, travel = now.twist.step_with_integral(target, dt, bandwidth=BANDWIDTH)
+    origin, yaw = integrate_twist(now.origin, now.yaw, travel)
     later = now._replace(twist=twist, origin=origin, yaw=yaw)
     given_as = {**given_as, "ends": np.maximum(given_as["ends"] - dt, 0.0)}
     # What is left of a walk that turns differs a little from the walk as it was seen from its beginning.

@@ -92,22 +92,6 @@ class CriticallyDamped(NamedTuple):
             integrals.append(goal * dt - (rates[-1] - rate + 2 * w * (values[-1] - value)) / (w * w))
         return CriticallyDamped(np.array(values), np.array(rates)), integrals
 
-    def integral(self, target: Float[np.ndarray, "n"], time: float, *, bandwidth: float) -> Float[np.ndarray, "n"]:
-        """Return the value's integral over a time, with a constant target.
-
-        Parameters
-        ----------
-        target : array
-            The target.
-        time : float
-            The time [s].
-        bandwidth : float
-            The bandwidth [rad/s].
-        """
-        of_target, of_value, of_rate = integral_factors(time, bandwidth=bandwidth)
-        total: np.ndarray = target * of_target + self.value * of_value + self.rate * of_rate
-        return total
-
 
 def integral_factors(time: Any, *, bandwidth: float) -> tuple[Any, Any, Any]:
     """Return the factors of target, value and rate in the value's integral over a time.

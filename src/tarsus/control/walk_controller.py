@@ -232,7 +232,9 @@ class WalkController:
     @property
     def contacts(self) -> Bool[np.ndarray, "legs"]:
         """Which feet are on the ground: array of bool, shape (legs,)."""
-        return self._walk.standing_feet(self._tick.gait)
+        down = self._tick.gait.down.copy()
+        down[self._walk.foot_targets.legs] = False
+        return down
 
     @property
     def feels_ground(self) -> bool:

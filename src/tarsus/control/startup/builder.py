@@ -10,7 +10,8 @@ import numpy as np
 from tarsus.control.sequence.sequence import MotionSequence
 from tarsus.control.sequence.stage import Stage
 from tarsus.control.startup.checks import check_stage
-from tarsus.control.startup.leg_path import leg_paths
+from tarsus.control.startup.leg_path import LegFreeSpace, Path
+from tarsus.errors import UnreachableError
 from tarsus.kinematics.leg import forward_kinematics
 from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.underside import underside_points
@@ -152,7 +153,7 @@ class SequenceBuilder:
         margin : float
             Least stability margin [m].
         """
-        paths = leg_paths(name, self.robot, self.body, legs=legs, start=self.angles, end=angles)
+        paths = {leg: self._path(name, leg, angles[leg]) for leg in np.flatnonzero(legs).tolist()}
         count = max(map(len, paths.values()), default=0)
         for k in range(count):
             target = self.angles.copy()
@@ -161,6 +162,18 @@ class SequenceBuilder:
             stationary = self.contacts & (target == self.angles).all(-1)
             after = (self.contacts & ~legs) | (legs & (landed and k == count - 1))
             self._add(name, margin=margin, angles_end=target, contacts=stationary, contacts_end=after)
+
+    def _path(self, name: str, leg: int, end: Float[np.ndarray, "3"]) -> Path:
+        """Return a path of a leg through the air from its joint angles to others."""
+        start = self.angles[leg]
+        path = LegFreeSpace.of(self.robot, leg, self.body).find_path(start, end)
+        if path is None:
+            raise UnreachableError(
+                f"{name}: at body height {self.height * 1000:.1f} mm, leg {self.robot.leg_names[leg]} has no "
+                f"path through the air from {_degrees(start)} to {_degrees(end)} deg; place the robot on its "
+                "belly, or support it higher"
+            )
+        return path
 
     def swing(
         self, name: str, legs: Bool[np.ndarray, "legs"], feet: Float[np.ndarray, "legs 3"], *, margin: float
@@ -271,3 +284,7 @@ class SequenceBuilder:
             self.angles = np.where(stage.cartesian[:, None], end, stage.angles_end)
             self.angles.setflags(write=False)
             self.stages.append(replace(stage, duration=duration, angles_end=self.angles))
+
+
+def _degrees(angles: Float[np.ndarray, "3"]) -> str:
+    return "(" + ", ".join(f"{a:.0f}" for a in np.degrees(angles)) + ")"

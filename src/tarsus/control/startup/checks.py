@@ -71,8 +71,10 @@ def check_stage(stage: Stage, margin: float) -> None:
     """
     _check_reach(stage)
     _check_limits(stage)
-    _check_ground(stage)
-    _check_lift_off(stage)
+    body = stage.body_at(GRID)
+    points = body @ forward_kinematics(stage.robot, stage.table.angles)
+    _check_ground(stage, points, (body @ underside_points(stage.robot)[None])[..., 2])
+    _check_lift_off(stage, points[..., 3, :])
     _check_margin(stage, margin)
 
 
@@ -114,23 +116,20 @@ def _check_limits(stage: Stage) -> None:
     )
 
 
-def _check_ground(stage: Stage) -> None:
+def _check_ground(stage: Stage, points: Float[np.ndarray, "n legs 4 3"], underside: Float[np.ndarray, "n m"]) -> None:
     """Refuse a stage in which a point of the legs or of the body goes below the ground."""
-    body, robot = stage.body_at(GRID), stage.robot
-    heights = (body @ forward_kinematics(robot, stage.table.angles))[..., 1:, 2]
+    heights = points[..., 1:, 2]
     _, leg, point = np.unravel_index(int(np.argmin(heights)), heights.shape)
     depth = -float(heights.min())
-    what = f"{('femur axis', 'knee', 'foot')[point]} of leg {robot.leg_names[leg]}"
-    underside = (body @ underside_points(robot)[None])[..., 2]
+    what = f"{('femur axis', 'knee', 'foot')[point]} of leg {stage.robot.leg_names[leg]}"
     if -float(underside.min()) > depth:
         depth, what = -float(underside.min()), "underside of the body"
     if depth > _DEPTH_TOLERANCE:
         raise UnreachableError(f"{stage.name}: the {what} would be {depth * 1000:.1f} mm below the ground")
 
 
-def _check_lift_off(stage: Stage) -> None:
+def _check_lift_off(stage: Stage, feet: Float[np.ndarray, "n legs 3"]) -> None:
     """Refuse a stage in which a foot drags along the ground before it lifts off."""
-    feet = (stage.body_at(GRID) @ forward_kinematics(stage.robot, stage.table.angles))[..., 3, :]
     for leg in np.flatnonzero(~stage.contacts & ~stage.cartesian).tolist():
         if not lifts_off(feet[:, leg], feet[:, leg, 2]):
             raise UnreachableError(

@@ -12,7 +12,6 @@ from tarsus.control.transition.executor import TransitionExecutor
 from tarsus.control.transition.planner import TransitionPlanner
 from tarsus.control.walk.foot_targets import FootTargets
 from tarsus.control.walk.joint_solver import JointSolver
-from tarsus.control.walk.state import GaitState
 from tarsus.control.walk.time_scaling import TimeScaling
 from tarsus.robot.robot import Robot
 
@@ -57,15 +56,3 @@ class WalkComponents:
     time_scaling: TimeScaling
     every_leg: Bool[np.ndarray, "legs"]
     no_offset: Float[np.ndarray, "legs"]
-
-    def standing_feet(self, state: GaitState) -> Bool[np.ndarray, "legs"]:
-        """Return which feet are on the ground: array of bool, shape (legs,).
-
-        Parameters
-        ----------
-        state : GaitState
-            The gait state.
-        """
-        down = state.down.copy()
-        down[self.foot_targets.legs] = False
-        return down

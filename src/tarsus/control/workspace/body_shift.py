@@ -8,20 +8,20 @@ import numpy as np
 
 from tarsus.control.filters import CriticallyDamped
 from tarsus.control.workspace.stance_geometry import StanceGeometry
-from tarsus.gait.body_shift import COEFFICIENTS, edge_constraints, fitted_shift, shift_at
+from tarsus.gait.body_shift import COEFFICIENTS, edge_constraints, fitted_shift
 from tarsus.gait.gait import Gait
 
 if TYPE_CHECKING:
     from jaxtyping import Bool, Complex, Float
 
-__all__ = ["NO_SHIFT", "displaced", "shift_extremes", "stance_shift", "support_phases"]
+__all__ = ["NO_SHIFT", "displaced", "stance_shift", "support_phases"]
 
 NO_SHIFT = CriticallyDamped.still(np.zeros(2 * COEFFICIENTS))
 """No body shift: coefficients, real and imaginary parts, shape (14,) [m]."""
 
 _SAMPLES = 96
-# Phases of the shift at which the reach of the legs is examined, and of a swing at which the stability is.
-_EXTREMES, _SWING = 8, np.array([0.0, 0.5, 1.0])
+# Phases of a swing at which the stability is examined.
+_SWING = np.array([0.0, 0.5, 1.0])
 # The part of a leg's room that the shift takes: what is left for steps, and the stability margin, are about as large.
 _SHARE_OF_ROOM = 0.4
 
@@ -46,17 +46,6 @@ def stance_shift(gait: Gait, stance: StanceGeometry, centre: complex, room: floa
     feet = np.broadcast_to(stance.rest, contacts.shape)[swings]
     sample, inward, distance = edge_constraints(feet, contacts[swings], np.full(len(feet), centre))
     return fitted_shift(phases[swings][sample], inward, distance, margin=_SHARE_OF_ROOM * room)
-
-
-def shift_extremes(coefficients: Complex[np.ndarray, "7"]) -> Complex[np.ndarray, "8"]:
-    """Return displacements of a shift in all its directions: array, shape (8,) [m].
-
-    Parameters
-    ----------
-    coefficients : complex array, shape (7,)
-        Coefficients of the shift [m].
-    """
-    return shift_at(coefficients, np.arange(_EXTREMES) / _EXTREMES)
 
 
 def support_phases(gait: Gait) -> tuple[Float[np.ndarray, "n"], Bool[np.ndarray, "n legs"]]:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tarsus.control.incremental import Incremental
-from tarsus.control.workspace.body_shift import displaced, shift_extremes, stance_shift, support_phases
+from tarsus.control.workspace.body_shift import displaced, stance_shift, support_phases
 from tarsus.control.workspace.foot_workspace import foot_workspace
 from tarsus.control.workspace.polygon import NORMALS_CONJUGATE
 from tarsus.control.workspace.stability import StabilityCheck, safe_fraction
@@ -23,6 +23,9 @@ if TYPE_CHECKING:
     from jaxtyping import Bool, Float
 
 __all__ = ["shifted_limits", "velocity_limits"]
+
+# Phases of a body shift at which the reach of the legs is examined: it points in all directions.
+_SHIFT_PHASES = np.arange(8) / 8
 
 
 def velocity_limits(
@@ -85,7 +88,7 @@ def shifted_limits(
     yield
     coefficients = stance_shift(gait, stance, centre, max(float(limits.margins.min()), 0.0))
     yield
-    for displacement in shift_extremes(coefficients).tolist():
+    for displacement in shift_at(coefficients, _SHIFT_PHASES).tolist():
         stand = displaced(stance, displacement)
         sides = yield from foot_workspace(robot, stand, foot_distance=foot_distance)
         limits = limits.intersection(_limits_in(everywhere, stand, sides, 1.0))

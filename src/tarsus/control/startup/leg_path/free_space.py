@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
-from tarsus.arrays import Array
 from tarsus.control.startup.leg_path.grid_search import Node, shortest_path
 from tarsus.control.startup.leg_path.lift_off import DEPTH_TOLERANCE, lifts_off
 from tarsus.kinematics.leg import point_parts
@@ -108,22 +107,6 @@ class LegFreeSpace:
         heights: np.ndarray = self.points(angles) @ self.up + self.height
         return heights
 
-    def lowest(self, angles: Float[np.ndarray, "*#batch 3"]) -> Float[Array, "*batch"]:
-        """Return the lower one of the heights of knee and foot.
-
-        Parameters
-        ----------
-        angles : array, shape (..., 3)
-            Joint angles of the leg [rad].
-
-        Returns
-        -------
-        array, shape (...)
-            Heights over the ground [m].
-        """
-        lowest: np.ndarray = self.heights(angles).min(-1)
-        return lowest
-
     def is_free(self, start: Float[np.ndarray, "3"], end: Float[np.ndarray, "3"]) -> bool:
         """Return whether a straight path is free, and whether a foot on the ground at either end lifts off steeply.
 
@@ -174,7 +157,7 @@ class LegFreeSpace:
     def _raised(self, coxa: float) -> Float[np.ndarray, "n"]:
         """Return the femur and tibia angles with which the lowest point of the leg is highest."""
         grid = self._grid(coxa)
-        best: np.ndarray = grid.reshape(-1, 3)[np.argmax(self.lowest(grid))][1:]
+        best: np.ndarray = grid.reshape(-1, 3)[np.argmax(self.heights(grid).min(-1))][1:]
         return best
 
     def _path_in_plane(self, start: Float[np.ndarray, "3"], end: Float[np.ndarray, "3"]) -> Path | None:
@@ -184,7 +167,7 @@ class LegFreeSpace:
         if self.is_free(start, end):
             return (end,)
         grid = self._grid(float(start[0]))
-        free = self.lowest(grid) > _MIN_HEIGHT
+        free = self.heights(grid).min(-1) > _MIN_HEIGHT
         first, last = self._nearest(grid, free, start), self._nearest(grid, free, end)
         if first is None or last is None:
             return None
