@@ -64,15 +64,13 @@ def velocity_limits_of(name, gait="tripod", body=POSTURES[0]):
 @functools.cache
 def cycle_timing_of(name, gait="tripod", cycle_time=None):
     setup = setup_of(name, gait)
-    speed, acceleration = joint_limits(setup.robot, None, None)
     return complete(
         cycle_timing(
             setup.robot,
             setup.gait,
             standing(setup),
             velocity_limits_of(name, gait),
-            speed=speed,
-            acceleration=acceleration,
+            joint_limits(setup.robot),
             cycle_time=cycle_time,
         )
     )

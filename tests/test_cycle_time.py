@@ -13,7 +13,7 @@ from tarsus.control.workspace.stance_limits import velocity_limits
 from tarsus.control.workspace.velocity_limits import with_stroke_limits
 from tarsus.gait.cycle import cycle_feet
 from tarsus.gait.gait import Gait
-from tarsus.robot.joint_limits import joint_limits
+from tarsus.robot.joint_limits import JointLimits, joint_limits
 
 HEADINGS = [(np.cos(a), np.sin(a), 0.0) for a in np.arange(7) * 2 * np.pi / 7 + 0.2]
 TWISTS = [
@@ -110,8 +110,7 @@ def test_with_short_stances_the_speed_in_stance_counts():
     setup = setup_of(robot, gait)
     # Support isn't what this is about: all eight at once.
     limits = complete(velocity_limits(robot, [standing(setup)], np.ones((1, 8), dtype=bool), foot_distance=0.01))
-    speed, acceleration = joint_limits(robot, None, None)
-    found = complete(cycle_timing(robot, gait, standing(setup), limits, speed=speed, acceleration=acceleration))
+    found = complete(cycle_timing(robot, gait, standing(setup), limits, joint_limits(robot)))
     less = with_stroke_limits(limits, found.stroke, found.turning, duty_factor=gait.duty_factor)
     strains = [strain(setup, less, twist, found.cycle_time)[0] for twist in TWISTS[:-2]]
     assert 0.8 < max(strains) <= 1
@@ -128,8 +127,7 @@ def test_slower_joints_step_slower():
                 setup.gait,
                 standing(setup),
                 velocity_limits_of("strider"),
-                speed=part * speed,
-                acceleration=part * part * acceleration,
+                JointLimits(part * speed, part * part * acceleration),
             )
         )
 
@@ -160,11 +158,10 @@ def test_joint_limits_without_servos_and_as_given():
 @pytest.mark.parametrize(("legs", "gait"), [(4, "creep"), (6, "wave"), (8, "wave")])
 def test_more_legs_take_more_increments(legs, gait):
     setup = setup_of(ring(legs), gait)
-    speed, acceleration = joint_limits(setup.robot, None, None)
     limits = complete(
         velocity_limits(setup.robot, [standing(setup)], np.ones((1, legs), dtype=bool), foot_distance=0.01)
     )
-    work = cycle_timing(setup.robot, setup.gait, standing(setup), limits, speed=speed, acceleration=acceleration)
+    work = cycle_timing(setup.robot, setup.gait, standing(setup), limits, joint_limits(setup.robot))
     assert sum(1 for _ in work) >= legs // 3
 
 

@@ -39,9 +39,7 @@ def parameters_of(setup, **changes):
 
 
 def planned(setup, parameters, now=None, rest=None, **options):
-    speed, acceleration = joint_limits(setup.robot, None, None)
-    bounds = {"speed": speed, "acceleration": acceleration}
-    planner = TransitionPlanner(setup.robot, **bounds, foot_distance=setup.foot_distance)
+    planner = TransitionPlanner(setup.robot, joint_limits(setup.robot), foot_distance=setup.foot_distance)
     present = None if now is None else StanceTarget(now, rest)
     return complete(planner.plan(parameters, present, **options))
 

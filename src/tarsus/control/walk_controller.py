@@ -120,17 +120,14 @@ class WalkController:
             foot_distance=foot_distance,
         )
         self.robot, self.time = setup.robot, 0.0
-        self.joint_speed, self.joint_acceleration = speed, acceleration = joint_limits(
-            self.robot, joint_speed, joint_acceleration
-        )
-        planner = TransitionPlanner(
-            self.robot, speed=speed, acceleration=acceleration, foot_distance=setup.foot_distance
-        )
+        limits = joint_limits(self.robot, joint_speed, joint_acceleration)
+        self.joint_speed, self.joint_acceleration = limits
+        planner = TransitionPlanner(self.robot, limits, foot_distance=setup.foot_distance)
         stance = initial_stance(planner, setup, stance_width=stance_width, cycle_time=cycle_time)
         foot_targets, solver = FootTargets(self.robot.leg_names), JointSolver(self.robot)
         transitions = TransitionExecutor(stance, foot_targets)
         state = GaitState.standing(stance.rest, transitions.pose.target)
-        time_scaling = TimeScaling(solver.angles(state), speed, acceleration, self.robot.limits)
+        time_scaling = TimeScaling(solver.angles(state), *limits, self.robot.limits)
         adaptation = GroundAdaptation() if adaptation is None else adaptation
         ground = FeltGround(
             self.robot, time_scaling.angles, levelling=levelling, adaptation=adaptation, admittance=admittance

@@ -24,10 +24,11 @@ from tarsus.control.workspace.cycle_time import CycleTiming, cycle_timing
 from tarsus.control.workspace.stability import StabilityCheck, support_sets
 from tarsus.control.workspace.stance_limits import shifted_limits, velocity_limits
 from tarsus.control.workspace.velocity_limits import VelocityLimits, with_stroke_limits
+from tarsus.robot.joint_limits import JointLimits
 from tarsus.robot.robot import Robot
 
 if TYPE_CHECKING:
-    from jaxtyping import Bool, Float
+    from jaxtyping import Bool
 
 __all__ = ["TransitionPlanner"]
 
@@ -56,22 +57,14 @@ class TransitionPlanner:
     ----------
     robot : Robot
         A single robot.
-    speed, acceleration : array, shape (legs, 3)
-        Greatest of each joint [rad/s], [rad/s^2].
+    joint_limits : JointLimits
+        Greatest speed and acceleration of each joint.
     foot_distance : float
         Least distance between two feet [m].
     """
 
-    def __init__(
-        self,
-        robot: Robot,
-        *,
-        speed: Float[np.ndarray, "legs 3"],
-        acceleration: Float[np.ndarray, "legs 3"],
-        foot_distance: float,
-    ) -> None:
-        self._robot, self._foot_distance = robot, foot_distance
-        self._speed, self._acceleration = speed, acceleration
+    def __init__(self, robot: Robot, joint_limits: JointLimits, *, foot_distance: float) -> None:
+        self._robot, self._joint_limits, self._foot_distance = robot, joint_limits, foot_distance
 
     def plan(
         self, parameters: WalkParameters, present: StanceTarget | None, *, stay: bool = False
@@ -130,13 +123,7 @@ class TransitionPlanner:
             limits = yield from self._limits(parameters, path.at(fraction), sets)
         goal = path.at(fraction)
         timing = yield from cycle_timing(
-            robot,
-            parameters.gait,
-            goal.stand,
-            limits,
-            speed=self._speed,
-            acceleration=self._acceleration,
-            cycle_time=parameters.cycle_time,
+            robot, parameters.gait, goal.stand, limits, self._joint_limits, cycle_time=parameters.cycle_time
         )
         yield
         final = with_stroke_limits(limits, timing.stroke, timing.turning, duty_factor=parameters.gait.duty_factor)

@@ -11,6 +11,7 @@ from tarsus.control.workspace.stance_geometry import StanceGeometry
 from tarsus.control.workspace.velocity_limits import VelocityLimits
 from tarsus.gait.gait import Gait
 from tarsus.gait.swing import horizontal_profile, vertical_profile
+from tarsus.robot.joint_limits import JointLimits
 from tarsus.robot.robot import Robot
 
 if TYPE_CHECKING:
@@ -57,9 +58,8 @@ def cycle_timing(
     gait: Gait,
     stance: StanceGeometry,
     limits: VelocityLimits,
+    joint_limits: JointLimits,
     *,
-    speed: Float[np.ndarray, "legs 3"],
-    acceleration: Float[np.ndarray, "legs 3"],
     cycle_time: float | None = None,
 ) -> Incremental[CycleTiming]:
     """Find the cycle time that the joints can follow.
@@ -74,8 +74,8 @@ def cycle_timing(
         Body and rest footholds.
     limits : VelocityLimits
         Polygons of the feet.
-    speed, acceleration : array, shape (legs, 3)
-        Limits of the joints [rad/s], [rad/s^2].
+    joint_limits : JointLimits
+        Limits of the joints' motion.
     cycle_time : float, optional
         Commanded duration of a cycle [s]; left out, the one of the fastest walk: a shorter one is limited by the
         joints to shorter strokes, a longer one by the reach of the legs.
@@ -88,7 +88,7 @@ def cycle_timing(
     size = max(_BLOCK // (robot.legs * len(cycle.shift)), 1)
     times = []
     for block, begin in enumerate(range(0, len(moves), size)):
-        times.append(cycle.shortest_times(robot, stance, slice(begin, begin + size), speed, acceleration))
+        times.append(cycle.shortest_times(robot, stance, slice(begin, begin + size), joint_limits))
         # The first and the last stage also contain other work.
         if block % _BLOCKS == 0:
             yield
@@ -183,12 +183,7 @@ class SteadyCycle:
         self.shift = (along * there - here) / turned
 
     def shortest_times(
-        self,
-        robot: Robot,
-        stance: StanceGeometry,
-        part: slice,
-        speed: Float[np.ndarray, "legs 3"],
-        acceleration: Float[np.ndarray, "legs 3"],
+        self, robot: Robot, stance: StanceGeometry, part: slice, joint_limits: JointLimits
     ) -> Float[np.ndarray, "n"]:
         """Return the shortest cycle for each of some moves.
 
@@ -200,8 +195,8 @@ class SteadyCycle:
             Body and rest footholds.
         part : slice
             Selects the moves.
-        speed, acceleration : array, shape (legs, 3)
-            Limits of the joints [rad/s], [rad/s^2].
+        joint_limits : JointLimits
+            Limits of the joints' motion.
 
         Returns
         -------
@@ -215,6 +210,7 @@ class SteadyCycle:
         step = self.phases[1] - self.phases[0]
         rate = np.diff(angles, axis=0) / step
         change = np.diff(rate, axis=0) / step
+        speed, acceleration = joint_limits
         by_speed = np.abs(rate).max(axis=0) / (_SPEED_FRACTION * speed.T[:, None])
         by_acceleration = np.sqrt(np.abs(change).max(axis=0) / (_ACCELERATION_FRACTION * acceleration.T[:, None]))
         return np.asarray(np.maximum(by_speed, by_acceleration).max(axis=(0, 2)))
