@@ -7,7 +7,7 @@ OUT ?= walk
 # JAX takes half the time to compile so; an XLA that does not know the option ends with an error, hence not in the tests.
 COMPILE_FAST := XLA_FLAGS=--xla_cpu_use_fusion_emitters=false
 
-.PHONY: studio walk test lint types tests web web-check browser protocol bench figures truth train sketch schema clean
+.PHONY: studio walk test lint types tests web web-check browser protocol bench servos figures truth train sketch schema clean
 
 studio: $(VENV)/.run web
 	$(BIN)/tarsus studio $(ROBOT)
@@ -52,6 +52,12 @@ protocol: $(VENV)/.dev
 
 bench: $(VENV)/.dev web
 	$(BIN)/python benchmarks/run.py
+
+# Servo buses and faults, a few minutes each: the tables of docs/buses.md and docs/first-hour.md; an hour of robot time, fuzzed.
+servos: $(VENV)/.dev
+	$(BIN)/python benchmarks/servo_buses.py --write
+	$(BIN)/python docs/fault_times.py
+	$(BIN)/python benchmarks/servo_plant.py --fuzz 3600
 
 figures: $(VENV)/.dev web browser
 	$(BIN)/python docs/make_figures.py

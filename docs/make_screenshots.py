@@ -7,12 +7,19 @@ import io
 import itertools
 import re
 import shutil
+import socket
+import subprocess
+import sys
 import tempfile
 from pathlib import Path
 
 from PIL import Image
 from playwright.sync_api import Browser, Page, ViewportSize, sync_playwright
 
+from tarsus import load_robot
+from tarsus.hardware import nominal_calibration
+from tarsus.hardware.calibration.file import calibration_text
+from tarsus.studio.machine.calibration import CalibrationText
 from tarsus.studio.machine.hardware import Hardware
 from tarsus.studio.messages.physics import PhysicsOptions, TerrainChoice
 from tarsus.studio.messages.state import BodyState, Curve, JointsState, Picture, SourceChoice, StudioState, WalkOptions
@@ -90,6 +97,51 @@ def bring_up(browser: Browser) -> Path:
     return path
 
 
+def pulses(browser: Browser) -> Path:
+    """Take the screenshot of pulses beside joint angles."""
+    calibration = nominal_calibration(load_robot("strider"), "strider", kind="servo2040")
+    text = CalibrationText("strider.calibration.toml", calibration_text(calibration))
+    state = StudioState(view="joints", joints=JointsState(angles_deg=_LIFTED))
+    with Serving(Settings(calibration=text)) as server:
+        page = browser.new_page(viewport=SIZES["desktop"], reduced_motion="reduce", color_scheme="light")
+        page.goto(f"{server.url}#s={text_of(state)}")
+        page.get_by_test_id("standing-facts").wait_for()
+        page.get_by_test_id("copy-pulses").wait_for(state="attached")
+        unfold(page)
+        page.get_by_test_id("copy-pulses").scroll_into_view_if_needed()
+        page.wait_for_timeout(1500)
+        path = save(page, "pulses-desktop")
+        page.close()
+    return path
+
+
+def run_view(browser: Browser) -> Path:
+    """Take the screenshot of the view that drives a machine, with emulated servos."""
+    command = [sys.executable, "-c", "from tarsus.cli import main; main()", "run", "strider", "--bus", "emulated"]
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        address = f"127.0.0.1:{free.getsockname()[1]}"
+    with subprocess.Popen([*command, "--studio", address], stderr=subprocess.PIPE, text=True) as run:
+        assert run.stderr is not None
+        line = next(each for each in run.stderr if "http" in each)
+        page = browser.new_page(viewport=SIZES["desktop"], reduced_motion="reduce", color_scheme="light")
+        page.goto(line.split()[-1])
+        page.get_by_test_id("machine-facts").wait_for()
+        drive(page)
+        path = save(page, "run-desktop")
+        page.get_by_test_id("end-run").click()
+        run.wait(timeout=60)
+        page.close()
+    return path
+
+
+def unfold(page: Page) -> None:
+    """Open all parts of a panel."""
+    for summary in page.locator("details:not([open]) > summary").all():
+        if summary.is_visible():
+            summary.click()
+
+
 def save(page: Page, name: str) -> Path:
     """Save what a page shows as a figure."""
     picture = Image.open(io.BytesIO(page.screenshot())).convert("RGB")
@@ -109,8 +161,9 @@ def main() -> None:
         for state, name in [*itertools.product(STATES, SIZES), (PHYSICS, "desktop")]:
             path = take(browser, server.url, state, name)
             print(f"{path.name}: {path.stat().st_size // 1000} kB")
-        path = bring_up(browser)
-        print(f"{path.name}: {path.stat().st_size // 1000} kB")
+        for picture in (bring_up, pulses, run_view):
+            path = picture(browser)
+            print(f"{path.name}: {path.stat().st_size // 1000} kB")
         browser.close()
 
 
