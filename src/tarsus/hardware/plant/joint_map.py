@@ -1,22 +1,19 @@
-"""Which servo of which bus is which joint, and the buses of a calibration."""
+"""Which servo of which bus is which joint."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING, Any, TypeAlias
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
-from tarsus.errors import InputError, PortError
-from tarsus.hardware.bus.protocol import Bus
-from tarsus.hardware.bus.registry import open_bus
 from tarsus.hardware.calibration.calibration import Calibration
 from tarsus.robot.robot import JOINTS
 
 if TYPE_CHECKING:
     from jaxtyping import Int
 
-__all__ = ["Joint", "JointMap", "open_buses"]
+__all__ = ["Joint", "JointMap"]
 
 Joint: TypeAlias = tuple[int, int]
 """Numbers of a leg and of a joint."""
@@ -105,41 +102,3 @@ class JointMap:
         leg, j = self.joint(bus, number)
         key = self._calibration.kind(leg, j).number_key
         return f"{self._calibration.robot.leg_names[leg]} {JOINTS[j]} ({key} {number} on {bus})"
-
-
-def open_buses(calibration: Calibration, *, timeout: float | None = None) -> Mapping[str, Bus]:
-    """Open the ports of a calibration, and return its buses by name.
-
-    Parameters
-    ----------
-    calibration : Calibration
-        The calibration; each bus needs a port.
-    timeout : float, optional
-        Longest time until an answer begins, where a bus has answers [s].
-
-    Raises
-    ------
-    InputError
-        If a bus has no port.
-    PortError
-        If a port can't be opened; those that are open already are closed again.
-    """
-    opened: dict[str, Bus] = {}
-    try:
-        for settings in calibration.buses:
-            if not settings.port:
-                raise InputError(
-                    f"the bus {settings.name!r} has no port in the calibration; add port = ..., or let tarsus bring-up "
-                    "find it"
-                )
-            options: dict[str, Any] = (
-                {} if timeout is None or not settings.properties.feedback else {"timeout": timeout}
-            )
-            if settings.addresses:
-                options["addresses"] = settings.addresses
-            opened[settings.name] = open_bus(settings.kind, settings.port, baud=settings.baud, **options)
-    except (PortError, InputError):
-        for bus in opened.values():
-            bus.close()
-        raise
-    return opened

@@ -15,10 +15,10 @@ from tarsus.control.readings import SensorReadings
 from tarsus.errors import BusError, InputError, PortError, TarsusError
 from tarsus.hardware.bus.protocol import Bus
 from tarsus.hardware.calibration.calibration import Calibration
-from tarsus.hardware.calibration.parts import Mounting
 from tarsus.hardware.plant.fault import FaultKind, Reaction, ServoFault
-from tarsus.hardware.plant.joint_map import JointMap, open_buses
+from tarsus.hardware.plant.joint_map import JointMap
 from tarsus.hardware.plant.pacer import Pacer, Timing
+from tarsus.hardware.plant.ports import Ports
 from tarsus.hardware.plant.reading.servo_input import ServoInput
 from tarsus.hardware.plant.servo_output import ServoOutput
 from tarsus.hardware.plant.settings import PlantSettings
@@ -109,17 +109,14 @@ class ServoPlant:
         joints = JointMap(calibration)
         self._pacer = Pacer(self._clock, recently_late=_UNKNOWN)
         self._belly = True
-        self._own = buses is None
-        self._buses = open_buses(calibration, timeout=self.settings.timeout) if buses is None else dict(buses)
-        if self._own and imu is None and calibration.imu:
-            imu = self._opened_imu(calibration.imu)
-        missing = [bus.name for bus in calibration.buses if bus.name not in self._buses]
-        if missing:
-            raise InputError(f"no bus is given for {', '.join(missing)} of the calibration")
-        self._rates = [bus.timing(joints.numbers(name)) for name, bus in self._buses.items()]
+        self._ports = Ports(calibration, buses, imu, timeout=self.settings.timeout)
+        opened = self._ports.buses
+        self._rates = [bus.timing(joints.numbers(name)) for name, bus in opened.items()]
         self._writing = max(each.goals for each in self._rates)
-        self._servos = ServoOutput(calibration, self._buses, joints, self.settings, self._clock)
-        self._input = ServoInput(calibration, self._buses, joints, settings=self.settings, imu=imu, clock=self._clock)
+        self._servos = ServoOutput(calibration, opened, joints, self.settings, self._clock)
+        self._input = ServoInput(
+            calibration, opened, joints, settings=self.settings, imu=self._ports.imu, clock=self._clock
+        )
         self.notes = self._input.notes
         # Torque ends with the program, however that ends; only a kill leaves it to the watchdog.
         atexit.register(self.release)
@@ -222,25 +219,13 @@ class ServoPlant:
                 self._sit_down()
         finally:
             self.release()
-            if self._own:
-                for bus in self._buses.values():
-                    bus.close()
-                self._input.close()
+            self._ports.close()
 
     def release(self) -> None:
         """Release all servos at once. May be called more than once, and never raises."""
         atexit.unregister(self.release)
         if self._servos.powered:
             self.notes += self._servos.release()
-
-    def _opened_imu(self, mounting: Mounting) -> AttitudeLine:
-        """Return the inertial sensor; without it the ports of the servos are closed again."""
-        try:
-            return AttitudeLine(mounting)
-        except BusError:
-            for bus in self._buses.values():
-                bus.close()
-            raise
 
     def _tick(self, angles: Float[np.ndarray, "legs 3"], dt: float) -> None:
         """Wait for the tick, send joint angles, measure, and raise the error of a fault."""
@@ -264,23 +249,9 @@ class ServoPlant:
             raise fault.error()
 
     def _observe(self, now: float, asked: Float[np.ndarray, "..."], fault: ServoFault | None) -> None:
-        if self._observer is None:
-            return
-        shape = (self.robot.legs, 3)
-        telemetry = self._input.telemetry
-        given = np.asarray(asked, dtype=float) if np.shape(asked) == shape else np.full(shape, np.nan)
-        self._observer(
-            TickRecord(
-                time=now,
-                asked=given,
-                sent=self._servos.angles,
-                measured=self._input.angles,
-                temperatures=telemetry.temperatures.copy(),
-                voltage=telemetry.lowest_voltage,
-                loads=telemetry.loads.copy(),
-                fault="" if fault is None else str(fault.error()),
-            )
-        )
+        if self._observer is not None:
+            problem = "" if fault is None else str(fault.error())
+            self._observer(self._input.record(now, asked=asked, sent=self._servos.angles, fault=problem))
 
     # How it ends.
 

@@ -19,6 +19,7 @@ from tarsus.hardware.plant.monitor.telemetry_monitor import TelemetryMonitor
 from tarsus.hardware.plant.reading.foot_contacts import FootContacts
 from tarsus.hardware.plant.reading.reader import ServoReader
 from tarsus.hardware.plant.settings import PlantSettings
+from tarsus.hardware.plant.tick_record import TickRecord
 from tarsus.hardware.sensors.attitude_line import AttitudeLine
 from tarsus.hardware.transport.clock import Clock
 
@@ -186,10 +187,34 @@ class ServoInput:
             known |= self._attitude(self._imu, ages)
         return SensorReadings(**known, age=ages)
 
-    def close(self) -> None:
-        """Close the ports of sensors that have one of their own."""
-        if self._imu is not None:
-            self._imu.close()
+    def record(
+        self, now: float, *, asked: Float[np.ndarray, "..."], sent: Float[np.ndarray, "legs 3"], fault: str
+    ) -> TickRecord:
+        """Return the record of a tick.
+
+        Parameters
+        ----------
+        now : float
+            When it began [s].
+        asked : array
+            Joint angles that the controller gave, whatever they are [rad].
+        sent : array, shape (legs, 3)
+            Those of the commands that were sent [rad].
+        fault : str
+            What was noticed; empty without a fault.
+        """
+        telemetry = self.telemetry
+        given = np.asarray(asked, dtype=float) if np.shape(asked) == sent.shape else np.full(sent.shape, np.nan)
+        return TickRecord(
+            time=now,
+            asked=given,
+            sent=sent,
+            measured=self.angles,
+            temperatures=telemetry.temperatures.copy(),
+            voltage=telemetry.lowest_voltage,
+            loads=telemetry.loads.copy(),
+            fault=fault,
+        )
 
     def _attitude(self, imu: AttitudeLine, ages: dict[str, float]) -> dict[str, Any]:
         """Return the channel of the inertial sensor; without it the robot walks on, and is not levelled."""
