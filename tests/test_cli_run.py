@@ -95,6 +95,8 @@ def test_physics_runs_the_same_controller():
         (("--bus", "real"), "needs its calibration"),
         (("--bus", "usb"), "must be real, emulated"),
         (("--bus", "emulated:usb"), "no kind of bus is called 'usb'"),
+        (("--port", "COM3"), "--port is for real robots; with --bus emulated leave it out"),
+        (("--bus", "simulated", "--port", "COM3"), "--port is for real robots; with --bus simulated leave it out"),
         (("--keys",), "the standard input is none"),
         (("--gamepad", "/dev/none"), "no gamepad at /dev/none"),
         (("--keys", "--gamepad"), "exclude each other"),
@@ -111,6 +113,18 @@ def test_what_is_no_run(options, message):
     result = run("run", "strider", *options)
     assert result.exit_code == 2
     assert message in result.stderr
+
+
+def test_a_calibration_does_not_become_one_of_another_bus(tmp_path):
+    nominal_calibration(STRIDER, "strider", kind="feetech-sts").save(tmp_path / "c.toml")
+    for bus, message in [
+        ("emulated:lx16a", "c.toml is for feetech-sts; give --bus emulated"),
+        ("emulated:lx16", "Did you mean 'lx16a'?"),
+        ("simulated", "physics moves the joints without servo commands: leave --calibration out"),
+    ]:
+        result = run("run", "strider", "--calibration", tmp_path / "c.toml", "--bus", bus)
+        assert result.exit_code == 2
+        assert message in result.stderr
 
 
 # The program's input becomes the terminal that controls it: closing it hangs the program up.

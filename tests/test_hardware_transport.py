@@ -88,6 +88,8 @@ def test_emulated_servos_whose_turn_is_late_are_not_taken_for_silent():
 def test_a_port_that_does_not_open_is_explained(tmp_path):
     with pytest.raises(PortError, match="Serial ports found"):
         hardware.SerialTransport("/dev/nowhere", 9600)
+    with pytest.raises(PortError, match="received something that is no serial port"):
+        hardware.SerialTransport(os.devnull, 9600)
     file = tmp_path / "port"
     file.write_bytes(b"")
     with pytest.raises(PortError, match="expected a port that opens"):

@@ -24,7 +24,7 @@ from tarsus.control.states.robot_state import RobotState
 from tarsus.errors import InputError, ServoFaultError
 from tarsus.gait.gait import Gait
 from tarsus.hardware.calibration.blank import nominal_calibration
-from tarsus.hardware.calibration.bus_commands import BUS_COMMANDS, usual_bus
+from tarsus.hardware.calibration.bus_commands import bus_commands, usual_bus
 from tarsus.hardware.calibration.calibration import Calibration
 from tarsus.hardware.live.emulated_robot import EmulatedRobot
 from tarsus.hardware.live.gamepad import Gamepad
@@ -73,6 +73,10 @@ def perform(robot: str, options: dict[str, Any], *, out: Path | None, quiet: boo
     where, _, kind = (options["bus"] or (_REAL if options["calibration"] else _EMULATED)).partition(":")
     if where not in (_REAL, _EMULATED, _SIMULATED):
         raise InputError(f"--bus {options['bus']}: it must be real, emulated, emulated:KIND or simulated")
+    if where != _REAL and options["port"] is not None:
+        raise InputError(f"--port is for real robots; with --bus {where} leave it out, or give --bus real")
+    if where == _SIMULATED and options["calibration"] is not None:
+        raise InputError("physics moves the joints without servo commands: leave --calibration out, or --bus simulated")
     chosen = load_robot(robot)
     if where == _SIMULATED:
         return _simulated(chosen, options, out=out)
@@ -174,14 +178,18 @@ def _limited(source: CommandSource, duration: float | None) -> CommandSource:
 def _calibration(name: str, robot: Robot, options: dict[str, Any], where: str, kind: str) -> Calibration:
     if options["calibration"] is not None:
         found = calibration_of(robot, options["calibration"])
+        kinds = [bus.kind for bus in found.buses]
+        if kind and kind not in kinds:
+            bus_commands(kind)
+            raise InputError(
+                f"--bus emulated:{kind}: {options['calibration']} is for {', '.join(kinds)}; give --bus emulated"
+            )
     elif where == _REAL:
         raise InputError("a real robot needs its calibration: --calibration FILE; tarsus bring-up makes one")
     else:
         # Without servos of a bus in the robot file, such that measure their positions show more.
         usual = usual_bus(robot.servos[0][0])
         found = nominal_calibration(robot, name, kind=kind or (usual.name if usual.feedback else "feetech-sts"))
-    if kind and kind not in BUS_COMMANDS:
-        raise InputError(f"--bus emulated:{kind}: there are {', '.join(BUS_COMMANDS)}")
     if options["port"]:
         buses = (dataclasses.replace(found.buses[0], port=options["port"]), *found.buses[1:])
         found = found.replace(buses=buses)

@@ -130,7 +130,9 @@ def _open_remedy(port: str) -> str:
 def _reason(error: Exception) -> str:
     """Return why a port can't be opened; pyserial's text says it twice, with numbers."""
     number = getattr(error, "errno", None)
-    return os.strerror(number) if number else str(error)
+    if number:
+        return os.strerror(number)
+    return "something that is no serial port" if "Could not configure port" in str(error) else str(error)
 
 
 def _port_error(port: str, expected: str, received: str, remedy: str) -> PortError:
