@@ -334,6 +334,23 @@ def test_resumed_servos_of_pulses_begin_where_they_were_left(tmp_path):
     assert pulse == round(float(truth.commands(reference_angles(STRIDER))[0, 0]))
 
 
+def test_a_port_that_is_wrong_is_searched_for(tmp_path):
+    machine = Machine("feetech-sts")
+    answers = Answers("", "s")
+
+    def opener(settings):
+        if settings.port != "B":
+            raise tarsus.PortError("serial", settings.port, expected="a port", received="none", remedy="Plug it in.")
+        return machine.open(settings.kind, settings.port)
+
+    made = new_calibration(STRIDER, "strider", kind="feetech-sts", port="/dev/ttyUSB7")
+    up = BringUp(made, tmp_path / "c.toml", answers, open_bus=opener, ports=lambda: ("A", "B"), clock=machine.clock)
+    with pytest.raises(Left):
+        up.perform()
+    assert answers.said.count("Plug it in again.") == 2
+    assert Calibration.load(tmp_path / "c.toml").buses[0].port == "B"
+
+
 def test_a_file_of_another_robot_or_bus_is_not_resumed(tmp_path):
     new_calibration(STRIDER, "strider", kind="feetech-sts").save(tmp_path / "c.toml")
     for robot, options, message in [

@@ -374,6 +374,13 @@ def test_thresholds_of_sensors_of_force_are_kept_and_checked(tmp_path):
         nominal("lines", foot_switches=FootSwitches(bus="main", inputs=(0, 1, 2, 3, 4, 5), thresholds=(1.0,) * 6))
 
 
+def test_a_supply_below_its_least_voltage_is_refused_with_its_line(tmp_path):
+    wrong = "\n[supply]\nvoltage_v = 7.4\nleast_v = 9\n"
+    (tmp_path / "c.toml").write_text(calibration_text(nominal()) + wrong, encoding="utf-8")
+    with pytest.raises(CalibrationError, match=r"7.4 V, and .* below 9 V: least_v must be less than .*\(line \d+"):
+        Calibration.load(tmp_path / "c.toml")
+
+
 def test_joints_and_switches_find_the_bus_that_fits(tmp_path):
     feet = tarsus.hardware.BusSettings(name="feet", kind="lines")
     made = nominal()

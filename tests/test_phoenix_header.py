@@ -1,6 +1,7 @@
 """Hex_Cfg.h of the Phoenix firmware: read and written, against the firmware's own equations."""
 
 import math
+import warnings
 
 import numpy as np
 import pytest
@@ -204,3 +205,13 @@ def test_the_commands_convert_both_ways(tmp_path, monkeypatch):
     assert run("calibration", "from-phoenix", "b.h", "other", "--driver", "ax12").exit_code == 0
     assert Calibration.load("other.calibration.toml").buses[0].kind == "dynamixel-ax"
     assert run("calibration", "to-phoenix", "mine.calibration.toml", "--out", "none/b.h").exit_code == 2
+
+
+def test_no_warning_of_python_reaches_a_user():
+    text = header().replace("#define cSSC_BAUD 38400", "#define cSSC_BAUD 38400if")
+    robot = robot_from_hex_cfg(header(), name="x", where="h")
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        with pytest.raises(InputError, match="cSSC_BAUD is '38400if'; it must be a whole number"):
+            calibration_from_hex_cfg(text, robot=robot, robot_file="x.toml", where="h")
+    assert caught == []

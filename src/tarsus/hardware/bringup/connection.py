@@ -67,11 +67,18 @@ class Connection:
             except PortError as error:
                 self.close()
                 ask.say(str(error))
-                ask.choose("Plug it in again.", {"": "go on"}, topic=_TOPIC)
+                options = {"": "go on", "s": "search for the servos on all ports"}
+                if ask.choose("Plug it in again.", options, topic=_TOPIC) == "s":
+                    self._search_anew()
             except BusError as error:
                 self.close()
                 ask.say(str(error))
                 ask.choose("Look at the cable and the supply.", {"": "try again"}, topic=_TOPIC)
+
+    def _search_anew(self) -> None:
+        calibration = self._progress.calibration
+        first = dataclasses.replace(calibration.buses[0], port="")
+        self._progress.keep(calibration.replace(buses=(first, *calibration.buses[1:])))
 
     def close(self) -> None:
         """Release all servos, and close the ports."""

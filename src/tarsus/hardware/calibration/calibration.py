@@ -68,7 +68,7 @@ class Calibration(CalibrationFields):
             raise InputError(
                 f"a calibration of {self.robot.name!r} has {len(JOINTS)} joints for each of its {self.robot.legs} legs"
             )
-        problems = contradictions(self.robot, self.buses, self.joints, self.foot_switches)
+        problems = contradictions(self.robot, self.buses, self.joints, self.foot_switches, self.supply)
         if problems:
             raise CalibrationError(self.name, [each.text for each in problems])
 

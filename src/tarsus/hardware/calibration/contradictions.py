@@ -10,7 +10,7 @@ import numpy as np
 
 from tarsus.errors import InputError, nearest_name
 from tarsus.hardware.calibration.bus_commands import BUS_COMMANDS, BusCommands
-from tarsus.hardware.calibration.parts import BusSettings, FootSwitches, JointCalibration
+from tarsus.hardware.calibration.parts import BusSettings, FootSwitches, JointCalibration, SupplySettings
 from tarsus.robot.robot import JOINTS, Robot
 
 __all__ = ["Contradiction", "angle_range", "contradictions"]
@@ -42,6 +42,7 @@ def contradictions(
     buses: Sequence[BusSettings],
     joints: Sequence[Sequence[JointCalibration]],
     foot_switches: FootSwitches | None = None,
+    supply: SupplySettings | None = None,
 ) -> list[Contradiction]:
     """Return everything that can't be.
 
@@ -55,8 +56,16 @@ def contradictions(
         ``joints[leg][joint]``.
     foot_switches : FootSwitches, optional
         The foot switches.
+    supply : SupplySettings, optional
+        The supply.
     """
     found = list(_of_buses(buses))
+    if supply is not None and not supply.least_voltage < supply.voltage:
+        text = (
+            f"the supply has {supply.voltage:g} V, and the servos must not run below {supply.least_voltage:g} V: "
+            "least_v must be less than voltage_v"
+        )
+        found.append(Contradiction(("supply",), text))
     known = {bus.name: bus for bus in buses if bus.kind in BUS_COMMANDS}
     taken: dict[tuple[str, int], str] = {}
     for leg, row in enumerate(joints):

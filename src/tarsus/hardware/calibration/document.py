@@ -98,7 +98,7 @@ def fields_from_document(
     )
     switches = _switches(file)
     if not problems:
-        for each in contradictions(robot, buses, joints, switches):
+        for each in contradictions(robot, buses, joints, switches, _supply(file.supply)):
             place = _in_file(each.place, entries)
             problems.append(f"{each.text}{position(place)}")
     if problems:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import operator
 import re
+import warnings
 from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
@@ -71,7 +72,11 @@ class Defines:
         try:
             if depth > _DEEPEST:
                 raise ValueError
-            return self._value(ast.parse(text.strip() or "?", mode="eval").body, depth)
+            with warnings.catch_warnings():
+                # Python warns of what it can just about read, such as 1or; here it is wrong, or another's.
+                warnings.simplefilter("ignore")
+                parsed = ast.parse(text.strip() or "?", mode="eval")
+            return self._value(parsed.body, depth)
         except InputError:
             raise
         except (SyntaxError, ValueError, ZeroDivisionError, RecursionError, MemoryError):
