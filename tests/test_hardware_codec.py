@@ -149,7 +149,7 @@ def test_registers_are_encoded_both_ways(sign, size, value, content):
     assert one.decode(one.encode(value, byteorder="big"), byteorder="big") == value
 
 
-@pytest.mark.parametrize(("sign", "value"), [("", -1), ("", 256), ("7", 128), ("two", -129), ("7", -129)])
+@pytest.mark.parametrize(("sign", "value"), [("", -1), ("", 256), ("7", 128), ("two", -129), ("7", -129), ("7", -128)])
 def test_what_a_register_cannot_hold_is_refused(sign, value):
     with pytest.raises(InputError, match="register x can't hold"):
         Register("x", 0, 1, "rw", sign, 1.0, "", "").encode(value)

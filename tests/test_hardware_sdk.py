@@ -18,6 +18,7 @@ from feetech_cli.simulator import SimulatedBus, SimulatedServo
 
 from tarsus import hardware
 from tarsus.hardware.codec import dynamixel1, dynamixel2, feetech, lx16a
+from tarsus.hardware.codec.registers import Register
 
 IDS = (1, 2, 3)
 # A position whose bytes look like a header, so that protocol 2.0 has to stuff them.
@@ -138,6 +139,25 @@ def test_robotis_sdk_works_emulated_servos_of_protocol_2():
     assert "cannot write" in handler.getRxPacketError(error) or error == 7
 
 
+def test_positions_of_several_turns_are_robotis_own():
+    device, port = emulated("dynamixel-x")
+    handler, bus = PacketHandler(2.0), hardware.bus_over("dynamixel-x", hardware.MemoryTransport(device))
+    for value in (-1, -5000, 9000, 1_000_000, -1_000_000):
+        device.servos[1].place(value)
+        raw = handler.read4ByteTxRx(port, 1, 132)[0]
+        assert struct.unpack("<i", struct.pack("<I", raw))[0] == value
+        for ids in ((1,), (1, 2)):
+            assert bus.read_positions(ids).require()[1] == value
+    # MX servos with several turns tell them with two bytes.
+    device, port = emulated("dynamixel-mx")
+    bus = hardware.bus_over("dynamixel-mx", hardware.MemoryTransport(device))
+    for value in (-28_672, -1, 28_672):
+        device.servos[1].place(value)
+        raw = PacketHandler(1.0).read2ByteTxRx(port, 1, 36)[0]
+        assert struct.unpack("<h", struct.pack("<H", raw))[0] == value
+        assert bus.read_positions((1, 2)).require()[1] == value
+
+
 # Dynamixel 1.0: Robotis's SDK.
 
 
@@ -222,6 +242,22 @@ def test_feetechs_sdk_works_emulated_scs_servos():
     assert handler.WritePos(2, 700, 0, 300) == (0, 0)
     assert (device.servos[2].goal, device.servos[2].speed_limit) == (700, 300)
     assert port.sent[-1] == feetech.write(2, 42, struct.pack(">HHH", 700, 0, 300))
+
+
+def test_negative_values_of_sts_servos_are_feetechs():
+    device, port = emulated("feetech-sts")
+    handler = scservo_sdk.sms_sts(port)
+    bus = hardware.bus_over("feetech-sts", hardware.MemoryTransport(device))
+    for value in (-1, -5, -300, -4095, 0, 4095):
+        # Beyond its lower end a turned shaft is told as a sign and a magnitude.
+        device.servos[1].place(value)
+        assert handler.ReadPos(1)[0] == value
+        assert bus.read_positions((1, 2)).require()[1] == value
+    signed = Register("x", 0, 2, "rw", "15", 1.0, "", "")
+    for value in (*range(-32767, 32768, 97), 32767):
+        raw = handler.scs_toscs(value, 15)
+        assert int.from_bytes(signed.encode(value), "little") == raw
+        assert signed.decode(struct.pack("<H", raw)) == handler.scs_tohost(raw, 15) == value
 
 
 # Feetech: the simulated servos of feetech-cli.

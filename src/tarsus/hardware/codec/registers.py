@@ -80,7 +80,9 @@ class Register:
             If the register can't hold it.
         """
         bits = int(self.sign) if self.sign.isdigit() else 8 * self.size - (self.sign == "two")
-        if not (-(1 << bits) * bool(self.sign) <= value < 1 << bits):
+        # A sign bit alone would be read as 0.
+        least = -(1 << bits) + (self.sign != "two") if self.sign else 0
+        if not least <= value < 1 << bits:
             raise InputError(f"register {self.name} can't hold {value}: it has {bits} bits for the magnitude")
         raw = value
         if value < 0:
