@@ -199,10 +199,27 @@ def test_emulated_servos_run_as_a_process_of_their_own(capsys):
         process.kill()
         with pytest.raises(PortError):
             often(lambda: bus.read_positions((3,)))
-    assert main(["ssc32", "0-17", "--baud", "9600", "--seconds", "0"]) == 0
+    for bus, arguments in [("ssc32", ("0-17", "--baud", "9600")), ("servo2040", ()), ("lx16a", ("7",))]:
+        assert main([bus, *arguments, "--seconds", "0"]) == 0
     assert capsys.readouterr().out.startswith("/dev/")
-    assert main(["ssc32", "all"]) == 1
-    assert "invalid literal" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (("ssc32", "all"), "ids are 'all'; on ssc32 they must be the first and the last of 0 to 31"),
+        (("lx16a", "5-1"), "ids are '5-1'"),
+        (("lx16a", "1-"), "ids are '1-'"),
+        (("lx16a", "0-400"), "on lx16a they must be the first and the last of 0 to 253"),
+        (("lx16a", "1-3", "--baud", "0"), "--baud is 0 bits per second; it must be from 300"),
+        (("lx16a", "1-3", "--return-delay", "5"), "--return-delay is for Dynamixel servos, not for lx16a"),
+        (("dynamixel-x", "1-3", "--return-delay", "nan"), "--return-delay is nan us; it must be from 0 to 508 us"),
+        (("lx16a", "1-3", "--seconds", "-1"), "--seconds is -1 s"),
+    ],
+)
+def test_what_can_not_be_emulated_is_refused(arguments, message, capsys):
+    assert main(list(arguments)) == 1
+    assert message in capsys.readouterr().err
 
 
 CLIENT = """
