@@ -381,6 +381,19 @@ def test_a_supply_below_its_least_voltage_is_refused_with_its_line(tmp_path):
         Calibration.load(tmp_path / "c.toml")
 
 
+@pytest.mark.parametrize("value", ["inf", "-inf", "nan", "1e400"])
+def test_numbers_that_are_none_are_refused_wherever_a_whole_one_is_due(value, tmp_path):
+    text = calibration_text(nominal())
+    for changed in (
+        text.replace("id = 1,", f"id = {value},", 1),
+        text.replace("[[legs]]", f"baud = {value}\n[[legs]]", 1),
+    ):
+        assert changed != text
+        (tmp_path / "c.toml").write_text(changed, encoding="utf-8")
+        with pytest.raises(CalibrationError, match="must be a whole number"):
+            Calibration.load(tmp_path / "c.toml")
+
+
 def test_joints_and_switches_find_the_bus_that_fits(tmp_path):
     feet = tarsus.hardware.BusSettings(name="feet", kind="lines")
     made = nominal()

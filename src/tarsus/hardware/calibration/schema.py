@@ -46,7 +46,7 @@ class Whole:
 
     def check(self, value: object) -> int:
         """Return the number."""
-        if isinstance(value, Decimal) and value == value.to_integral_value():
+        if isinstance(value, Decimal) and value.is_finite() and value == value.to_integral_value():
             value = int(value)
         if isinstance(value, bool) or not isinstance(value, int) or not self.low <= value <= self.high:
             raise refuse(f"must be {self.what} from {self.low} to {self.high}")
