@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 
 import tarsus
+from quadrupeds import random_quadruped
 from sample_commands import run, run_json
 from tarsus import Command, RobotController
 from tarsus.errors import InputError
@@ -23,7 +24,7 @@ from tarsus.hardware.live.gamepad import Gamepad
 from tarsus.hardware.live.keyboard import KEYS, Keyboard
 from tarsus.hardware.live.live_commands import Input, LiveCommands
 from tarsus.hardware.live.supervision import Rising, Supervised
-from tarsus.hardware.telemetry.log import read_log
+from tarsus.hardware.telemetry.log import TelemetryLog, read_log
 
 STRIDER = tarsus.load_robot("strider")
 FAST = 1_000_000
@@ -82,6 +83,25 @@ def test_a_fault_ends_with_an_exit_code_its_joint_and_a_complete_log(tmp_path):
     with open(tmp_path / "telemetry.csv", encoding="utf-8", newline="") as file:
         faults = [row["fault"] for row in csv.DictReader(file)]
     assert "middle left femur: overheated" in "".join(faults)
+
+
+@pytest.mark.parametrize("name", ["telemetry.csv", "telemetry.mcap"])
+def test_a_full_disk_ends_the_log_and_not_the_walk(name, tmp_path):
+    (tmp_path / name).symlink_to("/dev/full")
+    code, found = run_json("run", "strider", "--bus", "emulated", "--duration", "0.4", "--out", tmp_path)
+    assert (code, found["fault"]) == (1, None)
+    assert found["duration_s"] == pytest.approx(0.4, abs=0.02)
+    assert found["problems"] == [f"the telemetry in {tmp_path} is not complete: No space left on device"]
+    # The robot has sat down, and its records of the controller are there.
+    assert {os.path.basename(file) for file in found["files"]} == {"log.csv", "timeline.png"}
+
+
+def test_a_log_of_another_robot_is_not_read(tmp_path):
+    with TelemetryLog(tarsus.load_robot("strider"), tmp_path):
+        pass
+    assert len(read_log(tmp_path / "telemetry.csv", STRIDER)[0]) == 0
+    with pytest.raises(InputError, match="no table of telemetry of this robot: its columns are others"):
+        read_log(tmp_path / "telemetry.csv", random_quadruped(0))
 
 
 def test_physics_runs_the_same_controller():

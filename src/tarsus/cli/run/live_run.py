@@ -113,7 +113,9 @@ def perform(robot: str, options: dict[str, Any], *, out: Path | None, quiet: boo
             if start == "lying":
                 source = Rising(source)
             outcome = _run(controller, plant, Supervised(source, plant), rate, options["duration"], line)
-    return _summary(chosen, bus, plant, outcome, line, out)
+    if log is not None and log.problem:
+        plant.notes.append(log.problem)
+    return _summary(chosen, bus, plant, outcome, line, out, logged=log is not None and not log.problem)
 
 
 def _each_of(observers: Sequence[Callable[[TickRecord], None]]) -> Callable[[TickRecord], None]:
@@ -254,7 +256,14 @@ def _simulated(robot: Robot, options: dict[str, Any], *, out: Path | None) -> di
 
 
 def _summary(
-    robot: Robot, bus: str, plant: ServoPlant | None, outcome: _Outcome, line: StatusLine, out: Path | None
+    robot: Robot,
+    bus: str,
+    plant: ServoPlant | None,
+    outcome: _Outcome,
+    line: StatusLine,
+    out: Path | None,
+    *,
+    logged: bool = False,
 ) -> dict[str, Any]:
     from tarsus.cli.run.figures import write_figures
 
@@ -285,5 +294,5 @@ def _summary(
         "fault": None if plant is None or plant.fault is None else str(plant.fault.kind),
         "joint": None if plant is None or plant.fault is None else plant.fault.joint,
         "notes": [] if plant is None else [*plant.notes],
-        "files": [] if out is None else [str(file) for file in write_figures(robot, recording, plant is not None, out)],
+        "files": [] if out is None else [str(file) for file in write_figures(robot, recording, logged, out)],
     }

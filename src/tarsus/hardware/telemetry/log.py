@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
 __all__ = ["TelemetryLog", "read_log"]
 
+_PER_JOINT = ("commanded_deg", "sent_deg", "measured_deg", "temperature_c", "load")
 _SCHEMA = {
     "type": "object",
     "properties": {
@@ -46,6 +47,11 @@ class TelemetryLog:
     folder : path
         Existing folder; the files are ``telemetry.csv`` and ``telemetry.mcap``.
 
+    Attributes
+    ----------
+    problem : str
+        Why no more can be written, as on a full disk; empty where all was. The run goes on: no robot falls for that.
+
     Raises
     ------
     InputError
@@ -58,18 +64,15 @@ class TelemetryLog:
         except ImportError:
             raise InputError("a log of telemetry needs mcap: pip install 'tarsus[hardware]'") from None
         self.table, self.mcap = Path(folder) / "telemetry.csv", Path(folder) / "telemetry.mcap"
-        codes = [code.replace(" ", "_") for code in robot.leg_codes]
-        self._names = [f"{code}_{joint}" for code in codes for joint in JOINTS]
+        self._names = _names(robot)
+        self.problem = ""
         try:
             self._csv = self.table.open("w", encoding="utf-8", newline="")
             self._raw = self.mcap.open("wb")
         except OSError as error:
             raise InputError(f"{error.filename} can't be written: {error.strerror}") from None
         self._rows = csv.writer(self._csv)
-        per_joint = ("commanded_deg", "sent_deg", "measured_deg", "temperature_c", "load")
-        self._rows.writerow(
-            ["time_s", "voltage_v", *(f"{name}_{what}" for what in per_joint for name in self._names), "fault"]
-        )
+        self._rows.writerow([*_columns(robot), "fault"])
         self._mcap = Writer(self._raw)
         self._mcap.start(profile="", library="tarsus")
         schema = self._mcap.register_schema("tarsus.Joints", "jsonschema", json.dumps(_SCHEMA).encode())
@@ -84,18 +87,32 @@ class TelemetryLog:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         """Close the files."""
-        self._mcap.finish()  # type: ignore[no-untyped-call]
-        self._raw.close()
-        self._csv.close()
+        for close in (self._mcap.finish, self._raw.close, self._csv.close):
+            try:
+                close()
+            except OSError as failure:
+                self._failed(failure)
 
     def write(self, record: TickRecord) -> None:
-        """Write a tick.
+        """Write a tick, unless that has failed before.
 
         Parameters
         ----------
         record : TickRecord
             What the plant did.
         """
+        if self.problem:
+            return
+        try:
+            self._write(record)
+        except OSError as error:
+            self._failed(error)
+
+    def _failed(self, error: OSError) -> None:
+        where = self.table.parent
+        self.problem = self.problem or f"the telemetry in {where} is not complete: {error.strerror or error}"
+
+    def _write(self, record: TickRecord) -> None:
         if self._first is None:
             self._first = record.time
         time = record.time - self._first
@@ -112,10 +129,19 @@ class TelemetryLog:
         self._rows.writerow(["" if cell is None else cell for cell in cells])
         if record.fault:
             self._csv.flush()
-        message = dict(zip(("commanded_deg", "sent_deg", "measured_deg", "temperature_c", "load"), lists, strict=True))
+        message = dict(zip(_PER_JOINT, lists, strict=True))
         data = json.dumps({"name": self._names, **message, "voltage_v": voltage, "fault": record.fault}).encode()
         stamp = round(time * 1e9)
         self._mcap.add_message(self._channel, log_time=stamp, publish_time=stamp, data=data)
+
+
+def _names(robot: Robot) -> list[str]:
+    codes = [code.replace(" ", "_") for code in robot.leg_codes]
+    return [f"{code}_{joint}" for code in codes for joint in JOINTS]
+
+
+def _columns(robot: Robot) -> list[str]:
+    return ["time_s", "voltage_v", *(f"{name}_{what}" for what in _PER_JOINT for name in _names(robot))]
 
 
 def read_log(
@@ -146,9 +172,10 @@ def read_log(
     try:
         with open(path, encoding="utf-8", newline="") as file:
             head, *rows = csv.reader(file)
-        values = np.array([[float(cell or "nan") for cell in row[: 2 + 3 * joints]] for row in rows], dtype=float)
-        if head[:2] != ["time_s", "voltage_v"] or values.ndim != 2:
-            raise ValueError
+        if head[:-1] != _columns(robot):
+            raise ValueError("its columns are others")
+        size = 2 + 3 * joints
+        values = np.array([[float(cell or "nan") for cell in row[:size]] for row in rows]).reshape(len(rows), size)
     except (OSError, ValueError) as error:
         raise InputError(f"{os.fspath(path)} is no table of telemetry of this robot: {error}") from None
     angles = np.radians(values[:, 2:]).reshape(len(values), 3, robot.legs, len(JOINTS))
