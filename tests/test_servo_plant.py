@@ -486,3 +486,21 @@ def test_servos_that_stay_silent_on_a_busy_computer_are_noticed_in_the_time_in_w
     rig.line.faults.missing, rig.clock.late = {rig.ids[4]}, 0.3
     with pytest.raises(ServoFaultError, match=r"none for \d+ ms, beside \d+ ms in which this computer did not run"):
         rig.stand(40)
+
+
+def test_a_robot_whose_observer_fails_sits_down_before_it_lets_go():
+    rig, sent = Rig(), []
+
+    def observe(record):
+        sent.append(record.sent)
+        if len(sent) > 60:
+            raise OSError("no space left")
+
+    rig.plant._observer = observe
+    with pytest.raises(OSError, match="no space left"):
+        rig.run()
+    assert len(sent) == 61
+    assert rig.holding == []
+    positions = np.reshape([rig.line.servos[number].position for number in rig.ids], (6, 3))
+    feet = tarsus.forward_kinematics(STRIDER, rig.calibration.angles(positions))[..., 3, 2]
+    assert feet.min() > -0.06

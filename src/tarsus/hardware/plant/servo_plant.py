@@ -251,7 +251,12 @@ class ServoPlant:
     def _observe(self, now: float, asked: Float[np.ndarray, "..."], fault: ServoFault | None) -> None:
         if self._observer is not None:
             problem = "" if fault is None else str(fault.error())
-            self._observer(self._input.record(now, asked=asked, sent=self._servos.angles, fault=problem))
+            try:
+                self._observer(self._input.record(now, asked=asked, sent=self._servos.angles, fault=problem))
+            except Exception:
+                # Without it the robot can still sit down.
+                self._observer = None
+                raise
 
     # How it ends.
 
