@@ -15,7 +15,7 @@ from tarsus.errors import (
     ServoStatusError,
     UnknownNameError,
 )
-from tarsus.hardware.codec import lx16a
+from tarsus.hardware.codec import dynamixel2, lx16a, packet
 
 IDS = range(9)
 SMART = ("feetech-sts", "feetech-scs", "dynamixel-x", "dynamixel-mx", "dynamixel-ax", "lx16a")
@@ -522,3 +522,23 @@ def test_unknown_buses_list_the_known():
         hardware.open_bus("feetech-stx", "nowhere")
     with pytest.raises(UnknownNameError, match="Did you mean 'feetech-sts'"):
         hardware.emulate("feetech-stx", IDS)
+
+
+@pytest.mark.parametrize(
+    ("name", "refusal", "error"),
+    [
+        ("dynamixel-x", dynamixel2.status(2, 4, b""), "value out of range"),
+        ("dynamixel-ax", packet.packet(2, 1 << 3, b""), "range"),
+        ("feetech-sts", packet.packet(2, 1 << 5, b""), "overload"),
+    ],
+)
+def test_a_servo_that_refuses_is_not_said_to_be_silent(name, refusal, error):
+    bus, device = hardware.emulated_bus(name, IDS)
+    content = device._content
+    device._content = lambda id, *what: [(id, refusal)] if id == 2 else content(id, *what)
+    answers = bus.read_positions((1, 2, 3))
+    assert set(answers.values) == {1, 3}
+    (found,) = answers.errors
+    assert isinstance(found, ServoStatusError)
+    assert error in str(found)
+    assert "received a refusal with the error" in str(found)

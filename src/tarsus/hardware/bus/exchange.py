@@ -31,6 +31,8 @@ class Exchange:
         Answers by id.
     twice : set of int
         Who answered more than once.
+    other : dict of int to Frame
+        Frames of those who were asked, which answer something else or refuse.
     foreign : bytes
         Whole frames that answer something else.
     noise : bytes
@@ -51,6 +53,7 @@ class Exchange:
         self._frame, self._ids, self._count, self._sent, self._belongs = frame, ids, count, sent, belongs
         self.found: dict[int, Frame] = {}
         self.twice: set[int] = set()
+        self.other: dict[int, Frame] = {}
         self.foreign, self.noise, self.echo = b"", b"", False
 
     @property
@@ -84,6 +87,7 @@ class Exchange:
                 self.found[answer.id] = answer
             else:
                 self.foreign += answer.raw
+                self.other[answer.id] = answer
 
     def withdraw(self, suspect: Collection[Frame]) -> None:
         """No longer believe some answers.

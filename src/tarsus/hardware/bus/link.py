@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection
 
-from tarsus.errors import BusError, CorruptAnswerError, NoAnswerError
+from tarsus.errors import BusError, CorruptAnswerError, NoAnswerError, ServoStatusError
 from tarsus.hardware.bus.exchange import Exchange
 from tarsus.hardware.bus.protocol import Answers
 from tarsus.hardware.codec.scan import Frame, Scanner
@@ -16,6 +16,7 @@ __all__ = ["Link", "hexadecimal"]
 _WIRING = "Check that it has this id and baud rate, its supply, and the cable to it."
 _NOISE = "Look for two servos with one id, a loose cable or a wrong baud rate; a lower baud rate helps against noise."
 _TWICE = "Look for two servos with this id: connect them one at a time, and give one another id."
+_REFUSED = "Check that it is a servo of this kind, and its firmware: it has no such registers, or not now."
 _MOST_SETTLING = 8
 _LONGEST_LINE = 64
 _MOST_ECHO = 2048
@@ -54,13 +55,23 @@ class Link:
         With which frames begin, before the id.
     delay : float
         Time that each servo takes before it answers, as it is delivered [s].
+    errors_in : callable, optional
+        What the code of an answer reports, where it reports errors.
     """
 
     def __init__(
-        self, transport: Transport, bus: str, scan: Scanner, *, timeout: float, header: bytes = b"", delay: float = 0.0
+        self,
+        transport: Transport,
+        bus: str,
+        scan: Scanner,
+        *,
+        timeout: float,
+        header: bytes = b"",
+        delay: float = 0.0,
+        errors_in: Callable[[int], tuple[str, ...]] | None = None,
     ) -> None:
         self.transport, self.bus, self.timeout, self._delay = transport, bus, timeout, delay
-        self._scan, self._header = scan, header
+        self._scan, self._header, self._errors_in = scan, header, errors_in
         self._doubtful = False
         # Whose answer has not come, and since when nobody waits for it any more; None for a board's [s].
         self._awaited: dict[int | None, float] = {}
@@ -179,8 +190,12 @@ class Link:
         """Return why a servo has no answer that is believed."""
         expected = f"an answer with {count} byte{'s' * (count != 1)} of data"
         kind: type[BusError] = CorruptAnswerError
+        refusal = exchange.other.get(id)
+        reported = () if refusal is None or self._errors_in is None else self._errors_in(refusal.code)
         if id in exchange.twice:
             expected, text, remedy = "one answer", f"two: {hexadecimal(received)}", _TWICE
+        elif reported and refusal is not None and not refusal.data:
+            kind, text, remedy = ServoStatusError, f"a refusal with the error {' and '.join(reported)}", _REFUSED
         elif exchange.damaged(id, self._header):
             text, remedy = f"{hexadecimal(exchange.noise)}, which is no such answer", _NOISE
         else:

@@ -81,6 +81,7 @@ class RegisterBus:
             timeout=timeout,
             header=self._dialect.header,
             delay=self._series.turnaround,
+            errors_in=self._dialect.errors_in,
         )
         self._reader = RegisterReader(self._link, self._series, fast=fast, turnaround=turnaround)
         self._speed: dict[int, int] = {}
