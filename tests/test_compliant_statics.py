@@ -2,6 +2,7 @@
 
 import dataclasses
 
+import mujoco
 import numpy as np
 import pytest
 
@@ -24,6 +25,7 @@ from tarsus.load.compliant.history import TOLERANCE
 from tarsus.load.compliant.joint_springs import JointSprings
 from tarsus.load.compliant.leg_derivatives import LegDerivatives
 from tarsus.load.compliant.tangent import contact_jacobian, newton_step
+from tarsus.load.compliant.vibration import Vibration, rigid_inertia
 from tarsus.load.loads import joint_loads
 from tarsus.load.payload import Payload
 from tarsus.load.sizing import size_servos
@@ -94,8 +96,9 @@ def test_derivatives_of_the_legs_are_those_of_forward_kinematics():
 def test_a_newton_step_solves_the_linearised_equations(frozen):
     """The tangent against finite differences of the residual, with feet that stick, slide and hang in the air."""
     rng = np.random.default_rng(3)
-    compliant = Compliant(STRIDER, JointSprings.uniform(STRIDER, 60.0), FootContact(friction=0.3))
     motion = standing()
+    inertia = rigid_inertia(STRIDER, motion.angles[0], Payload(0.4, (0.02, 0.01, 0.05)))
+    compliant = Compliant(STRIDER, JointSprings.uniform(STRIDER, 60.0), FootContact(friction=0.3), inertia)
     loads = applied_loads(
         STRIDER,
         motion,
@@ -104,7 +107,6 @@ def test_a_newton_step_solves_the_linearised_equations(frozen):
         inertial=False,
         rotor_inertia=np.zeros((6, 3)),
     )
-    demand = Demand(motion.angles[0], loads.points[0], loads.force[0], loads.moment[0], loads.rotors[0], 0.02)
     turned = Pose.from_rpy(0.002, -0.003, 0.1, (0.01, 0.02, 0.0))
     angles = motion.angles[0] + 0.002 * rng.normal(size=(6, 3))
     heights = np.sort(compliant.feet(turned.rotation, turned.position, angles)[:, 2])
@@ -113,13 +115,17 @@ def test_a_newton_step_solves_the_linearised_equations(frozen):
     feet = compliant.feet(pose.rotation, pose.position, angles)
     moved = feet + 1e-4 * rng.normal(size=(6, 3))
     past = Past(pose.rotation, pose.position, angles - 1e-3, moved, 0.3 * rng.normal(size=(6, 2)))
+    # The commanded pose is so close that inertial forces are of the size of the others.
+    commanded = (angles + 1e-3 * rng.normal(size=(6, 3)), pose.rotation, pose.position + 1e-3 * rng.normal(size=3))
+    ahead, gain = 1e-3 * rng.normal(size=24), Vibration.gain(0.02)
+    demand = Demand(motion.angles[0], *(each[0] for each in loads), *commanded, 0.02, ahead, gain)
     at = compliant.configuration((pose.rotation, pose.position), angles, past, demand.step)
     limit = compliant.contact.friction * at.normal if frozen else None
     balance = compliant.balance(at, demand, limit)
     assert (at.normal > 0).sum() == 4
     assert 0 < (balance.slip.fraction[at.normal > 0] < 1).sum() < (at.normal > 0).sum()
     jacobian = contact_jacobian(compliant, at, balance)
-    body, joints = newton_step(compliant, at, balance, jacobian, demand.step, frozen=frozen)
+    body, joints = newton_step(compliant, at, balance, jacobian, demand, frozen=frozen)
     small = 1e-5
 
     def residual(length):
@@ -269,12 +275,68 @@ def test_a_walk_bears_what_it_bears_in_physics(strider_walk):
     assert found.loads.peak[:, 0].max() > 3 * joint_loads(STRIDER, motion).peak[:, 0].max()
 
 
+def test_a_walk_on_soft_servos_bears_what_it_bears_in_physics():
+    """Bodies on soft legs swing when feet take over, and dead bands hold coxae back: the peaks need both."""
+    motion = walk()
+    found = compliant_loads(STRIDER, motion)
+    physics = play(motion, SimulatedPlant(STRIDER, sensors="blind")).torques[: len(motion.time)]
+    for joint, peak, rms in ((0, 0.2, 0.12), (1, 0.07, 0.07), (2, 0.2, 0.12)):
+        ours, theirs = found.torques[..., joint], physics[..., joint]
+        assert np.abs(ours).max() == pytest.approx(np.abs(theirs).max(), rel=peak)
+        assert np.sqrt((ours**2).mean()) == pytest.approx(np.sqrt((theirs**2).mean()), rel=rms)
+        assert np.corrcoef(ours.ravel(), theirs.ravel())[0, 1] > 0.9
+
+
+def test_a_vibration_is_that_of_an_oscillator():
+    frequency, step, time = 30.0, 1e-4, 0.3
+    moving = Vibration(np.array([0.01]), np.zeros(1), np.array([-(frequency**2) * 0.01]))
+    for _ in range(round(time / step)):
+        gain = Vibration.gain(step)
+        moving = moving.after(gain * moving.ahead(step) / (gain + frequency**2), step)
+    # What damps it is the method, by (gamma - 1/2) / 2 of frequency times step.
+    kept = 0.01 * np.exp(-0.2 * frequency**2 * step * time)
+    assert moving.offset[0] == pytest.approx(kept * np.cos(frequency * time), rel=5e-3)
+    assert moving.speed[0] == pytest.approx(-kept * frequency * np.sin(frequency * time), rel=2e-2)
+    assert not Vibration.still(np.ones(3)).ahead(0.1).any() - 1
+
+
+@pytest.mark.parametrize("name", ["strider", "phantomx"])
+def test_the_inertia_of_the_robot_is_that_of_physics(name):
+    robot = load_robot(name)
+    motion = standing(robot)
+    plant = SimulatedPlant(robot, sensors="blind")
+    plant.mj_data.qpos[:] = 0.0
+    plant.mj_data.qpos[3] = 1.0
+    plant.mj_data.qpos[7:] = motion.angles[0].ravel()
+    mujoco.mj_forward(plant.mj_model, plant.mj_data)
+    full = np.zeros((plant.mj_model.nv, plant.mj_model.nv))
+    mujoco.mj_fullM(plant.mj_model, plant.mj_data, full)
+    ours = rigid_inertia(robot, motion.angles[0], Payload(0.0))
+    np.testing.assert_allclose(ours[:3, :3], full[:3, :3], atol=1e-9)
+    np.testing.assert_allclose(ours[:3, 3:], full[:3, 3:6], atol=1e-9)
+    np.testing.assert_allclose(ours[3:, 3:], full[3:6, 3:6], atol=0.1 * full[5, 5])
+    carried = rigid_inertia(robot, motion.angles[0], Payload(0.5, (0.0, 0.0, 0.1))) - ours
+    assert np.diag(carried) == pytest.approx([0.5, 0.5, 0.5, 0.005, 0.005, 0.0])
+
+
+def test_targets_of_servos_follow_their_commands_outside_the_dead_band():
+    springs = JointSprings.of(STRIDER)
+    half = springs.dead_band[0, 0]
+    assert half > 0
+    commands = half * np.array([0.0, 0.9, 3.0, 2.5, 1.5, -1.0])[:, None, None] * np.ones((6, 3))
+    targets = springs.targets(commands)[:, 0, 0] / half
+    assert targets == pytest.approx([0.0, 0.0, 2.0, 2.0, 2.0, 0.0])
+    ideal = JointSprings.uniform(STRIDER, 100.0)
+    np.testing.assert_array_equal(ideal.targets(commands), commands)
+
+
 def test_servos_of_the_catalogue_are_those_of_the_simulation():
     springs = JointSprings.of(STRIDER)
     servo = ServoModel.of(STRIDER.servos[0][0])
     for name in ("stiffness", "stall_torque", "rotor_inertia"):
         assert getattr(springs, name) == pytest.approx(getattr(servo, name))
     assert springs.play == pytest.approx(servo.backlash / 2)
+    assert springs.dead_band == pytest.approx(servo.dead_band / 2)
     assert springs.damping == pytest.approx(servo.joint_damping)
     error, turned, step = np.full((6, 3), 0.3), np.full((6, 3), 0.02), 0.01
     torque, slope = springs.torque(error, turned, step)

@@ -18,6 +18,7 @@ from tarsus.load.compliant.foot_contact import FootContact
 from tarsus.load.compliant.history import History, equilibria
 from tarsus.load.compliant.joint_springs import JointSprings
 from tarsus.load.compliant.result import CompliantLoads
+from tarsus.load.compliant.vibration import rigid_inertia
 from tarsus.load.contact import GRAVITY, upward
 from tarsus.load.loads import JointLoads, joint_loads
 from tarsus.load.payload import Payload, as_payload
@@ -48,7 +49,8 @@ def compliant_loads(
 
     Position-controlled legs press against each other through the feet. How much follows from the stiffness of the
     joints, where each foot touched down, how it rolled and where it slipped. The loads are those of the equilibria
-    along the motion, one after the other.
+    along the motion, one after the other. Soft joints also let the body swing when feet take over its weight; its
+    inertia is included.
 
     Parameters
     ----------
@@ -65,7 +67,8 @@ def compliant_loads(
     gravity : sequence of float
         Gravity in G [m/s^2]; tilted, it represents a slope.
     inertial : bool
-        Whether inertial forces of the commanded motion are included.
+        Whether inertial forces are included: those of the commanded motion, and those of the body and the rotors as
+        they move off it.
     supply : float, optional
         Supply voltage of the servos [V]. Default: that of their ratings.
     rate : float
@@ -94,7 +97,9 @@ def compliant_loads(
     )
     samples = _samples(motion, rate)
     weight = (float(total_mass(robot)) + carried.mass) * upward(gravity)[0]
-    solved = equilibria(Compliant(robot, springs, contact), motion, loads, samples, weight)
+    inertia = rigid_inertia(robot, motion.angles[0], carried) if inertial else None
+    compliant, targets = Compliant(robot, springs, contact, inertia), springs.targets(motion.angles)
+    solved = equilibria(compliant, motion, targets, loads, samples, weight)
     return _result(rigid, springs, contact, solved, samples)
 
 

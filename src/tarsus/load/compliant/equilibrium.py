@@ -1,4 +1,4 @@
-"""Residual of the static equilibrium of a compliant robot.
+"""Residual of the equilibrium of a compliant robot.
 
 With the loads P on the leg points p and those on the body, the contact forces f at the bottom c of the foot balls, and
 the spring torques tau, in B's axes::
@@ -7,6 +7,7 @@ the spring torques tau, in B's axes::
     forces   -(sum P + sum f + load on the body)                       = 0
     moments  -(sum p x P + sum c x f + moment of the load on the body) = 0
 
+What accelerates beyond the commanded motion adds its inertial forces (`tarsus.load.compliant.vibration`).
 `dc/dq` is that of the material at the contact point: ``axis x (c - joint)`` for each joint.
 """
 
@@ -21,6 +22,7 @@ from tarsus.load.compliant.foot_contact import POINT_FOOT, FootContact, contact_
 from tarsus.load.compliant.friction import Slip, friction_force
 from tarsus.load.compliant.joint_springs import JointSprings
 from tarsus.load.compliant.leg_derivatives import LegDerivatives
+from tarsus.load.compliant.vibration import Vibration
 from tarsus.robot.robot import Robot
 
 if TYPE_CHECKING:
@@ -37,24 +39,46 @@ _LATER, _EARLIER = np.array([5, 6, 1]), np.array([7, 2, 3])
 
 
 class Past(NamedTuple):
-    """What counts of the last equilibrium: pose, angles, centres of the feet, friction forces."""
+    """What counts of the last equilibrium: pose, angles, centres of the feet, friction forces, vibration."""
 
     rotation: Float[np.ndarray, "3 3"]
     position: Float[np.ndarray, "3"]
     angles: Float[np.ndarray, "legs 3"]
     feet: Float[np.ndarray, "legs 3"]
     friction: Float[np.ndarray, "legs 2"]
+    vibration: Vibration | None = None
 
 
 class Demand(NamedTuple):
-    """What is demanded at a sample: commanded angles, loads as in `AppliedLoads`, time since the last sample."""
+    """What is demanded at a sample.
 
-    angles: Float[np.ndarray, "legs 3"]
+    Attributes
+    ----------
+    targets : array, shape (legs, 3)
+        Angles that the servos aim at [rad].
+    points, force, moment, rotors : array
+        Loads as in `AppliedLoads`.
+    angles, rotation, position : array
+        Commanded joint angles and pose of B in G.
+    step : float
+        Time since the last sample [s].
+    ahead : array, shape (6 + 3 legs,)
+        `Vibration.ahead` of the last equilibrium.
+    gain : float
+        `Vibration.gain`; 0 without inertia.
+    """
+
+    targets: Float[np.ndarray, "legs 3"]
     points: Float[np.ndarray, "legs 3 3"]
     force: Float[np.ndarray, "3"]
     moment: Float[np.ndarray, "3"]
     rotors: Float[np.ndarray, "legs 3"]
+    angles: Float[np.ndarray, "legs 3"]
+    rotation: Float[np.ndarray, "3 3"]
+    position: Float[np.ndarray, "3"]
     step: float
+    ahead: Float[np.ndarray, "unknowns"]
+    gain: float = 0.0
 
 
 class Configuration(NamedTuple):
@@ -108,7 +132,7 @@ class Balance(NamedTuple):
     rolling : array, shape (legs, 3, 3)
         What the derivatives of the contact point lack to those of the ball's centre, by joint [m].
     torques, slopes : array, shape (legs, 3)
-        `JointSprings.torque`.
+        `JointSprings.torque`, the slopes with the inertia of the rotors.
     moments : array, shape (3, 3)
         Sum of the products of point and force, whose antisymmetric part is the moment [N m].
     joints, body : array, shapes (legs, 3) and (6,)
@@ -141,10 +165,18 @@ class Compliant:
         Its joints.
     contact : FootContact
         Its feet on the ground.
+    inertia : array, shape (6, 6), optional
+        `rigid_inertia`; left out, nothing has inertia beyond that of the commanded motion.
     """
 
-    def __init__(self, robot: Robot, springs: JointSprings, contact: FootContact) -> None:
-        self.springs, self.contact, self.legs = springs, contact, robot.legs
+    def __init__(
+        self,
+        robot: Robot,
+        springs: JointSprings,
+        contact: FootContact,
+        inertia: Float[np.ndarray, "6 6"] | None = None,
+    ) -> None:
+        self.springs, self.contact, self.legs, self.inertia = springs, contact, robot.legs, inertia
         self._legs_of = LegDerivatives(robot)
         radius = np.array(np.broadcast_to(robot.foot_radius, robot.legs), dtype=float)
         self.radius = np.where(radius > 0, radius, POINT_FOOT)
@@ -156,6 +188,15 @@ class Compliant:
         """Return the centres of the foot balls in G, ``(legs, 3)`` [m]."""
         feet: np.ndarray = self._legs_of.at(angles)[0][:, 0, 6:] @ rotation.T + position
         return feet
+
+    def offset(self, at: Configuration, demand: Demand) -> Float[np.ndarray, "unknowns"]:
+        """Return the offset of a configuration from what is commanded, as in `Vibration`."""
+        offset = np.empty(6 + 3 * self.legs)
+        offset[:3] = at.position - demand.position
+        turn = demand.rotation.T @ at.rotation
+        offset[3:6] = (turn.take(_EARLIER) - turn.take(_LATER)) / 2
+        offset[6:] = (at.angles - demand.angles).ravel()
+        return offset
 
     def configuration(
         self,
@@ -210,7 +251,7 @@ class Compliant:
         forces[:, 2] += contact_in_body
         generalised = (at.points[:, 1:] @ forces.reshape(-1, 9, 1))[:, :, 0]
         rolling = (at.axes.reshape(-1, 3) @ (rotation[2] @ _SKEW).reshape(3, 3)).reshape(-1, 3, 3) * self._levers
-        torques, slopes = self.springs.torque(demand.angles - at.angles, at.turned, demand.step)
+        torques, slopes = self.springs.torque(demand.targets - at.angles, at.turned, demand.step)
         rolled = (rolling @ contact_in_body[:, :, None])[:, :, 0]
         joints = demand.rotors - torques - generalised[:, :3] + rolled
         moments = at.points[:, 0].reshape(-1, 3).T @ forces.reshape(-1, 3)
@@ -218,6 +259,12 @@ class Compliant:
         on_body = np.empty(6)
         on_body[:3] = demand.force @ rotation + self._ones @ forces.reshape(-1, 3)
         on_body[3:] = demand.moment @ rotation + moments.take(_LATER) - moments.take(_EARLIER)
+        if demand.gain and self.inertia is not None:
+            acceleration = (self.offset(at, demand) - demand.ahead) * demand.gain
+            acceleration[:3] = acceleration[:3] @ rotation
+            on_body -= self.inertia @ acceleration[:6]
+            joints += self.springs.rotor_inertia * acceleration[6:].reshape(-1, 3)
+            slopes = slopes + demand.gain * self.springs.rotor_inertia
         weighted = on_body * _WEIGHTS
         square = float(np.vdot(joints, joints) + weighted @ weighted)
         return Balance(

@@ -10,6 +10,7 @@ from tarsus.gait.motion import Motion
 from tarsus.load.compliant.applied_loads import AppliedLoads
 from tarsus.load.compliant.equilibrium import Compliant, Configuration, Demand, Past
 from tarsus.load.compliant.newton import Equilibrium, solve_equilibrium
+from tarsus.load.compliant.vibration import Vibration
 
 if TYPE_CHECKING:
     from jaxtyping import Bool, Float, Int
@@ -62,7 +63,12 @@ class History(NamedTuple):
 
 
 def equilibria(
-    compliant: Compliant, motion: Motion, loads: AppliedLoads, samples: Int[np.ndarray, "k"], weight: float
+    compliant: Compliant,
+    motion: Motion,
+    targets: Float[np.ndarray, "n legs 3"],
+    loads: AppliedLoads,
+    samples: Int[np.ndarray, "k"],
+    weight: float,
 ) -> History:
     """Return the equilibria at some samples of a motion.
 
@@ -76,6 +82,8 @@ def equilibria(
         The robot.
     motion : Motion
         The commands.
+    targets : array, shape (n, legs, 3)
+        Joint angles that the servos aim at [rad].
     loads : AppliedLoads
         Loads at all samples of the motion.
     samples : array of int, shape (k,)
@@ -98,17 +106,21 @@ def equilibria(
     positions = np.ascontiguousarray(np.broadcast_to(motion.body.position, (len(motion.time), 3)))
     tolerance, before = TOLERANCE * weight, 0
     start, past = _set_down(compliant, rotations[0], positions[0], motion.angles[0], weight)
-    demand_before: Demand | None = None
+    demand_before, still = None, np.zeros(6 + 3 * legs)
     last: tuple[np.ndarray, np.ndarray, np.ndarray] | None = None
     for row, sample in enumerate(samples.tolist()):
         step = float(motion.time[sample] - motion.time[before]) if row else np.inf
         demand = Demand(
-            motion.angles[sample],
+            targets[sample],
             loads.points[sample],
             loads.force[sample],
             loads.moment[sample],
             loads.rotors[sample],
+            motion.angles[sample],
+            rotations[sample],
+            positions[sample],
             step,
+            still,
         )
         found, slid = _reach(compliant, start, (past, demand_before), demand, tolerance)
         _record(history, row, found, tolerance)
@@ -116,7 +128,7 @@ def equilibria(
         after = int(samples[min(row + 1, count - 1)])
         if history.converged[row]:
             at = found.at
-            past, demand_before = _past(found), demand
+            past, demand_before = _past(compliant, found, past, demand), demand
             off = (
                 rotations[sample].T @ history.rotation[row],
                 at.position - positions[sample],
@@ -147,15 +159,20 @@ def _reach(
     past, demand_before = before
     at = compliant.configuration((start.rotation, start.position), start.angles, past, demand.step)
     past, at = _touched_down(compliant, at, past, demand.step)
+    if past.vibration is not None:
+        demand = demand._replace(ahead=past.vibration.ahead(demand.step), gain=past.vibration.gain(demand.step))
     found = solve_equilibrium(compliant, at, past, demand, tolerance=tolerance)
     if found.balance.size <= tolerance or demand_before is None or depth == _HALVINGS:
         return found, _slid(compliant, found, past)
-    means = ((early + late) / 2 for early, late in zip(demand_before[:-1], demand[:-1], strict=True))
-    middle, second = Demand._make((*means, demand.step / 2)), demand._replace(step=demand.step / 2)
+    means = ((early + late) / 2 for early, late in zip(demand_before[:8], demand[:8], strict=True))
+    middle = Demand._make((*means, demand.step / 2, demand.ahead, demand.gain))
+    second = demand._replace(step=demand.step / 2)
     again = Start(past.rotation, past.position, past.angles)
     half, slid = _reach(compliant, again, before, middle, tolerance, depth + 1)
     again = Start(half.at.rotation, half.at.position, half.at.angles)
-    found, slid_after = _reach(compliant, again, (_past(half), middle), second, tolerance, depth + 1)
+    found, slid_after = _reach(
+        compliant, again, (_past(compliant, half, past, middle), middle), second, tolerance, depth + 1
+    )
     return found, slid + slid_after
 
 
@@ -179,9 +196,13 @@ def _touched_down(
     return past._replace(feet=feet), predicted._replace(displacement=predicted.displacement - along, trial=trial)
 
 
-def _past(found: Equilibrium) -> Past:
-    at = found.at
-    return Past(_orthonormal(at.rotation), at.position, at.angles, at.feet, found.balance.slip.force)
+def _past(compliant: Compliant, found: Equilibrium, past: Past, demand: Demand) -> Past:
+    at, vibration = found.at, None
+    if compliant.inertia is not None:
+        offset = compliant.offset(at, demand)
+        before = past.vibration
+        vibration = Vibration.still(offset) if before is None else before.after(offset, demand.step)
+    return Past(_orthonormal(at.rotation), at.position, at.angles, at.feet, found.balance.slip.force, vibration)
 
 
 def _set_down(

@@ -36,6 +36,8 @@ class JointSprings:
         Torque per speed: stall torque over no-load speed, the slope of the torque-speed line [N m s/rad].
     play : array, shape (legs, 3)
         Half the backlash [rad].
+    dead_band : array, shape (legs, 3)
+        Half the range of commands around its target in which a servo does not react [rad].
     stall_torque : array, shape (legs, 3)
         Greatest torque [N m]; may be infinite.
     rotor_inertia : array, shape (legs, 3)
@@ -47,6 +49,7 @@ class JointSprings:
     stiffness: Float[np.ndarray, "legs 3"]
     damping: Float[np.ndarray, "legs 3"]
     play: Float[np.ndarray, "legs 3"]
+    dead_band: Float[np.ndarray, "legs 3"]
     stall_torque: Float[np.ndarray, "legs 3"]
     rotor_inertia: Float[np.ndarray, "legs 3"]
     assumed: tuple[str, ...] = ()
@@ -67,7 +70,7 @@ class JointSprings:
         MissingDataError
             If a servo is unknown.
         """
-        values = np.empty((robot.legs, 3, 5))
+        values = np.empty((robot.legs, 3, 6))
         lines: list[str] = []
         for leg, row in enumerate(robot.servos):
             for joint, servo in enumerate(row):
@@ -80,13 +83,14 @@ class JointSprings:
                 speed = NO_LOAD_SPEED if np.isnan(speed) else speed
                 found, _ = servo_dynamics(servo, stall)
                 stiffness = 1.0 / (1.0 / found["control_stiffness"] + 1.0 / found["gear_stiffness"])
-                play, inertia = found["backlash"] / 2, found["rotor_inertia"]
-                values[leg, joint] = stiffness, stall / speed, play, stall, inertia
+                play, band, inertia = (found[name] for name in ("backlash", "dead_band", "rotor_inertia"))
+                values[leg, joint] = stiffness, stall / speed, play / 2, band / 2, stall, inertia
+                degrees = [f"{np.degrees(found[name]):.3g} deg" for name in ("backlash", "dead_band")]
                 lines.append(
-                    f"{servo.name}: {stiffness:.3g} N m/rad of control loop and gears, backlash "
-                    f"{np.degrees(found['backlash']):.3g} deg, rotor inertia {inertia:.3g} kg m^2"
+                    f"{servo.name}: {stiffness:.3g} N m/rad of control loop and gears, backlash {degrees[0]}, "
+                    f"dead band {degrees[1]}, rotor inertia {inertia:.3g} kg m^2"
                 )
-        columns = ("stiffness", "damping", "play", "stall_torque", "rotor_inertia")
+        columns = ("stiffness", "damping", "play", "dead_band", "stall_torque", "rotor_inertia")
         return cls(
             **dict(zip(columns, np.moveaxis(values, -1, 0), strict=True)),
             assumed=tuple(dict.fromkeys(lines)),
@@ -124,12 +128,28 @@ class JointSprings:
             stiffness=np.full(shape, stiffness),
             damping=np.full(shape, damping),
             play=np.zeros(shape),
+            dead_band=np.zeros(shape),
             stall_torque=np.full(shape, np.inf),
             rotor_inertia=np.full(shape, rotor_inertia),
             assumed=(
                 f"every joint: {stiffness:g} N m/rad, {damping:g} N m s/rad, rotor inertia {rotor_inertia:g} kg m^2",
             ),
         )
+
+    def targets(self, angles: Float[np.ndarray, "n legs 3"]) -> Float[np.ndarray, "n legs 3"]:
+        """Return the angles that servos aim at, which follow the commands as far as these leave the dead band.
+
+        Parameters
+        ----------
+        angles : array, shape (n, legs, 3)
+            Commanded angles, one after the other [rad].
+        """
+        lowest, targets = angles - self.dead_band, angles + self.dead_band
+        target = angles[0]
+        for low, high in zip(lowest, targets, strict=True):
+            # What is the upper bound becomes the target.
+            target = np.minimum(np.maximum(target, low), high, out=high)
+        return np.asarray(targets)
 
     @cached_property
     def _unlimited(self) -> bool:

@@ -76,20 +76,20 @@ def solve_equilibrium(
         steps += 1
         jacobian = contact_jacobian(compliant, at, balance)
         if not frozen:
-            step = newton_step(compliant, at, balance, jacobian, demand.step, frozen=False)
+            step = newton_step(compliant, at, balance, jacobian, demand, frozen=False)
             moved = compliant.configuration(*_moved(at, step, _scale(step)), past, demand.step)
             reached = compliant.balance(moved, demand)
             if reached.size < _ENOUGH * balance.size:
                 at, balance = moved, reached
                 continue
             frozen = _FROZEN
-        step = newton_step(compliant, at, balance, jacobian, demand.step, frozen=True)
+        step = newton_step(compliant, at, balance, jacobian, demand, frozen=True)
         if _slope(balance, step) >= 0:
             # Joints in their play leave legs so soft that the loads on them tip the potential over.
             springs = compliant.springs
-            loose = np.abs(demand.angles - at.angles) <= springs.play
+            loose = np.abs(demand.targets - at.angles) <= springs.play
             stiff = balance._replace(slopes=np.where(loose, springs.stiffness, balance.slopes))
-            step = newton_step(compliant, at, stiff, jacobian, demand.step, frozen=True)
+            step = newton_step(compliant, at, stiff, jacobian, demand, frozen=True)
         at = _line_search(compliant, at, balance, step, past, demand)
         balance = compliant.balance(at, demand)
         frozen -= 1
@@ -111,7 +111,7 @@ def _first_step(
     start, found = at, []
     for limit in _first_limits(compliant, held, past):
         guess = compliant.balance(held, demand, limit)
-        step = newton_step(compliant, held, guess, contact_jacobian(compliant, held, guess), demand.step, frozen=False)
+        step = newton_step(compliant, held, guess, contact_jacobian(compliant, held, guess), demand, frozen=False)
         moved = compliant.configuration(*_moved(start, step, _scale(step)), past, demand.step)
         found.append(Equilibrium(moved, compliant.balance(moved, demand)))
         if found[-1].balance.size <= tolerance:

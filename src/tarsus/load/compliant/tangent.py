@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tarsus.load.compliant.equilibrium import Balance, Compliant, Configuration
+from tarsus.load.compliant.equilibrium import Balance, Compliant, Configuration, Demand
 from tarsus.load.compliant.friction import friction_tangent
 
 if TYPE_CHECKING:
@@ -63,7 +63,7 @@ def newton_step(
     at: Configuration,
     balance: Balance,
     jacobian: Float[np.ndarray, "legs 9 3"],
-    step: float,
+    demand: Demand,
     *,
     frozen: bool,
 ) -> tuple[Float[np.ndarray, "6"], Float[np.ndarray, "legs 3"]]:
@@ -79,8 +79,8 @@ def newton_step(
         Its balance.
     jacobian : array, shape (legs, 9, 3)
         `contact_jacobian`.
-    step : float
-        Time since the last equilibrium [s].
+    demand : Demand
+        What is demanded.
     frozen : bool
         Whether the limits of friction are frozen.
     """
@@ -91,7 +91,7 @@ def newton_step(
     stiffness[:, :2] += friction_tangent(
         at.trial,
         balance.slip.fraction,
-        np.full(legs, contact.relaxation(step) * contact.tangential_stiffness),
+        np.full(legs, contact.relaxation(demand.step) * contact.tangential_stiffness),
         None if frozen else contact.friction * normal,
     )
     # Forces on the leg points do not turn with the body: in its axes they turn back.
@@ -114,5 +114,7 @@ def newton_step(
     condensed = left.transpose(1, 0, 2).reshape(6, -1) @ solved.reshape(-1, 7)
     body -= condensed[:, :6]
     body.flat[::7] += _FLOOR
+    if demand.gain and compliant.inertia is not None:
+        body += demand.gain * compliant.inertia
     moved = np.linalg.solve(body, condensed[:, 6] - balance.body)
     return moved, -solved[:, :, 6] - solved[:, :, :6] @ moved
