@@ -209,7 +209,7 @@ def test_feet_are_not_dragged_before_they_touch_down():
     motion = walk(distance=0.05, rate=200.0)
     springs = JointSprings.uniform(STRIDER, 100.0, damping=1.0)
     coarse, fine = (compliant_loads(STRIDER, motion, springs=springs, rate=rate) for rate in (50.0, 200.0))
-    for joint, bound in ((0, 0.05), (1, 0.02), (2, 0.04)):
+    for joint, bound in ((0, 0.07), (1, 0.02), (2, 0.04)):
         rms = [np.sqrt((found.torques[::4, :, joint] ** 2).mean()) for found in (coarse, fine)]
         assert rms[0] == pytest.approx(rms[1], rel=bound)
 

@@ -1,19 +1,19 @@
 """Solution of the equilibrium at one sample.
 
-Each step is a Newton step with the limits of friction following the normal forces. If it does not reduce the residual,
-it is repeated with frozen limits (Tresca friction): then the equations are those of a potential, and a line search
-along the step finds where it is nearly lowest. The limits are renewed after each such step.
+Newton steps have the limits of friction follow the normal forces. Along the direction in which a foot slides there is
+hardly any stiffness, so that a step may reverse the direction, back and forth: it ends where such a foot is nearest to
+sticking. If a number of steps does not reach the equilibrium, the search begins again with steps that reduce the
+residual, and where one does not, with frozen limits (Tresca friction): then the equations are those of a potential, and
+a line search along the step finds where it is nearly lowest.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from tarsus.load.compliant.equilibrium import Balance, Compliant, Configuration, Demand, Past
-from tarsus.load.compliant.foot_contact import normal_force
 from tarsus.load.compliant.tangent import contact_jacobian, newton_step
 
 if TYPE_CHECKING:
@@ -29,8 +29,8 @@ _ENOUGH = 0.7
 _FLAT = 0.5
 # Longest step [m, rad, rad].
 _LONGEST = np.array([0.03, 0.2, 0.2])
-# Fraction of the limit of friction from which on a foot counts as sliding.
-_SLID = 0.999
+# Newton steps before the search that reduces the residual, and the least part of one that is taken.
+_DIRECT, _LEAST = 12, 0.05
 # Steps with frozen limits before another is tried first.
 _FROZEN = 3
 
@@ -69,15 +69,24 @@ def solve_equilibrium(
         Size of the residual that is small enough [N m].
     """
     balance = compliant.balance(at, demand)
-    if balance.size > tolerance:
-        at, balance = _first_step(compliant, at, balance, past, demand, tolerance)
+    start = Equilibrium(at, balance)
+    for _ in range(_DIRECT):
+        if balance.size <= tolerance:
+            return Equilibrium(at, balance)
+        at = _newton(compliant, at, balance, contact_jacobian(compliant, at, balance), past, demand)
+        balance = compliant.balance(at, demand)
+    return _descent(compliant, start, past, demand, tolerance)
+
+
+def _descent(compliant: Compliant, start: Equilibrium, past: Past, demand: Demand, tolerance: float) -> Equilibrium:
+    """Return the equilibrium by steps that reduce the residual, or the potential with frozen limits of friction."""
+    at, balance = start
     frozen, steps = 0, 0
     while balance.size > tolerance and steps < _MOST_STEPS:
         steps += 1
         jacobian = contact_jacobian(compliant, at, balance)
         if not frozen:
-            step = newton_step(compliant, at, balance, jacobian, demand, frozen=False)
-            moved = compliant.configuration(*_moved(at, step, _scale(step)), past, demand.step)
+            moved = _newton(compliant, at, balance, jacobian, past, demand)
             reached = compliant.balance(moved, demand)
             if reached.size < _ENOUGH * balance.size:
                 at, balance = moved, reached
@@ -96,52 +105,26 @@ def solve_equilibrium(
     return Equilibrium(at, balance)
 
 
-def _first_step(
-    compliant: Compliant, at: Configuration, balance: Balance, past: Past, demand: Demand, tolerance: float
-) -> tuple[Configuration, Balance]:
-    """Return where a search begins that would start with feet that lift or begin to slide; else its start.
-
-    A start that continues the last motion is often wrong about which feet hold. The search rather begins after a step
-    in which the feet that were on the ground stay on it, in tension if need be, and hold; or after one in which those
-    that slid before slide, if that is closer to the equilibrium.
-    """
-    held = _held(compliant, at, past)
-    if held is None:
-        return at, balance
-    start, found = at, []
-    for limit in _first_limits(compliant, held, past):
-        guess = compliant.balance(held, demand, limit)
-        step = newton_step(compliant, held, guess, contact_jacobian(compliant, held, guess), demand, frozen=False)
-        moved = compliant.configuration(*_moved(start, step, _scale(step)), past, demand.step)
-        found.append(Equilibrium(moved, compliant.balance(moved, demand)))
-        if found[-1].balance.size <= tolerance:
-            break
-    return min(found, key=lambda each: each.balance.size)
-
-
-def _held(compliant: Compliant, at: Configuration, past: Past) -> Configuration | None:
-    """Return a configuration with all feet on the ground that were on it before; None if no foot lifts or slides."""
-    depth = compliant.radius - at.feet[:, 2]
-    lifting = (depth <= 0) & (past.feet[:, 2] < compliant.radius)
-    sliding = (at.normal > 0) & (_size(at.trial) > compliant.contact.friction * at.normal)
-    if not (lifting | sliding).any():
-        return None
-    return at._replace(normal=np.where(lifting, compliant.contact.normal_stiffness * depth, at.normal))
-
-
-def _first_limits(compliant: Compliant, held: Configuration, past: Past) -> Iterator[Float[np.ndarray, "legs"]]:
-    """Yield limits of friction: without any, and with those of the feet that slid before."""
-    contact, unlimited = compliant.contact, np.full(compliant.legs, np.inf)
-    yield unlimited
-    before = normal_force(past.feet[:, 2], compliant.radius, contact.normal_stiffness)
-    slid = _size(past.friction) > _SLID * contact.friction * before
-    if slid.any():
-        yield np.where(slid, contact.friction * np.maximum(held.normal, 0.0), unlimited)
-
-
-def _size(force: Float[np.ndarray, "legs 2"]) -> Float[np.ndarray, "legs"]:
-    size: np.ndarray = np.sqrt((force * force).sum(axis=1))
-    return size
+def _newton(
+    compliant: Compliant,
+    at: Configuration,
+    balance: Balance,
+    jacobian: Float[np.ndarray, "legs 9 3"],
+    past: Past,
+    demand: Demand,
+) -> Configuration:
+    """Return the configuration after a Newton step that is not too long and reverses no sliding."""
+    step = newton_step(compliant, at, balance, jacobian, demand, frozen=False)
+    length = _scale(step)
+    sliding = (balance.slip.fraction < 1.0) & (at.normal > 0)
+    if sliding.any():
+        moved = step[0] @ jacobian[:, :6, :2] + (step[1][:, None] @ jacobian[:, 6:, :2])[:, 0]
+        change = -compliant.contact.relaxation(demand.step) * compliant.contact.tangential_stiffness * moved
+        against, square = -(at.trial * change).sum(axis=1), (change * change).sum(axis=1)
+        reversing = sliding & (against > (at.trial * at.trial).sum(axis=1))
+        if reversing.any():
+            length = min(length, max(float((against[reversing] / square[reversing]).min()), _LEAST))
+    return compliant.configuration(*_moved(at, step, length), past, demand.step)
 
 
 def _line_search(

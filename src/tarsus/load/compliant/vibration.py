@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Vibration", "rigid_inertia"]
 
-_GAMMA = 0.9
+_GAMMA = 1.0
 _BETA = (_GAMMA + 0.5) ** 2 / 4  # stable for every step
 
 
