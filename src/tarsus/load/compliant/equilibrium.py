@@ -247,7 +247,7 @@ class Compliant:
         contact = np.empty((self.legs, 3))
         contact[:, :2], contact[:, 2] = slip.force, at.normal
         contact_in_body = contact @ rotation
-        forces = demand.points @ rotation
+        forces = (demand.points.reshape(-1, 3) @ rotation).reshape(-1, 3, 3)
         forces[:, 2] += contact_in_body
         generalised = (at.points[:, 1:] @ forces.reshape(-1, 9, 1))[:, :, 0]
         rolling = (at.axes.reshape(-1, 3) @ (rotation[2] @ _SKEW).reshape(3, 3)).reshape(-1, 3, 3) * self._levers

@@ -59,7 +59,7 @@ def friction_force(trial: Float[np.ndarray, "legs 2"], limit: Float[np.ndarray, 
 def friction_tangent(
     trial: Float[np.ndarray, "legs 2"],
     fraction: Float[np.ndarray, "legs"],
-    stiffness: Float[np.ndarray, "legs"],
+    stiffness: float,
     normal_slope: Float[np.ndarray, "legs"] | None,
 ) -> Float[np.ndarray, "legs 2 3"]:
     """Return how the tangential forces fall with the displacement of the contact points, ``(legs, 2, 3)`` [N/m].
@@ -70,7 +70,7 @@ def friction_tangent(
         Forces without sliding [N].
     fraction : array, shape (legs,)
         `Slip.fraction`.
-    stiffness : array, shape (legs,)
+    stiffness : float
         Tangential stiffness, creep included [N/m].
     normal_slope : array, shape (legs,), optional
         Friction times the normal stiffness of feet in contact [N/m]: how the limit changes with the height. Left out,
@@ -78,11 +78,12 @@ def friction_tangent(
     """
     tangent = np.zeros((len(trial), 2, 3))
     tangent[:, 0, 0] = tangent[:, 1, 1] = stiffness * fraction
-    sliding = fraction < 1.0
-    if sliding.any():
-        direction = trial / np.maximum(np.sqrt((trial * trial).sum(axis=1)), _TINY)[:, None]
-        lost = np.where(sliding, (1.0 - _SLIDING_STIFFNESS) * stiffness * fraction, 0.0)[:, None] * direction
-        tangent[:, :, :2] -= lost[:, :, None] * direction[:, None, :]
+    (sliding,) = np.nonzero(fraction < 1.0)
+    if sliding.size:
+        force = trial[sliding]
+        direction = force / np.maximum(np.sqrt((force * force).sum(axis=1)), _TINY)[:, None]
+        lost = ((1.0 - _SLIDING_STIFFNESS) * stiffness * fraction[sliding])[:, None] * direction
+        tangent[sliding, :, :2] -= lost[:, :, None] * direction[:, None, :]
         if normal_slope is not None:
-            tangent[:, :, 2] = np.where(sliding, normal_slope, 0.0)[:, None] * direction
+            tangent[sliding, :, 2] = normal_slope[sliding][:, None] * direction
     return tangent

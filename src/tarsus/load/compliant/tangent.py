@@ -25,8 +25,8 @@ _EPSILON[0, 1, 2] = _EPSILON[1, 2, 0] = _EPSILON[2, 0, 1] = 1.0
 _EPSILON[0, 2, 1] = _EPSILON[2, 1, 0] = _EPSILON[1, 0, 2] = -1.0
 _CROSS = np.einsum("akb->bka", _EPSILON).reshape(3, 9)
 _BY_FORCE = _EPSILON.reshape(3, 9)
-# Places of the second derivatives cc, cf, ct, ff, ft, tt in a symmetric matrix.
-_SYMMETRIC = np.array([0, 1, 2, 1, 3, 4, 2, 4, 5])
+# Places of the second derivatives cc, cf, ct, ff, ft, tt, after the first ones, in a symmetric matrix.
+_SECOND = 3 + np.array([0, 1, 2, 1, 3, 4, 2, 4, 5])
 _DIAGONAL = np.arange(3)
 # Keeps the body's equations regular where it is free to move [N/m, N m/rad].
 _FLOOR = 1e-3
@@ -85,34 +85,30 @@ def newton_step(
         Whether the limits of friction are frozen.
     """
     legs, contact = compliant.legs, compliant.contact
-    stiffness = np.zeros((legs, 3, 3))
     normal = (at.normal != 0) * contact.normal_stiffness
-    stiffness[:, 2, 2] = normal
-    stiffness[:, :2] += friction_tangent(
+    stiffness = np.empty((legs, 3, 3))
+    stiffness[:, 2, :2], stiffness[:, 2, 2] = 0.0, normal
+    stiffness[:, :2] = friction_tangent(
         at.trial,
         balance.slip.fraction,
-        np.full(legs, contact.relaxation(demand.step) * contact.tangential_stiffness),
+        contact.relaxation(demand.step) * contact.tangential_stiffness,
         None if frozen else contact.friction * normal,
     )
     # Forces on the leg points do not turn with the body: in its axes they turn back.
     turning = at.points[:, 1:4] @ (balance.points.reshape(-1, 3) @ _BY_FORCE).reshape(legs, 9, 3)
-    stiff = jacobian @ stiffness
-    across = np.swapaxes(jacobian, 1, 2)
-    joint = stiff[:, 6:] @ across
-    own = joint[:, :, 6:] - balance.generalised[:, 3:][:, _SYMMETRIC].reshape(legs, 3, 3)
+    coupled = (jacobian @ stiffness) @ jacobian.transpose(0, 2, 1)
+    coupled[:, 6:, 3:6] += turning
+    coupled[:, 3:6, 6:] += turning.transpose(0, 2, 1)
+    own = coupled[:, 6:, 6:] - balance.generalised[:, _SECOND].reshape(legs, 3, 3)
     own[:, _DIAGONAL, _DIAGONAL] += balance.slopes
     right = np.empty((legs, 3, 7))
-    right[:, :, :6], right[:, :, 6] = joint[:, :, :6], balance.joints
-    right[:, :, 3:6] += turning
-    left = stiff[:, :6] @ across[:, :, 6:]
-    left[:, 3:] += np.swapaxes(turning, 1, 2)
+    right[:, :, :6], right[:, :, 6] = coupled[:, 6:, :6], balance.joints
     solved = np.linalg.solve(own, right)
-    body = stiff[:, :6].transpose(1, 0, 2).reshape(6, -1) @ jacobian[:, :6].transpose(0, 2, 1).reshape(-1, 6)
     moments = balance.moments
+    condensed = coupled[:, :6, 6:].transpose(1, 0, 2).reshape(6, -1) @ solved.reshape(-1, 7)
+    body = coupled[:, :6, :6].sum(axis=0) - condensed[:, :6]
     body[3:, 3:] -= moments.T
     body.flat[21::7] += moments[0, 0] + moments[1, 1] + moments[2, 2]
-    condensed = left.transpose(1, 0, 2).reshape(6, -1) @ solved.reshape(-1, 7)
-    body -= condensed[:, :6]
     body.flat[::7] += _FLOOR
     if demand.gain and compliant.inertia is not None:
         body += demand.gain * compliant.inertia
