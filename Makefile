@@ -68,6 +68,7 @@ figures: $(VENV)/.dev web browser
 truth: $(VENV)/.dev
 	$(BIN)/python docs/how_true.py
 	$(BIN)/python docs/statics_true.py
+	$(BIN)/python docs/compensation_true.py
 	$(BIN)/python docs/faults.py
 	$(BIN)/python docs/rough_ground.py
 	$(BIN)/python docs/sensor_faults.py
