@@ -104,6 +104,9 @@ def test_a_scenario_runs_through_the_controller():
             2,
             "--distance and --scenario exclude each other",
         ),
+        (f"{SHORT} --seed -1", 2, "seed is -1; it must be a whole number, not negative"),
+        (f"{SHORT} --terrain blocks:seed=-1", 2, "seed is -1; it must be a whole number, not negative"),
+        (f"{SHORT} --terrain smooth:seed=-2", 2, "seed is -2; it must be a whole number, not negative"),
         ("simulate strider --terrain hills", 2, "no terrain is called 'hills'"),
         ("simulate strider --distance 100 --cycle 0.2", 1, "the walk is not possible: "),
         ("simulate mithi", 1, "the servo of the coxa is unknown"),
@@ -123,3 +126,5 @@ def test_the_viewer_needs_a_screen(monkeypatch):
     code, text = run(f"{SHORT} --view")
     assert code == 1
     assert "--view needs a screen" in text
+    # Said before anything is simulated.
+    assert "distance" not in text

@@ -267,3 +267,8 @@ def test_uneven_ground_holds_no_foot_that_is_pressed_into_it(ground):
     for _ in range(30):
         plant.step(controller.output, 0.01)
         assert plant.state.foot_forces[:, 2].min() > -0.1
+
+
+def test_a_seed_that_is_no_whole_number_is_refused():
+    with pytest.raises(InputError, match=r"seed is 1.5; it must be a whole number, not negative"):
+        SimulatedPlant(load_robot("strider"), seed=1.5)

@@ -89,9 +89,12 @@ def simulate(
     simulated sensors. The exit code is 0 only if the robot neither fell nor stalled.
     """
     from tarsus.cli.simulated_run import run_plan, run_timeline, write_run
+    from tarsus.cli.viewer import replay, require_screen
     from tarsus.report.simulation_summary import simulation_summary, simulation_table, simulation_verdict
     from tarsus.simulation.terrain.from_text import terrain_from_text
 
+    if view:
+        require_screen()
     if video is not None and video.suffix.lower() not in _VIDEOS:
         raise click.UsageError(f"--video {video}: the name must end in {' or '.join(_VIDEOS)}")
     if zarr and out is None:
@@ -124,8 +127,6 @@ def simulate(
     for file in files if not as_json else ():
         click.echo(f"wrote {file}")
     if view:
-        from tarsus.cli.viewer import replay
-
         replay(found)
     return 0 if summary["ok"] else 1
 

@@ -12,7 +12,19 @@ from tarsus.cli.simulated_run import SimulatedRun
 from tarsus.errors import TarsusError
 from tarsus.simulation.engine import mujoco_module
 
-__all__ = ["replay"]
+__all__ = ["replay", "require_screen"]
+
+
+def require_screen() -> None:
+    """Check that there is a screen to show a run on.
+
+    Raises
+    ------
+    TarsusError
+        If there is none.
+    """
+    if sys.platform.startswith("linux") and not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
+        raise TarsusError("--view needs a screen: neither DISPLAY nor WAYLAND_DISPLAY is set; --video needs none")
 
 
 def replay(found: SimulatedRun) -> None:
@@ -22,14 +34,7 @@ def replay(found: SimulatedRun) -> None:
     ----------
     found : SimulatedRun
         The run.
-
-    Raises
-    ------
-    TarsusError
-        If there is no screen.
     """
-    if sys.platform.startswith("linux") and not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
-        raise TarsusError("--view needs a screen: neither DISPLAY nor WAYLAND_DISPLAY is set; --video needs none")
     mujoco, trace = mujoco_module(), found.trace
     model = found.plant.mj_model
     data = mujoco.MjData(model)

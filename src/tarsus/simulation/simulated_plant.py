@@ -19,6 +19,7 @@ from tarsus.simulation.initial_state import check_stability, place
 from tarsus.simulation.measurement import Measurement
 from tarsus.simulation.plant_state import PlantState
 from tarsus.simulation.robot_model import model, model_assumptions
+from tarsus.simulation.seed import require_seed
 from tarsus.simulation.sensors.sampler import Sampler
 from tarsus.simulation.sensors.suite import SensorSuite
 from tarsus.simulation.servos.actuators import ACTUATORS
@@ -79,7 +80,7 @@ class SimulatedPlant:
     MissingDataError
         If the mass of the body or of a link is unknown, or a servo for ``"catalogue"``.
     InputError
-        If the robot is a batch, or a mass is too small to be simulated.
+        If the robot is a batch, a mass is too small to be simulated, or the seed is not a whole number from 0 on.
     TarsusError
         If MuJoCo is not installed.
     """
@@ -96,7 +97,7 @@ class SimulatedPlant:
         self.robot = robot
         self.terrain: Terrain = terrain or Flat()
         self.sensors = SensorSuite.named(sensors) if isinstance(sensors, str) else sensors
-        self._seed = seed
+        self._seed = require_seed(seed)
         self._table = ServoTable.of(robot, servos)
         self.servos = self._table.servos
         self.assumed = (*model_assumptions(robot), *self._table.assumed)
@@ -157,7 +158,7 @@ class SimulatedPlant:
                 break
         self._timing = CommandTiming(self._table, TIMESTEP, angles)
         self._time, self._steps = 0.0, 0
-        self._sampler = Sampler(self.sensors, self._exact(), seed=self._seed if seed is None else seed)
+        self._sampler = Sampler(self.sensors, self._exact(), seed=self._seed if seed is None else require_seed(seed))
 
     def step(self, output: ControlOutput, dt: float) -> SensorReadings:
         """Execute joint angles for one tick, and measure.

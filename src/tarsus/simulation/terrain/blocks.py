@@ -11,6 +11,7 @@ import numpy as np
 from tarsus.errors import InputError
 from tarsus.gait.walk_setup import require_number
 from tarsus.simulation.engine import mujoco_module
+from tarsus.simulation.seed import require_seed
 from tarsus.simulation.settings import FRICTION
 from tarsus.simulation.terrain.flat import Flat
 from tarsus.simulation.terrain.surface import surface
@@ -56,6 +57,7 @@ class Blocks:
         for name in ("friction", "rise", "size", "extent"):
             require_number(name, getattr(self, name), zero=False)
         require_number("clear", self.clear, zero=True)
+        require_seed(self.seed)
         if self.side**2 > _MOST_BLOCKS or self.side < 1:
             raise InputError(
                 f"an extent of {self.extent:g} m takes {self.side**2} blocks of {self.size:g} m; "

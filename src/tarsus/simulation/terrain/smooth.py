@@ -10,6 +10,7 @@ import numpy as np
 
 from tarsus.errors import InputError
 from tarsus.gait.walk_setup import require_number
+from tarsus.simulation.seed import require_seed
 from tarsus.simulation.settings import FRICTION
 from tarsus.simulation.terrain.height_field import HeightField
 
@@ -55,6 +56,7 @@ class Smooth:
         for name in ("friction", "amplitude", "wavelength", "extent"):
             require_number(name, getattr(self, name), zero=False)
         require_number("clear", self.clear, zero=True)
+        require_seed(self.seed)
         if self.points > _MOST_POINTS:
             raise InputError(
                 f"wavelength is {self.wavelength:g} m; on an extent of {self.extent:g} m it must be at least "
