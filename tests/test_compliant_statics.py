@@ -18,7 +18,7 @@ from tarsus.load.compliant.applied_loads import applied_loads
 from tarsus.load.compliant.compliant_loads import compliant_loads
 from tarsus.load.compliant.decisive_loads import decisive_loads
 from tarsus.load.compliant.equilibrium import Compliant, Demand, Past
-from tarsus.load.compliant.foot_contact import FootContact, contact_displacement
+from tarsus.load.compliant.foot_contact import POINT_FOOT, FootContact, contact_displacement
 from tarsus.load.compliant.for_loads import compliant_or_missing
 from tarsus.load.compliant.friction import friction_force
 from tarsus.load.compliant.history import TOLERANCE
@@ -243,6 +243,14 @@ def test_friction_creeps_to_vertical_forces():
     np.testing.assert_allclose(size[0], size[0][0], rtol=0.01)
     assert size[1][0] == pytest.approx(size[0][0], rel=0.01)
     assert size[1][-1] < 0.65 * size[1][0]
+
+
+def test_point_feet_are_those_of_the_simulation():
+    robot = load_robot("ch3r")
+    assert not robot.foot_radius.any()
+    model = SimulatedPlant(robot, sensors="blind").mj_model
+    balls = model.geom_size[model.geom_type == mujoco.mjtGeom.mjGEOM_SPHERE, 0]
+    assert POINT_FOOT in balls
 
 
 def test_a_rolling_ball_is_not_displaced_at_its_contact_point():

@@ -20,8 +20,8 @@ if TYPE_CHECKING:
 
 __all__ = ["POINT_FOOT", "FootContact", "contact_displacement", "normal_force"]
 
-POINT_FOOT = 0.001
-"""Radius of a foot whose radius is 0 in the robot's file [m]."""
+POINT_FOOT = 0.003
+"""Radius of a foot whose radius is 0 in the robot's file, as in the simulation [m]."""
 
 
 @represented()
