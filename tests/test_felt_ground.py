@@ -211,16 +211,16 @@ def test_a_foot_that_slides_is_told_by_the_others():
 
 def test_contacts_come_from_switches_or_else_from_load_cells():
     loads = FootLoads(STRIDER, None)
-    angles = WalkController(STRIDER).angles
+    angles, gait = WalkController(STRIDER).angles, {"down": np.ones(6, dtype=bool), "phase": np.zeros(6)}
     pressed = ValidReadings(forces=((0.0, 0.0, 5.0), None, *((0.0, 0.0, 0.1),) * 4))
-    assert loads.contacts(pressed) == [True, None, *[False] * 4]
+    assert loads.contacts(pressed, angles, 0.01, **gait) == [True, None, *[False] * 4]
     switched = pressed._replace(contacts=(False,) * 6)
-    assert loads.contacts(switched) == (False,) * 6
+    assert loads.contacts(switched, angles, 0.01, **gait) == (False,) * 6
     driven = ValidReadings(torques=tuple((0.0, 1.0, 0.5) for _ in range(6)))
     assert loads.forces(driven, angles) is not None
     # Joint torques do not tell contacts: legs press against each other, and a swinging leg is accelerated.
-    assert loads.contacts(driven) is None
-    assert loads.contacts(ValidReadings()) is None
+    assert loads.contacts(driven, angles, 0.01, **gait) is None
+    assert loads.contacts(ValidReadings(), angles, 0.01, **gait) is None
     assert loads.offsets(None, 0.01, feet=[(0.0, 0.0)], stands=[True]) is None
     soft = FootLoads(STRIDER, Admittance(mass=1.0, damping=400.0, stiffness=400.0))
     np.testing.assert_array_equal(soft.offsets(None, 0.01, feet=[(0.0, 0.0)] * 6, stands=[True] * 6), np.zeros(6))

@@ -97,7 +97,7 @@ class ValidReadings(NamedTuple):
     angular_rates : (x, y, z), or None
         Angular velocity of B in the world, components along B's axes [rad/s].
     contact_age : float
-        Time since the measurement of contacts, or else of forces [s].
+        Time since the measurement of contacts, or else of forces, or else of joint angles [s].
     rejected : tuple of str
         Rejected channels, or legs of them, with the reason.
     """

@@ -9,12 +9,13 @@ import numpy as np
 
 from tarsus.control.pose.admittance import Admittance, AdmittanceFilter
 from tarsus.control.readings import ValidReadings, Vector
+from tarsus.control.sensing.joint_contacts import JointContacts
 from tarsus.kinematics.mass import STANDARD_GRAVITY, total_mass
 from tarsus.load.foot_force import FootForceEstimator, balanced_forces
 from tarsus.robot.robot import Robot
 
 if TYPE_CHECKING:
-    from jaxtyping import Float
+    from jaxtyping import Bool, Float
 
 __all__ = ["FootLoads"]
 
@@ -23,7 +24,7 @@ _CONTACT_SHARE = 0.04
 
 
 class FootLoads:
-    """Contacts of the feet from foot switches or load cells, and their compliance, from load cells or joint torques.
+    """Contacts from foot switches, load cells or joint angles, and compliance from load cells or joint torques.
 
     Parameters
     ----------
@@ -31,11 +32,18 @@ class FootLoads:
         A single robot.
     admittance : Admittance, optional
         Compliance of the feet; left out, they are stiff.
+
+    Attributes
+    ----------
+    estimated : bool
+        Whether contacts are estimated by joint angles.
     """
 
     def __init__(self, robot: Robot, admittance: Admittance | None) -> None:
         self._weight = float(total_mass(robot)) * STANDARD_GRAVITY if robot.has_masses else 0.0
         self._torques = FootForceEstimator(robot) if robot.has_masses else None
+        self._joints = JointContacts(robot) if all(all(leg) for leg in robot.servos) else None
+        self.estimated = False
         self._filter = AdmittanceFilter(admittance, robot.legs) if admittance else None
 
     @property
@@ -57,8 +65,16 @@ class FootLoads:
             return self._torques.forces(angles.tolist(), valid.torques)
         return valid.forces
 
-    def contacts(self, valid: ValidReadings) -> Sequence[bool | None] | None:
-        """Return which feet touch the ground: from switches, or else from load cells; None where unknown.
+    def contacts(
+        self,
+        valid: ValidReadings,
+        angles: Float[np.ndarray, "legs 3"],
+        dt: float,
+        *,
+        down: Bool[np.ndarray, "legs"],
+        phase: Float[np.ndarray, "legs"],
+    ) -> Sequence[bool | None] | None:
+        """Return which feet touch the ground: from switches, else load cells, else joint angles; None where unknown.
 
         Joint torques do not tell: position-controlled legs press against each other, and a swinging leg is accelerated.
 
@@ -66,9 +82,24 @@ class FootLoads:
         ----------
         valid : ValidReadings
             The readings.
+        angles : array, shape (legs, 3)
+            Joint angles that were commanded in the last tick [rad].
+        dt : float
+            Time since the last tick [s].
+        down : array of bool, shape (legs,)
+            Which feet should stand.
+        phase : array, shape (legs,)
+            Swing phase of the others.
         """
-        if valid.contacts is not None or valid.forces is None or not self._weight:
+        self.estimated = False
+        if valid.contacts is not None:
             return valid.contacts
+        if valid.forces is None or not self._weight:
+            if valid.joint_angles is None or self._joints is None:
+                return None
+            found = self._joints.contacts(valid.joint_angles, angles, dt, age=valid.contact_age, down=down, phase=phase)
+            self.estimated = found is not None
+            return found
         least = _CONTACT_SHARE * self._weight
         return [None if force is None else force[2] > least for force in valid.forces]
 

@@ -134,7 +134,8 @@ class ReadingsValidator:
                 else:
                     accepted[name] = channel.read(value, rejected)
             common = 0.0 if ages else as_number(readings.age)
-            age = as_number(ages.get("forces" if readings.contacts is None else "contacts", common))
+            given = (name for name in ("contacts", "forces") if getattr(readings, name) is not None)
+            age = as_number(ages.get(next(given, "joint_angles"), common))
             valid = ValidReadings(**accepted, contact_age=age if age > 0 else 0.0, rejected=tuple(rejected))
         for reason in rejected:
             self.counts[reason] = self.counts.get(reason, 0) + 1

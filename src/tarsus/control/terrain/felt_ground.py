@@ -41,6 +41,9 @@ _SLOPE_RATE = 2.0
 _DEPTH_SHARE = 0.6
 # Fraction of the swing in which a foot travels, up to half the longest stroke and with the longest one.
 _SLOW_TRAVEL, _FAST_TRAVEL = 0.75, 0.92
+# Greatest speed of feet that go down; where contacts are estimated, feet press on the ground before they are known to
+# touch it [m/s].
+_LOWERING, _SLOW_LOWERING = 0.4, 0.25
 # A foot this close to its least height hangs [m], and how much lower the ground under it is then expected [m].
 _HANGING, _LOWER = 0.002, 0.03
 # How often height, tilt and lost way are looked at [s].
@@ -140,7 +143,7 @@ class FeltGround:
         if valid.attitude is not None:
             roll, pitch = state.posture.value[3:5].tolist()
             self._tilt = (valid.attitude[0] - roll, valid.attitude[1] - pitch)
-        measured = self._loads.contacts(valid)
+        measured = self._loads.contacts(valid, angles, dt, down=state.down, phase=state.swing_phase)
         if state.felt is None:
             if measured is None and valid.attitude is None:
                 return state, []
@@ -222,6 +225,7 @@ class FeltGround:
             + (_FAST_TRAVEL - _SLOW_TRAVEL) * max(2 * self._reach.stroke / max(*radii, 1e-6) - 1, 0.0),
             pace=self.support.pace,
             swing_height=float(state.posture.value[SWING_HEIGHT]) + self.roughness.swing_rise,
+            lowering=_SLOW_LOWERING if self._loads.estimated else _LOWERING,
         )
 
     def _update_posture(

@@ -19,8 +19,8 @@ __all__ = ["moved_vertically"]
 _TOP_PHASE = 0.45
 # Fraction of a swing in which a foot goes down from its top to the expected ground.
 _DESCENT = 0.4
-# Least and greatest speed of a descending foot, and least one of a foot that should stand and feels nothing [m/s].
-_LOWERING, _FASTEST_LOWERING, _SEARCHING = 0.12, 0.4, 0.15
+# Least speed of a descending foot, and of a foot that should stand and feels nothing [m/s].
+_LOWERING, _SEARCHING = 0.12, 0.15
 # Time in which a foot that should stand goes down to the expected ground [s].
 _SEARCH_TIME = 0.1
 # Greatest changes of speed: of feet in the air, of the body, of feet on the ground, and of their slide [m/s^2].
@@ -66,7 +66,8 @@ def moved_vertically(state: GaitState, inputs: StepInputs, dt: float) -> GaitSta
                 left = max(1 - _STOPPING * dt / abs(slide), 0.0)
                 places[leg] += slide * (1 + left) / 2 * dt
                 slide *= left
-            heights[leg], speed = _standing(height, foot.speed, wanted, None if stands else under, dt)
+            sought = None if stands else under
+            heights[leg], speed = _standing(height, foot.speed, wanted, sought, dt, fastest=felt.lowering)
             feet[leg] = FeltFoot(speed, slide=slide)
         else:
             assert under is not None  # known of each foot in the air
@@ -76,12 +77,14 @@ def moved_vertically(state: GaitState, inputs: StepInputs, dt: float) -> GaitSta
     return state._replace(foot=np.array(places), ground_height=np.array(heights), felt=feet, **moved)
 
 
-def _standing(height: float, speed: float, wanted: float, under: GroundUnder | None, dt: float) -> tuple[float, float]:
+def _standing(
+    height: float, speed: float, wanted: float, under: GroundUnder | None, dt: float, *, fastest: float
+) -> tuple[float, float]:
     """Return height and speed of a foot that should stand; one without contact goes down."""
     if under is None:
         after = _towards(speed, wanted, _STANDING_ACCELERATION * dt)
         return height + (speed + after) / 2 * dt, after
-    wanted -= min(max(_SEARCHING, (height - under.expected) / _SEARCH_TIME), _FASTEST_LOWERING)
+    wanted -= min(max(_SEARCHING, (height - under.expected) / _SEARCH_TIME), fastest)
     after = _towards(speed, wanted, _FOOT_ACCELERATION * dt)
     return _no_lower(height + (speed + after) / 2 * dt, after, height, under.lowest)
 
@@ -94,7 +97,7 @@ def _swinging(
     speed, acceleration, top, top_phase, slide, drawn_back = foot
     if math.isnan(top) or (phase < top_phase and drawn_back is None):
         # No higher than the foot can be down again from by the end of its swing.
-        fits = under.expected - felt.depth + _FASTEST_LOWERING * _DESCENT * swing_time
+        fits = under.expected - felt.depth + felt.lowering * _DESCENT * swing_time
         over = max(lifted_at, under.expected) + felt.swing_height
         top, top_phase = max(min(over, under.highest, fits), height), _TOP_PHASE
     if phase < top_phase:
@@ -103,7 +106,7 @@ def _swinging(
         height, speed, acceleration = quintic((height, speed, acceleration), top, whole, time / whole)
         return height, FeltFoot(speed, acceleration, top, top_phase, slide, drawn_back)
     descent = (top - under.expected + felt.depth) / (_DESCENT * swing_time) * felt.pace
-    after = _towards(speed, -min(max(_LOWERING, descent), _FASTEST_LOWERING), _FOOT_ACCELERATION * dt)
+    after = _towards(speed, -min(max(_LOWERING, descent), felt.lowering), _FOOT_ACCELERATION * dt)
     height, after = _no_lower(height + (speed + after) / 2 * dt, after, height, under.lowest)
     return height, FeltFoot(after, 0.0, top, top_phase, slide, drawn_back)
 

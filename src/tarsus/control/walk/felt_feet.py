@@ -76,6 +76,8 @@ class FeltInputs(NamedTuple):
         Rate of the steps and of the twist, 0 to 1.
     swing_height : float
         How high a foot rises over the higher of lift-off and expected ground [m].
+    lowering : float
+        Greatest speed of a foot that goes down [m/s].
     """
 
     under: list[GroundUnder | None]
@@ -88,3 +90,4 @@ class FeltInputs(NamedTuple):
     travel: float
     pace: float
     swing_height: float
+    lowering: float

@@ -1,0 +1,67 @@
+"""Contacts that are estimated by joint angles: of a simulated robot, and of servos that tell nothing."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+import tarsus
+from tarsus.control.readings import ValidReadings
+from tarsus.control.sensing.foot_loads import FootLoads
+from tarsus.control.sensing.joint_contacts import JointContacts
+from tarsus.simulation import SensorSuite, SimulatedPlant, terrain
+
+STRIDER = tarsus.load_robot("strider")
+DT = 0.01
+
+
+def test_a_robot_without_sensors_in_its_feet_feels_the_ground_by_its_joints():
+    sensors = dataclasses.replace(SensorSuite.named("smart"), attitude=SensorSuite.named("hobby").attitude)
+    # On these blocks the front left foot is caught by one, and rises over it.
+    ground = terrain.Blocks(rise=0.04, clear=0.35, seed=2)
+    plant, controller = SimulatedPlant(STRIDER, terrain=ground, sensors=sensors), tarsus.RobotController(STRIDER)
+    plant.start(controller.output)
+    right = []
+    for tick in range(450):
+        readings = plant.step(controller.output, DT)
+        assert readings.contacts is None
+        controller.step((0.14, 0.0, 0.0), DT, readings)
+        if tick > 120:
+            contacts = controller._activity.controller._walk.ground.contacts
+            assert all(contacts.estimator.known)
+            right.append(np.array(contacts.estimator.touching) == (plant.state.foot_forces[:, 2] > 0.5))
+    assert np.mean(right) > 0.78
+    assert plant.state.body.position[0] > 0.85 * 0.14 * 4.5
+
+
+def test_servos_that_follow_at_once_tell_no_contacts():
+    controller, contacts = tarsus.WalkController(STRIDER), []
+    estimator = JointContacts(STRIDER)
+    for _ in range(200):
+        angles = controller.step((0.1, 0.0, 0.0), DT)
+        state = controller._tick.gait
+        found = estimator.contacts(angles.tolist(), angles, DT, age=0.0, down=state.down, phase=state.swing_phase)
+        contacts.append(found)
+    assert not any(contacts)
+
+
+def test_a_leg_without_a_measured_angle_leaves_contacts_unknown():
+    estimator, angles = JointContacts(STRIDER), tarsus.WalkController(STRIDER).angles
+    down, phase = np.ones(6, dtype=bool), np.zeros(6)
+    for measured in ([None, *angles.tolist()[1:]], angles.tolist()):
+        for _ in range(9):
+            assert estimator.contacts(measured, angles, DT, age=0.0, down=down, phase=phase) is None
+
+
+@pytest.mark.parametrize("servos", ["known", "unknown"])
+def test_joint_angles_are_the_last_choice(servos):
+    robot = STRIDER
+    if servos == "unknown":
+        robot = robot.replace(servos=tuple((None,) * 3 for _ in range(6)))
+    loads, angles = FootLoads(robot, None), tarsus.WalkController(STRIDER).angles
+    gait = {"down": np.ones(6, dtype=bool), "phase": np.zeros(6)}
+    valid = ValidReadings(joint_angles=tuple(angles.tolist()))
+    assert loads.contacts(valid, angles, DT, **gait) is None
+    switched = valid._replace(contacts=(True,) * 6)
+    assert loads.contacts(switched, angles, DT, **gait) == (True,) * 6
+    assert not loads.estimated
