@@ -72,6 +72,7 @@ truth: $(VENV)/.dev
 	$(BIN)/python docs/faults.py
 	$(BIN)/python docs/rough_ground.py
 	$(BIN)/python docs/sensor_faults.py
+	$(BIN)/python docs/estimated_contacts.py
 
 # Trains policies for a few minutes each: the figure and the tables of docs/reinforcement-learning.md.
 train: $(VENV)/.dev
