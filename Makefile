@@ -73,6 +73,7 @@ truth: $(VENV)/.dev
 	$(BIN)/python docs/rough_ground.py
 	$(BIN)/python docs/sensor_faults.py
 	$(BIN)/python docs/estimated_contacts.py
+	$(BIN)/python docs/ablation.py
 
 # Trains policies for a few minutes each: the figure and the tables of docs/reinforcement-learning.md.
 train: $(VENV)/.dev

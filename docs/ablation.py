@@ -1,0 +1,87 @@
+"""Write the table of ground.md that shows what each mechanism of the felt walk is worth: it is switched off.
+
+python docs/ablation.py --seeds 3
+python docs/ablation.py --grounds blocks40 --without reflexes --print
+"""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Callable
+from contextlib import AbstractContextManager, nullcontext
+from functools import partial
+from typing import Any
+from unittest.mock import patch
+
+import numpy as np
+
+from rough_ground import CASES, GROUNDS, NOT_ADAPTED, PAGE, RANDOM, Case, Outcome, switches, walk
+from tarsus.control.terrain import ground_contact
+from tarsus.control.terrain.foot_contacts import FootContacts
+from tarsus.control.terrain.posture_feedback import PostureFeedback
+
+ROBOT, SHOWN = "strider", ("smooth60", "blocks60", "step+40", "ramp+20", "stairs")
+
+
+def off(owner: Any, name: str, result: Any) -> Callable[[], AbstractContextManager[Any]]:
+    """Return what has a function return one result for the length of a walk."""
+    return partial(patch.object, owner, name, lambda *_, **__: result)
+
+
+CASES["off"] = Case()
+CASES["off: adaptation"] = Case(options=NOT_ADAPTED)
+CASES["off: levelling"] = Case(options={"levelling": None})
+CASES["off: odometry"] = Case(sensors=switches())
+# What is switched off: by an option or a sensor that is missing, or in place of a function.
+MECHANISMS: dict[str, tuple[str, Callable[[], AbstractContextManager[Any]]]] = {
+    "nothing": ("off", nullcontext),
+    "levelling": ("off: levelling", nullcontext),
+    "adaptation": ("off: adaptation", nullcontext),
+    "lost way": ("off: odometry", nullcontext),
+    "obstacles": ("off", off(ground_contact, "_collides", result=False)),
+    "search in stance": ("off", off(FootContacts, "stands", result=True)),
+    "reach": ("off", off(PostureFeedback, "fit_to_reach", result=None)),
+    "contacts": ("blind", nullcontext),
+}
+
+
+def walked(without: str, ground: str, seed: int) -> Outcome:
+    """Return the outcome of a walk without a mechanism."""
+    case, switched_off = MECHANISMS[without]
+    with switched_off():
+        return walk((ROBOT, ground, case, seed))
+
+
+def cell(found: list[Outcome]) -> str:
+    """Return the medians of way and tilt, with the number of falls."""
+    falls = sum(each.fell for each in found)
+    medians = f"{np.median([each.way for each in found]):.2f}, {np.median([each.tilt for each in found]):.1f}"
+    return medians + (f" ({falls} of {len(found)} fell)" if falls else "")
+
+
+def main() -> None:
+    """Measure, and replace the table on the page or print it."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--grounds", nargs="+", default=SHOWN, choices=list(GROUNDS))
+    parser.add_argument("--without", nargs="+", default=list(MECHANISMS), choices=list(MECHANISMS))
+    parser.add_argument("--seeds", type=int, default=3)
+    parser.add_argument("--print", action="store_true", help="print the table, and leave the page as it is")
+    asked = parser.parse_args()
+    lines = [f"| {ROBOT} without | {' | '.join(asked.grounds)} |", f"|---|{'---|' * len(asked.grounds)}"]
+    for without in asked.without:
+        cells = []
+        for ground in asked.grounds:
+            seeds = asked.seeds if ground.startswith(RANDOM) else 1
+            cells.append(cell([walked(without, ground, seed) for seed in range(seeds)]))
+        lines.append(f"| {without} | {' | '.join(cells)} |")
+    text = "\n".join(lines)
+    if asked.print:
+        print(text)
+        return
+    page = PAGE.read_text(encoding="utf-8")
+    before, start, rest = page.partition("<!-- table: ablation -->\n")
+    PAGE.write_text(f"{before}{start}{text}\n<!-- end -->{rest.partition('<!-- end -->')[2]}", encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
