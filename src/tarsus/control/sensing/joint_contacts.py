@@ -59,8 +59,10 @@ class JointContacts:
 
     def __init__(self, robot: Robot) -> None:
         springs, legs = JointSprings.of(robot), robot.legs
-        constants = (springs.stiffness, springs.damping, springs.stall_torque, springs.rotor_inertia)
-        self._servos = tuple(each[:, 1:] for each in constants)
+        stiffness, inertia = springs.stiffness[:, 1:], springs.rotor_inertia[:, 1:]
+        self._rates = stiffness / inertia, springs.damping[:, 1:] / inertia
+        self._most = springs.stall_torque[:, 1:] / stiffness
+        self._tick, self._factors = 0.0, self._rates
         self._lengths = np.asarray(robot.geometry.femur), np.asarray(robot.geometry.tibia)
         self._state: tuple[Float[np.ndarray, "legs 2"], Float[np.ndarray, "legs 2"]] | None = None
         self._expected: deque[Float[np.ndarray, "legs"]] = deque(maxlen=_KEPT)
@@ -123,13 +125,15 @@ class JointContacts:
 
     def _follow(self, commanded: Float[np.ndarray, "legs 2"], dt: float) -> None:
         """Take note of the heights after a tick in which free legs follow their commands."""
-        stiffness, damping, stall, inertia = self._servos
+        step, most = dt / _STEPS, self._most
+        if dt != self._tick:
+            spring, damper = self._rates
+            kept = 1 / (1 + step * damper + step**2 * spring)
+            self._tick, self._factors = dt, (kept, step * spring * kept)
+        kept, gain = self._factors
         angles, speeds = self._state or (commanded, np.zeros_like(commanded))
-        step = dt / _STEPS
-        drag = 1 + step * damping / inertia + step**2 * stiffness / inertia
         for _ in range(_STEPS):
-            torques = np.clip(stiffness * (commanded - angles), -stall, stall)
-            speeds = (speeds + step * torques / inertia) / drag
+            speeds = kept * speeds + gain * np.minimum(np.maximum(commanded - angles, -most), most)
             angles = angles + step * speeds
         self._state = angles, speeds
         self._expected.append(self._heights(angles))
