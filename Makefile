@@ -7,7 +7,7 @@ OUT ?= walk
 # JAX takes half the time to compile so; an XLA that does not know the option ends with an error, hence not in the tests.
 COMPILE_FAST := XLA_FLAGS=--xla_cpu_use_fusion_emitters=false
 
-.PHONY: studio walk test lint types tests web web-check browser protocol bench servos figures truth train sketch schema clean
+.PHONY: studio walk test lint types tests web web-check browser protocol bench servos figures truth hour train sketch schema clean
 
 studio: $(VENV)/.run web
 	$(BIN)/tarsus studio $(ROBOT)
@@ -74,6 +74,10 @@ truth: $(VENV)/.dev
 	$(BIN)/python docs/sensor_faults.py
 	$(BIN)/python docs/estimated_contacts.py
 	$(BIN)/python docs/ablation.py
+
+# An hour of walks in physics with robots, terrain, commands and faults drawn at random: a table of docs/ground.md.
+hour: $(VENV)/.dev
+	$(BIN)/python docs/random_hour.py --minutes 60
 
 # Trains policies for a few minutes each: the figure and the tables of docs/reinforcement-learning.md.
 train: $(VENV)/.dev

@@ -1,0 +1,243 @@
+"""Write the table of random walks in ground.md: robots, terrain, commands and faults drawn at random, in physics.
+
+python docs/random_hour.py --minutes 60 --jobs 16
+python docs/random_hour.py --minutes 5 --seed 100 --print
+"""
+
+from __future__ import annotations
+
+import argparse
+import dataclasses
+import math
+import traceback
+from concurrent.futures import ProcessPoolExecutor
+from typing import Any, NamedTuple
+
+import numpy as np
+
+import tarsus
+from estimated_contacts import JOINTS
+from rough_ground import CLEAR, PAGE, switches
+from sensor_faults import LATE, ONE_DEGREE, with_sensors
+from tarsus.simulation import SensorSuite, SimulatedPlant, terrain
+
+DT, MINUTE = 0.01, 60.0
+# Greatest heights [mm] and slopes [deg] over which the tables of the page have no falls.
+HELD = {
+    "strider": {"smooth": 60, "blocks": 60, "step": 40, "ramp": 20},
+    "phantomx": {"smooth": 40, "blocks": 30, "step": 40, "ramp": 10},
+    "makeyourpet": {"smooth": 60, "blocks": 40, "step": 40, "ramp": 10},
+}
+GAITS = ("tripod", "tetrapod", "ripple", "wave")
+SENSORS: dict[str, Any] = {
+    "hobby": SensorSuite.named("hobby"),
+    "smart": JOINTS,
+    "late": LATE,
+    "1 % wrong": switches(flips=0.01),
+    "5 % wrong": switches(flips=0.05),
+    "1 deg": with_sensors(attitude=ONE_DEGREE),
+}
+# Of the weight, and how long [s].
+PUSH, PUSHED = 0.1, 0.2
+# Robots turn back this far from the middle of the terrain, which is 2 m wide to each side [m].
+FAR = 1.1
+FALLEN = math.radians(45.0)
+
+
+class Minute(NamedTuple):
+    """What is drawn for a minute: robot, ground, sensors, and when what fails."""
+
+    seed: int
+    robot: str
+    ground: str = "flat"
+    height: float = 0.0
+    sensors: str = "ideal"
+    pushes: tuple[float, ...] = ()
+    stuck_switch: tuple[int, bool] | None = None
+    servo: tuple[float, int, int] | None = None
+
+    @classmethod
+    def drawn(cls, seed: int) -> Minute:
+        """Return what a seed draws."""
+        draw = np.random.default_rng(seed)
+        robot = str(draw.choice(sorted(HELD)))
+        ground = str(draw.choice(["flat", *HELD[robot]]))
+        height = float(draw.uniform(0.3, 1.0)) * HELD[robot].get(ground, 0)
+        height *= -1.0 if ground == "step" and draw.random() < 1 / 2 else 1.0
+        sensors = str(draw.choice(["ideal", *SENSORS]))
+        pushes = tuple(sorted(draw.uniform(2, MINUTE, 3).tolist())) if draw.random() < 1 / 3 else ()
+        stuck = (int(draw.integers(6)), bool(draw.random() < 1 / 2)) if draw.random() < 1 / 8 else None
+        servo = (float(draw.uniform(5, 40)), int(draw.integers(6)), int(draw.integers(3)))
+        stuck = None if sensors == "smart" else stuck
+        return cls(seed, robot, ground, height, sensors, pushes, stuck, servo if draw.random() < 1 / 8 else None)
+
+    @property
+    def faultless(self) -> Minute:
+        """The same minute with ideal sensors, and nothing that pushes or fails."""
+        return self._replace(sensors="ideal", pushes=(), stuck_switch=None, servo=None)
+
+    @property
+    def level(self) -> Minute:
+        """The same minute on level ground."""
+        return self._replace(ground="flat", height=0.0)
+
+    @property
+    def terrain(self) -> Any:
+        """The ground."""
+        size = self.height / 1e3
+        kinds: dict[str, Any] = {
+            "flat": terrain.Flat,
+            "smooth": lambda: terrain.Smooth(amplitude=size, clear=CLEAR, seed=self.seed),
+            "blocks": lambda: terrain.Blocks(rise=size, clear=CLEAR, seed=self.seed),
+            "step": lambda: terrain.Step(rise=size),
+            "ramp": lambda: terrain.Ramp(slope=math.radians(self.height)),
+        }
+        return kinds[self.ground]()
+
+    def text(self) -> str:
+        """Return what is drawn in words."""
+        parts = [f"seed {self.seed}: {self.robot} on {self.ground} {self.height:.0f}, {self.sensors} sensors"]
+        parts += ["pushed"] if self.pushes else []
+        parts += [f"switch {self.stuck_switch[0]} {self.stuck_switch[1]}"] if self.stuck_switch else []
+        parts += [f"servo {self.servo[1:]} limp at {self.servo[0]:.0f} s"] if self.servo else []
+        return ", ".join(parts)
+
+
+class Outcome(NamedTuple):
+    """What became of a minute: when the robot fell, what the guard stopped, what was raised; empty for nothing."""
+
+    minute: Minute
+    fell: float = math.nan
+    stopped: tuple[str, ...] = ()
+    raised: str = ""
+    way: float = 0.0
+
+
+def commanded(draw: np.random.Generator, robot: tarsus.Robot, home: complex | None, top: float) -> tarsus.Command:
+    """Return the next command: most change the twist, some the gait, the posture, or the state of the robot."""
+    heading = np.angle(home) if home is not None else draw.choice([0.0, draw.uniform(-math.pi, math.pi)])
+    speed = top * draw.uniform(0.2, 1.0) * (draw.random() > 0.15)
+    turn = draw.uniform(-0.5, 0.5) * (draw.random() < 0.4)
+    more: dict[str, Any] = {}
+    kind = draw.random()
+    height = tarsus.default_body_height(robot)
+    if kind < 0.1:
+        more["gait"] = str(draw.choice(GAITS))
+    elif kind < 0.2:
+        more["body"] = (*draw.uniform(-0.015, 0.015, 3), *draw.uniform(-0.08, 0.08, 3))
+    elif kind < 0.25:
+        more["body_height"] = height * draw.uniform(0.85, 1.15)
+    elif kind < 0.3:
+        more["swing_height"] = draw.uniform(0.02, 0.06)
+    elif kind < 0.35:
+        more["stance_width"] = draw.uniform(-0.01, 0.02)
+    elif kind < 0.4:
+        more["cycle_time"] = draw.choice([0.8, 1.2, 2.0])
+    elif kind < 0.43:
+        more["state"] = str(draw.choice(["lying", "folded"]))
+    more.setdefault("state", "standing")
+    return tarsus.Command(twist=(speed * math.cos(heading), speed * math.sin(heading), turn), **more)
+
+
+def lived(minute: Minute) -> Outcome:
+    """Return what becomes of a minute."""
+    try:
+        return _lived(minute)
+    except Exception as error:
+        where = traceback.extract_tb(error.__traceback__)[-1]
+        return Outcome(minute, raised=f"{type(error).__name__}: {error} ({where.name}, line {where.lineno})")
+
+
+def _lived(minute: Minute) -> Outcome:
+    draw, robot = np.random.default_rng(minute.seed + 1_000_000), tarsus.load_robot(minute.robot)
+    sensors = SENSORS.get(minute.sensors, "ideal")
+    plant = SimulatedPlant(robot, terrain=minute.terrain, sensors=sensors, seed=minute.seed)
+    controller = tarsus.RobotController(robot)
+    top = tarsus.WalkController(robot).top_speed((1, 0, 0))
+    output, command, due = controller.output, tarsus.Command(), 0.0
+    plant.start(output)
+    stopped: list[str] = []
+    way, before = 0.0, complex(*plant.state.body.position[:2])
+    weight = float(plant.mj_model.body_mass.sum()) * 9.80665
+    for tick in range(round(MINUTE / DT)):
+        time, state = tick * DT, plant.state
+        at = complex(*state.body.position[:2].tolist())
+        roll, pitch, yaw = np.asarray(state.body.rpy).tolist()
+        way, before = way + abs(at - before), at
+        upright = output.state.upright
+        if math.hypot(roll, pitch) > FALLEN or (state.body_touches and upright):
+            return Outcome(minute, time, tuple(stopped), way=way)
+        if time >= due:
+            home = -at * np.exp(-1j * yaw) if abs(at) > FAR else None
+            command, due = commanded(draw, robot, home, top), time + draw.uniform(2.0, 6.0)
+        else:
+            command = tarsus.Command(twist=command.twist)
+        plant.mj_data.xfrc_applied[1, :2] = 0.0
+        for push in minute.pushes:
+            if push <= time < push + PUSHED:
+                direction = 2 * math.pi * (push % 1.0)
+                plant.mj_data.xfrc_applied[1, :2] = PUSH * weight * np.array([math.cos(direction), math.sin(direction)])
+        if minute.servo and time >= minute.servo[0]:
+            _, leg, joint = minute.servo
+            drives = len(plant.mj_model.actuator_gainprm) // (3 * robot.legs)
+            number = slice(drives * (3 * leg + joint), drives * (3 * leg + joint + 1))
+            plant.mj_model.actuator_gainprm[number] = plant.mj_model.actuator_biasprm[number] = 0.0
+        readings = plant.step(output, DT)
+        if minute.stuck_switch:
+            contacts = np.array(readings.contacts)
+            contacts[minute.stuck_switch[0]] = minute.stuck_switch[1]
+            readings = dataclasses.replace(readings, contacts=contacts)
+        output = controller.step(command, DT, readings)
+        stopped += [each.text() for each in output.interventions]
+    return Outcome(minute, stopped=tuple(stopped), way=way)
+
+
+def cause(fall: Outcome) -> str:
+    """Return what a fall takes: the same minute is repeated without the faults, and on level ground."""
+    repeated = {"the faults": fall.minute.faultless, "the ground": fall.minute.level}
+    needed = [name for name, minute in repeated.items() if minute != fall.minute and math.isnan(lived(minute).fell)]
+    return " and ".join(needed) or "neither faults nor ground"
+
+
+def table(outcomes: list[Outcome]) -> str:
+    """Return the table of the outcomes."""
+    falls = [each for each in outcomes if not math.isnan(each.fell)]
+    raised = [f"{each.minute.text()}: {each.raised}" for each in outcomes if each.raised]
+    refused = [f"{each.minute.text()}: {text}" for each in outcomes for text in each.stopped]
+    fallen = [f"{each.minute.text()}, after {each.fell:.0f} s; it takes {cause(each)}" for each in falls]
+    rows = [
+        f"| minutes, way | {len(outcomes)}, {sum(each.way for each in outcomes):.0f} m |",
+        *(
+            f"| {title} | {'<br>'.join([str(len(lines)), *lines])} |"
+            for title, lines in (("exceptions", raised), ("angles that the guard refused", refused), ("falls", fallen))
+        ),
+    ]
+    return "\n".join(["| random walks | |", "|---|---|", *rows])
+
+
+def main() -> None:
+    """Measure, and replace the table on the page or print it."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--minutes", type=int, default=60)
+    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--jobs", type=int, default=1)
+    parser.add_argument("--print", action="store_true", help="print the table, and leave the page as it is")
+    asked = parser.parse_args()
+    minutes = [Minute.drawn(asked.seed + number) for number in range(asked.minutes)]
+    outcomes = []
+    with ProcessPoolExecutor(asked.jobs) as pool:
+        for outcome in pool.map(lived, minutes):
+            outcomes.append(outcome)
+            fell = "" if math.isnan(outcome.fell) else f"fell after {outcome.fell:.1f} s"
+            print(outcome.minute.text(), f"{outcome.way:.1f} m", fell, *outcome.stopped[:1], outcome.raised, flush=True)
+    text = table(outcomes)
+    if asked.print:
+        print(text)
+        return
+    page = PAGE.read_text(encoding="utf-8")
+    before, start, rest = page.partition("<!-- table: random hour -->\n")
+    PAGE.write_text(f"{before}{start}{text}\n<!-- end -->{rest.partition('<!-- end -->')[2]}", encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
