@@ -111,11 +111,11 @@ def test_the_body_fits_itself_to_the_reach_and_gives_way_where_it_cannot():
     posture = PostureFeedback("level")
     rises = [0.3 * foot.real for foot in FEET]
     for _ in range(300):
-        posture.fit_to_reach(rises, 0.0, 0.02, reach=([-0.06] * 6, [0.2] * 6), height=0.2, share=1.0)
+        posture.fit_to_reach(rises, (-1.0, 0.0), 0.02, reach=([-0.06] * 6, [0.2] * 6), height=0.2, share=1.0)
     assert posture.raised == pytest.approx(-0.021, abs=1e-6)
     assert posture.given_way == 0.0
     for _ in range(300):
-        posture.fit_to_reach(rises, 0.0, 0.02, reach=([-0.06] * 6, [0.06] * 6), height=0.2, share=1.0)
+        posture.fit_to_reach(rises, (-1.0, 0.0), 0.02, reach=([-0.06] * 6, [0.06] * 6), height=0.2, share=1.0)
     assert posture.short == pytest.approx(0.021)
     assert 0 < posture.given_way < 0.5
 

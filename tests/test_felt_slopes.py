@@ -14,8 +14,11 @@ from tarsus.control.terrain.posture_feedback import PostureFeedback
 from tarsus.control.terrain.reach import Reach, reachable_share
 from tarsus.control.terrain.roughness import GroundAdaptation
 from tarsus.control.terrain.slope_limit import SlopeLimit
+from tarsus.control.terrain.slope_stance import SlopeStance
 from tarsus.control.walk_controller import WalkController
+from tarsus.control.walk_state import WalkState
 from tarsus.errors import InputError
+from tarsus.kinematics.stance import default_stance
 from tarsus.simulation import SimulatedPlant, terrain
 
 
@@ -57,13 +60,51 @@ def test_a_plane_is_levelled_by_the_attitude_of_the_body():
 
 def test_the_body_follows_the_share_of_a_slope_that_the_legs_do_not_reach():
     posture, slope = PostureFeedback("level"), 0.5
-    posture.fit_to_reach([0.0] * 6, 0.0, 0.02, reach=([-0.1] * 6, [0.1] * 6), height=0.1, share=0.7)
+    posture.fit_to_reach([0.0] * 6, (0.0, 0.0), 0.02, reach=([-0.1] * 6, [0.1] * 6), height=0.1, share=0.7)
     pitch = 0.0
     for _ in range(2000):
         plane = FootPlane(0.0, math.tan(slope + pitch), 0.0)
         rates = posture.rates(plane, (0.0, pitch), 0j, feet=[(0.2 + 0j, 0.1), (-0.2 + 0j, 0.1)])
         pitch -= rates.turn[1] * 0.01
     assert pitch == pytest.approx(-0.3 * slope, abs=0.005)
+
+
+@pytest.mark.parametrize("name", ["strider", "phantomx", "makeyourpet", "ch3r"])
+@pytest.mark.parametrize("direction", [0.0, 0.8, 2.0, math.pi])
+def test_feet_come_closer_to_the_height_of_the_middle_of_the_body_on_slopes(name, direction):
+    robot = preset(name)
+    stance, feet = SlopeStance(robot), default_stance(robot)
+    rest = feet[:, 0] + 1j * feet[:, 1]
+    uphill = np.exp(1j * direction)
+    before = (rest * uphill.conjugate()).real
+    stance.step(FootPlane(0.0, 0.09 * uphill.real, 0.09 * uphill.imag), rest)
+    assert not stance.shift.any()
+    assert stance.not_downhill(-0.1 * uphill) == -0.1 * uphill
+    stance.step(FootPlane(0.0, 0.3 * uphill.real, 0.3 * uphill.imag), rest)
+    after = ((rest + stance.shift) * uphill.conjugate()).real
+    assert (np.abs(after) < np.abs(before) + 0.01).all()
+    assert np.ptp(after) < (0.8 if direction in (0.0, math.pi) else 0.97) * np.ptp(before)
+    # No leg turns by more than 30 degrees, and none is stretched.
+    mounts = robot.mount_position[:, 0] + 1j * robot.mount_position[:, 1]
+    turned = (rest + stance.shift - mounts) / (rest - mounts)
+    assert np.abs(np.angle(turned)).max() <= math.radians(30) + 1e-9
+    assert np.abs(turned).max() <= 1 + 1e-9
+    assert stance.not_downhill(0.1j * uphill - 0.1 * uphill) == pytest.approx(0.1j * uphill)
+    assert stance.not_downhill(0.1 * uphill) == 0.1 * uphill
+    stance.step(FootPlane(), rest)
+    assert not stance.shift.any()
+
+
+def test_the_body_is_raised_where_it_would_touch_a_slope():
+    stance, plane = SlopeStance(preset("strider")), FootPlane(0.0, 0.4, 0.0)
+    assert stance.least_raise(FootPlane(), 0.02) <= 0.0
+    # Half a length of 120 mm, half a height of 25 mm.
+    assert stance.least_raise(plane, 0.08) == pytest.approx(0.4 * 0.12 + 0.025 + 0.04 - 0.08)
+    assert stance.least_raise(plane, 0.02) == pytest.approx(0.4 * 0.12)
+    posture = PostureFeedback("level")
+    for _ in range(100):
+        posture.fit_to_reach([0.0] * 6, (0.03, 0.0), 0.02, reach=([-0.1] * 6, [0.1] * 6), height=0.1, share=1.0)
+    assert posture.raised == pytest.approx(0.03)
 
 
 def test_reach_is_computed_anew_only_where_stroke_or_posture_change():
@@ -80,7 +121,7 @@ def test_reach_is_computed_anew_only_where_stroke_or_posture_change():
 
 
 def climbed(degrees, *, seconds=9.0, speed=0.146, start=0.35):
-    """Return way over the commanded one, tilt [deg] and slip [m/m] of a walk up a long ramp."""
+    """Return way over the commanded one, tilt in the end [rad], slip [m/m] and the controller of a walk up a ramp."""
     robot = preset("strider")
     plant = SimulatedPlant(robot, terrain=terrain.Ramp(slope=math.radians(degrees), start=start, length=5.0))
     controller, dt = RobotController(robot), 0.01
@@ -91,13 +132,26 @@ def climbed(degrees, *, seconds=9.0, speed=0.146, start=0.35):
         slip += float(plant.state.slip_speeds.mean()) * dt
         assert not plant.body_touches
     way = plant.state.body.position[0]
-    return way / (speed * seconds), slip / way
+    for _ in range(300):
+        output = controller.step((0.0, 0.0, 0.0), dt, plant.step(output, dt))
+    return way / (speed * seconds), math.hypot(*plant.state.body.rpy[:2]), slip / way, controller
 
 
 def test_a_slope_of_ten_degrees_costs_next_to_nothing():
-    way, slip = climbed(10.0)
+    way, tilt, slip, _ = climbed(10.0)
     assert way > 0.94
     assert slip < 0.03
+    assert tilt < math.radians(2.0)
+
+
+def test_a_robot_walks_up_a_slope_of_twenty_degrees_level_and_stands_on_it():
+    way, tilt, slip, controller = climbed(20.0)
+    assert way > 0.85
+    assert slip < 0.05
+    assert tilt < math.radians(3.0)
+    walk = controller._activity.controller
+    assert walk.walk_state is WalkState.STANDING
+    assert np.abs(walk._walk.ground.stance.shift).max() > 0.05
 
 
 def test_a_slippery_slope_is_refused_with_its_angle_and_the_way_back_stays_open():

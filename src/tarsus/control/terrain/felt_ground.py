@@ -21,6 +21,7 @@ from tarsus.control.terrain.posture_feedback import Levelling, PostureFeedback, 
 from tarsus.control.terrain.reach import Reach, reachable_share
 from tarsus.control.terrain.roughness import GroundAdaptation, Roughness
 from tarsus.control.terrain.slope_limit import SlopeLimit
+from tarsus.control.terrain.slope_stance import SlopeStance
 from tarsus.control.terrain.support import Support, holds
 from tarsus.control.walk.felt_feet import FeltFoot, FeltInputs, GroundUnder
 from tarsus.control.walk.ground_pose import body_posture
@@ -101,7 +102,7 @@ class FeltGround:
         self.posture, self.roughness = PostureFeedback(levelling), Roughness(adaptation)
         self.slope, self.plane = SlopeLimit(adaptation.friction), FootPlane()
         self.offsets: Float[np.ndarray, "legs"] | None = None
-        self._reach = Reach(robot)
+        self._reach, self.stance = Reach(robot), SlopeStance(robot)
         self._validator, self._loads = ReadingsValidator(robot), FootLoads(robot, admittance)
         com = centre_of_mass(robot, angles)
         self._centre = complex(com[0], com[1])
@@ -256,13 +257,16 @@ class FeltGround:
         level = self.plane.levelled(self._tilt)
         if self._tilt is not None:
             self.slope.step(level, complex(*twist[:2].tolist()))
+            self.stance.step(level, rest - self.stance.shift)
         share = reachable_share([level.at(foot) for foot in rest.tolist()], reach.lowest, highest)
         height, room = float(state.posture.value[2]), (reach.lowest, highest)
-        self.posture.fit_to_reach(rises, self.roughness.body_rise, dt, reach=room, height=height, share=share)
+        raises = (self.stance.least_raise(self.plane, height), self.roughness.body_rise)
+        self.posture.fit_to_reach(rises, raises, dt, reach=room, height=height, share=share)
         velocity = complex(*state.twist.value[:2].tolist()) * self.support.pace
         tilt, yaw = self.measured.attitude or (0.0, 0.0), float(state.posture.value[5])
         stands = [leg in bears for leg in legs]
-        self._drift = self.odometry.step(self.measured.joint_angles, stands, velocity, dt, tilt=tilt, yaw=yaw)
+        drift = self.odometry.step(self.measured.joint_angles, stands, velocity, dt, tilt=tilt, yaw=yaw)
+        self._drift = self.stance.not_downhill(drift)
         margins = [(places[leg], over[leg] - reach.lowest[leg]) for leg in bears]
         self._rates = self.posture.rates(self.plane, self._tilt, velocity, feet=margins)
 

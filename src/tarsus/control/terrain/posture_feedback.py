@@ -65,7 +65,7 @@ class PostureFeedback:
     def fit_to_reach(
         self,
         rises: Sequence[float],
-        raise_by: float,
+        raises: tuple[float, float],
         dt: float,
         *,
         reach: tuple[Sequence[float], Sequence[float]],
@@ -78,8 +78,8 @@ class PostureFeedback:
         ----------
         rises : sequence of float
             Height of each foot over the plane's height at the origin [m].
-        raise_by : float
-            How much higher than commanded the body should be [m].
+        raises : tuple of float
+            How much higher than commanded the body is at least, and how much higher it should be [m].
         dt : float
             Length of the tick [s].
         reach : tuple of sequence of float
@@ -91,8 +91,8 @@ class PostureFeedback:
         """
         # Feet are between their least and greatest heights for heights over the ground between these.
         most = min(rise - low for low, rise in zip(reach[0], rises, strict=True))
-        least = max(rise - high for high, rise in zip(reach[1], rises, strict=True))
-        wanted = max(min(raise_by, most), least) if most >= least else (most + least) / 2
+        least = max(raises[0], *(rise - high for high, rise in zip(reach[1], rises, strict=True)))
+        wanted = max(min(raises[1], most), least) if most >= least else (most + least) / 2
         wanted = max(wanted, -_MOST_LOWER * height)
         self.short = max(wanted - most, least - wanted, 0.0)
         steepest = max(*map(abs, rises), 1e-6)

@@ -54,6 +54,7 @@ def _step_inputs(walk: WalkComponents, tick: TickState, dt: float) -> StepInputs
         may_lift[list(current.parameters.excluded)] = False
     felt, offsets = None, walk.no_offset
     if state.felt is not None:
+        transitions.footholds.shift(walk.ground.stance.shift)
         felt = walk.ground.inputs(
             state,
             dt,

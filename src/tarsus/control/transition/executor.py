@@ -105,7 +105,7 @@ class TransitionExecutor:
     @property
     def bounds(self) -> Float[np.ndarray, "legs 16"]:
         """Sides of the polygons in which the feet that bear load have to stay: array, shape (legs, 16) [m]."""
-        return self._foot_targets.without_bounds(self.footholds.bounds)
+        return self._foot_targets.without_bounds(self.footholds.shifted(self.footholds.bounds))
 
     def stance_intervals(
         self, state: GaitState, *, frequency: float | None = None
@@ -219,6 +219,7 @@ class TransitionExecutor:
         bounds = self._foot_targets.without_bounds(self.footholds.bounds_with(planned))
         bounds = np.minimum(bounds, planned.final_limits.bounds)
         begins, bandwidth = np.zeros(delays.shape), timing.bandwidth
+        bounds = self.footholds.shifted(bounds)
         over = polygon_excess(
             now.gait, now.twist[None], begins=begins, ends=ends, bounds=bounds, bandwidth=bandwidth
         ).max(axis=(1, 2, 3, 4))
@@ -245,6 +246,7 @@ class TransitionExecutor:
         self, bounds: Float[np.ndarray, "legs 16"], now: TickState, *, frequency: float, bandwidth: float
     ) -> bool:
         begins, ends = self.stance_intervals(now.gait, frequency=frequency)
+        bounds = self.footholds.shifted(bounds)
         excess = polygon_excess(now.gait, now.twist[None], begins=begins, ends=ends, bounds=bounds, bandwidth=bandwidth)
         return bool(excess.max() <= stance_tolerance(now.gait))
 

@@ -50,6 +50,7 @@ class FootholdTransfer:
         self.limits: VelocityLimits = transition.final_limits
         self.bounds: Float[np.ndarray, "legs 16"] = transition.final_limits.bounds
         self.rest: Complex[np.ndarray, "legs"] = transition.rest
+        self._level_rest, self._shift = self.rest, np.zeros_like(self.rest)
         self.transferred = np.ones(len(self.rest), dtype=bool)
         self._next_bounds = self.bounds
         self.new_rest = self.rest
@@ -58,10 +59,33 @@ class FootholdTransfer:
 
     def _update_placement(self) -> None:
         landing = np.where(self._lands_at_old[:, None], self.bounds, self._next_bounds)
-        along = (NORMALS_CONJUGATE * self.rest[:, None]).real
+        along = (NORMALS_CONJUGATE * self._level_rest[:, None]).real
         self.placement_bounds: Float[np.ndarray, "legs 16"] = np.maximum(landing - along, 0.0)
         self.placement_radii: list[float] = self.placement_bounds.min(axis=1).tolist()
         self.standing_radii: list[float] = (self.bounds - along).min(axis=1).tolist()
+        self.rest = self._level_rest + self._shift
+
+    def shift(self, shift: Complex[np.ndarray, "legs"]) -> None:
+        """Shift rest footholds and polygons, as a slope asks for; stances are planned without it.
+
+        Parameters
+        ----------
+        shift : complex array, shape (legs,)
+            In the heading frame [m].
+        """
+        if shift is not self._shift:
+            self._shift, self.rest = shift, self._level_rest + shift
+
+    def shifted(self, bounds: Float[np.ndarray, "legs 16"]) -> Float[np.ndarray, "legs 16"]:
+        """Return the sides of polygons that are shifted with the rest footholds [m].
+
+        Parameters
+        ----------
+        bounds : array, shape (legs, 16)
+            The sides [m].
+        """
+        sides: np.ndarray = bounds + (NORMALS_CONJUGATE * self._shift[:, None]).real
+        return sides
 
     def bounds_with(self, transition: StanceTransition) -> Float[np.ndarray, "legs 16"]:
         """Return the sides with which the feet would start to transfer.
@@ -98,7 +122,7 @@ class FootholdTransfer:
         self.transferred = ~moved
         # A foot in the air lands at the foothold that it swings to; its next step is the one that counts.
         self._lands_at_old = moved & ~down
-        self.rest = np.where(self._lands_at_old, self.rest, transition.rest)
+        self._level_rest = np.where(self._lands_at_old, self._level_rest, transition.rest)
         self._next_bounds, self.new_rest = transition.stepping_limits.bounds, transition.rest
         self._update_placement()
 
@@ -112,7 +136,7 @@ class FootholdTransfer:
         """
         if self.bounds is self._next_bounds and self.transferred.all():
             return
-        self.rest = np.where(landed, self.new_rest, self.rest)
+        self._level_rest = np.where(landed, self.new_rest, self._level_rest)
         counts, self._lands_at_old = landed & ~self._lands_at_old, self._lands_at_old & ~landed
         self.transferred = self.transferred | counts
         self.bounds = np.where(counts[:, None], self._next_bounds, self.bounds)

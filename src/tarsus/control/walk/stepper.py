@@ -150,6 +150,10 @@ def _swing(
     phases, feet, targets = state.swing_phase.copy(), state.foot.copy(), state.foothold.copy()
     velocities, accelerations = state.swing_velocity.copy(), state.swing_acceleration.copy()
     travel, landed = 1.0 if inputs.felt is None else inputs.felt.travel, []
+    if inputs.felt is not None:
+        speed = complex(*state.twist.value[:2].tolist())
+        # Feet that make up for lost way travel farther in a stance.
+        stance *= 1 + (inputs.felt.drift * speed.conjugate()).real / max(abs(speed) ** 2, 1e-6)
     for leg in [leg for leg, on in enumerate(down) if not on]:
         late, since = float(state.lift_delay[leg]), since_lift[leg]
         phase, target = float(phases[leg]), complex(targets[leg])

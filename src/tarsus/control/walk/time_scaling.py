@@ -27,7 +27,7 @@ _CAUGHT_UP = 1e-9
 # Distance that a joint keeps from its limits where it catches up [rad].
 _SPARE = 1e-3
 # How far a joint may be behind before the walk becomes slower, and before it stands still [rad].
-_LEAST_LAG, _MOST_LAG = 0.1, 0.5
+_LEAST_LAG, _MOST_LAG = 0.2, 0.7
 # Fraction of the joints' acceleration from which on to look ahead, the one to aim at then, and how far to look [s].
 _HIGH, _AIM, _AHEAD = 0.5, 0.75, 0.02
 

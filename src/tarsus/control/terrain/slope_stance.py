@@ -1,0 +1,96 @@
+"""Slope stance: legs turn across a slope and those downhill are drawn in, so that a level body stays within reach."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from tarsus.control.terrain.foot_plane import FootPlane
+from tarsus.robot.robot import Robot
+
+if TYPE_CHECKING:
+    from jaxtyping import Complex, Float
+
+__all__ = ["SlopeStance"]
+
+# Slopes from which on, and up to which, the stance changes [rad].
+_LEAST, _MOST = math.radians(6.0), math.radians(14.0)
+# How far legs turn about their coxa axes [rad]; how far feet are drawn in, over the length of femur and tibia.
+_TURNED, _DRAWN_IN = math.radians(30.0), 0.15
+# Part of its axis by which a leg points downhill whose foot is drawn in as far as any.
+_DOWNHILL = 2 / 3
+# Smaller changes wait [m].
+_SMALLEST = 0.005
+# Room between body and slope that sagging legs leave [m].
+_ROOM = 0.04
+
+
+class SlopeStance:
+    """Moves the rest footholds with the slope: feet far up and down it come closer to the height of the body's middle.
+
+    Parameters
+    ----------
+    robot : Robot
+        A single robot.
+
+    Attributes
+    ----------
+    shift : complex array, shape (legs,)
+        By how much the rest footholds move, in the heading frame [m].
+    uphill : complex
+        The slope in the heading frame [m/m]; 0 where the stance is that of level ground.
+    """
+
+    def __init__(self, robot: Robot) -> None:
+        g, size = robot.geometry, robot.body_size
+        self.shift: Complex[np.ndarray, "legs"] = np.zeros(robot.legs, dtype=complex)
+        self.uphill = 0j
+        self._mounts: Complex[np.ndarray, "legs"] = np.asarray(g.mount_x + 1j * g.mount_y)
+        self._drawn_in: Float[np.ndarray, "legs"] = np.asarray(_DRAWN_IN * (g.femur + g.tibia))
+        self._half = (0.0, 0.0, 0.0) if size is None else tuple((np.asarray(size) / 2).tolist())
+
+    def step(self, level: FootPlane, rest: Complex[np.ndarray, "legs"]) -> None:
+        """Follow the slope.
+
+        Parameters
+        ----------
+        level : FootPlane
+            The plane of the feet as a level body sees it.
+        rest : complex array, shape (legs,)
+            Rest footholds on level ground, in the heading frame [m].
+        """
+        uphill = complex(level.slope_x, level.slope_y)
+        share = min(max((math.atan(abs(uphill)) - _LEAST) / (_MOST - _LEAST), 0.0), 1.0)
+        self.uphill = uphill if share else 0j
+        out = rest - self._mounts
+        angle = np.angle(out * uphill.conjugate())
+        drawn_in = self._drawn_in * np.clip(-np.cos(angle) / _DOWNHILL, 0.0, 1.0) / np.abs(out)
+        wanted = out * ((1 - share * drawn_in) * np.exp(1j * share * _TURNED * np.sin(2 * angle)) - 1)
+        if float(np.abs(wanted - self.shift).max()) > (_SMALLEST if share else 0.0):
+            self.shift = wanted
+
+    def not_downhill(self, velocity: complex) -> complex:
+        """Return a correction of the velocity without what of it goes downhill: feet slip that way, unnoticed.
+
+        Parameters
+        ----------
+        velocity : complex
+            In the heading frame [m/s].
+        """
+        along = (velocity * self.uphill.conjugate()).real
+        return velocity - along * self.uphill / abs(self.uphill) ** 2 if along < 0 else velocity
+
+    def least_raise(self, plane: FootPlane, height: float) -> float:
+        """Return how much higher than commanded a body is at least whose underside is clear of a slope [m].
+
+        Parameters
+        ----------
+        plane : FootPlane
+            The plane of the feet, in the heading frame.
+        height : float
+            Commanded height of the body [m].
+        """
+        drop = abs(plane.slope_x) * self._half[0] + abs(plane.slope_y) * self._half[1]
+        return float(drop + min(self._half[2] + _ROOM - height, 0.0))
