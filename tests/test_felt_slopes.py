@@ -156,15 +156,15 @@ def test_a_robot_walks_up_a_slope_of_twenty_degrees_level_and_stands_on_it():
 
 def test_a_slippery_slope_is_refused_with_its_angle_and_the_way_back_stays_open():
     limit = SlopeLimit(0.8)
-    steep, gentle = (FootPlane(0.0, math.tan(math.radians(angle)), 0.0) for angle in (25.0, 15.0))
+    steep, gentle = (FootPlane(0.0, math.tan(math.radians(angle)), 0.0) for angle in (27.0, 15.0))
     limit.step(gentle, 0.1 + 0j)
     assert not limit.refuses
     limit.step(steep, 0.1 + 0j)
     assert limit.refuses
-    assert "25 deg" in limit.reason
+    assert "27 deg" in limit.reason
     limit.step(FootPlane(0.0, math.tan(limit.steepest - 0.01), 0.0), 0.1 + 0.02j)
     assert limit.refuses
-    assert "25 deg" in limit.reason
+    assert "27 deg" in limit.reason
     limit.step(steep, -0.1 + 0j)
     assert not limit.refuses
     limit.step(steep, 0.1 + 0j)

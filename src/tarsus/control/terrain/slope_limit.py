@@ -9,7 +9,7 @@ from tarsus.control.terrain.foot_plane import FootPlane
 __all__ = ["SlopeLimit"]
 
 # Friction that legs use up which press against each other, over their load: they give way outwards under it.
-_PRELOAD = 0.38
+_PRELOAD = 0.32
 # How much less steep a slope is that is walked again [rad].
 _HYSTERESIS = math.radians(2.0)
 

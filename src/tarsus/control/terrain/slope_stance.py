@@ -18,7 +18,7 @@ __all__ = ["SlopeStance"]
 # Slopes from which on, and up to which, the stance changes [rad].
 _LEAST, _MOST = math.radians(6.0), math.radians(14.0)
 # How far legs turn about their coxa axes [rad]; how far feet are drawn in, over the length of femur and tibia.
-_TURNED, _DRAWN_IN = math.radians(30.0), 0.15
+_TURNED, _DRAWN_IN = math.radians(30.0), 0.13
 # Part of its axis by which a leg points downhill whose foot is drawn in as far as any.
 _DOWNHILL = 2 / 3
 # Smaller changes wait [m].
