@@ -371,3 +371,28 @@ def test_the_body_is_lowered_only_for_a_while_for_a_foot_without_ground():
     assert 1.3 < 0.01 * sum(sought) < 1.5
     assert not sought[-1]
     assert not contacts.seeks(0)
+
+
+def test_while_contacts_are_as_planned_they_are_looked_at_now_and_then_and_a_change_at_once(monkeypatch):
+    controller, looks, dt = WalkController(STRIDER), [], 0.01
+    look = FootContacts.step
+
+    def noted(contacts, readings, down, elapsed, **more):
+        looks.append((round(elapsed / dt), more["count"]))
+        look(contacts, readings, down, elapsed, **more)
+
+    monkeypatch.setattr(FootContacts, "step", noted)
+    for tick in range(200):
+        contacts = controller.contacts
+        standing = int(contacts.argmax())
+        if tick == 150:
+            contacts[standing] = False
+        before = len(looks)
+        controller.step((0.05, 0.0, 0.0), dt, SensorReadings(contacts=contacts.tolist(), attitude=(0.0, 0.0)))
+        if tick == 150:
+            assert len(looks) == before + 1
+            assert not controller._walk.ground.contacts.touches(standing)
+    # No time and no reading is lost.
+    assert all(ticks == count for ticks, count in looks)
+    assert sum(ticks for ticks, _ in looks) > 190
+    assert len(looks) < 120

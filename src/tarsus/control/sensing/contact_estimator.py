@@ -37,11 +37,13 @@ class ContactEstimator:
         Whether the contact is measured.
     error : float
         Estimated fraction of wrong readings.
+    certain : bool
+        Whether more readings like the last ones change no estimate.
     """
 
     def __init__(self, legs: int) -> None:
         self.touching, self.known = [True] * legs, [False] * legs
-        self.error = _ERROR
+        self.error, self.certain = _ERROR, False
         self._odds = [_BOUND] * legs
         self._ages = [math.inf] * legs
         self._last: list[tuple[bool, bool]] = [(True, True)] * legs
@@ -52,7 +54,7 @@ class ContactEstimator:
         """Probability that each foot bears load."""
         return [1 / (1 + math.exp(-odds)) for odds in self._odds]
 
-    def step(self, readings: Sequence[bool | None] | None, dt: float) -> None:
+    def step(self, readings: Sequence[bool | None] | None, dt: float, *, count: int = 1) -> None:
         """Take in the contacts of one tick.
 
         Parameters
@@ -61,6 +63,8 @@ class ContactEstimator:
             Which feet touch the ground, as measured; None where nothing is.
         dt : float
             Time since the last tick [s].
+        count : int
+            How many readings have been the same, this one included.
         """
         evidence = math.log((1 - self.error) / self.error)
         for leg, reading in enumerate(readings or (None,) * len(self.touching)):
@@ -74,8 +78,9 @@ class ContactEstimator:
             self.touching[leg] = odds > 0
             before, last = self._last[leg]
             self._wrong += before == reading != last
-            self._read += 1
+            self._read += count
             self._last[leg] = (last, reading)
         if self._read > _MEMORY:
             self._wrong, self._read = self._wrong / 2, self._read / 2
+        self.certain = all(abs(odds) >= _BOUND for odds in self._odds)
         self.error = min(self._wrong / self._read, _GREATEST_ERROR)

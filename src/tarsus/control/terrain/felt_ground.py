@@ -23,6 +23,7 @@ from tarsus.control.terrain.roughness import GroundAdaptation, Roughness
 from tarsus.control.terrain.slope_limit import SlopeLimit
 from tarsus.control.terrain.slope_stance import SlopeStance
 from tarsus.control.terrain.support import Support, holds
+from tarsus.control.transition.foothold_transfer import FootholdTransfer
 from tarsus.control.walk.felt_feet import FeltFoot, FeltInputs, GroundUnder
 from tarsus.control.walk.ground_pose import body_posture
 from tarsus.control.walk.state import PHASE_TOLERANCE, GaitState
@@ -48,7 +49,7 @@ _LOWERING, _SLOW_LOWERING = 0.4, 0.25
 # A foot this close to its least height hangs [m], and how much lower the ground under it is then expected [m].
 _HANGING, _LOWER = 0.002, 0.03
 # How often height, tilt and lost way are looked at [s].
-_SLOW_PERIOD = 0.03
+_SLOW_PERIOD = 0.03 - PHASE_TOLERANCE
 # Below this pace the robot waits for support.
 _WAITING = 0.5
 
@@ -109,6 +110,9 @@ class FeltGround:
         self.odometry, self.measured = LegOdometry(robot), ValidReadings()
         self._tilt: tuple[float, float] | None = None
         self._bearing, self._held = list[int](), False
+        # What the feet are given while all is as planned; ticks and times since contacts and support were looked at.
+        self._inputs: FeltInputs | None = None
+        self._stands, self._ticks, self._unread, self._idle = True, 0, 0.0, 0.0
         self._since, self._drift, self._rates = _SLOW_PERIOD, 0j, PostureRates(0.0, (0.0, 0.0))
 
     @property
@@ -141,17 +145,21 @@ class FeltGround:
             Joint angles [rad].
         """
         valid = self.measured = self._validator.validate(readings, dt)
-        if valid.attitude is not None:
-            roll, pitch = state.posture.value[3:5].tolist()
-            self._tilt = (valid.attitude[0] - roll, valid.attitude[1] - pitch)
         measured = self._loads.contacts(valid, angles, dt, down=state.down, phase=state.swing_phase)
+        down = state.down.tolist()
         if state.felt is None:
             if measured is None and valid.attitude is None:
                 return state, []
             heights = np.array(state.heights(float(state.posture.value[SWING_HEIGHT])))
             state = state._replace(ground_height=heights, felt=[FeltFoot()] * len(heights))
-        down = state.down.tolist()
-        self.contacts.step(measured, down, dt, age=valid.contact_age)
+        self._since, self._unread, self._ticks = self._since + dt, self._unread + dt, self._ticks + 1
+        if self._inputs is not None and self._since < _SLOW_PERIOD and self.contacts.as_planned(measured, down):
+            return state, []
+        if valid.attitude is not None:
+            roll, pitch = state.posture.value[3:5].tolist()
+            self._tilt = (valid.attitude[0] - roll, valid.attitude[1] - pitch)
+        dt, ticks, self._unread, self._ticks, self._inputs = self._unread, self._ticks, 0.0, 0, None
+        self.contacts.step(measured, down, dt, age=valid.contact_age, count=ticks)
         self.condition.step([self.contacts.touches(leg) for leg in range(len(down))], valid.attitude, dt)
         if self._loads.compliant:
             forces, feet = self._loads.forces(valid, angles), [(foot.real, foot.imag) for foot in state.foot.tolist()]
@@ -166,8 +174,7 @@ class FeltGround:
         *,
         timing: StepTiming,
         twist: Float[np.ndarray, "3"],
-        rest: Complex[np.ndarray, "legs"],
-        radii: list[float],
+        footholds: FootholdTransfer,
         excluded: list[int],
         standing: bool,
     ) -> FeltInputs:
@@ -183,51 +190,54 @@ class FeltGround:
             The gait and its frequency.
         twist : array, shape (3,)
             The twist that is followed.
-        rest : complex array, shape (legs,)
-            Rest footholds in the heading frame [m].
-        radii : list of float
-            Greatest distance from its rest foothold at which each foot may be put down [m].
+        footholds : FootholdTransfer
+            Rest footholds, and how far from them feet may be put down.
         excluded : list of int
             Legs that bear no load.
         standing : bool
             Whether the robot stands.
         """
-        legs, elevation = range(len(rest)), float(state.elevation.value[0])
+        steps = [leg not in excluded for leg in range(len(state.foot))]
+        due = None if standing else timing.due(state, dt)
+        kept, self._idle = self._inputs, self._idle + dt
+        if kept is not None and not any(due or ()) and (kept.steps, self._stands) == (steps, standing):
+            return kept
+        dt, elevation, self._idle, self._stands = self._idle, float(state.elevation.value[0]), 0.0, standing
         turn, contacts = cmath.exp(-1j * state.yaw), self.contacts
         places = [(foot - state.origin) * turn for foot in state.foot.tolist()]
-        steps = [leg not in excluded for leg in legs]
         down = [on and step for on, step in zip(state.down.tolist(), steps, strict=True)]
-        self._since += dt
-        if self._since >= _SLOW_PERIOD - PHASE_TOLERANCE:
-            self._update_posture(state, places, down, timing=timing, twist=twist, rest=rest)
+        if self._since >= _SLOW_PERIOD:
+            self._update_posture(state, places, down, timing=timing, twist=twist, rest=footholds.rest)
             self._since = 0.0
-        due = None if standing else timing.due(state, dt)
         self._decide_on_support(state, places, down, due, dt=dt, swing_time=timing.swing_time)
         self.roughness.decay(0.0 if standing else dt * timing.frequency)
-        in_air, under, footholds = self.condition.in_air, list[GroundUnder | None](), state.foothold.tolist()
-        stands = [True] * len(rest) if in_air else contacts.standing
-        for leg in legs:
+        in_air, under = self.condition.in_air, list[GroundUnder | None]()
+        stands = [True] * len(steps) if in_air else contacts.standing
+        for leg, foothold in enumerate(state.foothold.tolist()):
             if not steps[leg] or (down[leg] and stands[leg] and not (due and due[leg])):
                 under.append(None)
                 continue
-            expected = elevation + self.plane.at((footholds[leg] - state.origin) * turn)
+            expected = elevation + self.plane.at((foothold - state.origin) * turn)
             searches = not in_air and contacts.is_known(leg) and (down[leg] or contacts.lifted[leg])
             lowest = elevation + self._reach.lowest[leg] if searches else expected
             under.append(GroundUnder(expected, lowest, elevation + self._reach.highest[leg]))
-        return FeltInputs(
-            under=under,
-            stands=stands,
-            steps=steps,
+        far = 2 * self._reach.stroke / max(*footholds.placement_radii, 1e-6) - 1
+        inputs = FeltInputs(
+            under,
+            stands,
+            steps,
             depth=_DEPTH_SHARE * self.roughness.value,
             climb=self._rates.climb,
             turn=self._rates.turn,
             drift=self._drift,
-            travel=_SLOW_TRAVEL
-            + (_FAST_TRAVEL - _SLOW_TRAVEL) * max(2 * self._reach.stroke / max(*radii, 1e-6) - 1, 0.0),
+            travel=_SLOW_TRAVEL + (_FAST_TRAVEL - _SLOW_TRAVEL) * max(far, 0.0),
             pace=self.support.pace,
             swing_height=float(state.posture.value[SWING_HEIGHT]) + self.roughness.swing_rise,
             lowering=_SLOW_LOWERING if self._loads.estimated else _LOWERING,
         )
+        # As long as all is as planned, it stays: yielding feet and a walk that slows down are looked at in each tick.
+        self._inputs = None if self._loads.compliant or self.support.pace < 1.0 else inputs
+        return inputs
 
     def _update_posture(
         self,

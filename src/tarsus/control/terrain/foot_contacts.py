@@ -53,9 +53,15 @@ class FootContacts:
         self._without, self._with, self._evidence = ([0.0] * legs for _ in range(3))
 
     def step(
-        self, readings: Sequence[bool | None] | None, down: Sequence[bool], dt: float, *, age: float = 0.0
+        self,
+        readings: Sequence[bool | None] | None,
+        down: Sequence[bool],
+        dt: float,
+        *,
+        age: float = 0.0,
+        count: int = 1,
     ) -> None:
-        """Take in the contacts of one tick.
+        """Take in the contacts of one tick, or of some in which they are the same.
 
         Parameters
         ----------
@@ -67,9 +73,11 @@ class FootContacts:
             Time since the last tick [s].
         age : float
             Time since the measurement [s].
+        count : int
+            Number of ticks.
         """
         self.age = age
-        self.estimator.step(readings, dt)
+        self.estimator.step(readings, dt, count=count)
         for leg, on in enumerate(down):
             if self.estimator.known[leg] and not self.estimator.touching[leg]:
                 self._without[leg], self._with[leg] = self._without[leg] + dt, 0.0
@@ -119,6 +127,11 @@ class FootContacts:
         self._unheld += dt
         if self._unheld > _UNHELD:
             self._evidence[longest], self.standing[longest] = math.inf, True
+
+    def as_planned(self, readings: Sequence[bool | None] | None, down: Sequence[bool]) -> bool:
+        """Return whether the feet touch the ground that should, and no others, and that is certain."""
+        certain = self.estimator.certain and self.estimator.touching == down
+        return certain and readings is not None and list(readings) == down
 
     def is_open(self, leg: int) -> bool:
         """Return whether a contact is missing that other feet tell of: that of a switch that stays open."""

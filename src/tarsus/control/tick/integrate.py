@@ -60,8 +60,7 @@ def _step_inputs(walk: WalkComponents, tick: TickState, dt: float) -> StepInputs
             dt,
             timing=timing,
             twist=tick.twist,
-            rest=transitions.footholds.rest,
-            radii=transitions.footholds.placement_radii,
+            footholds=transitions.footholds,
             excluded=walk.foot_targets.legs,
             standing=standing,
         )
