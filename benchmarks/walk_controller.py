@@ -38,6 +38,8 @@ RUNS = 5
 DT = 0.02
 ROUGH_TICKS, ROUGHNESS, CONTACT_TOLERANCE = 20_000, 0.004, 1e-4
 """Number of ticks on rough ground, its standard deviation [m], and the distance at which a foot has contact [m]."""
+FELT_TICKS, FELT_RATIO = 5_000, 1.3
+"""Number of ticks with readings, and the greatest ratio of their median to that of blind ones."""
 COMMAND_INTERVAL = 50
 """Ticks between changes of the twist; every fifth change also changes gait, body pose or other parameters."""
 
@@ -52,6 +54,7 @@ EXCESSIVE_SPEED = 10.0
 def controller_rows(robot: Robot) -> Iterator[Row]:
     """Measure the walk controller."""
     yield from tick_rows(robot)
+    yield from felt_rows(robot)
     yield from rough_rows(robot)
     yield from guard_rows(robot)
     yield from rise_rows(robot)
@@ -89,8 +92,8 @@ def commands(rng: np.random.Generator, controller: WalkController) -> Iterator[C
         number += 1
 
 
-def ticks(robot: Robot, count: int) -> Float[np.ndarray, "..."]:
-    """Return the processor time of each of a number of ticks [s]."""
+def ticks(robot: Robot, count: int, *, dt: float = DT, felt: bool = False) -> Float[np.ndarray, "..."]:
+    """Return the processor time of each of a number of ticks, blind or with contacts, attitude and joint angles [s]."""
     controller = WalkController(robot, Gait.named("tripod"))
     command_stream = commands(np.random.default_rng(4), controller)
     times, command = np.empty(count), next(command_stream)
@@ -98,8 +101,10 @@ def ticks(robot: Robot, count: int) -> Float[np.ndarray, "..."]:
         for tick in range(count):
             if tick % COMMAND_INTERVAL == COMMAND_INTERVAL - 1:
                 command = next(command_stream)
+            contacts, angles = controller.contacts, controller.angles
+            readings = SensorReadings(contacts=contacts, attitude=(0.0, 0.0), joint_angles=angles) if felt else None
             start = time.thread_time_ns()
-            controller.step(command, DT)
+            controller.step(command, dt, readings)
             times[tick] = (time.thread_time_ns() - start) * 1e-9
     return times
 
@@ -127,6 +132,19 @@ def tick_rows(robot: Robot) -> Iterator[Row]:
         compared=f"over {WORST * 1e3:.0f} ms in single runs: {over}; 99.9 %: {np.quantile(times, 0.999) * 1e6:.0f} us",
         target=f"<= {WORST * 1e6:.0f} us",
         met=worst <= WORST,
+    )
+
+
+def felt_rows(robot: Robot) -> Iterator[Row]:
+    """Measure ticks at 100 Hz with contacts, attitude and joint angles against blind ones, by turns."""
+    runs = [[ticks(robot, FELT_TICKS, dt=0.01, felt=felt) for felt in (False, True)] for _ in range(RUNS)]
+    blind, felt = np.median(np.min(runs, axis=0), axis=-1).tolist()
+    yield Row(
+        what=f"tick at 100 Hz with contacts, attitude and joint angles, {FELT_TICKS:,} ticks: median over a blind one",
+        measured=f"{felt / blind:.2f}",
+        compared=f"{felt * 1e6:.0f} and {blind * 1e6:.0f} us",
+        target=f"<= {FELT_RATIO}",
+        met=felt <= FELT_RATIO * blind,
     )
 
 
