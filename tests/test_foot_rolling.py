@@ -189,10 +189,10 @@ def test_balls_roll_from_the_inclination_of_the_tibia_at_rest(seed):
     sizes = {
         name: size * rng.uniform(0.9, 1.1, 6) for name, size in {"coxa": 0.07, "femur": 0.1, "tibia": 0.18}.items()
     }
-    offset, radius = rng.uniform(-0.02, 0.02, (6, 2)), rng.uniform(0.0, 0.03, 6)
+    offset, radius = rng.uniform(-0.01, 0.01, (6, 2)), rng.uniform(0.0, 0.03, 6)
     limits = np.tile(FULL_TURN, (6, 1, 1))
     robot = plain_hexapod(**sizes, femur_axis_offset=offset, foot_radius=radius, limits=limits)
-    x, y, z, roll, pitch, yaw = rng.uniform(-1, 1, 6) * (0.02, 0.02, 0.03, 0.1, 0.1, 0.1) + (0, 0, 0.11, 0, 0, 0)
+    x, y, z, roll, pitch, yaw = rng.uniform(-1, 1, 6) * (0.02, 0.02, 0.02, 0.1, 0.1, 0.1) + (0, 0, 0.14, 0, 0, 0)
     rest = rng.uniform(0.22, 0.28, 6) * np.exp(1j * (robot.mount_yaw + rng.uniform(-0.3, 0.3, 6)))
     rolling, pose = FootRolling(robot), Pose.from_rpy(roll, pitch, yaw, (x, y, z))
     rolling.step(np.array([x, y, z, roll, pitch, yaw, 0.03]), rest, [], 0.02)
