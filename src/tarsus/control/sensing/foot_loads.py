@@ -21,6 +21,9 @@ __all__ = ["FootLoads"]
 
 # A foot that bears this share of the robot's weight is on the ground.
 _CONTACT_SHARE = 0.04
+# Greatest speed of feet that go down; where contacts are estimated, feet press on the ground before they are known to
+# touch it [m/s].
+_DESCENT, _ESTIMATED_DESCENT = 0.4, 0.25
 
 
 class FootLoads:
@@ -50,6 +53,11 @@ class FootLoads:
     def compliant(self) -> bool:
         """Whether the feet yield to forces; only then are forces of use."""
         return self._filter is not None
+
+    @property
+    def fastest_descent(self) -> float:
+        """Greatest speed with which feet may go down in search of the ground [m/s]."""
+        return _ESTIMATED_DESCENT if self.estimated else _DESCENT
 
     def forces(self, valid: ValidReadings, angles: Float[np.ndarray, "legs 3"]) -> Sequence[Vector | None] | None:
         """Return the forces of the ground on the feet [N], measured or from joint torques; None where unknown.

@@ -22,7 +22,7 @@ from tarsus.control.terrain.reach import Reach, reachable_share
 from tarsus.control.terrain.roughness import GroundAdaptation, Roughness
 from tarsus.control.terrain.slope_limit import SlopeLimit
 from tarsus.control.terrain.slope_stance import SlopeStance
-from tarsus.control.terrain.support import Support, holds
+from tarsus.control.terrain.support import Support
 from tarsus.control.transition.foothold_transfer import FootholdTransfer
 from tarsus.control.walk.felt_feet import FeltFoot, FeltInputs, GroundUnder
 from tarsus.control.walk.ground_pose import body_posture
@@ -43,11 +43,6 @@ _SLOPE_RATE = 2.0
 _DEPTH_SHARE = 0.6
 # Fraction of the swing in which a foot travels, up to half the longest stroke and with the longest one.
 _SLOW_TRAVEL, _FAST_TRAVEL = 0.75, 0.92
-# Greatest speed of feet that go down; where contacts are estimated, feet press on the ground before they are known to
-# touch it [m/s].
-_LOWERING, _SLOW_LOWERING = 0.4, 0.25
-# A foot this close to its least height hangs [m], and how much lower the ground under it is then expected [m].
-_HANGING, _LOWER = 0.002, 0.03
 # How often height, tilt and lost way are looked at [s].
 _SLOW_PERIOD = 0.03 - PHASE_TOLERANCE
 # Below this pace the robot waits for support.
@@ -109,7 +104,6 @@ class FeltGround:
         self._centre = complex(com[0], com[1])
         self.odometry, self.measured = LegOdometry(robot), ValidReadings()
         self._tilt: tuple[float, float] | None = None
-        self._bearing, self._held = list[int](), False
         # What the feet are given while all is as planned; ticks and times since contacts and support were looked at.
         self._inputs: FeltInputs | None = None
         self._stands, self._ticks, self._unread, self._idle = True, 0, 0.0, 0.0
@@ -233,7 +227,7 @@ class FeltGround:
             travel=_SLOW_TRAVEL + (_FAST_TRAVEL - _SLOW_TRAVEL) * max(far, 0.0),
             pace=self.support.pace,
             swing_height=float(state.posture.value[SWING_HEIGHT]) + self.roughness.swing_rise,
-            lowering=_SLOW_LOWERING if self._loads.estimated else _LOWERING,
+            lowering=self._loads.fastest_descent,
         )
         # As long as all is as planned, it stays: yielding feet and a walk that slows down are looked at in each tick.
         self._inputs = None if self._loads.compliant or self.support.pace < 1.0 else inputs
@@ -258,11 +252,8 @@ class FeltGround:
         )
         reach = self._reach
         reach.update(state.posture.value, rest, twist, timing.stance_time)
-        rises = [(over[leg] if leg in bears else self.plane.at(complex(rest[leg]))) - self.plane.height for leg in legs]
-        for leg in legs:
-            if down[leg] and contacts.seeks(leg) and over[leg] < reach.lowest[leg] + _HANGING:
-                # The foot hangs at the end of its reach: with the body lower it may find ground.
-                rises[leg] = reach.lowest[leg] - self.plane.height - _LOWER
+        seeking = [down[leg] and contacts.seeks(leg) for leg in legs]
+        rises = reach.rises(self.plane, rest, over, bears=bears, seeking=seeking)
         highest = reach.highest_stand(float(state.posture.value[SWING_HEIGHT]))
         level = self.plane.levelled(self._tilt)
         if self._tilt is not None:
@@ -289,10 +280,9 @@ class FeltGround:
         if tilt is not None:
             contacts.balance(down, places, centre, tilt, time["dt"])
         legs = [leg for leg, on in enumerate(down) if on and not (due and due[leg]) and contacts.supports(leg)]
-        if legs != self._bearing or not self._since:
-            self._bearing, self._held = legs, holds([places[leg] for leg in legs], centre)
+        stays = self.support.holds(legs, places, centre, anew=not self._since)
         lifts, fallen = any(due or ()), self.condition.fallen
-        held = due is None or (self._held and not (lifts and self.slope.refuses))
+        held = due is None or (stays and not (lifts and self.slope.refuses))
         self.support.step(stays=held and not fallen, lifts=lifts and not fallen, **time)
 
     @property

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from tarsus.control.terrain.foot_plane import FootPlane
 from tarsus.control.workspace.stance_geometry import SWING_HEIGHT, StanceGeometry, joint_margin, rotation_rows
 from tarsus.robot.robot import Robot
 
@@ -20,6 +21,8 @@ _TRIED = np.linspace(-0.8, 0.8, 121)
 _LEVEL = len(_TRIED) // 2
 # Change of a stroke that changes the heights that a leg reaches [m]; turning counts at this distance [m].
 _STROKE_STEP, _TURNING_ARM = 0.01, 0.2
+# A foot this close to its least height hangs [m], and how much lower the ground under it is then expected [m].
+_HANGING, _LOWER = 0.002, 0.03
 # Room over the ground that a leg's greatest height leaves for its swing, over the swing height.
 _CLEARANCE = 1.5
 
@@ -84,6 +87,36 @@ class Reach:
             The swing height [m].
         """
         return [height - _CLEARANCE * swing_height for height in self.highest]
+
+    def rises(
+        self,
+        plane: FootPlane,
+        rest: Complex[np.ndarray, "legs"],
+        over: Sequence[float],
+        *,
+        bears: Sequence[int],
+        seeking: Sequence[bool],
+    ) -> list[float]:
+        """Return the height of the ground under each leg, as far as it is known, over the plane's at the origin [m].
+
+        Parameters
+        ----------
+        plane : FootPlane
+            The plane of the standing feet.
+        rest : complex array, shape (legs,)
+            Rest footholds in the heading frame [m].
+        over : sequence of float
+            Height of each foot [m].
+        bears : sequence of int
+            Legs whose feet bear load.
+        seeking : sequence of bool
+            Whether each foot should stand and has no contact: with the body lower it may find ground.
+        """
+        known = [over[leg] if leg in bears else plane.at(complex(rest[leg])) for leg in range(len(rest))]
+        for leg, seeks in enumerate(seeking):
+            if seeks and over[leg] < self.lowest[leg] + _HANGING:
+                known[leg] = self.lowest[leg] - _LOWER
+        return [height - plane.height for height in known]
 
 
 def reachable_share(rises: Sequence[float], lowest: Sequence[float], highest: Sequence[float]) -> float:

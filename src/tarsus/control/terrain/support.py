@@ -49,6 +49,25 @@ class Support:
     def __init__(self) -> None:
         self.pace, self.waits = 1.0, False
         self._waited = self._unsupported = 0.0
+        self._bearing, self._held = list[int](), False
+
+    def holds(self, legs: list[int], places: Sequence[complex], centre: complex, *, anew: bool) -> bool:
+        """Return whether feet hold the robot; they are looked at again where they are others, or when asked to.
+
+        Parameters
+        ----------
+        legs : list of int
+            Legs whose feet bear load.
+        places : sequence of complex
+            All feet, x + iy [m].
+        centre : complex
+            The centre of mass [m].
+        anew : bool
+            Whether to look at the same feet again.
+        """
+        if anew or legs != self._bearing:
+            self._bearing, self._held = legs, holds([places[leg] for leg in legs], centre)
+        return self._held
 
     def step(self, *, stays: bool, lifts: bool, dt: float, swing_time: float) -> None:
         """Decide for a tick.
