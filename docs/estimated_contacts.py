@@ -27,12 +27,12 @@ def walk(name: str, ground: str, sensors: Any, seed: int) -> tuple[float, float,
     plant = SimulatedPlant(robot, terrain=GROUNDS[ground](seed), sensors=sensors, seed=seed)
     controller = tarsus.RobotController(robot)
     plant.start(controller.output)
-    start, ticks, fell = plant.state.body.position[0], round(WAY / speed / DT), False
+    start, ticks, touched = plant.state.body.position[0], round(WAY / speed / DT), False
     right, late, delays = [], np.zeros(robot.legs, dtype=int), list[int]()
     for _ in range(ticks):
         readings = plant.step(controller.output, DT)
         state = plant.state
-        fell = fell or state.body_touches
+        touched = touched or state.body_touches
         controller.step((speed, 0.0, 0.0), DT, readings)
         walk = getattr(controller._activity, "controller", None)
         if walk is None or not any(walk._walk.ground.contacts.estimator.known):
@@ -43,7 +43,7 @@ def walk(name: str, ground: str, sensors: Any, seed: int) -> tuple[float, float,
         delays += late[felt & touches & (late > 0)].tolist()
         late = np.where(touches & ~felt, late + 1, 0)
     way = float(plant.state.body.position[0] - start) / (speed * DT * ticks)
-    return way, float(np.mean(right)), delays, fell
+    return way, float(np.mean(right)), delays, touched
 
 
 def row(name: str, ground: str, seeds: int) -> str:
@@ -52,9 +52,9 @@ def row(name: str, ground: str, seeds: int) -> str:
     switched = [walk(name, ground, "ideal", seed) for seed in draws]
     found = [walk(name, ground, JOINTS, seed) for seed in draws]
     ways = [float(np.median([each[0] for each in walks])) for walks in (switched, found)]
-    right, falls = np.median([each[1] for each in found]), sum(each[3] for each in found)
+    right, touches = np.median([each[1] for each in found]), sum(each[3] for each in found)
     half, most = np.percentile([ticks for each in found for ticks in each[2]], [50, 90]) * DT * 1e3
-    without = f"{ways[1]:.2f}" + (f" ({falls} of {len(found)} fell)" if falls else "")
+    without = f"{ways[1]:.2f}" + (f" ({touches} of {len(found)} touched)" if touches else "")
     return f"| {name}, {ground} | {ways[0]:.2f} | {without} | {100 * right:.0f} % | {half:.0f}, {most:.0f} ms |"
 
 

@@ -25,6 +25,8 @@ PAGE = Path(__file__).parent / "ground.md"
 ROBOTS = ("strider", "phantomx", "makeyourpet")
 # Way that is commanded in each walk [m], and how near to the start the ground is level [m].
 WAY, CLEAR = 1.2, 0.35
+# A robot whose body is on the ground for longer has fallen [s].
+LIES = 1.0
 
 
 def smooth(seed: int, height: float) -> Any:
@@ -87,11 +89,12 @@ CASES: dict[str, Case] = {
 
 
 class Outcome(NamedTuple):
-    """What became of a walk: way over the commanded one, RMS tilt [deg], slip [m/m], whether it fell."""
+    """What became of a walk: way over the commanded one, RMS tilt [deg], slip [m/m], what happened to the body."""
 
     way: float
     tilt: float
     slip: float
+    touched: bool
     fell: bool
 
 
@@ -104,7 +107,7 @@ def walk(job: tuple[str, str, str, int]) -> Outcome:
     controller = tarsus.RobotController(robot, **case.options)
     output, dt = controller.output, 0.01
     plant.start(output)
-    start, tilts, slip, fell = plant.state.body.position[0], [], 0.0, False
+    start, tilts, slip, lying, touched, fell = plant.state.body.position[0], [], 0.0, 0.0, False, False
     ticks = round(WAY / speed / dt)
     for _ in range(ticks):
         readings = plant.step(output, dt)
@@ -112,21 +115,28 @@ def walk(job: tuple[str, str, str, int]) -> Outcome:
         roll, pitch, _ = np.asarray(state.body.rpy).tolist()
         tilts.append(math.hypot(roll, pitch))
         slip += float(state.slip_speeds.mean()) * dt
-        fell = state.body_touches or tilts[-1] > math.pi / 4
+        lying = lying + dt if state.body_touches else 0.0
+        touched = touched or state.body_touches
+        fell = lying > LIES or tilts[-1] > math.pi / 4
         if fell:
             break
         output = controller.step((speed, 0.0, 0.0), dt, readings)
     way = float(plant.state.body.position[0] - start)
     return Outcome(
-        way / (speed * dt * ticks), math.degrees(math.sqrt(np.mean(np.square(tilts)))), slip / max(way, 1e-3), fell
+        way / (speed * dt * ticks),
+        math.degrees(math.sqrt(np.mean(np.square(tilts)))),
+        slip / max(way, 1e-3),
+        touched,
+        fell,
     )
 
 
 def cell(found: list[Outcome]) -> str:
-    """Return medians: way, tilt and slip, with the number of falls."""
+    """Return medians: way, tilt and slip, with how often the body touched the ground, and how often the robot fell."""
     way, tilt, slip = (float(np.median([getattr(each, name) for each in found])) for name in ("way", "tilt", "slip"))
-    falls = sum(each.fell for each in found)
-    return f"{way:.2f}, {tilt:.1f}, {1000 * slip:.0f}" + (f" ({falls} of {len(found)} fell)" if falls else "")
+    counts = {name: sum(getattr(each, name) for each in found) for name in ("touched", "fell")}
+    notes = [f"{count} of {len(found)} {name}" for name, count in counts.items() if count]
+    return f"{way:.2f}, {tilt:.1f}, {1000 * slip:.0f}" + (f" ({', '.join(notes)})" if notes else "")
 
 
 def table(robot: str, grounds: list[str], cases: list[str], found: dict[tuple[str, str, str], list[Outcome]]) -> str:
