@@ -9,6 +9,9 @@ from tarsus.representation import represented
 
 __all__ = ["Faults"]
 
+# Bytes by which a frame is known to begin, at most.
+_HEADER = 4
+
 
 @represented()
 @dataclass(kw_only=True)
@@ -63,5 +66,6 @@ class Faults:
         elif kind == 1:
             del damaged[at]
         else:
-            damaged.insert(at, self._random.randrange(256))
+            # Before or within its header, one more byte leaves a frame whole.
+            damaged.insert(max(at, min(_HEADER, len(answer) - 1)), self._random.randrange(256))
         return bytes(damaged)
