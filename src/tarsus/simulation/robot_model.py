@@ -40,9 +40,9 @@ __all__ = [
 FLOOR_OF_MASS = 1e-4
 """Least mass of a body or link that can be simulated [kg]."""
 
-# Foot radius where the robot's file has none [m]. A smaller ball that is pressed into uneven ground by more than its
-# radius is held there; a greater one rolls on by more than 1 % of a step, which no plan for point feet makes up for.
-_POINT_FOOT = 0.003
+# Foot radius where the robot's file has none, on flat and on other ground [m]: a greater ball rolls on, which no plan
+# for point feet makes up for; a smaller one that is pressed into uneven ground by more than its radius is held there.
+_POINT_FOOT, _POINT_FOOT_UNEVEN = 0.001, 0.003
 # Greatest radius of the links' contact geometry, and its ratio to the foot radius.
 _LINK_RADIUS, _LINK_RATIO = 0.006, 0.75
 # Half the thickness of a body that is the polygon of its coxa axes [m].
@@ -129,6 +129,7 @@ def _bodies(robot: Robot, terrain: Terrain | None, table: ServoTable, *, damping
     apply_settings(spec)
     (terrain or Flat()).add_to(spec)
     spec.worldbody.add_light(pos=(0, 0, 3), dir=(0, 0, -1))
+    robot = _with_feet(robot, terrain)
     body = _add_body(spec, robot)
     for leg in range(robot.legs):
         _add_leg(body, robot, leg, table, damping[leg])
@@ -154,7 +155,9 @@ def model_assumptions(robot: Robot) -> tuple[str, ...]:
             f"{1000 * BODY_HEIGHT:g} mm high"
         )
     if not np.all(robot.foot_radius):
-        lines.append(f"foot radius where it is 0: {1000 * _POINT_FOOT:g} mm")
+        lines.append(
+            f"foot radius where it is 0: {1000 * _POINT_FOOT:g} mm, {1000 * _POINT_FOOT_UNEVEN:g} mm on uneven ground"
+        )
     return tuple(lines)
 
 
@@ -220,7 +223,7 @@ def _add_leg(body: Any, robot: Robot, leg: int, table: ServoTable, damping: list
     parent.add_geom(
         name=foot_geom_name(robot, leg),
         type=geom,
-        size=(_foot_radius(robot, leg), 0, 0),
+        size=(float(robot.foot_radius[leg]), 0, 0),
         pos=steps[2],
         **(_robot_geom() | {"rgba": _FOOT_COLOUR}),
     )
@@ -276,7 +279,7 @@ def _add_joint(body: Any, robot: Robot, place: tuple[int, int], damping: float, 
 def _add_link_geom(body: Any, robot: Robot, place: tuple[int, int], step: Shaped[np.ndarray, "..."]) -> None:
     """Add the capsule of a link; that of the tibia ends inside the ball of the foot."""
     leg, joint = place
-    foot = _foot_radius(robot, leg)
+    foot = float(robot.foot_radius[leg])
     length = float(np.linalg.norm(step))
     end = step * max(1.0 - foot / length, 0.5) if joint == 2 else step
     if length < _SHORT:
@@ -291,5 +294,8 @@ def _add_link_geom(body: Any, robot: Robot, place: tuple[int, int], step: Shaped
     )
 
 
-def _foot_radius(robot: Robot, leg: int) -> float:
-    return require_number("foot_radius", float(robot.foot_radius[leg]), zero=True) or _POINT_FOOT
+def _with_feet(robot: Robot, terrain: Terrain | None) -> Robot:
+    """Return the robot with the radii that its feet have on a terrain."""
+    point = _POINT_FOOT if isinstance(terrain or Flat(), Flat) else _POINT_FOOT_UNEVEN
+    radii = [require_number("foot_radius", radius, zero=True) for radius in np.asarray(robot.foot_radius).tolist()]
+    return robot.replace(foot_radius=[radius or point for radius in radii])

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 __all__ = ["POINT_FOOT", "FootContact", "contact_displacement", "normal_force"]
 
-POINT_FOOT = 0.003
+POINT_FOOT = 0.001
 """Radius of a foot whose radius is 0 in the robot's file, as in the simulation [m]."""
 
 
