@@ -28,6 +28,9 @@ def off(owner: Any, name: str, result: Any) -> Callable[[], AbstractContextManag
     return partial(patch.object, owner, name, lambda *_, **__: result)
 
 
+# In place of the attribute: all feet that should stand do.
+ALL_STAND = property(lambda contacts: [True] * len(contacts.lifted), lambda *_: None)
+
 CASES["off"] = Case()
 CASES["off: adaptation"] = Case(options=NOT_ADAPTED)
 CASES["off: levelling"] = Case(options={"levelling": None})
@@ -39,7 +42,7 @@ MECHANISMS: dict[str, tuple[str, Callable[[], AbstractContextManager[Any]]]] = {
     "adaptation": ("off: adaptation", nullcontext),
     "lost way": ("off: odometry", nullcontext),
     "obstacles": ("off", off(ground_contact, "_collides", result=False)),
-    "search in stance": ("off", off(FootContacts, "stands", result=True)),
+    "search in stance": ("off", partial(patch.object, FootContacts, "standing", ALL_STAND, create=True)),
     "reach": ("off", off(PostureFeedback, "fit_to_reach", result=None)),
     "contacts": ("blind", nullcontext),
 }
