@@ -21,7 +21,7 @@ __all__ = ["servos"]
     epilog=examples(
         "tarsus servos strider --gait wave --body-height 130",
         "tarsus servos strider --factor 1.5 --payload 0.2",
-        "tarsus servos phantomx --gait ripple --body-height 130 --distance 300 --json",
+        "tarsus servos phantomx --gait ripple --body-height 140 --distance 300 --json",
         "tarsus servos strider --rule continuous --gait wave --body-height 140",
     ),
 )
