@@ -15,6 +15,7 @@ import numpy as np
 
 from tarsus.errors import InputError
 from tarsus.gait.walk_setup import require_number
+from tarsus.load.compliant.foot_contact import POINT_FOOT
 from tarsus.robot.robot import JOINTS, Robot
 from tarsus.simulation.engine import mujoco_module
 from tarsus.simulation.inertia import BODY_HEIGHT, SECTION, body_inertia, link_inertia, link_step
@@ -40,9 +41,9 @@ __all__ = [
 FLOOR_OF_MASS = 1e-4
 """Least mass of a body or link that can be simulated [kg]."""
 
-# Foot radius where the robot's file has none, on flat and on other ground [m]: a greater ball rolls on, which no plan
-# for point feet makes up for; a smaller one that is pressed into uneven ground by more than its radius is held there.
-_POINT_FOOT, _POINT_FOOT_UNEVEN = 0.001, 0.003
+# Radius of point feet on other than flat ground [m]: a greater ball rolls on, which no plan for point feet makes up
+# for; a smaller one that is pressed into uneven ground by more than its radius is held there.
+_POINT_FOOT_UNEVEN = 0.003
 # Greatest radius of the links' contact geometry, and its ratio to the foot radius.
 _LINK_RADIUS, _LINK_RATIO = 0.006, 0.75
 # Half the thickness of a body that is the polygon of its coxa axes [m].
@@ -127,9 +128,10 @@ def _bodies(robot: Robot, terrain: Terrain | None, table: ServoTable, *, damping
     spec.compiler.degree = False
     spec.compiler.autolimits = True
     apply_settings(spec)
-    (terrain or Flat()).add_to(spec)
+    ground = terrain or Flat()
+    ground.add_to(spec)
     spec.worldbody.add_light(pos=(0, 0, 3), dir=(0, 0, -1))
-    robot = _with_feet(robot, terrain)
+    robot = _with_feet(robot, ground)
     body = _add_body(spec, robot)
     for leg in range(robot.legs):
         _add_leg(body, robot, leg, table, damping[leg])
@@ -156,7 +158,7 @@ def model_assumptions(robot: Robot) -> tuple[str, ...]:
         )
     if not np.all(robot.foot_radius):
         lines.append(
-            f"foot radius where it is 0: {1000 * _POINT_FOOT:g} mm, {1000 * _POINT_FOOT_UNEVEN:g} mm on uneven ground"
+            f"foot radius where it is 0: {1000 * POINT_FOOT:g} mm, {1000 * _POINT_FOOT_UNEVEN:g} mm on uneven ground"
         )
     return tuple(lines)
 
@@ -294,8 +296,8 @@ def _add_link_geom(body: Any, robot: Robot, place: tuple[int, int], step: Shaped
     )
 
 
-def _with_feet(robot: Robot, terrain: Terrain | None) -> Robot:
+def _with_feet(robot: Robot, ground: Terrain) -> Robot:
     """Return the robot with the radii that its feet have on a terrain."""
-    point = _POINT_FOOT if isinstance(terrain or Flat(), Flat) else _POINT_FOOT_UNEVEN
+    point = POINT_FOOT if isinstance(ground, Flat) else _POINT_FOOT_UNEVEN
     radii = [require_number("foot_radius", radius, zero=True) for radius in np.asarray(robot.foot_radius).tolist()]
     return robot.replace(foot_radius=[radius or point for radius in radii])
