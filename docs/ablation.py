@@ -15,6 +15,7 @@ from unittest.mock import patch
 
 import numpy as np
 
+from page_tables import replace_tables
 from rough_ground import CASES, GROUNDS, NOT_ADAPTED, PAGE, RANDOM, Case, Outcome, switches, walk
 from tarsus.control.terrain import ground_contact
 from tarsus.control.terrain.foot_contacts import FootContacts
@@ -81,9 +82,7 @@ def main() -> None:
     if asked.print:
         print(text)
         return
-    page = PAGE.read_text(encoding="utf-8")
-    before, start, rest = page.partition("<!-- table: ablation -->\n")
-    PAGE.write_text(f"{before}{start}{text}\n<!-- end -->{rest.partition('<!-- end -->')[2]}", encoding="utf-8")
+    replace_tables(PAGE, {"ablation": text})
 
 
 if __name__ == "__main__":

@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from page_tables import replace_tables
 from statics_true import GAITS, PATHS, walk
 from tarsus.gait.motion import Motion
 from tarsus.kinematics.inverse import inverse_kinematics
@@ -103,8 +104,7 @@ def table() -> str:
 
 def main() -> None:
     """Replace the table on the page."""
-    before, start, rest = PAGE.read_text(encoding="utf-8").partition("<!-- table: compensations -->\n")
-    PAGE.write_text(f"{before}{start}{table()}<!-- end -->{rest.partition('<!-- end -->')[2]}", encoding="utf-8")
+    replace_tables(PAGE, {"compensations": table()})
 
 
 if __name__ == "__main__":

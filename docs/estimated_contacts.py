@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 import tarsus
+from page_tables import replace_tables
 from rough_ground import GROUNDS, PAGE, RANDOM, ROBOTS, WAY
 from tarsus.simulation import SensorSuite, SimulatedPlant
 
@@ -75,9 +76,7 @@ def main() -> None:
     if asked.print:
         print(text)
         return
-    page = PAGE.read_text(encoding="utf-8")
-    before, start, rest = page.partition("<!-- table: estimated contacts -->\n")
-    PAGE.write_text(f"{before}{start}{text}\n<!-- end -->{rest.partition('<!-- end -->')[2]}", encoding="utf-8")
+    replace_tables(PAGE, {"estimated contacts": text})
 
 
 if __name__ == "__main__":

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from page_tables import replace_tables
 from tarsus import Command, ControlOutput, Robot, RobotController, SensorReadings, list_robots, load_robot, run
 from tarsus.kinematics.mass import STANDARD_GRAVITY, total_mass
 from tarsus.simulation import FootSwitch, Outcome, SensorSuite, SimulatedPlant, TracedPlant
@@ -148,11 +149,7 @@ def state_table() -> str:
 
 def main() -> None:
     """Replace the tables on the page."""
-    text = PAGE.read_text(encoding="utf-8")
-    for name, table in (("faults", fault_table()), ("states", state_table())):
-        before, start, rest = text.partition(f"<!-- table: {name} -->\n")
-        text = f"{before}{start}{table}<!-- end -->{rest.partition('<!-- end -->')[2]}"
-    PAGE.write_text(text, encoding="utf-8")
+    replace_tables(PAGE, {"faults": fault_table(), "states": state_table()})
 
 
 if __name__ == "__main__":

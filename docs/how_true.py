@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
+from page_tables import replace_tables
 from tarsus.control.command import Command
 from tarsus.control.compensated_plant import CompensatedPlant
 from tarsus.control.loop.run import run
@@ -152,11 +153,7 @@ def main() -> None:
         "live": live_table,
         "soft": soft_table,
     }
-    text = PAGE.read_text(encoding="utf-8")
-    for name, written in tables.items():
-        before, start, rest = text.partition(f"<!-- table: {name} -->\n")
-        text = f"{before}{start}{written()}<!-- end -->{rest.partition('<!-- end -->')[2]}"
-    PAGE.write_text(text, encoding="utf-8")
+    replace_tables(PAGE, {name: written() for name, written in tables.items()})
 
 
 if __name__ == "__main__":

@@ -17,6 +17,7 @@ import numpy as np
 
 import tarsus
 from estimated_contacts import JOINTS
+from page_tables import replace_tables
 from rough_ground import CLEAR, PAGE, switches
 from sensor_faults import LATE, ONE_DEGREE, with_sensors
 from tarsus.simulation import SensorSuite, SimulatedPlant, terrain
@@ -234,9 +235,7 @@ def main() -> None:
     if asked.print:
         print(text)
         return
-    page = PAGE.read_text(encoding="utf-8")
-    before, start, rest = page.partition("<!-- table: random hour -->\n")
-    PAGE.write_text(f"{before}{start}{text}\n<!-- end -->{rest.partition('<!-- end -->')[2]}", encoding="utf-8")
+    replace_tables(PAGE, {"random hour": text})
 
 
 if __name__ == "__main__":

@@ -18,6 +18,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 import tarsus
+from page_tables import replace_tables
 from tarsus.simulation import SensorSuite, SimulatedPlant, terrain
 from tarsus.simulation.sensors.suite import FootSwitch, Sensor
 
@@ -174,9 +175,7 @@ def main() -> None:
     if asked.print:
         print(text)
         return
-    page = PAGE.read_text(encoding="utf-8")
-    before, start, rest = page.partition("<!-- table: rough ground -->\n")
-    PAGE.write_text(f"{before}{start}{text}\n<!-- end -->{rest.partition('<!-- end -->')[2]}", encoding="utf-8")
+    replace_tables(PAGE, {"rough ground": text})
 
 
 if __name__ == "__main__":

@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 import tarsus
+from page_tables import replace_tables
 from rough_ground import GROUNDS, PAGE, RANDOM, WAY
 from tarsus.simulation import SensorSuite, SimulatedPlant
 from tarsus.simulation.sensors.suite import FootSwitch, Sensor
@@ -149,11 +150,7 @@ def main() -> None:
     if asked.print:
         print(*tables.values(), sep="\n\n")
         return
-    page = PAGE.read_text(encoding="utf-8")
-    for name, text in tables.items():
-        before, start, rest = page.partition(f"<!-- table: {name} -->\n")
-        page = f"{before}{start}{text}\n<!-- end -->{rest.partition('<!-- end -->')[2]}"
-    PAGE.write_text(page, encoding="utf-8")
+    replace_tables(PAGE, tables)
 
 
 if __name__ == "__main__":

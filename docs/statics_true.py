@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 
+from page_tables import replace_tables
 from tarsus.control.walk_controller import WalkController
 from tarsus.gait.gait import Gait
 from tarsus.gait.motion import Motion
@@ -157,8 +158,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--walks", type=int, default=len(GAITS) * len(PATHS) * 8, help="number of walks")
     count = parser.parse_args().walks
-    before, start, rest = PAGE.read_text(encoding="utf-8").partition("<!-- table: statics -->\n")
-    PAGE.write_text(f"{before}{start}{table(count)}<!-- end -->{rest.partition('<!-- end -->')[2]}", encoding="utf-8")
+    replace_tables(PAGE, {"statics": table(count)})
 
 
 if __name__ == "__main__":
