@@ -80,7 +80,7 @@ def test_a_command_is_zero_plus_direction_times_scale_times_angle(zero, directio
     made = nominal().with_joint(2, 1, zero=0.0, direction=1, scale=1000.0)
     joint = JointCalibration(bus="main", number=8, zero=zero, direction=direction, scale=scale, limits=(0.0, 4095.0))
     low, high = angle_range(joint)
-    assert joint.zero + joint.direction * joint.scale * low == pytest.approx(4095 if direction < 0 else 0, abs=1e-6)
+    assert joint.command(low) == pytest.approx(4095 if direction < 0 else 0, abs=1e-6)
     own = made.robot.limits[2, 1]
     if high < own[0] or low > own[1] or (high - low) > math.radians(270 * 1.01):
         with pytest.raises(CalibrationError, match="rear left femur"):
@@ -88,7 +88,7 @@ def test_a_command_is_zero_plus_direction_times_scale_times_angle(zero, directio
         return
     made = made.with_joint(2, 1, **vars(joint))
     angles = np.full((6, 3), angle)
-    assert made.commands(angles)[2, 1] == zero + direction * scale * angle
+    assert made.commands(angles)[2, 1] == joint.command(angle) == zero + direction * scale * angle
     np.testing.assert_allclose(made.angles(made.commands(angles)), angles, atol=1e-9)
 
 
@@ -215,8 +215,13 @@ def test_what_is_wrong_in_python_is_refused():
         made.replace(robot=tarsus.stack_robots([STRIDER, STRIDER]))
     with pytest.raises(UnknownNameError, match="kind of bus"):
         nominal_calibration(STRIDER, "strider", kind="sts")
+    blank = new_calibration(STRIDER, "strider").joints[0][0]
     with pytest.raises(InputError, match="number, zero, direction must be known"):
-        angle_range(new_calibration(STRIDER, "strider").joints[0][0])
+        angle_range(blank)
+    with pytest.raises(InputError, match="zero must be known"):
+        blank.command(0.1)
+    with pytest.raises(InputError, match="direction and scale must be known"):
+        dataclasses.replace(blank, zero=1500.0).command(0.1)
     assert vars(nominal())["joints"][0][0].missing == ()
 
 

@@ -52,8 +52,5 @@ def _likely(progress: Progress, number: int) -> float | None:
     for leg, row in enumerate(progress.calibration.joints):
         for j, joint in enumerate(row):
             if joint.number == number and not joint.missing:
-                assert joint.zero is not None
-                assert joint.direction is not None
-                assert joint.scale is not None
-                return joint.zero + joint.direction * joint.scale * float(reference[leg, j])
+                return joint.command(float(reference[leg, j]))
     return None

@@ -90,7 +90,5 @@ def _held(progress: Progress, bench: Bench, leg: int, reference: Float[np.ndarra
 
 def _zero(progress: Progress, leg: int, j: int, position: float, angle: float) -> bool:
     """Set the zero of a joint that is at an angle; return whether it can be."""
-    joint = progress.calibration.joints[leg][j]
-    assert joint.direction is not None
-    assert joint.scale is not None
-    return progress.keep_joint(leg, j, zero=round(position - joint.direction * joint.scale * angle, 1))
+    slope = progress.calibration.joints[leg][j].slope
+    return progress.keep_joint(leg, j, zero=round(position - slope * angle, 1))

@@ -123,7 +123,7 @@ class Calibration(CalibrationFields):
     def slopes(self) -> Float[np.ndarray, "legs 3"]:
         """Change of each joint's command with its angle, with the sign ``(legs, 3)`` [us/rad or ticks/rad]."""
         self.require_complete()
-        return self._array([[(joint.direction or 0) * (joint.scale or 0.0) for joint in row] for row in self.joints])
+        return self._array([[joint.slope for joint in row] for row in self.joints])
 
     @cached_property
     def limits(self) -> Float[np.ndarray, "legs 3 2"]:

@@ -95,10 +95,9 @@ def angle_range(joint: JointCalibration) -> tuple[float, float]:
     joint : JointCalibration
         A joint of which all is known.
     """
-    if joint.limits is None or joint.zero is None or joint.direction is None or joint.scale is None:
+    if joint.limits is None or joint.zero is None:
         raise InputError(f"the joint's {', '.join(joint.missing)} must be known")
-    slope = joint.direction * joint.scale
-    low, high = sorted((limit - joint.zero) / slope for limit in joint.limits)
+    low, high = sorted((limit - joint.zero) / joint.slope for limit in joint.limits)
     return low, high
 
 

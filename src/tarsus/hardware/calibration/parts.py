@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from tarsus.errors import InputError
 from tarsus.hardware.calibration.bus_commands import BusCommands, bus_commands
 from tarsus.representation import represented
 
@@ -83,6 +84,36 @@ class JointCalibration:
             "limits": self.limits,
         }
         return tuple(name for name, value in needed.items() if value is None)
+
+    @property
+    def slope(self) -> float:
+        """Change of the command with the joint angle, with the sign [us/rad or ticks/rad].
+
+        Raises
+        ------
+        InputError
+            If direction or scale is not known yet.
+        """
+        if self.direction is None or self.scale is None:
+            raise InputError("the joint's direction and scale must be known")
+        return self.direction * self.scale
+
+    def command(self, angle: float) -> float:
+        """Return the command of a joint angle, not limited [us or ticks].
+
+        Parameters
+        ----------
+        angle : float
+            Joint angle [rad].
+
+        Raises
+        ------
+        InputError
+            If zero, direction or scale is not known yet.
+        """
+        if self.zero is None:
+            raise InputError("the joint's zero must be known")
+        return self.zero + self.slope * angle
 
 
 @represented()
