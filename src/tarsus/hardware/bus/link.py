@@ -6,6 +6,7 @@ from collections.abc import Callable, Collection
 
 from tarsus.errors import BusError, CorruptAnswerError, NoAnswerError, ServoStatusError
 from tarsus.hardware.bus.exchange import Exchange
+from tarsus.hardware.bus.patience import Patience
 from tarsus.hardware.bus.protocol import Answers
 from tarsus.hardware.codec.scan import Frame, Scanner
 from tarsus.hardware.transport.protocol import Transport
@@ -57,6 +58,9 @@ class Link:
         Time that each servo takes before it answers, as it is delivered [s].
     errors_in : callable, optional
         What the code of an answer reports, where it reports errors.
+    patience : Patience, optional
+        How long servos are waited for, where that is measured and their answers tell which request they answer;
+        else always as long as `timeout`.
     """
 
     def __init__(
@@ -69,9 +73,11 @@ class Link:
         header: bytes = b"",
         delay: float = 0.0,
         errors_in: Callable[[int], tuple[str, ...]] | None = None,
+        patience: Patience | None = None,
     ) -> None:
         self.transport, self.bus, self.timeout, self._delay = transport, bus, timeout, delay
         self._scan, self._header, self._errors_in = scan, header, errors_in
+        self._patience = patience
         self._doubtful = False
         # Whose answer has not come, and since when nobody waits for it any more; None for a board's [s].
         self._awaited: dict[int | None, float] = {}
@@ -108,7 +114,9 @@ class Link:
         self.transport.write(frame)
         sent, self._sent = self._sent, b""
         most = serial_seconds(len(frame) + len(ids) * (count + 12), self.transport.baud)
-        deadline = self.transport.now() + most + len(ids) * self._delay + self.timeout
+        begun = self.transport.now()
+        timeout = self.timeout if self._patience is None else self._patience.now(ids)
+        deadline = begun + most + len(ids) * self._delay + timeout
         exchange = Exchange(frame, ids, count, sent=sent, belongs=belongs)
         received = rest = b""
         late = 0.0
@@ -125,7 +133,9 @@ class Link:
         self._doubtful = bool(exchange.noise or exchange.foreign or exchange.twice or rest)
         if exchange.noise or rest:
             exchange.withdraw(self._scan(received + self.transport.discard(), ended=True).suspect)
-        errors = tuple(self._error(id, count, received, exchange, late) for id in exchange.refused)
+        if self._patience is not None:
+            self._learn(self._patience, ids, exchange, now - begun - serial_seconds(len(received), self.transport.baud))
+        errors = tuple(self._error(id, count, received, exchange, late, timeout) for id in exchange.refused)
         return Answers({id: exchange.found[id] for id in ids if id not in exchange.refused}, errors)
 
     def ask_board(self, frame: bytes, *, size: int | None = None, end: bytes = b"") -> bytes:
@@ -176,6 +186,14 @@ class Link:
             )
         return answer
 
+    @staticmethod
+    def _learn(patience: Patience, ids: Collection[int], exchange: Exchange, seconds: float) -> None:
+        for id in ids:
+            if id in exchange.found:
+                patience.answered(id, max(seconds, 0.0))
+            else:
+                patience.missed(id)
+
     def _silent(self, size: int | None, received: bytes, *, echo: bool) -> BusError:
         got = "only the echo of the request" if echo else hexadecimal(received) or "nothing"
         return NoAnswerError(
@@ -186,7 +204,7 @@ class Link:
             remedy="Check that this is the board's port and baud rate, and that the board has its supply.",
         )
 
-    def _error(self, id: int, count: int, received: bytes, exchange: Exchange, late: float) -> BusError:
+    def _error(self, id: int, count: int, received: bytes, exchange: Exchange, late: float, timeout: float) -> BusError:
         """Return why a servo has no answer that is believed."""
         expected = f"an answer with {count} byte{'s' * (count != 1)} of data"
         kind: type[BusError] = CorruptAnswerError
@@ -202,7 +220,7 @@ class Link:
             kind, remedy = NoAnswerError, _WIRING
             came = "only the echo of the request" if exchange.echo else "nothing"
             came = f"{hexadecimal(exchange.foreign)}, which answers something else," if exchange.foreign else came
-            text = f"{came} within {self.timeout * 1e3:.0f} ms"
+            text = f"{came} within {timeout * 1e3:.0f} ms"
         return kind(self.bus, self.transport.port, id=id, expected=expected, received=text, remedy=remedy, late=late)
 
     def _settle(self, ids: Collection[int] | None = None) -> None:
@@ -213,8 +231,9 @@ class Link:
             return
         # Silence since an answer was waited for in vain counts, unless something came or the line is in doubt.
         quiet = 0.0 if came or self._doubtful else now - max(late)
+        needed = self.timeout if self._patience is None or ids is None else self._patience.usual(ids)
         for _ in range(_MOST_SETTLING):
-            if quiet >= self.timeout or not self.transport.read(self.timeout - quiet):
+            if quiet >= needed or not self.transport.read(needed - quiet):
                 break
             quiet = 0.0
         self._awaited.clear()

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
 
-from tarsus.errors import BusError, CorruptAnswerError, ServoStatusError
+from tarsus.errors import BusError, CorruptAnswerError, ServoStatusError, UnknownNameError
 from tarsus.hardware.bus.checks import checked_goals, checked_ids, checked_range
 from tarsus.hardware.bus.link import Link
 from tarsus.hardware.bus.one_by_one import one_by_one
+from tarsus.hardware.bus.patience import Patience
 from tarsus.hardware.bus.protocol import Answers, BusServo, BusTiming, Capabilities, Telemetry
 from tarsus.hardware.bus.scanning import scanned
 from tarsus.hardware.bus.without_servo_settings import WithoutServoSettings
@@ -32,6 +34,12 @@ _CAPABILITIES = Capabilities(
     torque_off="torque",
     limits=True,
 )
+# What servos measure: the command that reads it, bytes of data, unit.
+_TELEMETRY = {
+    "position": (codec.POSITION_READ, 2, 1.0),
+    "voltage": (codec.VOLTAGE_READ, 2, 1e-3),
+    "temperature": (codec.TEMPERATURE_READ, 1, 1.0),
+}
 # From a request to the answer.
 _TURNAROUND = 300e-6
 
@@ -62,7 +70,9 @@ class Lx16aBus(WithoutServoSettings):
     def __init__(self, transport: Transport, *, timeout: float = 0.02) -> None:
         self.name, self.port, self.capabilities = "lx16a", transport.port, _CAPABILITIES
         self._transport = transport
-        self._link = Link(transport, self.name, codec.scan, timeout=timeout, header=codec.HEADER)
+        self._link = Link(
+            transport, self.name, codec.scan, timeout=timeout, header=codec.HEADER, patience=Patience(timeout)
+        )
 
     def ping(self, id: int) -> BusServo | None:
         """Return a servo that answers, or None.
@@ -102,8 +112,7 @@ class Lx16aBus(WithoutServoSettings):
         ids : sequence of int
             The servos.
         """
-        answers = self._read(checked_ids(self.name, self.capabilities, ids), codec.POSITION_READ, 2)
-        return Answers({id: float(codec.decode_signed(data)) for id, data in answers.values.items()}, answers.errors)
+        return self._measured("position", checked_ids(self.name, self.capabilities, ids))
 
     def read_telemetry(self, ids: Sequence[int]) -> Answers[Telemetry]:
         """Return what servos measure, with a request for each value.
@@ -116,20 +125,37 @@ class Lx16aBus(WithoutServoSettings):
         values: dict[int, Telemetry] = {}
         errors: list[BusError] = []
         for id in checked_ids(self.name, self.capabilities, ids):
-            parts: list[bytes] = []
-            for command, count in ((codec.POSITION_READ, 2), (codec.VOLTAGE_READ, 2), (codec.TEMPERATURE_READ, 1)):
-                answer = self._read((id,), command, count)
-                parts += answer.values.values()
+            parts: dict[str, Any] = {}
+            for value in _TELEMETRY:
+                answer = self._measured(value, (id,))
                 if answer.errors:
                     errors += answer.errors
                     break
+                parts[value] = answer.values[id]
             else:
-                values[id] = Telemetry(
-                    position=float(codec.decode_signed(parts[0])),
-                    voltage=codec.decode_unsigned(parts[1]) * 1e-3,
-                    temperature=float(codec.decode_unsigned(parts[2])),
-                )
+                values[id] = Telemetry(**parts)
         return Answers(values, tuple(errors))
+
+    def read_one(self, value: str, ids: Sequence[int]) -> Answers[Telemetry]:
+        """Return one value of what servos measure; the others are None.
+
+        Parameters
+        ----------
+        value : str
+            ``"position"``, ``"temperature"`` or ``"voltage"``.
+        ids : sequence of int
+            The servos.
+
+        Raises
+        ------
+        UnknownNameError
+            If servos measure nothing of this name.
+        """
+        if value not in _TELEMETRY:
+            raise UnknownNameError.of("measured value", value, _TELEMETRY)
+        answers = self._measured(value, checked_ids(self.name, self.capabilities, ids))
+        found: dict[int, dict[str, Any]] = {id: {value: measured} for id, measured in answers.values.items()}
+        return Answers({id: Telemetry(**one) for id, one in found.items()}, answers.errors)
 
     def write_goals(self, goals: Mapping[int, float]) -> None:
         """Send goals [tick], one frame for each servo, and let all servos begin together.
@@ -212,6 +238,12 @@ class Lx16aBus(WithoutServoSettings):
         # In no time: as fast as the servo can.
         waiting = (codec.frame(id, codec.MOVE_WAIT, codec.encode_words(round(goal), 0)) for id, goal in goals.items())
         return b"".join(waiting) + codec.frame(codec.BROADCAST, codec.MOVE_START)
+
+    def _measured(self, value: str, ids: Sequence[int]) -> Answers[float]:
+        command, count, unit = _TELEMETRY[value]
+        answers = self._read(ids, command, count)
+        decode = codec.decode_signed if value == "position" else codec.decode_unsigned
+        return Answers({id: decode(data) * unit for id, data in answers.values.items()}, answers.errors)
 
     def _read(self, ids: Sequence[int], command: int, count: int) -> Answers[bytes]:
         def asked(id: int) -> Answers[Frame]:

@@ -49,6 +49,8 @@ class ServoOutput:
     ----------
     powered : bool
         Whether servos may hold.
+    writing : float
+        How long the commands of a tick take on the wire, all buses at the same time [s].
     """
 
     def __init__(
@@ -64,6 +66,7 @@ class ServoOutput:
         self._limiter = CommandLimiter(calibration)
         self._last: float | None = None
         self.powered = False
+        self.writing = max(bus.timing(joints.numbers(name)).goals for name, bus in buses.items())
 
     @property
     def angles(self) -> Float[np.ndarray, "legs 3"]:
@@ -131,7 +134,9 @@ class ServoOutput:
                 bus.set_watchdog(self._joints.numbers(name), min(max(self._settings.watchdog, span[0]), span[1]))
 
     def send(self, angles: Float[np.ndarray, "legs 3"], dt: float, now: float) -> None:
-        """Send joint angles, as far as limits and speeds allow.
+        """Send joint angles, as far as limits and speeds allow, and wait until they have left.
+
+        Ports take commands at once; whoever is asked answers only then.
 
         Parameters
         ----------
@@ -156,6 +161,7 @@ class ServoOutput:
         self._last = now
         for name, goals in self._joints.goals(commands).items():
             self._buses[name].write_goals(goals)
+        self._clock.sleep(now + self.writing - self._clock.now())
 
     def release_one(self, fault: ServoFault) -> None:
         """Release the servo of a fault, and send it nothing more.

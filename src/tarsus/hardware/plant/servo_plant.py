@@ -112,7 +112,6 @@ class ServoPlant:
         self._ports = Ports(calibration, buses, imu, timeout=self.settings.timeout)
         opened = self._ports.buses
         self._rates = [bus.timing(joints.numbers(name)) for name, bus in opened.items()]
-        self._writing = max(each.goals for each in self._rates)
         self._servos = ServoOutput(calibration, opened, joints, self.settings, self._clock)
         self._input = ServoInput(
             calibration, opened, joints, settings=self.settings, imu=self._ports.imu, clock=self._clock
@@ -139,7 +138,9 @@ class ServoPlant:
     @property
     def greatest_rate(self) -> float:
         """Ticks per second that the wires carry: goals of all servos, and positions of half of them [1/s]."""
-        return 1.0 / max(*(each.goals + each.positions / 2 + self._input.seconds for each in self._rates), 1e-6)
+        # Several buses take their goals at the same time; positions are read from one after the other.
+        reading = sum(each.positions for each in self._rates) / 2 + self._input.seconds
+        return 1.0 / max(self._servos.writing + reading, 1e-6)
 
     @property
     def speed_factor(self) -> float:
@@ -233,9 +234,8 @@ class ServoPlant:
         fault: ServoFault | None
         try:
             self._servos.send(angles, dt, now)
-            # Ports take commands at once; whoever is asked answers once they have left.
-            self._clock.sleep(now + self._writing - self._clock.now())
-            fault = self._input.measure(self._servos.angles, dt, begun=now, late=self._pacer.recently_late)
+            late, writing = self._pacer.recently_late, self._servos.writing
+            fault = self._input.measure(self._servos.angles, dt, begun=now, writing=writing, late=late)
         except InputError as error:
             # Nothing was sent: the servos hold where they are.
             fault = ServoFault(kind=FaultKind.INVALID_COMMAND, text=str(error), time=now)
@@ -271,7 +271,7 @@ class ServoPlant:
                 now = self._pacer.wait(SITTING_TICK)
                 self._servos.send(angles, SITTING_TICK, now)
                 if self.fault is None:
-                    self._input.settle(SITTING_TICK)
+                    self._input.settle(SITTING_TICK, begun=now, writing=self._servos.writing)
                 self._observe(now, angles, None)
         except TarsusError as error:
             self.notes.append(f"the robot could not sit down: {error}")

@@ -30,6 +30,8 @@ _ANGLE, _STEPS, _SHARE = math.radians(0.25), 1.5, 0.2
 _READINGS = 2
 # A command is beyond the dead zone by this factor; how long what is seen of it counts while joints move [s].
 _FACTOR, _MEMORY = 1.5, 8.0
+# Where a joint is looked at less often, it counts as still for this long after a look that found it so [s].
+_LOOK = 0.02
 # Slower commands show nothing of the dead zone [rad/s].
 _SLOW = math.radians(5)
 
@@ -43,6 +45,11 @@ class MotionMonitor:
         A complete calibration.
     settings : PlantSettings
         The bounds.
+
+    Attributes
+    ----------
+    suspicion : array, shape (legs, 3)
+        How far the command of a joint that stood still when it was last looked at has moved, as a share of `bound`.
     """
 
     def __init__(self, calibration: Calibration, settings: PlantSettings) -> None:
@@ -58,7 +65,10 @@ class MotionMonitor:
         # Where each joint was when it moved last: measured, commanded, when, and how often it was looked at since.
         self._at, self._commanded = np.full(self._shape, np.nan), np.full(self._shape, np.nan)
         self._since, self._looks = np.full(self._shape, np.nan), np.zeros(self._shape, dtype=int)
+        # When each joint was looked at last, and how far its command had moved by then.
+        self._looked, self._passed = np.full(self._shape, np.nan), np.zeros(self._shape)
         self._behind_since = np.full(self._shape, np.nan)
+        self.suspicion = np.zeros(self._shape)
 
     @property
     def bound(self) -> Float[np.ndarray, "3"]:
@@ -101,7 +111,10 @@ class MotionMonitor:
         # A command that comes back to where a load has bent the leg moves nothing either.
         still = read & ~moved & long & (commanded > self.bound) & (behind > self.bound / 2)
         stuck = still | self._far(behind, read, now)
-        self._learn(np.where(read & moved & long, commanded, 0.0))
+        self.suspicion = np.where((self._looks > 0) & ~moved, commanded / self.bound, 0.0)
+        self._learn(commanded, read & moved & (self._looks > _READINGS), now)
+        self._looked = np.where(read, now, self._looked)
+        self._passed = np.where(read, np.where(moved, 0.0, commanded), self._passed)
         self._keep(read & (moved | np.isnan(self._at)), measured, expected, now)
         if not stuck.any():
             return None
@@ -120,9 +133,13 @@ class MotionMonitor:
             text += f", more than {math.degrees(settings.lag):.0f} deg for {settings.stuck_window * 1e3:.0f} ms"
         return ServoFault.of_joint(FaultKind.STUCK, self._calibration, place, text=text, time=now)
 
-    def _learn(self, commanded: Float[np.ndarray, "legs 3"]) -> None:
+    def _learn(self, commanded: Float[np.ndarray, "legs 3"], which: Bool[np.ndarray, "legs 3"], now: float) -> None:
         """Take note of how far commands went before joints that stood still moved on."""
-        seen = np.minimum(commanded.max(axis=0), self._settings.widest_dead_zone)
+        until = np.minimum(self._looked + _LOOK, now)
+        share = (until - self._looked) / np.maximum(now - self._looked, _SAME)
+        long = until - self._since >= self._settings.stuck_window - _SAME
+        reached = self._passed + share * (commanded - self._passed)
+        seen = np.minimum(np.where(which & long, reached, 0.0).max(axis=0), self._settings.widest_dead_zone)
         self._dead_zone = np.maximum(self._dead_zone, seen)
 
     def _keep(

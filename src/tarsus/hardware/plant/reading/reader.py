@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Collection, Iterator, Mapping
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -12,6 +11,7 @@ from tarsus.errors import BusError, PortError
 from tarsus.hardware.bus.protocol import Bus, Telemetry
 from tarsus.hardware.calibration.calibration import Calibration
 from tarsus.hardware.plant.joint_map import JointMap
+from tarsus.hardware.plant.reading.position_turn import PositionTurn
 from tarsus.hardware.plant.reading.telemetry_turn import TelemetryTurn
 from tarsus.hardware.transport.clock import Clock
 
@@ -20,8 +20,11 @@ if TYPE_CHECKING:
 
 __all__ = ["Reading", "ServoReader"]
 
-# Share of a tick that reading positions may take, and reading all together.
-_SHARE, _WHOLE = 0.5, 0.9
+# Share of a tick that the wire may be busy, and that of positions in what goals leave of it.
+_WHOLE, _POSITIONS = 0.925, 0.72
+_SUSPECTED = 0.5
+# How much longer a tick may last on a slow line, where servos are asked again to find out whether they are silent [s].
+_DOUBT = 0.03
 
 
 class Reading(NamedTuple):
@@ -71,16 +74,17 @@ class ServoReader:
         self.angles, self.speeds = np.full(shape, np.nan), np.full(shape, np.nan)
         self._times = np.full(shape, np.nan)
         self._turns = {
-            name: itertools.cycle(joints.numbers(name))
+            name: PositionTurn(joints.numbers(name))
             for name, bus in buses.items()
             if bus.capabilities.positions and joints.numbers(name)
         }
         self._telemetry = {
-            name: TelemetryTurn(bus, joints.numbers(name))
+            name: TelemetryTurn(bus, joints.numbers(name), clock)
             for name, bus in buses.items()
             if bus.capabilities.telemetry and joints.numbers(name)
         }
-        self._failed: dict[str, tuple[int, ...]] = {}
+        timing = [buses[name].timing(joints.numbers(name)) for name in self._turns]
+        self._all = sum(each.positions for each in timing)
         self.read = np.zeros(shape, dtype=bool)
 
     def all_positions(self) -> Float[np.ndarray, "legs 3"]:
@@ -102,29 +106,38 @@ class ServoReader:
             self._keep(name, found)
         return self.angles.copy()
 
-    def positions(self, dt: float) -> Iterator[Reading]:
-        """Read positions, and yield who answered.
+    def positions(self, dt: float, *, begun: float, writing: float) -> Iterator[Reading]:
+        """Read positions, and yield who answered; ask again who did not, where that is not done soon by the next tick.
 
         Parameters
         ----------
         dt : float
             Duration of the tick [s].
+        begun, writing : float
+            When it began, and how long commands took on the wire [s].
         """
         self.read[:] = False
+        share = _POSITIONS * (_WHOLE * dt - writing) / self._all if self._all else 1.0
         for name, turn in self._turns.items():
-            bus, numbers = self._buses[name], self._joints.numbers(name)
-            whole = bus.timing(numbers).positions
-            if whole > _SHARE * dt:
-                count = max(1, int(len(numbers) * _SHARE * dt / whole))
-                # Who did not answer is asked again at once.
-                again = self._failed.get(name, ())
-                numbers = tuple(dict.fromkeys([*again, *(next(turn) for _ in range(count))]))[: max(count, len(again))]
-            answers = bus.read_positions(numbers)
-            self._failed[name] = tuple(number for number in numbers if number not in answers.values)
-            self._keep(name, answers.values)
+            for numbers in turn.next(share):
+                yield self._read(name, numbers)
+            while share < 1.0 and turn.failed and self._clock.now() - begun < _WHOLE * dt + _DOUBT:
+                yield self._read(name, turn.failed)
+
+    def suspect(self, suspicion: Float[np.ndarray, "legs 3"]) -> None:
+        """Look more often at joints that may be stuck, where not all are read in each tick.
+
+        Parameters
+        ----------
+        suspicion : array, shape (legs, 3)
+            How far each is on the way to be taken for stuck; those from half on are suspected, the worst first.
+        """
+        for name, turn in self._turns.items():
+            worst = {number: suspicion[self._joints.joint(name, number)] for number in self._joints.numbers(name)}
+            numbers = sorted((number for number in worst if worst[number] > _SUSPECTED), key=lambda n: -worst[n])
+            turn.suspect(numbers)
             if name in self._telemetry:
-                self._telemetry[name].alarmed(answers.alarms)
-            yield Reading(name, numbers, answers.values.keys(), answers.errors)
+                self._telemetry[name].suspect(numbers)
 
     def telemetry(self, dt: float, *, begun: float) -> Iterator[tuple[str, Mapping[int, Telemetry]]]:
         """Read the telemetry of as many servos as the tick has time for, and yield it by the name of their bus.
@@ -139,21 +152,27 @@ class ServoReader:
             When it began [s].
         """
         for name, turn in self._telemetry.items():
-            start = self._clock.now()
-            chosen = turn.next(dt, left=begun + _WHOLE * dt - start)
             try:
-                yield name, self._buses[name].read_telemetry(chosen).values
+                for values in turn.read(dt, left=begun + _WHOLE * dt - self._clock.now()):
+                    yield name, values
             except PortError:
                 raise
             except BusError:
                 # Whether it answers is judged by its positions.
                 continue
-            turn.took(len(chosen), self._clock.now() - start)
 
     @property
     def age(self) -> float:
         """Time since the oldest of the last positions was measured [s]."""
         return max(0.0, self._clock.now() - float(np.nanmin(self._times)))
+
+    def _read(self, bus: str, numbers: tuple[int, ...]) -> Reading:
+        answers = self._buses[bus].read_positions(numbers)
+        self._turns[bus].asked(numbers, answers.values)
+        self._keep(bus, answers.values)
+        if bus in self._telemetry:
+            self._telemetry[bus].alarmed(answers.alarms)
+        return Reading(bus, numbers, answers.values.keys(), answers.errors)
 
     def _keep(self, bus: str, values: Mapping[int, float]) -> None:
         now = self._clock.now()

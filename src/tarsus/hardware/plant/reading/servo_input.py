@@ -99,7 +99,9 @@ class ServoInput:
         """Begin anew with comparing motion, after a pause."""
         self._motion.forget()
 
-    def measure(self, sent: Float[np.ndarray, "legs 3"], dt: float, *, begun: float, late: float) -> ServoFault | None:
+    def measure(
+        self, sent: Float[np.ndarray, "legs 3"], dt: float, *, begun: float, writing: float, late: float
+    ) -> ServoFault | None:
         """Read positions and some telemetry, and return the first fault.
 
         Parameters
@@ -108,8 +110,8 @@ class ServoInput:
             Joint angles of the last commands [rad].
         dt : float
             Duration of the tick [s].
-        begun : float
-            When it began [s].
+        begun, writing : float
+            When it began, and how long commands took on the wire [s].
         late : float
             How late ticks began of late [s].
 
@@ -121,9 +123,9 @@ class ServoInput:
         reader, found, complete = self._reader, None, True
         if self.complete:
             self._answers.grace = _GRACE * max(0.0, late - _USUAL)
-        for reading in reader.positions(dt):
+        for reading in reader.positions(dt, begun=begun, writing=writing):
             complete = complete and not reading.errors
-            fault = self._answers.answered(
+            found = self._answers.answered(
                 reading.bus,
                 reading.asked,
                 answered=reading.answered,
@@ -131,9 +133,11 @@ class ServoInput:
                 now=self._clock.now(),
                 voltage=self.telemetry.lowest_voltage,
             )
-            found = found or fault
+            if found is not None:
+                break
         if found is None and reader.read.any():
             found = self._motion.followed(sent, reader.angles.copy(), read=reader.read, now=self._clock.now())
+            reader.suspect(self._motion.suspicion)
         self.complete = complete
         # A line in doubt is slow: whether it recovers is more urgent.
         for name, values in reader.telemetry(dt, begun=begun - self.seconds) if complete else ():
@@ -146,15 +150,17 @@ class ServoInput:
             self._troubled = self._troubled or bool(trouble)
         return found
 
-    def settle(self, dt: float) -> None:
+    def settle(self, dt: float, *, begun: float, writing: float) -> None:
         """Read positions, and judge nothing.
 
         Parameters
         ----------
         dt : float
             Duration of the tick [s].
+        begun, writing : float
+            When it began, and how long commands took on the wire [s].
         """
-        for _ in self._reader.positions(dt):
+        for _ in self._reader.positions(dt, begun=begun, writing=writing):
             pass
 
     @property

@@ -1,0 +1,71 @@
+"""Whose positions are read in a tick: all of them where the wire carries them, else the urgent ones first."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable
+
+__all__ = ["PositionTurn"]
+
+# Who is suspected to be stuck gets this share of the turns at most: the others must not be left out.
+_SUSPECTS = 1 / 4
+
+
+class PositionTurn:
+    """Tells whose position is read next.
+
+    Parameters
+    ----------
+    numbers : tuple of int
+        The servos of a bus.
+
+    Attributes
+    ----------
+    failed : tuple of int
+        Those whose last request failed.
+    """
+
+    def __init__(self, numbers: tuple[int, ...]) -> None:
+        # Those first that were not asked for longest.
+        self._waiting = list(numbers)
+        self._numbers = numbers
+        self._suspects: tuple[int, ...] = ()
+        self.failed: tuple[int, ...] = ()
+
+    def next(self, share: float) -> tuple[tuple[int, ...], ...]:
+        """Return the next servos: those that did not answer, then some that are suspected, then the others in turn.
+
+        Those that did not answer are a group of their own, so that they are judged before the others are read.
+
+        Parameters
+        ----------
+        share : float
+            For which share of all servos there is time in the tick.
+        """
+        if share >= 1.0:
+            return (self._numbers,)
+        count, failed = max(1, int(len(self._numbers) * share)), self.failed
+        urgent = (*failed, *self._suspects[: int(count * _SUSPECTS)])
+        chosen = tuple(dict.fromkeys((*urgent, *self._waiting)))[: max(count, len(failed))]
+        self._waiting = [number for number in self._waiting if number not in chosen] + list(chosen)
+        return tuple(group for group in (failed, chosen[len(failed) :]) if group)
+
+    def suspect(self, numbers: Iterable[int]) -> None:
+        """Take note of who is to be looked at more often.
+
+        Parameters
+        ----------
+        numbers : iterable of int
+            The servos.
+        """
+        self._suspects = tuple(numbers)
+
+    def asked(self, numbers: Collection[int], answered: Collection[int]) -> None:
+        """Take note of who was asked and who answered.
+
+        Parameters
+        ----------
+        numbers, answered : collection of int
+            The servos.
+        """
+        kept = tuple(number for number in self.failed if number not in numbers)
+        self.failed = kept + tuple(number for number in numbers if number not in answered)

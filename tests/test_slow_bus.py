@@ -1,0 +1,246 @@
+"""Servos on a line that carries less than all positions in a tick: who is asked first, and how long for."""
+
+import math
+
+import numpy as np
+import pytest
+
+import tarsus
+from tarsus import Command, RobotController
+from tarsus.errors import ServoFaultError, UnknownNameError
+from tarsus.hardware import ManualClock, ServoPlant, Telemetry, emulated_bus, nominal_calibration
+from tarsus.hardware.bus.patience import Patience
+from tarsus.hardware.plant.fault import FaultKind
+from tarsus.hardware.plant.monitor.motion_monitor import MotionMonitor
+from tarsus.hardware.plant.reading.position_turn import PositionTurn
+from tarsus.hardware.plant.settings import PlantSettings
+
+STRIDER = tarsus.load_robot("strider")
+IDS = tuple(range(1, 19))
+
+
+def test_a_servo_is_waited_for_as_long_as_it_has_needed():
+    patience = Patience(0.02)
+    assert patience.now((1, 2)) == patience.now(()) == 0.02
+    for _ in range(10):
+        patience.answered(1, 0.0003)
+        patience.answered(2, 0.003)
+    assert patience.now((1,)) == 0.004
+    assert patience.now((1, 2)) == patience.usual((1, 2)) == pytest.approx(0.012)
+    assert patience.now((1, 3)) == 0.02
+    # One that has become slower is found again.
+    raised = []
+    for _ in range(6):
+        patience.missed(1)
+        raised.append(patience.now((1,)))
+    assert raised == sorted(raised)
+    assert raised[-1] == 0.02
+    assert patience.usual((1,)) == 0.004
+    patience.answered(1, 0.004)
+    assert patience.now((1,)) == pytest.approx(0.016)
+    for _ in range(500):
+        patience.answered(1, 0.0003)
+    assert patience.now((1,)) == 0.004
+
+
+@pytest.mark.parametrize(("delay", "most"), [(0.0003, 0.007), (0.003, 0.016), (0.008, 0.023)])
+def test_a_missing_servo_takes_no_longer_than_the_adapter_needs(delay, most):
+    clock = ManualClock()
+    bus, line = emulated_bus("lx16a", IDS, clock=clock, turnaround=delay)
+    for _ in range(10):
+        bus.read_positions(IDS)
+    line.faults.missing = {5}
+    begun = clock.now()
+    assert bus.read_positions((5,)).errors[0].id == 5
+    assert clock.now() - begun < most
+    # After several requests it is waited for again as long as at first.
+    line.faults.missing, line.faults.late = set(), {5: 0.012}
+    assert any(bus.read_positions((5,)).values for _ in range(8))
+
+
+def test_one_value_of_telemetry_is_read_in_less_time_than_all():
+    clock = ManualClock()
+    bus, line = emulated_bus("lx16a", IDS, clock=clock)
+    line.servos[3].temperature = 47.0
+    assert bus.read_one("temperature", (3,)).require() == {3: Telemetry(temperature=47.0)}
+    begun = clock.now()
+    bus.read_one("voltage", IDS)
+    middle = clock.now()
+    bus.read_telemetry(IDS)
+    assert middle - begun < 0.4 * (clock.now() - middle)
+    with pytest.raises(UnknownNameError, match="voltage"):
+        bus.read_one("volts", IDS)
+
+
+def test_everybody_has_a_turn_and_who_failed_is_first():
+    turn = PositionTurn(IDS)
+    assert turn.next(1.2) == (IDS,)
+    last = dict.fromkeys(IDS, 0)
+    for tick in range(1, 100):
+        turn.suspect((3, 4, 5, 6))
+        (group,) = turn.next(0.5)
+        assert len(group) == 9
+        assert group[:2] == (3, 4)
+        assert max(tick - last[number] for number in group) <= 3
+        last.update(dict.fromkeys(group, tick))
+    turn.asked((7, 8, 9), {8: 0.0})
+    turn.asked((10,), {})
+    failed, others = turn.next(0.5)
+    assert failed == turn.failed == (7, 9, 10)
+    assert len(others) == 6
+    assert not set(failed) & set(others)
+    turn.asked((7, 9, 10), {7: 0.0, 9: 0.0, 10: 0.0})
+    assert turn.failed == ()
+    # There is always time for one.
+    assert len(turn.next(0.0)[0]) == 1
+
+
+class Slow:
+    """A robot on a bus at the rate that its wire carries, in the servos' own time."""
+
+    def __init__(self, buses=1):
+        calibration = nominal_calibration(STRIDER, "strider", kind="lx16a")
+        self.clock, self.lines, opened = ManualClock(), [], {}
+        first = calibration.buses[0]
+        names = ["main", "other"][:buses]
+        joints = tuple(
+            tuple(joint.__class__(**{**vars(joint), "bus": names[leg * buses // 6]}) for joint in row)
+            for leg, row in enumerate(calibration.joints)
+        )
+        settings = tuple(first.__class__(name=name, kind="lx16a", port=name) for name in names)
+        calibration = calibration.replace(buses=settings, joints=joints)
+        self.controller = RobotController(calibration.limited_robot)
+        commands = calibration.commands(self.controller.output.angles)
+        for name in names:
+            numbers = {joint.number: (i, j) for i, row in enumerate(joints) for j, joint in enumerate(row)}
+            numbers = {n: at for n, at in numbers.items() if joints[at[0]][at[1]].bus == name}
+            opened[name], line = emulated_bus("lx16a", numbers, clock=self.clock)
+            for number, place in numbers.items():
+                line.servos[number].place(float(commands[place]))
+            self.lines.append(line)
+        self.records = []
+        self.plant = ServoPlant(
+            calibration.limited_robot, calibration, buses=opened, clock=self.clock, observer=self.records.append
+        )
+        # The emulated wires of two buses send one after the other.
+        self.rate = 26.0
+        self.began, self.timing = math.nan, None
+
+    def walk(self, cause, at=1.5, until=2.5):
+        walk = self
+
+        class Source:
+            def command(self, time, _output, _note):
+                if time >= at and math.isnan(walk.began):
+                    walk.began = walk.clock.now()
+                    cause(walk.lines[0])
+                return Command(twist=(0.08, 0.0, 0.0))
+
+            def over(self, time, _output):
+                walk.timing = walk.plant.timing
+                return time > until
+
+        return tarsus.run(self.controller, self.plant, Source(), rate=self.rate)
+
+
+@pytest.mark.parametrize(
+    ("cause", "kind"),
+    [
+        (lambda line: line.faults.missing.add(15), FaultKind.NO_ANSWER),
+        (lambda line: line.faults.duplicate.add(15), FaultKind.CORRUPT),
+        (lambda line: setattr(line.supply, "source", 3.0), FaultKind.BROWN_OUT),
+    ],
+)
+@pytest.mark.parametrize("at", [1.5, 1.54])
+def test_a_silent_servo_on_a_slow_line_is_noticed_soon(cause, kind, at):
+    robot = Slow()
+    with pytest.raises(ServoFaultError) as caught:
+        robot.walk(cause, at)
+    assert caught.value.fault.kind is kind
+    # Two ticks until each was asked, and 60 ms of silence.
+    assert caught.value.fault.time - robot.began <= 0.13
+
+
+def test_a_lost_answer_on_a_slow_line_is_asked_for_again_in_the_same_tick():
+    robot = Slow()
+    lost = []
+
+    def lose(line):
+        honest = line._answers
+
+        def answers():
+            for id, answer in honest():
+                if id != 15 or lost:
+                    yield id, answer
+                else:
+                    lost.append(id)
+
+        line._answers = answers
+
+    recording = robot.walk(lose)
+    assert lost == [15]
+    assert recording.problems == ()
+    assert recording.states[-1] == "walking"
+
+
+@pytest.mark.parametrize("buses", [1, 2])
+def test_a_slow_line_carries_what_a_tick_asks_of_it(buses):
+    robot = Slow(buses)
+    temperatures, voltages = [], []
+    for bus in robot.plant._ports.buses.values():
+        read = bus.read_one
+
+        def noted(value, ids, read=read):
+            (temperatures if value == "temperature" else voltages).extend((robot.clock.now(), id) for id in ids)
+            return read(value, ids)
+
+        bus.read_one = noted
+    timings = [bus.timing(IDS[: 18 // buses]) for bus in robot.plant._ports.buses.values()]
+    taken = timings[0].goals + sum(each.positions for each in timings) / 2
+    assert robot.plant.greatest_rate == pytest.approx(1 / taken)
+    robot.walk(lambda line: None)
+    timing = robot.timing
+    assert timing.missed == 0
+    assert timing.worst < 0.2 / robot.rate
+    # All temperatures in a quarter of a second, and the voltage from time to time.
+    walked = [(time, id) for time, id in temperatures if time < robot.began + 1.0]
+    for id in IDS:
+        times = [time for time, other in walked if other == id]
+        assert max(np.diff(times)) < 0.26 * buses
+    assert max(np.diff([time for time, _ in voltages])) < 0.5 * buses
+
+
+def following(every):
+    """Return the bound of a monitor after a healthy walk at 10 ms, each joint looked at now and then."""
+    watch = MotionMonitor(nominal_calibration(STRIDER, "strider", kind="lx16a"), PlantSettings())
+    time = 0.01 * np.arange(2000)
+    sent = 0.4 * np.sin(math.pi * time)
+    measured = np.interp(time - 0.06, time, sent)
+    for i, now in enumerate(time):
+        angles, found, read = np.zeros((6, 3)), np.zeros((6, 3)), np.zeros((6, 3), dtype=bool)
+        angles[2, 1], found[2, 1], read[2, 1] = sent[i], measured[i], i % every == 0
+        assert watch.followed(angles, found, read=read, now=float(now)) is None
+    return float(np.degrees(watch.bound[1]))
+
+
+def test_a_joint_that_is_looked_at_less_often_has_no_larger_dead_zone():
+    often = following(1)
+    assert often < 3
+    assert following(8) < often + 0.8
+
+
+def test_a_joint_whose_command_goes_on_is_suspected_before_it_is_stuck():
+    watch = MotionMonitor(nominal_calibration(STRIDER, "strider", kind="lx16a"), PlantSettings())
+    seen = []
+    for i in range(40):
+        sent, read = np.zeros((6, 3)), np.ones((6, 3), dtype=bool)
+        sent[4, 2] = math.radians(60) * 0.01 * i
+        fault = watch.followed(sent, np.zeros((6, 3)), read=read, now=0.01 * i)
+        seen.append(float(watch.suspicion[4, 2]))
+        if fault is not None:
+            break
+    assert fault is not None
+    assert fault.joint == "middle right tibia"
+    assert seen == sorted(seen)
+    assert seen[-1] > 1 > seen[-4] > 0.5
+    assert np.count_nonzero(watch.suspicion) == 1
