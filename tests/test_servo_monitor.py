@@ -12,7 +12,7 @@ from tarsus.hardware.plant.fault import FaultKind
 from tarsus.hardware.plant.joint_map import JointMap
 from tarsus.hardware.plant.monitor.answer_monitor import AnswerMonitor
 from tarsus.hardware.plant.monitor.motion_monitor import MotionMonitor
-from tarsus.hardware.plant.monitor.telemetry_monitor import TelemetryMonitor
+from tarsus.hardware.plant.monitor.telemetry_monitor import TelemetryMonitor, least_voltage
 from tarsus.hardware.plant.pacer import Pacer
 from tarsus.hardware.plant.settings import PlantSettings
 
@@ -110,9 +110,9 @@ def test_the_voltage_of_the_supply(volts, seconds, kind):
 
 
 def test_without_a_supply_the_servos_own_least_voltage_counts():
-    assert monitor(None).least_voltage == 4.8
+    assert least_voltage(calibration(None)) == 4.8
+    assert least_voltage(calibration(None, STRIDER.replace(servos=()))) is None
     unknown = monitor(None, STRIDER.replace(servos=()))
-    assert unknown.least_voltage is None
     assert unknown.measured("main", {3: Telemetry(voltage=0.1)}, now=0.0) is None
     assert unknown.lowest_voltage == 0.1
 

@@ -13,10 +13,24 @@ from tarsus.hardware.plant.fault import FaultKind, ServoFault
 from tarsus.hardware.plant.joint_map import Joint, JointMap
 from tarsus.hardware.plant.settings import PlantSettings
 
-__all__ = ["TelemetryMonitor"]
+__all__ = ["TelemetryMonitor", "least_voltage"]
 
 # A servo whose alarm says so lets go by itself.
 _ALARMS = ((FaultKind.OVERHEATED, ("temperature", "overheating")), (FaultKind.OVERLOADED, ("overload",)))
+
+
+def least_voltage(calibration: Calibration) -> float | None:
+    """Return the voltage below which the servos must not run [V]; None where it is not known.
+
+    Parameters
+    ----------
+    calibration : Calibration
+        A calibration.
+    """
+    if calibration.supply is not None:
+        return calibration.supply.least_voltage
+    known = [servo.supply[0] for row in calibration.robot.servos for servo in row if servo is not None and servo.supply]
+    return max(known, default=None)
 
 
 class TelemetryMonitor:
@@ -46,14 +60,6 @@ class TelemetryMonitor:
         self.voltages = np.full(shape, np.nan)
         self.currents = np.full(shape, np.nan)
         self.loads = np.full(shape, np.nan)
-
-    @property
-    def least_voltage(self) -> float | None:
-        """Voltage below which the servos must not run [V]; None where unknown."""
-        if self._calibration.supply is not None:
-            return self._calibration.supply.least_voltage
-        known = [s.supply[0] for row in self._calibration.robot.servos for s in row if s is not None and s.supply]
-        return max(known) if known else None
 
     @property
     def lowest_voltage(self) -> float | None:
@@ -98,7 +104,7 @@ class TelemetryMonitor:
         return None
 
     def _of_voltage(self, voltage: float | None, now: float) -> ServoFault | None:
-        least, settings = self.least_voltage, self._settings
+        least, settings = least_voltage(self._calibration), self._settings
         if voltage is None or least is None:
             return None
         if voltage < least * settings.brown_out:
