@@ -19,6 +19,9 @@ if TYPE_CHECKING:
 
 __all__ = ["PEAK_RATE", "CriticallyDamped", "integral_factors"]
 
+# A filter this close to its target, and as slow, is at it [m, rad, m/s, rad/s].
+_SETTLED = 1e-11
+
 PEAK_RATE = 2 / math.e
 """Greatest rate over bandwidth and half the range of the targets."""
 
@@ -65,6 +68,26 @@ class CriticallyDamped(NamedTuple):
         slope = self.rate + bandwidth * gap
         moved = gap + slope * dt
         return CriticallyDamped(target + moved * decay, (slope - bandwidth * moved) * decay)
+
+    def settling_step(self, target: Float[np.ndarray, "n"], dt: float, *, bandwidth: float) -> CriticallyDamped:
+        """Return the filter after a time with a constant target; once at it, the same object from then on.
+
+        Parameters
+        ----------
+        target : array
+            The target.
+        dt : float
+            The time [s].
+        bandwidth : float
+            The bandwidth [rad/s].
+        """
+        if self.value is target:
+            return self
+        after = self.step(target, dt, bandwidth=bandwidth)
+        for off in (after.rate, after.value - target):
+            if max(map(abs, off.tolist())) > _SETTLED:
+                return after
+        return CriticallyDamped.still(target)
 
     def step_with_integral(
         self, target: Float[np.ndarray, "n"], dt: float, *, bandwidth: float

@@ -17,8 +17,8 @@ if TYPE_CHECKING:
 
 __all__ = ["FootRolling"]
 
-# Bandwidth with which other rest footholds, or a leg out of the gait, are followed [rad/s]; no difference [m].
-_BANDWIDTH, _NO_DIFFERENCE = 5.0, 1e-12
+# Bandwidth with which other rest footholds, or a leg out of the gait, are followed [rad/s].
+_BANDWIDTH = 5.0
 # Keeps quotients finite for a straight leg, and for a foot on its femur axis [m^2].
 _TINY = 1e-12
 
@@ -94,11 +94,9 @@ class FootRolling:
             self._rest, self._out = rest, out_of_gait
         if self.balls is None:
             self._filter = CriticallyDamped.still(self._goal)
-        if self._filter.value is not self._goal:
-            after = self._filter.step(self._goal, dt, bandwidth=_BANDWIDTH)
-            off = max(float(np.abs(after.value - self._goal).max()), float(np.abs(after.rate).max()))
-            self._filter = after if off > _NO_DIFFERENCE else CriticallyDamped.still(self._goal)
-        elif posture is self._posture:
+        before = self._filter
+        self._filter = before.settling_step(self._goal, dt, bandwidth=_BANDWIDTH)
+        if self._filter is before and posture is self._posture:
             return
         self._posture = posture
         self.balls = self._balls(posture)

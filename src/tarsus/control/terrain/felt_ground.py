@@ -106,7 +106,7 @@ class FeltGround:
         self._tilt: tuple[float, float] | None = None
         # What the feet are given while all is as planned; ticks and times since contacts and support were looked at.
         self._inputs: FeltInputs | None = None
-        self._stands, self._ticks, self._unread, self._idle = True, 0, 0.0, 0.0
+        self._given, self._ticks, self._unread, self._idle = (list[int](), True), 0, 0.0, 0.0
         self._since, self._drift, self._rates = _SLOW_PERIOD, 0j, PostureRates(0.0, (0.0, 0.0))
 
     @property
@@ -191,12 +191,13 @@ class FeltGround:
         standing : bool
             Whether the robot stands.
         """
-        steps = [leg not in excluded for leg in range(len(state.foot))]
         due = None if standing else timing.due(state, dt)
-        kept, self._idle = self._inputs, self._idle + dt
-        if kept is not None and not any(due or ()) and (kept.steps, self._stands) == (steps, standing):
+        kept, before, self._idle = self._inputs, self._given, self._idle + dt
+        self._given = excluded, standing
+        if kept is not None and not (due and any(due)) and self._given == before:
             return kept
-        dt, elevation, self._idle, self._stands = self._idle, float(state.elevation.value[0]), 0.0, standing
+        steps = [leg not in excluded for leg in range(len(state.foot))]
+        dt, elevation, self._idle = self._idle, float(state.elevation.value[0]), 0.0
         turn, contacts = cmath.exp(-1j * state.yaw), self.contacts
         places = [(foot - state.origin) * turn for foot in state.foot.tolist()]
         down = [on and step for on, step in zip(state.down.tolist(), steps, strict=True)]

@@ -64,6 +64,8 @@ class SlopeStance:
         uphill = complex(level.slope_x, level.slope_y)
         share = min(max((math.atan(abs(uphill)) - _LEAST) / (_MOST - _LEAST), 0.0), 1.0)
         self.uphill = uphill if share else 0j
+        if not share and not self.shift.any():
+            return
         out = rest - self._mounts
         angle = np.angle(out * uphill.conjugate())
         drawn_in = self._drawn_in * np.clip(-np.cos(angle) / _DOWNHILL, 0.0, 1.0) / np.abs(out)

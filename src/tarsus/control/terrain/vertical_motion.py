@@ -15,6 +15,8 @@ from tarsus.control.walk.swing_trajectory import quintic
 
 __all__ = ["moved_vertically"]
 
+_STILL = FeltFoot()
+
 # Swing phase at which a foot is at its top.
 _TOP_PHASE = 0.45
 # Fraction of a swing in which a foot goes down from its top to the expected ground.
@@ -50,7 +52,7 @@ def moved_vertically(state: GaitState, inputs: StepInputs, dt: float) -> GaitSta
     body, heading = start + float(state.posture.value[2]), cmath.exp(1j * state.yaw)
     # In G.
     turning, drift = complex(felt.turn[1], -felt.turn[0]) * heading, felt.drift * heading
-    swing, delays, phases = 1 - inputs.gait.duty_factor, state.lift_delay.tolist(), state.swing_phase.tolist()
+    swing, origin, across = 1 - inputs.gait.duty_factor, state.origin, turning.conjugate()
     places, heights, feet = state.foot.tolist(), state.ground_height.tolist(), list(state.felt)
     for leg, down in enumerate(state.down.tolist()):
         foot, under, height = feet[leg], felt.under[leg], heights[leg]
@@ -58,32 +60,35 @@ def moved_vertically(state: GaitState, inputs: StepInputs, dt: float) -> GaitSta
             feet[leg] = foot._replace(speed=0.0, acceleration=0.0)
         elif down:
             # On the ground it moves by its turn about the body, its drift and its slide.
-            stands, slide = felt.stands[leg], foot.slide
-            wanted = -((places[leg] - state.origin) * turning.conjugate()).real
-            if stands:
-                places[leg] += (turning * (height - body) - drift) * dt
+            place, before, slide = places[leg], foot.speed, foot.slide
+            wanted = -((place - origin) * across).real
+            if felt.stands[leg]:
+                place += (turning * (height - body) - drift) * dt
+                speed = _towards(before, wanted, _STANDING_ACCELERATION * dt)
+                heights[leg] = height + (before + speed) / 2 * dt
+            else:
+                assert under is not None  # known of each foot that has lost its contact
+                heights[leg], speed = _searching(height, before, wanted, under, dt, felt.lowering)
             if slide:
                 left = max(1 - _STOPPING * dt / abs(slide), 0.0)
-                places[leg] += slide * (1 + left) / 2 * dt
+                place += slide * (1 + left) / 2 * dt
                 slide *= left
-            sought = None if stands else under
-            heights[leg], speed = _standing(height, foot.speed, wanted, sought, dt, fastest=felt.lowering)
-            feet[leg] = FeltFoot(speed, slide=slide)
+            places[leg] = place
+            feet[leg] = FeltFoot(speed, slide=slide) if speed or slide else _STILL
         else:
             assert under is not None  # known of each foot in the air
-            swing_time = (swing - delays[leg]) / inputs.frequency if inputs.frequency else math.inf
-            phase, lifted_at = phases[leg], float(state.start_height[leg])
-            heights[leg], feet[leg] = _swinging(height, foot, under, felt, dt, (phase, swing_time, lifted_at))
+            swing_time = math.inf
+            if inputs.frequency:
+                swing_time = (swing - float(state.lift_delay[leg])) / inputs.frequency
+            now = (float(state.swing_phase[leg]), swing_time, float(state.start_height[leg]))
+            heights[leg], feet[leg] = _swinging(height, foot, under, felt, dt, now)
     return state._replace(foot=np.array(places), ground_height=np.array(heights), felt=feet, **moved)
 
 
-def _standing(
-    height: float, speed: float, wanted: float, under: GroundUnder | None, dt: float, *, fastest: float
+def _searching(
+    height: float, speed: float, wanted: float, under: GroundUnder, dt: float, fastest: float
 ) -> tuple[float, float]:
-    """Return height and speed of a foot that should stand; one without contact goes down."""
-    if under is None:
-        after = _towards(speed, wanted, _STANDING_ACCELERATION * dt)
-        return height + (speed + after) / 2 * dt, after
+    """Return height and speed of a foot that should stand and goes down, as it has no contact."""
     wanted -= min(max(_SEARCHING, (height - under.expected) / _SEARCH_TIME), fastest)
     after = _towards(speed, wanted, _FOOT_ACCELERATION * dt)
     return _no_lower(height + (speed + after) / 2 * dt, after, height, under.lowest)

@@ -51,6 +51,7 @@ class FootholdTransfer:
         self.bounds: Float[np.ndarray, "legs 16"] = transition.final_limits.bounds
         self.rest: Complex[np.ndarray, "legs"] = transition.rest
         self._level_rest, self._shift = self.rest, np.zeros_like(self.rest)
+        self._sides_shift: Float[np.ndarray, "legs 16"] = np.zeros_like(self.bounds)
         self.transferred = np.ones(len(self.rest), dtype=bool)
         self._next_bounds = self.bounds
         self.new_rest = self.rest
@@ -75,6 +76,7 @@ class FootholdTransfer:
         """
         if shift is not self._shift:
             self._shift, self.rest = shift, self._level_rest + shift
+            self._sides_shift = (NORMALS_CONJUGATE * shift[:, None]).real
 
     def shifted(self, bounds: Float[np.ndarray, "legs 16"]) -> Float[np.ndarray, "legs 16"]:
         """Return the sides of polygons that are shifted with the rest footholds [m].
@@ -84,8 +86,7 @@ class FootholdTransfer:
         bounds : array, shape (legs, 16)
             The sides [m].
         """
-        sides: np.ndarray = bounds + (NORMALS_CONJUGATE * self._shift[:, None]).real
-        return sides
+        return bounds + self._sides_shift
 
     def bounds_with(self, transition: StanceTransition) -> Float[np.ndarray, "legs 16"]:
         """Return the sides with which the feet would start to transfer.

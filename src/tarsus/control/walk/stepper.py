@@ -28,8 +28,8 @@ _ADMITTANCE_BANDWIDTH = 20.0
 _SHIFT_BANDWIDTH = 5.0
 # A foot that feels the ground is at its rest foothold within this distance [m].
 _FELT_TOLERANCE = 0.015
-# A speed below the first is 0 [m/s]; a filter this close to its target, and as slow, is at it [m, m/s, rad, rad/s].
-_NO_SPEED, _NO_DIFFERENCE = 3e-7, 1e-11
+# A speed below this is 0 [m/s].
+_NO_SPEED = 3e-7
 
 
 def advance(state: GaitState, inputs: StepInputs, dt: float) -> GaitState:
@@ -56,16 +56,16 @@ def advance(state: GaitState, inputs: StepInputs, dt: float) -> GaitState:
     if inputs.swaying:
         rates = inputs.frequency * np.array([1.0, inputs.beats])
         rhythm, (cycles, beats) = state.rhythm.step_with_integral(rates, dt, bandwidth=inputs.bandwidth)
-    clock = state.clock + elapsed
+    clock, offset, shift = state.clock + elapsed, state.admittance_offset, state.shift
     after = state._replace(
         clock=clock,
         origin=origin,
         yaw=yaw,
         twist=twist,
-        posture=_settled(state.posture, inputs.posture, dt, inputs.posture_bandwidth),
+        posture=state.posture.settling_step(inputs.posture, dt, bandwidth=inputs.posture_bandwidth),
         rhythm=rhythm,
-        admittance_offset=_settled(state.admittance_offset, inputs.admittance_offset, dt, _ADMITTANCE_BANDWIDTH),
-        shift=state.shift if inputs.shift is None else _settled(state.shift, inputs.shift, dt, _SHIFT_BANDWIDTH),
+        admittance_offset=offset.settling_step(inputs.admittance_offset, dt, bandwidth=_ADMITTANCE_BANDWIDTH),
+        shift=shift if inputs.shift is None else shift.settling_step(inputs.shift, dt, bandwidth=_SHIFT_BANDWIDTH),
         cycles=state.cycles + cycles,
         beats=state.beats + beats,
     )
@@ -79,17 +79,6 @@ def advance(state: GaitState, inputs: StepInputs, dt: float) -> GaitState:
         after = _lift(after, inputs, np.array(due), np.array(since_lift) - elapsed, stopping=stopping)
         down = after.down.tolist()
     return after if all(down) else _swing(after, inputs, down, since_lift, stopping=stopping)
-
-
-def _settled(
-    filtered: CriticallyDamped, target: Float[np.ndarray, "n"], dt: float, bandwidth: float
-) -> CriticallyDamped:
-    """Return a filter after a time; once at its target, the same object from then on."""
-    if filtered.value is target:
-        return filtered
-    after = filtered.step(target, dt, bandwidth=bandwidth)
-    off = max(float(np.abs(after.value - target).max()), float(np.abs(after.rate).max()))
-    return after if off > _NO_DIFFERENCE else CriticallyDamped.still(target)
 
 
 def _lift(

@@ -65,6 +65,7 @@ class TimeScaling:
         self.angles = angles
         self.rate = 1.0
         self._speed, self._acceleration, self._limits = speed, acceleration, limits
+        self._top_speed = _USED * speed
         self._limits_with_room = limits[..., 0] + _STOPPING_ROOM, limits[..., 1] - _STOPPING_ROOM
         self._speeds = np.zeros_like(angles)
         self._last_dt = 0.01
@@ -129,7 +130,8 @@ class TimeScaling:
         target, between = solve(after), (dt + self._last_dt) / 2
         if behind is None:
             speeds, _, works = self._demand(target, dt, between)
-            if works and ((target > self._limits_with_room[0]) & (target < self._limits_with_room[1])).all():
+            low, high = self._limits_with_room
+            if works and not np.count_nonzero((target <= low) | (target >= high)):
                 self.angles = self._target = target
                 self._speeds, self._last_dt = speeds, dt
                 return after
@@ -146,7 +148,7 @@ class TimeScaling:
             speeds = sign * np.minimum(sign * speeds, stopping)
         reach = hardest * between
         speeds = np.clip(speeds, self._speeds - reach, self._speeds + reach)
-        speeds = np.clip(speeds, -_USED * self._speed, _USED * self._speed)
+        speeds = np.clip(speeds, -self._top_speed, self._top_speed)
         angles = self.angles + speeds * dt
         angles.setflags(write=False)
         # Within rounding, the joints have caught up.
@@ -160,8 +162,8 @@ class TimeScaling:
     ) -> tuple[Float[np.ndarray, "legs 3"], float, bool]:
         """Return the joints' speeds, the fraction of their acceleration that is used, and whether both are kept."""
         speeds = (angles - self.angles) / dt
-        used = float((np.abs(speeds - self._speeds) / self._acceleration).max()) / between
-        works = used <= _USED and float((np.abs(speeds) / self._speed).max()) <= _USED
+        used = max((np.abs(speeds - self._speeds) / self._acceleration).ravel().tolist()) / between
+        works = used <= _USED and not np.count_nonzero(np.abs(speeds) > self._top_speed)
         return speeds, used, works
 
     def _relaxed_rate(self, integrate: Callable[[float], _T], solve: Callable[[_T], np.ndarray]) -> float:
@@ -174,7 +176,7 @@ class TimeScaling:
         """Return a rate at which the joints keep within speed and acceleration, or come closest to that."""
         if rate == 0:  # the stop is too sudden
             return self.rate / 2
-        speed, reach = _USED * self._speed, _USED * self._acceleration * dt
+        speed, reach = self._top_speed, _USED * self._acceleration * dt
         size = np.maximum(np.abs(speeds), 1e-12)
         was = self._speeds * np.sign(speeds)
         highest = float((np.minimum(speed, was + reach) / size).min())
