@@ -45,8 +45,8 @@ class FootLoads:
     def __init__(self, robot: Robot, admittance: Admittance | None) -> None:
         self._weight = float(total_mass(robot)) * STANDARD_GRAVITY if robot.has_masses else 0.0
         self._torques = FootForceEstimator(robot) if robot.has_masses else None
-        self._joints = JointContacts(robot) if all(all(leg) for leg in robot.servos) else None
-        self.estimated = False
+        self._joints = JointContacts(robot) if robot.has_masses and all(map(all, robot.servos)) else None
+        self.estimated, self._open = False, set[int]()
         self._filter = AdmittanceFilter(admittance, robot.legs) if admittance else None
 
     @property
@@ -81,10 +81,12 @@ class FootLoads:
         *,
         down: Bool[np.ndarray, "legs"],
         phase: Float[np.ndarray, "legs"],
+        doubted: Sequence[int] = (),
     ) -> Sequence[bool | None] | None:
         """Return which feet touch the ground: from switches, else load cells, else joint angles; None where unknown.
 
         Joint torques do not tell: position-controlled legs press against each other, and a swinging leg is accelerated.
+        Joint angles also tell of feet whose switches have been found open, until these close.
 
         Parameters
         ----------
@@ -98,10 +100,22 @@ class FootLoads:
             Which feet should stand.
         phase : array, shape (legs,)
             Swing phase of the others.
+        doubted : sequence of int
+            Legs whose switches stay open while their feet stand.
         """
-        self.estimated = False
-        if valid.contacts is not None:
-            return valid.contacts
+        self.estimated, switched = False, valid.contacts
+        if switched is not None:
+            if not (doubted or self._open):
+                return switched
+            self._open = {leg for leg in self._open.union(doubted) if not switched[leg]}
+            if valid.joint_angles is None or self._joints is None:
+                return switched
+            found = self._joints.contacts(valid.joint_angles, angles, dt, age=valid.contact_age, down=down, phase=phase)
+            return (
+                switched
+                if found is None
+                else [(found if leg in self._open else switched)[leg] for leg in range(len(found))]
+            )
         if valid.forces is None or not self._weight:
             if valid.joint_angles is None or self._joints is None:
                 return None

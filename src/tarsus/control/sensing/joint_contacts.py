@@ -1,4 +1,4 @@
-"""Contacts of the feet by the measured joint angles: feet that the ground holds up do not follow their commands."""
+"""Contacts of the feet by the measured joint angles: legs that the ground pushes do not follow their commands."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tarsus.control.readings import Vector
+from tarsus.kinematics.mass import STANDARD_GRAVITY, total_mass
 from tarsus.load.compliant.joint_springs import JointSprings
 from tarsus.robot.robot import Robot
 
@@ -17,34 +18,36 @@ if TYPE_CHECKING:
 
 __all__ = ["JointContacts"]
 
-# Swing phases between which a foot is in the air, and learnt from.
-_CLEAR, _DOWNWARD = 0.12, 0.45
-# How far a descending foot that touches is held up over the least of its swing, and how far below that a standing foot
-# may be that touches; by how much that least is below the mean of free swings at most [m].
-_CONTACT, _HANGING, _DIP = 0.005, 0.001, 0.006
-# How far off a rising foot is that is stopped by an obstacle [m].
-_OBSTACLE = 0.012
-# From a command to the servo's effect: at first, and at most [s]; how fast it and the mean of free swings are learnt,
-# a tick; and the square of a foot's speed below which that tells little of it [m^2/s^2].
-_LAG, _LONGEST_LAG, _RATE, _MEAN_RATE, _SLOW = 0.01, 0.1, 0.02, 0.05, 0.05
-# How far standing feet have to be held up once, on the average, for contacts to be known from then on [m].
-_LEAST_SAG = 0.0005
-# Steps of integration a tick, and ticks whose expected heights are kept.
+# Swing phases between which a foot is in the air, and learnt from; from the last one on it lands.
+_CLEAR, _DOWNWARD, _LANDING = 0.12, 0.45, 0.55
+# Torques on the femur over the load of all legs: of a foot that lands on the ground, of one that stands, and of a
+# rising one that an obstacle stops. A foot that bears little stands: taken for one that hangs, it holds up the walk.
+_CONTACT, _STANDS, _OBSTACLE = 0.12, -0.02, 0.3
+# Share of the torque that drives a joint by which the expected one may be wrong.
+_UNSURE = 0.1
+# From a command to the servo's effect: at first, and at most [s]; how fast it, the mean of free swings and the load
+# are learnt, a tick; and the square of joint speeds below which that tells little of it [rad^2/s^2].
+_LAG, _LONGEST_LAG, _RATE, _MEAN_RATE, _SLOW = 0.005, 0.1, 0.02, 0.05, 2.0
+# Load of all legs above which contacts are known, over weight times length of femur and tibia.
+_LEAST_LOAD = 0.1
+# Steps of integration a tick, and ticks whose expected angles are kept.
 _STEPS, _KEPT = 4, 25
 
 
 class JointContacts:
-    """Estimates contacts by the heights of the feet over where free legs would be.
+    """Estimates contacts by the torques of the ground on the femur joints: by what these are off.
 
-    Femur and tibia are expected to follow as servos of the robot's file do without load: position control within
-    torque and speed, and a lag that is learnt. What is left over, measured less expected height, is compared with that
-    of the same foot in free swing, which takes care of offsets of horns and of the leg's weight. While standing feet
-    have not been held up by their load, as with ideal or emulated servos, nothing is known.
+    Each femur is expected to follow as servos of the robot's file do without load: position control within torque and
+    speed, dead band, inertia of rotor and links, and a lag that is learnt. What is left over, measured less expected
+    angle, times the stiffness is the torque of the ground. It is compared with that of the same leg in free swing,
+    which takes care of offsets of horns and of the leg's weight, and with the load of the standing legs. The tibia
+    tells less: its torque changes sign with the direction of the force. While the legs have not been seen to bear the
+    robot, as with ideal or emulated servos, nothing is known.
 
     Parameters
     ----------
     robot : Robot
-        A single robot whose servos are known.
+        A single robot whose masses and servos are known.
 
     Attributes
     ----------
@@ -54,20 +57,26 @@ class JointContacts:
     Raises
     ------
     MissingDataError
-        If a servo is unknown.
+        If a servo or the masses are unknown.
     """
 
     def __init__(self, robot: Robot) -> None:
-        springs, legs = JointSprings.of(robot), robot.legs
-        stiffness, inertia = springs.stiffness[:, 1:], springs.rotor_inertia[:, 1:]
-        self._rates = stiffness / inertia, springs.damping[:, 1:] / inertia
-        self._most = springs.stall_torque[:, 1:] / stiffness
+        springs = JointSprings.of(robot)
+        lengths, mass = np.asarray(robot.geometry.femur), np.asarray(robot.link_mass)[:, 1:].T
+        com = np.asarray(robot.link_com)[:, 1:].T
+        # The shank hangs down or outwards.
+        links = mass[0] * com[0] ** 2 + mass[1] * (lengths**2 + com[1] ** 2)
+        inertia = springs.rotor_inertia[:, 1] + links
+        self._stiffness, self._band = springs.stiffness[:, 1], springs.dead_band[:, 1]
+        self._rates = self._stiffness / inertia, springs.damping[:, 1] / inertia
+        self._most = springs.stall_torque[:, 1] / self._stiffness
         self._tick, self._factors = 0.0, self._rates
-        self._lengths = np.asarray(robot.geometry.femur), np.asarray(robot.geometry.tibia)
-        self._state: tuple[Float[np.ndarray, "legs 2"], Float[np.ndarray, "legs 2"]] | None = None
-        self._expected: deque[Float[np.ndarray, "legs"]] = deque(maxlen=_KEPT)
-        self.lag, self._sag = _LAG, 0.0
-        self._mean, self._least = np.zeros(legs), np.full(legs, np.inf)
+        self._state: tuple[Float[np.ndarray, "legs"], ...] | None = None
+        self._expected: deque[tuple[Float[np.ndarray, "legs"], Float[np.ndarray, "legs"]]] = deque(maxlen=_KEPT)
+        longest = float((lengths + np.asarray(robot.geometry.tibia)).max())
+        self._least = _LEAST_LOAD * float(total_mass(robot)) * STANDARD_GRAVITY * longest
+        self.lag, self._load = _LAG, 0.0
+        self._mean = np.zeros(robot.legs)
 
     def contacts(
         self,
@@ -78,8 +87,8 @@ class JointContacts:
         age: float,
         down: Bool[np.ndarray, "legs"],
         phase: Float[np.ndarray, "legs"],
-    ) -> list[bool | None] | None:
-        """Return which feet touch the ground; None for what is not known.
+    ) -> list[bool] | None:
+        """Return which feet touch the ground; None where nothing is known.
 
         Parameters
         ----------
@@ -96,53 +105,45 @@ class JointContacts:
         phase : array, shape (legs,)
             Swing phase of the others.
         """
-        self._follow(commanded[:, 1:], dt)
+        self._follow(commanded[:, 1], dt)
         back, share = divmod((self.lag + age) / dt, 1.0)
         recent = int(back) + 1
         if recent >= len(self._expected) or None in measured:
             return None
-        newer, older = self._expected[-recent], self._expected[-recent - 1]
-        held_up = self._heights(np.array(measured)[:, 1:]) - newer - share * (older - newer)
-        free, off = ~down & (phase > _CLEAR) & (phase < _DOWNWARD), held_up - self._mean
-        stopped = free & (np.abs(off) > _OBSTACLE)
-        self._learn(off, (newer - older) / dt, free & ~stopped)
-        falling = ~down & (phase >= _DOWNWARD)
-        lowest = np.maximum(np.minimum(self._least, held_up), self._mean - _DIP)
-        self._least = np.where(free, np.inf, np.where(falling, lowest, self._least))
-        if down.any() and self._sag < _LEAST_SAG:
-            self._sag += _MEAN_RATE * (float(held_up[down].mean()) - self._sag)
+        (newer, driven), (older, _) = self._expected[-recent], self._expected[-recent - 1]
+        error = np.array([leg[1] for leg in measured if leg is not None]) - newer - share * (older - newer)
+        off = self._stiffness * error - self._mean
+        free = ~down & (phase > _CLEAR) & (phase < _DOWNWARD)
+        rising = ~down & (phase < _LANDING)
+        if free.any():
+            # The further it is off, the less is it the servo that is learnt of.
+            usual = off / (1 + (off / (_CONTACT * max(self._load, self._least))) ** 2)
+            speeds, errors = (newer - older)[free] / dt, (usual / self._stiffness)[free]
+            change = float(errors @ speeds / (speeds @ speeds + _SLOW))
+            self.lag = min(max(self.lag - _RATE * change, 0.0), _LONGEST_LAG)
+            self._mean = np.where(free, self._mean + _MEAN_RATE * usual, self._mean)
+        load = float(off[down].sum())
+        if load > self._load / 2:
+            self._load += _MEAN_RATE * (load - self._load)
+        if self._load < self._least:
             return None
-        over = held_up - self._least
-        touching = np.where(down, over > -_HANGING, stopped | falling & (over > _CONTACT))
-        known = free | np.isfinite(self._least)
-        return [bool(on) if sure else None for on, sure in zip(touching, known, strict=True)]
+        least = self._load * np.where(rising, _OBSTACLE, np.where(down, _STANDS, _CONTACT))
+        found: np.ndarray = np.where(rising, np.abs(off), off) > least + _UNSURE * np.abs(driven)
+        touching: list[bool] = found.tolist()
+        return touching
 
-    def _heights(self, angles: Float[np.ndarray, "legs 2"]) -> Float[np.ndarray, "legs"]:
-        """Return the heights of the feet over the femur axes [m]."""
-        femur, tibia = self._lengths
-        found: np.ndarray = femur * np.sin(angles[:, 0]) + tibia * np.sin(angles[:, 0] + angles[:, 1])
-        return found
-
-    def _follow(self, commanded: Float[np.ndarray, "legs 2"], dt: float) -> None:
-        """Take note of the heights after a tick in which free legs follow their commands."""
-        step, most = dt / _STEPS, self._most
+    def _follow(self, commanded: Float[np.ndarray, "legs"], dt: float) -> None:
+        """Take note of the angles after a tick in which free legs follow their commands."""
+        step, most, band = dt / _STEPS, self._most, self._band
         if dt != self._tick:
             spring, damper = self._rates
             kept = 1 / (1 + step * damper + step**2 * spring)
             self._tick, self._factors = dt, (kept, step * spring * kept)
         kept, gain = self._factors
-        angles, speeds = self._state or (commanded, np.zeros_like(commanded))
+        angles, speeds, target = self._state or (commanded, np.zeros_like(commanded), commanded)
+        target = np.minimum(np.maximum(target, commanded - band), commanded + band)
         for _ in range(_STEPS):
-            speeds = kept * speeds + gain * np.minimum(np.maximum(commanded - angles, -most), most)
+            speeds = kept * speeds + gain * np.minimum(np.maximum(target - angles, -most), most)
             angles = angles + step * speeds
-        self._state = angles, speeds
-        self._expected.append(self._heights(angles))
-
-    def _learn(
-        self, off: Float[np.ndarray, "legs"], speeds: Float[np.ndarray, "legs"], free: Bool[np.ndarray, "legs"]
-    ) -> None:
-        """Learn the lag, and the mean height of each foot in free swing, from what the heights are off by."""
-        if free.any():
-            change = float(off[free] @ speeds[free]) / (float(speeds[free] @ speeds[free]) + _SLOW)
-            self.lag = min(max(self.lag - _RATE * change, 0.0), _LONGEST_LAG)
-            self._mean = np.where(free, self._mean + _MEAN_RATE * off, self._mean)
+        self._state = angles, speeds, target
+        self._expected.append((angles, self._stiffness * (target - angles)))

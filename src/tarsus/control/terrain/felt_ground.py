@@ -139,7 +139,8 @@ class FeltGround:
             Joint angles [rad].
         """
         valid = self.measured = self._validator.validate(readings, dt)
-        measured = self._loads.contacts(valid, angles, dt, down=state.down, phase=state.swing_phase)
+        doubted = self.contacts.open_switches
+        measured = self._loads.contacts(valid, angles, dt, down=state.down, phase=state.swing_phase, doubted=doubted)
         down = state.down.tolist()
         if state.felt is None:
             if measured is None and valid.attitude is None:
