@@ -15,15 +15,17 @@ from tarsus.kinematics.leg import forward_kinematics
 from tarsus.kinematics.mass import total_mass
 from tarsus.kinematics.pose import Pose
 from tarsus.load.compliant.applied_loads import applied_loads
+from tarsus.load.compliant.balance import Demand, Past
 from tarsus.load.compliant.compliant_loads import compliant_loads
 from tarsus.load.compliant.decisive_loads import decisive_loads
-from tarsus.load.compliant.equilibrium import Compliant, Demand, Past
-from tarsus.load.compliant.foot_contact import POINT_FOOT, FootContact, contact_displacement
+from tarsus.load.compliant.equilibrium import Compliant
+from tarsus.load.compliant.foot_contact import POINT_FOOT, FootContact
 from tarsus.load.compliant.for_loads import compliant_or_missing
-from tarsus.load.compliant.friction import friction_force
+from tarsus.load.compliant.friction import friction_fraction
 from tarsus.load.compliant.history import TOLERANCE
 from tarsus.load.compliant.joint_springs import JointSprings
 from tarsus.load.compliant.leg_derivatives import LegDerivatives
+from tarsus.load.compliant.offset import moved, rotated, turned
 from tarsus.load.compliant.tangent import contact_jacobian, newton_step
 from tarsus.load.compliant.vibration import Vibration, rigid_inertia
 from tarsus.load.loads import joint_loads
@@ -74,22 +76,24 @@ def test_derivatives_of_the_legs_are_those_of_forward_kinematics():
     robot = STRIDER.replace(femur_axis_offset=np.tile([0.01, -0.02], (6, 1)))
     rng = np.random.default_rng(1)
     angles = rng.uniform(-1, 1, (6, 3))
-    legs = LegDerivatives(robot)
-    points, axes = legs.at(angles)
-    np.testing.assert_allclose(points[:, 0].reshape(6, 3, 3), forward_kinematics(robot, angles)[:, 1:], atol=1e-15)
+    radius = np.full(6, 0.008)
+    legs, body = LegDerivatives(robot, radius), Pose.from_rpy(0.1, -0.2, 0.3)
+    points = legs.at(angles, body.rotation)
+    expected = body @ forward_kinematics(robot, angles)
+    np.testing.assert_allclose(points[:, 0, :9].reshape(6, 3, 3), expected[:, 1:], atol=1e-15)
     step, pairs = 1e-6, [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)]
     for joint in range(3):
         turned = step * np.eye(3)[joint]
-        forward, backward = legs.at(angles + turned)[0], legs.at(angles - turned)[0]
+        forward, backward = (legs.at(angles + sign * turned, body.rotation)[..., :9] for sign in (1, -1))
         slope = (forward - backward) / (2 * step)
-        np.testing.assert_allclose(points[:, 1 + joint], slope[:, 0], atol=1e-9)
+        np.testing.assert_allclose(points[:, 1 + joint, :9], slope[:, 0], atol=1e-9)
         for number, (i, j) in enumerate(pairs):
             if i == joint:
-                np.testing.assert_allclose(points[:, 4 + number], slope[:, 1 + j], atol=1e-9)
+                np.testing.assert_allclose(points[:, 4 + number, :9], slope[:, 1 + j], atol=1e-9)
     # A joint moves the foot by its axis times the lever.
-    joints = forward_kinematics(robot, angles)[:, :3]
-    moved = np.cross(axes, forward_kinematics(robot, angles)[:, 3:] - joints)
-    np.testing.assert_allclose(points[:, 1:4, 6:], moved, atol=1e-14)
+    axes = points[:, 1:4, 9:] / radius[:, None, None]
+    moved = np.cross(axes, expected[:, 3:] - expected[:, :3])
+    np.testing.assert_allclose(points[:, 1:4, 6:9], moved, atol=1e-14)
 
 
 @pytest.mark.parametrize("frozen", [False, True])
@@ -102,6 +106,7 @@ def test_a_newton_step_solves_the_linearised_equations(frozen):
     loads = applied_loads(
         STRIDER,
         motion,
+        np.array([0]),
         payload=Payload(0.0),
         gravity=(0, 0, -9.80665),
         inertial=False,
@@ -109,40 +114,56 @@ def test_a_newton_step_solves_the_linearised_equations(frozen):
     )
     turned = Pose.from_rpy(0.002, -0.003, 0.1, (0.01, 0.02, 0.0))
     angles = motion.angles[0] + 0.002 * rng.normal(size=(6, 3))
-    heights = np.sort(compliant.feet(turned.rotation, turned.position, angles)[:, 2])
+    heights = np.sort(compliant.bottoms(turned.rotation, turned.position, angles)[:, 2])
     # Four of the six balls touch the ground.
-    pose = Pose(turned.rotation, turned.position + np.array([0, 0, 0.008 - heights[3:5].mean()]))
-    feet = compliant.feet(pose.rotation, pose.position, angles)
-    moved = feet + 1e-4 * rng.normal(size=(6, 3))
-    past = Past(pose.rotation, pose.position, angles - 1e-3, moved, 0.3 * rng.normal(size=(6, 2)))
+    pose = Pose(turned.rotation, turned.position - np.array([0, 0, heights[3:5].mean()]))
+    bottoms = compliant.bottoms(pose.rotation, pose.position, angles)
+    contacts = bottoms + 1e-4 * rng.normal(size=(6, 3)), 0.3 * rng.normal(size=(6, 2)), np.ones(6, dtype=bool)
+    past = Past(pose.rotation, pose.position, angles - 1e-3, *contacts)
     # The commanded pose is so close that inertial forces are of the size of the others.
-    commanded = (angles + 1e-3 * rng.normal(size=(6, 3)), pose.rotation, pose.position + 1e-3 * rng.normal(size=3))
-    ahead, gain = 1e-3 * rng.normal(size=24), Vibration.gain(0.02)
-    demand = Demand(motion.angles[0], *(each[0] for each in loads), *commanded, 0.02, ahead, gain)
-    at = compliant.configuration((pose.rotation, pose.position), angles, past, demand.step)
+    offset = 1e-3 * rng.normal(size=24)
+    offset[3:6] = 0.0
+    demand = Demand(
+        targets=motion.angles[0],
+        forces=np.hstack([loads.points[0].reshape(6, 9), np.zeros((6, 3))]),
+        loads=np.concatenate([loads.force[0], loads.moment[0], np.zeros(18)]),
+        angles=angles - offset[6:].reshape(6, 3),
+        rotation=pose.rotation,
+        position=pose.position - offset[:3],
+        inertia=inertia,
+        step=0.02,
+        ahead=1e-3 * rng.normal(size=24),
+        resistance=compliant.resistance(inertia, Vibration.gain(0.02)),
+    )
+    at = compliant.configuration(offset, past, demand)
     limit = compliant.contact.friction * at.normal if frozen else None
     balance = compliant.balance(at, demand, limit)
     assert (at.normal > 0).sum() == 4
-    assert 0 < (balance.slip.fraction[at.normal > 0] < 1).sum() < (at.normal > 0).sum()
-    jacobian = contact_jacobian(compliant, at, balance)
-    body, joints = newton_step(compliant, at, balance, jacobian, demand, frozen=frozen)
+    assert 0 < (balance.fraction[at.normal > 0] < 1).sum() < (at.normal > 0).sum()
+    step = newton_step(compliant, at, balance, contact_jacobian(compliant, at), demand, frozen=frozen)
     small = 1e-5
 
     def residual(length):
-        turn = Pose.from_rpy(*(length * body[3:]))
-        rotation = pose.rotation @ turn.rotation
-        moved = compliant.configuration(
-            (rotation, pose.position + pose.rotation @ (length * body[:3])),
-            angles + length * joints,
-            past,
-            demand.step,
-        )
-        found = compliant.balance(moved, demand, limit)
-        return np.concatenate([found.body, found.joints.ravel()])
+        further = compliant.configuration(moved(at.offset, length * step), past, demand)
+        return compliant.balance(further, demand, limit).residual
 
-    now = np.concatenate([balance.body, balance.joints.ravel()])
+    now = balance.residual
     change = (residual(small) - residual(-small)) / (2 * small)
     assert np.linalg.norm(change + now) < 0.03 * np.linalg.norm(now)
+
+
+def test_an_offset_moves_as_rotations_follow_each_other():
+    rng = np.random.default_rng(5)
+    commanded = Pose.from_rpy(0.1, 0.2, 0.3).rotation
+    offset, step = 0.1 * rng.normal(size=24), 1e-4 * rng.normal(size=24)
+    expected = rotated(rotated(commanded, offset[3:6]), step[3:6])
+    after = rotated(commanded, moved(offset, step)[3:6])
+    np.testing.assert_allclose(after, expected, atol=1e-6)
+    np.testing.assert_allclose(turned(expected, rotated(commanded, offset[3:6])), step[3:6], atol=1e-11)
+    np.testing.assert_allclose(after @ after.T, np.eye(3), atol=1e-15)
+    # A large rotation vector is still a rotation about its own direction.
+    far = rotated(np.eye(3), np.array([0.0, 0.0, 2.5]))
+    np.testing.assert_allclose(far, Pose.from_rpy(yaw=2.5).rotation, atol=1e-9)
 
 
 def test_every_sample_is_in_equilibrium(strider_walk):
@@ -183,10 +204,11 @@ def test_friction_stays_in_its_cone_and_feet_slide_only_on_it():
 def test_sliding_is_opposed_by_friction():
     rng = np.random.default_rng(5)
     displacement, stiffness = rng.normal(size=(50, 2)), 1e4
-    slip = friction_force(-stiffness * displacement, np.full(50, 3.0))
-    work = (slip.force * (displacement + slip.force / stiffness)).sum(-1)
+    trial = -stiffness * displacement
+    force = trial * friction_fraction(trial, np.full(50, 3.0))[:, None]
+    work = (force * (displacement + force / stiffness)).sum(-1)
     assert (work <= 0).all()
-    assert (np.linalg.norm(slip.force, axis=-1) <= 3.0 + 1e-12).all()
+    assert (np.linalg.norm(force, axis=-1) <= 3.0 + 1e-12).all()
 
 
 def test_without_friction_the_forces_are_vertical_and_those_of_statics_for_three_feet():
@@ -254,9 +276,18 @@ def test_point_feet_are_those_of_the_simulation():
 
 
 def test_a_rolling_ball_is_not_displaced_at_its_contact_point():
-    """A ball of 8 mm that rolls forward by 1 mm turns about y by 1/8 rad."""
-    moved, turned = np.array([[1e-3, 0.0], [0.0, 1e-3]]), np.array([[0.0, 0.125], [-0.125, 0.0]])
-    np.testing.assert_allclose(contact_displacement(moved, turned, np.full(2, 0.008)), 0, atol=1e-15)
+    """A robot that pitches while the ball of a leg, of 8 mm, rolls forward as far as it turns."""
+    compliant = Compliant(STRIDER, JointSprings.uniform(STRIDER, 100.0), FootContact())
+    angles, leg, pitch, none = standing().angles[0], 1, 1e-4, np.zeros(24)
+    rotation, origin = rotated(np.eye(3), np.array([0.0, pitch, 0.0])), np.zeros(3)
+    before, after = compliant.bottoms(np.eye(3), origin, angles), compliant.bottoms(rotation, origin, angles)
+    position = before[leg] + [0.008 * pitch, 0.0, 0.0] - after[leg]
+    past = Past(np.eye(3), origin, angles, before, np.zeros((6, 2)), np.zeros(6, dtype=bool))
+    matrix = np.zeros((24, 24))
+    demand = Demand(angles, np.zeros((6, 12)), none, angles, rotation, position, matrix[:6, :6], 0.02, none, matrix)
+    displacement = compliant.configuration(none, past, demand).displacement
+    # The balls of the other legs roll as far, but for the second order.
+    assert np.linalg.norm(displacement, axis=1).max() < 0.01 * 0.008 * pitch
 
 
 @pytest.mark.parametrize("name", ["strider", "ch3r"])

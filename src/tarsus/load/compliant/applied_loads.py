@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import fields
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -15,40 +16,41 @@ from tarsus.load.payload import Payload
 from tarsus.robot.robot import Robot
 
 if TYPE_CHECKING:
-    from jaxtyping import Float
+    from jaxtyping import Float, Int
 
 __all__ = ["AppliedLoads", "applied_loads"]
 
 
 class AppliedLoads(NamedTuple):
-    """Loads along a motion; G is the frame of all of them.
+    """Loads at samples of a motion; G is the frame of all of them.
 
     Attributes
     ----------
-    points : array, shape (n, legs, 3, 3)
+    points : array, shape (k, legs, 3, 3)
         Forces on femur axis, knee and foot of each leg [N].
-    force, moment : array, shape (n, 3)
+    force, moment : array, shape (k, 3)
         Force on the body and its moment about B's origin [N, N m].
-    rotors : array, shape (n, legs, 3)
+    rotors : array, shape (k, legs, 3)
         Torques that accelerate the rotors of the servos [N m].
     """
 
-    points: Float[np.ndarray, "n legs 3 3"]
-    force: Float[np.ndarray, "n 3"]
-    moment: Float[np.ndarray, "n 3"]
-    rotors: Float[np.ndarray, "n legs 3"]
+    points: Float[np.ndarray, "k legs 3 3"]
+    force: Float[np.ndarray, "k 3"]
+    moment: Float[np.ndarray, "k 3"]
+    rotors: Float[np.ndarray, "k legs 3"]
 
 
 def applied_loads(
     robot: Robot,
     motion: Motion,
+    samples: Int[np.ndarray, "k"],
     *,
     payload: Payload,
     gravity: Sequence[float],
     inertial: bool,
     rotor_inertia: Float[np.ndarray, "legs 3"],
 ) -> AppliedLoads:
-    """Return the loads along a motion, in its commanded poses: compliance changes them little.
+    """Return the loads at samples of a motion, in its commanded poses: compliance changes them little.
 
     Parameters
     ----------
@@ -56,6 +58,8 @@ def applied_loads(
         A single robot with masses.
     motion : Motion
         The motion.
+    samples : array of int, shape (k,)
+        The samples.
     payload : Payload
         Payload on the body.
     gravity : sequence of float
@@ -65,17 +69,17 @@ def applied_loads(
     rotor_inertia : array, shape (legs, 3)
         Inertias of the servos' rotors, reflected to the joints [kg m^2].
     """
-    velocity, acceleration = differences(motion.time, motion.angles)
-    rates = BodyRates.of(motion.time, motion.body)
-    if not inertial:
-        velocity, acceleration, rates = np.zeros_like(velocity), np.zeros_like(acceleration), BodyRates()
-    points = np.asarray(forward_kinematics(robot, motion.angles))
+    angles, body, rates = motion.angles[samples], motion.body[samples], BodyRates()
+    velocity, acceleration = np.zeros_like(angles), np.zeros_like(angles)
+    if inertial:
+        velocity, acceleration = (each[samples] for each in differences(motion.time, motion.angles))
+        every = BodyRates.of(motion.time, motion.body)
+        rates = BodyRates(**{each.name: np.asarray(getattr(every, each.name))[samples] for each in fields(every)})
+    points = np.asarray(forward_kinematics(robot, angles))
     joints = JointRates(velocity=velocity, acceleration=acceleration)
-    loads = inertial_loads(
-        robot, motion.angles, motion.body, joints, rates, payload=payload, gravity=gravity, points=points
-    )
+    loads = inertial_loads(robot, angles, body, joints, rates, payload=payload, gravity=gravity, points=points)
     moving, at = np.asarray(loads.points)[:, :, 1:], points[:, :, 1:]
-    to_ground = np.swapaxes(motion.body.rotation, -1, -2)
+    to_ground = np.swapaxes(body.rotation, -1, -2)
     force = loads.force - moving.sum((1, 2))
     moment = loads.moment - np.cross(at, moving).sum((1, 2))
     return AppliedLoads(

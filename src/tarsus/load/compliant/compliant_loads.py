@@ -92,10 +92,16 @@ def compliant_loads(
     elif not isinstance(springs, JointSprings):
         springs = JointSprings.uniform(robot, float(springs))
     contact = contact or FootContact()
-    loads = applied_loads(
-        robot, motion, payload=carried, gravity=gravity, inertial=inertial, rotor_inertia=springs.rotor_inertia
-    )
     samples = _samples(motion, rate)
+    loads = applied_loads(
+        robot,
+        motion,
+        samples,
+        payload=carried,
+        gravity=gravity,
+        inertial=inertial,
+        rotor_inertia=springs.rotor_inertia,
+    )
     weight = (float(total_mass(robot)) + carried.mass) * upward(gravity)[0]
     inertia = rigid_inertia(robot, motion.angles[0], carried) if inertial else None
     compliant, targets = Compliant(robot, springs, contact, inertia), springs.targets(motion.angles)

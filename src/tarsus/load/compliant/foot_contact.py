@@ -18,7 +18,7 @@ from tarsus.representation import represented
 if TYPE_CHECKING:
     from jaxtyping import Float
 
-__all__ = ["POINT_FOOT", "FootContact", "contact_displacement", "normal_force"]
+__all__ = ["POINT_FOOT", "FootContact", "normal_force"]
 
 POINT_FOOT = 0.001
 """Radius of a foot whose radius is 0 in the robot's file, as in the simulation [m]."""
@@ -69,39 +69,15 @@ class FootContact:
         return 1.0 / (1.0 + self.tangential_stiffness * step / viscosity)
 
 
-def normal_force(
-    height: Float[np.ndarray, "legs"], radius: Float[np.ndarray, "legs"], stiffness: float
-) -> Float[np.ndarray, "legs"]:
+def normal_force(height: Float[np.ndarray, "legs"], stiffness: float) -> Float[np.ndarray, "legs"]:
     """Return the normal forces of balls, ``(legs,)`` [N].
 
     Parameters
     ----------
     height : array, shape (legs,)
-        Heights of the centres [m].
-    radius : array, shape (legs,)
-        Radii [m].
+        Heights of their bottoms [m].
     stiffness : float
         Normal stiffness [N/m].
     """
-    force: np.ndarray = stiffness * np.maximum(radius - height, 0.0)
+    force: np.ndarray = -stiffness * np.minimum(height, 0.0)
     return force
-
-
-def contact_displacement(
-    moved: Float[np.ndarray, "legs 2"], turned: Float[np.ndarray, "legs 2"], radius: Float[np.ndarray, "legs"]
-) -> Float[np.ndarray, "legs 2"]:
-    """Return the displacements of the contact points along the ground, ``(legs, 2)`` [m].
-
-    Parameters
-    ----------
-    moved : array, shape (legs, 2)
-        Displacements of the centres along the ground [m].
-    turned : array, shape (legs, 2)
-        Small rotations of the tibiae about x and y of G [rad].
-    radius : array, shape (legs,)
-        Radii [m].
-    """
-    displacement = moved.copy()
-    displacement[:, 0] -= radius * turned[:, 1]
-    displacement[:, 1] += radius * turned[:, 0]
-    return displacement

@@ -12,37 +12,25 @@ series (a Maxwell element). In the cone, ``|f'| <= friction normal``, the foot s
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+import math
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 if TYPE_CHECKING:
     from jaxtyping import Float
 
-__all__ = ["Slip", "friction_force", "friction_tangent"]
+__all__ = ["contact_stiffness", "friction_fraction"]
 
 _TINY = 1e-12
 # Fraction of the stiffness that stays along the direction of sliding, so that no direction is free.
 _SLIDING_STIFFNESS = 1e-3
 
 
-class Slip(NamedTuple):
-    """Tangential forces of feet.
-
-    Attributes
-    ----------
-    force : array, shape (legs, 2)
-        Force in the ground plane [N].
-    fraction : array, shape (legs,)
-        Force over the force without sliding; below 1 for a foot that slides.
-    """
-
-    force: Float[np.ndarray, "legs 2"]
-    fraction: Float[np.ndarray, "legs"]
-
-
-def friction_force(trial: Float[np.ndarray, "legs 2"], limit: Float[np.ndarray, "legs"]) -> Slip:
-    """Return the tangential forces for the forces without sliding.
+def friction_fraction(
+    trial: Float[np.ndarray, "legs 2"], limit: Float[np.ndarray, "legs"]
+) -> Float[np.ndarray, "legs"]:
+    """Return the tangential forces over those without sliding, ``(legs,)``; below 1 for feet that slide.
 
     Parameters
     ----------
@@ -51,39 +39,43 @@ def friction_force(trial: Float[np.ndarray, "legs 2"], limit: Float[np.ndarray, 
     limit : array, shape (legs,)
         Greatest forces: friction times normal force [N].
     """
-    size = np.sqrt((trial * trial).sum(axis=1))
-    fraction = np.minimum(limit / np.maximum(size, _TINY), 1.0)
-    return Slip(trial * fraction[:, None], fraction)
+    fraction: np.ndarray = np.minimum(limit / np.maximum(np.hypot(trial[:, 0], trial[:, 1]), _TINY), 1.0)
+    return fraction
 
 
-def friction_tangent(
+def contact_stiffness(
     trial: Float[np.ndarray, "legs 2"],
     fraction: Float[np.ndarray, "legs"],
-    stiffness: float,
-    normal_slope: Float[np.ndarray, "legs"] | None,
-) -> Float[np.ndarray, "legs 2 3"]:
-    """Return how the tangential forces fall with the displacement of the contact points, ``(legs, 2, 3)`` [N/m].
+    tangential: float,
+    normal: Float[np.ndarray, "legs"],
+    friction: float,
+) -> Float[np.ndarray, "legs 3 3"]:
+    """Return how the contact forces fall with the displacement of the contact points, ``(legs, 3, 3)`` [N/m].
 
     Parameters
     ----------
     trial : array, shape (legs, 2)
         Forces without sliding [N].
     fraction : array, shape (legs,)
-        `Slip.fraction`.
-    stiffness : float
+        `friction_fraction`.
+    tangential : float
         Tangential stiffness, creep included [N/m].
-    normal_slope : array, shape (legs,), optional
-        Friction times the normal stiffness of feet in contact [N/m]: how the limit changes with the height. Left out,
-        the limits are frozen (Tresca friction), and the matrix is symmetric.
+    normal : array, shape (legs,)
+        Normal stiffness; 0 for feet in the air [N/m].
+    friction : float
+        Coefficient by which limits follow the normal forces. With 0 they are frozen (Tresca friction), and the matrix
+        is symmetric.
     """
-    tangent = np.zeros((len(trial), 2, 3))
-    tangent[:, 0, 0] = tangent[:, 1, 1] = stiffness * fraction
-    (sliding,) = np.nonzero(fraction < 1.0)
-    if sliding.size:
-        force = trial[sliding]
-        direction = force / np.maximum(np.sqrt((force * force).sum(axis=1)), _TINY)[:, None]
-        lost = ((1.0 - _SLIDING_STIFFNESS) * stiffness * fraction[sliding])[:, None] * direction
-        tangent[sliding, :, :2] -= lost[:, :, None] * direction[:, None, :]
-        if normal_slope is not None:
-            tangent[sliding, :, 2] = normal_slope[sliding][:, None] * direction
-    return tangent
+    legs = []
+    # For so few numbers plain floats are faster than arrays.
+    for (x, y), part, down in zip(trial.tolist(), fraction.tolist(), normal.tolist(), strict=True):
+        held = tangential * part
+        if part == 1.0:
+            legs.append(((held, 0.0, 0.0), (0.0, held, 0.0), (0.0, 0.0, down)))
+            continue
+        size = max(math.hypot(x, y), _TINY)
+        along, aside, lost, slope = x / size, y / size, (1.0 - _SLIDING_STIFFNESS) * held, friction * down
+        both = -lost * along * aside
+        first = held - lost * along * along, both, slope * along
+        legs.append((first, (both, held - lost * aside * aside, slope * aside), (0.0, 0.0, down)))
+    return np.array(legs)

@@ -156,6 +156,11 @@ class JointSprings:
         """Whether all springs are without play and give any torque."""
         return bool(np.isinf(self.stall_torque).all() and not self.play.any())
 
+    @cached_property
+    def _parts(self) -> tuple[Float[np.ndarray, "legs 3"], ...]:
+        """What play and saturation take of the stiffness, stall torques, the least errors in play, zeros."""
+        return (1.0 - _SOFT) * self.stiffness, self.stall_torque, -self.play, np.zeros_like(self.play)
+
     def torque(
         self, error: Float[np.ndarray, "legs 3"], turned: Float[np.ndarray, "legs 3"], step: float
     ) -> tuple[Float[np.ndarray, "legs 3"], Float[np.ndarray, "legs 3"]]:
@@ -181,10 +186,9 @@ class JointSprings:
         loss = damping * turned
         if self._unlimited:
             return self.stiffness * error - loss, self.stiffness + damping
-        inside = np.minimum(np.maximum(error, -self.play), self.play)
-        drive = self.stiffness * (error - (1.0 - _SOFT) * inside)
-        lowest, highest = np.maximum(loss, 0.0) - self.stall_torque, np.minimum(loss, 0.0) + self.stall_torque
-        bounded = np.minimum(np.maximum(drive, lowest), highest)
-        soft = (inside == error) | (bounded != drive)
-        slope = np.where(soft, _SOFT * self.stiffness, self.stiffness) + damping
-        return bounded + _SOFT * (drive - bounded) - loss, slope
+        hard, stall, loose, none = self._parts
+        inside = np.minimum(np.maximum(error, loose), self.play)
+        drive = self.stiffness * error - hard * inside
+        bounded = np.minimum(np.maximum(drive, np.maximum(loss, none) - stall), np.minimum(loss, none) + stall)
+        softer = ((inside == error) | (bounded != drive)) * hard
+        return bounded + _SOFT * (drive - bounded) - loss, self.stiffness - softer + damping

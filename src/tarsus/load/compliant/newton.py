@@ -1,10 +1,12 @@
 """Solution of the equilibrium at one sample.
 
 Newton steps have the limits of friction follow the normal forces. Along the direction in which a foot slides there is
-hardly any stiffness, so that a step may reverse the direction, back and forth: it ends where such a foot is nearest to
-sticking. If a number of steps does not reach the equilibrium, the search begins again with steps that reduce the
-residual, and where one does not, with frozen limits (Tresca friction): then the equations are those of a potential, and
-a line search along the step finds where it is nearly lowest.
+hardly any stiffness, so that a step may reverse the direction, back and forth: such a foot holds in this step. In the
+first step, what stood on the ground in the last equilibrium stays there and holds if it held: a start that continues
+the motion lifts many feet that stay, and has others slide that hold. If a number of steps does not reach the
+equilibrium, the search begins again with steps that reduce the residual, and where one does not, with frozen limits
+(Tresca friction): then the equations are those of a potential, and a line search along the step finds where it is
+nearly lowest.
 """
 
 from __future__ import annotations
@@ -13,11 +15,13 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from tarsus.load.compliant.equilibrium import Balance, Compliant, Configuration, Demand, Past
+from tarsus.load.compliant.balance import Balance, Configuration, Demand, Past
+from tarsus.load.compliant.equilibrium import Compliant
+from tarsus.load.compliant.offset import moved
 from tarsus.load.compliant.tangent import contact_jacobian, newton_step
 
 if TYPE_CHECKING:
-    from jaxtyping import Float
+    from jaxtyping import Bool, Float
 
 __all__ = ["Equilibrium", "solve_equilibrium"]
 
@@ -28,9 +32,9 @@ _ENOUGH = 0.7
 # Slope of the potential at the end of a step over that at its start, up to which the step is taken.
 _FLAT = 0.5
 # Longest step [m, rad, rad].
-_LONGEST = np.array([0.03, 0.2, 0.2])
-# Newton steps before the search that reduces the residual, and the least part of one that is taken.
-_DIRECT, _LEAST = 12, 0.05
+_LONGEST = 0.03, 0.2, 0.2
+# Newton steps before the search that reduces the residual.
+_DIRECT = 12
 # Steps with frozen limits before another is tried first.
 _FROZEN = 3
 
@@ -68,14 +72,21 @@ def solve_equilibrium(
     tolerance : float
         Size of the residual that is small enough [N m].
     """
-    balance = compliant.balance(at, demand)
-    start = Equilibrium(at, balance)
+    first = at
+    heights, stood = at.bottoms[:, 2], past.bottoms[:, 2] <= 0
+    at = at._replace(normal=np.where(stood, -compliant.contact.normal_stiffness * heights, at.normal))
+    balance = compliant.balance(at, demand, _limit(compliant, at, past.held | (at.normal < 0)))
     for _ in range(_DIRECT):
+        at = _newton(compliant, at, balance, past, demand)
+        balance = compliant.balance(at, demand)
         if balance.size <= tolerance:
             return Equilibrium(at, balance)
-        at = _newton(compliant, at, balance, contact_jacobian(compliant, at, balance), past, demand)
-        balance = compliant.balance(at, demand)
-    return _descent(compliant, start, past, demand, tolerance)
+    return _descent(compliant, Equilibrium(first, compliant.balance(first, demand)), past, demand, tolerance)
+
+
+def _limit(compliant: Compliant, at: Configuration, held: Bool[np.ndarray, "legs"]) -> Float[np.ndarray, "legs"]:
+    """Return limits of friction with which some feet hold, ``(legs,)`` [N]."""
+    return np.where(held, np.inf, compliant.contact.friction * at.normal)
 
 
 def _descent(compliant: Compliant, start: Equilibrium, past: Past, demand: Demand, tolerance: float) -> Equilibrium:
@@ -84,14 +95,14 @@ def _descent(compliant: Compliant, start: Equilibrium, past: Past, demand: Deman
     frozen, steps = 0, 0
     while balance.size > tolerance and steps < _MOST_STEPS:
         steps += 1
-        jacobian = contact_jacobian(compliant, at, balance)
         if not frozen:
-            moved = _newton(compliant, at, balance, jacobian, past, demand)
-            reached = compliant.balance(moved, demand)
+            further = _newton(compliant, at, balance, past, demand)
+            reached = compliant.balance(further, demand)
             if reached.size < _ENOUGH * balance.size:
-                at, balance = moved, reached
+                at, balance = further, reached
                 continue
             frozen = _FROZEN
+        jacobian = contact_jacobian(compliant, at)
         step = newton_step(compliant, at, balance, jacobian, demand, frozen=True)
         if _slope(balance, step) >= 0:
             # Joints in their play leave legs so soft that the loads on them tip the potential over.
@@ -105,33 +116,28 @@ def _descent(compliant: Compliant, start: Equilibrium, past: Past, demand: Deman
     return Equilibrium(at, balance)
 
 
-def _newton(
-    compliant: Compliant,
-    at: Configuration,
-    balance: Balance,
-    jacobian: Float[np.ndarray, "legs 9 3"],
-    past: Past,
-    demand: Demand,
-) -> Configuration:
-    """Return the configuration after a Newton step that is not too long and reverses no sliding."""
+def _newton(compliant: Compliant, at: Configuration, balance: Balance, past: Past, demand: Demand) -> Configuration:
+    """Return the configuration after a Newton step that is not too long, in which feet hold that it would reverse."""
+    jacobian = contact_jacobian(compliant, at)
     step = newton_step(compliant, at, balance, jacobian, demand, frozen=False)
-    length = _scale(step)
-    sliding = (balance.slip.fraction < 1.0) & (at.normal > 0)
-    if sliding.any():
-        moved = step[0] @ jacobian[:, :6, :2] + (step[1][:, None] @ jacobian[:, 6:, :2])[:, 0]
-        change = -compliant.contact.relaxation(demand.step) * compliant.contact.tangential_stiffness * moved
-        against, square = -(at.trial * change).sum(axis=1), (change * change).sum(axis=1)
-        reversing = sliding & (against > (at.trial * at.trial).sum(axis=1))
-        if reversing.any():
-            length = min(length, max(float((against[reversing] / square[reversing]).min()), _LEAST))
-    return compliant.configuration(*_moved(at, step, length), past, demand.step)
+    sliding = (balance.fraction < 1.0) & (at.normal > 0)
+    if True in sliding.tolist():
+        by_leg = np.empty((compliant.legs, 1, 9))
+        by_leg[:, 0, :6], by_leg[:, 0, 6:] = step[:6], step[6:].reshape(-1, 3)
+        displaced, (x, y) = (by_leg @ jacobian)[:, 0], at.trial.T
+        stiffness = compliant.contact.relaxation(demand.step) * compliant.contact.tangential_stiffness
+        reversing = sliding & (stiffness * (x * displaced[:, 0] + y * displaced[:, 1]) > x * x + y * y)
+        if True in reversing.tolist():
+            balance = compliant.balance(at, demand, _limit(compliant, at, reversing | (balance.fraction == 1.0)))
+            step = newton_step(compliant, at, balance, jacobian, demand, frozen=False)
+    return compliant.configuration(moved(at.offset, _scale(step) * step), past, demand)
 
 
 def _line_search(
     compliant: Compliant,
     at: Configuration,
     balance: Balance,
-    step: tuple[Float[np.ndarray, "6"], Float[np.ndarray, "legs 3"]],
+    step: Float[np.ndarray, "unknowns"],
     past: Past,
     demand: Demand,
 ) -> Configuration:
@@ -140,10 +146,10 @@ def _line_search(
     slope = _slope(balance, step)
     enough = _FLAT * abs(slope)
     low, high, length = 0.0, 0.0, _scale(step)
-    below, above, moved = slope, 0.0, at
+    below, above, further = slope, 0.0, at
     for _ in range(_MOST_TRIALS):
-        moved = compliant.configuration(*_moved(at, step, length), past, demand.step)
-        reached = compliant.balance(moved, demand, limit)
+        further = compliant.configuration(moved(at.offset, length * step), past, demand)
+        reached = compliant.balance(further, demand, limit)
         rise = _slope(reached, step)
         if abs(rise) <= enough or (rise < 0 and not high):
             break
@@ -152,34 +158,15 @@ def _line_search(
         else:
             low, below = length, rise
         length = low + (high - low) * min(max(below / (below - above), 0.1), 0.9)
-    return moved
+    return further
 
 
-def _slope(balance: Balance, step: tuple[Float[np.ndarray, "6"], Float[np.ndarray, "legs 3"]]) -> float:
+def _slope(balance: Balance, step: Float[np.ndarray, "unknowns"]) -> float:
     """Return the slope of the potential along a step."""
-    return float(balance.body @ step[0] + np.vdot(balance.joints, step[1]))
+    return float(balance.residual @ step)
 
 
-def _scale(step: tuple[Float[np.ndarray, "6"], Float[np.ndarray, "legs 3"]]) -> float:
-    body, joints = np.abs(step[0]), np.abs(step[1])
-    longest = max(body[:3].max() / _LONGEST[0], body[3:].max() / _LONGEST[1], joints.max() / _LONGEST[2])
-    return float(min(1.0, 1.0 / longest)) if longest > 0 else 1.0
-
-
-def _moved(
-    at: Configuration, step: tuple[Float[np.ndarray, "6"], Float[np.ndarray, "legs 3"]], length: float
-) -> tuple[tuple[Float[np.ndarray, "3 3"], Float[np.ndarray, "3"]], Float[np.ndarray, "legs 3"]]:
-    x, y, z = (length * step[0][3:]).tolist()
-    square = x * x + y * y + z * z
-    # Series of the exponential map; the steps are short. The second coefficient is that of turn @ turn.
-    a, b = 1.0 - square / 6.0, 0.5 - square / 24.0
-    xy, yz, zx = b * x * y, b * y * z, b * z * x
-    rotation = np.array(
-        [
-            [1.0 - b * (y * y + z * z), xy - a * z, zx + a * y],
-            [xy + a * z, 1.0 - b * (z * z + x * x), yz - a * x],
-            [zx - a * y, yz + a * x, 1.0 - b * (x * x + y * y)],
-        ]
-    )
-    position = at.position + at.rotation @ (length * step[0][:3])
-    return (at.rotation @ rotation, position), at.angles + length * step[1]
+def _scale(step: Float[np.ndarray, "unknowns"]) -> float:
+    each = np.abs(step).tolist()
+    longest = max(max(each[:3]) / _LONGEST[0], max(each[3:6]) / _LONGEST[1], max(each[6:]) / _LONGEST[2])
+    return min(1.0, 1.0 / longest) if longest > 0 else 1.0

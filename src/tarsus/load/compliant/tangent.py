@@ -1,9 +1,4 @@
-"""Newton steps of the equilibrium: its tangent, with the joints of each leg condensed out.
-
-The unknowns of a leg's joints couple with those of the body alone. Eliminating them, three at a time, leaves six
-equations of the body (static condensation: R. J. Guyan, "Reduction of stiffness and mass matrices", AIAA Journal 3,
-1965).
-"""
+"""Newton steps of the equilibrium, by its tangent."""
 
 from __future__ import annotations
 
@@ -11,8 +6,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tarsus.load.compliant.equilibrium import Balance, Compliant, Configuration, Demand
-from tarsus.load.compliant.friction import friction_tangent
+from tarsus.load.compliant.balance import Balance, Configuration, Demand
+from tarsus.load.compliant.equilibrium import ROLL, Compliant
+from tarsus.load.compliant.friction import contact_stiffness
 
 if TYPE_CHECKING:
     from jaxtyping import Float
@@ -27,12 +23,10 @@ _CROSS = np.einsum("akb->bka", _EPSILON).reshape(3, 9)
 _BY_FORCE = _EPSILON.reshape(3, 9)
 # Places of the second derivatives cc, cf, ct, ff, ft, tt, after the first ones, in a symmetric matrix.
 _SECOND = 3 + np.array([0, 1, 2, 1, 3, 4, 2, 4, 5])
-_DIAGONAL = np.arange(3)
-# Keeps the body's equations regular where it is free to move [N/m, N m/rad].
-_FLOOR = 1e-3
+_UNIT = np.eye(3)
 
 
-def contact_jacobian(compliant: Compliant, at: Configuration, balance: Balance) -> Float[np.ndarray, "legs 9 3"]:
+def contact_jacobian(compliant: Compliant, at: Configuration) -> Float[np.ndarray, "legs 9 3"]:
     """Return the displacements of the contact points in G by body translation, rotation and joint angles.
 
     Parameters
@@ -41,21 +35,18 @@ def contact_jacobian(compliant: Compliant, at: Configuration, balance: Balance) 
         The robot.
     at : Configuration
         The configuration.
-    balance : Balance
-        Its balance.
 
     Returns
     -------
     array, shape (legs, 9, 3)
-        Rows: translation of B along its axes, rotation about them, coxa, femur and tibia [1, m/rad].
+        Rows: translation of B along G's axes, rotation about them, coxa, femur and tibia [1, m/rad].
     """
-    legs = compliant.legs
-    within = np.empty((legs, 9, 3))
-    within[:, :3] = np.eye(3)
-    within[:, 3:6] = ((at.points[:, 0, 6:] - compliant.radius[:, None] * at.rotation[2]) @ _CROSS).reshape(legs, 3, 3)
-    within[:, 6:] = at.points[:, 1:4, 6:] - balance.rolling
-    in_ground: np.ndarray = within.reshape(-1, 3) @ at.rotation.T
-    return in_ground.reshape(legs, 9, 3)
+    jacobian = np.empty((compliant.legs, 9, 3))
+    jacobian[:, :3] = _UNIT
+    jacobian[:, 3:6] = at.points[:, 0, 6:9].dot(_CROSS).reshape(-1, 3, 3)
+    rolling = at.points[:, 1:4, 9:].reshape(-1, 3).dot(ROLL)
+    jacobian[:, 6:] = (at.points[:, 1:4, 6:9].reshape(-1, 3) - rolling).reshape(-1, 3, 3)
+    return jacobian
 
 
 def newton_step(
@@ -66,8 +57,8 @@ def newton_step(
     demand: Demand,
     *,
     frozen: bool,
-) -> tuple[Float[np.ndarray, "6"], Float[np.ndarray, "legs 3"]]:
-    """Return the Newton step of the body, along and about its own axes, and of the joint angles.
+) -> Float[np.ndarray, "unknowns"]:
+    """Return the Newton step of the body, along and about G's axes, and of the joint angles, ``(6 + 3 legs,)``.
 
     Parameters
     ----------
@@ -85,32 +76,29 @@ def newton_step(
         Whether the limits of friction are frozen.
     """
     legs, contact = compliant.legs, compliant.contact
-    normal = (at.normal != 0) * contact.normal_stiffness
-    stiffness = np.empty((legs, 3, 3))
-    stiffness[:, 2, :2], stiffness[:, 2, 2] = 0.0, normal
-    stiffness[:, :2] = friction_tangent(
+    stiffness = contact_stiffness(
         at.trial,
-        balance.slip.fraction,
+        balance.fraction,
         contact.relaxation(demand.step) * contact.tangential_stiffness,
-        None if frozen else contact.friction * normal,
+        at.normal.astype(bool) * contact.normal_stiffness,
+        0.0 if frozen else contact.friction,
     )
-    # Forces on the leg points do not turn with the body: in its axes they turn back.
-    turning = at.points[:, 1:4] @ (balance.points.reshape(-1, 3) @ _BY_FORCE).reshape(legs, 9, 3)
-    coupled = (jacobian @ stiffness) @ jacobian.transpose(0, 2, 1)
-    coupled[:, 6:, 3:6] += turning
-    coupled[:, 3:6, 6:] += turning.transpose(0, 2, 1)
-    own = coupled[:, 6:, 6:] - balance.generalised[:, _SECOND].reshape(legs, 3, 3)
-    own[:, _DIAGONAL, _DIAGONAL] += balance.slopes
-    right = np.empty((legs, 3, 7))
-    right[:, :, :6], right[:, :, 6] = coupled[:, 6:, :6], balance.joints
-    solved = np.linalg.solve(own, right)
-    moments = balance.moments
-    condensed = coupled[:, :6, 6:].transpose(1, 0, 2).reshape(6, -1) @ solved.reshape(-1, 7)
-    body = coupled[:, :6, :6].sum(axis=0) - condensed[:, :6]
-    body[3:, 3:] -= moments.T
-    body.flat[21::7] += moments[0, 0] + moments[1, 1] + moments[2, 2]
-    body.flat[::7] += _FLOOR
-    if demand.gain and compliant.inertia is not None:
-        body += demand.gain * compliant.inertia
-    moved = np.linalg.solve(body, condensed[:, 6] - balance.body)
-    return moved, -solved[:, :, 6] - solved[:, :, :6] @ moved
+    each = (jacobian @ stiffness) @ jacobian.transpose(0, 2, 1)
+    # Forces on the leg points do not turn with the body, as the points do.
+    crossed = balance.forces[:, :9].reshape(-1, 3).dot(_BY_FORCE).reshape(legs, 9, 3)
+    turning = (at.points[:, 1:4, :9] @ crossed).reshape(-1, 3)
+    joints = each[:, 6:, 6:] - balance.generalised.take(_SECOND, axis=1).reshape(legs, 3, 3)
+    body = compliant.every.dot(each.reshape(legs, 81)).reshape(9, 9)
+    body[3:6, 3:6] -= balance.moments - balance.moments.trace() * _UNIT
+    # The solver is faster with columns in memory; the resistance is symmetric.
+    tangent = demand.resistance.copy().T
+    tangent.T.reshape(-1)[6 * (7 + 3 * legs) :: 7 + 3 * legs] += balance.slopes.reshape(-1)
+    tangent[:6, :6] += body[:6, :6]
+    tangent[:6, 6:] = each[:, :6, 6:].transpose(1, 0, 2).reshape(6, -1)
+    tangent[6:, :6] = each[:, 6:, :6].reshape(-1, 6)
+    tangent[3:6, 6:] += turning.T
+    tangent[6:, 3:6] += turning
+    blocks = np.einsum("ijik->ijk", tangent[6:, 6:].reshape(legs, 3, legs, 3))
+    blocks += joints
+    step: np.ndarray = np.linalg.solve(tangent, -balance.residual)
+    return step

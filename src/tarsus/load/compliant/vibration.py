@@ -37,7 +37,7 @@ class Vibration(NamedTuple):
     Attributes
     ----------
     offset, speed, acceleration : array, shape (6 + 3 legs,)
-        Translation of the body in G, its rotation about its own axes, and joint angles [m, rad, and per s and s^2].
+        Translation of the body in G, its rotation about the axes of G, and joint angles [m, rad, and per s and s^2].
     """
 
     offset: Float[np.ndarray, "unknowns"]
