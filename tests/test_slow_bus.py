@@ -73,7 +73,9 @@ def test_one_value_of_telemetry_is_read_in_less_time_than_all():
 
 
 def test_everybody_has_a_turn_and_who_failed_is_first():
-    turn = PositionTurn(IDS)
+    bus, _ = emulated_bus("lx16a", IDS, clock=ManualClock())
+    turn = PositionTurn(bus, IDS)
+    assert turn.seconds == bus.timing(IDS).positions
     assert turn.next(1.2) == (IDS,)
     last = dict.fromkeys(IDS, 0)
     for tick in range(1, 100):
@@ -98,7 +100,7 @@ def test_everybody_has_a_turn_and_who_failed_is_first():
 class Slow:
     """A robot on a bus at the rate that its wire carries, in the servos' own time."""
 
-    def __init__(self, buses=1):
+    def __init__(self, buses=1, adapter=300e-6):
         calibration = nominal_calibration(STRIDER, "strider", kind="lx16a")
         self.clock, self.lines, opened = ManualClock(), [], {}
         first = calibration.buses[0]
@@ -114,7 +116,7 @@ class Slow:
         for name in names:
             numbers = {joint.number: (i, j) for i, row in enumerate(joints) for j, joint in enumerate(row)}
             numbers = {n: at for n, at in numbers.items() if joints[at[0]][at[1]].bus == name}
-            opened[name], line = emulated_bus("lx16a", numbers, clock=self.clock)
+            opened[name], line = emulated_bus("lx16a", numbers, clock=self.clock, turnaround=adapter)
             for number, place in numbers.items():
                 line.servos[number].place(float(commands[place]))
             self.lines.append(line)
@@ -208,6 +210,15 @@ def test_a_slow_line_carries_what_a_tick_asks_of_it(buses):
         times = [time for time, other in walked if other == id]
         assert max(np.diff(times)) < 0.26 * buses
     assert max(np.diff([time for time, _ in voltages])) < 0.5 * buses
+
+
+def test_an_adapter_that_adds_to_each_request_costs_readings_and_no_ticks():
+    # USB adapters pass bytes on in frames.
+    robot = Slow(adapter=2e-3)
+    robot.walk(lambda line: None)
+    assert robot.timing.missed == 0
+    assert robot.timing.worst < 0.2 / robot.rate
+    assert robot.plant.fault is None
 
 
 def following(every):

@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Collection, Iterable
+
+from tarsus.hardware.bus.protocol import Bus
 
 __all__ = ["PositionTurn"]
 
 # Who is suspected to be stuck gets this share of the turns at most: the others must not be left out.
 _SUSPECTS = 1 / 4
+# How much of a measured duration is believed at once.
+_NEW = 0.2
 
 
 class PositionTurn:
@@ -15,8 +20,10 @@ class PositionTurn:
 
     Parameters
     ----------
+    bus : Bus
+        The bus.
     numbers : tuple of int
-        The servos of a bus.
+        Its servos.
 
     Attributes
     ----------
@@ -24,12 +31,32 @@ class PositionTurn:
         Those whose last request failed.
     """
 
-    def __init__(self, numbers: tuple[int, ...]) -> None:
+    def __init__(self, bus: Bus, numbers: tuple[int, ...]) -> None:
+        self._whole = bus.timing(numbers).positions
+        self._one_by_one = math.isclose(self._whole, len(numbers) * bus.timing(numbers[:1]).positions)
         # Those first that were not asked for longest.
         self._waiting = list(numbers)
         self._numbers = numbers
         self._suspects: tuple[int, ...] = ()
         self.failed: tuple[int, ...] = ()
+
+    @property
+    def seconds(self) -> float:
+        """How long reading all positions takes [s]."""
+        return self._whole
+
+    def took(self, servos: int, seconds: float) -> None:
+        """Take note of how long reading took: adapters add to each request.
+
+        Parameters
+        ----------
+        servos : int
+            How many were read.
+        seconds : float
+            How long it took [s].
+        """
+        if self._one_by_one:
+            self._whole += _NEW * (seconds / servos * len(self._numbers) - self._whole)
 
     def next(self, share: float) -> tuple[tuple[int, ...], ...]:
         """Return the next servos: those that did not answer, then some that are suspected, then the others in turn.

@@ -74,7 +74,7 @@ class ServoReader:
         self.angles, self.speeds = np.full(shape, np.nan), np.full(shape, np.nan)
         self._times = np.full(shape, np.nan)
         self._turns = {
-            name: PositionTurn(joints.numbers(name))
+            name: PositionTurn(bus, joints.numbers(name))
             for name, bus in buses.items()
             if bus.capabilities.positions and joints.numbers(name)
         }
@@ -83,8 +83,6 @@ class ServoReader:
             for name, bus in buses.items()
             if bus.capabilities.telemetry and joints.numbers(name)
         }
-        timing = [buses[name].timing(joints.numbers(name)) for name in self._turns]
-        self._all = sum(each.positions for each in timing)
         self.read = np.zeros(shape, dtype=bool)
 
     def all_positions(self) -> Float[np.ndarray, "legs 3"]:
@@ -117,7 +115,8 @@ class ServoReader:
             When it began, and how long commands took on the wire [s].
         """
         self.read[:] = False
-        share = _POSITIONS * (_WHOLE * dt - writing) / self._all if self._all else 1.0
+        whole = sum(turn.seconds for turn in self._turns.values())
+        share = _POSITIONS * (_WHOLE * dt - writing) / whole if whole else 1.0
         for name, turn in self._turns.items():
             for numbers in turn.next(share):
                 yield self._read(name, numbers)
@@ -167,8 +166,11 @@ class ServoReader:
         return max(0.0, self._clock.now() - float(np.nanmin(self._times)))
 
     def _read(self, bus: str, numbers: tuple[int, ...]) -> Reading:
+        turn, start = self._turns[bus], self._clock.now()
         answers = self._buses[bus].read_positions(numbers)
-        self._turns[bus].asked(numbers, answers.values)
+        turn.asked(numbers, answers.values)
+        if not answers.errors:
+            turn.took(len(numbers), self._clock.now() - start)
         self._keep(bus, answers.values)
         if bus in self._telemetry:
             self._telemetry[bus].alarmed(answers.alarms)
