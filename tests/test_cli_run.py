@@ -20,6 +20,7 @@ from sample_commands import run, run_json
 from tarsus import Command, RobotController
 from tarsus.errors import InputError
 from tarsus.hardware import BUSES, ManualClock, PtyServer, emulate, nominal_calibration
+from tarsus.hardware.bus.register_bus import RegisterBus
 from tarsus.hardware.live.gamepad import Gamepad
 from tarsus.hardware.live.keyboard import KEYS, Keyboard
 from tarsus.hardware.live.live_commands import Input, LiveCommands
@@ -145,6 +146,32 @@ def test_a_calibration_does_not_become_one_of_another_bus(tmp_path):
         result = run("run", "strider", "--calibration", tmp_path / "c.toml", "--bus", bus)
         assert result.exit_code == 2
         assert message in result.stderr
+
+
+def test_an_interrupted_run_tells_what_was_recorded_and_what_could_not_be_released(tmp_path, monkeypatch):
+    command = Supervised.command
+
+    def interrupted(self, time, output, note):
+        if time > 0.2:
+            raise KeyboardInterrupt
+        return command(self, time, output, note)
+
+    held = RegisterBus.set_torque
+
+    def holding(self, ids, on):
+        if not on:
+            raise OSError("no cable")
+        return held(self, ids, on)
+
+    monkeypatch.setattr(Supervised, "command", interrupted)
+    monkeypatch.setattr(RegisterBus, "set_torque", holding)
+    result = run("run", "strider", "--bus", "emulated", "--out", tmp_path)
+    assert result.exit_code == 130
+    assert "the servos on main may still hold: no cable" in result.output
+    assert "interrupted" in result.output
+    assert "telemetry.csv" in result.output
+    times, _, _ = read_log(tmp_path / "telemetry.csv", STRIDER)
+    assert times[-1] > 0.2
 
 
 # The program's input becomes the terminal that controls it: closing it hangs the program up.

@@ -80,9 +80,11 @@ def run(robot: str, out: Path | None, as_json: bool, **options: Any) -> int:
     else:
         from tarsus.report.tables import verdict
 
-        show(_table(summary), verdict(summary))
+        show(_table(summary), "interrupted" if summary["interrupted"] else verdict(summary))
         for file in summary["files"]:
             click.echo(f"wrote {file}")
+    if summary["interrupted"]:
+        raise click.Abort
     return 0 if summary["possible"] else 1
 
 

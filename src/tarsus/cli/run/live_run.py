@@ -31,6 +31,7 @@ from tarsus.hardware.live.gamepad import Gamepad
 from tarsus.hardware.live.keyboard import KEYS, Keyboard
 from tarsus.hardware.live.live_commands import InputDevice, LiveCommands
 from tarsus.hardware.live.supervision import Rising, Supervised
+from tarsus.hardware.plant.pacer import Timing
 from tarsus.hardware.plant.servo_plant import ServoPlant
 from tarsus.hardware.plant.tick_record import TickRecord
 from tarsus.hardware.telemetry.log import TelemetryLog
@@ -143,6 +144,7 @@ def _rate(asked: float | None, plant: ServoPlant) -> float:
 class _Outcome:
     recording: Recording | None = None
     fault: ServoFaultError | None = None
+    interrupted: bool = False
 
 
 def _run(
@@ -158,6 +160,8 @@ def _run(
         outcome.recording = run_loop(controller, plant, line.watched(_limited(source, duration)), rate=rate)
     except ServoFaultError as error:
         outcome.fault = error
+    except KeyboardInterrupt:
+        outcome.interrupted = True
     return outcome
 
 
@@ -276,19 +280,12 @@ def _summary(
     return {
         "robot": robot.name,
         "bus": bus,
-        "possible": not problems,
+        "possible": not problems and not outcome.interrupted,
+        "interrupted": outcome.interrupted,
         "problems": problems,
         "duration_s": line.duration if recording is None else recording.motion.duration,
         "distance_mm": None if way is None else float(np.hypot(*(way[-1] - way[0]))) * 1000,
-        "timing": None
-        if timing is None
-        else {
-            "ticks": timing.ticks,
-            "missed": timing.missed,
-            "rate_hz": timing.rate,
-            "median_late_ms": timing.median * 1e3,
-            "worst_late_ms": timing.worst * 1e3,
-        },
+        "timing": timing and _milliseconds(timing),
         "tracking_deg": line.tracking,
         "voltage_v": line.lowest_voltage,
         "fault": None if plant is None or plant.fault is None else str(plant.fault.kind),
@@ -296,3 +293,8 @@ def _summary(
         "notes": [] if plant is None else [*plant.notes],
         "files": [] if out is None else [str(file) for file in write_figures(robot, recording, logged, out)],
     }
+
+
+def _milliseconds(timing: Timing) -> dict[str, Any]:
+    late = {"median_late_ms": timing.median * 1e3, "worst_late_ms": timing.worst * 1e3}
+    return {"ticks": timing.ticks, "missed": timing.missed, "rate_hz": timing.rate, **late}
