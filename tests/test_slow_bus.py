@@ -1,6 +1,7 @@
 """Servos on a line that carries less than all positions in a tick: who is asked first, and how long for."""
 
 import math
+import random
 
 import numpy as np
 import pytest
@@ -56,6 +57,32 @@ def test_a_missing_servo_takes_no_longer_than_the_adapter_needs(delay, most):
     # After several requests it is waited for again as long as at first.
     line.faults.missing, line.faults.late = set(), {5: 0.012}
     assert any(bus.read_positions((5,)).values for _ in range(8))
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_answers_that_come_after_the_next_request_are_never_taken_for_another_value(seed):
+    chance = random.Random(seed)
+    clock = ManualClock()
+    bus, line = emulated_bus("lx16a", IDS, clock=clock)
+    line.faults._random = chance
+    for id in IDS:
+        line.servos[id].place(400.0 + 11 * id)
+        line.servos[id].temperature = 20.0 + 2 * id
+    for _ in range(10):
+        bus.read_positions(IDS)
+    for _ in range(300):
+        line.faults.late = {chance.choice(IDS): chance.choice((0.004, 0.006, 0.01, 0.03))}
+        line.faults.corrupt = {chance.choice(IDS): chance.random()}
+        line.faults.missing = {chance.choice(IDS)} if chance.random() < 0.3 else set()
+        asked = chance.sample(IDS, 3)
+        for id, value in bus.read_positions(asked).values.items():
+            assert value == 400 + 11 * id
+        for id, measured in bus.read_one("temperature", asked).values.items():
+            # They cool down meanwhile.
+            assert measured == Telemetry(temperature=pytest.approx(line.servos[id].temperature, abs=0.7))
+    line.faults.late, line.faults.corrupt, line.faults.missing = {}, {}, set()
+    assert all(len(bus.read_positions(IDS).values) + 3 > len(IDS) for _ in range(3))
+    assert set(bus.read_positions(IDS).require()) == set(IDS)
 
 
 def test_one_value_of_telemetry_is_read_in_less_time_than_all():
