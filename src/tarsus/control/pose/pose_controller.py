@@ -23,7 +23,6 @@ _BODY_SPEED, _BODY_TURN = 0.08, 0.5
 _POSTURE_TOLERANCE, _SWAY_TOLERANCE = 2e-4, 1e-3
 # Tolerance of the body shift, less than the least stability margin [m].
 _SHIFT_TOLERANCE = 2e-3
-_NO_DISTANCE = [0.0] * (SWING_HEIGHT + 1)
 
 
 class PoseController:
@@ -48,6 +47,7 @@ class PoseController:
         self.posture = posture
         self.target = np.append(posture, np.zeros(SWING_HEIGHT))
         self.shift: Float[np.ndarray, "14"] | None = None
+        self._sways = False
 
     def set_shift(self, coefficients: Complex[np.ndarray, "7"] | None, value: Float[np.ndarray, "14"]) -> bool:
         """Set the body shift, and return whether it is reached.
@@ -89,13 +89,13 @@ class PoseController:
         beats : int
             Number of lift-offs per cycle, of legs that lift together.
         """
-        if not any(sway) and not any(self.target[SWING_HEIGHT + 1 :].tolist()):
+        if not (self._sways or any(sway)):
             return
         amplitude = np.array(sway)
         if amplitude.any():
             amplitude *= sway_fraction(amplitude, frequency, beats)
         if (self.target[SWING_HEIGHT + 1 :] != amplitude).any():
-            self.target = np.append(self.posture, amplitude)
+            self.target, self._sways = np.append(self.posture, amplitude), bool(amplitude.any())
 
     def is_swaying(self, value: Float[np.ndarray, "13"]) -> bool:
         """Return whether a posture sways, or its target does.
@@ -105,8 +105,7 @@ class PoseController:
         value : array, shape (13,)
             The current posture.
         """
-        swaying = any(self.target[SWING_HEIGHT + 1 :].tolist())
-        return swaying or (value is not self.target and any(value[SWING_HEIGHT + 1 :].tolist()))
+        return self._sways or (value is not self.target and any(value[SWING_HEIGHT + 1 :].tolist()))
 
     def reached(self, value: Float[np.ndarray, "13"]) -> bool:
         """Return whether a posture and its sway have reached their target.
@@ -129,25 +128,13 @@ class PoseController:
         value : array, shape (13,)
             The current posture.
         """
-        distance = self._distance(value)
-        if max(distance) < _POSTURE_TOLERANCE:
+        if value is self.target:
             return _BANDWIDTH
+        distance = np.abs(value - self.target).tolist()
         time = max(
             max(distance[:3]) / _BODY_SPEED,
             max(distance[3:SWING_HEIGHT]) / _BODY_TURN,
             distance[SWING_HEIGHT] / _BODY_SPEED,
         )
-        return _bandwidth_for(time)
-
-    def _distance(self, value: Float[np.ndarray, "13"]) -> list[float]:
-        """Return the distance to the target, for each number of the posture."""
-        if value is self.target:
-            return _NO_DISTANCE
-        posture, current = self.posture.tolist(), value[: SWING_HEIGHT + 1].tolist()
-        return [abs(a - b) for a, b in zip(posture, current, strict=True)]
-
-
-def _bandwidth_for(time: float) -> float:
-    """Return the bandwidth for a target that is this far away in time at the greatest speed [rad/s]."""
-    # A critically damped filter with bandwidth 2 v / distance, renewed every tick, reaches the speed v and keeps it.
-    return min(_BANDWIDTH, 2 / max(time, 1e-9))
+        # A critically damped filter with bandwidth 2 v / distance, renewed every tick, reaches speed v and keeps it.
+        return min(_BANDWIDTH, 2 / max(time, 1e-9))

@@ -159,15 +159,11 @@ def reachable_heights(
     levels = _TRIED * float(np.max(g.femur + g.tibia))
     stance = StanceGeometry(rest, np.array(rotation_rows(*posture[3:SWING_HEIGHT].tolist())), posture[:3], 0.0)
     places = rest + np.array([-0.5, 0.0, 0.5])[:, None, None] * strokes
-    x, y = np.broadcast_to(places.real, (3, len(levels), len(rest))), places.imag
-    solution = stance.solve(robot, x, np.broadcast_to(y, x.shape), np.broadcast_to(levels[:, None], x.shape))
-    works = np.asarray((joint_margin(g, solution) >= 0).all(axis=0))
-    lowest, highest = [], []
-    for leg in range(len(rest)):
-        below, above = ~works[: _LEVEL + 1, leg][::-1], ~works[_LEVEL:, leg]
+    solution = stance.solve(robot, places.real, places.imag, levels[:, None])
+    beyond = ~(joint_margin(g, solution) >= 0).all(axis=0)
+    ends = []
+    for sign, way in ((-1, beyond[_LEVEL::-1]), (1, beyond[_LEVEL:])):
         # The last level before the first one that is out of reach.
-        low = int(below.argmax()) if below.any() else _LEVEL + 1
-        high = int(above.argmax()) if above.any() else _LEVEL + 1
-        lowest.append(float(levels[_LEVEL - max(low - 1, 0)]))
-        highest.append(float(levels[_LEVEL + max(high - 1, 0)]))
-    return lowest, highest
+        steps = np.where(way.any(axis=0), way.argmax(axis=0) - 1, _LEVEL)
+        ends.append(levels[_LEVEL + sign * np.maximum(steps, 0)].tolist())
+    return ends[0], ends[1]

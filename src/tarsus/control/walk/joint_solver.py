@@ -104,8 +104,8 @@ class JointSolver:
 
     def _body_at(self, state: GaitState) -> tuple[Rows, list[float], float]:
         if state.posture is not self._posture or state.shift is not NO_SHIFT:
-            row = state.posture.value
             x, y, z, roll, pitch, yaw, swing_height = body_posture(state).tolist()
             self._body = rotation_rows(roll, pitch, yaw), [x, y, z], swing_height
-            self._posture = None if row[SWING_HEIGHT + 1 :].any() else state.posture
+            sways = any(state.posture.value[SWING_HEIGHT + 1 :].tolist())
+            self._posture = None if sways else state.posture
         return self._body

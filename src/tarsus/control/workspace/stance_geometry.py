@@ -169,7 +169,7 @@ def with_sway(posture: Float[np.ndarray, "_"], cycles: float, beats: float) -> F
         The posture.
     """
     amplitude = posture[SWING_HEIGHT + 1 :]
-    if not amplitude.any():
+    if not any(amplitude.tolist()):
         return posture[: SWING_HEIGHT + 1]
     per_cycle, per_beat = math.sin(2 * math.pi * cycles), math.sin(2 * math.pi * beats)
     swayed: np.ndarray = posture[: SWING_HEIGHT + 1].copy()
