@@ -13,12 +13,12 @@ from tarsus.control.sensing.foot_loads import FootLoads
 from tarsus.control.sensing.leg_odometry import LegOdometry
 from tarsus.control.sensing.validation import ReadingsValidator
 from tarsus.control.terrain.foot_contacts import FootContacts
-from tarsus.control.terrain.foot_plane import FootPlane, fitted_plane
 from tarsus.control.terrain.posture_feedback import PostureFeedback
 from tarsus.control.terrain.reach import reachable_heights
 from tarsus.control.terrain.roughness import Roughness
 from tarsus.control.terrain.support import Support, holds
 from tarsus.control.walk_controller import WalkController
+from tarsus.gait.foot_plane import FootPlane, fitted_plane
 from tarsus.kinematics.leg import forward_kinematics
 
 STRIDER = tarsus.load_robot("strider")
@@ -111,11 +111,11 @@ def test_the_body_fits_itself_to_the_reach_and_gives_way_where_it_cannot():
     posture = PostureFeedback("level")
     rises = [0.3 * foot.real for foot in FEET]
     for _ in range(300):
-        posture.fit_to_reach(rises, (-1.0, 0.0), 0.02, reach=([-0.06] * 6, [0.2] * 6), height=0.2, share=1.0)
+        posture.fit_to_reach((rises, rises), (-1.0, 0.0), 0.02, reach=([-0.06] * 6, [0.2] * 6), height=0.2, share=1.0)
     assert posture.raised == pytest.approx(-0.021, abs=1e-6)
     assert posture.given_way == 0.0
     for _ in range(300):
-        posture.fit_to_reach(rises, (-1.0, 0.0), 0.02, reach=([-0.06] * 6, [0.06] * 6), height=0.2, share=1.0)
+        posture.fit_to_reach((rises, rises), (-1.0, 0.0), 0.02, reach=([-0.06] * 6, [0.06] * 6), height=0.2, share=1.0)
     assert posture.short == pytest.approx(0.021)
     assert 0 < posture.given_way < 0.5
 

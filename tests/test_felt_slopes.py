@@ -9,7 +9,6 @@ from gait_robots import preset
 from tarsus.control.limitation import LimitationKind
 from tarsus.control.readings import SensorReadings
 from tarsus.control.robot_controller import RobotController
-from tarsus.control.terrain.foot_plane import FootPlane
 from tarsus.control.terrain.posture_feedback import PostureFeedback
 from tarsus.control.terrain.reach import Reach, reachable_share
 from tarsus.control.terrain.roughness import GroundAdaptation
@@ -18,6 +17,7 @@ from tarsus.control.terrain.slope_stance import SlopeStance
 from tarsus.control.walk_controller import WalkController
 from tarsus.control.walk_state import WalkState
 from tarsus.errors import InputError
+from tarsus.gait.foot_plane import FootPlane
 from tarsus.kinematics.stance import default_stance
 from tarsus.simulation import SimulatedPlant, terrain
 
@@ -60,7 +60,7 @@ def test_a_plane_is_levelled_by_the_attitude_of_the_body():
 
 def test_the_body_follows_the_share_of_a_slope_that_the_legs_do_not_reach():
     posture, slope = PostureFeedback("level"), 0.5
-    posture.fit_to_reach([0.0] * 6, (0.0, 0.0), 0.02, reach=([-0.1] * 6, [0.1] * 6), height=0.1, share=0.7)
+    posture.fit_to_reach(([0.0] * 6, [0.0] * 6), (0.0, 0.0), 0.02, reach=([-0.1] * 6, [0.1] * 6), height=0.1, share=0.7)
     pitch = 0.0
     for _ in range(2000):
         plane = FootPlane(0.0, math.tan(slope + pitch), 0.0)
@@ -103,7 +103,9 @@ def test_the_body_is_raised_where_it_would_touch_a_slope():
     assert stance.least_raise(plane, 0.02) == pytest.approx(0.4 * 0.12)
     posture = PostureFeedback("level")
     for _ in range(100):
-        posture.fit_to_reach([0.0] * 6, (0.03, 0.0), 0.02, reach=([-0.1] * 6, [0.1] * 6), height=0.1, share=1.0)
+        posture.fit_to_reach(
+            ([0.0] * 6, [0.0] * 6), (0.03, 0.0), 0.02, reach=([-0.1] * 6, [0.1] * 6), height=0.1, share=1.0
+        )
     assert posture.raised == pytest.approx(0.03)
 
 

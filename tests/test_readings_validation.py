@@ -273,7 +273,7 @@ def test_invalid_ages_of_channels_reject_all_channels(age, reason):
 
 
 def test_channels_are_the_fields_of_the_readings():
-    assert set(CHANNELS) == set(FINITE) | set(PLAUSIBLE) | {"angular_rates"}
+    assert set(CHANNELS) == set(FINITE) | set(PLAUSIBLE) | {"angular_rates", "ground"}
     assert all(hasattr(ValidReadings(), name) for name in CHANNELS)
 
 

@@ -110,7 +110,7 @@ def control_values():
     yield from (sequence, tarsus.SequencePlayer(sequence), tarsus.WalkController(robot), tarsus.IdealPlant(robot))
     yield tarsus.CompensatedPlant(tarsus.IdealPlant(robot))
     yield from (tarsus.SensorReadings(contacts=[True] * 6), tarsus.Admittance(mass=1.0, damping=40.0, stiffness=400.0))
-    yield tarsus.GroundAdaptation(swing_height=0.03)
+    yield from (tarsus.GroundAdaptation(swing_height=0.03), tarsus.GroundHeights(heights=np.zeros((3, 3))))
     yield from (scenario, tarsus.run_scenario(scenario))
 
 

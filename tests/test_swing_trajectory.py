@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tarsus.control.walk.swing_trajectory import quintic, swinging_height
 from tarsus.gait.swing import swing_position
+from tarsus.gait.swing_trajectory import quintic, swinging_height
 
 number = st.floats(-1, 1)
 state = st.tuples(number, number, number)

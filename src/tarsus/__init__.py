@@ -56,6 +56,7 @@ if TYPE_CHECKING:
     )
     from tarsus.gait.cycle import cycle_feet
     from tarsus.gait.gait import GAITS, Gait
+    from tarsus.gait.ground_heights import GroundHeights
     from tarsus.gait.motion import Motion
     from tarsus.gait.path import BodyPath, curved_path, straight_path, twist_path
     from tarsus.gait.plan import plan_walk
@@ -134,6 +135,7 @@ _HOMES = {
         *("NoAnswerError", "PortError", "RobotFileError", "ServoFaultError", "ServoStatusError", "SimulationError"),
         *("StrokeError", "TarsusError", "UnknownNameError", "UnreachableError"),
     ),
+    "tarsus.gait.ground_heights": ("GroundHeights",),
     "tarsus.gait.cycle": ("cycle_feet",),
     "tarsus.gait.gait": ("GAITS", "Gait"),
     "tarsus.control.pose.admittance": ("Admittance",),
@@ -237,6 +239,7 @@ __all__ = [
     "GaitDefaults",
     "GaitTrial",
     "GroundAdaptation",
+    "GroundHeights",
     "Guard",
     "GuardBounds",
     "GuardOutput",

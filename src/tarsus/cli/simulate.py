@@ -58,7 +58,7 @@ _VIDEOS = (".mp4", ".gif")
     default="blind",
     show_default=True,
     metavar="SUITE",
-    help="What the controller of a scenario reads: ideal, hobby, smart or blind.",
+    help="What the controller of a scenario reads: ideal, camera, hobby, smart or blind.",
 )
 @click.option("--seed", type=int, default=0, show_default=True, help="Random seed of the sensor noise.")
 @click.option(

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from typing import Any, NamedTuple, TypeAlias
 
+from tarsus.gait.ground_heights import GroundHeights
 from tarsus.representation import represented
 
 __all__ = ["CHANNELS", "SensorReadings", "ValidReadings", "Vector"]
@@ -44,6 +45,8 @@ class SensorReadings:
         Roll and pitch of B in the world, z along gravity: those of ``Rz(yaw) Ry(pitch) Rx(roll)`` [rad].
     angular_rates : array, shape (3,), or None
         Angular velocity of B in the world, components along B's axes [rad/s].
+    ground : GroundHeights or None
+        Heights of the ground around the body.
     age : float or mapping of str to float
         Time since the measurement [s]: of all channels, or of each by its name; channels not in the mapping have
         age 0.
@@ -59,6 +62,7 @@ class SensorReadings:
     torques: Any = None
     attitude: Any = None
     angular_rates: Any = None
+    ground: Any = None
     age: float | Mapping[str, float] = 0.0
 
     @property
@@ -96,6 +100,10 @@ class ValidReadings(NamedTuple):
         Roll and pitch of B in the world [rad].
     angular_rates : (x, y, z), or None
         Angular velocity of B in the world, components along B's axes [rad/s].
+    ground : GroundHeights or None
+        Heights of the ground around the body.
+    ground_age : float
+        Time since their measurement [s].
     contact_age : float
         Time since the measurement of contacts, or else of forces, or else of joint angles [s].
     rejected : tuple of str
@@ -112,5 +120,7 @@ class ValidReadings(NamedTuple):
     torques: tuple[Vector | None, ...] | None = None
     attitude: tuple[float, float] | None = None
     angular_rates: Vector | None = None
+    ground: GroundHeights | None = None
+    ground_age: float = 0.0
     contact_age: float = 0.0
     rejected: tuple[str, ...] = ()

@@ -10,6 +10,7 @@ import numpy as np
 from tarsus.robot.robot import Robot
 from tarsus.simulation.engine import mujoco_module
 from tarsus.simulation.robot_model import foot_geom_name
+from tarsus.simulation.terrain.protocol import Terrain
 
 if TYPE_CHECKING:
     from jaxtyping import Float
@@ -17,6 +18,9 @@ if TYPE_CHECKING:
 __all__ = ["Measurement"]
 
 _ONES = np.ones(3)
+# The points around the body at which a sensor measures the ground [m].
+_REACH = np.linspace(-0.6, 0.6, 61)
+_AROUND = _REACH[:, None] + 1j * _REACH
 
 
 class Measurement:
@@ -95,3 +99,16 @@ class Measurement:
         """Return the angular velocity of B, along its own axes, ``(3,)`` [rad/s]."""
         rates: np.ndarray = self._rates.copy()
         return rates
+
+    def ground_heights(self, terrain: Terrain) -> Float[np.ndarray, "rows columns"]:
+        """Return the heights of the ground on a level grid around the body, as in `GroundHeights` [m].
+
+        Parameters
+        ----------
+        terrain : Terrain
+            The ground.
+        """
+        x, y = self._data.qpos[:2].tolist()
+        ahead = self.rotation()[:2, 0]
+        places = complex(x, y) + complex(*ahead.tolist()) / math.hypot(*ahead.tolist()) * _AROUND
+        return np.asarray(terrain.height(places.real, places.imag), dtype=float)

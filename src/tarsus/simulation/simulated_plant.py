@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -302,6 +303,7 @@ class SimulatedPlant:
             "forces": lambda: measurement.foot_forces() @ measurement.rotation(),
             "attitude": measurement.attitude,
             "angular_rates": measurement.angular_rates,
+            "ground": lambda: partial(measurement.ground_heights, self.terrain),
         }
         if currents is not None:
             channels["currents"] = lambda: np.abs(self._torques()) * currents

@@ -10,6 +10,7 @@ from tarsus.control.sensing.body_channels import AngularRateChannel, AttitudeCha
 from tarsus.control.sensing.leg_channels import ContactChannel, Range, VectorChannel
 from tarsus.control.sensing.plain_values import as_number
 from tarsus.errors import InputError
+from tarsus.gait.ground_heights import GroundHeights
 from tarsus.kinematics.mass import STANDARD_GRAVITY, total_mass
 from tarsus.robot.robot import Robot
 
@@ -97,6 +98,7 @@ class ReadingsValidator:
             "torques": _torques_channel(robot, max_stalls, settle=settle),
             **{name: VectorChannel(name, legs, settle=settle) for name in _FINITE_CHANNELS},
             "angular_rates": AngularRateChannel(settle=settle),
+            "ground": _GroundChannel(),
         }
         old = f"older than {max_age * 1e3:g} ms"
         self._old = {name: f"{name}: {old}" for name in ("readings", *CHANNELS)}
@@ -123,7 +125,7 @@ class ReadingsValidator:
                 channel.reset()
             valid = ValidReadings(rejected=(problem,))
         else:
-            accepted = {}
+            accepted = dict[str, Any]()
             for name, channel in self._channels.items():
                 value = getattr(readings, name)
                 if value is None:
@@ -135,8 +137,10 @@ class ReadingsValidator:
                     accepted[name] = channel.read(value, rejected)
             common = 0.0 if ages else as_number(readings.age)
             given = (name for name in ("contacts", "forces") if getattr(readings, name) is not None)
-            age = as_number(ages.get(next(given, "joint_angles"), common))
-            valid = ValidReadings(**accepted, contact_age=age if age > 0 else 0.0, rejected=tuple(rejected))
+            measured = {"contact_age": next(given, "joint_angles"), "ground_age": "ground"}
+            found = {key: as_number(ages.get(name, common)) for key, name in measured.items()}
+            accepted |= {key: age if age > 0 else 0.0 for key, age in found.items()}
+            valid = ValidReadings(**accepted, rejected=tuple(rejected))
         for reason in rejected:
             self.counts[reason] = self.counts.get(reason, 0) + 1
         return valid
@@ -161,6 +165,19 @@ class ReadingsValidator:
         if 0.0 <= seconds <= self._max_age:
             return ""
         return self._old[name] if seconds > 0 else f"{name}: {_BAD_AGE}"
+
+
+class _GroundChannel:
+    """Heights of the ground, which have been checked as they were made."""
+
+    def reset(self) -> None:
+        """Do nothing: there is nothing to settle."""
+
+    def read(self, value: Any, rejected: list[str]) -> GroundHeights | None:
+        if type(value) is GroundHeights:
+            return value
+        rejected.append("ground: not of class GroundHeights")
+        return None
 
 
 def _forces_channel(robot: Robot, max_weights: float, *, settle: int) -> VectorChannel:

@@ -35,7 +35,7 @@ _SPEED_SHARE, _LEAST_TIME = 0.15, 1.0
 # Time in which the joints lose the speed that they have [s].
 _STOPPING = 0.3
 # Channels that are not measured for each leg.
-_OF_BODY = ("attitude", "angular_rates")
+_OF_BODY = ("attitude", "angular_rates", "ground")
 
 
 class ReducedWalking(Walking):

@@ -15,8 +15,8 @@ from tarsus.control.sensing.foot_loads import FootLoads
 from tarsus.control.sensing.leg_odometry import LegOdometry
 from tarsus.control.sensing.validation import ReadingsValidator
 from tarsus.control.terrain.foot_contacts import FootContacts
-from tarsus.control.terrain.foot_plane import FootPlane, fitted_plane
 from tarsus.control.terrain.ground_contact import met_ground
+from tarsus.control.terrain.ground_map import GroundMap
 from tarsus.control.terrain.posture_feedback import Levelling, PostureFeedback, PostureRates
 from tarsus.control.terrain.reach import Reach, reachable_share
 from tarsus.control.terrain.roughness import GroundAdaptation, Roughness
@@ -37,8 +37,6 @@ if TYPE_CHECKING:
 
 __all__ = ["FeltGround"]
 
-# How fast the slope follows the feet [1/s].
-_SLOPE_RATE = 2.0
 # How far below the expected ground feet go by the end of their swing, over the roughness.
 _DEPTH_SHARE = 0.6
 # Fraction of the swing in which a foot travels, up to half the longest stroke and with the longest one.
@@ -79,8 +77,8 @@ class FeltGround:
         Whether feet may lift off, and at which pace the walk goes on.
     slope : SlopeLimit
         Whether the slope is too slippery.
-    plane : FootPlane
-        The plane through the standing feet, in the heading frame.
+    ground : GroundMap
+        What is known of the ground around the robot.
     offsets : array, shape (legs,), or None
         Upward offsets of compliant feet [m]; None of stiff ones.
     """
@@ -96,7 +94,7 @@ class FeltGround:
     ) -> None:
         self.contacts, self.support, self.condition = FootContacts(robot.legs), Support(), BodyCondition()
         self.posture, self.roughness = PostureFeedback(levelling), Roughness(adaptation)
-        self.slope, self.plane = SlopeLimit(adaptation.friction), FootPlane()
+        self.slope, self.ground = SlopeLimit(adaptation.friction), GroundMap()
         self.offsets: Float[np.ndarray, "legs"] | None = None
         self._reach, self.stance = Reach(robot), SlopeStance(robot)
         self._validator, self._loads = ReadingsValidator(robot), FootLoads(robot, admittance)
@@ -154,13 +152,14 @@ class FeltGround:
             roll, pitch = state.posture.value[3:5].tolist()
             self._tilt = (valid.attitude[0] - roll, valid.attitude[1] - pitch)
         dt, ticks, self._unread, self._ticks, self._inputs = self._unread, self._ticks, 0.0, 0, None
+        self.ground.see(valid, state)
         self.contacts.step(measured, down, dt, age=valid.contact_age, count=ticks)
         self.condition.step([self.contacts.touches(leg) for leg in range(len(down))], valid.attitude, dt)
         if self._loads.compliant:
             forces, feet = self._loads.forces(valid, angles), [(foot.real, foot.imag) for foot in state.foot.tolist()]
             self.offsets = self._loads.offsets(forces, dt, feet=feet, stands=down)
         highest, pace = self._reach.highest, self.support.pace
-        return met_ground(state, self.contacts, self.plane, self.roughness, highest=highest, timing=timing, pace=pace)
+        return met_ground(state, self.contacts, self.ground, self.roughness, highest=highest, timing=timing, pace=pace)
 
     def inputs(
         self,
@@ -205,6 +204,7 @@ class FeltGround:
         if self._since >= _SLOW_PERIOD:
             self._update_posture(state, places, down, timing=timing, twist=twist, rest=footholds.rest)
             self._since = 0.0
+            self.ground.choose(state, self._reach, footholds, self._strokes)
         self._decide_on_support(state, places, down, due, dt=dt, swing_time=timing.swing_time)
         self.roughness.decay(0.0 if standing else dt * timing.frequency)
         in_air, under = self.condition.in_air, list[GroundUnder | None]()
@@ -213,10 +213,9 @@ class FeltGround:
             if not steps[leg] or (down[leg] and stands[leg] and not (due and due[leg])):
                 under.append(None)
                 continue
-            expected = elevation + self.plane.at((foothold - state.origin) * turn)
             searches = not in_air and contacts.is_known(leg) and (down[leg] or contacts.lifted[leg])
-            lowest = elevation + self._reach.lowest[leg] if searches else expected
-            under.append(GroundUnder(expected, lowest, elevation + self._reach.highest[leg]))
+            room = (self._reach.lowest[leg] if searches else None, self._reach.highest[leg])
+            under.append(self.ground.under(places[leg], (foothold - state.origin) * turn, elevation, room))
         far = 2 * self._reach.stroke / max(*footholds.placement_radii, 1e-6) - 1
         inputs = FeltInputs(
             under,
@@ -230,6 +229,7 @@ class FeltGround:
             pace=self.support.pace,
             swing_height=float(state.posture.value[SWING_HEIGHT]) + self.roughness.swing_rise,
             lowering=self._loads.fastest_descent,
+            beside=self.ground.beside,
         )
         # As long as all is as planned, it stays: yielding feet and a walk that slows down are looked at in each tick.
         self._inputs = None if self._loads.compliant or self.support.pace < 1.0 else inputs
@@ -249,21 +249,22 @@ class FeltGround:
         legs, contacts, dt = range(len(rest)), self.contacts, self._since
         over = (state.ground_height - state.elevation.value).tolist()
         bears = [leg for leg in legs if down[leg] and contacts.touches(leg)]
-        self.plane = fitted_plane(
-            [places[leg] for leg in bears], [over[leg] for leg in bears], self.plane, min(_SLOPE_RATE * dt, 1.0)
-        )
-        reach = self._reach
+        reach, (vx, vy, wz) = self._reach, twist.tolist()
+        self.ground.step([(places[leg], over[leg]) for leg in bears], self._tilt, state, dt, drift=self._drift)
+        plane = self.ground.plane
+        self._strokes = (complex(vx, vy) + 1j * wz * rest) * timing.stance_time
         reach.update(state.posture.value, rest, twist, timing.stance_time)
         seeking = [down[leg] and contacts.seeks(leg) for leg in legs]
-        rises = reach.rises(self.plane, rest, over, bears=bears, seeking=seeking)
+        rises = self.ground.rises(reach.rises(plane, rest, over, bears=bears, seeking=seeking), rest, self._strokes)
         highest = reach.highest_stand(float(state.posture.value[SWING_HEIGHT]))
-        level = self.plane.levelled(self._tilt)
+        level = plane.levelled(self._tilt)
         if self._tilt is not None:
             self.slope.step(level, complex(*twist[:2].tolist()))
             self.stance.step(level, rest - self.stance.shift)
         share = reachable_share([level.at(foot) for foot in rest.tolist()], reach.lowest, highest)
         height, room = float(state.posture.value[2]), (reach.lowest, highest)
-        raises = (self.stance.least_raise(self.plane, height), self.roughness.body_rise)
+        wanted = max(self.roughness.body_rise, self.ground.body_rise(self.stance.half, height))
+        raises = (self.stance.least_raise(plane, height), wanted)
         self.posture.fit_to_reach(rises, raises, dt, reach=room, height=height, share=share)
         velocity = complex(*state.twist.value[:2].tolist()) * self.support.pace
         tilt, yaw = self.measured.attitude or (0.0, 0.0), float(state.posture.value[5])
@@ -271,7 +272,7 @@ class FeltGround:
         drift = self.odometry.step(self.measured.joint_angles, stands, velocity, dt, tilt=tilt, yaw=yaw)
         self._drift = self.stance.not_downhill(drift)
         margins = [(places[leg], over[leg] - reach.lowest[leg]) for leg in bears]
-        self._rates = self.posture.rates(self.plane, self._tilt, velocity, feet=margins)
+        self._rates = self.posture.rates(plane, self._tilt, velocity, feet=margins)
 
     def _decide_on_support(
         self, state: GaitState, places: list[complex], down: list[bool], due: list[bool] | None, **time: float

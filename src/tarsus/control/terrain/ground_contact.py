@@ -7,7 +7,7 @@ import math
 from typing import TYPE_CHECKING, Any
 
 from tarsus.control.terrain.foot_contacts import FootContacts
-from tarsus.control.terrain.foot_plane import FootPlane
+from tarsus.control.terrain.ground_map import GroundMap
 from tarsus.control.terrain.roughness import Roughness
 from tarsus.control.walk.felt_feet import FeltFoot
 from tarsus.control.walk.state import GaitState
@@ -34,7 +34,7 @@ _HIGHER, _RISING, _DRAWN_BACK = 0.025, 0.12, 0.008
 def met_ground(
     state: GaitState,
     contacts: FootContacts,
-    plane: FootPlane,
+    ground: GroundMap,
     roughness: Roughness,
     *,
     highest: Sequence[float],
@@ -49,7 +49,7 @@ def met_ground(
         The gait state.
     contacts : FootContacts
         The contacts.
-    plane : FootPlane
+    ground : GroundMap
         Where ground is expected.
     roughness : Roughness
         Takes note of footholds and collisions.
@@ -71,7 +71,7 @@ def met_ground(
             if tells and not contacts.touches(leg):
                 continue
             over = float(state.ground_height[leg]) - elevation
-            expected = plane.at((complex(state.foot[leg]) - state.origin) * cmath.exp(-1j * state.yaw))
+            expected = ground.at((complex(state.foot[leg]) - state.origin) * cmath.exp(-1j * state.yaw))
             if tells or over <= expected + _ROUNDING:
                 if tells:
                     roughness.landed(over - expected)

@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from typing import Literal, NamedTuple, TypeAlias
 
-from tarsus.control.terrain.foot_plane import FootPlane
+from tarsus.gait.foot_plane import FootPlane
 
 __all__ = ["LEVELLING_SHARES", "Levelling", "PostureFeedback", "PostureRates"]
 
@@ -64,7 +64,7 @@ class PostureFeedback:
 
     def fit_to_reach(
         self,
-        rises: Sequence[float],
+        rises: tuple[Sequence[float], Sequence[float]],
         raises: tuple[float, float],
         dt: float,
         *,
@@ -76,8 +76,8 @@ class PostureFeedback:
 
         Parameters
         ----------
-        rises : sequence of float
-            Height of each foot over the plane's height at the origin [m].
+        rises : tuple of sequence of float
+            Least and greatest height of each foot over the plane's height at the origin [m].
         raises : tuple of float
             How much higher than commanded the body is at least, and how much higher it should be [m].
         dt : float
@@ -90,12 +90,12 @@ class PostureFeedback:
             Share of the slope that the legs reach, 0 to 1.
         """
         # Feet are between their least and greatest heights for heights over the ground between these.
-        most = min(rise - low for low, rise in zip(reach[0], rises, strict=True))
-        least = max(raises[0], *(rise - high for high, rise in zip(reach[1], rises, strict=True)))
+        most = min(rise - low for low, rise in zip(reach[0], rises[0], strict=True))
+        least = max(raises[0], *(rise - high for high, rise in zip(reach[1], rises[1], strict=True)))
         wanted = max(min(raises[1], most), least) if most >= least else (most + least) / 2
         wanted = max(wanted, -_MOST_LOWER * height)
         self.short = max(wanted - most, least - wanted, 0.0)
-        steepest = max(*map(abs, rises), 1e-6)
+        steepest = max(*map(abs, (*rises[0], *rises[1])), 1e-6)
         self.given_way = max(1 - share, min(self.short / steepest, 1.0))
         self.raised += min(max(wanted - self.raised, -_LOWERING * dt), _RAISING * dt)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from tarsus.control.terrain.foot_plane import FootPlane
+from tarsus.gait.foot_plane import FootPlane
 
 __all__ = ["SlopeLimit"]
 

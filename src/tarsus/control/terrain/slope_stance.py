@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tarsus.control.terrain.foot_plane import FootPlane
+from tarsus.gait.foot_plane import FootPlane
 from tarsus.robot.robot import Robot
 
 if TYPE_CHECKING:
@@ -49,7 +49,7 @@ class SlopeStance:
         self.uphill = 0j
         self._mounts: Complex[np.ndarray, "legs"] = np.asarray(g.mount_x + 1j * g.mount_y)
         self._drawn_in: Float[np.ndarray, "legs"] = np.asarray(_DRAWN_IN * (g.femur + g.tibia))
-        self._half = (0.0, 0.0, 0.0) if size is None else tuple((np.asarray(size) / 2).tolist())
+        self.half = (0.0, 0.0, 0.0) if size is None else tuple((np.asarray(size) / 2).tolist())
 
     def step(self, level: FootPlane, rest: Complex[np.ndarray, "legs"]) -> None:
         """Follow the slope.
@@ -94,5 +94,5 @@ class SlopeStance:
         height : float
             Commanded height of the body [m].
         """
-        drop = abs(plane.slope_x) * self._half[0] + abs(plane.slope_y) * self._half[1]
-        return float(drop + min(self._half[2] + _ROOM - height, 0.0))
+        drop = abs(plane.slope_x) * self.half[0] + abs(plane.slope_y) * self.half[1]
+        return float(drop + min(self.half[2] + _ROOM - height, 0.0))

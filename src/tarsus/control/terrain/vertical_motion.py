@@ -11,7 +11,7 @@ import numpy as np
 from tarsus.control.filters import CriticallyDamped
 from tarsus.control.walk.felt_feet import FeltFoot, FeltInputs, GroundUnder
 from tarsus.control.walk.state import GaitState, StepInputs
-from tarsus.control.walk.swing_trajectory import quintic
+from tarsus.gait.swing_trajectory import quintic
 
 __all__ = ["moved_vertically"]
 
@@ -19,12 +19,16 @@ _STILL = FeltFoot()
 
 # Swing phase at which a foot is at its top.
 _TOP_PHASE = 0.45
+# Where the ground rises soon: up to which swing phase a foot may begin to rise before it travels, and its top's phase.
+_RISING_FIRST, _STEEP_TOP_PHASE = 0.15, 0.35
 # Fraction of a swing in which a foot goes down from its top to the expected ground.
 _DESCENT = 0.4
 # Least speed of a descending foot, and of a foot that should stand and feels nothing [m/s].
 _LOWERING, _SEARCHING = 0.12, 0.15
 # Time in which a foot that should stand goes down to the expected ground [s].
 _SEARCH_TIME = 0.1
+# Room over known ground on the way of a foot that goes down [m].
+_OVER = 0.015
 # Greatest changes of speed: of feet in the air, of the body, of feet on the ground, and of their slide [m/s^2].
 _FOOT_ACCELERATION, _BODY_ACCELERATION, _STANDING_ACCELERATION, _STOPPING = 6.0, 1.0, 15.0, 12.0
 
@@ -80,7 +84,7 @@ def moved_vertically(state: GaitState, inputs: StepInputs, dt: float) -> GaitSta
             swing_time = math.inf
             if inputs.frequency:
                 swing_time = (swing - float(state.lift_delay[leg])) / inputs.frequency
-            now = (float(state.swing_phase[leg]), swing_time, float(state.start_height[leg]))
+            now = (float(state.swing_phase[leg]), swing_time, float(state.start_height[leg]), places[leg])
             heights[leg], feet[leg] = _swinging(height, foot, under, felt, dt, now)
     return state._replace(foot=np.array(places), ground_height=np.array(heights), felt=feet, **moved)
 
@@ -95,16 +99,23 @@ def _searching(
 
 
 def _swinging(
-    height: float, foot: FeltFoot, under: GroundUnder, felt: FeltInputs, dt: float, swing: tuple[float, float, float]
+    height: float,
+    foot: FeltFoot,
+    under: GroundUnder,
+    felt: FeltInputs,
+    dt: float,
+    swing: tuple[float, float, float, complex],
 ) -> tuple[float, FeltFoot]:
     """Return the height of a foot in the air, and its state: it rises to its top, then goes down."""
-    phase, swing_time, lifted_at = swing
+    phase, swing_time, lifted_at, place = swing
     speed, acceleration, top, top_phase, slide, drawn_back = foot
     if math.isnan(top) or (phase < top_phase and drawn_back is None):
         # No higher than the foot can be down again from by the end of its swing.
         fits = under.expected - felt.depth + felt.lowering * _DESCENT * swing_time
-        over = max(lifted_at, under.expected) + felt.swing_height
+        over = max(lifted_at, under.expected, under.way) + felt.swing_height
         top, top_phase = max(min(over, under.highest, fits), height), _TOP_PHASE
+        if under.steep and 0.0 < phase < _RISING_FIRST:
+            drawn_back, top_phase = place, _STEEP_TOP_PHASE
     if phase < top_phase:
         time = dt * felt.pace
         whole = (top_phase - phase) * swing_time + time
@@ -112,7 +123,11 @@ def _swinging(
         return height, FeltFoot(speed, acceleration, top, top_phase, slide, drawn_back)
     descent = (top - under.expected + felt.depth) / (_DESCENT * swing_time) * felt.pace
     after = _towards(speed, -min(max(_LOWERING, descent), felt.lowering), _FOOT_ACCELERATION * dt)
-    height, after = _no_lower(height + (speed + after) / 2 * dt, after, height, under.lowest)
+    # Over higher ground on its way it stays.
+    lowest = under.lowest
+    if under.way > under.expected + _OVER:
+        lowest = max(lowest, min(under.way + _OVER, under.highest))
+    height, after = _no_lower(height + (speed + after) / 2 * dt, after, height, lowest)
     return height, FeltFoot(after, 0.0, top, top_phase, slide, drawn_back)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from typing import NamedTuple
 
 __all__ = ["FeltFoot", "FeltInputs", "GroundUnder"]
@@ -44,11 +45,17 @@ class GroundUnder(NamedTuple):
         Where the ground is expected under the foothold.
     lowest, highest : float
         Below and above which the foot does not go.
+    way : float
+        How high the ground is at most on the way there.
+    steep : bool
+        Whether it rises so soon on the way that the foot has to rise before it travels.
     """
 
     expected: float
     lowest: float
     highest: float
+    way: float = -math.inf
+    steep: bool = False
 
 
 class FeltInputs(NamedTuple):
@@ -78,6 +85,8 @@ class FeltInputs(NamedTuple):
         How high a foot rises over the higher of lift-off and expected ground [m].
     lowering : float
         Greatest speed of a foot that goes down [m/s].
+    beside : mapping of int to complex
+        How far from the foothold of its step a foot is put down, by leg, in the heading frame [m].
     """
 
     under: list[GroundUnder | None]
@@ -91,3 +100,4 @@ class FeltInputs(NamedTuple):
     pace: float
     swing_height: float
     lowering: float
+    beside: Mapping[int, complex]

@@ -87,7 +87,14 @@ class FootholdPredictor(NamedTuple):
         return cls(now.origin, turn, now.twist.value.tolist(), now.twist.rate.tolist(), inputs.bandwidth, {})
 
     def foothold(
-        self, rest: complex, bounds: Float[np.ndarray, "16"], *, radius: float, touchdown: float, mid_stance: float
+        self,
+        rest: complex,
+        bounds: Float[np.ndarray, "16"],
+        *,
+        radius: float,
+        touchdown: float,
+        mid_stance: float,
+        beside: complex = 0j,
     ) -> complex:
         """Return the foothold of a foot in G [m].
 
@@ -101,9 +108,11 @@ class FootholdPredictor(NamedTuple):
             The least of them [m].
         touchdown, mid_stance : float
             Time until touchdown, and until the middle of the stance [s].
+        beside : complex
+            How far from its step's foothold it is put down, in the heading frame [m].
         """
         position, rotation = self._body(mid_stance)
-        foothold = position + rotation * rest
+        foothold = position + rotation * (rest + beside)
         # While the body turns or slows down, this may be outside the bounds at touchdown.
         position, rotation = self._body(touchdown)
         out = (foothold - position) * rotation.conjugate() - rest

@@ -14,9 +14,9 @@ import numpy as np
 
 from tarsus.control.filters import CriticallyDamped
 from tarsus.control.walk.felt_feet import FeltFoot, FeltInputs
-from tarsus.control.walk.swing_trajectory import swinging_height
 from tarsus.control.workspace.body_shift import NO_SHIFT
 from tarsus.gait.gait import Gait
+from tarsus.gait.swing_trajectory import swinging_height
 
 if TYPE_CHECKING:
     from jaxtyping import Bool, Complex, Float

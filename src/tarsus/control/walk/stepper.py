@@ -9,7 +9,7 @@ import numpy as np
 from tarsus.control.filters import CriticallyDamped
 from tarsus.control.walk.foothold import FootholdPredictor, final_footholds
 from tarsus.control.walk.state import PHASE_TOLERANCE, POSITION_TOLERANCE, GaitState, StepInputs, integrate_twist
-from tarsus.control.walk.swing_trajectory import quintic
+from tarsus.gait.swing_trajectory import quintic
 
 if TYPE_CHECKING:
     from jaxtyping import Bool, Float
@@ -161,6 +161,7 @@ def _swing(
                     radius=inputs.placement_radii[leg],
                     touchdown=until,
                     mid_stance=until + stance / 2,
+                    beside=0j if inputs.felt is None else inputs.felt.beside.get(leg, 0j),
                 )
                 if final is None
                 else complex(final[leg])

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from tarsus.control.readings import SensorReadings
+from tarsus.gait.ground_heights import GroundHeights
 from tarsus.simulation.sensors.suite import CHANNELS, FootSwitch, Sampling, Sensor, SensorSuite
 
 __all__ = ["Sampler"]
@@ -28,7 +29,8 @@ class Sampler:
     suite : SensorSuite
         The sensors.
     exact : mapping of str to array
-        Exact values at the start, by channel; what is not in it is not measured.
+        Exact values at the start, by channel, or functions that return them as they are measured; what is not in it
+        is not measured.
     seed : int
         Seed of noise, bias, drop-outs and flips.
     """
@@ -55,7 +57,7 @@ class Sampler:
         time : float
             The time [s]; ascending from call to call.
         exact : mapping of str to array
-            Exact values, by channel.
+            Exact values, or functions that return them, by channel.
         """
         values, ages = {}, {}
         for channel in self._channels:
@@ -73,7 +75,8 @@ class _Channel:
         self._delay, self._pause = sensor.delay - _SAME_TIME, 1 / sensor.rate - _SAME_TIME
         self._threshold = sensor.threshold if isinstance(sensor, FootSwitch) else None
         self._resolution = sensor.resolution if isinstance(sensor, Sensor) else 0.0
-        self._errors, self._lost = _errors(sensor, np.shape(exact), random), _losses(sensor, random)
+        shape = np.shape(exact() if callable(exact) else exact)
+        self._errors, self._lost = _errors(sensor, shape, random), _losses(sensor, random)
         self._taken = 0.0
         self.first = self._disturbed(exact)
         self._waiting = deque([(0.0, self.first)])
@@ -93,11 +96,14 @@ class _Channel:
 
     def _disturbed(self, exact: Any) -> Any:
         errors, resolution = self._errors, self._resolution
+        if callable(exact):
+            exact = exact()
         if self._threshold is not None:
             closed = exact > self._threshold
             return closed if errors is None else closed ^ next(errors)
         value = np.array(exact) if errors is None else exact + next(errors)
-        return np.rint(value / resolution) * resolution if resolution else value
+        value = np.rint(value / resolution) * resolution if resolution else value
+        return GroundHeights(heights=value) if self.name == "ground" else value
 
 
 def _errors(sensor: Sensor | FootSwitch, shape: tuple[int, ...], random: np.random.Generator) -> Iterator[Any] | None:

@@ -114,6 +114,8 @@ class SensorSuite:
         Load cells in the feet, along the axes of B [N].
     attitude, angular_rates : Sensor or None
         Roll and pitch [rad], and angular rates along the axes of B [rad/s].
+    ground : Sensor or None
+        Heights of the terrain around the body, 0.6 m to each side in steps of 20 mm [m].
     """
 
     name: str = "custom"
@@ -125,6 +127,7 @@ class SensorSuite:
     forces: Sensor | None = None
     attitude: Sensor | None = None
     angular_rates: Sensor | None = None
+    ground: Sensor | None = None
 
     @classmethod
     def named(cls, name: str) -> Self:
@@ -133,8 +136,9 @@ class SensorSuite:
         Parameters
         ----------
         name : str
-            ``"ideal"``: everything, exactly. ``"hobby"``: foot switches and a cheap inertial sensor. ``"smart"``:
-            servos that report position, speed and load. ``"blind"``: nothing.
+            ``"ideal"``: everything but the ground, exactly. ``"camera"``: the ground as well, nearly exactly.
+            ``"hobby"``: foot switches and a cheap inertial sensor. ``"smart"``: servos that report position, speed and
+            load. ``"blind"``: nothing.
 
         Raises
         ------
@@ -155,13 +159,17 @@ CHANNELS = (
     "forces",
     "attitude",
     "angular_rates",
+    "ground",
 )
 """The channels that can be simulated."""
 
 _EXACT = Sensor()
+_IDEAL = {name: FootSwitch() if name == "contacts" else _EXACT for name in CHANNELS if name != "ground"}
 _SUITES: Mapping[str, Mapping[str, Any]] = MappingProxyType(
     {
-        "ideal": {name: FootSwitch() if name == "contacts" else _EXACT for name in CHANNELS},
+        "ideal": _IDEAL,
+        # Noise of a stereo camera at 0.5 m (2 to 3 mm), rate and delay are assumed; what legs hide is not left out.
+        "camera": _IDEAL | {"ground": Sensor(noise=0.003, delay=0.05, rate=20.0)},
         # Inertial sensor of the MPU-6050's kind: noise of its rates 0.05 deg/s (data sheet); the offset that is left
         # after zeroing at rest, and noise and offset of the attitude from a complementary filter, are assumed.
         "hobby": {

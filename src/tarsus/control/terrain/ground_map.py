@@ -1,0 +1,240 @@
+"""Ground map: heights of the ground that a sensor has given, tied to the standing feet, and what steps make of them."""
+
+from __future__ import annotations
+
+import cmath
+import math
+from collections.abc import Sequence
+from statistics import median
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from tarsus.control.readings import ValidReadings
+from tarsus.control.terrain.reach import Reach
+from tarsus.control.transition.foothold_transfer import FootholdTransfer
+from tarsus.control.walk.felt_feet import GroundUnder
+from tarsus.control.walk.state import GaitState
+from tarsus.control.workspace.polygon import NORMALS_CONJUGATE
+from tarsus.control.workspace.stance_geometry import SWING_HEIGHT
+from tarsus.gait.foot_plane import FootPlane, fitted_plane
+from tarsus.gait.ground_heights import TRIED, GroundHeights, better_foothold, highest_on_way, is_steep
+
+if TYPE_CHECKING:
+    from jaxtyping import Complex, Shaped
+
+__all__ = ["GroundMap"]
+
+# How fast the slope of the plane follows the feet [1/s].
+_SLOPE_RATE = 2.0
+# Part of the distance at which a foot may be put down that is kept for its stroke, at least.
+_STROKE_SHARE = 0.65
+# Swing phase up to which a foothold is chosen.
+_CHOOSING = 0.3
+# Room of the body over the ground [m].
+_CLEAR = 0.015
+# Points under the body, over half its length and width: a little farther at front and rear.
+_UNDER = (np.linspace(-1.2, 1.2, 9)[:, None] + 1j * np.linspace(-1.0, 1.0, 5)).ravel()
+# How many strokes ahead of its rest foothold a foot will be put down.
+_NEXT = np.array([0.5, 1.0])
+_ALONG_TRIED = (NORMALS_CONJUGATE * TRIED[:, None]).real
+
+
+class GroundMap:
+    """Known heights lie still on the ground; their level is tied to the standing feet anew with each update.
+
+    So nothing is dead-reckoned for longer than from one reading to the next. Places and heights that are asked for are
+    in the heading frame; where nothing is known, the ground is the plane of the standing feet.
+
+    Attributes
+    ----------
+    plane : FootPlane
+        The plane through the standing feet.
+    given : bool
+        Whether any heights are known.
+    beside : dict of int to complex
+        How far from the foothold of its step each foot in the air is put down, in the heading frame [m].
+    """
+
+    def __init__(self) -> None:
+        self.plane, self.given, self.beside = FootPlane(), False, dict[int, complex]()
+        self._seen: GroundHeights | None = None
+        # Where in G the middle of the grid is, and its x axis.
+        self._middle, self._axis = 0j, 1 + 0j
+        # Of the heading frame: where in G, its x axis, how it is inclined, and its height over that of the grid.
+        self._origin, self._turn, self._inclination, self._height = 0j, 1 + 0j, 0j, 0.0
+        self._feet: tuple[Shaped[np.ndarray, "n"], Shaped[np.ndarray, "n"]] = np.zeros(0, dtype=complex), np.zeros(0)
+
+    def see(self, readings: ValidReadings, state: GaitState) -> None:
+        """Take the heights of readings, in place of those known.
+
+        Parameters
+        ----------
+        readings : ValidReadings
+            The readings; the same heights as before, or None, tell nothing new.
+        state : GaitState
+            The gait state.
+        """
+        if readings.ground is None or readings.ground is self._seen:
+            return
+        self.given, self._seen, age = True, readings.ground, readings.ground_age
+        (vx, vy, wz), (x, y, yaw) = state.twist.value.tolist(), state.posture.value[[0, 1, 5]].tolist()
+        self._middle = state.origin + cmath.exp(1j * state.yaw) * (complex(x, y) - complex(vx, vy) * age)
+        self._axis = cmath.exp(1j * (state.yaw + yaw - wz * age))
+        self._tie()
+
+    def step(
+        self,
+        feet: Sequence[tuple[complex, float]],
+        tilt: tuple[float, float] | None,
+        state: GaitState,
+        dt: float,
+        *,
+        drift: complex,
+    ) -> None:
+        """Fit the plane to the standing feet, and tie the known heights to them.
+
+        Parameters
+        ----------
+        feet : sequence of (complex, float)
+            The feet that bear load: where, and how high, in the heading frame [m].
+        tilt : (roll, pitch) or None
+            By how much the heading frame is tilted [rad].
+        state : GaitState
+            The gait state.
+        dt : float
+            Time since the last update [s].
+        drift : complex
+            Velocity with which they move backwards to make up for lost way, in the heading frame [m/s].
+        """
+        (roll, pitch), places, heights = tilt or (0.0, 0.0), [foot for foot, _ in feet], [height for _, height in feet]
+        self.plane = fitted_plane(places, heights, self.plane, min(_SLOPE_RATE * dt, 1.0))
+        self._origin, self._turn, self._inclination = state.origin, cmath.exp(1j * state.yaw), complex(-pitch, roll)
+        if self.given:
+            self._middle -= self._turn * drift * dt
+            self._feet = (on := np.array(places, dtype=complex)), self._rise(on) + heights
+            self._tie()
+
+    def _rise(self, places: Shaped[np.ndarray, "..."]) -> Shaped[np.ndarray, "..."]:
+        """Return how much higher a level plane is than the heading frame at places [m]."""
+        return np.asarray((places * self._inclination.conjugate()).real)
+
+    def _known(self, places: Shaped[np.ndarray, "..."]) -> Shaped[np.ndarray, "..."]:
+        """Return the heights of the grid at places [m]."""
+        assert self._seen is not None  # nothing is asked before
+        return self._seen.at((self._origin + self._turn * places - self._middle) / self._axis)
+
+    def _tie(self) -> None:
+        """Find the height of the heading frame on the grid; a foot at an edge may be far off."""
+        off = self._known(self._feet[0]) - self._feet[1]
+        known = off[~np.isnan(off)].tolist()
+        self._height = median(known) if known else self._height
+
+    def expected(self, places: Shaped[np.ndarray, "..."]) -> Shaped[np.ndarray, "..."]:
+        """Return the heights at which the ground is expected at places x + iy [m].
+
+        Parameters
+        ----------
+        places : complex array, shape (...)
+            The places [m].
+        """
+        if not self.given:
+            return self._level(places)
+        known = self._known(places) - self._height - self._rise(places)
+        return np.where(np.isnan(known), self._level(places), known)
+
+    def _level(self, places: Shaped[np.ndarray, "..."]) -> Shaped[np.ndarray, "..."]:
+        """Return the heights of the plane at places [m]."""
+        return np.asarray(self.plane.height + self.plane.slope_x * places.real + self.plane.slope_y * places.imag)
+
+    def at(self, place: complex) -> float:
+        """Return the height at which the ground is expected at a place [m].
+
+        Parameters
+        ----------
+        place : complex
+            The place [m].
+        """
+        return float(self.expected(np.array(place))) if self.given else self.plane.at(place)
+
+    def choose(
+        self, state: GaitState, reach: Reach, footholds: FootholdTransfer, strokes: Complex[np.ndarray, "legs"]
+    ) -> None:
+        """Choose footholds for feet that have lifted off, once in each swing.
+
+        Parameters
+        ----------
+        state : GaitState
+            The gait state.
+        reach : Reach
+            Between which heights legs reach their stroke.
+        footholds : FootholdTransfer
+            How far from their rest footholds feet may be put down.
+        strokes : complex array, shape (legs,)
+            Their strokes, in the heading frame [m].
+        """
+        highest, turn = reach.highest_stand(float(state.posture.value[SWING_HEIGHT])), cmath.exp(-1j * state.yaw)
+        for leg, (down, phase) in enumerate(zip(state.down.tolist(), state.swing_phase.tolist(), strict=True)):
+            if down:
+                self.beside.pop(leg, None)
+            elif self.given and leg not in self.beside and 0 < phase < _CHOOSING:
+                kept = np.abs((NORMALS_CONJUGATE * strokes[leg]).real) / 2
+                slack = footholds.placement_bounds[leg] - kept.clip(_STROKE_SHARE * footholds.placement_radii[leg])
+                start, end = ((complex(at[leg]) - state.origin) * turn for at in (state.foot, state.foothold))
+                allowed = (slack.clip(0.0) >= _ALONG_TRIED).all(axis=1)
+                heights = (reach.lowest[leg], highest[leg], reach.highest[leg])
+                self.beside[leg] = better_foothold(
+                    self.expected, self._level, start, end, allowed=allowed, reach=heights
+                )
+
+    def under(
+        self, start: complex, foothold: complex, elevation: float, room: tuple[float | None, float]
+    ) -> GroundUnder:
+        """Return the ground under a foot and on its way.
+
+        Parameters
+        ----------
+        start, foothold : complex
+            Where the foot is, and where it will be put down, in the heading frame [m].
+        elevation : float
+            Height of the heading frame [m].
+        room : (float or None, float)
+            Least and greatest height of the foot in the heading frame [m]; None for the expected one.
+        """
+        expected, (lowest, highest) = self.at(foothold), room
+        least = expected if lowest is None else lowest
+        under = GroundUnder(elevation + expected, elevation + least, elevation + highest)
+        if not self.given:
+            return under
+        way = elevation + highest_on_way(self.expected, start, foothold)
+        return under._replace(way=way, steep=is_steep(self.expected, start, foothold))
+
+    def rises(
+        self, rises: list[float], rest: Complex[np.ndarray, "legs"], strokes: Complex[np.ndarray, "legs"]
+    ) -> tuple[list[float], list[float]]:
+        """Return least and greatest height of the ground under each leg, now and at its next footholds [m].
+
+        Parameters
+        ----------
+        rises : list of float
+            The height now, over the plane's at the origin [m].
+        rest, strokes : complex array, shape (legs,)
+            Rest footholds, and strokes about them, in the heading frame [m].
+        """
+        if not self.given:
+            return rises, rises
+        ahead = self.expected(rest + _NEXT[:, None] * strokes) - self.plane.height
+        return np.minimum(ahead.min(axis=0), rises).tolist(), np.maximum(ahead.max(axis=0), rises).tolist()
+
+    def body_rise(self, half: Sequence[float], height: float) -> float:
+        """Return how much higher than commanded a body is that is clear of the known ground under it [m].
+
+        Parameters
+        ----------
+        half : sequence of float
+            Half the body's length, width and height [m].
+        height : float
+            Commanded height of the body [m].
+        """
+        highest = float(self.expected(_UNDER.real * half[0] + 1j * _UNDER.imag * half[1]).max())
+        return highest - self.plane.height + half[2] + _CLEAR - height if self.given else -math.inf

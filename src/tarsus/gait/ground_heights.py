@@ -1,0 +1,144 @@
+"""Heights of the ground on a grid around the body, and where feet stand best on them."""
+
+from __future__ import annotations
+
+import cmath
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, TypeAlias
+
+import numpy as np
+
+from tarsus.errors import InputError
+from tarsus.representation import represented
+
+if TYPE_CHECKING:
+    from jaxtyping import Bool, Float, Shaped
+
+__all__ = ["GroundHeights", "Heights", "better_foothold", "highest_on_way", "is_steep"]
+
+Heights: TypeAlias = "Callable[[Shaped[np.ndarray, '...']], Shaped[np.ndarray, '...']]"
+"""Heights of the ground at places x + iy [m]."""
+
+# Where other footholds are tried, and where the ground around each is looked at [m].
+_RINGS = [(0.02, 0.0), (0.04, 0.5), (0.06, 0.0)]
+TRIED = np.array([0j, *(cmath.rect(far, (k + turned) * math.pi / 4) for far, turned in _RINGS for k in range(8))])
+_AROUND = 0.02 * np.array([0j, 1.0, -1.0, 1j, -1j])
+# What a metre costs: out of reach, off the plane of the feet, up or down an edge, away from the foothold of the step.
+_OUT_OF_REACH, _OFF_PLANE, _EDGE, _AWAY = 3.0, 0.3, 0.5, 0.15
+# Room that a foot keeps to the end of its leg's reach [m].
+_ROOM = 0.01
+# Points on the way of a foot, and how far ahead [m] ground higher by how much [m] makes it steep.
+_ALONG = np.linspace(0.0, 1.0, 9)
+_NEAR, _STEEP = 0.04, 0.015
+
+
+@represented("heights.shape", "cell")
+@dataclass(frozen=True, kw_only=True, eq=False)
+class GroundHeights:
+    """Heights of the ground on a grid around the body, as from a camera.
+
+    The grid is level, its middle is at the origin of B, and its x axis has the body's yaw.
+
+    Attributes
+    ----------
+    heights : array, shape (rows, columns)
+        Heights, rows along x, columns along y, both ascending [m]; only their differences are used. NaN where unknown.
+    cell : float
+        Distance of neighbouring points [m].
+
+    Raises
+    ------
+    InputError
+        If the array has not two axes, a height is infinite, or `cell` is not a positive number.
+    """
+
+    heights: Float[np.ndarray, "rows columns"]
+    cell: float = 0.02
+
+    def __post_init__(self) -> None:
+        heights = np.array(self.heights, dtype=np.float64)
+        if heights.ndim != 2 or np.isinf(heights).any():
+            raise InputError(f"ground heights of shape {heights.shape} must have two axes and no infinite value")
+        if not 0 < self.cell < np.inf:
+            raise InputError(f"ground heights: cell is {self.cell:g} m; it must be a positive number")
+        heights.setflags(write=False)
+        object.__setattr__(self, "heights", heights)
+
+    def at(self, places: Shaped[np.ndarray, "..."]) -> Shaped[np.ndarray, "..."]:
+        """Return the heights at places x + iy from the middle, NaN where they are not known [m].
+
+        Parameters
+        ----------
+        places : complex array, shape (...)
+            The places [m].
+        """
+        rows, columns = self.heights.shape
+        cells = places / self.cell + complex(rows - 1, columns - 1) / 2
+        row, column = np.rint(cells.real).astype(int), np.rint(cells.imag).astype(int)
+        inside = (row >= 0) & (row < rows) & (column >= 0) & (column < columns)
+        return np.where(inside, self.heights[row.clip(0, rows - 1), column.clip(0, columns - 1)], np.nan)
+
+
+def better_foothold(
+    heights: Heights,
+    level: Heights,
+    start: complex,
+    foothold: complex,
+    *,
+    allowed: Bool[np.ndarray, "tried"],
+    reach: tuple[float, float, float],
+) -> complex:
+    """Return how far from its foothold a foot stands best, one of `TRIED` [m].
+
+    Parameters
+    ----------
+    heights, level : callable
+        Heights of the ground, and of the plane through the other feet.
+    start, foothold : complex
+        Where the foot is, and where its step would put it down [m].
+    allowed : array of bool, shape (tried,)
+        Which of `TRIED` may be chosen.
+    reach : (float, float, float)
+        Least and greatest height of the foot on the ground, and greatest height over it [m].
+    """
+    lowest, highest, over = reach
+    tried = TRIED[allowed]
+    places = foothold + tried[:, None]
+    around = heights(places + _AROUND)
+    under = around[:, 0]
+    cost = _EDGE * np.abs(around - under[:, None]).max(axis=1) + _AWAY * np.abs(tried)
+    cost += _OFF_PLANE * np.abs(under - level(places[:, 0]))
+    cost += _OUT_OF_REACH * np.maximum(np.maximum(lowest + _ROOM - under, under - highest), 0.0)
+    way = heights(start + (places - start) * _ALONG).max(axis=1)
+    cost += _OUT_OF_REACH * np.maximum(way + _ROOM - over, 0.0)
+    return complex(tried[int(cost.argmin())])
+
+
+def highest_on_way(heights: Heights, start: complex, end: complex) -> float:
+    """Return how high the ground is at most between two places [m].
+
+    Parameters
+    ----------
+    heights : callable
+        Heights of the ground.
+    start, end : complex
+        The places [m].
+    """
+    return float(heights(start + (end - start) * _ALONG).max())
+
+
+def is_steep(heights: Heights, start: complex, end: complex) -> bool:
+    """Return whether the ground rises so soon on a way that a foot has to rise before it travels.
+
+    Parameters
+    ----------
+    heights : callable
+        Heights of the ground.
+    start, end : complex
+        Where the way begins and ends [m].
+    """
+    near = (end - start) * min(_NEAR / max(abs(end - start), 1e-9), 1.0)
+    found = heights(start + near * _ALONG)
+    return bool(found.max() > found[0] + _STEEP)

@@ -1,0 +1,200 @@
+"""Memory of the ground: known heights stay where they are as the robot moves, feet keep to ground that bears them."""
+
+import cmath
+import math
+
+import numpy as np
+import pytest
+
+import tarsus
+from gait_robots import preset
+from tarsus.control.readings import SensorReadings, ValidReadings
+from tarsus.control.sensing.validation import ReadingsValidator
+from tarsus.control.terrain.ground_map import GroundMap
+from tarsus.control.walk.state import GaitState
+from tarsus.errors import InputError
+from tarsus.gait.ground_heights import GroundHeights
+from tarsus.simulation import Sensor, SensorSuite, SimulatedPlant, terrain
+
+STRIDER = preset("strider")
+REST = [0.2 * cmath.exp(1j * math.radians(angle)) for angle in (30, 90, 150, 210, 270, 330)]
+GRID = 0.02 * (np.arange(61) - 30)
+X, Y = np.meshgrid(GRID, GRID, indexing="ij")
+
+
+def at(x=0.0, yaw=0.0):
+    """The state of a robot that stands at a place."""
+    posture = np.array([0.0, 0.0, 0.1, 0.0, 0.0, 0.0, 0.03, *[0.0] * 6])
+    return GaitState.standing(np.array(REST), posture)._replace(origin=complex(x), yaw=yaw)
+
+
+def standing(height, legs=range(6)):
+    """Feet at rest on ground of a height, which is a function of the place."""
+    return [(REST[leg], height(REST[leg])) for leg in legs]
+
+
+@pytest.mark.parametrize("yaw", [0.0, 0.7])
+@pytest.mark.parametrize("tilt", [None, (0.05, -0.08)])
+def test_given_heights_are_those_of_the_ground_wherever_the_feet_stand(yaw, tilt):
+    def ground(place):
+        return 0.05 * math.sin(8 * place.real) + 0.1 * place.imag
+
+    seen = GroundHeights(heights=3.0 + 0.05 * np.sin(8 * X) + 0.1 * Y)
+    inclined = complex(-tilt[1], tilt[0]) if tilt else 0j
+
+    def height(place):
+        # A level ground is inclined against a body that is tilted.
+        return ground(place) - (place * inclined.conjugate()).real
+
+    known = GroundMap()
+    known.step(standing(height), tilt, at(yaw=yaw), 0.03, drift=0j)
+    known.see(ValidReadings(ground=seen), at(yaw=yaw))
+    known.step(standing(height), tilt, at(yaw=yaw), 0.03, drift=0j)
+    known.see(ValidReadings(ground=seen), at(x=5.0))  # the same reading again
+    known.see(ValidReadings(), at())
+    assert known.given
+    places = np.array([0.11 + 0.03j, -0.31 + 0.2j, 0.25 - 0.4j])
+    expected = [height(place) for place in places]
+    np.testing.assert_allclose(known.expected(places), expected, atol=0.006)
+    assert known.at(complex(places[0])) == pytest.approx(expected[0], abs=0.006)
+    # As the robot walks on, heights stay on the ground.
+    on = 0.1 * cmath.exp(-1j * yaw)
+
+    def height_now(place):
+        return ground(place + on) - (place * inclined.conjugate()).real
+
+    known.step(standing(height_now), tilt, at(x=0.1, yaw=yaw), 0.03, drift=0j)
+    np.testing.assert_allclose(known.expected(places - on), [height_now(place - on) for place in places], atol=0.006)
+    # What the sensor does not see is the plane of the feet.
+    assert known.at(2.0 + 0j) == known.plane.at(2.0 + 0j)
+
+
+def test_a_reading_is_that_of_the_place_where_it_was_measured():
+    moving = at(x=1.0)
+    moving = moving._replace(twist=moving.twist._replace(value=np.array([0.2, 0.0, 0.0])))
+    known = GroundMap()
+    known.step(standing(lambda place: 0.0), None, moving, 0.03, drift=0j)
+    known.see(ValidReadings(ground=GroundHeights(heights=np.where(X > 0.1 - 1e-9, 0.05, 0.0)), ground_age=0.1), moving)
+    assert known.at(0.07 + 0j) == pytest.approx(0.0)
+    assert known.at(0.09 + 0j) == pytest.approx(0.05)
+
+
+def test_the_ground_moves_back_under_feet_that_make_up_for_lost_way():
+    known = GroundMap()
+    known.see(ValidReadings(ground=GroundHeights(heights=np.where(X > 0.1 + 1e-9, 0.05, 0.0))), at())
+    for _ in range(10):
+        known.step(standing(lambda place: 0.0, [2, 3]), None, at(), 0.05, drift=0.1 + 0j)
+    assert known.at(0.09 + 0j) == pytest.approx(0.05)
+
+
+def choice(heights, leg=0, phase=0.1):
+    """How far beside its foothold a foot of a walking robot is put down on ground of some heights."""
+    controller = tarsus.WalkController(STRIDER)
+    for _ in range(5):
+        controller.step((0.05, 0.0, 0.0), 0.01, SensorReadings(contacts=[True] * 6, attitude=(0.0, 0.0)))
+    walk, state = controller._walk, controller._tick.gait
+    down, phases = state.down.copy(), state.swing_phase.copy()
+    down[:], down[leg], phases[leg] = True, False, phase
+    state = state._replace(down=down, swing_phase=phases, foot=state.foothold)
+    known = GroundMap()
+    foothold = complex(state.foothold[leg]) - state.origin
+    known.see(ValidReadings(ground=GroundHeights(heights=heights(X + 1j * Y - foothold))), state)
+    feet = [(complex(state.foot[other]) - state.origin, 0.0) for other in range(6) if other != leg]
+    known.step(feet, None, state, 0.03, drift=0j)
+    ahead, footholds = known, walk.transitions.footholds
+    strokes = np.full(6, 0.025 + 0j)
+    ahead.choose(state, walk.ground._reach, footholds, strokes)
+    chosen = dict(ahead.beside)
+    ahead.choose(state, walk.ground._reach, footholds, strokes)
+    assert ahead.beside == chosen
+    ahead.choose(state._replace(down=np.ones(6, dtype=bool)), walk.ground._reach, footholds, strokes)
+    assert ahead.beside == {}
+    return chosen
+
+
+def test_feet_keep_to_their_footholds_on_even_ground_and_away_from_edges_and_holes_elsewhere():
+    assert choice(lambda place: 0.0 * place.real) == {0: 0j}
+    assert choice(lambda place: 0.1 * place.real)[0] == 0j
+    assert choice(lambda place: 0.0 * place.real, phase=0.5) == {}
+    edge = choice(lambda place: np.where(place.real > 0.005, 0.06, 0.0))[0]
+    assert abs(edge.real) >= 0.02
+    hole = choice(lambda place: np.where(np.abs(place) < 0.035, -0.3, 0.0))[0]
+    assert abs(hole) > 0.035
+
+
+def test_a_foot_passes_over_what_is_on_its_way_and_rises_first_where_that_is_near():
+    known = GroundMap()
+    known.step(standing(lambda place: 0.0), None, at(), 0.03, drift=0j)
+    known.see(ValidReadings(ground=GroundHeights(heights=np.where(np.abs(X - 0.1) < 0.025, 0.06, 0.0))), at())
+    known.step(standing(lambda place: 0.0), None, at(), 0.03, drift=0j)
+    over = known.under(0j, 0.2 + 0j, 0.01, (-0.1, 0.2))
+    assert tuple(over) == pytest.approx((0.01, -0.09, 0.21, 0.07, False), abs=1e-9)
+    assert known.under(0.05 + 0j, 0.2 + 0j, 0.0, (None, 0.2)).steep
+    assert known.under(0.05 + 0j, 0.1 + 0j, 0.0, (None, 0.2)).lowest == pytest.approx(0.06)
+    assert not known.under(0.15 + 0j, 0.15 + 0j, 0.0, (None, 0.2)).steep
+    # A body 50 mm high whose middle is 60 mm over the ground has to rise by 60 - (60 - 25) + 15 mm.
+    assert known.body_rise((0.12, 0.08, 0.025), 0.06) == pytest.approx(0.04)
+    assert GroundMap().body_rise((0.12, 0.08, 0.025), 0.06) == -math.inf
+
+
+def test_the_body_knows_of_steps_before_its_feet_are_on_them():
+    known, rest = GroundMap(), np.array(REST)
+    strokes = np.full(6, 0.1 + 0j)
+    assert known.rises([0.0] * 6, rest, strokes) == ([0.0] * 6, [0.0] * 6)
+    known.step(standing(lambda place: 0.0), None, at(), 0.03, drift=0j)
+    known.see(
+        ValidReadings(ground=GroundHeights(heights=np.where(X > 0.21, 0.08, np.where(X < -0.21, -0.05, 0.0)))), at()
+    )
+    least, most = known.rises([0.0] * 6, rest, strokes)
+    assert most == pytest.approx([0.08, 0.0, 0.0, 0.0, 0.0, 0.08])
+    assert least == pytest.approx([0.0] * 6)
+
+
+def crossed(sensors):
+    """Way made over commanded way, and collisions, of a walk over blocks of 80 mm."""
+    ground = terrain.Blocks(rise=0.08, clear=0.35, seed=1)
+    plant = SimulatedPlant(STRIDER, terrain=ground, sensors=sensors, servos="catalogue", seed=1)
+    controller, speed = tarsus.RobotController(STRIDER), 0.15
+    output, off = controller.output, 0.0
+    plant.start(output)
+    start = plant.state.body.position[0]
+    for _ in range(500):
+        output = controller.step((speed, 0.0, 0.0), 0.01, plant.step(output, 0.01))
+        assert not plant.body_touches
+        off += math.hypot(*plant.state.body.rpy[:2]) ** 2
+    return (plant.state.body.position[0] - start) / (5.0 * speed), math.sqrt(off / 500)
+
+
+def test_a_robot_that_sees_the_ground_crosses_blocks_faster_and_calmer_than_one_that_only_feels_it():
+    (felt, tilt), (seen, calmer) = crossed("ideal"), crossed("camera")
+    assert seen > max(0.9, felt)
+    assert calmer < 0.8 * tilt
+
+
+def test_heights_are_checked_where_they_are_made_and_where_they_come_in():
+    with pytest.raises(InputError, match=r"shape \(3,\)"):
+        GroundHeights(heights=np.zeros(3))
+    with pytest.raises(InputError, match="infinite"):
+        GroundHeights(heights=np.full((2, 2), math.inf))
+    with pytest.raises(InputError, match="cell is 0 m"):
+        GroundHeights(heights=np.zeros((2, 2)), cell=0.0)
+    heights, validator = GroundHeights(heights=[[0.0, math.nan]]), ReadingsValidator(STRIDER)
+    assert not heights.heights.flags.writeable
+    valid = validator.validate(SensorReadings(ground=heights, age={"ground": 0.04}), 0.01)
+    assert (valid.ground, valid.ground_age, valid.rejected) == (heights, 0.04, ())
+    assert validator.validate(SensorReadings(ground=heights, age=0.02), 0.01).ground_age == 0.02
+    wrong = validator.validate(SensorReadings(ground=np.zeros((2, 2))), 0.01)
+    assert (wrong.ground, wrong.rejected) == (None, ("ground: not of class GroundHeights",))
+    old = validator.validate(SensorReadings(ground=heights, age={"ground": 0.2}), 0.01)
+    assert (old.ground, old.rejected) == (None, ("ground: older than 100 ms",))
+
+
+def test_a_simulated_camera_sees_the_terrain_around_the_body():
+    ground = terrain.Step(rise=0.05, start=0.33)
+    suite = SensorSuite(ground=Sensor(rate=20.0))
+    plant, controller = SimulatedPlant(STRIDER, terrain=ground, sensors=suite), tarsus.RobotController(STRIDER)
+    plant.start(controller.output)
+    found = [plant.step(controller.output, 0.01).ground for _ in range(6)]
+    assert found[0] is found[1]
+    assert found[1] is not found[-1]
+    np.testing.assert_allclose(found[-1].heights, np.where(X > 0.33, 0.05, 0.0), atol=1e-9)
