@@ -79,6 +79,8 @@ class FeltGround:
         Whether the slope is too slippery.
     ground : GroundMap
         What is known of the ground around the robot.
+    lowered : float
+        How much lower loaded feet are commanded than they stand [m].
     offsets : array, shape (legs,), or None
         Upward offsets of compliant feet [m]; None of stiff ones.
     """
@@ -98,8 +100,7 @@ class FeltGround:
         self.offsets: Float[np.ndarray, "legs"] | None = None
         self._reach, self.stance = Reach(robot), SlopeStance(robot)
         self._validator, self._loads = ReadingsValidator(robot), FootLoads(robot, admittance)
-        com = centre_of_mass(robot, angles)
-        self._centre = complex(com[0], com[1])
+        self._centre, self.lowered = complex(*centre_of_mass(robot, angles)[:2].tolist()), 0.0
         self.odometry, self.measured = LegOdometry(robot), ValidReadings()
         self._tilt: tuple[float, float] | None = None
         # What the feet are given while all is as planned; ticks and times since contacts and support were looked at.
@@ -246,10 +247,10 @@ class FeltGround:
         rest: Complex[np.ndarray, "legs"],
     ) -> None:
         """Update plane, reach, and how the body is to move over the standing feet: not needed in each tick."""
-        legs, contacts, dt = range(len(rest)), self.contacts, self._since
+        legs, contacts, dt, reach = range(len(rest)), self.contacts, self._since, self._reach
         over = (state.ground_height - state.elevation.value).tolist()
         bears = [leg for leg in legs if down[leg] and contacts.touches(leg)]
-        reach, (vx, vy, wz) = self._reach, twist.tolist()
+        vx, vy, wz = twist.tolist()
         self.ground.step([(places[leg], over[leg]) for leg in bears], self._tilt, state, dt, drift=self._drift)
         plane = self.ground.plane
         self._strokes = (complex(vx, vy) + 1j * wz * rest) * timing.stance_time
@@ -262,16 +263,16 @@ class FeltGround:
             self.slope.step(level, complex(*twist[:2].tolist()))
             self.stance.step(level, rest - self.stance.shift)
         share = reachable_share([level.at(foot) for foot in rest.tolist()], reach.lowest, highest)
-        height, room = float(state.posture.value[2]), (reach.lowest, highest)
+        height, lowest = float(state.posture.value[2]), [low + self.lowered for low in reach.lowest]
         wanted = max(self.roughness.body_rise, self.ground.body_rise(self.stance.half, height))
         raises = (self.stance.least_raise(plane, height), wanted)
-        self.posture.fit_to_reach(rises, raises, dt, reach=room, height=height, share=share)
+        self.posture.fit_to_reach(rises, raises, dt, reach=(lowest, highest), height=height, share=share)
         velocity = complex(*state.twist.value[:2].tolist()) * self.support.pace
         tilt, yaw = self.measured.attitude or (0.0, 0.0), float(state.posture.value[5])
         stands = [leg in bears for leg in legs]
         drift = self.odometry.step(self.measured.joint_angles, stands, velocity, dt, tilt=tilt, yaw=yaw)
         self._drift = self.stance.not_downhill(drift)
-        margins = [(places[leg], over[leg] - reach.lowest[leg]) for leg in bears]
+        margins = [(places[leg], over[leg] - lowest[leg]) for leg in bears]
         self._rates = self.posture.rates(plane, self._tilt, velocity, feet=margins)
 
     def _decide_on_support(

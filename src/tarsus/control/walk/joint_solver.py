@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tarsus.control.filters import CriticallyDamped
+from tarsus.control.pose.deflection_compensation import DeflectionCompensation
 from tarsus.control.pose.foot_rolling import FootRolling
 from tarsus.control.walk.ground_pose import body_posture
 from tarsus.control.walk.state import GaitState
@@ -35,10 +36,13 @@ class JointSolver:
     ----------
     rolling : FootRolling
         How the balls of the feet roll; at first not at all.
+    deflection : DeflectionCompensation
+        What is added to the joint angles for loaded joints that yield.
     """
 
     def __init__(self, robot: Robot) -> None:
         self._robot, self.rolling = robot, FootRolling(robot)
+        self.deflection = DeflectionCompensation(robot)
         self._scalar_solver = ScalarSolver(robot)
         # Rotation, position and swing height are kept for as long as the posture stays the same object.
         self._posture: CriticallyDamped | None = None
@@ -75,11 +79,13 @@ class JointSolver:
             angles = np.array(inverse_kinematics(self._robot, in_body).angles)
         else:
             angles = np.array(found)
+        if self.deflection.offsets is not None:
+            angles += self.deflection.offsets
         angles.setflags(write=False)
         return angles
 
     def feet(self, state: GaitState, angles: Float[np.ndarray, "legs 3"]) -> Float[np.ndarray, "legs 3"]:
-        """Return the feet, the centres of their balls, by forward kinematics.
+        """Return the feet, the centres of their balls, by forward kinematics: where they are under load.
 
         Parameters
         ----------
@@ -97,6 +103,8 @@ class JointSolver:
         turn, origin = cmath.exp(1j * state.yaw), state.origin
         elevation = float(state.elevation.value[0])
         feet = []
+        if self.deflection.offsets is not None:
+            angles = angles - self.deflection.offsets
         for x, y, z in self._scalar_solver.feet(angles.tolist(), rotation, position):
             place = origin + turn * complex(x, y)
             feet.append((place.real, place.imag, z + elevation))

@@ -1,0 +1,90 @@
+"""Deflection compensation of a live walk: loaded joints are commanded further by what they yield."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from tarsus.control.readings import ValidReadings
+from tarsus.load.compliant.joint_springs import JointSprings
+from tarsus.load.deflection import SHARE
+from tarsus.robot.robot import Robot
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
+
+__all__ = ["DeflectionCompensation"]
+
+# How fast the compensation follows the load, and how fast the softness is learnt [1/s]: a foot that lands hard must not
+# be pressed down further.
+_LOAD_RATE, _LEARNING_RATE = 15.0, 2.0
+# Sum of squares of the femurs' deflections from which on they tell the softness [rad^2].
+_LEAST = 1e-5
+
+
+class DeflectionCompensation:
+    """Adds to the commands of femur and tibia what vertical forces on the feet turn them.
+
+    Legs that yield give way outwards: feet that take over load slide, or press against each other through friction.
+    With the deflection for a vertical force in the commands, little horizontal force is left. The stiffness is that of
+    the robot's servos over their softness, which is learnt from the measured angles of the femurs: it is 0 for servos
+    that do not yield. Nothing is added where forces or joint angles are not measured, or servos unknown.
+
+    Parameters
+    ----------
+    robot : Robot
+        A single robot.
+
+    Attributes
+    ----------
+    offsets : array, shape (legs, 3), or None
+        What is added to the joint angles [rad]; None as long as that is nothing.
+    lowered : float
+        How much lower the foot is commanded that bears most, on the average [m].
+    softness : float
+        Deflection of the femurs over that of the robot's servos under vertical forces, 0 to 1.
+    """
+
+    def __init__(self, robot: Robot) -> None:
+        self.offsets: Float[np.ndarray, "legs 3"] | None = None
+        self.lowered = self.softness = 0.0
+        self._loads, self._legs = [0.0] * robot.legs, list[tuple[float, ...]]()
+        if all(all(leg) for leg in robot.servos):
+            columns = (robot.geometry.femur, robot.geometry.tibia, *(1 / JointSprings.of(robot).stiffness[:, 1:]).T)
+            self._legs = list(zip(*(column.tolist() for column in columns), strict=True))
+
+    def step(self, valid: ValidReadings, commanded: Float[np.ndarray, "legs 3"], dt: float) -> None:
+        """Follow the loads and learn the softness.
+
+        Parameters
+        ----------
+        valid : ValidReadings
+            The readings.
+        commanded : array, shape (legs, 3)
+            Joint angles that were commanded in the last tick [rad].
+        dt : float
+            Time since the last tick [s].
+        """
+        unknown = (None,) * len(self._loads)
+        if self.offsets is None and (valid.forces is None or valid.joint_angles is None or not self._legs):
+            return
+        forces, measured = valid.forces or unknown, valid.joint_angles or unknown
+        follows, product, square, lowered = min(_LOAD_RATE * dt, 1.0), 0.0, 0.0, 0.0
+        offsets, share = list[tuple[float, float, float]](), SHARE * self.softness
+        for leg, (length, tibia, femur_yields, tibia_yields) in enumerate(self._legs):
+            force, angles, (_, femur, bend) = forces[leg], measured[leg], commanded[leg].tolist()
+            self._loads[leg] += follows * ((max(force[2], 0.0) if force and angles else 0.0) - self._loads[leg])
+            load, to_knee = self._loads[leg], tibia * math.cos(femur + bend)
+            to_hip = to_knee + length * math.cos(femur)
+            turned, bent = femur_yields * to_hip * load, tibia_yields * to_knee * load
+            if force and angles:
+                product, square = product + turned * (angles[1] - femur), square + turned * turned
+            lowered = max(lowered, share * (turned * to_hip + bent * to_knee))
+            offsets.append((0.0, -share * turned, -share * bent))
+        if square > _LEAST:
+            learnt = self.softness + min(_LEARNING_RATE * dt, 1.0) * (product / square - self.softness)
+            self.softness = min(max(learnt, 0.0), 1.0)
+        self.lowered += min(_LEARNING_RATE * dt, 1.0) * (lowered - self.lowered)
+        self.offsets = np.array(offsets)

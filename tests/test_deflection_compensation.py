@@ -1,0 +1,97 @@
+"""Commands of a felt walk that compensate for the deflection of loaded joints."""
+
+import numpy as np
+import pytest
+
+import tarsus
+from tarsus.control.pose.deflection_compensation import DeflectionCompensation
+from tarsus.control.readings import ValidReadings
+from tarsus.control.walk.joint_solver import JointSolver
+from tarsus.control.walk.state import GaitState
+from tarsus.load.deflection import SHARE
+from tarsus.simulation import Sensor, SensorSuite, SimulatedPlant
+from tarsus.simulation.sensors.suite import FootSwitch
+
+ROBOT = tarsus.load_robot("strider")
+ANGLES = np.array(tarsus.WalkController(ROBOT).angles)
+LOADS = np.array([6.0, 0.0, 9.0, 1.0, 4.0, 12.0])
+# What vertical forces turn the joints: an independent reference.
+_FORCES = np.c_[np.zeros((6, 2)), LOADS]
+_TORQUES = np.einsum("lij,li->lj", np.asarray(tarsus.leg_jacobian(ROBOT, ANGLES)), _FORCES)
+DEFLECTION = _TORQUES / tarsus.JointSprings.of(ROBOT).stiffness
+
+
+def readings(softness, forces=_FORCES):
+    measured = tuple(map(tuple, (ANGLES + softness * DEFLECTION).tolist()))
+    return ValidReadings(joint_angles=measured, forces=tuple(map(tuple, forces.tolist())))
+
+
+def stepped(valid, *, robot=ROBOT, ticks=800, compensation=None):
+    compensation = DeflectionCompensation(robot) if compensation is None else compensation
+    for _ in range(ticks):
+        compensation.step(valid, ANGLES, 0.01)
+    return compensation
+
+
+@pytest.mark.parametrize("softness", [0.0, 0.4, 1.0])
+def test_it_learns_how_soft_servos_are_and_adds_a_share_of_what_vertical_forces_turn_them(softness):
+    found = stepped(readings(softness))
+    assert found.softness == pytest.approx(softness, abs=1e-6)
+    np.testing.assert_allclose(found.offsets, -SHARE * softness * DEFLECTION, atol=1e-6)
+    # As much lower as the foot goes that bears most.
+    down = np.einsum("lij,lj->li", np.asarray(tarsus.leg_jacobian(ROBOT, ANGLES)), found.offsets)[:, 2]
+    assert found.lowered == pytest.approx(-down.min(), abs=1e-6)
+
+
+def test_softness_is_within_its_bounds():
+    assert stepped(readings(3.0)).softness == 1.0
+    assert stepped(readings(-1.0)).softness == 0.0
+
+
+def test_it_follows_the_load_slowly_and_pushes_no_foot_that_is_pulled():
+    found = stepped(readings(1.0))
+    before = found.offsets
+    stepped(readings(1.0, 5 * _FORCES), ticks=1, compensation=found)
+    assert np.abs(found.offsets - before).max() < 4 * SHARE * 0.16 * np.abs(DEFLECTION).max()
+    stepped(readings(0.0, -_FORCES), compensation=found)
+    assert np.abs(found.offsets).max() < 1e-9
+
+
+def test_without_forces_angles_or_known_servos_nothing_is_added():
+    valid = readings(1.0)
+    for missing in ("forces", "joint_angles"):
+        assert stepped(valid._replace(**{missing: None}), ticks=3).offsets is None
+        # What has been added goes back.
+        found = stepped(valid)
+        assert np.abs(stepped(valid._replace(**{missing: None}), compensation=found).offsets).max() < 1e-9
+        assert found.softness == pytest.approx(1.0, abs=1e-6)
+    unknown = ROBOT.replace(servos=((None,) * 3,) * 6)
+    assert stepped(valid, robot=unknown, ticks=3).offsets is None
+
+
+def test_angles_are_with_the_offsets_and_feet_without():
+    solver, walk = JointSolver(ROBOT), tarsus.WalkController(ROBOT)
+    state: GaitState = walk._tick.gait
+    plain = solver.angles(state)
+    stepped(readings(0.5), compensation=solver.deflection)
+    angles = solver.angles(state)
+    np.testing.assert_allclose(angles, plain + solver.deflection.offsets, atol=1e-12)
+    np.testing.assert_allclose(solver.feet(state, angles), walk.feet, atol=1e-9)
+    assert not angles.flags.writeable
+
+
+def slip(**channels):
+    """Slip of a felt walk in physics [m/m]."""
+    robot = tarsus.load_robot("makeyourpet")
+    suite = SensorSuite(contacts=FootSwitch(), attitude=Sensor(), joint_angles=Sensor(), **channels)
+    plant, controller = SimulatedPlant(robot, sensors=suite), tarsus.RobotController(robot)
+    output, slid, way = controller.output, 0.0, 0.0
+    plant.start(output)
+    for _ in range(500):
+        output = controller.step((0.1, 0.0, 0.0), 0.01, plant.step(output, 0.01))
+        slid, way = slid + 0.01 * float(plant.state.slip_speeds.mean()), float(plant.state.body.position[0])
+    return slid / way
+
+
+def test_feet_of_soft_legs_slip_less_in_physics():
+    assert slip(forces=Sensor()) < 0.6 * slip()
