@@ -5,12 +5,12 @@ import pytest
 
 from gait_robots import PRESETS, preset, ring
 from tarsus.control.startup import fold, sit_down
-from tarsus.control.startup.leg_path import LegFreeSpace
 from tarsus.control.startup.power_off import power_off_order
 from tarsus.errors import InputError, TarsusError
 from tarsus.kinematics.folded_pose import folded_pose, leg_clearance
 from tarsus.kinematics.inverse import inverse_kinematics
 from tarsus.kinematics.leg import forward_kinematics
+from tarsus.kinematics.leg_path import LegFreeSpace
 from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.rest import resting_pose
 from tarsus.kinematics.stance import default_stance, default_swing_height

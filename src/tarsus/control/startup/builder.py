@@ -10,9 +10,9 @@ import numpy as np
 from tarsus.control.sequence.sequence import MotionSequence
 from tarsus.control.sequence.stage import Stage
 from tarsus.control.startup.checks import check_stage
-from tarsus.control.startup.leg_path import LegFreeSpace, Path
 from tarsus.errors import UnreachableError
 from tarsus.kinematics.leg import forward_kinematics
+from tarsus.kinematics.leg_path import LegFreeSpace, Path
 from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.underside import underside_points
 from tarsus.robot.joint_limits import JointLimits

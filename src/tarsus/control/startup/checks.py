@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tarsus.control.sequence.stage import GRID, Stage
-from tarsus.control.startup.leg_path import lifts_off
 from tarsus.errors import TarsusError, UnreachableError
 from tarsus.kinematics.inverse import inverse_kinematics
 from tarsus.kinematics.leg import forward_kinematics
+from tarsus.kinematics.leg_path import lifts_off
 from tarsus.kinematics.mass import centre_of_mass
 from tarsus.kinematics.polygon import hull_margin
 from tarsus.kinematics.underside import underside_points

@@ -9,7 +9,7 @@ import numpy as np
 
 from tarsus.arrays import Array
 from tarsus.control.startup.initial_state import SERVO_SPEED_SHARE, lying_state, over_feet
-from tarsus.control.startup.leg_path import LegFreeSpace
+from tarsus.kinematics.leg_path import LegFreeSpace
 from tarsus.representation import represented
 from tarsus.robot.joint_limits import joint_limits
 from tarsus.robot.robot import JOINTS, Robot

@@ -43,8 +43,6 @@ _DEPTH_SHARE = 0.6
 _SLOW_TRAVEL, _FAST_TRAVEL = 0.75, 0.92
 # How often height, tilt and lost way are looked at [s].
 _SLOW_PERIOD = 0.03 - PHASE_TOLERANCE
-# Below this pace the robot waits for support.
-_WAITING = 0.5
 
 
 class FeltGround:
@@ -103,15 +101,10 @@ class FeltGround:
         self._centre, self.lowered = complex(*centre_of_mass(robot, angles)[:2].tolist()), 0.0
         self.odometry, self.measured = LegOdometry(robot), ValidReadings()
         self._tilt: tuple[float, float] | None = None
-        # What the feet are given while all is as planned; ticks and times since contacts and support were looked at.
+        # What feet are given while all is as planned; ticks and times since contacts and support were looked at.
         self._inputs: FeltInputs | None = None
         self._given, self._ticks, self._unread, self._idle = (list[int](), True), 0, 0.0, 0.0
         self._since, self._drift, self._rates = _SLOW_PERIOD, 0j, PostureRates(0.0, (0.0, 0.0))
-
-    @property
-    def waits(self) -> bool:
-        """Whether the robot waits until its feet hold it."""
-        return self.support.pace < _WAITING
 
     def sense(
         self,
@@ -297,7 +290,7 @@ class FeltGround:
         if self.posture.given_way > 0.0:
             found.append(Limitation(kind=kinds.ATTITUDE, cause="end of the legs' reach on this slope"))
         found += self.condition.limitations + self.odometry.limitations
-        if self.waits and not self.condition.in_air:
+        if self.support.halts and not self.condition.in_air:
             reason = self.slope.reason if self.slope.refuses else "the feet on the ground do not hold the robot"
             found.append(Limitation(kind=kinds.GROUND, cause=reason))
         return tuple(found)

@@ -16,6 +16,8 @@ _PATIENCE = 0.3
 _GRACE = 0.15
 # Least angle by which the centre of mass is inside the support polygon, as seen from it [rad].
 _LEAST_ANGLE = 0.02
+# Below this pace the robot waits for support.
+_HALTING = 0.5
 
 
 def holds(feet: Sequence[complex], centre: complex) -> bool:
@@ -50,6 +52,11 @@ class Support:
         self.pace, self.waits = 1.0, False
         self._waited = self._unsupported = 0.0
         self._bearing, self._held = list[int](), False
+
+    @property
+    def halts(self) -> bool:
+        """Whether the robot waits until its feet hold it."""
+        return self.pace < _HALTING
 
     def holds(self, legs: list[int], places: Sequence[complex], centre: complex, *, anew: bool) -> bool:
         """Return whether feet hold the robot; they are looked at again where they are others, or when asked to.

@@ -103,6 +103,6 @@ def _finished(walk: WalkComponents, tick: TickState, state: GaitState, dt: float
         follows_twist=follows_twist,
         at_rest=still and walk.transitions.at_rest(state),
         changes_gait=walk.transitions.changes_gait,
-        searches=walk.ground.waits,
+        searches=walk.ground.support.halts,
     )
     return TickState(state, tick.twist, following, tick.limitations)

@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
-from tarsus.control.startup.leg_path.grid_search import Node, shortest_path
-from tarsus.control.startup.leg_path.lift_off import DEPTH_TOLERANCE, lifts_off
 from tarsus.kinematics.leg import point_parts
+from tarsus.kinematics.leg_path.grid_search import Node, shortest_path
+from tarsus.kinematics.leg_path.lift_off import DEPTH_TOLERANCE, lifts_off
 from tarsus.kinematics.pose import Pose
 from tarsus.robot.geometry import LegGeometry
 from tarsus.robot.robot import Robot
