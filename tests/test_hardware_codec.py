@@ -22,6 +22,7 @@ from tarsus.hardware.codec import (
     servo2040,
     ssc32,
 )
+from tarsus.hardware.codec.dynamixel2_fast import fast_status, split_fast
 from tarsus.hardware.codec.registers import Register, load_registers
 
 IDS = (1, 2, 3)
@@ -70,12 +71,12 @@ def test_answers_of_the_makers_documents_are_read():
     # "Fast Sync Read": three servos in one packet, each CRC covers all that is before it.
     parts = ["FF FF FD 00 FE 19 00 55 00 03 A6 00 00 00 84 08", "00 07 1F 08 00 00 16 CA", "00 04 FF 03 00 00 D1 9E"]
     values = ((3, 166), (7, 2079), (4, 1023))
-    ours = dynamixel2.fast_status([(id, 0, struct.pack("<i", value)) for id, value in values])
+    ours = fast_status([(id, 0, struct.pack("<i", value)) for id, value in values])
     assert ours == tuple(frame(part) for part in parts)
     (whole,) = dynamixel2.scan(b"".join(ours)).frames
-    split = dynamixel2.split_fast(whole, 4)
+    split = split_fast(whole, 4)
     assert [(one.id, struct.unpack("<i", one.data)[0]) for one in split] == list(values)
-    assert dynamixel2.split_fast(whole, 3) == ()
+    assert split_fast(whole, 3) == ()
 
 
 def test_lines_of_an_ssc32_are_those_of_its_guide():

@@ -17,8 +17,10 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from tarsus.hardware.bus.answers import Answers, BusServo, BusTiming, Telemetry
+    from tarsus.hardware.bus.capabilities import Capabilities
     from tarsus.hardware.bus.inputs import InputBoard
-    from tarsus.hardware.bus.protocol import Answers, Bus, BusServo, BusTiming, Capabilities, Telemetry
+    from tarsus.hardware.bus.protocol import Bus
     from tarsus.hardware.bus.registry import BUSES, BusKind, bus_over, open_bus
     from tarsus.hardware.calibration.blank import new_calibration, nominal_calibration
     from tarsus.hardware.calibration.bus_commands import BUS_COMMANDS, BusCommands
@@ -49,7 +51,9 @@ if TYPE_CHECKING:
 
 _HOMES = {
     "tarsus.hardware.bus.inputs": ("InputBoard",),
-    "tarsus.hardware.bus.protocol": ("Answers", "Bus", "BusServo", "BusTiming", "Capabilities", "Telemetry"),
+    "tarsus.hardware.bus.answers": ("Answers", "BusServo", "BusTiming", "Telemetry"),
+    "tarsus.hardware.bus.capabilities": ("Capabilities",),
+    "tarsus.hardware.bus.protocol": ("Bus",),
     "tarsus.hardware.bus.registry": ("BUSES", "BusKind", "bus_over", "open_bus"),
     "tarsus.hardware.calibration.blank": ("new_calibration", "nominal_calibration"),
     "tarsus.hardware.calibration.bus_commands": ("BUS_COMMANDS", "BusCommands"),

@@ -7,7 +7,7 @@ import operator
 from collections.abc import Iterable, Mapping
 
 from tarsus.errors import InputError
-from tarsus.hardware.bus.protocol import Capabilities
+from tarsus.hardware.bus.capabilities import Capabilities
 
 __all__ = [
     "checked_goals",

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
-from tarsus.hardware.bus.protocol import Capabilities
+from tarsus.hardware.bus.capabilities import Capabilities
 from tarsus.hardware.codec import dynamixel1, dynamixel2, feetech, packet
 from tarsus.hardware.codec.scan import Scanner
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Collection
 
 from tarsus.errors import BusError, CorruptAnswerError, NoAnswerError, ServoStatusError
+from tarsus.hardware.bus.answers import Answers
 from tarsus.hardware.bus.exchange import Exchange
 from tarsus.hardware.bus.patience import Patience
-from tarsus.hardware.bus.protocol import Answers
 from tarsus.hardware.codec.scan import Frame, Scanner
 from tarsus.hardware.transport.protocol import Transport
 from tarsus.hardware.transport.wire import serial_seconds

@@ -6,11 +6,12 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from tarsus.errors import BusError, CorruptAnswerError, ServoStatusError, UnknownNameError
+from tarsus.hardware.bus.answers import Answers, BusServo, BusTiming, Telemetry
+from tarsus.hardware.bus.capabilities import Capabilities
 from tarsus.hardware.bus.checks import checked_goals, checked_ids, checked_range
 from tarsus.hardware.bus.link import Link
 from tarsus.hardware.bus.one_by_one import one_by_one
 from tarsus.hardware.bus.patience import Patience
-from tarsus.hardware.bus.protocol import Answers, BusServo, BusTiming, Capabilities, Telemetry
 from tarsus.hardware.bus.scanning import scanned
 from tarsus.hardware.bus.without_servo_settings import WithoutServoSettings
 from tarsus.hardware.codec import lx16a as codec

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from typing import TypeVar
 
 from tarsus.errors import BusError, NoAnswerError
-from tarsus.hardware.bus.protocol import Answers
+from tarsus.hardware.bus.answers import Answers
 
 __all__ = ["one_by_one"]
 

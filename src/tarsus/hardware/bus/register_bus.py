@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from tarsus.errors import CorruptAnswerError, ServoStatusError
+from tarsus.hardware.bus.answers import Answers, BusServo, BusTiming, Telemetry
 from tarsus.hardware.bus.checks import (
     checked_goals,
     checked_ids,
@@ -16,7 +17,6 @@ from tarsus.hardware.bus.checks import (
 )
 from tarsus.hardware.bus.dialect import SERIES
 from tarsus.hardware.bus.link import Link
-from tarsus.hardware.bus.protocol import Answers, BusServo, BusTiming, Telemetry
 from tarsus.hardware.bus.register_reader import RegisterReader
 from tarsus.hardware.bus.scanning import scanned
 from tarsus.hardware.codec.packet import BROADCAST

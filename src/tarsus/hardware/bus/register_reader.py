@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from tarsus.hardware.bus.answers import Answers
 from tarsus.hardware.bus.dialect import Series
 from tarsus.hardware.bus.link import Link
 from tarsus.hardware.bus.one_by_one import one_by_one
-from tarsus.hardware.bus.protocol import Answers
-from tarsus.hardware.codec.dynamixel2 import split_fast
+from tarsus.hardware.codec.dynamixel2_fast import split_fast
 from tarsus.hardware.codec.packet import BROADCAST
 from tarsus.hardware.codec.scan import Frame
 from tarsus.hardware.transport.wire import serial_seconds

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from tarsus.errors import BusError, CorruptAnswerError
+from tarsus.hardware.bus.answers import Answers, BusServo
 from tarsus.hardware.bus.checks import checked_ids
-from tarsus.hardware.bus.protocol import Answers, Bus, BusServo
+from tarsus.hardware.bus.protocol import Bus
 
 __all__ = ["scanned"]
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Protocol, runtime_checkable
 
-from tarsus.hardware.bus.protocol import Answers, Telemetry
+from tarsus.hardware.bus.answers import Answers, Telemetry
 
 __all__ = ["SeparateTelemetry"]
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from tarsus.hardware.bus.capabilities import Capabilities
 from tarsus.hardware.bus.checks import checked_ids, checked_share, checked_speed
-from tarsus.hardware.bus.protocol import Capabilities
 
 __all__ = ["WithoutServoSettings"]
 

@@ -27,12 +27,10 @@ __all__ = [
     "bulk_read",
     "crc",
     "errors_in",
-    "fast_status",
     "packet",
     "ping",
     "read",
     "scan",
-    "split_fast",
     "status",
     "sync_read",
     "sync_write",
@@ -265,42 +263,3 @@ def sync_write(address: int, contents: Mapping[int, bytes]) -> bytes:
     length = len(next(iter(contents.values())))
     data = b"".join(bytes((id,)) + content for id, content in contents.items())
     return packet(BROADCAST, SYNC_WRITE, _words(address, length) + data)
-
-
-def fast_status(parts: Sequence[tuple[int, int, bytes]]) -> tuple[bytes, ...]:
-    """Return what each servo sends of the one packet in which several answer.
-
-    Each CRC covers everything before it in the packet.
-
-    Parameters
-    ----------
-    parts : sequence of (int, int, bytes)
-        Id, error byte and data of each servo, all data of equal length.
-    """
-    count = len(parts[0][2])
-    begin = HEADER + bytes((BROADCAST,)) + _words(len(parts) * (count + 4) + 1) + bytes((STATUS,))
-    sent, before = [], 0
-    for at, (id, error, data) in enumerate(parts):
-        part = (begin if at == 0 else b"") + bytes((error, id)) + data
-        check = crc(part, before).to_bytes(2, "little")
-        before = crc(check, crc(part, before))
-        sent.append(part + check)
-    return tuple(sent)
-
-
-def split_fast(frame: Frame, count: int) -> tuple[Frame, ...]:
-    """Return the answers in the one packet in which several servos answer.
-
-    Parameters
-    ----------
-    frame : Frame
-        The packet.
-    count : int
-        How many bytes of data each answer has.
-    """
-    # The first error byte is the frame's code; the last CRC is that of the packet.
-    body, size = bytes((frame.code,)) + frame.data + b"\x00\x00", count + 4
-    if len(body) % size:
-        return ()
-    parts = (body[at : at + size] for at in range(0, len(body), size))
-    return tuple(Frame(part[1], part[0], part[2 : 2 + count], part) for part in parts)

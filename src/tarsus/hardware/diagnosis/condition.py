@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Collection, Iterator, Mapping, Sequence
 
-from tarsus.hardware.bus.protocol import Bus, Telemetry
+from tarsus.hardware.bus.answers import Telemetry
+from tarsus.hardware.bus.protocol import Bus
 from tarsus.hardware.diagnosis.finding import Finding
 from tarsus.hardware.diagnosis.subject import Subject
 from tarsus.hardware.plant.monitor.telemetry_monitor import least_voltage

@@ -7,6 +7,7 @@ from typing import Any
 
 from tarsus.hardware.codec import dynamixel2
 from tarsus.hardware.codec import packet as packets
+from tarsus.hardware.codec.dynamixel2_fast import fast_status
 from tarsus.hardware.codec.registers import load_registers
 from tarsus.hardware.codec.scan import Frame
 from tarsus.hardware.emulation.line import EmulatedLine
@@ -140,7 +141,7 @@ class EmulatedRegisters(EmulatedLine):
         elif not self.faults.missing.intersection(ids) and set(ids) <= self.servos.keys():
             # Each servo sends its part of one packet when the part before it is complete.
             parts = [(id, self._error(id), self.memory[id].read(address, count)) for id in ids]
-            yield from zip(ids, dynamixel2.fast_status(parts), strict=True)
+            yield from zip(ids, fast_status(parts), strict=True)
 
     def _bulk(self, data: bytes, word: int) -> Iterator[tuple[int, int, int]]:
         if self._two:

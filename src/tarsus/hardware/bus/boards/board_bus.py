@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 
 from tarsus.errors import NoAnswerError
+from tarsus.hardware.bus.answers import Answers, BusServo, BusTiming, Telemetry
+from tarsus.hardware.bus.capabilities import Capabilities
 from tarsus.hardware.bus.checks import checked_goals, checked_ids, checked_range
-from tarsus.hardware.bus.protocol import Answers, BusServo, BusTiming, Capabilities, Telemetry
 from tarsus.hardware.bus.scanning import scanned
 from tarsus.hardware.bus.without_servo_settings import WithoutServoSettings
 from tarsus.hardware.transport.protocol import I2cTransport, Transport

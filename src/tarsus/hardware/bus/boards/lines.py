@@ -6,9 +6,9 @@ from collections.abc import Mapping, Sequence
 
 from tarsus.errors import CorruptAnswerError, InputError
 from tarsus.hardware.bus.boards.board_bus import BoardBus
+from tarsus.hardware.bus.capabilities import Capabilities
 from tarsus.hardware.bus.checks import checked_numbers, checked_time
 from tarsus.hardware.bus.link import Link, hexadecimal
-from tarsus.hardware.bus.protocol import Capabilities
 from tarsus.hardware.codec import lines as codec
 from tarsus.hardware.codec.packet import scan
 from tarsus.hardware.transport.protocol import Transport

@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from tarsus.errors import CorruptAnswerError
+from tarsus.hardware.bus.answers import Telemetry
 from tarsus.hardware.bus.boards.board_bus import LONGEST_PULSE, SHORTEST_PULSE, BoardBus, runs
+from tarsus.hardware.bus.capabilities import Capabilities
 from tarsus.hardware.bus.checks import checked_ids, checked_numbers, checked_speed
 from tarsus.hardware.bus.link import Link, hexadecimal
-from tarsus.hardware.bus.protocol import Capabilities, Telemetry
 from tarsus.hardware.codec import maestro as codec
 from tarsus.hardware.codec.packet import scan
 from tarsus.hardware.transport.protocol import Transport

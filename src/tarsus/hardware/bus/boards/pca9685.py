@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 
 from tarsus.errors import InputError
 from tarsus.hardware.bus.boards.board_bus import LONGEST_PULSE, SHORTEST_PULSE, BoardBus, runs
-from tarsus.hardware.bus.protocol import Capabilities
+from tarsus.hardware.bus.capabilities import Capabilities
 from tarsus.hardware.codec import pca9685 as codec
 from tarsus.hardware.transport.protocol import I2cTransport
 from tarsus.hardware.transport.wire import i2c_seconds

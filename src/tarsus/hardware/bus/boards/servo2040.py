@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
+from tarsus.hardware.bus.answers import Telemetry
 from tarsus.hardware.bus.boards.board_bus import LONGEST_PULSE, SHORTEST_PULSE, BoardBus, runs
+from tarsus.hardware.bus.capabilities import Capabilities
 from tarsus.hardware.bus.checks import checked_numbers
 from tarsus.hardware.bus.link import Link
-from tarsus.hardware.bus.protocol import Capabilities, Telemetry
 from tarsus.hardware.codec import servo2040 as codec
 from tarsus.hardware.transport.protocol import Transport
 from tarsus.hardware.transport.wire import serial_seconds

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from tarsus.hardware.bus.protocol import Telemetry
+from tarsus.hardware.bus.answers import Telemetry
 from tarsus.hardware.calibration.calibration import Calibration
 from tarsus.hardware.plant.fault import FaultKind, ServoFault
 from tarsus.hardware.plant.joint_map import Joint, JointMap

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from tarsus.errors import BusError, PortError
-from tarsus.hardware.bus.protocol import Bus, Telemetry
+from tarsus.hardware.bus.answers import Telemetry
+from tarsus.hardware.bus.protocol import Bus
 from tarsus.hardware.calibration.calibration import Calibration
 from tarsus.hardware.plant.joint_map import JointMap
 from tarsus.hardware.plant.reading.position_turn import PositionTurn

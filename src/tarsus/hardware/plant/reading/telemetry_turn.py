@@ -7,7 +7,8 @@ import math
 from collections import deque
 from collections.abc import Iterable, Iterator, Mapping
 
-from tarsus.hardware.bus.protocol import Bus, Telemetry
+from tarsus.hardware.bus.answers import Telemetry
+from tarsus.hardware.bus.protocol import Bus
 from tarsus.hardware.bus.separate_telemetry import SeparateTelemetry
 from tarsus.hardware.transport.clock import Clock
 
