@@ -176,10 +176,10 @@ def test_odometry_makes_up_for_what_the_legs_lose():
     angles = WalkController(STRIDER).angles
     still = {"tilt": (0.0, 0.0), "yaw": 0.0}
     for _ in range(50):
-        correction = odometry.step(angles.tolist(), [True] * 6, 0.1 + 0j, 0.01, **still)
+        correction = odometry.step(angles.tolist(), range(6), 0.1 + 0j, 0.01, **still)
     # Legs that stand still: all of the way is lost, and the correction is at its bound.
     assert correction == pytest.approx(0.025)
-    assert odometry.step(None, [True] * 6, 0.1 + 0j, 0.01, **still) == 0j
+    assert odometry.step(None, range(6), 0.1 + 0j, 0.01, **still) == 0j
     assert odometry.behind == 0j
     feet = [odometry._foot(leg, angles[leg].tolist(), 0.1, -0.2)[0] for leg in range(6)]
     level = tarsus.Pose.from_rpy(0.1, -0.2, 0.0) @ forward_kinematics(STRIDER, angles)[:, 3]
@@ -194,7 +194,7 @@ def test_a_foot_that_slides_is_told_by_the_others():
         moved = tarsus.Pose.from_rpy(yaw=0.002 * tick, position=(0.001 * tick, 0.0, 0.0)) @ body
         feet[0, 0] += 0.0005
         angles = tarsus.inverse_kinematics(STRIDER, feet, moved).angles
-        odometry.step(np.asarray(angles).tolist(), [True] * 6, 0.1 + 0j, 0.01, tilt=(0.0, 0.0), yaw=0.002 * tick)
+        odometry.step(np.asarray(angles).tolist(), range(6), 0.1 + 0j, 0.01, tilt=(0.0, 0.0), yaw=0.002 * tick)
     assert odometry.slip[0] == max(odometry.slip)
     # A sixth of a foot's slip is taken for motion of the body, and some for its turn.
     assert 0.025 < odometry.slip[0] < 0.05
@@ -205,7 +205,7 @@ def test_a_foot_that_slides_is_told_by_the_others():
     assert found.leg == "front left"
     assert found.text().startswith("ground: 3")
     assert found.text().endswith("mm/s, bound 30 mm/s; front left: the foot slips")
-    odometry.step(np.asarray(angles).tolist(), [True, True, *[False] * 4], 0.1 + 0j, 0.2, tilt=(0.0, 0.0), yaw=0.0)
+    odometry.step(np.asarray(angles).tolist(), [0, 1], 0.1 + 0j, 0.2, tilt=(0.0, 0.0), yaw=0.0)
     assert max(odometry.slip) == 0.0
 
 

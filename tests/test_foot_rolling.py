@@ -154,7 +154,7 @@ def test_odometry_knows_that_balls_roll():
     feet, angles, position = w.feet, w.angles, w.body.position
     for _ in range(40):
         for odometry in (rolling, sliding):
-            odometry.step(angles.tolist(), [True] * 6, speed * 1j, dt, tilt=(0.0, 0.0), yaw=0.0)
+            odometry.step(angles.tolist(), range(6), speed * 1j, dt, tilt=(0.0, 0.0), yaw=0.0)
         # The body moves sideways over feet that roll.
         position = position + np.array([0, speed * dt, 0])
         before, step = angles, np.zeros((6, 3))

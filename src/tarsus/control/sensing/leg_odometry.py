@@ -60,7 +60,7 @@ class LegOdometry:
     def step(
         self,
         angles: Sequence[Vector | None] | None,
-        stands: list[bool],
+        bears: Sequence[int],
         velocity: complex,
         dt: float,
         *,
@@ -73,8 +73,8 @@ class LegOdometry:
         ----------
         angles : sequence of ((coxa, femur, tibia) or None), or None
             Measured joint angles [rad]; without all of them nothing is corrected.
-        stands : list of bool
-            Which feet bear load.
+        bears : sequence of int
+            Legs whose feet bear load.
         velocity : complex
             Commanded velocity of the body in the heading frame [m/s].
         dt : float
@@ -90,7 +90,7 @@ class LegOdometry:
             return 0j
         before, self._before, turn = self._before, {}, cmath.exp(1j * yaw)
         feet, over_feet = list[complex](), dict[int, complex]()
-        for leg in (leg for leg, on in enumerate(stands) if on):
+        for leg in bears:
             foot, inclination, rolls = self._foot(leg, measured[leg], *tilt)
             self._before[leg] = foot * turn, inclination
             if leg in before:

@@ -197,7 +197,6 @@ class FeltGround:
         down = [on and step for on, step in zip(state.down.tolist(), steps, strict=True)]
         if self._since >= _SLOW_PERIOD:
             self._update_posture(state, places, down, timing=timing, twist=twist, rest=footholds.rest)
-            self._since = 0.0
             self.ground.choose(state, self._reach, footholds, self._strokes)
         self._decide_on_support(state, places, down, due, dt=dt, swing_time=timing.swing_time)
         self.roughness.decay(0.0 if standing else dt * timing.frequency)
@@ -240,30 +239,28 @@ class FeltGround:
         rest: Complex[np.ndarray, "legs"],
     ) -> None:
         """Update plane, reach, and how the body is to move over the standing feet: not needed in each tick."""
-        legs, contacts, dt, reach = range(len(rest)), self.contacts, self._since, self._reach
+        legs, contacts, reach, dt, self._since = range(len(rest)), self.contacts, self._reach, self._since, 0.0
         over = (state.ground_height - state.elevation.value).tolist()
         bears = [leg for leg in legs if down[leg] and contacts.touches(leg)]
         vx, vy, wz = twist.tolist()
         self.ground.step([(places[leg], over[leg]) for leg in bears], self._tilt, state, dt, drift=self._drift)
-        plane = self.ground.plane
+        plane, velocity = self.ground.plane, complex(*state.twist.value[:2].tolist()) * self.support.pace
         self._strokes = (complex(vx, vy) + 1j * wz * rest) * timing.stance_time
         reach.update(state.posture.value, rest, twist, timing.stance_time)
         seeking = [down[leg] and contacts.seeks(leg) for leg in legs]
         rises = self.ground.rises(reach.rises(plane, rest, over, bears=bears, seeking=seeking), rest, self._strokes)
-        highest = reach.highest_stand(float(state.posture.value[SWING_HEIGHT]))
         level = plane.levelled(self._tilt)
+        _, _, height, _, _, yaw, swing_height = state.posture.value[: SWING_HEIGHT + 1].tolist()
         if self._tilt is not None:
-            self.slope.step(level, complex(*twist[:2].tolist()))
+            self.slope.step(level, complex(vx, vy))
             self.stance.step(level, rest - self.stance.shift)
+        lowest, highest = [low + self.lowered for low in reach.lowest], reach.highest_stand(swing_height)
         share = reachable_share([level.at(foot) for foot in rest.tolist()], reach.lowest, highest)
-        height, lowest = float(state.posture.value[2]), [low + self.lowered for low in reach.lowest]
         wanted = max(self.roughness.body_rise, self.ground.body_rise(self.stance.half, height))
         raises = (self.stance.least_raise(plane, height), wanted)
         self.posture.fit_to_reach(rises, raises, dt, reach=(lowest, highest), height=height, share=share)
-        velocity = complex(*state.twist.value[:2].tolist()) * self.support.pace
-        tilt, yaw = self.measured.attitude or (0.0, 0.0), float(state.posture.value[5])
-        stands = [leg in bears for leg in legs]
-        drift = self.odometry.step(self.measured.joint_angles, stands, velocity, dt, tilt=tilt, yaw=yaw)
+        measured, tilt = self.measured.joint_angles, self.measured.attitude or (0.0, 0.0)
+        drift = self.odometry.step(measured, bears, velocity, dt, tilt=tilt, yaw=yaw)
         self._drift = self.stance.not_downhill(drift)
         margins = [(places[leg], over[leg] - lowest[leg]) for leg in bears]
         self._rates = self.posture.rates(plane, self._tilt, velocity, feet=margins)
