@@ -54,6 +54,33 @@ def test_a_joint_that_is_stuck_where_its_command_moves_little_is_found_too():
     assert monitor.failed == {4: 0}
 
 
+@pytest.mark.parametrize(("torque", "after"), [(0.0, (5, 20)), (2.0, (150, 250))])
+@pytest.mark.parametrize("leg", [2, 5])
+def test_measured_torques_tell_an_idle_servo_from_a_leg_that_is_caught(torque, after, leg):
+    stall = np.full((6, 3), 2.0)
+    # Nothing is told by the torque of a servo whose stall torque is unknown.
+    stall[5, 1], after = np.nan, after if leg == 2 else (20, 40)
+    monitor, measured, torques = JointMonitor(stall), np.zeros((6, 3)), [(1.0, 1.0, 1.0)] * 6
+    measured[leg, 1], torques[leg] = -0.45, (torque,) * 3
+    ticks = 0
+    while not monitor.failed:
+        monitor.step(np.zeros((6, 3)), measured.tolist(), 0.01, torques=torques)
+        ticks += 1
+    assert monitor.failed == {leg: 1}
+    assert after[0] < ticks < after[1]
+
+
+def test_joints_of_a_caught_leg_that_are_off_and_then_do_not_move_are_not_taken_for_stuck():
+    monitor = JointMonitor()
+    for tick in range(200):
+        measured = (0.2 * swung(tick - 5)).tolist()
+        # For a second it is held.
+        measured[4][0] = 0.02 if tick < 100 else measured[4][0]
+        measured[4][0] -= 0.4 if 100 < tick < 122 else 0.0
+        monitor.step(0.2 * swung(tick), measured, 0.01)
+    assert monitor.failed == {}
+
+
 def test_a_robot_without_a_leg_has_its_mass_and_its_other_legs():
     rest = remaining_robot(STRIDER, [0, 2, 3, 4, 5])
     assert rest.leg_codes[1:] == ("LR", "RR", "RM", "RF")

@@ -103,27 +103,20 @@ class FootLoads:
         doubted : sequence of int
             Legs whose switches stay open while their feet stand.
         """
-        self.estimated, switched = False, valid.contacts
+        self.estimated, switched, found = False, valid.contacts, None
         if switched is not None:
-            if not (doubted or self._open):
-                return switched
             self._open = {leg for leg in self._open.union(doubted) if not switched[leg]}
-            if valid.joint_angles is None or self._joints is None:
+            if not self._open:
                 return switched
+        elif valid.forces is not None and self._weight:
+            least = _CONTACT_SHARE * self._weight
+            return [None if force is None else force[2] > least for force in valid.forces]
+        if valid.joint_angles is not None and self._joints is not None:
             found = self._joints.contacts(valid.joint_angles, angles, dt, age=valid.contact_age, down=down, phase=phase)
-            return (
-                switched
-                if found is None
-                else [(found if leg in self._open else switched)[leg] for leg in range(len(found))]
-            )
-        if valid.forces is None or not self._weight:
-            if valid.joint_angles is None or self._joints is None:
-                return None
-            found = self._joints.contacts(valid.joint_angles, angles, dt, age=valid.contact_age, down=down, phase=phase)
+        if switched is None or found is None:
             self.estimated = found is not None
-            return found
-        least = _CONTACT_SHARE * self._weight
-        return [None if force is None else force[2] > least for force in valid.forces]
+            return switched or found
+        return [(found if leg in self._open else switched)[leg] for leg in range(len(found))]
 
     def offsets(
         self,

@@ -88,19 +88,21 @@ class Walking:
 
     Attributes
     ----------
-    joint_angles : sequence of ((coxa, femur, tibia) or None), or None
-        Measured in the last tick [rad].
+    joint_angles, torques : sequence of ((coxa, femur, tibia) or None), or None
+        Measured in the last tick [rad, N m].
     """
 
     def __init__(self, controller: WalkController) -> None:
         self.controller = controller
         self.joint_angles: Sequence[Vector | None] | None = None
+        self.torques: Sequence[Vector | None] | None = None
 
     def step(self, command: Command, dt: float, readings: SensorReadings | None) -> None:
         """Advance by one tick."""
         felt = readings if readings is not None and readings.has_ground_feedback else None
         self.controller.step(command, dt, readings=felt)
-        self.joint_angles = None if felt is None else self.controller.measured.joint_angles
+        measured = self.controller.measured
+        self.joint_angles, self.torques = (None, None) if felt is None else (measured.joint_angles, measured.torques)
 
     @property
     def stands(self) -> bool:

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from tarsus.control.command import Command
 from tarsus.control.limitation import Limitation, LimitationKind
-from tarsus.control.readings import CHANNELS, SensorReadings
+from tarsus.control.readings import CHANNELS, SensorReadings, Vector
 from tarsus.control.sensing.joint_monitor import JointMonitor
 from tarsus.control.states.activity import Snapshot, Walking
 from tarsus.control.states.robot_state import RobotState
@@ -18,6 +18,7 @@ from tarsus.control.walk_controller import WalkController
 from tarsus.errors import TarsusError
 from tarsus.gait.gait import Gait
 from tarsus.gait.swing import horizontal_profile
+from tarsus.load.servo_limits import at_supply
 from tarsus.robot.remaining import remaining_robot
 from tarsus.robot.robot import JOINTS, Robot
 
@@ -101,9 +102,7 @@ class ReducedWalking(Walking):
         velocities = {legs[leg]: each for leg, each in (command.foot_velocities or {}).items() if leg in legs} or None
         command = dataclasses.replace(command, gait=None, foot_targets=targets, foot_velocities=velocities)
         super().step(command, dt, None if readings is None else self._of_legs(readings))
-        if self.joint_angles is not None:
-            measured = dict(zip(self._legs, self.joint_angles, strict=True))
-            self.joint_angles = [measured.get(leg) for leg in range(self._robot.legs)]
+        self.joint_angles, self.torques = self._of_all(self.joint_angles), self._of_all(self.torques)
 
     @property
     def stands(self) -> bool:
@@ -130,6 +129,11 @@ class ReducedWalking(Walking):
             # The feet slide to their new stance.
             felt=now.felt or share < 1,
         )
+
+    def _of_all(self, measured: Sequence[Vector | None] | None) -> Sequence[Vector | None] | None:
+        """Return what is measured of the legs that are left, as of all legs."""
+        of_legs = {} if measured is None else dict(zip(self._legs, measured, strict=True))
+        return None if measured is None else [of_legs.get(leg) for leg in range(self._robot.legs)]
 
     def _of_legs(self, readings: SensorReadings) -> SensorReadings:
         """Return the readings of the legs that are left."""
@@ -160,7 +164,8 @@ class LegFailures:
     """
 
     def __init__(self, robot: Robot, **options: Any) -> None:
-        self._robot, self._options, self._monitor = robot, options, JointMonitor()
+        stall = np.array([[at_supply(servo, None)[0] for servo in row] for row in robot.servos])
+        self._robot, self._options, self._monitor = robot, options, JointMonitor(stall)
         self.failed, self._cause = self._monitor.failed, ""
         self._not_walkable: dict[int, int] = {}
 
@@ -176,7 +181,7 @@ class LegFailures:
         dt : float
             Length of the tick [s].
         """
-        self._monitor.step(now.angles, activity.joint_angles, dt)
+        self._monitor.step(now.angles, activity.joint_angles, dt, torques=activity.torques)
         lost = activity.failed if isinstance(activity, ReducedWalking) else {}
         if self.sits or self.failed.keys() <= lost.keys():
             return activity

@@ -131,9 +131,9 @@ class FeltGround:
             Joint angles [rad].
         """
         valid = self.measured = self._validator.validate(readings, dt)
-        doubted = self.contacts.open_switches
-        measured = self._loads.contacts(valid, angles, dt, down=state.down, phase=state.swing_phase, doubted=doubted)
         down = state.down.tolist()
+        doubted = [leg for leg in range(len(down)) if self.contacts.is_open(leg)]
+        measured = self._loads.contacts(valid, angles, dt, down=state.down, phase=state.swing_phase, doubted=doubted)
         if state.felt is None:
             if measured is None and valid.attitude is None:
                 return state, []
