@@ -21,7 +21,7 @@ _LAG = 0.15
 # Error beyond which a servo gives more than its stall torque, if it works [rad]. Hobby servos give it at 0.1 rad.
 _ERROR = 0.15
 # The same of a servo that gives less than this share of its stall torque, where that is measured [rad].
-_IDLE_ERROR, _IDLE = 0.07, 0.1
+_IDLE_ERROR, _IDLE = 0.07, 0.3
 # How long a joint has to be off by this error until it has failed, and the time in which half of it is forgotten [s]. A
 # greater error counts for more, by its square and up to these factors: where the torque is not measured, of an idle
 # servo, and of one that pulls, as that of a leg does that is caught.
