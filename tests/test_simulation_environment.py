@@ -273,6 +273,11 @@ def test_commands_change_within_an_episode_and_can_be_kept():
         (lambda: DomainRandomisation(delay=(2.0, math.inf)), "delay is"),
         (lambda: RewardWeights(tilt=math.nan), "the weight of tilt is nan; it must be finite"),
         (lambda: TerrainCurriculum([3]), "the curriculum's levels must be terrains; 3 is none"),
+        (
+            lambda: TerrainCurriculum([]),
+            r"the curriculum's levels must be a sequence of at least one terrain, got \[\]",
+        ),
+        (lambda: WalkEnv(terrain=3), "must be a sequence of at least one terrain, got 3"),
         (lambda: TerrainCurriculum(level=1), "level is 1; the curriculum has the levels 0 to 0"),
         (lambda: WalkEnv(actions="torque"), "Did you mean|kind of action"),
         (lambda: WalkEnv(residual=-1.0), "residual is -1"),

@@ -48,6 +48,7 @@ def test_a_picture_is_a_height_field(tmp_path):
         ("hills", UnknownNameError, "no terrain is called 'hills'"),
         ("blocks:height=20", InputError, "terrain 'blocks' has no parameter 'height'; it has rise, size, extent"),
         ("blocks:rise=tall", InputError, "terrain 'blocks:rise=tall': 'rise=tall' is not of the form NAME=NUMBER"),
+        ("blocks:rise=20,rise=30", InputError, "terrain 'blocks:rise=20,rise=30': rise is given twice"),
         ("blocks:rise", InputError, "'rise' is not of the form NAME=NUMBER, such as rise=20"),
         ("blocks:seed=1.5", InputError, "seed is 1.5; it must be a whole number"),
         ("missing.png:steps=3", InputError, "terrain 'missing.png' has no parameter 'steps'"),

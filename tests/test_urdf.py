@@ -260,6 +260,9 @@ REFUSED = {
     "upper of 'rear_left_coxa' is 'nan'; expected a number": changed(
         one_of("joint", "rear_left_coxa", "upper", "nan", "limit")
     ),
+    "the lower limit of joint 'rear_left_coxa', 9 rad, is above its upper limit": changed(
+        one_of("joint", "rear_left_coxa", "lower", "9", "limit")
+    ),
     "the axis of joint 'rear_left_coxa' has no direction": changed(
         one_of("joint", "rear_left_coxa", "xyz", "0 0 0", "axis")
     ),

@@ -1,17 +1,18 @@
-"""Output folders of commands."""
+"""Output folders of commands, checked before any computation."""
 
 from __future__ import annotations
 
+import errno
 import tempfile
 from pathlib import Path
 
 import click
 
-__all__ = ["make_folder"]
+__all__ = ["make_folder", "require_folder"]
 
 
 def make_folder(out: Path) -> None:
-    """Create an output folder, and check that it is writable before any computation.
+    """Create an output folder, and check that it is writable.
 
     Parameters
     ----------
@@ -29,3 +30,27 @@ def make_folder(out: Path) -> None:
             pass
     except OSError as error:
         raise click.UsageError(f"--out {out} is not writable: {error.strerror}") from None
+
+
+def require_folder(file: Path, option: str) -> None:
+    """Check that an output file can be written where it belongs.
+
+    Parameters
+    ----------
+    file : Path
+        The file.
+    option : str
+        Option that names it.
+
+    Raises
+    ------
+    UsageError
+        If it is a folder, or its folder does not exist or is not writable.
+    """
+    try:
+        if file.is_dir():
+            raise IsADirectoryError(errno.EISDIR, "it is a folder")
+        with tempfile.TemporaryFile(dir=file.parent):
+            pass
+    except OSError as error:
+        raise click.UsageError(f"{option} {file} can't be written: {error.strerror}") from None

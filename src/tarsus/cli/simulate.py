@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from tarsus.cli.folder import make_folder
+from tarsus.cli.folder import make_folder, require_folder
 from tarsus.cli.output import print_json, progress_bar, show
 from tarsus.cli.values import examples, json_option, number_option, robot_argument
 from tarsus.cli.walk_options import compensate_option, walk_options
@@ -97,6 +97,8 @@ def simulate(
         require_screen()
     if video is not None and video.suffix.lower() not in _VIDEOS:
         raise click.UsageError(f"--video {video}: the name must end in {' or '.join(_VIDEOS)}")
+    if video is not None:
+        require_folder(video, "--video")
     if zarr and out is None:
         raise click.UsageError("--zarr needs --out, the folder to write to")
     if out is not None:

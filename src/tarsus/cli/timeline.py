@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 from pathlib import Path
 
+from tarsus.errors import InputError
 from tarsus.scenario.file import load_scenario, scenario_from_text
 from tarsus.scenario.scenario import Scenario
 
@@ -26,6 +27,8 @@ def timeline_of(text: str, rate: float | None) -> Scenario:
     InputError
         If the file can't be read, or a command is malformed.
     """
+    if not text.strip():
+        raise InputError("the scenario is empty; give a TOML file, or commands such as 'at 0 s: walk 50 mm/s'")
     # A file name is not expected to begin with "at ".
     is_timeline = text.lstrip().startswith("at ") and not Path(text).is_file()
     found = scenario_from_text(text) if is_timeline else load_scenario(text)

@@ -195,7 +195,12 @@ class _Reader:
             bounds = {key: float(self._numbers(limit, key, 1, name)[0]) for key in limit.attrib}
         if kind == "revolute" and {"lower", "upper"} & set(bounds):
             # The default of either is 0.
-            limits = (bounds.get("lower", 0.0), bounds.get("upper", 0.0))
+            limits = lower, upper = bounds.get("lower", 0.0), bounds.get("upper", 0.0)
+            if lower > upper:
+                raise InputError(
+                    f"{self._where}: the lower limit of joint {name!r}, {lower:g} rad, is above its upper limit, "
+                    f"{upper:g} rad"
+                )
         return Joint(
             name,
             kind,

@@ -45,10 +45,13 @@ class TerrainCurriculum:
     Raises
     ------
     InputError
-        If a level is no terrain, or the first level does not exist.
+        If there is no level, a level is no terrain, or the first level does not exist.
     """
 
     def __init__(self, levels: Sequence[Terrain] = (Flat(),), *, level: int = 0) -> None:
+        given: Any = levels
+        if not isinstance(given, Sequence) or not given:
+            raise InputError(f"the curriculum's levels must be a sequence of at least one terrain, got {given!r}")
         self.levels = tuple(levels)
         for each in self.levels:
             if not isinstance(each, Terrain):

@@ -56,6 +56,8 @@ def _values(text: str, rest: str) -> dict[str, float]:
             value = math.nan
         if not given or not math.isfinite(value):
             raise InputError(f"terrain {text!r}: {part!r} is not of the form NAME=NUMBER, such as rise=20")
+        if name in values:
+            raise InputError(f"terrain {text!r}: {name} is given twice")
         values[name] = value
     return values
 
