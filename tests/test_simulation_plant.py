@@ -238,8 +238,8 @@ def test_what_cannot_be_executed_is_refused():
     angles[2, 1] = np.nan
     with pytest.raises(InputError, match="commanded angle of leg 2, joint 1 is nan; it must be finite"):
         plant.step(dataclasses.replace(controller.output, angles=angles), 0.01)
-    for dt in (0.0, -1.0, np.nan, np.inf):
-        with pytest.raises(InputError, match="it must be a finite number greater than 0"):
+    for dt in (0.0, -1.0, np.nan, np.inf, 1e9):
+        with pytest.raises(InputError, match="it must be greater than 0 and at most 60 s"):
             plant.step(controller.output, dt)
     with pytest.raises(InputError, match="has not been started"):
         SimulatedPlant(STRIDER).step(controller.output, 0.01)
@@ -272,3 +272,16 @@ def test_uneven_ground_holds_no_foot_that_is_pressed_into_it(ground):
 def test_a_seed_that_is_no_whole_number_is_refused():
     with pytest.raises(InputError, match=r"seed is 1.5; it must be a whole number, not negative"):
         SimulatedPlant(load_robot("strider"), seed=1.5)
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"terrain": "blocks"}, r"terrain must be a terrain such as Flat\(\) or Blocks\(\), got 'blocks'"),
+        ({"terrain": 3}, "terrain must be a terrain"),
+        ({"sensors": 3}, "sensors must be a SensorSuite or the name of one, got 3"),
+    ],
+)
+def test_terrain_and_sensors_of_another_type_are_refused(options, message):
+    with pytest.raises(InputError, match=message):
+        SimulatedPlant(STRIDER, **options)

@@ -128,7 +128,9 @@ def _bodies(robot: Robot, terrain: Terrain | None, table: ServoTable, *, damping
     spec.compiler.degree = False
     spec.compiler.autolimits = True
     apply_settings(spec)
-    ground = terrain or Flat()
+    ground = Flat() if terrain is None else terrain
+    if not isinstance(ground, Terrain):
+        raise InputError(f"terrain must be a terrain such as Flat() or Blocks(), got {ground!r}")
     ground.add_to(spec)
     spec.worldbody.add_light(pos=(0, 0, 3), dir=(0, 0, -1))
     robot = _with_feet(robot, ground)

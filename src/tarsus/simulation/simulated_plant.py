@@ -39,6 +39,8 @@ __all__ = ["SimulatedPlant"]
 # Settling ends when nothing moves faster than this [m/s, rad/s], or after the longest time [s].
 _AT_REST, _LONGEST_SETTLING = 2e-3, 3.0
 _SETTLING_CHECK = 25  # steps
+# A tick of a controller takes milliseconds; far longer ones overflow the number of steps [s].
+_LONGEST_TICK = 60.0
 # A simulation in which anything is faster than this is unstable [m/s, rad/s].
 _UNSTABLE = 1e3
 
@@ -96,8 +98,10 @@ class SimulatedPlant:
         seed: int = 0,
     ) -> None:
         self.robot = robot
-        self.terrain: Terrain = terrain or Flat()
+        self.terrain: Terrain = Flat() if terrain is None else terrain
         self.sensors = SensorSuite.named(sensors) if isinstance(sensors, str) else sensors
+        if not isinstance(self.sensors, SensorSuite):
+            raise InputError(f"sensors must be a SensorSuite or the name of one, got {self.sensors!r}")
         self._seed = require_seed(seed)
         self._table = ServoTable.of(robot, servos)
         self.servos = self._table.servos
@@ -192,8 +196,8 @@ class SimulatedPlant:
         """
         if self._timing is None or self._sampler is None:
             raise InputError("the simulated plant has not been started; call start(output) before step(output, dt)")
-        if not 0 < dt < math.inf:
-            raise InputError(f"dt is {dt:g} s; it must be a finite number greater than 0")
+        if not 0 < dt <= _LONGEST_TICK:
+            raise InputError(f"dt is {dt:g} s; it must be greater than 0 and at most {_LONGEST_TICK:g} s")
         self._timing.command(self._steps, _checked(angles))
         self._time += dt
         self._advance(round(self._time / TIMESTEP) - self._steps)
