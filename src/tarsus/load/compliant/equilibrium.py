@@ -70,7 +70,8 @@ class Compliant:
         self.radius = np.where(radius > 0, radius, POINT_FOOT)
         self._legs_of = LegDerivatives(robot, self.radius)
         self.every, self._radii = np.ones(robot.legs), self.radius[:, None]
-        self._body, self._joints = np.split(np.arange(6 + 3 * robot.legs), [6])
+        self._rotors = np.diag(np.append(np.zeros(6), springs.rotor_inertia))
+        self._floor = np.diag(np.append(np.full(6, _FLOOR), np.zeros(3 * robot.legs)))
         # Forces among the vectors of `Balance.forces`.
         self._forces = np.tile([1.0, 1.0, 1.0, 0.0], robot.legs)
 
@@ -92,11 +93,8 @@ class Compliant:
         gain : float
             `Vibration.gain` [1/s^2].
         """
-        resistance = np.zeros((6 + 3 * self.legs, 6 + 3 * self.legs))
-        resistance[:6, :6] = inertia
-        resistance[self._joints, self._joints] = self.springs.rotor_inertia.reshape(-1)
-        resistance *= gain
-        resistance[self._body, self._body] += _FLOOR
+        resistance: np.ndarray = gain * self._rotors + self._floor
+        resistance[:6, :6] += gain * inertia
         return resistance
 
     def configuration(self, offset: Float[np.ndarray, "unknowns"], past: Past, demand: Demand) -> Configuration:

@@ -73,9 +73,10 @@ def solve_equilibrium(
         Size of the residual that is small enough [N m].
     """
     first = at
-    heights, stood = at.bottoms[:, 2], past.bottoms[:, 2] <= 0
-    at = at._replace(normal=np.where(stood, -compliant.contact.normal_stiffness * heights, at.normal))
-    balance = compliant.balance(at, demand, _limit(compliant, at, past.held | (at.normal < 0)))
+    stood = (past.bottoms[:, 2] <= 0) & (at.normal == 0)
+    tied = -compliant.contact.normal_stiffness * at.bottoms[:, 2] * stood
+    at = at._replace(normal=at.normal + tied)
+    balance = compliant.balance(at, demand, _limit(compliant, at, past.held | stood))
     for _ in range(_DIRECT):
         at = _newton(compliant, at, balance, past, demand)
         balance = compliant.balance(at, demand)
