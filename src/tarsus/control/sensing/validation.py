@@ -135,11 +135,10 @@ class ReadingsValidator:
                     channel.reset()
                 else:
                     accepted[name] = channel.read(value, rejected)
-            common = 0.0 if ages else as_number(readings.age)
             given = (name for name in ("contacts", "forces") if getattr(readings, name) is not None)
-            measured = {"contact_age": next(given, "joint_angles"), "ground_age": "ground"}
-            found = {key: as_number(ages.get(name, common)) for key, name in measured.items()}
-            accepted |= {key: age if age > 0 else 0.0 for key, age in found.items()}
+            for key, name in (("contact_age", next(given, "joint_angles")), ("ground_age", "ground")):
+                # An age that is no number is none.
+                accepted[key] = max(0.0, as_number(ages.get(name, 0.0) if ages else readings.age))
             valid = ValidReadings(**accepted, rejected=tuple(rejected))
         for reason in rejected:
             self.counts[reason] = self.counts.get(reason, 0) + 1

@@ -173,11 +173,13 @@ class GroundMap:
         strokes : complex array, shape (legs,)
             Their strokes, in the heading frame [m].
         """
+        if not self.given:
+            return
         highest, turn = reach.highest_stand(float(state.posture.value[SWING_HEIGHT])), cmath.exp(-1j * state.yaw)
         for leg, (down, phase) in enumerate(zip(state.down.tolist(), state.swing_phase.tolist(), strict=True)):
             if down:
                 self.beside.pop(leg, None)
-            elif self.given and leg not in self.beside and 0 < phase < _CHOOSING:
+            elif leg not in self.beside and 0 < phase < _CHOOSING:
                 kept = np.abs((NORMALS_CONJUGATE * strokes[leg]).real) / 2
                 slack = footholds.placement_bounds[leg] - kept.clip(_STROKE_SHARE * footholds.placement_radii[leg])
                 start, end = ((complex(at[leg]) - state.origin) * turn for at in (state.foot, state.foothold))
@@ -236,5 +238,7 @@ class GroundMap:
         height : float
             Commanded height of the body [m].
         """
+        if not self.given:
+            return -math.inf
         highest = float(self.expected(_UNDER.real * half[0] + 1j * _UNDER.imag * half[1]).max())
-        return highest - self.plane.height + half[2] + _CLEAR - height if self.given else -math.inf
+        return highest - self.plane.height + half[2] + _CLEAR - height
