@@ -130,7 +130,7 @@ class PoseController:
         """
         if value is self.target:
             return _BANDWIDTH
-        distance = np.abs(value - self.target).tolist()
+        distance: list[float] = np.abs(value - self.target).tolist()
         time = max(
             max(distance[:3]) / _BODY_SPEED,
             max(distance[3:SWING_HEIGHT]) / _BODY_TURN,

@@ -131,15 +131,13 @@ class GroundMap:
         self._height = median(known) if known else self._height
 
     def expected(self, places: Shaped[np.ndarray, "..."]) -> Shaped[np.ndarray, "..."]:
-        """Return the heights at which the ground is expected at places x + iy [m].
+        """Return the heights at which the known ground is expected at places x + iy [m].
 
         Parameters
         ----------
         places : complex array, shape (...)
             The places [m].
         """
-        if not self.given:
-            return self._level(places)
         known = self._known(places) - self._height - self._rise(places)
         return np.where(np.isnan(known), self._level(places), known)
 

@@ -160,7 +160,7 @@ def reachable_heights(
     stance = StanceGeometry(rest, np.array(rotation_rows(*posture[3:SWING_HEIGHT].tolist())), posture[:3], 0.0)
     places = rest + np.array([-0.5, 0.0, 0.5])[:, None, None] * strokes
     solution = stance.solve(robot, places.real, places.imag, levels[:, None])
-    beyond = ~(joint_margin(g, solution) >= 0).all(axis=0)
+    beyond = np.asarray(~(joint_margin(g, solution) >= 0).all(axis=0))
     ends = []
     for sign, way in ((-1, beyond[_LEVEL::-1]), (1, beyond[_LEVEL:])):
         # The last level before the first one that is out of reach.

@@ -86,7 +86,8 @@ class FootholdTransfer:
         bounds : array, shape (legs, 16)
             The sides [m].
         """
-        return bounds + self._sides_shift
+        sides: np.ndarray = bounds + self._sides_shift
+        return sides
 
     def bounds_with(self, transition: StanceTransition) -> Float[np.ndarray, "legs 16"]:
         """Return the sides with which the feet would start to transfer.
