@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tarsus.control.walk.foothold import FootholdPredictor
-from tarsus.control.workspace.polygon import NORMALS
+from tarsus.gait.foot_polygons import NORMALS
 
 REST = 0.2 + 0.1j
 

@@ -102,12 +102,11 @@ def choice(heights, leg=0, phase=0.1):
     feet = [(complex(state.foot[other]) - state.origin, 0.0) for other in range(6) if other != leg]
     known.step(feet, None, state, 0.03, drift=0j)
     ahead, footholds = known, walk.transitions.footholds
-    strokes = np.full(6, 0.025 + 0j)
-    ahead.choose(state, walk.ground._reach, footholds, strokes)
+    ahead.choose(state, walk.ground._reach, footholds)
     chosen = dict(ahead.beside)
-    ahead.choose(state, walk.ground._reach, footholds, strokes)
+    ahead.choose(state, walk.ground._reach, footholds)
     assert ahead.beside == chosen
-    ahead.choose(state._replace(down=np.ones(6, dtype=bool)), walk.ground._reach, footholds, strokes)
+    ahead.choose(state._replace(down=np.ones(6, dtype=bool)), walk.ground._reach, footholds)
     assert ahead.beside == {}
     return chosen
 
@@ -148,6 +147,7 @@ def test_the_body_knows_of_steps_before_its_feet_are_on_them():
     least, most = known.rises([0.0] * 6, rest, strokes)
     assert most == pytest.approx([0.08, 0.0, 0.0, 0.0, 0.0, 0.08])
     assert least == pytest.approx([0.0] * 6)
+    assert known.rises([0.0] * 6, rest, strokes, looks=False) == ([0.0] * 6, [0.0] * 6)
 
 
 def crossed(sensors):

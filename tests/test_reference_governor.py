@@ -11,7 +11,7 @@ from sample_stances import polygon_radii, setup_of, velocity_limits_of
 from tarsus.control.filters import CriticallyDamped, integral_factors
 from tarsus.control.walk.reference_governor import governed_twist, polygon_excess
 from tarsus.control.walk.state import integrate_twist
-from tarsus.control.workspace.polygon import NORMALS
+from tarsus.gait.foot_polygons import NORMALS
 
 STANCE = 0.5
 BANDWIDTH = 4 / STANCE

@@ -13,7 +13,7 @@ import pytest
 import shape_enforcement
 import tarsus
 from shape_enforcement import ShapeError
-from tarsus.control.workspace.polygon import polygon_margin
+from tarsus.gait.foot_polygons import polygon_margin
 
 SOURCE = Path(tarsus.__file__).parent
 FILES = sorted(SOURCE.rglob("*.py"))

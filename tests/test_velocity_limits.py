@@ -13,7 +13,6 @@ from gait_robots import HEXAPOD_GAITS, PRESETS, ring
 from sample_stances import POSTURES, feet_at, pose_of, setup_of, standing, velocity_limits_of
 from sample_walks import WAVE_OF_FOUR
 from tarsus.control.incremental import complete
-from tarsus.control.workspace.polygon import NORMALS, polygon_ends, polygon_margin
 from tarsus.control.workspace.stability import safe_fraction, support_sets
 from tarsus.control.workspace.stance_limits import velocity_limits
 from tarsus.control.workspace.velocity_limits import (
@@ -22,6 +21,7 @@ from tarsus.control.workspace.velocity_limits import (
     with_stroke_limits,
 )
 from tarsus.gait.cycle import cycle_feet
+from tarsus.gait.foot_polygons import NORMALS, polygon_ends, polygon_margin
 from tarsus.gait.gait import Gait
 from tarsus.gait.stroke import max_stroke
 from tarsus.kinematics.inverse import inverse_kinematics

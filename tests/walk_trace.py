@@ -11,7 +11,7 @@ import numpy as np
 from tarsus.control.command import Command
 from tarsus.control.readings import SensorReadings
 from tarsus.control.walk_controller import WalkController
-from tarsus.control.workspace.polygon import NORMALS
+from tarsus.gait.foot_polygons import NORMALS
 from tarsus.kinematics.leg import forward_kinematics
 from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.rolling import rolling_displacements

@@ -10,7 +10,7 @@ from tarsus.control.limiter.protocol import TwistGrant, TwistRequest
 from tarsus.control.transition.executor import TransitionExecutor
 from tarsus.control.walk.reference_governor import governed_twist
 from tarsus.control.walk.state import GaitState
-from tarsus.control.workspace.polygon import NORMALS_CONJUGATE
+from tarsus.gait.foot_polygons import NORMALS_CONJUGATE
 
 __all__ = ["GovernorLimiter"]
 

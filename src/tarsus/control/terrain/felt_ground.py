@@ -197,7 +197,7 @@ class FeltGround:
         down = [on and step for on, step in zip(state.down.tolist(), steps, strict=True)]
         if self._since >= _SLOW_PERIOD:
             self._update_posture(state, places, down, timing=timing, twist=twist, rest=footholds.rest)
-            self.ground.choose(state, self._reach, footholds, self._strokes)
+            self.ground.choose(state, self._reach, footholds)
         self._decide_on_support(state, places, down, due, dt=dt, swing_time=timing.swing_time)
         self.roughness.decay(0.0 if standing else dt * timing.frequency)
         in_air, under = self.condition.in_air, list[GroundUnder | None]()
@@ -242,17 +242,18 @@ class FeltGround:
         legs, contacts, reach, dt, self._since = range(len(rest)), self.contacts, self._reach, self._since, 0.0
         over = (state.ground_height - state.elevation.value).tolist()
         bears = [leg for leg in legs if down[leg] and contacts.touches(leg)]
-        vx, vy, wz = twist.tolist()
         self.ground.step([(places[leg], over[leg]) for leg in bears], self._tilt, state, dt, drift=self._drift)
         plane, velocity = self.ground.plane, complex(*state.twist.value[:2].tolist()) * self.support.pace
-        self._strokes = (complex(vx, vy) + 1j * wz * rest) * timing.stance_time
         reach.update(state.posture.value, rest, twist, timing.stance_time)
         seeking = [down[leg] and contacts.seeks(leg) for leg in legs]
-        rises = self.ground.rises(reach.rises(plane, rest, over, bears=bears, seeking=seeking), rest, self._strokes)
+        stands = [on or not should for on, should in zip(contacts.standing, down, strict=True)]
+        rises = self.ground.rises(
+            reach.rises(plane, rest, over, bears=bears, seeking=seeking), rest, reach.strokes, looks=all(stands)
+        )
         level = plane.levelled(self._tilt)
         _, _, height, _, _, yaw, swing_height = state.posture.value[: SWING_HEIGHT + 1].tolist()
         if self._tilt is not None:
-            self.slope.step(level, complex(vx, vy))
+            self.slope.step(level, complex(*twist[:2].tolist()))
             self.stance.step(level, rest - self.stance.shift)
         lowest, highest = [low + self.lowered for low in reach.lowest], reach.highest_stand(swing_height)
         share = reachable_share([level.at(foot) for foot in rest.tolist()], reach.lowest, highest)

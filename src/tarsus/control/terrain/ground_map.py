@@ -15,9 +15,9 @@ from tarsus.control.terrain.reach import Reach
 from tarsus.control.transition.foothold_transfer import FootholdTransfer
 from tarsus.control.walk.felt_feet import GroundUnder
 from tarsus.control.walk.state import GaitState
-from tarsus.control.workspace.polygon import NORMALS_CONJUGATE
 from tarsus.control.workspace.stance_geometry import SWING_HEIGHT
 from tarsus.gait.foot_plane import FootPlane, fitted_plane
+from tarsus.gait.foot_polygons import NORMALS_CONJUGATE
 from tarsus.gait.ground_heights import TRIED, GroundHeights, better_foothold, highest_on_way, is_steep
 
 if TYPE_CHECKING:
@@ -155,9 +155,7 @@ class GroundMap:
         """
         return float(self.expected(np.array(place))) if self.given else self.plane.at(place)
 
-    def choose(
-        self, state: GaitState, reach: Reach, footholds: FootholdTransfer, strokes: Complex[np.ndarray, "legs"]
-    ) -> None:
+    def choose(self, state: GaitState, reach: Reach, footholds: FootholdTransfer) -> None:
         """Choose footholds for feet that have lifted off, once in each swing.
 
         Parameters
@@ -165,11 +163,9 @@ class GroundMap:
         state : GaitState
             The gait state.
         reach : Reach
-            Between which heights legs reach their stroke.
+            Strokes, and between which heights legs reach them.
         footholds : FootholdTransfer
             How far from their rest footholds feet may be put down.
-        strokes : complex array, shape (legs,)
-            Their strokes, in the heading frame [m].
         """
         if not self.given:
             return
@@ -178,7 +174,7 @@ class GroundMap:
             if down:
                 self.beside.pop(leg, None)
             elif leg not in self.beside and 0 < phase < _CHOOSING:
-                kept = np.abs((NORMALS_CONJUGATE * strokes[leg]).real) / 2
+                kept = np.abs((NORMALS_CONJUGATE * reach.strokes[leg]).real) / 2
                 slack = footholds.placement_bounds[leg] - kept.clip(_STROKE_SHARE * footholds.placement_radii[leg])
                 start, end = ((complex(at[leg]) - state.origin) * turn for at in (state.foot, state.foothold))
                 allowed = (slack.clip(0.0) >= _ALONG_TRIED).all(axis=1)
@@ -210,7 +206,12 @@ class GroundMap:
         return under._replace(way=way, steep=is_steep(self.expected, start, foothold))
 
     def rises(
-        self, rises: list[float], rest: Complex[np.ndarray, "legs"], strokes: Complex[np.ndarray, "legs"]
+        self,
+        rises: list[float],
+        rest: Complex[np.ndarray, "legs"],
+        strokes: Complex[np.ndarray, "legs"],
+        *,
+        looks: bool = True,
     ) -> tuple[list[float], list[float]]:
         """Return least and greatest height of the ground under each leg, now and at its next footholds [m].
 
@@ -220,8 +221,10 @@ class GroundMap:
             The height now, over the plane's at the origin [m].
         rest, strokes : complex array, shape (legs,)
             Rest footholds, and strokes about them, in the heading frame [m].
+        looks : bool
+            Whether to look ahead: not while a foot looks for the ground that it should stand on.
         """
-        if not self.given:
+        if not (self.given and looks):
             return rises, rises
         ahead = self.expected(rest + _NEXT[:, None] * strokes) - self.plane.height
         return np.minimum(ahead.min(axis=0), rises).tolist(), np.maximum(ahead.max(axis=0), rises).tolist()

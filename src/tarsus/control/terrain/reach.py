@@ -39,13 +39,15 @@ class Reach:
     ----------
     lowest, highest : list of float
         Least and greatest height of each foot in the heading frame [m].
+    strokes : complex array, shape (legs,)
+        Stroke of each foot [m].
     stroke : float
         Half the longest stroke [m].
     """
 
     def __init__(self, robot: Robot) -> None:
         self.lowest, self.highest = [0.0] * robot.legs, [0.0] * robot.legs
-        self.stroke = 0.0
+        self.stroke, self.strokes = 0.0, np.zeros(robot.legs, dtype=complex)
         self._robot = robot
         self._key: tuple[float, ...] = ()
         self._rest: Complex[np.ndarray, "legs"] | None = None
@@ -75,7 +77,7 @@ class Reach:
         key = (x, y, arc, *posture[:SWING_HEIGHT].round(3).tolist())
         if key != self._key or rest is not self._rest:
             self._key, self._rest, strokes = key, rest, complex(x, y) + 1j * arc / _TURNING_ARM * rest
-            self.stroke = float(np.abs(strokes).max()) / 2
+            self.stroke, self.strokes = float(np.abs(strokes).max()) / 2, strokes
             self.lowest, self.highest = reachable_heights(self._robot, posture, rest, strokes)
 
     def highest_stand(self, swing_height: float) -> list[float]:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from tarsus.control.walk.state import GaitState, StepInputs, chord_factor, integrate_twist
-from tarsus.control.workspace.polygon import NORMALS_CONJUGATE
+from tarsus.gait.foot_polygons import NORMALS_CONJUGATE
 
 if TYPE_CHECKING:
     from jaxtyping import Complex, Float

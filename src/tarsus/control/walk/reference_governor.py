@@ -14,8 +14,8 @@ import numpy as np
 
 from tarsus.control.filters import integral_factors
 from tarsus.control.walk.state import GaitState
-from tarsus.control.workspace.polygon import NORMALS
 from tarsus.control.workspace.velocity_limits import stance_overhang
+from tarsus.gait.foot_polygons import NORMALS
 from tarsus.gait.gait import Gait
 
 if TYPE_CHECKING:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tarsus.control.workspace.polygon import NORMALS, NORMALS_CONJUGATE
+from tarsus.gait.foot_polygons import NORMALS, NORMALS_CONJUGATE
 from tarsus.gait.swing import horizontal_profile
 
 if TYPE_CHECKING:
