@@ -64,7 +64,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--robots", nargs="+", default=ROBOTS)
     parser.add_argument("--grounds", nargs="+", default=GROUND, choices=list(GROUNDS))
-    parser.add_argument("--seeds", type=int, default=3)
+    parser.add_argument("--seeds", type=int, default=5)
     parser.add_argument("--print", action="store_true", help="print the table, and leave the page as it is")
     asked = parser.parse_args()
     lines = [
