@@ -65,7 +65,7 @@ def test_contacts_are_followed_over_time():
     assert not contacts.touches(1)
     assert contacts.lifted == [False, True]
     assert not contacts.standing[1]
-    assert contacts.supports(1)
+    assert not contacts.supports(1)
     for _ in range(400):
         contacts.step([True, False], [True, True], 0.01)
     assert contacts.is_stuck(0)
@@ -230,6 +230,7 @@ def test_a_switch_that_stays_open_is_told_by_the_feet_that_its_foot_lifts_off():
     contacts = FootContacts(6)
     for tick in range(60):
         contacts.step([False, tick % 4 > 1, *[True] * 4], [True] * 6, 0.02)
+        contacts.find_open([True] * 6, FEET, 0j, None, 0.02)
     assert contacts.is_open(0)
     assert contacts.standing[0]
     assert contacts.touches(0)
@@ -241,7 +242,31 @@ def test_a_switch_that_stays_open_is_told_by_the_feet_that_its_foot_lifts_off():
     over_a_hole = FootContacts(6)
     for _ in range(60):
         over_a_hole.step([False, *[True] * 5], [True] * 6, 0.02)
+        over_a_hole.find_open([True] * 6, FEET, 0j, (0.0, 0.0), 0.02)
     assert not over_a_hole.is_open(0)
+
+
+@pytest.mark.parametrize(("pitch", "opens"), [(-0.05, True), (0.0, False), (0.05, False)])
+def test_a_foot_whose_switch_is_open_lifts_the_body_and_one_over_a_hole_does_not(pitch, opens):
+    contacts = FootContacts(6)
+    contacts.step([True] * 6, [True] * 6, 0.02)
+    contacts.find_open([True] * 6, FEET, 0j, (0.0, 0.0), 0.02)
+    for tick in range(60):
+        contacts.step([False, tick % 4 > 1, *[True] * 4], [True] * 6, 0.02)
+        contacts.find_open([True] * 6, FEET, 0j, (0.0, pitch), 0.02)
+    assert contacts.is_open(0) is opens
+
+
+def test_a_foot_that_has_barely_touched_is_no_support():
+    contacts = FootContacts(2)
+    for _ in range(10):
+        contacts.step([False, True], [False, True], 0.01)
+    contacts.step([True, True], [True, True], 0.01)
+    assert contacts.supports(0)
+    for _ in range(3):
+        contacts.step([False, False], [True, True], 0.01)
+    assert not contacts.supports(0)
+    assert contacts.supports(1)
 
 
 def test_a_switch_that_stays_open_is_told_by_a_robot_that_does_not_tip():

@@ -17,6 +17,7 @@ from tarsus.control.sensing.validation import ReadingsValidator
 from tarsus.control.terrain.foot_contacts import FootContacts
 from tarsus.control.terrain.ground_contact import met_ground
 from tarsus.control.terrain.ground_map import GroundMap
+from tarsus.control.terrain.missing_ground import MissingGround, searching_feet
 from tarsus.control.terrain.posture_feedback import Levelling, PostureFeedback, PostureRates
 from tarsus.control.terrain.reach import Reach, reachable_share
 from tarsus.control.terrain.roughness import GroundAdaptation, Roughness
@@ -63,20 +64,14 @@ class FeltGround:
 
     Attributes
     ----------
-    contacts : FootContacts
-        Which feet bear load.
-    posture : PostureFeedback
-        Height and tilt of the body.
-    roughness : Roughness
-        How uneven the ground is.
-    condition : BodyCondition
-        Whether the robot is in the air or has fallen.
-    support : Support
-        Whether feet may lift off, and at which pace the walk goes on.
-    slope : SlopeLimit
-        Whether the slope is too slippery.
-    ground : GroundMap
-        What is known of the ground around the robot.
+    contacts, missing : FootContacts, MissingGround
+        Which feet bear load; what is done where feet find no ground.
+    posture, roughness : PostureFeedback, Roughness
+        Height and tilt of the body; how uneven the ground is.
+    condition, support : BodyCondition, Support
+        Whether the robot is in the air or has fallen; whether feet may lift off, and at which pace the walk goes on.
+    slope, ground : SlopeLimit, GroundMap
+        Whether the slope is too slippery; what is known of the ground around the robot.
     lowered : float
         How much lower loaded feet are commanded than they stand [m].
     offsets : array, shape (legs,), or None
@@ -96,7 +91,7 @@ class FeltGround:
         self.posture, self.roughness = PostureFeedback(levelling), Roughness(adaptation)
         self.slope, self.ground = SlopeLimit(adaptation.friction), GroundMap()
         self.offsets: Float[np.ndarray, "legs"] | None = None
-        self._reach, self.stance = Reach(robot), SlopeStance(robot)
+        self._reach, self.stance, self.missing = Reach(robot), SlopeStance(robot), MissingGround(robot.leg_names)
         self._validator, self._loads = ReadingsValidator(robot), FootLoads(robot, admittance)
         self._centre, self.lowered = complex(*centre_of_mass(robot, angles)[:2].tolist()), 0.0
         self.odometry, self.measured = LegOdometry(robot), ValidReadings()
@@ -192,23 +187,35 @@ class FeltGround:
             return kept
         steps = [leg not in excluded for leg in range(len(state.foot))]
         dt, elevation, self._idle = self._idle, float(state.elevation.value[0]), 0.0
-        turn, contacts = cmath.exp(-1j * state.yaw), self.contacts
+        turn, contacts, missing = cmath.exp(-1j * state.yaw), self.contacts, self.missing
         places = [(foot - state.origin) * turn for foot in state.foot.tolist()]
         down = [on and step for on, step in zip(state.down.tolist(), steps, strict=True)]
         if self._since >= _SLOW_PERIOD:
             self._update_posture(state, places, down, timing=timing, twist=twist, rest=footholds.rest)
             self.ground.choose(state, self._reach, footholds)
-        self._decide_on_support(state, places, down, due, dt=dt, swing_time=timing.swing_time)
-        self.roughness.decay(0.0 if standing else dt * timing.frequency)
         in_air, under = self.condition.in_air, list[GroundUnder | None]()
-        stands = [True] * len(steps) if in_air else contacts.standing
+        centre = self._centre + complex(*body_posture(state)[:2].tolist())
+        contacts.find_open(down, places, centre, self.measured.attitude, dt)
+        stands = [
+            (in_air or on) and not missing.steps_back(leg, places[leg]) for leg, on in enumerate(contacts.standing)
+        ]
+        seeking = searching_feet(state, contacts, self.ground, places, down=down, stands=stands)
+        rest, radii, bears = footholds.rest.tolist(), footholds.placement_radii, np.logical_and(down, stands).tolist()
+        sizes = {"height": float(state.posture.value[2]), "roughness": self.roughness.value}
+        missing.step(seeking, places, bears, dt, centre=centre, rest=rest, radii=radii, **sizes)
+        self._decide_on_support(places, down, due, centre, dt=dt, swing_time=timing.swing_time)
+        self.roughness.decay(0.0 if standing else dt * timing.frequency)
         for leg, foothold in enumerate(state.foothold.tolist()):
             if not steps[leg] or (down[leg] and stands[leg] and not (due and due[leg])):
                 under.append(None)
                 continue
-            searches = not in_air and contacts.is_known(leg) and (down[leg] or contacts.lifted[leg])
+            known = contacts.is_known(leg) and (down[leg] or contacts.lifted[leg])
+            searches = known and not (in_air or missing.gives_up(leg))
             room = (self._reach.lowest[leg] if searches else None, self._reach.highest[leg])
-            under.append(self.ground.under(places[leg], (foothold - state.origin) * turn, elevation, room))
+            goal = places[leg] if down[leg] else (foothold - state.origin) * turn
+            found = self.ground.under(places[leg], goal, elevation, room)
+            back = leg in missing.places
+            under.append(found._replace(place=state.origin + missing.places[leg] / turn) if back else found)
         far = 2 * self._reach.stroke / max(*footholds.placement_radii, 1e-6) - 1
         inputs = FeltInputs(
             under,
@@ -218,6 +225,7 @@ class FeltGround:
             climb=self._rates.climb,
             turn=self._rates.turn,
             drift=self._drift,
+            back=missing.back,
             travel=_SLOW_TRAVEL + (_FAST_TRAVEL - _SLOW_TRAVEL) * max(far, 0.0),
             pace=self.support.pace,
             swing_height=float(state.posture.value[SWING_HEIGHT]) + self.roughness.swing_rise,
@@ -267,28 +275,24 @@ class FeltGround:
         self._rates = self.posture.rates(plane, self._tilt, velocity, feet=margins)
 
     def _decide_on_support(
-        self, state: GaitState, places: list[complex], down: list[bool], due: list[bool] | None, **time: float
+        self, places: list[complex], down: list[bool], due: list[bool] | None, centre: complex, **time: float
     ) -> None:
         """Decide whether feet may lift off, and at which pace the walk goes on; None is due while the robot stands."""
-        contacts, tilt = self.contacts, self.measured.attitude
-        centre = self._centre + complex(*body_posture(state)[:2].tolist())
-        if tilt is not None:
-            contacts.balance(down, places, centre, tilt, time["dt"])
-        legs = [leg for leg, on in enumerate(down) if on and not (due and due[leg]) and contacts.supports(leg)]
+        bears = [self.contacts.supports(leg) and leg not in self.missing.places for leg in range(len(down))]
+        legs = [leg for leg, on in enumerate(down) if on and not (due and due[leg]) and bears[leg]]
         stays = self.support.holds(legs, places, centre, anew=not self._since)
         lifts, fallen = any(due or ()), self.condition.fallen
-        held = due is None or (stays and not (lifts and self.slope.refuses))
-        self.support.step(stays=held and not fallen, lifts=lifts and not fallen, **time)
+        held = due is None or (stays and not (lifts and (self.slope.refuses or self.missing.refuses)))
+        self.support.step(stays=held and not fallen, lifts=lifts and not fallen, most=self.missing.pace, **time)
 
     @property
     def limitations(self) -> tuple[Limitation, ...]:
         """Readings that are rejected, and what the ground does not allow."""
-        kinds = LimitationKind
-        found = [Limitation(kind=kinds.READINGS, cause=reason) for reason in self.measured.rejected]
+        found = [Limitation(kind=LimitationKind.READINGS, cause=reason) for reason in self.measured.rejected]
         if self.posture.given_way > 0.0:
-            found.append(Limitation(kind=kinds.ATTITUDE, cause="end of the legs' reach on this slope"))
+            found.append(Limitation(kind=LimitationKind.ATTITUDE, cause="end of the legs' reach on this slope"))
         found += self.condition.limitations + self.odometry.limitations
-        if self.support.halts and not self.condition.in_air:
+        if self.support.halts and not (self.condition.in_air or self.missing.refuses):
             reason = self.slope.reason if self.slope.refuses else "the feet on the ground do not hold the robot"
-            found.append(Limitation(kind=kinds.GROUND, cause=reason))
+            found.append(Limitation(kind=LimitationKind.GROUND, cause=reason))
         return tuple(found)

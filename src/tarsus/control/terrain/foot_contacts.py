@@ -16,6 +16,10 @@ _LOST = 0.03
 _GRACE = 0.1
 # How long the body is lowered for a foot that finds no ground [s].
 _SEARCH = 1.5
+# How long a foot has stood that may lose contact for that time and still be support [s].
+_SETTLED = 0.05
+# By how much a foot lifts the body whose switch stays open [m].
+_LIFTS = 0.003
 # How long other feet lose contact, while a foot that should stand has none, until its switch is taken to be open [s].
 _OPEN_AFTER = 0.4
 # How long feet that do not hold the robot bear it, until another one does [s], and how far it sinks there if not [m].
@@ -50,7 +54,8 @@ class FootContacts:
         self.estimator = ContactEstimator(legs)
         self.lifted, self.standing, self.age = [False] * legs, [True] * legs, 0.0
         self._unheld, self._tilt = 0.0, (0.0, 0.0)
-        self._without, self._with, self._evidence = ([0.0] * legs for _ in range(3))
+        self._tilts = [(0.0, 0.0)] * legs
+        self._without, self._with, self._evidence, self._settled = ([0.0] * legs for _ in range(4))
 
     def step(
         self,
@@ -82,19 +87,39 @@ class FootContacts:
             if self.estimator.known[leg] and not self.estimator.touching[leg]:
                 self._without[leg], self._with[leg] = self._without[leg] + dt, 0.0
             else:
-                self._without[leg], self._with[leg] = 0.0, self._with[leg] + dt
+                self._without[leg], self._with[leg], self._evidence[leg] = 0.0, self._with[leg] + dt, 0.0
+                self._settled[leg] += dt
+            if not on:
+                self._settled[leg] = 0.0
             self.lifted[leg] = not on and (self.lifted[leg] or self._without[leg] > _LOST)
-        self._find_open(down, dt)
         self.standing = [t <= _LOST or e > _OPEN_AFTER for t, e in zip(self._without, self._evidence, strict=True)]
 
-    def _find_open(self, down: Sequence[bool], dt: float) -> None:
-        """Find switches that stay open: a foot that pushes on the ground unknown to it takes the load off others."""
+    def find_open(
+        self,
+        down: Sequence[bool],
+        places: Sequence[complex],
+        centre: complex,
+        tilt: tuple[float, float] | None,
+        dt: float,
+    ) -> None:
+        """Find a switch that stays open: a foot that pushes on the ground lifts the body off others.
+
+        Parameters
+        ----------
+        down, places, centre, dt
+            As for `balance`.
+        tilt : (roll, pitch) or None
+            Measured [rad]; None where it is not.
+        """
         shaken = any(on and 0.0 < time <= _GRACE for on, time in zip(down, self._without, strict=True))
         for leg, on in enumerate(down):
             if self._without[leg] <= 0.0:
-                self._evidence[leg] = 0.0
+                self._tilts[leg] = tilt or (0.0, 0.0)
             elif on and shaken and self._without[leg] > _GRACE:
-                self._evidence[leg] += dt
+                lifts = tilt is None or _sunk(places[leg], tilt, self._tilts[leg]) < -_LIFTS
+                self._evidence[leg] += dt * lifts
+        if tilt is not None:
+            self.balance(down, places, centre, tilt, dt)
 
     def balance(
         self, down: Sequence[bool], places: Sequence[complex], centre: complex, tilt: tuple[float, float], dt: float
@@ -121,8 +146,7 @@ class FootContacts:
             return
         longest = max(missing, key=self._without.__getitem__)
         place = places[longest]
-        sunk = place.real * (tilt[1] - self._tilt[1]) - place.imag * (tilt[0] - self._tilt[0])
-        if self._unheld <= 0.0 or sunk > _TIPS:
+        if self._unheld <= 0.0 or _sunk(place, tilt, self._tilt) > _TIPS:
             self._unheld, self._tilt = 0.0, tilt
         self._unheld += dt
         if self._unheld > _UNHELD:
@@ -151,8 +175,14 @@ class FootContacts:
 
     def supports(self, leg: int) -> bool:
         """Return whether a foot that should stand counts as support."""
-        return self._without[leg] <= _GRACE or self.is_open(leg)
+        grace = _GRACE if self._settled[leg] > _SETTLED else 0.0
+        return self._without[leg] <= grace or self.is_open(leg)
 
     def is_stuck(self, leg: int) -> bool:
         """Return whether a contact has lasted for so long that it tells nothing."""
         return self._with[leg] > _STUCK
+
+
+def _sunk(place: complex, tilt: tuple[float, float], before: tuple[float, float]) -> float:
+    """Return by how much a body has sunk at a place by a change of its tilt [m]."""
+    return place.real * (tilt[1] - before[1]) - place.imag * (tilt[0] - before[0])

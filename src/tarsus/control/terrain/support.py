@@ -9,7 +9,7 @@ from collections.abc import Sequence
 __all__ = ["Support", "holds"]
 
 # Rates at which the pace falls and rises [1/s].
-_FALL, _RISE = 6.0, 6.0
+_FALL, _RISE = 10.0, 6.0
 # Part of a swing for which feet may wait before the steps slow down.
 _PATIENCE = 0.3
 # How long the robot may be without support between two footholds [s].
@@ -76,7 +76,7 @@ class Support:
             self._bearing, self._held = legs, holds([places[leg] for leg in legs], centre)
         return self._held
 
-    def step(self, *, stays: bool, lifts: bool, dt: float, swing_time: float) -> None:
+    def step(self, *, stays: bool, lifts: bool, dt: float, swing_time: float, most: float = 1.0) -> None:
         """Decide for a tick.
 
         Parameters
@@ -89,10 +89,12 @@ class Support:
             Length of the tick [s].
         swing_time : float
             Duration of a swing [s].
+        most : float
+            The pace at most.
         """
         self.waits = lifts and not stays
         self._waited = self._waited + dt if self.waits else 0.0
         self._unsupported = 0.0 if stays or lifts else self._unsupported + dt
         late = max((self._waited - _GRACE / 3) / (_PATIENCE * swing_time), (self._unsupported - _GRACE) / _GRACE)
-        wanted = 1 - min(max(late, 0.0), 1.0)
+        wanted = min(1 - min(max(late, 0.0), 1.0), most)
         self.pace += min(max(wanted - self.pace, -_FALL * dt), _RISE * dt)

@@ -23,12 +23,16 @@ _TOP_PHASE = 0.45
 _RISING_FIRST, _STEEP_TOP_PHASE = 0.15, 0.35
 # Fraction of a swing in which a foot goes down from its top to the expected ground.
 _DESCENT = 0.4
+# Height over the ground from which on a foot goes back, over the swing height.
+_CLEAR = 0.9
 # Least speed of a descending foot, and of a foot that should stand and feels nothing [m/s].
 _LOWERING, _SEARCHING = 0.12, 0.15
 # Time in which a foot that should stand goes down to the expected ground [s].
 _SEARCH_TIME = 0.1
 # Room over known ground on the way of a foot that goes down [m].
 _OVER = 0.015
+# Speeds of a foot that steps back, up and back [m/s].
+_RISING, _BACK = 0.25, 0.25
 # Greatest changes of speed: of feet in the air, of the body, of feet on the ground, and of their slide [m/s^2].
 _FOOT_ACCELERATION, _BODY_ACCELERATION, _STANDING_ACCELERATION, _STOPPING = 6.0, 1.0, 15.0, 12.0
 
@@ -54,6 +58,7 @@ def moved_vertically(state: GaitState, inputs: StepInputs, dt: float) -> GaitSta
     if rate or climb:
         moved["elevation"] = CriticallyDamped(np.array([start + (rate + climb) / 2 * dt]), np.array([climb]))
     body, heading = start + float(state.posture.value[2]), cmath.exp(1j * state.yaw)
+    moved["origin"] = state.origin + felt.back * heading * dt
     # In G.
     turning, drift = complex(felt.turn[1], -felt.turn[0]) * heading, felt.drift * heading
     swing, origin, across = 1 - inputs.gait.duty_factor, state.origin, turning.conjugate()
@@ -72,7 +77,7 @@ def moved_vertically(state: GaitState, inputs: StepInputs, dt: float) -> GaitSta
                 heights[leg] = height + (before + speed) / 2 * dt
             else:
                 assert under is not None  # known of each foot that has lost its contact
-                heights[leg], speed = _searching(height, before, wanted, under, dt, felt.lowering)
+                heights[leg], place, speed = _searching(height, before, place, wanted, under, felt, dt)
             if slide:
                 left = max(1 - _STOPPING * dt / abs(slide), 0.0)
                 place += slide * (1 + left) / 2 * dt
@@ -86,16 +91,29 @@ def moved_vertically(state: GaitState, inputs: StepInputs, dt: float) -> GaitSta
                 swing_time = (swing - float(state.lift_delay[leg])) / inputs.frequency
             now = (float(state.swing_phase[leg]), swing_time, float(state.start_height[leg]), places[leg])
             heights[leg], feet[leg] = _swinging(height, foot, under, felt, dt, now)
+    steps_back = [under is not None and under.place is not None for under in felt.under]
+    moved["foothold"] = np.where(steps_back, places, state.foothold) if any(steps_back) else state.foothold
     return state._replace(foot=np.array(places), ground_height=np.array(heights), felt=feet, **moved)
 
 
 def _searching(
-    height: float, speed: float, wanted: float, under: GroundUnder, dt: float, fastest: float
-) -> tuple[float, float]:
-    """Return height and speed of a foot that should stand and goes down, as it has no contact."""
-    wanted -= min(max(_SEARCHING, (height - under.expected) / _SEARCH_TIME), fastest)
-    after = _towards(speed, wanted, _FOOT_ACCELERATION * dt)
-    return _no_lower(height + (speed + after) / 2 * dt, after, height, under.lowest)
+    height: float, speed: float, place: complex, wanted: float, under: GroundUnder, felt: FeltInputs, dt: float
+) -> tuple[float, complex, float]:
+    """Return height, place and speed of a foot that should stand and has no contact: it goes down, or steps back."""
+    over = height - under.expected
+    if under.place is None or under.place == place:
+        wanted -= min(max(_SEARCHING, over / _SEARCH_TIME), felt.lowering)
+        after = _towards(speed, wanted, _FOOT_ACCELERATION * dt)
+        height, after = _no_lower(height + (speed + after) / 2 * dt, after, height, under.lowest)
+        return height, place, after
+    # It rises over the edge, then goes back to its place.
+    after, way = (
+        _towards(speed, _RISING if over < felt.swing_height else 0.0, _FOOT_ACCELERATION * dt),
+        under.place - place,
+    )
+    if over > _CLEAR * felt.swing_height:
+        place = under.place if abs(way) <= _BACK * dt else place + _BACK * dt * way / abs(way)
+    return height + (speed + after) / 2 * dt, place, after
 
 
 def _swinging(

@@ -25,6 +25,7 @@ def twist_limiters(walk: WalkComponents) -> list[TwistLimiter]:
         The components.
     """
     return [
+        walk.ground.missing,
         WorkspaceLimiter(walk.robot.leg_names, walk.transitions),
         PendingTransitionLimiter(walk.transitions),
         GovernorLimiter(walk.transitions),

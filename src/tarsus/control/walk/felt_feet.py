@@ -49,6 +49,8 @@ class GroundUnder(NamedTuple):
         How high the ground is at most on the way there.
     steep : bool
         Whether it rises so soon on the way that the foot has to rise before it travels.
+    place : complex or None
+        Where in G a foot steps back to that has found no ground [m].
     """
 
     expected: float
@@ -56,6 +58,7 @@ class GroundUnder(NamedTuple):
     highest: float
     way: float = -math.inf
     steep: bool = False
+    place: complex | None = None
 
 
 class FeltInputs(NamedTuple):
@@ -77,6 +80,8 @@ class FeltInputs(NamedTuple):
         Angular velocity of the standing feet about the body, along x and y of the heading frame [rad/s].
     drift : complex
         Velocity of the standing feet against the body's, in the heading frame, that makes up for lost way [m/s].
+    back : complex
+        Velocity of the body over all feet, in the heading frame, by which it backs off an edge [m/s].
     travel : float
         Fraction of its swing in which a foot travels: in the rest it goes straight down.
     pace : float
@@ -96,6 +101,7 @@ class FeltInputs(NamedTuple):
     climb: float
     turn: tuple[float, float]
     drift: complex
+    back: complex
     travel: float
     pace: float
     swing_height: float

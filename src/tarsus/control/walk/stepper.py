@@ -44,9 +44,9 @@ def advance(state: GaitState, inputs: StepInputs, dt: float) -> GaitState:
     dt : float
         The time [s].
     """
-    if inputs.felt is not None:
-        dt *= inputs.felt.pace
     twist, travel = state.twist.step_with_integral(inputs.twist, dt, bandwidth=inputs.bandwidth)
+    if inputs.felt is not None:
+        dt, travel = inputs.felt.pace * dt, [inputs.felt.pace * way for way in travel]
     origin, yaw = integrate_twist(state.origin, state.yaw, travel)
     stopping = not any(inputs.twist.tolist())
     if stopping and max(map(abs, twist.value.tolist())) < _NO_SPEED:

@@ -1,0 +1,91 @@
+"""Write the table of trenches of ground.md: walks to the edge of a trench in physics, and back.
+
+python docs/holes.py --robots strider --print
+"""
+
+from __future__ import annotations
+
+import argparse
+import itertools
+import math
+from concurrent.futures import ProcessPoolExecutor
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+import tarsus
+from page_tables import replace_tables
+from tarsus.simulation import SimulatedPlant, terrain
+
+PAGE = Path(__file__).parent / "ground.md"
+ROBOTS = ("strider", "phantomx", "makeyourpet")
+# Widths and depth of the trenches, where their first edge is, and what is walked ahead and back [m].
+WIDTHS, DEPTH, EDGES, AHEAD, BACK = (0.08, 0.2), 0.15, (0.5, 0.53, 0.56), 0.9, 0.4
+# Shares of the top speed.
+PACES = (0.25, 0.5, 0.9)
+
+
+class Job(NamedTuple):
+    """One walk: robot, width of the trench, where it begins [m], share of the top speed."""
+
+    robot: str
+    width: float
+    edge: float
+    pace: float
+
+
+def walk(job: Job) -> str:
+    """Return what became of a walk: a fall, a crossing, or a stop, after which the robot came back or stayed."""
+    robot = tarsus.load_robot(job.robot)
+    speed = job.pace * tarsus.WalkController(robot).top_speed((1, 0, 0))
+    ground = terrain.Gaps(width=job.width, depth=DEPTH, start=job.edge, count=1)
+    plant = SimulatedPlant(robot, terrain=ground, sensors="ideal", servos="catalogue")
+    controller = tarsus.RobotController(robot)
+    output, dt = controller.output, 0.01
+    plant.start(output)
+    furthest = 0.0
+    for twist, way in ((speed, AHEAD), (-speed, BACK)):
+        for _ in range(round(way / speed / dt)):
+            readings = plant.step(output, dt)
+            state = plant.state
+            roll, pitch, _ = np.asarray(state.body.rpy).tolist()
+            if state.body_touches or math.hypot(roll, pitch) > math.pi / 4:
+                return "fell"
+            output = controller.step((twist, 0.0, 0.0), dt, readings)
+            furthest = max(furthest, float(state.body.position[0]))
+    if furthest > job.edge + job.width:
+        return "crossed"
+    returned = float(plant.state.body.position[0]) < furthest - BACK / 4
+    return "stopped, came back" if returned else "stopped, stayed"
+
+
+def table(outcomes: dict[Job, str]) -> str:
+    """Return how often each robot did what."""
+    kinds = ("fell", "crossed", "stopped, came back", "stopped, stayed")
+    lines = [f"| trench | {' | '.join(kinds)} |", f"|---|{'---|' * len(kinds)}"]
+    for robot, width in dict.fromkeys(job[:2] for job in outcomes):
+        found = [outcome for job, outcome in outcomes.items() if job[:2] == (robot, width)]
+        counts = " | ".join(f"{found.count(kind)} of {len(found)}" for kind in kinds)
+        lines.append(f"| {robot}, {1e3 * width:.0f} mm | {counts} |")
+    return "\n".join(lines)
+
+
+def main() -> None:
+    """Measure, and replace the table on the page or print it."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--robots", nargs="+", default=ROBOTS)
+    parser.add_argument("--jobs", type=int, default=1)
+    parser.add_argument("--print", action="store_true", help="print the table, and leave the page as it is")
+    asked = parser.parse_args()
+    jobs = [Job(*job) for job in itertools.product(asked.robots, WIDTHS, EDGES, PACES)]
+    with ProcessPoolExecutor(asked.jobs) as pool:
+        text = table(dict(zip(jobs, pool.map(walk, jobs), strict=True)))
+    if asked.print:
+        print(text)
+        return
+    replace_tables(PAGE, {"trenches": text})
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,169 @@
+"""Missing ground: feet that find none step back, the body backs off, and the walk does not go on over the edge."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from tarsus.control.limitation import Limitation, LimitationKind
+from tarsus.control.limiter.protocol import TwistGrant, TwistRequest
+from tarsus.control.terrain.foot_contacts import FootContacts
+from tarsus.control.terrain.ground_map import GroundMap
+from tarsus.control.terrain.support import holds
+from tarsus.control.walk.state import GaitState
+
+__all__ = ["MissingGround", "searching_feet"]
+
+# Depth below the expected ground at which there is none, over the body height.
+_DEEP = 0.6
+# Depths from which on the walk slows down, and stands still, or goes on slowly with feet at the end of their reach [m].
+_SLOWS, _STOPS = 0.005, 0.02
+_SLOWEST = 0.25
+# How much deeper ground may be on rough ground, over the roughness.
+_ROUGH = 2.5
+# Where a foot steps back to, from its rest foothold against its way, over how far from there it may stand.
+_BACK = (0.4, 1.0)
+# A foot this close to its place is there; one this far from its rest foothold is on that side of it [m].
+_THERE, _OFF = 0.004, 0.01
+# The body backs off until feet this far from the edge hold it with this margin [m], so far at most [m], so fast [m/s].
+_FIRM, _MARGIN, _BACKS, _SPEED = 0.06, 0.03, 0.08, 0.15
+# Motion within an angle of this cosine of the way to the edge leads over it.
+_TOWARDS = 0.3
+
+
+def searching_feet(
+    state: GaitState,
+    contacts: FootContacts,
+    ground: GroundMap,
+    places: Sequence[complex],
+    *,
+    down: Sequence[bool],
+    stands: Sequence[bool],
+) -> list[tuple[int, float, bool, bool]]:
+    """Return the feet that should stand and feel nothing, as `MissingGround.step` takes them.
+
+    Parameters
+    ----------
+    state : GaitState
+        The gait state.
+    contacts : FootContacts
+        The contacts.
+    ground : GroundMap
+        Where ground is expected.
+    places : sequence of complex
+        Where the feet are, in the heading frame [m].
+    down, stands : sequence of bool
+        Which feet should stand, and which do.
+    """
+    assert state.felt is not None  # a walk that feels the ground
+    elevation, found = float(state.elevation.value[0]), list[tuple[int, float, bool, bool]]()
+    for leg, place in enumerate(places):
+        if down[leg] and not stands[leg] and contacts.is_known(leg):
+            depth = ground.at(place) + elevation - float(state.ground_height[leg])
+            found.append((leg, depth, state.felt[leg].speed < 0.0, contacts.seeks(leg)))
+    return found
+
+
+class MissingGround:
+    """Decides where feet step that find no ground, how the body backs off, and which twist leads over the edge.
+
+    Parameters
+    ----------
+    names : sequence of str
+        Names of the legs.
+
+    Attributes
+    ----------
+    places : dict of int to complex
+        Where each foot that steps back is to stand, in the heading frame [m].
+    refuses : bool
+        Whether the commanded twist leads over the edge: the robot stays where it is.
+    pace : float
+        Rate of the walk that feet without contact leave, 0 to 1.
+    back : complex
+        Velocity of the body over its feet, in the heading frame [m/s].
+    """
+
+    def __init__(self, names: Sequence[str]) -> None:
+        self.places, self.pace, self.back = dict[int, complex](), 1.0, 0j
+        self._names, self._tries, self._cause = names, [0] * len(names), ("", "")
+        self._way, self._backed, self.refuses = 0j, 0.0, False
+
+    def steps_back(self, leg: int, foot: complex) -> bool:
+        """Return whether a foot, here in the heading frame, is on its way to another place."""
+        return leg in self.places and abs(self.places[leg] - foot) > _THERE
+
+    def gives_up(self, leg: int) -> bool:
+        """Return whether a foot has found no ground at any place."""
+        return self._tries[leg] > len(_BACK)
+
+    def step(
+        self,
+        searches: Sequence[tuple[int, float, bool, bool]],
+        feet: Sequence[complex],
+        stands: Sequence[bool],
+        dt: float,
+        *,
+        centre: complex,
+        rest: Sequence[complex],
+        radii: Sequence[float],
+        height: float,
+        roughness: float,
+    ) -> None:
+        """Decide for a tick.
+
+        Parameters
+        ----------
+        searches : sequence of (int, float, bool, bool)
+            Feet that should stand and feel nothing: leg, depth below the expected ground [m], whether it goes down, and
+            whether it has not searched for long.
+        feet : sequence of complex
+            Where the feet are, in the heading frame [m].
+        stands : sequence of bool
+            Which feet stand.
+        dt : float
+            Length of the tick [s].
+        centre : complex
+            The centre of mass [m].
+        rest : sequence of complex
+            Rest footholds [m].
+        radii : sequence of float
+            How far from these feet may stand [m].
+        height, roughness : float
+            Body height, and how far ground is off the expected one [m].
+        """
+        searching = [search[0] for search in searches]
+        for leg in [leg for leg in self.places if leg not in searching]:
+            del self.places[leg]
+            self._tries[leg] = 0
+        self.pace, self.back = 1.0 - self.refuses, 0j
+        for leg, depth, falls, lasts in searches:
+            slowest = 0.0 if falls else _SLOWEST
+            self.pace = min(self.pace, max(1 - (depth - _ROUGH * roughness - _SLOWS) / (_STOPS - _SLOWS), slowest))
+            missing = depth > _DEEP * height + _ROUGH * roughness or not lasts
+            if missing and not (self.steps_back(leg, feet[leg]) or self.gives_up(leg)):
+                self._tries[leg] += 1
+                off = feet[leg] - rest[leg]
+                if self._tries[leg] == 1:
+                    self._way = off / abs(off) if abs(off) > _OFF else rest[leg] / abs(rest[leg])
+                self.places[leg] = rest[leg] - _BACK[min(self._tries[leg], len(_BACK)) - 1] * radii[leg] * self._way
+                self._cause = self._names[leg], f"no ground within {1e3 * depth:.0f} mm below the other feet"
+        if not self.places:
+            self._backed = 0.0
+            return
+        self.pace, turn = 0.0, self._way.conjugate()
+        edge = min((feet[leg] * turn).real for leg in self.places) - _FIRM
+        firm = [foot for foot, on in zip(feet, stands, strict=True) if on and (foot * turn).real < edge]
+        if self._backed < _BACKS and not holds(firm, centre + _MARGIN * self._way):
+            self.back = -_SPEED * self._way
+            self._backed += _SPEED * dt
+
+    def limit(self, request: TwistRequest, grant: TwistGrant) -> TwistGrant:
+        """Return the grant, without a twist that leads over the edge; one that leads away is granted from then on."""
+        velocity = complex(*request.twist[:2])
+        self.refuses = (velocity * self._way.conjugate()).real > _TOWARDS * abs(velocity)
+        if self.refuses:
+            leg, cause = self._cause
+            return grant.at_most(0.0, Limitation(kind=LimitationKind.GROUND, leg=leg, cause=cause))
+        if any(request.twist) and not self.places:
+            self._way = 0j
+        return grant
