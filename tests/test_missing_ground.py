@@ -36,20 +36,23 @@ def test_the_walk_slows_down_the_deeper_a_foot_searches_and_less_on_rough_ground
     assert 0 < pace(0.03, falls=False) < 1
     assert pace(0.03, roughness=0.02) == 1.0
     assert not stepped(MissingGround(NAMES), [(0, 0.05, True, True)]).places
+    assert stepped(MissingGround(NAMES), [(0, 0.05, False, False)]).places
 
 
 def test_a_foot_without_ground_steps_back_twice_and_then_gives_up():
-    missing = stepped(MissingGround(NAMES), [(0, 0.07, True, True)])
+    missing = stepped(MissingGround(NAMES), [(0, 0.08, True, True)])
     first = missing.places[0]
     assert missing.steps_back(0, AHEAD[0])
     assert missing.pace == 0.0
     # Behind its rest foothold; on its way it is not asked again.
     assert first.real < REST[0].real
-    assert stepped(missing, [(0, 0.07, True, True)]).places == {0: first}
-    second = stepped(missing, [(0, 0.07, True, True)], [first, *REST[1:]]).places[0]
+    assert stepped(missing, [(0, 0.08, True, True)]).places == {0: first}
+    second = stepped(missing, [(0, 0.08, True, True)], [first, *REST[1:]]).places[0]
     assert second.real < first.real
     assert not missing.gives_up(0)
     stepped(missing, [(0, 0.01, False, False)], [second, *REST[1:]])
+    assert not missing.gives_up(0)
+    stepped(missing, [(0, 0.08, True, False)], [second, *REST[1:]])
     assert missing.gives_up(0)
     # Once it stands, it may again.
     assert not stepped(missing, [], stands=[True] * 6).places
@@ -57,27 +60,27 @@ def test_a_foot_without_ground_steps_back_twice_and_then_gives_up():
 
 
 def test_a_foot_at_its_rest_foothold_steps_inwards():
-    missing = stepped(MissingGround(NAMES), [(1, 0.07, True, True)], REST)
+    missing = stepped(MissingGround(NAMES), [(1, 0.08, True, True)], REST)
     assert abs(missing.places[1]) < abs(REST[1])
 
 
 def test_the_body_backs_off_until_feet_away_from_the_edge_hold_it():
-    missing = stepped(MissingGround(NAMES), [(0, 0.07, True, True)], centre=0.02 + 0j)
+    missing = stepped(MissingGround(NAMES), [(0, 0.08, True, True)], centre=0.02 + 0j)
     assert missing.back.real < 0
     # Feet further back hold it at once, and it does not back off for ever.
-    assert stepped(MissingGround(NAMES), [(0, 0.07, True, True)], centre=-0.1 + 0j).back == 0
+    assert stepped(MissingGround(NAMES), [(0, 0.08, True, True)], centre=-0.1 + 0j).back == 0
     for _ in range(100):
-        stepped(missing, [(0, 0.07, True, True)], centre=0.02 + 0j)
+        stepped(missing, [(0, 0.08, True, True)], centre=0.02 + 0j)
     assert missing.back == 0
 
 
 def test_a_twist_over_the_edge_is_refused_and_any_other_is_granted():
     missing = MissingGround(NAMES)
     assert limited(missing, 0.1, 0.0, 0.0).fraction == 1.0
-    stepped(missing, [(0, 0.07, True, True)])
+    stepped(missing, [(0, 0.08, True, True)])
     grant = limited(missing, 0.1, 0.0, 0.0)
     assert grant.fraction == 0.0
-    assert grant.limitations[0].text() == "ground: LF: no ground within 70 mm below the other feet"
+    assert grant.limitations[0].text() == "ground: LF: no ground within 80 mm below the other feet"
     # As long as the foot steps back, and without a command, the edge is remembered.
     for twist in ((-0.1, 0.0, 0.0), (0.0, 0.0, 0.0)):
         assert limited(missing, *twist).fraction == 1.0

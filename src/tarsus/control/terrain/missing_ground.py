@@ -14,7 +14,7 @@ from tarsus.control.walk.state import GaitState
 __all__ = ["MissingGround", "searching_feet"]
 
 # Depth below the expected ground at which there is none, over the body height.
-_DEEP = 0.6
+_DEEP = 0.75
 # Depths from which on the walk slows down, and stands still, or goes on slowly with feet at the end of their reach [m].
 _SLOWS, _STOPS = 0.005, 0.02
 _SLOWEST = 0.25
@@ -22,6 +22,8 @@ _SLOWEST = 0.25
 _ROUGH = 2.5
 # Where a foot steps back to, from its rest foothold against its way, over how far from there it may stand.
 _BACK = (0.4, 1.0)
+# A foot that goes down faster has not come to the end of its reach, which sinks with the body [m/s].
+_FALLS = 0.1
 # A foot this close to its place is there; one this far from its rest foothold is on that side of it [m].
 _THERE, _OFF = 0.004, 0.01
 # The body backs off until feet this far from the edge hold it with this margin [m], so far at most [m], so fast [m/s].
@@ -59,7 +61,7 @@ def searching_feet(
     for leg, place in enumerate(places):
         if down[leg] and not stands[leg] and contacts.is_known(leg):
             depth = ground.at(place) + elevation - float(state.ground_height[leg])
-            found.append((leg, depth, state.felt[leg].speed < 0.0, contacts.seeks(leg)))
+            found.append((leg, depth, state.felt[leg].speed < -_FALLS, contacts.seeks(leg)))
     return found
 
 
@@ -139,7 +141,7 @@ class MissingGround:
         for leg, depth, falls, lasts in searches:
             slowest = 0.0 if falls else _SLOWEST
             self.pace = min(self.pace, max(1 - (depth - _ROUGH * roughness - _SLOWS) / (_STOPS - _SLOWS), slowest))
-            missing = depth > _DEEP * height + _ROUGH * roughness or not lasts
+            missing = depth > _DEEP * height + _ROUGH * roughness or not (lasts or leg in self.places)
             if missing and not (self.steps_back(leg, feet[leg]) or self.gives_up(leg)):
                 self._tries[leg] += 1
                 off = feet[leg] - rest[leg]
