@@ -98,6 +98,7 @@ def test_a_scenario_runs_through_the_controller():
     ("arguments", "code", "message"),
     [
         (f"{SHORT} --zarr", 2, "--zarr needs --out"),
+        (f"{SHORT} --sensors hobby", 2, "--sensors hobby needs --scenario: a planned walk is executed as it is"),
         (f"{SHORT} --video walk.avi", 2, "--video walk.avi: the name must end in .mp4 or .gif"),
         (f"{SHORT} --video nowhere/w.mp4", 2, "--video nowhere/w.mp4 can't be written: No such file or directory"),
         ("simulate strider --scenario ''", 2, "the scenario is empty; give a TOML file, or commands such as"),
