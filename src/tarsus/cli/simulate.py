@@ -99,10 +99,6 @@ def simulate(
         raise click.UsageError(f"--video {video}: the name must end in {' or '.join(_VIDEOS)}")
     if video is not None:
         require_folder(video, "--video")
-    if scenario is None and options["sensors"] != "blind":
-        raise click.UsageError(
-            f"--sensors {options['sensors']} needs --scenario: a planned walk is executed as it is, without feedback"
-        )
     if zarr and out is None:
         raise click.UsageError("--zarr needs --out, the folder to write to")
     if out is not None:

@@ -84,6 +84,9 @@ def run_plan(robot: str, options: dict[str, Any], settings: dict[str, Any], prog
     TarsusError
         If the walk is not possible, or can't be simulated.
     """
+    if settings["sensors"] != "blind":
+        reason = "a planned walk is executed as it is, without feedback"
+        raise click.UsageError(f"--sensors {settings['sensors']} needs --scenario: {reason}")
     motion = plan(robot, {**options, "compensate": None})
     if not motion.ok:
         raise TarsusError(f"the walk is not possible: {motion.problems[0]}; `tarsus walk` shows the whole verdict")
