@@ -107,10 +107,8 @@ def _searching(
         height, after = _no_lower(height + (speed + after) / 2 * dt, after, height, under.lowest)
         return height, place, after
     # It rises over the edge, then goes back to its place.
-    after, way = (
-        _towards(speed, _RISING if over < felt.swing_height else 0.0, _FOOT_ACCELERATION * dt),
-        under.place - place,
-    )
+    way, rising = under.place - place, _RISING if over < felt.swing_height else 0.0
+    after = _towards(speed, rising, _FOOT_ACCELERATION * dt)
     if over > _CLEAR * felt.swing_height:
         place = under.place if abs(way) <= _BACK * dt else place + _BACK * dt * way / abs(way)
     return height + (speed + after) / 2 * dt, place, after
