@@ -12,7 +12,7 @@ from tarsus.load.deflection import SHARE
 from tarsus.simulation import Sensor, SensorSuite, SimulatedPlant
 from tarsus.simulation.sensors.suite import FootSwitch
 
-ROBOT = tarsus.load_robot("strider")
+ROBOT = tarsus.load_robot("phantomx")
 ANGLES = np.array(tarsus.WalkController(ROBOT).angles)
 LOADS = np.array([6.0, 0.0, 9.0, 1.0, 4.0, 12.0])
 # What vertical forces turn the joints: an independent reference.
@@ -67,6 +67,28 @@ def test_without_forces_angles_or_known_servos_nothing_is_added():
         assert found.softness == pytest.approx(1.0, abs=1e-6)
     unknown = ROBOT.replace(servos=((None,) * 3,) * 6)
     assert stepped(valid, robot=unknown, ticks=3).offsets is None
+
+
+def needed_friction(robot, angles):
+    """Force that brings the foot of a loaded leg back, over the load: an independent reference."""
+    needed = []
+    for jacobian, stiffness in zip(
+        np.asarray(tarsus.leg_jacobian(robot, angles)), tarsus.JointSprings.of(robot).stiffness, strict=True
+    ):
+        outward = jacobian[:2, 0] @ [[0.0, -1.0], [1.0, 0.0]]
+        rows = np.array([-outward / np.linalg.norm(outward) @ jacobian[:2, 1:], jacobian[2, 1:]])
+        compliance = rows / stiffness[1:] @ rows.T
+        needed.append(abs(compliance[0, 1] / compliance[0, 0]))
+    return max(needed)
+
+
+@pytest.mark.parametrize("name", ["strider", "phantomx", "makeyourpet", "phantomx-mk2", "phoenix", "ch3r"])
+def test_legs_that_friction_holds_are_left_alone(name):
+    robot = tarsus.load_robot(name)
+    angles = np.array(tarsus.WalkController(robot).angles)
+    compensation, valid = DeflectionCompensation(robot), readings(1.0)
+    compensation.step(valid._replace(joint_angles=tuple(map(tuple, angles.tolist()))), angles, 0.01)
+    assert (compensation.offsets is None) == (needed_friction(robot, angles) < 0.8)
 
 
 def test_angles_are_with_the_offsets_and_feet_without():

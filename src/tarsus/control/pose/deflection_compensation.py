@@ -22,6 +22,8 @@ __all__ = ["DeflectionCompensation"]
 _LOAD_RATE, _LEARNING_RATE = 15.0, 2.0
 # Sum of squares of the femurs' deflections from which on they tell the softness [rad^2].
 _LEAST = 1e-5
+# Friction that holds the feet of loaded legs where it needs no more.
+_FRICTION = 0.8
 
 
 class DeflectionCompensation:
@@ -30,7 +32,8 @@ class DeflectionCompensation:
     Legs that yield give way outwards: feet that take over load slide, or press against each other through friction.
     With the deflection for a vertical force in the commands, little horizontal force is left. The stiffness is that of
     the robot's servos over their softness, which is learnt from the measured angles of the femurs: it is 0 for servos
-    that do not yield. Nothing is added where forces or joint angles are not measured, or servos unknown.
+    that do not yield. Nothing is added where forces or joint angles are not measured or servos unknown, nor to legs
+    that friction holds: compensated legs are stiffer, and lose contact where ground is rough.
 
     Parameters
     ----------
@@ -68,8 +71,12 @@ class DeflectionCompensation:
             Time since the last tick [s].
         """
         unknown = (None,) * len(self._loads)
-        if self.offsets is None and (valid.forces is None or valid.joint_angles is None or not self._legs):
-            return
+        if self.offsets is None:
+            if valid.forces is None or valid.joint_angles is None or not self._legs:
+                return
+            if self._needed_friction(commanded) < _FRICTION:
+                self._legs = []
+                return
         forces, measured = valid.forces or unknown, valid.joint_angles or unknown
         follows, product, square, lowered = min(_LOAD_RATE * dt, 1.0), 0.0, 0.0, 0.0
         offsets, share = list[tuple[float, float, float]](), SHARE * self.softness
@@ -88,3 +95,15 @@ class DeflectionCompensation:
             self.softness = min(max(learnt, 0.0), 1.0)
         self.lowered += min(_LEARNING_RATE * dt, 1.0) * (lowered - self.lowered)
         self.offsets = np.array(offsets)
+
+    def _needed_friction(self, commanded: Float[np.ndarray, "legs 3"]) -> float:
+        """Return which friction keeps all feet in place under vertical loads: horizontal over vertical force."""
+        needed = 0.0
+        for (length, tibia, femur_yields, tibia_yields), (_, femur, bend) in zip(
+            self._legs, commanded.tolist(), strict=True
+        ):
+            to_knee, below_knee = tibia * math.cos(femur + bend), -tibia * math.sin(femur + bend)
+            to_hip, below_hip = to_knee + length * math.cos(femur), below_knee - length * math.sin(femur)
+            outward = femur_yields * to_hip * below_hip + tibia_yields * to_knee * below_knee
+            needed = max(needed, outward / max(femur_yields * below_hip**2 + tibia_yields * below_knee**2, 1e-12))
+        return needed
