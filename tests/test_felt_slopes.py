@@ -122,6 +122,16 @@ def test_reach_is_computed_anew_only_where_stroke_or_posture_change():
     assert max(reach.highest_stand(0.03)) < max(reach.highest)
 
 
+def test_a_foot_that_seeks_ground_at_its_least_height_expects_it_below():
+    state, reach, plane = WalkController(preset("strider"))._tick.gait, Reach(preset("strider")), FootPlane(0.01)
+    reach.update(state.posture.value, state.foot, np.array([0.1, 0.0, 0.0]), 0.5)
+    over, bears, seeking = [0.02, *reach.lowest[1:]], [0, 2, 3, 4, 5], [True, True] + [False] * 4
+    rises = reach.rises(plane, state.foot, over, bears=bears, seeking=seeking)
+    assert rises[0] == pytest.approx(0.01)
+    assert rises[1] < reach.lowest[1] - plane.height
+    assert rises[2:] == pytest.approx([height - plane.height for height in reach.lowest[2:]])
+
+
 def climbed(degrees, *, seconds=9.0, speed=0.146, start=0.35):
     """Return way over the commanded one, tilt in the end [rad], slip [m/m] and the controller of a walk up a ramp."""
     robot = preset("strider")

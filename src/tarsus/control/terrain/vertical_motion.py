@@ -86,9 +86,8 @@ def moved_vertically(state: GaitState, inputs: StepInputs, dt: float) -> GaitSta
             feet[leg] = FeltFoot(speed, slide=slide) if speed or slide else _STILL
         else:
             assert under is not None  # known of each foot in the air
-            swing_time = math.inf
-            if inputs.frequency:
-                swing_time = (swing - float(state.lift_delay[leg])) / inputs.frequency
+            swing_phases = swing - float(state.lift_delay[leg])
+            swing_time = swing_phases / inputs.frequency if inputs.frequency else math.inf
             now = (float(state.swing_phase[leg]), swing_time, float(state.start_height[leg]), places[leg])
             heights[leg], feet[leg] = _swinging(height, foot, under, felt, dt, now)
     steps_back = [under is not None and under.place is not None for under in felt.under]
