@@ -200,7 +200,7 @@ def test_a_foot_that_slides_is_told_by_the_others():
     assert 0.025 < odometry.slip[0] < 0.05
     assert max(odometry.slip[1:]) < 0.02
     walk.step((0.0, 0.0, 0.0), 0.01, SensorReadings(contacts=(True,) * 6, attitude=(0.0, 0.0)))
-    walk._walk.ground.odometry.slip = odometry.slip
+    walk._walk.ground.body.odometry.slip = odometry.slip
     (found,) = walk.limitations
     assert found.leg == "front left"
     assert found.text().startswith("ground: 3")
@@ -296,7 +296,7 @@ def test_contacts_that_come_late_cost_no_way_and_are_no_obstacles():
         waiting.append(controller.feet[:, 2] <= 1e-4)
         readings = SensorReadings(contacts=waiting.pop(0), attitude=(0.0, 0.0), age=0.04)
         controller.step((0.06, 0.0, 0.0), 0.02, readings)
-    assert controller._walk.ground.roughness.value < 0.005
+    assert controller._walk.ground.body.roughness.value < 0.005
     assert controller.place[0] > 0.97 * 0.06 * 7.8
 
 

@@ -163,7 +163,7 @@ def test_a_robot_walks_up_a_slope_of_twenty_degrees_level_and_stands_on_it():
     assert tilt < math.radians(3.0)
     walk = controller._activity.controller
     assert walk.walk_state is WalkState.STANDING
-    assert np.abs(walk._walk.ground.stance.shift).max() > 0.05
+    assert np.abs(walk._walk.ground.body.stance.shift).max() > 0.05
 
 
 def test_a_slippery_slope_is_refused_with_its_angle_and_the_way_back_stays_open():

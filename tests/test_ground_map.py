@@ -102,11 +102,11 @@ def choice(heights, leg=0, phase=0.1):
     feet = [(complex(state.foot[other]) - state.origin, 0.0) for other in range(6) if other != leg]
     known.step(feet, None, state, 0.03, drift=0j)
     ahead, footholds = known, walk.transitions.footholds
-    ahead.choose(state, walk.ground._reach, footholds)
+    ahead.choose(state, walk.ground.body.reach, footholds)
     chosen = dict(ahead.beside)
-    ahead.choose(state, walk.ground._reach, footholds)
+    ahead.choose(state, walk.ground.body.reach, footholds)
     assert ahead.beside == chosen
-    ahead.choose(state._replace(down=np.ones(6, dtype=bool)), walk.ground._reach, footholds)
+    ahead.choose(state._replace(down=np.ones(6, dtype=bool)), walk.ground.body.reach, footholds)
     assert ahead.beside == {}
     return chosen
 

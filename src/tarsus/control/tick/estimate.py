@@ -30,7 +30,7 @@ def estimated(walk: WalkComponents, tick: TickState, readings: SensorReadings | 
     timing, angles = walk.transitions.timing, walk.time_scaling.angles
     state, legs = walk.ground.sense(readings, dt, tick.gait, timing=timing, angles=angles)
     walk.solver.deflection.step(walk.ground.measured, angles, dt)
-    walk.ground.lowered = walk.solver.deflection.lowered
+    walk.ground.body.lowered = walk.solver.deflection.lowered
     if legs:
         landed = np.zeros(len(state.down), dtype=bool)
         landed[legs] = True

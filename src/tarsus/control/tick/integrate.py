@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from tarsus.control.terrain.vertical_motion import moved_vertically
 from tarsus.control.tick.components import WalkComponents
 from tarsus.control.tick_state import TickState
 from tarsus.control.walk.state import GaitState, StepInputs
 from tarsus.control.walk.stepper import advance
+from tarsus.control.walk.vertical_motion import moved_vertically
 from tarsus.control.walk_state import next_walk_state
 
 __all__ = ["integrated"]
@@ -54,7 +54,7 @@ def _step_inputs(walk: WalkComponents, tick: TickState, dt: float) -> StepInputs
         may_lift[list(current.parameters.excluded)] = False
     felt, offsets = None, walk.no_offset
     if state.felt is not None:
-        transitions.footholds.shift(walk.ground.stance.shift)
+        transitions.footholds.shift(walk.ground.body.stance.shift)
         felt = walk.ground.inputs(
             state,
             dt,

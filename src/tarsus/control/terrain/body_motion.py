@@ -1,0 +1,154 @@
+"""Body motion over ground that is felt: height, tilt, slope and lost way; looked at less often than in each tick."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from tarsus.control.limitation import Limitation, LimitationKind
+from tarsus.control.readings import ValidReadings
+from tarsus.control.sensing.leg_odometry import LegOdometry
+from tarsus.control.terrain.foot_contacts import FootContacts
+from tarsus.control.terrain.ground_map import GroundMap
+from tarsus.control.terrain.posture_feedback import Levelling, PostureFeedback, PostureRates
+from tarsus.control.terrain.reach import Reach, reachable_share
+from tarsus.control.terrain.roughness import GroundAdaptation, Roughness
+from tarsus.control.terrain.slope_limit import SlopeLimit
+from tarsus.control.terrain.slope_stance import SlopeStance
+from tarsus.control.walk.state import GaitState
+from tarsus.control.walk.step_timing import StepTiming
+from tarsus.control.workspace.stance_geometry import SWING_HEIGHT
+from tarsus.robot.robot import Robot
+
+if TYPE_CHECKING:
+    from jaxtyping import Complex, Float
+
+__all__ = ["BodyMotion"]
+
+
+class BodyMotion:
+    """Decides how the body moves over its standing feet: to its height and attitude, and to where it should be.
+
+    Parameters
+    ----------
+    robot : Robot
+        A single robot.
+    contacts, ground : FootContacts, GroundMap
+        Which feet bear load; where the ground is.
+    levelling : "level", "between", "follow" or None
+        The attitude to keep on slopes; None for no use of the measured attitude.
+    adaptation : GroundAdaptation
+        How far swing height and body height may adapt.
+
+    Attributes
+    ----------
+    rates, drift : PostureRates, complex
+        How the body is to move; velocity of the feet that makes up for lost way, in the heading frame [m/s].
+    reach, roughness : Reach, Roughness
+        Between which heights legs reach their strokes; how uneven the ground is.
+    slope, stance : SlopeLimit, SlopeStance
+        Whether the slope is too steep; rest footholds on it.
+    tilt : (roll, pitch) or None
+        By how much the body was tilted more than commanded when measured last [rad].
+    lowered : float
+        How much lower loaded feet are commanded than they stand [m].
+    """
+
+    def __init__(
+        self,
+        robot: Robot,
+        contacts: FootContacts,
+        ground: GroundMap,
+        *,
+        levelling: Levelling | None,
+        adaptation: GroundAdaptation,
+    ) -> None:
+        self._contacts, self._ground, self._posture = contacts, ground, PostureFeedback(levelling)
+        self.reach, self.odometry, self.roughness = Reach(robot), LegOdometry(robot), Roughness(adaptation)
+        self.slope, self.stance = SlopeLimit(adaptation.friction), SlopeStance(robot)
+        self.rates, self.drift, self.lowered = PostureRates(0.0, (0.0, 0.0)), 0j, 0.0
+        self.tilt: tuple[float, float] | None = None
+
+    @property
+    def limitations(self) -> list[Limitation]:
+        """What the ground does not allow."""
+        cause = "end of the legs' reach on this slope"
+        found = [Limitation(kind=LimitationKind.ATTITUDE, cause=cause)] if self._posture.given_way > 0.0 else []
+        return found + self.odometry.limitations
+
+    def step(
+        self,
+        state: GaitState,
+        measured: ValidReadings,
+        dt: float,
+        *,
+        feet: tuple[list[complex], list[bool]],
+        timing: StepTiming,
+        twist: Float[np.ndarray, "3"],
+        pace: float,
+        rest: Complex[np.ndarray, "legs"],
+    ) -> None:
+        """Look at plane, reach and lost way, and decide how the body is to move.
+
+        Parameters
+        ----------
+        state : GaitState
+            The gait state.
+        measured : ValidReadings
+            The readings.
+        dt : float
+            Time since the last call [s].
+        feet : tuple of (list of complex, list of bool)
+            Where the feet are, in the heading frame [m], and which should stand.
+        timing : StepTiming
+            The gait and its frequency.
+        twist : array, shape (3,)
+            The twist that is followed.
+        pace : float
+            Rate of the steps and the twist, 0 to 1.
+        rest : complex array, shape (legs,)
+            Rest footholds in the heading frame [m].
+        """
+        (places, down), contacts = feet, self._contacts
+        over = (state.ground_height - state.elevation.value).tolist()
+        bears = [leg for leg, on in enumerate(down) if on and contacts.touches(leg)]
+        self._ground.step([(places[leg], over[leg]) for leg in bears], self.tilt, state, dt, drift=self.drift)
+        self.reach.update(state.posture.value, rest, twist, timing.stance_time)
+        if self.tilt is not None:
+            level = self._ground.plane.levelled(self.tilt)
+            self.slope.step(level, complex(*twist[:2].tolist()))
+            self.stance.step(level, rest - self.stance.shift)
+        self._fit_height(state, rest, over, down, bears, dt)
+        velocity, yaw = complex(*state.twist.value[:2].tolist()) * pace, float(state.posture.value[5])
+        tilt = measured.attitude or (0.0, 0.0)
+        drift = self.odometry.step(measured.joint_angles, bears, velocity, dt, tilt=tilt, yaw=yaw)
+        self.drift = self.stance.not_downhill(drift)
+        margins = [(places[leg], over[leg] - (self.reach.lowest[leg] + self.lowered)) for leg in bears]
+        self.rates = self._posture.rates(self._ground.plane, self.tilt, velocity, feet=margins)
+
+    def _fit_height(
+        self,
+        state: GaitState,
+        rest: Complex[np.ndarray, "legs"],
+        over: Sequence[float],
+        down: Sequence[bool],
+        bears: Sequence[int],
+        dt: float,
+    ) -> None:
+        """Change the height of the body to one at which all legs reach the ground."""
+        contacts, reach, plane = self._contacts, self.reach, self._ground.plane
+        seeking = [on and contacts.seeks(leg) for leg, on in enumerate(down)]
+        stands = all(on or not should for on, should in zip(contacts.standing, down, strict=True))
+        rises = self._ground.rises(
+            reach.rises(plane, rest, over, bears=bears, seeking=seeking), rest, reach.strokes, looks=stands
+        )
+        height, swing_height = state.posture.value[[2, SWING_HEIGHT]].tolist()
+        level = plane.levelled(self.tilt)
+        highest = reach.highest_stand(swing_height)
+        share = reachable_share([level.at(foot) for foot in rest.tolist()], reach.lowest, highest)
+        wanted = max(self.roughness.body_rise, self._ground.body_rise(self.stance.half, height))
+        raises = (self.stance.least_raise(plane, height), wanted)
+        reached = [low + self.lowered for low in reach.lowest], highest
+        self._posture.fit_to_reach(rises, raises, dt, reach=reached, height=height, share=share)
