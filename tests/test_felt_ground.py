@@ -274,7 +274,7 @@ def test_a_switch_that_stays_open_is_told_by_a_robot_that_does_not_tip():
         contacts = FootContacts(6)
         for tilt in tilts:
             contacts.step(readings, down, 0.01)
-            contacts.balance(down, FEET, 0j, tilt, 0.01)
+            contacts._balance(down, FEET, 0j, tilt, 0.01)
         return [leg for leg in range(6) if contacts.is_open(leg)]
 
     standing, noise = [(0.0, 0.0)] * 25, np.random.default_rng(2).normal(0.0, 0.003, (25, 2)).tolist()

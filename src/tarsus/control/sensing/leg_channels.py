@@ -8,6 +8,8 @@ from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from typing import Any, TypeAlias
 
+import numpy as np
+
 from tarsus.control.readings import Vector
 from tarsus.control.sensing.plain_values import as_bool, as_items, as_number, as_vector
 
@@ -18,6 +20,7 @@ Range: TypeAlias = tuple[float, float]
 ANY_FINITE: tuple[Range, Range, Range] = ((-sys.float_info.max, sys.float_info.max),) * 3
 """Bounds that every finite vector meets."""
 
+_BOOLEAN = {bool}
 _NOT_NUMBERS = (math.nan, math.nan, math.nan)
 
 
@@ -29,6 +32,7 @@ class _LegChannel(ABC):
         self._wrong_shape = f"{name}: expected one reading per leg"
         self._settling = tuple(f"{name} of {leg}: settling after a rejected reading" for leg in legs)
         self._plausible = [settle] * len(legs)  # consecutive plausible readings of each leg, at most `settle`
+        self._settled = list(self._plausible)
 
     def reset(self) -> None:
         """Reject every leg until it has been plausible `settle` times in a row."""
@@ -49,6 +53,8 @@ class _LegChannel(ABC):
             rejected.append(self._wrong_shape)
             self.reset()
             return None
+        if self._plausible == self._settled and (plain := self._plain(value, items)) is not None:
+            return plain
         found = []
         for leg, item in enumerate(items):
             reading = self._read_leg(leg, item)
@@ -60,6 +66,10 @@ class _LegChannel(ABC):
                 self._plausible[leg], reading = self._plausible[leg] + 1, None
             found.append(reading)
         return None if found.count(None) == len(found) else tuple(found)
+
+    @abstractmethod
+    def _plain(self, value: Any, items: Sequence[Any]) -> tuple[Any, ...] | None:
+        """Return readings that are seen at once to be plausible, as drivers give them; None for others."""
 
     @abstractmethod
     def _read_leg(self, leg: int, value: Any) -> Any:
@@ -80,6 +90,9 @@ class ContactChannel(_LegChannel):
     def __init__(self, legs: Sequence[str], *, settle: int) -> None:
         super().__init__("contacts", legs, (len(legs),), settle=settle)
         self._not_boolean = tuple(f"contacts of {leg}: neither a boolean nor 0 or 1" for leg in legs)
+
+    def _plain(self, value: Any, items: Sequence[Any]) -> tuple[bool, ...] | None:  # noqa: ARG002 - the items tell
+        return tuple(items) if set(map(type, items)) == _BOOLEAN else None
 
     def _read_leg(self, leg: int, value: Any) -> bool | str:
         contact = value if type(value) is bool else as_bool(value)
@@ -117,8 +130,14 @@ class VectorChannel(_LegChannel):
     ) -> None:
         super().__init__(name, legs, (len(legs), 3), *([(len(legs),)] if accept_z else []), settle=settle)
         self._bounds, self._accept_z = bounds or [ANY_FINITE] * len(legs), accept_z
+        self._unbounded = bounds is None
         self._not_finite = tuple(f"{name} of {leg}: not finite numbers" for leg in legs)
         self._beyond = tuple(f"{name} of {leg}: {beyond}" for leg in legs)
+
+    def _plain(self, value: Any, items: Sequence[Any]) -> tuple[Vector, ...] | None:
+        floats = self._unbounded and type(value) is np.ndarray and value.dtype == float
+        # Of a finite sum all parts are finite.
+        return tuple(map(tuple, items)) if floats and math.isfinite(sum(map(sum, items))) else None
 
     def _read_leg(self, leg: int, value: Any) -> Vector | str:
         alone = as_number(value) if self._accept_z and type(value) is not list else math.nan

@@ -122,8 +122,8 @@ class FeltGround:
         """
         valid = self.measured = self._validator.validate(readings, dt)
         down = state.down.tolist()
-        doubted = [leg for leg in range(len(down)) if self.contacts.is_open(leg)]
-        measured = self._loads.contacts(valid, angles, dt, down=state.down, phase=state.swing_phase, doubted=doubted)
+        doubted, phase = self.contacts.open_legs, state.swing_phase
+        measured = self._loads.contacts(valid, angles, dt, down=state.down, phase=phase, doubted=doubted)
         if state.felt is None:
             if measured is None and valid.attitude is None:
                 return state, []

@@ -106,10 +106,14 @@ class FootContacts:
 
         Parameters
         ----------
-        down, places, centre, dt
-            As for `balance`.
+        down : sequence of bool
+            Which feet should stand.
+        places, centre : sequence of complex, complex
+            The feet and the centre of mass, x + iy in the heading frame [m].
         tilt : (roll, pitch) or None
             Measured [rad]; None where it is not.
+        dt : float
+            Time since the last tick [s].
         """
         shaken = any(on and 0.0 < time <= _GRACE for on, time in zip(down, self._without, strict=True))
         for leg, on in enumerate(down):
@@ -119,26 +123,12 @@ class FootContacts:
                 lifts = tilt is None or _sunk(places[leg], tilt, self._tilts[leg]) < -_LIFTS
                 self._evidence[leg] += dt * lifts
         if tilt is not None:
-            self.balance(down, places, centre, tilt, dt)
+            self._balance(down, places, centre, tilt, dt)
 
-    def balance(
+    def _balance(
         self, down: Sequence[bool], places: Sequence[complex], centre: complex, tilt: tuple[float, float], dt: float
     ) -> None:
-        """Find a switch that stays open: a robot that does not tip stands on a foot that it does not feel.
-
-        Parameters
-        ----------
-        down : sequence of bool
-            Which feet should stand.
-        places : sequence of complex
-            The feet, x + iy in the heading frame [m].
-        centre : complex
-            The centre of mass [m].
-        tilt : (roll, pitch)
-            Measured [rad].
-        dt : float
-            Time since the last tick [s].
-        """
+        """Find a switch that stays open: a robot that does not tip stands on a foot that it does not feel."""
         missing = [leg for leg, on in enumerate(down) if on and not self.standing[leg]]
         standing = [places[leg] for leg, on in enumerate(down) if on and leg not in missing]
         if not missing or len(standing) < _FEWEST or holds(standing, centre):
@@ -156,6 +146,11 @@ class FootContacts:
         """Return whether the feet touch the ground that should, and no others, and that is certain."""
         certain = self.estimator.certain and self.estimator.touching == down
         return certain and readings is not None and list(readings) == down
+
+    @property
+    def open_legs(self) -> list[int]:
+        """Legs of which `is_open` is true."""
+        return [leg for leg, evidence in enumerate(self._evidence) if evidence > _OPEN_AFTER]
 
     def is_open(self, leg: int) -> bool:
         """Return whether a contact is missing that other feet tell of: that of a switch that stays open."""

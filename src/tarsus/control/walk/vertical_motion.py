@@ -62,36 +62,40 @@ def moved_vertically(state: GaitState, inputs: StepInputs, dt: float) -> GaitSta
     # In G.
     turning, drift = complex(felt.turn[1], -felt.turn[0]) * heading, felt.drift * heading
     swing, origin, across = 1 - inputs.gait.duty_factor, state.origin, turning.conjugate()
-    places, heights, feet = state.foot.tolist(), state.ground_height.tolist(), list(state.felt)
-    for leg, down in enumerate(state.down.tolist()):
-        foot, under, height = feet[leg], felt.under[leg], heights[leg]
-        if not felt.steps[leg]:
+    places, heights, feet, stop = state.foot.tolist(), state.ground_height.tolist(), list(state.felt), _STOPPING * dt
+    delays, phases, starts = state.lift_delay.tolist(), state.swing_phase.tolist(), state.start_height.tolist()
+    step, steps_back = _STANDING_ACCELERATION * dt, False
+    legs = zip(state.down.tolist(), felt.steps, felt.stands, felt.under, strict=True)
+    for leg, (down, steps, stands, under) in enumerate(legs):
+        foot, height = feet[leg], heights[leg]
+        steps_back = steps_back or (under is not None and under.place is not None)
+        if not steps:
             feet[leg] = foot._replace(speed=0.0, acceleration=0.0)
         elif down:
             # On the ground it moves by its turn about the body, its drift and its slide.
             place, before, slide = places[leg], foot.speed, foot.slide
             wanted = -((place - origin) * across).real
-            if felt.stands[leg]:
+            if stands:
                 place += (turning * (height - body) - drift) * dt
-                speed = _towards(before, wanted, _STANDING_ACCELERATION * dt)
+                speed = before + min(max(wanted - before, -step), step)
                 heights[leg] = height + (before + speed) / 2 * dt
             else:
                 assert under is not None  # known of each foot that has lost its contact
                 heights[leg], place, speed = _searching(height, before, place, wanted, under, felt, dt)
             if slide:
-                left = max(1 - _STOPPING * dt / abs(slide), 0.0)
+                left = max(1 - stop / abs(slide), 0.0)
                 place += slide * (1 + left) / 2 * dt
                 slide *= left
             places[leg] = place
             feet[leg] = FeltFoot(speed, slide=slide) if speed or slide else _STILL
         else:
             assert under is not None  # known of each foot in the air
-            swing_phases = swing - float(state.lift_delay[leg])
-            swing_time = swing_phases / inputs.frequency if inputs.frequency else math.inf
-            now = (float(state.swing_phase[leg]), swing_time, float(state.start_height[leg]), places[leg])
+            swing_time = (swing - delays[leg]) / inputs.frequency if inputs.frequency else math.inf
+            now = (phases[leg], swing_time, starts[leg], places[leg])
             heights[leg], feet[leg] = _swinging(height, foot, under, felt, dt, now)
-    steps_back = [under is not None and under.place is not None for under in felt.under]
-    moved["foothold"] = np.where(steps_back, places, state.foothold) if any(steps_back) else state.foothold
+    if steps_back:
+        stepping = [under is not None and under.place is not None for under in felt.under]
+        moved["foothold"] = np.where(stepping, places, state.foothold)
     return state._replace(foot=np.array(places), ground_height=np.array(heights), felt=feet, **moved)
 
 
