@@ -15,7 +15,7 @@ from tarsus.control.transition.scheduler import PlanTransition, TransitionSchedu
 from tarsus.control.transition.stance_transition import StanceTransition
 from tarsus.control.walk.foot_targets import FootTargets
 from tarsus.control.walk.foothold import final_footholds
-from tarsus.control.walk.reference_governor import lift_delays, polygon_excess, stance_intervals, time_to_touchdown
+from tarsus.control.walk.reference_governor import FootPrediction, lift_delays, stance_intervals, time_to_touchdown
 from tarsus.control.walk.state import POSITION_TOLERANCE, GaitState
 from tarsus.control.walk.step_timing import StepTiming
 from tarsus.control.walk.stepper import stance_tolerance
@@ -220,9 +220,9 @@ class TransitionExecutor:
         bounds = np.minimum(bounds, planned.final_limits.bounds)
         begins, bandwidth = np.zeros(delays.shape), timing.bandwidth
         bounds = self.footholds.shifted(bounds)
-        over = polygon_excess(
-            now.gait, now.twist[None], begins=begins, ends=ends, bounds=bounds, bandwidth=bandwidth
-        ).max(axis=(1, 2, 3, 4))
+        over = (
+            FootPrediction.of(now.gait, begins, ends, bandwidth).excess(now.twist[None], bounds).max(axis=(1, 2, 3, 4))
+        )
         # Symmetric legs suit equally well but for rounding; the first of them lifts, on any machine.
         first = int((over <= over.min() + _ROUNDING).argmax())
         if over[first] <= POSITION_TOLERANCE:
@@ -247,7 +247,7 @@ class TransitionExecutor:
     ) -> bool:
         begins, ends = self.stance_intervals(now.gait, frequency=frequency)
         bounds = self.footholds.shifted(bounds)
-        excess = polygon_excess(now.gait, now.twist[None], begins=begins, ends=ends, bounds=bounds, bandwidth=bandwidth)
+        excess = FootPrediction.of(now.gait, begins, ends, bandwidth).excess(now.twist[None], bounds)
         return bool(excess.max() <= stance_tolerance(now.gait))
 
     def _begin(self, planned: StanceTransition, state: GaitState) -> None:

@@ -21,7 +21,7 @@ from tarsus.gait.gait import Gait
 if TYPE_CHECKING:
     from jaxtyping import Complex, Float
 
-__all__ = ["governed_twist", "lift_delays", "polygon_excess", "stance_intervals", "time_to_touchdown"]
+__all__ = ["FootPrediction", "governed_twist", "lift_delays", "stance_intervals", "time_to_touchdown"]
 
 
 # Rounding of a distance [m].
@@ -36,43 +36,18 @@ _NORMALS = np.stack([NORMALS.real, NORMALS.imag])
 _NO_ANGLE = 1e-30
 
 
-def polygon_excess(
-    state: GaitState,
-    targets: Float[np.ndarray, "n 3"],
-    *,
-    begins: Float[np.ndarray, "*#batch legs"],
-    ends: Float[np.ndarray, "*#batch legs"],
-    bounds: Float[np.ndarray, "legs 16"],
-    bandwidth: float,
-) -> Float[np.ndarray, "*batch n 3 legs 16"]:
-    """Return how far each foot will be outside each side of its polygon, with a constant target of the twist.
-
-    Parameters
-    ----------
-    state : GaitState
-        The gait state.
-    targets : array, shape (n, 3)
-        Targets of the twist.
-    begins, ends : array, shape (..., legs)
-        From when until when the foot stands where it is, or where it will be put down [s].
-    bounds : array, shape (legs, 16)
-        Sides of the polygons [m].
-    bandwidth : float
-        Bandwidth with which the twist follows its target [rad/s].
-
-    Returns
-    -------
-    array, shape (..., n, 3, legs, 16)
-        At the start, in the middle and at the end of that time [m]; negative inside.
-    """
-    return _Prediction.of(state, begins, ends, bandwidth).excess(targets, bounds)
-
-
-class _Prediction(NamedTuple):
+class FootPrediction(NamedTuple):
     """Prediction of the feet in the heading frame for any target of the twist, at three times, shape (..., 3, legs).
 
     The integral of a critically damped filter is linear in target, value and rate (see `integral_factors`): `of_target`
     is the factor of the target, `travel` is the part of value and rate, shape (3, ..., 1, 3, legs).
+
+    Attributes
+    ----------
+    seen : complex array, shape (legs,)
+        Where the feet stand, or will be put down, in the heading frame [m].
+    of_target, travel : array
+        The factor [s], and the part [m, m, rad].
     """
 
     seen: Complex[np.ndarray, "legs"]
@@ -86,8 +61,18 @@ class _Prediction(NamedTuple):
         begins: Float[np.ndarray, "*#batch legs"],
         ends: Float[np.ndarray, "*#batch legs"],
         bandwidth: float,
-    ) -> _Prediction:
-        """Predict for feet that stand for an interval, shape (..., legs)."""
+    ) -> FootPrediction:
+        """Predict for feet that stand for an interval.
+
+        Parameters
+        ----------
+        state : GaitState
+            The gait state.
+        begins, ends : array, shape (..., legs)
+            From when until when the foot stands where it is, or where it will be put down [s].
+        bandwidth : float
+            Bandwidth with which the twist follows its target [rad/s].
+        """
         begins = begins[..., None, None, :]
         times = begins + (ends[..., None, None, :] - begins) * _TIMES
         of_target, of_value, of_rate = integral_factors(times, bandwidth=bandwidth)
@@ -99,7 +84,20 @@ class _Prediction(NamedTuple):
     def excess(
         self, targets: Float[np.ndarray, "n 3"], bounds: Float[np.ndarray, "legs 16"]
     ) -> Float[np.ndarray, "*batch n 3 legs 16"]:
-        """Return the excess, shape (..., n, 3, legs, 16), for targets of shape (n, 3)."""
+        """Return how far each foot will be outside each side of its polygon, with a constant target of the twist.
+
+        Parameters
+        ----------
+        targets : array, shape (n, 3)
+            Targets of the twist.
+        bounds : array, shape (legs, 16)
+            Sides of the polygons [m].
+
+        Returns
+        -------
+        array, shape (..., n, 3, legs, 16)
+            At the start, in the middle and at the end of that time [m]; negative inside.
+        """
         driven = targets.T[(slice(None), *(None,) * (self.of_target.ndim - 3), ..., None, None)]
         x, y, angle = driven * self.of_target + self.travel
         # A travel (x, y) that turns by an angle ends at (x + iy) exp(i angle / 2) sin(angle / 2) / (angle / 2).
@@ -142,14 +140,14 @@ def governed_twist(
     current, command : array, shape (3,)
         The present target of the twist, and the commanded one.
     begins, ends, bounds, bandwidth
-        As for `polygon_excess`.
+        As for `FootPrediction`.
 
     Returns
     -------
     array, shape (3,)
         The target; where not even the current one is feasible, a reduction of it.
     """
-    prediction = _Prediction.of(state, begins, ends, bandwidth)
+    prediction = FootPrediction.of(state, begins, ends, bandwidth)
     unchanged = command.tolist() == current.tolist()
     targets = command[None] if unchanged else current + _FRACTIONS * (command - current)
     last = _last_feasible(prediction.excess(targets, bounds))
