@@ -56,10 +56,8 @@ class CriticallyDamped(NamedTuple):
 
         Parameters
         ----------
-        target : array
-            The target.
-        dt : float
-            The time [s].
+        target, dt : array, float
+            The target; the time [s].
         bandwidth : float
             The bandwidth [rad/s].
         """
@@ -74,10 +72,8 @@ class CriticallyDamped(NamedTuple):
 
         Parameters
         ----------
-        target : array
-            The target.
-        dt : float
-            The time [s].
+        target, dt : array, float
+            The target; the time [s].
         bandwidth : float
             The bandwidth [rad/s].
         """
@@ -98,10 +94,8 @@ class CriticallyDamped(NamedTuple):
         ----------
         target : array, shape (n,)
             The target.
-        dt : float
-            The time [s].
-        bandwidth : float
-            The bandwidth [rad/s].
+        dt, bandwidth : float
+            The time [s]; the bandwidth [rad/s].
         """
         w, decay = bandwidth, math.exp(-bandwidth * dt)
         values, rates, integrals = [], [], []

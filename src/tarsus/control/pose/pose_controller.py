@@ -84,10 +84,8 @@ class PoseController:
         ----------
         sway : tuple of float
             Commanded amplitudes: x, y, z [m], roll, pitch, yaw [rad].
-        frequency : float
-            Gait cycles per second [1/s].
-        beats : int
-            Number of lift-offs per cycle, of legs that lift together.
+        frequency, beats : float, int
+            Gait cycles per second [1/s]; number of lift-offs per cycle, of legs that lift together.
         """
         if not (self._sways or any(sway)):
             return

@@ -61,10 +61,8 @@ class ContactEstimator:
         ----------
         readings : sequence of (bool or None), or None
             Which feet touch the ground, as measured; None where nothing is.
-        dt : float
-            Time since the last tick [s].
-        count : int
-            How many readings have been the same, this one included.
+        dt, count : float, int
+            Time since the last tick [s]; how many readings have been the same, this one included.
         """
         evidence = math.log((1 - self.error) / self.error)
         for leg, reading in enumerate(readings or (None,) * len(self.touching)):

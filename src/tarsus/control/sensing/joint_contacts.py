@@ -96,10 +96,8 @@ class JointContacts:
             Joint angles [rad].
         commanded : array, shape (legs, 3)
             Joint angles that were commanded in the last tick [rad].
-        dt : float
-            Time since the last tick [s].
-        age : float
-            Time since the measurement [s].
+        dt, age : float
+            Time since the last tick [s]; time since the measurement [s].
         down : array of bool, shape (legs,)
             Which feet should stand.
         phase : array, shape (legs,)

@@ -75,10 +75,8 @@ class LegOdometry:
             Measured joint angles [rad]; without all of them nothing is corrected.
         bears : sequence of int
             Legs whose feet bear load.
-        velocity : complex
-            Commanded velocity of the body in the heading frame [m/s].
-        dt : float
-            Time since the last tick [s].
+        velocity, dt : complex, float
+            Commanded velocity of the body in the heading frame [m/s]; time since the last tick [s].
         tilt : (roll, pitch)
             Of the body against gravity [rad].
         yaw : float

@@ -176,10 +176,8 @@ class LegFailures:
         ----------
         activity : Walking
             The present one.
-        now : Snapshot
-            The robot before the tick.
-        dt : float
-            Length of the tick [s].
+        now, dt : Snapshot, float
+            The robot before the tick; length of the tick [s].
         """
         self._monitor.step(now.angles, activity.joint_angles, dt, torques=activity.torques)
         lost = activity.failed if isinstance(activity, ReducedWalking) else {}

@@ -94,10 +94,8 @@ class BodyMotion:
 
         Parameters
         ----------
-        state : GaitState
-            The gait state.
-        measured : ValidReadings
-            The readings.
+        state, measured : GaitState, ValidReadings
+            The gait state; the readings.
         dt : float
             Time since the last call [s].
         feet : tuple of (list of complex, list of bool)

@@ -111,10 +111,8 @@ class FeltGround:
         ----------
         readings : SensorReadings or None
             The readings.
-        dt : float
-            Time since the last tick [s].
-        state : GaitState
-            The gait state.
+        dt, state : float, GaitState
+            Time since the last tick [s]; the gait state.
         timing : StepTiming
             The gait and its frequency.
         angles : array, shape (legs, 3)
@@ -160,10 +158,8 @@ class FeltGround:
 
         Parameters
         ----------
-        state : GaitState
-            The gait state.
-        dt : float
-            Length of the tick [s].
+        state, dt : GaitState, float
+            The gait state; length of the tick [s].
         timing : StepTiming
             The gait and its frequency.
         twist : array, shape (3,)

@@ -74,10 +74,8 @@ class FootContacts:
             Which feet touch the ground, as measured; None where nothing is.
         down : sequence of bool
             Which feet should stand.
-        dt : float
-            Time since the last tick [s].
-        age : float
-            Time since the measurement [s].
+        dt, age : float
+            Time since the last tick [s]; time since the measurement [s].
         count : int
             Number of ticks.
         """

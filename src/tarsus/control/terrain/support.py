@@ -83,10 +83,8 @@ class Support:
         ----------
         stays : bool
             Whether the feet that bear load and are not due to lift off hold the robot.
-        lifts : bool
-            Whether any foot is due to lift off.
-        dt : float
-            Length of the tick [s].
+        lifts, dt : bool, float
+            Whether any foot is due to lift off; length of the tick [s].
         swing_time : float
             Duration of a swing [s].
         most : float

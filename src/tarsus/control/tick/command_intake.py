@@ -27,10 +27,8 @@ class CommandIntake:
 
     Parameters
     ----------
-    robot : Robot
-        A single robot.
-    transitions : TransitionExecutor
-        The stance transitions.
+    robot, transitions : Robot, TransitionExecutor
+        A single robot; the stance transitions.
     """
 
     def __init__(self, robot: Robot, transitions: TransitionExecutor) -> None:

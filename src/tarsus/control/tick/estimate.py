@@ -16,10 +16,8 @@ def estimated(walk: WalkComponents, tick: TickState, readings: SensorReadings | 
 
     Parameters
     ----------
-    walk : WalkComponents
-        The components.
-    tick : TickState
-        The state.
+    walk, tick : WalkComponents, TickState
+        The components; the state.
     readings : SensorReadings or None
         What is measured.
     dt : float

@@ -19,10 +19,8 @@ def integrated(walk: WalkComponents, tick: TickState, dt: float) -> TickState:
 
     Parameters
     ----------
-    walk : WalkComponents
-        The components.
-    tick : TickState
-        The state.
+    walk, tick : WalkComponents, TickState
+        The components; the state.
     dt : float
         Length of the tick [s].
     """

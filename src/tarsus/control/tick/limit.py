@@ -39,14 +39,10 @@ def limited(
 
     Parameters
     ----------
-    walk : WalkComponents
-        The components.
-    tick : TickState
-        The state.
-    command : Command
-        What is commanded.
-    dt : float
-        Length of the tick [s].
+    walk, tick : WalkComponents, TickState
+        The components; the state.
+    command, dt : Command, float
+        What is commanded; length of the tick [s].
     limiters : sequence of TwistLimiter
         The limiters in their order.
     """

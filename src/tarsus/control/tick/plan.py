@@ -38,14 +38,10 @@ def planned(
     ----------
     walk : WalkComponents
         The components; the transition executor plans and begins transitions.
-    tick : TickState
-        The state.
-    command : Command
-        What is commanded.
-    dt : float
-        Length of the tick [s].
-    body : callable
-        The pose of B in G at the time that it is called.
+    tick, command : TickState, Command
+        The state; what is commanded.
+    dt, body : float, callable
+        Length of the tick [s]; the pose of B in G at the time that it is called.
     """
     state = walk.transitions.advance(partial(_plan_transition, walk, body), tick)
     if state is not tick.gait:

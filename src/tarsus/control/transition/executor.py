@@ -274,10 +274,8 @@ class TransitionExecutor:
 
         Parameters
         ----------
-        state : GaitState
-            The gait state after the tick.
-        dt : float
-            Length of the tick [s].
+        state, dt : GaitState, float
+            The gait state after the tick; length of the tick [s].
 
         Returns
         -------

@@ -200,10 +200,8 @@ def reach_cause(robot: Robot, stand: StanceGeometry) -> Cause:
 
     Parameters
     ----------
-    robot : Robot
-        A single robot.
-    stand : StanceGeometry
-        The body and the rest footholds.
+    robot, stand : Robot, StanceGeometry
+        A single robot; the body and the rest footholds.
     """
     margin = rest_margin(robot, stand)
     leg = int(margin.argmin())

@@ -55,10 +55,8 @@ class TransitionPlanner:
 
     Parameters
     ----------
-    robot : Robot
-        A single robot.
-    joint_limits : JointLimits
-        Greatest speed and acceleration of each joint.
+    robot, joint_limits : Robot, JointLimits
+        A single robot; greatest speed and acceleration of each joint.
     foot_distance : float
         Least distance between two feet [m].
     """

@@ -28,10 +28,8 @@ def target_stance(robot: Robot, parameters: WalkParameters, posture: Float[np.nd
 
     Parameters
     ----------
-    robot : Robot
-        A single robot.
-    parameters : WalkParameters
-        What is commanded.
+    robot, parameters : Robot, WalkParameters
+        A single robot; what is commanded.
     posture : array, shape (7,), or None
         The present posture; None without one.
 

@@ -87,10 +87,8 @@ def apply_foot_targets(state: GaitState, motions: dict[int, FootTargetMotion], s
 
     Parameters
     ----------
-    state : GaitState
-        The state of the walk.
-    motions : dict of int to FootTargetMotion
-        The motions by leg.
+    state, motions : GaitState, dict of int to FootTargetMotion
+        The state of the walk; the motions by leg.
     swing_time : float
         Duration of a swing [s].
     """

@@ -146,10 +146,8 @@ class FootTargets:
 
         Parameters
         ----------
-        state : GaitState
-            The state of the walk after that time.
-        time : float
-            The time [s].
+        state, time : GaitState, float
+            The state of the walk after that time; the time [s].
         swing_time : float
             Duration of a swing [s].
         """

@@ -78,10 +78,8 @@ class FootholdPredictor(NamedTuple):
 
         Parameters
         ----------
-        now : GaitState
-            The gait state.
-        inputs : StepInputs
-            Inputs of the step.
+        now, inputs : GaitState, StepInputs
+            The gait state; inputs of the step.
         """
         turn = cmath.exp(1j * now.yaw)
         return cls(now.origin, turn, now.twist.value.tolist(), now.twist.rate.tolist(), inputs.bandwidth, {})

@@ -182,10 +182,8 @@ def stance_intervals(
 
     Parameters
     ----------
-    state : GaitState
-        The gait state.
-    gait : Gait
-        Order of the steps.
+    state, gait : GaitState, Gait
+        The gait state; order of the steps.
     frequency : float
         Cycles per second [1/s].
     """
@@ -221,10 +219,8 @@ def lift_delays(gait: Gait, cycle_time: float) -> Float[np.ndarray, "legs legs"]
 
     Parameters
     ----------
-    gait : Gait
-        Order of the steps.
-    cycle_time : float
-        Duration of a cycle [s].
+    gait, cycle_time : Gait, float
+        Order of the steps; duration of a cycle [s].
 
     Returns
     -------

@@ -41,10 +41,8 @@ class StepTiming(NamedTuple):
 
         Parameters
         ----------
-        gait : Gait
-            Order of the steps.
-        cycle_time : float
-            Duration of a cycle [s].
+        gait, cycle_time : Gait, float
+            Order of the steps; duration of a cycle [s].
         """
         return cls(gait, 1 / cycle_time, len(set(gait.offsets)))
 
@@ -89,10 +87,8 @@ class StepTiming(NamedTuple):
 
         Parameters
         ----------
-        state : GaitState
-            The gait state.
-        dt : float
-            The time [s].
+        state, dt : GaitState, float
+            The gait state; the time [s].
         """
         clock = state.clock + self.frequency * dt + PHASE_TOLERANCE - self.gait.duty_factor
         steps = zip(state.down.tolist(), self.gait.offsets, state.step_number.tolist(), strict=True)
@@ -118,10 +114,8 @@ class StepTiming(NamedTuple):
 
         Parameters
         ----------
-        frequency : float
-            The frequency to reach [1/s].
-        dt : float
-            Length of the tick [s].
+        frequency, dt : float
+            The frequency to reach [1/s]; length of the tick [s].
         """
         now = self.frequency
         step = dt * now * now / 2

@@ -37,10 +37,8 @@ def advance(state: GaitState, inputs: StepInputs, dt: float) -> GaitState:
 
     Parameters
     ----------
-    state : GaitState
-        The gait state.
-    inputs : StepInputs
-        What is constant for the time.
+    state, inputs : GaitState, StepInputs
+        The gait state; what is constant for the time.
     dt : float
         The time [s].
     """
@@ -193,10 +191,8 @@ def land(state: GaitState, landed: list[int]) -> GaitState:
 
     Parameters
     ----------
-    state : GaitState
-        The gait state.
-    landed : list of int
-        The legs.
+    state, landed : GaitState, list of int
+        The gait state; the legs.
     """
     number, down, phase = state.step_number.copy(), state.down.copy(), state.swing_phase.copy()
     number[landed] += 1

@@ -66,10 +66,8 @@ def cycle_timing(
 
     Parameters
     ----------
-    robot : Robot
-        A single robot.
-    gait : Gait
-        Order of the steps.
+    robot, gait : Robot, Gait
+        A single robot; order of the steps.
     stance : StanceGeometry
         Body and rest footholds.
     limits : VelocityLimits
@@ -189,10 +187,8 @@ class SteadyCycle:
 
         Parameters
         ----------
-        robot : Robot
-            A single robot.
-        stance : StanceGeometry
-            Body and rest footholds.
+        robot, stance : Robot, StanceGeometry
+            A single robot; body and rest footholds.
         part : slice
             Selects the moves.
         joint_limits : JointLimits

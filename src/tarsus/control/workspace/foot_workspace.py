@@ -45,10 +45,8 @@ def foot_workspace(
 
     Parameters
     ----------
-    robot : Robot
-        A single robot.
-    stance : StanceGeometry
-        The body and the rest footholds.
+    robot, stance : Robot, StanceGeometry
+        A single robot; the body and the rest footholds.
     foot_distance : float
         Least distance between two feet [m].
 
@@ -96,10 +94,8 @@ def rest_margin(robot: Robot, stance: StanceGeometry, *, knees: bool = True) -> 
 
     Parameters
     ----------
-    robot : Robot
-        A single robot.
-    stance : StanceGeometry
-        The body and the rest footholds.
+    robot, stance : Robot, StanceGeometry
+        A single robot; the body and the rest footholds.
     knees : bool
         Whether femur axes and knees must stay above the ground.
 

@@ -37,10 +37,8 @@ class LegMargin:
 
     Parameters
     ----------
-    robot : Robot
-        A single robot.
-    stance : StanceGeometry
-        The body and the rest footholds.
+    robot, stance : Robot, StanceGeometry
+        A single robot; the body and the rest footholds.
     knees : bool
         Whether femur axes and knees must stay above the ground.
     """

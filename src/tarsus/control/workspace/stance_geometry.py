@@ -96,10 +96,8 @@ def joint_margin(geometry: LegGeometry, solution: Triangle) -> Float[np.ndarray,
 
     Parameters
     ----------
-    geometry : LegGeometry
-        The legs.
-    solution : Triangle
-        Their joint angles.
+    geometry, solution : LegGeometry, Triangle
+        The legs; their joint angles.
 
     Returns
     -------
@@ -184,10 +182,8 @@ def sway_fraction(sway: Float[np.ndarray, "6"], frequency: float, beats: int) ->
     ----------
     sway : array, shape (6,)
         Amplitudes: x, y, z [m], roll, pitch, yaw [rad].
-    frequency : float
-        Gait cycles per second [1/s].
-    beats : int
-        Number of beats per gait cycle.
+    frequency, beats : float, int
+        Gait cycles per second [1/s]; number of beats per gait cycle.
     """
     square = (2 * math.pi * frequency) ** 2
     rates = np.array([beats**2, 1, beats**2, 1, beats**2, 1]) * square

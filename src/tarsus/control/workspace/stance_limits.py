@@ -72,10 +72,8 @@ def shifted_limits(
 
     Parameters
     ----------
-    robot : Robot
-        A single robot.
-    gait : Gait
-        A gait with a body shift.
+    robot, gait : Robot, Gait
+        A single robot; a gait with a body shift.
     stance : StanceGeometry
         The body, without its shift, and the rest footholds.
     foot_distance : float
