@@ -67,6 +67,8 @@ class TimeScaling:
         self._speed, self._acceleration, self._limits = speed, acceleration, limits
         self._top_speed = _USED * speed
         self._limits_with_room = limits[..., 0] + _STOPPING_ROOM, limits[..., 1] - _STOPPING_ROOM
+        # How far the joints are from these at least [rad], and the greatest of their top speeds [rad/s].
+        self._room, self._fastest = 0.0, float(self._top_speed.max())
         self._speeds = np.zeros_like(angles)
         self._last_dt = 0.01
         self._used = 0.0
@@ -130,12 +132,16 @@ class TimeScaling:
         target, between = solve(after), (dt + self._last_dt) / 2
         if behind is None:
             speeds, _, works = self._demand(target, dt, between)
-            low, high = self._limits_with_room
-            if works and not np.count_nonzero((target <= low) | (target >= high)):
+            # No joint moves faster than its top speed: far from its limits it need not be compared with them.
+            self._room -= self._fastest * dt
+            if works and self._room <= 0.0:
+                low, high = self._limits_with_room
+                self._room = float(np.minimum(target - low, high - target).min())
+            if works and self._room > 0.0:
                 self.angles = self._target = target
                 self._speeds, self._last_dt = speeds, dt
                 return after
-            behind = np.zeros_like(target)
+            behind, self._room = np.zeros_like(target), 0.0
         hardest = _USED * self._acceleration
         # The speed of the target, and the one from which a joint can still stop where it catches up.
         catching = np.minimum(np.abs(behind) / dt, np.sqrt(hardest * np.abs(behind)))
