@@ -17,9 +17,9 @@ from tarsus.control.transition.feasible_fraction import TIPPING, StanceTarget
 from tarsus.control.transition.parameters import WalkParameters
 from tarsus.control.transition.planner import TransitionPlanner
 from tarsus.control.transition.stance_transition import StanceTransition
-from tarsus.control.workspace.stance_geometry import SWING_HEIGHT, rotation_rows, stance_geometry_of
 from tarsus.errors import UnreachableError
 from tarsus.gait.gait import Gait
+from tarsus.gait.stance_geometry import SWING_HEIGHT, rotation_rows, stance_geometry_of
 from tarsus.kinematics.inverse import inverse_kinematics
 from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.stance import default_stance

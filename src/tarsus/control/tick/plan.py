@@ -19,7 +19,7 @@ from tarsus.control.transition.target_stance import sway_extremes
 from tarsus.control.walk.foot_target_motion import reachable_fraction
 from tarsus.control.walk.state import GaitState
 from tarsus.control.workspace.stability import support_sets
-from tarsus.control.workspace.stance_geometry import SWING_HEIGHT
+from tarsus.gait.stance_geometry import SWING_HEIGHT
 from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.stability import stability_margin
 

@@ -11,7 +11,7 @@ from tarsus.control.incremental import Incremental
 from tarsus.control.limitation import Cause
 from tarsus.control.workspace.foot_workspace import rest_margin
 from tarsus.control.workspace.stability import StabilityCheck
-from tarsus.control.workspace.stance_geometry import (
+from tarsus.gait.stance_geometry import (
     SWING_HEIGHT,
     StanceGeometry,
     joint_margin,
