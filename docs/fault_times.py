@@ -72,7 +72,7 @@ class Walk:
         self.plant = hardware.ServoPlant(
             calibration.limited_robot, calibration, buses={"main": bus}, clock=self.clock, observer=self._observe
         )
-        self.rate = min(100.0, math.floor(0.8 * self.plant.greatest_rate))
+        self.rate = min(100.0, math.floor(self.plant.usual_rate))
         self.began = self.away = math.nan
         self._from = math.nan
 

@@ -12,6 +12,7 @@ from tarsus.errors import ServoFaultError, UnknownNameError
 from tarsus.hardware import ManualClock, ServoPlant, Telemetry, emulated_bus, nominal_calibration
 from tarsus.hardware.bus.patience import Patience
 from tarsus.hardware.plant.fault import FaultKind
+from tarsus.hardware.plant.monitor.command_history import CommandHistory
 from tarsus.hardware.plant.monitor.motion_monitor import MotionMonitor
 from tarsus.hardware.plant.reading.position_turn import PositionTurn
 from tarsus.hardware.plant.settings import PlantSettings
@@ -152,7 +153,7 @@ class Slow:
             calibration.limited_robot, calibration, buses=opened, clock=self.clock, observer=self.records.append
         )
         # The emulated wires of two buses send one after the other.
-        self.rate = 26.0
+        self.rate = float(math.floor(self.plant.usual_rate)) if buses == 1 else 26.0
         self.began, self.timing = math.nan, None
 
     def walk(self, cause, at=1.5, until=2.5):
@@ -186,8 +187,32 @@ def test_a_silent_servo_on_a_slow_line_is_noticed_soon(cause, kind, at):
     with pytest.raises(ServoFaultError) as caught:
         robot.walk(cause, at)
     assert caught.value.fault.kind is kind
-    # Two ticks until each was asked, and 60 ms of silence.
-    assert caught.value.fault.time - robot.began <= 0.13
+    # A tick until each was asked, 60 ms of silence, and the time of the last request.
+    assert caught.value.fault.time - robot.began < 0.1
+
+
+@pytest.mark.parametrize(("joint", "at"), [(4, 1.5), (9, 1.54), (14, 1.58), (0, 1.62)])
+def test_a_hot_servo_on_a_slow_line_is_noticed_within_two_ticks(joint, at):
+    robot = Slow()
+    assert robot.rate > 20
+    with pytest.raises(ServoFaultError) as caught:
+        robot.walk(lambda line: setattr(line.servos[joint + 1], "temperature", 72.0), at)
+    assert caught.value.fault.kind is FaultKind.OVERHEATED
+    assert caught.value.fault.time - robot.began < 0.1
+
+
+def test_a_joint_that_is_stuck_where_its_command_turns_back_is_noticed_soon():
+    # The command goes 2.4 deg past it and comes back: between two looks the joint came only part of the way.
+    robot = Slow()
+    robot.plant._observer = robot.records.append
+    with pytest.raises(ServoFaultError) as caught:
+        robot.walk(lambda line: setattr(line.servos[7], "stuck", True), 5.6, 8.0)
+    assert caught.value.fault.kind is FaultKind.STUCK
+    measured = [record.measured[2, 0] for record in robot.records]
+    away = [
+        r.time for r in robot.records if r.time > robot.began and abs(r.sent[2, 0] - measured[-1]) > math.radians(2)
+    ]
+    assert caught.value.fault.time - away[0] < 0.1
 
 
 def test_a_lost_answer_on_a_slow_line_is_asked_for_again_in_the_same_tick():
@@ -231,12 +256,34 @@ def test_a_slow_line_carries_what_a_tick_asks_of_it(buses):
     timing = robot.timing
     assert timing.missed == 0
     assert timing.worst < 0.2 / robot.rate
-    # All temperatures in a quarter of a second, and the voltage from time to time.
+    # All temperatures within two ticks, and the voltage from time to time.
     walked = [(time, id) for time, id in temperatures if time < robot.began + 1.0]
     for id in IDS:
         times = [time for time, other in walked if other == id]
-        assert max(np.diff(times)) < 0.26 * buses
+        assert max(np.diff(times)) < (0.1 if buses == 1 else 0.5)
     assert max(np.diff([time for time, _ in voltages])) < 0.5 * buses
+
+
+def test_every_servo_on_a_slow_line_is_asked_for_something_in_each_tick():
+    robot = Slow()
+    (bus,) = robot.plant._ports.buses.values()
+    asked, write = [set()], bus.write_goals
+
+    def noted(read):
+        def reading(*arguments):
+            asked[-1].update(arguments[-1])
+            return read(*arguments)
+
+        return reading
+
+    def writing(goals):
+        asked.append(set())
+        write(goals)
+
+    bus.read_one, bus.read_positions, bus.write_goals = noted(bus.read_one), noted(bus.read_positions), writing
+    robot.walk(lambda line: None)
+    walked = asked[20:55]
+    assert [sorted(set(IDS) - tick) for tick in walked if tick != set(IDS)] == []
 
 
 def test_an_adapter_that_adds_to_each_request_costs_readings_and_no_ticks():
@@ -282,3 +329,39 @@ def test_a_joint_whose_command_goes_on_is_suspected_before_it_is_stuck():
     assert seen == sorted(seen)
     assert seen[-1] > 1 > seen[-4] > 0.5
     assert np.count_nonzero(watch.suspicion) == 1
+
+
+@pytest.mark.parametrize("delay", [0.0, 0.02, 0.05])
+def test_the_delay_of_servos_is_measured_where_readings_are_rare(delay):
+    history, seen = CommandHistory(0.03), None
+    where = lambda time: 0.4 * np.sin(5 * time + np.arange(18.0)).reshape(6, 3)  # noqa: E731
+    sent, which = {}, np.ones((6, 3), dtype=bool)
+    for tick in range(120):
+        time = 0.045 * tick
+        sent[tick] = where(time)
+        history.add(time, sent[tick])
+        # Measured at another moment of each tick, where the joints were told to be a delay before.
+        at = np.full((6, 3), time + 0.045 * (tick * 0.618 % 1.0))
+        told = max((i for i in sent if 0.045 * i <= at[0, 0] - delay + 1e-9), default=0)
+        if seen is not None and tick > 3:
+            history.moved(seen[0], sent[told], times=np.stack([seen[1], at]), which=which)
+        seen = sent[told], at
+    assert history.delay == pytest.approx(delay, abs=0.0101)
+
+
+def test_commands_are_expected_after_the_delay_and_not_known_before_the_first():
+    history = CommandHistory(0.03)
+    assert history.add(1.0, np.zeros((6, 3))) == (0.0, 0.0)
+    assert history.expected(np.full((6, 3), 1.02)) is None
+    passed, way = history.add(1.1, np.full((6, 3), 0.2))
+    assert (passed, way) == (pytest.approx(0.1), 0.2)
+    # The same time again: nothing new was sent.
+    history.add(1.1, np.full((6, 3), 0.2))
+    times = np.full((6, 3), 1.12)
+    times[0] = 1.14
+    expected = history.expected(times)
+    assert (expected[0] == 0.2).all()
+    assert (expected[1:] == 0.0).all()
+    # Motions from before the first command tell nothing.
+    history.moved(expected, expected, times=np.stack([times - 1.0, times]), which=np.ones((6, 3), dtype=bool))
+    assert history.delay == 0.03

@@ -45,8 +45,6 @@ __all__ = ["perform"]
 
 _DEMO = "at 0 s: walk 60 mm/s; at 2 s: walk turn 20 deg/s; at 3 s: stop"
 _RATE, _FASTEST = 100.0, 500.0
-# Share of what the wires carry that a run uses.
-_SHARE = 0.8
 # Greatest speeds for keys and gamepads [m/s, m/s, rad/s].
 _SPEEDS = (0.06, 0.05, 0.4)
 _REAL, _EMULATED, _SIMULATED = "real", "emulated", "simulated"
@@ -131,7 +129,7 @@ def _rate(asked: float | None, plant: ServoPlant) -> float:
     """Return the ticks per second [1/s]: what was asked for, or what the wires carry with a reserve."""
     greatest, least = plant.greatest_rate, 1.0 / plant.settings.longest_tick
     if asked is None:
-        return min(_RATE, float(np.floor(_SHARE * greatest)))
+        return min(_RATE, float(np.floor(plant.usual_rate)))
     if not least <= asked <= greatest:
         raise InputError(
             f"--rate is {asked:g} Hz; it must be from {least:g} Hz, below which joints are slowed down, to the "

@@ -14,11 +14,13 @@ from tarsus.control.control_output import ControlOutput
 from tarsus.control.readings import SensorReadings
 from tarsus.errors import BusError, InputError, PortError, TarsusError
 from tarsus.hardware.bus.protocol import Bus
+from tarsus.hardware.bus.separate_telemetry import SeparateTelemetry
 from tarsus.hardware.calibration.calibration import Calibration
 from tarsus.hardware.plant.fault import FaultKind, Reaction, ServoFault
 from tarsus.hardware.plant.joint_map import JointMap
 from tarsus.hardware.plant.pacer import Pacer, Timing
 from tarsus.hardware.plant.ports import Ports
+from tarsus.hardware.plant.reading.reader import WHOLE
 from tarsus.hardware.plant.reading.servo_input import ServoInput
 from tarsus.hardware.plant.servo_output import ServoOutput
 from tarsus.hardware.plant.settings import PlantSettings
@@ -36,6 +38,8 @@ if TYPE_CHECKING:
 __all__ = ["ServoPlant"]
 
 _START_TICK = 0.02
+# Share of the greatest rate at which answers may be late now and then.
+_RESERVED = 0.8
 # How late a computer may be of which nothing is known yet [s].
 _UNKNOWN = 0.02
 
@@ -141,6 +145,19 @@ class ServoPlant:
         # Several buses take their goals at the same time; positions are read from one after the other.
         reading = sum(each.positions for each in self._rates) / 2 + self._input.seconds
         return 1.0 / max(self._servos.writing + reading, 1e-6)
+
+    @property
+    def usual_rate(self) -> float:
+        """Ticks per second at which every servo tells something in each tick, with a reserve for the computer [1/s]."""
+        pairs = zip(self._rates, self._ports.buses.values(), strict=True)
+        # Where each value takes a request, position and temperature take turns.
+        values = sum(
+            each.positions + each.telemetry / len(bus.capabilities.telemetry)
+            for each, bus in pairs
+            if isinstance(bus, SeparateTelemetry)
+        )
+        busy = self._servos.writing + values / 2 + self._input.seconds
+        return min(_RESERVED * self.greatest_rate, WHOLE / max(busy, 1e-6))
 
     @property
     def speed_factor(self) -> float:

@@ -17,7 +17,7 @@ __all__ = ["AnswerMonitor"]
 
 # Of a whole bus with fewer servos than these nothing follows from their common silence.
 _FEW = 3
-# Between two requests passes a tick; where more passes, nobody was asked [s].
+# A delay of the computer that is worth mentioning, and the time between requests as long as no tick is known [s].
 _TICK = 0.03
 
 
@@ -40,6 +40,8 @@ class AnswerMonitor:
     ----------
     grace : float
         On a computer that is late itself, what is late to answer is not silent yet [s].
+    interval : float
+        Time that passes between two requests; where more passed, nobody was asked [s].
     """
 
     def __init__(self, calibration: Calibration, joints: JointMap, settings: PlantSettings) -> None:
@@ -49,7 +51,7 @@ class AnswerMonitor:
         self._failing_since = np.full(shape, np.nan)
         self._answered = np.full(shape, np.nan)
         self._late = np.zeros(shape)
-        self.grace = 0.0
+        self.grace, self.interval = 0.0, _TICK
 
     def answered(
         self,
@@ -98,7 +100,9 @@ class AnswerMonitor:
             self._failing_since[place] = now
         late = float(self._late[place])
         doubted = now - float(self._failing_since[place])
-        since = now - _began(float(self._answered[place]), float(self._failing_since[place])) - late
+        answered, failing = float(self._answered[place]), float(self._failing_since[place])
+        # Silence began at the last answer, unless nobody was asked for a while before the first failure.
+        since = now - (failing if math.isnan(answered) else max(answered, failing - self.interval)) - late
         if (
             self._failures[place] < settings.least_failures
             or doubted < settings.least_doubt
@@ -118,8 +122,3 @@ def _all_silent(bus: str, number: int, voltage: float | None, now: float) -> Ser
         f"all {number} servos on {bus} fell silent at once{last}: the supply has broken down, or the data line is cut"
     )
     return ServoFault(kind=FaultKind.BROWN_OUT, text=text, time=now)
-
-
-def _began(answered: float, failed: float) -> float:
-    """Return when silence began: at the last answer, unless nobody was asked for a while before the first failure."""
-    return failed if math.isnan(answered) else max(answered, failed - _TICK)

@@ -9,13 +9,13 @@ stuck where its command has moved well beyond it.
 from __future__ import annotations
 
 import math
-from collections import deque
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from tarsus.hardware.calibration.calibration import Calibration
 from tarsus.hardware.plant.fault import FaultKind, ServoFault
+from tarsus.hardware.plant.monitor.command_history import CommandHistory
 from tarsus.hardware.plant.settings import PlantSettings
 
 if TYPE_CHECKING:
@@ -32,6 +32,8 @@ _READINGS = 2
 _FACTOR, _MEMORY = 1.5, 8.0
 # Where a joint is looked at less often, it counts as still for this long after a look that found it so [s].
 _LOOK = 0.02
+# Between looks that are farther apart than this, how far a joint came tells when it stood still [s].
+_SELDOM, _LONG = 0.025, 0.5
 # Slower commands show nothing of the dead zone [rad/s].
 _SLOW = math.radians(5)
 
@@ -50,6 +52,8 @@ class MotionMonitor:
     ----------
     suspicion : array, shape (legs, 3)
         How far the command of a joint that stood still when it was last looked at has moved, as a share of `bound`.
+    doubtful : array of bool, shape (legs, 3)
+        Which joints are stuck if another reading finds them in the same place.
     """
 
     def __init__(self, calibration: Calibration, settings: PlantSettings) -> None:
@@ -60,15 +64,16 @@ class MotionMonitor:
 
     def forget(self) -> None:
         """Begin anew, after a pause."""
-        self._sent: deque[tuple[float, Float[np.ndarray, "legs 3"]]] = deque(maxlen=200)
+        self._history = CommandHistory(self._settings.delay)
         self._dead_zone = np.full(3, self._settings.dead_zone)
         # Where each joint was when it moved last: measured, commanded, when, and how often it was looked at since.
         self._at, self._commanded = np.full(self._shape, np.nan), np.full(self._shape, np.nan)
         self._since, self._looks = np.full(self._shape, np.nan), np.zeros(self._shape, dtype=int)
-        # When each joint was looked at last, and how far its command had moved by then.
+        # When each joint was looked at last, where it and its command were, and how far the command had moved by then.
         self._looked, self._passed = np.full(self._shape, np.nan), np.zeros(self._shape)
+        self._seen, self._asked = np.full(self._shape, np.nan), np.full(self._shape, np.nan)
         self._behind_since = np.full(self._shape, np.nan)
-        self.suspicion = np.zeros(self._shape)
+        self.suspicion, self.doubtful = np.zeros(self._shape), np.zeros(self._shape, dtype=bool)
 
     @property
     def bound(self) -> Float[np.ndarray, "3"]:
@@ -82,6 +87,8 @@ class MotionMonitor:
         *,
         read: Bool[np.ndarray, "legs 3"],
         now: float,
+        times: Float[np.ndarray, "legs 3"] | None = None,
+        sent_at: float | None = None,
     ) -> ServoFault | None:
         """Compare what was sent with what was measured, and return a fault.
 
@@ -93,29 +100,44 @@ class MotionMonitor:
             Which of them were measured since the last call; the others are not looked at.
         now : float
             The time [s].
+        times : array, shape (legs, 3), optional
+            When each of them was measured last; now where left out [s].
+        sent_at : float, optional
+            When the commands had left; now where left out [s].
         """
         settings = self._settings
-        passed = now - self._sent[-1][0] if self._sent else 0.0
-        moving = bool(self._sent) and float(np.abs(sent - self._sent[-1][1]).max()) > _SLOW * passed
-        self._sent.append((now, sent))
-        expected = self._expected(now - settings.delay)
+        passed, moving = self._history.add(now if sent_at is None else sent_at, sent)
+        when = np.full(self._shape, now) if times is None else np.where(read, times, now)
+        expected = self._history.expected(when)
+        self.doubtful = np.zeros(self._shape, dtype=bool)
         if expected is None:
             return None
-        if moving:
+        if moving > _SLOW * passed:
             self._dead_zone *= math.exp(-passed / _MEMORY)
         commanded = np.where(np.isnan(self._commanded), 0.0, np.abs(expected - self._commanded))
         behind = np.abs(expected - measured)
         self._looks += read
         moved = np.abs(measured - self._at) > np.maximum(self._noise, _SHARE * commanded)
-        long = (self._looks >= _READINGS) & (now - self._since >= settings.stuck_window - _SAME)
+        long = now - self._since >= settings.stuck_window - _SAME
         # A command that comes back to where a load has bent the leg moves nothing either.
-        still = read & ~moved & long & (commanded > self.bound) & (behind > self.bound / 2)
+        rare = when - self._looked > _SELDOM
+        standing = (
+            read & ~moved & long & (commanded > self.bound) & (behind > np.where(rare, self.bound, self.bound / 2))
+        )
+        # Between rare looks a command comes far: whoever has just set out after it is not stuck.
+        standing &= ~(rare & (np.abs(measured - self._seen) > self._noise))
+        still, self.doubtful = standing & (self._looks >= _READINGS), standing & (self._looks < _READINGS)
         stuck = still | self._far(behind, read, now)
-        self.suspicion = np.where((self._looks > 0) & ~moved, commanded / self.bound, 0.0)
+        short, share = self._short(measured, expected, now)
+        progress = np.where(moved, np.abs(short), np.where(self._looks > 0, commanded, 0.0))
+        self.suspicion = np.where(read, progress / self.bound, self.suspicion)
         self._learn(commanded, read & moved & (self._looks > _READINGS), now)
-        self._looked = np.where(read, now, self._looked)
+        self._measure_delay(measured, when, read)
+        stopped = now - share * (now - self._looked)
+        self._keep(read & (moved | np.isnan(self._at)), measured, expected - short, np.where(share > 0, stopped, now))
+        self._looked = np.where(read, when, self._looked)
         self._passed = np.where(read, np.where(moved, 0.0, commanded), self._passed)
-        self._keep(read & (moved | np.isnan(self._at)), measured, expected, now)
+        self._seen, self._asked = np.where(read, measured, self._seen), np.where(read, expected, self._asked)
         if not stuck.any():
             return None
         leg, j = np.unravel_index(int(np.argmax(np.where(stuck, np.maximum(behind, commanded), -1.0))), self._shape)
@@ -133,6 +155,25 @@ class MotionMonitor:
             text += f", more than {math.degrees(settings.lag):.0f} deg for {settings.stuck_window * 1e3:.0f} ms"
         return ServoFault.of_joint(FaultKind.STUCK, self._calibration, place, text=text, time=now)
 
+    def _measure_delay(
+        self, measured: Float[np.ndarray, "legs 3"], when: Float[np.ndarray, "legs 3"], read: Bool[np.ndarray, "legs 3"]
+    ) -> None:
+        """Compare motions between looks that are far apart with what was commanded."""
+        apart = when - self._looked
+        which = read & (apart > _SELDOM) & (apart < _LONG) & (np.abs(measured - self._seen) > self._noise)
+        if which.any():
+            self._history.moved(self._seen, measured, times=np.stack([self._looked, when]), which=which)
+
+    def _short(
+        self, measured: Float[np.ndarray, "legs 3"], expected: Float[np.ndarray, "legs 3"], now: float
+    ) -> tuple[Float[np.ndarray, "legs 3"], Float[np.ndarray, "legs 3"]]:
+        """Return how far joints came short of their commands since a look long ago, and that as a share; else 0."""
+        way = expected - self._asked
+        come = np.clip((measured - self._seen) * np.sign(way), 0.0, np.abs(way))
+        seldom = (now - self._looked > _SELDOM) & (np.abs(way) > self._noise)
+        share = np.where(seldom, 1.0 - come / np.maximum(np.abs(way), _SAME), 0.0)
+        return np.where(seldom, share * way, 0.0), share
+
     def _learn(self, commanded: Float[np.ndarray, "legs 3"], which: Bool[np.ndarray, "legs 3"], now: float) -> None:
         """Take note of how far commands went before joints that stood still moved on."""
         until = np.minimum(self._looked + _LOOK, now)
@@ -146,12 +187,12 @@ class MotionMonitor:
         self,
         which: Bool[np.ndarray, "legs 3"],
         measured: Float[np.ndarray, "legs 3"],
-        expected: Float[np.ndarray, "legs 3"],
-        now: float,
+        commanded: Float[np.ndarray, "legs 3"],
+        since: Float[np.ndarray, "legs 3"],
     ) -> None:
-        """Take note of where joints are that have moved."""
-        self._at, self._commanded = np.where(which, measured, self._at), np.where(which, expected, self._commanded)
-        self._since, self._looks = np.where(which, now, self._since), np.where(which, 0, self._looks)
+        """Take note of where joints are that have moved, by which command, and since when."""
+        self._at, self._commanded = np.where(which, measured, self._at), np.where(which, commanded, self._commanded)
+        self._since, self._looks = np.where(which, since, self._since), np.where(which, 0, self._looks)
 
     def _far(
         self, behind: Float[np.ndarray, "legs 3"], read: Bool[np.ndarray, "legs 3"], now: float
@@ -160,10 +201,3 @@ class MotionMonitor:
         far = np.where(read, behind > self._settings.lag, ~np.isnan(self._behind_since))
         self._behind_since = np.where(far, np.where(np.isnan(self._behind_since), now, self._behind_since), np.nan)
         return np.asarray(read & far & (now - self._behind_since >= self._settings.stuck_window - _SAME))
-
-    def _expected(self, time: float) -> Float[np.ndarray, "legs 3"] | None:
-        """Return what was sent at a time; None where that is too long ago."""
-        for at, sent in reversed(self._sent):
-            if at <= time + _SAME:
-                return np.asarray(sent)
-        return None

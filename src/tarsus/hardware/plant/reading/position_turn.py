@@ -29,6 +29,8 @@ class PositionTurn:
     ----------
     failed : tuple of int
         Those whose last request failed.
+    last : tuple of int
+        Those whose turn was in the last tick.
     """
 
     def __init__(self, bus: Bus, numbers: tuple[int, ...]) -> None:
@@ -38,15 +40,29 @@ class PositionTurn:
         self._waiting = list(numbers)
         self._numbers = numbers
         self._suspects: tuple[int, ...] = ()
+        self._timed = False
         self.failed: tuple[int, ...] = ()
+        self.last: tuple[int, ...] = ()
 
     @property
     def seconds(self) -> float:
         """How long reading all positions takes [s]."""
         return self._whole
 
-    def took(self, servos: int, seconds: float) -> None:
-        """Take note of how long reading took: adapters add to each request.
+    def share(self, count: int) -> float:
+        """Return how long reading some positions takes, of servos that are asked one by one [s].
+
+        Parameters
+        ----------
+        count : int
+            How many.
+        """
+        return self._whole * count / len(self._numbers)
+
+    def took(self, servos: int, seconds: float) -> float:
+        """Take note of how long reading took, and return how much longer each request takes than was known [s].
+
+        Adapters add to each request.
 
         Parameters
         ----------
@@ -55,8 +71,10 @@ class PositionTurn:
         seconds : float
             How long it took [s].
         """
-        if self._one_by_one:
-            self._whole += _NEW * (seconds / servos * len(self._numbers) - self._whole)
+        longer = seconds / servos - self._whole / len(self._numbers) if self._one_by_one else 0.0
+        self._whole += (_NEW if self._timed else 1.0) * longer * len(self._numbers)
+        self._timed = True
+        return longer
 
     def next(self, share: float) -> tuple[tuple[int, ...], ...]:
         """Return the next servos: those that did not answer, then some that are suspected, then the others in turn.
@@ -69,10 +87,12 @@ class PositionTurn:
             For which share of all servos there is time in the tick.
         """
         if share >= 1.0:
+            self.last = self._numbers
             return (self._numbers,)
         count, failed = max(1, int(len(self._numbers) * share)), self.failed
         urgent = (*failed, *self._suspects[: int(count * _SUSPECTS)])
         chosen = tuple(dict.fromkeys((*urgent, *self._waiting)))[: max(count, len(failed))]
+        self.last = chosen
         self._waiting = [number for number in self._waiting if number not in chosen] + list(chosen)
         return tuple(group for group in (failed, chosen[len(failed) :]) if group)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping
+from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -17,19 +18,20 @@ from tarsus.hardware.plant.reading.telemetry_turn import TelemetryTurn
 from tarsus.hardware.transport.clock import Clock
 
 if TYPE_CHECKING:
-    from jaxtyping import Float
+    from jaxtyping import Bool, Float
 
-__all__ = ["Reading", "ServoReader"]
+__all__ = ["WHOLE", "Reading", "ServoReader"]
 
-# Share of a tick that the wire may be busy, and that of positions in what goals leave of it.
-_WHOLE, _POSITIONS = 0.925, 0.72
-_SUSPECTED = 0.5
+# Share of a tick that the wire may be busy, and that of positions in what goals leave of it: on a slow line each servo
+# then tells its position in one tick and its temperature in the next.
+WHOLE, _POSITIONS = 0.925, 0.5
+_SUSPECTED = 0.25
 # How much longer a tick may last on a slow line, where servos are asked again to find out whether they are silent [s].
 _DOUBT = 0.03
 
 
 class Reading(NamedTuple):
-    """An attempt to read positions.
+    """An attempt to read positions or telemetry.
 
     Attributes
     ----------
@@ -39,12 +41,15 @@ class Reading(NamedTuple):
         Who was asked, and who answered.
     errors : tuple of BusError
         Why the others did not.
+    telemetry : mapping of int to Telemetry
+        What servos told of themselves, by id.
     """
 
     bus: str
     asked: Collection[int]
     answered: Collection[int]
     errors: tuple[BusError, ...]
+    telemetry: Mapping[int, Telemetry] = MappingProxyType({})
 
 
 class ServoReader:
@@ -66,7 +71,7 @@ class ServoReader:
     angles, speeds : array, shape (legs, 3)
         Joint angles and speeds as last measured; NaN where never [rad, rad/s].
     read : array of bool, shape (legs, 3)
-        Which joints were measured in the last tick.
+        Which joints were measured when positions were read last.
     """
 
     def __init__(self, buses: Mapping[str, Bus], joints: JointMap, calibration: Calibration, clock: Clock) -> None:
@@ -85,6 +90,9 @@ class ServoReader:
             if bus.capabilities.telemetry and joints.numbers(name)
         }
         self.read = np.zeros(shape, dtype=bool)
+        # For which share of all servos a tick has time.
+        self._share = 1.0
+        self._groups: dict[str, tuple[tuple[int, ...], ...]] = {}
 
     def all_positions(self) -> Float[np.ndarray, "legs 3"]:
         """Return the measured joint angles; NaN for joints whose bus does not measure them [rad].
@@ -94,35 +102,69 @@ class ServoReader:
         BusError
             If a servo gives no valid answer, even when asked again.
         """
-        for name in self._turns:
+        for name, turn in self._turns.items():
             bus, numbers = self._buses[name], self._joints.numbers(name)
             found: dict[int, float] = {}
+            start = self._clock.now()
             for last in (False, False, True):
                 answers = bus.read_positions([number for number in numbers if number not in found])
                 found |= answers.require() if last else answers.values
                 if len(found) == len(numbers):
                     break
+            longer = turn.took(len(numbers), self._clock.now() - start)
+            if name in self._telemetry:
+                self._telemetry[name].slower(longer)
             self._keep(name, found)
         return self.angles.copy()
 
-    def positions(self, dt: float, *, begun: float, writing: float) -> Iterator[Reading]:
+    def plan(self, dt: float, *, writing: float) -> bool:
+        """Choose whose position is read in a tick, and return whether telemetry is to be read before.
+
+        On a slow line positions come last: then servos have had most of the tick to follow their commands.
+
+        Parameters
+        ----------
+        dt : float
+            Duration of the tick [s].
+        writing : float
+            How long commands take on the wire [s].
+        """
+        whole = sum(turn.seconds for turn in self._turns.values())
+        self._share = _POSITIONS * (WHOLE * dt - writing) / whole if whole else 1.0
+        failing = any(turn.failed for turn in self._turns.values())
+        self._groups = {name: turn.next(self._share) for name, turn in self._turns.items()}
+        return self._share < 1.0 and not failing
+
+    def positions(self, dt: float, *, begun: float) -> Iterator[Reading]:
         """Read positions, and yield who answered; ask again who did not, where that is not done soon by the next tick.
 
         Parameters
         ----------
         dt : float
             Duration of the tick [s].
-        begun, writing : float
-            When it began, and how long commands took on the wire [s].
+        begun : float
+            When it began [s].
         """
         self.read[:] = False
-        whole = sum(turn.seconds for turn in self._turns.values())
-        share = _POSITIONS * (_WHOLE * dt - writing) / whole if whole else 1.0
-        for name, turn in self._turns.items():
-            for numbers in turn.next(share):
+        groups, self._groups = self._groups, {}
+        for name, chosen in groups.items():
+            for numbers in chosen:
                 yield self._read(name, numbers)
-            while share < 1.0 and turn.failed and self._clock.now() - begun < _WHOLE * dt + _DOUBT:
-                yield self._read(name, turn.failed)
+            yield from self._doubted(name, dt, begun)
+
+    def again(self, which: Bool[np.ndarray, "legs 3"]) -> Iterator[Reading]:
+        """Read some positions once more, where the next look would come late, and yield who answered.
+
+        Parameters
+        ----------
+        which : array of bool, shape (legs, 3)
+            The joints.
+        """
+        self.read[:] = False
+        for name in self._turns if self._share < 1.0 else ():
+            numbers = tuple(number for number in self._joints.numbers(name) if which[self._joints.joint(name, number)])
+            if numbers:
+                yield self._read(name, numbers)
 
     def suspect(self, suspicion: Float[np.ndarray, "legs 3"]) -> None:
         """Look more often at joints that may be stuck, where not all are read in each tick.
@@ -139,10 +181,11 @@ class ServoReader:
             if name in self._telemetry:
                 self._telemetry[name].suspect(numbers)
 
-    def telemetry(self, dt: float, *, begun: float) -> Iterator[tuple[str, Mapping[int, Telemetry]]]:
-        """Read the telemetry of as many servos as the tick has time for, and yield it by the name of their bus.
+    def telemetry(self, dt: float, *, begun: float) -> Iterator[Reading]:
+        """Read the telemetry of as many servos as the tick has time for, and yield what they tell.
 
-        Servos that report an alarm with their position come first.
+        Servos that report an alarm with their position come first. Where each value takes a request, who does not
+        answer is asked for its position at once.
 
         Parameters
         ----------
@@ -152,19 +195,44 @@ class ServoReader:
             When it began [s].
         """
         for name, turn in self._telemetry.items():
+            positions = self._turns.get(name)
+            beside = () if positions is None else positions.last
+            left = begun + WHOLE * dt - self._clock.now() - self._coming
             try:
-                for values in turn.read(dt, left=begun + _WHOLE * dt - self._clock.now()):
-                    yield name, values
+                for asked, answers in turn.read(dt, left=left, beside=beside):
+                    if positions is None or not turn.separate:
+                        # Whether it answers is judged by its positions.
+                        yield Reading(name, (), (), (), answers.values)
+                        continue
+                    positions.asked(asked, answers.values)
+                    yield Reading(name, asked, answers.values.keys(), answers.errors, answers.values)
+                    if answers.values:
+                        yield from self._doubted(name, dt, begun)
             except PortError:
                 raise
             except BusError:
-                # Whether it answers is judged by its positions.
                 continue
+
+    @property
+    def _coming(self) -> float:
+        """How long reading the positions takes that were planned and not read yet [s]."""
+        return sum(self._turns[name].share(sum(map(len, chosen))) for name, chosen in self._groups.items())
+
+    @property
+    def times(self) -> Float[np.ndarray, "legs 3"]:
+        """When each joint was measured last; NaN where never [s]."""
+        return self._times.copy()
 
     @property
     def age(self) -> float:
         """Time since the oldest of the last positions was measured [s]."""
         return max(0.0, self._clock.now() - float(np.nanmin(self._times)))
+
+    def _doubted(self, name: str, dt: float, begun: float) -> Iterator[Reading]:
+        """Ask again who did not answer, where that is not done soon by the next tick."""
+        turn = self._turns[name]
+        while self._share < 1.0 and turn.failed and self._clock.now() - begun < WHOLE * dt + _DOUBT:
+            yield self._read(name, turn.failed)
 
     def _read(self, bus: str, numbers: tuple[int, ...]) -> Reading:
         turn, start = self._turns[bus], self._clock.now()

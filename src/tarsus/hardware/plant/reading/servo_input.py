@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -17,7 +17,7 @@ from tarsus.hardware.plant.monitor.answer_monitor import AnswerMonitor
 from tarsus.hardware.plant.monitor.motion_monitor import MotionMonitor
 from tarsus.hardware.plant.monitor.telemetry_monitor import TelemetryMonitor
 from tarsus.hardware.plant.reading.foot_contacts import FootContacts
-from tarsus.hardware.plant.reading.reader import ServoReader
+from tarsus.hardware.plant.reading.reader import Reading, ServoReader
 from tarsus.hardware.plant.settings import PlantSettings
 from tarsus.hardware.plant.tick_record import TickRecord
 from tarsus.hardware.sensors.attitude_line import AttitudeLine
@@ -30,6 +30,8 @@ __all__ = ["ServoInput"]
 
 # How much longer servos may be silent on a computer whose ticks begin later than usual, per lateness [s].
 _GRACE, _USUAL = 3.0, 0.005
+# Time between two requests to a servo, at least [s], and as a share of a tick in which it is asked early or late.
+_INTERVAL, _VARYING = 0.03, 1.3
 
 
 class ServoInput:
@@ -120,35 +122,58 @@ class ServoInput:
         PortError
             If a port is gone.
         """
-        reader, found, complete = self._reader, None, True
+        reader = self._reader
         if self.complete:
             self._answers.grace = _GRACE * max(0.0, late - _USUAL)
-        for reading in reader.positions(dt, begun=begun, writing=writing):
-            complete = complete and not reading.errors
-            found = self._answers.answered(
+        self.complete = True
+        self._answers.interval = max(_INTERVAL, _VARYING * dt)
+        first, found, left = reader.plan(dt, writing=writing), None, begun + writing
+        if first:
+            found = self._judged(reader.telemetry(dt, begun=begun - self.seconds))
+        found = found or self._judged(reader.positions(dt, begun=begun)) or self._followed(sent, left)
+        if found is None and self._motion.doubtful.any():
+            found = self._judged(reader.again(self._motion.doubtful)) or self._followed(sent, left)
+        reader.suspect(self._motion.suspicion)
+        # A line in doubt is slow: whether it recovers is more urgent.
+        if found is None and self.complete and not first:
+            found = self._judged(reader.telemetry(dt, begun=begun - self.seconds))
+        # Last, so that contacts are fresh.
+        if found is None and self.complete and self._feet is not None:
+            trouble = self._feet.read()
+            if trouble and not self._troubled:
+                self.notes.append(f"foot switches can't be read: {trouble}")
+            self._troubled = self._troubled or bool(trouble)
+        return found
+
+    def _judged(self, readings: Iterable[Reading]) -> ServoFault | None:
+        """Take note of who answered and what was told, until the first fault."""
+        for reading in readings:
+            self.complete = self.complete and not reading.errors
+            fault = self._answers.answered(
                 reading.bus,
                 reading.asked,
                 answered=reading.answered,
                 errors=reading.errors,
                 now=self._clock.now(),
                 voltage=self.telemetry.lowest_voltage,
-            )
-            if found is not None:
-                break
-        if found is None and reader.read.any():
-            found = self._motion.followed(sent, reader.angles.copy(), read=reader.read, now=self._clock.now())
-            reader.suspect(self._motion.suspicion)
-        self.complete = complete
-        # A line in doubt is slow: whether it recovers is more urgent.
-        for name, values in reader.telemetry(dt, begun=begun - self.seconds) if complete else ():
-            found = found or self.telemetry.measured(name, values, now=self._clock.now())
-        # Last, so that contacts are fresh.
-        if complete and self._feet is not None:
-            trouble = self._feet.read()
-            if trouble and not self._troubled:
-                self.notes.append(f"foot switches can't be read: {trouble}")
-            self._troubled = self._troubled or bool(trouble)
-        return found
+            ) or self.telemetry.measured(reading.bus, reading.telemetry, now=self._clock.now())
+            if fault is not None:
+                return fault
+        return None
+
+    def _followed(self, sent: Float[np.ndarray, "legs 3"], sent_at: float) -> ServoFault | None:
+        """Compare what was read last with what was sent."""
+        reader = self._reader
+        if not reader.read.any():
+            return None
+        return self._motion.followed(
+            sent,
+            reader.angles.copy(),
+            read=reader.read.copy(),
+            now=self._clock.now(),
+            times=reader.times,
+            sent_at=sent_at,
+        )
 
     def settle(self, dt: float, *, begun: float, writing: float) -> None:
         """Read positions, and judge nothing.
@@ -160,7 +185,8 @@ class ServoInput:
         begun, writing : float
             When it began, and how long commands took on the wire [s].
         """
-        for _ in self._reader.positions(dt, begun=begun, writing=writing):
+        self._reader.plan(dt, writing=writing)
+        for _ in self._reader.positions(dt, begun=begun):
             pass
 
     @property
