@@ -87,10 +87,9 @@ class LegOdometry:
             self.behind, self._before = 0j, {}
             return 0j
         before, self._before, turn = self._before, {}, cmath.exp(1j * yaw)
-        turned = tuple(function(angle) for angle in tilt for function in (math.cos, math.sin))
         feet, over_feet = list[complex](), dict[int, complex]()
         for leg in bears:
-            foot, inclination, rolls = self._foot(leg, measured[leg], turned)
+            foot, inclination, rolls = self._foot(leg, measured[leg], *tilt)
             self._before[leg] = foot * turn, inclination
             if leg in before:
                 # The centre of a ball moves with the body as the ball rolls.
@@ -118,19 +117,18 @@ class LegOdometry:
                 speeds[leg] = abs(moved[leg] - 1j * turned * place) / dt
         self.slip = [slip + share * (speed - slip) for slip, speed in zip(self.slip, speeds, strict=True)]
 
-    def _foot(self, leg: int, angles: Vector, tilt: tuple[float, ...]) -> tuple[complex, float, complex]:
+    def _foot(self, leg: int, angles: Vector, roll: float, pitch: float) -> tuple[complex, float, complex]:
         """Return where a foot is over the ground from the body, x + iy in axes with its yaw [m].
 
         Besides that, the inclination of its tibia over the ground, upwards [rad], and how far and where to its ball
-        rolls over that. The tilt is given by cosine and sine of roll, and of pitch.
+        rolls over that.
         """
         mount_yaw, mount_x, mount_y, mount_z, coxa, side, femur, tibia, radius = self._legs[leg]
-        (cos_roll, sin_roll, cos_pitch, sin_pitch), inclination = tilt, angles[1] + angles[2]
-        direction = cmath.rect(1.0, mount_yaw + angles[0])
+        inclination, direction = angles[1] + angles[2], cmath.rect(1.0, mount_yaw + angles[0])
         out = complex(coxa + femur * math.cos(angles[1]) + tibia * math.cos(inclination), side) * direction
         down = femur * math.sin(angles[1]) + tibia * math.sin(inclination) + mount_z
-        x, y = mount_x + out.real, mount_y + out.imag
-        place = complex(x * cos_pitch, y * cos_roll - down * sin_roll)
-        place += (y * sin_roll + down * cos_roll) * sin_pitch
-        rise = direction.imag * cos_pitch * sin_roll - direction.real * sin_pitch
+        x, y, sine = mount_x + out.real, mount_y + out.imag, math.sin(roll)
+        place = complex(x * math.cos(pitch), y * math.cos(roll) - down * sine)
+        place += (y * sine + down * math.cos(roll)) * math.sin(pitch)
+        rise = direction.imag * math.cos(pitch) * sine - direction.real * math.sin(pitch)
         return place, inclination + rise, radius * direction
