@@ -439,3 +439,19 @@ def test_as_items_as_vector_and_as_bool():
     assert as_bool(True) is as_bool(np.True_) is as_bool(1.0) is True
     assert as_bool(False) is as_bool(np.int8(0)) is False
     assert as_bool(0.5) is as_bool("yes") is as_bool(None) is None
+
+
+@given(st.lists(st.floats(), min_size=18, max_size=18))
+def test_an_array_is_accepted_as_lists_of_its_numbers_are(numbers):
+    values = np.array(numbers).reshape(6, 3)
+    as_array, as_lists = ReadingsValidator(STRIDER), ReadingsValidator(STRIDER)
+    for _ in range(2):
+        found = as_array.validate(SensorReadings(joint_angles=values), 0.01)
+        assert found == as_lists.validate(SensorReadings(joint_angles=values.tolist()), 0.01)
+
+
+def test_an_array_whose_sum_is_not_finite_is_accepted_with_finite_numbers():
+    greatest = np.full((6, 3), 1e308)
+    valid = ReadingsValidator(STRIDER).validate(SensorReadings(joint_speeds=greatest), 0.01)
+    assert valid.joint_speeds == ((1e308,) * 3,) * 6
+    assert not valid.rejected
