@@ -418,7 +418,7 @@ def test_lines_of_tables_and_keys():
     assert lines[("legs", 1, "name")] == 4
     assert lines[("legs", 1, "coxa", "id")] == 6
     assert line_of(("supply", "v", "x"), lines) == 9
-    assert line_of(("b",), lines) is None
+    assert line_of(("b",), lines) == 1
 
 
 def test_the_commands_write_and_check_files(tmp_path, monkeypatch):
@@ -441,3 +441,61 @@ def test_the_commands_write_and_check_files(tmp_path, monkeypatch):
     code, found = run_json("calibration", "check", "c.toml")
     assert (code, found["complete"]) == (1, False)
     assert len(found["problems"]) == 3
+
+
+def test_lines_are_found_in_everything_that_toml_allows():
+    text = """[sensors . imu]
+"port" = "x"
+[[ a.b ]]
+[[a.b]]
+c.d = [
+  [1],
+  "]", # ]
+]
+[a.b.e]
+f = \"\"\"[x]
+g = 1 \"\"\"
+h = 2
+i = '[' # [
+j = {k = [1]}
+"""
+    lines = key_lines(text)
+    assert lines == {
+        (): 1,
+        ("sensors",): 1,
+        ("sensors", "imu"): 1,
+        ("sensors", "imu", "port"): 2,
+        ("a",): 3,
+        ("a", "b"): 3,
+        ("a", "b", 0): 3,
+        ("a", "b", 1): 4,
+        ("a", "b", 1, "c"): 5,
+        ("a", "b", 1, "c", "d"): 5,
+        ("a", "b", 1, "e"): 9,
+        ("a", "b", 1, "e", "f"): 10,
+        ("a", "b", 1, "e", "h"): 12,
+        ("a", "b", 1, "e", "i"): 13,
+        ("a", "b", 1, "e", "j"): 14,
+    }
+    assert line_of(("nothing",), lines) == 1
+    assert line_of(("nothing",), {}) is None
+
+
+def test_every_message_about_a_calibration_file_names_a_line():
+    good = calibration_text(nominal()).splitlines()
+    mistaken = [""]
+    for i, line in enumerate(good):
+        mistaken.append("\n".join(good[:i] + good[i + 1 :]))
+        mistaken += ["\n".join([*good[:i], new, *good[i:]]) for new in ("[foo]", "odd = 1", "[supply]", "[[legs]]")]
+        if "=" in line:
+            mistaken += [
+                "\n".join([*good[:i], line.replace("= ", new, 1), *good[i + 1 :]]) for new in ("= -", "= [] #")
+            ]
+    refused = []
+    for text in mistaken:
+        try:
+            Calibration.from_text(text, STRIDER)
+        except CalibrationError as error:
+            refused += [problem for problem in error.problems if not re.search(r"line \d+", problem)] or [""]
+    assert len(refused) > 100
+    assert not any(refused), sorted(set(refused))

@@ -9,9 +9,10 @@ from decimal import Decimal
 from pathlib import Path
 
 from tarsus.errors import CalibrationError
-from tarsus.hardware.calibration.document import decimal_document, fields_from_document
+from tarsus.hardware.calibration.document import fields_from_document
 from tarsus.hardware.calibration.fields import CalibrationFields
 from tarsus.hardware.calibration.lines import key_lines
+from tarsus.hardware.calibration.written_document import decimal_document
 from tarsus.robot.robot import Robot
 from tarsus.robot.special_file import is_pipe_or_device
 from tarsus.robot.writer import toml_text

@@ -9,6 +9,11 @@ __all__ = ["Place", "key_lines", "line_of"]
 
 Place: TypeAlias = tuple[str | int, ...]
 
+_PART = r"""(?:[\w-]+|"[^"]*"|'[^']*')"""
+_PATH = rf"{_PART}(?:\s*\.\s*{_PART})*"
+# What brackets do not count in, and what begins a text of several lines.
+_HIDDEN = re.compile(r"""\"{3}|'{3}|"(?:[^"\\]|\\.)*"|'[^']*'|#.*""")
+
 
 def key_lines(text: str) -> dict[Place, int]:
     """Return the line of each table and key; the key ``femur`` of the second ``[[legs]]`` is ``("legs", 1, "femur")``.
@@ -18,22 +23,24 @@ def key_lines(text: str) -> dict[Place, int]:
     text : str
         The text; what is no header and no key is passed over.
     """
-    found: dict[Place, int] = {}
-    counts: dict[str, int] = {}
+    # The table of the file itself begins with it.
+    found: dict[Place, int] = {(): 1}
+    counts: dict[Place, int] = {}
     inside: Place = ()
+    open_brackets, quotes = 0, ""
     for number, line in enumerate(text.splitlines(), 1):
-        if header := re.match(r"\s*\[\[\s*([\w-]+)\s*\]\]", line):
-            name = header[1]
-            counts[name] = counts.get(name, -1) + 1
-            inside = (name, counts[name])
-            found[inside] = number
-        elif header := re.match(r"\s*\[\s*([\w.-]+)\s*\]", line):
-            inside = ()
-            for part in header[1].split("."):
-                inside += (part, counts[part]) if not inside and part in counts else (part,)
-            found[inside] = number
-        elif key := re.match(r"\s*([\w-]+)\s*=", line):
-            found[(*inside, key[1])] = number
+        if open_brackets > 0 or quotes:
+            open_brackets, quotes = _open(line, open_brackets, quotes)
+        elif header := re.match(rf"\s*(\[\[?)\s*({_PATH})\s*\]", line):
+            *outer, last = _parts(header[2])
+            base = (*_resolved(outer, (), counts), last)
+            if header[1] == "[[":
+                counts[base] = counts.get(base, -1) + 1
+            inside = _resolved([last], base[:-1], counts)
+            _note(found, inside, number)
+        elif key := re.match(rf"\s*({_PATH})\s*=(.*)", line):
+            _note(found, (*inside, *_parts(key[1])), number)
+            open_brackets, quotes = _open(key[2], 0, "")
     return found
 
 
@@ -47,7 +54,46 @@ def line_of(place: Place, lines: dict[Place, int]) -> int | None:
     lines : dict
         As from `key_lines`.
     """
-    for length in range(len(place), 0, -1):
+    for length in range(len(place), -1, -1):
         if place[:length] in lines:
             return lines[place[:length]]
     return None
+
+
+def _parts(path: str) -> list[str]:
+    return [part.strip("\"'") for part in re.findall(_PART, path)]
+
+
+def _resolved(parts: list[str], inside: Place, counts: dict[Place, int]) -> Place:
+    """Return the place of a path, in the last entry of each list of tables on its way."""
+    for part in parts:
+        inside = (*inside, part)
+        if inside in counts:
+            inside = (*inside, counts[inside])
+    return inside
+
+
+def _note(found: dict[Place, int], place: Place, number: int) -> None:
+    """Take note of a line; tables that are only named on the way to another one begin there."""
+    for length in range(1, len(place)):
+        found.setdefault(place[:length], number)
+    found[place] = number
+
+
+def _open(line: str, brackets: int, quotes: str) -> tuple[int, str]:
+    """Return how many brackets are open after a line, and the quotes of a text that goes on."""
+    if quotes:
+        _, closed, line = line.partition(quotes)
+        if not closed:
+            return brackets, quotes
+    at = 0
+    for hidden in _HIDDEN.finditer(line):
+        brackets += _balance(line[at : hidden.start()])
+        at = hidden.end()
+        if hidden[0] in ('"""', "'''"):
+            return _open(line[at:], brackets, hidden[0])
+    return brackets + _balance(line[at:]), ""
+
+
+def _balance(text: str) -> int:
+    return sum((letter in "[{") - (letter in "]}") for letter in text)
