@@ -1,6 +1,7 @@
 """Hex_Cfg.h of the Phoenix firmware: read and written, against the firmware's own equations."""
 
 import math
+import os
 import warnings
 
 import numpy as np
@@ -215,3 +216,18 @@ def test_no_warning_of_python_reaches_a_user():
         with pytest.raises(InputError, match="cSSC_BAUD is '38400if'; it must be a whole number"):
             calibration_from_hex_cfg(text, robot=robot, robot_file="x.toml", where="h")
     assert caught == []
+
+
+@pytest.mark.parametrize(
+    ("size", "message"), [(None, "is a pipe or a device"), (2**20 + 1, "has 1048577 bytes, more than 1048576")]
+)
+def test_what_can_be_no_header_is_refused_before_it_is_read(tmp_path, monkeypatch, size, message):
+    monkeypatch.chdir(tmp_path)
+    header = tmp_path / "Hex_Cfg.h"
+    if size is None:
+        os.mkfifo(header)
+    else:
+        header.write_bytes(b"\n" * size)
+    refused = run("calibration", "from-phoenix", str(header), "robot")
+    assert refused.exit_code == 2
+    assert message in " ".join(refused.output.split())

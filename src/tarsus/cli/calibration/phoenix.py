@@ -11,6 +11,8 @@ from tarsus.cli.values import examples, json_option
 
 __all__ = ["from_phoenix", "to_phoenix"]
 
+_LARGEST = 2**20
+
 
 @click.command(
     "from-phoenix",
@@ -36,6 +38,13 @@ def from_phoenix(header: Path, name: str, driver: str | None, as_json: bool) -> 
     """
     from tarsus.hardware.phoenix.hex_cfg import calibration_from_hex_cfg, robot_from_hex_cfg
     from tarsus.robot.file import save_robot
+    from tarsus.robot.special_file import is_pipe_or_device
+
+    if is_pipe_or_device(header):
+        raise click.UsageError(f"{header} is a pipe or a device; a configuration header is a regular file")
+    size = header.stat().st_size
+    if size > _LARGEST:
+        raise click.UsageError(f"{header} has {size} bytes, more than {_LARGEST}; a configuration header has fewer")
 
     robot_file, calibration_file = Path(f"{name}.toml"), Path(f"{name}.calibration.toml")
     text = header.read_text(encoding="utf-8", errors="replace")
