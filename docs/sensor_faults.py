@@ -145,7 +145,7 @@ def main() -> None:
     asked = parser.parse_args()
     tables = {
         "sensor faults": "\n\n".join(table(robot, asked.faults, asked.seeds, medians) for robot in asked.robots),
-        "leg failures": failure_table(["strider", "phantomx"]),
+        "leg failures": failure_table(["strider", "phantomx", "makeyourpet"]),
     }
     if asked.print:
         print(*tables.values(), sep="\n\n")

@@ -7,8 +7,10 @@ import pytest
 
 import tarsus
 from tarsus.control.sensing.joint_monitor import JointMonitor
+from tarsus.errors import InputError
+from tarsus.gait.support_stance import support_stance
 from tarsus.kinematics.mass import centre_of_mass, total_mass
-from tarsus.robot.remaining import remaining_robot
+from tarsus.robot.remaining import remaining_robot, turned_robot
 from tarsus.simulation import SimulatedPlant
 
 STRIDER = tarsus.load_robot("strider")
@@ -93,6 +95,52 @@ def test_a_robot_without_a_leg_has_its_mass_and_its_other_legs():
     assert not remaining_robot(without_masses, [0, 2, 3, 5]).has_masses
 
 
+def test_a_robot_whose_coxa_angles_count_from_elsewhere_is_the_same_robot():
+    phantomx = tarsus.load_robot("phantomx")
+    coxa = np.linspace(-0.4, 0.4, 6)
+    angles = tarsus.WalkController(phantomx).angles.copy()
+    same = tarsus.forward_kinematics(turned_robot(phantomx, coxa), angles - np.outer(coxa, [1, 0, 0]))
+    np.testing.assert_allclose(same, tarsus.forward_kinematics(phantomx, angles), atol=1e-12)
+    np.testing.assert_allclose(turned_robot(phantomx, coxa).limits[:, 0] + coxa[:, None], phantomx.limits[:, 0])
+
+
+@pytest.mark.parametrize("name", ["strider", "phantomx", "makeyourpet"])
+def test_without_any_one_leg_a_stance_supports_a_fast_gait(name):
+    robot = tarsus.load_robot(name)
+    whole = tarsus.WalkController(robot).top_speed((1, 0, 0))
+    for lost in range(6):
+        rest = remaining_robot(robot, [leg for leg in range(6) if leg != lost])
+        gait = tarsus.Gait.named("ripple", legs=5)
+        walk = tarsus.WalkController(turned_robot(rest, support_stance(rest, gait)), gait)
+        assert min(walk.top_speed(way) for way in ((1, 0, 0), (-1, 0, 0), (0, 1, 0))) > 0.2 * whole
+        least = np.inf
+        for _ in range(round(2 * walk.cycle_time / DT)):
+            walk.step((0.1, 0.0, 0.0), DT)
+            least = min(least, walk.margin)
+        assert least > 0.004
+
+
+def test_the_stance_of_a_whole_robot_turns_no_leg_to_its_limit():
+    turned = support_stance(STRIDER, tarsus.Gait.named("tripod"), body_height=0.12, swing_height=0.02)
+    assert (np.abs(turned) < 0.2).all()
+
+
+def test_a_robot_has_four_legs():
+    with pytest.raises(InputError, match="3 legs are left; a robot has 4 or more"):
+        remaining_robot(STRIDER, [0, 2, 4])
+
+
+@pytest.mark.parametrize("lost", [(0, 1), (1, 4)])
+def test_four_legs_walk_whichever_they_are(lost):
+    controller = tarsus.RobotController(STRIDER)
+    controller.leg_failures.failed.update(dict.fromkeys(lost, 1))
+    for _ in range(500):
+        output = controller.step((0.1, 0.0, 0.0), DT)
+        assert output.interventions == ()
+    assert output.state == "walking"
+    assert output.body.position[0] > 0.03
+
+
 def test_a_limp_servo_is_found_in_physics_and_the_robot_walks_on():
     plant = SimulatedPlant(STRIDER)
     controller = tarsus.RobotController(STRIDER)
@@ -111,7 +159,7 @@ def test_a_limp_servo_is_found_in_physics_and_the_robot_walks_on():
         controller.step((0.12, 0.0, 0.0), DT, readings)
     assert controller.leg_failures.failed == {1: 1}
     assert tilt < np.deg2rad(20)
-    assert plant.state.body.position[0] - start > 0.1
+    assert plant.state.body.position[0] - start > 0.6
     found = [each for each in controller.output.limitations if each.kind == "gait"]
     assert [(each.leg, each.joint) for each in found] == [("middle left", "femur")]
     assert "failed" in found[0].text()
@@ -139,15 +187,17 @@ def test_told_of_it_a_robot_walks_stands_and_sits_without_a_leg():
     assert not [each for each in output.limitations if each.kind == "gait"]
 
 
-def test_a_robot_that_cannot_walk_without_its_legs_sits_down_until_told_otherwise():
+@pytest.mark.parametrize("lost", [{0: 0, 1: 1, 2: 2}, dict.fromkeys(range(6), 1)])
+def test_a_robot_that_cannot_walk_without_its_legs_sits_down_until_told_otherwise(lost):
     controller = tarsus.RobotController(STRIDER)
     controller.step((0.1, 0.0, 0.0), DT)
-    controller.leg_failures.failed.update({0: 0, 1: 1, 2: 2})
+    controller.leg_failures.failed.update(lost)
     for _ in range(500):
         output = controller.step((0.1, 0.0, 0.0), DT)
     assert output.state == "lying"
     (why,) = [each for each in output.limitations if each.kind == "state"]
-    assert why.text().startswith("state: front left and middle left and rear left: the robot sits down")
+    assert why.text().startswith("state: front left and middle left and rear left")
+    assert ": the robot sits down" in why.text()
     assert controller.step(tarsus.Command(state="standing"), DT).state == "lying"
     controller.leg_failures.failed.clear()
     for _ in range(500):

@@ -1,16 +1,21 @@
-"""The robot that is left without some of its legs."""
+"""The robot that is left without some of its legs, and one whose coxa angles count from elsewhere."""
 
 from __future__ import annotations
 
 import dataclasses
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from tarsus.errors import InputError
 from tarsus.robot.robot import Robot
 
-__all__ = ["remaining_robot"]
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
+__all__ = ["remaining_robot", "turned_robot"]
+
+_FEWEST_LEGS = 4
 # Values of a robot that it has for each leg.
 _OF_LEGS = (
     *("mount_position", "mount_yaw", "coxa", "femur", "tibia", "limits"),
@@ -27,7 +32,14 @@ def remaining_robot(robot: Robot, legs: list[int]) -> Robot:
         A single robot.
     legs : list of int
         The legs that are left, four or more.
+
+    Raises
+    ------
+    InputError
+        If fewer legs are left.
     """
+    if len(legs) < _FEWEST_LEGS:
+        raise InputError(f"{len(legs)} legs are left; a robot has {_FEWEST_LEGS} or more")
     lost = [leg for leg in range(robot.legs) if leg not in legs]
     values: dict[str, Any] = {name: np.asarray(getattr(robot, name))[legs] for name in _OF_LEGS}
     if robot.link_mass is not None:
@@ -42,3 +54,18 @@ def remaining_robot(robot: Robot, legs: list[int]) -> Robot:
         servos=tuple(robot.servos[leg] for leg in legs),
         **values,
     )
+
+
+def turned_robot(robot: Robot, coxa: Float[np.ndarray, "legs"]) -> Robot:
+    """Return the same robot with its coxa angles counted from others: its legs straight out are turned there.
+
+    Parameters
+    ----------
+    robot : Robot
+        A single robot.
+    coxa : array, shape (legs,)
+        Coxa angles that are 0 in the robot that is returned [rad].
+    """
+    limits = np.array(robot.limits)
+    limits[:, 0] -= coxa[:, None]
+    return dataclasses.replace(robot, mount_yaw=np.asarray(robot.mount_yaw) + coxa, limits=limits)

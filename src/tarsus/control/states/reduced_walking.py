@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -17,9 +18,10 @@ from tarsus.control.states.robot_state import RobotState
 from tarsus.control.walk_controller import WalkController
 from tarsus.errors import TarsusError
 from tarsus.gait.gait import Gait
+from tarsus.gait.support_stance import support_stance
 from tarsus.gait.swing import horizontal_profile
 from tarsus.load.servo_limits import at_supply
-from tarsus.robot.remaining import remaining_robot
+from tarsus.robot.remaining import remaining_robot, turned_robot
 from tarsus.robot.robot import JOINTS, Robot
 
 if TYPE_CHECKING:
@@ -40,7 +42,10 @@ _OF_BODY = ("attitude", "angular_rates", "ground")
 
 
 class ReducedWalking(Walking):
-    """Standing and walking on the legs that are left, one of them in the air at a time, with a body shift.
+    """Standing and walking on the legs that are left, turned towards the place of those that are not.
+
+    The gait is ripple or wave, whichever is faster; where neither keeps the robot stable, one leg is in the air at a
+    time, with a body shift.
 
     Parameters
     ----------
@@ -76,9 +81,11 @@ class ReducedWalking(Walking):
     ) -> None:
         self.failed = dict(failed)
         self._robot, self._legs = robot, [leg for leg in range(robot.legs) if leg not in failed]
-        count = len(self._legs)
-        gait = Gait(1 - 2 / (3 * count), tuple(leg / count for leg in range(count)), body_shift=True)
-        super().__init__(WalkController(remaining_robot(robot, self._legs), gait, **options))
+        rest = remaining_robot(robot, self._legs)
+        super().__init__(_fastest_walk(rest, **options))
+        # Joint angles at which those of the robot that is left are 0.
+        self._zero = np.zeros((len(self._legs), 3))
+        self._zero[:, 0] = np.asarray(self.controller.robot.mount_yaw) - np.asarray(rest.mount_yaw)
         self._limitations = tuple(
             Limitation(kind=LimitationKind.GAIT, cause=_CAUSE, leg=robot.leg_names[leg], joint=JOINTS[joint])
             for leg, joint in failed.items()
@@ -86,8 +93,8 @@ class ReducedWalking(Walking):
         self._start, self._end, self._speeds = now.angles, np.array(now.angles), speeds
         for leg in failed:
             low, high = np.asarray(robot.limits)[leg].T
-            self._end[leg, 1:] = min(_FEMUR_UP, high[1]), low[2] + _FROM_LIMIT
-        self._end[self._legs] = self.controller.angles
+            self._end[leg] = np.clip(0.0, low[0], high[0]), min(_FEMUR_UP, high[1]), low[2] + _FROM_LIMIT
+        self._end[self._legs] = self.controller.angles + self._zero
         speed = _SPEED_SHARE * float(self.controller.joint_speed.min())
         self._duration = max(float(np.abs(self._end - self._start).max()) / speed, _LEAST_TIME)
         self._time, self._readings = 0.0, SensorReadings()
@@ -102,7 +109,8 @@ class ReducedWalking(Walking):
         velocities = {legs[leg]: each for leg, each in (command.foot_velocities or {}).items() if leg in legs} or None
         command = dataclasses.replace(command, gait=None, foot_targets=targets, foot_velocities=velocities)
         super().step(command, dt, None if readings is None else self._of_legs(readings))
-        self.joint_angles, self.torques = self._of_all(self.joint_angles), self._of_all(self.torques)
+        self.torques = self._of_all(self.torques)
+        self.joint_angles = self._of_all(self.joint_angles, self._zero[:, 0].tolist())
 
     @property
     def stands(self) -> bool:
@@ -118,7 +126,7 @@ class ReducedWalking(Walking):
         angles = self._start + horizontal_profile(share) * (self._end - self._start) + coasted * self._speeds
         contacts[self._legs] = now.contacts
         if share >= 1:
-            angles[self._legs] = now.angles
+            angles[self._legs] = now.angles + self._zero
         angles.setflags(write=False)
         return now._replace(
             angles=angles,
@@ -130,10 +138,16 @@ class ReducedWalking(Walking):
             felt=now.felt or share < 1,
         )
 
-    def _of_all(self, measured: Sequence[Vector | None] | None) -> Sequence[Vector | None] | None:
-        """Return what is measured of the legs that are left, as of all legs."""
-        of_legs = {} if measured is None else dict(zip(self._legs, measured, strict=True))
-        return None if measured is None else [of_legs.get(leg) for leg in range(self._robot.legs)]
+    def _of_all(
+        self, measured: Sequence[Vector | None] | None, coxa: Sequence[float] | None = None
+    ) -> Sequence[Vector | None] | None:
+        """Return what is measured of the legs that are left, as of all legs, and with an addend to the first value."""
+        if measured is None:
+            return None
+        found: list[Vector | None] = [None] * self._robot.legs
+        for leg, each, addend in zip(self._legs, measured, coxa or [0.0] * len(self._legs), strict=True):
+            found[leg] = each and (each[0] + addend, each[1], each[2])
+        return found
 
     def _of_legs(self, readings: SensorReadings) -> SensorReadings:
         """Return the readings of the legs that are left."""
@@ -141,9 +155,26 @@ class ReducedWalking(Walking):
         for name in CHANNELS:
             value: Shaped[np.ndarray, "..."] | None = getattr(readings, name)
             if value is not None and name not in _OF_BODY and np.shape(value)[:1] == (self._robot.legs,):
-                value = np.asarray(value)[self._legs]
+                value = np.asarray(value)[self._legs] - (self._zero if name == "joint_angles" else 0)
             values[name] = value
         return SensorReadings(**values, age=readings.age)
+
+
+def _fastest_walk(robot: Robot, **options: Any) -> WalkController:
+    """Return the faster of ripple and wave, each in the stance that supports it best, else a walk with a body shift."""
+    heights = {name: options.get(name) for name in ("body_height", "swing_height")}
+
+    def walk(gait: Gait) -> WalkController:
+        turned = turned_robot(robot, support_stance(robot, gait, **heights))
+        return WalkController(turned, gait, **options)
+
+    walks, legs = [], robot.legs
+    for name in ("ripple", "wave"):
+        with suppress(TarsusError):
+            walks.append(walk(Gait.named(name, legs=legs)))
+    if not walks:
+        return walk(Gait(1 - 2 / (3 * legs), tuple(leg / legs for leg in range(legs)), body_shift=True))
+    return max(walks, key=lambda each: each.top_speed((1.0, 0.0, 0.0)))
 
 
 class LegFailures:
