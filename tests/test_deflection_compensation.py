@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 import tarsus
+from tarsus.control.pose.deflection_compensation import _SHARE as SHARE
 from tarsus.control.pose.deflection_compensation import DeflectionCompensation
 from tarsus.control.readings import ValidReadings
 from tarsus.control.walk.joint_solver import JointSolver
 from tarsus.control.walk.state import GaitState
-from tarsus.load.deflection import SHARE
 from tarsus.simulation import Sensor, SensorSuite, SimulatedPlant
 from tarsus.simulation.sensors.suite import FootSwitch
 
@@ -26,10 +26,10 @@ def readings(softness, forces=_FORCES):
     return ValidReadings(joint_angles=measured, forces=tuple(map(tuple, forces.tolist())))
 
 
-def stepped(valid, *, robot=ROBOT, ticks=800, compensation=None):
+def stepped(valid, *, robot=ROBOT, ticks=800, compensation=None, slope=0.0):
     compensation = DeflectionCompensation(robot) if compensation is None else compensation
     for _ in range(ticks):
-        compensation.step(valid, ANGLES, 0.01)
+        compensation.step(valid, ANGLES, 0.01, slope=slope)
     return compensation
 
 
@@ -43,6 +43,19 @@ def test_it_learns_how_soft_servos_are_and_adds_a_share_of_what_vertical_forces_
     assert found.lowered == pytest.approx(-down.min(), abs=1e-6)
 
 
+@pytest.mark.parametrize("softness", [0.4, 0.9])
+def test_softness_is_learnt_by_the_whole_force_on_feet_that_lean_against_each_other(softness):
+    inward = np.exp(1j * (ROBOT.mount_yaw + ANGLES[:, 0] + np.pi))
+    forces = np.c_[0.4 * LOADS * inward.real, 0.4 * LOADS * inward.imag, LOADS]
+    jacobian = np.asarray(tarsus.leg_jacobian(ROBOT, ANGLES))
+    turned = np.einsum("lij,li->lj", jacobian, forces) / tarsus.JointSprings.of(ROBOT).stiffness
+    measured = tuple(map(tuple, (ANGLES + softness * turned).tolist()))
+    found = stepped(readings(0.0, forces)._replace(joint_angles=measured))
+    assert found.softness == pytest.approx(softness, abs=1e-6)
+    # What is added is that of the vertical forces: it takes the feet's lean away.
+    np.testing.assert_allclose(found.offsets, -SHARE * softness * DEFLECTION, atol=1e-6)
+
+
 def test_softness_is_within_its_bounds():
     assert stepped(readings(3.0)).softness == 1.0
     assert stepped(readings(-1.0)).softness == 0.0
@@ -52,7 +65,7 @@ def test_it_follows_the_load_slowly_and_pushes_no_foot_that_is_pulled():
     found = stepped(readings(1.0))
     before = found.offsets
     stepped(readings(1.0, 5 * _FORCES), ticks=1, compensation=found)
-    assert np.abs(found.offsets - before).max() < 4 * SHARE * 0.16 * np.abs(DEFLECTION).max()
+    assert np.abs(found.offsets - before).max() < 4 * SHARE * 0.31 * np.abs(DEFLECTION).max()
     stepped(readings(0.0, -_FORCES), compensation=found)
     assert np.abs(found.offsets).max() < 1e-9
 
@@ -87,8 +100,23 @@ def test_legs_that_friction_holds_are_left_alone(name):
     robot = tarsus.load_robot(name)
     angles = np.array(tarsus.WalkController(robot).angles)
     compensation, valid = DeflectionCompensation(robot), readings(1.0)
-    compensation.step(valid._replace(joint_angles=tuple(map(tuple, angles.tolist()))), angles, 0.01)
+    compensation.step(valid._replace(joint_angles=tuple(map(tuple, angles.tolist()))), angles, 0.01, slope=0.0)
     assert (compensation.offsets is None) == (needed_friction(robot, angles) < 0.8)
+
+
+def test_legs_that_friction_holds_on_level_ground_are_compensated_on_a_slope_and_left_alone_after_it():
+    robot = tarsus.load_robot("strider")
+    angles = np.array(tarsus.WalkController(robot).angles)
+    measured = tuple(map(tuple, (angles - [0.0, -0.05, 0.0]).tolist()))
+    found, valid = DeflectionCompensation(robot), readings(0.0)._replace(joint_angles=measured)
+    found.step(valid, angles, 0.01, slope=0.0)
+    assert found.offsets is None
+    for _ in range(300):
+        found.step(valid, angles, 0.01, slope=0.2)
+    assert np.abs(found.offsets).max() > 0.005
+    for _ in range(300):
+        found.step(valid, angles, 0.01, slope=0.0)
+    assert np.abs(found.offsets).max() < 1e-3
 
 
 def test_angles_are_with_the_offsets_and_feet_without():

@@ -9,7 +9,6 @@ import numpy as np
 
 from tarsus.control.readings import ValidReadings
 from tarsus.load.compliant.joint_springs import JointSprings
-from tarsus.load.deflection import SHARE
 from tarsus.robot.robot import Robot
 
 if TYPE_CHECKING:
@@ -19,9 +18,11 @@ __all__ = ["DeflectionCompensation"]
 
 # How fast the compensation follows the load, and how fast the softness is learnt [1/s]: a foot that lands hard must not
 # be pressed down further.
-_LOAD_RATE, _LEARNING_RATE = 15.0, 2.0
+_LOAD_RATE, _LEARNING_RATE = 30.0, 2.0
 # Sum of squares of the femurs' deflections from which on they tell the softness [rad^2].
 _LEAST = 1e-5
+# Share of the deflection that is added: measured forces rise with it.
+_SHARE = 0.5
 # Friction that holds the feet of loaded legs where it needs no more.
 _FRICTION = 0.8
 
@@ -32,8 +33,8 @@ class DeflectionCompensation:
     Legs that yield give way outwards: feet that take over load slide, or press against each other through friction.
     With the deflection for a vertical force in the commands, little horizontal force is left. The stiffness is that of
     the robot's servos over their softness, which is learnt from the measured angles of the femurs: it is 0 for servos
-    that do not yield. Nothing is added where forces or joint angles are not measured or servos unknown, nor to legs
-    that friction holds: compensated legs are stiffer, and lose contact where ground is rough.
+    that do not yield. Nothing is added where forces or joint angles are not measured or servos unknown, nor where
+    friction holds the feet on the slope under them: compensated legs are stiffer, and lose contact on rough ground.
 
     Parameters
     ----------
@@ -47,18 +48,19 @@ class DeflectionCompensation:
     lowered : float
         How much lower the foot is commanded that bears most, on the average [m].
     softness : float
-        Deflection of the femurs over that of the robot's servos under vertical forces, 0 to 1.
+        Deflection of the femurs over that of the robot's servos under the same forces, 0 to 1.
     """
 
     def __init__(self, robot: Robot) -> None:
         self.offsets: Float[np.ndarray, "legs 3"] | None = None
-        self.lowered = self.softness = 0.0
+        self.lowered = self.softness = self._share = self._needed = 0.0
         self._loads, self._legs = [0.0] * robot.legs, list[tuple[float, ...]]()
         if all(all(leg) for leg in robot.servos):
-            columns = (robot.geometry.femur, robot.geometry.tibia, *(1 / JointSprings.of(robot).stiffness[:, 1:]).T)
+            yields, g = (1 / JointSprings.of(robot).stiffness[:, 1:]).T, robot.geometry
+            columns = (robot.mount_yaw, g.femur, g.tibia, *yields)
             self._legs = list(zip(*(column.tolist() for column in columns), strict=True))
 
-    def step(self, valid: ValidReadings, commanded: Float[np.ndarray, "legs 3"], dt: float) -> None:
+    def step(self, valid: ValidReadings, commanded: Float[np.ndarray, "legs 3"], dt: float, *, slope: float) -> None:
         """Follow the loads and learn the softness.
 
         Parameters
@@ -69,25 +71,33 @@ class DeflectionCompensation:
             Joint angles that were commanded in the last tick [rad].
         dt : float
             Time since the last tick [s].
+        slope : float
+            Slope under the feet [m/m].
         """
         unknown = (None,) * len(self._loads)
         if self.offsets is None:
             if valid.forces is None or valid.joint_angles is None or not self._legs:
                 return
-            if self._needed_friction(commanded) < _FRICTION:
-                self._legs = []
+            self._needed = self._needed or self._needed_friction(commanded)
+            if self._needed + slope < _FRICTION:
                 return
+        wanted = _SHARE if self._needed + slope >= _FRICTION else 0.0
+        self._share += min(_LEARNING_RATE * dt, 1.0) * (wanted - self._share)
         forces, measured = valid.forces or unknown, valid.joint_angles or unknown
         follows, product, square, lowered = min(_LOAD_RATE * dt, 1.0), 0.0, 0.0, 0.0
-        offsets, share = list[tuple[float, float, float]](), SHARE * self.softness
-        for leg, (length, tibia, femur_yields, tibia_yields) in enumerate(self._legs):
-            force, angles, (_, femur, bend) = forces[leg], measured[leg], commanded[leg].tolist()
+        offsets, share = list[tuple[float, float, float]](), self._share * self.softness
+        for leg, (yaw, length, tibia, femur_yields, tibia_yields) in enumerate(self._legs):
+            force, angles, (coxa, femur, bend) = forces[leg], measured[leg], commanded[leg].tolist()
             self._loads[leg] += follows * ((max(force[2], 0.0) if force and angles else 0.0) - self._loads[leg])
             load, to_knee = self._loads[leg], tibia * math.cos(femur + bend)
             to_hip = to_knee + length * math.cos(femur)
             turned, bent = femur_yields * to_hip * load, tibia_yields * to_knee * load
             if force and angles:
-                product, square = product + turned * (angles[1] - femur), square + turned * turned
+                # The torque that bends the femur is that of the whole force: feet lean against each other.
+                out = force[0] * math.cos(yaw + coxa) + force[1] * math.sin(yaw + coxa)
+                below_hip = -tibia * math.sin(femur + bend) - length * math.sin(femur)
+                bends = femur_yields * (to_hip * force[2] + below_hip * out)
+                product, square = product + bends * (angles[1] - femur), square + bends * bends
             lowered = max(lowered, share * (turned * to_hip + bent * to_knee))
             offsets.append((0.0, -share * turned, -share * bent))
         if square > _LEAST:
@@ -99,7 +109,7 @@ class DeflectionCompensation:
     def _needed_friction(self, commanded: Float[np.ndarray, "legs 3"]) -> float:
         """Return which friction keeps all feet in place under vertical loads: horizontal over vertical force."""
         needed = 0.0
-        for (length, tibia, femur_yields, tibia_yields), (_, femur, bend) in zip(
+        for (_, length, tibia, femur_yields, tibia_yields), (_, femur, bend) in zip(
             self._legs, commanded.tolist(), strict=True
         ):
             to_knee, below_knee = tibia * math.cos(femur + bend), -tibia * math.sin(femur + bend)
