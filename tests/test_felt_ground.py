@@ -17,6 +17,8 @@ from tarsus.control.terrain.posture_feedback import PostureFeedback
 from tarsus.control.terrain.reach import reachable_heights
 from tarsus.control.terrain.roughness import Roughness
 from tarsus.control.terrain.support import Support, holds
+from tarsus.control.walk.felt_feet import FeltFoot, FeltInputs, GroundUnder
+from tarsus.control.walk.vertical_motion import _swinging
 from tarsus.control.walk_controller import WalkController
 from tarsus.gait.foot_plane import FootPlane, fitted_plane
 from tarsus.kinematics.leg import forward_kinematics
@@ -255,6 +257,30 @@ def test_a_foot_whose_switch_is_open_lifts_the_body_and_one_over_a_hole_does_not
         contacts.step([False, tick % 4 > 1, *[True] * 4], [True] * 6, 0.02)
         contacts.find_open([True] * 6, FEET, 0j, (0.0, pitch), 0.02)
     assert contacts.is_open(0) is opens
+
+
+def test_a_foot_that_lifts_off_soon_is_not_lowered_where_others_take_its_load():
+    def stands(leaving, ticks):
+        contacts = FootContacts(2)
+        contacts.step([True, False], [True, False], 0.01)
+        for _ in range(ticks):
+            contacts.step([True, True], [True, True], 0.01, leaving=leaving)
+        for _ in range(5):
+            contacts.step([True, False], [True, True], 0.01, leaving=leaving)
+        return contacts.standing[1], contacts.supports(1)
+
+    assert stands([False, False], 20) == (False, True)
+    assert stands([False, True], 20) == (True, True)
+    # One that has not stood yet goes on looking for the ground.
+    assert stands([False, True], 2) == (False, False)
+
+
+def test_a_foot_that_steps_down_a_slope_rises_over_the_middle_of_its_way():
+    felt = FeltInputs([], [], [], 0.0, 0.0, (0.0, 0.0), 0j, 0j, 0.8, 1.0, 0.03, 1.0, {})
+    for lifted, expected, top in ((0.0, 0.0, 0.03), (0.04, 0.0, 0.05), (0.0, 0.04, 0.07)):
+        under = GroundUnder(expected, lowest=-0.2, highest=0.2)
+        _, foot = _swinging(lifted, FeltFoot(), under, felt, 0.01, (0.0, 0.5, lifted, 0j))
+        assert foot.top == pytest.approx(top)
 
 
 def test_a_foot_that_has_barely_touched_is_no_support():

@@ -39,6 +39,8 @@ __all__ = ["FeltGround"]
 _DEPTH_SHARE = 0.6
 # Fraction of the swing in which a foot travels, up to half the longest stroke and with the longest one.
 _SLOW_TRAVEL, _FAST_TRAVEL = 0.75, 0.92
+# How soon feet lift off that are not lowered any more [s].
+_LEAVING = 0.1
 # How often height, tilt and lost way are looked at [s].
 _SLOW_PERIOD = 0.03 - PHASE_TOLERANCE
 
@@ -135,7 +137,8 @@ class FeltGround:
             self.body.tilt = (valid.attitude[0] - roll, valid.attitude[1] - pitch)
         dt, ticks, self._unread, self._ticks, self._inputs = self._unread, self._ticks, 0.0, 0, None
         self.ground.see(valid, state)
-        self.contacts.step(measured, down, dt, age=valid.contact_age, count=ticks)
+        leaving = None if self._given[1] else timing.due(state, _LEAVING)
+        self.contacts.step(measured, down, dt, age=valid.contact_age, count=ticks, leaving=leaving)
         self.condition.step([self.contacts.touches(leg) for leg in range(len(down))], valid.attitude, dt)
         if self._loads.compliant:
             forces, feet = self._loads.forces(valid, angles), [(foot.real, foot.imag) for foot in state.foot.tolist()]

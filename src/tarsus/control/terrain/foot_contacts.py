@@ -65,6 +65,7 @@ class FootContacts:
         *,
         age: float = 0.0,
         count: int = 1,
+        leaving: Sequence[bool] | None = None,
     ) -> None:
         """Take in the contacts of one tick, or of some in which they are the same.
 
@@ -78,6 +79,8 @@ class FootContacts:
             Time since the last tick [s]; time since the measurement [s].
         count : int
             Number of ticks.
+        leaving : sequence of bool, optional
+            Which feet are to lift off soon: once these have stood, they are not lowered where others take their load.
         """
         self.age = age
         self.estimator.step(readings, dt, count=count)
@@ -91,6 +94,8 @@ class FootContacts:
                 self._settled[leg] = 0.0
             self.lifted[leg] = not on and (self.lifted[leg] or self._without[leg] > _LOST)
         self.standing = [t <= _LOST or e > _OPEN_AFTER for t, e in zip(self._without, self._evidence, strict=True)]
+        for leg, leaves in enumerate(leaving or ()):
+            self.standing[leg] = self.standing[leg] or (leaves and self._settled[leg] > _SETTLED)
 
     def find_open(
         self,

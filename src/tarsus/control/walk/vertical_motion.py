@@ -18,11 +18,13 @@ __all__ = ["moved_vertically"]
 _STILL = FeltFoot()
 
 # Swing phase at which a foot is at its top.
-_TOP_PHASE = 0.45
+_TOP_PHASE = 0.42
 # Where the ground rises soon: up to which swing phase a foot may begin to rise before it travels, and its top's phase.
 _RISING_FIRST, _STEEP_TOP_PHASE = 0.15, 0.35
 # Fraction of a swing in which a foot goes down from its top to the expected ground.
-_DESCENT = 0.4
+_DESCENT = 0.5
+# How much of its way down a slope a foot at its top has behind it.
+_BEHIND = 0.5
 # Height over the ground from which on a foot goes back, over the swing height.
 _CLEAR = 0.9
 # Least speed of a descending foot, and of a foot that should stand and feels nothing [m/s].
@@ -131,7 +133,8 @@ def _swinging(
     if math.isnan(top) or (phase < top_phase and drawn_back is None):
         # No higher than the foot can be down again from by the end of its swing.
         fits = under.expected - felt.depth + felt.lowering * _DESCENT * swing_time
-        over = max(lifted_at, under.expected, under.way) + felt.swing_height
+        start = lifted_at - _BEHIND * max(lifted_at - under.expected, 0.0)
+        over = max(start, under.expected, under.way) + felt.swing_height
         top, top_phase = max(min(over, under.highest, fits), height), _TOP_PHASE
         if under.steep and 0.0 < phase < _RISING_FIRST:
             drawn_back, top_phase = place, _STEEP_TOP_PHASE
