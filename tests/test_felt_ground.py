@@ -260,12 +260,12 @@ def test_a_foot_whose_switch_is_open_lifts_the_body_and_one_over_a_hole_does_not
 
 
 def test_a_foot_that_lifts_off_soon_is_not_lowered_where_others_take_its_load():
-    def stands(leaving, ticks):
+    def stands(leaving, ticks, without=5):
         contacts = FootContacts(2)
         contacts.step([True, False], [True, False], 0.01)
         for _ in range(ticks):
             contacts.step([True, True], [True, True], 0.01, leaving=leaving)
-        for _ in range(5):
+        for _ in range(without):
             contacts.step([True, False], [True, True], 0.01, leaving=leaving)
         return contacts.standing[1], contacts.supports(1)
 
@@ -273,6 +273,8 @@ def test_a_foot_that_lifts_off_soon_is_not_lowered_where_others_take_its_load():
     assert stands([False, True], 20) == (True, True)
     # One that has not stood yet goes on looking for the ground.
     assert stands([False, True], 2) == (False, False)
+    # Where the walk waits, it does not lift off soon.
+    assert stands([False, True], 20, 20) == (False, False)
 
 
 def test_a_foot_that_steps_down_a_slope_rises_over_the_middle_of_its_way():

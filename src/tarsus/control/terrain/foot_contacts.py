@@ -14,6 +14,8 @@ __all__ = ["FootContacts"]
 _LOST = 0.03
 # A foot that has been without contact for no longer still counts as support [s].
 _GRACE = 0.1
+# How long a foot that lifts off soon may be without contact, and still stand: its load may be gone before [s].
+_LEAVES = 0.15
 # How long the body is lowered for a foot that finds no ground [s].
 _SEARCH = 1.5
 # How long a foot has stood that may lose contact for that time and still be support [s].
@@ -95,7 +97,8 @@ class FootContacts:
             self.lifted[leg] = not on and (self.lifted[leg] or self._without[leg] > _LOST)
         self.standing = [t <= _LOST or e > _OPEN_AFTER for t, e in zip(self._without, self._evidence, strict=True)]
         for leg, leaves in enumerate(leaving or ()):
-            self.standing[leg] = self.standing[leg] or (leaves and self._settled[leg] > _SETTLED)
+            soon = leaves and self._settled[leg] > _SETTLED and self._without[leg] < _LEAVES
+            self.standing[leg] = self.standing[leg] or soon
 
     def find_open(
         self,
