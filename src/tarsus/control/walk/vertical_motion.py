@@ -17,12 +17,14 @@ __all__ = ["moved_vertically"]
 
 _STILL = FeltFoot()
 
-# Swing phase at which a foot is at its top.
-_TOP_PHASE = 0.42
+# Swing phase at which a foot is at its top, and on rough ground.
+_TOP_PHASE, _ROUGH_TOP_PHASE = 0.42, 0.45
 # Where the ground rises soon: up to which swing phase a foot may begin to rise before it travels, and its top's phase.
 _RISING_FIRST, _STEEP_TOP_PHASE = 0.15, 0.35
-# Fraction of a swing in which a foot goes down from its top to the expected ground.
-_DESCENT = 0.5
+# Fraction of a swing in which a foot goes down from its top to the expected ground, and on rough ground.
+_DESCENT, _ROUGH_DESCENT = 0.5, 0.4
+# How far below the expected ground feet go where it is rough [m].
+_ROUGH = 0.006
 # How much of its way down a slope a foot at its top has behind it.
 _BEHIND = 0.5
 # Height over the ground from which on a foot goes back, over the swing height.
@@ -130,12 +132,15 @@ def _swinging(
     """Return the height of a foot in the air, and its state: it rises to its top, then goes down."""
     phase, swing_time, lifted_at, place = swing
     speed, acceleration, top, top_phase, slide, drawn_back = foot
+    rough = min(felt.depth / _ROUGH, 1.0)
+    part = _DESCENT + rough * (_ROUGH_DESCENT - _DESCENT)
     if math.isnan(top) or (phase < top_phase and drawn_back is None):
         # No higher than the foot can be down again from by the end of its swing.
-        fits = under.expected - felt.depth + felt.lowering * _DESCENT * swing_time
+        fits = under.expected - felt.depth + felt.lowering * part * swing_time
         start = lifted_at - _BEHIND * max(lifted_at - under.expected, 0.0)
         over = max(start, under.expected, under.way) + felt.swing_height
-        top, top_phase = max(min(over, under.highest, fits), height), _TOP_PHASE
+        top = max(min(over, under.highest, fits), height)
+        top_phase = _TOP_PHASE + rough * (_ROUGH_TOP_PHASE - _TOP_PHASE)
         if under.steep and 0.0 < phase < _RISING_FIRST:
             drawn_back, top_phase = place, _STEEP_TOP_PHASE
     if phase < top_phase:
@@ -143,7 +148,7 @@ def _swinging(
         whole = (top_phase - phase) * swing_time + time
         height, speed, acceleration = quintic((height, speed, acceleration), top, whole, time / whole)
         return height, FeltFoot(speed, acceleration, top, top_phase, slide, drawn_back)
-    descent = (top - under.expected + felt.depth) / (_DESCENT * swing_time) * felt.pace
+    descent = (top - under.expected + felt.depth) / (part * swing_time) * felt.pace
     after = _towards(speed, -min(max(_LOWERING, descent), felt.lowering), _FOOT_ACCELERATION * dt)
     # Over higher ground on its way it stays.
     lowest = under.lowest
