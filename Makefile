@@ -73,6 +73,7 @@ truth: $(VENV)/.dev
 	$(BIN)/python docs/rough_ground.py
 	$(BIN)/python docs/seen_ground.py
 	$(BIN)/python docs/holes.py
+	$(BIN)/python docs/obstacles.py
 	$(BIN)/python docs/sensor_faults.py
 	$(BIN)/python docs/estimated_contacts.py
 	$(BIN)/python docs/ablation.py

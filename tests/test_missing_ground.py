@@ -1,5 +1,6 @@
-"""Holes: feet that find no ground step back, and the robot stops at the edge and walks away from it."""
+"""Holes and obstacles: feet step back or try again, and the robot stops and walks away."""
 
+import mujoco
 import numpy as np
 import pytest
 
@@ -90,22 +91,97 @@ def test_a_twist_over_the_edge_is_refused_and_any_other_is_granted():
         assert limited(missing, *away).fraction == 1.0
 
 
-def test_a_robot_stops_at_a_hole_says_so_and_walks_away_from_it():
-    robot = tarsus.load_robot("strider")
-    plant = SimulatedPlant(robot, terrain=terrain.Gaps(start=0.35, width=0.2, depth=0.15, count=1))
-    controller = tarsus.RobotController(robot)
-    output = controller.output
-    plant.start(output)
+def test_a_foot_that_is_stopped_tries_again_then_beside_it_and_then_stays_before_it():
+    missing, foot, goal = MissingGround(NAMES), REST[0] - 0.05, REST[0] + 0.05
+    searches = [(0, -0.05, False, True)]
+    assert not missing.tries(0, foot)
+    for _ in range(2):
+        # Drawn back from where it was stopped first, wherever it is stopped next.
+        assert missing.stopped(0, foot, goal) == pytest.approx(-0.04)
+        assert stepped(missing, searches, [foot, *REST[1:]]).places == {0: goal}
+        assert missing.pace == 0.0
+        assert missing.back == 0.0
+    for side in (-1, 1):
+        # Towards the body, then away from it: first beside the place, then on from there.
+        missing.stopped(0, foot, goal)
+        waypoint = missing.places[0]
+        assert waypoint == pytest.approx(foot - 0.04 + side * 0.06j)
+        assert missing.tries(0, foot)
+        feet = [waypoint, *REST[1:]]
+        # Contact at the place beside it is none of the ground.
+        assert stepped(missing, [], feet).places[0] == pytest.approx(goal + side * 0.06j)
+    missing.stopped(0, foot, goal)
+    assert missing.places[0] == pytest.approx(foot - 0.04)
+    assert not missing.tries(0, foot)
+    refused = limited(missing, 0.1, 0.0, 0.0)
+    assert refused.fraction == 0.0
+    assert refused.limitations[0].leg == "LF"
+    for free in ((0.0, 0.1, 0.0), (0.0, 0.0, 0.5), (-0.1, 0.0, 0.0)):
+        assert limited(missing, *free).fraction == 1.0
+    assert not stepped(missing, []).stops
 
-    def walked(speed, time):
-        nonlocal output
+
+class Walk:
+    """A strider in physics."""
+
+    def __init__(self, ground):
+        robot = tarsus.load_robot("strider")
+        self.plant, self.controller = SimulatedPlant(robot, terrain=ground), tarsus.RobotController(robot)
+        self.output = self.controller.output
+        self.plant.start(self.output)
+        self.tilt = 0.0
+
+    def go(self, speed, time):
+        """Return where the body is after a walk."""
         for _ in range(round(100 * time)):
-            output = controller.step((speed, 0.0, 0.0), 0.01, plant.step(output, 0.01))
-            assert not plant.state.body_touches
-        return plant.state.body.position[0]
+            self.output = self.controller.step((speed, 0.0, 0.0), 0.01, self.plant.step(self.output, 0.01))
+            assert not self.plant.state.body_touches
+            self.tilt = max(self.tilt, *np.abs(np.asarray(self.plant.state.body.rpy)[:2]).tolist())
+        return self.plant.state.body.position[0]
 
-    stopped = walked(0.13, 3.5)
+    @property
+    def named(self):
+        """The legs that the ground stops."""
+        return {limit.leg for limit in self.output.limitations if limit.kind is LimitationKind.GROUND and limit.leg}
+
+
+def test_a_robot_stops_at_a_wall_says_so_and_walks_away_from_it():
+    walk = Walk(terrain.Step(rise=0.15, start=0.41))
+    stopped = walk.go(0.13, 3.5)
+    assert stopped < 0.3
+    assert walk.named & {"front left", "front right"}
+    # It neither pushes nor climbs.
+    assert walk.go(0.13, 1.0) == pytest.approx(stopped, abs=0.03)
+    assert walk.tilt < np.radians(8)
+    assert walk.go(-0.13, 2.0) < stopped - 0.1
+
+
+class Post:
+    """A post in the way of the middle left leg."""
+
+    friction = 0.8
+
+    def height(self, x, y):
+        return np.where(np.maximum(np.abs(np.asarray(x) - 0.24), np.abs(np.asarray(y) - 0.308)) < 0.02, 0.09, 0.0)
+
+    def add_to(self, spec):
+        terrain.Flat().add_to(spec)
+        attributes = {"contype": 1, "conaffinity": 0, "friction": (0.8, 0.005, 1e-4), "priority": 1}
+        kind = mujoco.mjtGeom.mjGEOM_BOX
+        spec.worldbody.add_geom(type=kind, size=(0.02, 0.02, 0.045), pos=(0.24, 0.308, 0.045), **attributes)
+
+
+def test_a_leg_gets_past_a_post_in_its_way():
+    walk = Walk(Post())
+    assert walk.go(0.13, 5.0) > 0.45
+    assert not walk.named
+    assert walk.tilt < np.radians(8)
+
+
+def test_a_robot_stops_at_a_hole_says_so_and_walks_away_from_it():
+    walk = Walk(terrain.Gaps(start=0.35, width=0.2, depth=0.15, count=1))
+    stopped = walk.go(0.13, 3.5)
     assert stopped < 0.35
-    assert [limit.leg for limit in output.limitations if limit.kind is LimitationKind.GROUND and limit.leg]
-    assert walked(0.13, 0.5) == pytest.approx(stopped, abs=0.02)
-    assert walked(-0.13, 1.5) < stopped - 0.08
+    assert walk.named
+    assert walk.go(0.13, 0.5) == pytest.approx(stopped, abs=0.02)
+    assert walk.go(-0.13, 1.5) < stopped - 0.08

@@ -87,10 +87,8 @@ class TwistLimiter(Protocol):
 
         Parameters
         ----------
-        request : TwistRequest
-            The commanded twist, and what decides on it.
-        grant : TwistGrant
-            What the limiters before this one have left.
+        request, grant : TwistRequest, TwistGrant
+            The commanded twist, and what decides on it; what the limiters before this one have left.
         """
         ...
 
@@ -103,10 +101,8 @@ def granted_twist(limiters: Sequence[TwistLimiter], request: TwistRequest) -> Tw
 
     Parameters
     ----------
-    limiters : sequence of TwistLimiter
-        The limiters, in their order.
-    request : TwistRequest
-        The commanded twist, and what decides on it.
+    limiters, request : sequence of TwistLimiter, TwistRequest
+        The limiters, in their order; the commanded twist, and what decides on it.
     """
     grant = _WHOLE_TWIST
     for limiter in limiters:

@@ -27,10 +27,8 @@ class WorkspaceLimiter:
 
     Parameters
     ----------
-    names : sequence of str
-        The names of the legs.
-    transitions : TransitionExecutor
-        The stance and its transitions.
+    names, transitions : sequence of str, TransitionExecutor
+        The names of the legs; the stance and its transitions.
     """
 
     def __init__(self, names: Sequence[str], transitions: TransitionExecutor) -> None:

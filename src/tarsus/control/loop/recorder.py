@@ -96,10 +96,8 @@ class Recorder:
 
         Parameters
         ----------
-        time : float
-            Its end [s].
-        output : ControlOutput
-            What the controller gave.
+        time, output : float, ControlOutput
+            Its end [s]; what the controller gave.
         readings : SensorReadings
             What the plant measured before it.
         """
@@ -144,10 +142,8 @@ class Recorder:
 
         Parameters
         ----------
-        name : str
-            What the run is called.
-        rate : float
-            Nominal ticks per second [1/s].
+        name, rate : str, float
+            What the run is called; nominal ticks per second [1/s].
         """
         for since, _, _, limitation in self._present.values():
             self._note_unmet(since, limitation)

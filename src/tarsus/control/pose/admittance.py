@@ -130,10 +130,8 @@ class AdmittanceFilter:
 
     Parameters
     ----------
-    admittance : Admittance
-        Parameters, the same for each foot.
-    legs : int
-        Number of feet.
+    admittance, legs : Admittance, int
+        Parameters, the same for each foot; number of feet.
 
     Attributes
     ----------

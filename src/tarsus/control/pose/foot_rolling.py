@@ -79,10 +79,8 @@ class FootRolling:
             The posture.
         rest : complex array, shape (legs,)
             Rest footholds in the heading frame [m].
-        out_of_gait : list of int
-            Legs that are taken out of the gait: their feet are where they are commanded to be.
-        dt : float
-            Length of the tick [s].
+        out_of_gait, dt : list of int, float
+            Legs that are taken out of the gait: their feet are where they are commanded to be; length of the tick [s].
         """
         if not self._rolls:
             return

@@ -51,10 +51,8 @@ def body_targets(builder: SequenceBuilder, height: float) -> tuple[BodyTarget, .
 
     Parameters
     ----------
-    builder : SequenceBuilder
-        The robot in its initial state.
-    height : float
-        Final body height [m].
+    builder, height : SequenceBuilder, float
+        The robot in its initial state; final body height [m].
     """
     robot, body = builder.robot, builder.body
     up = body.rotation[2]
@@ -76,10 +74,8 @@ def stage_to(builder: SequenceBuilder, target: BodyTarget, cartesian: Bool[np.nd
 
     Parameters
     ----------
-    builder : SequenceBuilder
-        The robot in its current state.
-    target : BodyTarget
-        Pose of the body at the end.
+    builder, target : SequenceBuilder, BodyTarget
+        The robot in its current state; pose of the body at the end.
     cartesian : array of bool, shape (legs,)
         Legs whose feet stay where they are; the others keep their joint angles.
     """

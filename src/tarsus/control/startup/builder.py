@@ -148,10 +148,8 @@ class SequenceBuilder:
             Legs to move.
         angles : array, shape (legs, 3)
             Joint angles of these legs at the end [rad].
-        landed : bool
-            Whether the feet are on the ground at the end.
-        margin : float
-            Least stability margin [m].
+        landed, margin : bool, float
+            Whether the feet are on the ground at the end; least stability margin [m].
         """
         paths = {leg: self._path(name, leg, angles[leg]) for leg in np.flatnonzero(legs).tolist()}
         count = max(map(len, paths.values()), default=0)
@@ -208,10 +206,8 @@ class SequenceBuilder:
 
         Parameters
         ----------
-        name : str
-            Name of the stage.
-        body : Pose
-            Pose of B in G at the end.
+        name, body : str, Pose
+            Name of the stage; pose of B in G at the end.
         pivot : array, shape (3,), optional
             Point in B that moves in a straight line [m]; by default the origin.
         supports : array, shape (n, 3), optional

@@ -57,10 +57,8 @@ def check_stage(stage: Stage, margin: float) -> None:
 
     Parameters
     ----------
-    stage : Stage
-        The stage.
-    margin : float
-        Least stability margin [m].
+    stage, margin : Stage, float
+        The stage; least stability margin [m].
 
     Raises
     ------

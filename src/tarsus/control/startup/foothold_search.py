@@ -40,10 +40,8 @@ def place_feet(
 
     Parameters
     ----------
-    builder : SequenceBuilder
-        The robot in its initial state; stages are added to it.
-    target : BodyTarget
-        Pose that the body moves to afterwards.
+    builder, target : SequenceBuilder, BodyTarget
+        The robot in its initial state; stages are added to it; pose that the body moves to afterwards.
     stance : array, shape (legs, 3)
         Preferred footholds in B [m].
     free, blocking : array of bool, shape (legs,)

@@ -119,10 +119,8 @@ def lying_state(
         A single robot.
     angles : array, shape (legs, 3)
         Measured joint angles [rad].
-    joint_limits : JointLimits
-        Joint speeds and accelerations of the plan.
-    purpose : str
-        What requires the robot to lie, for the error message.
+    joint_limits, purpose : JointLimits, str
+        Joint speeds and accelerations of the plan; what requires the robot to lie, for the error message.
 
     Raises
     ------

@@ -37,10 +37,8 @@ def level_body(builder: SequenceBuilder, target: BodyTarget, stance: Float[np.nd
 
     Parameters
     ----------
-    builder : SequenceBuilder
-        The robot in its initial state; stages are added to it.
-    target : BodyTarget
-        Pose of the body at the end.
+    builder, target : SequenceBuilder, BodyTarget
+        The robot in its initial state; stages are added to it; pose of the body at the end.
     stance : array, shape (legs, 3)
         Preferred footholds in B [m].
 

@@ -12,6 +12,7 @@ from tarsus.control.pose.admittance import Admittance
 from tarsus.control.readings import SensorReadings, ValidReadings
 from tarsus.control.sensing.body_condition import BodyCondition
 from tarsus.control.sensing.foot_loads import FootLoads
+from tarsus.control.sensing.swing_monitor import SwingMonitor
 from tarsus.control.sensing.validation import ReadingsValidator
 from tarsus.control.terrain.body_motion import BodyMotion
 from tarsus.control.terrain.foot_contacts import FootContacts
@@ -89,7 +90,7 @@ class FeltGround:
         self.contacts, self.ground, self.missing = FootContacts(robot.legs), GroundMap(), MissingGround(robot.leg_names)
         self.support, self.condition = Support(), BodyCondition()
         self.body = BodyMotion(robot, self.contacts, self.ground, levelling=levelling, adaptation=adaptation)
-        self.measured = ValidReadings()
+        self.measured, self._swings = ValidReadings(), SwingMonitor()
         self.offsets: Float[np.ndarray, "legs"] | None = None
         self._validator, self._loads = ReadingsValidator(robot), FootLoads(robot, admittance)
         self._centre = complex(*centre_of_mass(robot, angles)[:2].tolist())
@@ -122,6 +123,7 @@ class FeltGround:
         """
         valid = self.measured = self._validator.validate(readings, dt)
         down = state.down.tolist()
+        stopped = self._swings.step(angles[:, 0].tolist(), valid.joint_angles, dt, down)
         doubted, phase = self.contacts.open_legs, state.swing_phase
         measured = self._loads.contacts(valid, angles, dt, down=state.down, phase=phase, doubted=doubted)
         if state.felt is None:
@@ -130,7 +132,8 @@ class FeltGround:
             heights = np.array(state.heights(float(state.posture.value[SWING_HEIGHT])))
             state = state._replace(ground_height=heights, felt=[FeltFoot()] * len(heights))
         self._since, self._unread, self._ticks = self._since + dt, self._unread + dt, self._ticks + 1
-        if self._inputs is not None and self._since < _SLOW_PERIOD and self.contacts.as_planned(measured, down):
+        kept = self._inputs is not None and self._since < _SLOW_PERIOD and not stopped
+        if kept and self.contacts.as_planned(measured, down):
             return state, []
         if valid.attitude is not None:
             roll, pitch = state.posture.value[3:5].tolist()
@@ -143,8 +146,8 @@ class FeltGround:
         if self._loads.compliant:
             forces, feet = self._loads.forces(valid, angles), [(foot.real, foot.imag) for foot in state.foot.tolist()]
             self.offsets = self._loads.offsets(forces, dt, feet=feet, stands=down)
-        highest, pace, roughness = self.body.reach.highest, self.support.pace, self.body.roughness
-        return met_ground(state, self.contacts, self.ground, roughness, highest=highest, timing=timing, pace=pace)
+        known, highest = (self.contacts, self.ground, self.body.roughness, self.missing), self.body.reach.highest
+        return met_ground(state, *known, stopped=stopped, highest=highest, timing=timing, pace=self.support.pace)
 
     def inputs(
         self,
@@ -167,10 +170,8 @@ class FeltGround:
             The gait and its frequency.
         twist : array, shape (3,)
             The twist that is followed.
-        footholds : FootholdTransfer
-            Rest footholds, and how far from them feet may be put down.
-        excluded : list of int
-            Legs that bear no load.
+        footholds, excluded : FootholdTransfer, list of int
+            Rest footholds, and how far from them feet may be put down; legs that bear no load.
         standing : bool
             Whether the robot stands.
         """
@@ -185,9 +186,8 @@ class FeltGround:
         places = [(foot - state.origin) * turn for foot in state.foot.tolist()]
         if self._since >= _SLOW_PERIOD:
             time, rest, pace = self._since, footholds.rest, self.support.pace
-            self.body.step(
-                state, self.measured, time, feet=(places, down), timing=timing, twist=twist, pace=pace, rest=rest
-            )
+            feet = places, [on and leg not in self.missing.stops for leg, on in enumerate(down)]
+            self.body.step(state, self.measured, time, feet=feet, timing=timing, twist=twist, pace=pace, rest=rest)
             self._since = 0.0
             self.ground.choose(state, self.body.reach, footholds)
         centre = self._centre + complex(*body_posture(state)[:2].tolist())

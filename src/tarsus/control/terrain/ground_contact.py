@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from tarsus.control.terrain.foot_contacts import FootContacts
 from tarsus.control.terrain.ground_map import GroundMap
+from tarsus.control.terrain.missing_ground import MissingGround
 from tarsus.control.terrain.roughness import Roughness
 from tarsus.control.walk.felt_feet import FeltFoot
 from tarsus.control.walk.state import GaitState
@@ -29,6 +30,9 @@ _LIFTED, _RISEN = 0.01, 0.03
 _UNLOADING = 0.05
 # After a collision: how much higher the foot rises [m], in which time [s], and how far it is drawn back [m].
 _HIGHER, _RISING, _DRAWN_BACK = 0.025, 0.12, 0.008
+# Of a foot that collides again: how far it is from its foothold at least, and past its collision at most, where it does
+# not touch the obstacle's top [m]; the speed with which it is drawn back [m/s].
+_SHORT, _PAST, _DRAWS_BACK = 0.02, 0.01, 1.0
 
 
 def met_ground(
@@ -36,7 +40,9 @@ def met_ground(
     contacts: FootContacts,
     ground: GroundMap,
     roughness: Roughness,
+    missing: MissingGround,
     *,
+    stopped: Sequence[int],
     highest: Sequence[float],
     timing: StepTiming,
     pace: float,
@@ -45,41 +51,45 @@ def met_ground(
 
     Parameters
     ----------
-    state : GaitState
-        The gait state.
-    contacts : FootContacts
-        The contacts.
-    ground : GroundMap
-        Where ground is expected.
-    roughness : Roughness
-        Takes note of footholds and collisions.
-    highest : sequence of float
-        Greatest height that each foot reaches, in the heading frame [m].
-    timing : StepTiming
-        The gait and its frequency.
+    state, contacts : GaitState, FootContacts
+        The gait state; the contacts.
+    ground, roughness : GroundMap, Roughness
+        Where ground is expected; takes note of footholds and collisions.
+    missing, stopped : MissingGround, sequence of int
+        Decides where feet that are stopped again try next; legs that are stopped on their way.
+    highest, timing : sequence of float, StepTiming
+        Greatest height that each foot reaches, in the heading frame [m]; the gait and its frequency.
     pace : float
         Rate of the steps, 0 to 1.
     """
-    landed: list[int] = []
-    elevation = float(state.elevation.value[0])
+    assert state.felt is not None  # a walk that feels the ground
+    landed, elevation = list[int](), float(state.elevation.value[0])
+    places = ((state.foot - state.origin) * cmath.exp(-1j * state.yaw)).tolist()
     for leg, (down, phase) in enumerate(zip(state.down.tolist(), state.swing_phase.tolist(), strict=True)):
+        top, foot, touches = elevation + highest[leg], state.felt[leg], contacts.estimator.touching[leg]
         if down or phase <= _CLEAR:
+            rises = foot.top > float(state.ground_height[leg]) or foot.slide
+            if (touches or leg in stopped) and missing.tries(leg, places[leg]) and not rises:
+                state = _trying_again(state, leg, missing, top, state)
             continue
-        if phase > _LANDING:
+        if _collides_again(state, leg, side=touches and contacts.lifted[leg], stopped=leg in stopped):
+            state = _trying_again(state, leg, missing, top, _landed(state, leg, timing, pace))
+            landed.append(leg)
+        elif phase > _LANDING:
             # Contact that has not ceased since lift-off tells nothing: the foot lands where ground is expected.
             tells = contacts.lifted[leg] and not contacts.is_open(leg)
             if tells and not contacts.touches(leg):
                 continue
             over = float(state.ground_height[leg]) - elevation
-            expected = ground.at((complex(state.foot[leg]) - state.origin) * cmath.exp(-1j * state.yaw))
+            expected = ground.at(places[leg])
             if tells or over <= expected + _ROUNDING:
                 if tells:
                     roughness.landed(over - expected)
                 state = _landed(state, leg, timing, pace)
                 landed.append(leg)
-        elif contacts.estimator.touching[leg] and _collides(state, leg, contacts):
+        elif (touches or leg in stopped) and _collides(state, leg, contacts):
             roughness.collided()
-            state = _rising_again(state, leg, elevation + highest[leg], timing)
+            state = _rising_again(state, leg, top, timing)
     return state, landed
 
 
@@ -107,6 +117,15 @@ def _collides(state: GaitState, leg: int, contacts: FootContacts) -> bool:
     return state.felt[leg].drawn_back is None and risen > least and not contacts.is_stuck(leg)
 
 
+def _collides_again(state: GaitState, leg: int, *, side: bool, stopped: bool) -> bool:
+    """Return whether a foot that has risen after a collision has not got past the obstacle."""
+    assert state.felt is not None  # a walk that feels the ground
+    start, foot = state.felt[leg].drawn_back, complex(state.foot[leg])
+    if start is None or state.swing_phase[leg] <= state.felt[leg].top_phase or abs(state.foothold[leg] - foot) < _SHORT:
+        return False
+    return stopped if abs(foot - start) > _DRAWN_BACK + _PAST else side
+
+
 def _rising_again(state: GaitState, leg: int, highest: float, timing: StepTiming) -> GaitState:
     """Return the state with a foot that draws back from an obstacle and rises higher."""
     assert state.felt is not None  # a walk that feels the ground
@@ -121,6 +140,16 @@ def _rising_again(state: GaitState, leg: int, highest: float, timing: StepTiming
         drawn_back=foot - _DRAWN_BACK * way / max(abs(way), 1e-9),
     )
     return state._replace(felt=felt)
+
+
+def _trying_again(state: GaitState, leg: int, missing: MissingGround, highest: float, after: GaitState) -> GaitState:
+    """Return the state with a foot that is stopped again: it is drawn back, and tries again while the walk stands."""
+    assert after.felt is not None  # a walk that feels the ground
+    height, turn = float(state.ground_height[leg]), cmath.exp(1j * state.yaw)
+    foot, goal = ((complex(places[leg]) - state.origin) / turn for places in (state.foot, state.foothold))
+    top, back = min(height + _HIGHER, max(highest, height)), missing.stopped(leg, foot, goal)
+    slide = _DRAWS_BACK * turn * back / max(abs(back), 1e-9)
+    return after._replace(felt=_with(after.felt, leg, speed=0.0, acceleration=0.0, top=top, slide=slide))
 
 
 def _with(feet: Sequence[FeltFoot], leg: int, **values: Any) -> list[FeltFoot]:

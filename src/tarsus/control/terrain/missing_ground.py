@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 from tarsus.control.limitation import Limitation, LimitationKind
@@ -16,7 +17,7 @@ __all__ = ["MissingGround", "searching_feet"]
 # Depth below the expected ground at which there is none, over the body height.
 _DEEP = 0.75
 # Depths from which on the walk slows down, and stands still, or goes on slowly with feet at the end of their reach [m].
-_SLOWS, _STOPS = 0.005, 0.02
+_SLOWS, _STANDS = 0.005, 0.02
 _SLOWEST = 0.25
 # How much deeper ground may be on rough ground, over the roughness.
 _ROUGH = 2.5
@@ -28,6 +29,8 @@ _FALLS = 0.1
 _THERE, _OFF = 0.004, 0.01
 # The body backs off until feet this far from the edge hold it with this margin [m], so far at most [m], so fast [m/s].
 _FIRM, _MARGIN, _BACKS, _SPEED = 0.06, 0.03, 0.08, 0.15
+# How often a foot is stopped until it is put down beside its way, on how many sides, how far, or before that [m].
+_STOPS, _SIDES, _BESIDE, _BEFORE = 3, 2, 0.06, 0.04
 # Motion within an angle of this cosine of the way to the edge leads over it.
 _TOWARDS = 0.3
 
@@ -45,14 +48,10 @@ def searching_feet(
 
     Parameters
     ----------
-    state : GaitState
-        The gait state.
-    contacts : FootContacts
-        The contacts.
-    ground : GroundMap
-        Where ground is expected.
-    places : sequence of complex
-        Where the feet are, in the heading frame [m].
+    state, contacts : GaitState, FootContacts
+        The gait state; the contacts.
+    ground, places : GroundMap, sequence of complex
+        Where ground is expected; where the feet are, in the heading frame [m].
     down, stands : sequence of bool
         Which feet should stand, and which do.
     """
@@ -87,12 +86,17 @@ class MissingGround:
 
     def __init__(self, names: Sequence[str]) -> None:
         self.places, self.pace, self.back = dict[int, complex](), 1.0, 0j
+        self.stops, self._beside = dict[int, tuple[int, complex, complex]](), dict[int, complex]()
         self._names, self._tries, self._cause = names, [0] * len(names), ("", "")
         self._way, self._backed, self.refuses = 0j, 0.0, False
 
     def steps_back(self, leg: int, foot: complex) -> bool:
         """Return whether a foot, here in the heading frame, is on its way to another place."""
         return leg in self.places and abs(self.places[leg] - foot) > _THERE
+
+    def tries(self, leg: int, foot: complex) -> bool:
+        """Return whether a foot, here in the heading frame, is on its way past an obstacle."""
+        return leg in self.stops and self.stops[leg][0] <= _STOPS + _SIDES and self.steps_back(leg, foot)
 
     def gives_up(self, leg: int) -> bool:
         """Return whether a foot has found no ground at any place."""
@@ -118,29 +122,27 @@ class MissingGround:
         searches : sequence of (int, float, bool, bool)
             Feet that should stand and feel nothing: leg, depth below the expected ground [m], whether it goes down, and
             whether it has not searched for long.
-        feet : sequence of complex
-            Where the feet are, in the heading frame [m].
-        stands : sequence of bool
-            Which feet stand.
-        dt : float
-            Length of the tick [s].
-        centre : complex
-            The centre of mass [m].
-        rest : sequence of complex
-            Rest footholds [m].
-        radii : sequence of float
-            How far from these feet may stand [m].
+        feet, stands : sequence of complex, sequence of bool
+            Where the feet are, in the heading frame [m]; which feet stand.
+        dt, centre : float, complex
+            Length of the tick [s]; the centre of mass [m].
+        rest, radii : sequence of complex, sequence of float
+            Rest footholds [m]; how far from these feet may stand [m].
         height, roughness : float
             Body height, and how far ground is off the expected one [m].
         """
         searching = [search[0] for search in searches]
+        for leg in [leg for leg in self._beside if not self.steps_back(leg, feet[leg])]:
+            self.places[leg] = self._beside.pop(leg)
+            searching.append(leg)
         for leg in [leg for leg in self.places if leg not in searching]:
             del self.places[leg]
             self._tries[leg] = 0
+            self.stops.pop(leg, None)
         self.pace, self.back = 1.0 - self.refuses, 0j
         for leg, depth, falls, lasts in searches:
             slowest = 0.0 if falls else _SLOWEST
-            self.pace = min(self.pace, max(1 - (depth - _ROUGH * roughness - _SLOWS) / (_STOPS - _SLOWS), slowest))
+            self.pace = min(self.pace, max(1 - (depth - _ROUGH * roughness - _SLOWS) / (_STANDS - _SLOWS), slowest))
             missing = depth > _DEEP * height + _ROUGH * roughness or not (lasts or leg in self.places)
             if missing and not (self.steps_back(leg, feet[leg]) or self.gives_up(leg)):
                 self._tries[leg] += 1
@@ -155,9 +157,24 @@ class MissingGround:
         self.pace, turn = 0.0, self._way.conjugate()
         edge = min((feet[leg] * turn).real for leg in self.places) - _FIRM
         firm = [foot for foot, on in zip(feet, stands, strict=True) if on and (foot * turn).real < edge]
-        if self._backed < _BACKS and not holds(firm, centre + _MARGIN * self._way):
+        if not self.stops and self._backed < _BACKS and not holds(firm, centre + _MARGIN * self._way):
             self.back = -_SPEED * self._way
             self._backed += _SPEED * dt
+
+    def stopped(self, leg: int, foot: complex, goal: complex) -> complex:
+        """Decide where a foot tries next that is stopped here on its way to a goal; return the way back [m]."""
+        stops, start, goal = self.stops.get(leg, (1, foot, goal))
+        self.stops[leg], way = (stops + 1, start, goal), (goal - start) / abs(goal - start)
+        start, self.places[leg] = start - _BEFORE * way, goal
+        self._beside.pop(leg, None)
+        if stops >= _STOPS + _SIDES:
+            self.places[leg], self._way = start, way
+            self._cause = self._names[leg], "an obstacle stops the foot that is higher than the leg steps"
+        elif stops >= _STOPS:
+            # Towards the body first: there the leg is steeper.
+            side = math.copysign(_BESIDE, -(start * way.conjugate()).imag * (-1) ** (stops - _STOPS))
+            self.places[leg], self._beside[leg] = start + 1j * side * way, goal + 1j * side * way
+        return start - foot
 
     def limit(self, request: TwistRequest, grant: TwistGrant) -> TwistGrant:
         """Return the grant, without a twist that leads over the edge; one that leads away is granted from then on."""

@@ -80,14 +80,10 @@ class PostureFeedback:
             Least and greatest height of each foot over the plane's height at the origin [m].
         raises : tuple of float
             How much higher than commanded the body is at least, and how much higher it should be [m].
-        dt : float
-            Length of the tick [s].
-        reach : tuple of sequence of float
-            Least and greatest height of each foot [m].
-        height : float
-            Commanded height of the body [m].
-        share : float
-            Share of the slope that the legs reach, 0 to 1.
+        dt, reach : float, tuple of sequence of float
+            Length of the tick [s]; least and greatest height of each foot [m].
+        height, share : float
+            Commanded height of the body [m]; share of the slope that the legs reach, 0 to 1.
         """
         # Feet are between their least and greatest heights for heights over the ground between these.
         most = min(rise - low for low, rise in zip(reach[0], rises[0], strict=True))

@@ -107,10 +107,8 @@ class Reach:
             The plane of the standing feet.
         rest : complex array, shape (legs,)
             Rest footholds in the heading frame [m].
-        over : sequence of float
-            Height of each foot [m].
-        bears : sequence of int
-            Legs whose feet bear load.
+        over, bears : sequence of float, sequence of int
+            Height of each foot [m]; legs whose feet bear load.
         seeking : sequence of bool
             Whether each foot should stand and has no contact: with the body lower it may find ground.
         """

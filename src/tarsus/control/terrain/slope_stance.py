@@ -89,10 +89,8 @@ class SlopeStance:
 
         Parameters
         ----------
-        plane : FootPlane
-            The plane of the feet, in the heading frame.
-        height : float
-            Commanded height of the body [m].
+        plane, height : FootPlane, float
+            The plane of the feet, in the heading frame; commanded height of the body [m].
         """
         drop = abs(plane.slope_x) * self.half[0] + abs(plane.slope_y) * self.half[1]
         return float(drop + min(self.half[2] + _ROOM - height, 0.0))

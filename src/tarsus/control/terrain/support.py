@@ -25,10 +25,8 @@ def holds(feet: Sequence[complex], centre: complex) -> bool:
 
     Parameters
     ----------
-    feet : sequence of complex
-        The feet, x + iy [m].
-    centre : complex
-        The point [m].
+    feet, centre : sequence of complex, complex
+        The feet, x + iy [m]; the point [m].
     """
     angles = sorted(cmath.phase(foot - centre) for foot in feet)
     if len(angles) < 3:
@@ -63,14 +61,10 @@ class Support:
 
         Parameters
         ----------
-        legs : list of int
-            Legs whose feet bear load.
-        places : sequence of complex
-            All feet, x + iy [m].
-        centre : complex
-            The centre of mass [m].
-        anew : bool
-            Whether to look at the same feet again.
+        legs, places : list of int, sequence of complex
+            Legs whose feet bear load; all feet, x + iy [m].
+        centre, anew : complex, bool
+            The centre of mass [m]; whether to look at the same feet again.
         """
         if anew or legs != self._bearing:
             self._bearing, self._held = legs, holds([places[leg] for leg in legs], centre)
@@ -85,10 +79,8 @@ class Support:
             Whether the feet that bear load and are not due to lift off hold the robot.
         lifts, dt : bool, float
             Whether any foot is due to lift off; length of the tick [s].
-        swing_time : float
-            Duration of a swing [s].
-        most : float
-            The pace at most.
+        swing_time, most : float
+            Duration of a swing [s]; the pace at most.
         """
         self.waits = lifts and not stays
         self._waited = self._waited + dt if self.waits else 0.0

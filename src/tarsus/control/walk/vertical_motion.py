@@ -36,7 +36,7 @@ _SEARCH_TIME = 0.1
 # Room over known ground on the way of a foot that goes down [m].
 _OVER = 0.015
 # Speeds of a foot that steps back, up and back [m/s].
-_RISING, _BACK = 0.25, 0.25
+_RISING, _BACK = 0.3, 0.4
 # Greatest changes of speed: of feet in the air, of the body, of feet on the ground, and of their slide [m/s^2].
 _FOOT_ACCELERATION, _BODY_ACCELERATION, _STANDING_ACCELERATION, _STOPPING = 6.0, 1.0, 15.0, 12.0
 
@@ -46,10 +46,8 @@ def moved_vertically(state: GaitState, inputs: StepInputs, dt: float) -> GaitSta
 
     Parameters
     ----------
-    state : GaitState
-        The gait state after the time, but for heights.
-    inputs : StepInputs
-        What is constant for the time.
+    state, inputs : GaitState, StepInputs
+        The gait state after the time, but for heights; what is constant for the time.
     dt : float
         The time [s].
     """
@@ -85,13 +83,14 @@ def moved_vertically(state: GaitState, inputs: StepInputs, dt: float) -> GaitSta
                 heights[leg] = height + (before + speed) / 2 * dt
             else:
                 assert under is not None  # known of each foot that has lost its contact
-                heights[leg], place, speed = _searching(height, before, place, wanted, under, felt, dt)
+                heights[leg], place, speed = _searching(height, foot, place, wanted, under, felt, dt)
             if slide:
                 left = max(1 - stop / abs(slide), 0.0)
                 place += slide * (1 + left) / 2 * dt
                 slide *= left
             places[leg] = place
-            feet[leg] = FeltFoot(speed, slide=slide) if speed or slide else _STILL
+            top = math.nan if felt.stands[leg] else foot.top
+            feet[leg] = FeltFoot(speed, top=top, slide=slide) if speed or slide or top > -math.inf else _STILL
         else:
             assert under is not None  # known of each foot in the air
             swing_time = (swing - delays[leg]) / inputs.frequency if inputs.frequency else math.inf
@@ -104,19 +103,20 @@ def moved_vertically(state: GaitState, inputs: StepInputs, dt: float) -> GaitSta
 
 
 def _searching(
-    height: float, speed: float, place: complex, wanted: float, under: GroundUnder, felt: FeltInputs, dt: float
+    height: float, foot: FeltFoot, place: complex, wanted: float, under: GroundUnder, felt: FeltInputs, dt: float
 ) -> tuple[float, complex, float]:
     """Return height, place and speed of a foot that should stand and has no contact: it goes down, or steps back."""
-    over = height - under.expected
+    over, speed = height - under.expected, foot.speed
     if under.place is None or under.place == place:
         wanted -= min(max(_SEARCHING, over / _SEARCH_TIME), felt.lowering)
         after = _towards(speed, wanted, _FOOT_ACCELERATION * dt)
         height, after = _no_lower(height + (speed + after) / 2 * dt, after, height, under.lowest)
         return height, place, after
-    # It rises over the edge, then goes back to its place.
-    way, rising = under.place - place, _RISING if over < felt.swing_height else 0.0
+    # It rises over the edge or the obstacle, then goes to its place.
+    clear = felt.swing_height if math.isnan(foot.top) else foot.top - under.expected
+    way, rising = under.place - place, _RISING if over < clear else 0.0
     after = _towards(speed, rising, _FOOT_ACCELERATION * dt)
-    if over > _CLEAR * felt.swing_height:
+    if over > _CLEAR * clear:
         place = under.place if abs(way) <= _BACK * dt else place + _BACK * dt * way / abs(way)
     return height + (speed + after) / 2 * dt, place, after
 

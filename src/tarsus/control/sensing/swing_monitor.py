@@ -1,0 +1,47 @@
+"""Swing monitor: finds legs that are stopped on their way, by the measured angles of their coxa joints."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Sequence
+
+from tarsus.control.readings import Vector
+
+__all__ = ["SwingMonitor"]
+
+# Angle by which a joint is behind that is stopped [rad], besides so many times the usual one; how fast that is learnt.
+_BEHIND, _TIMES, _MEAN_RATE = 0.02, 3.0, 0.01
+# Longest lag of a joint, from its command to the reading [s]; how fast it is learnt, a tick; and the square of joint
+# speeds below which they tell little of it [rad^2/s^2].
+_LONGEST_LAG, _RATE, _SLOW = 0.12, 0.05, 0.5
+
+
+class SwingMonitor:
+    """Compares measured angles of swinging legs with those commanded before a lag, which is learnt."""
+
+    def __init__(self) -> None:
+        self._lag, self._usual, self._commanded = _LONGEST_LAG, 0.0, deque[list[float]]()
+
+    def step(
+        self, commanded: Sequence[float], measured: Sequence[Vector | None] | None, dt: float, down: Sequence[bool]
+    ) -> list[int]:
+        """Return the legs in the air that are stopped, by the angles of their coxa joints that were commanded last."""
+        commands, stopped = self._commanded, list[int]()
+        commands.appendleft(list(commanded))
+        if len(commands) <= _LONGEST_LAG / dt + 2:
+            return stopped
+        commands.pop()
+        ticks, share = divmod(self._lag / dt, 1.0)
+        newer, older = commands[int(ticks)], commands[int(ticks) + 1]
+        for leg, angles in enumerate(measured or ()):
+            if angles is None or down[leg]:
+                continue
+            step = older[leg] - newer[leg]
+            behind, speed = newer[leg] + share * step - angles[0], -step / dt
+            if behind * speed > (_BEHIND + _TIMES * self._usual) * abs(speed):
+                stopped.append(leg)
+            else:
+                self._usual += _MEAN_RATE * (abs(behind) - self._usual)
+                change = _RATE * behind * speed / (speed**2 + _SLOW)
+                self._lag = min(max(self._lag + change, 0.0), _LONGEST_LAG)
+        return stopped

@@ -1,0 +1,61 @@
+"""Swing monitor: legs that are stopped are found by the measured angles of their coxa joints, whatever the lag."""
+
+import math
+from collections import deque
+
+import numpy as np
+import pytest
+
+from tarsus.control.sensing.swing_monitor import SwingMonitor
+
+DT = 0.01
+AIR = [False] * 6
+
+
+def swung(time: float) -> float:
+    """A joint that swings to and fro in 0.8 s, at 2.4 rad/s at most."""
+    return 0.3 * math.sin(2 * math.pi * time / 0.8)
+
+
+def monitored(lag: float, stops_at: float, *, until: float = 4.0, noise: float = 0.0, down=AIR):
+    """Return when each leg has been found; joints follow after a lag, and that of leg 2 stops at a time."""
+    monitor, found, random = SwingMonitor(), dict[int, float](), np.random.default_rng(0)
+    for tick in range(round(until / DT)):
+        time = tick * DT
+        angles = [swung(time - lag)] * 6
+        angles[2] = swung(min(time, stops_at) - lag)
+        measured = [(angle + noise * random.standard_normal(), 0.0, 0.0) for angle in angles]
+        for leg in monitor.step([swung(time)] * 6, measured, DT, down):
+            found.setdefault(leg, time)
+    return found
+
+
+@pytest.mark.parametrize("noise", [0.0, math.radians(0.3)])
+@pytest.mark.parametrize("lag", [0.0, 0.013, 0.05, 0.1])
+def test_a_leg_that_is_stopped_in_its_swing_is_noticed_within_30_ms_and_no_other_is(lag, noise):
+    assert monitored(lag, math.inf, noise=noise) == {}
+    # Stopped at full speed; the sensor tells of it after the lag.
+    found = monitored(lag, 3.2, noise=noise)
+    assert set(found) == {2}
+    assert 0.0 < found[2] - 3.2 <= 0.03
+
+
+def test_feet_that_stand_and_joints_that_are_not_measured_tell_nothing():
+    assert monitored(0.02, 3.2, down=[True] * 6) == {}
+    monitor = SwingMonitor()
+    for tick in range(100):
+        commanded = [swung(tick * DT)] * 6
+        assert monitor.step(commanded, None, DT, AIR) == []
+        assert monitor.step(commanded, [None] * 6, DT, AIR) == []
+
+
+def test_a_soft_servo_that_swings_about_its_command_is_not_stopped():
+    # Inertia and a spring: it overshoots by a tenth of the way, and comes back.
+    monitor, angle, speed, sent = SwingMonitor(), 0.0, 0.0, deque([0.0] * 3, maxlen=3)
+    for tick in range(400):
+        commanded = swung(tick * DT)
+        sent.append(commanded)
+        for _ in range(10):
+            speed += DT / 10 * (3000.0 * (sent[0] - angle) - 60.0 * speed)
+            angle += DT / 10 * speed
+        assert monitor.step([commanded] * 6, [(angle, 0.0, 0.0)] * 6, DT, AIR) == []
