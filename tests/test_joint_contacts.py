@@ -34,6 +34,21 @@ def test_a_robot_without_sensors_in_its_feet_feels_the_ground_by_its_joints():
     assert plant.state.body.position[0] > 0.85 * 0.14 * 4.5
 
 
+@pytest.mark.parametrize(("rise", "seed", "switches"), [(0.06, 1, "none"), (0.06, 3, "none"), (0.04, 3, "one open")])
+def test_uncertain_contacts_do_not_keep_a_foot_in_the_air_over_an_obstacle(rise, seed, switches):
+    sensors, ground = SensorSuite.named("ideal"), terrain.Blocks(rise=rise, clear=0.35, seed=seed)
+    if switches == "none":
+        sensors = dataclasses.replace(sensors, contacts=None, forces=None)
+    plant, controller = SimulatedPlant(STRIDER, terrain=ground, sensors=sensors), tarsus.RobotController(STRIDER)
+    plant.start(controller.output)
+    for _ in range(400):
+        readings = plant.step(controller.output, DT)
+        if switches == "one open":
+            readings = dataclasses.replace(readings, contacts=[False, *readings.contacts[1:]])
+        controller.step((0.146, 0.0, 0.0), DT, readings)
+    assert plant.state.body.position[0] > 0.6 * 0.146 * 4
+
+
 def test_servos_that_follow_at_once_tell_no_contacts():
     controller, contacts = tarsus.WalkController(STRIDER), []
     estimator = JointContacts(STRIDER)

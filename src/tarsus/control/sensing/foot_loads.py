@@ -38,15 +38,15 @@ class FootLoads:
 
     Attributes
     ----------
-    estimated : bool
-        Whether contacts are estimated by joint angles.
+    estimated : set of int
+        Legs whose contacts are estimated by joint angles.
     """
 
     def __init__(self, robot: Robot, admittance: Admittance | None) -> None:
         self._weight = float(total_mass(robot)) * STANDARD_GRAVITY if robot.has_masses else 0.0
         self._torques = FootForceEstimator(robot) if robot.has_masses else None
         self._joints = JointContacts(robot) if robot.has_masses and all(map(all, robot.servos)) else None
-        self.estimated, self._open = False, set[int]()
+        self.estimated, self._open = set[int](), set[int]()
         self._filter = AdmittanceFilter(admittance, robot.legs) if admittance else None
 
     @property
@@ -57,7 +57,7 @@ class FootLoads:
     @property
     def fastest_descent(self) -> float:
         """Greatest speed with which feet may go down in search of the ground [m/s]."""
-        return _ESTIMATED_DESCENT if self.estimated else _DESCENT
+        return _ESTIMATED_DESCENT if self.estimated - self._open else _DESCENT
 
     def forces(self, valid: ValidReadings, angles: Float[np.ndarray, "legs 3"]) -> Sequence[Vector | None] | None:
         """Return the forces of the ground on the feet [N], measured or from joint torques; None where unknown.
@@ -103,7 +103,7 @@ class FootLoads:
         doubted : sequence of int
             Legs whose switches stay open while their feet stand.
         """
-        self.estimated, switched, found = False, valid.contacts, None
+        self.estimated, switched, found = set(), valid.contacts, None
         if switched is not None:
             self._open = {leg for leg in self._open.union(doubted) if not switched[leg]}
             if not self._open:
@@ -114,8 +114,9 @@ class FootLoads:
         if valid.joint_angles is not None and self._joints is not None:
             found = self._joints.contacts(valid.joint_angles, angles, dt, age=valid.contact_age, down=down, phase=phase)
         if switched is None or found is None:
-            self.estimated = found is not None
+            self.estimated = set(range(len(found or ())))
             return switched or found
+        self.estimated = self._open
         return [(found if leg in self._open else switched)[leg] for leg in range(len(found))]
 
     def offsets(

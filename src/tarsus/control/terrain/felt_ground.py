@@ -141,7 +141,8 @@ class FeltGround:
         dt, ticks, self._unread, self._ticks, self._inputs = self._unread, self._ticks, 0.0, 0, None
         self.ground.see(valid, state)
         leaving = None if self._given[1] else timing.due(state, _LEAVING)
-        self.contacts.step(measured, down, dt, age=valid.contact_age, count=ticks, leaving=leaving)
+        estimated, age = self._loads.estimated, valid.contact_age
+        self.contacts.step(measured, down, dt, age=age, count=ticks, leaving=leaving, estimated=estimated)
         self.condition.step([self.contacts.touches(leg) for leg in range(len(down))], valid.attitude, dt)
         if self._loads.compliant:
             forces, feet = self._loads.forces(valid, angles), [(foot.real, foot.imag) for foot in state.foot.tolist()]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Sequence, Set
 
 from tarsus.control.sensing.contact_estimator import ContactEstimator
 from tarsus.control.terrain.support import holds
@@ -55,6 +55,7 @@ class FootContacts:
     def __init__(self, legs: int) -> None:
         self.estimator = ContactEstimator(legs)
         self.lifted, self.standing, self.age = [False] * legs, [True] * legs, 0.0
+        self._estimated: Set[int] = frozenset()
         self._unheld, self._tilt = 0.0, (0.0, 0.0)
         self._tilts = [(0.0, 0.0)] * legs
         self._without, self._with, self._evidence, self._settled = ([0.0] * legs for _ in range(4))
@@ -68,6 +69,7 @@ class FootContacts:
         age: float = 0.0,
         count: int = 1,
         leaving: Sequence[bool] | None = None,
+        estimated: Set[int] = frozenset(),
     ) -> None:
         """Take in the contacts of one tick, or of some in which they are the same.
 
@@ -83,8 +85,10 @@ class FootContacts:
             Number of ticks.
         leaving : sequence of bool, optional
             Which feet are to lift off soon: once these have stood, they are not lowered where others take their load.
+        estimated : set of int
+            Legs whose contacts are estimated by joint angles.
         """
-        self.age = age
+        self.age, self._estimated = age, estimated
         self.estimator.step(readings, dt, count=count)
         for leg, on in enumerate(down):
             if self.estimator.known[leg] and not self.estimator.touching[leg]:
@@ -169,6 +173,10 @@ class FootContacts:
     def touches(self, leg: int) -> bool:
         """Return whether a foot bears load now; True where nothing is known."""
         return self._without[leg] <= 0.0 or self.is_open(leg)
+
+    def feels(self, leg: int) -> bool:
+        """Return whether a foot touches the side of an obstacle, or rests on it: estimates do not tell."""
+        return self.estimator.touching[leg] and leg not in self._estimated
 
     def seeks(self, leg: int) -> bool:
         """Return whether a foot that should stand has no contact, and has not looked for the ground for long."""

@@ -69,10 +69,10 @@ def met_ground(
         top, foot, touches = elevation + highest[leg], state.felt[leg], contacts.estimator.touching[leg]
         if down or phase <= _CLEAR:
             rises = foot.top > float(state.ground_height[leg]) or foot.slide
-            if (touches or leg in stopped) and missing.tries(leg, places[leg]) and not rises:
+            if (contacts.feels(leg) or leg in stopped) and missing.tries(leg, places[leg]) and not rises:
                 state = _trying_again(state, leg, missing, top, state)
             continue
-        if _collides_again(state, leg, side=touches and contacts.lifted[leg], stopped=leg in stopped):
+        if _collides_again(state, leg, side=contacts.feels(leg) and contacts.lifted[leg], stopped=leg in stopped):
             state = _trying_again(state, leg, missing, top, _landed(state, leg, timing, pace))
             landed.append(leg)
         elif phase > _LANDING:
