@@ -40,13 +40,15 @@ class FootLoads:
     ----------
     estimated : set of int
         Legs whose contacts are estimated by joint angles.
+    open : set of int
+        Legs whose switches have been found open.
     """
 
     def __init__(self, robot: Robot, admittance: Admittance | None) -> None:
         self._weight = float(total_mass(robot)) * STANDARD_GRAVITY if robot.has_masses else 0.0
         self._torques = FootForceEstimator(robot) if robot.has_masses else None
         self._joints = JointContacts(robot) if robot.has_masses and all(map(all, robot.servos)) else None
-        self.estimated, self._open = set[int](), set[int]()
+        self.estimated, self.open = set[int](), set[int]()
         self._filter = AdmittanceFilter(admittance, robot.legs) if admittance else None
 
     @property
@@ -57,7 +59,7 @@ class FootLoads:
     @property
     def fastest_descent(self) -> float:
         """Greatest speed with which feet may go down in search of the ground [m/s]."""
-        return _ESTIMATED_DESCENT if self.estimated - self._open else _DESCENT
+        return _ESTIMATED_DESCENT if self.estimated - self.open else _DESCENT
 
     def forces(self, valid: ValidReadings, angles: Float[np.ndarray, "legs 3"]) -> Sequence[Vector | None] | None:
         """Return the forces of the ground on the feet [N], measured or from joint torques; None where unknown.
@@ -105,8 +107,8 @@ class FootLoads:
         """
         self.estimated, switched, found = set(), valid.contacts, None
         if switched is not None:
-            self._open = {leg for leg in self._open.union(doubted) if not switched[leg]}
-            if not self._open:
+            self.open = {leg for leg in self.open.union(doubted) if not switched[leg]}
+            if not self.open:
                 return switched
         elif valid.forces is not None and self._weight:
             least = _CONTACT_SHARE * self._weight
@@ -116,8 +118,8 @@ class FootLoads:
         if switched is None or found is None:
             self.estimated = set(range(len(found or ())))
             return switched or found
-        self.estimated = self._open
-        return [(found if leg in self._open else switched)[leg] for leg in range(len(found))]
+        self.estimated = self.open
+        return [(found if leg in self.open else switched)[leg] for leg in range(len(found))]
 
     def offsets(
         self,

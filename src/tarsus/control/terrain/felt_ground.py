@@ -195,6 +195,9 @@ class FeltGround:
         self.contacts.find_open(down, places, centre, self.measured.attitude, dt)
         stands = self._find_missing_ground(state, places, down, centre, footholds, dt)
         self._decide_on_support(places, down, due, centre, dt=dt, swing_time=timing.swing_time)
+        if self._loads.open:
+            # Of a foot whose switch is open, the robot feels no collision: all swing as high as after one.
+            self.body.roughness.collided()
         self.body.roughness.decay(0.0 if standing else dt * timing.frequency)
         lifts = due or [False] * len(down)
         stays = [on and stand and not lift for on, stand, lift in zip(down, stands, lifts, strict=True)]
