@@ -67,6 +67,26 @@ def test_servos_that_follow_at_once_tell_no_contacts():
     assert not any(contacts)
 
 
+def test_servos_that_are_slower_than_those_of_the_file_stop_no_swing():
+    # A servo of its own kind: 50 ms late, and it gives way by 0.02 rad under load.
+    controller, estimator = tarsus.WalkController(STRIDER), JointContacts(STRIDER)
+    late, stopped, told = [controller.angles] * 5, 0, 0
+    for tick in range(600):
+        angles = controller.step((0.1, 0.0, 0.0), DT)
+        state = controller._tick.gait
+        late.append(angles)
+        measured = late.pop(0) + 0.02 * np.outer(state.down, (0.0, 1.0, 0.0))
+        found = estimator.contacts(measured.tolist(), angles, DT, age=0.0, down=state.down, phase=state.swing_phase)
+        # By then its lag is learnt.
+        if tick > 300 and found is not None:
+            told += 1
+            free = ~state.down & (state.swing_phase > 0.2) & (state.swing_phase < 0.5)
+            stopped += np.count_nonzero(np.array(found) & free)
+    assert told > 200
+    assert not stopped
+    assert 0.01 < estimator.lag < 0.06
+
+
 def test_a_leg_without_a_measured_angle_leaves_contacts_unknown():
     estimator, angles = JointContacts(STRIDER), tarsus.WalkController(STRIDER).angles
     down, phase = np.ones(6, dtype=bool), np.zeros(6)

@@ -28,6 +28,9 @@ _UNSURE = 0.1
 # From a command to the servo's effect: at first, and at most [s]; how fast it, the mean of free swings and the load
 # are learnt, a tick; and the square of joint speeds below which that tells little of it [rad^2/s^2].
 _LAG, _LONGEST_LAG, _RATE, _MEAN_RATE, _SLOW = 0.005, 0.1, 0.02, 0.05, 2.0
+# Torques left over in free swing, over the load, below which servos are familiar and above which they are not; how
+# much faster these are learnt.
+_FAMILIAR, _STRANGE, _FASTER = 0.12, 0.2, 3.0
 # Load of all legs above which contacts are known, over weight times length of femur and tibia.
 _LEAST_LOAD = 0.1
 # Steps of integration a tick, and ticks whose expected angles are kept.
@@ -42,7 +45,7 @@ class JointContacts:
     angle, times the stiffness is the torque of the ground. It is compared with that of the same leg in free swing,
     which takes care of offsets of horns and of the leg's weight, and with the load of the standing legs. The tibia
     tells less: its torque changes sign with the direction of the force. While the legs have not been seen to bear the
-    robot, as with ideal or emulated servos, nothing is known.
+    robot, as with ideal or emulated servos, or free swings not to follow what is expected, nothing is known.
 
     Parameters
     ----------
@@ -75,7 +78,8 @@ class JointContacts:
         self._expected: deque[tuple[Float[np.ndarray, "legs"], Float[np.ndarray, "legs"]]] = deque(maxlen=_KEPT)
         longest = float((lengths + np.asarray(robot.geometry.tibia)).max())
         self._least = _LEAST_LOAD * float(total_mass(robot)) * STANDARD_GRAVITY * longest
-        self.lag, self._load = _LAG, 0.0
+        self.lag, self._load, self._left = _LAG, 0.0, 0.0
+        self._familiar = True
         self._mean = np.zeros(robot.legs)
 
     def contacts(
@@ -114,16 +118,22 @@ class JointContacts:
         free = ~down & (phase > _CLEAR) & (phase < _DOWNWARD)
         rising = ~down & (phase < _LANDING)
         if free.any():
-            # The further it is off, the less is it the servo that is learnt of.
-            usual = off / (1 + (off / (_CONTACT * max(self._load, self._least))) ** 2)
+            # The further it is off, the less is it a familiar servo that is learnt of. Of another one all is learnt: a
+            # lag that is far from the first guess would never be found.
+            familiar = self._familiar
+            usual = off / (1 + (off / (_CONTACT * max(self._load, self._least))) ** 2) if familiar else off
             speeds, errors = (newer - older)[free] / dt, (usual / self._stiffness)[free]
             change = float(errors @ speeds / (speeds @ speeds + _SLOW))
-            self.lag = min(max(self.lag - _RATE * change, 0.0), _LONGEST_LAG)
+            rate = _RATE if familiar else _FASTER * _RATE
+            self.lag = min(max(self.lag - rate * change, 0.0), _LONGEST_LAG)
+            self._left += rate * (float(np.abs(off[free]).mean()) - self._left)
             self._mean = np.where(free, self._mean + _MEAN_RATE * usual, self._mean)
         load = float(off[down].sum())
         if load > self._load / 2:
             self._load += _MEAN_RATE * (load - self._load)
-        if self._load < self._least:
+        known = self._load >= self._least
+        self._familiar = self._left < (_STRANGE if self._familiar else _FAMILIAR) * max(self._load, self._least)
+        if not (known and self._familiar):
             return None
         least = self._load * np.where(rising, _OBSTACLE, np.where(down, _STANDS, _CONTACT))
         found: np.ndarray = np.where(rising, np.abs(off), off) > least + _UNSURE * np.abs(driven)
