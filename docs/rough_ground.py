@@ -70,7 +70,9 @@ class Case(NamedTuple):
     options: dict[str, Any] = {}  # noqa: RUF012 - never changed
 
 
-NOT_ADAPTED = {"adaptation": tarsus.GroundAdaptation(swing_height=0.0, body_height=0.0)}
+NOT_ADAPTED = {
+    "adaptation": tarsus.GroundAdaptation(swing_height=0.0, body_height=0.0, drawn_in=0.0, cycle_time=1.0, speed=1.0)
+}
 CASES: dict[str, Case] = {
     "blind": Case(sensors="blind"),
     "felt": Case(),

@@ -169,8 +169,53 @@ def test_roughness_rises_at_once_falls_slowly_and_is_bounded():
     assert roughness.swing_rise == 0.03
     roughness.decay(4.0)
     assert roughness.value == pytest.approx(0.092 / math.e)
+    assert (roughness.drawn_in, roughness.cycle_time, roughness.speed) == pytest.approx((0.02, 1.1875, 0.775))
+    roughness.decay(20.0)
+    assert (roughness.drawn_in, roughness.cycle_time, roughness.speed) == (0.0, 1.0, 1.0)
+    for name, value in (("cycle_time", 0.9), ("speed", 0.0), ("speed", 1.2), ("drawn_in", math.nan)):
+        with pytest.raises(tarsus.TarsusError, match=f"{name} is {value}"):
+            tarsus.GroundAdaptation(**{name: value})
     with pytest.raises(tarsus.TarsusError, match="swing_height is -1"):
         tarsus.GroundAdaptation(swing_height=-1.0)
+
+
+@pytest.mark.parametrize(
+    ("speed", "adaptation", "cycle", "granted"),
+    [
+        (0.5, {}, 1.25, 1.0),
+        (1.0, {}, 1.25, 0.7),
+        (1.0, {"speed": 0.9}, 0.95 / 0.9, 0.9),
+        (1.0, {"speed": 1.0}, 1.0, 1.0),
+        (1.0, {"speed": 1.0, "cycle_time": 1.0, "drawn_in": 0.0}, 1.0, 1.0),
+    ],
+)
+def test_on_rough_ground_cycles_get_longer_feet_closer_and_fast_walks_slower(speed, adaptation, cycle, granted):
+    controller = WalkController(
+        STRIDER, adaptation=tarsus.GroundAdaptation(swing_height=0.0, body_height=0.0, **adaptation)
+    )
+    before, top = controller.cycle_time, controller.top_speed((1, 0, 0))
+    walk, found = controller._walk, []
+    rest = abs(walk.transitions.footholds.rest)
+    twist = (speed * top, 0.0, 0.0)
+    for tick in range(450):
+        if tick < 150:
+            walk.ground.body.roughness.landed(0.06)
+        readings = SensorReadings(contacts=controller.contacts, attitude=(0.0, 0.0))
+        controller.step(twist, 0.02, readings)
+        if tick == 149:
+            assert controller.cycle_time == pytest.approx(cycle * before)
+            assert speed == 1.0 or controller.twist[0] == pytest.approx(twist[0], rel=0.01)
+            found = [each.text() for each in controller.limitations if each.cause == "the ground is rough"]
+            nearer = rest - abs(walk.transitions.footholds.rest)
+            walk.ground.body.roughness.decay(8.0)
+            assert nearer.min() == pytest.approx(adaptation.get("drawn_in", 0.02), abs=0.003)
+    assert found == ([f"twist: {100 * granted:.0f} % of the command; the ground is rough"] if granted < 1 else [])
+    # Once that is forgotten, all of it is as before.
+    assert controller.cycle_time == pytest.approx(before)
+    assert not [each for each in controller.limitations if each.cause == "the ground is rough"]
+    assert walk.transitions.footholds.rest == pytest.approx(
+        rest * np.exp(1j * np.angle(walk.transitions.footholds.rest))
+    )
 
 
 def test_odometry_makes_up_for_what_the_legs_lose():

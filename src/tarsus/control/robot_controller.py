@@ -64,7 +64,7 @@ class RobotController:
     levelling : "level", "between", "follow" or None
         The attitude to keep on sloping ground where an attitude is measured; None for no use of it.
     adaptation : GroundAdaptation, optional
-        How far swing height and body height may adapt to rough ground; its default where left out.
+        How far the walk may adapt to rough ground; its default where left out.
     admittance : Admittance, optional
         How the feet comply with the forces on them; left out, they don't.
     guard : bool or GuardBounds

@@ -73,7 +73,7 @@ class WalkController:
         The attitude to keep on sloping ground where an attitude is measured: level, along the slope, or in the middle;
         None for no use of the measured attitude.
     adaptation : GroundAdaptation, optional
-        How far swing height and body height may adapt to rough ground; its default where left out.
+        How far the walk may adapt to rough ground; its default where left out.
     admittance : Admittance, optional
         How the feet yield to the forces on them; left out, they don't.
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -17,7 +17,9 @@ if TYPE_CHECKING:
 
 __all__ = ["WorkspaceLimiter", "top_speed"]
 
-_CAUSE = "workspace and joint speed at this cycle time"
+_CAUSE, _ROUGH = "workspace and joint speed at this cycle time", "the ground is rough"
+# Part of the longest stroke that longer cycles use.
+_SPARE = 0.95
 
 
 class WorkspaceLimiter:
@@ -28,11 +30,15 @@ class WorkspaceLimiter:
     Parameters
     ----------
     names, transitions : sequence of str, TransitionExecutor
-        The names of the legs; the stance and its transitions.
+        The names of the legs; the stance and its transitions, whose cycles get longer on rough ground.
+    adapted : callable
+        Returns the greatest cycle time and speed on the present ground, over those on even ground.
     """
 
-    def __init__(self, names: Sequence[str], transitions: TransitionExecutor) -> None:
-        self._names, self._transitions = names, transitions
+    def __init__(
+        self, names: Sequence[str], transitions: TransitionExecutor, adapted: Callable[[], tuple[float, float]]
+    ) -> None:
+        self._names, self._transitions, self._adapted = names, transitions, adapted
         self._key: tuple[Any, ...] = ()
         self._found: tuple[float, Limitation | None] = (1.0, None)
 
@@ -41,9 +47,17 @@ class WorkspaceLimiter:
         transitions = self._transitions
         frequency = min(transitions.timing.frequency, 1 / transitions.current.cycle_timing.cycle_time)
         limits, pending = transitions.footholds.limits, transitions.pending
-        key = (request.twist, frequency, limits, pending)
+        longest, speed = self._adapted()
+        key = (request.twist, frequency, limits, pending, longest, speed)
         if key != self._key:
             self._key, self._found = key, self._largest(np.array(request.twist), frequency)
+            walks = any(request.twist)
+            fastest, longest = (top_speed(transitions, request.twist), longest) if walks else (1.0, 1.0)
+            # Cycles get no longer than strokes at that speed allow.
+            transitions.lengthened = min(max(_SPARE * max(fastest, 1 / speed), 1.0), longest)
+            if speed < 1 and speed * fastest < self._found[0]:
+                slow = Limitation(kind=LimitationKind.TWIST, cause=_ROUGH, asked=1.0, granted=speed * fastest)
+                self._found = speed * fastest, slow
         return grant.at_most(*self._found)
 
     def _largest(self, twist: Float[np.ndarray, "3"], frequency: float) -> tuple[float, Limitation | None]:

@@ -40,7 +40,7 @@ class BodyMotion:
     levelling : "level", "between", "follow" or None
         The attitude to keep on slopes; None for no use of the measured attitude.
     adaptation : GroundAdaptation
-        How far swing height and body height may adapt.
+        How far the walk may adapt.
 
     Attributes
     ----------
@@ -117,7 +117,7 @@ class BodyMotion:
         if self.tilt is not None:
             level = self._ground.plane.levelled(self.tilt)
             self.slope.step(level, complex(*twist[:2].tolist()))
-            self.stance.step(level, rest - self.stance.shift)
+            self.stance.step(level, rest - self.stance.shift, self.roughness.drawn_in)
         self._fit_height(state, rest, over, down, bears, dt)
         velocity, yaw = complex(*state.twist.value[:2].tolist()) * pace, float(state.posture.value[5])
         tilt = measured.attitude or (0.0, 0.0)

@@ -58,7 +58,7 @@ class FeltGround:
     levelling : "level", "between", "follow" or None
         The attitude to keep on slopes; None for no use of the measured attitude.
     adaptation : GroundAdaptation
-        How far swing height and body height may adapt.
+        How far the walk may adapt.
     admittance : Admittance, optional
         Compliance of the feet; left out, they are stiff.
 

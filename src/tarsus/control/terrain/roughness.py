@@ -1,4 +1,4 @@
-"""Roughness: how uneven the ground is that the feet have met, and what follows for swing height and body height."""
+"""Roughness: how uneven the ground is that the feet have met, and what follows for heights, stance and cycle."""
 
 from __future__ import annotations
 
@@ -18,6 +18,10 @@ _EVEN = 0.008
 _MEMORY = 4.0
 # Swing height and body height over roughness.
 _SWING_SHARE, _BODY_SHARE = 1.0, 1.0
+# Roughness for which feet are drawn in as far as they may, and from which on until which cycle and speed change [m].
+_ROUGH, _ROUGHER, _ROUGHEST = 0.02, 0.02, 0.04
+# Stance, cycle and speed change in steps of this share: each has limits computed anew.
+_STEPS = 4
 
 
 @represented()
@@ -31,24 +35,37 @@ class GroundAdaptation:
         Greatest addition to the swing height [m].
     body_height : float
         Greatest addition to the body height [m].
+    drawn_in : float
+        How far feet may be drawn in, so that legs reach higher and lower [m].
+    cycle_time : float
+        Greatest cycle time on rough ground, over the one on even ground: fewer and longer steps slip less.
+    speed : float
+        Greatest speed on rough ground, over the top speed on even ground.
     friction : float
         Coefficient of friction that feet are sure of: slopes on which they would slip with it are refused.
 
     Raises
     ------
     InputError
-        If one is negative or not finite.
+        If one is negative or not finite, cycles would be shorter, or the speed is 0 or higher.
     """
 
     swing_height: float = 0.05
     body_height: float = 0.06
+    drawn_in: float = 0.02
+    cycle_time: float = 1.25
+    speed: float = 0.7
     friction: float = 0.8
 
     def __post_init__(self) -> None:
-        for name in ("swing_height", "body_height", "friction"):
+        for name in ("swing_height", "body_height", "drawn_in", "friction"):
             value = getattr(self, name)
             if not 0 <= value < math.inf:
                 raise InputError(f"ground adaptation: {name} is {value}; it must be a finite number, not negative")
+        if not 1 <= self.cycle_time < math.inf:
+            raise InputError(f"ground adaptation: cycle_time is {self.cycle_time}; it must be finite, at least 1")
+        if not 0 < self.speed <= 1:
+            raise InputError(f"ground adaptation: speed is {self.speed}; it must be greater than 0 and at most 1")
 
 
 class Roughness:
@@ -57,7 +74,7 @@ class Roughness:
     Parameters
     ----------
     adaptation : GroundAdaptation
-        How far heights may adapt.
+        How far the walk may adapt.
 
     Attributes
     ----------
@@ -102,3 +119,22 @@ class Roughness:
     def body_rise(self) -> float:
         """Addition to the body height [m]."""
         return min(_BODY_SHARE * self.value, self._adaptation.body_height)
+
+    @property
+    def drawn_in(self) -> float:
+        """How far feet are drawn in [m]."""
+        return self._share(0.0, _ROUGH) * self._adaptation.drawn_in
+
+    @property
+    def cycle_time(self) -> float:
+        """Cycle time over that on even ground."""
+        return 1 + self._share(_ROUGHER, _ROUGHEST) * (self._adaptation.cycle_time - 1)
+
+    @property
+    def speed(self) -> float:
+        """Greatest speed over the top speed on even ground."""
+        return 1 - self._share(_ROUGHER, _ROUGHEST) * (1 - self._adaptation.speed)
+
+    def _share(self, least: float, most: float) -> float:
+        """Return where the roughness is between two values, 0 to 1."""
+        return min(max(round(_STEPS * (self.value - least) / (most - least)) / _STEPS, 0.0), 1.0)

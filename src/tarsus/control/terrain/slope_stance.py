@@ -51,8 +51,8 @@ class SlopeStance:
         self._drawn_in: Float[np.ndarray, "legs"] = np.asarray(_DRAWN_IN * (g.femur + g.tibia))
         self.half = (0.0, 0.0, 0.0) if size is None else tuple((np.asarray(size) / 2).tolist())
 
-    def step(self, level: FootPlane, rest: Complex[np.ndarray, "legs"]) -> None:
-        """Follow the slope.
+    def step(self, level: FootPlane, rest: Complex[np.ndarray, "legs"], drawn_in: float = 0.0) -> None:
+        """Follow the slope, and the roughness.
 
         Parameters
         ----------
@@ -60,17 +60,19 @@ class SlopeStance:
             The plane of the feet as a level body sees it.
         rest : complex array, shape (legs,)
             Rest footholds on level ground, in the heading frame [m].
+        drawn_in : float
+            How far all feet are drawn in for rough ground [m].
         """
         uphill = complex(level.slope_x, level.slope_y)
         share = min(max((math.atan(abs(uphill)) - _LEAST) / (_MOST - _LEAST), 0.0), 1.0)
         self.uphill = uphill if share else 0j
-        if not share and not self.shift.any():
+        if not share and not drawn_in and not self.shift.any():
             return
         out = rest - self._mounts
         angle = np.angle(out * uphill.conjugate())
-        drawn_in = self._drawn_in * np.clip(-np.cos(angle) / _DOWNHILL, 0.0, 1.0) / np.abs(out)
-        wanted = out * ((1 - share * drawn_in) * np.exp(1j * share * _TURNED * np.sin(2 * angle)) - 1)
-        if float(np.abs(wanted - self.shift).max()) > (_SMALLEST if share else 0.0):
+        nearer = drawn_in * (1 - share) + share * self._drawn_in * np.clip(-np.cos(angle) / _DOWNHILL, 0.0, 1.0)
+        wanted = out * ((1 - nearer / np.abs(out)) * np.exp(1j * share * _TURNED * np.sin(2 * angle)) - 1)
+        if float(np.abs(wanted - self.shift).max()) > (_SMALLEST if share or drawn_in else 0.0):
             self.shift = wanted
 
     def not_downhill(self, velocity: complex) -> complex:

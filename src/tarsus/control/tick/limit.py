@@ -24,9 +24,10 @@ def twist_limiters(walk: WalkComponents) -> list[TwistLimiter]:
     walk : WalkComponents
         The components.
     """
+    roughness = walk.ground.body.roughness
     return [
         walk.ground.missing,
-        WorkspaceLimiter(walk.robot.leg_names, walk.transitions),
+        WorkspaceLimiter(walk.robot.leg_names, walk.transitions, lambda: (roughness.cycle_time, roughness.speed)),
         PendingTransitionLimiter(walk.transitions),
         GovernorLimiter(walk.transitions),
     ]

@@ -28,8 +28,7 @@ __all__ = ["TransitionExecutor"]
 
 _SWAY = Cause("joint speed and acceleration at this cycle time")
 _SHIFTS = Cause("the body shift of this gait takes its place")
-# Rounding of a distance [m].
-_ROUNDING = 1e-9
+_ROUNDING = 1e-9  # of a distance [m]
 
 
 class TransitionExecutor:
@@ -56,13 +55,15 @@ class TransitionExecutor:
         The phase of the transition in progress.
     current : StanceTransition
         The transition that was begun last.
+    lengthened : float
+        Cycle time over the planned one.
     """
 
     def __init__(self, initial: StanceTransition, foot_targets: FootTargets) -> None:
         self.scheduler, self.footholds = TransitionScheduler(initial), FootholdTransfer(initial)
         self.pose = PoseController(initial.posture)
         self.timing = StepTiming.of(initial.parameters.gait, initial.cycle_timing.cycle_time)
-        self.phase, self.current = TransitionPhase.NONE, initial
+        self.phase, self.current, self.lengthened = TransitionPhase.NONE, initial, 1.0
         self._foot_targets = foot_targets
         self._active: StanceTransition | None = None
         # Of a gait that is about to begin: its timing, the leg that lifts first, how long each foot then stands [s].
@@ -95,7 +96,12 @@ class TransitionExecutor:
     @property
     def timing_is_steady(self) -> bool:
         """Whether the steps are as fast as planned, and the gait stays."""
-        return not self.changes_gait and self.timing.frequency == 1 / self.current.cycle_timing.cycle_time
+        return not self.changes_gait and self.timing.frequency == self.frequency
+
+    @property
+    def frequency(self) -> float:
+        """The step frequency to reach [1/s]."""
+        return 1 / (self.lengthened * self.current.cycle_timing.cycle_time)
 
     @property
     def bandwidth(self) -> float:
@@ -284,9 +290,8 @@ class TransitionExecutor:
         """
         settled = self.is_settled(state)
         if not self.changes_gait:
-            goal, present = 1 / self.current.cycle_timing.cycle_time, self.timing.frequency
-            goal = goal if settled else min(goal, present)
-            if goal != present:
+            goal = self.frequency if settled else min(self.frequency, self.timing.frequency)
+            if goal != self.timing.frequency:
                 self.timing = self.timing.approach(goal, dt)
         elif state.down.all() and self._active is not None:
             state = self._start_gait(self._active, self._first_leg, state)
