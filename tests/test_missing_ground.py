@@ -16,9 +16,8 @@ AHEAD = [REST[0] + 0.05, *REST[1:]]
 
 
 def stepped(missing, searches, feet=AHEAD, *, stands=(False, *[True] * 5), centre=0j, roughness=0.0, dt=0.01):
-    missing.step(
-        searches, feet, stands, dt, centre=centre, rest=REST, radii=[0.05] * 6, height=0.1, roughness=roughness
-    )
+    sizes = {"height": 0.1, "roughness": roughness}
+    missing.step(searches, feet, stands, dt, centre=centre, rest=REST, radii=[0.05] * 6, **sizes)
     return missing
 
 
@@ -89,6 +88,29 @@ def test_a_twist_over_the_edge_is_refused_and_any_other_is_granted():
     stepped(missing, [], stands=[True] * 6)
     for away in ((-0.1, 0.0, 0.0), (0.1, 0.0, 0.0)):
         assert limited(missing, *away).fraction == 1.0
+
+
+@pytest.mark.parametrize(("depth", "tries"), [(-0.04, 2), (0.08, 0)])
+def test_an_edge_to_known_ground_that_the_leg_does_not_reach_is_tried_with_other_footholds(depth, tries):
+    missing, went_on = MissingGround(NAMES), 0
+    for _ in range(4):
+        stepped(missing, [(0, depth, False, False)])
+        cause = limited(missing, 0.1, 0.0, 0.0).limitations[0].cause
+        assert (cause == "the ground is lower than the leg reaches") == (depth < 0)
+        for _ in range(150):
+            stepped(missing, [])
+            waits = limited(missing, 0.1, 0.0, 0.0).fraction == 0.0
+        went_on += not waits
+    assert went_on == tries
+    # On ground without holes that is forgotten.
+    limited(missing, -0.1, 0.0, 0.0)
+    for _ in range(700):
+        stepped(missing, [])
+    stepped(missing, [(0, depth, False, False)])
+    limited(missing, 0.1, 0.0, 0.0)
+    for _ in range(150):
+        stepped(missing, [])
+    assert (limited(missing, 0.1, 0.0, 0.0).fraction == 1.0) == (depth < 0)
 
 
 def test_a_foot_that_is_stopped_tries_again_then_beside_it_and_then_stays_before_it():

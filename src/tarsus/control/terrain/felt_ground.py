@@ -245,6 +245,7 @@ class FeltGround:
         stands = [
             (in_air or on) and not missing.steps_back(leg, places[leg]) for leg, on in enumerate(contacts.standing)
         ]
+        missing.sees(self.ground.holes, footholds.rest.tolist())
         missing.step(
             searching_feet(state, contacts, self.ground, places, down=down, stands=stands),
             places,

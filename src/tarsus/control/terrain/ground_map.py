@@ -29,6 +29,10 @@ __all__ = ["GroundMap"]
 _SLOPE_RATE = 2.0
 # Part of the distance at which a foot may be put down that is kept for its stroke, at least.
 _STROKE_SHARE = 0.65
+# How far the body is lowered for deep ground, over its height.
+_LOWERED = 0.4
+# How far off known heights may lie: eight points around a place, and itself [m].
+_AROUND = 0.03 * np.append(np.exp(0.25j * np.pi * np.arange(8)), 0.0)
 # Swing phase up to which a foothold is chosen.
 _CHOOSING = 0.3
 # Room of the body over the ground [m].
@@ -54,11 +58,16 @@ class GroundMap:
         Whether any heights are known.
     beside : dict of int to complex
         How far from the foothold of its step each foot in the air is put down, in the heading frame [m].
+    holes : dict of int to complex
+        Where feet in the air would be put down into a hole, in the heading frame [m].
     """
 
     def __init__(self) -> None:
         self.plane, self.given, self.beside = FootPlane(), False, dict[int, complex]()
+        self.holes = dict[int, complex]()
         self._seen: GroundHeights | None = None
+        # How far under the plane of the feet ground is that they step on [m].
+        self._deepest = math.inf
         # Where in G the middle of the grid is, and its x axis.
         self._middle, self._axis = 0j, 1 + 0j
         # Of the heading frame: where in G, its x axis, how it is inclined, and its height over that of the grid.
@@ -131,13 +140,18 @@ class GroundMap:
         self._height = median(known) if known else self._height
 
     def expected(self, places: Shaped[np.ndarray, "..."]) -> Shaped[np.ndarray, "..."]:
-        """Return the heights at which the known ground is expected at places x + iy [m].
+        """Return the heights at which the known ground is expected at places x + iy: that of the plane in a hole [m].
 
         Parameters
         ----------
         places : complex array, shape (...)
             The places [m].
         """
+        found, level = self._lies(places), self._level(places)
+        return np.where(found > level - self._deepest, found, level)
+
+    def _lies(self, places: Shaped[np.ndarray, "..."]) -> Shaped[np.ndarray, "..."]:
+        """Return the known heights at places, those of holes too, and that of the plane where nothing is known [m]."""
         known = self._known(places) - self._height - self._rise(places)
         return np.where(np.isnan(known), self._level(places), known)
 
@@ -155,6 +169,16 @@ class GroundMap:
         """
         return float(self.expected(np.array(place))) if self.given else self.plane.at(place)
 
+    def lowest_near(self, place: complex) -> float:
+        """Return the least height at which the ground is expected around a place [m].
+
+        Parameters
+        ----------
+        place : complex
+            The place [m].
+        """
+        return float(self.expected(place + _AROUND).min()) if self.given else self.plane.at(place)
+
     def choose(self, state: GaitState, reach: Reach, footholds: FootholdTransfer) -> None:
         """Choose footholds for feet that have lifted off, once in each swing.
 
@@ -169,19 +193,22 @@ class GroundMap:
         """
         if not self.given:
             return
+        self._deepest = _LOWERED * float(state.posture.value[2]) - max(reach.lowest)
         highest, turn = reach.highest_stand(float(state.posture.value[SWING_HEIGHT])), cmath.exp(-1j * state.yaw)
         for leg, (down, phase) in enumerate(zip(state.down.tolist(), state.swing_phase.tolist(), strict=True)):
             if down:
                 self.beside.pop(leg, None)
+                self.holes.pop(leg, None)
             elif leg not in self.beside and 0 < phase < _CHOOSING:
                 kept = np.abs((NORMALS_CONJUGATE * reach.strokes[leg]).real) / 2
                 slack = footholds.placement_bounds[leg] - kept.clip(_STROKE_SHARE * footholds.placement_radii[leg])
                 start, end = ((complex(at[leg]) - state.origin) * turn for at in (state.foot, state.foothold))
                 allowed = (slack.clip(0.0) >= _ALONG_TRIED).all(axis=1)
                 heights = (reach.lowest[leg], highest[leg], reach.highest[leg])
-                self.beside[leg] = better_foothold(
-                    self.expected, self._level, start, end, allowed=allowed, reach=heights
-                )
+                self.beside[leg] = better_foothold(self._lies, self._level, start, end, allowed=allowed, reach=heights)
+                place = np.array(end + self.beside[leg])
+                if self._lies(place) < self._level(place) - self._deepest:
+                    self.holes[leg] = end
 
     def under(
         self, start: complex, foothold: complex, elevation: float, room: tuple[float | None, float]

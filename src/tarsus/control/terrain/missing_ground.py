@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from tarsus.control.limitation import Limitation, LimitationKind
 from tarsus.control.limiter.protocol import TwistGrant, TwistRequest
@@ -33,6 +33,9 @@ _FIRM, _MARGIN, _BACKS, _SPEED = 0.06, 0.03, 0.08, 0.15
 _STOPS, _SIDES, _BESIDE, _BEFORE = 3, 2, 0.06, 0.04
 # Motion within an angle of this cosine of the way to the edge leads over it.
 _TOWARDS = 0.3
+# How often and when the walk tries other footholds at an edge to ground that is seen, not reached [s]; after which
+# time without holes that is forgotten [s].
+_AGAIN, _WAITS, _FORGETS = 2, 1.0, 6.0
 
 
 def searching_feet(
@@ -59,7 +62,7 @@ def searching_feet(
     elevation, found = float(state.elevation.value[0]), list[tuple[int, float, bool, bool]]()
     for leg, place in enumerate(places):
         if down[leg] and not stands[leg] and contacts.is_known(leg):
-            depth = ground.at(place) + elevation - float(state.ground_height[leg])
+            depth = ground.lowest_near(place) + elevation - float(state.ground_height[leg])
             found.append((leg, depth, state.felt[leg].speed < -_FALLS, contacts.seeks(leg)))
     return found
 
@@ -89,6 +92,7 @@ class MissingGround:
         self.stops, self._beside = dict[int, tuple[int, complex, complex]](), dict[int, complex]()
         self._names, self._tries, self._cause = names, [0] * len(names), ("", "")
         self._way, self._backed, self.refuses = 0j, 0.0, False
+        self._again, self._since = 0, 0.0
 
     def steps_back(self, leg: int, foot: complex) -> bool:
         """Return whether a foot, here in the heading frame, is on its way to another place."""
@@ -146,13 +150,20 @@ class MissingGround:
             missing = depth > _DEEP * height + _ROUGH * roughness or not (lasts or leg in self.places)
             if missing and not (self.steps_back(leg, feet[leg]) or self.gives_up(leg)):
                 self._tries[leg] += 1
-                off = feet[leg] - rest[leg]
                 if self._tries[leg] == 1:
-                    self._way = off / abs(off) if abs(off) > _OFF else rest[leg] / abs(rest[leg])
+                    self._leads(feet[leg] - rest[leg], rest[leg])
                 self.places[leg] = rest[leg] - _BACK[min(self._tries[leg], len(_BACK)) - 1] * radii[leg] * self._way
-                self._cause = self._names[leg], f"no ground within {1e3 * depth:.0f} mm below the other feet"
+                # Ground that is seen and not reached from here may be reached with other footholds.
+                reached = f"no ground within {1e3 * depth:.0f} mm below the other feet"
+                self._cause = self._names[leg], reached if depth > 0.0 else "the ground is lower than the leg reaches"
+                self._again += _AGAIN if depth > 0.0 else 0
+        self._since = 0.0 if self.places else self._since + dt
         if not self.places:
             self._backed = 0.0
+            if self.refuses and self._again < _AGAIN and self._since > _WAITS:
+                self._again, self._way = self._again + 1, 0j
+            elif not self.refuses and self._since > _FORGETS:
+                self._again = 0
             return
         self.pace, turn = 0.0, self._way.conjugate()
         edge = min((feet[leg] * turn).real for leg in self.places) - _FIRM
@@ -175,6 +186,16 @@ class MissingGround:
             side = math.copysign(_BESIDE, -(start * way.conjugate()).imag * (-1) ** (stops - _STOPS))
             self.places[leg], self._beside[leg] = start + 1j * side * way, goal + 1j * side * way
         return start - foot
+
+    def sees(self, holes: Mapping[int, complex], rest: Sequence[complex]) -> None:
+        """Take note of feet in the air that would be put down into a hole: where, and their rest footholds [m]."""
+        for leg, place in holes.items():
+            self._leads(place - rest[leg], rest[leg])
+            self._cause, self._again = (self._names[leg], "no ground within reach at its next foothold"), _AGAIN
+
+    def _leads(self, off: complex, rest: complex) -> None:
+        """Take the way of a leg's foot from its rest foothold for that to the edge."""
+        self._way = off / abs(off) if abs(off) > _OFF else rest / abs(rest)
 
     def limit(self, request: TwistRequest, grant: TwistGrant) -> TwistGrant:
         """Return the grant, without a twist that leads over the edge; one that leads away is granted from then on."""
