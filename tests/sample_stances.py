@@ -8,11 +8,11 @@ from gait_robots import preset
 from tarsus.control.incremental import complete
 from tarsus.control.workspace.cycle_time import cycle_timing
 from tarsus.control.workspace.foot_workspace import foot_workspace
-from tarsus.control.workspace.stability import support_sets
 from tarsus.control.workspace.stance_limits import velocity_limits
 from tarsus.gait.foot_polygons import NORMALS, polygon_margin
 from tarsus.gait.gait import Gait
-from tarsus.gait.stance_geometry import stance_geometry_of
+from tarsus.gait.stance.stability import support_sets
+from tarsus.gait.stance.stance_geometry import stance_geometry_of
 from tarsus.gait.walk_setup import WalkSetup
 from tarsus.kinematics.pose import Pose
 from tarsus.robot.joint_limits import joint_limits

@@ -10,9 +10,9 @@ from sample_stances import cycle_timing_of, setup_of, standing, velocity_limits_
 from tarsus.control.incremental import complete
 from tarsus.control.workspace.cycle_time import SteadyCycle, cycle_timing
 from tarsus.control.workspace.stance_limits import velocity_limits
-from tarsus.control.workspace.velocity_limits import with_stroke_limits
 from tarsus.gait.cycle import cycle_feet
 from tarsus.gait.gait import Gait
+from tarsus.gait.stance.velocity_limits import with_stroke_limits
 from tarsus.robot.joint_limits import JointLimits, joint_limits
 
 HEADINGS = [(np.cos(a), np.sin(a), 0.0) for a in np.arange(7) * 2 * np.pi / 7 + 0.2]

@@ -14,9 +14,9 @@ from tarsus.control.transition.feasible_fraction import (
     reachable_fraction,
 )
 from tarsus.control.workspace.foot_workspace import foot_workspace, rest_margin
-from tarsus.control.workspace.stability import StabilityCheck, support_sets
 from tarsus.gait.foot_polygons import NORMALS
 from tarsus.gait.gait import Gait
+from tarsus.gait.stance.stability import StabilityCheck, support_sets
 from tarsus.kinematics.inverse import inverse_kinematics
 from tarsus.kinematics.stability import stability_margin
 

@@ -11,7 +11,7 @@ from sample_stances import POSTURES, feet_at, polygon_radii, polygons, pose_of, 
 from tarsus.control.incremental import complete
 from tarsus.control.workspace.foot_workspace import foot_workspace
 from tarsus.gait.foot_polygons import NORMALS, polygon_ends, polygon_margin
-from tarsus.gait.stance_geometry import joint_margin
+from tarsus.gait.stance.stance_geometry import joint_margin
 from tarsus.kinematics.inverse import inverse_kinematics
 from tarsus.kinematics.leg import forward_kinematics
 

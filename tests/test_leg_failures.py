@@ -8,7 +8,7 @@ import pytest
 import tarsus
 from tarsus.control.sensing.joint_monitor import JointMonitor
 from tarsus.errors import InputError
-from tarsus.gait.support_stance import support_stance
+from tarsus.gait.stance.support_stance import support_stance
 from tarsus.kinematics.mass import centre_of_mass, total_mass
 from tarsus.robot.remaining import remaining_robot, turned_robot
 from tarsus.simulation import SimulatedPlant

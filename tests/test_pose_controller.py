@@ -7,7 +7,7 @@ import pytest
 
 from tarsus.control.filters import CriticallyDamped
 from tarsus.control.pose.pose_controller import PoseController
-from tarsus.gait.stance_geometry import sway_fraction
+from tarsus.gait.stance.stance_geometry import sway_fraction
 
 LEVEL = np.array([0.0, 0.0, 0.1, 0.0, 0.0, 0.0, 0.03])
 SWAY = (0.0, 0.01, 0.0, 0.02, 0.0, 0.0)

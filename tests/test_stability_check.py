@@ -5,8 +5,8 @@ import pytest
 
 from gait_robots import HEXAPOD_GAITS, PRESETS, ring
 from sample_stances import POSTURES, polygons, setup_of, standing
-from tarsus.control.workspace.stability import StabilityCheck, safe_fraction, support_sets
 from tarsus.gait.foot_polygons import NORMALS, polygon_ends
+from tarsus.gait.stance.stability import StabilityCheck, safe_fraction, support_sets
 from tarsus.kinematics.mass import centre_of_mass
 
 

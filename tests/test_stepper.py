@@ -16,7 +16,7 @@ from tarsus.control.walk.foothold import final_footholds
 from tarsus.control.walk.state import POSITION_TOLERANCE, chord_factor, integrate_twist
 from tarsus.control.walk.stepper import TARGET_FREEZE, advance
 from tarsus.gait.cycle import cycle_feet
-from tarsus.gait.stance_geometry import with_sway
+from tarsus.gait.stance.stance_geometry import with_sway
 from tarsus.kinematics.pose import Pose
 
 TWISTS = [(0.08, 0.0, 0.0), (0.0, -0.06, 0.0), (0.05, 0.02, 0.3), (0.0, 0.0, -0.5)]

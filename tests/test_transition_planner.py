@@ -19,7 +19,7 @@ from tarsus.control.transition.planner import TransitionPlanner
 from tarsus.control.transition.stance_transition import StanceTransition
 from tarsus.errors import UnreachableError
 from tarsus.gait.gait import Gait
-from tarsus.gait.stance_geometry import SWING_HEIGHT, rotation_rows, stance_geometry_of
+from tarsus.gait.stance.stance_geometry import SWING_HEIGHT, rotation_rows, stance_geometry_of
 from tarsus.kinematics.inverse import inverse_kinematics
 from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.stance import default_stance

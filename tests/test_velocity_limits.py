@@ -13,16 +13,16 @@ from gait_robots import HEXAPOD_GAITS, PRESETS, ring
 from sample_stances import POSTURES, feet_at, pose_of, setup_of, standing, velocity_limits_of
 from sample_walks import WAVE_OF_FOUR
 from tarsus.control.incremental import complete
-from tarsus.control.workspace.stability import safe_fraction, support_sets
 from tarsus.control.workspace.stance_limits import velocity_limits
-from tarsus.control.workspace.velocity_limits import (
+from tarsus.gait.cycle import cycle_feet
+from tarsus.gait.foot_polygons import NORMALS, polygon_ends, polygon_margin
+from tarsus.gait.gait import Gait
+from tarsus.gait.stance.stability import safe_fraction, support_sets
+from tarsus.gait.stance.velocity_limits import (
     VelocityLimits,
     stance_overhang,
     with_stroke_limits,
 )
-from tarsus.gait.cycle import cycle_feet
-from tarsus.gait.foot_polygons import NORMALS, polygon_ends, polygon_margin
-from tarsus.gait.gait import Gait
 from tarsus.gait.stroke import max_stroke
 from tarsus.kinematics.inverse import inverse_kinematics
 from tarsus.kinematics.stability import stability_margin

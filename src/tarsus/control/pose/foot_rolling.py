@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tarsus.control.filters import CriticallyDamped
-from tarsus.gait.stance_geometry import SWING_HEIGHT, Rows, rotation_rows
+from tarsus.gait.stance.stance_geometry import SWING_HEIGHT, Rows, rotation_rows
 from tarsus.robot.robot import Robot
 
 if TYPE_CHECKING:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tarsus.control.workspace.body_shift import NO_SHIFT
-from tarsus.gait.stance_geometry import SWING_HEIGHT, sway_fraction
+from tarsus.gait.stance.stance_geometry import SWING_HEIGHT, sway_fraction
 
 if TYPE_CHECKING:
     from jaxtyping import Complex, Float

@@ -18,7 +18,7 @@ from tarsus.control.states.robot_state import RobotState
 from tarsus.control.walk_controller import WalkController
 from tarsus.errors import TarsusError
 from tarsus.gait.gait import Gait
-from tarsus.gait.support_stance import support_stance
+from tarsus.gait.stance.support_stance import support_stance
 from tarsus.gait.swing import horizontal_profile
 from tarsus.load.servo_limits import at_supply
 from tarsus.robot.remaining import remaining_robot, turned_robot

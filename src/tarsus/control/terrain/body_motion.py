@@ -19,7 +19,7 @@ from tarsus.control.terrain.slope_limit import SlopeLimit
 from tarsus.control.terrain.slope_stance import SlopeStance
 from tarsus.control.walk.state import GaitState
 from tarsus.control.walk.step_timing import StepTiming
-from tarsus.gait.stance_geometry import SWING_HEIGHT
+from tarsus.gait.stance.stance_geometry import SWING_HEIGHT
 from tarsus.robot.robot import Robot
 
 if TYPE_CHECKING:

@@ -27,7 +27,7 @@ from tarsus.control.walk.felt_feet import FeltFoot, FeltInputs, GroundUnder
 from tarsus.control.walk.ground_pose import body_posture
 from tarsus.control.walk.state import PHASE_TOLERANCE, GaitState
 from tarsus.control.walk.step_timing import StepTiming
-from tarsus.gait.stance_geometry import SWING_HEIGHT
+from tarsus.gait.stance.stance_geometry import SWING_HEIGHT
 from tarsus.kinematics.mass import centre_of_mass
 from tarsus.robot.robot import Robot
 

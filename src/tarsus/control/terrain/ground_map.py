@@ -18,7 +18,7 @@ from tarsus.control.walk.state import GaitState
 from tarsus.gait.foot_plane import FootPlane, fitted_plane
 from tarsus.gait.foot_polygons import NORMALS_CONJUGATE
 from tarsus.gait.ground_heights import TRIED, GroundHeights, better_foothold, highest_on_way, is_steep
-from tarsus.gait.stance_geometry import SWING_HEIGHT
+from tarsus.gait.stance.stance_geometry import SWING_HEIGHT
 
 if TYPE_CHECKING:
     from jaxtyping import Complex, Shaped

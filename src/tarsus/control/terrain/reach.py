@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tarsus.gait.foot_plane import FootPlane
-from tarsus.gait.stance_geometry import SWING_HEIGHT, StanceGeometry, joint_margin, rotation_rows
+from tarsus.gait.stance.stance_geometry import SWING_HEIGHT, StanceGeometry, joint_margin, rotation_rows
 from tarsus.robot.robot import Robot
 
 if TYPE_CHECKING:

@@ -10,7 +10,7 @@ from tarsus.control.command import Command
 from tarsus.control.transition.executor import TransitionExecutor
 from tarsus.control.walk.foot_target_motion import best_body_shift
 from tarsus.control.walk.foot_targets import excluded_legs
-from tarsus.control.workspace.stability import support_sets
+from tarsus.gait.stance.stability import support_sets
 from tarsus.kinematics.mass import centre_of_mass
 from tarsus.robot.robot import Robot
 

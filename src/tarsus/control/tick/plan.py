@@ -18,8 +18,8 @@ from tarsus.control.transition.stance_transition import StanceTransition
 from tarsus.control.transition.target_stance import sway_extremes
 from tarsus.control.walk.foot_target_motion import reachable_fraction
 from tarsus.control.walk.state import GaitState
-from tarsus.control.workspace.stability import support_sets
-from tarsus.gait.stance_geometry import SWING_HEIGHT
+from tarsus.gait.stance.stability import support_sets
+from tarsus.gait.stance.stance_geometry import SWING_HEIGHT
 from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.stability import stability_margin
 

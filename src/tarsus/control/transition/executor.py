@@ -19,7 +19,7 @@ from tarsus.control.walk.reference_governor import FootPrediction, lift_delays, 
 from tarsus.control.walk.state import POSITION_TOLERANCE, GaitState
 from tarsus.control.walk.step_timing import StepTiming
 from tarsus.control.walk.stepper import stance_tolerance
-from tarsus.gait.stance_geometry import sway_fraction
+from tarsus.gait.stance.stance_geometry import sway_fraction
 
 if TYPE_CHECKING:
     from jaxtyping import Float

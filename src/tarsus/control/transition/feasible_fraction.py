@@ -10,8 +10,8 @@ import numpy as np
 from tarsus.control.incremental import Incremental
 from tarsus.control.limitation import Cause
 from tarsus.control.workspace.foot_workspace import rest_margin
-from tarsus.control.workspace.stability import StabilityCheck
-from tarsus.gait.stance_geometry import (
+from tarsus.gait.stance.stability import StabilityCheck
+from tarsus.gait.stance.stance_geometry import (
     SWING_HEIGHT,
     StanceGeometry,
     joint_margin,

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tarsus.control.transition.stance_transition import StanceTransition
-from tarsus.control.workspace.velocity_limits import VelocityLimits
 from tarsus.gait.foot_polygons import NORMALS_CONJUGATE
+from tarsus.gait.stance.velocity_limits import VelocityLimits
 
 if TYPE_CHECKING:
     from jaxtyping import Bool, Complex, Float

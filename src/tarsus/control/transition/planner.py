@@ -21,9 +21,9 @@ from tarsus.control.transition.shortfalls import stance_limitations
 from tarsus.control.transition.stance_transition import StanceTransition
 from tarsus.control.transition.target_stance import sway_extremes, target_stance
 from tarsus.control.workspace.cycle_time import CycleTiming, cycle_timing
-from tarsus.control.workspace.stability import StabilityCheck, support_sets
 from tarsus.control.workspace.stance_limits import shifted_limits, velocity_limits
-from tarsus.control.workspace.velocity_limits import VelocityLimits, with_stroke_limits
+from tarsus.gait.stance.stability import StabilityCheck, support_sets
+from tarsus.gait.stance.velocity_limits import VelocityLimits, with_stroke_limits
 from tarsus.robot.joint_limits import JointLimits
 from tarsus.robot.robot import Robot
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from tarsus.control.limitation import Cause, Limitation, LimitationKind
 from tarsus.control.transition.parameters import WalkParameters
-from tarsus.gait.stance_geometry import SWING_HEIGHT
+from tarsus.gait.stance.stance_geometry import SWING_HEIGHT
 
 if TYPE_CHECKING:
     from jaxtyping import Float

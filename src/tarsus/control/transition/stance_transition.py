@@ -10,7 +10,7 @@ import numpy as np
 from tarsus.control.limitation import Limitation
 from tarsus.control.transition.parameters import WalkParameters
 from tarsus.control.workspace.cycle_time import CycleTiming
-from tarsus.control.workspace.velocity_limits import VelocityLimits
+from tarsus.gait.stance.velocity_limits import VelocityLimits
 
 if TYPE_CHECKING:
     from jaxtyping import Complex, Float

@@ -10,7 +10,7 @@ import numpy as np
 
 from tarsus.control.filters import CriticallyDamped
 from tarsus.control.walk.state import GaitState
-from tarsus.gait.stance_geometry import SWING_HEIGHT, StanceGeometry, joint_margin, rotation_rows
+from tarsus.gait.stance.stance_geometry import SWING_HEIGHT, StanceGeometry, joint_margin, rotation_rows
 from tarsus.kinematics.polygon import hull_margin
 from tarsus.robot.robot import Robot
 
@@ -145,7 +145,7 @@ def reachable_fraction(
     robot : Robot
         A single robot.
     postures : sequence of array, shape (7,)
-        Postures of the body: see `tarsus.gait.stance_geometry`.
+        Postures of the body: see `tarsus.gait.stance.stance_geometry`.
     leg : int
         Index of the leg.
     start, end : array, shape (3,)

@@ -10,7 +10,7 @@ import numpy as np
 from tarsus.control.walk.state import GaitState
 from tarsus.control.workspace.body_shift import NO_SHIFT
 from tarsus.gait.body_shift import shift_at
-from tarsus.gait.stance_geometry import rotation_rows, with_sway
+from tarsus.gait.stance.stance_geometry import rotation_rows, with_sway
 from tarsus.kinematics.pose import Pose
 
 if TYPE_CHECKING:

@@ -13,7 +13,7 @@ from tarsus.control.pose.foot_rolling import FootRolling
 from tarsus.control.walk.ground_pose import body_posture
 from tarsus.control.walk.state import GaitState
 from tarsus.control.workspace.body_shift import NO_SHIFT
-from tarsus.gait.stance_geometry import SWING_HEIGHT, Rows, rotation_rows
+from tarsus.gait.stance.stance_geometry import SWING_HEIGHT, Rows, rotation_rows
 from tarsus.kinematics.inverse import inverse_kinematics
 from tarsus.kinematics.scalar_solver import ScalarSolver
 from tarsus.robot.robot import Robot

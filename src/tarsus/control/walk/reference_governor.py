@@ -14,9 +14,9 @@ import numpy as np
 
 from tarsus.control.filters import integral_factors
 from tarsus.control.walk.state import GaitState
-from tarsus.control.workspace.velocity_limits import stance_overhang
 from tarsus.gait.foot_polygons import NORMALS
 from tarsus.gait.gait import Gait
+from tarsus.gait.stance.velocity_limits import stance_overhang
 
 if TYPE_CHECKING:
     from jaxtyping import Complex, Float

@@ -67,7 +67,7 @@ class GaitState(NamedTuple):
     twist : CriticallyDamped
         Twist of the heading frame, shape (3,): forward, left [m/s], turning [rad/s].
     posture : CriticallyDamped
-        Body pose in the heading frame, shape (13,): see `tarsus.gait.stance_geometry`.
+        Body pose in the heading frame, shape (13,): see `tarsus.gait.stance.stance_geometry`.
     lift_delay : array, shape (legs,)
         Delay of each foot's lift-off, by which its swing is shorter [cycles].
     rhythm : CriticallyDamped
@@ -116,7 +116,7 @@ class GaitState(NamedTuple):
         rest : complex array, shape (legs,)
             The rest footholds [m].
         posture : array, shape (13,)
-            The body: see `tarsus.gait.stance_geometry`.
+            The body: see `tarsus.gait.stance.stance_geometry`.
         """
         none, zero = np.zeros(len(rest)), np.zeros(len(rest), dtype=complex)
         return cls(

@@ -1,1 +1,1 @@
-"""Foot workspaces of a stance, its stability, and the velocities and cycle times that they allow."""
+"""Foot workspaces of a stance, and the cycle times that they allow."""

@@ -9,7 +9,7 @@ import numpy as np
 from tarsus.control.filters import CriticallyDamped
 from tarsus.gait.body_shift import COEFFICIENTS, edge_constraints, fitted_shift
 from tarsus.gait.gait import Gait
-from tarsus.gait.stance_geometry import StanceGeometry
+from tarsus.gait.stance.stance_geometry import StanceGeometry
 
 if TYPE_CHECKING:
     from jaxtyping import Bool, Complex, Float

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from tarsus.control.incremental import Incremental
-from tarsus.control.workspace.velocity_limits import VelocityLimits
 from tarsus.gait.gait import Gait
-from tarsus.gait.stance_geometry import StanceGeometry
+from tarsus.gait.stance.stance_geometry import StanceGeometry
+from tarsus.gait.stance.velocity_limits import VelocityLimits
 from tarsus.gait.swing import horizontal_profile, vertical_profile
 from tarsus.robot.joint_limits import JointLimits
 from tarsus.robot.robot import Robot

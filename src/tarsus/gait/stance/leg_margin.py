@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tarsus.gait.stance_geometry import StanceGeometry, joint_margin
+from tarsus.gait.stance.stance_geometry import StanceGeometry, joint_margin
 from tarsus.kinematics.triangle import Triangle, solve_triangle, to_leg_frame
 from tarsus.robot.geometry import LegGeometry
 from tarsus.robot.robot import Robot

@@ -11,7 +11,7 @@ import numpy as np
 
 from tarsus.gait.foot_polygons import NORMALS, NORMALS_CONJUGATE, polygon_ends
 from tarsus.gait.gait import Gait
-from tarsus.gait.stance_geometry import StanceGeometry
+from tarsus.gait.stance.stance_geometry import StanceGeometry
 from tarsus.kinematics.leg import forward_kinematics
 from tarsus.kinematics.mass import point_masses, total_mass
 from tarsus.robot.robot import Robot

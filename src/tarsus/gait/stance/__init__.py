@@ -1,0 +1,1 @@
+"""Stances: what the footholds of a robot at rest allow, as functions of geometry."""
