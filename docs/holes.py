@@ -22,14 +22,16 @@ PAGE = Path(__file__).parent / "ground.md"
 ROBOTS = ("strider", "phantomx", "makeyourpet")
 # Widths and depth of the trenches, where their first edge is, and what is walked ahead and back [m].
 WIDTHS, DEPTH, EDGES, AHEAD, BACK = (0.08, 0.2), 0.15, (0.5, 0.53, 0.56), 0.9, 0.4
+SENSORS = {"ideal": "felt", "camera": "seen"}
 # Shares of the top speed.
 PACES = (0.25, 0.5, 0.9)
 
 
 class Job(NamedTuple):
-    """One walk: robot, width of the trench, where it begins [m], share of the top speed."""
+    """One walk: robot, its sensors, width of the trench, where it begins [m], share of the top speed."""
 
     robot: str
+    sensors: str
     width: float
     edge: float
     pace: float
@@ -40,7 +42,7 @@ def walk(job: Job) -> str:
     robot = tarsus.load_robot(job.robot)
     speed = job.pace * tarsus.WalkController(robot).top_speed((1, 0, 0))
     ground = terrain.Gaps(width=job.width, depth=DEPTH, start=job.edge, count=1)
-    plant = SimulatedPlant(robot, terrain=ground, sensors="ideal", servos="catalogue")
+    plant = SimulatedPlant(robot, terrain=ground, sensors=job.sensors, servos="catalogue")
     controller = tarsus.RobotController(robot)
     output, dt = controller.output, 0.01
     plant.start(output)
@@ -64,10 +66,10 @@ def table(outcomes: dict[Job, str]) -> str:
     """Return how often each robot did what."""
     kinds = ("fell", "crossed", "stopped, came back", "stopped, stayed")
     lines = [f"| trench | {' | '.join(kinds)} |", f"|---|{'---|' * len(kinds)}"]
-    for robot, width in dict.fromkeys(job[:2] for job in outcomes):
-        found = [outcome for job, outcome in outcomes.items() if job[:2] == (robot, width)]
+    for robot, sensors, width in dict.fromkeys(job[:3] for job in outcomes):
+        found = [outcome for job, outcome in outcomes.items() if job[:3] == (robot, sensors, width)]
         counts = " | ".join(f"{found.count(kind)} of {len(found)}" for kind in kinds)
-        lines.append(f"| {robot}, {1e3 * width:.0f} mm | {counts} |")
+        lines.append(f"| {robot}, {1e3 * width:.0f} mm, {SENSORS[sensors]} | {counts} |")
     return "\n".join(lines)
 
 
@@ -78,7 +80,7 @@ def main() -> None:
     parser.add_argument("--jobs", type=int, default=1)
     parser.add_argument("--print", action="store_true", help="print the table, and leave the page as it is")
     asked = parser.parse_args()
-    jobs = [Job(*job) for job in itertools.product(asked.robots, WIDTHS, EDGES, PACES)]
+    jobs = [Job(*job) for job in itertools.product(asked.robots, SENSORS, WIDTHS, EDGES, PACES)]
     with ProcessPoolExecutor(asked.jobs) as pool:
         text = table(dict(zip(jobs, pool.map(walk, jobs), strict=True)))
     if asked.print:
