@@ -144,7 +144,7 @@ def climbed(degrees, *, seconds=9.0, speed=0.146, start=0.35):
         slip += float(plant.state.slip_speeds.mean()) * dt
         assert not plant.body_touches
     way = plant.state.body.position[0]
-    for _ in range(400):
+    for _ in range(600):
         output = controller.step((0.0, 0.0, 0.0), dt, plant.step(output, dt))
     return way / (speed * seconds), math.hypot(*plant.state.body.rpy[:2]), slip / way, controller
 

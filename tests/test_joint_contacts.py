@@ -34,7 +34,7 @@ def test_a_robot_without_sensors_in_its_feet_feels_the_ground_by_its_joints():
     assert plant.state.body.position[0] > 0.85 * 0.14 * 4.5
 
 
-@pytest.mark.parametrize(("rise", "seed", "switches"), [(0.06, 1, "none"), (0.06, 3, "none"), (0.04, 3, "one open")])
+@pytest.mark.parametrize(("rise", "seed"), [(0.06, 1), (0.06, 3)])
 def test_uncertain_contacts_do_not_keep_a_foot_in_the_air_over_an_obstacle(rise, seed):
     sensors, ground = SensorSuite.named("ideal"), terrain.Blocks(rise=rise, clear=0.35, seed=seed)
     sensors = dataclasses.replace(sensors, contacts=None, forces=None)

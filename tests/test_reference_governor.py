@@ -9,7 +9,7 @@ from scipy.integrate import solve_ivp
 from sample_gait_states import EARTH, FACING, moment_of
 from sample_stances import polygon_radii, setup_of, velocity_limits_of
 from tarsus.control.filters import CriticallyDamped, integral_factors
-from tarsus.control.walk.reference_governor import governed_twist, polygon_excess
+from tarsus.control.walk.reference_governor import FootPrediction, governed_twist
 from tarsus.control.walk.state import integrate_twist
 from tarsus.gait.foot_polygons import NORMALS
 
@@ -29,6 +29,10 @@ def situation(seed, name="strider"):
     ends = np.tile([STANCE, STANCE / 2], 3) * rng.uniform(0.1, 1)
     given_as = {"begins": np.zeros(6), "ends": ends, "bounds": limits.bounds, "bandwidth": BANDWIDTH}
     return now, twist.value * rng.uniform(0, 1), rng.uniform(-1, 1, 3) * [0.4, 0.4, 2.0], given_as
+
+
+def polygon_excess(now, targets, *, begins, ends, bounds, bandwidth):
+    return FootPrediction.of(now, begins, ends, bandwidth).excess(targets, bounds)
 
 
 def worst(now, target, given_as):

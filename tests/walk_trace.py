@@ -140,7 +140,7 @@ def beyond(controller: WalkController) -> float:
 
 
 def _over(what: str, values: np.ndarray, bound: float) -> Iterable[str]:
-    rows = values.reshape(len(values), -1).max(-1)
+    rows = values.reshape(len(values), math.prod(values.shape[1:])).max(-1)
     bad = np.flatnonzero(~(rows <= bound))
     if bad.size:
         yield f"{what}: {bad.size} times, first at tick {bad[0]}, at most {rows[bad].max():.6g} (bound {bound:g})"
