@@ -143,12 +143,28 @@ def test_a_foot_that_is_stopped_tries_again_then_beside_it_and_then_stays_before
     assert not stepped(missing, []).stops
 
 
+def test_a_twist_into_a_hole_that_is_seen_is_refused_before_a_foot_is_over_it():
+    missing = MissingGround(NAMES)
+    missing.sees({0: AHEAD[0], 5: REST[5]}, REST)
+    missing.sees({0: AHEAD[0]}, REST)
+    refused = limited(missing, 0.1, 0.0, 0.0)
+    assert refused.fraction == 0.0
+    assert refused.limitations[0].text() == "ground: LF: no ground within reach at its next foothold"
+    assert not missing.places
+    for _ in range(300):
+        stepped(missing, [], REST, stands=[True] * 6)
+        assert limited(missing, 0.1, 0.0, 0.0).fraction == 0.0
+    for away in ((-0.1, 0.0, 0.0), (0.1, 0.0, 0.0)):
+        assert limited(missing, *away).fraction == 1.0
+
+
 class Walk:
     """A strider in physics."""
 
-    def __init__(self, ground):
+    def __init__(self, ground, sensors="ideal"):
         robot = tarsus.load_robot("strider")
-        self.plant, self.controller = SimulatedPlant(robot, terrain=ground), tarsus.RobotController(robot)
+        self.plant = SimulatedPlant(robot, terrain=ground, sensors=sensors)
+        self.controller = tarsus.RobotController(robot)
         self.output = self.controller.output
         self.plant.start(self.output)
         self.tilt = 0.0
@@ -207,3 +223,19 @@ def test_a_robot_stops_at_a_hole_says_so_and_walks_away_from_it():
     assert walk.named
     assert walk.go(0.13, 0.5) == pytest.approx(stopped, abs=0.02)
     assert walk.go(-0.13, 1.5) < stopped - 0.08
+
+
+def test_a_robot_that_sees_a_hole_stops_before_it_and_walks_away():
+    walk = Walk(terrain.Gaps(start=0.4, width=0.2, depth=0.15, count=1), sensors="camera")
+    stopped = walk.go(0.13, 3.5)
+    assert stopped < 0.3
+    assert walk.named
+    assert walk.output.limitations[0].cause == "no ground within reach at its next foothold"
+    assert walk.go(0.13, 1.0) == pytest.approx(stopped, abs=0.02)
+    assert walk.tilt < np.radians(3)
+    assert walk.go(-0.13, 2.0) < stopped - 0.1
+
+
+def test_a_robot_crosses_a_trench_that_it_sees():
+    walk = Walk(terrain.Gaps(start=0.35, width=0.08, depth=0.15, count=1), sensors="camera")
+    assert walk.go(0.19, 4.5) > 0.35 + 0.08
