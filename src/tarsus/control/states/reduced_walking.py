@@ -35,8 +35,8 @@ _CAUSE = "the joint has failed: the robot walks on without this leg"
 _FEMUR_UP, _FROM_LIMIT = 1.0, 0.1
 # Fraction of the joints' speed with which the legs move to their new stance, and the least time [s].
 _SPEED_SHARE, _LEAST_TIME = 0.15, 1.0
-# Time in which the joints lose the speed that they have [s].
-_STOPPING = 0.3
+# Longest time in which joints lose the speed that they have [s].
+_STOPPING = 0.2
 # Channels that are not measured for each leg.
 _OF_BODY = ("attitude", "angular_rates", "ground")
 
@@ -91,6 +91,10 @@ class ReducedWalking(Walking):
             for leg, joint in failed.items()
         )
         self._start, self._end, self._speeds = now.angles, np.array(now.angles), speeds
+        low, high = np.moveaxis(np.asarray(robot.limits), -1, 0)
+        room = np.where(speeds > 0, high - now.angles, now.angles - low).clip(0.0)
+        # At constant deceleration, before their limits.
+        self._stopping = (2 * room / np.abs(speeds).clip(1e-9)).clip(1e-9, _STOPPING)
         for leg in failed:
             low, high = np.asarray(robot.limits)[leg].T
             self._end[leg] = np.clip(0.0, low[0], high[0]), min(_FEMUR_UP, high[1]), low[2] + _FROM_LIMIT
@@ -122,8 +126,9 @@ class ReducedWalking(Walking):
         """The robot now."""
         now = super().snapshot
         share, contacts = min(self._time / self._duration, 1.0), np.zeros(self._robot.legs, dtype=bool)
-        coasted = self._time * max(1 - self._time / _STOPPING, 0.0) ** 3
-        angles = self._start + horizontal_profile(share) * (self._end - self._start) + coasted * self._speeds
+        time = np.minimum(self._time, self._stopping)
+        start = self._start + self._speeds * time * (1 - time / self._stopping / 2)
+        angles = start + horizontal_profile(share) * (self._end - start)
         contacts[self._legs] = now.contacts
         if share >= 1:
             angles[self._legs] = now.angles + self._zero
