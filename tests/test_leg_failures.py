@@ -7,6 +7,7 @@ import pytest
 
 import tarsus
 from tarsus.control.sensing.joint_monitor import JointMonitor
+from tarsus.control.states.reduced_walking import ReducedWalking
 from tarsus.errors import InputError
 from tarsus.gait.stance.support_stance import support_stance
 from tarsus.kinematics.mass import centre_of_mass, total_mass
@@ -203,3 +204,25 @@ def test_a_robot_that_cannot_walk_without_its_legs_sits_down_until_told_otherwis
     for _ in range(500):
         output = controller.step(tarsus.Command(state="standing"), DT)
     assert output.state == "standing"
+
+
+@pytest.mark.parametrize("room", [0.0, 0.0005, 0.01, 0.5])
+def test_joints_that_move_stop_before_their_limits_when_a_leg_is_taken_out(room):
+    robot, dt = tarsus.load_robot("phantomx"), 0.005
+    controller = tarsus.RobotController(robot)
+    now, most = controller._now, 120.0
+    angles, speeds = np.array(now.angles), np.zeros((6, 3))
+    # As fast as a joint may be that can stop before its limit.
+    for leg, joint, side in ((0, 1, 1), (2, 2, 0), (4, 0, 1)):
+        sign = 2 * side - 1
+        angles[leg, joint] = np.asarray(robot.limits)[leg, joint, side] - sign * room
+        speeds[leg, joint] = sign * min(np.sqrt(2 * most * room), 4.0)
+    walking = ReducedWalking(robot, {1: 1}, now._replace(angles=angles), speeds)
+    found = [angles - speeds * dt, angles]
+    for _ in range(round(1 / dt)):
+        walking.step(tarsus.Command(), dt, None)
+        found.append(walking.snapshot.angles)
+    low, high = np.moveaxis(np.asarray(robot.limits), -1, 0)
+    assert (np.array(found[1:]) >= low - 1e-12).all()
+    assert (np.array(found[1:]) <= high + 1e-12).all()
+    assert np.abs(np.diff(found, 2, axis=0)).max() / dt**2 < 1.05 * most

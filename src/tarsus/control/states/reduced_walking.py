@@ -35,8 +35,8 @@ _CAUSE = "the joint has failed: the robot walks on without this leg"
 _FEMUR_UP, _FROM_LIMIT = 1.0, 0.1
 # Fraction of the joints' speed with which the legs move to their new stance, and the least time [s].
 _SPEED_SHARE, _LEAST_TIME = 0.15, 1.0
-# Longest time in which joints lose the speed that they have [s].
-_STOPPING = 0.2
+# Fraction of the joints' acceleration with which they lose the speed that they have.
+_BRAKES = 0.8
 # Channels that are not measured for each leg.
 _OF_BODY = ("attitude", "angular_rates", "ground")
 
@@ -94,7 +94,8 @@ class ReducedWalking(Walking):
         low, high = np.moveaxis(np.asarray(robot.limits), -1, 0)
         room = np.where(speeds > 0, high - now.angles, now.angles - low).clip(0.0)
         # At constant deceleration, before their limits.
-        self._stopping = (2 * room / np.abs(speeds).clip(1e-9)).clip(1e-9, _STOPPING)
+        self._stopping = np.abs(speeds) / (_BRAKES * float(self.controller.joint_acceleration.min()))
+        self._stopping = np.minimum(self._stopping, 2 * room / np.abs(speeds).clip(1e-9)).clip(1e-9)
         for leg in failed:
             low, high = np.asarray(robot.limits)[leg].T
             self._end[leg] = np.clip(0.0, low[0], high[0]), min(_FEMUR_UP, high[1]), low[2] + _FROM_LIMIT
