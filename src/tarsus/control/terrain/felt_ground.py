@@ -242,17 +242,18 @@ class FeltGround:
     ) -> list[bool]:
         """Decide where feet step that find no ground; return which stand, or would, with the robot in the air."""
         contacts, missing, in_air = self.contacts, self.missing, self.condition.in_air
+        rest = footholds.rest.tolist()
         stands = [
             (in_air or on) and not missing.steps_back(leg, places[leg]) for leg, on in enumerate(contacts.standing)
         ]
-        missing.sees(self.ground.holes, footholds.rest.tolist())
+        missing.sees(self.ground.holes, rest)
         missing.step(
             searching_feet(state, contacts, self.ground, places, down=down, stands=stands),
             places,
             [on and stand for on, stand in zip(down, stands, strict=True)],
             dt,
             centre=centre,
-            rest=footholds.rest.tolist(),
+            rest=rest,
             radii=footholds.placement_radii,
             height=float(state.posture.value[2]),
             roughness=self.body.roughness.value,

@@ -18,8 +18,8 @@ _EVEN = 0.008
 _MEMORY = 4.0
 # Swing height and body height over roughness.
 _SWING_SHARE, _BODY_SHARE = 1.0, 1.0
-# Roughness for which feet are drawn in as far as they may, and from which on until which cycle and speed change [m].
-_ROUGH, _ROUGHER, _ROUGHEST = 0.02, 0.02, 0.04
+# Roughness up to which feet are drawn in, and from which on until which cycle and speed change [m].
+_ROUGH, _ROUGHEST = 0.02, 0.04
 # Stance, cycle and speed change in steps of this share: each has limits computed anew.
 _STEPS = 4
 
@@ -128,12 +128,12 @@ class Roughness:
     @property
     def cycle_time(self) -> float:
         """Cycle time over that on even ground."""
-        return 1 + self._share(_ROUGHER, _ROUGHEST) * (self._adaptation.cycle_time - 1)
+        return 1 + self._share(_ROUGH, _ROUGHEST) * (self._adaptation.cycle_time - 1)
 
     @property
     def speed(self) -> float:
         """Greatest speed over the top speed on even ground."""
-        return 1 - self._share(_ROUGHER, _ROUGHEST) * (1 - self._adaptation.speed)
+        return 1 - self._share(_ROUGH, _ROUGHEST) * (1 - self._adaptation.speed)
 
     def _share(self, least: float, most: float) -> float:
         """Return where the roughness is between two values, 0 to 1."""
