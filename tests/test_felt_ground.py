@@ -305,13 +305,13 @@ def test_a_foot_whose_switch_is_open_lifts_the_body_and_one_over_a_hole_does_not
 
 
 def test_a_foot_that_lifts_off_soon_is_not_lowered_where_others_take_its_load():
-    def stands(leaving, ticks, without=5):
+    def stands(leaving, ticks, without=5, *, rests=False):
         contacts = FootContacts(2)
         contacts.step([True, False], [True, False], 0.01)
         for _ in range(ticks):
             contacts.step([True, True], [True, True], 0.01, leaving=leaving)
         for _ in range(without):
-            contacts.step([True, False], [True, True], 0.01, leaving=leaving)
+            contacts.step([True, False], [True, True], 0.01, leaving=leaving, rests=rests)
         return contacts.standing[1], contacts.supports(1)
 
     assert stands([False, False], 20) == (False, True)
@@ -320,6 +320,9 @@ def test_a_foot_that_lifts_off_soon_is_not_lowered_where_others_take_its_load():
     assert stands([False, True], 2) == (False, False)
     # Where the walk waits, it does not lift off soon.
     assert stands([False, True], 20, 20) == (False, False)
+    # While the robot stands, feet wait for longer until they look for the ground.
+    assert stands([True, True], 20, 20, rests=True) == (True, False)
+    assert stands([True, True], 20, 60, rests=True) == (False, False)
 
 
 def test_a_foot_that_steps_down_a_slope_rises_over_the_middle_of_its_way():

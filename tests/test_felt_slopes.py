@@ -69,6 +69,23 @@ def test_the_body_follows_the_share_of_a_slope_that_the_legs_do_not_reach():
     assert pitch == pytest.approx(-0.3 * slope, abs=0.005)
 
 
+def test_a_standing_body_rests_until_it_is_far_from_where_it_should_be():
+    posture, feet = PostureFeedback("level"), [(0.2 + 0j, 0.1), (-0.2 + 0j, 0.1)]
+
+    def moves(height, pitch, *, stands=True):
+        rates = posture.rates(FootPlane(height, 0.0, 0.0), (0.0, pitch), 0j, feet=feet, stands=stands)
+        return rates.climb != 0.0 or rates.turn != (0.0, 0.0)
+
+    assert moves(0.003, 0.009, stands=False)
+    assert moves(0.003, 0.02)
+    assert not moves(0.003, 0.009)
+    assert not moves(0.015, 0.025)
+    assert moves(0.015, 0.035)
+    assert moves(0.015, 0.025)
+    assert not moves(0.0, 0.0)
+    assert moves(0.025, 0.0)
+
+
 @pytest.mark.parametrize("name", ["strider", "phantomx", "makeyourpet", "ch3r"])
 @pytest.mark.parametrize("direction", [0.0, 0.8, 2.0, math.pi])
 def test_feet_come_closer_to_the_height_of_the_middle_of_the_body_on_slopes(name, direction):
@@ -91,7 +108,11 @@ def test_feet_come_closer_to_the_height_of_the_middle_of_the_body_on_slopes(name
     assert np.abs(turned).max() <= 1 + 1e-9
     assert stance.not_downhill(0.1j * uphill - 0.1 * uphill) == pytest.approx(0.1j * uphill)
     assert stance.not_downhill(0.1 * uphill) == 0.1 * uphill
-    stance.step(FootPlane(), rest)
+    # A robot that stands does not step for little.
+    here = stance.shift
+    stance.step(FootPlane(0.0, 0.28 * uphill.real, 0.28 * uphill.imag), rest, walks=False)
+    assert stance.shift is here
+    stance.step(FootPlane(), rest, walks=False)
     assert not stance.shift.any()
 
 
@@ -144,7 +165,7 @@ def climbed(degrees, *, seconds=9.0, speed=0.146, start=0.35):
         slip += float(plant.state.slip_speeds.mean()) * dt
         assert not plant.body_touches
     way = plant.state.body.position[0]
-    for _ in range(600):
+    for _ in range(250):
         output = controller.step((0.0, 0.0, 0.0), dt, plant.step(output, dt))
     return way / (speed * seconds), math.hypot(*plant.state.body.rpy[:2]), slip / way, controller
 
@@ -164,6 +185,23 @@ def test_a_robot_walks_up_a_slope_of_twenty_degrees_level_and_stands_on_it():
     walk = controller._activity.controller
     assert walk.walk_state is WalkState.STANDING
     assert np.abs(walk._walk.ground.body.stance.shift).max() > 0.05
+
+
+@pytest.mark.parametrize(("name", "rises"), [("phantomx", 20.0), ("phantomx", -20.0), ("makeyourpet", 20.0)])
+def test_robots_that_stop_on_a_slope_stay_there(name, rises):
+    robot, dt = preset(name), 0.01
+    slope = math.radians(rises)
+    plant = SimulatedPlant(robot, terrain=terrain.Ramp(slope=slope, start=0.35, length=5.0), servos="catalogue")
+    controller = RobotController(robot)
+    speed, output, ways, steps = 0.5 * WalkController(robot).top_speed((1.0, 0.0, 0.0)), controller.output, [], 0
+    plant.start(output)
+    for tick in range(round(0.9 / speed / dt) + 500):
+        output = controller.step((speed if tick * speed * dt < 0.9 else 0.0, 0.0, 0.0), dt, plant.step(output, dt))
+        ways.append(plant.state.body.position[0])
+        steps = 0 if bool(controller._activity.controller.contacts.all()) else tick
+    # It slid downhill by 0.25 m in 8 s while it stepped on and on.
+    assert steps == 0
+    assert abs(ways[-1] - ways[-300]) < 0.03
 
 
 def test_a_slippery_slope_is_refused_with_its_angle_and_the_way_back_stays_open():

@@ -117,14 +117,14 @@ class BodyMotion:
         if self.tilt is not None:
             level = self._ground.plane.levelled(self.tilt)
             self.slope.step(level, complex(*twist[:2].tolist()))
-            self.stance.step(level, rest - self.stance.shift, self.roughness.drawn_in)
+            self.stance.step(level, rest - self.stance.shift, self.roughness.drawn_in, walks=bool(twist.any()))
         self._fit_height(state, rest, over, down, bears, dt)
         velocity, yaw = complex(*state.twist.value[:2].tolist()) * pace, float(state.posture.value[5])
         tilt = measured.attitude or (0.0, 0.0)
         drift = self.odometry.step(measured.joint_angles, bears, velocity, dt, tilt=tilt, yaw=yaw)
         self.drift = self.stance.not_downhill(drift)
         margins = [(places[leg], over[leg] - (self.reach.lowest[leg] + self.lowered)) for leg in bears]
-        self.rates = self._posture.rates(self._ground.plane, self.tilt, velocity, feet=margins)
+        self.rates = self._posture.rates(self._ground.plane, self.tilt, velocity, feet=margins, stands=not twist.any())
 
     def _fit_height(
         self,

@@ -97,7 +97,7 @@ class FeltGround:
         # What feet are given while all is as planned; ticks and times since contacts and support were looked at.
         self._inputs: FeltInputs | None = None
         self._given, self._ticks, self._unread, self._idle = (list[int](), True), 0, 0.0, 0.0
-        self._since = _SLOW_PERIOD
+        self._since, self._rests = _SLOW_PERIOD, True
 
     def sense(
         self,
@@ -140,9 +140,9 @@ class FeltGround:
             self.body.tilt = (valid.attitude[0] - roll, valid.attitude[1] - pitch)
         dt, ticks, self._unread, self._ticks, self._inputs = self._unread, self._ticks, 0.0, 0, None
         self.ground.see(valid, state)
-        leaving = None if self._given[1] else timing.due(state, _LEAVING)
+        leaving, rests = down if self._rests else timing.due(state, _LEAVING), self._rests
         estimated, age = self._loads.estimated, valid.contact_age
-        self.contacts.step(measured, down, dt, age=age, count=ticks, leaving=leaving, estimated=estimated)
+        self.contacts.step(measured, down, dt, age=age, count=ticks, leaving=leaving, rests=rests, estimated=estimated)
         self.condition.step([self.contacts.touches(leg) for leg in range(len(down))], valid.attitude, dt)
         if self._loads.compliant:
             forces, feet = self._loads.forces(valid, angles), [(foot.real, foot.imag) for foot in state.foot.tolist()]
@@ -178,7 +178,7 @@ class FeltGround:
         """
         due = None if standing else timing.due(state, dt)
         kept, before, self._idle = self._inputs, self._given, self._idle + dt
-        self._given = excluded, standing
+        self._given, self._rests = (excluded, standing), not twist.any()
         if kept is not None and not (due and any(due)) and self._given == before:
             return kept
         dt, self._idle, turn = self._idle, 0.0, cmath.exp(-1j * state.yaw)

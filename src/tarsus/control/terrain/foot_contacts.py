@@ -16,6 +16,8 @@ _LOST = 0.03
 _GRACE = 0.1
 # How long a foot that lifts off soon may be without contact, and still stand: its load may be gone before [s].
 _LEAVES = 0.15
+# The same while the robot stands: feet that press against each other take load off others for longer [s].
+_RESTS = 0.5
 # How long the body is lowered for a foot that finds no ground [s].
 _SEARCH = 1.5
 # How long a foot has stood that may lose contact for that time and still be support [s].
@@ -69,6 +71,7 @@ class FootContacts:
         age: float = 0.0,
         count: int = 1,
         leaving: Sequence[bool] | None = None,
+        rests: bool = False,
         estimated: Set[int] = frozenset(),
     ) -> None:
         """Take in the contacts of one tick, or of some in which they are the same.
@@ -85,6 +88,8 @@ class FootContacts:
             Number of ticks.
         leaving : sequence of bool, optional
             Which feet are to lift off soon: once these have stood, they are not lowered where others take their load.
+        rests : bool
+            Whether the robot stands still on the other feet: those that have stood wait for their load, then.
         estimated : set of int
             Legs whose contacts are estimated by joint angles.
         """
@@ -101,8 +106,8 @@ class FootContacts:
             self.lifted[leg] = not on and (self.lifted[leg] or self._without[leg] > _LOST)
         self.standing = [t <= _LOST or e > _OPEN_AFTER for t, e in zip(self._without, self._evidence, strict=True)]
         for leg, leaves in enumerate(leaving or ()):
-            soon = leaves and self._settled[leg] > _SETTLED and self._without[leg] < _LEAVES
-            self.standing[leg] = self.standing[leg] or soon
+            waits = leaves and self._without[leg] < (_RESTS if rests else _LEAVES)
+            self.standing[leg] = self.standing[leg] or (waits and self._settled[leg] > _SETTLED)
 
     def find_open(
         self,

@@ -21,6 +21,8 @@ _HEIGHT_GAIN, _MOST_CLIMB = 2.5, 0.1
 _TILT_GAIN, _MOST_TURN, _UNMEASURED_GAIN = 2.0, 0.15, 0.5
 # Speed with which a foot may approach the end of its reach, over the distance from there [1/s].
 _BARRIER = 8.0
+# A standing body rests once climb [m/s] and turn [rad/s] are below the first, until they are above the second.
+_RESTS, _MOVES = (0.01, 0.02), (0.05, 0.06)
 # How fast the height to keep changes [m/s], and how much of the body height it may be lower.
 _RAISING, _LOWERING, _MOST_LOWER = 0.04, 0.08, 0.25
 
@@ -61,6 +63,7 @@ class PostureFeedback:
     def __init__(self, levelling: Levelling | None) -> None:
         self._share = None if levelling is None else LEVELLING_SHARES[levelling]
         self.raised = self.short = self.given_way = 0.0
+        self._rests = False
 
     def fit_to_reach(
         self,
@@ -102,6 +105,7 @@ class PostureFeedback:
         velocity: complex,
         *,
         feet: Sequence[tuple[complex, float]],
+        stands: bool = False,
     ) -> PostureRates:
         """Return how the body is to move.
 
@@ -115,6 +119,8 @@ class PostureFeedback:
             Velocity of the body [m/s].
         feet : sequence of (complex, float)
             The feet that stand: where, x + iy in the heading frame, and how much lower they could be [m].
+        stands : bool
+            Whether the body is to stand still: feet that are moved under their load slide down a slope.
         """
         if not feet:
             return PostureRates(0.0, (0.0, 0.0))
@@ -135,4 +141,6 @@ class PostureFeedback:
                 share = min(share, max(_BARRIER * margin, 0.0) / sinks)
         roll, pitch = share * roll, share * pitch
         climb = min(climb, *(_BARRIER * margin + roll * place.imag - pitch * place.real for place, margin in feet))
-        return PostureRates(max(climb, -2 * _MOST_CLIMB), (roll, pitch))
+        climb, most = max(climb, -2 * _MOST_CLIMB), _MOVES if self._rests else _RESTS
+        self._rests = stands and abs(climb) < most[0] and math.hypot(roll, pitch) < most[1]
+        return PostureRates(0.0, (0.0, 0.0)) if self._rests else PostureRates(climb, (roll, pitch))

@@ -21,8 +21,8 @@ _LEAST, _MOST = math.radians(6.0), math.radians(14.0)
 _TURNED, _DRAWN_IN = math.radians(30.0), 0.13
 # Part of its axis by which a leg points downhill whose foot is drawn in as far as any.
 _DOWNHILL = 2 / 3
-# Smaller changes wait [m].
-_SMALLEST = 0.005
+# Smaller changes wait: while the robot walks, and while it would step for them alone [m].
+_SMALLEST, _STANDING = 0.005, 0.03
 # Room between body and slope that sagging legs leave [m].
 _ROOM = 0.04
 
@@ -51,7 +51,9 @@ class SlopeStance:
         self._drawn_in: Float[np.ndarray, "legs"] = np.asarray(_DRAWN_IN * (g.femur + g.tibia))
         self.half = (0.0, 0.0, 0.0) if size is None else tuple((np.asarray(size) / 2).tolist())
 
-    def step(self, level: FootPlane, rest: Complex[np.ndarray, "legs"], drawn_in: float = 0.0) -> None:
+    def step(
+        self, level: FootPlane, rest: Complex[np.ndarray, "legs"], drawn_in: float = 0.0, *, walks: bool = True
+    ) -> None:
         """Follow the slope, and the roughness.
 
         Parameters
@@ -62,6 +64,8 @@ class SlopeStance:
             Rest footholds on level ground, in the heading frame [m].
         drawn_in : float
             How far all feet are drawn in for rough ground [m].
+        walks : bool
+            Whether the body is to move: feet that stand slide downhill as they step.
         """
         uphill = complex(level.slope_x, level.slope_y)
         share = min(max((math.atan(abs(uphill)) - _LEAST) / (_MOST - _LEAST), 0.0), 1.0)
@@ -72,7 +76,8 @@ class SlopeStance:
         angle = np.angle(out * uphill.conjugate())
         nearer = drawn_in * (1 - share) + share * self._drawn_in * np.clip(-np.cos(angle) / _DOWNHILL, 0.0, 1.0)
         wanted = out * ((1 - nearer / np.abs(out)) * np.exp(1j * share * _TURNED * np.sin(2 * angle)) - 1)
-        if float(np.abs(wanted - self.shift).max()) > (_SMALLEST if share or drawn_in else 0.0):
+        least = (_SMALLEST if walks else _STANDING) if share or drawn_in else 0.0
+        if float(np.abs(wanted - self.shift).max()) > least:
             self.shift = wanted
 
     def not_downhill(self, velocity: complex) -> complex:

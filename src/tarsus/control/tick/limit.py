@@ -50,7 +50,7 @@ def limited(
     transitions, standing = walk.transitions, tick.standing
     state = transitions.timing.with_first_lift(tick.gait, 0) if standing else tick.gait
     grant = granted_twist(limiters, TwistRequest(tuple(command.twist), dt, state, tick.twist))
-    steps = not standing or any(grant.scaled(command.twist)) or not transitions.at_rest(tick.gait)
+    steps = not standing or any(grant.scaled(command.twist)) or not transitions.at_rest(tick.gait, stands=True)
     shift = transitions.current.final_limits.shift if steps else None
     shifted = transitions.pose.set_shift(shift, state.shift.value)
     if not steps:

@@ -148,20 +148,22 @@ class TransitionExecutor:
             return False
         return not self._foot_targets.returning and self.pose.reached(state.posture.value)
 
-    def at_rest(self, state: GaitState) -> bool:
+    def at_rest(self, state: GaitState, *, stands: bool = False) -> bool:
         """Return whether every foot of the gait is at its rest foothold.
 
         Parameters
         ----------
         state : GaitState
             The gait state of a robot that hardly moves.
+        stands : bool
+            Whether feet would step for this alone.
         """
         rest = final_footholds(state, rest=self.footholds.rest, bandwidth=self.bandwidth)
         assert rest is not None  # only of a robot that is fast
         off = np.abs(state.foot - rest)
         off[list(self.current.parameters.excluded)] = 0.0
-        returned = state.felt is None or not self._foot_targets.returning
-        return returned and bool(off.max() <= stance_tolerance(state))
+        near = bool(off.max() <= stance_tolerance(state, stands=stands))
+        return near and (state.felt is None or not self._foot_targets.returning)
 
     # Beginning a transition.
 
@@ -223,13 +225,11 @@ class TransitionExecutor:
         timing, delays = StepTiming.of(gait, cycle_time), lift_delays(gait, cycle_time)
         ends = time_to_touchdown(now.gait, self.timing.gait, self.timing.frequency).max() + delays
         bounds = self._foot_targets.without_bounds(self.footholds.bounds_with(planned))
-        bounds = np.minimum(bounds, planned.final_limits.bounds)
+        bounds = self.footholds.shifted(np.minimum(bounds, planned.final_limits.bounds))
         begins, bandwidth = np.zeros(delays.shape), timing.bandwidth
-        bounds = self.footholds.shifted(bounds)
-        over = (
-            FootPrediction.of(now.gait, begins, ends, bandwidth).excess(now.twist[None], bounds).max(axis=(1, 2, 3, 4))
-        )
+        over = FootPrediction.of(now.gait, begins, ends, bandwidth).excess(now.twist[None], bounds)
         # Symmetric legs suit equally well but for rounding; the first of them lifts, on any machine.
+        over = over.max(axis=(1, 2, 3, 4))
         first = int((over <= over.min() + _ROUNDING).argmax())
         if over[first] <= POSITION_TOLERANCE:
             self.phase, self._active, self.scheduler.planned = TransitionPhase.TOUCHDOWN, planned, None

@@ -26,8 +26,8 @@ LATEST_LIFT_OFF = 0.5
 _ADMITTANCE_BANDWIDTH = 20.0
 # Bandwidth of the body shift's coefficients [rad/s].
 _SHIFT_BANDWIDTH = 5.0
-# A foot that feels the ground is at its rest foothold within this distance [m].
-_FELT_TOLERANCE = 0.015
+# A foot that feels the ground is at its rest foothold within the first distance, and stays there within the second [m].
+_FELT_TOLERANCES = (0.015, 0.03)
 # A speed below this is 0 [m/s].
 _NO_SPEED = 3e-7
 
@@ -115,15 +115,17 @@ def _lift(
     )
 
 
-def stance_tolerance(state: GaitState) -> float:
+def stance_tolerance(state: GaitState, *, stands: bool = False) -> float:
     """Return how close to its rest foothold a foot is at it [m].
 
     Parameters
     ----------
     state : GaitState
         The gait state.
+    stands : bool
+        Whether the foot has been at it.
     """
-    return POSITION_TOLERANCE if state.felt is None else _FELT_TOLERANCE
+    return POSITION_TOLERANCE if state.felt is None else _FELT_TOLERANCES[stands]
 
 
 def _swing(
