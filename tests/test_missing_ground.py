@@ -138,9 +138,17 @@ def test_a_foot_that_is_stopped_tries_again_then_beside_it_and_then_stays_before
     refused = limited(missing, 0.1, 0.0, 0.0)
     assert refused.fraction == 0.0
     assert refused.limitations[0].leg == "LF"
+    # Of feet that go back, the body would go on.
+    assert missing.held(-0.02 + 0.01j) == pytest.approx(-0.02)
+    assert missing.held(0.02 + 0.01j) == 0.0
     for free in ((0.0, 0.1, 0.0), (0.0, 0.0, 0.5), (-0.1, 0.0, 0.0)):
         assert limited(missing, *free).fraction == 1.0
-    assert not stepped(missing, []).stops
+        assert missing.held(-0.02 + 0.01j) == 0.0
+    assert limited(missing, 0.1, 0.0, 0.0).fraction == 0.0
+    for _ in range(300):
+        # Its other footholds have been tried.
+        assert not stepped(missing, [], REST, stands=[True] * 6).stops
+        assert limited(missing, 0.1, 0.0, 0.0).fraction == 0.0
 
 
 def test_a_twist_into_a_hole_that_is_seen_is_refused_before_a_foot_is_over_it():
@@ -188,8 +196,8 @@ def test_a_robot_stops_at_a_wall_says_so_and_walks_away_from_it():
     stopped = walk.go(0.13, 3.5)
     assert stopped < 0.3
     assert walk.named & {"front left", "front right"}
-    # It neither pushes nor climbs.
-    assert walk.go(0.13, 1.0) == pytest.approx(stopped, abs=0.03)
+    # It neither pushes nor climbs, nor does it try again.
+    assert walk.go(0.13, 3.0) == pytest.approx(stopped, abs=0.01)
     assert walk.tilt < np.radians(8)
     assert walk.go(-0.13, 2.0) < stopped - 0.1
 

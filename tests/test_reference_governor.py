@@ -141,6 +141,18 @@ def test_a_foot_at_its_edge_allows_no_step_further_out(heading):
     assert governed_twist(now, np.zeros(3), -command / 4, **given_as) @ -command > 0
 
 
+def test_a_foot_that_is_outside_allows_what_takes_it_no_farther_out():
+    setup, limits = setup_of("strider"), velocity_limits_of("strider")
+    foot = limits.rest.copy()
+    foot[0] -= 0.15
+    now = moment_of(setup, limits.rest, foothold=EARTH + np.exp(1j * FACING) * foot)
+    given_as = {"begins": np.zeros(6), "ends": np.full(6, STANCE), "bounds": limits.bounds, "bandwidth": BANDWIDTH}
+    assert worst(now, np.zeros(3), given_as) > 0.01
+    ahead, back = np.array([0.1, 0.0, 0.0]), np.array([-0.1, 0.0, 0.0])
+    np.testing.assert_array_equal(governed_twist(now, np.zeros(3), ahead, **given_as), 0)
+    np.testing.assert_array_equal(governed_twist(now, np.zeros(3), back, **given_as), back)
+
+
 def test_where_the_current_target_does_not_work_any_more_as_much_less_as_does():
     setup, limits = setup_of("strider"), velocity_limits_of("strider")
     now = moment_of(setup, limits.rest, twist=CriticallyDamped.still(np.array([0.3, 0.0, 0.0])))

@@ -215,6 +215,8 @@ class FeltGround:
     ) -> FeltInputs:
         """Return what the feet are given; radius is the greatest distance at which one may be put down [m]."""
         body, far = self.body, max(2 * self.body.reach.stroke / radius - 1, 0.0)
+        # The body levels about its middle, which its feet pass below.
+        passing = complex(-body.rates.turn[1], body.rates.turn[0]) * float(state.posture.value[2])
         return FeltInputs(
             under,
             stands,
@@ -222,7 +224,7 @@ class FeltGround:
             depth=_DEPTH_SHARE * body.roughness.value,
             climb=body.rates.climb,
             turn=body.rates.turn,
-            drift=body.drift,
+            drift=body.drift + self.missing.held(passing),
             back=self.missing.back,
             travel=_SLOW_TRAVEL + (_FAST_TRAVEL - _SLOW_TRAVEL) * far,
             pace=self.support.pace,

@@ -179,7 +179,7 @@ class MissingGround:
         start, self.places[leg] = start - _BEFORE * way, goal
         self._beside.pop(leg, None)
         if stops >= _STOPS + _SIDES:
-            self.places[leg], self._way = start, way
+            self.places[leg], self._way, self._again = start, way, _AGAIN
             self._cause = self._names[leg], "an obstacle stops the foot that is higher than the leg steps"
         elif stops >= _STOPS:
             # Towards the body first: there the leg is steeper.
@@ -192,6 +192,10 @@ class MissingGround:
         for leg, place in holes.items():
             self._leads(place - rest[leg], rest[leg])
             self._cause, self._again = (self._names[leg], "no ground within reach at its next foothold"), _AGAIN
+
+    def held(self, shift: complex) -> complex:
+        """Return the part of a velocity of all feet by which the body would go on where it may not [m/s]."""
+        return min((shift * self._way.conjugate()).real, 0.0) * self._way if self.refuses else 0j
 
     def _leads(self, off: complex, rest: complex) -> None:
         """Take the way of a leg's foot from its rest foothold for that to the edge."""

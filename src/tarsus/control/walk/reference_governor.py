@@ -153,9 +153,13 @@ def governed_twist(
     last = _last_feasible(prediction.excess(targets, bounds))
     if last is not None:
         return command if last == len(targets) - 1 else np.asarray(targets[last])
-    targets = _REDUCTIONS * current
-    over = prediction.excess(targets, bounds)
+    reduced = _REDUCTIONS * current
+    over = prediction.excess(reduced, bounds)
     last = _last_feasible(over)
+    if last is not None:
+        return np.asarray(reduced[last])
+    # A foot that is outside already, as one that is put down before an obstacle, may not get farther out.
+    last = _last_feasible(prediction.excess(targets, bounds + over[0, 0].clip(0.0)))
     if last is not None:
         return np.asarray(targets[last])
     # No reduction keeps every foot inside: the one with the least excess.
