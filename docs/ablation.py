@@ -15,7 +15,7 @@ from unittest.mock import patch
 
 import numpy as np
 
-from page_tables import replace_tables
+from page_tables import Several, write_tables
 from rough_ground import CASES, GROUNDS, NOT_ADAPTED, PAGE, RANDOM, Case, Outcome, switches, walk
 from tarsus.control.terrain import ground_contact
 from tarsus.control.terrain.foot_contacts import FootContacts
@@ -63,14 +63,8 @@ def cell(found: list[Outcome]) -> str:
     return medians + (f" ({falls} of {len(found)} fell)" if falls else "")
 
 
-def main() -> None:
-    """Measure, and replace the table on the page or print it."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--grounds", nargs="+", default=SHOWN, choices=list(GROUNDS))
-    parser.add_argument("--without", nargs="+", default=list(MECHANISMS), choices=list(MECHANISMS))
-    parser.add_argument("--seeds", type=int, default=3)
-    parser.add_argument("--print", action="store_true", help="print the table, and leave the page as it is")
-    asked = parser.parse_args()
+def tables(asked: argparse.Namespace) -> dict[str, str]:
+    """Measure, and return the table."""
     lines = [f"| {ROBOT} without | {' | '.join(asked.grounds)} |", f"|---|{'---|' * len(asked.grounds)}"]
     for without in asked.without:
         cells = []
@@ -78,12 +72,9 @@ def main() -> None:
             seeds = asked.seeds if ground.startswith(RANDOM) else 1
             cells.append(cell([walked(without, ground, seed) for seed in range(seeds)]))
         lines.append(f"| {without} | {' | '.join(cells)} |")
-    text = "\n".join(lines)
-    if asked.print:
-        print(text)
-        return
-    replace_tables(PAGE, {"ablation": text})
+    return {"ablation": "\n".join(lines)}
 
 
 if __name__ == "__main__":
-    main()
+    grounds, without = Several(SHOWN, choices=GROUNDS), Several(MECHANISMS, choices=MECHANISMS)
+    write_tables(__doc__, PAGE, tables, grounds=grounds, without=without, seeds=3)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
+from page_tables import with_tables
 from tarsus import hardware
 
 __all__ = ["with_buses"]
@@ -74,8 +75,4 @@ def rate_rows() -> Iterator[str]:
 
 def with_buses(text: str) -> str:
     """Return the page with the current tables."""
-    for mark, rows in (("capabilities", capability_rows()), ("rates", rate_rows())):
-        begin, end = f"<!-- {mark} -->\n", f"<!-- end of {mark} -->"
-        before, _, rest = text.partition(begin)
-        text = before + begin + "\n".join(rows) + "\n" + end + rest.partition(end)[2]
-    return text
+    return with_tables(text, {"capabilities": "\n".join(capability_rows()), "rates": "\n".join(rate_rows())})

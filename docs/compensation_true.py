@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from page_tables import replace_tables
+from page_tables import write_tables
 from statics_true import GAITS, PATHS, walk
 from tarsus.gait.motion import Motion
 from tarsus.kinematics.inverse import inverse_kinematics
@@ -102,10 +102,5 @@ def table() -> str:
     return head + "".join(rows)
 
 
-def main() -> None:
-    """Replace the table on the page."""
-    replace_tables(PAGE, {"compensations": table()})
-
-
 if __name__ == "__main__":
-    main()
+    write_tables(__doc__, PAGE, lambda _: {"compensations": table()})

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 import tarsus
-from page_tables import replace_tables
+from page_tables import Several, write_tables
 from rough_ground import GROUNDS, PAGE, RANDOM, ROBOTS, WAY
 from tarsus.simulation import SensorSuite, SimulatedPlant
 
@@ -59,25 +59,16 @@ def row(name: str, ground: str, seeds: int) -> str:
     return f"| {name}, {ground} | {ways[0]:.2f} | {without} | {100 * right:.0f} % | {half:.0f}, {most:.0f} ms |"
 
 
-def main() -> None:
-    """Measure, and replace the table on the page or print it."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--robots", nargs="+", default=ROBOTS)
-    parser.add_argument("--grounds", nargs="+", default=GROUND, choices=list(GROUNDS))
-    parser.add_argument("--seeds", type=int, default=5)
-    parser.add_argument("--print", action="store_true", help="print the table, and leave the page as it is")
-    asked = parser.parse_args()
+def tables(asked: argparse.Namespace) -> dict[str, str]:
+    """Measure, and return the table."""
     lines = [
         "| walk | way with switches | way without | contacts right | noticed after: median, 90 % |",
         "|---|---|---|---|---|",
         *(row(name, ground, asked.seeds) for name in asked.robots for ground in asked.grounds),
     ]
-    text = "\n".join(lines)
-    if asked.print:
-        print(text)
-        return
-    replace_tables(PAGE, {"estimated contacts": text})
+    return {"estimated contacts": "\n".join(lines)}
 
 
 if __name__ == "__main__":
-    main()
+    grounds = Several(GROUND, choices=GROUNDS)
+    write_tables(__doc__, PAGE, tables, robots=Several(ROBOTS), grounds=grounds, seeds=5)

@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 
+from page_tables import write_tables
 from tarsus import Command, RobotController, ServoFaultError, hardware, load_robot, run
 
 PAGE = Path(__file__).parent / "first-hour.md"
@@ -132,12 +133,5 @@ def rows() -> Iterator[str]:
         yield f"| `{kind}` | {rate:.0f} Hz | " + " | ".join(cells) + " |"
 
 
-def with_times(text: str) -> str:
-    """Return the page with the current table."""
-    begin, end = "<!-- fault times -->\n", "<!-- end of fault times -->"
-    before, _, rest = text.partition(begin)
-    return before + begin + "\n".join(rows()) + "\n" + end + rest.partition(end)[2]
-
-
 if __name__ == "__main__":
-    PAGE.write_text(with_times(PAGE.read_text(encoding="utf-8")), encoding="utf-8")
+    write_tables(__doc__, PAGE, lambda _: {"fault times": "\n".join(rows())})

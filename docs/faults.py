@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from page_tables import replace_tables
+from page_tables import write_tables
 from tarsus import Command, ControlOutput, Robot, RobotController, SensorReadings, list_robots, load_robot, run
 from tarsus.kinematics.mass import STANDARD_GRAVITY, total_mass
 from tarsus.simulation import FootSwitch, Outcome, SensorSuite, SimulatedPlant, TracedPlant
@@ -147,10 +147,5 @@ def state_table() -> str:
     )
 
 
-def main() -> None:
-    """Replace the tables on the page."""
-    replace_tables(PAGE, {"faults": fault_table(), "states": state_table()})
-
-
 if __name__ == "__main__":
-    main()
+    write_tables(__doc__, PAGE, lambda _: {"faults": fault_table(), "states": state_table()})

@@ -8,14 +8,13 @@ from __future__ import annotations
 import argparse
 import itertools
 import math
-from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
 import tarsus
-from page_tables import replace_tables
+from page_tables import Several, measured, write_tables
 from tarsus.simulation import SimulatedPlant, terrain
 
 PAGE = Path(__file__).parent / "ground.md"
@@ -73,21 +72,11 @@ def table(outcomes: dict[Job, str]) -> str:
     return "\n".join(lines)
 
 
-def main() -> None:
-    """Measure, and replace the table on the page or print it."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--robots", nargs="+", default=ROBOTS)
-    parser.add_argument("--jobs", type=int, default=1)
-    parser.add_argument("--print", action="store_true", help="print the table, and leave the page as it is")
-    asked = parser.parse_args()
+def tables(asked: argparse.Namespace) -> dict[str, str]:
+    """Measure, and return the table."""
     jobs = [Job(*job) for job in itertools.product(asked.robots, SENSORS, WIDTHS, EDGES, PACES)]
-    with ProcessPoolExecutor(asked.jobs) as pool:
-        text = table(dict(zip(jobs, pool.map(walk, jobs), strict=True)))
-    if asked.print:
-        print(text)
-        return
-    replace_tables(PAGE, {"trenches": text})
+    return {"trenches": table(dict(zip(jobs, measured(walk, jobs, asked.jobs), strict=True)))}
 
 
 if __name__ == "__main__":
-    main()
+    write_tables(__doc__, PAGE, tables, robots=Several(ROBOTS), jobs=1)

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from page_tables import replace_tables
+from page_tables import write_tables
 from tarsus.control.command import Command
 from tarsus.control.compensated_plant import CompensatedPlant
 from tarsus.control.loop.run import run
@@ -143,18 +143,11 @@ def soft_table() -> str:
     )
 
 
-def main() -> None:
-    """Replace the tables on the page."""
-    tables = {
-        "ideal": lambda: table("ideal"),
-        "fast": fast_table,
-        "catalogue": lambda: table("catalogue"),
-        "compensated": lambda: table("compensated"),
-        "live": live_table,
-        "soft": soft_table,
-    }
-    replace_tables(PAGE, {name: written() for name, written in tables.items()})
+def tables(_: object) -> dict[str, str]:
+    """Measure, and return the tables."""
+    kinds = {kind: table(kind) for kind in ("ideal", "catalogue", "compensated")}
+    return {"fast": fast_table(), "live": live_table(), "soft": soft_table(), **kinds}
 
 
 if __name__ == "__main__":
-    main()
+    write_tables(__doc__, PAGE, tables)

@@ -8,7 +8,6 @@ from __future__ import annotations
 import argparse
 import itertools
 import math
-from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 from statistics import median
@@ -19,7 +18,7 @@ import mujoco
 import numpy as np
 
 import tarsus
-from page_tables import replace_tables
+from page_tables import Several, measured, write_tables
 from tarsus.control.terrain import ground_contact
 from tarsus.simulation import SensorSuite, SimulatedPlant, terrain
 from tarsus.simulation.sensors.suite import FootSwitch, Sensor
@@ -154,21 +153,11 @@ def table(outcomes: dict[Job, Outcome]) -> str:
     return "\n".join(lines)
 
 
-def main() -> None:
-    """Measure, and replace the table on the page or print it."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--robots", nargs="+", default=ROBOTS)
-    parser.add_argument("--jobs", type=int, default=1)
-    parser.add_argument("--print", action="store_true", help="print the table, and leave the page as it is")
-    asked = parser.parse_args()
+def tables(asked: argparse.Namespace) -> dict[str, str]:
+    """Measure, and return the table."""
     jobs = [Job(*job) for job in itertools.product(asked.robots, SENSORS, (False, True), EDGES, PACES)]
-    with ProcessPoolExecutor(asked.jobs) as pool:
-        text = table(dict(zip(jobs, pool.map(walk, jobs), strict=True)))
-    if asked.print:
-        print(text)
-        return
-    replace_tables(PAGE, {"obstacles": text})
+    return {"obstacles": table(dict(zip(jobs, measured(walk, jobs, asked.jobs), strict=True)))}
 
 
 if __name__ == "__main__":
-    main()
+    write_tables(__doc__, PAGE, tables, robots=Several(ROBOTS), jobs=1)

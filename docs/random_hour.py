@@ -10,14 +10,13 @@ import argparse
 import dataclasses
 import math
 import traceback
-from concurrent.futures import ProcessPoolExecutor
 from typing import Any, NamedTuple
 
 import numpy as np
 
 import tarsus
 from estimated_contacts import JOINTS
-from page_tables import replace_tables
+from page_tables import measured, write_tables
 from rough_ground import CLEAR, PAGE, switches
 from sensor_faults import LATE, ONE_DEGREE, with_sensors
 from tarsus.simulation import SensorSuite, SimulatedPlant, terrain
@@ -216,27 +215,16 @@ def table(outcomes: list[Outcome]) -> str:
     return "\n".join(["| random walks | |", "|---|---|", *rows])
 
 
-def main() -> None:
-    """Measure, and replace the table on the page or print it."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--minutes", type=int, default=60)
-    parser.add_argument("--seed", type=int, default=0)
-    parser.add_argument("--jobs", type=int, default=1)
-    parser.add_argument("--print", action="store_true", help="print the table, and leave the page as it is")
-    asked = parser.parse_args()
+def tables(asked: argparse.Namespace) -> dict[str, str]:
+    """Measure, tell of each minute as it ends, and return the table."""
     minutes = [Minute.drawn(asked.seed + number) for number in range(asked.minutes)]
     outcomes = []
-    with ProcessPoolExecutor(asked.jobs) as pool:
-        for outcome in pool.map(lived, minutes):
-            outcomes.append(outcome)
-            fell = "" if math.isnan(outcome.fell) else f"fell after {outcome.fell:.1f} s"
-            print(outcome.minute.text(), f"{outcome.way:.1f} m", fell, *outcome.stopped[:1], outcome.raised, flush=True)
-    text = table(outcomes)
-    if asked.print:
-        print(text)
-        return
-    replace_tables(PAGE, {"random hour": text})
+    for outcome in measured(lived, minutes, asked.jobs):
+        outcomes.append(outcome)
+        fell = "" if math.isnan(outcome.fell) else f"fell after {outcome.fell:.1f} s"
+        print(outcome.minute.text(), f"{outcome.way:.1f} m", fell, *outcome.stopped[:1], outcome.raised, flush=True)
+    return {"random hour": table(outcomes)}
 
 
 if __name__ == "__main__":
-    main()
+    write_tables(__doc__, PAGE, tables, minutes=60, seed=0, jobs=1)

@@ -11,6 +11,7 @@ from click.testing import CliRunner
 
 from bus_tables import with_buses
 from mistyped import table as mistakes_table
+from page_tables import with_tables
 from tarsus import load_robot
 from tarsus.cli import main as tarsus
 from tarsus.load.handbook.page import docs_page
@@ -47,9 +48,7 @@ def _example(match: re.Match[str]) -> str:
 
 def with_mistakes(text: str) -> str:
     """Return the page on checking robot files with the current table of mistakes."""
-    marks = "<!-- table of mistakes -->\n", "<!-- end of the table -->"
-    before, _, rest = text.partition(marks[0])
-    return f"{before}{marks[0]}{mistakes_table()}\n{marks[1]}{rest.partition(marks[1])[2]}"
+    return with_tables(text, {"mistakes": mistakes_table()})
 
 
 def main() -> None:

@@ -10,7 +10,6 @@ import argparse
 import itertools
 import math
 from collections.abc import Callable
-from concurrent.futures import ProcessPoolExecutor
 from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -18,7 +17,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 import tarsus
-from page_tables import replace_tables
+from page_tables import Several, measured, write_tables
 from tarsus.simulation import SensorSuite, SimulatedPlant, terrain
 from tarsus.simulation.sensors.suite import FootSwitch, Sensor
 
@@ -150,35 +149,19 @@ def table(robot: str, grounds: list[str], cases: list[str], found: dict[tuple[st
     return "\n".join(lines)
 
 
-def main() -> None:
-    """Measure, and replace the tables on the page or print them."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--robots", nargs="+", default=ROBOTS)
-    parser.add_argument("--grounds", nargs="+", default=list(GROUNDS), choices=list(GROUNDS))
-    parser.add_argument("--cases", nargs="+", default=list(CASES), choices=list(CASES))
-    parser.add_argument("--seeds", type=int, default=3)
-    parser.add_argument("--jobs", type=int, default=1)
-    parser.add_argument("--print", action="store_true", help="print the tables, and leave the page as it is")
-    asked = parser.parse_args()
+def tables(asked: argparse.Namespace) -> dict[str, str]:
+    """Measure, and return the tables."""
     jobs = [
         (robot, ground, case, seed)
         for robot, ground, case in itertools.product(asked.robots, asked.grounds, asked.cases)
         for seed in range(asked.seeds if ground.startswith(RANDOM) else 1)
     ]
-    if asked.jobs > 1:
-        with ProcessPoolExecutor(asked.jobs) as pool:
-            outcomes = list(pool.map(walk, jobs))
-    else:
-        outcomes = [walk(job) for job in jobs]
     found: dict[tuple[str, str, str], list[Outcome]] = {}
-    for (robot, ground, case, _), outcome in zip(jobs, outcomes, strict=True):
+    for (robot, ground, case, _), outcome in zip(jobs, measured(walk, jobs, asked.jobs), strict=True):
         found.setdefault((robot, ground, case), []).append(outcome)
-    text = "\n\n".join(table(robot, asked.grounds, asked.cases, found) for robot in asked.robots)
-    if asked.print:
-        print(text)
-        return
-    replace_tables(PAGE, {"rough ground": text})
+    return {"rough ground": "\n\n".join(table(robot, asked.grounds, asked.cases, found) for robot in asked.robots)}
 
 
 if __name__ == "__main__":
-    main()
+    grounds, cases = (Several(names, choices=names) for names in (GROUNDS, CASES))
+    write_tables(__doc__, PAGE, tables, robots=Several(ROBOTS), grounds=grounds, cases=cases, seeds=3, jobs=1)

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 import tarsus
-from page_tables import replace_tables
+from page_tables import Several, write_tables
 from rough_ground import GROUNDS, PAGE, RANDOM, WAY
 from tarsus.simulation import SensorSuite, SimulatedPlant
 from tarsus.simulation.sensors.suite import FootSwitch, Sensor
@@ -135,23 +135,14 @@ def medians(found: list[tuple[float, float]]) -> str:
     return f"{way:.2f}, {tilt:.1f}"
 
 
-def main() -> None:
-    """Measure, and replace the tables on the page or print them."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--robots", nargs="+", default=["strider"])
-    parser.add_argument("--faults", nargs="+", default=list(FAULTS), choices=list(FAULTS))
-    parser.add_argument("--seeds", type=int, default=3)
-    parser.add_argument("--print", action="store_true", help="print the tables, and leave the page as it is")
-    asked = parser.parse_args()
-    tables = {
+def tables(asked: argparse.Namespace) -> dict[str, str]:
+    """Measure, and return the tables."""
+    return {
         "sensor faults": "\n\n".join(table(robot, asked.faults, asked.seeds, medians) for robot in asked.robots),
         "leg failures": failure_table(["strider", "phantomx", "makeyourpet"]),
     }
-    if asked.print:
-        print(*tables.values(), sep="\n\n")
-        return
-    replace_tables(PAGE, tables)
 
 
 if __name__ == "__main__":
-    main()
+    faults = Several(FAULTS, choices=FAULTS)
+    write_tables(__doc__, PAGE, tables, robots=Several(["strider"]), faults=faults, seeds=3)

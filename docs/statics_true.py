@@ -5,7 +5,6 @@ All 128 walks take about an hour; ``--walks 64`` takes half of them, spread over
 
 from __future__ import annotations
 
-import argparse
 import itertools
 import math
 from collections.abc import Iterator
@@ -15,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from page_tables import replace_tables
+from page_tables import write_tables
 from tarsus.control.walk_controller import WalkController
 from tarsus.gait.gait import Gait
 from tarsus.gait.motion import Motion
@@ -153,13 +152,6 @@ def table(count: int) -> str:
     return head + "".join(rows(physics, count) for physics in SETTINGS)
 
 
-def main() -> None:
-    """Replace the table on the page."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--walks", type=int, default=len(GAITS) * len(PATHS) * 8, help="number of walks")
-    count = parser.parse_args().walks
-    replace_tables(PAGE, {"statics": table(count)})
-
-
 if __name__ == "__main__":
-    main()
+    count = len(GAITS) * len(PATHS) * 8
+    write_tables(__doc__, PAGE, lambda asked: {"statics": table(asked.walks)}, walks=count)

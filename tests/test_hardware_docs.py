@@ -38,7 +38,7 @@ def test_faults_are_measured_as_the_page_says(monkeypatch):
     from fault_times import FAULTS, RATES, Walk
 
     page = (DOCS / "first-hour.md").read_text(encoding="utf-8")
-    table = page.split("<!-- fault times -->\n")[1].split("<!-- end of fault times -->")[0].splitlines()
+    table = page.split("<!-- table: fault times -->\n")[1].split("<!-- end -->")[0].splitlines()
     assert [cell.strip() for cell in table[0].strip("|").split("|")] == ["bus", "rate", *FAULTS]
     assert [re.match(r"\| `([a-z0-9-]+)`", row)[1] for row in table[2:]] == list(RATES)
     assert 0 < Walk("feetech-sts", FAULTS["unplugged"], 0.1, 4).noticed("unplugged") < 0.02
