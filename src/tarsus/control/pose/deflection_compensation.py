@@ -89,13 +89,11 @@ class DeflectionCompensation:
         for leg, (yaw, length, tibia, femur_yields, tibia_yields) in enumerate(self._legs):
             force, angles, (coxa, femur, bend) = forces[leg], measured[leg], commanded[leg].tolist()
             self._loads[leg] += follows * ((max(force[2], 0.0) if force and angles else 0.0) - self._loads[leg])
-            load, to_knee = self._loads[leg], tibia * math.cos(femur + bend)
-            to_hip = to_knee + length * math.cos(femur)
+            load, (to_knee, _, to_hip, below_hip) = self._loads[leg], _lever_arms(length, tibia, femur, bend)
             turned, bent = femur_yields * to_hip * load, tibia_yields * to_knee * load
             if force and angles:
                 # The torque that bends the femur is that of the whole force: feet lean against each other.
                 out = force[0] * math.cos(yaw + coxa) + force[1] * math.sin(yaw + coxa)
-                below_hip = -tibia * math.sin(femur + bend) - length * math.sin(femur)
                 bends = femur_yields * (to_hip * force[2] + below_hip * out)
                 product, square = product + bends * (angles[1] - femur), square + bends * bends
             lowered = max(lowered, share * (turned * to_hip + bent * to_knee))
@@ -112,8 +110,13 @@ class DeflectionCompensation:
         for (_, length, tibia, femur_yields, tibia_yields), (_, femur, bend) in zip(
             self._legs, commanded.tolist(), strict=True
         ):
-            to_knee, below_knee = tibia * math.cos(femur + bend), -tibia * math.sin(femur + bend)
-            to_hip, below_hip = to_knee + length * math.cos(femur), below_knee - length * math.sin(femur)
+            to_knee, below_knee, to_hip, below_hip = _lever_arms(length, tibia, femur, bend)
             outward = femur_yields * to_hip * below_hip + tibia_yields * to_knee * below_knee
             needed = max(needed, outward / max(femur_yields * below_hip**2 + tibia_yields * below_knee**2, 1e-12))
         return needed
+
+
+def _lever_arms(femur: float, tibia: float, turned: float, bent: float) -> tuple[float, float, float, float]:
+    """Return how far out and below the foot is from the knee, and from the femur axis [m]."""
+    to_knee, below_knee = tibia * math.cos(turned + bent), -tibia * math.sin(turned + bent)
+    return to_knee, below_knee, to_knee + femur * math.cos(turned), below_knee - femur * math.sin(turned)
