@@ -39,6 +39,24 @@ def test_the_walk_slows_down_the_deeper_a_foot_searches_and_less_on_rough_ground
     assert stepped(MissingGround(NAMES), [(0, 0.05, False, False)]).places
 
 
+def test_a_walk_that_slows_down_says_for_which_foot_and_why():
+    def named(missing):
+        return [(each.leg, each.cause) for each in missing.limitations]
+
+    assert named(stepped(MissingGround(NAMES), [(0, 0.006, True, True)])) == []
+    both = [(0, 0.01, True, True), (3, 0.012, True, True)]
+    assert named(stepped(MissingGround(NAMES), both)) == [("RR", "the foot looks for the ground")]
+    missing = stepped(MissingGround(NAMES), [(0, 0.08, True, True)])
+    assert named(missing) == [("LF", "no ground within 80 mm below the other feet")]
+    # The command that is refused for it is named where it is refused.
+    limited(missing, 0.1, 0.0, 0.0)
+    assert missing.refuses
+    assert named(missing) == []
+    missing = MissingGround(NAMES)
+    missing.stopped(1, REST[1], REST[1] + 0.05)
+    assert named(stepped(missing, [(1, 0.0, False, True)])) == [("LM", "an obstacle stops the foot")]
+
+
 def test_a_foot_without_ground_steps_back_twice_and_then_gives_up():
     missing = stepped(MissingGround(NAMES), [(0, 0.08, True, True)])
     first = missing.places[0]

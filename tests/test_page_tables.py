@@ -1,6 +1,7 @@
 """The runner of the scripts that write tables on pages."""
 
 import pytest
+
 from page_tables import Several, measured, with_tables, write_tables
 
 PAGE = "before\n<!-- table: walks -->\nold\n<!-- end -->\nafter\n<!-- table: falls -->\n<!-- end -->\n"

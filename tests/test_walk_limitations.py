@@ -149,3 +149,14 @@ def test_a_stance_from_which_the_feet_cannot_step_on_is_reported():
     assert limitation.asked == 0.11
     assert limitation.cause == "could not stand and step on the way"
     assert limitation.leg
+
+
+def test_a_walk_that_its_joints_slow_down_says_so():
+    controller = controller_of()
+    for _ in range(100):
+        controller.step((0.1, 0.0, 0.0), 0.01)
+    assert controller.limitations == ()
+    full, controller._walk.time_scaling.rate = controller.twist[0], 0.5
+    (found,) = controller.limitations
+    assert found.text() == "twist: 50 % of the command; joint speed and acceleration"
+    assert controller.twist[0] == pytest.approx(full / 2)

@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tarsus.control.command import Command
-from tarsus.control.limitation import Limitation
+from tarsus.control.limitation import Cause, Limitation, LimitationKind
 from tarsus.control.limiter.workspace import top_speed
 from tarsus.control.pose.admittance import Admittance
 from tarsus.control.readings import SensorReadings, ValidReadings
 from tarsus.control.terrain.felt_ground import FeltGround
+from tarsus.control.terrain.missing_ground import SLOW
 from tarsus.control.terrain.posture_feedback import Levelling
 from tarsus.control.terrain.roughness import GroundAdaptation
 from tarsus.control.tick.command_intake import CommandIntake
@@ -47,6 +48,7 @@ __all__ = ["WalkController"]
 
 # Longest part of a tick that is walked [s]: a late tick must not become a jump.
 _LONGEST_TICK = 0.05
+_JOINTS = Cause("joint speed and acceleration")
 
 
 @represented("robot", "gait", "walk_state", "time", "twist", "cycle_time", "margin", "angles", "limitations")
@@ -192,12 +194,14 @@ class WalkController:
     @property
     def limitations(self) -> tuple[Limitation, ...]:
         """Why the command is not met in full."""
-        walk = self._walk
+        walk, rate = self._walk, self._walk.time_scaling.rate
+        slow = rate < SLOW and bool(self._tick.twist.any())
         return (
             *walk.transitions.limitations,
             *walk.foot_targets.limitations,
             *self._tick.limitations,
             *walk.ground.limitations,
+            *([_JOINTS.limitation(LimitationKind.TWIST, asked=1.0, granted=rate)] if slow else []),
         )
 
     @property
@@ -251,7 +255,8 @@ class WalkController:
     @property
     def twist(self) -> Float[np.ndarray, "3"]:
         """The present twist: array, shape (3,): forward, left [m/s], turning [rad/s]."""
-        return self._tick.gait.twist.value * self._walk.time_scaling.rate
+        pace = self._walk.ground.support.pace if self.feels_ground else 1.0
+        return self._tick.gait.twist.value * self._walk.time_scaling.rate * pace
 
     @property
     def margin(self) -> float:

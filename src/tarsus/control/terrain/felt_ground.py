@@ -18,7 +18,7 @@ from tarsus.control.terrain.body_motion import BodyMotion
 from tarsus.control.terrain.foot_contacts import FootContacts
 from tarsus.control.terrain.ground_contact import met_ground
 from tarsus.control.terrain.ground_map import GroundMap
-from tarsus.control.terrain.missing_ground import MissingGround, searching_feet
+from tarsus.control.terrain.missing_ground import SLOW, MissingGround, searching_feet
 from tarsus.control.terrain.posture_feedback import Levelling
 from tarsus.control.terrain.roughness import GroundAdaptation
 from tarsus.control.terrain.support import Support
@@ -288,10 +288,10 @@ class FeltGround:
     def limitations(self) -> tuple[Limitation, ...]:
         """Readings that are rejected, and what the ground does not allow."""
         found = [Limitation(kind=LimitationKind.READINGS, cause=reason) for reason in self.measured.rejected]
-        found += self.condition.limitations + self.body.limitations
-        if self.support.halts and not (self.condition.in_air or self.missing.refuses):
-            reason = (
-                self.body.slope.reason if self.body.slope.refuses else "the feet on the ground do not hold the robot"
-            )
-            found.append(Limitation(kind=LimitationKind.GROUND, cause=reason))
+        found += self.condition.limitations + self.body.limitations + self.missing.limitations
+        explained = self.condition.in_air or self.missing.refuses or self.missing.limitations
+        if self.support.pace < SLOW and not explained:
+            refused, unheld = self.body.slope.refuses, "the feet on the ground do not hold the robot"
+            cause = self.body.slope.reason if refused else unheld
+            found.append(Limitation(kind=LimitationKind.GROUND, cause=cause))
         return tuple(found)

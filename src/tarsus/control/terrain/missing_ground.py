@@ -12,13 +12,15 @@ from tarsus.control.terrain.ground_map import GroundMap
 from tarsus.control.terrain.support import holds
 from tarsus.control.walk.state import GaitState
 
-__all__ = ["MissingGround", "searching_feet"]
+__all__ = ["SLOW", "MissingGround", "searching_feet"]
 
 # Depth below the expected ground at which there is none, over the body height.
 _DEEP = 0.75
 # Depths from which on the walk slows down, and stands still, or goes on slowly with feet at the end of their reach [m].
 _SLOWS, _STANDS = 0.005, 0.02
 _SLOWEST = 0.25
+# A walk that is slower says why.
+SLOW = 0.85
 # How much deeper ground may be on rough ground, over the roughness.
 _ROUGH = 2.5
 # Where a foot steps back to, from its rest foothold against its way, over how far from there it may stand.
@@ -92,7 +94,16 @@ class MissingGround:
         self.stops, self._beside = dict[int, tuple[int, complex, complex]](), dict[int, complex]()
         self._names, self._tries, self._cause = names, [0] * len(names), ("", "")
         self._way, self._backed, self.refuses = 0j, 0.0, False
-        self._again, self._since = 0, 0.0
+        self._again, self._since, self._slows = 0, 0.0, ""
+
+    @property
+    def limitations(self) -> list[Limitation]:
+        """Why the walk slows down, unless the command is refused for it."""
+        leg, cause = (self._slows, "the foot looks for the ground") if self._slows else self._cause
+        for stopped in self.stops:
+            leg, cause = self._names[stopped], "an obstacle stops the foot"
+        waits = not self.refuses and self.pace < SLOW
+        return [Limitation(kind=LimitationKind.GROUND, leg=leg, cause=cause)] if waits else []
 
     def steps_back(self, leg: int, foot: complex) -> bool:
         """Return whether a foot, here in the heading frame, is on its way to another place."""
@@ -143,10 +154,11 @@ class MissingGround:
             del self.places[leg]
             self._tries[leg] = 0
             self.stops.pop(leg, None)
-        self.pace, self.back = 1.0 - self.refuses, 0j
+        self.pace, self.back, self._slows = 1.0 - self.refuses, 0j, ""
         for leg, depth, falls, lasts in searches:
             slowest = 0.0 if falls else _SLOWEST
-            self.pace = min(self.pace, max(1 - (depth - _ROUGH * roughness - _SLOWS) / (_STANDS - _SLOWS), slowest))
+            pace = max(1 - (depth - _ROUGH * roughness - _SLOWS) / (_STANDS - _SLOWS), slowest)
+            self.pace, self._slows = min((self.pace, self._slows), (pace, self._names[leg]))
             missing = depth > _DEEP * height + _ROUGH * roughness or not (lasts or leg in self.places)
             if missing and not (self.steps_back(leg, feet[leg]) or self.gives_up(leg)):
                 self._tries[leg] += 1
@@ -165,7 +177,7 @@ class MissingGround:
             elif not self.refuses and self._since > _FORGETS:
                 self._again = 0
             return
-        self.pace, turn = 0.0, self._way.conjugate()
+        self.pace, self._slows, turn = 0.0, "", self._way.conjugate()
         edge = min((feet[leg] * turn).real for leg in self.places) - _FIRM
         firm = [foot for foot, on in zip(feet, stands, strict=True) if on and (foot * turn).real < edge]
         if not self.stops and self._backed < _BACKS and not holds(firm, centre + _MARGIN * self._way):
