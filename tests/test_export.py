@@ -1,5 +1,7 @@
 """Exported robots are those of Tarsus, in Pinocchio and in MuJoCo: masses, inertias, poses of all links."""
 
+from xml.etree import ElementTree as ET
+
 import mujoco
 import numpy as np
 import pinocchio as pin
@@ -57,6 +59,23 @@ def test_a_urdf_is_the_robot_in_pinocchio(name):
     np.testing.assert_allclose(data.com[0], centre_of_mass(robot, angles), atol=1e-12)
     limits = np.stack([built.lowerPositionLimit[7:], built.upperPositionLimit[7:]], axis=-1)
     np.testing.assert_array_equal(np.sort(limits, axis=0), np.sort(robot.limits.reshape(-1, 2), axis=0))
+
+
+@pytest.mark.parametrize("name", WITH_MASSES)
+def test_every_link_of_a_urdf_has_an_inertia_that_exists_and_every_foot_a_shape(name):
+    """Engines give links without inertia a mass of their own, Bullet 1 kg; feet without shapes sink into the ground."""
+    robot, root = load_robot(name), ET.fromstring(to_urdf(load_robot(name)))
+    links = {link.get("name"): link for link in root.iter("link")}
+    assert len(links) == 1 + 4 * robot.legs
+    for link in links.values():
+        inertia = link.find("inertial/inertia")
+        matrix = np.array([[float(inertia.get("i" + "".join(sorted(a + b)))) for a in "xyz"] for b in "xyz"])
+        moments = np.linalg.eigvalsh(matrix)
+        assert 0 < moments[0] <= moments[2] <= moments[0] + moments[1] + 1e-15
+        assert float(link.find("inertial/mass").get("value")) > 0
+    for leg, tibia in zip(robot.leg_names, robot.tibia, strict=True):
+        (shape,) = links["_".join([*leg.split(), "tibia"])].findall("collision")
+        assert float(shape.find("origin").get("xyz").split()[0]) == pytest.approx(float(tibia))
 
 
 @pytest.mark.parametrize("name", ["strider", "phantomx"])

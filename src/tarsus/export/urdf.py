@@ -21,8 +21,11 @@ __all__ = ["to_urdf"]
 
 # Greatest torque in the file of a joint whose servo is unknown [N m]: URDF has no "unknown".
 _UNKNOWN_TORQUE = 100.0
-# Thickness of a body without a size [m], and radius of the links' cylinders [m].
-_PLATE, _LINK_RADIUS = 0.002, 0.006
+# Thickness of a body without a size [m], radius of the links' cylinders [m], and edge of the box that is the foot where
+# its radius is unknown [m]: without a shape it would sink into the ground, and a ball would be read back as the foot's.
+_PLATE, _LINK_RADIUS, _FOOT_EDGE = 0.002, 0.006, 0.002
+# Share of the tibia's mass that is the foot's, which is a link of its own: Bullet gives a link without inertia 1 kg.
+_FOOT_SHARE = 0.01
 _ABOUT = """
  Made by Tarsus from the robot file of {name}. Frames and angles are those of its conventions: B in the body, x forward,
  y to the left, z up; coxae turn about z, femurs and tibias about -y. Inertias are those of uniform boxes. {unknown}
@@ -35,7 +38,9 @@ def to_urdf(robot: Robot) -> str:
     """Return a robot as a URDF document.
 
     Links are named ``body`` and by leg and link (``front_left_femur``), joints like the link that they move; each foot
-    is a link of its own at the end of the tibia (``front_left_foot``), fixed by a joint.
+    is a link of its own at the end of the tibia (``front_left_foot``), fixed by a joint, with a hundredth of the
+    tibia's mass. What touches the ground is a shape of the tibia: the ball of the foot, or a box of 2 mm where its
+    radius is unknown.
 
     Parameters
     ----------
@@ -79,9 +84,11 @@ def _add_body(root: ET.Element, robot: Robot) -> None:
 
 def _add_leg(root: ET.Element, robot: Robot, leg: int) -> None:
     parent, position, yaw = "body", np.asarray(robot.mount_position[leg]), float(robot.mount_yaw[leg])
+    tibia, ball = _divided(link_inertia(robot, leg, 2), link_step(robot, leg, 2))
+    solids = (link_inertia(robot, leg, 0), link_inertia(robot, leg, 1), tibia)
     for joint, name in enumerate(JOINTS):
         link = _name(robot, leg, name)
-        _add_link(root, robot, leg, joint)
+        _add_link(root, robot, leg, joint, solids[joint])
         found = ET.SubElement(root, "joint", name=link, type="revolute")
         _add_origin(found, position, (0.0, 0.0, yaw))
         ET.SubElement(found, "parent", link=parent)
@@ -90,7 +97,7 @@ def _add_leg(root: ET.Element, robot: Robot, leg: int) -> None:
         ET.SubElement(found, "limit", _limits(robot, leg, joint))
         parent, position, yaw = link, link_step(robot, leg, joint), 0.0
     foot = _name(robot, leg, "foot")
-    ET.SubElement(root, "link", name=foot)
+    _add_inertia(ET.SubElement(root, "link", name=foot), ball)
     fixed = ET.SubElement(root, "joint", name=foot, type="fixed")
     _add_origin(fixed, position)
     ET.SubElement(fixed, "parent", link=parent)
@@ -101,9 +108,20 @@ def _name(robot: Robot, leg: int, part: str) -> str:
     return "_".join([*robot.leg_names[leg].split(), part])
 
 
-def _add_link(root: ET.Element, robot: Robot, leg: int, joint: int) -> None:
+def _divided(tibia: RigidBody, foot: Float[np.ndarray, "3"]) -> tuple[RigidBody, RigidBody]:
+    """Return tibia and foot, which together are the tibia; both centres of mass are on its axis."""
+    mass, small = (1 - _FOOT_SHARE) * tibia.mass, _FOOT_SHARE * tibia.mass
+    centre = (tibia.centre - _FOOT_SHARE * foot) / (1 - _FOOT_SHARE)
+    ball = 0.4 * small * _LINK_RADIUS**2
+    along, across, _ = tibia.moments
+    across += tibia.mass * np.sum((tibia.centre - centre) ** 2) - small * np.sum((foot - centre) ** 2) - ball
+    divided = RigidBody(mass, centre, (along - ball, across, across), tibia.axis)
+    return divided, RigidBody(small, np.zeros(3), (ball, ball, ball), np.zeros(3))
+
+
+def _add_link(root: ET.Element, robot: Robot, leg: int, joint: int, solid: RigidBody) -> None:
     link, step = ET.SubElement(root, "link", name=_name(robot, leg, JOINTS[joint])), link_step(robot, leg, joint)
-    _add_inertia(link, link_inertia(robot, leg, joint))
+    _add_inertia(link, solid)
     length = float(np.linalg.norm(step))
     if length > 0:
         # A cylinder lies along z.
@@ -111,9 +129,11 @@ def _add_link(root: ET.Element, robot: Robot, leg: int, joint: int) -> None:
         shape = {"radius": f"{_LINK_RADIUS:g}", "length": _text([length])}
         _add_shape(link, "visual", "cylinder", shape, step / 2, turn)
     radius = float(np.broadcast_to(np.asarray(robot.foot_radius), (robot.legs,))[leg])
-    if joint == 2 and radius > 0:
+    if joint == 2:
+        known = radius > 0
+        about = {"radius": _text([radius])} if known else {"size": _text([_FOOT_EDGE] * 3)}
         for kind in ("visual", "collision"):
-            _add_shape(link, kind, "sphere", {"radius": _text([radius])}, step)
+            _add_shape(link, kind, "sphere" if known else "box", about, step)
 
 
 def _limits(robot: Robot, leg: int, joint: int) -> dict[str, str]:
