@@ -429,6 +429,36 @@ def test_a_foot_that_rises_waits_where_it_is_while_the_walk_stands_still():
     assert controller.walk_state == "searching"
 
 
+def test_a_robot_that_is_put_down_on_one_foot_finds_no_holes():
+    controller = WalkController(STRIDER)
+
+    def walked(seconds, touching=(True,) * 6):
+        before = controller.place[0]
+        for _ in range(round(seconds / 0.02)):
+            contacts = (controller.feet[:, 2] <= 1e-4) & touching
+            controller.step((0.1, 0.0, 0.0), 0.02, SensorReadings(contacts=contacts, attitude=(0.0, 0.0)))
+        return controller.place[0] - before, [each.text() for each in controller.limitations]
+
+    walked(2.0)
+    walked(1.0, (False,) * 6)
+    assert "no ground within" not in str(walked(2.0, (True, *[False] * 5))[1])
+    walked(1.0)
+    way, why = walked(3.0)
+    assert way > 0.25
+    assert why == []
+
+
+def test_feet_that_are_due_stay_on_the_ground_while_the_robot_stands():
+    controller = WalkController(STRIDER)
+    readings = SensorReadings(contacts=(True,) * 6, attitude=(0.0, 0.0))
+    controller.step((0.0, 0.0, 0.0), 0.02, readings)
+    state = controller._tick.gait
+    late = state._replace(step_number=state.step_number - 1, foot=state.foot + 0.02)
+    controller._tick = controller._tick._replace(gait=late)
+    controller.step((0.0, 0.0, 0.0), 0.02, readings)
+    assert controller.contacts.all()
+
+
 def test_a_robot_that_is_picked_up_or_has_fallen_stops_and_goes_on_once_it_stands_again():
     controller = WalkController(STRIDER)
 

@@ -26,18 +26,22 @@ class BodyCondition:
         Angle of the body against gravity, as measured last [rad].
     fallen : bool
         Whether the robot lies on its side or its back.
+    carried : bool
+        Whether the robot is in the air, or is being put down.
     """
 
     def __init__(self) -> None:
         self.airborne = self.tilt = self._time = 0.0
-        self.fallen = False
+        self.fallen = self.carried = False
 
     @property
     def in_air(self) -> bool:
         """Whether the robot is held in the air: feet do not search the ground."""
         return self.airborne > _IN_AIR
 
-    def step(self, touching: Sequence[bool], attitude: tuple[float, float] | None, dt: float) -> None:
+    def step(
+        self, touching: Sequence[bool], attitude: tuple[float, float] | None, dt: float, *, held: bool = True
+    ) -> None:
         """Take in contacts and attitude of a tick.
 
         Parameters
@@ -48,8 +52,11 @@ class BodyCondition:
             Measured [rad]; None where it is not, as beyond 60 degrees.
         dt : float
             Time since the last tick [s].
+        held : bool
+            Whether the feet that touch hold the robot.
         """
         self.airborne = 0.0 if any(touching) else self.airborne + dt
+        self.carried = self.in_air or (self.carried and not held)
         if attitude is not None:
             self.tilt = math.acos(math.cos(attitude[0]) * math.cos(attitude[1]))
         changes = self.tilt < _UPRIGHT if self.fallen else self.tilt > _FALLEN

@@ -42,6 +42,7 @@ _DEPTH_SHARE = 0.6
 _SLOW_TRAVEL, _FAST_TRAVEL = 0.75, 0.92
 # How soon feet lift off that are not lowered any more [s].
 _LEAVING = 0.1
+_UNHELD = "the feet on the ground do not hold the robot"
 # How often height, tilt and lost way are looked at [s].
 _SLOW_PERIOD = 0.03 - PHASE_TOLERANCE
 
@@ -143,7 +144,8 @@ class FeltGround:
         leaving, rests = down if self._rests else timing.due(state, _LEAVING), self._rests
         estimated, age = self._loads.estimated, valid.contact_age
         self.contacts.step(measured, down, dt, age=age, count=ticks, leaving=leaving, rests=rests, estimated=estimated)
-        self.condition.step([self.contacts.touches(leg) for leg in range(len(down))], valid.attitude, dt)
+        touching = [self.contacts.touches(leg) for leg in range(len(down))]
+        self.condition.step(touching, valid.attitude, dt, held=self.support.held)
         if self._loads.compliant:
             forces, feet = self._loads.forces(valid, angles), [(foot.real, foot.imag) for foot in state.foot.tolist()]
             self.offsets = self._loads.offsets(forces, dt, feet=feet, stands=down)
@@ -199,8 +201,8 @@ class FeltGround:
             # Of a foot whose switch is open, the robot feels no collision: all swing as high as after one.
             self.body.roughness.collided()
         self.body.roughness.decay(0.0 if standing else dt * timing.frequency)
-        lifts = due or [False] * len(down)
-        stays = [on and stand and not lift for on, stand, lift in zip(down, stands, lifts, strict=True)]
+        lifted = zip(down, stands, due or [False] * len(down), strict=True)
+        stays = [on and stand and not lift for on, stand, lift in lifted]
         under = [
             self._under(state, leg, place, down=down[leg]) if steps[leg] and not stays[leg] else None
             for leg, place in enumerate(places)
@@ -245,12 +247,16 @@ class FeltGround:
         """Decide where feet step that find no ground; return which stand, or would, with the robot in the air."""
         contacts, missing, in_air = self.contacts, self.missing, self.condition.in_air
         rest = footholds.rest.tolist()
-        stands = [
-            (in_air or on) and not missing.steps_back(leg, places[leg]) for leg, on in enumerate(contacts.standing)
-        ]
+        if self.condition.carried:
+            missing.forget()
+        on_ground = enumerate(contacts.standing)
+        stands = [(in_air or on) and not missing.steps_back(leg, places[leg]) for leg, on in on_ground]
         missing.sees(self.ground.holes, rest)
+        waits = self._rests and self.support.held and not missing.places
         missing.step(
-            searching_feet(state, contacts, self.ground, places, down=down, stands=stands),
+            []
+            if waits or self.condition.carried
+            else searching_feet(state, contacts, self.ground, places, down=down, stands=stands),
             places,
             [on and stand for on, stand in zip(down, stands, strict=True)],
             dt,
@@ -291,7 +297,6 @@ class FeltGround:
         found += self.condition.limitations + self.body.limitations + self.missing.limitations
         explained = self.condition.in_air or self.missing.refuses or self.missing.limitations
         if self.support.pace < SLOW and not explained:
-            refused, unheld = self.body.slope.refuses, "the feet on the ground do not hold the robot"
-            cause = self.body.slope.reason if refused else unheld
-            found.append(Limitation(kind=LimitationKind.GROUND, cause=cause))
+            slope = self.body.slope
+            found.append(Limitation(kind=LimitationKind.GROUND, cause=slope.reason if slope.refuses else _UNHELD))
         return tuple(found)

@@ -105,6 +105,13 @@ class MissingGround:
         waits = not self.refuses and self.pace < SLOW
         return [Limitation(kind=LimitationKind.GROUND, leg=leg, cause=cause)] if waits else []
 
+    def forget(self) -> None:
+        """Forget holes and obstacles: the robot is carried elsewhere."""
+        for found in (self.places, self.stops, self._beside):
+            found.clear()
+        self._tries = [0] * len(self._names)
+        self._way, self.refuses, self._again = 0j, False, 0
+
     def steps_back(self, leg: int, foot: complex) -> bool:
         """Return whether a foot, here in the heading frame, is on its way to another place."""
         return leg in self.places and abs(self.places[leg] - foot) > _THERE

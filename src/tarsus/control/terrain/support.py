@@ -44,12 +44,14 @@ class Support:
         Rate of steps and twist, 0 to 1.
     waits : bool
         Whether feet that are due stay on the ground.
+    held : bool
+        Whether the feet that bear load hold the robot.
     """
 
     def __init__(self) -> None:
         self.pace, self.waits = 1.0, False
         self._waited = self._unsupported = 0.0
-        self._bearing, self._held = list[int](), False
+        self._bearing, self.held = list[int](), False
 
     @property
     def halts(self) -> bool:
@@ -67,8 +69,8 @@ class Support:
             The centre of mass [m]; whether to look at the same feet again.
         """
         if anew or legs != self._bearing:
-            self._bearing, self._held = legs, holds([places[leg] for leg in legs], centre)
-        return self._held
+            self._bearing, self.held = legs, holds([places[leg] for leg in legs], centre)
+        return self.held
 
     def step(self, *, stays: bool, lifts: bool, dt: float, swing_time: float, most: float = 1.0) -> None:
         """Decide for a tick.

@@ -72,7 +72,8 @@ def advance(state: GaitState, inputs: StepInputs, dt: float) -> GaitState:
         clock - (o + duty_factor + n) for o, n in zip(inputs.gait.offsets, state.step_number.tolist(), strict=True)
     ]
     down = state.down.tolist()
-    due = [on and since > PHASE_TOLERANCE and not inputs.hold_feet for on, since in zip(down, since_lift, strict=True)]
+    steps = inputs.frequency > 0.0 and not inputs.hold_feet
+    due = [on and steps and since > PHASE_TOLERANCE for on, since in zip(down, since_lift, strict=True)]
     if any(due):
         after = _lift(after, inputs, np.array(due), np.array(since_lift) - elapsed, stopping=stopping)
         down = after.down.tolist()
