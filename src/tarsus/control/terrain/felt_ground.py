@@ -42,7 +42,6 @@ _DEPTH_SHARE = 0.6
 _SLOW_TRAVEL, _FAST_TRAVEL = 0.75, 0.92
 # How soon feet lift off that are not lowered any more [s].
 _LEAVING = 0.1
-_UNHELD = "the feet on the ground do not hold the robot"
 # How often height, tilt and lost way are looked at [s].
 _SLOW_PERIOD = 0.03 - PHASE_TOLERANCE
 
@@ -245,12 +244,11 @@ class FeltGround:
         dt: float,
     ) -> list[bool]:
         """Decide where feet step that find no ground; return which stand, or would, with the robot in the air."""
-        contacts, missing, in_air = self.contacts, self.missing, self.condition.in_air
-        rest = footholds.rest.tolist()
+        contacts, missing, rest = self.contacts, self.missing, footholds.rest.tolist()
         if self.condition.carried:
             missing.forget()
         on_ground = enumerate(contacts.standing)
-        stands = [(in_air or on) and not missing.steps_back(leg, places[leg]) for leg, on in on_ground]
+        stands = [(self.condition.in_air or on) and not missing.steps_back(leg, places[leg]) for leg, on in on_ground]
         missing.sees(self.ground.holes, rest)
         waits = self._rests and self.support.held and not missing.places
         missing.step(
@@ -297,6 +295,6 @@ class FeltGround:
         found += self.condition.limitations + self.body.limitations + self.missing.limitations
         explained = self.condition.in_air or self.missing.refuses or self.missing.limitations
         if self.support.pace < SLOW and not explained:
-            slope = self.body.slope
-            found.append(Limitation(kind=LimitationKind.GROUND, cause=slope.reason if slope.refuses else _UNHELD))
+            slope, unheld = self.body.slope, "the feet on the ground do not hold the robot"
+            found.append(Limitation(kind=LimitationKind.GROUND, cause=slope.reason if slope.refuses else unheld))
         return tuple(found)
