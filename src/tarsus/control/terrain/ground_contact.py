@@ -64,7 +64,8 @@ def met_ground(
     """
     assert state.felt is not None  # a walk that feels the ground
     landed, elevation = list[int](), float(state.elevation.value[0])
-    places = ((state.foot - state.origin) * cmath.exp(-1j * state.yaw)).tolist()
+    turn = cmath.exp(-1j * state.yaw)
+    places = ((state.foot - state.origin) * turn).tolist()
     for leg, (down, phase) in enumerate(zip(state.down.tolist(), state.swing_phase.tolist(), strict=True)):
         top, foot, touches = elevation + highest[leg], state.felt[leg], contacts.estimator.touching[leg]
         if down or phase <= _CLEAR:
@@ -72,10 +73,13 @@ def met_ground(
             if (contacts.feels(leg) or leg in stopped) and missing.tries(leg, places[leg]) and not rises:
                 state = _trying_again(state, leg, missing, top, state)
             continue
-        if _collides_again(state, leg, side=contacts.feels(leg) and contacts.lifted[leg], stopped=leg in stopped):
+        leaves = missing.leaves((complex(state.foothold[leg]) - state.origin) * turn - places[leg])
+        if not leaves and _collides_again(
+            state, leg, side=contacts.feels(leg) and contacts.lifted[leg], stopped=leg in stopped
+        ):
             state = _trying_again(state, leg, missing, top, _landed(state, leg, timing, pace))
             landed.append(leg)
-        elif phase > _LANDING:
+        elif phase > max(_LANDING, foot.top_phase):
             # Contact that has not ceased since lift-off tells nothing: the foot lands where ground is expected.
             tells = contacts.lifted[leg] and not contacts.is_open(leg)
             if tells and not contacts.touches(leg):
@@ -87,7 +91,7 @@ def met_ground(
                     roughness.landed(over - expected)
                 state = _landed(state, leg, timing, pace)
                 landed.append(leg)
-        elif (touches or leg in stopped) and _collides(state, leg, contacts):
+        elif (touches or leg in stopped) and not leaves and _collides(state, leg, contacts):
             roughness.collided()
             state = _rising_again(state, leg, top, timing)
     return state, landed

@@ -93,7 +93,7 @@ class MissingGround:
         self.places, self.pace, self.back = dict[int, complex](), 1.0, 0j
         self.stops, self._beside = dict[int, tuple[int, complex, complex]](), dict[int, complex]()
         self._names, self._tries, self._cause = names, [0] * len(names), ("", "")
-        self._way, self._backed, self.refuses = 0j, 0.0, False
+        self._way, self._obstacle, self._backed, self.refuses = 0j, 0j, 0.0, False
         self._again, self._since, self._slows = 0, 0.0, ""
 
     @property
@@ -119,6 +119,10 @@ class MissingGround:
     def tries(self, leg: int, foot: complex) -> bool:
         """Return whether a foot, here in the heading frame, is on its way past an obstacle."""
         return leg in self.stops and self.stops[leg][0] <= _STOPS + _SIDES and self.steps_back(leg, foot)
+
+    def leaves(self, way: complex) -> bool:
+        """Return whether a way of a foot, in the heading frame, leads away from an obstacle that has stopped one."""
+        return (way * self._obstacle.conjugate()).real < 0.0
 
     def gives_up(self, leg: int) -> bool:
         """Return whether a foot has found no ground at any place."""
@@ -182,7 +186,7 @@ class MissingGround:
             if self.refuses and self._again < _AGAIN and self._since > _WAITS:
                 self._again, self._way = self._again + 1, 0j
             elif not self.refuses and self._since > _FORGETS:
-                self._again = 0
+                self._again, self._obstacle = 0, 0j
             return
         self.pace, self._slows, turn = 0.0, "", self._way.conjugate()
         edge = min((feet[leg] * turn).real for leg in self.places) - _FIRM
@@ -198,7 +202,8 @@ class MissingGround:
         start, self.places[leg] = start - _BEFORE * way, goal
         self._beside.pop(leg, None)
         if stops >= _STOPS + _SIDES:
-            self.places[leg], self._way, self._again = start, way, _AGAIN
+            self.places[leg], self._way, self._obstacle = start, way, way
+            self._again = max(self._again, _AGAIN - 1)
             self._cause = self._names[leg], "an obstacle stops the foot that is higher than the leg steps"
         elif stops >= _STOPS:
             # Towards the body first: there the leg is steeper.
