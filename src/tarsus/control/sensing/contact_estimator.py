@@ -14,7 +14,7 @@ _ERROR, _WEIGHT, _GREATEST_ERROR = 0.001, 600.0, 0.2
 # Readings after which half of what is known of the errors is forgotten.
 _MEMORY = 3000.0
 # A contact that has not been measured for longer is unknown [s].
-_TIMEOUT = 0.5
+_TIMEOUT = 0.15
 
 
 class ContactEstimator:
