@@ -113,7 +113,7 @@ def test_a_wrong_share_is_refused(share):
 
 def test_unknown_masses_and_servos_are_named():
     with pytest.raises(MissingDataError, match="mass_kg"):
-        CompensatedPlant(Executed(tarsus.load_robot("phoenix")), springs=SPRINGS)
+        CompensatedPlant(Executed(tarsus.load_robot("freenove")), springs=SPRINGS)
     with pytest.raises(MissingDataError, match="servo"):
         CompensatedPlant(Executed(ROBOT.replace(servos=((None,) * 3,) * 6)))
 

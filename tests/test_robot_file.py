@@ -602,12 +602,14 @@ def test_a_saved_file_has_the_layout_of_a_hand_written_one(tmp_path):
         """name = "phoenix"
 
 [body]
+mass_kg = 1.01
 com_mm = [0, -0.0, 1e-12]
 
 [leg]
 coxa_mm = 29
 femur_mm = 76
 tibia_mm = 106
+mass_kg = { coxa = 0.07, femur = 0.02, tibia = 0.09 }
 limits_deg = { femur = [-101, 95], tibia = [-167, 16] }
 servo = "HS-645MG"
 

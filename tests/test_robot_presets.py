@@ -115,11 +115,26 @@ def test_masses_add_up_to_the_total_of_the_source(name, total):
     assert robot.body_mass + robot.link_mass.sum() == pytest.approx(total, abs=1e-9)
 
 
-@pytest.mark.parametrize("name", ["freenove", "mithi", "phantomx-mk2", "phoenix"])
+@pytest.mark.parametrize("name", ["freenove", "mithi"])
 def test_unknown_masses_stay_unknown(name):
     robot = load_robot(name)
     assert robot.body_mass is None
     assert robot.link_mass is None
+
+
+def test_estimated_masses_are_those_of_the_robot_they_are_estimated_from():
+    phoenix, ch3r = load_robot("phoenix"), load_robot("ch3r")
+    np.testing.assert_array_equal(phoenix.link_mass, ch3r.link_mass)
+    assert phoenix.body_mass == ch3r.body_mass
+    # The Mark IV with AX-12As of 54.6 g in place of XL430s of 57.2 g: one in each femur and tibia, six in the body.
+    mark_2, mark_4 = load_robot("phantomx-mk2"), load_robot("phantomx")
+    lighter = load_servo("XL430-W250-T").mass - load_servo("AX-12A").mass
+    assert lighter == pytest.approx(2.6e-3)
+    np.testing.assert_allclose(mark_2.link_mass, mark_4.link_mass - [0, lighter, lighter], atol=5e-4)
+    assert mark_2.body_mass == pytest.approx(float(mark_4.body_mass) - 6 * lighter, abs=1e-3)
+    for robot in (phoenix, mark_2):
+        confidence = {key: source.confidence for source in robot.sources for key in source.of}
+        assert confidence["body.mass_kg"] == confidence["leg.mass_kg"] == "guess"
 
 
 @pytest.mark.parametrize(
