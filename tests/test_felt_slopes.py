@@ -251,3 +251,19 @@ def test_a_robot_stops_on_a_slope_that_is_too_steep_says_so_and_walks_back():
             assert ["slope" in cause for cause in causes] == [True]
     assert places[1] == pytest.approx(places[0], abs=0.005)
     assert places[2] < places[1] - 0.15
+
+
+@pytest.mark.parametrize(("servos", "sensors"), [("catalogue", "ideal"), ("ideal", "hobby")])
+def test_a_robot_that_stands_on_flat_ground_does_not_move(servos, sensors):
+    robot, dt, moved = preset("phantomx"), 0.01, []
+    plant = SimulatedPlant(robot, servos=servos, sensors=sensors, seed=1)
+    controller = RobotController(robot)
+    output = controller.output
+    plant.start(output)
+    for tick in range(700):
+        before = output.angles
+        output = controller.step((0.04 if tick < 200 else 0.0, 0.0, 0.0), dt, plant.step(output, dt))
+        moved.append(np.abs(np.asarray(output.angles) - np.asarray(before)).max())
+    # Feet that lost contact were pushed down, took others off the ground, and so on: 200 degrees a second.
+    assert max(moved[600:]) < math.radians(1.0) * dt
+    assert output.at_rest

@@ -42,6 +42,8 @@ _DEPTH_SHARE = 0.6
 _SLOW_TRAVEL, _FAST_TRAVEL = 0.75, 0.92
 # How soon feet lift off that are not lowered any more [s].
 _LEAVING = 0.1
+# Speed with which feet look for the ground while others hold a robot that stands [m/s]: faster ones push it off them.
+_GENTLE = 0.02
 # How often height, tilt and lost way are looked at [s].
 _SLOW_PERIOD = 0.03 - PHASE_TOLERANCE
 
@@ -179,7 +181,7 @@ class FeltGround:
         """
         due = None if standing else timing.due(state, dt)
         kept, before, self._idle = self._inputs, self._given, self._idle + dt
-        self._given, self._rests = (excluded, standing), not twist.any()
+        self._given, self._rests = (excluded, standing), not (twist.any() or self.missing.refuses)
         if kept is not None and not (due and any(due)) and self._given == before:
             return kept
         dt, self._idle, turn = self._idle, 0.0, cmath.exp(-1j * state.yaw)
@@ -196,9 +198,6 @@ class FeltGround:
         self.contacts.find_open(down, places, centre, self.measured.attitude, dt)
         stands = self._find_missing_ground(state, places, down, centre, footholds, dt)
         self._decide_on_support(places, down, due, centre, dt=dt, swing_time=timing.swing_time)
-        if self._loads.open:
-            # Of a foot whose switch is open, the robot feels no collision: all swing as high as after one.
-            self.body.roughness.collided()
         self.body.roughness.decay(0.0 if standing else dt * timing.frequency)
         lifted = zip(down, stands, due or [False] * len(down), strict=True)
         stays = [on and stand and not lift for on, stand, lift in lifted]
@@ -230,7 +229,7 @@ class FeltGround:
             travel=_SLOW_TRAVEL + (_FAST_TRAVEL - _SLOW_TRAVEL) * far,
             pace=self.support.pace,
             swing_height=float(state.posture.value[SWING_HEIGHT]) + body.roughness.swing_rise,
-            lowering=self._loads.fastest_descent,
+            lowering=_GENTLE if self._rests and self.support.held else self._loads.fastest_descent,
             beside=self.ground.beside,
         )
 
