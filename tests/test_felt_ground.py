@@ -14,13 +14,13 @@ from tarsus.control.sensing.leg_odometry import LegOdometry
 from tarsus.control.sensing.validation import ReadingsValidator
 from tarsus.control.terrain.foot_contacts import FootContacts
 from tarsus.control.terrain.posture_feedback import PostureFeedback
-from tarsus.control.terrain.reach import reachable_heights
 from tarsus.control.terrain.roughness import Roughness
 from tarsus.control.terrain.support import Support, holds
 from tarsus.control.walk.felt_feet import FeltFoot, FeltInputs, GroundUnder
 from tarsus.control.walk.vertical_motion import _swinging
 from tarsus.control.walk_controller import WalkController
 from tarsus.gait.foot_plane import FootPlane, fitted_plane
+from tarsus.gait.stance.reachable_heights import reachable_heights
 from tarsus.kinematics.leg import forward_kinematics
 
 STRIDER = tarsus.load_robot("strider")

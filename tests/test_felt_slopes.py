@@ -10,7 +10,7 @@ from tarsus.control.limitation import LimitationKind
 from tarsus.control.readings import SensorReadings
 from tarsus.control.robot_controller import RobotController
 from tarsus.control.terrain.posture_feedback import PostureFeedback
-from tarsus.control.terrain.reach import Reach, reachable_share
+from tarsus.control.terrain.reach import Reach
 from tarsus.control.terrain.roughness import GroundAdaptation
 from tarsus.control.terrain.slope_limit import SlopeLimit
 from tarsus.control.terrain.slope_stance import SlopeStance
@@ -18,6 +18,7 @@ from tarsus.control.walk_controller import WalkController
 from tarsus.control.walk_state import WalkState
 from tarsus.errors import InputError
 from tarsus.gait.foot_plane import FootPlane
+from tarsus.gait.stance.reachable_heights import reachable_share
 from tarsus.kinematics.stance import default_stance
 from tarsus.simulation import SimulatedPlant, terrain
 

@@ -13,12 +13,13 @@ from tarsus.control.sensing.leg_odometry import LegOdometry
 from tarsus.control.terrain.foot_contacts import FootContacts
 from tarsus.control.terrain.ground_map import GroundMap
 from tarsus.control.terrain.posture_feedback import Levelling, PostureFeedback, PostureRates
-from tarsus.control.terrain.reach import Reach, reachable_share
+from tarsus.control.terrain.reach import Reach
 from tarsus.control.terrain.roughness import GroundAdaptation, Roughness
 from tarsus.control.terrain.slope_limit import SlopeLimit
 from tarsus.control.terrain.slope_stance import SlopeStance
-from tarsus.control.walk.state import GaitState
+from tarsus.control.walk.state import PHASE_TOLERANCE, GaitState
 from tarsus.control.walk.step_timing import StepTiming
+from tarsus.gait.stance.reachable_heights import reachable_share
 from tarsus.gait.stance.stance_geometry import SWING_HEIGHT
 from tarsus.robot.robot import Robot
 
@@ -26,6 +27,9 @@ if TYPE_CHECKING:
     from jaxtyping import Complex, Float
 
 __all__ = ["BodyMotion"]
+
+# How often height, tilt and lost way are looked at [s].
+_PERIOD = 0.06 - PHASE_TOLERANCE
 
 
 class BodyMotion:
@@ -54,6 +58,8 @@ class BodyMotion:
         By how much the body was tilted more than commanded when measured last [rad].
     lowered : float
         How much lower loaded feet are commanded than they stand [m].
+    since : float
+        Time since height, tilt and lost way were looked at [s].
     """
 
     def __init__(
@@ -70,6 +76,12 @@ class BodyMotion:
         self.slope, self.stance = SlopeLimit(adaptation.friction), SlopeStance(robot)
         self.rates, self.drift, self.lowered = PostureRates(0.0, (0.0, 0.0)), 0j, 0.0
         self.tilt: tuple[float, float] | None = None
+        self.since = _PERIOD
+
+    @property
+    def looks(self) -> bool:
+        """Whether height, tilt and lost way are looked at in this tick."""
+        return self.since >= _PERIOD
 
     @property
     def limitations(self) -> list[Limitation]:
@@ -82,7 +94,6 @@ class BodyMotion:
         self,
         state: GaitState,
         measured: ValidReadings,
-        dt: float,
         *,
         feet: tuple[list[complex], list[bool]],
         timing: StepTiming,
@@ -96,8 +107,6 @@ class BodyMotion:
         ----------
         state, measured : GaitState, ValidReadings
             The gait state; the readings.
-        dt : float
-            Time since the last call [s].
         feet : tuple of (list of complex, list of bool)
             Where the feet are, in the heading frame [m], and which should stand.
         timing : StepTiming
@@ -109,7 +118,7 @@ class BodyMotion:
         rest : complex array, shape (legs,)
             Rest footholds in the heading frame [m].
         """
-        (places, down), contacts = feet, self._contacts
+        (places, down), contacts, dt, self.since = feet, self._contacts, self.since, 0.0
         over = (state.ground_height - state.elevation.value).tolist()
         bears = [leg for leg, on in enumerate(down) if on and contacts.touches(leg)]
         self._ground.step([(places[leg], over[leg]) for leg in bears], self.tilt, state, dt, drift=self.drift)

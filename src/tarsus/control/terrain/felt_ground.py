@@ -25,7 +25,7 @@ from tarsus.control.terrain.support import Support
 from tarsus.control.transition.foothold_transfer import FootholdTransfer
 from tarsus.control.walk.felt_feet import FeltFoot, FeltInputs, GroundUnder
 from tarsus.control.walk.ground_pose import body_posture
-from tarsus.control.walk.state import PHASE_TOLERANCE, GaitState
+from tarsus.control.walk.state import GaitState
 from tarsus.control.walk.step_timing import StepTiming
 from tarsus.gait.stance.stance_geometry import SWING_HEIGHT
 from tarsus.kinematics.mass import centre_of_mass
@@ -44,8 +44,6 @@ _SLOW_TRAVEL, _FAST_TRAVEL = 0.75, 0.92
 _LEAVING = 0.1
 # Speed with which feet look for the ground while others hold a robot that stands [m/s]: faster ones push it off them.
 _GENTLE = 0.02
-# How often height, tilt and lost way are looked at [s].
-_SLOW_PERIOD = 0.03 - PHASE_TOLERANCE
 
 
 class FeltGround:
@@ -99,7 +97,7 @@ class FeltGround:
         # What feet are given while all is as planned; ticks and times since contacts and support were looked at.
         self._inputs: FeltInputs | None = None
         self._given, self._ticks, self._unread, self._idle = (list[int](), True), 0, 0.0, 0.0
-        self._since, self._rests = _SLOW_PERIOD, True
+        self._rests = True
 
     def sense(
         self,
@@ -133,8 +131,8 @@ class FeltGround:
                 return state, []
             heights = np.array(state.heights(float(state.posture.value[SWING_HEIGHT])))
             state = state._replace(ground_height=heights, felt=[FeltFoot()] * len(heights))
-        self._since, self._unread, self._ticks = self._since + dt, self._unread + dt, self._ticks + 1
-        kept = self._inputs is not None and self._since < _SLOW_PERIOD and not stopped
+        self.body.since, self._unread, self._ticks = self.body.since + dt, self._unread + dt, self._ticks + 1
+        kept = self._inputs is not None and not (stopped or self.body.looks)
         if kept and self.contacts.as_planned(measured, down):
             return state, []
         if valid.attitude is not None:
@@ -181,18 +179,17 @@ class FeltGround:
         """
         due = None if standing else timing.due(state, dt)
         kept, before, self._idle = self._inputs, self._given, self._idle + dt
-        self._given, self._rests = (excluded, standing), not (twist.any() or self.missing.refuses)
+        self._given, self._rests = (excluded, standing), not (any(twist.tolist()) or self.missing.refuses)
         if kept is not None and not (due and any(due)) and self._given == before:
             return kept
         dt, self._idle, turn = self._idle, 0.0, cmath.exp(-1j * state.yaw)
         steps = [leg not in excluded for leg in range(len(state.foot))]
         down = [on and step for on, step in zip(state.down.tolist(), steps, strict=True)]
         places = [(foot - state.origin) * turn for foot in state.foot.tolist()]
-        if self._since >= _SLOW_PERIOD:
-            time, rest, pace = self._since, footholds.rest, self.support.pace
+        if self.body.looks:
+            rest, pace = footholds.rest, self.support.pace
             feet = places, [on and leg not in self.missing.stops for leg, on in enumerate(down)]
-            self.body.step(state, self.measured, time, feet=feet, timing=timing, twist=twist, pace=pace, rest=rest)
-            self._since = 0.0
+            self.body.step(state, self.measured, feet=feet, timing=timing, twist=twist, pace=pace, rest=rest)
             self.ground.choose(state, self.body.reach, footholds)
         centre = self._centre + complex(*body_posture(state)[:2].tolist())
         self.contacts.find_open(down, places, centre, self.measured.attitude, dt)
@@ -282,7 +279,7 @@ class FeltGround:
         """Decide whether feet may lift off, and at which pace the walk goes on; None is due while the robot stands."""
         bears = [self.contacts.supports(leg) and leg not in self.missing.places for leg in range(len(down))]
         legs = [leg for leg, on in enumerate(down) if on and not (due and due[leg]) and bears[leg]]
-        stays = self.support.holds(legs, places, centre, anew=not self._since)
+        stays = self.support.holds(legs, places, centre, anew=not self.body.since)
         lifts, fallen = any(due or ()), self.condition.fallen
         held = due is None or (stays and not (lifts and (self.body.slope.refuses or self.missing.refuses)))
         self.support.step(stays=held and not fallen, lifts=lifts and not fallen, most=self.missing.pace, **time)

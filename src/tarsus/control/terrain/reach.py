@@ -8,17 +8,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tarsus.gait.foot_plane import FootPlane
-from tarsus.gait.stance.stance_geometry import SWING_HEIGHT, StanceGeometry, joint_margin, rotation_rows
+from tarsus.gait.stance.reachable_heights import reachable_heights
+from tarsus.gait.stance.stance_geometry import SWING_HEIGHT
 from tarsus.robot.robot import Robot
 
 if TYPE_CHECKING:
     from jaxtyping import Complex, Float
 
-__all__ = ["Reach", "reachable_heights", "reachable_share"]
+__all__ = ["Reach"]
 
-# Heights that are tried about the level ground, over the length of femur and tibia.
-_TRIED = np.linspace(-0.8, 0.8, 121)
-_LEVEL = len(_TRIED) // 2
 # Change of a stroke that changes the heights that a leg reaches [m]; turning counts at this distance [m].
 _STROKE_STEP, _TURNING_ARM = 0.01, 0.2
 # A foot this close to its least height hangs [m], and how much lower the ground under it is then expected [m].
@@ -117,53 +115,3 @@ class Reach:
             if seeks and over[leg] < self.lowest[leg] + _HANGING:
                 known[leg] = self.lowest[leg] - _LOWER
         return [height - plane.height for height in known]
-
-
-def reachable_share(rises: Sequence[float], lowest: Sequence[float], highest: Sequence[float]) -> float:
-    """Return how much of a slope legs reach, 0 to 1: the rest of it the body has to follow.
-
-    Parameters
-    ----------
-    rises : sequence of float
-        Height of the slope at each foot, over that at the body [m].
-    lowest, highest : sequence of float
-        Least and greatest height of each foot [m].
-    """
-    if max(rises) - min(rises) <= min(highest) - max(lowest):
-        return 1.0
-    uphill, downhill = zip(rises, highest, strict=True), list(zip(rises, lowest, strict=True))
-    pairs = ((up - down, max(high - low, 0.0)) for up, high in uphill for down, low in downhill)
-    return min([1.0, *(room / rise for rise, room in pairs if rise > room)])
-
-
-def reachable_heights(
-    robot: Robot,
-    posture: Float[np.ndarray, "_"],
-    rest: Complex[np.ndarray, "legs"],
-    strokes: Complex[np.ndarray, "legs"],
-) -> tuple[list[float], list[float]]:
-    """Return the least and the greatest height of each foot in the heading frame [m].
-
-    Parameters
-    ----------
-    robot : Robot
-        A single robot.
-    posture : array, shape (7,) or more
-        Posture of the body.
-    rest : complex array, shape (legs,)
-        Rest footholds in the heading frame [m].
-    strokes : complex array, shape (legs,)
-        Stroke of each foot about its rest foothold [m].
-    """
-    g = robot.geometry
-    levels = _TRIED * float(np.max(g.femur + g.tibia))
-    stance = StanceGeometry(rest, np.array(rotation_rows(*posture[3:SWING_HEIGHT].tolist())), posture[:3], 0.0)
-    places = rest + np.array([-0.5, 0.0, 0.5])[:, None, None] * strokes
-    solution = stance.solve(robot, places.real, places.imag, levels[:, None])
-    beyond = np.asarray(~(joint_margin(g, solution) >= 0).all(axis=0))
-    ends = []
-    for sign, way in ((-1, beyond[_LEVEL::-1]), (1, beyond[_LEVEL:])):
-        # The last level before the first one that is out of reach.
-        steps = np.where(way.any(axis=0), way.argmax(axis=0) - 1, _LEVEL)
-        ends.append(levels[_LEVEL + sign * np.maximum(steps, 0)].tolist())
-    return ends[0], ends[1]
