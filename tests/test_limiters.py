@@ -11,6 +11,7 @@ from tarsus.control.limitation import Limitation, LimitationKind
 from tarsus.control.limiter.pending_transition import PendingTransitionLimiter
 from tarsus.control.limiter.protocol import TwistGrant, TwistRequest, granted_twist
 from tarsus.control.limiter.reference_governor import GovernorLimiter
+from tarsus.control.readings import SensorReadings
 from tarsus.control.tick.limit import twist_limiters
 from tarsus.control.walk_controller import WalkController
 
@@ -78,8 +79,36 @@ def test_without_feedback_and_transitions_only_workspace_and_governor_limit():
 def test_the_governor_keeps_a_target_that_another_limiter_set():
     controller = walking((0.1, 0.0, 0.0))
     kept = TwistGrant(target=np.array([0.0, 0.0, 0.1]))
-    governor = GovernorLimiter(controller._walk.transitions)
+    governor = GovernorLimiter(controller._walk.transitions, lambda: True)
     assert governor.limit(request(controller, (0.1, 0.0, 0.0)), kept) is kept
+
+
+def examined_targets(controller, monkeypatch):
+    """Return a list that grows with each target that a controller's governor examines."""
+    found, governor = [], controller._twist_limiters[-1]
+    governed = governor._governed
+    monkeypatch.setattr(governor, "_governed", lambda *given: found.append(given) or governed(*given))
+    return found
+
+
+def test_a_target_that_is_met_is_examined_again_only_when_the_stance_changes(monkeypatch):
+    sparing, thorough = (WalkController(load_robot("strider"), Gait.named("ripple")) for _ in range(2))
+    examined = examined_targets(sparing, monkeypatch)
+    for tick in range(400):
+        command = ((0.04, 0.02, 0.1), (0.4, 0.0, 0.0), (0.0, 0.0, 0.5), (0.0, 0.0, 0.0))[tick // 100]
+        thorough._twist_limiters[-1]._command = []
+        np.testing.assert_array_equal(sparing.step(command, DT), thorough.step(command, DT))
+    assert len(examined) < 200
+
+
+def test_a_walk_that_feels_the_ground_examines_targets_as_often_as_it_looks_at_it(monkeypatch):
+    controller = WalkController(load_robot("strider"), Gait.named("tripod"))
+    examined, targets = examined_targets(controller, monkeypatch), set()
+    for _ in range(100):
+        readings = SensorReadings(contacts=controller.contacts, attitude=(0.0, 0.0))
+        controller.step((1.0, 0.0, 0.0), 0.01, readings)
+        targets.add(tuple(controller._tick.twist.tolist()))
+    assert 3 < len(targets) <= len(examined) < 50
 
 
 class Waiting:

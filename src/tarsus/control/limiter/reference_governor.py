@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import cmath
+from collections.abc import Callable
+from operator import is_
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -11,6 +14,9 @@ from tarsus.control.transition.executor import TransitionExecutor
 from tarsus.control.walk.reference_governor import governed_twist
 from tarsus.control.walk.state import GaitState
 from tarsus.gait.foot_polygons import NORMALS_CONJUGATE
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
 __all__ = ["GovernorLimiter"]
 
@@ -25,30 +31,45 @@ class GovernorLimiter:
     ----------
     transitions : TransitionExecutor
         The stance and its transitions.
+    looks : callable
+        Returns whether a walk that feels the ground looks at it in this tick.
     """
 
-    def __init__(self, transitions: TransitionExecutor) -> None:
-        self._transitions = transitions
+    def __init__(self, transitions: TransitionExecutor, looks: Callable[[], bool]) -> None:
+        self._transitions, self._looks = transitions, looks
+        # The target that was found last, for which command and stance, and whether it is the command.
+        self._target: Float[np.ndarray, "3"] = np.zeros(3)
+        self._command, self._stance, self._met = list[float](), tuple[Any, ...](), False
 
     def limit(self, request: TwistRequest, grant: TwistGrant) -> TwistGrant:
         """Return the grant with the twist to follow."""
         if grant.target is not None:
             return grant
-        transitions, command = self._transitions, grant.scaled(request.twist)
+        state, transitions, command = request.state, self._transitions, grant.scaled(request.twist)
+        stance = (state.down, transitions.timing, transitions.phase, transitions.footholds.bounds)
+        # While the same feet stand, what was feasible stays so. Feet that follow the ground stray from what was
+        # predicted: with these, each target is examined whenever the ground is looked at.
+        stays = self._met and all(map(is_, stance, self._stance)) if state.felt is None else not self._looks()
+        if command != self._command or not stays:
+            self._command, self._stance, self._target = command, stance, self._governed(request, command)
+            self._met = self._target.tolist() == command
+        return TwistGrant(grant.fraction, self._target, grant.limitations)
+
+    def _governed(self, request: TwistRequest, command: list[float]) -> Float[np.ndarray, "3"]:
+        """Return the twist to follow."""
         # In steady walking nothing changes; before, feet may be put down where the target leaves them no margin.
         if command == request.target.tolist() and self._is_steady(request, command):
-            return TwistGrant(grant.fraction, request.target, grant.limitations)
-        begins, ends = transitions.stance_intervals(request.state)
-        target = governed_twist(
+            return request.target
+        begins, ends = self._transitions.stance_intervals(request.state)
+        return governed_twist(
             request.state,
             request.target,
             np.array(command),
             begins=begins,
             ends=ends,
-            bounds=transitions.bounds,
-            bandwidth=transitions.bandwidth,
+            bounds=self._transitions.bounds,
+            bandwidth=self._transitions.bandwidth,
         )
-        return TwistGrant(grant.fraction, target, grant.limitations)
 
     def _is_steady(self, request: TwistRequest, twist: list[float]) -> bool:
         """Return whether the robot walks at the twist and at its cycle time."""
@@ -59,11 +80,6 @@ class GovernorLimiter:
 
     def _is_behind(self, state: GaitState) -> bool:
         """Return whether a foot that stands is outside its polygon: one that has landed short of its foothold."""
-        footholds, turn = self._transitions.footholds, cmath.exp(-1j * state.yaw)
-        places = [(foot - state.origin) * turn for foot in state.foot.tolist()]
-        feet = zip(state.down.tolist(), places, footholds.rest.tolist(), footholds.standing_radii, strict=True)
-        far = [leg for leg, (down, at, rest, radius) in enumerate(feet) if down and abs(at - rest) > radius]
-        if not far:
-            return False
-        along = (NORMALS_CONJUGATE * np.array(places)[far, None]).real
-        return bool((along > self._transitions.bounds[far]).any())
+        places = (state.foot - state.origin) * cmath.exp(-1j * state.yaw)
+        along = (NORMALS_CONJUGATE * places[:, None]).real
+        return bool((along > self._transitions.bounds)[state.down].any())

@@ -29,7 +29,7 @@ def twist_limiters(walk: WalkComponents) -> list[TwistLimiter]:
         walk.ground.missing,
         WorkspaceLimiter(walk.robot.leg_names, walk.transitions, lambda: (roughness.cycle_time, roughness.speed)),
         PendingTransitionLimiter(walk.transitions),
-        GovernorLimiter(walk.transitions),
+        GovernorLimiter(walk.transitions, lambda: walk.ground.body.looks),
     ]
 
 

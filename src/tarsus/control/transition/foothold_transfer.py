@@ -40,8 +40,6 @@ class FootholdTransfer:
         Distance from its rest foothold at which each foot may be put down next, along each side's normal [m].
     placement_radii : list of float
         The least of these distances of each foot [m].
-    standing_radii : list of float
-        Distance from its rest foothold within which each standing foot is inside its polygon [m].
     transferred : array of bool, shape (legs,)
         Which feet stand at their new rest footholds.
     """
@@ -63,7 +61,6 @@ class FootholdTransfer:
         along = (NORMALS_CONJUGATE * self._level_rest[:, None]).real
         self.placement_bounds: Float[np.ndarray, "legs 16"] = np.maximum(landing - along, 0.0)
         self.placement_radii: list[float] = self.placement_bounds.min(axis=1).tolist()
-        self.standing_radii: list[float] = (self.bounds - along).min(axis=1).tolist()
         self.rest = self._level_rest + self._shift
 
     def shift(self, shift: Complex[np.ndarray, "legs"]) -> None:
