@@ -59,6 +59,8 @@ def as_items(value: Any, *shapes: tuple[int, ...]) -> Sequence[Any] | None:
         Shapes accepted of an array; a list or tuple needs the length of the first one, whatever its items are.
     """
     try:
+        if type(value) is np.ndarray:  # the common case
+            return value.tolist() if value.shape in shapes else None
         if issubclass(type(value), list | tuple):
             # Indexing bounds the work for a subclass whose iterator disagrees with its length.
             return [value[i] for i in range(shapes[0][0])] if len(value) == shapes[0][0] else None

@@ -135,12 +135,13 @@ class ReadingsValidator:
                     channel.reset()
                 else:
                     accepted[name] = channel.read(value, rejected)
-            times: Any = (readings.age,) * 2
             if ages:
                 given = (name for name in ("contacts", "forces") if getattr(readings, name) is not None)
                 times = ages.get(next(given, "joint_angles"), 0.0), ages.get("ground", 0.0)
-            # An age that is no number is none.
-            accepted["contact_age"], accepted["ground_age"] = [max(0.0, as_number(time)) for time in times]
+                # An age that is no number is none.
+                accepted["contact_age"], accepted["ground_age"] = [max(0.0, as_number(time)) for time in times]
+            else:
+                accepted["contact_age"] = accepted["ground_age"] = max(0.0, as_number(readings.age))
             valid = ValidReadings(**accepted, rejected=tuple(rejected))
         for reason in rejected:
             self.counts[reason] = self.counts.get(reason, 0) + 1

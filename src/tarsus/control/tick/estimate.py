@@ -34,4 +34,4 @@ def estimated(walk: WalkComponents, tick: TickState, readings: SensorReadings | 
         landed = np.zeros(len(state.down), dtype=bool)
         landed[legs] = True
         walk.transitions.footholds.feet_landed(landed)
-    return tick._replace(gait=state)
+    return tick if state is tick.gait else tick._replace(gait=state)

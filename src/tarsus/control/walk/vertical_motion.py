@@ -75,12 +75,13 @@ def moved_vertically(state: GaitState, inputs: StepInputs, dt: float) -> GaitSta
             feet[leg] = foot._replace(speed=0.0, acceleration=0.0)
         elif down:
             # On the ground it moves by its turn about the body, its drift and its slide.
-            place, before, slide = places[leg], foot.speed, foot.slide
+            before, _, top, _, slide, _ = foot
+            place = places[leg]
             wanted = -((place - origin) * across).real
             if stands:
                 place += (turning * (height - body) - drift) * dt
                 speed = before + min(max(wanted - before, -step), step)
-                heights[leg] = height + (before + speed) / 2 * dt
+                heights[leg], top = height + (before + speed) / 2 * dt, math.nan
             else:
                 assert under is not None  # known of each foot that has lost its contact
                 heights[leg], place, speed = _searching(height, foot, place, wanted, under, felt, dt)
@@ -89,8 +90,7 @@ def moved_vertically(state: GaitState, inputs: StepInputs, dt: float) -> GaitSta
                 place += slide * (1 + left) / 2 * dt
                 slide *= left
             places[leg] = place
-            top = math.nan if felt.stands[leg] else foot.top
-            feet[leg] = FeltFoot(speed, top=top, slide=slide) if speed or slide or top > -math.inf else _STILL
+            feet[leg] = FeltFoot(speed, 0.0, top, 0.0, slide) if speed or slide or top > -math.inf else _STILL
         else:
             assert under is not None  # known of each foot in the air
             swing_time = (swing - delays[leg]) / inputs.frequency if inputs.frequency else math.inf
