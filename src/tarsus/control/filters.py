@@ -80,10 +80,10 @@ class CriticallyDamped(NamedTuple):
         if self.value is target:
             return self
         after = self.step(target, dt, bandwidth=bandwidth)
-        for off in (after.rate, after.value - target):
-            if max(map(abs, off.tolist())) > _SETTLED:
-                return after
-        return CriticallyDamped.still(target)
+        if max(map(abs, after.rate.tolist())) > _SETTLED:
+            return after
+        off = max(map(abs, (after.value - target).tolist()))
+        return after if off > _SETTLED else CriticallyDamped.still(target)
 
     def step_with_integral(
         self, target: Float[np.ndarray, "n"], dt: float, *, bandwidth: float

@@ -24,6 +24,8 @@ _TRIES, _USED = 5, 0.98
 _STOPPING_ROOM = 0.3
 # A joint this close to its target has caught up [rad].
 _CAUGHT_UP = 1e-9
+# Upward and downward.
+_SIGNS = np.array([1.0, -1.0])[:, None, None]
 # Distance that a joint keeps from its limits where it catches up [rad].
 _SPARE = 1e-3
 # How far a joint may be behind before the walk becomes slower, and before it stands still [rad].
@@ -64,9 +66,10 @@ class TimeScaling:
     ) -> None:
         self.angles = angles
         self.rate = 1.0
-        self._speed, self._acceleration, self._limits = speed, acceleration, limits
+        self._acceleration = acceleration
         self._top_speed = _USED * speed
         self._limits_with_room = limits[..., 0] + _STOPPING_ROOM, limits[..., 1] - _STOPPING_ROOM
+        self._ends: Float[np.ndarray, "2 legs 3"] = np.moveaxis(limits, -1, 0)[::-1].copy()
         # How far the joints are from these at least [rad], and the greatest of their top speeds [rad/s].
         self._room, self._fastest = 0.0, float(self._top_speed.max())
         self._speeds = np.zeros_like(angles)
@@ -137,7 +140,7 @@ class TimeScaling:
             if works and self._room <= 0.0:
                 low, high = self._limits_with_room
                 self._room = float(np.minimum(target - low, high - target).min())
-            if works and self._room > 0.0:
+            if works and (self._room > 0.0 or self._can_stop(speeds, dt)):
                 self.angles = self._target = target
                 self._speeds, self._last_dt = speeds, dt
                 return after
@@ -146,12 +149,8 @@ class TimeScaling:
         # The speed of the target, and the one from which a joint can still stop where it catches up.
         catching = np.minimum(np.abs(behind) / dt, np.sqrt(hardest * np.abs(behind)))
         speeds = (target - self._target) / dt + np.copysign(catching, behind)
-        softest = hardest / 2
-        for sign, limit in ((1.0, self._limits[..., 1]), (-1.0, self._limits[..., 0])):
-            # A joint stops before its limit.
-            left = np.maximum(sign * (limit - self.angles) - _SPARE, 0.0)
-            stopping = np.sqrt((softest * dt) ** 2 + 2 * softest * left) - softest * dt
-            speeds = sign * np.minimum(sign * speeds, stopping)
+        up, down = self._stopping_speeds(dt)
+        speeds = np.maximum(np.minimum(speeds, up), -down)
         reach = hardest * between
         speeds = np.clip(speeds, self._speeds - reach, self._speeds + reach)
         speeds = np.clip(speeds, -self._top_speed, self._top_speed)
@@ -162,6 +161,17 @@ class TimeScaling:
         self.angles, self._target = target if caught_up else angles, target
         self._speeds, self._last_dt = speeds, dt
         return after
+
+    def _stopping_speeds(self, dt: float) -> Float[np.ndarray, "2 legs 3"]:
+        """Return the greatest speeds upward and downward from which the joints stop before their limits."""
+        softest = _USED * self._acceleration / 2
+        left = np.maximum(_SIGNS * (self._ends - self.angles) - _SPARE, 0.0)
+        speeds: np.ndarray = np.sqrt((softest * dt) ** 2 + 2 * softest * left) - softest * dt
+        return speeds
+
+    def _can_stop(self, speeds: Float[np.ndarray, "legs 3"], dt: float) -> bool:
+        """Return whether the joints stop before their limits from these speeds."""
+        return not np.count_nonzero(_SIGNS * speeds > self._stopping_speeds(dt))
 
     def _demand(
         self, angles: Float[np.ndarray, "legs 3"], dt: float, between: float
