@@ -23,6 +23,7 @@ PAGES = (
         ROOT / "docs" / name
         for name in ("commands.md", "loads.md", "walking-live.md", "firmware.md", "calibration.md", "first-hour.md")
     ),
+    ROOT / "docs" / "other-simulators.md",
 )
 
 
