@@ -91,8 +91,9 @@ def check(sequence, start, *, dt=_DT):
     assert underside.min() > -2e-6
 
     at_rest = np.array([s.belly for s in samples])
+    at_time = [id(sequence.stage_at(t)[0]) for t in times]
     for stage in sequence.stages:
-        part = np.array([sequence.stage_at(t)[0] is stage for t in times])
+        part = np.array(at_time) == id(stage)
         if not part.any():
             continue
         supports = np.broadcast_to(stage.supports, (part.sum(), *stage.supports.shape))
