@@ -304,6 +304,21 @@ def test_a_foot_whose_switch_is_open_lifts_the_body_and_one_over_a_hole_does_not
     assert contacts.is_open(0) is opens
 
 
+def test_a_foot_that_lifts_the_body_far_is_found_sooner_to_have_an_open_switch():
+    def open_after(pitch):
+        contacts = FootContacts(6)
+        contacts.step([True] * 6, [True] * 6, 0.02)
+        contacts.find_open([True] * 6, FEET, 0j, (0.0, 0.0), 0.02)
+        for tick in range(100):
+            contacts.step([False, tick % 4 > 1, *[True] * 4], [True] * 6, 0.02)
+            contacts.find_open([True] * 6, FEET, 0j, (0.0, pitch), 0.02)
+            if contacts.is_open(0):
+                return tick
+        return 100
+
+    assert open_after(-0.3) < 0.5 * open_after(-1.05 * 0.003 / FEET[0].real) < 50
+
+
 def test_a_foot_that_lifts_off_soon_is_not_lowered_where_others_take_its_load():
     def stands(leaving, ticks, without=5, *, rests=False):
         contacts = FootContacts(2)
@@ -346,10 +361,11 @@ def test_a_foot_that_has_barely_touched_is_no_support():
 
 
 def test_a_switch_that_stays_open_is_told_by_a_robot_that_does_not_tip():
-    def suspected(tilts, readings, down=(False, True) * 3):
+    def suspected(tilts, readings, down=(False, True) * 3, *, shaking=False):
         contacts = FootContacts(6)
-        for tilt in tilts:
-            contacts.step(readings, down, 0.01)
+        for tick, tilt in enumerate(tilts):
+            shaken = shaking and tick % 8 > 3
+            contacts.step([on and not (shaken and leg == 5) for leg, on in enumerate(readings)], down, 0.01)
             contacts._balance(down, FEET, 0j, tilt, 0.01)
         return [leg for leg in range(6) if contacts.is_open(leg)]
 
@@ -357,6 +373,8 @@ def test_a_switch_that_stays_open_is_told_by_a_robot_that_does_not_tip():
     for still in (standing, noise):
         assert suspected(still, [False, False, False, True, False, True]) == [1]
         assert suspected(still, [False, True, False, True, False, True]) == []
+        # A foot of the others that loses contact for a moment tells nothing, and makes it start anew no more.
+        assert suspected(still, [False, False, False, True, False, True], shaking=True) == [1]
         # A robot in the air has no contact at all, and one that stands on its other feet tells nothing of this one.
         assert suspected(still, [False] * 6) == []
         assert suspected(still, [True, False, True, True, True, True], [True] * 6) == []

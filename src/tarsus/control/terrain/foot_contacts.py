@@ -24,8 +24,9 @@ _SEARCH = 1.5
 _SETTLED = 0.05
 # By how much a foot lifts the body whose switch stays open [m].
 _LIFTS = 0.003
-# How long other feet lose contact, while a foot that should stand has none, until its switch is taken to be open [s].
-_OPEN_AFTER = 0.4
+# How long other feet lose contact, while a foot that should stand has none, until its switch is taken to be open [s]; a
+# foot that lifts the body more counts for more, up to this factor.
+_OPEN_AFTER, _MOST_LIFT = 0.4, 4.0
 # How long feet that do not hold the robot bear it, until another one does [s], and how far it sinks there if not [m].
 _UNHELD, _TIPS = 0.15, 0.012
 # Fewer feet bear no robot, unless something else holds it.
@@ -135,8 +136,8 @@ class FootContacts:
             if self._without[leg] <= 0.0:
                 self._tilts[leg] = tilt or (0.0, 0.0)
             elif on and shaken and self._without[leg] > _GRACE:
-                lifts = tilt is None or _sunk(places[leg], tilt, self._tilts[leg]) < -_LIFTS
-                self._evidence[leg] += dt * lifts
+                lifts = 1.0 if tilt is None else -_sunk(places[leg], tilt, self._tilts[leg]) / _LIFTS
+                self._evidence[leg] += dt * min(lifts, _MOST_LIFT) * (lifts >= 1.0)
         if tilt is not None:
             self._balance(down, places, centre, tilt, dt)
 
@@ -146,8 +147,9 @@ class FootContacts:
         """Find a switch that stays open: a robot that does not tip stands on a foot that it does not feel."""
         missing = [leg for leg, on in enumerate(down) if on and not self.standing[leg]]
         standing = [places[leg] for leg, on in enumerate(down) if on and leg not in missing]
-        if not missing or len(standing) < _FEWEST or holds(standing, centre):
+        if not missing or holds(standing, centre):
             self._unheld = 0.0
+        if not missing or len(standing) < _FEWEST or holds(standing, centre):
             return
         longest = max(missing, key=self._without.__getitem__)
         place = places[longest]
