@@ -26,12 +26,24 @@ from tarsus.simulation.terrain.surface import surface
 
 PAGE = Path(__file__).parent / "ground.md"
 ROBOTS = ("strider", "phantomx", "makeyourpet")
-# Where obstacles begin, half the width of a post, and what is walked ahead and back [m].
-EDGES, HALF, AHEAD, BACK = (0.5, 0.53, 0.56), 0.02, 0.9, 0.4
-# Shares of the top speed; heights of a wall that no robot climbs, and of a post in the way of a middle leg [m].
-PACES, WALL, POST = (0.25, 0.5), 0.15, 0.08
+# Where obstacles begin, and what is walked ahead and back [m].
+EDGES, AHEAD, BACK = (0.5, 0.53, 0.56), 0.9, 0.4
+# Shares of the top speed.
+PACES = (0.25, 0.5)
+# Half length and width, height [m], and yaw [rad]: walls that no robot climbs, and a post in the way of a middle leg.
+OBSTACLES = {
+    "wall": ((0.5, 3.0, 0.15), 0.0),
+    "oblique wall": ((0.5, 3.0, 0.15), math.radians(30)),
+    "post": ((0.02, 0.02, 0.08), 0.0),
+}
 # A leg that has not touched the obstacle for longer has let go of it [s].
 _GONE = 0.03
+# A swing is stopped once its foot is so much farther behind its command than as its leg touched the obstacle [m].
+_BEHIND = 0.005
+# Length of a tick [s].
+DT = 0.01
+# Time until joints follow their commands, in ticks.
+_LAG = 2
 SENSORS = {
     "switches": SensorSuite(name="switches", contacts=FootSwitch(), attitude=Sensor()),
     "switches and joint angles": SensorSuite(
@@ -41,32 +53,45 @@ SENSORS = {
 
 
 @dataclass(frozen=True)
-class Post:
-    """A square post on level ground, in the way of one leg."""
+class Box:
+    """A box on level ground: middle of its near face, its direction, half its length and width, its height."""
 
     x: float
     y: float
+    size: tuple[float, float, float]
+    yaw: float = 0.0
     friction: float = 0.8
+
+    def ahead(self, x: Any, y: Any) -> Any:
+        """Return how far a place is ahead of the near face, and to its left, as a complex number [m]."""
+        return (np.asarray(x) - self.x + 1j * (np.asarray(y) - self.y)) * np.exp(-1j * self.yaw)
 
     def height(self, x: Any, y: Any) -> np.ndarray:
         """Return the height of the ground [m]."""
-        away = np.maximum(np.abs(np.asarray(x) - self.x), np.abs(np.asarray(y) - self.y))
-        return np.where(away < HALF, POST, 0.0)
+        place, (length, width, height) = self.ahead(x, y), self.size
+        inside = (np.abs(place.real - length) < length) & (np.abs(place.imag) < width)
+        return np.where(inside, height, 0.0)
 
     def add_to(self, spec: Any) -> None:
         """Add the ground to a model."""
         terrain.Flat(friction=self.friction).add_to(spec)
-        size, pos = (HALF, HALF, POST / 2), (self.x, self.y, POST / 2)
-        kind = mujoco.mjtGeom.mjGEOM_BOX
-        spec.worldbody.add_geom(name="ground 1", type=kind, size=size, pos=pos, **surface(self.friction))
+        length, width, height = self.size
+        middle = complex(self.x, self.y) + length * np.exp(1j * self.yaw)
+        box = {
+            "type": mujoco.mjtGeom.mjGEOM_BOX,
+            "size": (length, width, height / 2),
+            "pos": (middle.real, middle.imag, height / 2),
+            "quat": (math.cos(self.yaw / 2), 0.0, 0.0, math.sin(self.yaw / 2)),
+        }
+        spec.worldbody.add_geom(name="ground 1", **box, **surface(self.friction))
 
 
 class Job(NamedTuple):
-    """One walk: robot, sensors, whether to a post, where it is [m], share of the top speed."""
+    """One walk: robot, sensors, obstacle, where it is [m], share of the top speed."""
 
     robot: str
     sensors: str
-    post: bool
+    obstacle: str
     edge: float
     pace: float
 
@@ -79,26 +104,77 @@ class Outcome(NamedTuple):
     noticed: list[float]
 
 
+class Touches:
+    """Finds swings that are stopped by an obstacle, and how soon that is noticed: NaN where it is not.
+
+    A swing is stopped once its foot has fallen 5 mm behind its command since its leg touched the obstacle's side. It is
+    noticed as the foot rises again, tries again, or is put down; before that, at once.
+    """
+
+    def __init__(self, robot: tarsus.Robot, plant: SimulatedPlant, ground: Box) -> None:
+        self._robot, self._plant, self._ground = robot, plant, ground
+        self.reacted, self.noticed, self._done = set[int](), list[float](), set[int]()
+        self._touched, self._stopped, self._behind = dict[int, float](), dict[int, float](), dict[int, float]()
+        self._commanded = list[Any]()
+
+    def step(self, output: tarsus.ControlOutput) -> None:
+        """Take in a tick of the plant; the output is that which it has followed."""
+        now = self._plant.mj_data.time
+        self._commanded.append(self._ahead(output.angles))
+        behind = self._commanded[-1 - _LAG :][0] - self._ahead(self._plant.state.joint_angles)
+        for leg in self._legs_at_side():
+            self._touched[leg] = now
+            if not output.contacts[leg] and behind[leg] - self._behind.setdefault(leg, behind[leg]) > _BEHIND:
+                self._stopped.setdefault(leg, now)
+
+    def react(self, output: tarsus.ControlOutput) -> None:
+        """Take in what the controller has made of the tick."""
+        now = self._plant.mj_data.time
+        for leg in list(self._behind):
+            ends = output.contacts[leg] or now - self._touched[leg] > _GONE
+            if (leg in self.reacted or (ends and leg in self._stopped)) and leg not in self._done:
+                self.noticed.append(now - self._stopped.get(leg, now) if leg in self.reacted else math.nan)
+                self._done.add(leg)
+            if ends:
+                self._done.discard(leg)
+                del self._behind[leg]
+                self._stopped.pop(leg, None)
+        self.reacted.clear()
+
+    def _ahead(self, angles: Any) -> Any:
+        feet = np.asarray(self._plant.state.body @ tarsus.forward_kinematics(self._robot, angles)[:, 3])
+        return self._ground.ahead(feet[:, 0], feet[:, 1]).real
+
+    def _legs_at_side(self) -> set[int]:
+        data, model, found = self._plant.mj_data, self._plant.mj_model, set[int]()
+        for number, pair in enumerate(data.contact.geom.tolist()):
+            names = [model.geom(geom).name for geom in pair]
+            if "ground 1" in names and abs(float(data.contact.frame[number, 2])) < 0.7:
+                legs = enumerate(self._robot.leg_names)
+                found |= {leg for leg, name in legs if any(part.startswith(name) for part in names)}
+        return found
+
+
 def walk(job: Job) -> Outcome:
     """Return what became of a walk."""
     robot = tarsus.load_robot(job.robot)
     walker = tarsus.WalkController(robot)
     speed, feet = job.pace * walker.top_speed((1, 0, 0)), walker.feet
-    middle = max(range(robot.legs), key=lambda leg: feet[leg, 1])
-    ground = Post(job.edge, float(feet[middle, 1])) if job.post else terrain.Step(rise=WALL, start=job.edge)
+    size, yaw = OBSTACLES[job.obstacle]
+    ground = Box(job.edge, float(feet[:, 1].max()) if job.obstacle == "post" else 0.0, size, yaw)
     plant = SimulatedPlant(robot, terrain=ground, sensors=SENSORS[job.sensors], servos="catalogue")
-    controller = tarsus.RobotController(robot)
-    output, dt, tilt, furthest, named = controller.output, 0.01, 0.0, 0.0, False
-    met, touched, noticed, reacted = dict[int, float](), dict[int, float](), list[float](), set[int]()
+    controller, touches = tarsus.RobotController(robot), Touches(robot, plant, ground)
+    output, dt, tilt, named = controller.output, DT, 0.0, False
+    ahead = furthest = -math.inf
 
     def noting(function: Any) -> Any:
         def noted(state: Any, leg: int, *arguments: Any) -> Any:
-            reacted.add(leg)
+            touches.reacted.add(leg)
             return function(state, leg, *arguments)
 
         return noted
 
-    names = ("_rising_again", "_trying_again")
+    names = ("_rising_again", "_trying_again", "_landed")
     with patch.multiple(ground_contact, **{name: noting(getattr(ground_contact, name)) for name in names}):
         plant.start(output)
         for twist, way in ((speed, AHEAD), (-speed, BACK)):
@@ -106,56 +182,40 @@ def walk(job: Job) -> Outcome:
                 readings = plant.step(output, dt)
                 roll, pitch, _ = np.asarray(plant.state.body.rpy).tolist()
                 tilt = max(tilt, math.degrees(math.hypot(roll, pitch)))
-                now = plant.mj_data.time
-                for leg in stopped_legs(plant, robot):
-                    touched[leg] = now
-                    met.setdefault(leg, now)
-                # Swings alone; a leg that has let go for a moment is not stopped.
-                met = {leg: at for leg, at in met.items() if not output.contacts[leg] and now - touched[leg] < _GONE}
+                touches.step(output)
                 output = controller.step((twist, 0.0, 0.0), dt, readings)
-                noticed += [now - met.pop(leg) for leg in reacted & set(met)]
-                reacted.clear()
-                furthest = max(furthest, float(plant.state.body.position[0]))
-                named = named or any(limit.leg and "obstacle" in str(limit.cause) for limit in output.limitations)
-    if furthest > job.edge + 0.1:
-        return Outcome("passed", tilt, noticed)
-    came_back = float(plant.state.body.position[0]) < furthest - BACK / 4
-    return Outcome(
-        f"{'named the leg' if named else 'said nothing'}, {'back' if came_back else 'stayed'}", tilt, noticed
-    )
-
-
-def stopped_legs(plant: SimulatedPlant, robot: tarsus.Robot) -> set[int]:
-    """Return the legs that the side of the obstacle touches."""
-    data, model, found = plant.mj_data, plant.mj_model, set[int]()
-    for number, pair in enumerate(data.contact.geom.tolist()):
-        names = [model.geom(geom).name for geom in pair]
-        if "ground 1" in names and abs(float(data.contact.frame[number, 0])) > 0.7:
-            found |= {leg for leg, name in enumerate(robot.leg_names) if any(part.startswith(name) for part in names)}
-    return found
+                touches.react(output)
+                ahead = float(ground.ahead(*plant.state.body.position[:2]).real)
+                furthest = max(furthest, ahead)
+                named = named or any(limit.leg and "higher than" in str(limit.cause) for limit in output.limitations)
+    if furthest > 0.1:
+        return Outcome("passed", tilt, touches.noticed)
+    kind = f"{'named the leg' if named else 'said nothing'}, {'back' if ahead < furthest - BACK / 4 else 'stayed'}"
+    return Outcome(kind, tilt, touches.noticed)
 
 
 def table(outcomes: dict[Job, Outcome]) -> str:
     """Return how often each robot did what, and what it noticed."""
     kinds = sorted({outcome.kind for outcome in outcomes.values()})
     lines = [
-        f"| walk | {' | '.join(kinds)} | tilt | noticed after: median, 90 % |",
-        f"|---|{'---|' * (len(kinds) + 2)}",
+        f"| walk | {' | '.join(kinds)} | tilt | stopped | noticed | after: median, 90 % |",
+        f"|---|{'---|' * (len(kinds) + 4)}",
     ]
     for key in dict.fromkeys(job[:3] for job in outcomes):
         found = [outcome for job, outcome in outcomes.items() if job[:3] == key]
         counts = " | ".join(f"{sum(each.kind == kind for each in found)} of {len(found)}" for kind in kinds)
-        times = sorted(1e3 * time for each in found for time in each.noticed)
+        stopped = [1e3 * time for each in found for time in each.noticed]
+        times = sorted(time for time in stopped if not math.isnan(time))
         late = f"{median(times):.0f}, {times[math.ceil(0.9 * len(times)) - 1]:.0f} ms" if times else "-"
         tilt = median(each.tilt for each in found)
-        name = f"{key[0]}, {'post' if key[2] else 'wall'}, {key[1]}"
-        lines.append(f"| {name} | {counts} | {tilt:.0f} deg | {late} |")
+        name = f"{key[0]}, {key[2]}, {key[1]}"
+        lines.append(f"| {name} | {counts} | {tilt:.0f} deg | {len(stopped)} | {len(times)} | {late} |")
     return "\n".join(lines)
 
 
 def tables(asked: argparse.Namespace) -> dict[str, str]:
     """Measure, and return the table."""
-    jobs = [Job(*job) for job in itertools.product(asked.robots, SENSORS, (False, True), EDGES, PACES)]
+    jobs = [Job(*job) for job in itertools.product(asked.robots, SENSORS, OBSTACLES, EDGES, PACES)]
     return {"obstacles": table(dict(zip(jobs, measured(walk, jobs, asked.jobs), strict=True)))}
 
 
