@@ -1,5 +1,7 @@
 """The runner of the scripts that write tables on pages."""
 
+from concurrent.futures import ThreadPoolExecutor
+
 import pytest
 
 from page_tables import Several, measured, with_tables, write_tables
@@ -46,5 +48,7 @@ def test_a_table_without_a_place_is_refused():
 
 
 @pytest.mark.parametrize("processes", [1, 2])
-def test_what_is_measured_comes_in_the_order_of_the_jobs(processes):
+def test_what_is_measured_comes_in_the_order_of_the_jobs(processes, monkeypatch):
+    # A process that runs tests has threads of JAX, which must not be forked.
+    monkeypatch.setattr("page_tables.ProcessPoolExecutor", ThreadPoolExecutor)
     assert list(measured(abs, [-3, 1, -2], processes)) == [3, 1, 2]
