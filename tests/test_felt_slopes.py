@@ -142,6 +142,19 @@ def test_reach_is_computed_anew_only_where_stroke_or_posture_change():
     reach.update(state.posture.value, rest, np.array([0.2, 0.0, 0.0]), 0.5)
     assert reach.lowest is not lowest
     assert max(reach.highest_stand(0.03)) < max(reach.highest)
+    # For a foot that hangs, the body goes lower than swings would like.
+    hanging = reach.highest_stand(0.03, hangs=True)
+    assert all(a < b < c for a, b, c in zip(reach.highest_stand(0.03), hanging, reach.highest, strict=True))
+
+
+def test_on_rough_ground_the_body_is_raised_only_so_far_that_legs_reach_lower_footholds():
+    controller = WalkController(preset("phantomx"))
+    ground, roughness = controller._walk.ground, 0.055
+    for _ in range(200):
+        ground.body.roughness.value = roughness
+        readings = SensorReadings(contacts=controller.contacts, attitude=(0.0, 0.0))
+        controller.step((0.05, 0.0, 0.0), 0.01, readings)
+    assert 0.0 < ground.body._posture.raised <= -max(ground.body.reach.lowest) - roughness / 2 + 0.002
 
 
 def test_a_foot_that_seeks_ground_at_its_least_height_expects_it_below():

@@ -131,6 +131,19 @@ def test_an_edge_to_known_ground_that_the_leg_does_not_reach_is_tried_with_other
     assert (limited(missing, 0.1, 0.0, 0.0).fraction == 1.0) == (depth < 0)
 
 
+def test_where_rough_ground_is_not_found_the_walk_goes_on_with_other_footholds():
+    def refused(roughness):
+        missing = stepped(MissingGround(NAMES), [(0, 0.05, False, False)], roughness=roughness)
+        limited(missing, 0.1, 0.0, 0.0)
+        for _ in range(110):
+            stepped(missing, [], stands=[True] * 6)
+        limited(missing, 0.1, 0.0, 0.0)
+        return missing.refuses
+
+    assert refused(0.0)
+    assert not refused(0.02)
+
+
 def test_a_foot_that_is_stopped_tries_again_then_beside_it_and_then_stays_before_it():
     missing, foot, goal = MissingGround(NAMES), REST[0] - 0.05, REST[0] + 0.05
     searches = [(0, -0.05, False, True)]

@@ -30,6 +30,8 @@ __all__ = ["BodyMotion"]
 
 # How often height, tilt and lost way are looked at [s].
 _PERIOD = 0.06 - PHASE_TOLERANCE
+# How much lower the next footholds may be than the ground that is felt, over the roughness.
+_LOWER = 0.5
 
 
 class BodyMotion:
@@ -151,9 +153,12 @@ class BodyMotion:
         rises = self._ground.rises(
             reach.rises(plane, rest, over, bears=bears, seeking=seeking), rest, reach.strokes, looks=stands
         )
+        lower = 0.0 if self._ground.given else _LOWER * self.roughness.value
+        rises = [rise - lower for rise in rises[0]], rises[1]
         height, swing_height = state.posture.value[[2, SWING_HEIGHT]].tolist()
+        hangs = any(seeks and reach.hangs(leg, over[leg]) for leg, seeks in enumerate(seeking))
         level = plane.levelled(self.tilt)
-        highest = reach.highest_stand(swing_height)
+        highest = reach.highest_stand(swing_height, hangs=hangs)
         share = reachable_share([level.at(foot) for foot in rest.tolist()], reach.lowest, highest)
         wanted = max(self.roughness.body_rise, self._ground.body_rise(self.stance.half, height))
         raises = (self.stance.least_raise(plane, height), wanted)

@@ -21,8 +21,9 @@ _SLOWS, _STANDS = 0.005, 0.02
 _SLOWEST = 0.25
 # A walk that is slower says why.
 SLOW = 0.85
-# How much deeper ground may be on rough ground, over the roughness.
-_ROUGH = 2.5
+# How much deeper ground may be on rough ground, over the roughness; from which roughness on it is not sure that there
+# is none [m].
+_ROUGH, _UNSURE = 2.5, 0.015
 # Where a foot steps back to, from its rest foothold against its way, over how far from there it may stand.
 _BACK = (0.4, 1.0)
 # A foot that goes down faster has not come to the end of its reach, which sinks with the body [m/s].
@@ -179,7 +180,7 @@ class MissingGround:
                 # Ground that is seen and not reached from here may be reached with other footholds.
                 reached = f"no ground within {1e3 * depth:.0f} mm below the other feet"
                 self._cause = self._names[leg], reached if depth > 0.0 else "the ground is lower than the leg reaches"
-                self._again += _AGAIN if depth > 0.0 else 0
+                self._again += _AGAIN if depth > 0.0 and roughness < _UNSURE else 0
         self._since = 0.0 if self.places else self._since + dt
         if not self.places:
             self._backed = 0.0

@@ -21,8 +21,8 @@ __all__ = ["Reach"]
 _STROKE_STEP, _TURNING_ARM = 0.01, 0.2
 # A foot this close to its least height hangs [m], and how much lower the ground under it is then expected [m].
 _HANGING, _LOWER = 0.002, 0.03
-# Room over the ground that a leg's greatest height leaves for its swing, over the swing height.
-_CLEARANCE = 1.5
+# Room over the ground that a leg's greatest height leaves for its swing, over the swing height; while a foot hangs.
+_CLEARANCE, _HANGING_CLEARANCE = 1.5, 0.75
 
 
 class Reach:
@@ -78,15 +78,20 @@ class Reach:
             self.stroke, self.strokes = float(np.abs(strokes).max()) / 2, strokes
             self.lowest, self.highest = reachable_heights(self._robot, posture, rest, strokes)
 
-    def highest_stand(self, swing_height: float) -> list[float]:
+    def highest_stand(self, swing_height: float, *, hangs: bool = False) -> list[float]:
         """Return the greatest height of each foot on the ground that leaves room for its swing [m].
 
         Parameters
         ----------
-        swing_height : float
-            The swing height [m].
+        swing_height, hangs : float, bool
+            The swing height [m]; whether any foot hangs, for which the body has to be lowered.
         """
-        return [height - _CLEARANCE * swing_height for height in self.highest]
+        room = (_HANGING_CLEARANCE if hangs else _CLEARANCE) * swing_height
+        return [height - room for height in self.highest]
+
+    def hangs(self, leg: int, height: float) -> bool:
+        """Return whether a leg with its foot at a height in the heading frame [m] is at the end of its reach."""
+        return height < self.lowest[leg] + _HANGING
 
     def rises(
         self,
@@ -112,6 +117,6 @@ class Reach:
         """
         known = [over[leg] if leg in bears else plane.at(complex(rest[leg])) for leg in range(len(rest))]
         for leg, seeks in enumerate(seeking):
-            if seeks and over[leg] < self.lowest[leg] + _HANGING:
+            if seeks and self.hangs(leg, over[leg]):
                 known[leg] = self.lowest[leg] - _LOWER
         return [height - plane.height for height in known]
