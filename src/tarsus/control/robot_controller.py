@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 __all__ = ["RobotController"]
 
 # A robot whose joints are all slower than this is at rest, with all legs and without some [rad/s].
-_AT_REST, _AT_REST_DAMAGED = 1e-3, 0.05
+_AT_REST, _AT_REST_DAMAGED = 5e-3, 0.05
 
 
 @represented("robot", "state", "output.time", "output.activity", "output.angles", "output.twist", "output.limitations")
