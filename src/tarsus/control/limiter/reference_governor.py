@@ -49,8 +49,8 @@ class GovernorLimiter:
         stance = (state.down, transitions.timing, transitions.phase, transitions.footholds.bounds)
         # While the same feet stand, what was feasible stays so. Feet that follow the ground stray from what was
         # predicted: with these, each target is examined whenever the ground is looked at.
-        stays = self._met and all(map(is_, stance, self._stance)) if state.felt is None else not self._looks()
-        if command != self._command or not stays:
+        stays = self._met if state.felt is None else not self._looks()
+        if not stays or command != self._command or not all(map(is_, stance, self._stance)):
             self._command, self._stance, self._target = command, stance, self._governed(request, command)
             self._met = self._target.tolist() == command
         return TwistGrant(grant.fraction, self._target, grant.limitations)

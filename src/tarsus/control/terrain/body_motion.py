@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 __all__ = ["BodyMotion"]
 
 # How often height, tilt and lost way are looked at [s].
-_PERIOD = 0.06 - PHASE_TOLERANCE
+_PERIOD = 0.04 - PHASE_TOLERANCE
 # How much lower the next footholds may be than the ground that is felt, over the roughness.
 _LOWER = 0.5
 
