@@ -66,7 +66,7 @@ class TimeScaling:
     ) -> None:
         self.angles = angles
         self.rate = 1.0
-        self._acceleration = acceleration
+        self._acceleration, self._hardest = acceleration, _USED * acceleration
         self._top_speed = _USED * speed
         self._limits_with_room = limits[..., 0] + _STOPPING_ROOM, limits[..., 1] - _STOPPING_ROOM
         self._ends: Float[np.ndarray, "2 legs 3"] = np.moveaxis(limits, -1, 0)[::-1].copy()
@@ -128,7 +128,7 @@ class TimeScaling:
             As for `advance`.
         """
         behind = None if self._target is self.angles else self._target - self.angles
-        lag = 0.0 if behind is None else float(np.abs(behind).max())
+        lag = 0.0 if behind is None else float(np.maximum.reduce(np.abs(behind), axis=None))
         fastest = max(1 - max(lag - _LEAST_LAG, 0.0) / (_MOST_LAG - _LEAST_LAG), 0.0)
         rate = self.rate = min(self.rate + _RISE * dt, max(fastest, self.rate - _FALL * dt), 1.0)
         after = integrate(dt * rate)
@@ -145,26 +145,25 @@ class TimeScaling:
                 self._speeds, self._last_dt = speeds, dt
                 return after
             behind, self._room = np.zeros_like(target), 0.0
-        hardest = _USED * self._acceleration
         # The speed of the target, and the one from which a joint can still stop where it catches up.
-        catching = np.minimum(np.abs(behind) / dt, np.sqrt(hardest * np.abs(behind)))
+        far = np.abs(behind)
+        catching = np.minimum(far / dt, np.sqrt(self._hardest * far))
         speeds = (target - self._target) / dt + np.copysign(catching, behind)
         up, down = self._stopping_speeds(dt)
-        speeds = np.maximum(np.minimum(speeds, up), -down)
-        reach = hardest * between
-        speeds = np.clip(speeds, self._speeds - reach, self._speeds + reach)
-        speeds = np.clip(speeds, -self._top_speed, self._top_speed)
+        speeds, reach = np.maximum(np.minimum(speeds, up), -down), self._hardest * between
+        speeds = np.minimum(np.maximum(speeds, self._speeds - reach), self._speeds + reach)
+        speeds = np.minimum(np.maximum(speeds, -self._top_speed), self._top_speed)
         angles = self.angles + speeds * dt
         angles.setflags(write=False)
         # Within rounding, the joints have caught up.
-        caught_up = float(np.abs(target - angles).max()) < _CAUGHT_UP
+        caught_up = not np.count_nonzero(np.abs(target - angles) >= _CAUGHT_UP)
         self.angles, self._target = target if caught_up else angles, target
         self._speeds, self._last_dt = speeds, dt
         return after
 
     def _stopping_speeds(self, dt: float) -> Float[np.ndarray, "2 legs 3"]:
         """Return the greatest speeds upward and downward from which the joints stop before their limits."""
-        softest = _USED * self._acceleration / 2
+        softest = self._hardest / 2
         left = np.maximum(_SIGNS * (self._ends - self.angles) - _SPARE, 0.0)
         speeds: np.ndarray = np.sqrt((softest * dt) ** 2 + 2 * softest * left) - softest * dt
         return speeds
