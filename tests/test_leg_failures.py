@@ -73,6 +73,21 @@ def test_measured_torques_tell_an_idle_servo_from_a_leg_that_is_caught(torque, a
     assert after[0] < ticks < after[1]
 
 
+@pytest.mark.parametrize(
+    ("joint", "error", "torque", "at_most"),
+    [(1, 0.8, None, 10), (1, -0.8, None, 30), (1, 0.5, None, 30), (2, 0.8, None, 30), (1, 0.8, 2.0, 210)],
+)
+def test_a_femur_that_gives_way_under_the_robot_is_found_before_it_tips(joint, error, torque, at_most):
+    monitor, measured = JointMonitor(np.full((6, 3), 2.0)), np.zeros((6, 3))
+    measured[3, joint] = error
+    ticks = 0
+    while not monitor.failed:
+        monitor.step(np.zeros((6, 3)), measured.tolist(), 0.01, torques=torque and [(torque,) * 3] * 6)
+        ticks += 1
+    assert monitor.failed == {3: joint}
+    assert 0.5 * at_most < ticks < at_most + 10
+
+
 def test_joints_of_a_caught_leg_that_are_off_and_then_do_not_move_are_not_taken_for_stuck():
     monitor = JointMonitor()
     for tick in range(200):

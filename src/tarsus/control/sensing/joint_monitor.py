@@ -27,6 +27,9 @@ _IDLE_ERROR, _IDLE = 0.07, 0.3
 # servo, and of one that pulls, as that of a leg does that is caught.
 _FAILED_AFTER, _MEMORY = 1.5, 2.0
 _MOST_WEIGHT, _MOST_IDLE, _MOST_PULLING = 6.0, 15.0, 1.0
+# Where the torque is not measured, a femur that the ground has pushed up by so much [rad], more than any that holds on,
+# and the greatest factor then.
+_GIVES_WAY, _MOST_GIVING_WAY = 0.6, 30.0
 # A joint whose command moves by so much within a time [rad], [s], and that moves by less than this share of it, is
 # stuck; it has failed once that is so twice in a row.
 _COMMANDED, _WITHIN, _SHARE, _ONCE = 0.15, 1.0, 0.4, 1.0
@@ -91,7 +94,9 @@ class JointMonitor:
         recent = [angles for _, angles in commands]
         error = np.fmax(np.fmax(found - np.max(recent, axis=0), np.min(recent, axis=0) - found), 0.0)
         bound, most = np.full_like(commanded, _ERROR), np.full_like(commanded, _MOST_WEIGHT)
-        if torques is not None:
+        if torques is None:
+            most[(found - np.max(recent, axis=0))[:, 1] > _GIVES_WAY, 1] = _MOST_GIVING_WAY
+        else:
             share = np.abs(_array(torques)) / self._stall_torque
             bound[share < _IDLE], most[share < _IDLE], most[share >= _IDLE] = _IDLE_ERROR, _MOST_IDLE, _MOST_PULLING
         weight = np.where(error > bound, np.fmin((error / bound) ** 2, most), 0.0)
