@@ -294,3 +294,45 @@ def test_a_robot_that_sees_a_hole_stops_before_it_and_walks_away():
 def test_a_robot_crosses_a_trench_that_it_sees():
     walk = Walk(terrain.Gaps(start=0.35, width=0.08, depth=0.15, count=1), sensors="camera")
     assert walk.go(0.19, 4.5) > 0.35 + 0.08
+
+
+def test_a_robot_that_tips_towards_a_foot_goes_back_at_once_but_not_far():
+    two = [False, True, False, False, True, False]
+    missing, deep = MissingGround(NAMES), [(0, 0.03, True, True)]
+    assert stepped(missing, deep, stands=two).tips.real > 0
+    assert missing.back.real < 0
+    assert not missing.places
+    # Not where the other feet hold it, where the foot may still find ground, and on rough ground not so soon.
+    assert stepped(MissingGround(NAMES), deep).back == 0
+    assert stepped(MissingGround(NAMES), [(0, 0.015, True, True)], stands=two).back == 0
+    assert stepped(MissingGround(NAMES), deep, stands=two, roughness=0.02).back == 0
+    for _ in range(100):
+        stepped(missing, deep, stands=two)
+    assert missing.back == 0
+
+
+def test_roughness_makes_a_hole_deeper_by_a_bounded_depth():
+    assert stepped(MissingGround(NAMES), [(0, 0.11, True, True)], roughness=1.0).places
+
+
+def test_another_foot_without_ground_does_not_change_the_side_of_a_known_edge():
+    missing = stepped(MissingGround(NAMES), [(0, 0.08, True, True)])
+    assert limited(missing, 0.1, 0.0, 0.0).fraction == 0.0
+    behind = [*AHEAD[:5], REST[5] - 0.05]
+    stepped(missing, [(0, 0.08, True, True), (5, 0.08, True, True)], behind)
+    assert missing.places[5].real < REST[5].real
+    assert limited(missing, 0.1, 0.0, 0.0).fraction == 0.0
+
+
+@pytest.mark.parametrize(("name", "edge"), [("strider", 0.49)])
+def test_a_robot_whose_foot_slides_off_a_platform_does_not_fall(name, edge):
+    robot = tarsus.load_robot(name)
+    speed = 0.5 * tarsus.WalkController(robot).top_speed((1, 0, 0))
+    plant = SimulatedPlant(robot, terrain=terrain.Step(rise=-0.4, start=edge), sensors="ideal", servos="catalogue")
+    controller = tarsus.RobotController(robot)
+    output = controller.output
+    plant.start(output)
+    for _ in range(400):
+        readings = plant.step(output, 0.01)
+        assert abs(plant.state.body.rpy).max() < 0.15
+        output = controller.step((speed, 0.0, 0.0), 0.01, readings)

@@ -18,7 +18,7 @@ from tarsus.control.terrain.body_motion import BodyMotion
 from tarsus.control.terrain.foot_contacts import FootContacts
 from tarsus.control.terrain.ground_contact import met_ground
 from tarsus.control.terrain.ground_map import GroundMap
-from tarsus.control.terrain.missing_ground import SLOW, MissingGround, searching_feet
+from tarsus.control.terrain.missing_ground import SLOW, MissingGround, not_sunk, searching_feet
 from tarsus.control.terrain.posture_feedback import Levelling
 from tarsus.control.terrain.roughness import GroundAdaptation
 from tarsus.control.terrain.support import Support
@@ -192,7 +192,6 @@ class FeltGround:
             self.body.step(state, self.measured, feet=feet, timing=timing, twist=twist, pace=pace, rest=rest)
             self.ground.choose(state, self.body.reach, footholds)
         centre = self._centre + complex(*body_posture(state)[:2].tolist())
-        self.contacts.find_open(down, places, centre, self.measured.attitude, dt)
         stands = self._find_missing_ground(state, places, down, centre, footholds, dt)
         self._decide_on_support(places, down, due, centre, dt=dt, swing_time=timing.swing_time)
         self.body.roughness.decay(0.0 if standing else dt * timing.frequency)
@@ -241,16 +240,17 @@ class FeltGround:
     ) -> list[bool]:
         """Decide where feet step that find no ground; return which stand, or would, with the robot in the air."""
         contacts, missing, rest = self.contacts, self.missing, footholds.rest.tolist()
+        rough, tips = self.body.roughness.value, bool(missing.tips or missing.places)
+        near = not_sunk(state, self.ground, places, down, roughness=rough, tips=tips)
+        contacts.find_open(near, places, centre, self.measured.attitude, dt)
         if self.condition.carried:
             missing.forget()
         on_ground = enumerate(contacts.standing)
         stands = [(self.condition.in_air or on) and not missing.steps_back(leg, places[leg]) for leg, on in on_ground]
         missing.sees(self.ground.holes, rest)
-        waits = self._rests and self.support.held and not missing.places
+        waits = self.condition.carried or (self._rests and self.support.held and near == down)
         missing.step(
-            []
-            if waits or self.condition.carried
-            else searching_feet(state, contacts, self.ground, places, down=down, stands=stands),
+            [] if waits else searching_feet(state, contacts, self.ground, places, down=down, stands=stands),
             places,
             [on and stand for on, stand in zip(down, stands, strict=True)],
             dt,
@@ -258,7 +258,7 @@ class FeltGround:
             rest=rest,
             radii=footholds.placement_radii,
             height=float(state.posture.value[2]),
-            roughness=self.body.roughness.value,
+            roughness=rough,
         )
         return stands
 

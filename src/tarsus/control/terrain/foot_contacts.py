@@ -53,6 +53,8 @@ class FootContacts:
         Whether each foot that should stand does, but for the shortest of interruptions.
     age : float
         Age of the readings [s].
+    sunk : list of float
+        By how much the body has sunk at each foot by its tilt since that lost its contact [m].
     """
 
     def __init__(self, legs: int) -> None:
@@ -60,7 +62,7 @@ class FootContacts:
         self.lifted, self.standing, self.age = [False] * legs, [True] * legs, 0.0
         self._estimated: Set[int] = frozenset()
         self._unheld, self._tilt = 0.0, (0.0, 0.0)
-        self._tilts = [(0.0, 0.0)] * legs
+        self._tilts, self.sunk = [(0.0, 0.0)] * legs, [0.0] * legs
         self._without, self._with, self._evidence, self._settled = ([0.0] * legs for _ in range(4))
 
     def step(
@@ -133,10 +135,11 @@ class FootContacts:
         """
         shaken = any(on and 0.0 < time <= _GRACE for on, time in zip(down, self._without, strict=True))
         for leg, on in enumerate(down):
-            if self._without[leg] <= 0.0:
+            if self._without[leg] <= 0.0 or tilt is None:
                 self._tilts[leg] = tilt or (0.0, 0.0)
-            elif on and shaken and self._without[leg] > _GRACE:
-                lifts = 1.0 if tilt is None else -_sunk(places[leg], tilt, self._tilts[leg]) / _LIFTS
+            self.sunk[leg] = _sunk(places[leg], tilt or (0.0, 0.0), self._tilts[leg])
+            if on and shaken and self._without[leg] > _GRACE:
+                lifts = 1.0 if tilt is None else -self.sunk[leg] / _LIFTS
                 self._evidence[leg] += dt * min(lifts, _MOST_LIFT) * (lifts >= 1.0)
         if tilt is not None:
             self._balance(down, places, centre, tilt, dt)

@@ -94,7 +94,17 @@ def met_ground(
         elif (touches or leg in stopped) and not leaves and _collides(state, leg, contacts):
             roughness.collided()
             state = _rising_again(state, leg, top, timing)
-    return state, landed
+    return _put_down(state, landed, timing, pace) if missing.tips else (state, landed)
+
+
+def _put_down(state: GaitState, landed: list[int], timing: StepTiming, pace: float) -> tuple[GaitState, list[int]]:
+    """Return the state, and which feet have landed, with all feet put down: the robot tips where one has no ground."""
+    swings = [leg for leg, on in enumerate(state.down.tolist()) if not on]
+    for leg in swings:
+        state = _landed(state, leg, timing, pace)
+        assert state.felt is not None  # a walk that feels the ground
+        state = state._replace(felt=_with(state.felt, leg, speed=0.0, acceleration=0.0))
+    return state, landed + swings
 
 
 def _landed(state: GaitState, leg: int, timing: StepTiming, pace: float) -> GaitState:

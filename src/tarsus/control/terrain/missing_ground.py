@@ -12,18 +12,20 @@ from tarsus.control.terrain.ground_map import GroundMap
 from tarsus.control.terrain.support import holds
 from tarsus.control.walk.state import GaitState
 
-__all__ = ["SLOW", "MissingGround", "searching_feet"]
+__all__ = ["SLOW", "MissingGround", "not_sunk", "searching_feet"]
 
 # Depth below the expected ground at which there is none, over the body height.
 _DEEP = 0.75
 # Depths from which on the walk slows down, and stands still, or goes on slowly with feet at the end of their reach [m].
 _SLOWS, _STANDS = 0.005, 0.02
 _SLOWEST = 0.25
+# A foot that is deeper, on even ground, bears no load that is not felt, whatever its shin rests on [m].
+_HANGS = 0.05
 # A walk that is slower says why.
 SLOW = 0.85
-# How much deeper ground may be on rough ground, over the roughness; from which roughness on it is not sure that there
-# is none [m].
-_ROUGH, _UNSURE = 2.5, 0.015
+# How much deeper ground may be on rough ground: over the roughness, and at most [m]; from which roughness on it is not
+# sure that there is none [m].
+_ROUGH, _ROUGHEST, _UNSURE = 2.5, 0.03, 0.015
 # Where a foot steps back to, from its rest foothold against its way, over how far from there it may stand.
 _BACK = (0.4, 1.0)
 # A foot that goes down faster has not come to the end of its reach, which sinks with the body [m/s].
@@ -66,8 +68,33 @@ def searching_feet(
     for leg, place in enumerate(places):
         if down[leg] and not stands[leg] and contacts.is_known(leg):
             depth = ground.lowest_near(place) + elevation - float(state.ground_height[leg])
+            depth += max(contacts.sunk[leg], 0.0)
             found.append((leg, depth, state.felt[leg].speed < -_FALLS, contacts.seeks(leg)))
     return found
+
+
+def not_sunk(
+    state: GaitState,
+    ground: GroundMap,
+    places: Sequence[complex],
+    down: Sequence[bool],
+    *,
+    roughness: float,
+    tips: bool,
+) -> list[bool]:
+    """Return which feet should stand and are near the expected ground: only these may bear load that is not felt.
+
+    Parameters
+    ----------
+    state, ground : GaitState, GroundMap
+        The gait state; where ground is expected.
+    places, down : sequence of complex, sequence of bool
+        Where the feet are, in the heading frame [m]; which should stand.
+    roughness, tips : float, bool
+        How far ground is off the expected one [m]; whether the robot tips or feet step back: then, none may.
+    """
+    over = (state.ground_height - state.elevation.value + _HANGS + min(_ROUGH * roughness, _ROUGHEST)).tolist()
+    return [on and not tips and over[leg] > ground.at(places[leg]) for leg, on in enumerate(down)]
 
 
 class MissingGround:
@@ -88,6 +115,8 @@ class MissingGround:
         Rate of the walk that feet without contact leave, 0 to 1.
     back : complex
         Velocity of the body over its feet, in the heading frame [m/s].
+    tips : complex
+        Towards which foot that sinks the robot tips: its direction in the heading frame; 0 without one.
     """
 
     def __init__(self, names: Sequence[str]) -> None:
@@ -95,7 +124,7 @@ class MissingGround:
         self.stops, self._beside = dict[int, tuple[int, complex, complex]](), dict[int, complex]()
         self._names, self._tries, self._cause = names, [0] * len(names), ("", "")
         self._way, self._obstacle, self._backed, self.refuses = 0j, 0j, 0.0, False
-        self._again, self._since, self._slows = 0, 0.0, ""
+        self._again, self._since, self._slows, self.tips = 0, 0.0, "", 0j
 
     @property
     def limitations(self) -> list[Limitation]:
@@ -167,14 +196,17 @@ class MissingGround:
             self._tries[leg] = 0
             self.stops.pop(leg, None)
         self.pace, self.back, self._slows = 1.0 - self.refuses, 0j, ""
+        rough, self.tips = min(_ROUGH * roughness, _ROUGHEST), 0j
+        held = holds([foot for foot, on in zip(feet, stands, strict=True) if on], centre)
         for leg, depth, falls, lasts in searches:
             slowest = 0.0 if falls else _SLOWEST
-            pace = max(1 - (depth - _ROUGH * roughness - _SLOWS) / (_STANDS - _SLOWS), slowest)
+            pace = max(1 - (depth - rough - _SLOWS) / (_STANDS - _SLOWS), slowest)
             self.pace, self._slows = min((self.pace, self._slows), (pace, self._names[leg]))
-            missing = depth > _DEEP * height + _ROUGH * roughness or not (lasts or leg in self.places)
+            missing = depth > _DEEP * height + rough or not (lasts or leg in self.places)
+            self._tip(_way(feet[leg] - rest[leg], rest[leg]), tips=depth > _STANDS + rough and not held)
             if missing and not (self.steps_back(leg, feet[leg]) or self.gives_up(leg)):
                 self._tries[leg] += 1
-                if self._tries[leg] == 1:
+                if self._tries[leg] == 1 and not self.refuses:
                     self._leads(feet[leg] - rest[leg], rest[leg])
                 self.places[leg] = rest[leg] - _BACK[min(self._tries[leg], len(_BACK)) - 1] * radii[leg] * self._way
                 # Ground that is seen and not reached from here may be reached with other footholds.
@@ -183,7 +215,9 @@ class MissingGround:
                 self._again += _AGAIN if depth > 0.0 and roughness < _UNSURE else 0
         self._since = 0.0 if self.places else self._since + dt
         if not self.places:
-            self._backed = 0.0
+            # A robot that tips where a foot sinks goes back at once.
+            self.back = -_SPEED * self.tips * (self._backed < _BACKS)
+            self._backed = (self._backed + _SPEED * dt) * bool(self.tips)
             if self.refuses and self._again < _AGAIN and self._since > _WAITS:
                 self._again, self._way = self._again + 1, 0j
             elif not self.refuses and self._since > _FORGETS:
@@ -195,6 +229,13 @@ class MissingGround:
         if not self.stops and self._backed < _BACKS and not holds(firm, centre + _MARGIN * self._way):
             self.back = -_SPEED * self._way
             self._backed += _SPEED * dt
+
+    def _tip(self, way: complex, *, tips: bool) -> None:
+        """Take note that the robot tips this way, if it does: no foot tries to get past an obstacle then."""
+        if tips:
+            self.tips = way
+            self.stops.clear()
+            self._beside.clear()
 
     def stopped(self, leg: int, foot: complex, goal: complex) -> complex:
         """Decide where a foot tries next that is stopped here on its way to a goal; return the way back [m]."""
@@ -224,7 +265,7 @@ class MissingGround:
 
     def _leads(self, off: complex, rest: complex) -> None:
         """Take the way of a leg's foot from its rest foothold for that to the edge."""
-        self._way = off / abs(off) if abs(off) > _OFF else rest / abs(rest)
+        self._way = _way(off, rest)
 
     def limit(self, request: TwistRequest, grant: TwistGrant) -> TwistGrant:
         """Return the grant, without a twist that leads over the edge; one that leads away is granted from then on."""
@@ -236,3 +277,8 @@ class MissingGround:
         if any(request.twist) and not self.places:
             self._way = 0j
         return grant
+
+
+def _way(off: complex, rest: complex) -> complex:
+    """Return the direction of the way of a foot from its rest foothold, or of that where it is there."""
+    return off / abs(off) if abs(off) > _OFF else rest / abs(rest)
