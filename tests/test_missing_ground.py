@@ -15,8 +15,10 @@ REST = [0.2 + 0.2j, 0.25j, -0.2 + 0.2j, -0.2 - 0.2j, -0.25j, 0.2 - 0.2j]
 AHEAD = [REST[0] + 0.05, *REST[1:]]
 
 
-def stepped(missing, searches, feet=AHEAD, *, stands=(False, *[True] * 5), centre=0j, roughness=0.0, dt=0.01):
-    sizes = {"height": 0.1, "roughness": roughness}
+def stepped(
+    missing, searches, feet=AHEAD, *, stands=(False, *[True] * 5), centre=0j, roughness=0.0, sunk=(0.0,) * 6, dt=0.01
+):
+    sizes, missing.sunk = {"height": 0.1, "roughness": roughness}, sunk
     missing.step(searches, feet, stands, dt, centre=centre, rest=REST, radii=[0.05] * 6, **sizes)
     return missing
 
@@ -306,6 +308,7 @@ def test_a_robot_that_tips_towards_a_foot_goes_back_at_once_but_not_far():
     assert stepped(MissingGround(NAMES), deep).back == 0
     assert stepped(MissingGround(NAMES), [(0, 0.015, True, True)], stands=two).back == 0
     assert stepped(MissingGround(NAMES), deep, stands=two, roughness=0.02).back == 0
+    assert stepped(MissingGround(NAMES), [(0, 0.005, True, True)], stands=two, sunk=[0.02] * 6).back.real < 0
     for _ in range(100):
         stepped(missing, deep, stands=two)
     assert missing.back == 0

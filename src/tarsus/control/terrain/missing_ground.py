@@ -70,7 +70,6 @@ def searching_feet(
     for leg, place in enumerate(places):
         if down[leg] and not stands[leg] and contacts.is_known(leg):
             depth = ground.lowest_near(place) + elevation - float(state.ground_height[leg])
-            depth += max(contacts.sunk[leg], 0.0)
             found.append((leg, depth, state.felt[leg].speed < -_FALLS, contacts.seeks(leg)))
     return found
 
@@ -119,9 +118,12 @@ class MissingGround:
         Velocity of the body over its feet, in the heading frame [m/s].
     tips : complex
         Towards which foot that sinks the robot tips: its direction in the heading frame; 0 without one.
+    sunk : sequence of float
+        By how much the body has sunk at each foot since that lost its contact [m].
     """
 
     def __init__(self, names: Sequence[str]) -> None:
+        self.sunk: Sequence[float] = [0.0] * len(names)
         self.places, self.pace, self.back = dict[int, complex](), 1.0, 0j
         self.stops, self._beside = dict[int, tuple[int, complex, complex]](), dict[int, complex]()
         self._names, self._tries, self._cause = names, [0] * len(names), ("", "")
@@ -205,7 +207,10 @@ class MissingGround:
             pace = max(1 - (depth - rough - _SLOWS) / (_STANDS - _SLOWS), slowest)
             self.pace, self._slows = min((self.pace, self._slows), (pace, self._names[leg]))
             missing = depth > _DEEP * height + rough or not (lasts or leg in self.places)
-            self._tip(_way(feet[leg] - rest[leg], rest[leg]), tips=depth > _STANDS + rough and not held)
+            self._tip(
+                _way(feet[leg] - rest[leg], rest[leg]),
+                tips=depth + max(self.sunk[leg], 0.0) > _STANDS + rough and not held,
+            )
             if missing and not (self.steps_back(leg, feet[leg]) or self.gives_up(leg)):
                 self._tries[leg] += 1
                 if self._tries[leg] == 1 and not self.refuses:
