@@ -16,9 +16,9 @@ from tarsus.control.sensing.swing_monitor import SwingMonitor
 from tarsus.control.sensing.validation import ReadingsValidator
 from tarsus.control.terrain.body_motion import BodyMotion
 from tarsus.control.terrain.foot_contacts import FootContacts
-from tarsus.control.terrain.ground_contact import met_ground
+from tarsus.control.terrain.ground_contact import met_ground, searching_feet
 from tarsus.control.terrain.ground_map import GroundMap
-from tarsus.control.terrain.missing_ground import SLOW, MissingGround, not_sunk, searching_feet
+from tarsus.control.terrain.missing_ground import SLOW, MissingGround, not_sunk
 from tarsus.control.terrain.posture_feedback import Levelling
 from tarsus.control.terrain.roughness import GroundAdaptation
 from tarsus.control.terrain.support import Support

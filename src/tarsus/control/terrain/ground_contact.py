@@ -18,7 +18,7 @@ from tarsus.control.walk.stepper import land
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-__all__ = ["met_ground"]
+__all__ = ["met_ground", "searching_feet"]
 
 # Swing phases from which on contact is a collision, and from which on it is the ground.
 _CLEAR, _LANDING = 0.12, 0.55
@@ -33,6 +33,8 @@ _HIGHER, _RISING, _DRAWN_BACK = 0.025, 0.12, 0.008
 # Of a foot that collides again: how far it is from its foothold at least, and past its collision at most, where it does
 # not touch the obstacle's top [m]; the speed with which it is drawn back [m/s].
 _SHORT, _PAST, _DRAWS_BACK = 0.02, 0.01, 1.0
+# A foot that goes down faster has not come to the end of its reach, which sinks with the body [m/s].
+_FALLS = 0.1
 
 
 def met_ground(
@@ -169,3 +171,32 @@ def _trying_again(state: GaitState, leg: int, missing: MissingGround, highest: f
 def _with(feet: Sequence[FeltFoot], leg: int, **values: Any) -> list[FeltFoot]:
     """Return the feet with other values for one of them."""
     return [foot._replace(**values) if index == leg else foot for index, foot in enumerate(feet)]
+
+
+def searching_feet(
+    state: GaitState,
+    contacts: FootContacts,
+    ground: GroundMap,
+    places: Sequence[complex],
+    *,
+    down: Sequence[bool],
+    stands: Sequence[bool],
+) -> list[tuple[int, float, bool, bool]]:
+    """Return the feet that should stand and feel nothing, as `MissingGround.step` takes them.
+
+    Parameters
+    ----------
+    state, contacts : GaitState, FootContacts
+        The gait state; the contacts.
+    ground, places : GroundMap, sequence of complex
+        Where ground is expected; where the feet are, in the heading frame [m].
+    down, stands : sequence of bool
+        Which feet should stand, and which do.
+    """
+    assert state.felt is not None  # a walk that feels the ground
+    elevation, found = float(state.elevation.value[0]), list[tuple[int, float, bool, bool]]()
+    for leg, place in enumerate(places):
+        if down[leg] and not stands[leg] and contacts.is_known(leg):
+            depth = ground.lowest_near(place) + elevation - float(state.ground_height[leg])
+            found.append((leg, depth, state.felt[leg].speed < -_FALLS, contacts.seeks(leg)))
+    return found

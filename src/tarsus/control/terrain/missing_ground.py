@@ -7,12 +7,11 @@ from collections.abc import Mapping, Sequence
 
 from tarsus.control.limitation import Limitation, LimitationKind
 from tarsus.control.limiter.protocol import TwistGrant, TwistRequest
-from tarsus.control.terrain.foot_contacts import FootContacts
 from tarsus.control.terrain.ground_map import GroundMap
 from tarsus.control.terrain.support import holds
 from tarsus.control.walk.state import GaitState
 
-__all__ = ["SLOW", "MissingGround", "not_sunk", "searching_feet"]
+__all__ = ["SLOW", "MissingGround", "not_sunk"]
 
 # Depth below the expected ground at which there is none, over the body height.
 _DEEP = 0.75
@@ -28,8 +27,6 @@ SLOW = 0.85
 _ROUGH, _ROUGHEST, _UNSURE = 2.5, 0.03, 0.015
 # Where a foot steps back to, from its rest foothold against its way, over how far from there it may stand.
 _BACK = (0.4, 1.0)
-# A foot that goes down faster has not come to the end of its reach, which sinks with the body [m/s].
-_FALLS = 0.1
 # A foot this close to its place is there; one this far from its rest foothold is on that side of it [m].
 _THERE, _OFF = 0.004, 0.01
 # The body backs off until feet this far from the edge hold it with this margin [m], so far at most [m], so fast [m/s].
@@ -43,35 +40,6 @@ _SHALLOW = 0.02
 # How often and when the walk tries other footholds at an edge to ground that is seen, not reached [s]; after which
 # time without holes that is forgotten [s].
 _AGAIN, _WAITS, _FORGETS = 2, 1.0, 6.0
-
-
-def searching_feet(
-    state: GaitState,
-    contacts: FootContacts,
-    ground: GroundMap,
-    places: Sequence[complex],
-    *,
-    down: Sequence[bool],
-    stands: Sequence[bool],
-) -> list[tuple[int, float, bool, bool]]:
-    """Return the feet that should stand and feel nothing, as `MissingGround.step` takes them.
-
-    Parameters
-    ----------
-    state, contacts : GaitState, FootContacts
-        The gait state; the contacts.
-    ground, places : GroundMap, sequence of complex
-        Where ground is expected; where the feet are, in the heading frame [m].
-    down, stands : sequence of bool
-        Which feet should stand, and which do.
-    """
-    assert state.felt is not None  # a walk that feels the ground
-    elevation, found = float(state.elevation.value[0]), list[tuple[int, float, bool, bool]]()
-    for leg, place in enumerate(places):
-        if down[leg] and not stands[leg] and contacts.is_known(leg):
-            depth = ground.lowest_near(place) + elevation - float(state.ground_height[leg])
-            found.append((leg, depth, state.felt[leg].speed < -_FALLS, contacts.seeks(leg)))
-    return found
 
 
 def not_sunk(
