@@ -429,18 +429,6 @@ def test_a_foot_that_meets_an_obstacle_rises_over_it():
     assert controller.limitations == ()
 
 
-def test_a_foot_that_meets_a_high_wall_does_not_land_on_it_while_it_rises():
-    controller = WalkController(STRIDER)
-    latest = 0.0
-    for tick in range(100):
-        contacts, gait = controller.feet[:, 2] <= 1e-4, controller._tick.gait
-        if tick > 20 and not gait.down[0]:
-            latest = max(latest, float(gait.swing_phase[0]))
-            contacts[0] = 0.5 < gait.swing_phase[0] < 0.7
-        controller.step((0.1, 0.0, 0.0), 0.01, SensorReadings(contacts=contacts, attitude=(0.0, 0.0)))
-    assert latest > 0.7
-
-
 def test_a_foot_that_rises_waits_where_it_is_while_the_walk_stands_still():
     controller = WalkController(STRIDER)
     for _ in range(30):

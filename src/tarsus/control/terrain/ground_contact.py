@@ -81,7 +81,7 @@ def met_ground(
         ):
             state = _trying_again(state, leg, missing, top, _landed(state, leg, timing, pace))
             landed.append(leg)
-        elif phase > max(_LANDING, foot.top_phase):
+        elif phase > _LANDING:
             # Contact that has not ceased since lift-off tells nothing: the foot lands where ground is expected.
             tells = contacts.lifted[leg] and not contacts.is_open(leg)
             if tells and not contacts.touches(leg):

@@ -30,7 +30,7 @@ _SLOPE_RATE = 2.0
 # Part of the distance at which a foot may be put down that is kept for its stroke, at least.
 _STROKE_SHARE = 0.65
 # How far the body is lowered for deep ground, over its height.
-_LOWERED = 0.4
+_LOWERED = 0.35
 # How far off known heights may lie: eight points around a place, and itself [m].
 _AROUND = 0.03 * np.append(np.exp(0.25j * np.pi * np.arange(8)), 0.0)
 # Swing phase up to which a foothold is chosen.
