@@ -169,7 +169,7 @@ class MissingGround:
             self.stops.pop(leg, None)
         self.pace, self.back, self._slows = 1.0 - self.refuses, 0j, ""
         rough, self.tips = min(_ROUGH * roughness, _ROUGHEST), 0j
-        held = holds([foot for foot, on in zip(feet, stands, strict=True) if on], centre)
+        held = not searches or holds([foot for foot, on in zip(feet, stands, strict=True) if on], centre)
         for leg, depth, falls, lasts in searches:
             slowest = 0.0 if falls else _SLOWEST
             pace = max(1 - (depth - rough - _SLOWS) / (_STANDS - _SLOWS), slowest)

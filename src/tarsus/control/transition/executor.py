@@ -228,8 +228,8 @@ class TransitionExecutor:
         bounds = self.footholds.shifted(np.minimum(bounds, planned.final_limits.bounds))
         begins, bandwidth = np.zeros(delays.shape), timing.bandwidth
         over = FootPrediction.of(now.gait, begins, ends, bandwidth).excess(now.twist[None], bounds)
-        # Symmetric legs suit equally well but for rounding; the first of them lifts, on any machine.
         over = over.max(axis=(1, 2, 3, 4))
+        # Symmetric legs suit equally well but for rounding; the first of them lifts, on any machine.
         first = int((over <= over.min() + _ROUNDING).argmax())
         if over[first] <= POSITION_TOLERANCE:
             self.phase, self._active, self.scheduler.planned = TransitionPhase.TOUCHDOWN, planned, None
