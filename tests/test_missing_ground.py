@@ -199,6 +199,16 @@ def test_a_foot_that_is_stopped_tries_again_then_beside_it_and_then_stays_before
     assert not missing.leaves(-0.05 + 0.0j)
 
 
+def test_a_foot_that_has_got_past_an_obstacle_looks_for_the_ground_like_any_other():
+    missing, goal = MissingGround(NAMES), AHEAD[0] + 0.05
+    missing.stopped(0, AHEAD[0], goal)
+    hangs = [(0, 0.03, False, True)]
+    assert stepped(missing, hangs, AHEAD).pace == 0.0
+    past = stepped(missing, hangs, [goal, *REST[1:]])
+    assert not past.places
+    assert 0.0 < past.pace < 1.0
+
+
 def test_a_twist_into_a_hole_that_is_seen_is_refused_before_a_foot_is_over_it():
     missing = MissingGround(NAMES)
     missing.sees({0: AHEAD[0], 5: REST[5]}, REST)
