@@ -345,6 +345,15 @@ def test_a_foot_that_steps_down_a_slope_rises_over_the_middle_of_its_way():
         assert foot.top == pytest.approx(top)
 
 
+def test_a_foot_that_has_met_an_obstacle_goes_down_once_it_is_past_it():
+    felt = FeltInputs([], [], [], 0.0, 0.0, (0.0, 0.0), 0j, 0j, 0.8, 1.0, 0.03, 1.0, {})
+    risen = FeltFoot(top=0.05, top_phase=0.4, drawn_back=0j)
+    for place, goes_down in ((0.0j, False), (0.02 + 0j, False), (0.04 + 0j, True)):
+        under = GroundUnder(0.0, lowest=-0.2, highest=0.2)
+        height, _ = _swinging(0.05, risen, under, felt, 0.01, (0.6, 0.5, 0.0, place))
+        assert (height < 0.05) == goes_down
+
+
 def test_a_foot_that_has_barely_touched_is_no_support():
     contacts = FootContacts(2)
     for _ in range(10):
