@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 import tarsus
+from draw_felt_feet import plot_felt_feet
 from draw_films import draw_films
 from draw_hill import plot_hill
 from draw_states import plot_states
@@ -65,6 +66,7 @@ def main() -> None:
     day = load_scenario(FIGURES.parents[1] / "examples" / "whole-day.toml")
     save_figure(plot_timeline(run_scenario(day)), FIGURES / "timeline.png")
     save_figure(plot_hill(), FIGURES / "hill.png")
+    save_figure(plot_felt_feet(), FIGURES / "felt-feet.png")
     save_figure(plot_states(), FIGURES / "states.png")
     save_figure(plot_terrains(), FIGURES / "terrains.png")
     limp = np.radians(np.tile([0.0, 20.0, -60.0], (6, 1)))
