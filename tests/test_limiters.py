@@ -13,6 +13,7 @@ from tarsus.control.limiter.protocol import TwistGrant, TwistRequest, granted_tw
 from tarsus.control.limiter.reference_governor import GovernorLimiter
 from tarsus.control.readings import SensorReadings
 from tarsus.control.tick.limit import twist_limiters
+from tarsus.control.walk.felt_feet import FeltFoot
 from tarsus.control.walk.reference_governor import FootPrediction
 from tarsus.control.walk_controller import WalkController
 
@@ -123,6 +124,18 @@ def test_a_felt_walk_that_begins_keeps_its_feet_in_their_workspaces():
             prediction = FootPrediction.of(before, *transitions.stance_intervals(before), transitions.bandwidth)
             # The first feet lifted off at the full twist, and those that stand were 11 mm outside at their lift-off.
             assert prediction.excess(controller._tick.twist[None], transitions.bounds).max() < 1e-4
+
+
+def test_a_foot_that_waits_on_felt_ground_takes_the_time_in_which_it_would_fall_behind():
+    controller = walking()
+    transitions, state = controller._walk.transitions, controller._tick.gait
+    late = state._replace(down=np.ones_like(state.down), clock=state.clock + 1.0)
+    felt = late._replace(felt=[FeltFoot()] * len(late.down))
+    in_time, waiting, felt_waiting = (transitions.stance_intervals(each)[1] for each in (state, late, felt))
+    reserve = waiting.min()
+    assert 0.0 < reserve < in_time.max()
+    assert (felt_waiting <= waiting).all()
+    assert felt_waiting.min() == 0.0
 
 
 class Waiting:

@@ -195,6 +195,9 @@ def stance_intervals(
     over = (stance_overhang(duty_factor) - 0.5) * duty_factor / frequency
     felt, begins = state.felt is not None, list[float]()
     ends: list[float] = []
+    # A foot that waits already is past its lift-off. On ground that is felt, feet often wait for a tick or two until
+    # others have landed: that is taken from the time in which they fall behind after lift-off.
+    least = 0.0 if felt else over
     for down, phase, number, offset in zip(
         state.down.tolist(), state.swing_phase.tolist(), state.step_number.tolist(), gait.offsets, strict=True
     ):
@@ -202,8 +205,7 @@ def stance_intervals(
         # A foot that has met the ground before its planned touchdown is where it may be from then on.
         begins.append(((max(touchdown, 0.0) if felt else 0.0) if down else (1 - phase) * (1 - duty_factor)) / frequency)
         lift_off = (touchdown + duty_factor) / frequency
-        # A foot that waits already is past its lift-off.
-        ends.append((max(lift_off, 0.0) if down else begins[-1] + duty_factor / frequency) + over)
+        ends.append(max(lift_off + over, least) if down else begins[-1] + duty_factor / frequency + over)
     return np.array(begins), np.array(ends)
 
 
