@@ -332,9 +332,9 @@ def test_a_foot_that_lifts_off_soon_is_not_lowered_where_others_take_its_load():
     assert stands([False, True], 2) == (False, False)
     # Where the walk waits, it does not lift off soon.
     assert stands([False, True], 20, 20) == (False, False)
-    # While the robot stands, feet wait for longer until they look for the ground.
-    assert stands([True, True], 20, 20, rests=True) == (True, False)
-    assert stands([True, True], 20, 60, rests=True) == (False, False)
+    # While the robot rests on the others, a foot that has stood stays.
+    assert stands([False, False], 20, 200, rests=True) == (True, False)
+    assert stands([False, False], 2, 200, rests=True) == (False, False)
 
 
 def test_a_foot_that_steps_down_a_slope_rises_over_the_middle_of_its_way():

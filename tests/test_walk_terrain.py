@@ -188,3 +188,22 @@ def test_late_and_wrong_contacts_cost_little():
     noisy = SensorSuite(contacts=FootSwitch(delay=0.05, flips=0.02), attitude=Sensor(noise=np.radians(1.0), delay=0.05))
     way, _ = in_physics(terrain.Flat(), sensors=noisy)
     assert way > 0.9
+
+
+@pytest.mark.parametrize(("since", "attitude"), [(0.0, True), (1.0, False)])
+def test_a_robot_that_stands_rests_whatever_a_switch_tells(since, attitude):
+    robot, places, dt = preset("strider"), [], 0.01
+    plant, controller = SimulatedPlant(robot, servos="catalogue"), RobotController(robot)
+    output = controller.output
+    plant.start(output)
+    for tick in range(400):
+        read = plant.step(output, dt)
+        contacts = np.array(read.contacts)
+        contacts[4] &= tick * dt < since
+        told = SensorReadings(contacts=contacts, attitude=read.attitude if attitude else None)
+        output = controller.step((0.0, 0.0, 0.0), dt, told)
+        places.append(np.append(plant.state.body.position[:2], plant.state.body.rpy[:2]))
+    moved = np.abs(places[-1] - places[50])
+    # The foot was pushed down: the robot moved by 6 mm, without an attitude by 0.05 to 0.14 m.
+    assert moved[:2].max() < 0.003
+    assert moved[2:].max() < np.radians(0.5)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import cmath
+import math
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -44,6 +45,8 @@ _SLOW_TRAVEL, _FAST_TRAVEL = 0.75, 0.92
 _LEAVING = 0.1
 # Speed with which feet look for the ground while others hold a robot that stands [m/s]: faster ones push it off them.
 _GENTLE = 0.02
+# How far below the expected ground they look for it [m]: a foot whose switch stays open would push the body over.
+_NEAR = 0.004
 
 
 class FeltGround:
@@ -140,7 +143,7 @@ class FeltGround:
             self.body.tilt = (valid.attitude[0] - roll, valid.attitude[1] - pitch)
         dt, ticks, self._unread, self._ticks, self._inputs = self._unread, self._ticks, 0.0, 0, None
         self.ground.see(valid, state)
-        leaving, rests = down if self._rests else timing.due(state, _LEAVING), self._rests
+        leaving, rests = timing.due(state, _LEAVING), self._rests and self.support.held
         estimated, age = self._loads.estimated, valid.contact_age
         self.contacts.step(measured, down, dt, age=age, count=ticks, leaving=leaving, rests=rests, estimated=estimated)
         touching = [self.contacts.touches(leg) for leg in range(len(down))]
@@ -268,8 +271,10 @@ class FeltGround:
         heading = cmath.exp(1j * state.yaw)
         known = self.contacts.is_known(leg) and (down or self.contacts.lifted[leg])
         searches = known and not (self.condition.in_air or self.missing.gives_up(leg))
-        room = (self.body.reach.lowest[leg] if searches else None, self.body.reach.highest[leg])
         goal = place if down else (complex(state.foothold[leg]) - state.origin) * heading.conjugate()
+        near = self.ground.at(goal) - _NEAR if self._rests and self.support.held else -math.inf
+        lowest = max(self.body.reach.lowest[leg], near)
+        room = (lowest if searches else None, self.body.reach.highest[leg])
         found = self.ground.under(place, goal, float(state.elevation.value[0]), room)
         back = self.missing.places.get(leg)
         return found if back is None else found._replace(place=state.origin + back * heading)

@@ -16,8 +16,6 @@ _LOST = 0.03
 _GRACE = 0.1
 # How long a foot that lifts off soon may be without contact, and still stand: its load may be gone before [s].
 _LEAVES = 0.15
-# The same while the robot stands: feet that press against each other take load off others for longer [s].
-_RESTS = 0.5
 # How long the body is lowered for a foot that finds no ground [s].
 _SEARCH = 1.5
 # How long a foot has stood that may lose contact for that time and still be support [s].
@@ -92,7 +90,7 @@ class FootContacts:
         leaving : sequence of bool, optional
             Which feet are to lift off soon: once these have stood, they are not lowered where others take their load.
         rests : bool
-            Whether the robot stands still on the other feet: those that have stood wait for their load, then.
+            Whether the robot stands still and is held by the feet that bear load: those that have stood stay, then.
         estimated : set of int
             Legs whose contacts are estimated by joint angles.
         """
@@ -109,8 +107,8 @@ class FootContacts:
             self.lifted[leg] = not on and (self.lifted[leg] or self._without[leg] > _LOST)
         self.standing = [t <= _LOST or e > _OPEN_AFTER for t, e in zip(self._without, self._evidence, strict=True)]
         for leg, leaves in enumerate(leaving or ()):
-            waits = leaves and self._without[leg] < (_RESTS if rests else _LEAVES)
-            self.standing[leg] = self.standing[leg] or (waits and self._settled[leg] > _SETTLED)
+            stays = rests or (leaves and self._without[leg] < _LEAVES)
+            self.standing[leg] = self.standing[leg] or (stays and self._settled[leg] > _SETTLED)
 
     def find_open(
         self,
