@@ -5,9 +5,16 @@ import numpy as np
 import pytest
 
 import tarsus
+from sample_gait_states import begun, rest_of, setup_of
 from tarsus.control.limitation import LimitationKind
 from tarsus.control.limiter.protocol import TwistGrant, TwistRequest
+from tarsus.control.terrain.foot_contacts import FootContacts
+from tarsus.control.terrain.ground_contact import met_ground
+from tarsus.control.terrain.ground_map import GroundMap
 from tarsus.control.terrain.missing_ground import MissingGround
+from tarsus.control.terrain.roughness import Roughness
+from tarsus.control.walk.felt_feet import FeltFoot
+from tarsus.control.walk.step_timing import StepTiming
 from tarsus.simulation import SimulatedPlant, terrain
 
 NAMES = ("LF", "LM", "LR", "RR", "RM", "RF")
@@ -322,6 +329,26 @@ def test_a_robot_that_tips_towards_a_foot_goes_back_at_once_but_not_far():
     for _ in range(100):
         stepped(missing, deep, stands=two)
     assert missing.back == 0
+
+
+@pytest.mark.parametrize(("phase", "due"), [(0.2, True), (0.8, False)])
+def test_feet_put_down_early_because_the_robot_tips_are_still_due(phase, due):
+    setup, rest = setup_of("strider"), rest_of("strider")
+    timing, lifted = StepTiming.of(setup.gait, 1.0), np.array([True, False] * 3)
+    state = begun(setup, rest)
+    state = state._replace(
+        clock=state.clock + phase * timing.swing_time,
+        down=~lifted,
+        swing_phase=np.where(lifted, phase, 0.0),
+        felt=[FeltFoot()] * 6,
+    )
+    contacts, missing = FootContacts(6), MissingGround(NAMES)
+    missing.tips = 1 + 0j
+    known, highest = (contacts, GroundMap(), Roughness(tarsus.GroundAdaptation()), missing), [0.0] * 6
+    after, landed = met_ground(state, *known, stopped=[], highest=highest, timing=timing, pace=1.0)
+    assert sorted(landed) == [0, 2, 4]
+    assert after.down.all()
+    assert timing.due(after, 0.0) == [on and due for on in lifted]
 
 
 def test_roughness_makes_a_hole_deeper_by_a_bounded_depth():

@@ -101,7 +101,10 @@ def met_ground(
 
 def _put_down(state: GaitState, landed: list[int], timing: StepTiming, pace: float) -> tuple[GaitState, list[int]]:
     """Return the state, and which feet have landed, with all feet put down: the robot tips where one has no ground."""
-    swings = [leg for leg, on in enumerate(state.down.tolist()) if not on]
+    swings, number = [leg for leg, on in enumerate(state.down.tolist()) if not on], state.step_number.copy()
+    # Feet that are far from their footholds are still due to lift off.
+    number[(state.swing_phase < _LANDING) & ~state.down] -= 1
+    state = state._replace(step_number=number)
     for leg in swings:
         state = _landed(state, leg, timing, pace)
         assert state.felt is not None  # a walk that feels the ground
