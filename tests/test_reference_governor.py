@@ -153,6 +153,20 @@ def test_a_foot_that_is_outside_allows_what_takes_it_no_farther_out():
     np.testing.assert_array_equal(governed_twist(now, np.zeros(3), back, **given_as), back)
 
 
+def test_a_foot_that_is_a_little_outside_before_it_lifts_off_does_not_stop_the_walk():
+    setup, limits = setup_of("strider"), velocity_limits_of("strider")
+    current, foot = np.array([0.1, 0.0, 0.0]), limits.rest.copy()
+    foot[1] -= polygon_radii(limits.bounds, limits.rest, np.array([-1.0 + 0j]))[1, 0] - 0.001
+    twist = CriticallyDamped.still(current)
+    now = moment_of(setup, limits.rest, foothold=EARTH + np.exp(1j * FACING) * foot, twist=twist)
+    given_as = {"begins": np.zeros(6), "bounds": limits.bounds, "bandwidth": BANDWIDTH}
+    assert worst(now, np.zeros(3), {**given_as, "ends": np.full(6, 0.04)}) > 0.001
+    kept = governed_twist(now, current, current, ends=np.full(6, 0.04), **given_as)
+    np.testing.assert_array_equal(kept, current)
+    # One that stands for long stops it.
+    assert governed_twist(now, current, current, ends=np.full(6, STANCE), **given_as)[0] < 0.03
+
+
 def test_where_the_current_target_does_not_work_any_more_as_much_less_as_does():
     setup, limits = setup_of("strider"), velocity_limits_of("strider")
     now = moment_of(setup, limits.rest, twist=CriticallyDamped.still(np.array([0.3, 0.0, 0.0])))

@@ -135,7 +135,8 @@ class BodyMotion:
         drift = self.odometry.step(measured.joint_angles, bears, velocity, dt, tilt=tilt, yaw=yaw)
         self.drift = self.stance.not_downhill(drift)
         margins = [(places[leg], over[leg] - (self.reach.lowest[leg] + self.lowered)) for leg in bears]
-        self.rates = self._posture.rates(self._ground.plane, self.tilt, velocity, feet=margins, stands=not twist.any())
+        stands = self.slope.refuses or not twist.any()
+        self.rates = self._posture.rates(self._ground.plane, self.tilt, velocity, feet=margins, stands=stands)
 
     def _fit_height(
         self,

@@ -182,7 +182,8 @@ class FeltGround:
         """
         due = None if standing else timing.due(state, dt)
         kept, before, self._idle = self._inputs, self._given, self._idle + dt
-        self._given, self._rests = (excluded, standing), not (any(twist.tolist()) or self.missing.refuses)
+        stands = not any(twist.tolist()) or (self.body.slope.refuses and self.support.halts)
+        self._given, self._rests = (excluded, standing), stands and not self.missing.refuses
         if kept is not None and not (due and any(due)) and self._given == before:
             return kept
         dt, self._idle, turn = self._idle, 0.0, cmath.exp(-1j * state.yaw)

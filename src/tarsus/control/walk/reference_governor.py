@@ -29,6 +29,8 @@ _TOLERANCE = 1e-9
 # Fractions of the path to the command that are tried, and fractions of a target that is no longer feasible.
 _FRACTIONS = np.array([0.0, 0.002, 0.006, 0.02, 0.06, 0.12, 0.22, 0.36, 0.55, 0.8, 1.0])[:, None]
 _REDUCTIONS = np.array([0.0, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 0.98, 1.0])[:, None]
+# How much farther out a foot may get that would be outside with the twist 0 as well [m].
+_SLACK = 0.005
 # Times within a stance at which its foot is examined, as fractions.
 _TIMES = np.array([0.0, 0.5, 1.0])[:, None]
 _NORMALS = np.stack([NORMALS.real, NORMALS.imag])
@@ -162,15 +164,8 @@ def governed_twist(
     last = _last_feasible(prediction.excess(targets, bounds + over[0, 0].clip(0.0)))
     if last is not None:
         return np.asarray(targets[last])
-    # No reduction keeps every foot inside: the one with the least excess.
-    still, here = over[0].ravel(), over[-1].ravel()
-    if here.max() <= still.max():
-        return current
-    broken = here > 0
-    gain = here[broken] - still[broken]
-    needed = np.where(gain > 0, here[broken] / np.where(gain > 0, gain, 1.0), 1.0).max()
-    slower: np.ndarray = current * (1 - min(float(needed), 1.0))
-    return slower
+    # One that gets outside even if the walk stops may get a little farther out, as it lifts off soon.
+    return np.asarray(reduced[_last_feasible(over - over[0].max(axis=0).clip(0.0) - _SLACK) or 0])
 
 
 def _last_feasible(excess: Float[np.ndarray, "n 3 legs 16"]) -> int | None:
