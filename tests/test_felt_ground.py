@@ -14,6 +14,7 @@ from tarsus.control.sensing.leg_odometry import LegOdometry
 from tarsus.control.sensing.validation import ReadingsValidator
 from tarsus.control.terrain.foot_contacts import FootContacts
 from tarsus.control.terrain.posture_feedback import PostureFeedback
+from tarsus.control.terrain.reach import Reach
 from tarsus.control.terrain.roughness import Roughness
 from tarsus.control.terrain.support import Support, holds
 from tarsus.control.walk.felt_feet import FeltFoot, FeltInputs, GroundUnder
@@ -125,7 +126,8 @@ def test_the_body_fits_itself_to_the_reach_and_gives_way_where_it_cannot():
 def test_what_a_leg_reaches_is_what_kinematics_says():
     controller = WalkController(STRIDER)
     posture, rest = controller._tick.gait.posture.value, controller._tick.gait.foot
-    lowest, highest = reachable_heights(STRIDER, posture, rest, np.full(6, 0.05 + 0j))
+    heights = reachable_heights(STRIDER, posture, rest, np.full(6, 0.05 + 0j))
+    lowest, highest = heights[0].max(axis=0), heights[1].min(axis=0)
     for leg in range(6):
         for height, works in ((lowest[leg], True), (highest[leg], True), (lowest[leg] - 0.03, False)):
             ahead = np.stack([rest.real + 0.025, rest.imag, np.full(6, height)], axis=-1)
@@ -135,7 +137,21 @@ def test_what_a_leg_reaches_is_what_kinematics_says():
             )
             assert all(np.asarray(solution.reach)[leg] == 0 for solution in found) == works
     nowhere, _ = reachable_heights(STRIDER, posture, rest + 0.5, np.zeros(6, dtype=complex))
-    assert nowhere == [0.0] * 6
+    assert not nowhere.any()
+
+
+def test_front_legs_reach_higher_ahead_and_rear_legs_behind():
+    controller, stroke = WalkController(STRIDER), 0.06
+    posture, rest = controller._tick.gait.posture.value, controller._tick.gait.foot
+    reach = Reach(STRIDER)
+    assert reach.highest_on_way(0, rest[0], rest[0]) == 0.0
+    reach.update(posture, rest, np.array([2 * stroke, 0.0, 0.0]), 0.5)
+    tops = [[reach.highest_on_way(leg, rest[leg] + x, rest[leg] + x) for x in (-0.03, 0.0, 0.03)] for leg in (0, 2)]
+    assert tops[0] == sorted(tops[0])
+    assert tops[1] == sorted(tops[1], reverse=True)
+    assert (tops[0][0], tops[1][2]) == (reach.highest[0], reach.highest[2])
+    # A way is as high as the lower of its ends.
+    assert reach.highest_on_way(0, rest[0] + 0.03, rest[0]) == tops[0][1]
 
 
 def test_support_slows_the_walk_down_only_where_feet_wait_for_long():
@@ -348,8 +364,9 @@ def test_a_foot_that_steps_down_a_slope_rises_over_the_middle_of_its_way():
 def test_a_foot_that_has_met_an_obstacle_goes_down_once_it_is_past_it():
     felt = FeltInputs([], [], [], 0.0, 0.0, (0.0, 0.0), 0j, 0j, 0.8, 1.0, 0.03, 1.0, {})
     risen = FeltFoot(top=0.05, top_phase=0.4, drawn_back=0j)
-    for place, goes_down in ((0.0j, False), (0.02 + 0j, False), (0.04 + 0j, True)):
-        under = GroundUnder(0.0, lowest=-0.2, highest=0.2)
+    known = {"way": 0.0}
+    for place, way, goes_down in ((0j, {}, False), (0.02 + 0j, {}, False), (0.04 + 0j, {}, True), (0j, known, True)):
+        under = GroundUnder(0.0, lowest=-0.2, highest=0.2, **way)
         height, _ = _swinging(0.05, risen, under, felt, 0.01, (0.6, 0.5, 0.0, place))
         assert (height < 0.05) == goes_down
 
@@ -514,6 +531,18 @@ def test_a_robot_that_is_picked_up_or_has_fallen_stops_and_goes_on_once_it_stand
     walked(2.0)
     assert walked(3.0)[0] > 0.25
     assert controller._walk.ground.condition.tilt == 0.0
+
+
+def test_a_foot_whose_swing_has_waited_looks_for_the_ground_as_long_as_any_other():
+    contacts = FootContacts(2)
+    for _ in range(300):
+        contacts.step([True, False], [True, False], 0.01)
+    for _ in range(100):
+        contacts.step([True, False], [True, True], 0.01)
+        assert contacts.seeks(1)
+    for _ in range(100):
+        contacts.step([True, False], [True, True], 0.01)
+    assert not contacts.seeks(1)
 
 
 def test_the_body_is_lowered_only_for_a_while_for_a_foot_without_ground():

@@ -151,8 +151,8 @@ class FeltGround:
         if self._loads.compliant:
             forces, feet = self._loads.forces(valid, angles), [(foot.real, foot.imag) for foot in state.foot.tolist()]
             self.offsets = self._loads.offsets(forces, dt, feet=feet, stands=down)
-        known, highest = (self.contacts, self.ground, self.body.roughness, self.missing), self.body.reach.highest
-        return met_ground(state, *known, stopped=stopped, highest=highest, timing=timing, pace=self.support.pace)
+        known, reach = (self.contacts, self.ground, self.body.roughness, self.missing), self.body.reach
+        return met_ground(state, *known, stopped=stopped, reach=reach, timing=timing, pace=self.support.pace)
 
     def inputs(
         self,
@@ -273,9 +273,10 @@ class FeltGround:
         known = self.contacts.is_known(leg) and (down or self.contacts.lifted[leg])
         searches = known and not (self.condition.in_air or self.missing.gives_up(leg))
         goal = place if down else (complex(state.foothold[leg]) - state.origin) * heading.conjugate()
+        reach = self.body.reach
         near = self.ground.at(goal) - _NEAR if self._rests and self.support.held else -math.inf
-        lowest = max(self.body.reach.lowest[leg], near)
-        room = (lowest if searches else None, self.body.reach.highest[leg])
+        lowest = max(reach.lowest[leg], near)
+        room = (lowest if searches else None, reach.highest_on_way(leg, place, goal))
         found = self.ground.under(place, goal, float(state.elevation.value[0]), room)
         back = self.missing.places.get(leg)
         return found if back is None else found._replace(place=state.origin + back * heading)

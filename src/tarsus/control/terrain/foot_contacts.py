@@ -61,7 +61,7 @@ class FootContacts:
         self._estimated: Set[int] = frozenset()
         self._unheld, self._tilt = 0.0, (0.0, 0.0)
         self._tilts, self.sunk = [(0.0, 0.0)] * legs, [0.0] * legs
-        self._without, self._with, self._evidence, self._settled = ([0.0] * legs for _ in range(4))
+        self._without, self._with, self._evidence, self._settled, self._searched = ([0.0] * legs for _ in range(5))
 
     def step(
         self,
@@ -104,6 +104,7 @@ class FootContacts:
                 self._settled[leg] += dt
             if not on:
                 self._settled[leg] = 0.0
+            self._searched[leg] = self._searched[leg] + dt if on and self._without[leg] > 0.0 else 0.0
             self.lifted[leg] = not on and (self.lifted[leg] or self._without[leg] > _LOST)
         self.standing = [t <= _LOST or e > _OPEN_AFTER for t, e in zip(self._without, self._evidence, strict=True)]
         for leg, leaves in enumerate(leaving or ()):
@@ -188,7 +189,7 @@ class FootContacts:
 
     def seeks(self, leg: int) -> bool:
         """Return whether a foot that should stand has no contact, and has not looked for the ground for long."""
-        return not self.standing[leg] and self._without[leg] < _SEARCH
+        return not self.standing[leg] and self._searched[leg] < _SEARCH
 
     def supports(self, leg: int) -> bool:
         """Return whether a foot that should stand counts as support."""

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from tarsus.control.terrain.foot_contacts import FootContacts
 from tarsus.control.terrain.ground_map import GroundMap
 from tarsus.control.terrain.missing_ground import MissingGround
+from tarsus.control.terrain.reach import Reach
 from tarsus.control.terrain.roughness import Roughness
 from tarsus.control.walk.felt_feet import FeltFoot
 from tarsus.control.walk.state import GaitState
@@ -45,7 +46,7 @@ def met_ground(
     missing: MissingGround,
     *,
     stopped: Sequence[int],
-    highest: Sequence[float],
+    reach: Reach,
     timing: StepTiming,
     pace: float,
 ) -> tuple[GaitState, list[int]]:
@@ -59,8 +60,8 @@ def met_ground(
         Where ground is expected; takes note of footholds and collisions.
     missing, stopped : MissingGround, sequence of int
         Decides where feet that are stopped again try next; legs that are stopped on their way.
-    highest, timing : sequence of float, StepTiming
-        Greatest height that each foot reaches, in the heading frame [m]; the gait and its frequency.
+    reach, timing : Reach, StepTiming
+        How high legs reach; the gait and its frequency.
     pace : float
         Rate of the steps, 0 to 1.
     """
@@ -69,17 +70,17 @@ def met_ground(
     turn = cmath.exp(-1j * state.yaw)
     places = ((state.foot - state.origin) * turn).tolist()
     for leg, (down, phase) in enumerate(zip(state.down.tolist(), state.swing_phase.tolist(), strict=True)):
-        top, foot, touches = elevation + highest[leg], state.felt[leg], contacts.estimator.touching[leg]
+        foot, touches = state.felt[leg], contacts.estimator.touching[leg]
         if down or phase <= _CLEAR:
             rises = foot.top > float(state.ground_height[leg]) or foot.slide
             if (contacts.feels(leg) or leg in stopped) and missing.tries(leg, places[leg]) and not rises:
-                state = _trying_again(state, leg, missing, top, state)
+                state = _trying_again(state, leg, missing, reach, state)
             continue
         leaves = missing.leaves((complex(state.foothold[leg]) - state.origin) * turn - places[leg])
         if not leaves and _collides_again(
             state, leg, side=contacts.feels(leg) and contacts.lifted[leg], stopped=leg in stopped
         ):
-            state = _trying_again(state, leg, missing, top, _landed(state, leg, timing, pace))
+            state = _trying_again(state, leg, missing, reach, _landed(state, leg, timing, pace))
             landed.append(leg)
         elif phase > _LANDING:
             # Contact that has not ceased since lift-off tells nothing: the foot lands where ground is expected.
@@ -95,7 +96,7 @@ def met_ground(
                 landed.append(leg)
         elif (touches or leg in stopped) and not leaves and _collides(state, leg, contacts):
             roughness.collided()
-            state = _rising_again(state, leg, top, timing)
+            state = _rising_again(state, leg, _highest(state, leg, state.foothold[leg], reach), timing)
     return _put_down(state, landed, timing, pace) if missing.tips else (state, landed)
 
 
@@ -161,12 +162,20 @@ def _rising_again(state: GaitState, leg: int, highest: float, timing: StepTiming
     return state._replace(felt=felt)
 
 
-def _trying_again(state: GaitState, leg: int, missing: MissingGround, highest: float, after: GaitState) -> GaitState:
+def _highest(state: GaitState, leg: int, goal: complex, reach: Reach) -> float:
+    """Return the greatest height in G of a foot on its way to a goal in G [m]."""
+    turn = cmath.exp(-1j * state.yaw)
+    start, end = ((complex(place) - state.origin) * turn for place in (state.foot[leg], goal))
+    return float(state.elevation.value[0]) + reach.highest_on_way(leg, start, end)
+
+
+def _trying_again(state: GaitState, leg: int, missing: MissingGround, reach: Reach, after: GaitState) -> GaitState:
     """Return the state with a foot that is stopped again: it is drawn back, and tries again while the walk stands."""
     assert after.felt is not None  # a walk that feels the ground
     height, turn = float(state.ground_height[leg]), cmath.exp(1j * state.yaw)
     foot, goal = ((complex(places[leg]) - state.origin) / turn for places in (state.foot, state.foothold))
-    top, back = min(height + _HIGHER, max(highest, height)), missing.stopped(leg, foot, goal)
+    top = min(height + _HIGHER, max(_highest(state, leg, state.foothold[leg], reach), height))
+    back = missing.stopped(leg, foot, goal)
     slide = _DRAWS_BACK * turn * back / max(abs(back), 1e-9)
     return after._replace(felt=_with(after.felt, leg, speed=0.0, acceleration=0.0, top=top, slide=slide))
 

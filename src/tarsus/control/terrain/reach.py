@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tarsus.gait.foot_plane import FootPlane
-from tarsus.gait.stance.reachable_heights import reachable_heights
+from tarsus.gait.stance.reachable_heights import STROKE_PLACES, reachable_heights
 from tarsus.gait.stance.stance_geometry import SWING_HEIGHT
 from tarsus.robot.robot import Robot
 
@@ -46,6 +46,8 @@ class Reach:
     def __init__(self, robot: Robot) -> None:
         self.lowest, self.highest = [0.0] * robot.legs, [0.0] * robot.legs
         self.stroke, self.strokes = 0.0, np.zeros(robot.legs, dtype=complex)
+        # Greatest height of each foot at the places of its stroke [m].
+        self._tops = [(0.0,) * len(STROKE_PLACES)] * robot.legs
         self._robot = robot
         self._key: tuple[float, ...] = ()
         self._rest: Complex[np.ndarray, "legs"] | None = None
@@ -76,7 +78,31 @@ class Reach:
         if key != self._key or rest is not self._rest:
             self._key, self._rest, strokes = key, rest, complex(x, y) + 1j * arc / _TURNING_ARM * rest
             self.stroke, self.strokes = float(np.abs(strokes).max()) / 2, strokes
-            self.lowest, self.highest = reachable_heights(self._robot, posture, rest, strokes)
+            lowest, highest = reachable_heights(self._robot, posture, rest, strokes)
+            self.lowest, self.highest = lowest.max(axis=0).tolist(), highest.min(axis=0).tolist()
+            self._tops = [tuple(heights) for heights in highest.T.tolist()]
+
+    def highest_on_way(self, leg: int, start: complex, end: complex) -> float:
+        """Return the greatest height of a foot on a way: front legs reach higher ahead, rear legs behind [m].
+
+        Parameters
+        ----------
+        leg : int
+            The leg.
+        start, end : complex
+            Where the way begins and ends, in the heading frame [m].
+        """
+        return min(self._highest_at(leg, start), self._highest_at(leg, end))
+
+    def _highest_at(self, leg: int, place: complex) -> float:
+        """Return the greatest height of a foot at a place, by how far along its stroke that is [m]."""
+        stroke = complex(self.strokes[leg])
+        if self._rest is None or not stroke:
+            return self.highest[leg]
+        ahead = ((place - complex(self._rest[leg])) * stroke.conjugate()).real / abs(stroke) ** 2
+        rear, middle, front = self._tops[leg]
+        share = min(2 * abs(ahead), 1.0)
+        return middle + share * ((front if ahead > 0 else rear) - middle)
 
     def highest_stand(self, swing_height: float, *, hangs: bool = False) -> list[float]:
         """Return the greatest height of each foot on the ground that leaves room for its swing [m].

@@ -1,4 +1,4 @@
-"""Between which heights legs reach the whole of their strokes, and how much of a slope that is."""
+"""Between which heights legs reach the places of their strokes, and how much of a slope that is."""
 
 from __future__ import annotations
 
@@ -13,7 +13,10 @@ from tarsus.robot.robot import Robot
 if TYPE_CHECKING:
     from jaxtyping import Complex, Float
 
-__all__ = ["reachable_heights", "reachable_share"]
+__all__ = ["STROKE_PLACES", "reachable_heights", "reachable_share"]
+
+# Places of a stroke that are looked at, from its rear end to its front end, over its length.
+STROKE_PLACES = (-0.5, 0.0, 0.5)
 
 # Heights that are tried about the level ground, over the length of femur and tibia.
 _TRIED = np.linspace(-0.8, 0.8, 121)
@@ -25,8 +28,8 @@ def reachable_heights(
     posture: Float[np.ndarray, "_"],
     rest: Complex[np.ndarray, "legs"],
     strokes: Complex[np.ndarray, "legs"],
-) -> tuple[list[float], list[float]]:
-    """Return the least and the greatest height of each foot in the heading frame [m].
+) -> tuple[Float[np.ndarray, "3 legs"], Float[np.ndarray, "3 legs"]]:
+    """Return the least and the greatest height of each foot at the places of its stroke, in the heading frame [m].
 
     Parameters
     ----------
@@ -42,14 +45,14 @@ def reachable_heights(
     g = robot.geometry
     levels = _TRIED * float(np.max(g.femur + g.tibia))
     stance = StanceGeometry(rest, np.array(rotation_rows(*posture[3:SWING_HEIGHT].tolist())), posture[:3], 0.0)
-    places = rest + np.array([-0.5, 0.0, 0.5])[:, None, None] * strokes
+    places = rest + np.array(STROKE_PLACES)[:, None, None] * strokes
     solution = stance.solve(robot, places.real, places.imag, levels[:, None])
-    beyond = np.asarray(~(joint_margin(g, solution) >= 0).all(axis=0))
+    beyond = np.asarray(~(joint_margin(g, solution) >= 0))
     ends = []
-    for sign, way in ((-1, beyond[_LEVEL::-1]), (1, beyond[_LEVEL:])):
+    for sign, way in ((-1, beyond[:, _LEVEL::-1]), (1, beyond[:, _LEVEL:])):
         # The last level before the first one that is out of reach.
-        steps = np.where(way.any(axis=0), way.argmax(axis=0) - 1, _LEVEL)
-        ends.append(levels[_LEVEL + sign * np.maximum(steps, 0)].tolist())
+        steps = np.where(way.any(axis=1), way.argmax(axis=1) - 1, _LEVEL)
+        ends.append(levels[_LEVEL + sign * np.maximum(steps, 0)])
     return ends[0], ends[1]
 
 
