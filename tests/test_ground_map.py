@@ -90,8 +90,8 @@ def test_the_ground_moves_back_under_feet_that_make_up_for_lost_way():
     assert known.at(0.09 + 0j) == pytest.approx(0.05)
 
 
-def choice(heights, leg=0, phase=0.1):
-    """How far beside its foothold a foot of a walking robot is put down on ground of some heights."""
+def stepping(leg=0, phase=0.1):
+    """State, reach and footholds of a walking robot with a foot in the air."""
     controller = tarsus.WalkController(STRIDER)
     for _ in range(5):
         controller.step((0.05, 0.0, 0.0), 0.01, SensorReadings(contacts=[True] * 6, attitude=(0.0, 0.0)))
@@ -99,18 +99,23 @@ def choice(heights, leg=0, phase=0.1):
     down, phases = state.down.copy(), state.swing_phase.copy()
     down[:], down[leg], phases[leg] = True, False, phase
     state = state._replace(down=down, swing_phase=phases, foot=state.foothold)
-    known = GroundMap()
+    return state, walk.ground.body.reach, walk.transitions.footholds
+
+
+def choice(heights, leg=0, phase=0.1):
+    """How far beside its foothold a foot of a walking robot is put down on ground of some heights."""
+    (state, reach, footholds), known = stepping(leg, phase), GroundMap()
     foothold = complex(state.foothold[leg]) - state.origin
     known.see(ValidReadings(ground=GroundHeights(heights=heights(X + 1j * Y - foothold))), state)
     feet = [(complex(state.foot[other]) - state.origin, 0.0) for other in range(6) if other != leg]
     known.step(feet, None, state, 0.03, drift=0j)
-    ahead, footholds = known, walk.transitions.footholds
-    ahead.choose(state, walk.ground.body.reach, footholds)
-    chosen = dict(ahead.beside)
-    ahead.choose(state, walk.ground.body.reach, footholds)
-    assert ahead.beside == chosen
-    ahead.choose(state._replace(down=np.ones(6, dtype=bool)), walk.ground.body.reach, footholds)
-    assert ahead.beside == {}
+    known.choose(state, reach, footholds)
+    chosen = dict(known.beside)
+    known.choose(state, reach, footholds)
+    assert known.beside == chosen
+    known.choose(state._replace(down=np.ones(6, dtype=bool)), reach, footholds)
+    assert known.beside == {}
+    assert known.shifted == chosen
     return chosen
 
 
@@ -122,6 +127,18 @@ def test_feet_keep_to_their_footholds_on_even_ground_and_away_from_edges_and_hol
     assert abs(edge.real) >= 0.02
     hole = choice(lambda place: np.where(np.abs(place) < 0.035, -0.3, 0.0))[0]
     assert abs(hole) > 0.035
+    # Away from an edge that is 30 mm off, if there is no ground beyond it.
+    assert choice(lambda place: np.where(place.real > 0.03, -0.3, 0.0))[0].real < 0.0
+
+
+def test_a_foot_over_a_hole_gets_another_foothold_as_soon_as_there_is_one():
+    (state, reach, footholds), known = stepping(), GroundMap()
+    for depth in (0.3, 0.0):
+        known.see(ValidReadings(ground=GroundHeights(heights=np.where(X > 0.1, -depth, 0.0))), state)
+        known.step([(complex(foot), 0.0) for foot in REST[1:5]], None, state, 0.03, drift=0j)
+        known.choose(state, reach, footholds)
+        assert bool(known.holes) == bool(depth)
+    assert known.beside == {0: 0j}
 
 
 def test_a_foot_passes_over_what_is_on_its_way_and_rises_first_where_that_is_near():

@@ -351,6 +351,24 @@ def test_feet_put_down_early_because_the_robot_tips_are_still_due(phase, due):
     assert timing.due(after, 0.0) == [on and due for on in lifted]
 
 
+def test_the_edge_is_where_the_step_leads_wherever_its_foothold_was_chosen():
+    missing = MissingGround(NAMES)
+    missing.shifted = {0: -0.06 + 0.02j}
+    stepped(missing, [(0, 0.08, True, True)], [AHEAD[0] - 0.06 + 0.02j, *REST[1:]])
+    assert missing.places[0].real < REST[0].real
+    assert limited(missing, 0.1, 0.0, 0.0).fraction == 0.0
+
+
+def test_a_robot_that_is_carried_away_forgets_an_obstacle():
+    missing = MissingGround(NAMES)
+    for _ in range(5):
+        missing.stopped(0, REST[0] - 0.05, REST[0] + 0.05)
+    assert missing.leaves(-0.05 + 0.0j)
+    missing.forget()
+    assert not missing.leaves(-0.05 + 0.0j)
+    assert limited(missing, 0.1, 0.0, 0.0).fraction == 1.0
+
+
 def test_roughness_makes_a_hole_deeper_by_a_bounded_depth():
     assert stepped(MissingGround(NAMES), [(0, 0.11, True, True)], roughness=1.0).places
 

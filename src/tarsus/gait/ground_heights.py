@@ -16,7 +16,7 @@ from tarsus.representation import represented
 if TYPE_CHECKING:
     from jaxtyping import Bool, Float, Shaped
 
-__all__ = ["GroundHeights", "Heights", "better_foothold", "highest_on_way", "is_steep"]
+__all__ = ["GroundHeights", "Heights", "better_foothold", "highest_on_way", "is_steep", "lowest_near"]
 
 Heights: TypeAlias = "Callable[[Shaped[np.ndarray, '...']], Shaped[np.ndarray, '...']]"
 """Heights of the ground at places x + iy [m]."""
@@ -25,8 +25,11 @@ Heights: TypeAlias = "Callable[[Shaped[np.ndarray, '...']], Shaped[np.ndarray, '
 _RINGS = [(0.02, 0.0), (0.04, 0.5), (0.06, 0.0)]
 TRIED = np.array([0j, *(cmath.rect(far, (k + turned) * math.pi / 4) for far, turned in _RINGS for k in range(8))])
 _AROUND = 0.02 * np.array([0j, 1.0, -1.0, 1j, -1j])
-# What a metre costs: out of reach, off the plane of the feet, up or down an edge, away from the foothold of the step.
-_OUT_OF_REACH, _OFF_PLANE, _EDGE, _AWAY = 3.0, 0.3, 0.5, 0.15
+# How far feet keep away from ground that is too low to stand on [m], and where that is looked for.
+_CLEAR, _RING = 0.04, np.append(0j, np.exp(0.25j * np.pi * np.arange(8)))
+# What a metre costs: out of reach, near ground too low, off the plane of the feet, up or down an edge, away from the
+# foothold of the step.
+_OUT_OF_REACH, _NEAR_HOLE, _OFF_PLANE, _EDGE, _AWAY = 3.0, 1.0, 0.3, 0.5, 0.15
 # Room that a foot keeps to the end of its leg's reach [m].
 _ROOM = 0.01
 # Points on the way of a foot, and how far ahead [m] ground higher by how much [m] makes it steep.
@@ -111,9 +114,25 @@ def better_foothold(
     cost = _EDGE * np.abs(around - under[:, None]).max(axis=1) + _AWAY * np.abs(tried)
     cost += _OFF_PLANE * np.abs(under - level(places[:, 0]))
     cost += _OUT_OF_REACH * np.maximum(np.maximum(lowest + _ROOM - under, under - highest), 0.0)
+    cost += _NEAR_HOLE * np.maximum(lowest + _ROOM - lowest_near(heights, places[:, 0], within=_CLEAR), 0.0)
     way = heights(start + (places - start) * _ALONG).max(axis=1)
     cost += _OUT_OF_REACH * np.maximum(way + _ROOM - over, 0.0)
     return complex(tried[int(cost.argmin())])
+
+
+def lowest_near(heights: Heights, places: Shaped[np.ndarray, "..."], *, within: float) -> Shaped[np.ndarray, "..."]:
+    """Return how low the ground is at most around places [m].
+
+    Parameters
+    ----------
+    heights : callable
+        Heights of the ground.
+    places : complex array, shape (...)
+        The places [m].
+    within : float
+        How far around them [m].
+    """
+    return np.asarray(heights(places[..., None] + within * _RING).min(axis=-1))
 
 
 def highest_on_way(heights: Heights, start: complex, end: complex) -> float:

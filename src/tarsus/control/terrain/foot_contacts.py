@@ -16,7 +16,7 @@ _LOST = 0.03
 _GRACE = 0.1
 # How long a foot that lifts off soon may be without contact, and still stand: its load may be gone before [s].
 _LEAVES = 0.15
-# How long the body is lowered for a foot that finds no ground [s].
+# How long a foot that should stand looks for the ground, and the body is lowered for it [s].
 _SEARCH = 1.5
 # How long a foot has stood that may lose contact for that time and still be support [s].
 _SETTLED = 0.05

@@ -17,7 +17,7 @@ from tarsus.control.walk.felt_feet import GroundUnder
 from tarsus.control.walk.state import GaitState
 from tarsus.gait.foot_plane import FootPlane, fitted_plane
 from tarsus.gait.foot_polygons import NORMALS_CONJUGATE
-from tarsus.gait.ground_heights import TRIED, GroundHeights, better_foothold, highest_on_way, is_steep
+from tarsus.gait.ground_heights import TRIED, GroundHeights, better_foothold, highest_on_way, is_steep, lowest_near
 from tarsus.gait.stance.stance_geometry import SWING_HEIGHT
 
 if TYPE_CHECKING:
@@ -35,6 +35,8 @@ _LOWERED = 0.35
 _AROUND = 0.03 * np.append(np.exp(0.25j * np.pi * np.arange(8)), 0.0)
 # Swing phase up to which a foothold is chosen.
 _CHOOSING = 0.3
+# How close to a hole a foot is not put down [m].
+_EDGE = 0.02
 # Room of the body over the ground [m].
 _CLEAR = 0.015
 # Points under the body, over half its length and width: a little farther at front and rear.
@@ -58,13 +60,15 @@ class GroundMap:
         Whether any heights are known.
     beside : dict of int to complex
         How far from the foothold of its step each foot in the air is put down, in the heading frame [m].
+    shifted : dict of int to complex
+        How far from the foothold of its step each foot was put down last, in the heading frame [m].
     holes : dict of int to complex
         Where feet in the air would be put down into a hole, in the heading frame [m].
     """
 
     def __init__(self) -> None:
         self.plane, self.given, self.beside = FootPlane(), False, dict[int, complex]()
-        self.holes = dict[int, complex]()
+        self.holes, self.shifted = dict[int, complex](), dict[int, complex]()
         self._seen: GroundHeights | None = None
         # How far under the plane of the feet ground is that they step on [m].
         self._deepest = math.inf
@@ -197,9 +201,10 @@ class GroundMap:
         highest, turn = reach.highest_stand(float(state.posture.value[SWING_HEIGHT])), cmath.exp(-1j * state.yaw)
         for leg, (down, phase) in enumerate(zip(state.down.tolist(), state.swing_phase.tolist(), strict=True)):
             if down:
-                self.beside.pop(leg, None)
+                if leg in self.beside:
+                    self.shifted[leg] = self.beside.pop(leg)
                 self.holes.pop(leg, None)
-            elif leg not in self.beside and 0 < phase < _CHOOSING:
+            elif (leg not in self.beside or leg in self.holes) and 0 < phase < _CHOOSING:
                 kept = np.abs((NORMALS_CONJUGATE * reach.strokes[leg]).real) / 2
                 slack = footholds.placement_bounds[leg] - kept.clip(_STROKE_SHARE * footholds.placement_radii[leg])
                 start, end = ((complex(at[leg]) - state.origin) * turn for at in (state.foot, state.foothold))
@@ -207,7 +212,8 @@ class GroundMap:
                 heights = (reach.lowest[leg], highest[leg], reach.highest[leg])
                 self.beside[leg] = better_foothold(self._lies, self._level, start, end, allowed=allowed, reach=heights)
                 place = np.array(end + self.beside[leg])
-                if self._lies(place) < self._level(place) - self._deepest:
+                self.holes.pop(leg, None)
+                if lowest_near(self._lies, place, within=_EDGE) < self._level(place) - self._deepest:
                     self.holes[leg] = end
 
     def under(

@@ -62,7 +62,7 @@ def not_sunk(
     roughness, tips : float, bool
         How far ground is off the expected one [m]; whether the robot tips or feet step back: then, none may.
     """
-    over = (state.ground_height - state.elevation.value + _HANGS + min(_ROUGH * roughness, _ROUGHEST)).tolist()
+    over = (state.ground_height - state.elevation.value + _HANGS + _deeper(roughness)).tolist()
     return [on and not tips and over[leg] > ground.at(places[leg]) for leg, on in enumerate(down)]
 
 
@@ -88,10 +88,13 @@ class MissingGround:
         Towards which foot that sinks the robot tips: its direction in the heading frame; 0 without one.
     sunk : sequence of float
         By how much the body has sunk at each foot since that lost its contact [m].
+    shifted : mapping of int to complex
+        How far from the foothold of its step each foot was put down, in the heading frame [m].
     """
 
     def __init__(self, names: Sequence[str]) -> None:
         self.sunk: Sequence[float] = [0.0] * len(names)
+        self.shifted: Mapping[int, complex] = {}
         self.places, self.pace, self.back = dict[int, complex](), 1.0, 0j
         self.stops, self._beside = dict[int, tuple[int, complex, complex]](), dict[int, complex]()
         self._names, self._tries, self._cause = names, [0] * len(names), ("", "")
@@ -112,7 +115,7 @@ class MissingGround:
         for found in (self.places, self.stops, self._beside):
             found.clear()
         self._tries = [0] * len(self._names)
-        self._way, self.refuses, self._again = 0j, False, 0
+        self._way, self._obstacle, self.refuses, self._again = 0j, 0j, False, 0
 
     def steps_back(self, leg: int, foot: complex) -> bool:
         """Return whether a foot, here in the heading frame, is on its way to another place."""
@@ -172,27 +175,17 @@ class MissingGround:
             self._tries[leg] = 0
             self.stops.pop(leg, None)
         self.pace, self.back, self._slows = 1.0 - self.refuses, 0j, ""
-        rough, self.tips = min(_ROUGH * roughness, _ROUGHEST), 0j
+        rough, self.tips = _deeper(roughness), 0j
         held = not searches or holds([foot for foot, on in zip(feet, stands, strict=True) if on], centre)
         for leg, depth, falls, lasts in searches:
+            way = _way(feet[leg] - self.shifted.get(leg, 0j) - rest[leg], rest[leg])
             slowest = 0.0 if falls else _SLOWEST
             pace = max(1 - (depth - rough - _SLOWS) / (_STANDS - _SLOWS), slowest)
             self.pace, self._slows = min((self.pace, self._slows), (pace, self._names[leg]))
             missing = depth > _DEEP * height + rough or not (lasts or leg in self.places)
-            self._tip(
-                _way(feet[leg] - rest[leg], rest[leg]),
-                tips=depth + max(self.sunk[leg], 0.0) > _STANDS + rough and not held,
-            )
+            self._tip(way, tips=depth + max(self.sunk[leg], 0.0) > _STANDS + rough and not held)
             if missing and not (self.steps_back(leg, feet[leg]) or self.gives_up(leg)):
-                self._tries[leg] += 1
-                if self._tries[leg] == 1 and not self.refuses:
-                    self._leads(feet[leg] - rest[leg], rest[leg])
-                self.places[leg] = rest[leg] - _BACK[min(self._tries[leg], len(_BACK)) - 1] * radii[leg] * self._way
-                # Ground that is seen and not reached from here may be reached with other footholds.
-                reached = f"no ground within {1e3 * depth:.0f} mm below the other feet"
-                shallow = depth < _SHALLOW
-                self._cause = self._names[leg], "the ground is lower than the leg reaches" if shallow else reached
-                self._again += 0 if shallow or roughness > _UNSURE else _AGAIN
+                self._step_back(leg, depth, way, rest[leg], radii[leg], sure=roughness <= _UNSURE)
         self._since = 0.0 if self.places else self._since + dt
         if not self.places:
             # A robot that tips where a foot sinks goes back at once.
@@ -209,6 +202,17 @@ class MissingGround:
         if not self.stops and self._backed < _BACKS and not holds(firm, centre + _MARGIN * self._way):
             self.back = -_SPEED * self._way
             self._backed += _SPEED * dt
+
+    def _step_back(self, leg: int, depth: float, way: complex, rest: complex, radius: float, *, sure: bool) -> None:
+        """Choose a place behind its rest foothold for a foot on this way that finds no ground at this depth [m]."""
+        self._tries[leg] += 1
+        if self._tries[leg] == 1 and not self.refuses:
+            self._way = way
+        self.places[leg] = rest - _BACK[min(self._tries[leg], len(_BACK)) - 1] * radius * self._way
+        # Ground that is seen and not reached from here may be reached with other footholds.
+        reached, shallow = f"no ground within {1e3 * depth:.0f} mm below the other feet", depth < _SHALLOW
+        self._cause = self._names[leg], "the ground is lower than the leg reaches" if shallow else reached
+        self._again += _AGAIN if sure and not shallow else 0
 
     def _tip(self, way: complex, *, tips: bool) -> None:
         """Take note that the robot tips this way, if it does: no foot tries to get past an obstacle then."""
@@ -236,16 +240,12 @@ class MissingGround:
     def sees(self, holes: Mapping[int, complex], rest: Sequence[complex]) -> None:
         """Take note of feet in the air that would be put down into a hole: where, and their rest footholds [m]."""
         for leg, place in holes.items():
-            self._leads(place - rest[leg], rest[leg])
+            self._way = _way(place - rest[leg], rest[leg])
             self._cause, self._again = (self._names[leg], "no ground within reach at its next foothold"), _AGAIN
 
     def held(self, shift: complex) -> complex:
         """Return the part of a velocity of all feet by which the body would go on where it may not [m/s]."""
         return min((shift * self._way.conjugate()).real, 0.0) * self._way if self.refuses else 0j
-
-    def _leads(self, off: complex, rest: complex) -> None:
-        """Take the way of a leg's foot from its rest foothold for that to the edge."""
-        self._way = _way(off, rest)
 
     def limit(self, request: TwistRequest, grant: TwistGrant) -> TwistGrant:
         """Return the grant, without a twist that leads over the edge; one that leads away is granted from then on."""
@@ -262,6 +262,11 @@ class MissingGround:
         if any(request.twist) and not self.places:
             self._way = 0j
         return grant
+
+
+def _deeper(roughness: float) -> float:
+    """Return how much deeper ground may be where the ground is rough [m]."""
+    return min(_ROUGH * roughness, _ROUGHEST)
 
 
 def _leads_away(velocity: complex, way: complex) -> bool:
