@@ -23,9 +23,18 @@ AHEAD = [REST[0] + 0.05, *REST[1:]]
 
 
 def stepped(
-    missing, searches, feet=AHEAD, *, stands=(False, *[True] * 5), centre=0j, roughness=0.0, sunk=(0.0,) * 6, dt=0.01
+    missing,
+    searches,
+    feet=AHEAD,
+    *,
+    stands=(False, *[True] * 5),
+    centre=0j,
+    roughness=0.0,
+    sunk=(0.0,) * 6,
+    dt=0.01,
+    twist=(0.0, 0.0, 0.0),
 ):
-    sizes, missing.sunk = {"height": 0.1, "roughness": roughness}, sunk
+    sizes, missing.sunk, missing.twist = {"height": 0.1, "roughness": roughness}, sunk, twist
     missing.step(searches, feet, stands, dt, centre=centre, rest=REST, radii=[0.05] * 6, **sizes)
     return missing
 
@@ -315,6 +324,22 @@ def test_a_robot_crosses_a_trench_that_it_sees():
     assert walk.go(0.19, 4.5) > 0.35 + 0.08
 
 
+@pytest.mark.parametrize(("twist", "way"), [((0.1, 0.0, 0.0), 1), ((0.0, 0.0, 0.3), 1j * REST[0]), ((0.0,) * 3, -1)])
+def test_a_foot_that_loses_its_ground_while_it_is_moved_has_met_the_edge_on_its_way(twist, way):
+    # It has passed its rest foothold already.
+    missing, feet = MissingGround(NAMES), [REST[0] - 0.02, *REST[1:]]
+    stepped(missing, [], feet, stands=[True] * 6, twist=twist)
+    # The robot is stopped, or sent back, while it looks for the ground.
+    stepped(missing, [(0, 0.08, True, True)], feet, twist=(-0.1, 0.0, 0.0))
+    assert ((missing.places[0] - REST[0]) / way).real < 0
+    assert missing.held(-0.01 * way) == pytest.approx(0.0)
+    limited(missing, *(0.1 * np.array([complex(way).real, complex(way).imag, 0.0])))
+    assert missing.held(-0.01 * way) == pytest.approx(-0.01 * way)
+    two = [False, True, False, False, True, False]
+    missing = stepped(MissingGround(NAMES), [], feet, twist=twist)
+    assert (stepped(missing, [(0, 0.03, True, True)], feet, stands=two).back / way).real < 0
+
+
 def test_a_robot_that_tips_towards_a_foot_goes_back_at_once_but_not_far():
     two = [False, True, False, False, True, False]
     missing, deep = MissingGround(NAMES), [(0, 0.03, True, True)]
@@ -353,7 +378,8 @@ def test_feet_put_down_early_because_the_robot_tips_are_still_due(phase, due):
 
 def test_the_edge_is_where_the_step_leads_wherever_its_foothold_was_chosen():
     missing = MissingGround(NAMES)
-    missing.shifted = {0: -0.06 + 0.02j}
+    missing.twist = (0.1, 0.0, 0.0)
+    stepped(missing, [])
     stepped(missing, [(0, 0.08, True, True)], [AHEAD[0] - 0.06 + 0.02j, *REST[1:]])
     assert missing.places[0].real < REST[0].real
     assert limited(missing, 0.1, 0.0, 0.0).fraction == 0.0

@@ -247,7 +247,7 @@ class FeltGround:
         rough, tips = self.body.roughness.value, bool(missing.tips or missing.places)
         near = not_sunk(state, self.ground, places, down, roughness=rough, tips=tips)
         contacts.find_open(near, places, centre, self.measured.attitude, dt)
-        missing.sunk, missing.shifted = contacts.sunk, self.ground.shifted
+        missing.sunk, missing.twist = contacts.sunk, state.twist.value.tolist()
         if self.condition.carried:
             missing.forget()
         on_ground = enumerate(contacts.standing)

@@ -60,15 +60,13 @@ class GroundMap:
         Whether any heights are known.
     beside : dict of int to complex
         How far from the foothold of its step each foot in the air is put down, in the heading frame [m].
-    shifted : dict of int to complex
-        How far from the foothold of its step each foot was put down last, in the heading frame [m].
     holes : dict of int to complex
         Where feet in the air would be put down into a hole, in the heading frame [m].
     """
 
     def __init__(self) -> None:
         self.plane, self.given, self.beside = FootPlane(), False, dict[int, complex]()
-        self.holes, self.shifted = dict[int, complex](), dict[int, complex]()
+        self.holes = dict[int, complex]()
         self._seen: GroundHeights | None = None
         # How far under the plane of the feet ground is that they step on [m].
         self._deepest = math.inf
@@ -201,8 +199,7 @@ class GroundMap:
         highest, turn = reach.highest_stand(float(state.posture.value[SWING_HEIGHT])), cmath.exp(-1j * state.yaw)
         for leg, (down, phase) in enumerate(zip(state.down.tolist(), state.swing_phase.tolist(), strict=True)):
             if down:
-                if leg in self.beside:
-                    self.shifted[leg] = self.beside.pop(leg)
+                self.beside.pop(leg, None)
                 self.holes.pop(leg, None)
             elif (leg not in self.beside or leg in self.holes) and 0 < phase < _CHOOSING:
                 kept = np.abs((NORMALS_CONJUGATE * reach.strokes[leg]).real) / 2

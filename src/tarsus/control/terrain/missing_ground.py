@@ -29,6 +29,8 @@ _ROUGH, _ROUGHEST, _UNSURE = 2.5, 0.03, 0.015
 _BACK = (0.4, 1.0)
 # A foot this close to its place is there; one this far from its rest foothold is on that side of it [m].
 _THERE, _OFF = 0.004, 0.01
+# A foot that was moved faster over the ground has met the edge on that way [m/s].
+_MOVES = 0.005
 # The body backs off until feet this far from the edge hold it with this margin [m], so far at most [m], so fast [m/s].
 _FIRM, _MARGIN, _BACKS, _SPEED = 0.06, 0.03, 0.08, 0.15
 # How often a foot is stopped until it is put down beside its way, on how many sides, how far, or before that [m].
@@ -88,18 +90,20 @@ class MissingGround:
         Towards which foot that sinks the robot tips: its direction in the heading frame; 0 without one.
     sunk : sequence of float
         By how much the body has sunk at each foot since that lost its contact [m].
-    shifted : mapping of int to complex
-        How far from the foothold of its step each foot was put down, in the heading frame [m].
+    twist : sequence of float
+        How the robot walks [m/s, m/s, rad/s].
     """
 
     def __init__(self, names: Sequence[str]) -> None:
         self.sunk: Sequence[float] = [0.0] * len(names)
-        self.shifted: Mapping[int, complex] = {}
         self.places, self.pace, self.back = dict[int, complex](), 1.0, 0j
         self.stops, self._beside = dict[int, tuple[int, complex, complex]](), dict[int, complex]()
         self._names, self._tries, self._cause = names, [0] * len(names), ("", "")
         self._way, self._obstacle, self._backed, self.refuses = 0j, 0j, 0.0, False
         self._again, self._since, self._slows, self.tips = 0, 0.0, "", 0j
+        # The twist before any foot searched is that by which it has met the edge.
+        self.twist: Sequence[float] = (0.0, 0.0, 0.0)
+        self._walked: Sequence[float] = self.twist
 
     @property
     def limitations(self) -> list[Limitation]:
@@ -166,6 +170,7 @@ class MissingGround:
         height, roughness : float
             Body height, and how far ground is off the expected one [m].
         """
+        self._walked = self._walked if searches else self.twist
         searching = [search[0] for search in searches]
         for leg in [leg for leg in self._beside if not self.steps_back(leg, feet[leg])]:
             self.places[leg] = self._beside.pop(leg)
@@ -178,7 +183,7 @@ class MissingGround:
         rough, self.tips = _deeper(roughness), 0j
         held = not searches or holds([foot for foot, on in zip(feet, stands, strict=True) if on], centre)
         for leg, depth, falls, lasts in searches:
-            way = _way(feet[leg] - self.shifted.get(leg, 0j) - rest[leg], rest[leg])
+            way = self._to_edge(feet[leg], rest[leg])
             slowest = 0.0 if falls else _SLOWEST
             pace = max(1 - (depth - rough - _SLOWS) / (_STANDS - _SLOWS), slowest)
             self.pace, self._slows = min((self.pace, self._slows), (pace, self._names[leg]))
@@ -246,6 +251,12 @@ class MissingGround:
     def held(self, shift: complex) -> complex:
         """Return the part of a velocity of all feet by which the body would go on where it may not [m/s]."""
         return min((shift * self._way.conjugate()).real, 0.0) * self._way if self.refuses else 0j
+
+    def _to_edge(self, foot: complex, rest: complex) -> complex:
+        """Return the way to the edge at a foot: its own over the ground, or that from its rest foothold if it stood."""
+        vx, vy, wz = self._walked
+        velocity = complex(vx, vy) + 1j * wz * rest
+        return velocity / abs(velocity) if abs(velocity) > _MOVES else _way(foot - rest, rest)
 
     def limit(self, request: TwistRequest, grant: TwistGrant) -> TwistGrant:
         """Return the grant, without a twist that leads over the edge; one that leads away is granted from then on."""
