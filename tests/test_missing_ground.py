@@ -75,7 +75,7 @@ def test_a_walk_that_slows_down_says_for_which_foot_and_why():
     assert named(stepped(missing, [(1, 0.0, False, True)])) == [("LM", "an obstacle stops the foot")]
 
 
-def test_a_foot_without_ground_steps_back_twice_and_then_gives_up():
+def test_a_foot_without_ground_steps_back_then_the_body_backs_off_and_then_the_foot_gives_up():
     missing = stepped(MissingGround(NAMES), [(0, 0.08, True, True)])
     first = missing.places[0]
     assert missing.steps_back(0, AHEAD[0])
@@ -86,13 +86,26 @@ def test_a_foot_without_ground_steps_back_twice_and_then_gives_up():
     second = stepped(missing, [(0, 0.08, True, True)], [first, *REST[1:]]).places[0]
     assert second.real < first.real
     assert not missing.gives_up(0)
-    stepped(missing, [(0, 0.01, False, False)], [second, *REST[1:]])
+    stepped(missing, [(0, 0.01, False, False)], [second, *REST[1:]], centre=-0.1 + 0j)
+    assert not missing.gives_up(0)
+    # Though the others hold it, the body backs off, by which the foot gets back to where it has stood.
+    assert missing.back == 0
+    stepped(missing, [(0, 0.08, True, False)], [second, *REST[1:]], centre=-0.1 + 0j)
+    assert missing.back.real < 0
     assert not missing.gives_up(0)
     stepped(missing, [(0, 0.08, True, False)], [second, *REST[1:]])
     assert missing.gives_up(0)
     # Once it stands, it may again.
     assert not stepped(missing, [], stands=[True] * 6).places
     assert not missing.gives_up(0)
+
+
+def test_a_foot_that_hangs_at_the_end_of_its_reach_at_another_place_steps_on():
+    missing = stepped(MissingGround(NAMES), [(0, 0.06, False, False)])
+    first = missing.places[0]
+    # On its way down it looks further.
+    assert stepped(missing, [(0, 0.06, True, False)], [first, *REST[1:]]).places[0] == first
+    assert stepped(missing, [(0, 0.06, False, False)], [first, *REST[1:]]).places[0].real < first.real
 
 
 def test_a_foot_at_its_rest_foothold_steps_inwards():

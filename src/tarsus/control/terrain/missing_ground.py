@@ -25,8 +25,9 @@ SLOW = 0.85
 # How much deeper ground may be on rough ground: over the roughness, and at most [m]; from which roughness on it is not
 # sure that there is none [m].
 _ROUGH, _ROUGHEST, _UNSURE = 2.5, 0.03, 0.015
-# Where a foot steps back to, from its rest foothold against its way, over how far from there it may stand.
-_BACK = (0.4, 1.0)
+# Where a foot steps back to, from its rest foothold against its way, over how far from there it may stand; as it does so
+# for the last time, the body backs off as far as it may.
+_BACK = (0.4, 1.0, 1.0)
 # A foot this close to its place is there; one this far from its rest foothold is on that side of it [m].
 _THERE, _OFF = 0.004, 0.01
 # A foot that was moved faster over the ground has met the edge on that way [m/s].
@@ -187,7 +188,9 @@ class MissingGround:
             slowest = 0.0 if falls else _SLOWEST
             pace = max(1 - (depth - rough - _SLOWS) / (_STANDS - _SLOWS), slowest)
             self.pace, self._slows = min((self.pace, self._slows), (pace, self._names[leg]))
-            missing = depth > _DEEP * height + rough or not (lasts or leg in self.places)
+            # At another place, a foot does not search for long at the end of its reach.
+            hangs = not falls and depth > _STANDS + rough if leg in self.places else not lasts
+            missing = depth > _DEEP * height + rough or hangs
             self._tip(way, tips=depth + max(self.sunk[leg], 0.0) > _STANDS + rough and not held)
             if missing and not (self.steps_back(leg, feet[leg]) or self.gives_up(leg)):
                 self._step_back(leg, depth, way, rest[leg], radii[leg], sure=roughness <= _UNSURE)
@@ -204,7 +207,8 @@ class MissingGround:
         self.pace, self._slows, turn = 0.0, "", self._way.conjugate()
         edge = min((feet[leg] * turn).real for leg in self.places) - _FIRM
         firm = [foot for foot, on in zip(feet, stands, strict=True) if on and (foot * turn).real < edge]
-        if not self.stops and self._backed < _BACKS and not holds(firm, centre + _MARGIN * self._way):
+        enough = max(self._tries) < len(_BACK) and holds(firm, centre + _MARGIN * self._way)
+        if not (self.stops or enough) and self._backed < _BACKS:
             self.back = -_SPEED * self._way
             self._backed += _SPEED * dt
 
