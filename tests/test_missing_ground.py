@@ -408,6 +408,32 @@ def test_a_robot_that_is_carried_away_forgets_an_obstacle():
     assert limited(missing, 0.1, 0.0, 0.0).fraction == 1.0
 
 
+def test_a_foot_that_an_obstacle_has_stopped_looks_for_the_ground_like_any_other_once_the_robot_tips():
+    missing, two = MissingGround(NAMES), [False, True, False, False, True, False]
+    missing.stopped(0, REST[0], REST[0] + 0.05)
+    stepped(missing, [(0, 0.03, True, True)], REST, stands=two)
+    assert not missing.places
+    # A walk that waits says for which foot and why.
+    assert [(each.leg, each.cause) for each in missing.limitations] == [("LF", "the foot looks for the ground")]
+
+
+def test_a_walk_that_the_ground_slows_down_or_stops_always_says_why():
+    drawn, rest = np.random.default_rng(0), np.array(REST)
+    for _ in range(60):
+        missing = MissingGround(NAMES)
+        for _ in range(40):
+            feet = (rest + drawn.uniform(-0.05, 0.05, 6)).tolist()
+            down, leg = (drawn.random(6) < 0.7).tolist(), int(drawn.integers(6))
+            searches = [
+                (leg, drawn.uniform(-0.02, 0.1), *(drawn.random(2) < 0.5)) for leg, on in enumerate(down) if not on
+            ]
+            if drawn.random() < 0.2:
+                missing.stopped(leg, feet[leg], REST[leg] + drawn.uniform(0.06, 0.1))
+            stepped(missing, searches, feet, stands=down)
+            grant = limited(missing, drawn.uniform(-0.1, 0.1), 0.0, 0.0)
+            assert all(each.leg and each.cause for each in (*missing.limitations, *grant.limitations))
+
+
 def test_roughness_makes_a_hole_deeper_by_a_bounded_depth():
     assert stepped(MissingGround(NAMES), [(0, 0.11, True, True)], roughness=1.0).places
 

@@ -25,8 +25,8 @@ SLOW = 0.85
 # How much deeper ground may be on rough ground: over the roughness, and at most [m]; from which roughness on it is not
 # sure that there is none [m].
 _ROUGH, _ROUGHEST, _UNSURE = 2.5, 0.03, 0.015
-# Where a foot steps back to, from its rest foothold against its way, over how far from there it may stand; as it does so
-# for the last time, the body backs off as far as it may.
+# Where a foot steps back to, from its rest foothold against its way, over how far from there it may stand; with the
+# last, the body backs off as far as it may.
 _BACK = (0.4, 1.0, 1.0)
 # A foot this close to its place is there; one this far from its rest foothold is on that side of it [m].
 _THERE, _OFF = 0.004, 0.01
@@ -110,8 +110,6 @@ class MissingGround:
     def limitations(self) -> list[Limitation]:
         """Why the walk slows down, unless the command is refused for it."""
         leg, cause = (self._slows, "the foot looks for the ground") if self._slows else self._cause
-        for stopped in self.stops:
-            leg, cause = self._names[stopped], "an obstacle stops the foot"
         waits = not self.refuses and self.pace < SLOW
         return [Limitation(kind=LimitationKind.GROUND, leg=leg, cause=cause)] if waits else []
 
@@ -227,6 +225,8 @@ class MissingGround:
         """Take note that the robot tips this way, if it does: no foot tries to get past an obstacle then."""
         if tips:
             self.tips = way
+            for leg in self.stops:
+                self.places.pop(leg, None)
             self.stops.clear()
             self._beside.clear()
 
@@ -236,6 +236,7 @@ class MissingGround:
         self.stops[leg], way = (stops + 1, start, goal), (goal - start) / abs(goal - start)
         start, self.places[leg] = start - _BEFORE * way, goal
         self._beside.pop(leg, None)
+        self._cause = self._names[leg], "an obstacle stops the foot"
         if stops >= _STOPS + _SIDES:
             self.places[leg], self._way, self._obstacle = start, way, way
             self._again = max(self._again, _AGAIN - 1)
