@@ -353,6 +353,25 @@ def test_a_foot_that_loses_its_ground_while_it_is_moved_has_met_the_edge_on_its_
     assert (stepped(missing, [(0, 0.03, True, True)], feet, stands=two).back / way).real < 0
 
 
+@pytest.mark.parametrize(("waits", "speed", "way"), [(10, -0.1, 1), (10, 0.0, 1), (10, 0.1, 1), (210, -0.1, -1)])
+def test_a_foot_that_loses_its_ground_on_the_way_back_from_an_edge_has_met_that_edge(waits, speed, way):
+    missing, behind = stepped(MissingGround(NAMES), [(0, 0.08, True, True)]), [REST[0] - 0.04, *REST[1:]]
+    stepped(missing, [], stands=[True] * 6)
+    for _ in range(waits):
+        limited(missing, -0.1, 0.0, 0.0)
+        stepped(missing, [], behind, stands=[True] * 6, twist=(speed, 0.0, 0.0))
+    place = stepped(missing, [(0, 0.08, True, True)], behind).places[0]
+    assert (place - REST[0]).real * way < 0
+    # Another place knows nothing of it, and an obstacle is no edge.
+    missing.forget()
+    for _ in range(5):
+        missing.stopped(0, REST[0], REST[0] + 0.05)
+    stepped(missing, [], stands=[True] * 6)
+    limited(missing, -0.1, 0.0, 0.0)
+    stepped(missing, [], behind, stands=[True] * 6)
+    assert (stepped(missing, [(0, 0.08, True, True)], behind).places[0] - REST[0]).real > 0
+
+
 def test_a_robot_that_tips_towards_a_foot_goes_back_at_once_but_not_far():
     two = [False, True, False, False, True, False]
     missing, deep = MissingGround(NAMES), [(0, 0.03, True, True)]

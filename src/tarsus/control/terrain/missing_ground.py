@@ -30,8 +30,9 @@ _ROUGH, _ROUGHEST, _UNSURE = 2.5, 0.03, 0.015
 _BACK = (0.4, 1.0, 1.0)
 # A foot this close to its place is there; one this far from its rest foothold is on that side of it [m].
 _THERE, _OFF = 0.004, 0.01
-# A foot that was moved faster over the ground has met the edge on that way [m/s].
-_MOVES = 0.005
+# A foot that was moved faster over the ground has met the edge on that way [m/s]; how long a robot that goes back from
+# an edge is near it [s].
+_MOVES, _NEAR = 0.005, 2.0
 # The body backs off until feet this far from the edge hold it with this margin [m], so far at most [m], so fast [m/s].
 _FIRM, _MARGIN, _BACKS, _SPEED = 0.06, 0.03, 0.08, 0.15
 # How often a foot is stopped until it is put down beside its way, on how many sides, how far, or before that [m].
@@ -105,6 +106,8 @@ class MissingGround:
         # The twist before any foot searched is that by which it has met the edge.
         self.twist: Sequence[float] = (0.0, 0.0, 0.0)
         self._walked: Sequence[float] = self.twist
+        # The way to the edge that the robot goes back from.
+        self._left = 0j
 
     @property
     def limitations(self) -> list[Limitation]:
@@ -118,7 +121,7 @@ class MissingGround:
         for found in (self.places, self.stops, self._beside):
             found.clear()
         self._tries = [0] * len(self._names)
-        self._way, self._obstacle, self.refuses, self._again = 0j, 0j, False, 0
+        self._way, self._left, self._obstacle, self.refuses, self._again = 0j, 0j, 0j, False, 0
 
     def steps_back(self, leg: int, foot: complex) -> bool:
         """Return whether a foot, here in the heading frame, is on its way to another place."""
@@ -261,7 +264,10 @@ class MissingGround:
         """Return the way to the edge at a foot: its own over the ground, or that from its rest foothold if it stood."""
         vx, vy, wz = self._walked
         velocity = complex(vx, vy) + 1j * wz * rest
-        return velocity / abs(velocity) if abs(velocity) > _MOVES else _way(foot - rest, rest)
+        velocity *= abs(velocity) > _MOVES
+        if self._left and self._since < _NEAR and (velocity * self._left.conjugate()).real <= -_TOWARDS * abs(velocity):
+            return self._left
+        return velocity / abs(velocity) if velocity else _way(foot - rest, rest)
 
     def limit(self, request: TwistRequest, grant: TwistGrant) -> TwistGrant:
         """Return the grant, without a twist that leads over the edge; one that leads away is granted from then on."""
@@ -275,8 +281,9 @@ class MissingGround:
                 self.stops.pop(leg)
                 self._beside.pop(leg, None)
                 self.places.pop(leg, None)
-        if any(request.twist) and not self.places:
-            self._way = 0j
+        if any(request.twist) and not self.places and self._way:
+            self._left = 0j if self._way == self._obstacle else self._way
+            self._way, self._since = 0j, 0.0
         return grant
 
 
