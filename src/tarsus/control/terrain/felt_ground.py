@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import cmath
-import math
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -43,10 +42,9 @@ _DEPTH_SHARE = 0.6
 _SLOW_TRAVEL, _FAST_TRAVEL = 0.75, 0.92
 # How soon feet lift off that are not lowered any more [s].
 _LEAVING = 0.1
-# Speed with which feet look for the ground while others hold a robot that stands [m/s]: faster ones push it off them.
-_GENTLE = 0.02
-# How far below the expected ground they look for it [m]: a foot whose switch stays open would push the body over.
-_NEAR = 0.004
+# Speed with which feet look for the ground while others hold a robot that stands [m/s], and how far below the expected
+# ground [m]: faster or lower ones push the body off the others.
+_GENTLE, _NEAR = 0.02, 0.004
 
 
 class FeltGround:
@@ -182,8 +180,8 @@ class FeltGround:
         """
         due = None if standing else timing.due(state, dt)
         kept, before, self._idle = self._inputs, self._given, self._idle + dt
-        stands = not any(twist.tolist()) or (self.body.slope.refuses and self.support.halts)
-        self._given, self._rests = (excluded, standing), stands and not self.missing.refuses
+        still = not any(twist.tolist()) or (self.body.slope.refuses and self.support.halts)
+        self._given, self._rests = (excluded, standing), still and not self.missing.refuses
         if kept is not None and not (due and any(due)) and self._given == before:
             return kept
         dt, self._idle, turn = self._idle, 0.0, cmath.exp(-1j * state.yaw)
@@ -273,9 +271,8 @@ class FeltGround:
         known = self.contacts.is_known(leg) and (down or self.contacts.lifted[leg])
         searches = known and not (self.condition.in_air or self.missing.gives_up(leg))
         goal = place if down else (complex(state.foothold[leg]) - state.origin) * heading.conjugate()
-        reach = self.body.reach
-        near = self.ground.at(goal) - _NEAR if self._rests and self.support.held else -math.inf
-        lowest = max(reach.lowest[leg], near)
+        reach, rests = self.body.reach, self._rests and self.support.held
+        lowest = max(reach.lowest[leg], self.ground.at(goal) - _NEAR) if rests else reach.lowest[leg]
         room = (lowest if searches else None, reach.highest_on_way(leg, place, goal))
         found = self.ground.under(place, goal, float(state.elevation.value[0]), room)
         back = self.missing.places.get(leg)
