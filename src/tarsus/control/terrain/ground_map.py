@@ -36,7 +36,7 @@ _AROUND = 0.03 * np.append(np.exp(0.25j * np.pi * np.arange(8)), 0.0)
 # Swing phase up to which a foothold is chosen.
 _CHOOSING = 0.3
 # How close to a hole a foot is not put down [m].
-_EDGE = 0.02
+_EDGE = 0.03
 # Room of the body over the ground [m].
 _CLEAR = 0.015
 # Points under the body, over half its length and width: a little farther at front and rear.
