@@ -383,6 +383,8 @@ def test_a_robot_that_tips_towards_a_foot_goes_back_at_once_but_not_far():
     assert stepped(MissingGround(NAMES), [(0, 0.015, True, True)], stands=two).back == 0
     assert stepped(MissingGround(NAMES), deep, stands=two, roughness=0.02).back == 0
     assert stepped(MissingGround(NAMES), [(0, 0.005, True, True)], stands=two, sunk=[0.02] * 6).back.real < 0
+    # Nor where the foot lifts the body: it stands on ground that its switch does not tell of.
+    assert stepped(MissingGround(NAMES), deep, stands=two, sunk=[-0.01] * 6).back == 0
     for _ in range(100):
         stepped(missing, deep, stands=two)
     assert missing.back == 0

@@ -20,6 +20,8 @@ _SLOWS, _STANDS = 0.005, 0.02
 _SLOWEST = 0.25
 # A foot that is deeper, on even ground, bears no load that is not felt, whatever its shin rests on [m].
 _HANGS = 0.05
+# A foot that lifts the body by more stands on ground that is not felt: the robot does not tip towards it [m].
+_LIFTS = 0.008
 # A walk that is slower says why.
 SLOW = 0.85
 # How much deeper ground may be on rough ground: over the roughness, and at most [m]; from which roughness on it is not
@@ -192,7 +194,8 @@ class MissingGround:
             # At another place, a foot does not search for long at the end of its reach.
             hangs = not falls and depth > _STANDS + rough if leg in self.places else not lasts
             missing = depth > _DEEP * height + rough or hangs
-            self._tip(way, tips=depth + max(self.sunk[leg], 0.0) > _STANDS + rough and not held)
+            sunk = self.sunk[leg]
+            self._tip(way, tips=not held and sunk > -_LIFTS and depth + max(sunk, 0.0) > _STANDS + rough)
             if missing and not (self.steps_back(leg, feet[leg]) or self.gives_up(leg)):
                 self._step_back(leg, depth, way, rest[leg], radii[leg], sure=roughness <= _UNSURE)
         self._since = 0.0 if self.places else self._since + dt
