@@ -1,6 +1,7 @@
 """The parts of a walk that feels the ground: contacts, posture, reach, support, odometry."""
 
 import math
+from collections import deque
 
 import numpy as np
 import pytest
@@ -354,7 +355,7 @@ def test_a_foot_that_lifts_off_soon_is_not_lowered_where_others_take_its_load():
 
 
 def test_a_foot_that_steps_down_a_slope_rises_over_the_middle_of_its_way():
-    felt = FeltInputs([], [], [], 0.0, 0.0, (0.0, 0.0), 0j, 0j, 0.8, 1.0, 0.03, 1.0, {})
+    felt = FeltInputs([], [], [], 0.0, 0.0, (0.0, 0.0), 0j, 0j, 0.8, 1.0, 0.03, 1.0, 0.0, {})
     for lifted, expected, top in ((0.0, 0.0, 0.03), (0.04, 0.0, 0.05), (0.0, 0.04, 0.07)):
         under = GroundUnder(expected, lowest=-0.2, highest=0.2)
         _, foot = _swinging(lifted, FeltFoot(), under, felt, 0.01, (0.0, 0.5, lifted, 0j))
@@ -362,13 +363,33 @@ def test_a_foot_that_steps_down_a_slope_rises_over_the_middle_of_its_way():
 
 
 def test_a_foot_that_has_met_an_obstacle_goes_down_once_it_is_past_it():
-    felt = FeltInputs([], [], [], 0.0, 0.0, (0.0, 0.0), 0j, 0j, 0.8, 1.0, 0.03, 1.0, {})
+    felt = FeltInputs([], [], [], 0.0, 0.0, (0.0, 0.0), 0j, 0j, 0.8, 1.0, 0.03, 1.0, 0.0, {})
     risen = FeltFoot(top=0.05, top_phase=0.4, drawn_back=0j)
     known = {"way": 0.0}
     for place, way, goes_down in ((0j, {}, False), (0.02 + 0j, {}, False), (0.04 + 0j, {}, True), (0j, known, True)):
         under = GroundUnder(0.0, lowest=-0.2, highest=0.2, **way)
         height, _ = _swinging(0.05, risen, under, felt, 0.01, (0.6, 0.5, 0.0, place))
         assert (height < 0.05) == goes_down
+
+
+def test_feet_go_down_sooner_where_contacts_are_known_late():
+    felt = FeltInputs([], [], [], 0.0, 0.0, (0.0, 0.0), 0j, 0j, 0.8, 1.0, 0.03, 1.0, 0.0, {})
+    under, high = GroundUnder(0.0, lowest=-0.2, highest=0.2), FeltFoot(top=0.06, top_phase=0.42, speed=-0.3)
+    speeds = [
+        _swinging(0.06, high, under, felt._replace(late=late), 0.1, (0.5, 0.5, 0.0, 0j))[1].speed
+        for late in (0.0, 0.05, 1.0)
+    ]
+    assert speeds == pytest.approx([-0.06 / 0.25, -0.06 / 0.2, -0.06 / 0.1])
+
+
+@pytest.mark.parametrize("ticks", [1, 8])
+def test_joints_that_lag_make_contacts_late(ticks):
+    controller, angles = WalkController(STRIDER), deque[np.ndarray](maxlen=ticks + 1)
+    for _ in range(250):
+        angles.append(controller.angles)
+        readings = SensorReadings(contacts=controller.contacts, joint_angles=angles[0], age={"contacts": 0.01})
+        controller.step((0.1, 0.0, 0.0), 0.01, readings=readings)
+    assert controller._walk.ground.contacts.age == pytest.approx(max(0.01 * ticks - 0.03, 0.01), abs=0.01)
 
 
 def test_a_foot_that_has_barely_touched_is_no_support():

@@ -14,13 +14,21 @@ _BEHIND, _TIMES, _MEAN_RATE = 0.02, 3.0, 0.01
 # Longest lag of a joint, from its command to the reading [s]; how fast it is learnt, a tick; and the square of joint
 # speeds below which they tell little of it [rad^2/s^2].
 _LONGEST_LAG, _RATE, _SLOW = 0.12, 0.05, 0.5
+# How fast the mean lag follows, a tick: the first guess, the longest one, should not count.
+_LAG_RATE = 0.003
 
 
 class SwingMonitor:
-    """Compares measured angles of swinging legs with those commanded before a lag, which is learnt."""
+    """Compares measured angles of swinging legs with those commanded before a lag, which is learnt.
+
+    Attributes
+    ----------
+    lag : float
+        From a command to its reading, mean of what has been learnt [s]; 0 where no angles are measured.
+    """
 
     def __init__(self) -> None:
-        self._lag, self._usual, self._commanded = _LONGEST_LAG, 0.0, deque[list[float]]()
+        self.lag, self._lag, self._usual, self._commanded = 0.0, _LONGEST_LAG, 0.0, deque[list[float]]()
 
     def step(
         self, commanded: Sequence[float], measured: Sequence[Vector | None] | None, dt: float, down: Sequence[bool]
@@ -44,4 +52,5 @@ class SwingMonitor:
                 self._usual += _MEAN_RATE * (abs(behind) - self._usual)
                 change = _RATE * behind * speed / (speed**2 + _SLOW)
                 self._lag = min(max(self._lag + change, 0.0), _LONGEST_LAG)
+                self.lag += _LAG_RATE * (self._lag - self.lag)
         return stopped

@@ -42,6 +42,8 @@ _DEPTH_SHARE = 0.6
 _SLOW_TRAVEL, _FAST_TRAVEL = 0.75, 0.92
 # How soon feet lift off that are not lowered any more [s].
 _LEAVING = 0.1
+# Lag of the joints of usual servos [s]: slower ones make contacts late.
+_USUAL_LAG = 0.03
 # Speed with which feet look for the ground while others hold a robot that stands [m/s], and how far below the expected
 # ground [m]: faster or lower ones push the body off the others.
 _GENTLE, _NEAR = 0.02, 0.004
@@ -142,7 +144,7 @@ class FeltGround:
         dt, ticks, self._unread, self._ticks, self._inputs = self._unread, self._ticks, 0.0, 0, None
         self.ground.see(valid, state)
         leaving, rests = timing.due(state, _LEAVING), self._rests and self.support.held
-        estimated, age = self._loads.estimated, valid.contact_age
+        estimated, age = self._loads.estimated, max(valid.contact_age, self._swings.lag - _USUAL_LAG)
         self.contacts.step(measured, down, dt, age=age, count=ticks, leaving=leaving, rests=rests, estimated=estimated)
         touching = [self.contacts.touches(leg) for leg in range(len(down))]
         self.condition.step(touching, valid.attitude, dt, held=self.support.held)
@@ -228,6 +230,7 @@ class FeltGround:
             pace=self.support.pace,
             swing_height=float(state.posture.value[SWING_HEIGHT]) + body.roughness.swing_rise,
             lowering=_GENTLE if self._rests and self.support.held else self._loads.fastest_descent,
+            late=self.contacts.age,
             beside=self.ground.beside,
         )
 

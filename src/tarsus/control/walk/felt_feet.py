@@ -90,6 +90,8 @@ class FeltInputs(NamedTuple):
         How high a foot rises over the higher of lift-off and expected ground [m].
     lowering : float
         Greatest speed of a foot that goes down [m/s].
+    late : float
+        Time from a foot's contact until that is known [s].
     beside : mapping of int to complex
         How far from the foothold of its step a foot is put down, by leg, in the heading frame [m].
     """
@@ -106,4 +108,5 @@ class FeltInputs(NamedTuple):
     pace: float
     swing_height: float
     lowering: float
+    late: float
     beside: Mapping[int, complex]

@@ -21,8 +21,9 @@ _STILL = FeltFoot()
 _TOP_PHASE, _ROUGH_TOP_PHASE = 0.42, 0.45
 # Where the ground rises soon: up to which swing phase a foot may begin to rise before it travels, and its top's phase.
 _RISING_FIRST, _STEEP_TOP_PHASE = 0.15, 0.35
-# Fraction of a swing in which a foot goes down from its top to the expected ground, and on rough ground.
-_DESCENT, _ROUGH_DESCENT = 0.5, 0.4
+# Fraction of a swing in which a foot goes down from its top to the expected ground, on rough ground, and at least where
+# contact is known late.
+_DESCENT, _ROUGH_DESCENT, _SHORTEST_DESCENT = 0.5, 0.4, 0.2
 # How far below the expected ground feet go where it is rough [m].
 _ROUGH = 0.006
 # How much of its way down a slope a foot at its top has behind it.
@@ -135,7 +136,7 @@ def _swinging(
     phase, swing_time, lifted_at, place = swing
     speed, acceleration, top, top_phase, slide, drawn_back = foot
     rough = min(felt.depth / _ROUGH, 1.0)
-    part = _DESCENT + rough * (_ROUGH_DESCENT - _DESCENT)
+    part = max(_DESCENT + rough * (_ROUGH_DESCENT - _DESCENT) - felt.late / swing_time, _SHORTEST_DESCENT)
     if math.isnan(top) or (phase < top_phase and drawn_back is None):
         # No higher than the foot can be down again from by the end of its swing.
         fits = under.expected - felt.depth + felt.lowering * part * swing_time
