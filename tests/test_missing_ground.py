@@ -12,6 +12,7 @@ from tarsus.control.terrain.foot_contacts import FootContacts
 from tarsus.control.terrain.ground_contact import met_ground
 from tarsus.control.terrain.ground_map import GroundMap
 from tarsus.control.terrain.missing_ground import MissingGround
+from tarsus.control.terrain.reach import Reach
 from tarsus.control.terrain.roughness import Roughness
 from tarsus.control.walk.felt_feet import FeltFoot
 from tarsus.control.walk.step_timing import StepTiming
@@ -403,8 +404,8 @@ def test_feet_put_down_early_because_the_robot_tips_are_still_due(phase, due):
     )
     contacts, missing = FootContacts(6), MissingGround(NAMES)
     missing.tips = 1 + 0j
-    known, highest = (contacts, GroundMap(), Roughness(tarsus.GroundAdaptation()), missing), [0.0] * 6
-    after, landed = met_ground(state, *known, stopped=[], highest=highest, timing=timing, pace=1.0)
+    known, reach = (contacts, GroundMap(), Roughness(tarsus.GroundAdaptation()), missing), Reach(setup.robot)
+    after, landed = met_ground(state, *known, stopped=[], reach=reach, timing=timing, pace=1.0)
     assert sorted(landed) == [0, 2, 4]
     assert after.down.all()
     assert timing.due(after, 0.0) == [on and due for on in lifted]
@@ -412,8 +413,7 @@ def test_feet_put_down_early_because_the_robot_tips_are_still_due(phase, due):
 
 def test_the_edge_is_where_the_step_leads_wherever_its_foothold_was_chosen():
     missing = MissingGround(NAMES)
-    missing.twist = (0.1, 0.0, 0.0)
-    stepped(missing, [])
+    stepped(missing, [], twist=(0.1, 0.0, 0.0))
     stepped(missing, [(0, 0.08, True, True)], [AHEAD[0] - 0.06 + 0.02j, *REST[1:]])
     assert missing.places[0].real < REST[0].real
     assert limited(missing, 0.1, 0.0, 0.0).fraction == 0.0
