@@ -365,9 +365,13 @@ def test_a_foot_that_steps_down_a_slope_rises_over_the_middle_of_its_way():
 def test_a_foot_that_has_met_an_obstacle_goes_down_once_it_is_past_it():
     felt = FeltInputs([], [], [], 0.0, 0.0, (0.0, 0.0), 0j, 0j, 0.8, 1.0, 0.03, 1.0, 0.0, {})
     risen = FeltFoot(top=0.05, top_phase=0.4, drawn_back=0j)
-    known = {"way": 0.0}
-    for place, way, goes_down in ((0j, {}, False), (0.02 + 0j, {}, False), (0.04 + 0j, {}, True), (0j, known, True)):
-        under = GroundUnder(0.0, lowest=-0.2, highest=0.2, **way)
+    for place, clears, goes_down in (
+        (0j, True, False),
+        (0.02 + 0j, True, False),
+        (0.04 + 0j, True, True),
+        (0j, False, True),
+    ):
+        under = GroundUnder(0.0, lowest=-0.2, highest=0.2, clears=clears)
         height, _ = _swinging(0.05, risen, under, felt, 0.01, (0.6, 0.5, 0.0, place))
         assert (height < 0.05) == goes_down
 

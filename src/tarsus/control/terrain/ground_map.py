@@ -214,7 +214,13 @@ class GroundMap:
                     self.holes[leg] = end
 
     def under(
-        self, start: complex, foothold: complex, elevation: float, room: tuple[float | None, float]
+        self,
+        start: complex,
+        foothold: complex,
+        elevation: float,
+        room: tuple[float | None, float],
+        *,
+        clears: bool = False,
     ) -> GroundUnder:
         """Return the ground under a foot and on its way.
 
@@ -226,14 +232,16 @@ class GroundMap:
             Height of the heading frame [m].
         room : (float or None, float)
             Least and greatest height of the foot in the heading frame [m]; None for the expected one.
+        clears : bool
+            Whether a foot that has met an obstacle stays up until it is past that, where the ground is not known.
         """
         expected, (lowest, highest) = self.at(foothold), room
         least = expected if lowest is None else lowest
-        under = GroundUnder(elevation + expected, elevation + least, elevation + highest)
+        under = GroundUnder(elevation + expected, elevation + least, elevation + highest, clears=clears)
         if not self.given:
             return under
         way = elevation + highest_on_way(self.expected, start, foothold)
-        return under._replace(way=way, steep=is_steep(self.expected, start, foothold))
+        return under._replace(way=way, steep=is_steep(self.expected, start, foothold), clears=False)
 
     def rises(
         self,

@@ -51,6 +51,8 @@ class GroundUnder(NamedTuple):
         Whether it rises so soon on the way that the foot has to rise before it travels.
     place : complex or None
         Where in G a foot steps back to that has found no ground [m].
+    clears : bool
+        Whether a foot that has met an obstacle stays up until it is past that.
     """
 
     expected: float
@@ -59,6 +61,7 @@ class GroundUnder(NamedTuple):
     way: float = -math.inf
     steep: bool = False
     place: complex | None = None
+    clears: bool = False
 
 
 class FeltInputs(NamedTuple):

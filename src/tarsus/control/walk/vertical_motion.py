@@ -36,7 +36,7 @@ _LOWERING, _SEARCHING = 0.12, 0.15
 _SEARCH_TIME = 0.1
 # Room over known ground on the way of a foot that goes down [m].
 _OVER = 0.015
-# How far past a collision a foot goes down again where the ground is not known [m].
+# How far past a collision a foot goes down again [m].
 _PAST = 0.03
 # Speeds of a foot that steps back, up and back [m/s].
 _RISING, _BACK = 0.3, 0.4
@@ -157,7 +157,7 @@ def _swinging(
     lowest = under.lowest
     if under.way > under.expected + _OVER:
         lowest = max(lowest, min(under.way + _OVER, under.highest))
-    if drawn_back is not None and under.way == -math.inf and abs(place - drawn_back) < _PAST:
+    if drawn_back is not None and under.clears and abs(place - drawn_back) < _PAST:
         lowest = max(lowest, height)
     height, after = _no_lower(height + (speed + after) / 2 * dt, after, height, lowest)
     return height, FeltFoot(after, 0.0, top, top_phase, slide, drawn_back)
