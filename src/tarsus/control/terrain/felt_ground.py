@@ -91,16 +91,14 @@ class FeltGround:
         admittance: Admittance | None,
     ) -> None:
         self.contacts, self.ground, self.missing = FootContacts(robot.legs), GroundMap(), MissingGround(robot.leg_names)
-        self.support, self.condition = Support(), BodyCondition()
         self.body = BodyMotion(robot, self.contacts, self.ground, levelling=levelling, adaptation=adaptation)
-        self.measured, self._swings = ValidReadings(), SwingMonitor()
+        self.measured, self.support, self.condition = ValidReadings(), Support(), BodyCondition()
         self.offsets: Float[np.ndarray, "legs"] | None = None
         self._validator, self._loads = ReadingsValidator(robot), FootLoads(robot, admittance)
-        self._centre = complex(*centre_of_mass(robot, angles)[:2].tolist())
+        self._swings, self._centre = SwingMonitor(), complex(*centre_of_mass(robot, angles)[:2].tolist())
         # What feet are given while all is as planned; ticks and times since contacts and support were looked at.
         self._inputs: FeltInputs | None = None
-        self._given, self._ticks, self._unread, self._idle = (list[int](), True), 0, 0.0, 0.0
-        self._rests = True
+        self._given, self._rests, self._ticks, self._unread, self._idle = (list[int](), True), True, 0, 0.0, 0.0
 
     def sense(
         self,
@@ -146,8 +144,7 @@ class FeltGround:
         leaving, rests = timing.due(state, _LEAVING), self._rests and self.support.held
         estimated, age = self._loads.estimated, max(valid.contact_age, self._swings.lag - _USUAL_LAG)
         self.contacts.step(measured, down, dt, age=age, count=ticks, leaving=leaving, rests=rests, estimated=estimated)
-        touching = [self.contacts.touches(leg) for leg in range(len(down))]
-        self.condition.step(touching, valid.attitude, dt, held=self.support.held)
+        self.condition.step([*map(self.contacts.touches, range(len(down)))], valid.attitude, dt, held=self.support.held)
         if self._loads.compliant:
             forces, feet = self._loads.forces(valid, angles), [(foot.real, foot.imag) for foot in state.foot.tolist()]
             self.offsets = self._loads.offsets(forces, dt, feet=feet, stands=down)
@@ -244,9 +241,8 @@ class FeltGround:
         dt: float,
     ) -> list[bool]:
         """Decide where feet step that find no ground; return which stand, or would, with the robot in the air."""
-        contacts, missing, rest = self.contacts, self.missing, footholds.rest.tolist()
-        rough, tips = self.body.roughness.value, bool(missing.tips or missing.places)
-        near = not_sunk(state, self.ground, places, down, roughness=rough, tips=tips)
+        contacts, missing, rest, rough = self.contacts, self.missing, footholds.rest.tolist(), self.body.roughness.value
+        near = not_sunk(state, self.ground, places, down, roughness=rough, tips=bool(missing.tips or missing.places))
         contacts.find_open(near, places, centre, self.measured.attitude, dt)
         missing.sunk, missing.twist = contacts.sunk, state.twist.value.tolist()
         if self.condition.carried:

@@ -16,8 +16,7 @@ __all__ = ["SLOW", "MissingGround", "not_sunk"]
 # Depth below the expected ground at which there is none, over the body height.
 _DEEP = 0.75
 # Depths from which on the walk slows down, and stands still, or goes on slowly with feet at the end of their reach [m].
-_SLOWS, _STANDS = 0.005, 0.02
-_SLOWEST = 0.25
+_SLOWS, _STANDS, _SLOWEST = 0.005, 0.02, 0.25
 # A foot that is deeper, on even ground, bears no load that is not felt, whatever its shin rests on [m].
 _HANGS = 0.05
 # A foot that lifts the body by more stands on ground that is not felt: the robot does not tip towards it [m].
@@ -103,13 +102,11 @@ class MissingGround:
         self.places, self.pace, self.back = dict[int, complex](), 1.0, 0j
         self.stops, self._beside = dict[int, tuple[int, complex, complex]](), dict[int, complex]()
         self._names, self._tries, self._cause = names, [0] * len(names), ("", "")
-        self._way, self._obstacle, self._backed, self.refuses = 0j, 0j, 0.0, False
+        self._way, self._left, self._obstacle, self._backed, self.refuses = 0j, 0j, 0j, 0.0, False
         self._again, self._since, self._slows, self.tips = 0, 0.0, "", 0j
-        # The twist before any foot searched is that by which it has met the edge.
+        # The twist before any foot searched, by which it has met the edge.
         self.twist: Sequence[float] = (0.0, 0.0, 0.0)
         self._walked: Sequence[float] = self.twist
-        # The way to the edge that the robot goes back from.
-        self._left = 0j
 
     @property
     def limitations(self) -> list[Limitation]:
@@ -231,10 +228,9 @@ class MissingGround:
         """Take note that the robot tips this way, if it does: no foot tries to get past an obstacle then."""
         if tips:
             self.tips = way
-            for leg in self.stops:
-                self.places.pop(leg, None)
-            self.stops.clear()
-            self._beside.clear()
+            for leg in list(self.stops):
+                for found in (self.stops, self._beside, self.places):
+                    found.pop(leg, None)
 
     def stopped(self, leg: int, foot: complex, goal: complex) -> complex:
         """Decide where a foot tries next that is stopped here on its way to a goal; return the way back [m]."""
@@ -281,9 +277,8 @@ class MissingGround:
             return grant.at_most(0.0, Limitation(kind=LimitationKind.GROUND, leg=name, cause=cause))
         for leg, (stops, start, goal) in list(self.stops.items()):
             if stops <= _STOPS + _SIDES and _leads_away(velocity, goal - start):
-                self.stops.pop(leg)
-                self._beside.pop(leg, None)
-                self.places.pop(leg, None)
+                for found in (self.stops, self._beside, self.places):
+                    found.pop(leg, None)
         if any(request.twist) and not self.places and self._way:
             self._left = 0j if self._way == self._obstacle else self._way
             self._way, self._since = 0j, 0.0
