@@ -14,6 +14,7 @@ from tarsus.control.readings import CHANNELS, SensorReadings, ValidReadings
 from tarsus.control.sensing.plain_values import as_bool, as_items, as_number, as_vector
 from tarsus.control.sensing.validation import ReadingsValidator
 from tarsus.errors import InputError
+from tarsus.robot.joint_limits import joint_limits
 from tarsus.robot.robot import stack_robots
 
 STRIDER = load_robot("strider")
@@ -26,7 +27,7 @@ PLAUSIBLE = {
     "torques": [[0.1, -0.5, 0.2]] * 6,
 }
 
-FINITE = ["joint_angles", "joint_speeds", "currents", "temperatures", "voltages"]
+FINITE = ["joint_speeds", "currents", "temperatures", "voltages"]
 
 
 class Hostile(list):
@@ -223,6 +224,39 @@ def test_joint_channels_pass_where_they_are_finite(channel):
         assert found.rejected == (f"{channel} of {LEGS[2]}: not finite numbers",)
 
 
+STANDING = np.tile([0.0, 0.4, -1.4], (6, 1))
+
+
+@pytest.mark.parametrize("make", [np.array, np.ndarray.tolist])
+@pytest.mark.parametrize(("leg", "glitch"), [(2, 1e9), (2, -2.5), (slice(0, 6), 100.0), (slice(0, 6), 0.0)])
+def test_joint_angles_that_no_joint_can_have_are_rejected_until_they_settle(make, leg, glitch):
+    validator, wrong = ReadingsValidator(STRIDER), STANDING.copy()
+    wrong[leg] = glitch
+    assert validated(validator, joint_angles=make(STANDING)).joint_angles == tuple(map(tuple, STANDING.tolist()))
+    found = validated(validator, joint_angles=make(wrong))
+    legs = range(6) if leg != 2 else [2]
+    reason = (
+        "change faster than the servos turn" if glitch == 0.0 else "beyond the joint's limits by more than 28.6 deg"
+    )
+    assert found.rejected == tuple(f"joint_angles of {LEGS[each]}: {reason}" for each in legs)
+    assert found.joint_angles is None or [each is None for each in found.joint_angles] == [at == 2 for at in range(6)]
+    settled = [validated(validator, joint_angles=make(STANDING)).rejected == () for _ in range(4)]
+    assert settled == [False, False, False, True]
+
+
+@pytest.mark.parametrize("make", [np.array, np.ndarray.tolist])
+def test_joints_may_move_as_fast_as_a_leg_is_turned_and_as_far_as_time_has_passed(make):
+    validator, fastest = ReadingsValidator(STRIDER), 2.0 * joint_limits(STRIDER).speed.max()
+    validated(validator, joint_angles=make(STANDING))
+    for dt, change, passes in ((0.01, 0.04, True), (0.01, 0.5 + 0.009 * fastest, True), (0.01, -0.9, False)):
+        found = validated(validator, dt, joint_angles=make(STANDING + np.array([change, 0.0, 0.0])))
+        assert (found.rejected == ()) is passes
+    # What is read on and on is true: the joint has moved since.
+    for _ in range(10):
+        found = validated(validator, joint_angles=make(STANDING + np.array([-0.9, 0.0, 0.0])))
+    assert found.rejected == ()
+
+
 def test_angular_rates_pass_where_they_are_finite():
     validator = ReadingsValidator(STRIDER)
     assert validated(validator, angular_rates=np.array([1, -2, 3])) == ValidReadings(angular_rates=(1.0, -2.0, 3.0))
@@ -273,7 +307,7 @@ def test_invalid_ages_of_channels_reject_all_channels(age, reason):
 
 
 def test_channels_are_the_fields_of_the_readings():
-    assert set(CHANNELS) == set(FINITE) | set(PLAUSIBLE) | {"angular_rates", "ground"}
+    assert set(CHANNELS) == set(FINITE) | set(PLAUSIBLE) | {"joint_angles", "angular_rates", "ground"}
     assert all(hasattr(ValidReadings(), name) for name in CHANNELS)
 
 
@@ -446,8 +480,9 @@ def test_an_array_is_accepted_as_lists_of_its_numbers_are(numbers):
     values = np.array(numbers).reshape(6, 3)
     as_array, as_lists = ReadingsValidator(STRIDER), ReadingsValidator(STRIDER)
     for _ in range(2):
-        found = as_array.validate(SensorReadings(joint_angles=values), 0.01)
-        assert found == as_lists.validate(SensorReadings(joint_angles=values.tolist()), 0.01)
+        given = [{"joint_angles": each, "joint_speeds": each} for each in (values, values.tolist())]
+        found = as_array.validate(SensorReadings(**given[0]), 0.01)
+        assert found == as_lists.validate(SensorReadings(**given[1]), 0.01)
 
 
 def test_an_array_whose_sum_is_not_finite_is_accepted_with_finite_numbers():

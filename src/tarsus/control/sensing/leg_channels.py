@@ -6,19 +6,26 @@ import math
 import sys
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
-from typing import Any, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
 from tarsus.control.readings import Vector
 from tarsus.control.sensing.plain_values import as_bool, as_items, as_number, as_vector
 
-__all__ = ["ANY_FINITE", "ContactChannel", "Range", "VectorChannel"]
+if TYPE_CHECKING:
+    from jaxtyping import Float
+
+__all__ = ["ANY_FINITE", "ContactChannel", "JointAngleChannel", "Range", "VectorChannel"]
 
 Range: TypeAlias = tuple[float, float]
 
 ANY_FINITE: tuple[Range, Range, Range] = ((-sys.float_info.max, sys.float_info.max),) * 3
 """Bounds that every finite vector meets."""
+
+# How far beyond their limits joints may be measured, and by how much angles may change at once [rad]; how much faster
+# than its servo without load a joint may be turned.
+_OUTSIDE, _JUMP, _FASTER = 0.5, 0.5, 2.0
 
 _BOOLEAN = {bool}
 _NOT_NUMBERS = (math.nan, math.nan, math.nan)
@@ -148,3 +155,65 @@ class VectorChannel(_LegChannel):
             return vector
         finite = x - x == 0.0 and y - y == 0.0 and z - z == 0.0
         return self._beyond[leg] if finite else self._not_finite[leg]
+
+
+class JointAngleChannel(VectorChannel):
+    """Joint angles, plausible near the joints' limits and while they change no faster than a leg is turned.
+
+    Parameters
+    ----------
+    legs : sequence of str
+        Names of the legs in messages.
+    limits : array, shape (legs, 3, 2)
+        Lower and upper limit of each joint [rad].
+    speed : float
+        Greatest speed of any joint [rad/s].
+    settle : int
+        Consecutive plausible readings after which a leg is accepted again.
+    """
+
+    def __init__(
+        self, legs: Sequence[str], *, limits: Float[np.ndarray, "legs 3 2"], speed: float, settle: int
+    ) -> None:
+        name, ranges = "joint_angles", (limits + np.array([-_OUTSIDE, _OUTSIDE])).tolist()
+        bounds = [((coxa[0], coxa[1]), (femur[0], femur[1]), (tibia[0], tibia[1])) for coxa, femur, tibia in ranges]
+        beyond = f"beyond the joint's limits by more than {math.degrees(_OUTSIDE):.3g} deg"
+        super().__init__(name, legs, bounds=bounds, beyond=beyond, settle=settle)
+        self._jumps = tuple(f"{name} of {leg}: change faster than the servos turn" for leg in legs)
+        # The last plausible angles of each leg and when they were read; the same in an array where all legs have them.
+        self._last: list[tuple[Vector, float] | None] = [None] * len(legs)
+        self._all: np.ndarray | None = None
+        self._now, self._speed = 0.0, speed
+
+    def elapse(self, dt: float) -> None:
+        """Count the time.
+
+        Parameters
+        ----------
+        dt : float
+            Time since the last call [s].
+        """
+        self._now += dt
+
+    def _plain(self, value: Any, items: Sequence[Any]) -> tuple[Vector, ...] | None:
+        if self._all is None or type(value) is not np.ndarray or value.dtype != float:
+            return None
+        change = (value - self._all).ravel()
+        if not change @ change <= _JUMP * _JUMP:
+            return None
+        found = tuple(map(tuple, items))
+        self._all, self._last = value.copy(), [(angles, self._now) for angles in found]
+        return found
+
+    def _read_leg(self, leg: int, value: Any) -> Vector | str:
+        angles, last = super()._read_leg(leg, value), self._last[leg]
+        if isinstance(angles, str):
+            return angles
+        if last is not None:
+            most = _JUMP + _FASTER * self._speed * (self._now - last[1])
+            if any(abs(now - before) > most for now, before in zip(angles, last[0], strict=True)):
+                return self._jumps[leg]
+        self._last[leg] = angles, self._now
+        known = [angles for angles, _ in filter(None, self._last)]
+        self._all = np.array(known) if len(known) == len(self._last) else None
+        return angles

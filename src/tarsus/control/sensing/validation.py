@@ -5,13 +5,16 @@ from __future__ import annotations
 import math
 from typing import Any
 
+import numpy as np
+
 from tarsus.control.readings import CHANNELS, SensorReadings, ValidReadings
 from tarsus.control.sensing.body_channels import AngularRateChannel, AttitudeChannel
-from tarsus.control.sensing.leg_channels import ContactChannel, Range, VectorChannel
+from tarsus.control.sensing.leg_channels import ContactChannel, JointAngleChannel, Range, VectorChannel
 from tarsus.control.sensing.plain_values import as_number
 from tarsus.errors import InputError
 from tarsus.gait.ground_heights import GroundHeights
 from tarsus.kinematics.mass import STANDARD_GRAVITY, total_mass
+from tarsus.robot.joint_limits import joint_limits
 from tarsus.robot.robot import Robot
 
 __all__ = ["ReadingsValidator"]
@@ -23,7 +26,7 @@ _ANY_STALL_TORQUE = 1e3  # [N m]
 # Beyond that the sign is wrong.
 _PULL = 0.25
 # Channels that are plausible wherever they are finite.
-_FINITE_CHANNELS = ("joint_angles", "joint_speeds", "currents", "temperatures", "voltages")
+_FINITE_CHANNELS = ("joint_speeds", "currents", "temperatures", "voltages")
 
 _NO_READINGS = ValidReadings()
 _BAD_AGE = "age is not a number >= 0 s"
@@ -91,9 +94,12 @@ class ReadingsValidator:
         self._max_age = max_age
         legs = robot.leg_codes
         self._attitude = AttitudeChannel(max_tilt=max_tilt, max_turn=max_turn, settle=settle)
+        fastest = float(joint_limits(robot).speed.max())
+        self._joint_angles = JointAngleChannel(legs, limits=np.asarray(robot.limits), speed=fastest, settle=settle)
         self._channels: dict[str, Any] = {
             "contacts": ContactChannel(legs, settle=settle),
             "attitude": self._attitude,
+            "joint_angles": self._joint_angles,
             "forces": _forces_channel(robot, max_weights, settle=settle),
             "torques": _torques_channel(robot, max_stalls, settle=settle),
             **{name: VectorChannel(name, legs, settle=settle) for name in _FINITE_CHANNELS},
@@ -115,6 +121,7 @@ class ReadingsValidator:
             Time since the last call [s].
         """
         self._attitude.elapse(dt)
+        self._joint_angles.elapse(dt)
         if readings is None:
             return _NO_READINGS
         rejected: list[str] = []
