@@ -104,12 +104,13 @@ class FootContacts:
                 self._settled[leg] += dt
             if not on:
                 self._settled[leg] = 0.0
-            self._searched[leg] = self._searched[leg] + dt if on and self._without[leg] > 0.0 else 0.0
             self.lifted[leg] = not on and (self.lifted[leg] or self._without[leg] > _LOST)
         self.standing = [t <= _LOST or e > _OPEN_AFTER for t, e in zip(self._without, self._evidence, strict=True)]
         for leg, leaves in enumerate(leaving or ()):
             stays = rests or (leaves and self._without[leg] < _LEAVES)
             self.standing[leg] = self.standing[leg] or (stays and self._settled[leg] > _SETTLED)
+        for leg, on in enumerate(down):
+            self._searched[leg] = self._searched[leg] + dt if on and not self.standing[leg] else 0.0
 
     def find_open(
         self,

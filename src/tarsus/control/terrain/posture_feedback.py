@@ -24,7 +24,7 @@ _BARRIER = 8.0
 # A standing body rests once climb [m/s] and turn [rad/s] are below the first, until they are above the second.
 _RESTS, _MOVES = (0.01, 0.02), (0.05, 0.06)
 # How fast the height to keep changes [m/s], and how much of the body height it may be lower.
-_RAISING, _LOWERING, _MOST_LOWER = 0.04, 0.2, 0.25
+_RAISING, _LOWERING, _MOST_LOWER = 0.08, 0.2, 0.25
 
 
 class PostureRates(NamedTuple):
