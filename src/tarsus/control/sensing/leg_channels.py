@@ -180,9 +180,8 @@ class JointAngleChannel(VectorChannel):
         beyond = f"beyond the joint's limits by more than {math.degrees(_OUTSIDE):.3g} deg"
         super().__init__(name, legs, bounds=bounds, beyond=beyond, settle=settle)
         self._jumps = tuple(f"{name} of {leg}: change faster than the servos turn" for leg in legs)
-        # The last plausible angles of each leg and when they were read; the same in an array where all legs have them.
-        self._last: list[tuple[Vector, float] | None] = [None] * len(legs)
-        self._all: np.ndarray | None = None
+        # The last plausible angles of each leg, NaN before, and when they were read.
+        self._last, self._read = np.full((len(legs), 3), np.nan), [0.0] * len(legs)
         self._now, self._speed = 0.0, speed
 
     def elapse(self, dt: float) -> None:
@@ -196,24 +195,20 @@ class JointAngleChannel(VectorChannel):
         self._now += dt
 
     def _plain(self, value: Any, items: Sequence[Any]) -> tuple[Vector, ...] | None:
-        if self._all is None or type(value) is not np.ndarray or value.dtype != float:
+        if type(value) is not np.ndarray or value.dtype != float:
             return None
-        change = (value - self._all).ravel()
+        change = (value - self._last).ravel()
         if not change @ change <= _JUMP * _JUMP:
             return None
-        found = tuple(map(tuple, items))
-        self._all, self._last = value.copy(), [(angles, self._now) for angles in found]
-        return found
+        self._last, self._read = value.copy(), [self._now] * len(items)
+        return tuple(map(tuple, items))
 
     def _read_leg(self, leg: int, value: Any) -> Vector | str:
-        angles, last = super()._read_leg(leg, value), self._last[leg]
+        angles = super()._read_leg(leg, value)
         if isinstance(angles, str):
             return angles
-        if last is not None:
-            most = _JUMP + _FASTER * self._speed * (self._now - last[1])
-            if any(abs(now - before) > most for now, before in zip(angles, last[0], strict=True)):
-                return self._jumps[leg]
-        self._last[leg] = angles, self._now
-        known = [angles for angles, _ in filter(None, self._last)]
-        self._all = np.array(known) if len(known) == len(self._last) else None
+        most = _JUMP + _FASTER * self._speed * (self._now - self._read[leg])
+        if any(abs(now - before) > most for now, before in zip(angles, self._last[leg].tolist(), strict=True)):
+            return self._jumps[leg]
+        self._last[leg], self._read[leg] = angles, self._now
         return angles

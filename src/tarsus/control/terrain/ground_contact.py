@@ -96,7 +96,7 @@ def met_ground(
                 landed.append(leg)
         elif (touches or leg in stopped) and not leaves and _collides(state, leg, contacts):
             roughness.collided()
-            state = _rising_again(state, leg, _highest(state, leg, state.foothold[leg], reach), timing)
+            state = _rising_again(state, leg, _highest(state, leg, reach), timing)
     return _put_down(state, landed, timing, pace) if missing.tips else (state, landed)
 
 
@@ -162,10 +162,10 @@ def _rising_again(state: GaitState, leg: int, highest: float, timing: StepTiming
     return state._replace(felt=felt)
 
 
-def _highest(state: GaitState, leg: int, goal: complex, reach: Reach) -> float:
-    """Return the greatest height in G of a foot on its way to a goal in G [m]."""
+def _highest(state: GaitState, leg: int, reach: Reach) -> float:
+    """Return the greatest height in G of a foot on its way to its foothold [m]."""
     turn = cmath.exp(-1j * state.yaw)
-    start, end = ((complex(place) - state.origin) * turn for place in (state.foot[leg], goal))
+    start, end = ((complex(place) - state.origin) * turn for place in (state.foot[leg], state.foothold[leg]))
     return float(state.elevation.value[0]) + reach.highest_on_way(leg, start, end)
 
 
@@ -174,7 +174,7 @@ def _trying_again(state: GaitState, leg: int, missing: MissingGround, reach: Rea
     assert after.felt is not None  # a walk that feels the ground
     height, turn = float(state.ground_height[leg]), cmath.exp(1j * state.yaw)
     foot, goal = ((complex(places[leg]) - state.origin) / turn for places in (state.foot, state.foothold))
-    top = min(height + _HIGHER, max(_highest(state, leg, state.foothold[leg], reach), height))
+    top = min(height + _HIGHER, max(_highest(state, leg, reach), height))
     back = missing.stopped(leg, foot, goal)
     slide = _DRAWS_BACK * turn * back / max(abs(back), 1e-9)
     return after._replace(felt=_with(after.felt, leg, speed=0.0, acceleration=0.0, top=top, slide=slide))

@@ -31,8 +31,8 @@ _SLOPE_RATE = 2.0
 _STROKE_SHARE = 0.65
 # How far the body is lowered for deep ground, over its height.
 _LOWERED = 0.35
-# How far off known heights may lie: eight points around a place, and itself [m].
-_AROUND = 0.03 * np.append(np.exp(0.25j * np.pi * np.arange(8)), 0.0)
+# How far off known heights may lie [m].
+_OFF = 0.03
 # Swing phase up to which a foothold is chosen.
 _CHOOSING = 0.3
 # How close to a hole a foot is not put down [m].
@@ -179,7 +179,7 @@ class GroundMap:
         place : complex
             The place [m].
         """
-        return float(self.expected(place + _AROUND).min()) if self.given else self.plane.at(place)
+        return float(lowest_near(self.expected, np.array(place), within=_OFF)) if self.given else self.plane.at(place)
 
     def choose(self, state: GaitState, reach: Reach, footholds: FootholdTransfer) -> None:
         """Choose footholds for feet that have lifted off, once in each swing.
