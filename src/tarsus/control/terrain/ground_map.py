@@ -35,8 +35,8 @@ _LOWERED = 0.35
 _OFF = 0.03
 # Swing phase up to which a foothold is chosen.
 _CHOOSING = 0.3
-# How close to a hole a foot is not put down [m].
-_EDGE = 0.03
+# A foothold this close to a hole counts as in it [m]: farther away ones are preferred, but may be missing.
+_EDGE = 0.012
 # Room of the body over the ground [m].
 _CLEAR = 0.015
 # Points under the body, over half its length and width: a little farther at front and rear.
