@@ -88,6 +88,31 @@ def test_a_femur_that_gives_way_under_the_robot_is_found_before_it_tips(joint, e
     assert 0.5 * at_most < ticks < at_most + 10
 
 
+def test_a_servo_that_the_ground_may_stall_is_given_longer_than_one_whose_foot_does_not_touch():
+    measured, times = np.zeros((6, 3)), []
+    measured[3, 1] = 0.3
+    for contacts in ([True] * 6, [False] * 6, [None] * 6, None):
+        monitor, ticks = JointMonitor(), 0
+        while not monitor.failed:
+            monitor.step(np.zeros((6, 3)), measured.tolist(), 0.01, contacts=contacts)
+            ticks += 1
+        times.append(ticks)
+    assert times[0] > 200 > 50 > times[1]
+    assert times[1] == times[2] == times[3]
+
+
+@pytest.mark.parametrize(("touches", "failed"), [(True, {1: 2}), (False, {1: 2, 3: 1})])
+def test_contacts_tell_of_the_legs_that_are_left_too(touches, failed):
+    controller = tarsus.RobotController(STRIDER)
+    controller.leg_failures.failed[1] = 2
+    for tick in range(250):
+        angles, contacts = np.array(controller.output.angles), [True] * 3 + [touches] + [True] * 2
+        angles[3, 1] += 0.3 * (tick > 150)
+        readings = tarsus.SensorReadings(joint_angles=angles, contacts=contacts)
+        controller.step((0.0, 0.0, 0.0), 0.01, readings)
+    assert controller.leg_failures.failed == failed
+
+
 def test_joints_of_a_caught_leg_that_are_off_and_then_do_not_move_are_not_taken_for_stuck():
     monitor = JointMonitor()
     for tick in range(200):

@@ -27,8 +27,10 @@ _IDLE_ERROR, _IDLE = 0.07, 0.3
 # servo, and of one that pulls, as that of a leg does that is caught.
 _FAILED_AFTER, _MEMORY = 1.5, 2.0
 _MOST_WEIGHT, _MOST_IDLE, _MOST_PULLING = 6.0, 15.0, 1.0
-# Where the torque is not measured, a femur that the ground has pushed up by so much [rad], more than any that holds on,
-# and the greatest factor then.
+# Share that counts where the torque is not measured and the foot touches the ground, which may stall the servo.
+_STALLED = 0.2
+# Where the torque is not measured, a femur that the ground has pushed up by so much [rad], more than nearly any that
+# holds on, and the greatest factor then.
 _GIVES_WAY, _MOST_GIVING_WAY = 0.6, 30.0
 # A joint whose command moves by so much within a time [rad], [s], and that moves by less than this share of it, is
 # stuck; it has failed once that is so twice in a row.
@@ -39,8 +41,9 @@ class JointMonitor:
     """Compares measured joint angles with those that were commanded a moment ago.
 
     A servo that is loaded gives way, and one that is slow lags behind. One that is dead, limp or stuck is off by more
-    than its stall torque explains, for longer than any lag; the more it is off, the sooner it is found, and sooner yet
-    where its torque is measured as well: a servo that works pulls.
+    than its stall torque explains, for longer than any lag; the more it is off, the sooner it is found. The ground may
+    stall a servo that works. Its torque tells, where that is measured: such a servo pulls. Otherwise, contact does: it
+    presses its foot on the ground.
 
     Parameters
     ----------
@@ -62,9 +65,15 @@ class JointMonitor:
         self._time = 0.0
 
     def step(
-        self, commanded: Float[np.ndarray, "legs 3"], measured: _Measured, dt: float, *, torques: _Measured = None
+        self,
+        commanded: Float[np.ndarray, "legs 3"],
+        measured: _Measured,
+        dt: float,
+        *,
+        torques: _Measured = None,
+        contacts: Sequence[bool | None] | None = None,
     ) -> None:
-        """Take in the joint angles and torques of a tick.
+        """Take in what is measured in a tick.
 
         Parameters
         ----------
@@ -76,6 +85,8 @@ class JointMonitor:
             Time since the last tick [s].
         torques : sequence of ((coxa, femur, tibia) or None), or None
             Of the servos, as measured [N m].
+        contacts : sequence of (bool or None), or None
+            Which feet touch the ground, as measured.
         """
         commands = self._commands
         commands.append((dt, commanded))
@@ -93,13 +104,15 @@ class JointMonitor:
             self._evidence = np.zeros((2, *commanded.shape))
         recent = [angles for _, angles in commands]
         error = np.fmax(np.fmax(found - np.max(recent, axis=0), np.min(recent, axis=0) - found), 0.0)
-        bound, most = np.full_like(commanded, _ERROR), np.full_like(commanded, _MOST_WEIGHT)
-        if torques is None:
-            most[(found - np.max(recent, axis=0))[:, 1] > _GIVES_WAY, 1] = _MOST_GIVING_WAY
-        else:
-            share = np.abs(_array(torques)) / self._stall_torque
-            bound[share < _IDLE], most[share < _IDLE], most[share >= _IDLE] = _IDLE_ERROR, _MOST_IDLE, _MOST_PULLING
-        weight = np.where(error > bound, np.fmin((error / bound) ** 2, most), 0.0)
+        torque = np.full_like(error, np.nan) if torques is None else np.abs(_array(torques)) / self._stall_torque
+        idle, pulls = torque < _IDLE, torque >= _IDLE
+        bound = np.where(idle, _IDLE_ERROR, _ERROR)
+        most = np.select([idle, pulls], [_MOST_IDLE, _MOST_PULLING], _MOST_WEIGHT)
+        gives_way = (found - np.max(recent, axis=0))[:, 1] > _GIVES_WAY
+        most[gives_way & np.isnan(torque[:, 1]), 1] = _MOST_GIVING_WAY
+        touches = np.array([bool(on) for on in contacts or [False] * len(error)])
+        share = np.where(np.isnan(torque) & touches[:, None], _STALLED, 1.0)
+        weight = np.where(error > bound, share * np.fmin((error / bound) ** 2, most), 0.0)
         once = np.zeros_like(commanded) if stuck is None else _ONCE * stuck
         self._evidence = self._evidence * 0.5 ** (dt / _MEMORY) + np.stack([dt * weight, once])
         for _, leg, joint in np.argwhere(self._evidence > _FAILED_AFTER).tolist():

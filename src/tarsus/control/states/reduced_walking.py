@@ -115,6 +115,8 @@ class ReducedWalking(Walking):
         command = dataclasses.replace(command, gait=None, foot_targets=targets, foot_velocities=velocities)
         super().step(command, dt, None if readings is None else self._of_legs(readings))
         self.torques = self._of_all(self.torques)
+        feet = self.touches or [None] * len(legs)
+        self.touches = [feet[legs[leg]] if leg in legs else None for leg in range(self._robot.legs)]
         self.joint_angles = self._of_all(self.joint_angles, self._zero[:, 0].tolist())
 
     @property
@@ -216,7 +218,8 @@ class LegFailures:
         now, dt : Snapshot, float
             The robot before the tick; length of the tick [s].
         """
-        self._monitor.step(now.angles, activity.joint_angles, dt, torques=activity.torques)
+        torques, contacts = activity.torques, activity.touches
+        self._monitor.step(now.angles, activity.joint_angles, dt, torques=torques, contacts=contacts)
         lost = activity.failed if isinstance(activity, ReducedWalking) else {}
         if self.sits or self.failed.keys() <= lost.keys():
             return activity
