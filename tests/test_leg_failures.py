@@ -101,6 +101,15 @@ def test_a_servo_that_the_ground_may_stall_is_given_longer_than_one_whose_foot_d
     assert times[1] == times[2] == times[3]
 
 
+@pytest.mark.parametrize(("speed", "fails"), [(0.5, True), (2.0, False)])
+def test_a_servo_whose_joint_goes_back_to_its_command_is_not_idle(speed, fails):
+    monitor, measured, torques = JointMonitor(np.full((6, 3), 2.0)), np.zeros((6, 3)), [(0.1,) * 3] * 6
+    for tick in range(40):
+        measured[3, 2] = min(0.01 * speed * tick - 0.7, 0.0)
+        monitor.step(np.zeros((6, 3)), measured.tolist(), 0.01, torques=torques)
+    assert bool(monitor.failed) is fails
+
+
 @pytest.mark.parametrize(("touches", "failed"), [(True, {1: 2}), (False, {1: 2, 3: 1})])
 def test_contacts_tell_of_the_legs_that_are_left_too(touches, failed):
     controller = tarsus.RobotController(STRIDER)

@@ -22,6 +22,8 @@ _LAG = 0.15
 _ERROR = 0.15
 # The same of a servo that gives less than this share of its stall torque, where that is measured [rad].
 _IDLE_ERROR, _IDLE = 0.07, 0.3
+# Speed towards its command of a joint whose servo works, whatever torque it gives at that [rad/s].
+_MOVES = 1.0
 # How long a joint has to be off by this error until it has failed, and the time in which half of it is forgotten [s]. A
 # greater error counts for more, by its square and up to these factors: where the torque is not measured, of an idle
 # servo, and of one that pulls, as that of a leg does that is caught.
@@ -62,7 +64,7 @@ class JointMonitor:
         self._commands: deque[tuple[float, Float[np.ndarray, "legs 3"]]] = deque()
         self._evidence: Float[np.ndarray, "2 legs 3"] | None = None
         self._compared: list[Float[np.ndarray, "2 legs 3"]] = []
-        self._time = 0.0
+        self._time, self._found = 0.0, np.array(np.nan)
 
     def step(
         self,
@@ -94,7 +96,8 @@ class JointMonitor:
             commands.popleft()
         if measured is None:
             return
-        found = _array(measured)
+        before, found = self._found, _array(measured)
+        self._found = found
         stuck = self._stuck(found, commanded, dt)
         with np.errstate(invalid="ignore"):
             off = np.abs(found - commanded) > _ERROR
@@ -105,9 +108,10 @@ class JointMonitor:
         recent = [angles for _, angles in commands]
         error = np.fmax(np.fmax(found - np.max(recent, axis=0), np.min(recent, axis=0) - found), 0.0)
         torque = np.full_like(error, np.nan) if torques is None else np.abs(_array(torques)) / self._stall_torque
-        idle, pulls = torque < _IDLE, torque >= _IDLE
+        moves = (found - before) * np.sign(commanded - found) > _MOVES * dt
+        idle = (torque < _IDLE) & ~moves
         bound = np.where(idle, _IDLE_ERROR, _ERROR)
-        most = np.select([idle, pulls], [_MOST_IDLE, _MOST_PULLING], _MOST_WEIGHT)
+        most = np.select([idle, torque >= 0], [_MOST_IDLE, _MOST_PULLING], _MOST_WEIGHT)
         gives_way = (found - np.max(recent, axis=0))[:, 1] > _GIVES_WAY
         most[gives_way & np.isnan(torque[:, 1]), 1] = _MOST_GIVING_WAY
         touches = np.array([bool(on) for on in contacts or [False] * len(error)])
