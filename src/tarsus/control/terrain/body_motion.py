@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import cmath
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from tarsus.control.limitation import Limitation, LimitationKind
+from tarsus.control.limiter.stopped_body import StoppedBody
 from tarsus.control.readings import ValidReadings
 from tarsus.control.sensing.leg_odometry import LegOdometry
 from tarsus.control.terrain.foot_contacts import FootContacts
@@ -56,6 +58,8 @@ class BodyMotion:
         Between which heights legs reach their strokes; how uneven the ground is.
     slope, stance : SlopeLimit, SlopeStance
         Whether the slope is too steep; rest footholds on it.
+    stopped : StoppedBody
+        Whether an obstacle stops the body.
     tilt : (roll, pitch) or None
         By how much the body was tilted more than commanded when measured last [rad].
     lowered : float
@@ -75,7 +79,7 @@ class BodyMotion:
     ) -> None:
         self._contacts, self._ground, self._posture = contacts, ground, PostureFeedback(levelling)
         self.reach, self.odometry, self.roughness = Reach(robot), LegOdometry(robot), Roughness(adaptation)
-        self.slope, self.stance = SlopeLimit(adaptation.friction), SlopeStance(robot)
+        self.slope, self.stance, self.stopped = SlopeLimit(adaptation.friction), SlopeStance(robot), StoppedBody(robot)
         self.rates, self.drift, self.lowered = PostureRates(0.0, (0.0, 0.0)), 0j, 0.0
         self.tilt: tuple[float, float] | None = None
         self.since = _PERIOD
@@ -134,6 +138,8 @@ class BodyMotion:
         tilt = measured.attitude or (0.0, 0.0)
         drift = self.odometry.step(measured.joint_angles, bears, velocity, dt, tilt=tilt, yaw=yaw)
         self.drift = self.stance.not_downhill(drift)
+        along, torques = velocity * cmath.exp(-1j * yaw), measured.torques
+        self.stopped.step(measured.joint_angles, torques, bears, along, dt, tilt=tilt)
         margins = [(places[leg], over[leg] - (self.reach.lowest[leg] + self.lowered)) for leg in bears]
         stands = self.slope.refuses or not twist.any()
         self.rates = self._posture.rates(self._ground.plane, self.tilt, velocity, feet=margins, stands=stands)

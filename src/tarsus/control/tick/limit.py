@@ -27,6 +27,7 @@ def twist_limiters(walk: WalkComponents) -> list[TwistLimiter]:
     roughness = walk.ground.body.roughness
     return [
         walk.ground.missing,
+        walk.ground.body.stopped,
         WorkspaceLimiter(walk.robot.leg_names, walk.transitions, lambda: (roughness.cycle_time, roughness.speed)),
         PendingTransitionLimiter(walk.transitions),
         GovernorLimiter(walk.transitions, lambda: walk.ground.body.looks),

@@ -1,0 +1,92 @@
+"""Stopped body: refuses a twist towards what the body pushes against, by the measured torques of the coxa joints."""
+
+from __future__ import annotations
+
+import cmath
+import math
+from collections.abc import Sequence
+
+from tarsus.control.limitation import Limitation, LimitationKind
+from tarsus.control.limiter.protocol import TwistGrant, TwistRequest
+from tarsus.control.readings import Vector
+from tarsus.kinematics.mass import STANDARD_GRAVITY, total_mass
+from tarsus.robot.robot import Robot
+
+__all__ = ["StoppedBody"]
+
+# Push over the weight from which on the body is stopped, the time over which it is averaged, and how long it lasts [s].
+# In physics it is 0.13 at most on rough ground; where the body meets a block that it gets over, it lasts for up to 3 s.
+_STOPPED, _TIME, _LASTS = 0.15, 1.0, 3.5
+# Motion within an angle of this cosine of the way on which the body was stopped leads there.
+_TOWARDS = 0.3
+
+
+class StoppedBody:
+    """Finds obstacles that stop the body, which no foot feels, and refuses the way towards them.
+
+    The ground pushes the robot up only, against gravity, unless something else holds it. What the standing feet push
+    across their legs with follows from the torques of the coxa joints.
+
+    Parameters
+    ----------
+    robot : Robot
+        A single robot; one without masses is never found stopped.
+
+    Attributes
+    ----------
+    push : float
+        What the robot pushes with on its way, over its weight.
+    """
+
+    def __init__(self, robot: Robot) -> None:
+        self.push, self._time, self._way, self._cause, g = 0.0, 0.0, 0j, "", robot.geometry
+        self._weight = float(total_mass(robot)) * STANDARD_GRAVITY if robot.has_masses else 0.0
+        columns = (robot.mount_yaw, g.coxa, g.side, g.femur, g.tibia)
+        self._legs = list(zip(*(column.tolist() for column in columns), strict=True))
+
+    def step(
+        self,
+        angles: Sequence[Vector | None] | None,
+        torques: Sequence[Vector | None] | None,
+        bears: Sequence[int],
+        velocity: complex,
+        dt: float,
+        *,
+        tilt: tuple[float, float],
+    ) -> None:
+        """Take in joint angles and torques.
+
+        Parameters
+        ----------
+        angles, torques : sequence of ((coxa, femur, tibia) or None), or None
+            As measured [rad, N m]; legs without either do not count.
+        bears : sequence of int
+            Legs whose feet bear load.
+        velocity, dt : complex, float
+            Commanded velocity of the body along its own axes [m/s]; time since the last tick [s].
+        tilt : (roll, pitch)
+            Of the body against gravity [rad].
+        """
+        push = 0.0
+        if angles is not None and torques is not None and velocity and self._weight:
+            force = self._weight * complex(math.sin(tilt[1]), -math.sin(tilt[0]) * math.cos(tilt[1]))
+            for leg in bears:
+                angle, torque = angles[leg], torques[leg]
+                if angle is not None and torque is not None:
+                    mount_yaw, coxa, side, femur, tibia = self._legs[leg]
+                    out = complex(coxa + femur * math.cos(angle[1]) + tibia * math.cos(angle[1] + angle[2]), side)
+                    force -= 1j * torque[0] / (out * cmath.rect(1.0, mount_yaw + angle[0])).conjugate()
+            push = (force * velocity.conjugate()).real / (self._weight * abs(velocity))
+        self.push += min(dt / _TIME, 1.0) * (push - self.push)
+        self._time = (self._time + dt) * (self.push > _STOPPED)
+        if self._time > _LASTS:
+            self._cause = f"an obstacle stops the body, which pushes with {100 * self.push:.0f} % of the weight"
+            self._way, self.push, self._time = velocity / (abs(velocity) or 1.0), 0.0, 0.0
+
+    def limit(self, request: TwistRequest, grant: TwistGrant) -> TwistGrant:
+        """Return the grant, without a twist towards what stops the body; any other one is granted, and ends that."""
+        velocity = complex(*request.twist[:2])
+        if (velocity * self._way.conjugate()).real > _TOWARDS * abs(velocity):
+            return grant.at_most(0.0, Limitation(kind=LimitationKind.GROUND, cause=self._cause))
+        self._way *= not any(request.twist)
+        return grant
