@@ -8,6 +8,7 @@ import tarsus
 from sample_gait_states import begun, rest_of, setup_of
 from tarsus.control.limitation import LimitationKind
 from tarsus.control.limiter.protocol import TwistGrant, TwistRequest
+from tarsus.control.sensing.leg_odometry import LegOdometry
 from tarsus.control.terrain.foot_contacts import FootContacts
 from tarsus.control.terrain.ground_contact import met_ground
 from tarsus.control.terrain.ground_map import GroundMap
@@ -174,6 +175,54 @@ def test_where_rough_ground_is_not_found_the_walk_goes_on_with_other_footholds()
 
     assert refused(0.0)
     assert not refused(0.02)
+
+
+@pytest.mark.parametrize(("raised", "goes_on"), [(0.0, False), (0.01, False), (0.03, True)])
+def test_where_a_leg_may_rest_on_the_edge_of_a_step_the_walk_goes_on_with_other_footholds(raised, goes_on):
+    missing = MissingGround(NAMES)
+    missing.raised = {0: raised}
+    stepped(missing, [(0, 0.077, False, False)])
+    # The ground counts as rough from then on.
+    assert missing.edge == 0.077 * goes_on
+    limited(missing, 0.1, 0.0, 0.0)
+    assert missing.refuses
+    for _ in range(110):
+        stepped(missing, [], stands=[True] * 6)
+    limited(missing, 0.1, 0.0, 0.0)
+    assert missing.refuses != goes_on
+    assert missing.edge == 0.0
+
+
+def test_a_foot_that_is_measured_deep_is_over_a_hole_whatever_holds_its_leg_up():
+    missing = MissingGround(NAMES)
+    missing.raised = {0: 0.02}
+    assert stepped(missing, [(0, 0.08, False, False)]).places
+    assert missing.edge == 0.0
+
+
+def test_feet_over_their_commands_are_known_where_angles_are_measured():
+    robot = tarsus.load_robot("strider")
+    odometry, g, commanded = LegOdometry(robot), robot.geometry, np.zeros((6, 3))
+    # The legs are straight out; measured, they are turned up at their femur joints.
+    higher = [(0.0, 0.1, 0.0)] * 6
+    rise = (g.femur[0] + g.tibia[0]) * np.sin(0.1)
+    assert odometry.raised([0, 3], higher, commanded) == pytest.approx({0: rise, 3: rise})
+    assert odometry.raised([0, 3], [None, *higher[1:]], commanded) == pytest.approx({3: rise})
+    assert odometry.raised([0, 3], None, commanded) == {}
+
+
+@pytest.mark.parametrize(("name", "pace", "rise"), [("phantomx", 0.6, -0.04), ("ch3r", 0.5, -0.025)])
+def test_a_robot_with_a_low_body_gets_down_a_step_on_whose_edge_its_legs_rest(name, pace, rise):
+    robot, dt = tarsus.load_robot(name), 0.01
+    speed = pace * tarsus.WalkController(robot).top_speed((1, 0, 0))
+    plant = SimulatedPlant(robot, terrain=terrain.Step(rise=rise), sensors="ideal", servos="catalogue")
+    controller = tarsus.RobotController(robot)
+    output = controller.output
+    plant.start(output)
+    for _ in range(round(0.85 / speed / dt)):
+        output = controller.step((speed, 0.0, 0.0), dt, plant.step(output, dt))
+    # Refused, it would stay at 0.2 m.
+    assert plant.state.body.position[0] > 0.3
 
 
 def test_a_foot_that_is_stopped_tries_again_then_beside_it_and_then_stays_before_it():

@@ -5,10 +5,16 @@ from __future__ import annotations
 import cmath
 import math
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
 
 from tarsus.control.limitation import Limitation, LimitationKind
 from tarsus.control.readings import Vector
 from tarsus.robot.robot import Robot
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
 __all__ = ["LegOdometry"]
 
@@ -104,6 +110,30 @@ class LegOdometry:
             self.behind *= min(1.0, most / max(abs(self.behind), 1e-12))
         wanted, most = _GAIN * self.behind, _MOST * abs(velocity)
         return wanted * min(1.0, most / max(abs(wanted), 1e-12))
+
+    def raised(
+        self, legs: Sequence[int], measured: Sequence[Vector | None] | None, commanded: Float[np.ndarray, "legs 3"]
+    ) -> dict[int, float]:
+        """Return by how much feet are higher than commanded, of those of some legs whose angles are measured [m].
+
+        Parameters
+        ----------
+        legs : sequence of int
+            The legs.
+        measured : sequence of ((coxa, femur, tibia) or None), or None
+            Measured joint angles [rad].
+        commanded : array, shape (legs, 3)
+            Commanded joint angles [rad].
+        """
+        found = {leg: measured[leg] for leg in legs} if measured else {}
+        over = {leg: self._height(leg, angles) for leg, angles in found.items() if angles is not None}
+        return {leg: height - self._height(leg, commanded[leg].tolist()) for leg, height in over.items()}
+
+    def _height(self, leg: int, angles: Sequence[float]) -> float:
+        """Return the height of a foot over its femur joint [m]."""
+        *_, femur, tibia, _ = self._legs[leg]
+        rise: float = femur * math.sin(angles[1]) + tibia * math.sin(angles[1] + angles[2])
+        return rise
 
     def _note_slip(self, feet: list[complex], moved: dict[int, complex], dt: float) -> None:
         """Take note of what the motion over each foot differs by from that of a body that turns over all of them."""

@@ -16,9 +16,9 @@ from tarsus.control.sensing.swing_monitor import SwingMonitor
 from tarsus.control.sensing.validation import ReadingsValidator
 from tarsus.control.terrain.body_motion import BodyMotion
 from tarsus.control.terrain.foot_contacts import FootContacts
-from tarsus.control.terrain.ground_contact import met_ground, searching_feet
+from tarsus.control.terrain.ground_contact import met_ground, not_sunk, searching_feet
 from tarsus.control.terrain.ground_map import GroundMap
-from tarsus.control.terrain.missing_ground import SLOW, MissingGround, not_sunk
+from tarsus.control.terrain.missing_ground import SLOW, MissingGround
 from tarsus.control.terrain.posture_feedback import Levelling
 from tarsus.control.terrain.roughness import GroundAdaptation
 from tarsus.control.terrain.support import Support
@@ -95,6 +95,7 @@ class FeltGround:
         self.measured, self.support, self.condition = ValidReadings(), Support(), BodyCondition()
         self.offsets: Float[np.ndarray, "legs"] | None = None
         self._validator, self._loads = ReadingsValidator(robot), FootLoads(robot, admittance)
+        self._commanded = angles
         self._swings, self._centre = SwingMonitor(), complex(*centre_of_mass(robot, angles)[:2].tolist())
         # What feet are given while all is as planned; ticks and times since contacts and support were looked at.
         self._inputs: FeltInputs | None = None
@@ -123,7 +124,7 @@ class FeltGround:
             Joint angles [rad].
         """
         valid = self.measured = self._validator.validate(readings, dt)
-        down = state.down.tolist()
+        down, self._commanded = state.down.tolist(), angles
         stopped = self._swings.step(angles[:, 0].tolist(), valid.joint_angles, dt, down)
         doubted, phase = self.contacts.open_legs, state.swing_phase
         measured = self._loads.contacts(valid, angles, dt, down=state.down, phase=phase, doubted=doubted)
@@ -251,17 +252,14 @@ class FeltGround:
         stands = [(self.condition.in_air or on) and not missing.steps_back(leg, places[leg]) for leg, on in on_ground]
         missing.sees(self.ground.holes, rest)
         waits = self.condition.carried or (self._rests and self.support.held and near == down)
-        missing.step(
-            [] if waits else searching_feet(state, contacts, self.ground, places, down=down, stands=stands),
-            places,
-            [on and stand for on, stand in zip(down, stands, strict=True)],
-            dt,
-            centre=centre,
-            rest=rest,
-            radii=footholds.placement_radii,
-            height=float(state.posture.value[2]),
-            roughness=rough,
-        )
+        searches = [] if waits else searching_feet(state, contacts, self.ground, places, down=down, stands=stands)
+        legs = [search[0] for search in searches]
+        missing.raised = self.body.odometry.raised(legs, self.measured.joint_angles, self._commanded)
+        on, radii = [on and stand for on, stand in zip(down, stands, strict=True)], footholds.placement_radii
+        height = float(state.posture.value[2])
+        missing.step(searches, places, on, dt, centre=centre, rest=rest, radii=radii, height=height, roughness=rough)
+        # With the body higher and feet drawn in, legs are steeper beside an edge.
+        self.body.roughness.landed(missing.edge)
         return stands
 
     def _under(self, state: GaitState, leg: int, place: complex, *, down: bool) -> GroundUnder:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from tarsus.control.terrain.foot_contacts import FootContacts
 from tarsus.control.terrain.ground_map import GroundMap
-from tarsus.control.terrain.missing_ground import MissingGround
+from tarsus.control.terrain.missing_ground import MissingGround, depth_allowance
 from tarsus.control.terrain.reach import Reach
 from tarsus.control.terrain.roughness import Roughness
 from tarsus.control.walk.felt_feet import FeltFoot
@@ -19,7 +19,7 @@ from tarsus.control.walk.stepper import land
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-__all__ = ["met_ground", "searching_feet"]
+__all__ = ["met_ground", "not_sunk", "searching_feet"]
 
 # Swing phases from which on contact is a collision, and from which on it is the ground.
 _CLEAR, _LANDING = 0.12, 0.55
@@ -34,6 +34,9 @@ _HIGHER, _RISING, _DRAWN_BACK = 0.025, 0.12, 0.008
 # Of a foot that collides again: how far it is from its foothold at least, and past its collision at most, where it does
 # not touch the obstacle's top [m]; the speed with which it is drawn back [m/s].
 _SHORT, _PAST, _DRAWS_BACK = 0.02, 0.01, 1.0
+# A foot that is deeper, on even ground, bears no load that is not felt, whatever its shin rests on [m]; nor does one on
+# rough ground that is this deep, over the body height.
+_HANGS, _HANGS_LOW = 0.05, 0.9
 # A foot that goes down faster has not come to the end of its reach, which sinks with the body [m/s].
 _FALLS = 0.1
 
@@ -212,3 +215,28 @@ def searching_feet(
             depth = ground.lowest_near(place) + elevation - float(state.ground_height[leg])
             found.append((leg, depth, state.felt[leg].speed < -_FALLS, contacts.seeks(leg)))
     return found
+
+
+def not_sunk(
+    state: GaitState,
+    ground: GroundMap,
+    places: Sequence[complex],
+    down: Sequence[bool],
+    *,
+    roughness: float,
+    tips: bool,
+) -> list[bool]:
+    """Return which feet should stand and are near the expected ground: only these may bear load that is not felt.
+
+    Parameters
+    ----------
+    state, ground : GaitState, GroundMap
+        The gait state; where ground is expected.
+    places, down : sequence of complex, sequence of bool
+        Where the feet are, in the heading frame [m]; which should stand.
+    roughness, tips : float, bool
+        How far ground is off the expected one [m]; whether the robot tips or feet step back: then, none may.
+    """
+    most = min(_HANGS + depth_allowance(roughness), _HANGS_LOW * float(state.posture.value[2]))
+    over = (state.ground_height - state.elevation.value + most).tolist()
+    return [on and not tips and over[leg] > ground.at(places[leg]) for leg, on in enumerate(down)]

@@ -7,18 +7,17 @@ from collections.abc import Mapping, Sequence
 
 from tarsus.control.limitation import Limitation, LimitationKind
 from tarsus.control.limiter.protocol import TwistGrant, TwistRequest
-from tarsus.control.terrain.ground_map import GroundMap
 from tarsus.control.terrain.support import holds
-from tarsus.control.walk.state import GaitState
 
-__all__ = ["SLOW", "MissingGround", "not_sunk"]
+__all__ = ["SLOW", "MissingGround", "depth_allowance"]
 
 # Depth below the expected ground at which there is none, over the body height.
 _DEEP = 0.75
 # Depths from which on the walk slows down, and stands still, or goes on slowly with feet at the end of their reach [m].
 _SLOWS, _STANDS, _SLOWEST = 0.005, 0.02, 0.25
-# A foot that is deeper, on even ground, bears no load that is not felt, whatever its shin rests on [m].
-_HANGS = 0.05
+# A foot that is measured higher than commanded by more is held up by its leg [m]; where it is at less depth, over the
+# body height, that leg may rest on the edge of a step.
+_HELD_UP, _STEP = 0.012, 0.5
 # A foot that lifts the body by more stands on ground that is not felt: the robot does not tip towards it [m].
 _LIFTS = 0.008
 # A walk that is slower says why.
@@ -47,30 +46,6 @@ _SHALLOW = 0.02
 _AGAIN, _WAITS, _FORGETS = 2, 1.0, 6.0
 
 
-def not_sunk(
-    state: GaitState,
-    ground: GroundMap,
-    places: Sequence[complex],
-    down: Sequence[bool],
-    *,
-    roughness: float,
-    tips: bool,
-) -> list[bool]:
-    """Return which feet should stand and are near the expected ground: only these may bear load that is not felt.
-
-    Parameters
-    ----------
-    state, ground : GaitState, GroundMap
-        The gait state; where ground is expected.
-    places, down : sequence of complex, sequence of bool
-        Where the feet are, in the heading frame [m]; which should stand.
-    roughness, tips : float, bool
-        How far ground is off the expected one [m]; whether the robot tips or feet step back: then, none may.
-    """
-    over = (state.ground_height - state.elevation.value + _HANGS + _deeper(roughness)).tolist()
-    return [on and not tips and over[leg] > ground.at(places[leg]) for leg, on in enumerate(down)]
-
-
 class MissingGround:
     """Decides where feet step that find no ground, how the body backs off, and which twist leads over the edge.
 
@@ -93,12 +68,18 @@ class MissingGround:
         Towards which foot that sinks the robot tips: its direction in the heading frame; 0 without one.
     sunk : sequence of float
         By how much the body has sunk at each foot since that lost its contact [m].
+    raised : mapping of int to float
+        By how much feet that search are higher than commanded, where that is measured [m].
+    edge : float
+        Commanded depth of a foot that steps back from where its leg may rest on the edge of a step [m]; 0 without one.
     twist : sequence of float
         How the robot walks [m/s, m/s, rad/s].
     """
 
     def __init__(self, names: Sequence[str]) -> None:
         self.sunk: Sequence[float] = [0.0] * len(names)
+        self.raised: Mapping[int, float] = {}
+        self.edge = 0.0
         self.places, self.pace, self.back = dict[int, complex](), 1.0, 0j
         self.stops, self._beside = dict[int, tuple[int, complex, complex]](), dict[int, complex]()
         self._names, self._tries, self._cause = names, [0] * len(names), ("", "")
@@ -180,8 +161,8 @@ class MissingGround:
             del self.places[leg]
             self._tries[leg] = 0
             self.stops.pop(leg, None)
-        self.pace, self.back, self._slows = 1.0 - self.refuses, 0j, ""
-        rough, self.tips = _deeper(roughness), 0j
+        self.pace, self.back, self._slows, self.edge = 1.0 - self.refuses, 0j, "", 0.0
+        rough, self.tips = depth_allowance(roughness), 0j
         held = not searches or holds([foot for foot, on in zip(feet, stands, strict=True) if on], centre)
         for leg, depth, falls, lasts in searches:
             way = self._to_edge(feet[leg], rest[leg])
@@ -194,7 +175,9 @@ class MissingGround:
             sunk = self.sunk[leg]
             self._tip(way, tips=not held and sunk > -_LIFTS and depth + max(sunk, 0.0) > _STANDS + rough)
             if missing and not (self.steps_back(leg, feet[leg]) or self.gives_up(leg)):
-                self._step_back(leg, depth, way, rest[leg], radii[leg], sure=roughness <= _UNSURE)
+                raised = self.raised.get(leg, 0.0)
+                self.edge = depth if raised > _HELD_UP and depth - raised < _STEP * height else self.edge
+                self._step_back(leg, depth, way, rest[leg], radii[leg], sure=max(roughness, self.edge) <= _UNSURE)
         self._since = 0.0 if self.places else self._since + dt
         if not self.places:
             # A robot that tips where a foot sinks goes back at once.
@@ -285,8 +268,14 @@ class MissingGround:
         return grant
 
 
-def _deeper(roughness: float) -> float:
-    """Return how much deeper ground may be where the ground is rough [m]."""
+def depth_allowance(roughness: float) -> float:
+    """Return how much deeper ground may be where the ground is rough [m].
+
+    Parameters
+    ----------
+    roughness : float
+        How far ground is off the expected one [m].
+    """
     return min(_ROUGH * roughness, _ROUGHEST)
 
 
