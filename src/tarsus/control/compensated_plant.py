@@ -68,12 +68,7 @@ class CompensatedPlant:
     """
 
     def __init__(
-        self,
-        plant: Plant,
-        *,
-        springs: JointSprings | None = None,
-        share: float = SHARE,
-        payload: Payload | float = 0.0,
+        self, plant: Plant, *, springs: JointSprings | None = None, share: float = SHARE, payload: Payload | float = 0.0
     ) -> None:
         self.robot, self.plant, self.share = plant.robot, plant, checked_share(share)
         self.robot.require_masses()

@@ -65,11 +65,7 @@ class FootRolling:
         self._filter = CriticallyDamped.still(self._goal)
 
     def step(
-        self,
-        posture: Float[np.ndarray, "_"],
-        rest: Complex[np.ndarray, "legs"],
-        out_of_gait: list[int],
-        dt: float,
+        self, posture: Float[np.ndarray, "_"], rest: Complex[np.ndarray, "legs"], out_of_gait: list[int], dt: float
     ) -> None:
         """Advance by a tick; a stance that stays the same is not solved again.
 

@@ -142,13 +142,7 @@ class Guard:
         """
         self._reset_requested = self._state in (GuardState.HOLDING, GuardState.SITTING)
 
-    def check(
-        self,
-        angles: Any,
-        dt: float,
-        contacts: Any = None,
-        body: Pose | None = None,
-    ) -> GuardOutput:
+    def check(self, angles: Any, dt: float, contacts: Any = None, body: Pose | None = None) -> GuardOutput:
         """Check a command and return the joint angles to send.
 
         Parameters

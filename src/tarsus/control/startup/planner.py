@@ -213,10 +213,7 @@ def _checked(robot: Robot, swing_height: float | None, margin: float) -> tuple[f
 
 
 def _first_feasible(
-    robot: Robot,
-    start: SequenceBuilder,
-    targets: list[BodyTarget],
-    plan: Callable[[SequenceBuilder, BodyTarget], None],
+    robot: Robot, start: SequenceBuilder, targets: list[BodyTarget], plan: Callable[[SequenceBuilder, BodyTarget], None]
 ) -> MotionSequence:
     """Return the first feasible plan; if there is none, raise the error of the most promising one."""
     errors: list[TarsusError] = []

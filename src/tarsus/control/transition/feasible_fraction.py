@@ -23,14 +23,7 @@ from tarsus.robot.robot import Robot
 if TYPE_CHECKING:
     from jaxtyping import Complex, Float
 
-__all__ = [
-    "TIPPING",
-    "StanceTarget",
-    "balanced_fraction",
-    "first_increment",
-    "reach_cause",
-    "reachable_fraction",
-]
+__all__ = ["TIPPING", "StanceTarget", "balanced_fraction", "first_increment", "reach_cause", "reachable_fraction"]
 
 TIPPING = Cause("the robot would tip over")
 # The whole path is sampled at so many points; the interval that fails is then halved: to 1/2048 of the path.

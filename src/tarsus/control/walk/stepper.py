@@ -180,11 +180,7 @@ def _swing(
         phases[leg] = reached
         feet[leg], velocities[leg], accelerations[leg] = path
     after = state._replace(
-        swing_phase=phases,
-        foot=feet,
-        foothold=targets,
-        swing_velocity=velocities,
-        swing_acceleration=accelerations,
+        swing_phase=phases, foot=feet, foothold=targets, swing_velocity=velocities, swing_acceleration=accelerations
     )
     return land(after, landed) if landed else after
 

@@ -77,12 +77,7 @@ class TimeScaling:
         self._used = 0.0
         self._target = angles
 
-    def advance(
-        self,
-        integrate: Callable[[float], _T],
-        solve: Callable[[_T], np.ndarray],
-        dt: float,
-    ) -> _T:
+    def advance(self, integrate: Callable[[float], _T], solve: Callable[[_T], np.ndarray], dt: float) -> _T:
         """Return the state of the walk after a tick.
 
         Parameters

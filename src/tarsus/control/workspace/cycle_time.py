@@ -110,8 +110,7 @@ def _timing(
         straight = _sizes(shortest[:, :_STRAIGHT], tried)
         # Optimised for walking straight, the most frequent command.
         far = np.minimum(
-            straight[:, 0] * stroke[0],
-            _cap(straight, tried[:, None] / shortest[-1, :_STRAIGHT], stroke[:_STRAIGHT]),
+            straight[:, 0] * stroke[0], _cap(straight, tried[:, None] / shortest[-1, :_STRAIGHT], stroke[:_STRAIGHT])
         )
         cycle_time = float(tried[int((far / tried).argmax())])
     cycle_time = max(cycle_time, least)
