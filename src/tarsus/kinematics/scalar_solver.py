@@ -15,6 +15,9 @@ if TYPE_CHECKING:
 
 __all__ = ["ScalarSolver"]
 
+# The body's own frame B: rows of the rotation, and position [m].
+_IN_BODY = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (0.0, 0.0, 0.0)
+
 
 class ScalarSolver:
     """Inverse kinematics of the legs of one robot, knee up, and where its feet are.
@@ -83,7 +86,10 @@ class ScalarSolver:
         return found
 
     def feet(
-        self, angles: Sequence[Sequence[float]], rotation: Sequence[Sequence[float]], position: Sequence[float]
+        self,
+        angles: Sequence[Sequence[float]],
+        rotation: Sequence[Sequence[float]] = _IN_BODY[0],
+        position: Sequence[float] = _IN_BODY[1],
     ) -> list[tuple[float, float, float]]:
         """Return the feet, by forward kinematics.
 
@@ -91,9 +97,9 @@ class ScalarSolver:
         ----------
         angles : sequence of (coxa, femur, tibia)
             Joint angles of each leg [rad].
-        rotation : sequence of three rows
-            Rotation of the body in any frame.
-        position : (x, y, z)
+        rotation : sequence of three rows, optional
+            Rotation of the body in any frame; left out, that frame is B.
+        position : (x, y, z), optional
             Position of the body's origin in that frame [m].
 
         Returns

@@ -18,7 +18,10 @@ from tarsus.control.walk.state import GaitState
 if TYPE_CHECKING:
     from jaxtyping import Float
 
-__all__ = ["TwistGrant", "TwistLimiter", "TwistRequest", "granted_twist"]
+__all__ = ["TwistGrant", "TwistLimiter", "TwistRequest", "granted_twist", "leads_towards"]
+
+# Motion within an angle of this cosine of a way leads there.
+_TOWARDS = 0.3
 
 
 class TwistRequest(NamedTuple):
@@ -91,6 +94,17 @@ class TwistLimiter(Protocol):
             The commanded twist, and what decides on it; what the limiters before this one have left.
         """
         ...
+
+
+def leads_towards(velocity: complex, way: complex) -> bool:
+    """Return whether a motion leads to what is at the end of a way.
+
+    Parameters
+    ----------
+    velocity, way : complex
+        The velocity, and the direction of the way, x + iy in the same frame; without either, nothing is led to.
+    """
+    return (velocity * way.conjugate()).real > _TOWARDS * abs(velocity * way)
 
 
 _WHOLE_TWIST = TwistGrant()

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-import cmath
 import math
 from collections.abc import Sequence
 
 from tarsus.control.limitation import Limitation, LimitationKind
-from tarsus.control.limiter.protocol import TwistGrant, TwistRequest
+from tarsus.control.limiter.protocol import TwistGrant, TwistRequest, leads_towards
 from tarsus.control.readings import Vector
 from tarsus.kinematics.mass import STANDARD_GRAVITY, total_mass
+from tarsus.kinematics.scalar_solver import ScalarSolver
 from tarsus.robot.robot import Robot
 
 __all__ = ["StoppedBody"]
@@ -17,8 +17,8 @@ __all__ = ["StoppedBody"]
 # Push over the weight from which on the body is stopped, the time over which it is averaged, and how long it lasts [s].
 # In physics it is 0.13 at most on rough ground; where the body meets a block that it gets over, it lasts for up to 3 s.
 _STOPPED, _TIME, _LASTS = 0.15, 1.0, 3.5
-# Motion within an angle of this cosine of the way on which the body was stopped leads there.
-_TOWARDS = 0.3
+# Joint angles of legs that do not count [rad].
+_ANY = (0.0, 0.0, 0.0)
 
 
 class StoppedBody:
@@ -39,10 +39,10 @@ class StoppedBody:
     """
 
     def __init__(self, robot: Robot) -> None:
-        self.push, self._time, self._way, self._cause, g = 0.0, 0.0, 0j, "", robot.geometry
+        self.push, self._time, self._way, self._cause = 0.0, 0.0, 0j, ""
         self._weight = float(total_mass(robot)) * STANDARD_GRAVITY if robot.has_masses else 0.0
-        columns = (robot.mount_yaw, g.coxa, g.side, g.femur, g.tibia)
-        self._legs = list(zip(*(column.tolist() for column in columns), strict=True))
+        self._mounts: list[complex] = (robot.geometry.mount_x + 1j * robot.geometry.mount_y).tolist()
+        self._solver = ScalarSolver(robot)
 
     def step(
         self,
@@ -70,12 +70,11 @@ class StoppedBody:
         push = 0.0
         if angles is not None and torques is not None and velocity and self._weight:
             force = self._weight * complex(math.sin(tilt[1]), -math.sin(tilt[0]) * math.cos(tilt[1]))
+            feet = self._solver.feet([each or _ANY for each in angles])
             for leg in bears:
-                angle, torque = angles[leg], torques[leg]
-                if angle is not None and torque is not None:
-                    mount_yaw, coxa, side, femur, tibia = self._legs[leg]
-                    out = complex(coxa + femur * math.cos(angle[1]) + tibia * math.cos(angle[1] + angle[2]), side)
-                    force -= 1j * torque[0] / (out * cmath.rect(1.0, mount_yaw + angle[0])).conjugate()
+                torque = torques[leg]
+                if angles[leg] is not None and torque is not None:
+                    force -= 1j * torque[0] / (complex(*feet[leg][:2]) - self._mounts[leg]).conjugate()
             push = (force * velocity.conjugate()).real / (self._weight * abs(velocity))
         self.push += min(dt / _TIME, 1.0) * (push - self.push)
         self._time = (self._time + dt) * (self.push > _STOPPED)
@@ -86,7 +85,7 @@ class StoppedBody:
     def limit(self, request: TwistRequest, grant: TwistGrant) -> TwistGrant:
         """Return the grant, without a twist towards what stops the body; any other one is granted, and ends that."""
         velocity = complex(*request.twist[:2])
-        if (velocity * self._way.conjugate()).real > _TOWARDS * abs(velocity):
+        if leads_towards(velocity, self._way):
             return grant.at_most(0.0, Limitation(kind=LimitationKind.GROUND, cause=self._cause))
         self._way *= not any(request.twist)
         return grant

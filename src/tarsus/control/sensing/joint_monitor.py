@@ -106,16 +106,17 @@ class JointMonitor:
         if self._evidence is None:
             self._evidence = np.zeros((2, *commanded.shape))
         recent = [angles for _, angles in commands]
-        error = np.fmax(np.fmax(found - np.max(recent, axis=0), np.min(recent, axis=0) - found), 0.0)
+        over = found - np.max(recent, axis=0)
+        error = np.fmax(np.fmax(over, np.min(recent, axis=0) - found), 0.0)
         torque = np.full_like(error, np.nan) if torques is None else np.abs(_array(torques)) / self._stall_torque
         moves = (found - before) * np.sign(commanded - found) > _MOVES * dt
         idle = (torque < _IDLE) & ~moves
         bound = np.where(idle, _IDLE_ERROR, _ERROR)
         most = np.select([idle, torque >= 0], [_MOST_IDLE, _MOST_PULLING], _MOST_WEIGHT)
-        gives_way = (found - np.max(recent, axis=0))[:, 1] > _GIVES_WAY
-        most[gives_way & np.isnan(torque[:, 1]), 1] = _MOST_GIVING_WAY
+        unknown = np.isnan(torque)
+        most[(over[:, 1] > _GIVES_WAY) & unknown[:, 1], 1] = _MOST_GIVING_WAY
         touches = np.array([bool(on) for on in contacts or [False] * len(error)])
-        share = np.where(np.isnan(torque) & touches[:, None], _STALLED, 1.0)
+        share = np.where(unknown & touches[:, None], _STALLED, 1.0)
         weight = np.where(error > bound, share * np.fmin((error / bound) ** 2, most), 0.0)
         once = np.zeros_like(commanded) if stuck is None else _ONCE * stuck
         self._evidence = self._evidence * 0.5 ** (dt / _MEMORY) + np.stack([dt * weight, once])

@@ -11,6 +11,7 @@ import numpy as np
 
 from tarsus.control.limitation import Limitation, LimitationKind
 from tarsus.control.readings import Vector
+from tarsus.kinematics.scalar_solver import ScalarSolver
 from tarsus.robot.robot import Robot
 
 if TYPE_CHECKING:
@@ -53,6 +54,7 @@ class LegOdometry:
         mounts = (robot.mount_yaw, g.mount_x, g.mount_y, g.mount_z + g.up)
         columns = (*mounts, g.coxa, g.side, g.femur, g.tibia, robot.foot_radius)
         self._legs = list(zip(*(column.tolist() for column in columns), strict=True))
+        self._solver = ScalarSolver(robot)
         # Position and inclination of the feet that stood.
         self._before = dict[int, tuple[complex, float]]()
 
@@ -125,15 +127,12 @@ class LegOdometry:
         commanded : array, shape (legs, 3)
             Commanded joint angles [rad].
         """
-        found = {leg: measured[leg] for leg in legs} if measured else {}
-        over = {leg: self._height(leg, angles) for leg, angles in found.items() if angles is not None}
-        return {leg: height - self._height(leg, commanded[leg].tolist()) for leg, height in over.items()}
-
-    def _height(self, leg: int, angles: Sequence[float]) -> float:
-        """Return the height of a foot over its femur joint [m]."""
-        *_, femur, tibia, _ = self._legs[leg]
-        rise: float = femur * math.sin(angles[1]) + tibia * math.sin(angles[1] + angles[2])
-        return rise
+        if not (legs and measured):
+            return {}
+        wanted = commanded.tolist()
+        found = self._solver.feet([each or angles for each, angles in zip(measured, wanted, strict=True)])
+        feet = list(zip(found, self._solver.feet(wanted), strict=True))
+        return {leg: feet[leg][0][2] - feet[leg][1][2] for leg in legs if measured[leg] is not None}
 
     def _note_slip(self, feet: list[complex], moved: dict[int, complex], dt: float) -> None:
         """Take note of what the motion over each foot differs by from that of a body that turns over all of them."""

@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 
 from tarsus.control.limitation import Limitation, LimitationKind
-from tarsus.control.limiter.protocol import TwistGrant, TwistRequest
+from tarsus.control.limiter.protocol import TwistGrant, TwistRequest, leads_towards
 from tarsus.control.terrain.support import holds
 
 __all__ = ["SLOW", "MissingGround", "depth_allowance"]
@@ -37,8 +37,6 @@ _MOVES, _NEAR = 0.005, 2.0
 _FIRM, _MARGIN, _BACKS, _SPEED = 0.06, 0.03, 0.08, 0.15
 # How often a foot is stopped until it is put down beside its way, on how many sides, how far, or before that [m].
 _STOPS, _SIDES, _BESIDE, _BEFORE = 3, 2, 0.06, 0.04
-# Motion within an angle of this cosine of the way to the edge leads over it.
-_TOWARDS = 0.3
 # A foot that finds no ground at less depth than this is over no hole: the leg does not reach there [m].
 _SHALLOW = 0.02
 # How often and when the walk tries other footholds at an edge to ground that is seen, not reached [s]; after which
@@ -247,19 +245,19 @@ class MissingGround:
         vx, vy, wz = self._walked
         velocity = complex(vx, vy) + 1j * wz * rest
         velocity *= abs(velocity) > _MOVES
-        if self._left and self._since < _NEAR and (velocity * self._left.conjugate()).real <= -_TOWARDS * abs(velocity):
+        if self._left and self._since < _NEAR and (not velocity or leads_towards(-velocity, self._left)):
             return self._left
         return velocity / abs(velocity) if velocity else _way(foot - rest, rest)
 
     def limit(self, request: TwistRequest, grant: TwistGrant) -> TwistGrant:
         """Return the grant, without a twist that leads over the edge; one that leads away is granted from then on."""
         velocity = complex(*request.twist[:2])
-        self.refuses = (velocity * self._way.conjugate()).real > _TOWARDS * abs(velocity)
+        self.refuses = leads_towards(velocity, self._way)
         if self.refuses:
             name, cause = self._cause
             return grant.at_most(0.0, Limitation(kind=LimitationKind.GROUND, leg=name, cause=cause))
         for leg, (stops, start, goal) in list(self.stops.items()):
-            if stops <= _STOPS + _SIDES and _leads_away(velocity, goal - start):
+            if stops <= _STOPS + _SIDES and leads_towards(velocity, start - goal):
                 for found in (self.stops, self._beside, self.places):
                     found.pop(leg, None)
         if any(request.twist) and not self.places and self._way:
@@ -277,11 +275,6 @@ def depth_allowance(roughness: float) -> float:
         How far ground is off the expected one [m].
     """
     return min(_ROUGH * roughness, _ROUGHEST)
-
-
-def _leads_away(velocity: complex, way: complex) -> bool:
-    """Return whether a twist leads back from where a foot is stopped on its way."""
-    return (velocity * way.conjugate()).real < -_TOWARDS * abs(velocity * way)
 
 
 def _way(off: complex, rest: complex) -> complex:
