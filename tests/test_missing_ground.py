@@ -193,6 +193,25 @@ def test_where_a_leg_may_rest_on_the_edge_of_a_step_the_walk_goes_on_with_other_
     assert missing.edge == 0.0
 
 
+def test_a_foot_that_its_leg_holds_up_at_the_end_of_its_reach_does_not_search_for_long():
+    def ticks(*, raised, falls=False):
+        missing = MissingGround(NAMES)
+        missing.raised = {0: raised}
+        return next((n for n in range(60) if stepped(missing, [(0, 0.04, falls, True)]).places), None)
+
+    assert 28 <= ticks(raised=0.02) <= 31
+    # A servo that lags behind a foot on its way down holds up nothing.
+    assert ticks(raised=0.02, falls=True) is None
+    assert ticks(raised=0.01) is None
+
+
+def test_a_foot_that_finds_ground_is_held_up_anew_when_it_searches_again():
+    missing = MissingGround(NAMES)
+    missing.raised = {0: 0.02}
+    for searches in (20 * [[(0, 0.04, False, True)]] + [[]]) * 2:
+        assert not stepped(missing, searches).places
+
+
 def test_a_foot_that_is_measured_deep_is_over_a_hole_whatever_holds_its_leg_up():
     missing = MissingGround(NAMES)
     missing.raised = {0: 0.02}

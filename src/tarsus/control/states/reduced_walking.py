@@ -102,7 +102,7 @@ class ReducedWalking(Walking):
         self._end[self._legs] = self.controller.angles + self._zero
         speed = _SPEED_SHARE * float(self.controller.joint_speed.min())
         self._duration = max(float(np.abs(self._end - self._start).max()) / speed, _LEAST_TIME)
-        self._time, self._readings = 0.0, SensorReadings()
+        self._time = 0.0
 
     def step(self, command: Command, dt: float, readings: SensorReadings | None) -> None:
         """Advance by one tick; until the legs are in their new stance, nothing is followed."""

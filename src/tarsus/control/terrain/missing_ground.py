@@ -16,15 +16,15 @@ _DEEP = 0.75
 # Depths from which on the walk slows down, and stands still, or goes on slowly with feet at the end of their reach [m].
 _SLOWS, _STANDS, _SLOWEST = 0.005, 0.02, 0.25
 # A foot that is measured higher than commanded by more is held up by its leg [m]; where it is at less depth, over the
-# body height, that leg may rest on the edge of a step.
-_HELD_UP, _STEP = 0.012, 0.5
+# body height, that leg may rest on the edge of a step; how long that lasts until the foot does not search on [s].
+_HELD_UP, _STEP, _HELD = 0.012, 0.5, 0.3
 # A foot that lifts the body by more stands on ground that is not felt: the robot does not tip towards it [m].
 _LIFTS = 0.008
 # A walk that is slower says why.
 SLOW = 0.85
 # How much deeper ground may be on rough ground: over the roughness, and at most [m]; from which roughness on it is not
 # sure that there is none [m].
-_ROUGH, _ROUGHEST, _UNSURE = 2.5, 0.03, 0.015
+_ROUGH, _ROUGHEST, _UNSURE = 2.5, 0.03, 0.005
 # Where a foot steps back to, from its rest foothold against its way, over how far from there it may stand; with the
 # last, the body backs off as far as it may.
 _BACK = (0.4, 1.0, 1.0)
@@ -77,7 +77,7 @@ class MissingGround:
     def __init__(self, names: Sequence[str]) -> None:
         self.sunk: Sequence[float] = [0.0] * len(names)
         self.raised: Mapping[int, float] = {}
-        self.edge = 0.0
+        self.edge, self._held = 0.0, dict[int, float]()
         self.places, self.pace, self.back = dict[int, complex](), 1.0, 0j
         self.stops, self._beside = dict[int, tuple[int, complex, complex]](), dict[int, complex]()
         self._names, self._tries, self._cause = names, [0] * len(names), ("", "")
@@ -160,7 +160,7 @@ class MissingGround:
             self._tries[leg] = 0
             self.stops.pop(leg, None)
         self.pace, self.back, self._slows, self.edge = 1.0 - self.refuses, 0j, "", 0.0
-        rough, self.tips = depth_allowance(roughness), 0j
+        rough, self.tips, before, self._held = depth_allowance(roughness), 0j, self._held, {}
         held = not searches or holds([foot for foot, on in zip(feet, stands, strict=True) if on], centre)
         for leg, depth, falls, lasts in searches:
             way = self._to_edge(feet[leg], rest[leg])
@@ -168,13 +168,16 @@ class MissingGround:
             pace = max(1 - (depth - rough - _SLOWS) / (_STANDS - _SLOWS), slowest)
             self.pace, self._slows = min((self.pace, self._slows), (pace, self._names[leg]))
             # At another place, a foot does not search for long at the end of its reach.
-            hangs = not falls and depth > _STANDS + rough if leg in self.places else not lasts
+            raised = self.raised.get(leg, 0.0)
+            held_up = raised > _HELD_UP and depth - raised < _STEP * height
+            self._held[leg] = (before.get(leg, 0.0) + dt) * (held_up and not falls)
+            long = not lasts or self._held[leg] > _HELD
+            hangs = not falls and depth > _STANDS + rough if leg in self.places else long
             missing = depth > _DEEP * height + rough or hangs
             sunk = self.sunk[leg]
             self._tip(way, tips=not held and sunk > -_LIFTS and depth + max(sunk, 0.0) > _STANDS + rough)
             if missing and not (self.steps_back(leg, feet[leg]) or self.gives_up(leg)):
-                raised = self.raised.get(leg, 0.0)
-                self.edge = depth if raised > _HELD_UP and depth - raised < _STEP * height else self.edge
+                self.edge = depth if held_up else self.edge
                 self._step_back(leg, depth, way, rest[leg], radii[leg], sure=max(roughness, self.edge) <= _UNSURE)
         self._since = 0.0 if self.places else self._since + dt
         if not self.places:
@@ -210,8 +213,12 @@ class MissingGround:
         if tips:
             self.tips = way
             for leg in list(self.stops):
-                for found in (self.stops, self._beside, self.places):
-                    found.pop(leg, None)
+                self._drop(leg)
+
+    def _drop(self, leg: int) -> None:
+        """Forget what has stopped a foot, and where it is to stand."""
+        for found in (self.stops, self._beside, self.places):
+            found.pop(leg, None)
 
     def stopped(self, leg: int, foot: complex, goal: complex) -> complex:
         """Decide where a foot tries next that is stopped here on its way to a goal; return the way back [m]."""
@@ -258,8 +265,7 @@ class MissingGround:
             return grant.at_most(0.0, Limitation(kind=LimitationKind.GROUND, leg=name, cause=cause))
         for leg, (stops, start, goal) in list(self.stops.items()):
             if stops <= _STOPS + _SIDES and leads_towards(velocity, start - goal):
-                for found in (self.stops, self._beside, self.places):
-                    found.pop(leg, None)
+                self._drop(leg)
         if any(request.twist) and not self.places and self._way:
             self._left = 0j if self._way == self._obstacle else self._way
             self._way, self._since = 0j, 0.0
