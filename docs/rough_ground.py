@@ -29,12 +29,12 @@ WAY, CLEAR = 1.2, 0.35
 LIES = 1.0
 
 
-def smooth(seed: int, height: float) -> Any:
-    return terrain.Smooth(amplitude=height / 1e3, clear=CLEAR, seed=seed)
+def smooth(seed: int, height: float, length: float = 400) -> Any:
+    return terrain.Smooth(amplitude=height / 1e3, wavelength=length / 1e3, clear=CLEAR, seed=seed)
 
 
-def blocks(seed: int, height: float) -> Any:
-    return terrain.Blocks(rise=height / 1e3, clear=CLEAR, seed=seed)
+def blocks(seed: int, height: float, size: float = 150) -> Any:
+    return terrain.Blocks(rise=height / 1e3, size=size / 1e3, clear=CLEAR, seed=seed)
 
 
 def step(_: int, height: float) -> Any:
@@ -49,6 +49,8 @@ GROUNDS: dict[str, Callable[[int], Any]] = {
     "flat": lambda _: terrain.Flat(),
     **{f"smooth{mm}": partial(smooth, height=mm) for mm in (40, 60, 100)},
     **{f"blocks{mm}": partial(blocks, height=mm) for mm in (40, 60, 100)},
+    **{f"smooth{mm} long": partial(smooth, height=mm, length=1200) for mm in (60, 100)},
+    **{f"blocks{mm} wide": partial(blocks, height=mm, size=300) for mm in (60, 100)},
     **{f"step{mm:+d}": partial(step, height=mm) for mm in (25, 40, -25, -40)},
     **{f"ramp{angle:+d}": partial(ramp, degrees=angle) for angle in (10, 20, 30, -10, -20)},
     "stairs": lambda _: terrain.Stairs(rise=0.035),
