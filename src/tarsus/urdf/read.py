@@ -14,6 +14,7 @@ import numpy as np
 
 from tarsus.errors import InputError
 from tarsus.kinematics.leg import forward_kinematics
+from tarsus.kinematics.rotation import rotation_about
 from tarsus.representation import represented
 from tarsus.robot.leg_words import end_in_name, side_in_name
 from tarsus.robot.robot import JOINTS, Robot, Source
@@ -375,10 +376,7 @@ def _moved(chain: Chain, foot: Foot, angles: Float[np.ndarray, "3"]) -> Float[np
     point = np.append(foot.point, 1.0)
     for joint, part, angle in reversed(list(zip(chain.joints, chain.parts, angles.tolist(), strict=True))):
         place = part.links[0].T_body_link
-        x, y, z = joint.axis.tolist()
-        cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
         turned = np.eye(4)
-        # Rodrigues' formula.
-        turned[:3, :3] += math.sin(angle) * cross + (1 - math.cos(angle)) * cross @ cross
+        turned[:3, :3] = rotation_about(joint.axis, np.array(angle))
         point = place @ turned @ np.linalg.inv(place) @ point
     return point

@@ -18,6 +18,7 @@ import numpy as np
 from tarsus.gait.swing import horizontal_profile, vertical_profile
 from tarsus.kinematics.ground import points_in_body
 from tarsus.kinematics.pose import Pose
+from tarsus.kinematics.rotation import axis_and_angle, rotation_about
 from tarsus.kinematics.triangle import solve_triangle, to_leg_frame
 from tarsus.representation import represented
 from tarsus.robot.joint_limits import JointLimits
@@ -34,8 +35,6 @@ GRID = np.linspace(0.0, 1.0, 257)
 _FULL_TURN = 2 * np.pi
 # Least distance of a leg on a Cartesian path from its singularities, straight and folded [rad].
 _MIN_BEND = 0.01
-# The axis of a smaller rotation is undefined by rounding [rad].
-_MIN_ROTATION = 1e-12
 # Fractions of the joint limits that are used, a reserve for the times between the points of `GRID`.
 _SPEED_FRACTION = 0.99
 _ACCELERATION_FRACTION = 0.96
@@ -120,12 +119,7 @@ class Stage:
     @cached_property
     def _rotation(self) -> tuple[Float[np.ndarray, "3"], float]:
         """Axis in G and angle of the body's rotation."""
-        turn = self.end.rotation @ self.start.rotation.T
-        axis = np.array([turn[2, 1] - turn[1, 2], turn[0, 2] - turn[2, 0], turn[1, 0] - turn[0, 1]]) / 2
-        sine = float(np.linalg.norm(axis))
-        if sine < _MIN_ROTATION:
-            return np.zeros(3), 0.0
-        return axis / sine, float(np.arctan2(sine, (np.trace(turn) - 1) / 2))
+        return axis_and_angle(self.end.rotation @ self.start.rotation.T)
 
     def body_at(self, fractions: Float[np.ndarray, "n"]) -> Pose:
         """Return the poses of B in G.
@@ -144,10 +138,7 @@ class Stage:
         axis, angle = self._rotation
         if not angle:
             return Pose(self.start.rotation, self.start.position + progress * (self.end.position - self.start.position))
-        cross = np.array([[0, -axis[2], axis[1]], [axis[2], 0, -axis[0]], [-axis[1], axis[0], 0]])
-        sine, versine = np.sin(angle * progress)[..., None], 1 - np.cos(angle * progress)[..., None]
-        # Rodrigues' formula.
-        rotation = (np.eye(3) + sine * cross + versine * (cross @ cross)) @ self.start.rotation
+        rotation = rotation_about(axis, angle * progress[:, 0]) @ self.start.rotation
         first, last = (pose.position + pose.rotation @ self.pivot for pose in (self.start, self.end))
         return Pose(rotation, first + progress * (last - first) - rotation @ self.pivot)
 

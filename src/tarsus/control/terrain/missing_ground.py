@@ -109,10 +109,6 @@ class MissingGround:
         """Return whether a foot, here in the heading frame, is on its way past an obstacle."""
         return leg in self.stops and self.stops[leg][0] <= _STOPS + _SIDES and self.steps_back(leg, foot)
 
-    def _is_past(self, leg: int, foot: complex) -> bool:
-        """Return whether a foot has got past an obstacle: from there it looks for the ground like any other."""
-        return leg in self.stops and not self.steps_back(leg, foot)
-
     def leaves(self, way: complex) -> bool:
         """Return whether a way of a foot, in the heading frame, leads away from an obstacle that has stopped one."""
         return (way * self._obstacle.conjugate()).real < 0.0
@@ -155,7 +151,9 @@ class MissingGround:
         for leg in [leg for leg in self._beside if not self.steps_back(leg, feet[leg])]:
             self.places[leg] = self._beside.pop(leg)
             searching.append(leg)
-        for leg in [leg for leg in self.places if leg not in searching or self._is_past(leg, feet[leg])]:
+        # Past an obstacle, a foot looks for the ground like any other.
+        past = [leg for leg in self.stops if not self.steps_back(leg, feet[leg])]
+        for leg in [leg for leg in self.places if leg not in searching or leg in past]:
             del self.places[leg]
             self._tries[leg] = 0
             self.stops.pop(leg, None)

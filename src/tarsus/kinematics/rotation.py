@@ -1,0 +1,49 @@
+"""Rotations about an axis."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
+
+__all__ = ["axis_and_angle", "rotation_about"]
+
+# The axis of a smaller rotation is undefined by rounding: the sine of its angle.
+_LEAST_SINE = 1e-12
+
+
+def rotation_about(
+    axis: Float[np.ndarray, "3"], angles: Float[np.ndarray, "*batch"]
+) -> Float[np.ndarray, "*batch 3 3"]:
+    """Return rotations about an axis, by Rodrigues' formula.
+
+    Parameters
+    ----------
+    axis : array, shape (3,)
+        A unit vector.
+    angles : array, shape (...)
+        Angles [rad].
+    """
+    x, y, z = axis.tolist()
+    cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    sine, versine = np.sin(angles)[..., None, None], 1 - np.cos(angles)[..., None, None]
+    return np.asarray(np.eye(3) + sine * cross + versine * (cross @ cross))
+
+
+def axis_and_angle(rotation: Float[np.ndarray, "3 3"]) -> tuple[Float[np.ndarray, "3"], float]:
+    """Return the axis of a rotation, and the angle about it, less than half a turn [rad]; 0 and no axis without one.
+
+    Parameters
+    ----------
+    rotation : array, shape (3, 3)
+        A rotation matrix.
+    """
+    r = rotation
+    axis = np.array([r[2, 1] - r[1, 2], r[0, 2] - r[2, 0], r[1, 0] - r[0, 1]]) / 2
+    sine = float(np.linalg.norm(axis))
+    if sine < _LEAST_SINE:
+        return np.zeros(3), 0.0
+    return axis / sine, float(np.arctan2(sine, (np.trace(r) - 1) / 2))
