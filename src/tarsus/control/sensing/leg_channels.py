@@ -181,7 +181,8 @@ class JointAngleChannel(VectorChannel):
         super().__init__(name, legs, bounds=bounds, beyond=beyond, settle=settle)
         self._jumps = tuple(f"{name} of {leg}: change faster than the servos turn" for leg in legs)
         # The last plausible angles of each leg, NaN before, and when they were read.
-        self._last, self._read = np.full((len(legs), 3), np.nan), [0.0] * len(legs)
+        self._last: list[Vector] = [_NOT_NUMBERS] * len(legs)
+        self._read = [0.0] * len(legs)
         self._now, self._speed = 0.0, speed
 
     def elapse(self, dt: float) -> None:
@@ -197,18 +198,18 @@ class JointAngleChannel(VectorChannel):
     def _plain(self, value: Any, items: Sequence[Any]) -> tuple[Vector, ...] | None:
         if type(value) is not np.ndarray or value.dtype != float:
             return None
-        change = (value - self._last).ravel()
-        if not change @ change <= _JUMP * _JUMP:
+        angles = tuple(map(tuple, items))
+        if not math.hypot(*map(math.dist, angles, self._last)) <= _JUMP:
             return None
-        self._last, self._read = value.copy(), [self._now] * len(items)
-        return tuple(map(tuple, items))
+        self._last, self._read = list(angles), [self._now] * len(items)
+        return angles
 
     def _read_leg(self, leg: int, value: Any) -> Vector | str:
         angles = super()._read_leg(leg, value)
         if isinstance(angles, str):
             return angles
         most = _JUMP + _FASTER * self._speed * (self._now - self._read[leg])
-        if any(abs(now - before) > most for now, before in zip(angles, self._last[leg].tolist(), strict=True)):
+        if any(abs(now - before) > most for now, before in zip(angles, self._last[leg], strict=True)):
             return self._jumps[leg]
         self._last[leg], self._read[leg] = angles, self._now
         return angles

@@ -132,7 +132,7 @@ class ReadingsValidator:
                 channel.reset()
             valid = ValidReadings(rejected=(problem,))
         else:
-            accepted = dict[str, Any]()
+            accepted: dict[str, Any] = {}
             for name, channel in self._channels.items():
                 value = getattr(readings, name)
                 if value is None:

@@ -59,7 +59,7 @@ def moved_vertically(state: GaitState, inputs: StepInputs, dt: float) -> GaitSta
         return state
     rate, start = float(state.elevation.rate[0]), float(state.elevation.value[0])
     climb = _towards(rate, felt.climb, _BODY_ACCELERATION * dt)
-    moved = dict[str, Any]()
+    moved: dict[str, Any] = {}
     if rate or climb:
         moved["elevation"] = CriticallyDamped(np.array([start + (rate + climb) / 2 * dt]), np.array([climb]))
     body, heading = start + float(state.posture.value[2]), cmath.exp(1j * state.yaw)
