@@ -20,8 +20,6 @@ _RISE, _FALL = 3.0, 5.0
 
 # Number of rates that are tried in a tick, and the fraction of the joints' speed and acceleration that is used.
 _TRIES, _USED = 5, 0.98
-# A joint this far from its limits can stop before them, whatever its speed [rad].
-_STOPPING_ROOM = 0.3
 # A joint this close to its target has caught up [rad].
 _CAUGHT_UP = 1e-9
 # Upward and downward.
@@ -68,10 +66,10 @@ class TimeScaling:
         self.rate = 1.0
         self._acceleration, self._hardest = acceleration, _USED * acceleration
         self._top_speed = _USED * speed
-        self._limits_with_room = limits[..., 0] + _STOPPING_ROOM, limits[..., 1] - _STOPPING_ROOM
+        self._softest, self._slowest = float(self._hardest.min()) / 2, float(self._top_speed.min())
         self._ends: Float[np.ndarray, "2 legs 3"] = np.moveaxis(limits, -1, 0)[::-1].copy()
-        # How far the joints are from these at least [rad], and the greatest of their top speeds [rad/s].
-        self._room, self._fastest = 0.0, float(self._top_speed.max())
+        # How far the joints are from these at least [rad].
+        self._room = 0.0
         self._speeds = np.zeros_like(angles)
         self._last_dt = 0.01
         self._used = 0.0
@@ -96,7 +94,7 @@ class TimeScaling:
         between = (dt + self._last_dt) / 2
         after = integrate(dt * rate)
         angles = solve(after)
-        speeds, used, works = self._demand(angles, dt, between)
+        speeds, _, used, works = self._demand(angles, dt, between)
         for _ in range(_TRIES):
             # Slowing down may be too sudden, too.
             other = rate if works else self._other_rate(speeds, rate, between)
@@ -105,7 +103,7 @@ class TimeScaling:
             rate = other
             after = integrate(dt * rate)
             angles = solve(after)
-            speeds, used, works = self._demand(angles, dt, between)
+            speeds, _, used, works = self._demand(angles, dt, between)
         self._used = used
         self.angles, self._speeds, self.rate, self._last_dt = angles, speeds, rate, dt
         self._target = angles
@@ -129,15 +127,14 @@ class TimeScaling:
         after = integrate(dt * rate)
         target, between = solve(after), (dt + self._last_dt) / 2
         if behind is None:
-            speeds, _, works = self._demand(target, dt, between)
-            # No joint moves faster than its top speed: far from its limits it need not be compared with them.
-            self._room -= self._fastest * dt
-            if works and self._room <= 0.0:
-                low, high = self._limits_with_room
-                self._room = float(np.minimum(target - low, high - target).min())
-            if works and (self._room > 0.0 or self._can_stop(speeds, dt)):
+            speeds, fastest, _, works = self._demand(target, dt, between)
+            # Far from their limits, joints need not be compared with them one by one.
+            needed = fastest * (fastest / (2 * self._softest) + dt)
+            if works and self._room <= needed:
+                self._room = float(self._left().min())
+            if works and (self._room > needed or self._can_stop(speeds, dt)):
                 self.angles = self._target = target
-                self._speeds, self._last_dt = speeds, dt
+                self._speeds, self._last_dt, self._room = speeds, dt, self._room - fastest * dt
                 return after
             behind, self._room = np.zeros_like(target), 0.0
         # The speed of the target, and the one from which a joint can still stop where it catches up.
@@ -156,11 +153,14 @@ class TimeScaling:
         self._speeds, self._last_dt = speeds, dt
         return after
 
+    def _left(self) -> Float[np.ndarray, "2 legs 3"]:
+        """Return how far the joints may move upward and downward [rad]."""
+        return np.asarray(_SIGNS * (self._ends - self.angles) - _SPARE)
+
     def _stopping_speeds(self, dt: float) -> Float[np.ndarray, "2 legs 3"]:
-        """Return the greatest speeds upward and downward from which the joints stop before their limits."""
-        softest = self._hardest / 2
-        left = np.maximum(_SIGNS * (self._ends - self.angles) - _SPARE, 0.0)
-        speeds: np.ndarray = np.sqrt((softest * dt) ** 2 + 2 * softest * left) - softest * dt
+        """Return the greatest speeds upward and downward from which the joints stop there, half as hard as they can."""
+        braking = self._hardest * (dt / 2)
+        speeds: np.ndarray = np.sqrt(braking * braking + self._hardest * np.maximum(self._left(), 0.0)) - braking
         return speeds
 
     def _can_stop(self, speeds: Float[np.ndarray, "legs 3"], dt: float) -> bool:
@@ -169,12 +169,13 @@ class TimeScaling:
 
     def _demand(
         self, angles: Float[np.ndarray, "legs 3"], dt: float, between: float
-    ) -> tuple[Float[np.ndarray, "legs 3"], float, bool]:
-        """Return the joints' speeds, the fraction of their acceleration that is used, and whether both are kept."""
+    ) -> tuple[Float[np.ndarray, "legs 3"], float, float, bool]:
+        """Return the joints' speeds, the greatest, the used fraction of acceleration, and whether both are kept."""
         speeds = (angles - self.angles) / dt
         used = max((np.abs(speeds - self._speeds) / self._acceleration).ravel().tolist()) / between
-        works = used <= _USED and not np.count_nonzero(np.abs(speeds) > self._top_speed)
-        return speeds, used, works
+        fastest = max(map(abs, speeds.ravel().tolist()))
+        slow = fastest <= self._slowest or not np.count_nonzero(np.abs(speeds) > self._top_speed)
+        return speeds, fastest, used, slow and used <= _USED
 
     def _relaxed_rate(self, integrate: Callable[[float], _T], solve: Callable[[_T], np.ndarray]) -> float:
         """Return the rate at which the joints keep well within their acceleration for the next moments."""
