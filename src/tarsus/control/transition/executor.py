@@ -85,7 +85,7 @@ class TransitionExecutor:
     @property
     def waiting(self) -> bool:
         """Whether a transition waits until it may begin, or until its body motion may."""
-        stepped = self.phase is TransitionPhase.FOOTHOLDS and bool(self.footholds.transferred.all())
+        stepped = self.phase is TransitionPhase.FOOTHOLDS and all(self.footholds.transferred.tolist())
         return self.scheduler.planned is not None or stepped
 
     @property
@@ -238,12 +238,12 @@ class TransitionExecutor:
 
     def _try_to_move_body(self, active: StanceTransition, now: TickState) -> None:
         """Move the body once every foot is at its new rest foothold."""
-        stepped = self.footholds.transferred.copy()
-        stepped[list(self.current.parameters.excluded)] = True
-        frequency = self.timing.frequency
-        ready = frequency <= 1 / active.cycle_timing.cycle_time and bool(stepped.all())
+        excluded, frequency = self.current.parameters.excluded, self.timing.frequency
+        stepped = all(done or leg in excluded for leg, done in enumerate(self.footholds.transferred.tolist()))
+        if not stepped or frequency > 1 / active.cycle_timing.cycle_time:
+            return
         bounds = self._foot_targets.without_bounds(active.path_limits.bounds)
-        if ready and self._stays_within(bounds, now, frequency=frequency, bandwidth=self.bandwidth):
+        if self._stays_within(bounds, now, frequency=frequency, bandwidth=self.bandwidth):
             self.footholds.restrict(active.path_limits)
             self.pose.set_posture(active.posture)
             self.phase, self._active = TransitionPhase.NONE, None
