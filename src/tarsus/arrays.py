@@ -135,7 +135,8 @@ def require_finite(name: str, array: Num[Array, "..."]) -> None:
     if is_traced(array):
         return
     xp = namespace(array)
-    if bool(xp.all(xp.isfinite(array))):
+    finite = xp.isfinite(array)
+    if bool(finite.all() if xp is np else xp.all(finite)):
         return
     values = np.asarray(array)
     wrong = np.argwhere(~np.isfinite(values))
@@ -259,7 +260,7 @@ def stack_last(xp: Namespace, parts: tuple[Float[Array, "..."], ...]) -> Float[A
     """
     if xp is not np:
         return xp.stack(xp.broadcast_arrays(*parts), axis=-1)
-    shape = np.broadcast_shapes(*(part.shape for part in parts))
+    shape = broadcast_shapes("the parts", *(part.shape for part in parts))
     joined = np.empty((*shape, len(parts)), dtype=np.result_type(*parts))
     for i, part in enumerate(parts):
         joined[..., i] = part

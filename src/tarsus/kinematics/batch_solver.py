@@ -63,7 +63,7 @@ def solve_legs(
         return _solve_everywhere(xp, robot, xp.broadcast_to(feet, (*batch, *feet.shape[-2:])), body, knee)
     angles, reach = _solve_first(robot, feet, body, knee, batch)
     # After the first pass over all legs, so that a few failing legs cost little, however they are scattered.
-    if reach.any():
+    if np.count_nonzero(reach):
         _try_again(robot, feet, body, knee, angles, reach)
     return angles, reach
 
@@ -98,7 +98,7 @@ def _solve_first(
     robot: Robot, feet: Float[Array, "*#batch legs 3"], body: Pose | None, knee: int, batch: tuple[int, ...]
 ) -> tuple[Float[Array, "... legs 3"], Int[Array, "... legs"]]:
     """Solve NumPy legs with their planes facing their feet; large batches in blocks that fit the cache."""
-    sideways = bool(robot.geometry.side.any())
+    sideways = bool(np.count_nonzero(robot.geometry.side))
     if feet.size <= SMALL and batch == feet.shape[:-2] and not robot.batch_shape:
         place = None if body is None else PoseComponents.of(np, body)
         points = feet if body is None else points_in_body(body, feet)

@@ -5,6 +5,8 @@ from __future__ import annotations
 import enum
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from tarsus.arrays import Array, Namespace
 from tarsus.kinematics.triangle import Triangle
 from tarsus.robot.geometry import LegGeometry
@@ -75,4 +77,4 @@ def all_within(geometry: LegGeometry, solution: Triangle) -> bool:
     failing = failing | (s.coxa < g.coxa_lower) | (s.coxa > g.coxa_upper)
     failing = failing | (s.femur < g.femur_lower) | (s.femur > g.femur_upper)
     failing = failing | (s.tibia < g.tibia_lower) | (s.tibia > g.tibia_upper)
-    return not failing.any()
+    return not np.count_nonzero(failing)

@@ -99,11 +99,14 @@ def solve_triangle(
     radius2 = x * x + y * y
     beside = radius2 - g.side2 if sideways else radius2
     along = root(xp, beside) if facing > 0 else -root(xp, beside)
-    ahead, aside = (x * along + y * g.side, y * along - x * g.side) if sideways else (facing * x, facing * y)
+    if sideways:
+        ahead, aside = x * along + y * g.side, y * along - x * g.side
+    else:
+        ahead, aside = (x, y) if facing > 0 else (-x, -y)
     r = along - g.coxa
     distance2 = r * r + z * z
     far, near = g.farthest2 - distance2, distance2 - g.nearest2
-    bend = knee * root(xp, far * near)
+    bend = root(xp, far * near) if knee > 0 else -root(xp, far * near)
     base = distance2 + g.difference2
     return Triangle(
         coxa=direction(xp, aside, ahead),
