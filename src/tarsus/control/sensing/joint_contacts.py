@@ -70,17 +70,18 @@ class JointContacts:
         # The shank hangs down or outwards.
         links = mass[0] * com[0] ** 2 + mass[1] * (lengths**2 + com[1] ** 2)
         inertia = springs.rotor_inertia[:, 1] + links
-        self._stiffness, self._band = springs.stiffness[:, 1], springs.dead_band[:, 1]
-        self._rates = self._stiffness / inertia, springs.damping[:, 1] / inertia
-        self._most = springs.stall_torque[:, 1] / self._stiffness
-        self._tick, self._factors = 0.0, self._rates
-        self._state: tuple[Float[np.ndarray, "legs"], ...] | None = None
-        self._expected: deque[tuple[Float[np.ndarray, "legs"], Float[np.ndarray, "legs"]]] = deque(maxlen=_KEPT)
+        stiffness: Float[np.ndarray, "legs"] = springs.stiffness[:, 1]
+        self._rates, self._stiffness = (stiffness / inertia, springs.damping[:, 1] / inertia), stiffness.tolist()
+        self._columns = springs.stall_torque[:, 1] / stiffness, springs.dead_band[:, 1], stiffness
+        # Of each femur: what a tick needs; angle, speed and target; expected angles and torques.
+        self._tick, self._servos = 0.0, list[tuple[float, ...]]()
+        self._state: list[tuple[float, float, float]] = []
+        self._expected: deque[tuple[list[float], list[float]]] = deque(maxlen=_KEPT)
         longest = float((lengths + np.asarray(robot.geometry.tibia)).max())
         self._least = _LEAST_LOAD * float(total_mass(robot)) * STANDARD_GRAVITY * longest
         self.lag, self._load, self._left = _LAG, 0.0, 0.0
         self._familiar = True
-        self._mean = np.zeros(robot.legs)
+        self._mean = [0.0] * robot.legs
 
     def contacts(
         self,
@@ -107,51 +108,60 @@ class JointContacts:
         phase : array, shape (legs,)
             Swing phase of the others.
         """
-        self._follow(commanded[:, 1], dt)
+        self._follow(commanded[:, 1].tolist(), dt)
         back, share = divmod((self.lag + age) / dt, 1.0)
-        recent = int(back) + 1
-        if recent >= len(self._expected) or None in measured:
+        recent, femurs = int(back) + 1, [leg[1] for leg in measured if leg is not None]
+        if recent >= len(self._expected) or len(femurs) < len(measured):
             return None
         (newer, driven), (older, _) = self._expected[-recent], self._expected[-recent - 1]
-        error = np.array([leg[1] for leg in measured if leg is not None]) - newer - share * (older - newer)
-        off = self._stiffness * error - self._mean
-        free = ~down & (phase > _CLEAR) & (phase < _DOWNWARD)
-        rising = ~down & (phase < _LANDING)
-        if free.any():
-            # The further it is off, the less is it a familiar servo that is learnt of. Of another one all is learnt: a
-            # lag that is far from the first guess would never be found.
-            familiar = self._familiar
-            usual = off / (1 + (off / (_CONTACT * max(self._load, self._least))) ** 2) if familiar else off
-            speeds, errors = (newer - older)[free] / dt, (usual / self._stiffness)[free]
-            change = float(errors @ speeds / (speeds @ speeds + _SLOW))
-            rate = _RATE if familiar else _FASTER * _RATE
-            self.lag = min(max(self.lag - rate * change, 0.0), _LONGEST_LAG)
-            self._left += rate * (float(np.abs(off[free]).mean()) - self._left)
-            self._mean = np.where(free, self._mean + _MEAN_RATE * usual, self._mean)
-        load = float(off[down].sum())
+        behind = zip(femurs, newer, older, self._stiffness, self._mean, strict=True)
+        off = [stiffness * (angle - new - share * (old - new)) - mean for angle, new, old, stiffness, mean in behind]
+        stands, phases = down.tolist(), phase.tolist()
+        free = [leg for leg, on in enumerate(stands) if not on and _CLEAR < phases[leg] < _DOWNWARD]
+        if free:
+            self._learn(free, off, [(newer[leg] - older[leg]) / dt for leg in free])
+        load = sum(torque for torque, on in zip(off, stands, strict=True) if on)
         if load > self._load / 2:
             self._load += _MEAN_RATE * (load - self._load)
-        known = self._load >= self._least
         self._familiar = self._left < (_STRANGE if self._familiar else _FAMILIAR) * max(self._load, self._least)
-        if not (known and self._familiar):
+        if self._load < self._least or not self._familiar:
             return None
-        least = self._load * np.where(rising, _OBSTACLE, np.where(down, _STANDS, _CONTACT))
-        found: np.ndarray = np.where(rising, np.abs(off), off) > least + _UNSURE * np.abs(driven)
-        touching: list[bool] = found.tolist()
+        touching = list[bool]()
+        for torque, drive, on, swung in zip(off, driven, stands, phases, strict=True):
+            rising = not on and swung < _LANDING
+            least = self._load * (_OBSTACLE if rising else _STANDS if on else _CONTACT)
+            touching.append((abs(torque) if rising else torque) > least + _UNSURE * abs(drive))
         return touching
 
-    def _follow(self, commanded: Float[np.ndarray, "legs"], dt: float) -> None:
+    def _learn(self, free: list[int], off: list[float], speeds: list[float]) -> None:
+        """Learn lag and mean torque of legs that swing freely, at these speeds of their femurs [rad/s]."""
+        # The further it is off, the less is it a familiar servo that is learnt of. Of another one all is learnt: a lag
+        # that is far from the first guess would never be found.
+        most, rate = _CONTACT * max(self._load, self._least), _RATE if self._familiar else _FASTER * _RATE
+        product = square = 0.0
+        for leg, speed in zip(free, speeds, strict=True):
+            usual = off[leg] / (1 + (off[leg] / most) ** 2) if self._familiar else off[leg]
+            product, square = product + usual / self._stiffness[leg] * speed, square + speed * speed
+            self._mean[leg] += _MEAN_RATE * usual
+        self.lag = min(max(self.lag - rate * product / (square + _SLOW), 0.0), _LONGEST_LAG)
+        self._left += rate * (sum(abs(off[leg]) for leg in free) / len(free) - self._left)
+
+    def _follow(self, commanded: list[float], dt: float) -> None:
         """Take note of the angles after a tick in which free legs follow their commands."""
-        step, most, band = dt / _STEPS, self._most, self._band
+        step, before = dt / _STEPS, self._state or [(command, 0.0, command) for command in commanded]
         if dt != self._tick:
             spring, damper = self._rates
             kept = 1 / (1 + step * damper + step**2 * spring)
-            self._tick, self._factors = dt, (kept, step * spring * kept)
-        kept, gain = self._factors
-        angles, speeds, target = self._state or (commanded, np.zeros_like(commanded), commanded)
-        target = np.minimum(np.maximum(target, commanded - band), commanded + band)
-        for _ in range(_STEPS):
-            speeds = kept * speeds + gain * np.minimum(np.maximum(target - angles, -most), most)
-            angles = angles + step * speeds
-        self._state = angles, speeds, target
-        self._expected.append((angles, self._stiffness * (target - angles)))
+            columns = (kept, step * spring * kept, *self._columns)
+            self._tick, self._servos = dt, list(zip(*(column.tolist() for column in columns), strict=True))
+        self._state, angles, torques = [], list[float](), list[float]()
+        for command, state, servo in zip(commanded, before, self._servos, strict=True):
+            (angle, speed, target), (kept, gain, most, band, stiffness) = state, servo
+            target = min(max(target, command - band), command + band)
+            for _ in range(_STEPS):
+                speed = kept * speed + gain * min(max(target - angle, -most), most)
+                angle += step * speed
+            self._state.append((angle, speed, target))
+            angles.append(angle)
+            torques.append(stiffness * (target - angle))
+        self._expected.append((angles, torques))
