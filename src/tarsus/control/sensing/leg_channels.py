@@ -181,8 +181,7 @@ class JointAngleChannel(VectorChannel):
         super().__init__(name, legs, bounds=bounds, beyond=beyond, settle=settle)
         self._jumps = tuple(f"{name} of {leg}: change faster than the servos turn" for leg in legs)
         # The last plausible angles of each leg, NaN before, and when they were read.
-        self._last: list[Vector] = [_NOT_NUMBERS] * len(legs)
-        self._read = [0.0] * len(legs)
+        self._last, self._read = [_NOT_NUMBERS] * len(legs), [0.0] * len(legs)
         self._now, self._speed = 0.0, speed
 
     def elapse(self, dt: float) -> None:

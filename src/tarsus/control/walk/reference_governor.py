@@ -104,8 +104,7 @@ class FootPrediction(NamedTuple):
         x, y, angle = driven * self.of_target + self.travel
         # A travel (x, y) that turns by an angle ends at (x + iy) exp(i angle / 2) sin(angle / 2) / (angle / 2).
         half = angle * -0.5
-        half -= _NO_ANGLE
-        np.putmask(half, half == 0.0, _NO_ANGLE)
+        half += np.copysign(_NO_ANGLE, half)
         back, travel = np.empty(half.shape, dtype=complex), np.empty(half.shape, dtype=complex)
         np.cos(half, out=back.real)
         np.sin(half, out=back.imag)

@@ -62,18 +62,15 @@ class TimeScaling:
         acceleration: Float[np.ndarray, "legs 3"],
         limits: Float[np.ndarray, "legs 3 2"],
     ) -> None:
-        self.angles = angles
-        self.rate = 1.0
+        self.angles, self.rate = angles, 1.0
         self._acceleration, self._hardest = acceleration, _USED * acceleration
         self._top_speed = _USED * speed
         self._softest, self._slowest = float(self._hardest.min()) / 2, float(self._top_speed.min())
         self._ends: Float[np.ndarray, "2 legs 3"] = np.moveaxis(limits, -1, 0)[::-1].copy()
         # How far the joints are from these at least [rad].
         self._room = 0.0
-        self._speeds = np.zeros_like(angles)
-        self._last_dt = 0.01
-        self._used = 0.0
-        self._target = angles
+        self._speeds, self._target = np.zeros_like(angles), angles
+        self._last_dt, self._used = 0.01, 0.0
 
     def advance(self, integrate: Callable[[float], _T], solve: Callable[[_T], np.ndarray], dt: float) -> _T:
         """Return the state of the walk after a tick.
