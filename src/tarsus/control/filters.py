@@ -62,10 +62,10 @@ class CriticallyDamped(NamedTuple):
             The bandwidth [rad/s].
         """
         decay = math.exp(-bandwidth * dt)
-        gap = self.value - target
-        slope = self.rate + bandwidth * gap
-        moved = gap + slope * dt
-        return CriticallyDamped(target + moved * decay, (slope - bandwidth * moved) * decay)
+        # With few array operations: they are what a filter costs.
+        gap, kept = self.value - target, decay * dt
+        value = target + (decay + bandwidth * kept) * gap + kept * self.rate
+        return CriticallyDamped(value, (decay - bandwidth * kept) * self.rate - bandwidth * bandwidth * kept * gap)
 
     def settling_step(self, target: Float[np.ndarray, "n"], dt: float, *, bandwidth: float) -> CriticallyDamped:
         """Return the filter after a time with a constant target; once at it, the same object from then on.

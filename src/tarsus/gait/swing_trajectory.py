@@ -36,11 +36,11 @@ def quintic(state: tuple[Any, Any, Any], target: Any, remaining: Any, fraction: 
         Position and derivatives after that [m].
     """
     position, speed, half = state[0], state[1] * remaining, state[2] * (remaining * remaining / 2)
-    # Errors of position, velocity and acceleration at the end, without the terms of third to fifth order.
-    gap, missing, bend = target - (position + speed + half), -(speed + 2 * half), -2 * half
-    a3 = 10 * gap - 4 * missing + bend / 2
-    a4 = -15 * gap + 7 * missing - bend
-    a5 = 6 * gap - 3 * missing + bend / 2
+    # The terms of third to fifth order end at the target without velocity and acceleration.
+    way = target - position
+    a3 = 10 * way - 6 * speed - 3 * half
+    a4 = 8 * speed + 3 * half - 15 * way
+    a5 = 6 * way - 3 * speed - half
     x = fraction
     return (
         position + x * (speed + x * (half + x * (a3 + x * (a4 + x * a5)))),
