@@ -36,6 +36,8 @@ __all__ = [
 Array: TypeAlias = Any
 Namespace: TypeAlias = Any
 
+_NUMPY = (np.ndarray, np.generic)
+
 
 def namespace(*arrays: Any) -> Namespace:
     """Return the namespace of `arrays`: NumPy, unless one of them belongs to another library.
@@ -45,7 +47,7 @@ def namespace(*arrays: Any) -> Namespace:
     *arrays : array
         Arrays, numbers or nested sequences.
     """
-    others = [a for a in arrays if not isinstance(a, np.ndarray | np.generic) and hasattr(a, "shape")]
+    others = [a for a in arrays if not isinstance(a, _NUMPY) and hasattr(a, "shape")]
     if not others:
         return np
     import array_api_compat

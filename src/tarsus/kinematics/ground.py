@@ -46,9 +46,9 @@ class PoseComponents(NamedTuple):
     @classmethod
     def of(cls, xp: Namespace, body: Pose) -> Self:
         """Return the components as ``(..., 1)``; the last axis broadcasts with the legs."""
-        rotation, position = xp.asarray(body.rotation)[..., None], xp.asarray(body.position)[..., None]
-        elements = tuple(tuple(rotation[..., i, j, :] for j in range(3)) for i in range(3))
-        return cls(elements, tuple(position[..., i, :] for i in range(3)))
+        rotation, position = xp.asarray(body.rotation), xp.asarray(body.position)
+        elements = tuple(tuple(rotation[..., i, j, None] for j in range(3)) for i in range(3))
+        return cls(elements, tuple(position[..., i, None] for i in range(3)))
 
     def into_body(
         self, x: Float[Array, "..."], y: Float[Array, "..."], z: Float[Array, "..."]
@@ -66,9 +66,9 @@ class PoseComponents(NamedTuple):
 
 def points_in_body(body: Pose, points: Float[Array, "*#batch 3"]) -> Float[Array, "... k 3"]:
     """Transform NumPy points ``(..., k, 3)`` from G to B: as `PoseComponents.into_body` does, to the bit."""
-    rotation, offset = body.rotation[..., None, :, :], points - body.position[..., None, :]
-    in_body = offset[..., 0:1] * rotation[..., 0, :] + offset[..., 1:2] * rotation[..., 1, :]
-    return in_body + offset[..., 2:3] * rotation[..., 2, :]
+    rotation, offset = body.rotation, points - body.position[..., None, :]
+    in_body = offset[..., 0:1] * rotation[..., None, 0, :] + offset[..., 1:2] * rotation[..., None, 1, :]
+    return in_body + offset[..., 2:3] * rotation[..., None, 2, :]
 
 
 def mark_below_ground(
