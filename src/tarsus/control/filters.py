@@ -62,7 +62,6 @@ class CriticallyDamped(NamedTuple):
             The bandwidth [rad/s].
         """
         decay = math.exp(-bandwidth * dt)
-        # With few array operations: they are what a filter costs.
         gap, kept = self.value - target, decay * dt
         value = target + (decay + bandwidth * kept) * gap + kept * self.rate
         return CriticallyDamped(value, (decay - bandwidth * kept) * self.rate - bandwidth * bandwidth * kept * gap)

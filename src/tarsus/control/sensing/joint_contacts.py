@@ -74,14 +74,12 @@ class JointContacts:
         self._rates, self._stiffness = (stiffness / inertia, springs.damping[:, 1] / inertia), stiffness.tolist()
         self._columns = springs.stall_torque[:, 1] / stiffness, springs.dead_band[:, 1], stiffness
         # Of each femur: what a tick needs; angle, speed and target; expected angles and torques.
-        self._tick, self._servos = 0.0, list[tuple[float, ...]]()
-        self._state: list[tuple[float, float, float]] = []
-        self._expected: deque[tuple[list[float], list[float]]] = deque(maxlen=_KEPT)
+        self._tick, self._servos, self._state = 0.0, list[tuple[float, ...]](), list[tuple[float, float, float]]()
+        self._expected: deque[list[tuple[float, float]]] = deque(maxlen=_KEPT)
         longest = float((lengths + np.asarray(robot.geometry.tibia)).max())
         self._least = _LEAST_LOAD * float(total_mass(robot)) * STANDARD_GRAVITY * longest
         self.lag, self._load, self._left = _LAG, 0.0, 0.0
-        self._familiar = True
-        self._mean = [0.0] * robot.legs
+        self._familiar, self._mean = True, [0.0] * robot.legs
 
     def contacts(
         self,
@@ -113,7 +111,7 @@ class JointContacts:
         recent, femurs = int(back) + 1, [leg[1] for leg in measured if leg is not None]
         if recent >= len(self._expected) or len(femurs) < len(measured):
             return None
-        (newer, driven), (older, _) = self._expected[-recent], self._expected[-recent - 1]
+        (newer, driven), (older, _) = (zip(*self._expected[-index], strict=True) for index in (recent, recent + 1))
         behind = zip(femurs, newer, older, self._stiffness, self._mean, strict=True)
         off = [stiffness * (angle - new - share * (old - new)) - mean for angle, new, old, stiffness, mean in behind]
         stands, phases = down.tolist(), phase.tolist()
@@ -154,7 +152,7 @@ class JointContacts:
             kept = 1 / (1 + step * damper + step**2 * spring)
             columns = (kept, step * spring * kept, *self._columns)
             self._tick, self._servos = dt, list(zip(*(column.tolist() for column in columns), strict=True))
-        self._state, angles, torques = [], list[float](), list[float]()
+        self._state, expected = [], list[tuple[float, float]]()
         for command, state, servo in zip(commanded, before, self._servos, strict=True):
             (angle, speed, target), (kept, gain, most, band, stiffness) = state, servo
             target = min(max(target, command - band), command + band)
@@ -162,6 +160,5 @@ class JointContacts:
                 speed = kept * speed + gain * min(max(target - angle, -most), most)
                 angle += step * speed
             self._state.append((angle, speed, target))
-            angles.append(angle)
-            torques.append(stiffness * (target - angle))
-        self._expected.append((angles, torques))
+            expected.append((angle, stiffness * (target - angle)))
+        self._expected.append(expected)

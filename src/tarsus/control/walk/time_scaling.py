@@ -67,10 +67,9 @@ class TimeScaling:
         self._top_speed = _USED * speed
         self._softest, self._slowest = float(self._hardest.min()) / 2, float(self._top_speed.min())
         self._ends: Float[np.ndarray, "2 legs 3"] = np.moveaxis(limits, -1, 0)[::-1].copy()
-        # How far the joints are from these at least [rad].
-        self._room = 0.0
         self._speeds, self._target = np.zeros_like(angles), angles
-        self._last_dt, self._used = 0.01, 0.0
+        # The room is how far the joints are from their ends at least [rad].
+        self._last_dt, self._used, self._room = 0.01, 0.0, 0.0
 
     def advance(self, integrate: Callable[[float], _T], solve: Callable[[_T], np.ndarray], dt: float) -> _T:
         """Return the state of the walk after a tick.
