@@ -59,3 +59,15 @@ def test_a_soft_servo_that_swings_about_its_command_is_not_stopped():
             speed += DT / 10 * (3000.0 * (sent[0] - angle) - 60.0 * speed)
             angle += DT / 10 * speed
         assert monitor.step([commanded] * 6, [(angle, 0.0, 0.0)] * 6, DT, AIR) == []
+
+
+@pytest.mark.parametrize("lag", [0.01, 0.03])
+def test_a_leg_that_turns_around_before_its_lag_is_learnt_is_not_stopped(lag):
+    # It is drawn back as a standing leg, and swings forward faster.
+    def angle(time):
+        return 0.2 - 0.5 * time if time < 0.2 else 0.1 + 20.0 * (time - 0.2) ** 2
+
+    monitor = SwingMonitor()
+    for tick in range(30):
+        measured = [(angle(tick * DT - lag), 0.0, 0.0)] * 6
+        assert monitor.step([angle(tick * DT)] * 6, measured, DT, [tick < 20] * 6) == []
