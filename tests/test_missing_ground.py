@@ -390,6 +390,29 @@ def test_a_robot_stops_at_a_hole_says_so_and_walks_away_from_it():
     assert walk.go(-0.13, 1.5) < stopped - 0.08
 
 
+class ObliqueEdge:
+    """Level ground that ends at an edge 30 degrees off the y axis, 0.44 m ahead of the middle."""
+
+    friction = 0.8
+
+    def height(self, x, y):
+        return np.where(np.asarray(x) + np.asarray(y) * np.tan(np.pi / 6) < 0.44, 0.0, -0.5)
+
+    def add_to(self, spec):
+        attributes = {"contype": 1, "conaffinity": 0, "friction": (0.8, 0.005, 1e-4), "priority": 1}
+        turn, place = (np.cos(np.pi / 12), 0, 0, np.sin(np.pi / 12)), (0.44 - 2 * np.cos(np.pi / 6), -1.0, -0.25)
+        kind = mujoco.mjtGeom.mjGEOM_BOX
+        spec.worldbody.add_geom(type=kind, size=(2.0, 4.0, 0.25), pos=place, quat=turn, **attributes)
+
+
+def test_a_robot_comes_back_whose_foot_has_found_no_ground_at_any_place_behind_an_oblique_edge():
+    walk = Walk(ObliqueEdge())
+    stopped = walk.go(0.26, 5.5)
+    assert walk.named == {"front left"}
+    assert walk.tilt < np.radians(3)
+    assert walk.go(-0.26, 3.5) < stopped - 0.1
+
+
 def test_a_robot_that_sees_a_hole_stops_before_it_and_walks_away():
     walk = Walk(terrain.Gaps(start=0.4, width=0.2, depth=0.15, count=1), sensors="camera")
     stopped = walk.go(0.13, 3.5)
@@ -422,7 +445,7 @@ def test_a_foot_that_loses_its_ground_while_it_is_moved_has_met_the_edge_on_its_
     assert (stepped(missing, [(0, 0.03, True, True)], feet, stands=two).back / way).real < 0
 
 
-@pytest.mark.parametrize(("waits", "speed", "way"), [(10, -0.1, 1), (10, 0.0, 1), (10, 0.1, 1), (210, -0.1, -1)])
+@pytest.mark.parametrize(("waits", "speed", "way"), [(10, -0.1, 1), (10, 0.0, 1), (10, 0.1, 1), (610, -0.1, -1)])
 def test_a_foot_that_loses_its_ground_on_the_way_back_from_an_edge_has_met_that_edge(waits, speed, way):
     missing, behind = stepped(MissingGround(NAMES), [(0, 0.08, True, True)]), [REST[0] - 0.04, *REST[1:]]
     stepped(missing, [], stands=[True] * 6)
@@ -441,6 +464,22 @@ def test_a_foot_that_loses_its_ground_on_the_way_back_from_an_edge_has_met_that_
     assert (stepped(missing, [(0, 0.08, True, True)], behind).places[0] - REST[0]).real > 0
 
 
+def test_a_foot_that_has_found_no_ground_at_any_place_steps_first_on_the_way_back():
+    missing = MissingGround(NAMES)
+    for _ in range(4):
+        stepped(missing, [(0, 0.08, False, False)], [missing.places.get(0, AHEAD[0]), *REST[1:]])
+        limited(missing, 0.1, 0.0, 0.0)
+    assert missing.gives_up(0)
+    for twist, again in (((0.1, 0.0, 0.0), []), ((0.0, 0.0, 0.0), []), ((-0.1, 0.0, 0.0), [0])):
+        limited(missing, *twist)
+        assert missing.again == again
+        stepped(missing, [(0, 0.08, False, False)], [missing.places[0], *REST[1:]])
+        assert (missing.pace > 0.0) is bool(again)
+    stepped(missing, [], stands=[True] * 6)
+    limited(missing, -0.1, 0.0, 0.0)
+    assert missing.again == []
+
+
 def test_a_robot_that_tips_towards_a_foot_goes_back_at_once_but_not_far():
     two = [False, True, False, False, True, False]
     missing, deep = MissingGround(NAMES), [(0, 0.03, True, True)]
@@ -452,7 +491,9 @@ def test_a_robot_that_tips_towards_a_foot_goes_back_at_once_but_not_far():
     assert stepped(MissingGround(NAMES), [(0, 0.015, True, True)], stands=two).back == 0
     assert stepped(MissingGround(NAMES), deep, stands=two, roughness=0.02).back == 0
     assert stepped(MissingGround(NAMES), [(0, 0.005, True, True)], stands=two, sunk=[0.02] * 6).back.real < 0
-    # Nor where the foot lifts the body: it stands on ground that its switch does not tell of.
+    # A body that sinks far tips, whatever the others seem to hold.
+    assert stepped(MissingGround(NAMES), deep, sunk=[0.025] * 6).back.real < 0
+    # Not where the foot lifts the body: it stands on ground that its switch does not tell of.
     assert stepped(MissingGround(NAMES), deep, stands=two, sunk=[-0.01] * 6).back == 0
     for _ in range(100):
         stepped(missing, deep, stands=two)

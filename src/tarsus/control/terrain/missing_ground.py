@@ -30,9 +30,8 @@ _ROUGH, _ROUGHEST, _UNSURE = 2.5, 0.03, 0.005
 _BACK = (0.4, 1.0, 1.0)
 # A foot this close to its place is there; one this far from its rest foothold is on that side of it [m].
 _THERE, _OFF = 0.004, 0.01
-# A foot that was moved faster over the ground has met the edge on that way [m/s]; how long a robot that goes back from
-# an edge is near it [s].
-_MOVES, _NEAR = 0.005, 2.0
+# A foot that was moved faster over the ground has met the edge on that way [m/s].
+_MOVES = 0.005
 # The body backs off until feet this far from the edge hold it with this margin [m], so far at most [m], so fast [m/s].
 _FIRM, _MARGIN, _BACKS, _SPEED = 0.06, 0.03, 0.08, 0.15
 # How often a foot is stopped until it is put down beside its way, on how many sides, how far, or before that [m].
@@ -40,7 +39,7 @@ _STOPS, _SIDES, _BESIDE, _BEFORE = 3, 2, 0.06, 0.04
 # A foot that finds no ground at less depth than this is over no hole: the leg does not reach there [m].
 _SHALLOW = 0.02
 # How often and when the walk tries other footholds at an edge to ground that is seen, not reached [s]; after which
-# time without holes that is forgotten [s].
+# time without holes that, and which edge the robot has left, is forgotten [s].
 _AGAIN, _WAITS, _FORGETS = 2, 1.0, 6.0
 
 
@@ -72,6 +71,8 @@ class MissingGround:
         Commanded depth of a foot that steps back from where its leg may rest on the edge of a step [m]; 0 without one.
     twist : sequence of float
         How the robot walks [m/s, m/s, rad/s].
+    again : list of int
+        Legs whose feet have found no ground at any place, of a robot that is to leave the edge: they step first.
     """
 
     def __init__(self, names: Sequence[str]) -> None:
@@ -82,7 +83,7 @@ class MissingGround:
         self.stops, self._beside = dict[int, tuple[int, complex, complex]](), dict[int, complex]()
         self._names, self._tries, self._cause = names, [0] * len(names), ("", "")
         self._way, self._left, self._obstacle, self._backed, self.refuses = 0j, 0j, 0j, 0.0, False
-        self._again, self._since, self._slows, self.tips = 0, 0.0, "", 0j
+        self._again, self._since, self._slows, self.tips, self.again = 0, 0.0, "", 0j, list[int]()
         # The twist before any foot searched, by which it has met the edge.
         self.twist: Sequence[float] = (0.0, 0.0, 0.0)
         self._walked: Sequence[float] = self.twist
@@ -172,8 +173,8 @@ class MissingGround:
             long = not lasts or self._held[leg] > _HELD
             hangs = not falls and depth > _STANDS + rough if leg in self.places else long
             missing = depth > _DEEP * height + rough or hangs
-            sunk = self.sunk[leg]
-            self._tip(way, tips=not held and sunk > -_LIFTS and depth + max(sunk, 0.0) > _STANDS + rough)
+            sunk, deep = self.sunk[leg], _STANDS + rough
+            self._tip(way, tips=sunk > deep or (not held and sunk > -_LIFTS and depth + max(sunk, 0.0) > deep))
             if missing and not (self.steps_back(leg, feet[leg]) or self.gives_up(leg)):
                 self.edge = depth if held_up else self.edge
                 self._step_back(leg, depth, way, rest[leg], radii[leg], sure=max(roughness, self.edge) <= _UNSURE)
@@ -187,7 +188,7 @@ class MissingGround:
             elif not self.refuses and self._since > _FORGETS:
                 self._again, self._obstacle = 0, 0j
             return
-        self.pace, self._slows, turn = 0.0, "", self._way.conjugate()
+        self.pace, self._slows, turn = _SLOWEST * bool(self.again), "", self._way.conjugate()
         edge = min((feet[leg] * turn).real for leg in self.places) - _FIRM
         firm = [foot for foot, on in zip(feet, stands, strict=True) if on and (foot * turn).real < edge]
         enough = max(self._tries) < len(_BACK) and holds(firm, centre + _MARGIN * self._way)
@@ -250,7 +251,7 @@ class MissingGround:
         vx, vy, wz = self._walked
         velocity = complex(vx, vy) + 1j * wz * rest
         velocity *= abs(velocity) > _MOVES
-        if self._left and self._since < _NEAR and (not velocity or leads_towards(-velocity, self._left)):
+        if self._left and self._since < _FORGETS and (not velocity or leads_towards(-velocity, self._left)):
             return self._left
         return velocity / abs(velocity) if velocity else _way(foot - rest, rest)
 
@@ -258,6 +259,7 @@ class MissingGround:
         """Return the grant, without a twist that leads over the edge; one that leads away is granted from then on."""
         velocity = complex(*request.twist[:2])
         self.refuses = leads_towards(velocity, self._way)
+        self.again = [leg for leg in self.places if self.gives_up(leg) and any(request.twist) and not self.refuses]
         if self.refuses:
             name, cause = self._cause
             return grant.at_most(0.0, Limitation(kind=LimitationKind.GROUND, leg=name, cause=cause))
