@@ -606,3 +606,21 @@ def test_a_command_that_leads_back_ends_the_tries_at_an_obstacle():
     limited(missing, -0.1, 0.0, 0.0)
     assert not missing.tries(1, REST[1])
     assert stepped(missing, [(1, 0.0, False, True)]).pace == 1.0
+
+
+def test_a_foot_that_loses_contact_at_an_edge_goes_down_gently_while_the_others_hold_the_robot():
+    walk = tarsus.WalkController(tarsus.load_robot("strider"))
+
+    def go(ticks, *lost):
+        for _ in range(ticks):
+            contacts = walk.contacts.copy()
+            contacts[list(lost)] = False
+            walk.step((0.13, 0.0, 0.0), 0.01, readings=tarsus.SensorReadings(contacts=contacts, attitude=(0.0, 0.0)))
+        return walk.feet[3, 2]
+
+    go(50)
+    # The front left foot is over a hole, and finds ground behind it.
+    go(230, 0)
+    before = go(100)
+    assert any("no ground within" in each.cause for each in walk.limitations)
+    assert 0.0 < before - go(25, 3) < 0.004

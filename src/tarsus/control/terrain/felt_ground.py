@@ -95,7 +95,7 @@ class FeltGround:
         self.measured, self.support, self.condition = ValidReadings(), Support(), BodyCondition()
         self.offsets: Float[np.ndarray, "legs"] | None = None
         self._validator, self._loads = ReadingsValidator(robot), FootLoads(robot, admittance)
-        self._commanded = angles
+        self._commanded, self._still = angles, True
         self._swings, self._centre = SwingMonitor(), complex(*centre_of_mass(robot, angles)[:2].tolist())
         # What feet are given while all is as planned; ticks and times since contacts and support were looked at.
         self._inputs: FeltInputs | None = None
@@ -182,8 +182,8 @@ class FeltGround:
         """
         due = None if standing else timing.due(state, dt)
         kept, before, self._idle = self._inputs, self._given, self._idle + dt
-        still = not any(twist.tolist()) or (self.body.slope.refuses and self.support.halts)
-        self._given, self._rests = (excluded, standing), still and not self.missing.refuses
+        self._still = not any(twist.tolist()) or (self.body.slope.refuses and self.support.halts)
+        self._given, self._rests = (excluded, standing), self._still and not self.missing.refuses
         if kept is not None and not (due and any(due)) and self._given == before:
             return kept
         dt, self._idle, turn = self._idle, 0.0, cmath.exp(-1j * state.yaw)
@@ -229,7 +229,7 @@ class FeltGround:
             travel=_SLOW_TRAVEL + (_FAST_TRAVEL - _SLOW_TRAVEL) * far,
             pace=self.support.pace,
             swing_height=float(state.posture.value[SWING_HEIGHT]) + body.roughness.swing_rise,
-            lowering=_GENTLE if self._rests and self.support.held else self._loads.fastest_descent,
+            lowering=_GENTLE if self._still and self.support.held else self._loads.fastest_descent,
             late=self.contacts.age,
             beside=self.ground.beside,
         )

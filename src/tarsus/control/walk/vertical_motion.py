@@ -111,7 +111,8 @@ def _searching(
     """Return height, place and speed of a foot that should stand and has no contact: it goes down, or steps back."""
     over, speed = height - under.expected, foot.speed
     if under.place is None or under.place == place:
-        wanted -= min(max(_SEARCHING, over / _SEARCH_TIME), felt.lowering)
+        fastest = felt.lowering if under.place is None else max(felt.lowering, _SEARCHING)
+        wanted -= min(max(_SEARCHING, over / _SEARCH_TIME), fastest)
         after = _towards(speed, wanted, _FOOT_ACCELERATION * dt)
         height, after = _no_lower(height + (speed + after) / 2 * dt, after, height, under.lowest)
         return height, place, after
