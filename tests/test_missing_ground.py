@@ -472,12 +472,12 @@ def test_a_foot_that_has_found_no_ground_at_any_place_steps_first_on_the_way_bac
     assert missing.gives_up(0)
     for twist, again in (((0.1, 0.0, 0.0), []), ((0.0, 0.0, 0.0), []), ((-0.1, 0.0, 0.0), [0])):
         limited(missing, *twist)
-        assert missing.again == again
+        assert missing.stranded == again
         stepped(missing, [(0, 0.08, False, False)], [missing.places[0], *REST[1:]])
         assert (missing.pace > 0.0) is bool(again)
     stepped(missing, [], stands=[True] * 6)
     limited(missing, -0.1, 0.0, 0.0)
-    assert missing.again == []
+    assert missing.stranded == []
 
 
 def test_a_robot_that_tips_towards_a_foot_goes_back_at_once_but_not_far():

@@ -46,8 +46,9 @@ class SwingMonitor:
                 continue
             step = older[leg] - newer[leg]
             behind, speed = newer[leg] + share * step - angles[0], -step / dt
-            behind_now = (commanded[leg] - angles[0]) * speed > 0.0  # it may have turned around within the lag
-            if behind_now and behind * speed > (_BEHIND + _TIMES * self._usual) * abs(speed):
+            # Within the lag, a leg may have turned around.
+            still = (commanded[leg] - angles[0]) * speed > 0.0
+            if still and behind * speed > (_BEHIND + _TIMES * self._usual) * abs(speed):
                 stopped.append(leg)
             else:
                 self._usual += _MEAN_RATE * (abs(behind) - self._usual)

@@ -149,8 +149,8 @@ class FeltGround:
         if self._loads.compliant:
             forces, feet = self._loads.forces(valid, angles), [(foot.real, foot.imag) for foot in state.foot.tolist()]
             self.offsets = self._loads.offsets(forces, dt, feet=feet, stands=down)
-        if self.missing.again and all(down):
-            state = timing.with_first_lift(state, self.missing.again[0])
+        if self.missing.stranded and all(down):
+            state = timing.with_first_lift(state, self.missing.stranded[0])
         known, reach = (self.contacts, self.ground, self.body.roughness, self.missing), self.body.reach
         return met_ground(state, *known, stopped=stopped, reach=reach, timing=timing, pace=self.support.pace)
 

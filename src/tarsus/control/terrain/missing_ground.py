@@ -71,7 +71,7 @@ class MissingGround:
         Commanded depth of a foot that steps back from where its leg may rest on the edge of a step [m]; 0 without one.
     twist : sequence of float
         How the robot walks [m/s, m/s, rad/s].
-    again : list of int
+    stranded : list of int
         Legs whose feet have found no ground at any place, of a robot that is to leave the edge: they step first.
     """
 
@@ -83,7 +83,7 @@ class MissingGround:
         self.stops, self._beside = dict[int, tuple[int, complex, complex]](), dict[int, complex]()
         self._names, self._tries, self._cause = names, [0] * len(names), ("", "")
         self._way, self._left, self._obstacle, self._backed, self.refuses = 0j, 0j, 0j, 0.0, False
-        self._again, self._since, self._slows, self.tips, self.again = 0, 0.0, "", 0j, list[int]()
+        self._again, self._since, self._slows, self.tips, self.stranded = 0, 0.0, "", 0j, list[int]()
         # The twist before any foot searched, by which it has met the edge.
         self.twist: Sequence[float] = (0.0, 0.0, 0.0)
         self._walked: Sequence[float] = self.twist
@@ -188,7 +188,7 @@ class MissingGround:
             elif not self.refuses and self._since > _FORGETS:
                 self._again, self._obstacle = 0, 0j
             return
-        self.pace, self._slows, turn = _SLOWEST * bool(self.again), "", self._way.conjugate()
+        self.pace, self._slows, turn = _SLOWEST * bool(self.stranded), "", self._way.conjugate()
         edge = min((feet[leg] * turn).real for leg in self.places) - _FIRM
         firm = [foot for foot, on in zip(feet, stands, strict=True) if on and (foot * turn).real < edge]
         enough = max(self._tries) < len(_BACK) and holds(firm, centre + _MARGIN * self._way)
@@ -259,7 +259,7 @@ class MissingGround:
         """Return the grant, without a twist that leads over the edge; one that leads away is granted from then on."""
         velocity = complex(*request.twist[:2])
         self.refuses = leads_towards(velocity, self._way)
-        self.again = [leg for leg in self.places if self.gives_up(leg) and any(request.twist) and not self.refuses]
+        self.stranded = [leg for leg in self.places if self.gives_up(leg) and any(request.twist) and not self.refuses]
         if self.refuses:
             name, cause = self._cause
             return grant.at_most(0.0, Limitation(kind=LimitationKind.GROUND, leg=name, cause=cause))
