@@ -5,17 +5,8 @@ are those listed in ``__all__``; everything else is private to the package.
 """
 
 from tarsus.control.safety.bounds import GuardBounds
-from tarsus.control.safety.guard import Guard, Policy, Recovery
+from tarsus.control.safety.guard import Guard
 from tarsus.control.safety.interventions import Intervention, InterventionKind
 from tarsus.control.safety.output import GuardOutput, GuardState
 
-__all__ = [
-    "Guard",
-    "GuardBounds",
-    "GuardOutput",
-    "GuardState",
-    "Intervention",
-    "InterventionKind",
-    "Policy",
-    "Recovery",
-]
+__all__ = ["Guard", "GuardBounds", "GuardOutput", "GuardState", "Intervention", "InterventionKind"]

@@ -6,7 +6,6 @@ import math
 from itertools import combinations
 
 from tarsus.control.safety.bounds import GuardBounds
-from tarsus.control.safety.inputs import Rows
 from tarsus.control.safety.interventions import InterventionKind, Violation
 from tarsus.control.safety.leg_model import LegModel
 from tarsus.control.safety.support_geometry import Point, plane_normal, polygon_margin, project
@@ -36,11 +35,11 @@ class FeetMonitor:
     def __init__(self, robot: Robot, bounds: GuardBounds) -> None:
         self._model = LegModel(robot)
         self._pairs = tuple(combinations(range(robot.legs), 2))
-        self._unknown: list[float | None] = [None] * len(self._pairs)
-        self._distances = self._new_distances = self._unknown
-        self._radius = [float(radius) for radius in robot.foot_radius]
-        # Tibia angles relative to B's plane at which the distance of each pair was stored [rad].
-        self._tilts = self._new_tilts = [(0.0, 0.0)] * len(self._pairs)
+        # Of each pair that is in stance: its distance when both feet came into stance [m], and the angles of their
+        # tibiae relative to B's plane at that time [rad].
+        self._unknown: list[Point | None] = [None] * len(self._pairs)
+        self._references = self._new_references = self._unknown
+        self._radius: list[float] = robot.foot_radius.tolist()
         self._margin, self._drag, self._height = bounds.margin, bounds.foot_drag, bounds.foot_height
         self._slope = math.tan(bounds.ground_slope)
         self.stance: list[bool] | None = None
@@ -48,7 +47,7 @@ class FeetMonitor:
         self._new_stance: list[bool] | None = None
         self._new_up = self.up
 
-    def violations(self, angles: list[float], stance: list[bool] | None, rows: Rows | None) -> list[Violation]:
+    def violations(self, angles: list[float], stance: list[bool] | None, up: Point | None) -> list[Violation]:
         """Return the violations of a command.
 
         Parameters
@@ -57,21 +56,19 @@ class FeetMonitor:
             Joint angles of all legs in one flat list [rad].
         stance : list of bool or None
             Feet in stance; None if unknown: nothing is checked.
-        rows : list of list of float, or None
-            Rotation of B in G; None to take the plane of the stance feet as horizontal.
+        up : Point or None
+            Upward direction in B; None to take the plane of the stance feet as horizontal.
         """
         self._new_stance = stance
         if stance is None:
-            self._new_distances = self._unknown
-            self._new_up = self.up if rows is None else (rows[2][0], rows[2][1], rows[2][2])
+            self._new_references, self._new_up = self._unknown, up or self.up
             return []
         feet, com = self._model.points(angles)
         stance_feet = [foot for foot, is_down in zip(feet, stance, strict=True) if is_down]
-        up = plane_normal(stance_feet) if rows is None else (rows[2][0], rows[2][1], rows[2][2])
-        self._new_up = up
+        self._new_up = up or plane_normal(stance_feet)
         tilts = [femur + tibia for femur, tibia in zip(angles[1::3], angles[2::3], strict=True)]
         found = self._drag_violations(feet, stance, tilts)
-        x, y, heights = project(stance_feet, com, up)
+        x, y, heights = project(stance_feet, com, self._new_up)
         margin = polygon_margin(x, y)
         if not margin >= self._margin:
             found.append(Violation(InterventionKind.STABILITY_MARGIN, -1, -1, margin, self._margin))
@@ -81,36 +78,28 @@ class FeetMonitor:
 
     def accept(self) -> None:
         """Store the last checked command as the one that is sent."""
-        self.stance, self.up = self._new_stance, self._new_up
-        self._distances, self._tilts = self._new_distances, self._new_tilts
+        self.stance, self.up, self._references = self._new_stance, self._new_up, self._new_references
 
     def reset_distances(self) -> None:
         """Discard the distances between the feet; the next command sets them anew."""
-        self._distances = self._unknown
+        self._references = self._unknown
 
     def _drag_violations(self, feet: list[Point], stance: list[bool], tilts: list[float]) -> list[Violation]:
         """Return the pairs of feet whose distance has changed too much since both came into stance.
 
         A ball that rolls moves by at most its radius times the angle by which its tibia turns.
         """
-        distances: list[float | None] = []
-        references = self._tilts.copy()
-        found = []
-        for pair, ((i, j), before) in enumerate(zip(self._pairs, self._distances, strict=True)):
-            if not (stance[i] and stance[j]):
-                distances.append(None)
-                continue
-            now = math.dist(feet[i], feet[j])
-            distances.append(now if before is None else before)
-            if before is None:
-                references[pair] = (tilts[i], tilts[j])
-            elif abs(now - before) > self._drag:
-                tilt_i, tilt_j = references[pair]
+        self._new_references, found = [], []
+        for (i, j), before in zip(self._pairs, self._references, strict=True):
+            reference = None
+            if stance[i] and stance[j]:
+                distance = math.dist(feet[i], feet[j])
+                reference = stood, tilt_i, tilt_j = before or (distance, tilts[i], tilts[j])
                 rolled = self._radius[i] * abs(tilts[i] - tilt_i) + self._radius[j] * abs(tilts[j] - tilt_j)
-                bound = self._drag + rolled
-                if abs(now - before) > bound:
-                    found.append(Violation(InterventionKind.FOOT_DRAG, j, -1, abs(now - before), bound))
-        self._new_distances, self._new_tilts = distances, references
+                if abs(distance - stood) > self._drag + rolled:
+                    drag = abs(distance - stood)
+                    found.append(Violation(InterventionKind.FOOT_DRAG, j, -1, drag, self._drag + rolled))
+            self._new_references.append(reference)
         return found
 
     def _height_violations(

@@ -11,7 +11,7 @@ from tarsus.arrays import Array
 from tarsus.control.safety.bounds import GuardBounds
 from tarsus.control.safety.clock import GuardClock
 from tarsus.control.safety.feet_monitor import FeetMonitor
-from tarsus.control.safety.inputs import read_angles, read_body, read_contacts, read_time_step
+from tarsus.control.safety.inputs import read_angles, read_contacts, read_time_step, read_up
 from tarsus.control.safety.intervention_log import InterventionLog
 from tarsus.control.safety.interventions import Intervention, InterventionKind, Violation
 from tarsus.control.safety.joint_monitor import JointMonitor
@@ -183,10 +183,10 @@ class Guard:
     def _feet_violations(self, command: list[float], contacts: Any, body: Pose | None) -> list[Violation]:
         """Return the violations of contacts and body pose if these are invalid, else those of the feet."""
         stance = None if contacts is None else read_contacts(contacts, self._robot.legs)
-        rows = None if body is None else read_body(body)
-        if isinstance(stance, Violation) or isinstance(rows, Violation):
-            return [found for found in (stance, rows) if isinstance(found, Violation)]
-        return self._feet.violations(command, stance, rows)
+        up = None if body is None else read_up(body)
+        if isinstance(stance, Violation) or isinstance(up, Violation):
+            return [found for found in (stance, up) if isinstance(found, Violation)]
+        return self._feet.violations(command, stance, up)
 
     def _start_in_stance(self) -> None:
         """Start in the default stance because the first command is invalid; without a stance, at zero angles."""
@@ -265,11 +265,7 @@ class Guard:
             self._sit_down = SitDown(self._robot, self.bounds, self._joints, stance=self._feet.stance, up=self._feet.up)
 
     def _output(self, violations: list[Violation]) -> GuardOutput:
-        interventions: tuple[Intervention, ...] = ()
-        if violations:
-            interventions = self._log.record(violations, self.time)
-        else:
-            self._log.end_active()
+        interventions = self._log.record(violations, self.time)
         angles = np.array(self._joints.angles).reshape(self._robot.legs, 3)
         angles.setflags(write=False)
         return GuardOutput(angles, self._state is GuardState.PASSING, self._state, self.time, interventions)

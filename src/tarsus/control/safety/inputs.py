@@ -8,12 +8,10 @@ from typing import Any
 import numpy as np
 
 from tarsus.control.safety.interventions import InterventionKind, Violation
+from tarsus.control.safety.support_geometry import Point
 from tarsus.kinematics.pose import Pose
 
-__all__ = ["Rows", "read_angles", "read_body", "read_contacts", "read_time_step"]
-
-Rows = list[list[float]]
-"""Rows of a rotation matrix."""
+__all__ = ["read_angles", "read_contacts", "read_time_step", "read_up"]
 
 _NUMERIC_KINDS = "fiu"
 
@@ -28,11 +26,10 @@ def read_angles(angles: Any, legs: int) -> list[float] | Violation:
     legs : int
         Number of legs.
     """
-    shape = (legs, 3)
     # The conversion of an arbitrary object can raise anything, and the guard must still return angles.
     try:
         array = np.asarray(angles)
-        if array.dtype.kind not in _NUMERIC_KINDS or array.shape != shape:
+        if array.dtype.kind not in _NUMERIC_KINDS or array.shape != (legs, 3):
             return Violation(InterventionKind.SHAPE, -1, -1, float(array.size), 3.0 * legs)
         listed = array.ravel().tolist()
         values = listed if array.dtype == np.float64 else [float(value) for value in listed]
@@ -83,8 +80,8 @@ def read_contacts(contacts: Any, legs: int) -> list[bool] | Violation:
         return Violation(InterventionKind.CONTACTS, -1, -1, math.nan, float(legs))
 
 
-def read_body(body: Any) -> Rows | Violation:
-    """Return the rotation of a single pose as three rows, or the violation.
+def read_up(body: Any) -> Point | Violation:
+    """Return the upward direction in B at a single pose, or the violation.
 
     Parameters
     ----------
@@ -92,7 +89,7 @@ def read_body(body: Any) -> Rows | Violation:
         Pose of B in G as given; valid is a single `Pose`.
     """
     if isinstance(body, Pose) and body.rotation.shape == (3, 3):
-        rows: Rows = body.rotation.tolist()
-        return rows
+        x, y, z = body.rotation[2].tolist()
+        return x, y, z
     size = float(body.rotation.size) if isinstance(body, Pose) else math.nan
     return Violation(InterventionKind.BODY_POSE, -1, -1, size, 9.0)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Mapping
+from collections.abc import Mapping, Set
 from types import MappingProxyType
 
 from tarsus.control.safety.interventions import Intervention, InterventionKind, Violation
@@ -33,7 +33,7 @@ class InterventionLog:
 
     def __init__(self, robot: Robot, size: int) -> None:
         self._robot = robot
-        self._active: set[InterventionKind] = set()
+        self._active: Set[InterventionKind] = set()
         self._counts: dict[InterventionKind, int] = {}
         self._worst: dict[InterventionKind, Intervention] = {}
         self.latest: deque[Intervention] = deque(maxlen=size)
@@ -45,33 +45,21 @@ class InterventionLog:
         Parameters
         ----------
         violations : list of Violation
-            All violations of the tick.
+            All violations of the tick; those of the last tick that are not among them have ended.
         time : float
             Time of the guard [s].
         """
-        worst: dict[InterventionKind, Violation] = {}
+        worst: dict[InterventionKind, Intervention] = {}
         for violation in violations:
-            if violation.kind not in worst or violation.excess > worst[violation.kind].excess:
-                worst[violation.kind] = violation
-        found = tuple(violation.named(self._robot, time) for violation in worst.values())
-        for intervention in found:
-            self._count(intervention)
-        self._active = set(worst)
-        return found
-
-    def end_active(self) -> None:
-        """End all active interventions: the tick has no violation."""
-        if self._active:
-            self._active = set()
-
-    def _count(self, found: Intervention) -> None:
-        kind = found.kind
-        if kind not in self._active:
-            self._counts[kind] = self._counts.get(kind, 0) + 1
-            self.latest.append(found)
-        worst = self._worst.get(kind)
-        if worst is None or found.excess > worst.excess:
-            self._worst[kind] = found
+            found = violation.named(self._robot, time)
+            worst[found.kind] = _worse(worst.get(found.kind, found), found)
+        for kind, found in worst.items():
+            if kind not in self._active:
+                self._counts[kind] = self._counts.get(kind, 0) + 1
+                self.latest.append(found)
+            self._worst[kind] = _worse(self._worst.get(kind, found), found)
+        self._active = worst.keys()
+        return tuple(worst.values())
 
     def summary(self, time: float, state: GuardState) -> str:
         """Return the counts and the worst intervention of each kind as text.
@@ -87,3 +75,7 @@ class InterventionLog:
         lines = [f"{total} intervention{'s' * (total != 1)} in {time:.2f} s, state: {state}"]
         lines += [f"  {number} x {self._worst[kind].text()}" for kind, number in self._counts.items()]
         return "\n".join(lines)
+
+
+def _worse(before: Intervention, found: Intervention) -> Intervention:
+    return found if found.excess > before.excess else before

@@ -71,11 +71,6 @@ class Violation(NamedTuple):
     value: float
     bound: float
 
-    @property
-    def excess(self) -> float:
-        """Distance of the value from its bound."""
-        return abs(self.value - self.bound)
-
     def named(self, robot: Robot, time: float) -> Intervention:
         """Return the violation with the names of leg and joint.
 

@@ -7,39 +7,17 @@ what it monitors.
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from tarsus.control.safety.support_geometry import Point
 from tarsus.robot.robot import Robot
 
+if TYPE_CHECKING:
+    from jaxtyping import Float
+
 __all__ = ["LegModel"]
-
-
-class _LegConstants(NamedTuple):
-    """Constants of one leg.
-
-    With the femur angle q1 and the tibia angle q2, the foot is ``coxa + femur cos(q1) + tibia cos(q1 + q2)`` outward
-    of the coxa axis, and `z` plus the same sum of sines high. The first moment of the leg's masses, divided by the mass
-    of the robot, is ``moment_out + moment_femur cos(q1) + moment_tibia cos(q1 + q2)`` outward, and `moment_up` plus the
-    same sum of sines upward.
-    """
-
-    yaw: float
-    x: float
-    y: float
-    z: float
-    coxa: float
-    femur: float
-    tibia: float
-    side: float
-    mass: float
-    moment_out: float
-    moment_side: float
-    moment_up: float
-    moment_femur: float
-    moment_tibia: float
 
 
 class LegModel:
@@ -52,10 +30,11 @@ class LegModel:
     """
 
     def __init__(self, robot: Robot) -> None:
-        total = float(np.asarray(robot.body_mass) + np.asarray(robot.link_mass).sum()) if robot.has_masses else 1.0
-        self._legs = tuple(_constants(robot, leg, total) for leg in range(robot.legs))
-        body_fraction = float(np.asarray(robot.body_mass) / total) if robot.has_masses else 1.0
-        self._body_com = tuple(float(body_fraction * c) for c in np.asarray(robot.body_com))
+        masses = np.asarray(robot.link_mass) if robot.has_masses else np.zeros((robot.legs, 3))
+        body_mass = np.asarray(robot.body_mass if robot.has_masses else 1.0)
+        total = body_mass + masses.sum()
+        self._legs = _constants(robot, masses / total)
+        self._body_com: list[float] = (np.asarray(robot.body_com) * body_mass / total).tolist()
 
     def points(self, angles: list[float]) -> tuple[list[Point], Point]:
         """Return the feet and the centre of mass in B [m].
@@ -84,31 +63,22 @@ class LegModel:
         return feet, (com_x, com_y, com_z)
 
 
-def _constants(robot: Robot, leg: int, total: float) -> _LegConstants:
-    """Return the constants of a leg; `total` is the mass of the robot [kg]."""
-    coxa, femur, tibia = (float(lengths[leg]) for lengths in (robot.coxa, robot.femur, robot.tibia))
-    side, up = map(float, robot.femur_axis_offset[leg])
-    x, y, z = map(float, robot.mount_position[leg])
-    masses = np.asarray(robot.link_mass)[leg] / total if robot.has_masses else np.zeros(3)
-    coxa_mass, femur_mass, tibia_mass = map(float, masses)
-    coxa_com, femur_com, tibia_com = map(float, robot.link_com[leg])
-    outer_mass = femur_mass + tibia_mass
+def _constants(robot: Robot, masses: Float[np.ndarray, "legs 3"]) -> list[tuple[float, ...]]:
+    """Return the constants of each leg; `masses` are those of its links over that of the robot.
+
+    With the femur angle q1 and the tibia angle q2, the foot is ``coxa + femur cos(q1) + tibia cos(q1 + q2)`` outward
+    of the coxa axis, and its height is that of the femur axis plus the same sum of sines. The first moment of the leg's
+    masses, divided by the mass of the robot, is ``out + femur cos(q1) + tibia cos(q1 + q2)`` outward with its own
+    constants, the last five, and `up` plus the same sum of sines upward.
+    """
+    coxa, femur, tibia, (side, up) = robot.coxa, robot.femur, robot.tibia, robot.femur_axis_offset.T
+    (x, y, z), (coxa_mass, femur_mass, tibia_mass) = robot.mount_position.T, masses.T
+    coxa_com, femur_com, tibia_com = robot.link_com.T
+    mass, outer_mass = masses.sum(axis=1), femur_mass + tibia_mass
     # The coxa link runs straight from the coxa axis to the femur axis; if these coincide, its mass is there.
-    length = math.sqrt(coxa * coxa + side * side + up * up)
-    moment = coxa_mass * coxa_com / length + outer_mass if length > 0 else outer_mass
-    return _LegConstants(
-        yaw=float(robot.mount_yaw[leg]),
-        x=x,
-        y=y,
-        z=z + up,
-        coxa=coxa,
-        femur=femur,
-        tibia=tibia,
-        side=side,
-        mass=coxa_mass + outer_mass,
-        moment_out=moment * coxa,
-        moment_side=moment * side,
-        moment_up=(coxa_mass + outer_mass) * z + moment * up,
-        moment_femur=femur_mass * femur_com + tibia_mass * femur,
-        moment_tibia=tibia_mass * tibia_com,
-    )
+    length = np.sqrt(coxa * coxa + side * side + up * up)
+    moment = coxa_mass * np.where(length > 0, coxa_com / np.where(length > 0, length, 1.0), 0.0) + outer_mass
+    moments = (moment * coxa, moment * side, mass * z + moment * up)
+    outer_moments = (femur_mass * femur_com + tibia_mass * femur, tibia_mass * tibia_com)
+    columns = (robot.mount_yaw, x, y, z + up, coxa, femur, tibia, side, mass, *moments, *outer_moments)
+    return list(zip(*(column.tolist() for column in columns), strict=True))
