@@ -365,7 +365,7 @@ def test_with_three_feet_on_the_ground_none_is_lifted():
     robot = preset("strider")
     builder = initial_state(robot, stance_angles(robot), joint_limits(robot))
     for leg in (0, 2, 4):
-        builder.unload(leg)
+        builder = builder.unload(leg)
     turned = stance_angles(robot) + 0.1 * np.array([[0], [1], [0], [1], [0], [1]])
     with pytest.raises(TarsusError, match=r"only 3 feet are on the ground; .* requires at least 4"):
         change_footholds(builder, turned)
@@ -381,13 +381,12 @@ def test_a_final_stance_with_other_angles_is_rejected():
 
 def test_an_unloaded_foot_is_not_dragged():
     robot = preset("strider")
-    builder = initial_state(robot, stance_angles(robot), joint_limits(robot))
-    builder.unload(0)
+    builder = initial_state(robot, stance_angles(robot), joint_limits(robot)).unload(0)
     aside = Pose(builder.body.rotation, builder.body.position + np.array([0.02, 0.0, 0.001]))
     with pytest.raises(UnreachableError, match=r"foot of leg front left would drag .* rises by 1.0 mm"):
         builder.move_body("move", aside)
-    builder.move_body("move", Pose(builder.body.rotation, builder.body.position + np.array([0.02, 0.0, 0.04])))
-    assert builder.feet[0, 2] == pytest.approx(0.04)
+    up = Pose(builder.body.rotation, builder.body.position + np.array([0.02, 0.0, 0.04]))
+    assert builder.move_body("move", up).feet[0, 2] == pytest.approx(0.04)
 
 
 def test_only_a_lying_robot_folds():

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tarsus.control.sequence.stage import Stage
-from tarsus.control.startup.builder import SequenceBuilder
+from tarsus.control.startup.builder import GROUND_TOLERANCE, SequenceBuilder
 from tarsus.kinematics.mass import centre_of_mass
 from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.underside import belly_depth, underside_points
@@ -16,10 +16,7 @@ from tarsus.kinematics.underside import belly_depth, underside_points
 if TYPE_CHECKING:
     from jaxtyping import Bool, Float
 
-__all__ = ["GROUND_TOLERANCE", "BodyTarget", "body_targets", "stage_to"]
-
-GROUND_TOLERANCE = 1e-7
-"""Height below which a point counts as on the ground [m]."""
+__all__ = ["BodyTarget", "body_targets", "stage_to"]
 
 # Number of body heights to try between lying and standing.
 _HEIGHTS = 6

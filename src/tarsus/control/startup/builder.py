@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
@@ -21,21 +21,21 @@ from tarsus.robot.robot import Robot
 if TYPE_CHECKING:
     from jaxtyping import Bool, Float
 
-__all__ = ["SequenceBuilder"]
+__all__ = ["GROUND_TOLERANCE", "SequenceBuilder", "body_contacts"]
 
+GROUND_TOLERANCE = 1e-7
+"""Height below which a point counts as on the ground [m]."""
 
 # Stages in which no joint moves by more are omitted [rad].
 _MIN_MOTION = 1e-12
-# Height below which a point counts as on the ground [m].
-_GROUND_TOLERANCE = 1e-6
 
 
-@dataclass(eq=False, kw_only=True)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class SequenceBuilder:
     """Current state of the robot, and the stages that led to it.
 
-    The methods that move the robot add checked stages. They raise a `TarsusError` if a motion is impossible; the
-    builder may then hold some of the stages, so callers try a motion on a copy.
+    The methods that move the robot return it with the checked stages added. They raise a `TarsusError` if a motion is
+    impossible.
 
     Attributes
     ----------
@@ -59,7 +59,7 @@ class SequenceBuilder:
         Swing height of feet that change their foothold [m].
     margin : float
         Least stability margin while feet that bear load change their footholds [m].
-    stages : list of Stage
+    stages : tuple of Stage
         The stages so far.
     """
 
@@ -73,28 +73,18 @@ class SequenceBuilder:
     initial_margin: float
     swing_height: float = 0.0
     margin: float = 0.0
-    stages: list[Stage] = field(default_factory=list)
+    stages: tuple[Stage, ...] = ()
 
-    def copy(self) -> Self:
-        """Return an independent copy."""
-        return replace(self, stages=list(self.stages))
-
-    def adopt(self, other: SequenceBuilder) -> None:
-        """Take over state and stages of another builder.
-
-        Parameters
-        ----------
-        other : SequenceBuilder
-            A builder for the same robot.
-        """
-        for spec in fields(self):
-            setattr(self, spec.name, getattr(other, spec.name))
+    @property
+    def points(self) -> Float[np.ndarray, "legs 4 3"]:
+        """Points of the legs in G, as of `forward_kinematics`: shape (legs, 4, 3) [m]."""
+        points: np.ndarray = self.body @ forward_kinematics(self.robot, self.angles)
+        return points
 
     @property
     def feet(self) -> Float[np.ndarray, "legs 3"]:
         """Feet in G, shape (legs, 3) [m]."""
-        feet: np.ndarray = self.body @ forward_kinematics(self.robot, self.angles)[:, 3]
-        return feet
+        return self.points[:, 3]
 
     @property
     def height(self) -> float:
@@ -137,7 +127,7 @@ class SequenceBuilder:
         *,
         landed: bool,
         margin: float = 0.0,
-    ) -> None:
+    ) -> Self:
         """Move legs through the air to joint angles, with the body stationary and no point below the ground.
 
         Parameters
@@ -152,14 +142,15 @@ class SequenceBuilder:
             Whether the feet are on the ground at the end; least stability margin [m].
         """
         paths = {leg: self._path(name, leg, angles[leg]) for leg in np.flatnonzero(legs).tolist()}
-        count = max(map(len, paths.values()), default=0)
+        count, builder = max(map(len, paths.values()), default=0), self
         for k in range(count):
-            target = self.angles.copy()
+            target = builder.angles.copy()
             for leg, path in paths.items():
                 target[leg] = path[min(k, len(path) - 1)]
-            stationary = self.contacts & (target == self.angles).all(-1)
-            after = (self.contacts & ~legs) | (legs & (landed and k == count - 1))
-            self._add(name, margin=margin, angles_end=target, contacts=stationary, contacts_end=after)
+            stationary = builder.contacts & (target == builder.angles).all(-1)
+            after = (builder.contacts & ~legs) | (legs & (landed and k == count - 1))
+            builder = builder._add(name, margin=margin, angles_end=target, contacts=stationary, contacts_end=after)
+        return builder
 
     def _path(self, name: str, leg: int, end: Float[np.ndarray, "3"]) -> Path:
         """Return a path of a leg through the air from its joint angles to others."""
@@ -175,7 +166,7 @@ class SequenceBuilder:
 
     def swing(
         self, name: str, legs: Bool[np.ndarray, "legs"], feet: Float[np.ndarray, "legs 3"], *, margin: float
-    ) -> None:
+    ) -> Self:
         """Swing feet to new footholds, with the body stationary.
 
         Parameters
@@ -191,7 +182,7 @@ class SequenceBuilder:
         """
         stance = self.contacts & ~legs
         changes = {"cartesian": legs, "feet_end": feet, "swing_height": self.swing_height}
-        self._add(name, margin=margin, contacts=stance, contacts_end=stance | legs, **changes)
+        return self._add(name, margin=margin, contacts=stance, contacts_end=stance | legs, **changes)
 
     def move_body(
         self,
@@ -201,7 +192,7 @@ class SequenceBuilder:
         pivot: Float[np.ndarray, "3"] | None = None,
         supports: Float[np.ndarray, "n 3"] | None = None,
         stationary: Bool[np.ndarray, "legs"] | None = None,
-    ) -> None:
+    ) -> Self:
         """Move the body with all feet on the ground stationary; legs in the air keep their joint angles.
 
         Parameters
@@ -215,40 +206,38 @@ class SequenceBuilder:
         stationary : array of bool, shape (legs,), optional
             Further legs whose feet are stationary without bearing load; by default none.
         """
-        self.belly, self.supports = False, np.zeros((0, 3)) if supports is None else supports
+        builder = replace(self, belly=False, supports=np.zeros((0, 3)) if supports is None else supports)
         cartesian = self.contacts if stationary is None else self.contacts | stationary
-        self._add(name, end=body, pivot=np.zeros(3) if pivot is None else pivot, cartesian=cartesian)
+        return builder._add(name, end=body, pivot=np.zeros(3) if pivot is None else pivot, cartesian=cartesian)
 
-    def unload(self, leg: int) -> None:
-        """Mark a leg as bearing no load, neither on its foot nor on its knee or femur axis.
+    def unload(self, leg: int) -> Self:
+        """Return the robot with a leg that bears no load, neither on its foot nor on its knee or femur axis.
 
         Parameters
         ----------
         leg : int
             Index of the leg.
         """
-        points = self.body @ forward_kinematics(self.robot, self.angles)[leg, 1:3]
-        self.supports = self.supports[(np.abs(self.supports[:, None] - points) > _GROUND_TOLERANCE).any(-1).all(-1)]
-        self.contacts = self.contacts & (np.arange(self.robot.legs) != leg)
+        others = (np.abs(self.supports[:, None] - self.points[leg, 1:3]) > GROUND_TOLERANCE).any(-1).all(-1)
+        contacts = self.contacts & (np.arange(self.robot.legs) != leg)
+        return replace(self, supports=self.supports[others], contacts=contacts)
 
-    def set_lying(self) -> None:
-        """Mark the body as lying on the ground."""
-        self.belly = True
-        points = self.body @ underside_points(self.robot)
-        self.supports = points[points[:, 2] < _GROUND_TOLERANCE]
+    def lie_down(self) -> Self:
+        """Return the robot with its body lying on the ground where it is."""
+        return replace(self, belly=True, supports=body_contacts(self.robot, self.body))
 
-    def set_end_angles(self, angles: Float[np.ndarray, "legs 3"]) -> None:
-        """Replace the final joint angles by ones that are equal up to rounding.
+    def end_at(self, angles: Float[np.ndarray, "legs 3"]) -> Self:
+        """Return the robot with final joint angles that are equal to the present ones up to rounding.
 
         Parameters
         ----------
         angles : array, shape (legs, 3)
             Joint angles [rad].
         """
-        self.angles = np.array(angles)
-        self.angles.setflags(write=False)
-        if self.stages:
-            self.stages[-1] = replace(self.stages[-1], angles_end=self.angles)
+        angles = np.array(angles)
+        angles.setflags(write=False)
+        last = [replace(stage, angles_end=angles) for stage in self.stages[-1:]]
+        return replace(self, angles=angles, stages=(*self.stages[:-1], *last))
 
     def sequence(self, robot: Robot) -> MotionSequence:
         """Return the sequence, moved in G so that the body ends over the origin with yaw 0.
@@ -258,28 +247,41 @@ class SequenceBuilder:
         robot : Robot
             The robot that moves; the builder's differs from it in the thickness of its body.
         """
-        stages = self.stages or [replace(self.hold("hold"), duration=0.0)]
-        yaw = float(self.body.rpy[2])
-        rotation = Pose.from_rpy(0.0, 0.0, -yaw).rotation
-        offset = rotation @ (self.body.position * [1.0, 1.0, 0.0])
-        if yaw or offset.any():
-            home = Pose(rotation, -offset)
-            stages = [stage.transformed(home) for stage in stages]
-        stages = [replace(stage, robot=robot) for stage in stages]
-        return MotionSequence(robot=robot, stages=tuple(stages), joint_limits=self.joint_limits)
+        stages = self.stages or (replace(self.hold("hold"), duration=0.0),)
+        rotation = Pose.from_rpy(0.0, 0.0, -float(self.body.rpy[2])).rotation
+        home = Pose(rotation, -rotation @ (self.body.position * [1.0, 1.0, 0.0]))
+        stages = tuple(replace(stage.transformed(home), robot=robot) for stage in stages)
+        return MotionSequence(robot=robot, stages=stages, joint_limits=self.joint_limits)
 
-    def _add(self, name: str, *, margin: float = 0.0, **changes: Any) -> None:
+    def _add(self, name: str, *, margin: float = 0.0, **changes: Any) -> Self:
         """Add a stage of the shortest duration that differs from `hold` by `changes`; omit it if no joint moves."""
         stage = replace(self.hold(name), **changes)
         check_stage(stage, margin)
-        end = stage.table.angles[-1]
-        moves = float(np.abs(stage.table.angles - self.angles).max()) > _MIN_MOTION
-        self.contacts, self.body = stage.contacts_end, stage.end
-        if moves:
-            duration = stage.shortest_duration(self.joint_limits)
-            self.angles = np.where(stage.cartesian[:, None], end, stage.angles_end)
-            self.angles.setflags(write=False)
-            self.stages.append(replace(stage, duration=duration, angles_end=self.angles))
+        after = replace(self, contacts=stage.contacts_end, body=stage.end)
+        if np.abs(stage.table.angles - self.angles).max() <= _MIN_MOTION:
+            return after
+        stage = replace(stage, duration=stage.shortest_duration(self.joint_limits))
+        angles = np.where(stage.cartesian[:, None], stage.table.angles[-1], stage.angles_end)
+        return replace(after, stages=(*self.stages, stage)).end_at(angles)
+
+
+def body_contacts(robot: Robot, body: Pose) -> Float[np.ndarray, "n 3"]:
+    """Return the points of the body's underside that are on the ground.
+
+    Parameters
+    ----------
+    robot : Robot
+        A single robot.
+    body : Pose
+        Pose of B in G.
+
+    Returns
+    -------
+    array, shape (n, 3)
+        Points in G [m].
+    """
+    points: np.ndarray = body @ underside_points(robot)
+    return points[points[:, 2] < GROUND_TOLERANCE]
 
 
 def _degrees(angles: Float[np.ndarray, "3"]) -> str:

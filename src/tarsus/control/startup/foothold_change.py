@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from contextlib import suppress
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,7 +12,6 @@ import numpy as np
 from tarsus.control.startup.builder import SequenceBuilder
 from tarsus.errors import TarsusError
 from tarsus.gait.branch import branches
-from tarsus.kinematics.leg import forward_kinematics
 
 if TYPE_CHECKING:
     from jaxtyping import Bool, Float
@@ -23,7 +24,7 @@ _TOLERANCE = 1e-9
 _MIN_STANCE_FEET = 3
 
 
-def change_footholds(builder: SequenceBuilder, angles: Float[np.ndarray, "legs 3"]) -> None:
+def change_footholds(builder: SequenceBuilder, angles: Float[np.ndarray, "legs 3"]) -> SequenceBuilder:
     """Move all legs to a new stance with the body stationary.
 
     Feet in the air are placed first. Then the tripods are moved, every second leg of the ring, and single legs where a
@@ -32,9 +33,14 @@ def change_footholds(builder: SequenceBuilder, angles: Float[np.ndarray, "legs 3
     Parameters
     ----------
     builder : SequenceBuilder
-        The robot in its current state; stages are added to it.
+        The robot in its current state.
     angles : array, shape (legs, 3)
         Joint angles of the new stance, all feet on the ground [rad].
+
+    Returns
+    -------
+    SequenceBuilder
+        The robot in the new stance.
 
     Raises
     ------
@@ -44,31 +50,28 @@ def change_footholds(builder: SequenceBuilder, angles: Float[np.ndarray, "legs 3
     remaining = np.abs(angles - builder.angles).max(-1) > _TOLERANCE
     if (remaining & ~builder.contacts).any():
         # These legs bear no load, so the support of the body does not change.
-        _move(builder, remaining & ~builder.contacts, angles, margin=0.0)
+        builder = _move(builder, remaining & ~builder.contacts, angles, margin=0.0)
         remaining &= np.abs(angles - builder.angles).max(-1) > _TOLERANCE
     while remaining.any():
-        group = _move_first_group(builder, remaining, angles)
+        builder, group = _move_first_group(builder, remaining, angles)
         remaining = remaining & ~group
+    return builder
 
 
 def _move_first_group(
     builder: SequenceBuilder, remaining: Bool[np.ndarray, "legs"], angles: Float[np.ndarray, "legs 3"]
-) -> Bool[np.ndarray, "legs"]:
-    """Move the first group of legs that can be lifted, and return it."""
-    errors: list[TarsusError] = []
-    for group in _groups(builder, remaining):
-        try:
-            _move(builder, group, angles, margin=builder.margin)
-        except TarsusError as error:
-            errors.append(error)
-        else:
-            return group
-    if errors:
-        raise errors[-1]
-    raise TarsusError(
+) -> tuple[SequenceBuilder, Bool[np.ndarray, "legs"]]:
+    """Move the first group of legs that can be lifted, and return it too."""
+    failure = TarsusError(
         f"only {int(builder.contacts.sum())} feet are on the ground; lifting one of them requires at least "
         f"{_MIN_STANCE_FEET + 1}"
     )
+    for group in _groups(builder, remaining):
+        try:
+            return _move(builder, group, angles, margin=builder.margin), group
+        except TarsusError as error:
+            failure = error
+    raise failure
 
 
 def _groups(builder: SequenceBuilder, remaining: Bool[np.ndarray, "legs"]) -> Iterator[Bool[np.ndarray, "..."]]:
@@ -81,18 +84,12 @@ def _groups(builder: SequenceBuilder, remaining: Bool[np.ndarray, "legs"]) -> It
 
 def _move(
     builder: SequenceBuilder, legs: Bool[np.ndarray, "legs"], angles: Float[np.ndarray, "legs 3"], *, margin: float
-) -> None:
+) -> SequenceBuilder:
     """Move legs by a swing of their feet if possible, else along paths in joint space."""
     codes = [builder.robot.leg_codes[leg] for leg in np.flatnonzero(legs)]
     name = f"place {' '.join(codes)}"
-    trial = builder.copy()
-    same_branch = (branches(builder.robot, angles) == branches(builder.robot, builder.angles))[legs].all()
-    try:
-        if not same_branch:
-            raise TarsusError(f"{name}: the knee must bend the other way")
-        feet = builder.body @ forward_kinematics(builder.robot, angles)[:, 3]
-        trial.swing(name, legs, feet, margin=margin)
-    except TarsusError:
-        trial = builder.copy()
-        trial.move_legs(name, legs, np.where(legs[:, None], angles, builder.angles), landed=True, margin=margin)
-    builder.adopt(trial)
+    # A swing keeps the way in which the knee bends.
+    if (branches(builder.robot, angles) == branches(builder.robot, builder.angles))[legs].all():
+        with suppress(TarsusError):
+            return builder.swing(name, legs, replace(builder, angles=angles).feet, margin=margin)
+    return builder.move_legs(name, legs, angles, landed=True, margin=margin)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import contextlib
+from contextlib import suppress
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -35,41 +35,51 @@ def place_feet(
     *,
     free: Bool[np.ndarray, "legs"],
     blocking: Bool[np.ndarray, "legs"],
-) -> None:
+) -> SequenceBuilder:
     """Place the free legs on footholds that they can keep while the body moves, then the legs that block the motion.
 
     Parameters
     ----------
     builder, target : SequenceBuilder, BodyTarget
-        The robot in its initial state; stages are added to it; pose that the body moves to afterwards.
+        The robot in its initial state; pose that the body moves to afterwards.
     stance : array, shape (legs, 3)
         Preferred footholds in B [m].
     free, blocking : array of bool, shape (legs,)
         Legs in the air, and legs on the ground that cannot stay where they are.
+
+    Returns
+    -------
+    SequenceBuilder
+        The robot with its feet where they can stay.
     """
     choices = _footholds(builder, target, stance)
     folded = folded_pose(builder.robot)
     for leg in np.flatnonzero(free).tolist():
         # A leg without a foothold is retracted, or else stays in the air as it is.
-        if not _place(builder, leg, choices[leg]):
-            with contextlib.suppress(TarsusError):
-                _move_leg(builder, leg, folded[leg], "retract", landed=False)
+        after = _place(builder, leg, choices[leg])
+        if after is None:
+            with suppress(TarsusError):
+                after = _move_leg(builder, leg, folded[leg], "retract", landed=False)
+        builder = after or builder
     # A robot that lies or stands unsteadily at first can't have more margin than that.
     remaining, margin = np.flatnonzero(blocking).tolist(), min(builder.margin, builder.initial_margin)
-    while (placed := next((leg for leg in remaining if _place(builder, leg, choices[leg], margin)), None)) is not None:
+    while found := next(((leg, to) for leg in remaining if (to := _place(builder, leg, choices[leg], margin))), None):
+        placed, builder = found
         remaining.remove(placed)
     for leg in remaining:
         # A leg that cannot be lifted by itself comes off the ground with the body, supported by the other legs.
-        builder.unload(leg)
+        builder = builder.unload(leg)
+    return builder
 
 
-def _place(builder: SequenceBuilder, leg: int, choices: Float[np.ndarray, "n 3"], margin: float = 0.0) -> bool:
-    """Place a foot with the first reachable joint angles of shape (n, 3) [rad]; return whether one is reachable."""
+def _place(
+    builder: SequenceBuilder, leg: int, choices: Float[np.ndarray, "n 3"], margin: float = 0.0
+) -> SequenceBuilder | None:
+    """Place a foot with the first reachable joint angles of shape (n, 3) [rad]; return None if none are."""
     for angles in choices:
-        with contextlib.suppress(TarsusError):
-            _move_leg(builder, leg, angles, "place", landed=True, margin=margin)
-            return True
-    return False
+        with suppress(TarsusError):
+            return _move_leg(builder, leg, angles, "place", landed=True, margin=margin)
+    return None
 
 
 def _move_leg(
@@ -80,14 +90,11 @@ def _move_leg(
     *,
     landed: bool,
     margin: float = 0.0,
-) -> None:
-    """Move one leg through the air to joint angles; if this fails, the builder is unchanged."""
-    trial = builder.copy()
-    only = np.arange(builder.robot.legs) == leg
-    trial.unload(leg)
+) -> SequenceBuilder:
+    """Move one leg through the air to joint angles."""
+    only, name = np.arange(builder.robot.legs) == leg, f"{verb} {builder.robot.leg_codes[leg]}"
     target = np.where(only[:, None], angles, builder.angles)
-    trial.move_legs(f"{verb} {builder.robot.leg_codes[leg]}", only, target, landed=landed, margin=margin)
-    builder.adopt(trial)
+    return builder.unload(leg).move_legs(name, only, target, landed=landed, margin=margin)
 
 
 def _footholds(

@@ -8,12 +8,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tarsus.arrays import Array
-from tarsus.control.startup.body_targets import GROUND_TOLERANCE
-from tarsus.control.startup.builder import SequenceBuilder
+from tarsus.control.startup.builder import GROUND_TOLERANCE, SequenceBuilder, body_contacts
 from tarsus.errors import InputError, TarsusError
 from tarsus.kinematics.leg import checked_angles, forward_kinematics
-from tarsus.kinematics.rest import RestingPose, resting_pose
-from tarsus.kinematics.underside import belly_depth, underside_points
+from tarsus.kinematics.rest import resting_pose
+from tarsus.kinematics.underside import belly_depth
 from tarsus.robot.joint_limits import JointLimits
 from tarsus.robot.robot import Robot
 
@@ -85,27 +84,20 @@ def initial_state(robot: Robot, angles: Float[Array, "legs 3"], joint_limits: Jo
             f"{math.degrees(tilt):.0f} deg; at most {math.degrees(_MAX_TILT):.0f} deg can be levelled: place the "
             "robot on its belly"
         )
+    down = np.asarray(rest.leg_points_down)
+    points = rest.body @ forward_kinematics(robot, measured)
     builder = SequenceBuilder(
         robot=robot,
         joint_limits=joint_limits,
         angles=measured,
         body=rest.body,
-        contacts=np.asarray(rest.leg_points_down)[:, 3].copy(),
+        contacts=down[:, 3].copy(),
         belly=False,
-        supports=_supports(robot, measured, rest),
+        supports=np.concatenate([points[:, :3][down[:, :3]], body_contacts(robot, rest.body)]),
         initial_margin=float(rest.margin),
     )
-    if tilt < _LEVEL_TOLERANCE and abs(builder.height - belly_depth(robot)) < GROUND_TOLERANCE:
-        builder.set_lying()
-    return builder
-
-
-def _supports(robot: Robot, angles: Float[np.ndarray, "legs 3"], rest: RestingPose) -> Float[np.ndarray, "n 3"]:
-    """Return the points in G, other than feet, on which the robot rests."""
-    down = np.asarray(rest.leg_points_down)
-    points = rest.body @ forward_kinematics(robot, angles)
-    corners = (rest.body @ underside_points(robot)) if robot.body_size is not None else np.zeros((0, 3))
-    return np.concatenate([points[:, :3][down[:, :3]], corners[corners[:, 2] < GROUND_TOLERANCE]])
+    lies = tilt < _LEVEL_TOLERANCE and abs(builder.height - belly_depth(robot)) < GROUND_TOLERANCE
+    return builder.lie_down() if lies else builder
 
 
 def lying_state(

@@ -12,13 +12,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tarsus.control.sequence.stage import GRID
-from tarsus.control.startup.body_targets import GROUND_TOLERANCE, BodyTarget, stage_to
-from tarsus.control.startup.builder import SequenceBuilder
+from tarsus.control.startup.body_targets import BodyTarget, stage_to
+from tarsus.control.startup.builder import GROUND_TOLERANCE, SequenceBuilder, body_contacts
 from tarsus.control.startup.checks import limit_excess
 from tarsus.control.startup.foothold_search import place_feet
 from tarsus.kinematics.folded_pose import folded_pose
-from tarsus.kinematics.leg import forward_kinematics
-from tarsus.kinematics.underside import underside_points
 
 if TYPE_CHECKING:
     from jaxtyping import Bool, Float
@@ -32,15 +30,20 @@ _ANGLE_TOLERANCE = 1e-7
 _NEAR_GROUND = 0.005
 
 
-def level_body(builder: SequenceBuilder, target: BodyTarget, stance: Float[np.ndarray, "legs 3"]) -> None:
+def level_body(builder: SequenceBuilder, target: BodyTarget, stance: Float[np.ndarray, "legs 3"]) -> SequenceBuilder:
     """Move the body to a level pose with the loaded feet stationary.
 
     Parameters
     ----------
     builder, target : SequenceBuilder, BodyTarget
-        The robot in its initial state; stages are added to it; pose of the body at the end.
+        The robot in its initial state; pose of the body at the end.
     stance : array, shape (legs, 3)
         Preferred footholds in B [m].
+
+    Returns
+    -------
+    SequenceBuilder
+        The robot with its body level.
 
     Raises
     ------
@@ -48,8 +51,8 @@ def level_body(builder: SequenceBuilder, target: BodyTarget, stance: Float[np.nd
         If the pose cannot be reached.
     """
     if builder.belly:
-        return
-    on_knee = _on_knee(builder)
+        return builder
+    on_knee = builder.points[:, 2, 2] < GROUND_TOLERANCE
     follows = builder.contacts & ~on_knee & _can_follow(builder, target)
     blocking = (builder.contacts | on_knee) & ~follows
     free = ~builder.contacts & ~on_knee
@@ -57,29 +60,13 @@ def level_body(builder: SequenceBuilder, target: BodyTarget, stance: Float[np.nd
     if target.belly and not blocking.any():
         near_ground = free & _can_follow(builder, target) & (builder.feet[:, 2] < _NEAR_GROUND)
         free = free & ~near_ground
-        folded = np.where(free[:, None], folded_pose(builder.robot), builder.angles)
-        builder.move_legs("retract free legs", free, folded, landed=False)
+        builder = builder.move_legs("retract free legs", free, folded_pose(builder.robot), landed=False)
     else:
-        place_feet(builder, target, stance, free=free, blocking=blocking)
-    supports = _body_contacts(builder) if target.belly else np.zeros((0, 3))
+        builder = place_feet(builder, target, stance, free=free, blocking=blocking)
+    supports = body_contacts(builder.robot, builder.body) if target.belly else None
     name = "lie down" if target.belly else "level body"
-    builder.move_body(name, target.body, pivot=target.pivot, supports=supports, stationary=near_ground)
-    if target.belly:
-        builder.set_lying()
-
-
-def _on_knee(builder: SequenceBuilder) -> Bool[np.ndarray, "legs"]:
-    """Return the legs whose knee is on the ground."""
-    points = builder.body @ forward_kinematics(builder.robot, builder.angles)
-    on_knee: np.ndarray = points[:, 2, 2] < GROUND_TOLERANCE
-    return on_knee
-
-
-def _body_contacts(builder: SequenceBuilder) -> Float[np.ndarray, "n 3"]:
-    """Return the points of the body on the ground, in G."""
-    points = builder.body @ underside_points(builder.robot)
-    contacts: np.ndarray = points[points[:, 2] < GROUND_TOLERANCE]
-    return contacts
+    builder = builder.move_body(name, target.body, pivot=target.pivot, supports=supports, stationary=near_ground)
+    return builder.lie_down() if target.belly else builder
 
 
 def _can_follow(builder: SequenceBuilder, target: BodyTarget) -> Bool[np.ndarray, "legs"]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -100,13 +100,11 @@ def stand_up(
     feet = default_stance(robot, height, swing_height=swing_height)
     stance = inverse_kinematics(robot, feet).require().angles
 
-    def plan(builder: SequenceBuilder, target: BodyTarget) -> None:
-        level_body(builder, target, feet)
-        if builder.belly:
-            _fold(builder, folded)
-        raise_body(builder, feet, stance)
+    def plan(target: BodyTarget) -> SequenceBuilder:
+        level = level_body(start, target, feet)
+        return raise_body(_folded(level, folded) if level.belly else level, feet, stance)
 
-    return _first_feasible(robot, start, list(body_targets(start, height)), plan)
+    return _first_feasible(robot, body_targets(start, height), plan)
 
 
 def sit_down(
@@ -158,13 +156,12 @@ def sit_down(
     distances = foothold_distances(robot, start.body.inverse() @ start.feet)
     feet = footholds_straight_out(robot, distances, -start.height)
 
-    def plan(builder: SequenceBuilder, target: BodyTarget) -> None:
-        level_body(builder, target, feet)
-        if not builder.belly:
-            lower_body(builder)
+    def plan(target: BodyTarget) -> SequenceBuilder:
+        level = level_body(start, target, feet)
+        return level if level.belly else lower_body(level)
 
     lying_first = sorted(body_targets(start, start.height), key=lambda target: not target.belly)
-    return _first_feasible(robot, start, lying_first, plan)
+    return _first_feasible(robot, lying_first, plan)
 
 
 def fold(
@@ -196,39 +193,32 @@ def fold(
         If the robot does not lie on its belly.
     """
     limits = joint_limits(robot, joint_speed, joint_acceleration, share=SERVO_SPEED_SHARE)
-    builder = lying_state(over_feet(robot), angles, limits, purpose="folding its legs")
-    _fold(builder, folded_pose(robot))
-    return builder.sequence(robot)
+    lying = lying_state(over_feet(robot), angles, limits, purpose="folding its legs")
+    return _folded(lying, folded_pose(robot)).sequence(robot)
 
 
 def _checked(robot: Robot, swing_height: float | None, margin: float) -> tuple[float, float]:
     """Return the swing height and the stability margin, checked."""
     if robot.batch_shape:
         raise InputError(f"a motion sequence is planned for a single robot, not a batch {robot.batch_shape} of designs")
-    if swing_height is None:
-        swing_height = default_swing_height(robot)
-    else:
-        swing_height = require_number("swing_height", swing_height, zero=True)
-    return swing_height, require_number("margin", margin, zero=True)
+    swing_height = float(default_swing_height(robot)) if swing_height is None else swing_height
+    return require_number("swing_height", swing_height, zero=True), require_number("margin", margin, zero=True)
 
 
 def _first_feasible(
-    robot: Robot, start: SequenceBuilder, targets: list[BodyTarget], plan: Callable[[SequenceBuilder, BodyTarget], None]
+    robot: Robot, targets: Iterable[BodyTarget], plan: Callable[[BodyTarget], SequenceBuilder]
 ) -> MotionSequence:
     """Return the first feasible plan; if there is none, raise the error of the most promising one."""
     errors: list[TarsusError] = []
     for target in targets:
-        builder = start.copy()
         try:
-            plan(builder, target)
+            return plan(target).sequence(robot)
         except TarsusError as error:
             errors.append(error)
-        else:
-            return builder.sequence(robot)
     others = f" ({len(errors) - 1} alternatives fail too)" if len(errors) > 1 else ""
-    raise type(errors[0])(f"{start.robot.name}: {errors[0]}{others}") from errors[0]
+    raise type(errors[0])(f"{robot.name}: {errors[0]}{others}") from errors[0]
 
 
-def _fold(builder: SequenceBuilder, folded: Float[np.ndarray, "legs 3"]) -> None:
+def _folded(builder: SequenceBuilder, folded: Float[np.ndarray, "legs 3"]) -> SequenceBuilder:
     """Fold all legs of a lying robot."""
-    builder.move_legs("fold", (builder.angles != folded).any(-1), folded, landed=False)
+    return builder.move_legs("fold", (builder.angles != folded).any(-1), folded, landed=False)

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import contextlib
 import math
+from contextlib import suppress
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,7 +14,7 @@ from tarsus.control.startup.foothold_stations import FootholdStation, foothold_s
 from tarsus.errors import UnreachableError
 from tarsus.kinematics.inverse import inverse_kinematics
 from tarsus.kinematics.pose import Pose
-from tarsus.kinematics.stance import default_stance, foothold_distances, footholds_straight_out
+from tarsus.kinematics.stance import default_stance, footholds_straight_out
 from tarsus.kinematics.underside import belly_depth
 
 if TYPE_CHECKING:
@@ -31,17 +31,22 @@ _ANGLE_TOLERANCE = 1e-6
 
 def raise_body(
     builder: SequenceBuilder, feet: Float[np.ndarray, "legs 3"], stance: Float[np.ndarray, "legs 3"]
-) -> None:
+) -> SequenceBuilder:
     """Move a level body, lying or standing, vertically to a stance.
 
     Parameters
     ----------
     builder : SequenceBuilder
-        The robot, with folded legs if it lies; stages are added to it.
+        The robot, with folded legs if it lies.
     feet : array, shape (legs, 3)
         Footholds of the stance in B [m].
     stance : array, shape (legs, 3)
         Joint angles of the stance [rad].
+
+    Returns
+    -------
+    SequenceBuilder
+        The robot in the stance.
 
     Raises
     ------
@@ -57,18 +62,16 @@ def raise_body(
         exact = last and builder.height == height
         angles = stance if exact else inverse_kinematics(builder.robot, spots).require().angles
         if builder.belly:
-            builder.move_legs("place feet", (builder.angles != angles).any(-1), angles, landed=True)
+            builder = builder.move_legs("place feet", (builder.angles != angles).any(-1), angles, landed=True)
         else:
-            change_footholds(builder, angles)
-        if next_height != builder.height:
-            name = "raise body" if next_height > builder.height else "lower body"
-            builder.move_body(name, _at_height(builder.body, next_height))
+            builder = change_footholds(builder, angles)
+        builder = _at_height(builder, next_height)
     error = float(np.abs(builder.angles - stance).max())
     if error > _ANGLE_TOLERANCE:
         raise UnreachableError(
             f"the final joint angles differ from those of the stance by {math.degrees(error):.3f} deg"
         )
-    builder.set_end_angles(stance)
+    return builder.end_at(stance)
 
 
 def _stations(
@@ -81,23 +84,27 @@ def _stations(
     except UnreachableError as error:
         feasible = []
         for body_height in np.arange(start, height, _BODY_HEIGHT_STEP).tolist():
-            with contextlib.suppress(UnreachableError):
+            with suppress(UnreachableError):
                 other = default_stance(robot, body_height, swing_height=swing_height)
                 foothold_stations(robot, start, body_height, other, swing_height=swing_height)
                 feasible.append(body_height)
-        advice = "no lower body height works either"
-        if feasible:
-            advice = f"a body height of {max(feasible) * 1000:.1f} mm works"
+        works = f"a body height of {feasible[-1] * 1000:.1f} mm works" if feasible else ""
+        advice = works or "no lower body height works either"
         raise UnreachableError(f"raising the body to {height * 1000:.1f} mm: {error}; {advice}") from None
 
 
-def lower_body(builder: SequenceBuilder) -> None:
+def lower_body(builder: SequenceBuilder) -> SequenceBuilder:
     """Lower a level, standing body until it lies on the ground.
 
     Parameters
     ----------
     builder : SequenceBuilder
-        The robot; stages are added to it.
+        The robot.
+
+    Returns
+    -------
+    SequenceBuilder
+        The robot lying on its belly.
 
     Raises
     ------
@@ -105,16 +112,19 @@ def lower_body(builder: SequenceBuilder) -> None:
         If the body cannot be lowered: which leg, at what height, and by how much.
     """
     robot, lowest = builder.robot, belly_depth(builder.robot)
-    distances = foothold_distances(robot, builder.body.inverse() @ builder.feet)
-    feet = footholds_straight_out(robot, distances, -builder.height)
+    feet = builder.body.inverse() @ builder.feet
     stations = foothold_stations(robot, lowest, builder.height, feet, swing_height=builder.swing_height)
     for station in stations[::-1]:
         spots = footholds_straight_out(robot, station.distances, -builder.height)
         angles = inverse_kinematics(robot, spots).require().angles
-        change_footholds(builder, angles)
-        builder.move_body("lower body", _at_height(builder.body, station.height))
-    builder.set_lying()
+        builder = _at_height(change_footholds(builder, angles), station.height)
+    return builder.lie_down()
 
 
-def _at_height(body: Pose, height: float) -> Pose:
-    return Pose(body.rotation, np.array([body.position[0], body.position[1], height]))
+def _at_height(builder: SequenceBuilder, height: float) -> SequenceBuilder:
+    """Move the body vertically to a height."""
+    if height == builder.height:
+        return builder
+    x, y, _ = builder.body.position
+    name = "raise body" if height > builder.height else "lower body"
+    return builder.move_body(name, Pose(builder.body.rotation, np.array([x, y, height])))
