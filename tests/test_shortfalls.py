@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from tarsus.control.limitation import Cause, LimitationKind
-from tarsus.control.transition.parameters import WalkParameters
 from tarsus.control.transition.shortfalls import rejection_limitations, stance_limitations
+from tarsus.control.transition.stance_transition import WalkParameters
 from tarsus.gait.gait import Gait
 
 CAUSE = Cause("the reason", "front left")

@@ -16,6 +16,8 @@ __all__ = ["BODY_AXES", "Command", "finite_numbers"]
 BODY_AXES = ("x", "y", "z", "roll", "pitch", "yaw")
 """The six axes of a body pose."""
 
+_PARAMETERS = ("body", "gait", "body_height", "swing_height", "stance_width", "cycle_time", "sway")
+
 
 @represented()
 @dataclass(frozen=True, kw_only=True)
@@ -78,19 +80,14 @@ class Command:
                 object.__setattr__(self, name, _by_leg(name, getattr(self, name), back=name == "foot_targets"))
 
     @property
+    def parameters(self) -> dict[str, Any]:
+        """The parameters of walking that are commanded, by name: those that don't stay as they are."""
+        return {name: value for name in _PARAMETERS if (value := getattr(self, name)) is not None}
+
+    @property
     def only_twist(self) -> bool:
-        """Whether everything but the twist stays as it is."""
-        return (
-            self.body is None
-            and self.gait is None
-            and self.body_height is None
-            and self.swing_height is None
-            and self.stance_width is None
-            and self.cycle_time is None
-            and self.sway is None
-            and self.foot_targets is None
-            and self.foot_velocities is None
-        )
+        """Whether all of the walk but the twist stays as it is."""
+        return self.foot_targets is None and self.foot_velocities is None and not self.parameters
 
 
 def _by_leg(name: str, given: Any, *, back: bool) -> dict[int, tuple[float, ...] | None]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Self, overload
 
@@ -25,7 +26,7 @@ from tarsus.representation import represented
 if TYPE_CHECKING:
     from jaxtyping import Float
 
-__all__ = ["Pose", "rpy_from_rotation"]
+__all__ = ["Pose", "rpy_from_rotation", "stack_poses"]
 
 
 def _locked(array: Float[Array, "... 3"]) -> Float[Array, "... 3"]:
@@ -231,6 +232,22 @@ class Pose:
     def rpy(self) -> Float[Array, "*batch 3"]:
         """Roll, pitch and yaw ``(..., 3)`` [rad]."""
         return rpy_from_rotation(self.rotation)
+
+
+def stack_poses(poses: Sequence[Pose]) -> Pose:
+    """Return single poses as a batch.
+
+    Parameters
+    ----------
+    poses : sequence of Pose
+        The poses, at least one.
+
+    Returns
+    -------
+    Pose
+        A batch of shape (n,).
+    """
+    return Pose(np.array([pose.rotation for pose in poses]), np.array([pose.position for pose in poses]))
 
 
 def rpy_from_rotation(rotation: Float[Array, "*batch 3 3"]) -> Float[Array, "*batch 3"]:

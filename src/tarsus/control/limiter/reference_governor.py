@@ -46,7 +46,7 @@ class GovernorLimiter:
         if grant.target is not None:
             return grant
         state, transitions, command = request.state, self._transitions, grant.scaled(request.twist)
-        stance = (state.down, transitions.timing, transitions.phase, transitions.footholds.bounds)
+        stance = (state.down, transitions.timing, transitions.changes_gait, transitions.footholds.bounds)
         # While the same feet stand, what was feasible stays so. Feet that follow the ground stray from what was
         # predicted: with these, each target is examined whenever the ground is looked at.
         stays = self._met if state.felt is None else not self._looks()

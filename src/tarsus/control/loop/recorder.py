@@ -17,7 +17,7 @@ from tarsus.gait.motion import Motion
 from tarsus.gait.spacing import default_foot_distance
 from tarsus.gait.walk_setup import WalkSetup
 from tarsus.kinematics.leg import forward_kinematics
-from tarsus.kinematics.pose import Pose
+from tarsus.kinematics.pose import stack_poses
 
 if TYPE_CHECKING:
     from jaxtyping import Float
@@ -178,10 +178,7 @@ class Recorder:
         """Return what was given out, as a motion."""
         outputs, robot, controller = self._outputs, self._controller.robot, self._controller
         angles = np.array([output.angles for output in outputs])
-        body = Pose(
-            np.array([np.asarray(output.body.rotation) for output in outputs]),
-            np.array([np.asarray(output.body.position) for output in outputs]),
-        )
+        body = stack_poses([output.body for output in outputs])
         feet = np.array([output.feet for output in outputs])
         # Where the guard gave out other angles, the feet are where these take them; the body's pose is as commanded.
         held = np.array([output.state is RobotState.FAULT for output in outputs])

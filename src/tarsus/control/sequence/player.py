@@ -38,6 +38,13 @@ class SequencePlayer:
     sequence : MotionSequence
         The sequence.
 
+    Attributes
+    ----------
+    time : float
+        Current time of the sequence [s].
+    rate : float
+        Current playback rate: 1 forward, 0 stopped, -1 reverse.
+
     Notes
     -----
     The playback rate, the time of the sequence per time, ranges from -1 (reverse) to 1 (forward). It changes as fast as
@@ -46,27 +53,15 @@ class SequencePlayer:
     """
 
     def __init__(self, sequence: MotionSequence) -> None:
-        self.sequence = sequence
-        self._time = 0.0
-        self._rate = 1.0
-        self._target_rate = 1.0
+        self.sequence, self.time = sequence, 0.0
+        self.rate = self._target_rate = 1.0
         # Evaluated in advance, so that no tick is delayed when it brakes.
         self._tables = {id(stage): stage.table for stage in sequence.stages}
 
     @property
-    def time(self) -> float:
-        """Current time of the sequence [s]."""
-        return self._time
-
-    @property
-    def rate(self) -> float:
-        """Current playback rate: 1 forward, 0 stopped, -1 reverse."""
-        return self._rate
-
-    @property
     def now(self) -> SequenceSample:
         """Current sample of the sequence."""
-        return self.sequence.at(self._time)
+        return self.sequence.at(self.time)
 
     @property
     def angles(self) -> Float[np.ndarray, "legs 3"]:
@@ -86,17 +81,17 @@ class SequencePlayer:
     @property
     def stage(self) -> str:
         """Name of the current stage."""
-        return self.sequence.stage_at(self._time)[0].name
+        return self.sequence.stage_at(self.time)[0].name
 
     @property
     def done(self) -> bool:
         """Whether playback has reached the end of the sequence, or its start in reverse."""
-        return self._time <= 0 if self._target_rate < 0 else self._time >= self.sequence.duration
+        return self.time <= 0 if self._target_rate < 0 else self.time >= self.sequence.duration
 
     @property
     def stopped(self) -> bool:
         """Whether the joints are at rest, after `stop` or at the end."""
-        return self.done or self._rate == self._target_rate == 0
+        return self.done or self.rate == self._target_rate == 0
 
     def stop(self) -> None:
         """Brake at the greatest joint acceleration and hold the position."""
@@ -131,7 +126,7 @@ class SequencePlayer:
         if not 0 <= dt < math.inf:
             raise InputError(f"dt is {dt} s; it must be a finite number of at least 0")
         remaining = float(dt)
-        while remaining > 0 and self._rate != self._target_rate:
+        while remaining > 0 and self.rate != self._target_rate:
             interval = min(remaining, _INTERVAL)
             self._advance(interval, self._rate_change(interval))
             remaining -= interval
@@ -142,23 +137,23 @@ class SequencePlayer:
 
     def _advance(self, dt: float, rate_change: float) -> None:
         """Advance the time of the sequence while the rate changes linearly; the time stops at both ends."""
-        time = self._time + (self._rate + rate_change / 2) * dt
-        self._rate += rate_change
+        time = self.time + (self.rate + rate_change / 2) * dt
+        self.rate += rate_change
         end = self.sequence.duration
         if time > end - _END_TOLERANCE:
-            self._time = end
+            self.time = end
         else:
-            self._time = 0.0 if time < _END_TOLERANCE and self._target_rate < 0 else max(time, 0.0)
+            self.time = 0.0 if time < _END_TOLERANCE and self._target_rate < 0 else max(time, 0.0)
 
     def _rate_change(self, dt: float) -> float:
         """Return the greatest change of the rate within `dt` towards its target."""
-        stage, fraction = self.sequence.stage_at(self._time)
-        change = min(max(self._target_rate - self._rate, -dt / _RAMP), dt / _RAMP)
+        stage, fraction = self.sequence.stage_at(self.time)
+        change = min(max(self._target_rate - self.rate, -dt / _RAMP), dt / _RAMP)
         if not stage.duration:
             return change
         first, second = (_interpolate(values, fraction) for values in self._tables[id(stage)][1:])
         speed = first / stage.duration
-        curvature = second / stage.duration**2 * self._rate**2
+        curvature = second / stage.duration**2 * self.rate**2
         bound = _ACCELERATION_FRACTION * self.sequence.joint_limits.acceleration
         # For every joint |curvature + speed * change / dt| <= bound; no change always satisfies this.
         with np.errstate(divide="ignore"):
@@ -170,5 +165,4 @@ def _interpolate(values: Float[np.ndarray, "n legs 3"], fraction: float) -> Floa
     """Interpolate values given on `GRID`."""
     position = fraction * (len(GRID) - 1)
     low = min(int(position), len(GRID) - 2)
-    found: np.ndarray = values[low] + (position - low) * (values[low + 1] - values[low])
-    return found
+    return np.asarray(values[low] + (position - low) * (values[low + 1] - values[low]))

@@ -15,7 +15,7 @@ from tarsus.gait.gait import Gait
 from tarsus.gait.motion import Motion
 from tarsus.gait.walk_setup import require_number
 from tarsus.kinematics.leg import forward_kinematics
-from tarsus.kinematics.pose import Pose
+from tarsus.kinematics.pose import Pose, stack_poses
 from tarsus.representation import represented
 from tarsus.robot.joint_limits import JointLimits
 from tarsus.robot.robot import Robot
@@ -142,7 +142,7 @@ class MotionSequence:
         time = np.arange(max(math.ceil((last - first) * rate - 1e-9), 1) + 1) / rate
         samples = [self.at(min(first + t, last)) for t in time.tolist()]
         angles = np.array([sample.angles for sample in samples])
-        body = Pose(*(np.array([getattr(s.body, name) for s in samples]) for name in ("rotation", "position")))
+        body = stack_poses([sample.body for sample in samples])
         return Motion(
             robot=self.robot,
             gait=Gait(duty_factor=0.5, offsets=(0.0,) * self.robot.legs, name="none"),

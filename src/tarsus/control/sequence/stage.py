@@ -25,7 +25,7 @@ from tarsus.robot.joint_limits import JointLimits
 from tarsus.robot.robot import Robot
 
 if TYPE_CHECKING:
-    from jaxtyping import Bool, Float
+    from jaxtyping import Bool, Float, Int
 
 __all__ = ["GRID", "Stage", "StageTable"]
 
@@ -174,37 +174,32 @@ class Stage:
         array, shape (n, legs, 3)
             Joint angles [rad].
         """
-        angles: np.ndarray = self.angles + horizontal_profile(fractions)[:, None, None] * (
-            self.angles_end - self.angles
-        )
+        progress = horizontal_profile(fractions)[:, None, None]
+        angles: np.ndarray = self.angles + progress * (self.angles_end - self.angles)
         if self.cartesian.any():
-            solved = self._solve(fractions)
-            angles[:, self.cartesian] = solved[:, self.cartesian]
+            angles[:, self.cartesian] = self._solve(fractions)[:, self.cartesian]
         return angles
 
     @cached_property
-    def _branches(self) -> tuple[Bool[np.ndarray, "legs"], Bool[np.ndarray, "legs"]]:
-        """Whether each leg's knee is bent down, and whether its foot is behind its coxa axis."""
+    def _branches(self) -> Int[np.ndarray, "legs 2"]:
+        """The solution of inverse kinematics that each leg starts with: knee and facing, as in `solve_triangle`."""
         g, femur, tibia = self.robot.geometry, self.angles[:, 1], self.angles[:, 2]
-        bend = np.sin(tibia)
-        return bend > 0, g.coxa + g.femur * np.cos(femur) + g.tibia * np.cos(femur + tibia) < 0
+        ahead = g.coxa + g.femur * np.cos(femur) + g.tibia * np.cos(femur + tibia)
+        return np.where(np.stack([np.sin(tibia) > 0, ahead < 0], axis=-1), -1, 1)
 
     def _solve(self, fractions: Float[np.ndarray, "n"]) -> Float[np.ndarray, "n legs 3"]:
         """Return the inverse kinematics of all feet, each leg with the solution that it starts with."""
         g = self.robot.geometry
         points = points_in_body(self.body_at(fractions), self.feet_at(fractions))
         x, y, z = to_leg_frame(g, points[..., 0], points[..., 1], points[..., 2])
-        knee_down, behind = self._branches
         min_bend = _MIN_BEND**2 * g.femur * g.tibia
         solved = np.full(points.shape, np.nan)
-        for down in {bool(value) for value in knee_down[self.cartesian]}:
-            for back in {bool(value) for value in behind[self.cartesian]}:
-                legs = (knee_down == down) & (behind == back)
-                with np.errstate(invalid="ignore"):
-                    found = solve_triangle(np, g, x, y, z, knee=-1 if down else 1, facing=-1 if back else 1)
-                ok = (found.far >= min_bend) & (found.near >= min_bend) & (found.beside >= 0) & legs
-                for joint in range(3):
-                    solved[..., joint] = np.where(ok, found[joint], solved[..., joint])
+        for knee, facing in set(map(tuple, self._branches[self.cartesian].tolist())):
+            with np.errstate(invalid="ignore"):
+                found = solve_triangle(np, g, x, y, z, knee=knee, facing=facing)
+            bent = (found.far >= min_bend) & (found.near >= min_bend) & (found.beside >= 0)
+            ok = bent & (self._branches == (knee, facing)).all(axis=-1)
+            solved = np.where(ok[..., None], np.stack(found[:3], axis=-1), solved)
         # The equivalent angle nearest to the start.
         return np.asarray(solved - _FULL_TURN * np.round((solved - self.angles) / _FULL_TURN))
 

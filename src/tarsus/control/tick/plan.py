@@ -13,8 +13,7 @@ from tarsus.control.limitation import Cause
 from tarsus.control.tick.components import WalkComponents
 from tarsus.control.tick_state import TickState
 from tarsus.control.transition.feasible_fraction import StanceTarget
-from tarsus.control.transition.parameters import WalkParameters
-from tarsus.control.transition.stance_transition import StanceTransition
+from tarsus.control.transition.stance_transition import StanceTransition, WalkParameters
 from tarsus.control.transition.target_stance import sway_extremes
 from tarsus.control.walk.foot_target_motion import reachable_fraction
 from tarsus.control.walk.state import GaitState

@@ -10,9 +10,8 @@ from tarsus.control.limitation import Cause, Limitation, LimitationKind
 from tarsus.control.pose.pose_controller import PoseController
 from tarsus.control.tick_state import TickState
 from tarsus.control.transition.foothold_transfer import FootholdTransfer
-from tarsus.control.transition.phase import TransitionPhase
 from tarsus.control.transition.scheduler import PlanTransition, TransitionScheduler
-from tarsus.control.transition.stance_transition import StanceTransition
+from tarsus.control.transition.stance_transition import NextGait, StanceTransition
 from tarsus.control.walk.foot_targets import FootTargets
 from tarsus.control.walk.foothold import final_footholds
 from tarsus.control.walk.reference_governor import FootPrediction, lift_delays, stance_intervals, time_to_touchdown
@@ -51,8 +50,6 @@ class TransitionExecutor:
         The posture to reach.
     timing : StepTiming
         The gait and its frequency.
-    phase : TransitionPhase
-        The phase of the transition in progress.
     current : StanceTransition
         The transition that was begun last.
     lengthened : float
@@ -63,16 +60,16 @@ class TransitionExecutor:
         self.scheduler, self.footholds = TransitionScheduler(initial), FootholdTransfer(initial)
         self.pose = PoseController(initial.posture)
         self.timing = StepTiming.of(initial.parameters.gait, initial.cycle_timing.cycle_time)
-        self.phase, self.current, self.lengthened = TransitionPhase.NONE, initial, 1.0
+        self.current, self.lengthened = initial, 1.0
         self._foot_targets = foot_targets
+        # The gait for which all feet touch down, and the transition for which they step to new rest footholds.
+        self._next: NextGait | None = None
         self._active: StanceTransition | None = None
-        # Of a gait that is about to begin: its timing, the leg that lifts first, how long each foot then stands [s].
-        self._next_timing, self._first_leg, self._delays = self.timing, 0, np.zeros(len(initial.rest))
 
     @property
     def pending(self) -> StanceTransition | None:
         """The transition that is planned, or for which feet touch down or step."""
-        return self._active if self.scheduler.planned is None else self.scheduler.planned
+        return self.scheduler.planned or (self._active if self._next is None else self._next.transition)
 
     @property
     def limitations(self) -> tuple[Limitation, ...]:
@@ -85,13 +82,13 @@ class TransitionExecutor:
     @property
     def waiting(self) -> bool:
         """Whether a transition waits until it may begin, or until its body motion may."""
-        stepped = self.phase is TransitionPhase.FOOTHOLDS and all(self.footholds.transferred.tolist())
+        stepped = self._active is not None and all(self.footholds.transferred.tolist())
         return self.scheduler.planned is not None or stepped
 
     @property
     def changes_gait(self) -> bool:
         """Whether all feet touch down for another gait."""
-        return self.phase is TransitionPhase.TOUCHDOWN
+        return self._next is not None
 
     @property
     def timing_is_steady(self) -> bool:
@@ -106,7 +103,7 @@ class TransitionExecutor:
     @property
     def bandwidth(self) -> float:
         """Bandwidth with which the twist follows its target, that of the next gait once it is decided [rad/s]."""
-        return (self._next_timing if self.changes_gait else self.timing).bandwidth
+        return (self.timing if self._next is None else self._next.timing).bandwidth
 
     @property
     def bounds(self) -> Float[np.ndarray, "legs 16"]:
@@ -131,10 +128,10 @@ class TransitionExecutor:
             From now [s].
         """
         gait = self.timing.gait
-        if not self.changes_gait:
+        if self._next is None:
             return stance_intervals(state, gait, frequency or self.timing.frequency)
         begins = time_to_touchdown(state, gait, self.timing.frequency)
-        return begins, begins.max() + self._delays
+        return begins, begins.max() + self._next.delays
 
     def is_settled(self, state: GaitState) -> bool:
         """Return whether the last transition is over: posture reached, returning legs on the ground.
@@ -144,9 +141,9 @@ class TransitionExecutor:
         state : GaitState
             The gait state.
         """
-        if self.phase is not TransitionPhase.NONE:
+        if self._active is not None or self._next is not None or self._foot_targets.returning:
             return False
-        return not self._foot_targets.returning and self.pose.reached(state.posture.value)
+        return self.pose.reached(state.posture.value)
 
     def at_rest(self, state: GaitState, *, stands: bool = False) -> bool:
         """Return whether every foot of the gait is at its rest foothold.
@@ -185,7 +182,7 @@ class TransitionExecutor:
         self.scheduler.advance_planning(plan, idle=self.is_settled(now.gait))
         if self.scheduler.planned is not None:
             return self._try_to_begin(self.scheduler.planned, now)
-        if self.phase is TransitionPhase.FOOTHOLDS and self._active is not None:
+        if self._active is not None:
             self._try_to_move_body(self._active, now)
         return now.gait
 
@@ -232,8 +229,7 @@ class TransitionExecutor:
         # Symmetric legs suit equally well but for rounding; the first of them lifts, on any machine.
         first = int((over <= over.min() + _ROUNDING).argmax())
         if over[first] <= POSITION_TOLERANCE:
-            self.phase, self._active, self.scheduler.planned = TransitionPhase.TOUCHDOWN, planned, None
-            self._next_timing, self._first_leg, self._delays = timing, first, delays[first]
+            self._next, self.scheduler.planned = NextGait(planned, timing, first, delays[first]), None
             self.footholds.restrict(planned.final_limits)
 
     def _try_to_move_body(self, active: StanceTransition, now: TickState) -> None:
@@ -246,7 +242,7 @@ class TransitionExecutor:
         if self._stays_within(bounds, now, frequency=frequency, bandwidth=self.bandwidth):
             self.footholds.restrict(active.path_limits)
             self.pose.set_posture(active.posture)
-            self.phase, self._active = TransitionPhase.NONE, None
+            self._active = None
 
     def _stays_within(
         self, bounds: Float[np.ndarray, "legs 16"], now: TickState, *, frequency: float, bandwidth: float
@@ -261,7 +257,7 @@ class TransitionExecutor:
         self.footholds.begin(planned, state.down)
         self.scheduler.adopt(planned)
         self.current = self.scheduler.current
-        self.phase, self._active = TransitionPhase.FOOTHOLDS, planned
+        self._next, self._active = None, planned
         excluded = planned.parameters.excluded
         if excluded:
             self.footholds.restrict(planned.final_limits)
@@ -289,12 +285,12 @@ class TransitionExecutor:
             The gait state; its clock is set where another gait begins.
         """
         settled = self.is_settled(state)
-        if not self.changes_gait:
+        if self._next is None:
             goal = self.frequency if settled else min(self.frequency, self.timing.frequency)
             if goal != self.timing.frequency:
                 self.timing = self.timing.approach(goal, dt)
-        elif state.down.all() and self._active is not None:
-            state = self._start_gait(self._active, self._first_leg, state)
+        elif state.down.all():
+            state = self._start_gait(self._next.transition, self._next.first_leg, state)
         if settled and self.footholds.limits is not self.current.final_limits:
             self.footholds.complete(self.current.final_limits)
         return state

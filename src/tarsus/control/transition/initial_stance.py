@@ -6,9 +6,8 @@ import math
 
 from tarsus.control.incremental import complete
 from tarsus.control.limitation import Cause
-from tarsus.control.transition.parameters import WalkParameters
 from tarsus.control.transition.planner import TransitionPlanner
-from tarsus.control.transition.stance_transition import StanceTransition
+from tarsus.control.transition.stance_transition import StanceTransition, WalkParameters
 from tarsus.errors import InputError, UnreachableError
 from tarsus.gait.walk_setup import WalkSetup, require_number
 

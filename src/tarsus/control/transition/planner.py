@@ -16,9 +16,8 @@ from tarsus.control.transition.feasible_fraction import (
     reach_cause,
     reachable_fraction,
 )
-from tarsus.control.transition.parameters import WalkParameters
 from tarsus.control.transition.shortfalls import stance_limitations
-from tarsus.control.transition.stance_transition import StanceTransition
+from tarsus.control.transition.stance_transition import StanceTransition, WalkParameters
 from tarsus.control.transition.target_stance import sway_extremes, target_stance
 from tarsus.control.workspace.cycle_time import CycleTiming, cycle_timing
 from tarsus.control.workspace.stance_limits import shifted_limits, velocity_limits

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Callable
+from itertools import chain
 from typing import TypeAlias
 
 from tarsus.control.command import Command
 from tarsus.control.incremental import Incremental
 from tarsus.control.limitation import Cause, Limitation, LimitationKind
-from tarsus.control.transition.parameters import WalkParameters
 from tarsus.control.transition.shortfalls import rejection_limitations
-from tarsus.control.transition.stance_transition import StanceTransition
+from tarsus.control.transition.stance_transition import StanceTransition, WalkParameters
 from tarsus.errors import InputError, UnreachableError
 from tarsus.gait.gait import Gait
 
@@ -86,18 +86,12 @@ class TransitionScheduler:
         UnknownNameError
             If no gait has the name.
         """
-        before = self.requested
-        asked = WalkParameters(
-            gait=_gait(before.gait, command.gait),
-            body=before.body if command.body is None else tuple(command.body),
-            body_height=before.body_height if command.body_height is None else command.body_height,
-            swing_height=before.swing_height if command.swing_height is None else command.swing_height,
-            stance_width=before.stance_width if command.stance_width is None else command.stance_width,
-            cycle_time=_cycle_time(before.cycle_time, command.cycle_time),
-            sway=before.sway if command.sway is None else tuple(command.sway),
-            correction=correction,
-            excluded=excluded,
-        )
+        before, changes = self.requested, command.parameters
+        if "gait" in changes:
+            changes["gait"] = _gait(before.gait, changes["gait"])
+        if changes.get("cycle_time") == "auto":
+            changes["cycle_time"] = None
+        asked = dataclasses.replace(before, correction=correction, excluded=excluded, **changes)
         if asked.swing_height < 0:
             raise InputError(f"the command's swing_height is {asked.swing_height} m; it must not be negative")
         if asked.cycle_time is not None and asked.cycle_time <= 0:
@@ -158,42 +152,24 @@ class TransitionScheduler:
             self.planned = found
         # What is no longer commanded by now is not rejected.
         elif self._asked == self._next_parameters()[0]:
-            current = self.current
-            rejected = rejection_limitations(
-                self._asked, current.parameters, None if self._stays else current.posture, found
-            )
+            posture = None if self._stays else self.current.posture
+            rejected = rejection_limitations(self._asked, self.current.parameters, posture, found)
             self.rejections[self._asked] = rejected
-            self._shortfalls = self._rejected_limitations
-
-    @property
-    def _rejected_limitations(self) -> tuple[Limitation, ...]:
-        return tuple(limitation for found in self.rejections.values() for limitation in found)
+            self._shortfalls = tuple(chain.from_iterable(self.rejections.values()))
 
     def _finish_request(self) -> None:
         """Take note that all that is feasible of the commanded parameters is met."""
         self._done, current = self.requested, self.current.parameters
-        self._shortfalls = self._rejected_limitations
+        self._shortfalls = tuple(chain.from_iterable(self.rejections.values()))
         # Standing otherwise has to wait until all legs are back in the gait.
-        deferred = dataclasses.replace(
-            self.requested,
-            **{name: getattr(current, name) for name in ("gait", "cycle_time", "excluded", "correction")},
-        )
-        if current.excluded and deferred not in (
-            dataclasses.replace(current, correction=deferred.correction),
-            *self.rejections,
-        ):
+        deferred = dataclasses.replace(self.requested.stepping_like(current), correction=current.correction)
+        if current.excluded and deferred not in (current, *self.rejections):
             self._shortfalls += rejection_limitations(deferred, current, self.current.posture, _DEFERRED)
 
     def _next_parameters(self) -> tuple[WalkParameters, bool]:
         """Return what to change first, how the robot steps or how it stands; and whether its posture stays."""
         current, requested = self.current.parameters, self.requested
-        stepping = dataclasses.replace(
-            current, gait=requested.gait, cycle_time=requested.cycle_time, excluded=requested.excluded
-        )
-        standing = dataclasses.replace(
-            requested, gait=current.gait, cycle_time=current.cycle_time, excluded=current.excluded
-        )
-        order = [(stepping, True), (standing, False)]
+        order = [(current.stepping_like(requested), True), (requested.stepping_like(current), False)]
         if set(current.excluded) - set(requested.excluded):
             # Legs come back in the gait that they left, and others may leave only once they are down.
             staying = tuple(leg for leg in current.excluded if leg in requested.excluded)
@@ -210,17 +186,10 @@ class TransitionScheduler:
         return current, True
 
 
-def _gait(before: Gait, commanded: Gait | str | None) -> Gait:
-    gait = before if commanded is None else commanded
+def _gait(before: Gait, gait: Gait | str) -> Gait:
     if isinstance(gait, str):
         gait = before if gait == before.name else Gait.named(gait, legs=before.legs)
     if not isinstance(gait, Gait):
         raise InputError(f"the command's gait is {gait!r}; it must be a name or a Gait")
     gait.require_legs(before.legs)
     return gait
-
-
-def _cycle_time(before: float | None, commanded: float | str | None) -> float | None:
-    if commanded is None:
-        return before
-    return None if isinstance(commanded, str) else commanded

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tarsus.control.limitation import Cause, Limitation, LimitationKind
-from tarsus.control.transition.parameters import WalkParameters
+from tarsus.control.transition.stance_transition import WalkParameters
 from tarsus.gait.stance.stance_geometry import SWING_HEIGHT
 
 if TYPE_CHECKING:

@@ -1,21 +1,72 @@
-"""A planned stance transition."""
+"""A planned stance transition, and the parameters of walking that it meets: all that is commanded except the twist."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from tarsus.control.limitation import Limitation
-from tarsus.control.transition.parameters import WalkParameters
+from tarsus.control.walk.step_timing import StepTiming
 from tarsus.control.workspace.cycle_time import CycleTiming
+from tarsus.gait.gait import Gait
 from tarsus.gait.stance.velocity_limits import VelocityLimits
 
 if TYPE_CHECKING:
     from jaxtyping import Complex, Float
 
-__all__ = ["StanceTransition"]
+__all__ = ["NextGait", "StanceTransition", "WalkParameters"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class WalkParameters:
+    """How the robot stands and steps.
+
+    Attributes
+    ----------
+    gait : Gait
+        Order of the steps.
+    body : tuple of float
+        Body pose against level at the body height: x, y, z [m], roll, pitch, yaw [rad].
+    body_height, swing_height : float
+        Height of the body's origin over the ground, and of a swinging foot over its foothold [m].
+    stance_width : float
+        Distance that the feet rest farther out than by default [m].
+    cycle_time : float or None
+        Duration of a cycle [s]; None for the one with the highest top speed.
+    sway : tuple of float
+        Amplitudes of the body's sway, axes as in `body`.
+    correction : tuple of float
+        Shift over the feet that bear load, added to `body`.
+    excluded : tuple of int
+        Legs that are taken out of the gait.
+    """
+
+    gait: Gait
+    body: tuple[float, ...]
+    body_height: float
+    swing_height: float
+    stance_width: float
+    cycle_time: float | None
+    sway: tuple[float, ...] = (0.0,) * 6
+    correction: tuple[float, ...] = (0.0,) * 6
+    excluded: tuple[int, ...] = ()
+
+    @property
+    def corrected_body(self) -> tuple[float, ...]:
+        """The body pose with its correction."""
+        return tuple(a + b for a, b in zip(self.body, self.correction, strict=True))
+
+    def stepping_like(self, others: WalkParameters) -> WalkParameters:
+        """Return how to stand like this, and step like others: their gait, cycle time, and legs out of the gait.
+
+        Parameters
+        ----------
+        others : WalkParameters
+            The others.
+        """
+        return replace(self, gait=others.gait, cycle_time=others.cycle_time, excluded=others.excluded)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -54,3 +105,24 @@ class StanceTransition:
     path_limits: VelocityLimits
     final_limits: VelocityLimits
     limitations: tuple[Limitation, ...]
+
+
+class NextGait(NamedTuple):
+    """A gait that begins once all feet are on the ground.
+
+    Attributes
+    ----------
+    transition : StanceTransition
+        The transition that brings it.
+    timing : StepTiming
+        Its timing.
+    first_leg : int
+        The leg that lifts first.
+    delays : array, shape (legs,)
+        How long each foot stands before it lifts [s].
+    """
+
+    transition: StanceTransition
+    timing: StepTiming
+    first_leg: int
+    delays: Float[np.ndarray, "legs"]

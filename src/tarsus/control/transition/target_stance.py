@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tarsus.control.transition.feasible_fraction import StanceTarget
-from tarsus.control.transition.parameters import WalkParameters
+from tarsus.control.transition.stance_transition import WalkParameters
 from tarsus.errors import UnreachableError
 from tarsus.gait.stance.stance_geometry import SWING_HEIGHT
 from tarsus.kinematics.stance import default_stance, stance_or_nan

@@ -12,7 +12,7 @@ import numpy as np
 from tarsus.control.control_output import ControlOutput
 from tarsus.errors import InputError
 from tarsus.gait.storage import labels, write_table
-from tarsus.kinematics.pose import Pose
+from tarsus.kinematics.pose import Pose, stack_poses
 from tarsus.robot.robot import JOINTS, Robot
 from tarsus.simulation.plant_state import PlantState
 
@@ -87,10 +87,10 @@ class Trace:
         return cls(
             robot=robot,
             time=column("time"),
-            commanded_body=_poses([output.body for output in commanded]),
+            commanded_body=stack_poses([output.body for output in commanded]),
             commanded_angles=_locked(np.array([output.angles for output in commanded])),
             commanded_belly=_locked(np.array([output.belly for output in commanded])),
-            body=_poses([state.body for state in states]),
+            body=stack_poses([state.body for state in states]),
             angles=column("joint_angles"),
             speeds=column("joint_speeds"),
             torques=column("torques"),
@@ -102,10 +102,6 @@ class Trace:
 
     def __repr__(self) -> str:
         return f"Trace({self.robot.name!r}, {len(self.time)} samples, {self.time[-1]:.2f} s)"
-
-
-def _poses(poses: Sequence[Pose]) -> Pose:
-    return Pose(np.array([pose.rotation for pose in poses]), np.array([pose.position for pose in poses]))
 
 
 def _locked(array: Shaped[np.ndarray, "*shape"]) -> Shaped[np.ndarray, "*shape"]:
