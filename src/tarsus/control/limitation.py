@@ -85,14 +85,9 @@ class Cause(NamedTuple):
         asked, granted : float
             What was commanded and what is done, as in `Limitation`.
         """
+        reason, leg, margin, least = self
         return Limitation(
-            kind=kind,
-            cause=self.reason,
-            leg=self.leg,
-            asked=asked,
-            granted=granted,
-            margin=self.margin,
-            least_margin=self.least_margin,
+            kind=kind, cause=reason, leg=leg, asked=asked, granted=granted, margin=margin, least_margin=least
         )
 
 

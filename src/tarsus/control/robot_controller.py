@@ -122,20 +122,15 @@ class RobotController:
             bounds = GuardBounds.of(robot, speed=walk.joint_speed, acceleration=walk.joint_acceleration)
         self.guard = None if bounds is None else Guard(robot, bounds=bounds, start=self._now.angles)
         self._present: set[str] = set()
-        self._output = self._shown(self._now.angles, ())
+        self.output = self._shown(self._now.angles, ())
 
     def _new_walk(self) -> Walking:
         return Walking(WalkController(self.robot, self._gait, **self._options))
 
     @property
-    def output(self) -> ControlOutput:
-        """What the last tick gave; before the first, how the robot starts."""
-        return self._output
-
-    @property
     def state(self) -> RobotState:
         """The state now."""
-        return self._output.state
+        return self.output.state
 
     def step(
         self, command: Command | Sequence[float], dt: float, readings: SensorReadings | None = None
@@ -165,8 +160,8 @@ class RobotController:
             self._advance(full, dt, readings)
         self._command.keep(command, full)
         self._time += dt
-        self._output = self._shown(*self._guarded(dt))
-        return self._output
+        self.output = self._shown(*self._guarded(dt))
+        return self.output
 
     def _advance(self, command: Command, dt: float, readings: SensorReadings | None) -> None:
         """Advance what the robot does, and begin or end changes of state."""
@@ -187,10 +182,8 @@ class RobotController:
 
     @property
     def _at_rest(self) -> bool:
-        moves = isinstance(self._activity, Playing) or (
-            isinstance(self._activity, Walking) and not self._activity.stands
-        )
-        return not moves and self._rate < (_AT_REST_DAMAGED if self.leg_failures.failed else _AT_REST)
+        still = isinstance(self._activity, Resting) or (isinstance(self._activity, Walking) and self._activity.stands)
+        return still and self._rate < (_AT_REST_DAMAGED if self.leg_failures.failed else _AT_REST)
 
     # Changes of state.
 

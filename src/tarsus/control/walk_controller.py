@@ -114,12 +114,7 @@ class WalkController:
         admittance: Admittance | None = None,
     ) -> None:
         setup = WalkSetup.of(
-            robot,
-            Gait.named(robot.gait.name, legs=robot.legs) if gait is None else gait,
-            body_height=body_height,
-            swing_height=swing_height,
-            body_tilt=(0.0, 0.0),
-            foot_distance=foot_distance,
+            robot, gait, body_height=body_height, swing_height=swing_height, foot_distance=foot_distance
         )
         self.robot, self.time = setup.robot, 0.0
         limits = joint_limits(self.robot, joint_speed, joint_acceleration)

@@ -109,12 +109,12 @@ class WalkSetup:
     def of(
         cls,
         robot: Robot,
-        gait: Gait,
+        gait: Gait | None,
         *,
         body_height: float | None,
         swing_height: float | None,
-        body_tilt: Sequence[float],
-        foot_distance: float | None,
+        body_tilt: Sequence[float] = (0.0, 0.0),
+        foot_distance: float | None = None,
         stance_width: float | None = None,
     ) -> Self:
         """Check the settings given, and complete them with the robot's defaults.
@@ -135,6 +135,7 @@ class WalkSetup:
         """
         if robot.batch_shape:
             raise InputError(f"a walk is planned for a single robot, not for a batch {robot.batch_shape} of designs")
+        gait = Gait.named(robot.gait.name, legs=robot.legs) if gait is None else gait
         gait.require_legs(robot.legs)
         robot = robot.item(())
         swing_height = (

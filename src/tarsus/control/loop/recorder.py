@@ -184,8 +184,8 @@ class Recorder:
         held = np.array([output.state is RobotState.FAULT for output in outputs])
         if held.any():
             feet[held] = (body @ forward_kinematics(robot, angles)[..., 3, :])[held]
-        heights = {"body_height": controller.body_height, "swing_height": controller.swing_height}
-        setup = WalkSetup.of(robot, outputs[0].gait, body_tilt=(0.0, 0.0), foot_distance=None, **heights)
+        heights: dict[str, Any] = {"body_height": controller.body_height, "swing_height": controller.swing_height}
+        setup = WalkSetup.of(robot, outputs[0].gait, **heights)
         passing = _foot_speeds(twist, setup.rest)
         fastest = int(passing.max(1).argmax())
         output, speed = outputs[fastest], float(passing[fastest].max())
@@ -205,7 +205,7 @@ class Recorder:
             swing_height=setup.swing_height,
             # Legs that are folded may come nearer to each other than walking ones.
             foot_distance=0.0 if any(output.belly for output in outputs) else default_foot_distance(robot),
-            assumed=tuple(setup.assumed(controller.body_height, controller.swing_height)),
+            assumed=tuple(setup.assumed(**heights)),
         )
 
 

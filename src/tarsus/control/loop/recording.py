@@ -159,15 +159,8 @@ class Recording:
         whole, rows = self.motion, slice(first, end)
         if end - first == len(whole.time):
             return whole
-        return replace(
-            whole,
-            time=whole.time[rows] - whole.time[first],
-            body=whole.body[rows],
-            feet=whole.feet[rows],
-            contacts=whole.contacts[rows],
-            angles=whole.angles[rows],
-            reach=whole.reach[rows],
-        )
+        parts = {name: getattr(whole, name)[rows] for name in ("body", "feet", "contacts", "angles", "reach")}
+        return replace(whole, time=whole.time[rows] - whole.time[first], **parts)
 
     @property
     def problems(self) -> tuple[str, ...]:

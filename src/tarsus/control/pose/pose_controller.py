@@ -129,10 +129,7 @@ class PoseController:
         if value is self.target:
             return _BANDWIDTH
         distance: list[float] = np.abs(value - self.target).tolist()
-        time = max(
-            max(distance[:3]) / _BODY_SPEED,
-            max(distance[3:SWING_HEIGHT]) / _BODY_TURN,
-            distance[SWING_HEIGHT] / _BODY_SPEED,
-        )
+        lengths, turns = (*distance[:3], distance[SWING_HEIGHT]), distance[3:SWING_HEIGHT]
+        time = max(max(lengths) / _BODY_SPEED, max(turns) / _BODY_TURN)
         # A critically damped filter with bandwidth 2 v / distance, renewed every tick, reaches speed v and keeps it.
         return min(_BANDWIDTH, 2 / max(time, 1e-9))

@@ -73,26 +73,19 @@ class SitDown:
         dt : float
             Time step [s].
         """
-        points = self._points()
         highest = float(np.abs(self._swing_heights).max())
         if highest > _TOLERANCE:
-            if self._move(points, -self._swing_heights / highest, highest, dt):
+            if self._move(-self._swing_heights / highest, highest, dt):
                 self._swing_heights *= 1 - self._speed * dt / highest
                 return True
             # Feet that cannot be set down keep their height in B.
             self._swing_heights, self._speed = np.zeros_like(self._swing_heights), 0.0
-        if not self._move(points, np.ones(len(points)), self._height(points) - self._bounds.sit_height, dt):
+        if not self._move(np.ones(self._robot.legs), self._height() - self._bounds.sit_height, dt):
             return False
         self._ground += self._speed * dt
         return True
 
-    def _move(
-        self,
-        points: Float[np.ndarray, "*#batch legs 4 3"],
-        direction: Float[np.ndarray, "legs"],
-        remaining: float,
-        dt: float,
-    ) -> bool:
+    def _move(self, direction: Float[np.ndarray, "legs"], remaining: float, dt: float) -> bool:
         """Move the feet in B along the vertical; return False if nothing remains or the bounds do not permit it."""
         if remaining <= _TOLERANCE:
             return False
@@ -102,14 +95,14 @@ class SitDown:
         planned = min(planned, remaining / dt)
         for speed in (fraction * planned for fraction in _SPEED_FRACTIONS):
             feet = self._feet + (speed * dt * direction)[:, None] * self._up
-            if self._send(feet - points[:, 3], dt):
+            if self._send(feet, dt):
                 self._feet, self._speed = feet, speed
                 return True
         return False
 
-    def _send(self, offsets: Float[np.ndarray, "n 3"], dt: float) -> bool:
-        """Move the feet by offsets, if the bounds permit."""
-        current = self._angles()
+    def _send(self, feet: Float[np.ndarray, "legs 3"], dt: float) -> bool:
+        """Move the feet to points in B, if the bounds permit."""
+        current, offsets = self._angles(), feet - self._points()[:, 3]
         try:
             change = np.linalg.solve(leg_jacobian(self._robot, current), offsets[..., None])[..., 0]
         except np.linalg.LinAlgError:
@@ -126,12 +119,11 @@ class SitDown:
         return np.array(self._joints.angles).reshape(self._robot.legs, 3)
 
     def _points(self) -> Float[np.ndarray, "m n 3"]:
-        points: np.ndarray = forward_kinematics(self._robot, self._angles())
-        return points
+        return np.asarray(forward_kinematics(self._robot, self._angles()))
 
-    def _height(self, points: Float[np.ndarray, "*#batch legs 4 3"]) -> float:
+    def _height(self) -> float:
         """Return the height over the ground of the lowest point of body and legs, feet excluded [m]."""
-        lowest = min(self._underside, float((points[:, :3] @ self._up).min()))
+        lowest = min(self._underside, float((self._points()[:, :3] @ self._up).min()))
         return lowest - self._ground
 
 

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from dataclasses import replace
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -24,8 +24,7 @@ _HEIGHTS = 6
 _EXTRA_HEIGHT = 0.04
 
 
-@dataclass(frozen=True, eq=False)
-class BodyTarget:
+class BodyTarget(NamedTuple):
     """A level pose of the body.
 
     Attributes
@@ -88,7 +87,5 @@ def _pose_above(body: Pose, rotation: Float[np.ndarray, "3 3"], pivot: Float[np.
 def _levelling_rotation(up: Float[np.ndarray, "3"]) -> Float[np.ndarray, "3 3"]:
     """Return the smallest rotation that turns the unit vector `up` into z."""
     x, y, z = up
-    rotation: np.ndarray = np.array(
-        [[z + y * y / (1 + z), -x * y / (1 + z), -x], [-x * y / (1 + z), z + x * x / (1 + z), -y], up]
-    )
-    return rotation
+    sideways = -x * y / (1 + z)
+    return np.array([[z + y * y / (1 + z), sideways, -x], [sideways, z + x * x / (1 + z), -y], up])

@@ -78,8 +78,7 @@ class SequenceBuilder:
     @property
     def points(self) -> Float[np.ndarray, "legs 4 3"]:
         """Points of the legs in G, as of `forward_kinematics`: shape (legs, 4, 3) [m]."""
-        points: np.ndarray = self.body @ forward_kinematics(self.robot, self.angles)
-        return points
+        return np.asarray(self.body @ forward_kinematics(self.robot, self.angles))
 
     @property
     def feet(self) -> Float[np.ndarray, "legs 3"]:

@@ -48,8 +48,7 @@ def limit_excess(robot: Robot, angles: Float[np.ndarray, "*#batch legs 3"]) -> F
         Excess, 0 within the limits [rad].
     """
     low, high = robot.limits[..., 0], robot.limits[..., 1]
-    excess: np.ndarray = np.maximum(np.maximum(low - angles, angles - high), 0.0)
-    return excess
+    return np.asarray(np.maximum(np.maximum(low - angles, angles - high), 0.0))
 
 
 def check_stage(stage: Stage, margin: float) -> None:

@@ -8,7 +8,6 @@ footholds in between, as seldom as possible: planned backwards from the end, eac
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple, Self
 
 import numpy as np
@@ -49,8 +48,7 @@ class FootholdStation(NamedTuple):
     distances: Float[np.ndarray, "legs"]
 
 
-@dataclass(frozen=True, eq=False)
-class _Bands:
+class _Bands(NamedTuple):
     """Reachable bands at a sequence of body heights.
 
     Attributes

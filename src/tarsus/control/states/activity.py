@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, Self
 
 import numpy as np
 
 from tarsus.control.command import Command
 from tarsus.control.limitation import Limitation
-from tarsus.control.readings import SensorReadings, ValidReadings, Vector
+from tarsus.control.readings import SensorReadings, ValidReadings
 from tarsus.control.sequence import MotionSequence, SequencePlayer, SequenceSample
 from tarsus.control.startup import fold, sit_down
 from tarsus.control.states.robot_state import RobotState
@@ -88,24 +87,18 @@ class Walking:
 
     Attributes
     ----------
-    joint_angles, torques : sequence of ((coxa, femur, tibia) or None), or None
-        Measured in the last tick [rad, N m].
-    touches : sequence of (bool or None), or None
-        Which feet touch the ground, as measured in the last tick.
+    measured : ValidReadings
+        The readings of the last tick, where it felt the ground.
     """
 
     def __init__(self, controller: WalkController) -> None:
-        self.controller = controller
-        self.joint_angles: Sequence[Vector | None] | None = None
-        self.torques: Sequence[Vector | None] | None = None
-        self.touches: Sequence[bool | None] | None = None
+        self.controller, self.measured = controller, ValidReadings()
 
     def step(self, command: Command, dt: float, readings: SensorReadings | None) -> None:
         """Advance by one tick."""
         felt = readings if readings is not None and readings.has_ground_feedback else None
         self.controller.step(command, dt, readings=felt)
-        measured = ValidReadings() if felt is None else self.controller.measured
-        self.joint_angles, self.torques, self.touches = measured.joint_angles, measured.torques, measured.contacts
+        self.measured = ValidReadings() if felt is None else self.controller.measured
 
     @property
     def stands(self) -> bool:

@@ -50,20 +50,18 @@ class PersistentCommand:
         """
         if self._last is not None and self._last[0] is command:
             return self._last[1]
-        changes = command.parameters
+        changes, legs = command.parameters, self._robot.legs
         if isinstance(changes.get("gait"), str):
-            changes["gait"] = Gait.named(changes["gait"], legs=self._robot.legs)
+            changes["gait"] = Gait.named(changes["gait"], legs=legs)
         if isinstance(changes.get("gait"), Gait):
-            changes["gait"].require_legs(self._robot.legs)
+            changes["gait"].require_legs(legs)
         if command.state is not None:
             changes["state"] = requested_state(command.state)
         targets = {**(self.full.foot_targets or {}), **(command.foot_targets or {})}
         velocities = command.foot_velocities
         for leg in (*targets, *(velocities or {})):
-            if leg not in range(self._robot.legs):
-                raise InputError(
-                    f"foot_targets: the robot has no leg {leg!r}; its legs are 0 to {self._robot.legs - 1}"
-                )
+            if leg not in range(legs):
+                raise InputError(f"foot_targets: the robot has no leg {leg!r}; its legs are 0 to {legs - 1}")
         return dataclasses.replace(
             self.full, twist=command.twist, foot_targets=targets or None, foot_velocities=velocities, **changes
         )

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from contextlib import suppress
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
 from tarsus.control.command import Command
 from tarsus.control.limitation import Limitation, LimitationKind
-from tarsus.control.readings import CHANNELS, SensorReadings, Vector
+from tarsus.control.readings import CHANNELS, SensorReadings
 from tarsus.control.sensing.joint_monitor import JointMonitor
 from tarsus.control.states.activity import Snapshot, Walking
 from tarsus.control.states.robot_state import RobotState
@@ -28,6 +28,8 @@ if TYPE_CHECKING:
     from jaxtyping import Float, Shaped
 
 __all__ = ["LegFailures", "ReducedWalking"]
+
+_T = TypeVar("_T")
 
 _SITS = "the robot sits down: it can't walk without"
 _CAUSE = "the joint has failed: the robot walks on without this leg"
@@ -114,10 +116,13 @@ class ReducedWalking(Walking):
         velocities = {legs[leg]: each for leg, each in (command.foot_velocities or {}).items() if leg in legs} or None
         command = dataclasses.replace(command, gait=None, foot_targets=targets, foot_velocities=velocities)
         super().step(command, dt, None if readings is None else self._of_legs(readings))
-        self.torques = self._of_all(self.torques)
-        feet = self.touches or [None] * len(legs)
-        self.touches = [feet[legs[leg]] if leg in legs else None for leg in range(self._robot.legs)]
-        self.joint_angles = self._of_all(self.joint_angles, self._zero[:, 0].tolist())
+        angles, torques, contacts = self.measured.joint_angles, self.measured.torques, self.measured.contacts
+        if angles is not None:
+            zero = self._zero[:, 0].tolist()
+            angles = tuple(each and (each[0] + of_coxa, *each[1:]) for each, of_coxa in zip(angles, zero, strict=True))
+        self.measured = self.measured._replace(
+            joint_angles=self._of_all(angles), torques=self._of_all(torques), contacts=self._of_all(contacts)
+        )
 
     @property
     def stands(self) -> bool:
@@ -146,16 +151,10 @@ class ReducedWalking(Walking):
             felt=now.felt or share < 1,
         )
 
-    def _of_all(
-        self, measured: Sequence[Vector | None] | None, coxa: Sequence[float] | None = None
-    ) -> Sequence[Vector | None] | None:
-        """Return what is measured of the legs that are left, as of all legs, and with an addend to the first value."""
-        if measured is None:
-            return None
-        found: list[Vector | None] = [None] * self._robot.legs
-        for leg, each, addend in zip(self._legs, measured, coxa or [0.0] * len(self._legs), strict=True):
-            found[leg] = each and (each[0] + addend, each[1], each[2])
-        return found
+    def _of_all(self, measured: tuple[_T | None, ...] | None) -> tuple[_T | None, ...] | None:
+        """Return what is measured of the legs that are left, as of all legs."""
+        found = dict(zip(self._legs, measured or (), strict=False))
+        return None if measured is None else tuple(found.get(leg) for leg in range(self._robot.legs))
 
     def _of_legs(self, readings: SensorReadings) -> SensorReadings:
         """Return the readings of the legs that are left."""
@@ -218,8 +217,8 @@ class LegFailures:
         now, dt : Snapshot, float
             The robot before the tick; length of the tick [s].
         """
-        torques, contacts = activity.torques, activity.touches
-        self._monitor.step(now.angles, activity.joint_angles, dt, torques=torques, contacts=contacts)
+        told = activity.measured
+        self._monitor.step(now.angles, told.joint_angles, dt, torques=told.torques, contacts=told.contacts)
         lost = activity.failed if isinstance(activity, ReducedWalking) else {}
         if self.sits or self.failed.keys() <= lost.keys():
             return activity

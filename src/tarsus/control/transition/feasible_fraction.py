@@ -62,10 +62,7 @@ class StanceTarget(NamedTuple):
         fraction : float
             0 for this stance, 1 for the other.
         """
-        return self._replace(
-            posture=self.posture + fraction * (other.posture - self.posture),
-            rest=self.rest + fraction * (other.rest - self.rest),
-        )
+        return StanceTarget(*(here + fraction * (there - here) for here, there in zip(self, other, strict=True)))
 
     @property
     def stand(self) -> StanceGeometry:

@@ -83,8 +83,7 @@ class FootholdTransfer:
         bounds : array, shape (legs, 16)
             The sides [m].
         """
-        sides: np.ndarray = bounds + self._sides_shift
-        return sides
+        return np.asarray(bounds + self._sides_shift)
 
     def bounds_with(self, transition: StanceTransition) -> Float[np.ndarray, "legs 16"]:
         """Return the sides with which the feet would start to transfer.

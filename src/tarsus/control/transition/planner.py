@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -25,9 +25,6 @@ from tarsus.gait.stance.stability import StabilityCheck, support_sets
 from tarsus.gait.stance.velocity_limits import VelocityLimits, with_stroke_limits
 from tarsus.robot.joint_limits import JointLimits
 from tarsus.robot.robot import Robot
-
-if TYPE_CHECKING:
-    from jaxtyping import Bool
 
 __all__ = ["TransitionPlanner"]
 
@@ -91,7 +88,6 @@ class TransitionPlanner:
         keeps_posture = present is not None and stay
         posture = None if present is None else present.posture
         end = present if present is not None and stay else target_stance(robot, parameters, posture)
-        sets = support_sets(parameters.gait, parameters.excluded)
         yield
         path = _Path(present or end, end)
         if path.start is not end:
@@ -103,30 +99,32 @@ class TransitionPlanner:
         fraction = first_increment(robot, path.start, end, path.fraction)
         if np.abs(end.rest - path.start.rest).max() > _SAME:
             yield
-        limits = yield from self._limits(parameters, path.at(fraction), sets)
+        limits = yield from self._limits(parameters, path.at(fraction))
         if not (limits.feasible or limits.balanced or path.start is end or parameters.gait.body_shift):
+            sets = support_sets(parameters.gait, parameters.excluded)
             check = StabilityCheck(robot, sets, parameters.excluded)
             fraction = yield from balanced_fraction(check, path.start, end, fraction)
             path = path._replace(fraction=fraction, cause=TIPPING)
             if fraction == 0:
                 return TIPPING
-            limits = yield from self._limits(parameters, path.at(fraction), sets)
+            limits = yield from self._limits(parameters, path.at(fraction))
         while not limits.feasible:
             cause = self._cause(parameters, path.at(fraction), limits)
             fraction /= 2
             if fraction < _LEAST_FRACTION or path.start is end:
                 return cause
             yield
-            limits = yield from self._limits(parameters, path.at(fraction), sets)
+            limits = yield from self._limits(parameters, path.at(fraction))
         goal = path.at(fraction)
         timing = yield from cycle_timing(
             robot, parameters.gait, goal.stand, limits, self._joint_limits, cycle_time=parameters.cycle_time
         )
         yield
         final = with_stroke_limits(limits, timing.stroke, timing.turning, duty_factor=parameters.gait.duty_factor)
-        stepping, on_path = yield from self._path_limits(parameters, path.start, goal, final, timing, sets)
+        stepping, on_path = yield from self._path_limits(parameters, path.start, goal, final, timing)
         if not on_path.feasible:
             return self._path_cause(on_path)
+        shortfalls = () if keeps_posture else self._shortfalls(parameters, path)
         return StanceTransition(
             parameters=parameters,
             complete=fraction == path.fraction,
@@ -137,26 +135,17 @@ class TransitionPlanner:
             stepping_limits=stepping,
             path_limits=on_path,
             final_limits=final,
-            limitations=(
-                *(() if keeps_posture else self._shortfalls(parameters, path)),
-                *_timing_limitations(parameters, timing),
-            ),
+            limitations=(*shortfalls, *_timing_limitations(parameters, timing)),
         )
 
-    def _limits(
-        self, parameters: WalkParameters, stance: StanceTarget, sets: Bool[np.ndarray, "n legs"]
-    ) -> Incremental[VelocityLimits]:
+    def _limits(self, parameters: WalkParameters, stance: StanceTarget) -> Incremental[VelocityLimits]:
         """Find the limits in a stance, with its sway or the body shift of its gait."""
-        if parameters.gait.body_shift:
-            return (
-                yield from shifted_limits(self._robot, parameters.gait, stance.stand, foot_distance=self._foot_distance)
-            )
+        gait, excluded, distance = parameters.gait, parameters.excluded, self._foot_distance
+        if gait.body_shift:
+            return shifted_limits(self._robot, gait, stance.stand, foot_distance=distance)
         stands = [stance._replace(posture=row).stand for row in sway_extremes(stance.posture, parameters.sway)]
-        return (
-            yield from velocity_limits(
-                self._robot, stands, sets, foot_distance=self._foot_distance, excluded=parameters.excluded
-            )
-        )
+        sets = support_sets(gait, excluded)
+        return velocity_limits(self._robot, stands, sets, foot_distance=distance, excluded=excluded)
 
     def _path_limits(
         self,
@@ -165,14 +154,13 @@ class TransitionPlanner:
         goal: StanceTarget,
         final: VelocityLimits,
         timing: CycleTiming,
-        sets: Bool[np.ndarray, "n legs"],
     ) -> Incremental[tuple[VelocityLimits, VelocityLimits]]:
         """Find the limits while the feet step, and while the body moves to its goal."""
         if np.abs(goal.posture - start.posture).max() <= _SAME:
             return final, final
         halfway, begin = (goal._replace(posture=start.towards(goal, part).posture) for part in (0.5, 0.0))
-        on_path = final.intersection((yield from self._limits(parameters, halfway, sets)))
-        stepping = yield from self._limits(parameters, begin, sets)
+        on_path = final.intersection((yield from self._limits(parameters, halfway)))
+        stepping = yield from self._limits(parameters, begin)
         stepping = with_stroke_limits(stepping, timing.stroke, timing.turning, duty_factor=parameters.gait.duty_factor)
         return stepping, on_path.intersection(stepping)
 

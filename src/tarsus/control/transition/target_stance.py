@@ -84,5 +84,4 @@ def sway_extremes(posture: Float[np.ndarray, "7"], sway: tuple[float, ...]) -> l
 def _widened(robot: Robot, rest: Complex[np.ndarray, "legs"], width: float) -> Complex[np.ndarray, "legs"]:
     mount = robot.geometry.mount_x + 1j * robot.geometry.mount_y
     out = rest - mount
-    wider: np.ndarray = rest + width * out / np.maximum(np.abs(out), 1e-9)
-    return wider
+    return np.asarray(rest + width * out / np.maximum(np.abs(out), 1e-9))
