@@ -47,7 +47,7 @@ class Recorder:
         self._command = Command()
         self._outputs = [controller.output]
         self._times = [0.0]
-        self._twists = [(0.0, 0.0, 0.0)]
+        self._twists = [self._command.twist]
         self._measured: list[Any] = [None]
         self._events: list[Event] = []
         self._unmet: dict[tuple[Any, ...], Unmet] = {}
@@ -116,8 +116,7 @@ class Recorder:
             self.note("stage", output.activity)
         self._note_limitations(output.limitations)
         self._outputs.append(output)
-        vx, vy, wz = self._command.twist
-        self._twists.append((vx, vy, wz))
+        self._twists.append(self._command.twist)
 
     def _note_limitations(self, limitations: tuple[Limitation, ...]) -> None:
         """Note the limitations of a tick; one that comes and goes from tick to tick is one event."""

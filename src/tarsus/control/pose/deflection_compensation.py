@@ -107,9 +107,8 @@ class DeflectionCompensation:
     def _needed_friction(self, commanded: Float[np.ndarray, "legs 3"]) -> float:
         """Return which friction keeps all feet in place under vertical loads: horizontal over vertical force."""
         needed = 0.0
-        for (_, length, tibia, femur_yields, tibia_yields), (_, femur, bend) in zip(
-            self._legs, commanded.tolist(), strict=True
-        ):
+        legs = zip(self._legs, commanded.tolist(), strict=True)
+        for (_, length, tibia, femur_yields, tibia_yields), (_, femur, bend) in legs:
             to_knee, below_knee, to_hip, below_hip = _lever_arms(length, tibia, femur, bend)
             outward = femur_yields * to_hip * below_hip + tibia_yields * to_knee * below_knee
             needed = max(needed, outward / max(femur_yields * below_hip**2 + tibia_yields * below_knee**2, 1e-12))

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tarsus.control.filters import CriticallyDamped
+from tarsus.control.readings import Vector
 from tarsus.gait.stance.stance_geometry import SWING_HEIGHT, Rows, rotation_rows
 from tarsus.robot.robot import Robot
 
@@ -96,12 +97,8 @@ class FootRolling:
         self.balls = self._balls(posture)
 
     def rolled(
-        self,
-        feet: Sequence[tuple[float, float, float]],
-        standing: Sequence[float],
-        rotation: Rows,
-        position: Sequence[float],
-    ) -> list[tuple[float, float, float]]:
+        self, feet: Sequence[Vector], standing: Sequence[float], rotation: Rows, position: Sequence[float]
+    ) -> list[Vector]:
         """Return the feet with their balls rolled.
 
         Parameters
@@ -116,11 +113,9 @@ class FootRolling:
         position : (x, y, z)
             Position of the body's origin in that frame [m].
         """
-        legs = self._legs_over_ground(feet, standing, rotation, position)
+        legs = zip(feet, self.balls or (), self._legs_over_ground(feet, standing, rotation, position), strict=True)
         found = []
-        for (fx, fy, fz), (radius, at_rest), (x, y, inclination, bend, out) in zip(
-            feet, self.balls or (), legs, strict=True
-        ):
+        for (fx, fy, fz), (radius, at_rest), (x, y, inclination, bend, out) in legs:
             # A Newton step: the tibia turns further as the foot moves.
             gain = bend / (bend + 2.0 * radius * (out if out > 0.0 else 0.0) + _TINY)
             distance = gain * (at_rest - radius * inclination)
@@ -128,11 +123,7 @@ class FootRolling:
         return found
 
     def _legs_over_ground(
-        self,
-        feet: Sequence[tuple[float, float, float]],
-        heights: Sequence[float],
-        rotation: Rows,
-        position: Sequence[float],
+        self, feet: Sequence[Vector], heights: Sequence[float], rotation: Rows, position: Sequence[float]
     ) -> list[tuple[float, float, float, float, float]]:
         """Return each leg's direction over the ground, its tibia's inclination, and the bend and reach of its knee."""
         (r00, r01, r02), (r10, r11, r12), (r20, r21, r22) = rotation

@@ -6,7 +6,6 @@ are those listed in ``__all__``; everything else is private to the package.
 
 from tarsus.control.safety.bounds import GuardBounds
 from tarsus.control.safety.guard import Guard
-from tarsus.control.safety.interventions import Intervention, InterventionKind
-from tarsus.control.safety.output import GuardOutput, GuardState
+from tarsus.control.safety.interventions import GuardOutput, GuardState, Intervention, InterventionKind
 
 __all__ = ["Guard", "GuardBounds", "GuardOutput", "GuardState", "Intervention", "InterventionKind"]

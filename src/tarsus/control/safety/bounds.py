@@ -10,7 +10,7 @@ import numpy as np
 
 from tarsus.errors import InputError
 from tarsus.representation import represented
-from tarsus.robot.joint_limits import STOPPING_TIME, UNKNOWN_SPEED, servo_speeds
+from tarsus.robot.joint_limits import STOPPING_TIME, UNKNOWN_SPEED, joint_limits, servo_speeds
 from tarsus.robot.robot import Robot
 
 if TYPE_CHECKING:
@@ -134,9 +134,8 @@ class GuardBounds:
             raise InputError(f"a guard needs a single robot; {robot.name!r} is a batch of {robot.batch_shape} designs")
         assumptions: tuple[str, ...] = ()
         if "speed" not in changes:
-            known = servo_speeds(robot)
-            changes["speed"] = np.array([[speed or UNKNOWN_SPEED for speed in leg] for leg in known])
-            unknown = sum(not speed for leg in known for speed in leg)
+            changes["speed"] = joint_limits(robot).speed
+            unknown = sum(not speed for leg in servo_speeds(robot) for speed in leg)
             if unknown:
                 assumptions = (f"joint speed {UNKNOWN_SPEED:g} rad/s for {unknown} joints: servo speed unknown",)
         speed = _per_joint("speed", changes["speed"], robot.legs)

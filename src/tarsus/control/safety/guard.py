@@ -13,9 +13,8 @@ from tarsus.control.safety.clock import GuardClock
 from tarsus.control.safety.feet_monitor import FeetMonitor
 from tarsus.control.safety.inputs import read_angles, read_contacts, read_time_step, read_up
 from tarsus.control.safety.intervention_log import InterventionLog
-from tarsus.control.safety.interventions import Intervention, InterventionKind, Violation
+from tarsus.control.safety.interventions import GuardOutput, GuardState, Intervention, InterventionKind, Violation
 from tarsus.control.safety.joint_monitor import JointMonitor
-from tarsus.control.safety.output import GuardOutput, GuardState
 from tarsus.control.safety.sit_down import SitDown
 from tarsus.errors import InputError, TarsusError, UnknownNameError
 from tarsus.kinematics.inverse import inverse_kinematics

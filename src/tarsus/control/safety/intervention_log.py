@@ -6,8 +6,7 @@ from collections import deque
 from collections.abc import Mapping, Set
 from types import MappingProxyType
 
-from tarsus.control.safety.interventions import Intervention, InterventionKind, Violation
-from tarsus.control.safety.output import GuardState
+from tarsus.control.safety.interventions import GuardState, Intervention, InterventionKind, Violation
 from tarsus.robot.robot import Robot
 
 __all__ = ["InterventionLog"]

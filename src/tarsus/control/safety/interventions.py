@@ -1,15 +1,20 @@
-"""Violations of a bound, and interventions: violations as values for records and messages."""
+"""Violations of a bound; interventions: violations as values for records and messages; the output of the guard."""
 
 from __future__ import annotations
 
 import math
 from enum import StrEnum
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
 
 from tarsus.representation import represented
 from tarsus.robot.robot import JOINTS, Robot
 
-__all__ = ["Intervention", "InterventionKind", "Violation"]
+if TYPE_CHECKING:
+    from jaxtyping import Float
+
+__all__ = ["GuardOutput", "GuardState", "Intervention", "InterventionKind", "Violation"]
 
 
 class InterventionKind(StrEnum):
@@ -121,3 +126,41 @@ class Intervention(NamedTuple):
         value = "" if math.isnan(self.value) else f" {self.value * scale:.4g} {unit}"
         bound = "" if math.isnan(self.bound) else f", bound {self.bound * scale:.4g} {unit}"
         return f"{place + ': ' if place else ''}{quantity}{value}{bound}, at {self.time:.3f} s"
+
+
+class GuardState(StrEnum):
+    """What the guard does with the commands."""
+
+    PASSING = "passing"
+    """The command is sent."""
+    HOLDING = "holding"
+    """The joints brake, then hold their position."""
+    SITTING = "sitting"
+    """The body is lowered to the ground."""
+    RECOVERING = "recovering"
+    """The joints approach the command."""
+
+
+@represented()
+class GuardOutput(NamedTuple):
+    """Output of the guard for one tick.
+
+    Attributes
+    ----------
+    angles : array, shape (legs, 3)
+        Joint angles that are safe to send [rad], read-only.
+    ok : bool
+        Whether `angles` are the commanded angles.
+    state : GuardState
+        What the guard does.
+    time : float
+        Time of the guard, to which the angles belong: the sum of all valid time steps [s].
+    interventions : tuple of Intervention
+        Violations of the command: the worst one of each kind.
+    """
+
+    angles: Float[np.ndarray, "legs 3"]
+    ok: bool
+    state: GuardState
+    time: float
+    interventions: tuple[Intervention, ...]

@@ -88,11 +88,9 @@ def _check_reach(stage: Stage) -> None:
     fraction = GRID[index : index + 1]
     body = stage.body_at(fraction)[0]
     feet = np.where(stage.cartesian[:, None], stage.feet_at(fraction)[0], stage.feet)
-    name = stage.robot.leg_names[leg]
     solution = inverse_kinematics(stage.robot, feet, body)
-    reason = f"{name} would be straight, or folded back on itself"
-    if solution.reach[leg]:
-        reason = solution.explain_leg((leg,))
+    straight = f"{stage.robot.leg_names[leg]} would be straight, or folded back on itself"
+    reason = solution.explain_leg((leg,)) if solution.reach[leg] else straight
     raise UnreachableError(f"{stage.name}: at body height {body.position[2] * 1000:.1f} mm, {reason}")
 
 

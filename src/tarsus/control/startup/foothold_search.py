@@ -83,13 +83,7 @@ def _place(
 
 
 def _move_leg(
-    builder: SequenceBuilder,
-    leg: int,
-    angles: Float[np.ndarray, "*#batch 3"],
-    verb: str,
-    *,
-    landed: bool,
-    margin: float = 0.0,
+    builder: SequenceBuilder, leg: int, angles: Float[np.ndarray, "3"], verb: str, *, landed: bool, margin: float = 0.0
 ) -> SequenceBuilder:
     """Move one leg through the air to joint angles."""
     only, name = np.arange(builder.robot.legs) == leg, f"{verb} {builder.robot.leg_codes[leg]}"
