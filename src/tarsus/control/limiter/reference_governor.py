@@ -60,15 +60,11 @@ class GovernorLimiter:
         # In steady walking nothing changes; before, feet may be put down where the target leaves them no margin.
         if command == request.target.tolist() and self._is_steady(request, command):
             return request.target
-        begins, ends = self._transitions.stance_intervals(request.state)
+        state, transitions = request.state, self._transitions
+        begins, ends = transitions.stance_intervals(state)
+        bounds, bandwidth = transitions.bounds, transitions.bandwidth
         return governed_twist(
-            request.state,
-            request.target,
-            np.array(command),
-            begins=begins,
-            ends=ends,
-            bounds=self._transitions.bounds,
-            bandwidth=self._transitions.bandwidth,
+            state, request.target, np.array(command), begins=begins, ends=ends, bounds=bounds, bandwidth=bandwidth
         )
 
     def _is_steady(self, request: TwistRequest, twist: list[float]) -> bool:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tarsus.control.limitation import Limitation, LimitationKind
+from tarsus.control.limitation import Cause, Limitation, LimitationKind
 from tarsus.control.limiter.protocol import TwistGrant, TwistRequest
 from tarsus.control.transition.executor import TransitionExecutor
 from tarsus.errors import InputError
@@ -73,11 +73,9 @@ class WorkspaceLimiter:
             allowed, which = limits.feasible_fraction(twist, stance_time=stance_time, duty_factor=duty_factor)
             if allowed < fraction:
                 fraction, leg = allowed, which
-        if fraction == 1:
-            return fraction, None
-        return fraction, Limitation(
-            kind=LimitationKind.TWIST, cause=_CAUSE, leg=self._names[leg], asked=1.0, granted=fraction
-        )
+        cause = Cause(_CAUSE, self._names[leg])
+        short = cause.limitation(LimitationKind.TWIST, asked=1.0, granted=fraction) if fraction < 1 else None
+        return fraction, short
 
 
 def top_speed(transitions: TransitionExecutor, direction: Sequence[float]) -> float:

@@ -149,6 +149,8 @@ class Recorder:
         outputs = self._outputs
         twist = np.array([output.twist for output in outputs])
         guard = tuple(output.guard for output in outputs)
+        missing = np.full((self._controller.robot.legs, 3), np.nan)
+        measured = np.array([missing if angles is None else angles for angles in self._measured], dtype=float)
         return Recording(
             robot=self._controller.robot,
             name=name,
@@ -159,7 +161,7 @@ class Recorder:
             twist=twist,
             cycle_times=np.array([output.cycle_time for output in outputs]),
             belly=np.array([output.belly for output in outputs]),
-            measured_angles=self._measured_angles(),
+            measured_angles=measured,
             states=tuple(str(output.state) for output in outputs),
             activities=tuple(output.activity for output in outputs),
             gaits=tuple(output.gait.name for output in outputs),
@@ -168,10 +170,6 @@ class Recorder:
             unmet=tuple(sorted(self._unmet.values(), key=lambda each: each.time)),
             events=tuple(sorted(self._events, key=lambda event: event.time)),
         )
-
-    def _measured_angles(self) -> Float[np.ndarray, "n legs 3"]:
-        missing = np.full((self._controller.robot.legs, 3), np.nan)
-        return np.array([missing if angles is None else angles for angles in self._measured], dtype=float)
 
     def _motion(self, twist: Float[np.ndarray, "n 3"]) -> Motion:
         """Return what was given out, as a motion."""

@@ -14,31 +14,13 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
 
 from tarsus.errors import InputError
 
-__all__ = ["Admittance", "AdmittanceFilter", "StateTransition"]
+__all__ = ["Admittance", "AdmittanceFilter"]
 
 # Bound of natural frequency and decay rate [rad/s]: far above any servo, far below overflow.
 _FASTEST = 1e6
-
-
-class StateTransition(NamedTuple):
-    """State transition of offset and speed over a tick without force: the matrix exponential.
-
-    Attributes
-    ----------
-    xx, xv : float
-        Offset after the tick, per offset [1] and speed [s] before.
-    vx, vv : float
-        Speed after the tick, per offset [1/s] and speed [1] before.
-    """
-
-    xx: float
-    xv: float
-    vx: float
-    vv: float
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -100,13 +82,20 @@ class Admittance:
         fraction = math.tanh(math.pi * self.decay / (2 * math.sqrt(square))) if square > 0 else 1.0
         return self.stiffness * self.travel * fraction
 
-    def transition(self, dt: float) -> StateTransition:
-        """Return the exact state transition over a tick without force.
+    def transition(self, dt: float) -> tuple[float, float, float, float]:
+        """Return the exact state transition of offset and speed over a tick without force: the matrix exponential.
 
         Parameters
         ----------
         dt : float
             Length of the tick [s].
+
+        Returns
+        -------
+        xx, xv : float
+            Offset after the tick, per offset [1] and speed [s] before.
+        vx, vv : float
+            Speed after the tick, per offset [1/s] and speed [1] before.
         """
         decay, damped2 = self.decay, self.frequency**2 - self.decay**2
         if damped2 > 0:
@@ -122,7 +111,7 @@ class Admittance:
         else:
             even = math.exp(-decay * dt)
             odd = even * dt
-        return StateTransition(even + decay * odd, odd, -(self.frequency**2) * odd, even - decay * odd)
+        return even + decay * odd, odd, -(self.frequency**2) * odd, even - decay * odd
 
 
 class AdmittanceFilter:

@@ -116,11 +116,6 @@ class Stage:
         points = {name: pose @ getattr(self, name) for name in ("feet", "feet_end", "supports")}
         return replace(self, start=pose @ self.start, end=pose @ self.end, **points)
 
-    @cached_property
-    def _rotation(self) -> tuple[Float[np.ndarray, "3"], float]:
-        """Axis in G and angle of the body's rotation."""
-        return axis_and_angle(self.end.rotation @ self.start.rotation.T)
-
     def body_at(self, fractions: Float[np.ndarray, "n"]) -> Pose:
         """Return the poses of B in G.
 
@@ -135,7 +130,7 @@ class Stage:
             A batch of shape (n,).
         """
         progress = horizontal_profile(fractions)[:, None]
-        axis, angle = self._rotation
+        axis, angle = axis_and_angle(self.end.rotation @ self.start.rotation.T)
         if not angle:
             return Pose(self.start.rotation, self.start.position + progress * (self.end.position - self.start.position))
         rotation = rotation_about(axis, angle * progress[:, 0]) @ self.start.rotation

@@ -179,10 +179,15 @@ class Resting:
         How the robot lies.
     state : RobotState
         Lying or folded.
+
+    Attributes
+    ----------
+    snapshot : Snapshot
+        The robot, which does not move.
     """
 
     def __init__(self, sample: SequenceSample, state: RobotState) -> None:
-        self._snapshot = Snapshot(
+        self.snapshot = Snapshot(
             sample.angles, sample.body, None, sample.contacts, belly=True, state=state, activity=str(state)
         )
 
@@ -230,8 +235,3 @@ class Resting:
 
     def step(self, command: Command, dt: float, readings: SensorReadings | None) -> None:
         """Do nothing."""
-
-    @property
-    def snapshot(self) -> Snapshot:
-        """The robot now."""
-        return self._snapshot

@@ -43,29 +43,23 @@ def _step_inputs(walk: WalkComponents, tick: TickState, dt: float) -> StepInputs
     state, standing = tick.gait, tick.standing
     transitions = walk.transitions
     timing, pose, current = transitions.timing, transitions.pose, transitions.current
+    footholds, excluded = transitions.footholds, walk.foot_targets.legs
     sway = _NO_MOTION if standing or timing.gait.body_shift else current.parameters.sway
     pose.set_sway(sway, frequency=timing.frequency, beats=timing.beats)
-    every = walk.every_leg
-    may_lift, hold_feet = every, transitions.changes_gait
+    may_lift, hold_feet = walk.every_leg, transitions.changes_gait
     if walk.foot_targets:
-        may_lift = every.copy()
+        may_lift = may_lift.copy()
         may_lift[list(current.parameters.excluded)] = False
     felt, offsets = None, walk.no_offset
     if state.felt is not None:
-        transitions.footholds.shift(walk.ground.body.stance.shift)
+        footholds.shift(walk.ground.body.stance.shift)
         felt = walk.ground.inputs(
-            state,
-            dt,
-            timing=timing,
-            twist=tick.twist,
-            footholds=transitions.footholds,
-            excluded=walk.foot_targets.legs,
-            standing=standing,
+            state, dt, timing=timing, twist=tick.twist, footholds=footholds, excluded=excluded, standing=standing
         )
         hold_feet = hold_feet or walk.ground.support.waits
         if walk.ground.offsets is not None:
             offsets = walk.ground.offsets * state.down
-    walk.solver.rolling.step(state.posture.value, transitions.footholds.rest, walk.foot_targets.legs, dt)
+    walk.solver.rolling.step(state.posture.value, footholds.rest, excluded, dt)
     return StepInputs(
         gait=timing.gait,
         frequency=0.0 if standing else timing.frequency,
@@ -74,9 +68,9 @@ def _step_inputs(walk: WalkComponents, tick: TickState, dt: float) -> StepInputs
         bandwidth=transitions.bandwidth,
         posture_bandwidth=pose.bandwidth(state.posture.value),
         may_lift=may_lift,
-        rest=transitions.footholds.rest,
-        placement_bounds=transitions.footholds.placement_bounds,
-        placement_radii=transitions.footholds.placement_radii,
+        rest=footholds.rest,
+        placement_bounds=footholds.placement_bounds,
+        placement_radii=footholds.placement_radii,
         admittance_offset=offsets,
         hold_feet=hold_feet,
         beats=timing.beats,

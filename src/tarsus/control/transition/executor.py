@@ -191,7 +191,11 @@ class TransitionExecutor:
         state, gait = now.gait, planned.parameters.gait
         # The steps get faster only after the transition.
         frequency = min(self.timing.frequency, 1 / planned.cycle_timing.cycle_time)
-        feasible = self._feasible(planned, frequency, now)
+        # At the present twist, the feet have to be able to step to their new rest footholds.
+        fraction, _ = planned.stepping_limits.feasible_fraction(
+            state.twist.value, stance_time=gait.duty_factor / frequency, duty_factor=gait.duty_factor
+        )
+        feasible = fraction >= 1
         if not self.timing.steps_like(gait):
             if now.standing:
                 return self._start_gait(planned, 0, state)
@@ -207,14 +211,6 @@ class TransitionExecutor:
             if self._stays_within(bounds, now, frequency=frequency, bandwidth=bandwidth):
                 self._begin(planned, state)
         return state
-
-    def _feasible(self, planned: StanceTransition, frequency: float, now: TickState) -> bool:
-        """Return whether the feet could step to their new rest footholds at the present twist."""
-        duty_factor = planned.parameters.gait.duty_factor
-        fraction, _ = planned.stepping_limits.feasible_fraction(
-            now.gait.twist.value, stance_time=duty_factor / frequency, duty_factor=duty_factor
-        )
-        return fraction >= 1
 
     def _try_to_change_gait(self, planned: StanceTransition, now: TickState) -> None:
         """Let all feet touch down, if they may stand for so long; the leg that suits best then lifts first."""
