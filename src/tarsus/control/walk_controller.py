@@ -175,7 +175,7 @@ class WalkController:
         dt = min(float(dt), _LONGEST_TICK)
         self._intake.accept(command, self.angles)
         tick = estimated(self._walk, self._tick, readings, dt)
-        tick = planned(self._walk, tick, command, dt, body=lambda: self.body)
+        tick = planned(self._walk, tick, command, dt)
         tick = limited(self._walk, tick, command, dt, self._twist_limiters)
         self._tick = integrated(self._walk, tick, dt)
         self.time += dt

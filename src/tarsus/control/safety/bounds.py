@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field, fields
 from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
@@ -19,19 +19,9 @@ if TYPE_CHECKING:
 __all__ = ["GuardBounds"]
 
 
-# Lower end of each range, whether it is included, and upper end.
-_RANGES: dict[str, tuple[float, bool, float]] = {
-    "foot_drag": (0.0, False, math.inf),
-    "foot_height": (0.0, False, math.inf),
-    "ground_slope": (0.0, True, math.pi / 2),
-    "min_time_step": (0.0, False, 1.0),
-    "max_time_step": (0.0, False, 60.0),
-    "recovery_distance": (0.0, False, math.inf),
-    "recovery_speed": (0.0, False, 1.0),
-    "sit_delay": (0.0, True, math.inf),
-    "sit_speed": (0.0, False, math.inf),
-    "sit_height": (0.0, True, math.inf),
-}
+def _bounded(default: float, high: float = math.inf, *, zero: bool = False) -> Any:
+    """Return a field for a number that is greater than 0, or with `zero` at least 0, and at most `high`."""
+    return field(default=default, metadata={"high": high, "zero": zero})
 
 
 @represented()
@@ -76,28 +66,28 @@ class GuardBounds:
     speed: Float[np.ndarray, "legs 3"]
     acceleration: Float[np.ndarray, "legs 3"]
     margin: float = 0.0
-    foot_drag: float = 1e-3
-    foot_height: float = 0.01
-    ground_slope: float = 0.0
-    min_time_step: float = 1e-4
-    max_time_step: float = 0.1
-    recovery_distance: float = 0.1
-    recovery_speed: float = 0.25
-    sit_delay: float = 1.0
-    sit_speed: float = 0.03
-    sit_height: float = 0.005
+    foot_drag: float = _bounded(1e-3)
+    foot_height: float = _bounded(0.01)
+    ground_slope: float = _bounded(0.0, math.pi / 2, zero=True)
+    min_time_step: float = _bounded(1e-4, 1.0)
+    max_time_step: float = _bounded(0.1, 60.0)
+    recovery_distance: float = _bounded(0.1)
+    recovery_speed: float = _bounded(0.25, 1.0)
+    sit_delay: float = _bounded(1.0, zero=True)
+    sit_speed: float = _bounded(0.03)
+    sit_height: float = _bounded(0.005, zero=True)
     assumptions: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         self._lock("limits", _checked_limits(self.limits))
         for name in ("speed", "acceleration"):
             self._lock(name, _per_joint(name, getattr(self, name), len(self.limits)))
-        for name, (low, included, high) in _RANGES.items():
+        for name, high, zero in ((each.name, *each.metadata.values()) for each in fields(self) if each.metadata):
             value = _number(name, getattr(self, name))
             object.__setattr__(self, name, value)
-            if not (low < value or (included and value == low)) or not value <= high:
-                at_least = "at least" if included else "greater than"
-                raise InputError(f"guard bound {name} is {value:g}; it must be {at_least} {low:g} and at most {high:g}")
+            if not (value > 0 or (zero and value == 0)) or not value <= high:
+                at_least = "at least" if zero else "greater than"
+                raise InputError(f"guard bound {name} is {value:g}; it must be {at_least} 0 and at most {high:g}")
         object.__setattr__(self, "margin", _number("margin", self.margin))
         if math.isnan(self.margin):
             raise InputError("guard bound margin is nan; it must be a number [m], minus infinity to disable the check")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from contextlib import suppress
 from typing import TYPE_CHECKING, Any, Literal, get_args
 
 import numpy as np
@@ -189,13 +190,11 @@ class Guard:
 
     def _start_in_stance(self) -> None:
         """Start in the default stance because the first command is invalid; without a stance, at zero angles."""
-        try:
+        with suppress(TarsusError):
             solution = inverse_kinematics(self._robot, default_stance(self._robot))
             angles = read_angles(solution.angles, self._robot.legs)
-        except TarsusError:
-            angles = list(self._joints.angles)
-        if not isinstance(angles, Violation) and not self._joints.limit_violations(angles):
-            self._joints.start(angles, 0.0)
+            if not isinstance(angles, Violation) and not self._joints.limit_violations(angles):
+                self._joints.start(angles, 0.0)
         self._started = True
         self._hold()
 

@@ -58,11 +58,9 @@ class SitDown:
         # Commanded feet in B, and the heights of the swing feet over the ground.
         self._feet = self._points()[:, 3]
         heights = self._feet @ self._up
-        stance_heights = heights if stance is None else heights[np.array(stance)]
-        self._ground = float(stance_heights.mean()) if stance_heights.size else math.inf
-        self._swing_heights = np.zeros(robot.legs)
-        if stance is not None and stance_heights.size:
-            self._swing_heights = np.where(stance, 0.0, heights - self._ground)
+        stands = np.ones(robot.legs, dtype=bool) if stance is None else np.array(stance)
+        self._ground = float(heights[stands].mean()) if stands.any() else math.inf
+        self._swing_heights = np.where(stands, 0.0, heights - self._ground) if stands.any() else np.zeros(robot.legs)
         self._speed = 0.0
 
     def step(self, dt: float) -> bool:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from functools import partial
 
 import numpy as np
@@ -16,10 +15,10 @@ from tarsus.control.transition.feasible_fraction import StanceTarget
 from tarsus.control.transition.stance_transition import StanceTransition, WalkParameters
 from tarsus.control.transition.target_stance import sway_extremes
 from tarsus.control.walk.foot_target_motion import reachable_fraction
+from tarsus.control.walk.ground_pose import body_pose
 from tarsus.control.walk.state import GaitState
 from tarsus.gait.stance.stability import support_sets
 from tarsus.gait.stance.stance_geometry import SWING_HEIGHT
-from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.stability import stability_margin
 
 __all__ = ["planned"]
@@ -28,9 +27,7 @@ __all__ = ["planned"]
 _LEAST_MARGIN = 0.01
 
 
-def planned(
-    walk: WalkComponents, tick: TickState, command: Command, dt: float, *, body: Callable[[], Pose]
-) -> TickState:
+def planned(walk: WalkComponents, tick: TickState, command: Command, dt: float) -> TickState:
     """Return the state after one stage of planning; what may begin, begins.
 
     Parameters
@@ -39,10 +36,10 @@ def planned(
         The components; the transition executor plans and begins transitions.
     tick, command : TickState, Command
         The state; what is commanded.
-    dt, body : float, callable
-        Length of the tick [s]; the pose of B in G at the time that it is called.
+    dt : float
+        Length of the tick [s].
     """
-    state = walk.transitions.advance(partial(_plan_transition, walk, body), tick)
+    state = walk.transitions.advance(partial(_plan_transition, walk, tick.gait), tick)
     if state is not tick.gait:
         tick = tick._replace(gait=state)
     _set_foot_targets(walk, tick.gait, command, dt)
@@ -50,14 +47,14 @@ def planned(
 
 
 def _plan_transition(
-    walk: WalkComponents, body: Callable[[], Pose], parameters: WalkParameters, stay: bool
+    walk: WalkComponents, state: GaitState, parameters: WalkParameters, stay: bool
 ) -> Incremental[StanceTransition | Cause]:
     """Plan the transition from the present stance; where legs leave the gait, check the support of the others first."""
     excluded = parameters.excluded
     if excluded:
         yield
         sets = support_sets(parameters.gait, excluded)
-        margin = float(stability_margin(walk.robot, walk.time_scaling.angles, body(), sets).min())
+        margin = float(stability_margin(walk.robot, walk.time_scaling.angles, body_pose(state), sets).min())
         if margin < _LEAST_MARGIN:
             reason = f"not enough support in the {parameters.gait.name} gait without this leg"
             names = " and ".join(walk.robot.leg_names[leg] for leg in excluded)
