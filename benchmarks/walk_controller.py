@@ -20,8 +20,9 @@ from tarsus import Gait, Robot, list_robots, load_robot
 from tarsus.control.command import Command
 from tarsus.control.readings import SensorReadings
 from tarsus.control.safety import Guard
-from tarsus.control.startup import folded_pose, stand_up
+from tarsus.control.startup import stand_up
 from tarsus.control.walk_controller import WalkController
+from tarsus.kinematics.folded_pose import folded_pose
 
 if TYPE_CHECKING:
     from jaxtyping import Float

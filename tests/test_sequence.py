@@ -7,8 +7,9 @@ from hypothesis import strategies as st
 
 from gait_robots import preset
 from tarsus.control.sequence import SequencePlayer
-from tarsus.control.startup import fold, folded_pose, stand_up
+from tarsus.control.startup import fold, stand_up
 from tarsus.errors import InputError
+from tarsus.kinematics.folded_pose import folded_pose
 from tarsus.load.loads import joint_loads
 
 STRIDER = preset("strider")

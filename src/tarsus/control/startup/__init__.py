@@ -5,6 +5,5 @@ The public names are those listed in ``__all__``; everything else is private to 
 
 from tarsus.control.startup.planner import fold, sit_down, stand_up
 from tarsus.control.startup.power_off import PowerOffOrder, power_off_order
-from tarsus.kinematics.folded_pose import folded_pose
 
-__all__ = ["PowerOffOrder", "fold", "folded_pose", "power_off_order", "sit_down", "stand_up"]
+__all__ = ["PowerOffOrder", "fold", "power_off_order", "sit_down", "stand_up"]

@@ -25,7 +25,7 @@ from tarsus.robot.remaining import remaining_robot, turned_robot
 from tarsus.robot.robot import JOINTS, Robot
 
 if TYPE_CHECKING:
-    from jaxtyping import Float, Shaped
+    from jaxtyping import Float
 
 __all__ = ["LegFailures", "ReducedWalking"]
 
@@ -158,13 +158,11 @@ class ReducedWalking(Walking):
 
     def _of_legs(self, readings: SensorReadings) -> SensorReadings:
         """Return the readings of the legs that are left."""
-        values: dict[str, Any] = {}
-        for name in CHANNELS:
-            value: Shaped[np.ndarray, "..."] | None = getattr(readings, name)
-            if value is not None and name not in _OF_BODY and np.shape(value)[:1] == (self._robot.legs,):
-                value = np.asarray(value)[self._legs] - (self._zero if name == "joint_angles" else 0)
-            values[name] = value
-        return SensorReadings(**values, age=readings.age)
+        values: dict[str, Any] = {name: getattr(readings, name) for name in CHANNELS if name not in _OF_BODY}
+        for name, each in values.items():
+            if np.shape(each)[:1] == (self._robot.legs,):
+                values[name] = np.asarray(each)[self._legs] - (self._zero if name == "joint_angles" else 0)
+        return dataclasses.replace(readings, **values)
 
 
 def _fastest_walk(robot: Robot, **options: Any) -> WalkController:

@@ -16,7 +16,7 @@ from tarsus.control.transition.feasible_fraction import (
     reach_cause,
     reachable_fraction,
 )
-from tarsus.control.transition.shortfalls import stance_limitations
+from tarsus.control.transition.shortfalls import UNREACHABLE, stance_limitations
 from tarsus.control.transition.stance_transition import StanceTransition, WalkParameters
 from tarsus.control.transition.target_stance import sway_extremes, target_stance
 from tarsus.control.workspace.cycle_time import CycleTiming, cycle_timing
@@ -31,7 +31,6 @@ __all__ = ["TransitionPlanner"]
 _LEAST_FRACTION = 0.02
 # Differences below this are rounding.
 _SAME = 1e-9
-_UNREACHABLE_HEIGHT = Cause("no leg reaches the ground at this height")
 
 
 class _Path(NamedTuple):
@@ -183,7 +182,7 @@ class TransitionPlanner:
         mount = geometry.mount_x + 1j * geometry.mount_y
         missing = float((np.abs(path.end.rest - mount) - np.abs(reached.rest - mount)).mean())
         width = parameters.stance_width - missing
-        return stance_limitations(parameters, reached.posture, path.cause or _UNREACHABLE_HEIGHT, stance_width=width)
+        return stance_limitations(parameters, reached.posture, path.cause or UNREACHABLE, stance_width=width)
 
 
 def _timing_limitations(parameters: WalkParameters, timing: CycleTiming) -> tuple[Limitation, ...]:

@@ -10,7 +10,7 @@ from typing import TypeAlias
 from tarsus.control.command import Command
 from tarsus.control.incremental import Incremental
 from tarsus.control.limitation import Cause, Limitation, LimitationKind
-from tarsus.control.transition.shortfalls import rejection_limitations
+from tarsus.control.transition.shortfalls import UNREACHABLE, rejection_limitations
 from tarsus.control.transition.stance_transition import StanceTransition, WalkParameters
 from tarsus.errors import InputError, UnreachableError
 from tarsus.gait.gait import Gait
@@ -20,7 +20,6 @@ __all__ = ["PlanTransition", "TransitionScheduler"]
 PlanTransition: TypeAlias = Callable[[WalkParameters, bool], Incremental[StanceTransition | Cause]]
 """Plans a transition to parameters; the second argument is whether the posture stays."""
 
-_UNREACHABLE = Cause("no leg reaches the ground at this height")
 _DEFERRED = Cause("not while a leg is taken out of the gait")
 
 
@@ -116,7 +115,7 @@ class TransitionScheduler:
             except StopIteration as stop:
                 self._finish_planning(stop.value)
             except UnreachableError:
-                self._finish_planning(_UNREACHABLE)
+                self._finish_planning(UNREACHABLE)
             else:
                 return
         if idle and self.planned is None and self.requested is not self._done:

@@ -13,7 +13,9 @@ from tarsus.gait.stance.stance_geometry import SWING_HEIGHT
 if TYPE_CHECKING:
     from jaxtyping import Float
 
-__all__ = ["rejection_limitations", "stance_limitations"]
+__all__ = ["UNREACHABLE", "rejection_limitations", "stance_limitations"]
+
+UNREACHABLE = Cause("no leg reaches the ground at this height")
 
 
 # Differences below this are rounding [m, rad].
