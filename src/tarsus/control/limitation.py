@@ -71,9 +71,8 @@ class Cause(NamedTuple):
 
     def text(self) -> str:
         """Return it as a line of text."""
-        return ": ".join(part for part in (self.leg, self.reason) if part) + _margin_text(
-            self.margin, self.least_margin
-        )
+        cause = ": ".join(part for part in (self.leg, self.reason) if part)
+        return cause + _margin_text(self.margin, self.least_margin)
 
     def limitation(self, kind: LimitationKind, *, asked: float = _NONE, granted: float = _NONE) -> Limitation:
         """Return the limitation that this causes.

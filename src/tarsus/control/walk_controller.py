@@ -24,7 +24,6 @@ from tarsus.control.tick.limit import limited, twist_limiters
 from tarsus.control.tick.plan import planned
 from tarsus.control.tick_state import TickState
 from tarsus.control.transition.executor import TransitionExecutor
-from tarsus.control.transition.initial_stance import initial_stance
 from tarsus.control.transition.planner import TransitionPlanner
 from tarsus.control.walk.foot_targets import FootTargets
 from tarsus.control.walk.ground_pose import body_pose
@@ -120,7 +119,7 @@ class WalkController:
         limits = joint_limits(self.robot, joint_speed, joint_acceleration)
         self.joint_speed, self.joint_acceleration = limits
         planner = TransitionPlanner(self.robot, limits, foot_distance=setup.foot_distance)
-        stance = initial_stance(planner, setup, stance_width=stance_width, cycle_time=cycle_time)
+        stance = planner.initial_stance(setup, stance_width=stance_width, cycle_time=cycle_time)
         foot_targets, solver = FootTargets(self.robot.leg_names), JointSolver(self.robot)
         transitions = TransitionExecutor(stance, foot_targets)
         state = GaitState.standing(stance.rest, transitions.pose.target)

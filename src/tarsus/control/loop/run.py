@@ -60,9 +60,7 @@ class TimedCommands:
         twist is not 0.
     """
 
-    def __init__(
-        self, commands: Iterable[tuple[float, Command | tuple[float, float, float]]], *, duration: float | None = None
-    ) -> None:
+    def __init__(self, commands: Iterable[tuple[float, Asked]], *, duration: float | None = None) -> None:
         timed = [(require_number("time", time, zero=True), each) for time, each in commands]
         self._left = [
             (time, each if isinstance(each, Command) else Command(twist=each))

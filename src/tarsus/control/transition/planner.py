@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
 
-from tarsus.control.incremental import Incremental
+from tarsus.control.incremental import Incremental, complete
 from tarsus.control.limitation import Cause, Limitation, LimitationKind
 from tarsus.control.transition.feasible_fraction import (
     TIPPING,
@@ -21,8 +22,10 @@ from tarsus.control.transition.stance_transition import StanceTransition, WalkPa
 from tarsus.control.transition.target_stance import sway_extremes, target_stance
 from tarsus.control.workspace.cycle_time import CycleTiming, cycle_timing
 from tarsus.control.workspace.stance_limits import shifted_limits, velocity_limits
+from tarsus.errors import InputError, UnreachableError
 from tarsus.gait.stance.stability import StabilityCheck, support_sets
 from tarsus.gait.stance.velocity_limits import VelocityLimits, with_stroke_limits
+from tarsus.gait.walk_setup import WalkSetup, require_number
 from tarsus.robot.joint_limits import JointLimits
 from tarsus.robot.robot import Robot
 
@@ -59,6 +62,42 @@ class TransitionPlanner:
     def __init__(self, robot: Robot, joint_limits: JointLimits, *, foot_distance: float) -> None:
         self._robot, self._joint_limits, self._foot_distance = robot, joint_limits, foot_distance
 
+    def initial_stance(self, setup: WalkSetup, *, stance_width: float, cycle_time: float | None) -> StanceTransition:
+        """Return the stance that the setup of a walk asks for.
+
+        Parameters
+        ----------
+        setup : WalkSetup
+            Gait and heights.
+        stance_width : float
+            Distance that the feet rest farther out than by default [m].
+        cycle_time : float or None
+            Duration of a cycle [s]; None for the one with the highest top speed.
+
+        Raises
+        ------
+        InputError
+            If stance width or cycle time are not finite, or out of their range.
+        UnreachableError
+            If the robot can't stand and step so.
+        """
+        if not math.isfinite(stance_width):
+            raise InputError(f"stance_width is {stance_width} m; it must be a finite number")
+        if cycle_time is not None:
+            require_number("cycle_time", cycle_time, zero=False)
+        parameters = WalkParameters(
+            gait=setup.gait,
+            body=(0.0,) * 6,
+            body_height=setup.body_height,
+            swing_height=setup.swing_height,
+            stance_width=stance_width,
+            cycle_time=cycle_time,
+        )
+        found = complete(self.plan(parameters, None))
+        if isinstance(found, Cause):
+            raise UnreachableError(f"the robot can't stand and step in this stance: {found.text()}")
+        return found
+
     def plan(
         self, parameters: WalkParameters, present: StanceTarget | None, *, stay: bool = False
     ) -> Incremental[StanceTransition | Cause]:
@@ -84,9 +123,7 @@ class TransitionPlanner:
             If no leg reaches the ground at the body height.
         """
         robot = self._robot
-        keeps_posture = present is not None and stay
-        posture = None if present is None else present.posture
-        end = present if present is not None and stay else target_stance(robot, parameters, posture)
+        end = present if stay and present else target_stance(robot, parameters, present)
         yield
         path = _Path(present or end, end)
         if path.start is not end:
@@ -123,11 +160,11 @@ class TransitionPlanner:
         stepping, on_path = yield from self._path_limits(parameters, path.start, goal, final, timing)
         if not on_path.feasible:
             return self._path_cause(on_path)
-        shortfalls = () if keeps_posture else self._shortfalls(parameters, path)
+        shortfalls = () if end is present else self._shortfalls(parameters, path)
         return StanceTransition(
             parameters=parameters,
             complete=fraction == path.fraction,
-            keeps_posture=keeps_posture,
+            keeps_posture=end is present,
             posture=goal.posture,
             rest=goal.rest,
             cycle_timing=timing,

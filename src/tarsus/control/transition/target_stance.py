@@ -14,7 +14,7 @@ from tarsus.kinematics.stance import default_stance, stance_or_nan
 from tarsus.robot.robot import Robot
 
 if TYPE_CHECKING:
-    from jaxtyping import Complex, Float
+    from jaxtyping import Float
 
 __all__ = ["sway_extremes", "target_stance"]
 
@@ -23,36 +23,38 @@ _AXES_WITH_BEATS = np.array([1, 0, 1, 0, 1, 0])
 _FRACTIONS = np.arange(7, 0, -1) / 8
 
 
-def target_stance(robot: Robot, parameters: WalkParameters, posture: Float[np.ndarray, "7"] | None) -> StanceTarget:
+def target_stance(robot: Robot, parameters: WalkParameters, present: StanceTarget | None) -> StanceTarget:
     """Return posture and rest footholds; for a height without a foothold, of the nearest height that has them.
 
     Parameters
     ----------
     robot, parameters : Robot, WalkParameters
         A single robot; what is commanded.
-    posture : array, shape (7,), or None
-        The present posture; None without one.
+    present : StanceTarget or None
+        The present stance; None without one.
 
     Raises
     ------
     UnreachableError
         If no height between the present and the commanded one has footholds.
     """
-    body_height, swing_height, stance = _footholds(robot, parameters, posture)
-    target = np.array([*parameters.corrected_body, swing_height])
-    target[2] += body_height
-    rest = _widened(robot, stance[:, 0] + 1j * stance[:, 1], parameters.stance_width)
-    return StanceTarget(target, rest)
+    body_height, swing_height, feet = _footholds(robot, parameters, present)
+    posture = np.array([*parameters.corrected_body, swing_height])
+    posture[2] += body_height
+    mount, rest = robot.geometry.mount_x + 1j * robot.geometry.mount_y, feet[:, 0] + 1j * feet[:, 1]
+    outward = (rest - mount) / np.maximum(np.abs(rest - mount), 1e-9)
+    return StanceTarget(posture, rest + parameters.stance_width * outward)
 
 
 def _footholds(
-    robot: Robot, parameters: WalkParameters, posture: Float[np.ndarray, "7"] | None
+    robot: Robot, parameters: WalkParameters, present: StanceTarget | None
 ) -> tuple[float, float, Float[np.ndarray, "legs 3"]]:
     """Return body height, swing height and the feet in B, shape (legs, 3)."""
-    if posture is None:
+    if present is None:
         stance = default_stance(robot, parameters.body_height, swing_height=parameters.swing_height)
         return parameters.body_height, parameters.swing_height, stance
-    body_height, swing_height = float(posture[2]) - parameters.corrected_body[2], float(posture[SWING_HEIGHT])
+    body_height = float(present.posture[2]) - parameters.corrected_body[2]
+    swing_height = float(present.posture[SWING_HEIGHT])
     for fractions in (np.ones(1), _FRACTIONS):
         body_heights = body_height + fractions * (parameters.body_height - body_height)
         swing_heights = swing_height + fractions * (parameters.swing_height - swing_height)
@@ -79,9 +81,3 @@ def sway_extremes(posture: Float[np.ndarray, "7"], sway: tuple[float, ...]) -> l
     # Half of the axes sway with the beats, half with the cycles: their extremes meet in any combination.
     beats, cycles = (np.append(np.array(sway) * axes, 0.0) for axes in (_AXES_WITH_BEATS, 1 - _AXES_WITH_BEATS))
     return [*(posture + a * beats + b * cycles for a in (1, -1) for b in (1, -1)), posture]
-
-
-def _widened(robot: Robot, rest: Complex[np.ndarray, "legs"], width: float) -> Complex[np.ndarray, "legs"]:
-    mount = robot.geometry.mount_x + 1j * robot.geometry.mount_y
-    out = rest - mount
-    return np.asarray(rest + width * out / np.maximum(np.abs(out), 1e-9))
