@@ -48,7 +48,7 @@ class Recorder:
         self._outputs = [controller.output]
         self._times = [0.0]
         self._twists = [self._command.twist]
-        self._measured: list[Any] = [None]
+        self._measured: list[Any] = []
         self._events: list[Event] = []
         self._unmet: dict[tuple[Any, ...], Unmet] = {}
         # Every limitation that is present or was lately: since when, its event's number, its last tick and value.
@@ -102,8 +102,7 @@ class Recorder:
             What the plant measured before it.
         """
         before = self._outputs[-1]
-        self._measured[-1] = readings.joint_angles
-        self._measured.append(None)
+        self._measured.append(readings.joint_angles)
         self._times.append(time)
         for found in output.interventions:
             self._counts[found.kind] = self._counts.get(found.kind, 0) + 1
@@ -150,7 +149,8 @@ class Recorder:
         twist = np.array([output.twist for output in outputs])
         guard = tuple(output.guard for output in outputs)
         missing = np.full((self._controller.robot.legs, 3), np.nan)
-        measured = np.array([missing if angles is None else angles for angles in self._measured], dtype=float)
+        # What is measured before a tick belongs to the one before it.
+        measured = [missing if angles is None else angles for angles in (*self._measured, None)]
         return Recording(
             robot=self._controller.robot,
             name=name,
@@ -161,7 +161,7 @@ class Recorder:
             twist=twist,
             cycle_times=np.array([output.cycle_time for output in outputs]),
             belly=np.array([output.belly for output in outputs]),
-            measured_angles=measured,
+            measured_angles=np.array(measured, dtype=float),
             states=tuple(str(output.state) for output in outputs),
             activities=tuple(output.activity for output in outputs),
             gaits=tuple(output.gait.name for output in outputs),

@@ -14,6 +14,8 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from tarsus.control.safety.bounds import GuardBounds
 from tarsus.control.safety.interventions import InterventionKind, Violation
 from tarsus.kinematics.reach import ANGLE_TOLERANCE
@@ -41,13 +43,12 @@ class JointMonitor:
     """
 
     def __init__(self, bounds: GuardBounds) -> None:
-        lower, upper = (bounds.limits[..., side].ravel().tolist() for side in (0, 1))
-        self._bounds: list[tuple[float, float, float, float]] = list(
-            zip(lower, upper, bounds.speed.ravel().tolist(), bounds.acceleration.ravel().tolist(), strict=True)
-        )
+        motion = np.stack([bounds.speed, bounds.acceleration], axis=-1)
+        # Of each joint: lower and upper limit, greatest speed and acceleration.
+        self._bounds: list[list[float]] = np.concatenate([bounds.limits, motion], axis=-1).reshape(-1, 4).tolist()
         self._recovery_speeds: list[float] = (bounds.recovery_speed * bounds.speed).ravel().tolist()
         self.angles: list[float] = [min(max(0.0, low), high) for low, high, _, _ in self._bounds]
-        self.speeds = [0.0] * len(lower)
+        self.speeds = [0.0] * len(self._bounds)
         self._step = 0.0
 
     @property

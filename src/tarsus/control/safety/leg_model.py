@@ -6,7 +6,7 @@ what it monitors.
 
 from __future__ import annotations
 
-import math
+from math import cos, sin
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -46,7 +46,6 @@ class LegModel:
         """
         feet = []
         com_x, com_y, com_z = self._body_com
-        cos, sin = math.cos, math.sin
         i = 0
         for yaw, x, y, z, coxa, femur, tibia, side, mass, m_out, m_side, m_up, m_femur, m_tibia in self._legs:
             heading, femur_angle = yaw + angles[i], angles[i + 1]

@@ -54,7 +54,9 @@ class SitDown:
         self._robot, self._bounds, self._joints = robot, bounds, joints
         self._max_speed = bounds.recovery_speed * bounds.speed
         self._up = np.array(up)
-        self._underside = float((_body_corners(robot) @ self._up).min())
+        # Points of the body in B that include its lowest point in any attitude.
+        corners = robot.mount_position if robot.body_size is None else CORNERS * robot.body_size
+        self._underside = float((corners @ self._up).min())
         # Commanded feet in B, and the heights of the swing feet over the ground.
         self._feet = self._points()[:, 3]
         heights = self._feet @ self._up
@@ -123,8 +125,3 @@ class SitDown:
         """Return the height over the ground of the lowest point of body and legs, feet excluded [m]."""
         lowest = min(self._underside, float((self._points()[:, :3] @ self._up).min()))
         return lowest - self._ground
-
-
-def _body_corners(robot: Robot) -> Float[np.ndarray, "n 3"]:
-    """Return points of the body in B that include its lowest point in any attitude."""
-    return np.asarray(robot.mount_position if robot.body_size is None else CORNERS * robot.body_size)

@@ -24,8 +24,6 @@ if TYPE_CHECKING:
 
 __all__ = ["Activity", "Playing", "Resting", "Snapshot", "Walking"]
 
-_NO_TWIST = (0.0, 0.0, 0.0)
-
 
 class Snapshot(NamedTuple):
     """The robot in an activity; poses and points are in the activity's own ground frame.
@@ -61,7 +59,7 @@ class Snapshot(NamedTuple):
     belly: bool
     state: RobotState
     activity: str
-    twist: tuple[float, float, float] = _NO_TWIST
+    twist: tuple[float, float, float] = (0.0, 0.0, 0.0)
     limitations: tuple[Limitation, ...] = ()
     felt: bool = False
 

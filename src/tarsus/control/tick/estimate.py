@@ -27,11 +27,8 @@ def estimated(walk: WalkComponents, tick: TickState, readings: SensorReadings | 
         return tick
     timing, angles = walk.transitions.timing, walk.time_scaling.angles
     state, legs = walk.ground.sense(readings, dt, tick.gait, timing=timing, angles=angles)
-    slope = abs(walk.ground.body.stance.uphill)
-    walk.solver.deflection.step(walk.ground.measured, angles, dt, slope=slope)
+    walk.solver.deflection.step(walk.ground.measured, angles, dt, slope=abs(walk.ground.body.stance.uphill))
     walk.ground.body.lowered = walk.solver.deflection.lowered
     if legs:
-        landed = np.zeros(len(state.down), dtype=bool)
-        landed[legs] = True
-        walk.transitions.footholds.feet_landed(landed)
+        walk.transitions.footholds.feet_landed(np.isin(np.arange(len(state.down)), legs))
     return tick if state is tick.gait else tick._replace(gait=state)

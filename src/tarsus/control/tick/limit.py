@@ -54,11 +54,9 @@ def limited(
     steps = not standing or any(grant.scaled(command.twist)) or not transitions.at_rest(tick.gait, stands=True)
     shift = transitions.current.final_limits.shift if steps else None
     shifted = transitions.pose.set_shift(shift, state.shift.value)
-    if not steps:
-        return TickState(tick.gait, tick.twist, tick.walk_state, grant.limitations)
-    if standing and not shifted:
+    if not steps or (standing and not shifted):
         # Every foot stays on the ground until the body is over those that stay.
-        return TickState(state, tick.twist, tick.walk_state, grant.limitations)
+        return TickState(state if steps else tick.gait, tick.twist, tick.walk_state, grant.limitations)
     assert grant.target is not None  # the governor sets it
     following = tick.walk_state
     if standing:

@@ -40,10 +40,15 @@ def planned(walk: WalkComponents, tick: TickState, command: Command, dt: float) 
         Length of the tick [s].
     """
     state = walk.transitions.advance(partial(_plan_transition, walk, tick.gait), tick)
-    if state is not tick.gait:
-        tick = tick._replace(gait=state)
-    _set_foot_targets(walk, tick.gait, command, dt)
-    return tick
+
+    # Feet go no farther than they reach wherever the body sways.
+    def reachable(leg: int, start: np.ndarray, end: np.ndarray) -> float:
+        sway = walk.transitions.current.parameters.sway
+        postures = sway_extremes(state.posture.value[: SWING_HEIGHT + 1], sway)
+        return reachable_fraction(walk.robot, postures, leg, start, end)
+
+    walk.foot_targets.set_targets(command, dt, reachable)
+    return tick if state is tick.gait else tick._replace(gait=state)
 
 
 def _plan_transition(
@@ -59,17 +64,5 @@ def _plan_transition(
             reason = f"not enough support in the {parameters.gait.name} gait without this leg"
             names = " and ".join(walk.robot.leg_names[leg] for leg in excluded)
             return Cause(reason, names, margin, _LEAST_MARGIN)
-    transitions = walk.transitions
-    present = StanceTarget(transitions.pose.posture, transitions.footholds.new_rest)
+    present = StanceTarget(walk.transitions.pose.posture, walk.transitions.footholds.new_rest)
     return (yield from walk.planner.plan(parameters, present, stay=stay))
-
-
-def _set_foot_targets(walk: WalkComponents, state: GaitState, command: Command, dt: float) -> None:
-    """Set the foot targets of legs that are taken out of the gait, as far as these reach wherever the body sways."""
-
-    def reachable(leg: int, start: np.ndarray, end: np.ndarray) -> float:
-        sway = walk.transitions.current.parameters.sway
-        postures = sway_extremes(state.posture.value[: SWING_HEIGHT + 1], sway)
-        return reachable_fraction(walk.robot, postures, leg, start, end)
-
-    walk.foot_targets.set_targets(command, dt, reachable)
