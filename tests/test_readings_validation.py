@@ -13,9 +13,7 @@ from tarsus import load_robot
 from tarsus.control.readings import CHANNELS, SensorReadings, ValidReadings
 from tarsus.control.sensing.plain_values import as_bool, as_items, as_number, as_vector
 from tarsus.control.sensing.validation import ReadingsValidator
-from tarsus.errors import InputError
 from tarsus.robot.joint_limits import joint_limits
-from tarsus.robot.robot import stack_robots
 
 STRIDER = load_robot("strider")
 LEGS = STRIDER.leg_codes
@@ -100,7 +98,6 @@ def test_lists_and_arrays_of_any_library_are_equivalent(make):
 def test_missing_readings_are_not_rejected():
     validator = ReadingsValidator(STRIDER)
     assert validator.validate(None, 0.01) == validator.validate(SensorReadings(), 0.01) == ValidReadings()
-    assert validator.counts == {}
 
 
 @pytest.mark.parametrize(
@@ -138,7 +135,6 @@ def test_a_malformed_channel_is_rejected_and_named(channel, value, reason):
     found = validated(validator, **(PLAUSIBLE | {channel: value}))
     assert getattr(found, channel) is None
     assert found.rejected == (reason,)
-    assert validator.counts == {reason: 1}
     for other in PLAUSIBLE.keys() - {channel}:
         assert getattr(found, other) is not None
     # Its next plausible reading is not accepted yet.
@@ -191,21 +187,17 @@ def test_an_invalid_age_rejects_all_channels(age):
 
 
 def test_old_readings_are_rejected_and_must_settle():
-    validator = ReadingsValidator(STRIDER, max_age=0.05)
-    assert validated(validator, **PLAUSIBLE, age=0.05).rejected == ()
-    for age in (0.0501, math.inf):
-        assert validated(validator, **PLAUSIBLE, age=age) == ValidReadings(rejected=("readings: older than 50 ms",))
+    validator = ReadingsValidator(STRIDER)
+    assert validated(validator, **PLAUSIBLE, age=0.1).rejected == ()
+    for age in (0.1001, math.inf):
+        assert validated(validator, **PLAUSIBLE, age=age) == ValidReadings(rejected=("readings: older than 100 ms",))
     for _ in range(3):
         found = validated(validator, **PLAUSIBLE)
         assert (found.contacts, found.attitude, found.forces, found.torques) == (None,) * 4
         assert all(reason.endswith("settling after a rejected reading") for reason in found.rejected)
+        settling = {"attitude: settling after a rejected reading", "torques of RF: settling after a rejected reading"}
+        assert settling < set(found.rejected)
     assert validated(validator, **PLAUSIBLE) == validated(**PLAUSIBLE)
-    assert validator.counts["readings: older than 50 ms"] == 2
-    assert (
-        validator.counts["attitude: settling after a rejected reading"]
-        == validator.counts["torques of RF: settling after a rejected reading"]
-        == 3
-    )
 
 
 @pytest.mark.parametrize("channel", FINITE)
@@ -319,12 +311,11 @@ def test_an_object_of_another_class_is_rejected(value):
 
 
 @pytest.mark.parametrize("channel", ["contacts", "forces", "torques"])
-@pytest.mark.parametrize("settle", [1, 4])
-def test_a_rejected_leg_settles_before_it_is_accepted(channel, settle):
-    validator = ReadingsValidator(STRIDER, settle=settle)
+def test_a_rejected_leg_settles_before_it_is_accepted(channel):
+    validator = ReadingsValidator(STRIDER)
     bad = [None, *PLAUSIBLE[channel][1:]]
     assert getattr(validated(validator, **{channel: bad}), channel)[0] is None
-    for _ in range(settle):
+    for _ in range(3):
         found = validated(validator, **{channel: PLAUSIBLE[channel]})
         assert getattr(found, channel)[0] is None
         assert getattr(found, channel)[1] is not None
@@ -350,12 +341,12 @@ def test_an_attitude_that_jumps_is_rejected_until_readings_agree():
 
 
 def test_the_allowed_attitude_change_grows_with_the_time_without_readings():
-    validator = ReadingsValidator(STRIDER, max_turn=1.0)
+    validator = ReadingsValidator(STRIDER)
     validated(validator, attitude=(0.0, 0.0))
-    for _ in range(30):
+    for _ in range(10):
         assert validator.validate(None, 0.01) == ValidReadings()
-    assert validated(validator, attitude=(0.3, 0.0)).attitude == (0.3, 0.0)
-    assert validated(validator, attitude=(0.3, 0.1)).attitude is None
+    assert validated(validator, attitude=(0.65, 0.0)).attitude == (0.65, 0.0)
+    assert validated(validator, attitude=(0.65, 0.1)).attitude is None
 
 
 def test_attitude_after_a_nan_is_compared_with_the_reading_before_it():
@@ -377,15 +368,6 @@ def test_without_masses_and_servos_only_extreme_values_are_rejected():
         )
         == 12
     )
-
-
-def test_invalid_bounds_and_batches_raise():
-    for bound in ("max_age", "max_tilt", "max_turn", "max_weights", "max_stalls", "settle"):
-        for value in (0, -1.0, math.nan, math.inf):
-            with pytest.raises(InputError, match=f"{bound} is {value}; it must be a positive number"):
-                ReadingsValidator(STRIDER, **{bound: value})
-    with pytest.raises(InputError, match="batch of designs"):
-        ReadingsValidator(stack_robots([STRIDER, STRIDER]))
 
 
 ARBITRARY = st.recursive(
@@ -426,7 +408,7 @@ AGES = st.one_of(
 
 @given(st.lists(st.tuples(st.tuples(*[ARBITRARY] * 6), AGES), max_size=4))
 def test_arbitrary_objects_never_raise_and_never_pass(stream):
-    validator, rejections = ReadingsValidator(STRIDER), 0
+    validator, reasons = ReadingsValidator(STRIDER), set()
     for values, age in stream:
         channels = dict(zip([*PLAUSIBLE, "currents", "angular_rates"], values, strict=True))
         found = validated(validator, **channels, age=age)
@@ -438,20 +420,18 @@ def test_arbitrary_objects_never_raise_and_never_pass(stream):
             assert vectors is None or len(vectors) == 6
             for part in vectors or ():
                 assert part is None or all(type(x) is float and math.isfinite(x) and abs(x) <= most for x in part)
-        rejections += len(found.rejected)
-    assert sum(validator.counts.values()) == rejections
-    assert len(validator.counts) <= 110
+        reasons.update(found.rejected)
+    assert len(reasons) <= 110
 
 
-def test_counts_are_bounded_for_a_long_stream_of_invalid_readings():
-    validator = ReadingsValidator(STRIDER)
+def test_reasons_are_few_for_a_long_stream_of_invalid_readings():
+    validator, reasons = ReadingsValidator(STRIDER), set()
     rng = np.random.default_rng(0)
     for _ in range(2000):
         noise = rng.normal(size=(6, 3)) * 10.0 ** rng.integers(-3, 300)
-        validated(
-            validator, contacts=noise[:, 0], attitude=noise[0, :2], forces=noise, torques=noise, age=abs(noise[1, 1])
-        )
-    assert 0 < len(validator.counts) <= 70
+        wrong = {"contacts": noise[:, 0], "attitude": noise[0, :2], "forces": noise, "torques": noise}
+        reasons.update(validated(validator, **wrong, age=abs(noise[1, 1])).rejected)
+    assert 0 < len(reasons) <= 70
 
 
 @given(st.one_of(st.floats(), st.integers(), st.text()))

@@ -6,22 +6,18 @@ import math
 import sys
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from tarsus.control.readings import Vector
+from tarsus.control.sensing.channel import Channel
 from tarsus.control.sensing.plain_values import as_bool, as_items, as_number, as_vector
 
 if TYPE_CHECKING:
     from jaxtyping import Float
 
-__all__ = ["ANY_FINITE", "ContactChannel", "JointAngleChannel", "Range", "VectorChannel"]
-
-Range: TypeAlias = tuple[float, float]
-
-ANY_FINITE: tuple[Range, Range, Range] = ((-sys.float_info.max, sys.float_info.max),) * 3
-"""Bounds that every finite vector meets."""
+__all__ = ["ContactChannel", "JointAngleChannel", "VectorChannel"]
 
 # How far beyond their limits joints may be measured, and by how much angles may change at once [rad]; how much faster
 # than its servo without load a joint may be turned.
@@ -29,21 +25,17 @@ _OUTSIDE, _JUMP, _FASTER = 0.5, 0.5, 2.0
 
 _BOOLEAN = {bool}
 _NOT_NUMBERS = (math.nan, math.nan, math.nan)
+# Bounds that every finite vector meets.
+_ANY_FINITE = ((-sys.float_info.max, sys.float_info.max),) * 3
 
 
-class _LegChannel(ABC):
+class _LegChannel(Channel, ABC):
     """A channel whose legs are rejected, and accepted again, one by one."""
 
-    def __init__(self, name: str, legs: Sequence[str], *shapes: tuple[int, ...], settle: int) -> None:
-        self._settle, self._shapes = settle, shapes
-        self._wrong_shape = f"{name}: expected one reading per leg"
-        self._settling = tuple(f"{name} of {leg}: settling after a rejected reading" for leg in legs)
-        self._plausible = [settle] * len(legs)  # consecutive plausible readings of each leg, at most `settle`
+    def __init__(self, name: str, legs: Sequence[str], *shapes: tuple[int, ...]) -> None:
+        super().__init__([f"{name} of {leg}" for leg in legs])
+        self._shapes, self._wrong_shape = shapes, f"{name}: expected one reading per leg"
         self._settled = list(self._plausible)
-
-    def reset(self) -> None:
-        """Reject every leg until it has been plausible `settle` times in a row."""
-        self._plausible = [0] * len(self._plausible)
 
     def read(self, value: Any, rejected: list[str]) -> tuple[Any, ...] | None:
         """Return the accepted readings; None for a leg, or for all, where none is.
@@ -62,16 +54,7 @@ class _LegChannel(ABC):
             return None
         if self._plausible == self._settled and (plain := self._plain(value, items)) is not None:
             return plain
-        found = []
-        for leg, item in enumerate(items):
-            reading = self._read_leg(leg, item)
-            if type(reading) is str:
-                rejected.append(reading)
-                self._plausible[leg], reading = 0, None
-            elif self._plausible[leg] < self._settle:
-                rejected.append(self._settling[leg])
-                self._plausible[leg], reading = self._plausible[leg] + 1, None
-            found.append(reading)
+        found = [self._accepted(leg, self._read_leg(leg, item), rejected) for leg, item in enumerate(items)]
         return None if found.count(None) == len(found) else tuple(found)
 
     @abstractmethod
@@ -90,12 +73,10 @@ class ContactChannel(_LegChannel):
     ----------
     legs : sequence of str
         Names of the legs in messages.
-    settle : int
-        Consecutive plausible readings after which a leg is accepted again.
     """
 
-    def __init__(self, legs: Sequence[str], *, settle: int) -> None:
-        super().__init__("contacts", legs, (len(legs),), settle=settle)
+    def __init__(self, legs: Sequence[str]) -> None:
+        super().__init__("contacts", legs, (len(legs),))
         self._not_boolean = tuple(f"contacts of {leg}: neither a boolean nor 0 or 1" for leg in legs)
 
     def _plain(self, value: Any, items: Sequence[Any]) -> tuple[bool, ...] | None:  # noqa: ARG002 - the items tell
@@ -115,14 +96,12 @@ class VectorChannel(_LegChannel):
         Name of the channel in messages.
     legs : sequence of str
         Names of the legs in messages.
-    bounds : sequence of ((low, high), (low, high), (low, high)), optional
-        For each leg, the plausible range of each number; left out, every finite number is plausible.
+    bounds : array, shape (legs, 3, 2), optional
+        Plausible range of each number; left out, every finite number is plausible.
     beyond : str
         The reason given for numbers outside these ranges.
     accept_z : bool
         Whether one number per leg, the third of three, is accepted too.
-    settle : int
-        Consecutive plausible readings after which a leg is accepted again.
     """
 
     def __init__(
@@ -130,14 +109,13 @@ class VectorChannel(_LegChannel):
         name: str,
         legs: Sequence[str],
         *,
-        bounds: Sequence[tuple[Range, Range, Range]] | None = None,
+        bounds: Float[np.ndarray, "legs 3 2"] | None = None,
         beyond: str = "",
         accept_z: bool = False,
-        settle: int,
     ) -> None:
-        super().__init__(name, legs, (len(legs), 3), *([(len(legs),)] if accept_z else []), settle=settle)
-        self._bounds, self._accept_z = bounds or [ANY_FINITE] * len(legs), accept_z
-        self._unbounded = bounds is None
+        super().__init__(name, legs, (len(legs), 3), *([(len(legs),)] if accept_z else []))
+        self._bounds = [_ANY_FINITE] * len(legs) if bounds is None else bounds.tolist()
+        self._unbounded, self._accept_z = bounds is None, accept_z
         self._not_finite = tuple(f"{name} of {leg}: not finite numbers" for leg in legs)
         self._beyond = tuple(f"{name} of {leg}: {beyond}" for leg in legs)
 
@@ -168,31 +146,14 @@ class JointAngleChannel(VectorChannel):
         Lower and upper limit of each joint [rad].
     speed : float
         Greatest speed of any joint [rad/s].
-    settle : int
-        Consecutive plausible readings after which a leg is accepted again.
     """
 
-    def __init__(
-        self, legs: Sequence[str], *, limits: Float[np.ndarray, "legs 3 2"], speed: float, settle: int
-    ) -> None:
-        name, ranges = "joint_angles", (limits + np.array([-_OUTSIDE, _OUTSIDE])).tolist()
-        bounds = [((coxa[0], coxa[1]), (femur[0], femur[1]), (tibia[0], tibia[1])) for coxa, femur, tibia in ranges]
+    def __init__(self, legs: Sequence[str], limits: Float[np.ndarray, "legs 3 2"], speed: float) -> None:
         beyond = f"beyond the joint's limits by more than {math.degrees(_OUTSIDE):.3g} deg"
-        super().__init__(name, legs, bounds=bounds, beyond=beyond, settle=settle)
-        self._jumps = tuple(f"{name} of {leg}: change faster than the servos turn" for leg in legs)
+        super().__init__("joint_angles", legs, bounds=limits + np.array([-_OUTSIDE, _OUTSIDE]), beyond=beyond)
+        self._jumps = tuple(f"joint_angles of {leg}: change faster than the servos turn" for leg in legs)
         # The last plausible angles of each leg, NaN before, and when they were read.
-        self._last, self._read = [_NOT_NUMBERS] * len(legs), [0.0] * len(legs)
-        self._now, self._speed = 0.0, speed
-
-    def elapse(self, dt: float) -> None:
-        """Count the time.
-
-        Parameters
-        ----------
-        dt : float
-            Time since the last call [s].
-        """
-        self._now += dt
+        self._last, self._read, self._speed = [_NOT_NUMBERS] * len(legs), [0.0] * len(legs), speed
 
     def _plain(self, value: Any, items: Sequence[Any]) -> tuple[Vector, ...] | None:
         if type(value) is not np.ndarray or value.dtype != float:
