@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import cmath
-import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
@@ -11,6 +10,7 @@ import numpy as np
 
 from tarsus.control.limitation import Limitation, LimitationKind
 from tarsus.control.readings import Vector
+from tarsus.gait.stance.stance_geometry import rotation_rows
 from tarsus.kinematics.scalar_solver import ScalarSolver
 from tarsus.robot.robot import Robot
 
@@ -50,12 +50,9 @@ class LegOdometry:
 
     def __init__(self, robot: Robot) -> None:
         self.behind, self.slip = 0j, [0.0] * robot.legs
-        self._names, g = robot.leg_names, robot.geometry
-        mounts = (robot.mount_yaw, g.mount_x, g.mount_y, g.mount_z + g.up)
-        columns = (*mounts, g.coxa, g.side, g.femur, g.tibia, robot.foot_radius)
-        self._legs = list(zip(*(column.tolist() for column in columns), strict=True))
-        self._solver = ScalarSolver(robot)
-        # Position and inclination of the feet that stood.
+        self._names, self._solver = robot.leg_names, ScalarSolver(robot)
+        self._mounts = list(zip(robot.mount_yaw.tolist(), robot.foot_radius.tolist(), strict=True))
+        # Where the feet were that stood, and the inclination of their tibiae.
         self._before = dict[int, tuple[complex, float]]()
 
     @property
@@ -91,19 +88,22 @@ class LegOdometry:
             Of the body in the heading frame [rad].
         """
         measured = [each for each in angles or () if each is not None]
-        if len(measured) < len(self._legs):
+        if len(measured) < len(self._mounts):
             self.behind, self._before = 0j, {}
             return 0j
-        before, self._before, turn = self._before, {}, cmath.exp(1j * yaw)
-        feet, over_feet = list[complex](), dict[int, complex]()
+        rotation = rotation_rows(*tilt, yaw)
+        feet = [complex(x, y) for x, y, _ in self._solver.feet(measured, rotation)]
+        before, self._before, over_feet = self._before, {}, dict[int, complex]()
         for leg in bears:
-            foot, inclination, rolls = self._foot(leg, measured[leg], *tilt)
-            self._before[leg] = foot * turn, inclination
+            (mount_yaw, radius), (coxa, femur, tibia) = self._mounts[leg], measured[leg]
+            direction = cmath.rect(1.0, mount_yaw + coxa)
+            rise = rotation[2][0] * direction.real + rotation[2][1] * direction.imag
+            self._before[leg] = feet[leg], femur + tibia + rise
             if leg in before:
                 # The centre of a ball moves with the body as the ball rolls.
                 then, was = before[leg]
-                over_feet[leg] = (rolls * (was - inclination) - foot) * turn + then
-                feet.append(foot * turn)
+                rolled = radius * (was - self._before[leg][1]) * direction * cmath.exp(1j * yaw)
+                over_feet[leg] = then - feet[leg] + rolled
         if over_feet:
             moved = sum(over_feet.values()) / len(over_feet)
             self._note_slip(feet, {leg: over - moved for leg, over in over_feet.items()}, dt)
@@ -137,27 +137,11 @@ class LegOdometry:
     def _note_slip(self, feet: list[complex], moved: dict[int, complex], dt: float) -> None:
         """Take note of what the motion over each foot differs by from that of a body that turns over all of them."""
         speeds, share = [0.0] * len(self.slip), min(dt / _SLIP_TIME, 1.0)
-        if len(feet) >= _LEAST_FEET:
-            middle = sum(feet) / len(feet)
-            places = {leg: foot - middle for leg, foot in zip(moved, feet, strict=True)}
+        if len(moved) >= _LEAST_FEET:
+            middle = sum(feet[leg] for leg in moved) / len(moved)
+            places = {leg: feet[leg] - middle for leg in moved}
             turned = sum((place.conjugate() * moved[leg]).imag for leg, place in places.items())
             turned /= sum(abs(place) ** 2 for place in places.values())
             for leg, place in places.items():
                 speeds[leg] = abs(moved[leg] - 1j * turned * place) / dt
         self.slip = [slip + share * (speed - slip) for slip, speed in zip(self.slip, speeds, strict=True)]
-
-    def _foot(self, leg: int, angles: Vector, roll: float, pitch: float) -> tuple[complex, float, complex]:
-        """Return where a foot is over the ground from the body, x + iy in axes with its yaw [m].
-
-        Besides that, the inclination of its tibia over the ground, upwards [rad], and how far and where to its ball
-        rolls over that.
-        """
-        mount_yaw, mount_x, mount_y, mount_z, coxa, side, femur, tibia, radius = self._legs[leg]
-        inclination, direction = angles[1] + angles[2], cmath.rect(1.0, mount_yaw + angles[0])
-        out = complex(coxa + femur * math.cos(angles[1]) + tibia * math.cos(inclination), side) * direction
-        down = femur * math.sin(angles[1]) + tibia * math.sin(inclination) + mount_z
-        x, y, sine = mount_x + out.real, mount_y + out.imag, math.sin(roll)
-        place = complex(x * math.cos(pitch), y * math.cos(roll) - down * sine)
-        place += (y * sine + down * math.cos(roll)) * math.sin(pitch)
-        rise = direction.imag * math.cos(pitch) * sine - direction.real * math.sin(pitch)
-        return place, inclination + rise, radius * direction
