@@ -35,6 +35,10 @@ def polygon_excess(now, targets, *, begins, ends, bounds, bandwidth):
     return FootPrediction.of(now, begins, ends, bandwidth).excess(targets, bounds)
 
 
+def governed(now, current, command, *, begins, ends, bounds, bandwidth):
+    return governed_twist(FootPrediction.of(now, begins, ends, bandwidth), current, command, bounds)
+
+
 def worst(now, target, given_as):
     return polygon_excess(now, target[None], **given_as).max()
 
@@ -42,7 +46,7 @@ def worst(now, target, given_as):
 def settled(now, current, command, given_as):
     """The target after many ticks at this moment."""
     for _ in range(60):
-        current = governed_twist(now, current, command, **given_as)
+        current = governed(now, current, command, **given_as)
         assert worst(now, current, given_as) <= 1e-9
     return current
 
@@ -64,7 +68,7 @@ def driven(now, target, times):
 @pytest.mark.parametrize("seed", range(12))
 def test_feet_stay_within_their_polygons_under_what_is_allowed(seed):
     now, current, command, given_as = situation(seed)
-    target = governed_twist(now, current, command, **given_as)
+    target = governed(now, current, command, **given_as)
     assert worst(now, np.zeros(3), given_as) < 0
     times = np.linspace(0, given_as["ends"].max(), 101)
     origin, yaw = driven(now, target, times)
@@ -90,7 +94,7 @@ def test_without_turning_what_is_reckoned_is_what_happens():
 def test_what_is_allowed_works_and_two_percent_more_would_not(seed, name):
     now, current, command, given_as = situation(seed, name)
     if worst(now, current, given_as) > 1e-9:
-        current = governed_twist(now, current, command, **given_as)
+        current = governed(now, current, command, **given_as)
     if worst(now, current, given_as) > 1e-9:
         assert worst(now, np.zeros(3), given_as) > 1e-9
         return
@@ -108,7 +112,7 @@ def test_what_is_allowed_works_and_two_percent_more_would_not(seed, name):
 @given(seeds, st.floats(0.001, 0.05))
 def test_what_was_allowed_stays_allowed(seed, dt):
     now, current, command, given_as = situation(seed)
-    target = governed_twist(now, current, command, **given_as)
+    target = governed(now, current, command, **given_as)
     if worst(now, target, given_as) > 1e-9:
         return
     twist, travel = now.twist.step_with_integral(target, dt, bandwidth=BANDWIDTH)
@@ -124,7 +128,7 @@ def test_what_was_allowed_stays_allowed(seed, dt):
 def test_a_feasible_command_is_met_in_full():
     now, current, _, given_as = situation(1)
     command = np.array([0.01, 0.0, 0.0])
-    assert governed_twist(now, current, command, **given_as) is command
+    assert governed(now, current, command, **given_as) is command
 
 
 @pytest.mark.parametrize("heading", np.arange(8) * np.pi / 4)
@@ -137,8 +141,8 @@ def test_a_foot_at_its_edge_allows_no_step_further_out(heading):
     now = moment_of(setup, limits.rest, foothold=EARTH + np.exp(1j * FACING) * foot)
     given_as = {"begins": np.zeros(6), "ends": np.full(6, STANCE), "bounds": limits.bounds, "bandwidth": BANDWIDTH}
     command = 0.1 * np.array([way.real, way.imag, 0.0])
-    np.testing.assert_allclose(governed_twist(now, np.zeros(3), command, **given_as), 0, atol=1e-6)
-    assert governed_twist(now, np.zeros(3), -command / 4, **given_as) @ -command > 0
+    np.testing.assert_allclose(governed(now, np.zeros(3), command, **given_as), 0, atol=1e-6)
+    assert governed(now, np.zeros(3), -command / 4, **given_as) @ -command > 0
 
 
 def test_a_foot_that_is_outside_allows_what_takes_it_no_farther_out():
@@ -149,8 +153,8 @@ def test_a_foot_that_is_outside_allows_what_takes_it_no_farther_out():
     given_as = {"begins": np.zeros(6), "ends": np.full(6, STANCE), "bounds": limits.bounds, "bandwidth": BANDWIDTH}
     assert worst(now, np.zeros(3), given_as) > 0.01
     ahead, back = np.array([0.1, 0.0, 0.0]), np.array([-0.1, 0.0, 0.0])
-    np.testing.assert_array_equal(governed_twist(now, np.zeros(3), ahead, **given_as), 0)
-    np.testing.assert_array_equal(governed_twist(now, np.zeros(3), back, **given_as), back)
+    np.testing.assert_array_equal(governed(now, np.zeros(3), ahead, **given_as), 0)
+    np.testing.assert_array_equal(governed(now, np.zeros(3), back, **given_as), back)
 
 
 def test_a_foot_that_is_a_little_outside_before_it_lifts_off_does_not_stop_the_walk():
@@ -161,10 +165,10 @@ def test_a_foot_that_is_a_little_outside_before_it_lifts_off_does_not_stop_the_w
     now = moment_of(setup, limits.rest, foothold=EARTH + np.exp(1j * FACING) * foot, twist=twist)
     given_as = {"begins": np.zeros(6), "bounds": limits.bounds, "bandwidth": BANDWIDTH}
     assert worst(now, np.zeros(3), {**given_as, "ends": np.full(6, 0.04)}) > 0.001
-    kept = governed_twist(now, current, current, ends=np.full(6, 0.04), **given_as)
+    kept = governed(now, current, current, ends=np.full(6, 0.04), **given_as)
     np.testing.assert_array_equal(kept, current)
     # One that stands for long stops it.
-    assert governed_twist(now, current, current, ends=np.full(6, STANCE), **given_as)[0] < 0.03
+    assert governed(now, current, current, ends=np.full(6, STANCE), **given_as)[0] < 0.03
 
 
 def test_where_the_current_target_does_not_work_any_more_as_much_less_as_does():
@@ -173,7 +177,7 @@ def test_where_the_current_target_does_not_work_any_more_as_much_less_as_does():
     given_as = {"begins": np.zeros(6), "ends": np.full(6, STANCE), "bounds": limits.bounds, "bandwidth": BANDWIDTH}
     current = np.array([0.5, 0.0, 0.0])
     assert worst(now, current, given_as) > 0.01
-    found = governed_twist(now, current, np.array([0.6, 0.1, 0.0]), **given_as)
+    found = governed(now, current, np.array([0.6, 0.1, 0.0]), **given_as)
     assert worst(now, found, given_as) <= 1e-9
     np.testing.assert_allclose(found, found[0] / current[0] * current)
     found = settled(now, found, 1.2 * current, given_as)
@@ -188,7 +192,7 @@ def test_where_not_even_stopping_keeps_the_feet_inside_it_does_not_go_on_as_it_w
     given_as = {"begins": np.zeros(6), "ends": np.full(6, STANCE), "bounds": limits.bounds, "bandwidth": BANDWIDTH}
     assert worst(now, np.zeros(3), given_as) > 0.1
     current = np.array(current)
-    found = governed_twist(now, current, np.array([0.6, 0.0, 0.0]), **given_as)
+    found = governed(now, current, np.array([0.6, 0.0, 0.0]), **given_as)
     assert worst(now, found, given_as) <= worst(now, current, given_as)
     assert (np.abs(found) <= np.abs(current)).all()
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from tarsus.control.limiter.protocol import TwistGrant, TwistRequest
 from tarsus.control.transition.executor import TransitionExecutor
-from tarsus.control.walk.reference_governor import governed_twist
+from tarsus.control.walk.reference_governor import FootPrediction, governed_twist
 from tarsus.control.walk.state import GaitState
 from tarsus.gait.foot_polygons import NORMALS_CONJUGATE
 
@@ -60,12 +60,9 @@ class GovernorLimiter:
         # In steady walking nothing changes; before, feet may be put down where the target leaves them no margin.
         if command == request.target.tolist() and self._is_steady(request, command):
             return request.target
-        state, transitions = request.state, self._transitions
-        begins, ends = transitions.stance_intervals(state)
-        bounds, bandwidth = transitions.bounds, transitions.bandwidth
-        return governed_twist(
-            state, request.target, np.array(command), begins=begins, ends=ends, bounds=bounds, bandwidth=bandwidth
-        )
+        transitions, state = self._transitions, request.state
+        prediction = FootPrediction.of(state, *transitions.stance_intervals(state), transitions.bandwidth)
+        return governed_twist(prediction, request.target, np.array(command), transitions.bounds)
 
     def _is_steady(self, request: TwistRequest, twist: list[float]) -> bool:
         """Return whether the robot walks at the twist and at its cycle time."""

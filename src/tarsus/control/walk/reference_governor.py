@@ -120,14 +120,10 @@ class FootPrediction(NamedTuple):
 
 
 def governed_twist(
-    state: GaitState,
+    prediction: FootPrediction,
     current: Float[np.ndarray, "3"],
     command: Float[np.ndarray, "3"],
-    *,
-    begins: Float[np.ndarray, "*#batch legs"],
-    ends: Float[np.ndarray, "*#batch legs"],
     bounds: Float[np.ndarray, "legs 16"],
-    bandwidth: float,
 ) -> Float[np.ndarray, "3"]:
     """Return a feasible target on the path from the current one to the command; the command where it is feasible.
 
@@ -136,19 +132,18 @@ def governed_twist(
 
     Parameters
     ----------
-    state : GaitState
-        The gait state.
+    prediction : FootPrediction
+        Of the feet while they stand.
     current, command : array, shape (3,)
         The present target of the twist, and the commanded one.
-    begins, ends, bounds, bandwidth
-        As for `FootPrediction`.
+    bounds : array, shape (legs, 16)
+        Sides of the polygons [m].
 
     Returns
     -------
     array, shape (3,)
         The target; where not even the current one is feasible, a reduction of it.
     """
-    prediction = FootPrediction.of(state, begins, ends, bandwidth)
     unchanged = command.tolist() == current.tolist()
     targets = command[None] if unchanged else current + _FRACTIONS * (command - current)
     last = _last_feasible(prediction.excess(targets, bounds))
@@ -187,20 +182,14 @@ def stance_intervals(
     """
     duty_factor = gait.duty_factor
     over = (stance_overhang(duty_factor) - 0.5) * duty_factor / frequency
-    felt, begins = state.felt is not None, list[float]()
-    ends: list[float] = []
-    # A foot that waits already is past its lift-off. On ground that is felt, feet often wait for a tick or two until
-    # others have landed: that is taken from the time in which they fall behind after lift-off.
-    least = 0.0 if felt else over
-    for down, phase, number, offset in zip(
-        state.down.tolist(), state.swing_phase.tolist(), state.step_number.tolist(), gait.offsets, strict=True
-    ):
-        touchdown = offset + number - state.clock
-        # A foot that has met the ground before its planned touchdown is where it may be from then on.
-        begins.append(((max(touchdown, 0.0) if felt else 0.0) if down else (1 - phase) * (1 - duty_factor)) / frequency)
-        lift_off = (touchdown + duty_factor) / frequency
-        ends.append(max(lift_off + over, least) if down else begins[-1] + duty_factor / frequency + over)
-    return np.array(begins), np.array(ends)
+    touchdown = np.asarray(gait.offsets) + state.step_number - state.clock
+    # A foot that has met the ground before its planned touchdown is where it may be from then on. One that waits
+    # already is past its lift-off: on ground that is felt, feet often wait for a tick or two until others have landed,
+    # which is taken from the time in which they fall behind after lift-off.
+    waits, least = (touchdown.clip(0.0) / frequency, 0.0) if state.felt is not None else (0.0, over)
+    begins = np.where(state.down, waits, time_to_touchdown(state, gait, frequency))
+    lift_off = np.maximum((touchdown + duty_factor) / frequency + over, least)
+    return begins, np.where(state.down, lift_off, begins + duty_factor / frequency + over)
 
 
 def time_to_touchdown(state: GaitState, gait: Gait, frequency: float) -> Float[np.ndarray, "legs"]:

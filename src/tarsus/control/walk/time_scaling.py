@@ -83,26 +83,20 @@ class TimeScaling:
         dt : float
             Length of the tick [s].
         """
-        rate, fastest = min(1.0, self.rate + _RISE * dt), 1.0
-        if self._used > _HIGH:
-            fastest = self._relaxed_rate(integrate, solve)
-        rate = min(rate, max(fastest, self.rate - _FALL * dt))
+        fastest = self._relaxed_rate(integrate, solve) if self._used > _HIGH else 1.0
+        rate = min(1.0, self.rate + _RISE * dt, max(fastest, self.rate - _FALL * dt))
         between = (dt + self._last_dt) / 2
-        after = integrate(dt * rate)
-        angles = solve(after)
-        speeds, _, used, works = self._demand(angles, dt, between)
-        for _ in range(_TRIES):
-            # Slowing down may be too sudden, too.
-            other = rate if works else self._other_rate(speeds, rate, between)
-            if other == rate:
-                break
-            rate = other
+        tries = _TRIES
+        while True:
             after = integrate(dt * rate)
             angles = solve(after)
-            speeds, _, used, works = self._demand(angles, dt, between)
-        self._used = used
-        self.angles, self._speeds, self.rate, self._last_dt = angles, speeds, rate, dt
-        self._target = angles
+            speeds, _, self._used, works = self._demand(angles, dt, between)
+            # Slowing down may be too sudden, too.
+            other = rate if works or not tries else self._other_rate(speeds, rate, between)
+            if other == rate:
+                break
+            rate, tries = other, tries - 1
+        self.angles, self._target, self._speeds, self.rate, self._last_dt = angles, angles, speeds, rate, dt
         return after
 
     def follow(self, integrate: Callable[[float], _T], solve: Callable[[_T], np.ndarray], dt: float) -> _T:
@@ -183,15 +177,10 @@ class TimeScaling:
         """Return a rate at which the joints keep within speed and acceleration, or come closest to that."""
         if rate == 0:  # the stop is too sudden
             return self.rate / 2
-        speed, reach = self._top_speed, _USED * self._acceleration * dt
-        size = np.maximum(np.abs(speeds), 1e-12)
-        was = self._speeds * np.sign(speeds)
-        highest = float((np.minimum(speed, was + reach) / size).min())
-        lowest = float(((was - reach) / size).max())
+        size, was, reach = np.maximum(np.abs(speeds), 1e-12), self._speeds * np.sign(speeds), self._hardest * dt
+        highest = max(float((np.minimum(self._top_speed, was + reach) / size).min()), 0.0)
+        lowest = max(float(((was - reach) / size).max()), 0.0)
+        share = 0.999 * highest if highest < 1 else 1.001 * lowest
         if highest < lowest:
-            return min(rate * 0.999 * (max(highest, 0.0) + max(lowest, 0.0)) / 2, max(rate, self.rate))
-        return (
-            rate * 0.999 * max(highest, 0.0)
-            if highest < 1
-            else min(rate * 1.001 * max(lowest, 0.0), max(rate, self.rate))
-        )
+            share = 0.999 * (highest + lowest) / 2
+        return min(rate * share, max(rate, self.rate))
