@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 
 from tarsus.errors import InputError
+from tarsus.gait.walk_setup import require_number
 from tarsus.representation import represented
 
 __all__ = ["GroundAdaptation", "Roughness"]
@@ -16,8 +17,6 @@ _COLLISION = 0.02
 _EVEN = 0.008
 # Cycles after which the roughness has fallen to 1/e.
 _MEMORY = 4.0
-# Swing height and body height over roughness.
-_SWING_SHARE, _BODY_SHARE = 1.0, 1.0
 # Roughness up to which feet are drawn in, and from which on until which cycle and speed change [m].
 _ROUGH, _ROUGHEST = 0.02, 0.04
 # Stance, cycle and speed change in steps of this share: each has limits computed anew.
@@ -59,13 +58,10 @@ class GroundAdaptation:
 
     def __post_init__(self) -> None:
         for name in ("swing_height", "body_height", "drawn_in", "friction"):
-            value = getattr(self, name)
-            if not 0 <= value < math.inf:
-                raise InputError(f"ground adaptation: {name} is {value}; it must be a finite number, not negative")
+            require_number(f"ground adaptation: {name}", getattr(self, name), zero=True)
+        require_number("ground adaptation: speed", self.speed, zero=False, most=1.0)
         if not 1 <= self.cycle_time < math.inf:
             raise InputError(f"ground adaptation: cycle_time is {self.cycle_time}; it must be finite, at least 1")
-        if not 0 < self.speed <= 1:
-            raise InputError(f"ground adaptation: speed is {self.speed}; it must be greater than 0 and at most 1")
 
 
 class Roughness:
@@ -113,12 +109,12 @@ class Roughness:
     @property
     def swing_rise(self) -> float:
         """Addition to the swing height [m]."""
-        return min(_SWING_SHARE * self.value, self._adaptation.swing_height)
+        return min(self.value, self._adaptation.swing_height)
 
     @property
     def body_rise(self) -> float:
         """Addition to the body height [m]."""
-        return min(_BODY_SHARE * self.value, self._adaptation.body_height)
+        return min(self.value, self._adaptation.body_height)
 
     @property
     def drawn_in(self) -> float:

@@ -24,7 +24,6 @@ if TYPE_CHECKING:
 __all__ = [
     "PHASE_TOLERANCE",
     "POSITION_TOLERANCE",
-    "ZERO_ELEVATION",
     "GaitState",
     "StepInputs",
     "chord_factor",
@@ -36,9 +35,6 @@ PHASE_TOLERANCE = 1e-9
 
 POSITION_TOLERANCE = 1e-6
 """A foot this close to its rest foothold is at it [m]."""
-
-ZERO_ELEVATION = np.zeros(1)
-"""Elevation of the heading frame without feedback from the ground [m]."""
 
 
 class GaitState(NamedTuple):
@@ -136,7 +132,7 @@ class GaitState(NamedTuple):
             posture=CriticallyDamped.still(posture),
             lift_delay=none,
             rhythm=CriticallyDamped.still(np.zeros(2)),
-            elevation=CriticallyDamped.still(ZERO_ELEVATION),
+            elevation=CriticallyDamped.still(np.zeros(1)),
             admittance_offset=CriticallyDamped.still(none),
         )
 
@@ -149,16 +145,13 @@ class GaitState(NamedTuple):
             Height of a swinging foot over its foothold [m].
         """
         heights: list[float] = self.ground_height.tolist()
-        if self.felt is None:
-            for leg, down in enumerate(self.down.tolist()):
-                if not down:
-                    heights[leg] = swinging_height(
-                        float(self.swing_phase[leg]),
-                        start=float(self.start_height[leg]),
-                        ground=heights[leg],
-                        swing_height=swing_height,
-                    )
-        return heights
+        if self.felt is not None:
+            return heights
+        feet = zip(heights, self.down.tolist(), self.swing_phase.tolist(), self.start_height.tolist(), strict=True)
+        return [
+            ground if down else swinging_height(phase, start=start, ground=ground, swing_height=swing_height)
+            for ground, down, phase, start in feet
+        ]
 
 
 class StepInputs(NamedTuple):

@@ -12,7 +12,7 @@ from tarsus.control.walk.state import PHASE_TOLERANCE, POSITION_TOLERANCE, GaitS
 from tarsus.gait.swing_trajectory import quintic
 
 if TYPE_CHECKING:
-    from jaxtyping import Bool, Float
+    from jaxtyping import Bool, Complex, Float
 
 __all__ = ["LATEST_LIFT_OFF", "TARGET_FREEZE", "advance", "land", "stance_tolerance"]
 
@@ -74,10 +74,12 @@ def advance(state: GaitState, inputs: StepInputs, dt: float) -> GaitState:
     down = state.down.tolist()
     steps = inputs.frequency > 0.0 and not inputs.hold_feet
     due = [on and steps and since > PHASE_TOLERANCE for on, since in zip(down, since_lift, strict=True)]
+    if all(down) and not any(due):
+        return after
+    final = final_footholds(after, rest=inputs.rest, bandwidth=inputs.bandwidth) if stopping else None
     if any(due):
-        after = _lift(after, inputs, np.array(due), np.array(since_lift) - elapsed, stopping=stopping)
-        down = after.down.tolist()
-    return after if all(down) else _swing(after, inputs, down, since_lift, stopping=stopping)
+        after = _lift(after, inputs, np.array(due), np.array(since_lift) - elapsed, final)
+    return _swing(after, inputs, since_lift, final)
 
 
 def _lift(
@@ -85,17 +87,15 @@ def _lift(
     inputs: StepInputs,
     due: Bool[np.ndarray, "legs"],
     late: Float[np.ndarray, "legs"],
-    *,
-    stopping: bool,
+    final: Complex[np.ndarray, "legs"] | None,
 ) -> GaitState:
     """Lift the feet that are due; those that may not, or need not, miss this step.
 
-    `late` is the time since each was due at the start of the tick [cycles].
+    `late` is the time since each was due at the start of the tick [cycles], `final` where feet stop, if they do.
     """
-    lifts, tolerance = due & inputs.may_lift, stance_tolerance(state)
-    final = final_footholds(state, rest=inputs.rest, bandwidth=inputs.bandwidth) if stopping else None
+    lifts = due & inputs.may_lift
     if final is not None:
-        away = np.abs(state.foot - final) > tolerance
+        away = np.abs(state.foot - final) > stance_tolerance(state)
         # A leg that returns to the gait is over its foothold at best.
         lifts = lifts & (away if inputs.felt is None else away | ~np.array(inputs.felt.steps))
     missed = due & ~lifts
@@ -130,13 +130,12 @@ def stance_tolerance(state: GaitState, *, stands: bool = False) -> float:
 
 
 def _swing(
-    state: GaitState, inputs: StepInputs, down: list[bool], since_lift: list[float], *, stopping: bool
+    state: GaitState, inputs: StepInputs, since_lift: list[float], final: Complex[np.ndarray, "legs"] | None
 ) -> GaitState:
     """Move the swinging feet, and put those down whose swing is over."""
     duty_factor = inputs.gait.duty_factor
     swing, stance = 1 - duty_factor, duty_factor / inputs.frequency
     predictor = FootholdPredictor.of(state, inputs)
-    final = final_footholds(state, rest=inputs.rest, bandwidth=inputs.bandwidth) if stopping else None
     phases, feet, targets = state.swing_phase.copy(), state.foot.copy(), state.foothold.copy()
     velocities, accelerations = state.swing_velocity.copy(), state.swing_acceleration.copy()
     travel, landed = 1.0 if inputs.felt is None else inputs.felt.travel, []
@@ -144,7 +143,7 @@ def _swing(
         speed = complex(*state.twist.value[:2].tolist())
         # Feet that make up for lost way travel farther in a stance.
         stance *= 1 + (inputs.felt.drift * speed.conjugate()).real / max(abs(speed) ** 2, 1e-6)
-    for leg in [leg for leg, on in enumerate(down) if not on]:
+    for leg in np.flatnonzero(~state.down).tolist():
         late, since = float(state.lift_delay[leg]), since_lift[leg]
         phase, target = float(phases[leg]), complex(targets[leg])
         reached = min(max((since - late) / (swing - late), 0.0), 1.0)

@@ -69,11 +69,9 @@ def moved_vertically(state: GaitState, inputs: StepInputs, dt: float) -> GaitSta
     swing, origin, across = 1 - inputs.gait.duty_factor, state.origin, turning.conjugate()
     places, heights, feet, stop = state.foot.tolist(), state.ground_height.tolist(), list(state.felt), _STOPPING * dt
     delays, phases, starts = state.lift_delay.tolist(), state.swing_phase.tolist(), state.start_height.tolist()
-    step, steps_back = _STANDING_ACCELERATION * dt, False
     legs = zip(state.down.tolist(), felt.steps, felt.stands, felt.under, strict=True)
     for leg, (down, steps, stands, under) in enumerate(legs):
         foot, height = feet[leg], heights[leg]
-        steps_back = steps_back or (under is not None and under.place is not None)
         if not steps:
             feet[leg] = foot._replace(speed=0.0, acceleration=0.0)
         elif down:
@@ -83,7 +81,7 @@ def moved_vertically(state: GaitState, inputs: StepInputs, dt: float) -> GaitSta
             wanted = -((place - origin) * across).real
             if stands:
                 place += (turning * (height - body) - drift) * dt
-                speed = before + min(max(wanted - before, -step), step)
+                speed = _towards(before, wanted, _STANDING_ACCELERATION * dt)
                 heights[leg], top = height + (before + speed) / 2 * dt, math.nan
             else:
                 assert under is not None  # known of each foot that has lost its contact
@@ -99,9 +97,9 @@ def moved_vertically(state: GaitState, inputs: StepInputs, dt: float) -> GaitSta
             swing_time = (swing - delays[leg]) / inputs.frequency if inputs.frequency else math.inf
             now = (phases[leg], swing_time, starts[leg], places[leg])
             heights[leg], feet[leg] = _swinging(height, foot, under, felt, dt, now)
-    if steps_back:
-        stepping = [under is not None and under.place is not None for under in felt.under]
-        moved["foothold"] = np.where(stepping, places, state.foothold)
+    steps_back = [under is not None and under.place is not None for under in felt.under]
+    if any(steps_back):
+        moved["foothold"] = np.where(steps_back, places, state.foothold)
     return state._replace(foot=np.array(places), ground_height=np.array(heights), felt=feet, **moved)
 
 

@@ -7,15 +7,15 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from tarsus.control.incremental import Incremental
+from tarsus.gait.cycle import cycle_feet
 from tarsus.gait.gait import Gait
 from tarsus.gait.stance.stance_geometry import StanceGeometry
 from tarsus.gait.stance.velocity_limits import VelocityLimits
-from tarsus.gait.swing import horizontal_profile, vertical_profile
 from tarsus.robot.joint_limits import JointLimits
 from tarsus.robot.robot import Robot
 
 if TYPE_CHECKING:
-    from jaxtyping import Complex, Float
+    from jaxtyping import Float
 
 __all__ = ["CycleTiming", "SteadyCycle", "cycle_timing"]
 
@@ -28,6 +28,7 @@ _LEAST_SIZE, _CYCLE_TIME_MARGIN = 0.25, 1.15
 _STRAIGHT = 8
 _TWISTS = np.array([(np.cos(a), np.sin(a), 0.0) for a in np.arange(_STRAIGHT) * np.pi / _STRAIGHT] + [(0.0, 0.0, 1.0)])
 _SAMPLES = 33
+_UNIT = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]])
 # Cycle times among which the fastest walk is searched, in shortest ones.
 _TRIED = np.geomspace(1.0, 4.0, 33)
 # Number of foot positions solved at once: larger arrays take disproportionately long; and of such blocks in one tick.
@@ -168,16 +169,13 @@ class SteadyCycle:
     def __init__(self, gait: Gait, moves: Float[np.ndarray, "n 3"], swing_height: float) -> None:
         begin = gait.duty_factor - 0.02 if gait.duty_factor >= 0.5 else -0.02
         self.phases = np.linspace(begin, 1.02, round(_SAMPLES * (1.02 - begin) / (1.04 - gait.duty_factor)))
-        _, phase, contacts = Gait(gait.duty_factor, (0.0,)).phase(self.phases)
-        swing_phase = np.where(contacts, 0.0, (phase - gait.duty_factor) / (1 - gait.duty_factor))
-        self.height = swing_height * vertical_profile(swing_phase)
-        # As in `cycle_feet`, with shape (samples, moves): as complex numbers, positions are linear in rest footholds.
-        along = horizontal_profile(swing_phase)
-        there, turned_there = _moved(moves, 1 / gait.duty_factor)
-        since_middle = phase / gait.duty_factor - 0.5
-        here, turned = _moved(moves, since_middle)
-        self.factor = (1 + along * (turned_there - 1)) / turned
-        self.shift = (along * there - here) / turned
+        # Two feet with rest footholds 0 and 1: as complex numbers, positions are linear in rest footholds.
+        feet, _ = cycle_feet(
+            Gait(gait.duty_factor, (0.0, 0.0)), _UNIT, moves, swing_height=np.array(swing_height), phases=self.phases
+        )
+        places = np.asarray(feet[..., 0] + 1j * feet[..., 1]).T
+        self.height: Float[np.ndarray, "m 1"] = feet[0, :, :1, 2]
+        self.shift, self.factor = places[0], places[1] - places[0]
 
     def shortest_times(
         self, robot: Robot, stance: StanceGeometry, part: slice, joint_limits: JointLimits
@@ -209,15 +207,3 @@ class SteadyCycle:
         by_speed = np.abs(rate).max(axis=0) / (_SPEED_FRACTION * speed.T[:, None])
         by_acceleration = np.sqrt(np.abs(change).max(axis=0) / (_ACCELERATION_FRACTION * acceleration.T[:, None]))
         return np.asarray(np.maximum(by_speed, by_acceleration).max(axis=(0, 2)))
-
-
-def _moved(
-    moves: Float[np.ndarray, "n 3"], fraction: Float[np.ndarray, "*batch"] | float
-) -> tuple[Complex[np.ndarray, "... n"], Complex[np.ndarray, "... n"]]:
-    """Return position and rotation of the body after a fraction of its moves, as complex numbers."""
-    half = np.asarray(moves[:, 2] * fraction / 2)
-    turned = np.exp(1j * half)
-    # sin(x) / x, which is 1 to rounding for small x.
-    tiny = np.abs(half) < 1e-8
-    chord = np.where(tiny, 1.0, turned.imag / np.where(tiny, 1.0, half))
-    return (moves[:, 0] + 1j * moves[:, 1]) * (fraction * chord) * turned, turned * turned
