@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 __all__ = ["FootPlane", "fitted_plane"]
 
@@ -27,8 +27,8 @@ class FootPlane(NamedTuple):
     slope_x: float = 0.0
     slope_y: float = 0.0
 
-    def at(self, point: complex) -> float:
-        """Return the height at a point x + iy [m]."""
+    def at(self, point: Any) -> Any:
+        """Return the heights at points x + iy, complex numbers or arrays of them [m]."""
         return self.height + self.slope_x * point.real + self.slope_y * point.imag
 
     def levelled(self, tilt: tuple[float, float] | None) -> FootPlane:

@@ -149,17 +149,13 @@ class GroundMap:
         places : complex array, shape (...)
             The places [m].
         """
-        found, level = self._lies(places), self._level(places)
+        found, level = self._lies(places), np.asarray(self.plane.at(places))
         return np.where(found > level - self._deepest, found, level)
 
     def _lies(self, places: Shaped[np.ndarray, "..."]) -> Shaped[np.ndarray, "..."]:
         """Return the known heights at places, those of holes too, and that of the plane where nothing is known [m]."""
         known = self._known(places) - self._height - self._rise(places)
-        return np.where(np.isnan(known), self._level(places), known)
-
-    def _level(self, places: Shaped[np.ndarray, "..."]) -> Shaped[np.ndarray, "..."]:
-        """Return the heights of the plane at places [m]."""
-        return np.asarray(self.plane.height + self.plane.slope_x * places.real + self.plane.slope_y * places.imag)
+        return np.where(np.isnan(known), np.asarray(self.plane.at(places)), known)
 
     def at(self, place: complex) -> float:
         """Return the height at which the ground is expected at a place [m].
@@ -206,11 +202,11 @@ class GroundMap:
                 slack = footholds.placement_bounds[leg] - kept.clip(_STROKE_SHARE * footholds.placement_radii[leg])
                 start, end = ((complex(at[leg]) - state.origin) * turn for at in (state.foot, state.foothold))
                 allowed = (slack.clip(0.0) >= _ALONG_TRIED).all(axis=1)
-                heights = (reach.lowest[leg], highest[leg], reach.highest[leg])
-                self.beside[leg] = better_foothold(self._lies, self._level, start, end, allowed=allowed, reach=heights)
+                room = (reach.lowest[leg], highest[leg], reach.highest[leg])
+                self.beside[leg] = better_foothold(self._lies, self.plane.at, start, end, allowed=allowed, reach=room)
                 place = np.array(end + self.beside[leg])
                 self.holes.pop(leg, None)
-                if lowest_near(self._lies, place, within=_EDGE) < self._level(place) - self._deepest:
+                if lowest_near(self._lies, place, within=_EDGE) < self.plane.at(place) - self._deepest:
                     self.holes[leg] = end
 
     def under(

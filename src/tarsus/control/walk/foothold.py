@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from tarsus.control.walk.state import GaitState, StepInputs, chord_factor, integrate_twist
+from tarsus.control.walk.state import GaitState, StepInputs, integrate_twist
 from tarsus.gait.foot_polygons import NORMALS_CONJUGATE
 
 if TYPE_CHECKING:
@@ -123,12 +123,10 @@ class FootholdPredictor(NamedTuple):
 
     def _body(self, ahead: float) -> tuple[complex, complex]:
         """Return position and rotation of the heading frame after a time, relative to the present ones."""
-        if ahead in self.known:
-            return self.known[ahead]
-        w = self.bandwidth
-        decayed = (1 - math.exp(-w * ahead) * (1 + w * ahead)) / (w * w)
-        (x, y, angle), (ax, ay, turn) = self.value, self.rate
-        angle = angle * ahead + turn * decayed
-        position = complex(x * ahead + ax * decayed, y * ahead + ay * decayed) * chord_factor(angle)
-        self.known[ahead] = position, cmath.exp(1j * angle)
+        if ahead not in self.known:
+            w = self.bandwidth
+            decayed = (1 - math.exp(-w * ahead) * (1 + w * ahead)) / (w * w)
+            travel = [value * ahead + rate * decayed for value, rate in zip(self.value, self.rate, strict=True)]
+            position, angle = integrate_twist(0j, 0.0, travel)
+            self.known[ahead] = position, cmath.exp(1j * angle)
         return self.known[ahead]

@@ -8,7 +8,7 @@ from __future__ import annotations
 import cmath
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -26,7 +26,6 @@ __all__ = [
     "POSITION_TOLERANCE",
     "GaitState",
     "StepInputs",
-    "chord_factor",
     "integrate_twist",
 ]
 
@@ -207,22 +206,10 @@ class StepInputs(NamedTuple):
     shift: Float[np.ndarray, "14"] | None = None
 
 
-def chord_factor(angle: Any) -> Any:
-    """Return ``(exp(i angle) - 1) / (i angle)``: chord over arc length of a path that turns by an angle.
-
-    Parameters
-    ----------
-    angle : float or array
-        The angle [rad].
-    """
-    if isinstance(angle, float):
-        half = angle / 2
-        return cmath.exp(1j * half) * (math.sin(half) / half if abs(half) > 1e-6 else 1 - half * half / 6)
-    half = angle / 2
-    return np.exp(1j * half) * np.sinc(half / np.pi)
-
-
 def integrate_twist(origin: complex, yaw: float, travel: Sequence[float]) -> tuple[complex, float]:
     """Return the heading frame after a travel (x, y, angle): the exponential map of a twist times its duration."""
     x, y, angle = travel
-    return origin + cmath.exp(1j * yaw) * complex(x, y) * chord_factor(angle), yaw + angle
+    half = angle / 2
+    # The chord of the path over its arc length.
+    chord = math.sin(half) / half if abs(half) > 1e-6 else 1 - half * half / 6
+    return origin + cmath.exp(1j * (yaw + half)) * complex(x, y) * chord, yaw + angle

@@ -122,7 +122,7 @@ class TimeScaling:
             needed = fastest * (fastest / (2 * self._softest) + dt)
             if works and self._room <= needed:
                 self._room = float(self._left().min())
-            if works and (self._room > needed or self._can_stop(speeds, dt)):
+            if works and (self._room > needed or not np.count_nonzero(_SIGNS * speeds > self._stopping_speeds(dt))):
                 self.angles = self._target = target
                 self._speeds, self._last_dt, self._room = speeds, dt, self._room - fastest * dt
                 return after
@@ -152,10 +152,6 @@ class TimeScaling:
         braking = self._hardest * (dt / 2)
         speeds: np.ndarray = np.sqrt(braking * braking + self._hardest * np.maximum(self._left(), 0.0)) - braking
         return speeds
-
-    def _can_stop(self, speeds: Float[np.ndarray, "legs 3"], dt: float) -> bool:
-        """Return whether the joints stop before their limits from these speeds."""
-        return not np.count_nonzero(_SIGNS * speeds > self._stopping_speeds(dt))
 
     def _demand(
         self, angles: Float[np.ndarray, "legs 3"], dt: float, between: float

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Sequence
+from functools import reduce
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -52,17 +53,15 @@ def velocity_limits(
         Legs that do not step: their position is not bounded here, but may shift the centre of mass.
     """
     check = StabilityCheck(robot, sets, excluded)
-    limits: VelocityLimits | None = None
+    found = list[VelocityLimits]()
     for stance in stances:
         sides = yield from foot_workspace(robot, stance, foot_distance=foot_distance)
         centre, shift = check.centre_of_mass(stance, sides)
         yield
         fraction = safe_fraction(sets, sides, stance.rest, centre, margin=check.least_margin, shift=shift)
-        found = _limits_in(check, stance, sides, fraction)
-        limits = found if limits is None else limits.intersection(found)
+        found.append(_limits_in(check, stance, sides, fraction))
         yield
-    assert limits is not None  # there is at least one stance
-    return dataclasses.replace(limits, rest=stances[-1].rest)
+    return dataclasses.replace(reduce(VelocityLimits.intersection, found), rest=stances[-1].rest)
 
 
 def shifted_limits(
