@@ -5,14 +5,18 @@ import math
 import numpy as np
 import pytest
 
+from sample_gait_states import setup_of, step_inputs_of
 from tarsus.control.walk.foothold import FootholdPredictor
 from tarsus.gait.foot_polygons import NORMALS
 
 REST = 0.2 + 0.1j
 
 
-def predictor(twist):
-    return FootholdPredictor(0.3 + 0.2j, complex(math.cos(0.4), math.sin(0.4)), list(twist), [0.0, 0.0, 0.0], 8.0, {})
+def predictor(twist, bound):
+    """A predictor for feet that may be put down this far from their rest foothold."""
+    bounds = {"placement_bounds": np.full((6, 16), bound), "placement_radii": [bound] * 6}
+    inputs = step_inputs_of(setup_of("strider"), np.full(6, REST), twist, bandwidth=8.0, **bounds)
+    return FootholdPredictor(0.3 + 0.2j, complex(math.cos(0.4), math.sin(0.4)), list(twist), [0.0] * 3, inputs, {})
 
 
 def seen_at_touchdown(foothold, twist, touchdown):
@@ -29,15 +33,13 @@ def seen_at_touchdown(foothold, twist, touchdown):
 
 @pytest.mark.parametrize("twist", [(0.1, 0.0, 0.0), (0.05, -0.03, 0.4), (0.0, 0.0, -1.0)])
 def test_wide_bounds_leave_the_foothold_in_the_middle_of_the_stance(twist):
-    found = predictor(twist).foothold(REST, np.full(16, 1.0), radius=1.0, touchdown=0.2, mid_stance=0.5)
+    found = predictor(twist, 1.0).foothold(2, 0.2, 0.5)
     assert abs(seen_at_touchdown(found, twist, 0.5)) < 1e-9
 
 
 @pytest.mark.parametrize("twist", [(0.3, 0.0, 0.0), (0.1, -0.2, 0.8), (0.0, 0.0, -2.0)])
 def test_narrow_bounds_hold_at_touchdown(twist):
-    bounds = np.full(16, 0.004)
-    found = predictor(twist).foothold(REST, bounds, radius=0.004, touchdown=0.2, mid_stance=0.5)
+    found = predictor(twist, 0.004).foothold(2, 0.2, 0.5)
     out = seen_at_touchdown(found, twist, 0.2)
     distances = (out * NORMALS.conjugate()).real
     assert distances.max() == pytest.approx(0.004, abs=1e-9)
-    assert (distances <= bounds + 1e-9).all()

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tarsus.control.command import Command
-from tarsus.control.limitation import Limitation, LimitationKind
+from tarsus.control.limitation import Cause, Limitation, LimitationKind
 from tarsus.control.walk.foot_target_motion import FootTargetMotion, apply_foot_targets, begin_foot_target
 from tarsus.control.walk.state import GaitState
 from tarsus.errors import InputError
@@ -81,15 +81,10 @@ class FootTargets:
     @property
     def limitations(self) -> list[Limitation]:
         """Foot targets that are out of reach or below the ground."""
-        kind, names = LimitationKind.FOOT_TARGET, self._names
-        fractions = self._fractions.items()
+        kind, far = LimitationKind.FOOT_TARGET, [item for item in self._fractions.items() if item[1] < 1]
         return [
-            *(
-                Limitation(kind=kind, cause="out of reach", leg=names[leg], asked=1.0, granted=fraction)
-                for leg, fraction in fractions
-                if fraction < 1
-            ),
-            *(Limitation(kind=kind, cause=_BELOW_GROUND, leg=names[leg]) for leg in self._below_ground),
+            *(Cause("out of reach", self._names[leg]).limitation(kind, asked=1.0, granted=share) for leg, share in far),
+            *(Limitation(kind=kind, cause=_BELOW_GROUND, leg=self._names[leg]) for leg in self._below_ground),
         ]
 
     def set_legs(self, excluded: tuple[int, ...], state: GaitState) -> None:

@@ -12,7 +12,7 @@ from tarsus.control.walk.state import GaitState, StepInputs, integrate_twist
 from tarsus.gait.foot_polygons import NORMALS_CONJUGATE
 
 if TYPE_CHECKING:
-    from jaxtyping import Complex, Float
+    from jaxtyping import Complex
 
 __all__ = ["FootholdPredictor", "final_footholds"]
 
@@ -59,8 +59,8 @@ class FootholdPredictor(NamedTuple):
         Origin of the heading frame in G [m]; its rotation ``exp(i yaw)``.
     value, rate : list of float
         Its twist [m/s, m/s, rad/s], and the rate of change of the twist.
-    bandwidth : float
-        Bandwidth with which that rate decays [rad/s].
+    inputs : StepInputs
+        Inputs of the step: with their bandwidth that rate decays.
     known : dict of float to (complex, complex)
         Predictions that are made: legs that swing together ask for the same times.
     """
@@ -69,7 +69,7 @@ class FootholdPredictor(NamedTuple):
     turn: complex
     value: list[float]
     rate: list[float]
-    bandwidth: float
+    inputs: StepInputs
     known: dict[float, tuple[complex, complex]]
 
     @classmethod
@@ -82,41 +82,28 @@ class FootholdPredictor(NamedTuple):
             The gait state; inputs of the step.
         """
         turn = cmath.exp(1j * now.yaw)
-        return cls(now.origin, turn, now.twist.value.tolist(), now.twist.rate.tolist(), inputs.bandwidth, {})
+        return cls(now.origin, turn, now.twist.value.tolist(), now.twist.rate.tolist(), inputs, {})
 
-    def foothold(
-        self,
-        rest: complex,
-        bounds: Float[np.ndarray, "16"],
-        *,
-        radius: float,
-        touchdown: float,
-        mid_stance: float,
-        beside: complex = 0j,
-    ) -> complex:
+    def foothold(self, leg: int, touchdown: float, mid_stance: float) -> complex:
         """Return the foothold of a foot in G [m].
 
         Parameters
         ----------
-        rest : complex
-            Its rest foothold in the heading frame [m].
-        bounds : array, shape (16,)
-            Greatest distance from the rest foothold along each of `NORMALS` [m].
-        radius : float
-            The least of them [m].
+        leg : int
+            The leg.
         touchdown, mid_stance : float
             Time until touchdown, and until the middle of the stance [s].
-        beside : complex
-            How far from its step's foothold it is put down, in the heading frame [m].
         """
+        inputs, rest = self.inputs, complex(self.inputs.rest[leg])
         position, rotation = self._body(mid_stance)
+        beside = 0j if inputs.felt is None else inputs.felt.beside.get(leg, 0j)
         foothold = position + rotation * (rest + beside)
         # While the body turns or slows down, this may be outside the bounds at touchdown.
         position, rotation = self._body(touchdown)
         out = (foothold - position) * rotation.conjugate() - rest
-        if abs(out) > radius:
+        if abs(out) > inputs.placement_radii[leg]:
             along = (NORMALS_CONJUGATE * out).real
-            fraction = float((bounds / np.maximum(along, 1e-12)).min())
+            fraction = float((inputs.placement_bounds[leg] / np.maximum(along, 1e-12)).min())
             if fraction < 1 - _ROUNDING:
                 foothold = position + rotation * (rest + fraction * out)
         return self.origin + self.turn * foothold
@@ -124,7 +111,7 @@ class FootholdPredictor(NamedTuple):
     def _body(self, ahead: float) -> tuple[complex, complex]:
         """Return position and rotation of the heading frame after a time, relative to the present ones."""
         if ahead not in self.known:
-            w = self.bandwidth
+            w = self.inputs.bandwidth
             decayed = (1 - math.exp(-w * ahead) * (1 + w * ahead)) / (w * w)
             travel = [value * ahead + rate * decayed for value, rate in zip(self.value, self.rate, strict=True)]
             position, angle = integrate_twist(0j, 0.0, travel)

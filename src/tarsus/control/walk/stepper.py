@@ -154,28 +154,15 @@ def _swing(
             target = target if over else drawn_back
         elif phase <= TARGET_FREEZE * travel:
             until = (swing - since) / inputs.frequency
-            target = (
-                predictor.foothold(
-                    complex(inputs.rest[leg]),
-                    inputs.placement_bounds[leg],
-                    radius=inputs.placement_radii[leg],
-                    touchdown=until,
-                    mid_stance=until + stance / 2,
-                    beside=0j if inputs.felt is None else inputs.felt.beside.get(leg, 0j),
-                )
-                if final is None
-                else complex(final[leg])
-            )
+            target = predictor.foothold(leg, until, until + stance / 2) if final is None else complex(final[leg])
             targets[leg] = target
-        path = (complex(feet[leg]), complex(velocities[leg]), complex(accelerations[leg]))
-        left = end - phase
+        left, path = end - phase, (target, 0j, 0j)
         if since >= swing - PHASE_TOLERANCE:
             landed.append(leg)
-            reached, path = 0.0, (target, 0j, 0j)
+            reached = 0.0
         elif left > 0:
-            path = quintic(path, target, left, min((reached - phase) / left, 1.0))
-        else:
-            path = (target, 0j, 0j)
+            before = (complex(feet[leg]), complex(velocities[leg]), complex(accelerations[leg]))
+            path = quintic(before, target, left, min((reached - phase) / left, 1.0))
         phases[leg] = reached
         feet[leg], velocities[leg], accelerations[leg] = path
     after = state._replace(
