@@ -29,8 +29,8 @@ _RAYS, _SIDES, _RINGS, _FINE = 24, len(NORMALS), 8, 5
 # Number of inner rings.
 _INNER = 5
 _DIRECTIONS = np.exp(2j * np.pi * np.arange(_RAYS) / _RAYS)
-# Greatest number of passes that move sides inwards, and how many points on edges are examined in one tick.
-_PASSES, _POINTS = 6, 600
+# Greatest number of passes that move sides inwards.
+_PASSES = 6
 # The points tested on each side, and the fractions of the distance from the rest foothold to them that are tested.
 _ALONG = np.array([1, 2, 3])[:, None] / 3
 _FRACTIONS = np.array([0.3, 0.6, 0.8, 0.92, 1.0])[:, None, None]
@@ -68,24 +68,17 @@ def foot_workspace(
     reach = _first_zero(rays, margin(rays * _DIRECTIONS[:, None]), interpolation=1.0) - RESERVED_MARGIN
     bounds = _sides(stance.rest, np.minimum(reach, spacing(_DIRECTIONS[:, None])))
     yield
-    edge_points, examined = len(_ALONG) * _SIDES * robot.legs, 0
     for _ in range(_PASSES):
-        examined += edge_points
         edge = _edge(bounds, stance.rest)
         fraction = spacing(edge)
-        if (margin(edge) < 0).any():
-            yield
+        beyond = (margin(edge) < 0).any()
+        yield
+        if beyond:
             fraction = np.minimum(fraction, _first_zero(_FRACTIONS, margin(_FRACTIONS * edge), interpolation=1.0))
-            examined = _POINTS
         short = fraction < 1 - _TOLERANCE
         if not short.any():
             break
         bounds = _moved_inwards(bounds, stance.rest, edge, np.where(short, fraction - _EXTRA, np.inf))
-        if examined + edge_points > _POINTS:
-            yield
-            examined = 0
-    if examined + edge_points > _POINTS:
-        yield
     return bounds
 
 
