@@ -18,7 +18,7 @@ def moment(name, *, sway=(0.0,) * 6, out=1.0):
     up = np.arange(len(rest)) % 2 == 0
     now = moment_of(setup, rest, down=~up, swing_phase=np.where(up, 0.4, 0.0), start_height=np.full(len(rest), 0.002))
     now = now._replace(
-        elevation=CriticallyDamped.still(np.array([0.3])),
+        elevation=0.3,
         admittance_offset=CriticallyDamped.still(np.linspace(-0.002, 0.002, len(rest))),
     )
     now = now._replace(ground_height=now.ground_height + 0.3, start_height=now.start_height + 0.3)

@@ -125,7 +125,7 @@ class BodyMotion:
             Rest footholds in the heading frame [m].
         """
         (places, down), contacts, dt, self.since = feet, self._contacts, self.since, 0.0
-        over = (state.ground_height - state.elevation.value).tolist()
+        over = (state.ground_height - state.elevation).tolist()
         bears = [leg for leg, on in enumerate(down) if on and contacts.touches(leg)]
         self._ground.step([(places[leg], over[leg]) for leg in bears], self.tilt, state, dt, drift=self.drift)
         self.reach.update(state.posture.value, rest, twist, timing.stance_time)

@@ -274,7 +274,7 @@ class FeltGround:
         lowest = max(reach.lowest[leg], self.ground.at(goal) - _NEAR) if rests else reach.lowest[leg]
         room = (lowest if searches else None, reach.highest_on_way(leg, place, goal))
         clears, back = leg not in self._loads.estimated, self.missing.places.get(leg)
-        found = self.ground.under(place, goal, float(state.elevation.value[0]), room, clears=clears)
+        found = self.ground.under(place, goal, state.elevation, room, clears=clears)
         return found if back is None else found._replace(place=state.origin + back * heading)
 
     def _decide_on_support(

@@ -69,7 +69,7 @@ def met_ground(
         Rate of the steps, 0 to 1.
     """
     assert state.felt is not None  # a walk that feels the ground
-    landed, elevation = list[int](), float(state.elevation.value[0])
+    landed, elevation = list[int](), state.elevation
     turn = cmath.exp(-1j * state.yaw)
     places = ((state.foot - state.origin) * turn).tolist()
     for leg, (down, phase) in enumerate(zip(state.down.tolist(), state.swing_phase.tolist(), strict=True)):
@@ -169,7 +169,7 @@ def _highest(state: GaitState, leg: int, reach: Reach) -> float:
     """Return the greatest height in G of a foot on its way to its foothold [m]."""
     turn = cmath.exp(-1j * state.yaw)
     start, end = ((complex(place) - state.origin) * turn for place in (state.foot[leg], state.foothold[leg]))
-    return float(state.elevation.value[0]) + reach.highest_on_way(leg, start, end)
+    return state.elevation + reach.highest_on_way(leg, start, end)
 
 
 def _trying_again(state: GaitState, leg: int, missing: MissingGround, reach: Reach, after: GaitState) -> GaitState:
@@ -209,7 +209,7 @@ def searching_feet(
         Which feet should stand, and which do.
     """
     assert state.felt is not None  # a walk that feels the ground
-    elevation, found = float(state.elevation.value[0]), list[tuple[int, float, bool, bool]]()
+    elevation, found = state.elevation, list[tuple[int, float, bool, bool]]()
     for leg, place in enumerate(places):
         if down[leg] and not stands[leg] and contacts.is_known(leg):
             depth = ground.lowest_near(place) + elevation - float(state.ground_height[leg])
@@ -238,5 +238,5 @@ def not_sunk(
         How far ground is off the expected one [m]; whether the robot tips or feet step back: then, none may.
     """
     most = min(_HANGS + depth_allowance(roughness), _HANGS_LOW * float(state.posture.value[2]))
-    over = (state.ground_height - state.elevation.value + most).tolist()
+    over = (state.ground_height - state.elevation + most).tolist()
     return [on and not tips and over[leg] > ground.at(places[leg]) for leg, on in enumerate(down)]

@@ -76,10 +76,8 @@ def begin_foot_target(state: GaitState, leg: int) -> FootTargetMotion:
     vx, vy, wz = state.twist.value.tolist()
     # A stance foot is at rest in G.
     relative = -(complex(vx, vy) + 1j * wz * in_heading)
-    here = np.array([in_heading.real, in_heading.imag, float(state.ground_height[leg] - state.elevation.value[0])])
-    return FootTargetMotion(
-        CriticallyDamped(here, np.array([relative.real, relative.imag, -float(state.elevation.rate[0])])), here
-    )
+    here = np.array([in_heading.real, in_heading.imag, float(state.ground_height[leg]) - state.elevation])
+    return FootTargetMotion(CriticallyDamped(here, np.array([relative.real, relative.imag, -state.climb])), here)
 
 
 def apply_foot_targets(state: GaitState, motions: dict[int, FootTargetMotion], swing_time: float) -> GaitState:
@@ -101,7 +99,7 @@ def apply_foot_targets(state: GaitState, motions: dict[int, FootTargetMotion], s
         x, y, z = motion.position.value.tolist()
         dx, dy, _ = motion.position.rate.tolist()
         in_heading = complex(x, y)
-        foot[leg], ground[leg] = state.origin + turn * in_heading, z + float(state.elevation.value[0])
+        foot[leg], ground[leg] = state.origin + turn * in_heading, z + state.elevation
         pace[leg] = turn * (complex(dx, dy) + complex(vx, vy) + 1j * wz * in_heading) * swing_time
     target = np.where(state.down, foot, state.foothold)
     return state._replace(foot=foot, foothold=target, ground_height=ground, swing_velocity=pace)

@@ -45,7 +45,7 @@ def body_pose(state: GaitState) -> Pose:
     x, y, z, roll, pitch, yaw, _ = body_posture(state).tolist()
     origin = state.origin + cmath.exp(1j * state.yaw) * complex(x, y)
     rotation = np.array(rotation_rows(roll, pitch, state.yaw + yaw))
-    return Pose.unchecked(rotation, np.array([origin.real, origin.imag, float(state.elevation.value[0]) + z]))
+    return Pose.unchecked(rotation, np.array([origin.real, origin.imag, state.elevation + z]))
 
 
 def ground_frame(body: Pose) -> Pose:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import cmath
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -63,22 +63,19 @@ class JointSolver:
         """
         rotation, position, swing_height = self._body_at(state)
         turn, origin = cmath.exp(-1j * state.yaw), state.origin
-        elevation = float(state.elevation.value[0])
         offsets = state.admittance_offset.value.tolist()
         feet = []
         for foot, height, offset in zip(state.foot.tolist(), state.heights(swing_height), offsets, strict=True):
             in_heading = (foot - origin) * turn
-            feet.append((in_heading.real, in_heading.imag, height + offset - elevation))
+            feet.append((in_heading.real, in_heading.imag, height + offset - state.elevation))
         if self.rolling.balls is not None:
             bottoms = zip(state.ground_height.tolist(), offsets, strict=True)
-            standing = [height + offset - elevation for height, offset in bottoms]
+            standing = [height + offset - state.elevation for height, offset in bottoms]
             feet = self.rolling.rolled(feet, standing, rotation, position)
-        found = self._scalar_solver.angles(feet, rotation, position)
+        found: Any = self._scalar_solver.angles(feet, rotation, position)
         if found is None:
-            in_body = (np.array(feet) - position) @ np.array(rotation)
-            angles = np.array(inverse_kinematics(self._robot, in_body).angles)
-        else:
-            angles = np.array(found)
+            found = inverse_kinematics(self._robot, (np.array(feet) - position) @ np.array(rotation)).angles
+        angles = np.array(found)
         if self.deflection.offsets is not None:
             angles += self.deflection.offsets
         angles.setflags(write=False)
@@ -101,13 +98,12 @@ class JointSolver:
         """
         rotation, position, _ = self._body_at(state)
         turn, origin = cmath.exp(1j * state.yaw), state.origin
-        elevation = float(state.elevation.value[0])
         feet = []
         if self.deflection.offsets is not None:
             angles = angles - self.deflection.offsets
         for x, y, z in self._scalar_solver.feet(angles.tolist(), rotation, position):
             place = origin + turn * complex(x, y)
-            feet.append((place.real, place.imag, z + elevation))
+            feet.append((place.real, place.imag, z + state.elevation))
         return np.array(feet)
 
     def _body_at(self, state: GaitState) -> tuple[Rows, list[float], float]:

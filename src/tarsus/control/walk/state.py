@@ -67,8 +67,8 @@ class GaitState(NamedTuple):
         Delay of each foot's lift-off, by which its swing is shorter [cycles].
     rhythm : CriticallyDamped
         Rates of `cycles` and `beats`, shape (2,) [1/s].
-    elevation : CriticallyDamped
-        Height of the heading frame over G's origin, shape (1,) [m].
+    elevation, climb : float
+        Height of the heading frame over G's origin [m], and its rate of change [m/s].
     shift : CriticallyDamped
         Coefficients of the body shift, real and imaginary parts, shape (14,) [m]; `NO_SHIFT` before the first one.
     admittance_offset : CriticallyDamped
@@ -95,8 +95,9 @@ class GaitState(NamedTuple):
     posture: CriticallyDamped
     lift_delay: Float[np.ndarray, "legs"]
     rhythm: CriticallyDamped
-    elevation: CriticallyDamped
     admittance_offset: CriticallyDamped
+    elevation: float = 0.0
+    climb: float = 0.0
     cycles: float = 0.0
     beats: float = 0.0
     shift: CriticallyDamped = NO_SHIFT
@@ -131,7 +132,6 @@ class GaitState(NamedTuple):
             posture=CriticallyDamped.still(posture),
             lift_delay=none,
             rhythm=CriticallyDamped.still(np.zeros(2)),
-            elevation=CriticallyDamped.still(np.zeros(1)),
             admittance_offset=CriticallyDamped.still(none),
         )
 

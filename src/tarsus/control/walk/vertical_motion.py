@@ -4,11 +4,9 @@ from __future__ import annotations
 
 import cmath
 import math
-from typing import Any
 
 import numpy as np
 
-from tarsus.control.filters import CriticallyDamped
 from tarsus.control.walk.felt_feet import FeltFoot, FeltInputs, GroundUnder
 from tarsus.control.walk.state import GaitState, StepInputs
 from tarsus.gait.swing_trajectory import quintic
@@ -57,13 +55,8 @@ def moved_vertically(state: GaitState, inputs: StepInputs, dt: float) -> GaitSta
     felt = inputs.felt
     if felt is None or state.felt is None:
         return state
-    rate, start = float(state.elevation.rate[0]), float(state.elevation.value[0])
-    climb = _towards(rate, felt.climb, _BODY_ACCELERATION * dt)
-    moved: dict[str, Any] = {}
-    if rate or climb:
-        moved["elevation"] = CriticallyDamped(np.array([start + (rate + climb) / 2 * dt]), np.array([climb]))
-    body, heading = start + float(state.posture.value[2]), cmath.exp(1j * state.yaw)
-    moved["origin"] = state.origin + felt.back * heading * dt
+    climb = _towards(state.climb, felt.climb, _BODY_ACCELERATION * dt)
+    body, heading = state.elevation + float(state.posture.value[2]), cmath.exp(1j * state.yaw)
     # In G.
     turning, drift = complex(felt.turn[1], -felt.turn[0]) * heading, felt.drift * heading
     swing, origin, across = 1 - inputs.gait.duty_factor, state.origin, turning.conjugate()
@@ -98,9 +91,10 @@ def moved_vertically(state: GaitState, inputs: StepInputs, dt: float) -> GaitSta
             now = (phases[leg], swing_time, starts[leg], places[leg])
             heights[leg], feet[leg] = _swinging(height, foot, under, felt, dt, now)
     steps_back = [under is not None and under.place is not None for under in felt.under]
-    if any(steps_back):
-        moved["foothold"] = np.where(steps_back, places, state.foothold)
-    return state._replace(foot=np.array(places), ground_height=np.array(heights), felt=feet, **moved)
+    goals = np.where(steps_back, places, state.foothold) if any(steps_back) else state.foothold
+    height, origin = state.elevation + (state.climb + climb) / 2 * dt, origin + felt.back * heading * dt
+    after = state._replace(foot=np.array(places), foothold=goals, ground_height=np.array(heights), felt=feet)
+    return after._replace(elevation=height, climb=climb, origin=origin)
 
 
 def _searching(
