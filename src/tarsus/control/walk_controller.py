@@ -234,7 +234,7 @@ class WalkController:
     @property
     def feels_ground(self) -> bool:
         """Whether readings have told anything of the ground: the feet follow it from then on."""
-        return self._tick.gait.felt is not None
+        return bool(self._tick.gait.felt)
 
     @property
     def measured(self) -> ValidReadings:

@@ -49,7 +49,7 @@ class GovernorLimiter:
         stance = (state.down, transitions.timing, transitions.changes_gait, transitions.footholds.bounds)
         # While the same feet stand, what was feasible stays so. Feet that follow the ground stray from what was
         # predicted: with these, each target is examined whenever the ground is looked at.
-        stays = self._met if state.felt is None else not self._looks()
+        stays = not self._looks() if state.felt else self._met
         if not stays or command != self._command or not all(map(is_, stance, self._stance)):
             self._command, self._stance, self._target = command, stance, self._governed(request, command)
             self._met = self._target.tolist() == command
@@ -69,7 +69,7 @@ class GovernorLimiter:
         value = request.state.twist.value.tolist()
         difference = max(abs(a - b) for a, b in zip(value, twist, strict=True))
         steady = self._transitions.timing_is_steady and difference <= _STEADY * max(map(abs, twist))
-        return steady and not (request.state.felt is not None and self._is_behind(request.state))
+        return steady and not (request.state.felt and self._is_behind(request.state))
 
     def _is_behind(self, state: GaitState) -> bool:
         """Return whether a foot that stands is outside its polygon: one that has landed short of its foothold."""

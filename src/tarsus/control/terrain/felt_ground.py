@@ -128,7 +128,7 @@ class FeltGround:
         stopped = self._swings.step(angles[:, 0].tolist(), valid.joint_angles, dt, down)
         doubted, phase = self.contacts.open_legs, state.swing_phase
         measured = self._loads.contacts(valid, angles, dt, down=state.down, phase=phase, doubted=doubted)
-        if state.felt is None:
+        if not state.felt:
             if measured is None and valid.attitude is None:
                 return state, []
             heights = np.array(state.heights(float(state.posture.value[SWING_HEIGHT])))

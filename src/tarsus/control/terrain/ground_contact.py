@@ -68,7 +68,6 @@ def met_ground(
     pace : float
         Rate of the steps, 0 to 1.
     """
-    assert state.felt is not None  # a walk that feels the ground
     landed, elevation = list[int](), state.elevation
     turn = cmath.exp(-1j * state.yaw)
     places = ((state.foot - state.origin) * turn).tolist()
@@ -111,14 +110,12 @@ def _put_down(state: GaitState, landed: list[int], timing: StepTiming, pace: flo
     state = state._replace(step_number=number)
     for leg in swings:
         state = _landed(state, leg, timing, pace)
-        assert state.felt is not None  # a walk that feels the ground
         state = state._replace(felt=_with(state.felt, leg, speed=0.0, acceleration=0.0))
     return state, landed + swings
 
 
 def _landed(state: GaitState, leg: int, timing: StepTiming, pace: float) -> GaitState:
     """Return the state with a foot put down where it is; what speed it has, it loses soon."""
-    assert state.felt is not None  # a walk that feels the ground
     rate = timing.frequency / (1 - timing.gait.duty_factor - float(state.lift_delay[leg]))
     slide = complex(state.swing_velocity[leg]) * rate * pace
     foothold, velocity, acceleration = (
@@ -132,7 +129,6 @@ def _landed(state: GaitState, leg: int, timing: StepTiming, pace: float) -> Gait
 
 def _collides(state: GaitState, leg: int, contacts: FootContacts) -> bool:
     """Return whether a foot that feels contact in the first half of its swing has met an obstacle."""
-    assert state.felt is not None  # a walk that feels the ground
     least, delay = (_LIFTED, 0.0) if contacts.lifted[leg] else (_RISEN, _UNLOADING)
     # A contact is that of a moment ago, when the foot was lower.
     then = float(state.ground_height[leg]) - max(state.felt[leg].speed, 0.0) * (contacts.age + delay)
@@ -142,7 +138,6 @@ def _collides(state: GaitState, leg: int, contacts: FootContacts) -> bool:
 
 def _collides_again(state: GaitState, leg: int, *, side: bool, stopped: bool) -> bool:
     """Return whether a foot that has risen after a collision has not got past the obstacle."""
-    assert state.felt is not None  # a walk that feels the ground
     start, foot = state.felt[leg].drawn_back, complex(state.foot[leg])
     if start is None or state.swing_phase[leg] <= state.felt[leg].top_phase or abs(state.foothold[leg] - foot) < _SHORT:
         return False
@@ -151,7 +146,6 @@ def _collides_again(state: GaitState, leg: int, *, side: bool, stopped: bool) ->
 
 def _rising_again(state: GaitState, leg: int, highest: float, timing: StepTiming) -> GaitState:
     """Return the state with a foot that draws back from an obstacle and rises higher."""
-    assert state.felt is not None  # a walk that feels the ground
     height, foot = float(state.ground_height[leg]), complex(state.foot[leg])
     top = state.felt[leg].top
     way = complex(state.foothold[leg]) - foot
@@ -174,7 +168,6 @@ def _highest(state: GaitState, leg: int, reach: Reach) -> float:
 
 def _trying_again(state: GaitState, leg: int, missing: MissingGround, reach: Reach, after: GaitState) -> GaitState:
     """Return the state with a foot that is stopped again: it is drawn back, and tries again while the walk stands."""
-    assert after.felt is not None  # a walk that feels the ground
     height, turn = float(state.ground_height[leg]), cmath.exp(1j * state.yaw)
     foot, goal = ((complex(places[leg]) - state.origin) / turn for places in (state.foot, state.foothold))
     top = min(height + _HIGHER, max(_highest(state, leg, reach), height))
@@ -208,7 +201,6 @@ def searching_feet(
     down, stands : sequence of bool
         Which feet should stand, and which do.
     """
-    assert state.felt is not None  # a walk that feels the ground
     elevation, found = state.elevation, list[tuple[int, float, bool, bool]]()
     for leg, place in enumerate(places):
         if down[leg] and not stands[leg] and contacts.is_known(leg):

@@ -23,7 +23,7 @@ def estimated(walk: WalkComponents, tick: TickState, readings: SensorReadings | 
     dt : float
         Length of the tick [s].
     """
-    if readings is None and tick.gait.felt is None:
+    if readings is None and not tick.gait.felt:
         return tick
     timing, angles = walk.transitions.timing, walk.time_scaling.angles
     state, legs = walk.ground.sense(readings, dt, tick.gait, timing=timing, angles=angles)

@@ -51,7 +51,7 @@ def _step_inputs(walk: WalkComponents, tick: TickState, dt: float) -> StepInputs
         may_lift = may_lift.copy()
         may_lift[list(current.parameters.excluded)] = False
     felt, offsets = None, walk.no_offset
-    if state.felt is not None:
+    if state.felt:
         footholds.shift(walk.ground.body.stance.shift)
         felt = walk.ground.inputs(
             state, dt, timing=timing, twist=tick.twist, footholds=footholds, excluded=excluded, standing=standing

@@ -186,7 +186,7 @@ def stance_intervals(
     # A foot that has met the ground before its planned touchdown is where it may be from then on. One that waits
     # already is past its lift-off: on ground that is felt, feet often wait for a tick or two until others have landed,
     # which is taken from the time in which they fall behind after lift-off.
-    waits, least = (touchdown.clip(0.0) / frequency, 0.0) if state.felt is not None else (0.0, over)
+    waits, least = (touchdown.clip(0.0) / frequency, 0.0) if state.felt else (0.0, over)
     begins = np.where(state.down, waits, time_to_touchdown(state, gait, frequency))
     lift_off = np.maximum((touchdown + duty_factor) / frequency + over, least)
     return begins, np.where(state.down, lift_off, begins + duty_factor / frequency + over)

@@ -75,8 +75,9 @@ class GaitState(NamedTuple):
         Upward offset of each foot on the ground, shape (legs,) [m].
     cycles, beats : float
         Cycles and beats of the gait so far: the phases of the body's sway.
-    felt : list of FeltFoot, or None
+    felt : sequence of FeltFoot
         The feet of a walk that feels the ground: `ground_height` is then the height of every foot, in the air too.
+        Empty for a walk that has not had any readings.
     """
 
     clock: float
@@ -101,7 +102,7 @@ class GaitState(NamedTuple):
     cycles: float = 0.0
     beats: float = 0.0
     shift: CriticallyDamped = NO_SHIFT
-    felt: list[FeltFoot] | None = None
+    felt: Sequence[FeltFoot] = ()
 
     @classmethod
     def standing(cls, rest: Complex[np.ndarray, "legs"], posture: Float[np.ndarray, "n"]) -> GaitState:
@@ -144,7 +145,7 @@ class GaitState(NamedTuple):
             Height of a swinging foot over its foothold [m].
         """
         heights: list[float] = self.ground_height.tolist()
-        if self.felt is not None:
+        if self.felt:
             return heights
         feet = zip(heights, self.down.tolist(), self.swing_phase.tolist(), self.start_height.tolist(), strict=True)
         return [

@@ -109,7 +109,7 @@ def _lift(
         down=state.down & ~lifts,
         swing_phase=np.where(lifts, 0.0, state.swing_phase),
         start_height=np.where(lifts, start, state.start_height),
-        ground_height=np.where(lifts, 0.0 if state.felt is None else start, state.ground_height),
+        ground_height=np.where(lifts, start if state.felt else 0.0, state.ground_height),
         admittance_offset=offset,
         # Feet that lift off late swing shorter.
         lift_delay=np.where(due, np.clip(late, 0.0, LATEST_LIFT_OFF * (1 - inputs.gait.duty_factor)), state.lift_delay),
@@ -126,7 +126,7 @@ def stance_tolerance(state: GaitState, *, stands: bool = False) -> float:
     stands : bool
         Whether the foot has been at it.
     """
-    return POSITION_TOLERANCE if state.felt is None else _FELT_TOLERANCES[stands]
+    return _FELT_TOLERANCES[stands] if state.felt else POSITION_TOLERANCE
 
 
 def _swing(
@@ -148,7 +148,7 @@ def _swing(
         phase, target = float(phases[leg]), complex(targets[leg])
         reached = min(max((since - late) / (swing - late), 0.0), 1.0)
         end, drawn_back = travel, None
-        if state.felt is not None and (drawn_back := state.felt[leg].drawn_back) is not None:
+        if state.felt and (drawn_back := state.felt[leg].drawn_back) is not None:
             over = phase >= state.felt[leg].top_phase
             end = 1.0 if over else state.felt[leg].top_phase
             target = target if over else drawn_back

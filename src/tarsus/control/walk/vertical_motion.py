@@ -53,7 +53,7 @@ def moved_vertically(state: GaitState, inputs: StepInputs, dt: float) -> GaitSta
         The time [s].
     """
     felt = inputs.felt
-    if felt is None or state.felt is None:
+    if felt is None:
         return state
     climb = _towards(state.climb, felt.climb, _BODY_ACCELERATION * dt)
     body, heading = state.elevation + float(state.posture.value[2]), cmath.exp(1j * state.yaw)
