@@ -15,8 +15,8 @@ __all__ = ["AngularRateChannel", "AttitudeChannel"]
 _MOST_TILT, _MOST_TURN = math.radians(60.0), 6.0
 # Allowance for sensor noise in the change between two readings [rad].
 _NOISE = 0.03
-_BEYOND = f"attitude: roll or pitch beyond {math.degrees(_MOST_TILT):.4g} deg"
-_JUMP = f"attitude: changes faster than {math.degrees(_MOST_TURN):.4g} deg/s"
+_BEYOND = f"roll or pitch beyond {math.degrees(_MOST_TILT):.4g} deg"
+_JUMP = f"changes faster than {math.degrees(_MOST_TURN):.4g} deg/s"
 
 
 class AttitudeChannel(Channel):
@@ -44,10 +44,10 @@ class AttitudeChannel(Channel):
         """Return a reading, or what is wrong with it; remember it if it is within the greatest tilt."""
         parts = as_items(value, (2,))
         if parts is None:
-            return "attitude: expected roll and pitch"
+            return "expected roll and pitch"
         roll, pitch = as_number(parts[0]), as_number(parts[1])
         if not (-_MOST_TILT <= roll <= _MOST_TILT and -_MOST_TILT <= pitch <= _MOST_TILT):
-            return _BEYOND if roll - roll == 0.0 == pitch - pitch else "attitude: not finite numbers"
+            return _BEYOND if roll - roll == 0.0 == pitch - pitch else "not finite numbers"
         before, change = self._last, _MOST_TURN * (self._now - self._read) + _NOISE
         self._last, self._read = (roll, pitch), self._now
         if before is not None and not (abs(roll - before[0]) <= change and abs(pitch - before[1]) <= change):
@@ -71,7 +71,7 @@ class AngularRateChannel(Channel):
         rejected : list of str
             The reason of a rejection is appended to it.
         """
-        reading: Vector | str = as_vector(value) or "angular_rates: expected three numbers"
+        reading: Vector | str = as_vector(value) or "expected three numbers"
         if not isinstance(reading, str) and not all(map(math.isfinite, reading)):
-            reading = "angular_rates: not finite numbers"
+            reading = "not finite numbers"
         return self._accepted(0, reading, rejected)

@@ -23,9 +23,8 @@ class Channel:
     """
 
     def __init__(self, names: Sequence[str]) -> None:
-        self._settling = [f"{name}: settling after a rejected reading" for name in names]
         # Consecutive plausible readings of each part, at most `SETTLED`; the time [s].
-        self._plausible, self._now = [SETTLED] * len(names), 0.0
+        self._names, self._plausible, self._now = names, [SETTLED] * len(names), 0.0
 
     def elapse(self, dt: float) -> None:
         """Count the time.
@@ -45,10 +44,10 @@ class Channel:
         """Return the reading of a part; None if it is rejected: a text is what is wrong with it."""
         if isinstance(reading, str):
             self._plausible[part] = 0
-            rejected.append(reading)
+            rejected.append(f"{self._names[part]}: {reading}")
         elif self._plausible[part] < SETTLED:
             self._plausible[part] += 1
-            rejected.append(self._settling[part])
+            rejected.append(f"{self._names[part]}: settling after a rejected reading")
         else:
             return reading
         return None

@@ -77,14 +77,13 @@ class ContactChannel(_LegChannel):
 
     def __init__(self, legs: Sequence[str]) -> None:
         super().__init__("contacts", legs, (len(legs),))
-        self._not_boolean = tuple(f"contacts of {leg}: neither a boolean nor 0 or 1" for leg in legs)
 
     def _plain(self, value: Any, items: Sequence[Any]) -> tuple[bool, ...] | None:  # noqa: ARG002 - the items tell
         return tuple(items) if set(map(type, items)) == _BOOLEAN else None
 
-    def _read_leg(self, leg: int, value: Any) -> bool | str:
+    def _read_leg(self, leg: int, value: Any) -> bool | str:  # noqa: ARG002 - all legs are read alike
         contact = value if type(value) is bool else as_bool(value)
-        return self._not_boolean[leg] if contact is None else contact
+        return "neither a boolean nor 0 or 1" if contact is None else contact
 
 
 class VectorChannel(_LegChannel):
@@ -115,9 +114,7 @@ class VectorChannel(_LegChannel):
     ) -> None:
         super().__init__(name, legs, (len(legs), 3), *([(len(legs),)] if accept_z else []))
         self._bounds = [_ANY_FINITE] * len(legs) if bounds is None else bounds.tolist()
-        self._unbounded, self._accept_z = bounds is None, accept_z
-        self._not_finite = tuple(f"{name} of {leg}: not finite numbers" for leg in legs)
-        self._beyond = tuple(f"{name} of {leg}: {beyond}" for leg in legs)
+        self._unbounded, self._beyond, self._accept_z = bounds is None, beyond, accept_z
 
     def _plain(self, value: Any, items: Sequence[Any]) -> tuple[Vector, ...] | None:
         floats = self._unbounded and type(value) is np.ndarray and value.dtype == float
@@ -132,7 +129,7 @@ class VectorChannel(_LegChannel):
         if x_low <= x <= x_high and y_low <= y <= y_high and z_low <= z <= z_high:
             return vector
         finite = x - x == 0.0 and y - y == 0.0 and z - z == 0.0
-        return self._beyond[leg] if finite else self._not_finite[leg]
+        return self._beyond if finite else "not finite numbers"
 
 
 class JointAngleChannel(VectorChannel):
@@ -151,7 +148,6 @@ class JointAngleChannel(VectorChannel):
     def __init__(self, legs: Sequence[str], limits: Float[np.ndarray, "legs 3 2"], speed: float) -> None:
         beyond = f"beyond the joint's limits by more than {math.degrees(_OUTSIDE):.3g} deg"
         super().__init__("joint_angles", legs, bounds=limits + np.array([-_OUTSIDE, _OUTSIDE]), beyond=beyond)
-        self._jumps = tuple(f"joint_angles of {leg}: change faster than the servos turn" for leg in legs)
         # The last plausible angles of each leg, NaN before, and when they were read.
         self._last, self._read, self._speed = [_NOT_NUMBERS] * len(legs), [0.0] * len(legs), speed
 
@@ -170,6 +166,6 @@ class JointAngleChannel(VectorChannel):
             return angles
         most = _JUMP + _FASTER * self._speed * (self._now - self._read[leg])
         if any(abs(now - before) > most for now, before in zip(angles, self._last[leg], strict=True)):
-            return self._jumps[leg]
+            return "change faster than the servos turn"
         self._last[leg], self._read[leg] = angles, self._now
         return angles

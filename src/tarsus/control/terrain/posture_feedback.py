@@ -134,13 +134,10 @@ class PostureFeedback:
             turn = [_TILT_GAIN * ((1 - share) * a + share * b) for a, b in zip(tilt, along, strict=True)]
         roll, pitch = (min(max(rate, -_MOST_TURN), _MOST_TURN) for rate in turn)
         # The nearer a foot is to the end of its reach, the slower it goes there.
-        share = 1.0
-        for place, margin in feet:
-            sinks = pitch * place.real - roll * place.imag
-            if sinks > 0:
-                share = min(share, max(_BARRIER * margin, 0.0) / sinks)
+        sinks = [(pitch * place.real - roll * place.imag, _BARRIER * margin) for place, margin in feet]
+        share = min([1.0, *(max(most, 0.0) / speed for speed, most in sinks if speed > 0)])
         roll, pitch = share * roll, share * pitch
-        climb = min(climb, *(_BARRIER * margin + roll * place.imag - pitch * place.real for place, margin in feet))
+        climb = min(climb, *(most - share * speed for speed, most in sinks))
         climb, most = max(climb, -2 * _MOST_CLIMB), _MOVES if self._rests else _RESTS
         self._rests = stands and abs(climb) < most[0] and math.hypot(roll, pitch) < most[1]
         return PostureRates(0.0, (0.0, 0.0)) if self._rests else PostureRates(climb, (roll, pitch))

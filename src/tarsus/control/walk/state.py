@@ -41,8 +41,6 @@ class GaitState(NamedTuple):
 
     Attributes
     ----------
-    clock : float
-        Time in cycles.
     step_number : array, shape (legs,)
         The step that each leg is in, or swings out of: touchdown at ``offset + step_number`` on the clock.
     down : array of bool, shape (legs,)
@@ -55,10 +53,6 @@ class GaitState(NamedTuple):
         First and second derivative of a swinging foot's position by its swing phase [m].
     ground_height, start_height : array, shape (legs,)
         Height of the ground at each foothold, and of the foot at its lift-off, in G [m].
-    origin : complex
-        Origin of the heading frame in G [m].
-    yaw : float
-        Direction of the heading frame [rad].
     twist : CriticallyDamped
         Twist of the heading frame, shape (3,): forward, left [m/s], turning [rad/s].
     posture : CriticallyDamped
@@ -67,20 +61,25 @@ class GaitState(NamedTuple):
         Delay of each foot's lift-off, by which its swing is shorter [cycles].
     rhythm : CriticallyDamped
         Rates of `cycles` and `beats`, shape (2,) [1/s].
-    elevation, climb : float
-        Height of the heading frame over G's origin [m], and its rate of change [m/s].
-    shift : CriticallyDamped
-        Coefficients of the body shift, real and imaginary parts, shape (14,) [m]; `NO_SHIFT` before the first one.
     admittance_offset : CriticallyDamped
         Upward offset of each foot on the ground, shape (legs,) [m].
+    clock : float
+        Time in cycles.
+    origin : complex
+        Origin of the heading frame in G [m].
+    yaw : float
+        Direction of the heading frame [rad].
+    elevation, climb : float
+        Height of the heading frame over G's origin [m], and its rate of change [m/s].
     cycles, beats : float
         Cycles and beats of the gait so far: the phases of the body's sway.
+    shift : CriticallyDamped
+        Coefficients of the body shift, real and imaginary parts, shape (14,) [m]; `NO_SHIFT` before the first one.
     felt : sequence of FeltFoot
         The feet of a walk that feels the ground: `ground_height` is then the height of every foot, in the air too.
         Empty for a walk that has not had any readings.
     """
 
-    clock: float
     step_number: Float[np.ndarray, "legs"]
     down: Bool[np.ndarray, "legs"]
     swing_phase: Float[np.ndarray, "legs"]
@@ -90,13 +89,14 @@ class GaitState(NamedTuple):
     swing_acceleration: Complex[np.ndarray, "legs"]
     ground_height: Float[np.ndarray, "legs"]
     start_height: Float[np.ndarray, "legs"]
-    origin: complex
-    yaw: float
     twist: CriticallyDamped
     posture: CriticallyDamped
     lift_delay: Float[np.ndarray, "legs"]
     rhythm: CriticallyDamped
     admittance_offset: CriticallyDamped
+    clock: float = 0.0
+    origin: complex = 0j
+    yaw: float = 0.0
     elevation: float = 0.0
     climb: float = 0.0
     cycles: float = 0.0
@@ -117,7 +117,6 @@ class GaitState(NamedTuple):
         """
         none, zero = np.zeros(len(rest)), np.zeros(len(rest), dtype=complex)
         return cls(
-            clock=0.0,
             step_number=none,
             down=np.ones(len(rest), dtype=bool),
             swing_phase=none,
@@ -127,8 +126,6 @@ class GaitState(NamedTuple):
             swing_acceleration=zero,
             ground_height=none,
             start_height=none,
-            origin=0j,
-            yaw=0.0,
             twist=CriticallyDamped.still(np.zeros(3)),
             posture=CriticallyDamped.still(posture),
             lift_delay=none,

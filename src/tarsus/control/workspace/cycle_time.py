@@ -103,9 +103,7 @@ def _timing(
 ) -> CycleTiming:
     """Return the timing from the shortest cycle for each size of each stroke."""
     # With less than a good fraction of the stroke, the robot would hardly advance.
-    least = _CYCLE_TIME_MARGIN * float(
-        np.array([np.interp(_LEAST_SIZE, _SIZES, column) for column in shortest.T]).max()
-    )
+    least = _CYCLE_TIME_MARGIN * max(float(np.interp(_LEAST_SIZE, _SIZES, column)) for column in shortest.T)
     if cycle_time is None:
         tried = least * _TRIED
         straight = _sizes(shortest[:, :_STRAIGHT], tried)
