@@ -113,7 +113,8 @@ class FootholdPredictor(NamedTuple):
         if ahead not in self.known:
             w = self.inputs.bandwidth
             decayed = (1 - math.exp(-w * ahead) * (1 + w * ahead)) / (w * w)
-            travel = [value * ahead + rate * decayed for value, rate in zip(self.value, self.rate, strict=True)]
+            (vx, vy, wz), (ax, ay, az) = self.value, self.rate
+            travel = (vx * ahead + ax * decayed, vy * ahead + ay * decayed, wz * ahead + az * decayed)
             position, angle = integrate_twist(0j, 0.0, travel)
             self.known[ahead] = position, cmath.exp(1j * angle)
         return self.known[ahead]

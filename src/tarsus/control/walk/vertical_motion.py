@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import cmath
 import math
+from typing import Any
 
 import numpy as np
 
@@ -62,7 +63,7 @@ def moved_vertically(state: GaitState, inputs: StepInputs, dt: float) -> GaitSta
     swing, origin, across = 1 - inputs.gait.duty_factor, state.origin, turning.conjugate()
     places, heights, feet, stop = state.foot.tolist(), state.ground_height.tolist(), list(state.felt), _STOPPING * dt
     delays, phases, starts = state.lift_delay.tolist(), state.swing_phase.tolist(), state.start_height.tolist()
-    legs = zip(state.down.tolist(), felt.steps, felt.stands, felt.under, strict=True)
+    step, legs = _STANDING_ACCELERATION * dt, zip(state.down.tolist(), felt.steps, felt.stands, felt.under, strict=True)
     for leg, (down, steps, stands, under) in enumerate(legs):
         foot, height = feet[leg], heights[leg]
         if not steps:
@@ -74,7 +75,7 @@ def moved_vertically(state: GaitState, inputs: StepInputs, dt: float) -> GaitSta
             wanted = -((place - origin) * across).real
             if stands:
                 place += (turning * (height - body) - drift) * dt
-                speed = _towards(before, wanted, _STANDING_ACCELERATION * dt)
+                speed = before + min(max(wanted - before, -step), step)
                 heights[leg], top = height + (before + speed) / 2 * dt, math.nan
             else:
                 assert under is not None  # known of each foot that has lost its contact
@@ -91,10 +92,11 @@ def moved_vertically(state: GaitState, inputs: StepInputs, dt: float) -> GaitSta
             now = (phases[leg], swing_time, starts[leg], places[leg])
             heights[leg], feet[leg] = _swinging(height, foot, under, felt, dt, now)
     steps_back = [under is not None and under.place is not None for under in felt.under]
-    goals = np.where(steps_back, places, state.foothold) if any(steps_back) else state.foothold
-    height, origin = state.elevation + (state.climb + climb) / 2 * dt, origin + felt.back * heading * dt
-    after = state._replace(foot=np.array(places), foothold=goals, ground_height=np.array(heights), felt=feet)
-    return after._replace(elevation=height, climb=climb, origin=origin)
+    moved: dict[str, Any] = {"origin": origin + felt.back * heading * dt, "climb": climb}
+    moved["elevation"] = state.elevation + (state.climb + climb) / 2 * dt
+    if any(steps_back):
+        moved["foothold"] = np.where(steps_back, places, state.foothold)
+    return state._replace(foot=np.array(places), ground_height=np.array(heights), felt=feet, **moved)
 
 
 def _searching(
