@@ -369,6 +369,31 @@ def test_a_foot_that_steps_down_a_slope_rises_over_the_middle_of_its_way():
         assert foot.top == pytest.approx(top)
 
 
+@pytest.mark.parametrize("raised_at", [0.0, 0.2, 0.3, 0.4, 0.415])
+def test_a_foot_is_not_thrown_up_by_a_swing_that_becomes_higher(raised_at):
+    felt = FeltInputs([], [], [], 0.0, 0.0, (0.0, 0.0), 0j, 0j, 0.8, 1.0, 0.03, 1.0, 0.0, {})
+    under, height, foot, heights = GroundUnder(0.0, lowest=0.0, highest=0.2), 0.0, FeltFoot(), []
+    for tick in range(50):
+        phase = tick / 50
+        higher = felt._replace(swing_height=0.03 if phase < raised_at else 0.06)
+        height, foot = _swinging(height, foot, under, higher, 0.01, (phase, 0.5, 0.0, 0j))
+        heights.append(height)
+    assert max(heights) < 0.065
+    assert heights[-1] < 0.005
+
+
+@pytest.mark.parametrize("ticks", [130, 150, 170])
+def test_feet_step_as_high_when_the_robot_stops_as_while_it_walks(ticks):
+    controller, tops = WalkController(STRIDER), []
+    for tick in range(260):
+        if tick == ticks:
+            tops.clear()
+        readings = SensorReadings(contacts=controller.contacts, attitude=(0.0, 0.0))
+        controller.step((0.15 * (tick < ticks), 0.0, 0.0), 0.01, readings=readings)
+        tops.append((controller.feet[:, 2] - controller.feet[:, 2].min()).max())
+    assert max(tops) > 0.025
+
+
 def test_a_foot_that_has_met_an_obstacle_goes_down_once_it_is_past_it():
     felt = FeltInputs([], [], [], 0.0, 0.0, (0.0, 0.0), 0j, 0j, 0.8, 1.0, 0.03, 1.0, 0.0, {})
     risen = FeltFoot(top=0.05, top_phase=0.4, drawn_back=0j)

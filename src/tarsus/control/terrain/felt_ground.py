@@ -229,7 +229,7 @@ class FeltGround:
             travel=_SLOW_TRAVEL + (_FAST_TRAVEL - _SLOW_TRAVEL) * far,
             pace=self.support.pace,
             swing_height=float(state.posture.value[SWING_HEIGHT]) + body.roughness.swing_rise,
-            lowering=_GENTLE if self._still and self.support.held else self._loads.fastest_descent,
+            lowering=_GENTLE if self._still and self.support.held and state.down.all() else self._loads.fastest_descent,
             late=self.contacts.age,
             beside=self.ground.beside,
         )
