@@ -29,8 +29,6 @@ _OPEN_AFTER, _MOST_LIFT = 0.4, 4.0
 _UNHELD, _TIPS = 0.15, 0.012
 # Fewer feet bear no robot, unless something else holds it.
 _FEWEST = 2
-# A switch that has been closed for longer is stuck [s].
-_STUCK = 3.0
 
 
 class FootContacts:
@@ -61,7 +59,7 @@ class FootContacts:
         self._estimated: Set[int] = frozenset()
         self._unheld, self._tilt = 0.0, (0.0, 0.0)
         self._tilts, self.sunk = [(0.0, 0.0)] * legs, [0.0] * legs
-        self._without, self._with, self._evidence, self._settled, self._searched = ([0.0] * legs for _ in range(5))
+        self._without, self._evidence, self._settled, self._searched = ([0.0] * legs for _ in range(4))
 
     def step(
         self,
@@ -98,9 +96,9 @@ class FootContacts:
         self.estimator.step(readings, dt, count=count)
         for leg, on in enumerate(down):
             if self.estimator.known[leg] and not self.estimator.touching[leg]:
-                self._without[leg], self._with[leg] = self._without[leg] + dt, 0.0
+                self._without[leg] += dt
             else:
-                self._without[leg], self._with[leg], self._evidence[leg] = 0.0, self._with[leg] + dt, 0.0
+                self._without[leg], self._evidence[leg] = 0.0, 0.0
                 self._settled[leg] += dt
             if not on:
                 self._settled[leg] = 0.0
@@ -196,10 +194,6 @@ class FootContacts:
         """Return whether a foot that should stand counts as support."""
         grace = _GRACE if self._settled[leg] > _SETTLED else 0.0
         return self._without[leg] <= grace or self.is_open(leg)
-
-    def is_stuck(self, leg: int) -> bool:
-        """Return whether a contact has lasted for so long that it tells nothing."""
-        return self._with[leg] > _STUCK
 
 
 def _sunk(place: complex, tilt: tuple[float, float], before: tuple[float, float]) -> float:

@@ -25,10 +25,8 @@ __all__ = ["met_ground", "not_sunk", "searching_feet"]
 _CLEAR, _LANDING = 0.12, 0.55
 # Rounding of a height [m].
 _ROUNDING = 1e-9
-# How far a foot has risen that meets an obstacle, after contact has ceased or without that [m].
-_LIFTED, _RISEN = 0.01, 0.03
-# Time in which a leg gives up its load, and its joints follow their commands [s].
-_UNLOADING = 0.05
+# How far a foot has risen that meets an obstacle [m].
+_LIFTED = 0.01
 # After a collision: how much higher the foot rises [m], in which time [s], and how far it is drawn back [m].
 _HIGHER, _RISING, _DRAWN_BACK = 0.025, 0.12, 0.008
 # Of a foot that collides again: how far it is from its foothold at least, and past its collision at most, where it does
@@ -96,7 +94,7 @@ def met_ground(
                     roughness.landed(over - expected)
                 state = _landed(state, leg, timing, pace)
                 landed.append(leg)
-        elif (touches or leg in stopped) and not leaves and _collides(state, leg, contacts):
+        elif ((touches and contacts.lifted[leg]) or leg in stopped) and not leaves and _collides(state, leg, contacts):
             roughness.collided()
             state = _rising_again(state, leg, _highest(state, leg, reach), timing)
     return _put_down(state, landed, timing, pace) if missing.tips else (state, landed)
@@ -129,11 +127,9 @@ def _landed(state: GaitState, leg: int, timing: StepTiming, pace: float) -> Gait
 
 def _collides(state: GaitState, leg: int, contacts: FootContacts) -> bool:
     """Return whether a foot that feels contact in the first half of its swing has met an obstacle."""
-    least, delay = (_LIFTED, 0.0) if contacts.lifted[leg] else (_RISEN, _UNLOADING)
     # A contact is that of a moment ago, when the foot was lower.
-    then = float(state.ground_height[leg]) - max(state.felt[leg].speed, 0.0) * (contacts.age + delay)
-    risen = then - float(state.start_height[leg])
-    return state.felt[leg].drawn_back is None and risen > least and not contacts.is_stuck(leg)
+    then = float(state.ground_height[leg]) - max(state.felt[leg].speed, 0.0) * contacts.age
+    return state.felt[leg].drawn_back is None and then - float(state.start_height[leg]) > _LIFTED
 
 
 def _collides_again(state: GaitState, leg: int, *, side: bool, stopped: bool) -> bool:
