@@ -571,11 +571,15 @@ def test_a_robot_that_is_picked_up_or_has_fallen_stops_and_goes_on_once_it_stand
     assert walked(2.0)[1] == []
     walked(1.5, held=True)
     lowest = controller.feet[:, 2].min()
+    # All feet are down and at one height, to be put on the ground together.
+    assert controller._tick.gait.down.all()
+    assert np.ptp(controller.feet[:, 2]) < 1e-3
+    assert abs(lowest) < 0.01
     way, why = walked(3.0, held=True)
     assert way == pytest.approx(0.0, abs=1e-6)
     assert why == ["ground: no foot touches it: the robot is in the air"]
     # The feet do not search any more.
-    assert controller.feet[:, 2].min() == pytest.approx(lowest, abs=1e-6)
+    assert controller.feet[:, 2].min() == pytest.approx(lowest, abs=1e-5)
     walked(1.0)
     way, why = walked(3.0)
     assert way > 0.25

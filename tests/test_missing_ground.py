@@ -13,8 +13,6 @@ from tarsus.control.terrain.foot_contacts import FootContacts
 from tarsus.control.terrain.ground_contact import met_ground
 from tarsus.control.terrain.ground_map import GroundMap
 from tarsus.control.terrain.missing_ground import MissingGround
-from tarsus.control.terrain.reach import Reach
-from tarsus.control.terrain.roughness import Roughness
 from tarsus.control.walk.felt_feet import FeltFoot
 from tarsus.control.walk.step_timing import StepTiming
 from tarsus.simulation import SimulatedPlant, terrain
@@ -500,8 +498,15 @@ def test_a_robot_that_tips_towards_a_foot_goes_back_at_once_but_not_far():
     assert missing.back == 0
 
 
+def test_a_robot_none_of_whose_feet_stands_is_lifted_and_does_not_tip():
+    deep = [(leg, 0.03, True, True) for leg in range(6)]
+    assert stepped(MissingGround(NAMES), deep, stands=(False,) * 6).tips == 0
+    assert stepped(MissingGround(NAMES), deep, stands=(False, True, *[False] * 4)).tips != 0
+
+
+@pytest.mark.parametrize(("tips", "in_air"), [(True, False), (False, True)])
 @pytest.mark.parametrize(("phase", "due"), [(0.2, True), (0.8, False)])
-def test_feet_put_down_early_because_the_robot_tips_are_still_due(phase, due):
+def test_feet_put_down_early_because_the_robot_tips_or_is_lifted_are_still_due(phase, due, tips, in_air):
     setup, rest = setup_of("strider"), rest_of("strider")
     timing, lifted = StepTiming.of(setup.gait, 1.0), np.array([True, False] * 3)
     state = begun(setup, rest)
@@ -512,9 +517,9 @@ def test_feet_put_down_early_because_the_robot_tips_are_still_due(phase, due):
         felt=[FeltFoot()] * 6,
     )
     contacts, missing = FootContacts(6), MissingGround(NAMES)
-    missing.tips = 1 + 0j
-    known, reach = (contacts, GroundMap(), Roughness(tarsus.GroundAdaptation()), missing), Reach(setup.robot)
-    after, landed = met_ground(state, *known, stopped=[], reach=reach, timing=timing, pace=1.0)
+    missing.tips = complex(tips)
+    known = contacts, GroundMap(), tarsus.WalkController(setup.robot)._walk.ground.body, missing
+    after, landed = met_ground(state, *known, stopped=[], timing=timing, pace=1.0, in_air=in_air)
     assert sorted(landed) == [0, 2, 4]
     assert after.down.all()
     assert timing.due(after, 0.0) == [on and due for on in lifted]

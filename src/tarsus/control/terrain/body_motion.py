@@ -127,8 +127,11 @@ class BodyMotion:
         (places, down), contacts, dt, self.since = feet, self._contacts, self.since, 0.0
         over = (state.ground_height - state.elevation).tolist()
         bears = [leg for leg, on in enumerate(down) if on and contacts.touches(leg)]
-        self._ground.step([(places[leg], over[leg]) for leg in bears], self.tilt, state, dt, drift=self.drift)
         self.reach.update(state.posture.value, rest, twist, timing.stance_time)
+        if not bears:
+            self.rates, self.drift = PostureRates(0.0, (0.0, 0.0)), 0j
+            return
+        self._ground.step([(places[leg], over[leg]) for leg in bears], self.tilt, state, dt, drift=self.drift)
         if self.tilt is not None:
             level = self._ground.plane.levelled(self.tilt)
             self.slope.step(level, complex(*twist[:2].tolist()))

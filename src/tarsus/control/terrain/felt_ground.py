@@ -27,6 +27,7 @@ from tarsus.control.walk.felt_feet import FeltFoot, FeltInputs, GroundUnder
 from tarsus.control.walk.ground_pose import body_posture
 from tarsus.control.walk.state import GaitState
 from tarsus.control.walk.step_timing import StepTiming
+from tarsus.gait.foot_plane import FootPlane
 from tarsus.gait.stance.stance_geometry import SWING_HEIGHT
 from tarsus.kinematics.mass import centre_of_mass
 from tarsus.robot.robot import Robot
@@ -126,7 +127,7 @@ class FeltGround:
         valid = self.measured = self._validator.validate(readings, dt)
         down, self._commanded = state.down.tolist(), angles
         stopped = self._swings.step(angles[:, 0].tolist(), valid.joint_angles, dt, down)
-        doubted, phase = self.contacts.open_legs, state.swing_phase
+        doubted, phase = [*filter(self.contacts.is_open, range(len(down)))], state.swing_phase
         measured = self._loads.contacts(valid, angles, dt, down=state.down, phase=phase, doubted=doubted)
         if not state.felt:
             if measured is None and valid.attitude is None:
@@ -151,8 +152,8 @@ class FeltGround:
             self.offsets = self._loads.offsets(forces, dt, feet=feet, stands=down)
         if self.missing.stranded and all(down):
             state = timing.with_first_lift(state, self.missing.stranded[0])
-        known, reach = (self.contacts, self.ground, self.body.roughness, self.missing), self.body.reach
-        return met_ground(state, *known, stopped=stopped, reach=reach, timing=timing, pace=self.support.pace)
+        known, in_air = (self.contacts, self.ground, self.body, self.missing), self.condition.in_air
+        return met_ground(state, *known, stopped=stopped, timing=timing, pace=self.support.pace, in_air=in_air)
 
     def inputs(
         self,
@@ -205,22 +206,20 @@ class FeltGround:
             self._under(state, leg, place, down=down[leg]) if steps[leg] and not stays[leg] else None
             for leg, place in enumerate(places)
         ]
-        inputs = self._feet_inputs(state, under, stands, steps, max(*footholds.placement_radii, 1e-6))
+        inputs = self._feet_inputs(state, (under, stands, steps), max(*footholds.placement_radii, 1e-6))
         # As long as all is as planned, it stays: yielding feet and a walk that slows down are looked at in each tick.
         self._inputs = None if self._loads.compliant or self.support.pace < 1.0 else inputs
         return inputs
 
     def _feet_inputs(
-        self, state: GaitState, under: list[GroundUnder | None], stands: list[bool], steps: list[bool], radius: float
+        self, state: GaitState, feet: tuple[list[GroundUnder | None], list[bool], list[bool]], radius: float
     ) -> FeltInputs:
         """Return what the feet are given; radius is the greatest distance at which one may be put down [m]."""
         body, far = self.body, max(2 * self.body.reach.stroke / radius - 1, 0.0)
         # The body levels about its middle, which its feet pass below.
         passing = complex(-body.rates.turn[1], body.rates.turn[0]) * float(state.posture.value[2])
         return FeltInputs(
-            under,
-            stands,
-            steps,
+            *feet,
             depth=_DEPTH_SHARE * body.roughness.value,
             climb=body.rates.climb,
             turn=body.rates.turn,
@@ -232,6 +231,7 @@ class FeltGround:
             lowering=_GENTLE if self._still and self.support.held and state.down.all() else self._loads.fastest_descent,
             late=self.contacts.age,
             beside=self.ground.beside,
+            in_air=self.condition.in_air,
         )
 
     def _find_missing_ground(
@@ -250,15 +250,15 @@ class FeltGround:
         missing.sunk, missing.twist = contacts.sunk, state.twist.value.tolist()
         if self.condition.carried:
             missing.forget()
+            self.ground.plane = FootPlane()
         on_ground = enumerate(contacts.standing)
         stands = [(self.condition.in_air or on) and not missing.steps_back(leg, places[leg]) for leg, on in on_ground]
         missing.sees(self.ground.holes, rest)
         waits = self.condition.carried or (self._rests and self.support.held and near == down)
         searches = [] if waits else searching_feet(state, contacts, self.ground, places, down=down, stands=stands)
-        legs = [search[0] for search in searches]
+        legs, height = [search[0] for search in searches], float(state.posture.value[2])
         missing.raised = self.body.odometry.raised(legs, self.measured.joint_angles, self._commanded)
         on, radii = [on and stand for on, stand in zip(down, stands, strict=True)], footholds.placement_radii
-        height = float(state.posture.value[2])
         missing.step(searches, places, on, dt, centre=centre, rest=rest, radii=radii, height=height, roughness=rough)
         # With the body higher and feet drawn in, legs are steeper beside an edge.
         self.body.roughness.landed(missing.edge)

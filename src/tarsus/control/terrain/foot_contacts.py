@@ -165,11 +165,6 @@ class FootContacts:
         certain = self.estimator.certain and self.estimator.touching == down
         return certain and readings is not None and list(readings) == down
 
-    @property
-    def open_legs(self) -> list[int]:
-        """Legs of which `is_open` is true."""
-        return [leg for leg, evidence in enumerate(self._evidence) if evidence > _OPEN_AFTER]
-
     def is_open(self, leg: int) -> bool:
         """Return whether a contact is missing that other feet tell of: that of a switch that stays open."""
         return self._evidence[leg] > _OPEN_AFTER

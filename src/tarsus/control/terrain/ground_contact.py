@@ -6,11 +6,11 @@ import cmath
 import math
 from typing import TYPE_CHECKING, Any
 
+from tarsus.control.terrain.body_motion import BodyMotion
 from tarsus.control.terrain.foot_contacts import FootContacts
 from tarsus.control.terrain.ground_map import GroundMap
 from tarsus.control.terrain.missing_ground import MissingGround, depth_allowance
 from tarsus.control.terrain.reach import Reach
-from tarsus.control.terrain.roughness import Roughness
 from tarsus.control.walk.felt_feet import FeltFoot
 from tarsus.control.walk.state import GaitState
 from tarsus.control.walk.step_timing import StepTiming
@@ -43,13 +43,13 @@ def met_ground(
     state: GaitState,
     contacts: FootContacts,
     ground: GroundMap,
-    roughness: Roughness,
+    body: BodyMotion,
     missing: MissingGround,
     *,
     stopped: Sequence[int],
-    reach: Reach,
     timing: StepTiming,
     pace: float,
+    in_air: bool,
 ) -> tuple[GaitState, list[int]]:
     """Return the gait state in which feet that meet ground have landed or rise again, and which have landed.
 
@@ -57,16 +57,16 @@ def met_ground(
     ----------
     state, contacts : GaitState, FootContacts
         The gait state; the contacts.
-    ground, roughness : GroundMap, Roughness
-        Where ground is expected; takes note of footholds and collisions.
+    ground, body : GroundMap, BodyMotion
+        Where ground is expected; its roughness takes note of footholds and collisions.
     missing, stopped : MissingGround, sequence of int
         Decides where feet that are stopped again try next; legs that are stopped on their way.
-    reach, timing : Reach, StepTiming
-        How high legs reach; the gait and its frequency.
-    pace : float
-        Rate of the steps, 0 to 1.
+    timing : StepTiming
+        The gait and its frequency.
+    pace, in_air : float, bool
+        Rate of the steps, 0 to 1; whether the robot is in the air.
     """
-    landed, elevation = list[int](), state.elevation
+    reach, landed, elevation = body.reach, list[int](), state.elevation
     turn = cmath.exp(-1j * state.yaw)
     places = ((state.foot - state.origin) * turn).tolist()
     for leg, (down, phase) in enumerate(zip(state.down.tolist(), state.swing_phase.tolist(), strict=True)):
@@ -91,17 +91,17 @@ def met_ground(
             expected = ground.at(places[leg])
             if tells or over <= expected + _ROUNDING:
                 if tells:
-                    roughness.landed(over - expected)
+                    body.roughness.landed(over - expected)
                 state = _landed(state, leg, timing, pace)
                 landed.append(leg)
         elif ((touches and contacts.lifted[leg]) or leg in stopped) and not leaves and _collides(state, leg, contacts):
-            roughness.collided()
+            body.roughness.collided()
             state = _rising_again(state, leg, _highest(state, leg, reach), timing)
-    return _put_down(state, landed, timing, pace) if missing.tips else (state, landed)
+    return _put_down(state, landed, timing, pace) if missing.tips or in_air else (state, landed)
 
 
 def _put_down(state: GaitState, landed: list[int], timing: StepTiming, pace: float) -> tuple[GaitState, list[int]]:
-    """Return the state, and which feet have landed, with all feet put down: the robot tips where one has no ground."""
+    """Return the state, and which feet have landed, with all feet put down: the robot tips, or is in the air."""
     swings, number = [leg for leg, on in enumerate(state.down.tolist()) if not on], state.step_number.copy()
     # Feet that are far from their footholds are still due to lift off.
     number[(state.swing_phase < _LANDING) & ~state.down] -= 1

@@ -160,7 +160,9 @@ class MissingGround:
             self.stops.pop(leg, None)
         self.pace, self.back, self._slows, self.edge = 1.0 - self.refuses, 0j, "", 0.0
         rough, self.tips, before, self._held = depth_allowance(roughness), 0j, self._held, {}
-        held = not searches or holds([foot for foot, on in zip(feet, stands, strict=True) if on], centre)
+        standing = [foot for foot, on in zip(feet, stands, strict=True) if on]
+        # A robot none of whose feet stands is being lifted.
+        held = not (searches and standing) or holds(standing, centre)
         for leg, depth, falls, lasts in searches:
             way = self._to_edge(feet[leg], rest[leg])
             slowest = 0.0 if falls else _SLOWEST

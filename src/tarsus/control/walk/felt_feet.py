@@ -97,6 +97,8 @@ class FeltInputs(NamedTuple):
         Time from a foot's contact until that is known [s].
     beside : mapping of int to complex
         How far from the foothold of its step a foot is put down, by leg, in the heading frame [m].
+    in_air : bool
+        Whether the robot is in the air: all feet go to one height, to be put down together.
     """
 
     under: list[GroundUnder | None]
@@ -113,3 +115,4 @@ class FeltInputs(NamedTuple):
     lowering: float
     late: float
     beside: Mapping[int, complex]
+    in_air: bool = False

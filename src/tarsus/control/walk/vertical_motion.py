@@ -75,6 +75,8 @@ def moved_vertically(state: GaitState, inputs: StepInputs, dt: float) -> GaitSta
             before, _, top, _, slide, _ = foot
             place = places[leg]
             wanted = -((place - origin) * across).real
+            if felt.in_air:
+                wanted = min(max((state.elevation - height) / _SEARCH_TIME, -_SEARCHING), _SEARCHING)
             if stands:
                 place += (turning * (height - body) - drift) * dt
                 speed = before + min(max(wanted - before, -step), step)
