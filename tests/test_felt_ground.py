@@ -287,13 +287,24 @@ def test_contacts_come_from_switches_or_else_from_load_cells():
     switched = pressed._replace(contacts=(False,) * 6)
     assert loads.contacts(switched, angles, 0.01, **gait) == (False,) * 6
     driven = ValidReadings(torques=tuple((0.0, 1.0, 0.5) for _ in range(6)))
-    assert loads.forces(driven, angles) is not None
     # Joint torques do not tell contacts: legs press against each other, and a swinging leg is accelerated.
     assert loads.contacts(driven, angles, 0.01, **gait) is None
     assert loads.contacts(ValidReadings(), angles, 0.01, **gait) is None
-    assert loads.offsets(None, 0.01, feet=[(0.0, 0.0)], stands=[True]) is None
-    soft = FootLoads(STRIDER, Admittance(mass=1.0, damping=400.0, stiffness=400.0))
-    np.testing.assert_array_equal(soft.offsets(None, 0.01, feet=[(0.0, 0.0)] * 6, stands=[True] * 6), np.zeros(6))
+
+
+def test_compliant_feet_yield_to_measured_forces_or_else_to_joint_torques():
+    angles, stand = WalkController(STRIDER).angles, {"feet": np.array(FEET), "stands": [True] * 6}
+    pressed = ValidReadings(forces=((0.0, 0.0, 50.0), *((0.0, 0.0, 0.1),) * 5))
+    driven = ValidReadings(torques=tuple((0.0, 1.0, 0.5) for _ in range(6)))
+    assert FootLoads(STRIDER, None).offsets(pressed, angles, 0.01, **stand) is None
+
+    def offsets(readings):
+        soft = FootLoads(STRIDER, Admittance(mass=1.0, damping=400.0, stiffness=400.0))
+        return soft.offsets(readings, angles, 0.01, **stand)
+
+    np.testing.assert_array_equal(offsets(ValidReadings()), np.zeros(6))
+    assert offsets(pressed)[0] > 0 > offsets(pressed)[1:].max()
+    assert np.abs(offsets(driven)).min() > 0
 
 
 def test_a_switch_that_stays_open_is_told_by_the_feet_that_its_foot_lifts_off():

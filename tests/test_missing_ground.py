@@ -1,5 +1,7 @@
 """Holes and obstacles: feet step back or try again, and the robot stops and walks away."""
 
+from dataclasses import replace
+
 import mujoco
 import numpy as np
 import pytest
@@ -55,6 +57,36 @@ def test_the_walk_slows_down_the_deeper_a_foot_searches_and_less_on_rough_ground
     assert pace(0.03, roughness=0.02) == 1.0
     assert not stepped(MissingGround(NAMES), [(0, 0.05, True, True)]).places
     assert stepped(MissingGround(NAMES), [(0, 0.05, False, False)]).places
+
+
+def test_holes_and_edges_are_smaller_for_short_legs():
+    def found(scale):
+        missing = stepped(MissingGround(NAMES, scale=scale), [(0, 0.015 * scale, True, True)])
+        pace = missing.pace
+        stepped(missing, [(0, 0.08, True, True)], centre=0.1 + 0j)
+        return pace, missing.back
+
+    (pace, back), (short_pace, short_back) = found(1.0), found(0.5)
+    assert pace == pytest.approx(short_pace)
+    assert short_back == pytest.approx(0.5 * back)
+    assert back.real < 0 < pace < 1
+
+
+def halved(robot):
+    """Return a robot of half the size and an eighth of the masses."""
+    lengths = ("mount_position", "coxa", "femur", "tibia", "foot_radius", "link_com", "body_com", "body_size")
+    gait = replace(robot.gait, body_height=robot.gait.body_height / 2, swing_height=robot.gait.swing_height / 2)
+    masses = {name: getattr(robot, name) / 8 for name in ("link_mass", "body_mass")}
+    return replace(robot, gait=gait, **masses, **{name: getattr(robot, name) / 2 for name in lengths})
+
+
+def test_a_robot_with_short_legs_stops_at_an_edge_and_walks_away_from_it():
+    walk = Walk(terrain.Gaps(start=0.255, width=0.3, depth=0.3, count=1), robot=halved(tarsus.load_robot("strider")))
+    stopped = walk.go(0.064, 7.0)
+    assert 0.05 < stopped < 0.15
+    assert walk.tilt < np.radians(10)
+    assert walk.named
+    assert walk.go(-0.064, 3.0) < stopped - 0.12
 
 
 def test_a_walk_that_slows_down_says_for_which_foot_and_why():
@@ -321,10 +353,10 @@ def test_a_twist_into_a_hole_that_is_seen_is_refused_before_a_foot_is_over_it():
 
 
 class Walk:
-    """A strider in physics."""
+    """A robot in physics, a strider if no other one is given."""
 
-    def __init__(self, ground, sensors="ideal"):
-        robot = tarsus.load_robot("strider")
+    def __init__(self, ground, sensors="ideal", robot=None):
+        robot = robot or tarsus.load_robot("strider")
         self.plant = SimulatedPlant(robot, terrain=ground, sensors=sensors)
         self.controller = tarsus.RobotController(robot)
         self.output = self.controller.output

@@ -15,7 +15,7 @@ from tarsus.load.foot_force import FootForceEstimator, balanced_forces
 from tarsus.robot.robot import Robot
 
 if TYPE_CHECKING:
-    from jaxtyping import Bool, Float
+    from jaxtyping import Bool, Complex, Float
 
 __all__ = ["FootLoads"]
 
@@ -60,20 +60,6 @@ class FootLoads:
     def fastest_descent(self) -> float:
         """Greatest speed with which feet may go down in search of the ground [m/s]."""
         return _ESTIMATED_DESCENT if self.estimated - self.open else _DESCENT
-
-    def forces(self, valid: ValidReadings, angles: Float[np.ndarray, "legs 3"]) -> Sequence[Vector | None] | None:
-        """Return the forces of the ground on the feet [N], measured or from joint torques; None where unknown.
-
-        Parameters
-        ----------
-        valid : ValidReadings
-            The readings.
-        angles : array, shape (legs, 3)
-            Joint angles [rad].
-        """
-        if valid.forces is None and valid.torques is not None and self._torques is not None:
-            return self._torques.forces(angles.tolist(), valid.torques)
-        return valid.forces
 
     def contacts(
         self,
@@ -123,31 +109,37 @@ class FootLoads:
 
     def offsets(
         self,
-        forces: Sequence[Vector | None] | None,
+        valid: ValidReadings,
+        angles: Float[np.ndarray, "legs 3"],
         dt: float,
         *,
-        feet: Sequence[Sequence[float]],
+        feet: Complex[np.ndarray, "legs"],
         stands: Sequence[bool],
     ) -> Float[np.ndarray, "legs"] | None:
-        """Return the upward offsets of compliant feet [m]; None of stiff ones.
+        """Return the upward offsets of compliant feet by measured forces, or by joint torques [m]; None of stiff ones.
 
         Parameters
         ----------
-        forces : sequence of ((x, y, z) or None), or None
-            Forces on the feet [N].
+        valid : ValidReadings
+            The readings.
+        angles : array, shape (legs, 3)
+            Joint angles [rad].
         dt : float
             Length of the tick [s].
-        feet : sequence of (x, y)
+        feet : complex array, shape (legs,)
             The feet [m].
         stands : sequence of bool
             Which feet stand.
         """
         if self._filter is None:
             return None
+        forces: Sequence[Vector | None] | None = valid.forces
+        if forces is None and valid.torques is not None and self._torques is not None:
+            forces = self._torques.forces(angles.tolist(), valid.torques)
         if forces is None or not self._weight:
             return np.array(self._filter.step((None,) * len(feet), dt))
-        middle = [sum(foot[axis] for foot in feet) / len(feet) for axis in range(2)]
-        expected = balanced_forces([[*foot, 0.0] for foot in feet], list(stands), middle, self._weight)
+        places = [[foot.real, foot.imag, 0.0] for foot in (feet - feet.mean()).tolist()]
+        expected = balanced_forces(places, list(stands), [0.0, 0.0], self._weight)
         errors = [
             force[2] - float(share) if force is not None and down else None
             for force, share, down in zip(forces, expected, stands, strict=True)

@@ -77,8 +77,9 @@ class BodyMotion:
         levelling: Levelling | None,
         adaptation: GroundAdaptation,
     ) -> None:
-        self._contacts, self._ground, self._posture = contacts, ground, PostureFeedback(levelling)
-        self.reach, self.odometry, self.roughness = Reach(robot), LegOdometry(robot), Roughness(adaptation)
+        self._contacts, self._ground, self.reach, self.odometry = contacts, ground, Reach(robot), LegOdometry(robot)
+        scale = self.reach.scale
+        self._posture, self.roughness = PostureFeedback(levelling, scale=scale), Roughness(adaptation, scale=scale)
         self.slope, self.stance, self.stopped = SlopeLimit(adaptation.friction), SlopeStance(robot), StoppedBody(robot)
         self.rates, self.drift, self.lowered = PostureRates(0.0, (0.0, 0.0)), 0j, 0.0
         self.tilt: tuple[float, float] | None = None

@@ -91,13 +91,14 @@ class FeltGround:
         adaptation: GroundAdaptation,
         admittance: Admittance | None,
     ) -> None:
-        self.contacts, self.ground, self.missing = FootContacts(robot.legs), GroundMap(), MissingGround(robot.leg_names)
+        self.contacts, self.ground = FootContacts(robot.legs), GroundMap()
         self.body = BodyMotion(robot, self.contacts, self.ground, levelling=levelling, adaptation=adaptation)
+        self.missing = MissingGround(robot.leg_names, scale=self.body.reach.scale)
         self.measured, self.support, self.condition = ValidReadings(), Support(), BodyCondition()
         self.offsets: Float[np.ndarray, "legs"] | None = None
         self._validator, self._loads = ReadingsValidator(robot), FootLoads(robot, admittance)
-        self._commanded, self._still = angles, True
-        self._swings, self._centre = SwingMonitor(), complex(*centre_of_mass(robot, angles)[:2].tolist())
+        self._commanded, self._still, self._swings = angles, True, SwingMonitor()
+        self._centre = complex(*centre_of_mass(robot, angles)[:2].tolist())
         # What feet are given while all is as planned; ticks and times since contacts and support were looked at.
         self._inputs: FeltInputs | None = None
         self._given, self._rests, self._ticks, self._unread, self._idle = (list[int](), True), True, 0, 0.0, 0.0
@@ -147,9 +148,7 @@ class FeltGround:
         estimated, age = self._loads.estimated, max(valid.contact_age, self._swings.lag - _USUAL_LAG)
         self.contacts.step(measured, down, dt, age=age, count=ticks, leaving=leaving, rests=rests, estimated=estimated)
         self.condition.step([*map(self.contacts.touches, range(len(down)))], valid.attitude, dt, held=self.support.held)
-        if self._loads.compliant:
-            forces, feet = self._loads.forces(valid, angles), [(foot.real, foot.imag) for foot in state.foot.tolist()]
-            self.offsets = self._loads.offsets(forces, dt, feet=feet, stands=down)
+        self.offsets = self._loads.offsets(valid, angles, dt, feet=state.foot, stands=down)
         if self.missing.stranded and all(down):
             state = timing.with_first_lift(state, self.missing.stranded[0])
         known, in_air = (self.contacts, self.ground, self.body, self.missing), self.condition.in_air
@@ -200,12 +199,11 @@ class FeltGround:
         stands = self._find_missing_ground(state, places, down, centre, footholds, dt)
         self._decide_on_support(places, down, due, centre, dt=dt, swing_time=timing.swing_time)
         self.body.roughness.decay(0.0 if standing else dt * timing.frequency)
-        lifted = zip(down, stands, due or [False] * len(down), strict=True)
-        stays = [on and stand and not lift for on, stand, lift in lifted]
-        under = [
-            self._under(state, leg, place, down=down[leg]) if steps[leg] and not stays[leg] else None
-            for leg, place in enumerate(places)
-        ]
+        lifts = due or [False] * len(down)
+        under: list[GroundUnder | None] = [None] * len(down)
+        for leg, place in enumerate(places):
+            if steps[leg] and (lifts[leg] or not (down[leg] and stands[leg])):
+                under[leg] = self._under(state, leg, place, down=down[leg])
         inputs = self._feet_inputs(state, (under, stands, steps), max(*footholds.placement_radii, 1e-6))
         # As long as all is as planned, it stays: yielding feet and a walk that slows down are looked at in each tick.
         self._inputs = None if self._loads.compliant or self.support.pace < 1.0 else inputs
@@ -216,6 +214,7 @@ class FeltGround:
     ) -> FeltInputs:
         """Return what the feet are given; radius is the greatest distance at which one may be put down [m]."""
         body, far = self.body, max(2 * self.body.reach.stroke / radius - 1, 0.0)
+        gently = self._still and self.support.held and bool(state.down.all())
         # The body levels about its middle, which its feet pass below.
         passing = complex(-body.rates.turn[1], body.rates.turn[0]) * float(state.posture.value[2])
         return FeltInputs(
@@ -228,7 +227,8 @@ class FeltGround:
             travel=_SLOW_TRAVEL + (_FAST_TRAVEL - _SLOW_TRAVEL) * far,
             pace=self.support.pace,
             swing_height=float(state.posture.value[SWING_HEIGHT]) + body.roughness.swing_rise,
-            lowering=_GENTLE if self._still and self.support.held and state.down.all() else self._loads.fastest_descent,
+            lowering=body.reach.scale * (_GENTLE if gently else self._loads.fastest_descent),
+            scale=body.reach.scale,
             late=self.contacts.age,
             beside=self.ground.beside,
             in_air=self.condition.in_air,

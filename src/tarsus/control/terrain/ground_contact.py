@@ -96,7 +96,7 @@ def met_ground(
                 landed.append(leg)
         elif ((touches and contacts.lifted[leg]) or leg in stopped) and not leaves and _collides(state, leg, contacts):
             body.roughness.collided()
-            state = _rising_again(state, leg, _highest(state, leg, reach), timing)
+            state = _rising_again(state, leg, _highest(state, leg, reach), timing, scale=reach.scale)
     return _put_down(state, landed, timing, pace) if missing.tips or in_air else (state, landed)
 
 
@@ -140,7 +140,7 @@ def _collides_again(state: GaitState, leg: int, *, side: bool, stopped: bool) ->
     return stopped if abs(foot - start) > _DRAWN_BACK + _PAST else side
 
 
-def _rising_again(state: GaitState, leg: int, highest: float, timing: StepTiming) -> GaitState:
+def _rising_again(state: GaitState, leg: int, highest: float, timing: StepTiming, *, scale: float) -> GaitState:
     """Return the state with a foot that draws back from an obstacle and rises higher."""
     height, foot = float(state.ground_height[leg]), complex(state.foot[leg])
     top = state.felt[leg].top
@@ -148,9 +148,9 @@ def _rising_again(state: GaitState, leg: int, highest: float, timing: StepTiming
     felt = _with(
         state.felt,
         leg,
-        top=min((height if math.isnan(top) else max(top, height)) + _HIGHER, max(highest, height)),
+        top=min((height if math.isnan(top) else max(top, height)) + scale * _HIGHER, max(highest, height)),
         top_phase=min(float(state.swing_phase[leg]) + _RISING / timing.swing_time, 1.0),
-        drawn_back=foot - _DRAWN_BACK * way / max(abs(way), 1e-9),
+        drawn_back=foot - scale * _DRAWN_BACK * way / max(abs(way), 1e-9),
     )
     return state._replace(felt=felt)
 
@@ -166,7 +166,7 @@ def _trying_again(state: GaitState, leg: int, missing: MissingGround, reach: Rea
     """Return the state with a foot that is stopped again: it is drawn back, and tries again while the walk stands."""
     height, turn = float(state.ground_height[leg]), cmath.exp(1j * state.yaw)
     foot, goal = ((complex(places[leg]) - state.origin) / turn for places in (state.foot, state.foothold))
-    top = min(height + _HIGHER, max(_highest(state, leg, reach), height))
+    top = min(height + reach.scale * _HIGHER, max(_highest(state, leg, reach), height))
     back = missing.stopped(leg, foot, goal)
     slide = _DRAWS_BACK * turn * back / max(abs(back), 1e-9)
     return after._replace(felt=_with(after.felt, leg, speed=0.0, acceleration=0.0, top=top, slide=slide))

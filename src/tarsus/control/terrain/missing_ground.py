@@ -48,8 +48,8 @@ class MissingGround:
 
     Parameters
     ----------
-    names : sequence of str
-        Names of the legs.
+    names, scale : sequence of str, float
+        Names of the legs; by how much lengths and speeds are smaller than given, on short legs, 0 to 1.
 
     Attributes
     ----------
@@ -75,7 +75,8 @@ class MissingGround:
         Legs whose feet have found no ground at any place, of a robot that is to leave the edge: they step first.
     """
 
-    def __init__(self, names: Sequence[str]) -> None:
+    def __init__(self, names: Sequence[str], *, scale: float = 1.0) -> None:
+        self._scale = scale
         self.sunk: Sequence[float] = [0.0] * len(names)
         self.raised: Mapping[int, float] = {}
         self.edge, self._held = 0.0, dict[int, float]()
@@ -159,44 +160,46 @@ class MissingGround:
             self._tries[leg] = 0
             self.stops.pop(leg, None)
         self.pace, self.back, self._slows, self.edge = 1.0 - self.refuses, 0j, "", 0.0
-        rough, self.tips, before, self._held = depth_allowance(roughness), 0j, self._held, {}
+        rough, self.tips, before, self._held = depth_allowance(roughness, self._scale), 0j, self._held, {}
+        slows, deep = rough + self._scale * _SLOWS, rough + self._scale * _STANDS
         standing = [foot for foot, on in zip(feet, stands, strict=True) if on]
         # A robot none of whose feet stands is being lifted.
         held = not (searches and standing) or holds(standing, centre)
         for leg, depth, falls, lasts in searches:
             way = self._to_edge(feet[leg], rest[leg])
             slowest = 0.0 if falls else _SLOWEST
-            pace = max(1 - (depth - rough - _SLOWS) / (_STANDS - _SLOWS), slowest)
+            pace = max(1 - (depth - slows) / (deep - slows), slowest)
             self.pace, self._slows = min((self.pace, self._slows), (pace, self._names[leg]))
             # At another place, a foot does not search for long at the end of its reach.
             raised = self.raised.get(leg, 0.0)
             held_up = raised > _HELD_UP and depth - raised < _STEP * height
             self._held[leg] = (before.get(leg, 0.0) + dt) * (held_up and not falls)
             long = not lasts or self._held[leg] > _HELD
-            hangs = not falls and depth > _STANDS + rough if leg in self.places else long
+            hangs = not falls and depth > deep if leg in self.places else long
             missing = depth > _DEEP * height + rough or hangs
-            sunk, deep = self.sunk[leg], _STANDS + rough
+            sunk = self.sunk[leg]
             self._tip(way, tips=sunk > deep or (not held and sunk > -_LIFTS and depth + max(sunk, 0.0) > deep))
             if missing and not (self.steps_back(leg, feet[leg]) or self.gives_up(leg)):
                 self.edge = depth if held_up else self.edge
                 self._step_back(leg, depth, way, rest[leg], radii[leg], sure=max(roughness, self.edge) <= _UNSURE)
         self._since = 0.0 if self.places else self._since + dt
+        speed, backed = self._scale * _SPEED, self._backed < self._scale * _BACKS
         if not self.places:
             # A robot that tips where a foot sinks goes back at once.
-            self.back = -_SPEED * self.tips * (self._backed < _BACKS)
-            self._backed = (self._backed + _SPEED * dt) * bool(self.tips)
+            self.back = -speed * self.tips * backed
+            self._backed = (self._backed + speed * dt) * bool(self.tips)
             if self.refuses and self._again < _AGAIN and self._since > _WAITS:
                 self._again, self._way = self._again + 1, 0j
             elif not self.refuses and self._since > _FORGETS:
                 self._again, self._obstacle = 0, 0j
             return
         self.pace, self._slows, turn = _SLOWEST * bool(self.stranded), "", self._way.conjugate()
-        edge = min((feet[leg] * turn).real for leg in self.places) - _FIRM
+        edge = min((feet[leg] * turn).real for leg in self.places) - self._scale * _FIRM
         firm = [foot for foot, on in zip(feet, stands, strict=True) if on and (foot * turn).real < edge]
-        enough = max(self._tries) < len(_BACK) and holds(firm, centre + _MARGIN * self._way)
-        if not (self.stops or enough) and self._backed < _BACKS:
-            self.back = -_SPEED * self._way
-            self._backed += _SPEED * dt
+        enough = max(self._tries) < len(_BACK) and holds(firm, centre + self._scale * _MARGIN * self._way)
+        if backed and not (self.stops or enough):
+            self.back = -speed * self._way
+            self._backed += speed * dt
 
     def _step_back(self, leg: int, depth: float, way: complex, rest: complex, radius: float, *, sure: bool) -> None:
         """Choose a place behind its rest foothold for a foot on this way that finds no ground at this depth [m]."""
@@ -225,7 +228,7 @@ class MissingGround:
         """Decide where a foot tries next that is stopped here on its way to a goal; return the way back [m]."""
         stops, start, goal = self.stops.get(leg, (1, foot, goal))
         self.stops[leg], way = (stops + 1, start, goal), (goal - start) / abs(goal - start)
-        start, self.places[leg] = start - _BEFORE * way, goal
+        start, self.places[leg] = start - self._scale * _BEFORE * way, goal
         self._beside.pop(leg, None)
         self._cause = self._names[leg], "an obstacle stops the foot"
         if stops >= _STOPS + _SIDES:
@@ -234,7 +237,7 @@ class MissingGround:
             self._cause = self._names[leg], "an obstacle stops the foot that is higher than the leg steps"
         elif stops >= _STOPS:
             # Towards the body first: there the leg is steeper.
-            side = math.copysign(_BESIDE, -(start * way.conjugate()).imag * (-1) ** (stops - _STOPS))
+            side = math.copysign(self._scale * _BESIDE, -(start * way.conjugate()).imag * (-1) ** (stops - _STOPS))
             self.places[leg], self._beside[leg] = start + 1j * side * way, goal + 1j * side * way
         return start - foot
 
@@ -274,15 +277,15 @@ class MissingGround:
         return grant
 
 
-def depth_allowance(roughness: float) -> float:
+def depth_allowance(roughness: float, scale: float = 1.0) -> float:
     """Return how much deeper ground may be where the ground is rough [m].
 
     Parameters
     ----------
-    roughness : float
-        How far ground is off the expected one [m].
+    roughness, scale : float
+        How far ground is off the expected one [m]; by how much lengths are smaller than given, on short legs, 0 to 1.
     """
-    return min(_ROUGH * roughness, _ROUGHEST)
+    return min(_ROUGH * roughness, scale * _ROUGHEST)
 
 
 def _way(off: complex, rest: complex) -> complex:

@@ -47,8 +47,9 @@ class PostureFeedback:
 
     Parameters
     ----------
-    levelling : "level", "between", "follow" or None
-        What to keep; None for no use of the measured attitude.
+    levelling, scale : "level", "between", "follow" or None, float
+        What to keep; None for no use of the measured attitude. By how much speeds are smaller than given, on short
+        legs, 0 to 1.
 
     Attributes
     ----------
@@ -60,7 +61,8 @@ class PostureFeedback:
         Share of the slope that the body follows because the legs do not reach otherwise, 0 to 1.
     """
 
-    def __init__(self, levelling: Levelling | None) -> None:
+    def __init__(self, levelling: Levelling | None, *, scale: float = 1.0) -> None:
+        self._scale = scale
         self._share = None if levelling is None else LEVELLING_SHARES[levelling]
         self.raised = self.short = self.given_way = 0.0
         self._rests = False
@@ -96,7 +98,8 @@ class PostureFeedback:
         self.short = max(wanted - most, least - wanted, 0.0)
         steepest = max(*map(abs, (*rises[0], *rises[1])), 1e-6)
         self.given_way = max(1 - share, min(self.short / steepest, 1.0))
-        self.raised += min(max(wanted - self.raised, -_LOWERING * dt), _RAISING * dt)
+        most = self._scale * dt
+        self.raised += min(max(wanted - self.raised, -_LOWERING * most), _RAISING * most)
 
     def rates(
         self,
@@ -124,7 +127,8 @@ class PostureFeedback:
         """
         if not feet:
             return PostureRates(0.0, (0.0, 0.0))
-        climb = min(max(_HEIGHT_GAIN * (plane.height + self.raised), -_MOST_CLIMB), _MOST_CLIMB)
+        fastest = self._scale * _MOST_CLIMB
+        climb = min(max(_HEIGHT_GAIN * (plane.height + self.raised), -fastest), fastest)
         climb += plane.slope_x * velocity.real + plane.slope_y * velocity.imag
         along = (-math.atan(plane.slope_y), math.atan(plane.slope_x))
         if tilt is None or self._share is None:
@@ -138,6 +142,6 @@ class PostureFeedback:
         share = min([1.0, *(max(most, 0.0) / speed for speed, most in sinks if speed > 0)])
         roll, pitch = share * roll, share * pitch
         climb = min(climb, *(most - share * speed for speed, most in sinks))
-        climb, most = max(climb, -2 * _MOST_CLIMB), _MOVES if self._rests else _RESTS
+        climb, most = max(climb, -2 * fastest), _MOVES if self._rests else _RESTS
         self._rests = stands and abs(climb) < most[0] and math.hypot(roll, pitch) < most[1]
         return PostureRates(0.0, (0.0, 0.0)) if self._rests else PostureRates(climb, (roll, pitch))

@@ -23,6 +23,8 @@ _STROKE_STEP, _TURNING_ARM = 0.01, 0.2
 _HANGING, _LOWER = 0.002, 0.03
 # Room over the ground that a leg's greatest height leaves for its swing, over the swing height; while a foot hangs.
 _CLEARANCE, _HANGING_CLEARANCE = 1.5, 0.75
+# Length of femur and tibia from which on lengths and speeds of walks that feel the ground are as given [m].
+_USUAL_LEG = 0.19
 
 
 class Reach:
@@ -39,8 +41,8 @@ class Reach:
         Least and greatest height of each foot in the heading frame [m].
     strokes : complex array, shape (legs,)
         Stroke of each foot [m].
-    stroke : float
-        Half the longest stroke [m].
+    stroke, scale : float
+        Half the longest stroke [m]; by how much lengths and speeds are smaller than given, on short legs, 0 to 1.
     """
 
     def __init__(self, robot: Robot) -> None:
@@ -48,6 +50,7 @@ class Reach:
         self.stroke, self.strokes = 0.0, np.zeros(robot.legs, dtype=complex)
         # Greatest height of each foot at the places of its stroke [m].
         self._tops = [(0.0,) * len(STROKE_PLACES)] * robot.legs
+        self.scale = min(float((robot.femur + robot.tibia).mean()) / _USUAL_LEG, 1.0)
         self._robot = robot
         self._key: tuple[float, ...] = ()
         self._rest: Complex[np.ndarray, "legs"] | None = None

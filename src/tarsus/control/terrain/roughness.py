@@ -69,8 +69,8 @@ class Roughness:
 
     Parameters
     ----------
-    adaptation : GroundAdaptation
-        How far the walk may adapt.
+    adaptation, scale : GroundAdaptation, float
+        How far the walk may adapt; by how much lengths are smaller than given, on short legs, 0 to 1.
 
     Attributes
     ----------
@@ -78,9 +78,9 @@ class Roughness:
         Distance of footholds from the plane of the feet that is expected [m].
     """
 
-    def __init__(self, adaptation: GroundAdaptation) -> None:
+    def __init__(self, adaptation: GroundAdaptation, *, scale: float = 1.0) -> None:
         self.value = 0.0
-        self._adaptation = adaptation
+        self._adaptation, self._scale = adaptation, scale
 
     def landed(self, off: float) -> None:
         """Take note of a foothold.
@@ -90,11 +90,11 @@ class Roughness:
         off : float
             Its height over the expected ground [m].
         """
-        self.value = max(self.value, abs(off) - _EVEN)
+        self.value = max(self.value, abs(off) - self._scale * _EVEN)
 
     def collided(self) -> None:
         """Take note of a collision."""
-        self.value = max(self.value, _COLLISION)
+        self.value = max(self.value, self._scale * _COLLISION)
 
     def decay(self, cycles: float) -> None:
         """Forget.
@@ -133,4 +133,5 @@ class Roughness:
 
     def _share(self, least: float, most: float) -> float:
         """Return where the roughness is between two values, 0 to 1."""
-        return min(max(round(_STEPS * (self.value - least) / (most - least)) / _STEPS, 0.0), 1.0)
+        share = (self.value / self._scale - least) / (most - least)
+        return min(max(round(_STEPS * share) / _STEPS, 0.0), 1.0)

@@ -99,6 +99,8 @@ class FeltInputs(NamedTuple):
         How far from the foothold of its step a foot is put down, by leg, in the heading frame [m].
     in_air : bool
         Whether the robot is in the air: all feet go to one height, to be put down together.
+    scale : float
+        By how much speeds are smaller than given, on short legs, 0 to 1.
     """
 
     under: list[GroundUnder | None]
@@ -116,3 +118,4 @@ class FeltInputs(NamedTuple):
     late: float
     beside: Mapping[int, complex]
     in_air: bool = False
+    scale: float = 1.0

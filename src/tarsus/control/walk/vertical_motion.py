@@ -109,8 +109,9 @@ def _searching(
     """Return height, place and speed of a foot that should stand and has no contact: it goes down, or steps back."""
     over, speed = height - under.expected, foot.speed
     if under.place is None or under.place == place:
-        fastest = felt.lowering if under.place is None else max(felt.lowering, _SEARCHING)
-        wanted -= min(max(_SEARCHING, over / _SEARCH_TIME), fastest)
+        least = felt.scale * _SEARCHING
+        fastest = felt.lowering if under.place is None else max(felt.lowering, least)
+        wanted -= min(max(least, over / _SEARCH_TIME), fastest)
         after = _towards(speed, wanted, _FOOT_ACCELERATION * dt)
         height, after = _no_lower(height + (speed + after) / 2 * dt, after, height, under.lowest)
         return height, place, after
@@ -151,7 +152,7 @@ def _swinging(
         height, speed, acceleration = quintic((height, speed, acceleration), top, whole, time / whole)
         return height, FeltFoot(speed, acceleration, top, top_phase, slide, drawn_back)
     descent = (top - under.expected + felt.depth) / (part * swing_time) * felt.pace
-    after = _towards(speed, -min(max(_LOWERING, descent), felt.lowering), _FOOT_ACCELERATION * dt)
+    after = _towards(speed, -min(max(felt.scale * _LOWERING, descent), felt.lowering), _FOOT_ACCELERATION * dt)
     # Over higher ground on its way it stays.
     lowest = under.lowest
     if under.way > under.expected + _OVER:
