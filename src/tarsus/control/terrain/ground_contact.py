@@ -214,7 +214,7 @@ def not_sunk(
     roughness: float,
     tips: bool,
 ) -> list[bool]:
-    """Return which feet should stand and are near the expected ground: only these may bear load that is not felt.
+    """Return which feet should stand and may bear load that is not felt: none while a leg may rest on an edge.
 
     Parameters
     ----------
@@ -227,4 +227,5 @@ def not_sunk(
     """
     most = min(_HANGS + depth_allowance(roughness), _HANGS_LOW * float(state.posture.value[2]))
     over = (state.ground_height - state.elevation + most).tolist()
-    return [on and not tips and over[leg] > ground.at(places[leg]) for leg, on in enumerate(down)]
+    near = [on and over[leg] > ground.at(places[leg]) for leg, on in enumerate(down)]
+    return near if near == list(down) and not tips else [False] * len(near)
