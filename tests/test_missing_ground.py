@@ -14,7 +14,7 @@ from tarsus.control.sensing.leg_odometry import LegOdometry
 from tarsus.control.terrain.foot_contacts import FootContacts
 from tarsus.control.terrain.ground_contact import met_ground
 from tarsus.control.terrain.ground_map import GroundMap
-from tarsus.control.terrain.missing_ground import MissingGround
+from tarsus.control.terrain.missing_ground import MissingGround, Search
 from tarsus.control.walk.felt_feet import FeltFoot
 from tarsus.control.walk.step_timing import StepTiming
 from tarsus.simulation import SimulatedPlant, terrain
@@ -33,10 +33,12 @@ def stepped(
     centre=0j,
     roughness=0.0,
     sunk=(0.0,) * 6,
+    raised=0.0,
     dt=0.01,
     twist=(0.0, 0.0, 0.0),
 ):
-    sizes, missing.sunk, missing.twist = {"height": 0.1, "roughness": roughness}, sunk, twist
+    sizes, missing.twist = {"height": 0.1, "roughness": roughness}, twist
+    searches = [Search(*search, sunk=sunk[search[0]], raised=raised) for search in searches]
     missing.step(searches, feet, stands, dt, centre=centre, rest=REST, radii=[0.05] * 6, **sizes)
     return missing
 
@@ -209,9 +211,7 @@ def test_where_rough_ground_is_not_found_the_walk_goes_on_with_other_footholds()
 
 @pytest.mark.parametrize(("raised", "goes_on"), [(0.0, False), (0.01, False), (0.03, True)])
 def test_where_a_leg_may_rest_on_the_edge_of_a_step_the_walk_goes_on_with_other_footholds(raised, goes_on):
-    missing = MissingGround(NAMES)
-    missing.raised = {0: raised}
-    stepped(missing, [(0, 0.077, False, False)])
+    missing = stepped(MissingGround(NAMES), [(0, 0.077, False, False)], raised=raised)
     # The ground counts as rough from then on.
     assert missing.edge == 0.077 * goes_on
     limited(missing, 0.1, 0.0, 0.0)
@@ -226,8 +226,7 @@ def test_where_a_leg_may_rest_on_the_edge_of_a_step_the_walk_goes_on_with_other_
 def test_a_foot_that_its_leg_holds_up_at_the_end_of_its_reach_does_not_search_for_long():
     def ticks(*, raised, falls=False):
         missing = MissingGround(NAMES)
-        missing.raised = {0: raised}
-        return next((n for n in range(60) if stepped(missing, [(0, 0.04, falls, True)]).places), None)
+        return next((n for n in range(60) if stepped(missing, [(0, 0.04, falls, True)], raised=raised).places), None)
 
     assert 28 <= ticks(raised=0.02) <= 31
     # A servo that lags behind a foot on its way down holds up nothing.
@@ -237,15 +236,13 @@ def test_a_foot_that_its_leg_holds_up_at_the_end_of_its_reach_does_not_search_fo
 
 def test_a_foot_that_finds_ground_is_held_up_anew_when_it_searches_again():
     missing = MissingGround(NAMES)
-    missing.raised = {0: 0.02}
     for searches in (20 * [[(0, 0.04, False, True)]] + [[]]) * 2:
-        assert not stepped(missing, searches).places
+        assert not stepped(missing, searches, raised=0.02).places
 
 
 def test_a_foot_that_is_measured_deep_is_over_a_hole_whatever_holds_its_leg_up():
-    missing = MissingGround(NAMES)
-    missing.raised = {0: 0.02}
-    assert stepped(missing, [(0, 0.08, False, False)]).places
+    missing = stepped(MissingGround(NAMES), [(0, 0.08, False, False)], raised=0.02)
+    assert missing.places
     assert missing.edge == 0.0
 
 
@@ -306,13 +303,13 @@ def test_a_foot_that_is_stopped_tries_again_then_beside_it_and_then_stays_before
         assert limited(missing, *free).fraction == 1.0
         assert missing.held(-0.02 + 0.01j) == 0.0
         # Feet that touch the obstacle meanwhile are not stopped by it.
-        assert missing.leaves(-0.05 + 0.0j)
-        assert not missing.leaves(0.05 + 0.0j)
+        assert missing.obstacles.leaves(-0.05 + 0.0j)
+        assert not missing.obstacles.leaves(0.05 + 0.0j)
     limited(missing, 0.1, 0.0, 0.0)
     granted = 0
     for _ in range(9):
         for _ in range(100):
-            assert not stepped(missing, [], REST, stands=[True] * 6).stops
+            assert not stepped(missing, [], REST, stands=[True] * 6).obstacles.legs
         # It is tried with other footholds once.
         if limited(missing, 0.1, 0.0, 0.0).fraction == 1.0:
             granted += 1
@@ -324,7 +321,7 @@ def test_a_foot_that_is_stopped_tries_again_then_beside_it_and_then_stays_before
     limited(missing, -0.1, 0.0, 0.0)
     for _ in range(700):
         stepped(missing, [], REST, stands=[True] * 6)
-    assert not missing.leaves(-0.05 + 0.0j)
+    assert not missing.obstacles.leaves(-0.05 + 0.0j)
 
 
 def test_a_foot_that_has_got_past_an_obstacle_looks_for_the_ground_like_any_other():
@@ -569,9 +566,9 @@ def test_a_robot_that_is_carried_away_forgets_an_obstacle():
     missing = MissingGround(NAMES)
     for _ in range(5):
         missing.stopped(0, REST[0] - 0.05, REST[0] + 0.05)
-    assert missing.leaves(-0.05 + 0.0j)
+    assert missing.obstacles.leaves(-0.05 + 0.0j)
     missing.forget()
-    assert not missing.leaves(-0.05 + 0.0j)
+    assert not missing.obstacles.leaves(-0.05 + 0.0j)
     assert limited(missing, 0.1, 0.0, 0.0).fraction == 1.0
 
 

@@ -70,10 +70,8 @@ class FeltGround:
     ----------
     contacts, ground : FootContacts, GroundMap
         Which feet bear load; where the ground is.
-    body : BodyMotion
-        How the body moves over its standing feet.
-    missing : MissingGround
-        What is done where feet find no ground.
+    body, missing : BodyMotion, MissingGround
+        How the body moves over its standing feet; what is done where feet find no ground.
     condition, support : BodyCondition, Support
         Whether the robot is in the air or has fallen; whether feet may lift off, and at which pace the walk goes on.
     measured : ValidReadings
@@ -192,7 +190,7 @@ class FeltGround:
         places = [(foot - state.origin) * turn for foot in state.foot.tolist()]
         if self.body.looks:
             rest, pace = footholds.rest, self.support.pace
-            feet = places, [on and leg not in self.missing.stops for leg, on in enumerate(down)]
+            feet = places, [on and leg not in self.missing.obstacles.legs for leg, on in enumerate(down)]
             self.body.step(state, self.measured, feet=feet, timing=timing, twist=twist, pace=pace, rest=rest)
             self.ground.choose(state, self.body.reach, footholds)
         centre = self._centre + complex(*body_posture(state)[:2].tolist())
@@ -247,7 +245,7 @@ class FeltGround:
         contacts, missing, rest, rough = self.contacts, self.missing, footholds.rest.tolist(), self.body.roughness.value
         near = not_sunk(state, self.ground, places, down, roughness=rough, tips=bool(missing.tips or missing.places))
         contacts.find_open(near, places, centre, self.measured.attitude, dt)
-        missing.sunk, missing.twist = contacts.sunk, state.twist.value.tolist()
+        missing.twist = state.twist.value.tolist()
         if self.condition.carried:
             missing.forget()
             self.ground.plane = FootPlane()
@@ -256,8 +254,9 @@ class FeltGround:
         missing.sees(self.ground.holes, rest)
         waits = self.condition.carried or (self._rests and self.support.held and near == down)
         searches = [] if waits else searching_feet(state, contacts, self.ground, places, down=down, stands=stands)
-        legs, height = [search[0] for search in searches], float(state.posture.value[2])
-        missing.raised = self.body.odometry.raised(legs, self.measured.joint_angles, self._commanded)
+        legs, height = [search.leg for search in searches], float(state.posture.value[2])
+        raised = self.body.odometry.raised(legs, self.measured.joint_angles, self._commanded)
+        searches = [search._replace(raised=raised.get(search.leg, 0.0)) for search in searches]
         on, radii = [on and stand for on, stand in zip(down, stands, strict=True)], footholds.placement_radii
         missing.step(searches, places, on, dt, centre=centre, rest=rest, radii=radii, height=height, roughness=rough)
         # With the body higher and feet drawn in, legs are steeper beside an edge.

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from tarsus.control.terrain.body_motion import BodyMotion
 from tarsus.control.terrain.foot_contacts import FootContacts
 from tarsus.control.terrain.ground_map import GroundMap
-from tarsus.control.terrain.missing_ground import MissingGround, depth_allowance
+from tarsus.control.terrain.missing_ground import MissingGround, Search, depth_allowance
 from tarsus.control.terrain.reach import Reach
 from tarsus.control.walk.felt_feet import FeltFoot
 from tarsus.control.walk.state import GaitState
@@ -76,7 +76,7 @@ def met_ground(
             if (contacts.feels(leg) or leg in stopped) and missing.tries(leg, places[leg]) and not rises:
                 state = _trying_again(state, leg, missing, reach, state)
             continue
-        leaves = missing.leaves((complex(state.foothold[leg]) - state.origin) * turn - places[leg])
+        leaves = missing.obstacles.leaves((complex(state.foothold[leg]) - state.origin) * turn - places[leg])
         if not leaves and _collides_again(
             state, leg, side=contacts.feels(leg) and contacts.lifted[leg], stopped=leg in stopped
         ):
@@ -185,8 +185,8 @@ def searching_feet(
     *,
     down: Sequence[bool],
     stands: Sequence[bool],
-) -> list[tuple[int, float, bool, bool]]:
-    """Return the feet that should stand and feel nothing, as `MissingGround.step` takes them.
+) -> list[Search]:
+    """Return the feet that should stand and feel nothing.
 
     Parameters
     ----------
@@ -197,11 +197,11 @@ def searching_feet(
     down, stands : sequence of bool
         Which feet should stand, and which do.
     """
-    elevation, found = state.elevation, list[tuple[int, float, bool, bool]]()
+    elevation, found = state.elevation, list[Search]()
     for leg, place in enumerate(places):
         if down[leg] and not stands[leg] and contacts.is_known(leg):
             depth = ground.lowest_near(place) + elevation - float(state.ground_height[leg])
-            found.append((leg, depth, state.felt[leg].speed < -_FALLS, contacts.seeks(leg)))
+            found.append(Search(leg, depth, state.felt[leg].speed < -_FALLS, contacts.seeks(leg), contacts.sunk[leg]))
     return found
 
 

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
+from functools import partial
+from typing import NamedTuple
 
 from tarsus.control.limitation import Limitation, LimitationKind
 from tarsus.control.limiter.protocol import TwistGrant, TwistRequest, leads_towards
+from tarsus.control.terrain.obstacles import Obstacles
 from tarsus.control.terrain.support import holds
 
-__all__ = ["SLOW", "MissingGround", "depth_allowance"]
+__all__ = ["SLOW", "MissingGround", "Search", "depth_allowance"]
 
 # Depth below the expected ground at which there is none, over the body height.
 _DEEP = 0.75
@@ -34,13 +36,34 @@ _THERE, _OFF = 0.004, 0.01
 _MOVES = 0.005
 # The body backs off until feet this far from the edge hold it with this margin [m], so far at most [m], so fast [m/s].
 _FIRM, _MARGIN, _BACKS, _SPEED = 0.06, 0.03, 0.08, 0.15
-# How often a foot is stopped until it is put down beside its way, on how many sides, how far, or before that [m].
-_STOPS, _SIDES, _BESIDE, _BEFORE = 3, 2, 0.06, 0.04
 # A foot that finds no ground at less depth than this is over no hole: the leg does not reach there [m].
 _SHALLOW = 0.02
 # How often and when the walk tries other footholds at an edge to ground that is seen, not reached [s]; after which
 # time without holes that, and which edge the robot has left, is forgotten [s].
 _AGAIN, _WAITS, _FORGETS = 2, 1.0, 6.0
+
+
+class Search(NamedTuple):
+    """A foot that should stand and feels nothing.
+
+    Attributes
+    ----------
+    leg, depth : int, float
+        The leg; how far below the expected ground its foot is [m].
+    falls, lasts : bool
+        Whether the foot goes down; whether it has not searched for long.
+    sunk : float
+        By how much the body has sunk at the foot since that lost its contact [m].
+    raised : float
+        By how much the foot is higher than commanded, where that is measured [m].
+    """
+
+    leg: int
+    depth: float
+    falls: bool
+    lasts: bool
+    sunk: float = 0.0
+    raised: float = 0.0
 
 
 class MissingGround:
@@ -53,6 +76,8 @@ class MissingGround:
 
     Attributes
     ----------
+    obstacles : Obstacles
+        Where feet try next that are stopped on their way.
     places : dict of int to complex
         Where each foot that steps back is to stand, in the heading frame [m].
     refuses : bool
@@ -63,10 +88,6 @@ class MissingGround:
         Velocity of the body over its feet, in the heading frame [m/s].
     tips : complex
         Towards which foot that sinks the robot tips: its direction in the heading frame; 0 without one.
-    sunk : sequence of float
-        By how much the body has sunk at each foot since that lost its contact [m].
-    raised : mapping of int to float
-        By how much feet that search are higher than commanded, where that is measured [m].
     edge : float
         Commanded depth of a foot that steps back from where its leg may rest on the edge of a step [m]; 0 without one.
     twist : sequence of float
@@ -76,15 +97,12 @@ class MissingGround:
     """
 
     def __init__(self, names: Sequence[str], *, scale: float = 1.0) -> None:
-        self._scale = scale
-        self.sunk: Sequence[float] = [0.0] * len(names)
-        self.raised: Mapping[int, float] = {}
-        self.edge, self._held = 0.0, dict[int, float]()
-        self.places, self.pace, self.back = dict[int, complex](), 1.0, 0j
-        self.stops, self._beside = dict[int, tuple[int, complex, complex]](), dict[int, complex]()
-        self._names, self._tries, self._cause = names, [0] * len(names), ("", "")
-        self._way, self._left, self._obstacle, self._backed, self.refuses = 0j, 0j, 0j, 0.0, False
-        self._again, self._since, self._slows, self.tips, self.stranded = 0, 0.0, "", 0j, list[int]()
+        self.obstacles, self.places, self.stranded = Obstacles(scale), dict[int, complex](), list[int]()
+        self.pace, self.back, self.tips, self.edge, self.refuses = 1.0, 0j, 0j, 0.0, False
+        self._names, self._scale, self._tries, self._cause = names, scale, [0] * len(names), ("", "")
+        # How long feet that hang have been held up by their legs [s].
+        self._held = dict[int, float]()
+        self._way, self._left, self._backed, self._again, self._since, self._slows = 0j, 0j, 0.0, 0, 0.0, ""
         # The twist before any foot searched, by which it has met the edge.
         self.twist: Sequence[float] = (0.0, 0.0, 0.0)
         self._walked: Sequence[float] = self.twist
@@ -98,10 +116,9 @@ class MissingGround:
 
     def forget(self) -> None:
         """Forget holes and obstacles: the robot is carried elsewhere."""
-        for found in (self.places, self.stops, self._beside):
-            found.clear()
-        self._tries = [0] * len(self._names)
-        self._way, self._left, self._obstacle, self.refuses, self._again = 0j, 0j, 0j, False, 0
+        self.obstacles, self._tries = Obstacles(self._scale), [0] * len(self._names)
+        self.places.clear()
+        self._way, self._left, self.refuses, self._again = 0j, 0j, False, 0
 
     def steps_back(self, leg: int, foot: complex) -> bool:
         """Return whether a foot, here in the heading frame, is on its way to another place."""
@@ -109,11 +126,7 @@ class MissingGround:
 
     def tries(self, leg: int, foot: complex) -> bool:
         """Return whether a foot, here in the heading frame, is on its way past an obstacle."""
-        return leg in self.stops and self.stops[leg][0] <= _STOPS + _SIDES and self.steps_back(leg, foot)
-
-    def leaves(self, way: complex) -> bool:
-        """Return whether a way of a foot, in the heading frame, leads away from an obstacle that has stopped one."""
-        return (way * self._obstacle.conjugate()).real < 0.0
+        return self.obstacles.tries(leg) and self.steps_back(leg, foot)
 
     def gives_up(self, leg: int) -> bool:
         """Return whether a foot has found no ground at any place."""
@@ -121,7 +134,7 @@ class MissingGround:
 
     def step(
         self,
-        searches: Sequence[tuple[int, float, bool, bool]],
+        searches: Sequence[Search],
         feet: Sequence[complex],
         stands: Sequence[bool],
         dt: float,
@@ -136,9 +149,8 @@ class MissingGround:
 
         Parameters
         ----------
-        searches : sequence of (int, float, bool, bool)
-            Feet that should stand and feel nothing: leg, depth below the expected ground [m], whether it goes down, and
-            whether it has not searched for long.
+        searches : sequence of Search
+            Feet that should stand and feel nothing.
         feet, stands : sequence of complex, sequence of bool
             Where the feet are, in the heading frame [m]; which feet stand.
         dt, centre : float, complex
@@ -149,35 +161,31 @@ class MissingGround:
             Body height, and how far ground is off the expected one [m].
         """
         self._walked = self._walked if searches else self.twist
-        searching = [search[0] for search in searches]
-        for leg in [leg for leg in self._beside if not self.steps_back(leg, feet[leg])]:
-            self.places[leg] = self._beside.pop(leg)
-            searching.append(leg)
+        beside = self.obstacles.go_on(lambda leg: not self.steps_back(leg, feet[leg]))
+        self.places |= beside
+        searching = {search.leg for search in searches} | beside.keys()
         # Past an obstacle, a foot looks for the ground like any other.
-        past = [leg for leg in self.stops if not self.steps_back(leg, feet[leg])]
+        past = {leg for leg in self.obstacles.legs if not self.steps_back(leg, feet[leg])}
         for leg in [leg for leg in self.places if leg not in searching or leg in past]:
-            del self.places[leg]
+            self._drop(leg)
             self._tries[leg] = 0
-            self.stops.pop(leg, None)
         self.pace, self.back, self._slows, self.edge = 1.0 - self.refuses, 0j, "", 0.0
         rough, self.tips, before, self._held = depth_allowance(roughness, self._scale), 0j, self._held, {}
         slows, deep = rough + self._scale * _SLOWS, rough + self._scale * _STANDS
         standing = [foot for foot, on in zip(feet, stands, strict=True) if on]
         # A robot none of whose feet stands is being lifted.
         held = not (searches and standing) or holds(standing, centre)
-        for leg, depth, falls, lasts in searches:
+        for leg, depth, falls, lasts, sunk, raised in searches:
             way = self._to_edge(feet[leg], rest[leg])
             slowest = 0.0 if falls else _SLOWEST
             pace = max(1 - (depth - slows) / (deep - slows), slowest)
             self.pace, self._slows = min((self.pace, self._slows), (pace, self._names[leg]))
             # At another place, a foot does not search for long at the end of its reach.
-            raised = self.raised.get(leg, 0.0)
             held_up = raised > _HELD_UP and depth - raised < _STEP * height
             self._held[leg] = (before.get(leg, 0.0) + dt) * (held_up and not falls)
             long = not lasts or self._held[leg] > _HELD
             hangs = not falls and depth > deep if leg in self.places else long
             missing = depth > _DEEP * height + rough or hangs
-            sunk = self.sunk[leg]
             self._tip(way, tips=sunk > deep or (not held and sunk > -_LIFTS and depth + max(sunk, 0.0) > deep))
             if missing and not (self.steps_back(leg, feet[leg]) or self.gives_up(leg)):
                 self.edge = depth if held_up else self.edge
@@ -191,13 +199,13 @@ class MissingGround:
             if self.refuses and self._again < _AGAIN and self._since > _WAITS:
                 self._again, self._way = self._again + 1, 0j
             elif not self.refuses and self._since > _FORGETS:
-                self._again, self._obstacle = 0, 0j
+                self._again, self.obstacles.found = 0, 0j
             return
         self.pace, self._slows, turn = _SLOWEST * bool(self.stranded), "", self._way.conjugate()
         edge = min((feet[leg] * turn).real for leg in self.places) - self._scale * _FIRM
         firm = [foot for foot, on in zip(feet, stands, strict=True) if on and (foot * turn).real < edge]
         enough = max(self._tries) < len(_BACK) and holds(firm, centre + self._scale * _MARGIN * self._way)
-        if backed and not (self.stops or enough):
+        if backed and not (self.obstacles.legs or enough):
             self.back = -speed * self._way
             self._backed += speed * dt
 
@@ -216,29 +224,20 @@ class MissingGround:
         """Take note that the robot tips this way, if it does: no foot tries to get past an obstacle then."""
         if tips:
             self.tips = way
-            for leg in list(self.stops):
+            for leg in self.obstacles.legs:
                 self._drop(leg)
 
     def _drop(self, leg: int) -> None:
         """Forget what has stopped a foot, and where it is to stand."""
-        for found in (self.stops, self._beside, self.places):
-            found.pop(leg, None)
+        self.obstacles.forget(leg)
+        self.places.pop(leg, None)
 
     def stopped(self, leg: int, foot: complex, goal: complex) -> complex:
         """Decide where a foot tries next that is stopped here on its way to a goal; return the way back [m]."""
-        stops, start, goal = self.stops.get(leg, (1, foot, goal))
-        self.stops[leg], way = (stops + 1, start, goal), (goal - start) / abs(goal - start)
-        start, self.places[leg] = start - self._scale * _BEFORE * way, goal
-        self._beside.pop(leg, None)
-        self._cause = self._names[leg], "an obstacle stops the foot"
-        if stops >= _STOPS + _SIDES:
-            self.places[leg], self._way, self._obstacle = start, way, way
-            self._again = max(self._again, _AGAIN - 1)
-            self._cause = self._names[leg], "an obstacle stops the foot that is higher than the leg steps"
-        elif stops >= _STOPS:
-            # Towards the body first: there the leg is steeper.
-            side = math.copysign(self._scale * _BESIDE, -(start * way.conjugate()).imag * (-1) ** (stops - _STOPS))
-            self.places[leg], self._beside[leg] = start + 1j * side * way, goal + 1j * side * way
+        start, self.places[leg], way, ends = self.obstacles.stopped(leg, foot, goal)
+        self._cause = self._names[leg], "an obstacle stops the foot" + ends * " that is higher than the leg steps"
+        if ends:
+            self._way, self._again = way, max(self._again, _AGAIN - 1)
         return start - foot
 
     def sees(self, holes: Mapping[int, complex], rest: Sequence[complex]) -> None:
@@ -268,11 +267,10 @@ class MissingGround:
         if self.refuses:
             name, cause = self._cause
             return grant.at_most(0.0, Limitation(kind=LimitationKind.GROUND, leg=name, cause=cause))
-        for leg, (stops, start, goal) in list(self.stops.items()):
-            if stops <= _STOPS + _SIDES and leads_towards(velocity, start - goal):
-                self._drop(leg)
+        for leg in self.obstacles.led_away(partial(leads_towards, velocity)):
+            self._drop(leg)
         if any(request.twist) and not self.places and self._way:
-            self._left = 0j if self._way == self._obstacle else self._way
+            self._left = 0j if self._way == self.obstacles.found else self._way
             self._way, self._since = 0j, 0.0
         return grant
 

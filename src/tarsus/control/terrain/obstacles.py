@@ -1,0 +1,94 @@
+"""Obstacles: feet that are stopped on their way try again, then beside it, and are put down before it in the end."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import NamedTuple
+
+__all__ = ["Attempt", "Obstacles"]
+
+# How often a foot is stopped until it is put down beside its way, on how many sides, how far, or before that [m].
+_STOPS, _SIDES, _BESIDE, _BEFORE = 3, 2, 0.06, 0.04
+
+
+class Attempt(NamedTuple):
+    """Where a foot tries next that is stopped, x + iy in the heading frame [m].
+
+    Attributes
+    ----------
+    start, place : complex
+        Where it is drawn back to; where it goes from there.
+    way : complex
+        The direction in which it was stopped.
+    ends : bool
+        Whether it was stopped too often, and is put down before the obstacle.
+    """
+
+    start: complex
+    place: complex
+    way: complex
+    ends: bool = False
+
+
+class Obstacles:
+    """Decides where feet try next that are stopped on their way.
+
+    Parameters
+    ----------
+    scale : float
+        By how much lengths are smaller than given, on short legs, 0 to 1.
+
+    Attributes
+    ----------
+    found : complex
+        The direction of the obstacle that no foot got past; 0 without one.
+    """
+
+    def __init__(self, scale: float) -> None:
+        self.found, self._scale = 0j, scale
+        # How often each foot was stopped, where first, and where it was to go; where it goes on to from beside its way.
+        self._stops, self._goals = dict[int, tuple[int, complex, complex]](), dict[int, complex]()
+
+    @property
+    def legs(self) -> list[int]:
+        """Legs whose feet are stopped."""
+        return list(self._stops)
+
+    def tries(self, leg: int) -> bool:
+        """Return whether a foot is to get past an obstacle, and is not put down before it."""
+        return leg in self._stops and self._stops[leg][0] <= _STOPS + _SIDES
+
+    def leaves(self, way: complex) -> bool:
+        """Return whether a way of a foot, in the heading frame, leads away from the obstacle that was found."""
+        return (way * self.found.conjugate()).real < 0.0
+
+    def stopped(self, leg: int, foot: complex, goal: complex) -> Attempt:
+        """Decide where a foot tries next that is stopped here on its way to a goal [m]."""
+        stops, start, goal = self._stops.get(leg, (1, foot, goal))
+        self._stops[leg], way = (stops + 1, start, goal), (goal - start) / abs(goal - start)
+        start -= self._scale * _BEFORE * way
+        self._goals.pop(leg, None)
+        if stops >= _STOPS + _SIDES:
+            self.found = way
+            return Attempt(start, start, way, ends=True)
+        if stops < _STOPS:
+            return Attempt(start, goal, way)
+        # Towards the body first: there the leg is steeper.
+        inwards = -(start * way.conjugate()).imag * (-1) ** (stops - _STOPS)
+        side = 1j * way * math.copysign(self._scale * _BESIDE, inwards)
+        self._goals[leg] = goal + side
+        return Attempt(start, start + side, way)
+
+    def go_on(self, arrived: Callable[[int], bool]) -> dict[int, complex]:
+        """Return where feet go on to that have arrived beside their ways [m]."""
+        return {leg: self._goals.pop(leg) for leg in [leg for leg in self._goals if arrived(leg)]}
+
+    def led_away(self, leads: Callable[[complex], bool]) -> list[int]:
+        """Return the legs with feet that try to get past an obstacle, where a twist leads back on their way."""
+        return [leg for leg, (_, start, goal) in self._stops.items() if self.tries(leg) and leads(start - goal)]
+
+    def forget(self, leg: int) -> None:
+        """Forget that a foot was stopped."""
+        self._stops.pop(leg, None)
+        self._goals.pop(leg, None)
