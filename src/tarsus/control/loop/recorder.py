@@ -183,7 +183,9 @@ class Recorder:
             feet[held] = (body @ forward_kinematics(robot, angles)[..., 3, :])[held]
         heights: dict[str, Any] = {"body_height": controller.body_height, "swing_height": controller.swing_height}
         setup = WalkSetup.of(robot, outputs[0].gait, **heights)
-        passing = _foot_speeds(twist, setup.rest)
+        # The speed of each foot at rest against the body.
+        vx, vy, wz = twist.T[..., None]
+        passing = np.hypot(vx - wz * setup.rest[:, 1], vy + wz * setup.rest[:, 0])
         fastest = int(passing.max(1).argmax())
         output, speed = outputs[fastest], float(passing[fastest].max())
         return Motion(
@@ -204,12 +206,6 @@ class Recorder:
             foot_distance=0.0 if any(output.belly for output in outputs) else default_foot_distance(robot),
             assumed=tuple(setup.assumed(**heights)),
         )
-
-
-def _foot_speeds(twist: Float[np.ndarray, "n 3"], rest: Float[np.ndarray, "legs 3"]) -> Float[np.ndarray, "n legs"]:
-    """Return the speed of each foot at rest against the body, for every twist ``(n, legs)`` [m/s]."""
-    vx, vy, wz = (twist[:, axis, None] for axis in range(3))
-    return np.asarray(np.hypot(vx - wz * rest[:, 1], vy + wz * rest[:, 0]))
 
 
 def _part(command: Command, kind: LimitationKind) -> Any:

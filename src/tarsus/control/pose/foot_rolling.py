@@ -52,7 +52,7 @@ class FootRolling:
     """
 
     def __init__(self, robot: Robot) -> None:
-        self._robot, self._radius = robot, np.asarray(robot.foot_radius, dtype=float)
+        self._radius = np.asarray(robot.foot_radius, dtype=float)
         self._rolls = bool(self._radius.any())
         self.balls: list[tuple[float, float]] | None = None
         self._posture = self._rest = np.zeros(0)

@@ -27,8 +27,7 @@ class GuardClock:
 
     def __init__(self, bounds: GuardBounds) -> None:
         self._shortest, self._longest = bounds.min_time_step, bounds.max_time_step
-        self._pending = 0.0
-        self.time = 0.0
+        self._pending = self.time = 0.0
 
     def advance(self, dt: float) -> tuple[float, list[Violation]]:
         """Advance the clock; return the time step to use, 0 for none, and the violations.
@@ -38,17 +37,13 @@ class GuardClock:
         dt : float
             Time step as given, possibly NaN, infinite or negative [s].
         """
-        if self._shortest <= dt <= self._longest:
-            step, violations = dt + self._pending, []
-        elif self._longest < dt <= _LONGEST_GAP:
-            step = dt + self._pending
-            violations = [Violation(InterventionKind.TIME_GAP, -1, -1, dt, self._longest)]
-        else:
-            step = 0.0
-            violations = [Violation(InterventionKind.TIME_STEP, -1, -1, dt, self._shortest)]
-            if 0 < dt < self._shortest:
-                self._pending += dt
-                step = self._pending if self._pending >= self._shortest else 0.0
+        if 0 < dt <= _LONGEST_GAP:
+            self._pending += dt
+        step = self._pending if self._pending >= self._shortest else 0.0
         if step > 0:
             self.time, self._pending = self.time + step, 0.0
-        return step, violations
+        if self._shortest <= dt <= self._longest:
+            return step, []
+        if self._longest < dt <= _LONGEST_GAP:
+            return step, [Violation(InterventionKind.TIME_GAP, -1, -1, dt, self._longest)]
+        return step, [Violation(InterventionKind.TIME_STEP, -1, -1, dt, self._shortest)]
