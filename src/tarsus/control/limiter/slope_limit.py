@@ -63,7 +63,5 @@ class SlopeLimit:
     @property
     def reason(self) -> str:
         """Why motion is refused."""
-        slope, steepest = math.degrees(self.slope), math.degrees(self.steepest)
-        return (
-            f"a slope of {slope:.0f} deg, on which feet slip; the steepest one for their friction is {steepest:.0f} deg"
-        )
+        steepest = f"the steepest one for their friction is {math.degrees(self.steepest):.0f} deg"
+        return f"a slope of {math.degrees(self.slope):.0f} deg, on which feet slip; {steepest}"

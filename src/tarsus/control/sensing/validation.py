@@ -50,12 +50,10 @@ class ReadingsValidator:
 
     def __init__(self, robot: Robot) -> None:
         legs, fastest = robot.leg_codes, float(joint_limits(robot).speed.max())
-        self._attitude = AttitudeChannel()
-        self._joint_angles = JointAngleChannel(legs, np.asarray(robot.limits), fastest)
         self._channels: dict[str, Any] = {
             "contacts": ContactChannel(legs),
-            "attitude": self._attitude,
-            "joint_angles": self._joint_angles,
+            "attitude": AttitudeChannel(),
+            "joint_angles": JointAngleChannel(legs, np.asarray(robot.limits), fastest),
             "forces": _forces_channel(robot),
             "torques": _torques_channel(robot),
             **{name: VectorChannel(name, legs) for name in _FINITE_CHANNELS},
@@ -73,8 +71,8 @@ class ReadingsValidator:
         dt : float
             Time since the last call [s].
         """
-        self._attitude.elapse(dt)
-        self._joint_angles.elapse(dt)
+        self._channels["attitude"].elapse(dt)
+        self._channels["joint_angles"].elapse(dt)
         if readings is None:
             return _NO_READINGS
         rejected, accepted = list[str](), dict[str, Any]()

@@ -21,13 +21,7 @@ from tarsus.gait.swing_trajectory import swinging_height
 if TYPE_CHECKING:
     from jaxtyping import Bool, Complex, Float
 
-__all__ = [
-    "PHASE_TOLERANCE",
-    "POSITION_TOLERANCE",
-    "GaitState",
-    "StepInputs",
-    "integrate_twist",
-]
+__all__ = ["PHASE_TOLERANCE", "POSITION_TOLERANCE", "GaitState", "StepInputs", "integrate_twist"]
 
 PHASE_TOLERANCE = 1e-9
 """Differences of the clock below this are rounding [cycles]."""

@@ -10,6 +10,7 @@ edges still leave the feasible region between rays, sides are moved inwards.
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -56,7 +57,7 @@ def foot_workspace(
         Distances of the sides from the heading frame's origin along `NORMALS` [m]. If a foot cannot be at its rest
         foothold, a side lies before that foothold.
     """
-    margin, spacing = LegMargin(robot, stance), _FootSpacing(stance.rest, foot_distance)
+    margin, spacing = LegMargin(robot, stance), partial(_spacing, stance.rest, foot_distance)
     step = _ring(robot)
     rings = np.arange(_RINGS + 1)[:, None, None] * step
     inner = margin(rings[:_INNER] * _DIRECTIONS[:, None])
@@ -125,21 +126,18 @@ def _first_zero(
     )
 
 
-class _FootSpacing:
-    """Distance to the middle between neighbouring rest footholds, less half the least distance of feet."""
+def _spacing(
+    rest: Complex[np.ndarray, "legs"], foot_distance: float, out: Complex[np.ndarray, "*#batch #legs"]
+) -> Float[np.ndarray, "..."]:
+    """Return the factor by which `out` may be scaled before a foot passes the middle to a neighbour's rest foothold.
 
-    def __init__(self, rest: Complex[np.ndarray, "legs"], foot_distance: float) -> None:
-        path = rest[None, :] - rest[:, None]
-        length = np.abs(path) + np.where(np.eye(len(rest), dtype=bool), 1e9, 0.0)
-        self._direction = path / length
-        self._distance = np.maximum((length - foot_distance) / 2, 0.0)
-
-    def __call__(
-        self, out: Complex[np.ndarray, "*#batch legs"] | Complex[np.ndarray, "*#batch 1"]
-    ) -> Float[np.ndarray, "..."]:
-        """Return the factor by which `out` ``(n, legs)`` may be scaled before a foot gets too near to a neighbour's."""
-        along = (out.conj()[..., None] * self._direction).real
-        return np.asarray(np.where(along > 1e-6, self._distance / np.maximum(along, 1e-6), np.inf).min(axis=-1))
+    Half the least distance of feet is kept on either side of the middle.
+    """
+    path = rest[None, :] - rest[:, None]
+    length = np.abs(path) + np.where(np.eye(len(rest), dtype=bool), 1e9, 0.0)
+    along = (out.conj()[..., None] * (path / length)).real
+    room = np.maximum((length - foot_distance) / 2, 0.0)
+    return np.asarray(np.where(along > 1e-6, room / np.maximum(along, 1e-6), np.inf).min(axis=-1))
 
 
 def _sides(rest: Complex[np.ndarray, "legs"], reach: Float[np.ndarray, "n legs"]) -> Float[np.ndarray, "legs 16"]:
