@@ -199,15 +199,14 @@ class RobotController:
         change = self._next_change()
         if change is None or not (self._at_rest or self.leg_failures.sits):
             return
+        state, end = change
         try:
-            sequence = self._plan(change[0])
+            sequence = self._plan(state)
         except TarsusError as error:
-            self._rejected = Limitation(kind=LimitationKind.STATE, cause=f"{change[0]} is not possible: {error}")
+            self._rejected = Limitation(kind=LimitationKind.STATE, cause=f"{state} is not possible: {error}")
             return
-        playing = Playing(sequence, change[0], before=self._activity, end=change[1])
-        self._before = self._base
+        self._activity, self._before = Playing(sequence, state, before=self._activity, end=end), self._base
         self._base = ground_frame(self._now.body) @ ground_frame(sequence.stages[0].start).inverse()
-        self._activity = playing
 
     def _next_change(self) -> tuple[RobotState, RobotState] | None:
         """Return the next change on the way to the state that is wanted; None where there is none that is possible."""

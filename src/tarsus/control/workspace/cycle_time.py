@@ -41,17 +41,15 @@ class CycleTiming(NamedTuple):
     Attributes
     ----------
     cycle_time : float
-        Duration of a cycle [s].
+        Duration of a cycle [s]: one at least in which the joints can swing the feet over a quarter of the stroke that
+        the legs reach.
     stroke, turning : float
         Longest strokes that the joints are fast enough for, walking straight and turning on the spot [m].
-    shortest_cycle_time : float
-        Shortest cycle in which the joints can swing the feet over a quarter of the stroke that the legs reach [s].
     """
 
     cycle_time: float
     stroke: float
     turning: float
-    shortest_cycle_time: float
 
 
 def cycle_timing(
@@ -118,7 +116,7 @@ def _timing(
     straight_on, on_the_spot = (
         float(_cap(sizes[part], spare[part], stroke[part])) for part in (slice(_STRAIGHT), slice(_STRAIGHT, None))
     )
-    return CycleTiming(cycle_time, straight_on, on_the_spot, least)
+    return CycleTiming(cycle_time, straight_on, on_the_spot)
 
 
 def _cap(
