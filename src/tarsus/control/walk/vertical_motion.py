@@ -18,8 +18,8 @@ _STILL = FeltFoot()
 
 # Swing phase at which a foot is at its top, and on rough ground.
 _TOP_PHASE, _ROUGH_TOP_PHASE = 0.42, 0.45
-# Part of its way up in which a foot's top may change: later on, a higher one would throw the foot up.
-_CHANGING = 0.6
+# Mean speed up to a top that changes on the way, at most: a foot close to it would be thrown up [m/s].
+_FASTEST_RISE = 0.5
 # Where the ground rises soon: up to which swing phase a foot may begin to rise before it travels, and its top's phase.
 _RISING_FIRST, _STEEP_TOP_PHASE = 0.15, 0.35
 # Fraction of a swing in which a foot goes down from its top to the expected ground, on rough ground, and at least where
@@ -137,13 +137,14 @@ def _swinging(
     speed, acceleration, top, top_phase, slide, drawn_back = foot
     rough = min(felt.depth / _ROUGH, 1.0)
     part = max(_DESCENT + rough * (_ROUGH_DESCENT - _DESCENT) - felt.late / swing_time, _SHORTEST_DESCENT)
-    if math.isnan(top) or (phase < _CHANGING * top_phase and drawn_back is None):
-        # No higher than the foot can be down again from by the end of its swing.
-        fits = under.expected - felt.depth + felt.lowering * part * swing_time
+    if math.isnan(top) or (phase < top_phase and drawn_back is None):
+        # No higher than the foot can be there in time, and down again by the end of its swing.
+        top_phase = _TOP_PHASE + rough * (_ROUGH_TOP_PHASE - _TOP_PHASE)
+        rises = height + _FASTEST_RISE * (top_phase - phase) * swing_time
+        fits = min(under.expected - felt.depth + felt.lowering * part * swing_time, rises)
         start = lifted_at - _BEHIND * max(lifted_at - under.expected, 0.0)
         over = max(start, under.expected, under.way) + felt.swing_height
         top = max(min(over, under.highest, fits), height)
-        top_phase = _TOP_PHASE + rough * (_ROUGH_TOP_PHASE - _TOP_PHASE)
         if under.steep and 0.0 < phase < _RISING_FIRST:
             drawn_back, top_phase = place, _STEEP_TOP_PHASE
     if phase < top_phase:
