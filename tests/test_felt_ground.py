@@ -19,7 +19,7 @@ from tarsus.control.terrain.reach import Reach
 from tarsus.control.terrain.roughness import Roughness
 from tarsus.control.terrain.support import Support, holds
 from tarsus.control.walk.felt_feet import FeltFoot, FeltInputs, GroundUnder
-from tarsus.control.walk.vertical_motion import _swinging
+from tarsus.control.walk.vertical_motion import _searching, _swinging
 from tarsus.control.walk_controller import WalkController
 from tarsus.gait.foot_plane import FootPlane, fitted_plane
 from tarsus.gait.stance.reachable_heights import reachable_heights
@@ -402,6 +402,18 @@ def test_feet_step_as_high_when_the_robot_stops_as_while_it_walks(ticks):
         controller.step((0.15 * (tick < ticks), 0.0, 0.0), 0.01, readings=readings)
         tops.append((controller.feet[:, 2] - controller.feet[:, 2].min()).max())
     assert max(tops) > 0.025
+
+
+def test_a_foot_that_has_stood_on_even_ground_looks_for_it_slowly_while_three_others_stand():
+    felt = FeltInputs([], [], [], 0.0, 0.0, (0.0, 0.0), 0j, 0j, 0.8, 1.0, 0.03, 0.4, 0.0, {})
+    under = GroundUnder(0.0, lowest=-0.2, highest=0.2)
+    # So not on rough ground: there it may be far below.
+    cases = (math.nan, 3, 0.0, -0.04), (math.nan, 2, 0.0, -0.15), (0.03, 3, 0.0, -0.15), (math.nan, 3, 0.006, -0.15)
+    for top, others, depth, speed in cases:
+        foot, given = FeltFoot(speed, top=top), felt._replace(stands=[True] * others, depth=depth)
+        height, _, after = _searching(0.0, foot, 0j, 0.0, under, given, 0.1)
+        assert after == pytest.approx(speed)
+        assert height == pytest.approx(0.1 * speed)
 
 
 def test_a_foot_that_has_met_an_obstacle_goes_down_once_it_is_past_it():

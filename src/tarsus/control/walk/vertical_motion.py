@@ -33,6 +33,8 @@ _BEHIND = 0.5
 _CLEAR = 0.9
 # Least speed of a descending foot, and of a foot that should stand and feels nothing [m/s].
 _LOWERING, _SEARCHING = 0.12, 0.15
+# Such a speed of a foot that has stood, while this many others stand: a faster one would push them off [m/s].
+_LOSING, _OTHERS = 0.04, 3
 # Time in which a foot that should stand goes down to the expected ground [s].
 _SEARCH_TIME = 0.1
 # Room over known ground on the way of a foot that goes down [m].
@@ -111,7 +113,10 @@ def _searching(
     if under.place is None or under.place == place:
         least = felt.scale * _SEARCHING
         fastest = felt.lowering if under.place is None else max(felt.lowering, least)
-        wanted -= min(max(least, over / _SEARCH_TIME), fastest)
+        loses = math.isnan(foot.top) and sum(felt.stands) >= _OTHERS
+        rough = min(felt.depth / _ROUGH, 1.0)
+        slowest = felt.scale * (_LOSING + rough * (_SEARCHING - _LOSING)) if loses else least
+        wanted -= min(max(slowest, over / _SEARCH_TIME), fastest)
         after = _towards(speed, wanted, _FOOT_ACCELERATION * dt)
         height, after = _no_lower(height + (speed + after) / 2 * dt, after, height, under.lowest)
         return height, place, after
