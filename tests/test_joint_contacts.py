@@ -110,30 +110,3 @@ def test_joint_angles_are_the_last_choice(servos):
     switched = valid._replace(contacts=(True,) * 6)
     assert loads.contacts(switched, angles, DT, **gait) == (True,) * 6
     assert not loads.estimated
-
-
-def test_joint_angles_tell_of_a_foot_whose_switch_stays_open():
-    plant, controller = SimulatedPlant(STRIDER), tarsus.RobotController(STRIDER)
-    plant.start(controller.output)
-    right = []
-    for tick in range(450):
-        readings = plant.step(controller.output, DT)
-        switches = np.array(readings.contacts)
-        # From 4 s on it works again.
-        switches[0] &= tick > 400
-        controller.step((0.14, 0.0, 0.0), DT, dataclasses.replace(readings, contacts=switches))
-        ground = controller._activity.controller._walk.ground
-        if tick > 200:
-            right.append(ground.contacts.estimator.touching[0] == (plant.state.foot_forces[0, 2] > 0.5))
-    assert np.mean(right) > 0.85
-    assert not ground._loads.open
-
-
-def test_without_servos_that_give_way_an_open_switch_is_believed():
-    angles = tarsus.WalkController(STRIDER).angles
-    gait = {"down": np.ones(6, dtype=bool), "phase": np.zeros(6), "doubted": [0]}
-    switches = (False, *(True,) * 5)
-    for joints in (None, tuple(angles.tolist())):
-        loads = FootLoads(STRIDER, None)
-        valid = ValidReadings(joint_angles=joints, contacts=switches)
-        assert [loads.contacts(valid, angles, DT, **gait) for _ in range(5)] == [switches] * 5

@@ -38,17 +38,15 @@ class FootLoads:
 
     Attributes
     ----------
-    estimated : set of int
-        Legs whose contacts are estimated by joint angles.
-    open : set of int
-        Legs whose switches have been found open.
+    estimated : bool
+        Whether contacts are estimated by joint angles.
     """
 
     def __init__(self, robot: Robot, admittance: Admittance | None) -> None:
         self._weight = float(total_mass(robot)) * STANDARD_GRAVITY if robot.has_masses else 0.0
         self._torques = FootForceEstimator(robot) if robot.has_masses else None
         self._joints = JointContacts(robot) if robot.has_masses and all(map(all, robot.servos)) else None
-        self.estimated, self.open = set[int](), set[int]()
+        self.estimated = False
         self._filter = AdmittanceFilter(admittance, robot.legs) if admittance else None
 
     @property
@@ -59,7 +57,7 @@ class FootLoads:
     @property
     def fastest_descent(self) -> float:
         """Greatest speed with which feet may go down in search of the ground [m/s]."""
-        return _ESTIMATED_DESCENT if self.estimated - self.open else _DESCENT
+        return _ESTIMATED_DESCENT if self.estimated else _DESCENT
 
     def contacts(
         self,
@@ -69,12 +67,10 @@ class FootLoads:
         *,
         down: Bool[np.ndarray, "legs"],
         phase: Float[np.ndarray, "legs"],
-        doubted: Sequence[int] = (),
     ) -> Sequence[bool | None] | None:
         """Return which feet touch the ground: from switches, else load cells, else joint angles; None where unknown.
 
         Joint torques do not tell: position-controlled legs press against each other, and a swinging leg is accelerated.
-        Joint angles also tell of feet whose switches have been found open, until these close.
 
         Parameters
         ----------
@@ -88,24 +84,17 @@ class FootLoads:
             Which feet should stand.
         phase : array, shape (legs,)
             Swing phase of the others.
-        doubted : sequence of int
-            Legs whose switches stay open while their feet stand.
         """
-        self.estimated, switched, found = set(), valid.contacts, None
-        if switched is not None:
-            self.open = {leg for leg in self.open.union(doubted) if not switched[leg]}
-            if not self.open:
-                return switched
-        elif valid.forces is not None and self._weight:
+        self.estimated, found = False, None
+        if valid.contacts is not None:
+            return valid.contacts
+        if valid.forces is not None and self._weight:
             least = _CONTACT_SHARE * self._weight
             return [None if force is None else force[2] > least for force in valid.forces]
         if valid.joint_angles is not None and self._joints is not None:
             found = self._joints.contacts(valid.joint_angles, angles, dt, age=valid.contact_age, down=down, phase=phase)
-        if switched is None or found is None:
-            self.estimated = set(range(len(found or ())))
-            return switched or found
-        self.estimated = self.open
-        return [(found if leg in self.open else switched)[leg] for leg in range(len(found))]
+            self.estimated = found is not None
+        return found
 
     def offsets(
         self,

@@ -126,8 +126,7 @@ class FeltGround:
         valid = self.measured = self._validator.validate(readings, dt)
         down, self._commanded = state.down.tolist(), angles
         stopped = self._swings.step(angles[:, 0].tolist(), valid.joint_angles, dt, down)
-        doubted, phase = [*filter(self.contacts.is_open, range(len(down)))], state.swing_phase
-        measured = self._loads.contacts(valid, angles, dt, down=state.down, phase=phase, doubted=doubted)
+        measured = self._loads.contacts(valid, angles, dt, down=state.down, phase=state.swing_phase)
         if not state.felt:
             if measured is None and valid.attitude is None:
                 return state, []
@@ -272,7 +271,7 @@ class FeltGround:
         reach, rests = self.body.reach, self._rests and self.support.held
         lowest = max(reach.lowest[leg], self.ground.at(goal) - _NEAR) if rests else reach.lowest[leg]
         room = (lowest if searches else None, reach.highest_on_way(leg, place, goal))
-        clears, back = leg not in self._loads.estimated, self.missing.places.get(leg)
+        clears, back = not self._loads.estimated, self.missing.places.get(leg)
         found = self.ground.under(place, goal, state.elevation, room, clears=clears)
         return found if back is None else found._replace(place=state.origin + back * heading)
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence, Set
+from collections.abc import Sequence
 
 from tarsus.control.sensing.contact_estimator import ContactEstimator
 from tarsus.control.terrain.support import holds
@@ -56,7 +56,7 @@ class FootContacts:
     def __init__(self, legs: int) -> None:
         self.estimator = ContactEstimator(legs)
         self.lifted, self.standing, self.age = [False] * legs, [True] * legs, 0.0
-        self._estimated: Set[int] = frozenset()
+        self._estimated = False
         self._unheld, self._tilt = 0.0, (0.0, 0.0)
         self._tilts, self.sunk = [(0.0, 0.0)] * legs, [0.0] * legs
         self._without, self._evidence, self._settled, self._searched = ([0.0] * legs for _ in range(4))
@@ -71,7 +71,7 @@ class FootContacts:
         count: int = 1,
         leaving: Sequence[bool] | None = None,
         rests: bool = False,
-        estimated: Set[int] = frozenset(),
+        estimated: bool = False,
     ) -> None:
         """Take in the contacts of one tick, or of some in which they are the same.
 
@@ -89,8 +89,8 @@ class FootContacts:
             Which feet are to lift off soon: once these have stood, they are not lowered where others take their load.
         rests : bool
             Whether the robot stands still and is held by the feet that bear load: those that have stood stay, then.
-        estimated : set of int
-            Legs whose contacts are estimated by joint angles.
+        estimated : bool
+            Whether the contacts are estimated by joint angles.
         """
         self.age, self._estimated = age, estimated
         self.estimator.step(readings, dt, count=count)
@@ -179,7 +179,7 @@ class FootContacts:
 
     def feels(self, leg: int) -> bool:
         """Return whether a foot touches the side of an obstacle, or rests on it: estimates do not tell."""
-        return self.estimator.touching[leg] and leg not in self._estimated
+        return self.estimator.touching[leg] and not self._estimated
 
     def seeks(self, leg: int) -> bool:
         """Return whether a foot that should stand has no contact, and has not looked for the ground for long."""
