@@ -17,9 +17,9 @@ import numpy as np
 
 from page_tables import Several, write_tables
 from rough_ground import CASES, GROUNDS, NOT_ADAPTED, PAGE, RANDOM, Case, Outcome, switches, walk
+from tarsus.control.pose.posture_feedback import PostureFeedback
 from tarsus.control.terrain import ground_contact
 from tarsus.control.terrain.foot_contacts import FootContacts
-from tarsus.control.terrain.posture_feedback import PostureFeedback
 
 ROBOT, SHOWN = "strider", ("smooth60", "blocks60", "step+40", "ramp+20", "stairs")
 

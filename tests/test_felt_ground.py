@@ -8,13 +8,13 @@ import pytest
 
 import tarsus
 from tarsus.control.pose.admittance import Admittance
+from tarsus.control.pose.posture_feedback import PostureFeedback
 from tarsus.control.readings import SensorReadings, ValidReadings
 from tarsus.control.sensing.contact_estimator import ContactEstimator
 from tarsus.control.sensing.foot_loads import FootLoads
 from tarsus.control.sensing.leg_odometry import LegOdometry
 from tarsus.control.sensing.validation import ReadingsValidator
 from tarsus.control.terrain.foot_contacts import FootContacts
-from tarsus.control.terrain.posture_feedback import PostureFeedback
 from tarsus.control.terrain.reach import Reach
 from tarsus.control.terrain.roughness import Roughness
 from tarsus.control.terrain.support import Support, holds
@@ -407,13 +407,19 @@ def test_feet_step_as_high_when_the_robot_stops_as_while_it_walks(ticks):
 def test_a_foot_that_has_stood_on_even_ground_looks_for_it_slowly_while_three_others_stand():
     felt = FeltInputs([], [], [], 0.0, 0.0, (0.0, 0.0), 0j, 0j, 0.8, 1.0, 0.03, 0.4, 0.0, {})
     under = GroundUnder(0.0, lowest=-0.2, highest=0.2)
-    # So not on rough ground: there it may be far below.
-    cases = (math.nan, 3, 0.0, -0.04), (math.nan, 2, 0.0, -0.15), (0.03, 3, 0.0, -0.15), (math.nan, 3, 0.006, -0.15)
-    for top, others, depth, speed in cases:
+    # So not on rough ground, where it may be far below, and not close to where it is expected.
+    cases = (
+        (-0.01, math.nan, 3, 0.0, -0.04),
+        (-0.01, math.nan, 2, 0.0, -0.15),
+        (-0.01, 0.03, 3, 0.0, -0.15),
+        (-0.01, math.nan, 3, 0.006, -0.15),
+        (-0.003, math.nan, 3, 0.0, -0.15),
+    )
+    for start, top, others, depth, speed in cases:
         foot, given = FeltFoot(speed, top=top), felt._replace(stands=[True] * others, depth=depth)
-        height, _, after = _searching(0.0, foot, 0j, 0.0, under, given, 0.1)
+        height, _, after = _searching(start, foot, 0j, 0.0, under, given, 0.1)
         assert after == pytest.approx(speed)
-        assert height == pytest.approx(0.1 * speed)
+        assert height == pytest.approx(start + 0.1 * speed)
 
 
 def test_a_foot_that_has_met_an_obstacle_goes_down_once_it_is_past_it():

@@ -49,14 +49,18 @@ def test_uncertain_contacts_do_not_keep_a_foot_in_the_air_over_an_obstacle():
 
 
 def test_a_foot_whose_switch_stays_open_does_not_hold_up_the_walk_over_obstacles():
-    ground = terrain.Blocks(rise=0.04, clear=0.35, seed=3)
-    plant, controller = SimulatedPlant(STRIDER, terrain=ground), tarsus.RobotController(STRIDER)
-    plant.start(controller.output)
-    for _ in range(400):
-        readings = plant.step(controller.output, DT)
-        readings = dataclasses.replace(readings, contacts=[False, *readings.contacts[1:]])
-        controller.step((0.146, 0.0, 0.0), DT, readings)
-    assert plant.state.body.position[0] > 0.73 * 0.146 * 4
+    ways = []
+    for seed in range(3):
+        ground = terrain.Blocks(rise=0.04, clear=0.35, seed=seed)
+        plant, controller = SimulatedPlant(STRIDER, terrain=ground), tarsus.RobotController(STRIDER)
+        plant.start(controller.output)
+        for _ in range(400):
+            readings = plant.step(controller.output, DT)
+            readings = dataclasses.replace(readings, contacts=[False, *readings.contacts[1:]])
+            controller.step((0.146, 0.0, 0.0), DT, readings)
+        ways.append(plant.state.body.position[0] / (0.146 * 4))
+    # Single walks are chance: 0.64 to 0.89 in eight.
+    assert np.mean(ways) > 0.75
 
 
 def test_servos_that_follow_at_once_tell_no_contacts():

@@ -11,6 +11,7 @@ from tarsus.control.command import Command
 from tarsus.control.control_output import ControlOutput
 from tarsus.control.limitation import Limitation, LimitationKind
 from tarsus.control.pose.admittance import Admittance
+from tarsus.control.pose.posture_feedback import Levelling
 from tarsus.control.readings import SensorReadings
 from tarsus.control.safety import Guard, GuardBounds, GuardState, Intervention
 from tarsus.control.sequence import MotionSequence
@@ -19,7 +20,6 @@ from tarsus.control.states.activity import Activity, Playing, Resting, Snapshot,
 from tarsus.control.states.persistent_command import PersistentCommand, stopped
 from tarsus.control.states.reduced_walking import LegFailures
 from tarsus.control.states.robot_state import RobotState, next_state, requested_state
-from tarsus.control.terrain.posture_feedback import Levelling
 from tarsus.control.terrain.roughness import GroundAdaptation
 from tarsus.control.walk.ground_pose import ground_frame
 from tarsus.control.walk_controller import WalkController

@@ -11,10 +11,10 @@ from tarsus.control.command import Command
 from tarsus.control.limitation import Cause, Limitation, LimitationKind
 from tarsus.control.limiter.workspace import top_speed
 from tarsus.control.pose.admittance import Admittance
+from tarsus.control.pose.posture_feedback import Levelling
 from tarsus.control.readings import SensorReadings, ValidReadings
 from tarsus.control.terrain.felt_ground import FeltGround
 from tarsus.control.terrain.missing_ground import SLOW
-from tarsus.control.terrain.posture_feedback import Levelling
 from tarsus.control.terrain.roughness import GroundAdaptation
 from tarsus.control.tick.command_intake import CommandIntake
 from tarsus.control.tick.components import WalkComponents

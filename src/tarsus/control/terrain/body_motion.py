@@ -9,15 +9,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tarsus.control.limitation import Limitation, LimitationKind
-from tarsus.control.limiter.slope_limit import SlopeLimit
 from tarsus.control.limiter.stopped_body import StoppedBody
+from tarsus.control.pose.posture_feedback import Levelling, PostureFeedback, PostureRates
 from tarsus.control.readings import ValidReadings
 from tarsus.control.sensing.leg_odometry import LegOdometry
 from tarsus.control.terrain.foot_contacts import FootContacts
 from tarsus.control.terrain.ground_map import GroundMap
-from tarsus.control.terrain.posture_feedback import Levelling, PostureFeedback, PostureRates
 from tarsus.control.terrain.reach import Reach
 from tarsus.control.terrain.roughness import GroundAdaptation, Roughness
+from tarsus.control.terrain.slope_limit import SlopeLimit
 from tarsus.control.terrain.slope_stance import SlopeStance
 from tarsus.control.walk.state import PHASE_TOLERANCE, GaitState
 from tarsus.control.walk.step_timing import StepTiming

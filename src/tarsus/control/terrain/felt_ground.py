@@ -9,6 +9,7 @@ import numpy as np
 
 from tarsus.control.limitation import Limitation, LimitationKind
 from tarsus.control.pose.admittance import Admittance
+from tarsus.control.pose.posture_feedback import Levelling
 from tarsus.control.readings import SensorReadings, ValidReadings
 from tarsus.control.sensing.body_condition import BodyCondition
 from tarsus.control.sensing.foot_loads import FootLoads
@@ -19,7 +20,6 @@ from tarsus.control.terrain.foot_contacts import FootContacts
 from tarsus.control.terrain.ground_contact import met_ground, not_sunk, searching_feet
 from tarsus.control.terrain.ground_map import GroundMap
 from tarsus.control.terrain.missing_ground import SLOW, MissingGround
-from tarsus.control.terrain.posture_feedback import Levelling
 from tarsus.control.terrain.roughness import GroundAdaptation
 from tarsus.control.terrain.support import Support
 from tarsus.control.transition.foothold_transfer import FootholdTransfer

@@ -33,8 +33,9 @@ _BEHIND = 0.5
 _CLEAR = 0.9
 # Least speed of a descending foot, and of a foot that should stand and feels nothing [m/s].
 _LOWERING, _SEARCHING = 0.12, 0.15
-# Such a speed of a foot that has stood, while this many others stand: a faster one would push them off [m/s].
-_LOSING, _OTHERS = 0.04, 3
+# Such a speed of a foot that has stood, while this many others stand, and how far below the expected ground it is then
+# [m/s], [m]: a faster one would push the others off.
+_LOSING, _OTHERS, _NEAR = 0.04, 3, 0.004
 # Time in which a foot that should stand goes down to the expected ground [s].
 _SEARCH_TIME = 0.1
 # Room over known ground on the way of a foot that goes down [m].
@@ -113,7 +114,7 @@ def _searching(
     if under.place is None or under.place == place:
         least = felt.scale * _SEARCHING
         fastest = felt.lowering if under.place is None else max(felt.lowering, least)
-        loses = math.isnan(foot.top) and sum(felt.stands) >= _OTHERS
+        loses = math.isnan(foot.top) and over < -felt.scale * _NEAR and sum(felt.stands) >= _OTHERS
         rough = min(felt.depth / _ROUGH, 1.0)
         slowest = felt.scale * (_LOSING + rough * (_SEARCHING - _LOSING)) if loses else least
         wanted -= min(max(slowest, over / _SEARCH_TIME), fastest)
