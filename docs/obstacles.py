@@ -168,9 +168,9 @@ def walk(job: Job) -> Outcome:
     ahead = furthest = -math.inf
 
     def noting(function: Any) -> Any:
-        def noted(state: Any, leg: int, *arguments: Any) -> Any:
+        def noted(state: Any, leg: int, *arguments: Any, **more: Any) -> Any:
             touches.reacted.add(leg)
-            return function(state, leg, *arguments)
+            return function(state, leg, *arguments, **more)
 
         return noted
 
