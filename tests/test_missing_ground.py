@@ -376,13 +376,13 @@ class Walk:
 
 def test_a_robot_stops_at_a_wall_says_so_and_walks_away_from_it():
     walk = Walk(terrain.Step(rise=0.15, start=0.41))
-    stopped = walk.go(0.13, 6.5)
+    stopped = walk.go(0.13, 4.5)
     assert stopped < 0.3
     assert walk.named & {"front left", "front right"}
     # It neither pushes nor climbs, and tries other footholds once.
     assert walk.go(0.13, 3.0) == pytest.approx(stopped, abs=0.05)
     assert walk.go(0.13, 2.0) == pytest.approx(walk.go(0.13, 1.0), abs=0.001)
-    assert walk.tilt < np.radians(12)
+    assert walk.tilt < np.radians(8)
     assert walk.go(-0.13, 2.0) < stopped - 0.1
 
 
