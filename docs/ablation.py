@@ -15,6 +15,7 @@ from unittest.mock import patch
 
 import numpy as np
 
+import tarsus
 from page_tables import Several, write_tables
 from rough_ground import CASES, GROUNDS, NOT_ADAPTED, PAGE, RANDOM, Case, Outcome, switches, walk
 from tarsus.control.pose.posture_feedback import PostureFeedback
@@ -34,6 +35,7 @@ ALL_STAND = property(lambda contacts: [True] * len(contacts.lifted), lambda *_: 
 
 CASES["off"] = Case()
 CASES["off: adaptation"] = Case(options=NOT_ADAPTED)
+CASES["off: lost time"] = Case(options={"adaptation": tarsus.GroundAdaptation(catch_up=1.0)})
 CASES["off: levelling"] = Case(options={"levelling": None})
 CASES["off: odometry"] = Case(sensors=switches())
 # What is switched off: by an option or a sensor that is missing, or in place of a function.
@@ -41,6 +43,7 @@ MECHANISMS: dict[str, tuple[str, Callable[[], AbstractContextManager[Any]]]] = {
     "nothing": ("off", nullcontext),
     "levelling": ("off: levelling", nullcontext),
     "adaptation": ("off: adaptation", nullcontext),
+    "lost time": ("off: lost time", nullcontext),
     "lost way": ("off: odometry", nullcontext),
     "obstacles": ("off", off(ground_contact, "_collides", result=False)),
     "search in stance": ("off", partial(patch.object, FootContacts, "standing", ALL_STAND, create=True)),

@@ -72,7 +72,9 @@ class Case(NamedTuple):
 
 
 NOT_ADAPTED = {
-    "adaptation": tarsus.GroundAdaptation(swing_height=0.0, body_height=0.0, drawn_in=0.0, cycle_time=1.0, speed=1.0)
+    "adaptation": tarsus.GroundAdaptation(
+        swing_height=0.0, body_height=0.0, drawn_in=0.0, cycle_time=1.0, speed=1.0, catch_up=1.0
+    )
 }
 CASES: dict[str, Case] = {
     "blind": Case(sensors="blind"),

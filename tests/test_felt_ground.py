@@ -187,7 +187,7 @@ def test_roughness_rises_at_once_falls_slowly_and_is_bounded():
     assert (roughness.drawn_in, roughness.cycle_time, roughness.speed) == pytest.approx((0.02, 1.1875, 0.775))
     roughness.decay(20.0)
     assert (roughness.drawn_in, roughness.cycle_time, roughness.speed) == (0.0, 1.0, 1.0)
-    for name, value in (("cycle_time", 0.9), ("speed", 0), ("speed", 1.2), ("drawn_in", math.nan)):
+    for name, value in (("cycle_time", 0.9), ("catch_up", 0.5), ("speed", 0), ("speed", 1.2), ("drawn_in", math.nan)):
         with pytest.raises(tarsus.TarsusError, match=f"{name} is {value}"):
             tarsus.GroundAdaptation(**{name: value})
     with pytest.raises(tarsus.TarsusError, match="swing_height is -1"):

@@ -37,6 +37,8 @@ class PendingTransitionLimiter:
         planned = self._transitions.scheduler.planned
         if planned is not None and self._transitions.timing.stands_before(planned.parameters.gait):
             self._fraction = 0.0
+        if self._fraction == 1.0:
+            return grant
         limitation = None
         if self._fraction < _REPORTED and any(request.twist):
             limitation = Limitation(kind=LimitationKind.TWIST, cause=_CAUSE, asked=1.0, granted=self._fraction)

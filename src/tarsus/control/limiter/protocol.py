@@ -51,7 +51,7 @@ class TwistGrant(NamedTuple):
     Attributes
     ----------
     fraction : float
-        Fraction of the commanded twist, 0 to 1.
+        Fraction of the commanded twist, 0 to 1, or more where lost time is made up for.
     target : array, shape (3,), or None
         The twist to follow; None until a limiter sets it, which ends further limiting of it.
     limitations : tuple of Limitation

@@ -48,25 +48,27 @@ class WorkspaceLimiter:
         frequency = min(transitions.timing.frequency, 1 / transitions.current.cycle_timing.cycle_time)
         limits, pending = transitions.footholds.limits, transitions.pending
         longest, speed = self._adapted()
-        key = (request.twist, frequency, limits, pending, longest, speed)
+        most = max(grant.fraction, 1.0)
+        key = (request.twist, most, frequency, limits, pending, longest, speed)
         if key != self._key:
-            self._key, self._found = key, self._largest(np.array(request.twist), frequency)
+            self._key, self._found = key, self._largest(np.array(request.twist), frequency, most)
             walks = any(request.twist)
             fastest, longest = (top_speed(transitions, request.twist), longest) if walks else (1.0, 1.0)
             # Cycles get no longer than strokes at that speed allow.
             transitions.lengthened = min(max(_SPARE * max(fastest, 1 / speed), 1.0), longest)
             if speed < 1 and speed * fastest < self._found[0]:
-                slow = Limitation(kind=LimitationKind.TWIST, cause=_ROUGH, asked=1.0, granted=speed * fastest)
-                self._found = speed * fastest, slow
+                granted = speed * fastest
+                slow = Limitation(kind=LimitationKind.TWIST, cause=_ROUGH, asked=1.0, granted=granted)
+                self._found = granted, slow if granted < 1 else None
         return grant.at_most(*self._found)
 
-    def _largest(self, twist: Float[np.ndarray, "3"], frequency: float) -> tuple[float, Limitation | None]:
-        """Return the largest sustainable fraction, at most 1, and what limits it."""
+    def _largest(self, twist: Float[np.ndarray, "3"], frequency: float, most: float) -> tuple[float, Limitation | None]:
+        """Return the largest sustainable fraction, up to a greatest one, and what limits it."""
         transitions, pending = self._transitions, self._transitions.pending
         stances = [(transitions.current, transitions.footholds.limits)]
         if pending is not None:
             stances.append((pending, pending.path_limits))
-        fraction, leg = 1.0, 0
+        fraction, leg = most, 0
         for transition, limits in stances:
             duty_factor = transition.parameters.gait.duty_factor
             stance_time = duty_factor * max(1 / frequency, transition.cycle_timing.cycle_time)

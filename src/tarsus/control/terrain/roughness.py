@@ -40,6 +40,8 @@ class GroundAdaptation:
         Greatest cycle time on rough ground, over the one on even ground: fewer and longer steps slip less.
     speed : float
         Greatest speed on rough ground, over the top speed on even ground.
+    catch_up : float
+        Greatest speed that makes up for time that the ground has cost, over the commanded one; 1 for none.
     friction : float
         Coefficient of friction that feet are sure of: slopes on which they would slip with it are refused.
 
@@ -54,14 +56,16 @@ class GroundAdaptation:
     drawn_in: float = 0.02
     cycle_time: float = 1.25
     speed: float = 0.7
+    catch_up: float = 1.5
     friction: float = 0.8
 
     def __post_init__(self) -> None:
         for name in ("swing_height", "body_height", "drawn_in", "friction"):
             require_number(f"ground adaptation: {name}", getattr(self, name), zero=True)
         require_number("ground adaptation: speed", self.speed, zero=False, most=1.0)
-        if not 1 <= self.cycle_time < math.inf:
-            raise InputError(f"ground adaptation: cycle_time is {self.cycle_time}; it must be finite, at least 1")
+        for name in ("cycle_time", "catch_up"):
+            if not 1 <= getattr(self, name) < math.inf:
+                raise InputError(f"ground adaptation: {name} is {getattr(self, name)}; it must be finite, at least 1")
 
 
 class Roughness:
@@ -80,7 +84,7 @@ class Roughness:
 
     def __init__(self, adaptation: GroundAdaptation, *, scale: float = 1.0) -> None:
         self.value = 0.0
-        self._adaptation, self._scale = adaptation, scale
+        self.adaptation, self._scale = adaptation, scale
 
     def landed(self, off: float) -> None:
         """Take note of a foothold.
@@ -109,27 +113,27 @@ class Roughness:
     @property
     def swing_rise(self) -> float:
         """Addition to the swing height [m]."""
-        return min(self.value, self._adaptation.swing_height)
+        return min(self.value, self.adaptation.swing_height)
 
     @property
     def body_rise(self) -> float:
         """Addition to the body height [m]."""
-        return min(self.value, self._adaptation.body_height)
+        return min(self.value, self.adaptation.body_height)
 
     @property
     def drawn_in(self) -> float:
         """How far feet are drawn in [m]."""
-        return self._share(0.0, _ROUGH) * self._adaptation.drawn_in
+        return self._share(0.0, _ROUGH) * self.adaptation.drawn_in
 
     @property
     def cycle_time(self) -> float:
         """Cycle time over that on even ground."""
-        return 1 + self._share(_ROUGH, _ROUGHEST) * (self._adaptation.cycle_time - 1)
+        return 1 + self._share(_ROUGH, _ROUGHEST) * (self.adaptation.cycle_time - 1)
 
     @property
     def speed(self) -> float:
         """Greatest speed over the top speed on even ground."""
-        return 1 - self._share(_ROUGH, _ROUGHEST) * (1 - self._adaptation.speed)
+        return 1 - self._share(_ROUGH, _ROUGHEST) * (1 - self.adaptation.speed)
 
     def _share(self, least: float, most: float) -> float:
         """Return where the roughness is between two values, 0 to 1."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from tarsus.control.command import Command
+from tarsus.control.limiter.lost_time import LostTime
 from tarsus.control.limiter.pending_transition import PendingTransitionLimiter
 from tarsus.control.limiter.protocol import TwistLimiter, TwistRequest, granted_twist
 from tarsus.control.limiter.reference_governor import GovernorLimiter
@@ -24,8 +25,15 @@ def twist_limiters(walk: WalkComponents) -> list[TwistLimiter]:
     walk : WalkComponents
         The components.
     """
-    roughness = walk.ground.body.roughness
+    ground, roughness = walk.ground, walk.ground.body.roughness
+
+    def rate() -> float:
+        if ground.condition.carried:
+            return 1.0
+        return 0.0 if ground.missing.refuses else ground.support.pace * walk.time_scaling.rate
+
     return [
+        LostTime(roughness.adaptation.catch_up, rate),
         walk.ground.missing,
         walk.ground.body.stopped,
         WorkspaceLimiter(walk.robot.leg_names, walk.transitions, lambda: (roughness.cycle_time, roughness.speed)),

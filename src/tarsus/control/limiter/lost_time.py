@@ -1,0 +1,52 @@
+"""Lost time: what the ground costs, and how much faster than commanded the walk makes up for it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+
+from tarsus.control.limiter.protocol import TwistGrant, TwistRequest
+
+__all__ = ["LostTime"]
+
+# Time that is remembered at most, and from which on the walk is as fast as it may be [s].
+_MEMORY, _WHOLE = 3.0, 1.0
+# The speed changes in this many steps: each has limits computed anew.
+_STEPS = 4
+# Cosine of the angle from which on a command leads elsewhere.
+_ELSEWHERE = 0.9
+
+
+class LostTime:
+    """Asks for more than the commanded twist after the walk has waited for the ground, until the mean is as commanded.
+
+    Parameters
+    ----------
+    most : float
+        Greatest speed over the commanded one, at least 1.
+    rate : callable
+        Returns the rate at which the ground lets the walk advance, 0 to 1.
+    """
+
+    def __init__(self, most: float, rate: Callable[[], float]) -> None:
+        self._most, self._rate, self._lost = most, rate, 0.0
+        self._twist: tuple[float, ...] = (0.0, 0.0, 0.0)
+
+    def limit(self, request: TwistRequest, grant: TwistGrant) -> TwistGrant:
+        """Return the grant, with a greater fraction as long as time is to be made up for."""
+        twist, before = request.twist, self._twist
+        square = _dot(twist, twist)
+        if twist is not before:
+            self._twist = twist
+            self._lost *= _dot(twist, before) > _ELSEWHERE * math.sqrt(square * _dot(before, before))
+        if request.state.felt and square:
+            rate = self._rate()
+            gained = max(_dot(request.state.twist.value.tolist(), twist) / square - 1, 0.0) * rate
+            self._lost = min(max(self._lost + request.dt * (1 - rate - gained), 0.0), _MEMORY)
+        share = round(_STEPS * min(self._lost / _WHOLE, 1.0)) / _STEPS
+        return grant._replace(fraction=1 + share * (self._most - 1)) if share else grant
+
+
+def _dot(twist: Sequence[float], other: Sequence[float]) -> float:
+    """Return the inner product of two twists."""
+    return sum(a * b for a, b in zip(twist, other, strict=True))
