@@ -372,7 +372,7 @@ def test_a_foot_that_lifts_off_soon_is_not_lowered_where_others_take_its_load():
 
 
 def test_a_foot_that_steps_down_a_slope_rises_over_the_middle_of_its_way():
-    felt = FeltInputs([], [], [], 0.0, 0.0, (0.0, 0.0), 0j, 0j, 0.8, 1.0, 0.03, 1.0, 0.0, {})
+    felt = FeltInputs([], [], [], 0.0, 0.0, (0.0, 0.0), 0j, 0.0, 0j, 0.8, 1.0, 0.03, 1.0, 0.0, {})
     for lifted, expected, top in ((0.0, 0.0, 0.03), (0.04, 0.0, 0.05), (0.0, 0.04, 0.07)):
         under = GroundUnder(expected, lowest=-0.2, highest=0.2)
         _, foot = _swinging(lifted, FeltFoot(), under, felt, 0.01, (0.0, 0.5, lifted, 0j))
@@ -381,7 +381,7 @@ def test_a_foot_that_steps_down_a_slope_rises_over_the_middle_of_its_way():
 
 @pytest.mark.parametrize("raised_at", [0.0, 0.2, 0.3, 0.4, 0.415])
 def test_a_foot_is_not_thrown_up_by_a_swing_that_becomes_higher(raised_at):
-    felt = FeltInputs([], [], [], 0.0, 0.0, (0.0, 0.0), 0j, 0j, 0.8, 1.0, 0.03, 1.0, 0.0, {})
+    felt = FeltInputs([], [], [], 0.0, 0.0, (0.0, 0.0), 0j, 0.0, 0j, 0.8, 1.0, 0.03, 1.0, 0.0, {})
     under, height, foot, heights = GroundUnder(0.0, lowest=0.0, highest=0.2), 0.0, FeltFoot(), []
     for tick in range(50):
         phase = tick / 50
@@ -405,7 +405,7 @@ def test_feet_step_as_high_when_the_robot_stops_as_while_it_walks(ticks):
 
 
 def test_a_foot_that_has_stood_on_even_ground_looks_for_it_slowly_while_three_others_stand():
-    felt = FeltInputs([], [], [], 0.0, 0.0, (0.0, 0.0), 0j, 0j, 0.8, 1.0, 0.03, 0.4, 0.0, {})
+    felt = FeltInputs([], [], [], 0.0, 0.0, (0.0, 0.0), 0j, 0.0, 0j, 0.8, 1.0, 0.03, 0.4, 0.0, {})
     under = GroundUnder(0.0, lowest=-0.2, highest=0.2)
     # So not on rough ground, where it may be far below, and not close to where it is expected.
     cases = (
@@ -423,7 +423,7 @@ def test_a_foot_that_has_stood_on_even_ground_looks_for_it_slowly_while_three_ot
 
 
 def test_a_foot_that_has_met_an_obstacle_goes_down_once_it_is_past_it():
-    felt = FeltInputs([], [], [], 0.0, 0.0, (0.0, 0.0), 0j, 0j, 0.8, 1.0, 0.03, 1.0, 0.0, {})
+    felt = FeltInputs([], [], [], 0.0, 0.0, (0.0, 0.0), 0j, 0.0, 0j, 0.8, 1.0, 0.03, 1.0, 0.0, {})
     risen = FeltFoot(top=0.05, top_phase=0.4, drawn_back=0j)
     for place, clears, goes_down in (
         (0j, True, False),
@@ -437,7 +437,7 @@ def test_a_foot_that_has_met_an_obstacle_goes_down_once_it_is_past_it():
 
 
 def test_feet_go_down_sooner_where_contacts_are_known_late():
-    felt = FeltInputs([], [], [], 0.0, 0.0, (0.0, 0.0), 0j, 0j, 0.8, 1.0, 0.03, 1.0, 0.0, {})
+    felt = FeltInputs([], [], [], 0.0, 0.0, (0.0, 0.0), 0j, 0.0, 0j, 0.8, 1.0, 0.03, 1.0, 0.0, {})
     under, high = GroundUnder(0.0, lowest=-0.2, highest=0.2), FeltFoot(top=0.06, top_phase=0.42, speed=-0.3)
     speeds = [
         _swinging(0.06, high, under, felt._replace(late=late), 0.1, (0.5, 0.5, 0.0, 0j))[1].speed

@@ -10,6 +10,7 @@ import numpy as np
 
 from tarsus.control.limitation import Limitation, LimitationKind
 from tarsus.control.limiter.stopped_body import StoppedBody
+from tarsus.control.pose.heading_feedback import HeadingFeedback
 from tarsus.control.pose.posture_feedback import Levelling, PostureFeedback, PostureRates
 from tarsus.control.readings import ValidReadings
 from tarsus.control.sensing.leg_odometry import LegOdometry
@@ -54,6 +55,8 @@ class BodyMotion:
     ----------
     rates, drift : PostureRates, complex
         How the body is to move; velocity of the feet that makes up for lost way, in the heading frame [m/s].
+    heading : HeadingFeedback
+        How the body turns back to its heading.
     reach, roughness : Reach, Roughness
         Between which heights legs reach their strokes; how uneven the ground is.
     slope, stance : SlopeLimit, SlopeStance
@@ -83,6 +86,7 @@ class BodyMotion:
         self.slope, self.stance, self.stopped = SlopeLimit(adaptation.friction), SlopeStance(robot), StoppedBody(robot)
         self.rates, self.drift, self.lowered = PostureRates(0.0, (0.0, 0.0)), 0j, 0.0
         self.tilt: tuple[float, float] | None = None
+        self.heading = HeadingFeedback()
         self.since = _PERIOD
 
     @property
@@ -131,6 +135,7 @@ class BodyMotion:
         self.reach.update(state.posture.value, rest, twist, timing.stance_time)
         if not bears:
             self.rates, self.drift = PostureRates(0.0, (0.0, 0.0)), 0j
+            self.heading.forget()
             return
         self._ground.step([(places[leg], over[leg]) for leg in bears], self.tilt, state, dt, drift=self.drift)
         if self.tilt is not None:
@@ -140,6 +145,8 @@ class BodyMotion:
         self._fit_height(state, rest, over, down, bears, dt)
         velocity, yaw = complex(*state.twist.value[:2].tolist()) * pace, float(state.posture.value[5])
         tilt = measured.attitude or (0.0, 0.0)
+        turning, rests = float(state.twist.value[2]) * pace, not twist.any()
+        self.heading.step(measured.angular_rates, turning, dt, tilt=tilt, yaw=yaw, rests=rests)
         drift = self.odometry.step(measured.joint_angles, bears, velocity, dt, tilt=tilt, yaw=yaw)
         self.drift = self.stance.not_downhill(drift)
         along, torques = velocity * cmath.exp(-1j * yaw), measured.torques

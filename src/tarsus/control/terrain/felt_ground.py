@@ -220,6 +220,7 @@ class FeltGround:
             climb=body.rates.climb,
             turn=body.rates.turn,
             drift=body.drift + self.missing.held(passing),
+            yaw_rate=body.heading.rate,
             back=self.missing.back,
             travel=_SLOW_TRAVEL + (_FAST_TRAVEL - _SLOW_TRAVEL) * far,
             pace=self.support.pace,

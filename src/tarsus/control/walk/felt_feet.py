@@ -83,6 +83,8 @@ class FeltInputs(NamedTuple):
         Angular velocity of the standing feet about the body, along x and y of the heading frame [rad/s].
     drift : complex
         Velocity of the standing feet against the body's, in the heading frame, that makes up for lost way [m/s].
+    yaw_rate : float
+        How fast the body turns over the standing feet, to make up for lost heading [rad/s].
     back : complex
         Velocity of the body over all feet, in the heading frame, by which it backs off an edge [m/s].
     travel : float
@@ -110,6 +112,7 @@ class FeltInputs(NamedTuple):
     climb: float
     turn: tuple[float, float]
     drift: complex
+    yaw_rate: float
     back: complex
     travel: float
     pace: float

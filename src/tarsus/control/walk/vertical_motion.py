@@ -65,6 +65,7 @@ def moved_vertically(state: GaitState, inputs: StepInputs, dt: float) -> GaitSta
     body, heading = state.elevation + float(state.posture.value[2]), cmath.exp(1j * state.yaw)
     # In G.
     turning, drift = complex(felt.turn[1], -felt.turn[0]) * heading, felt.drift * heading
+    yaw_rate = 1j * felt.yaw_rate
     swing, origin, across = 1 - inputs.gait.duty_factor, state.origin, turning.conjugate()
     places, heights, feet, stop = state.foot.tolist(), state.ground_height.tolist(), list(state.felt), _STOPPING * dt
     delays, phases, starts = state.lift_delay.tolist(), state.swing_phase.tolist(), state.start_height.tolist()
@@ -81,7 +82,7 @@ def moved_vertically(state: GaitState, inputs: StepInputs, dt: float) -> GaitSta
             if felt.in_air:
                 wanted = min(max((state.elevation - height) / _SEARCH_TIME, -_SEARCHING), _SEARCHING)
             if stands:
-                place += (turning * (height - body) - drift) * dt
+                place += (turning * (height - body) - drift - yaw_rate * (place - origin)) * dt
                 speed = before + min(max(wanted - before, -step), step)
                 heights[leg], top = height + (before + speed) / 2 * dt, math.nan
             else:

@@ -1,0 +1,69 @@
+"""Heading feedback: turns the body back by what it has turned more than commanded, by the measured angular rates."""
+
+from __future__ import annotations
+
+import math
+
+from tarsus.control.readings import Vector
+
+__all__ = ["HeadingFeedback"]
+
+# Gain [1/s], greatest rate [rad/s], and what is made up for at most [rad].
+_GAIN, _MOST, _FARTHEST = 1.0, 0.15, 0.5
+# Time in which the difference is forgotten, and in which the offset of the rates is learnt at rest [s].
+_MEMORY, _LEARNS = 10.0, 1.0
+# A body at rest turns more slowly than this, offset included [rad/s].
+_STILL = 0.02
+
+
+class HeadingFeedback:
+    """Keeps the body on its heading: on rough ground feet slip, and the body turns.
+
+    Attributes
+    ----------
+    behind : float
+        By how much the body has turned less than commanded, to the left [rad].
+    rate : float
+        How fast the body is to turn over its standing feet to make up for that [rad/s].
+    """
+
+    def __init__(self) -> None:
+        self.behind, self.rate, self._yaw, self._offset = 0.0, 0.0, 0.0, 0.0
+
+    def step(
+        self, rates: Vector | None, commanded: float, dt: float, *, tilt: tuple[float, float], yaw: float, rests: bool
+    ) -> None:
+        """Take in angular rates.
+
+        Parameters
+        ----------
+        rates : (x, y, z), or None
+            Measured angular velocity along the body's axes [rad/s]; without it, nothing is made up for.
+        commanded, dt : float, float
+            Rate at which the walk turns [rad/s]; time since the last step [s].
+        tilt : (roll, pitch)
+            Of the body against gravity [rad].
+        yaw : float
+            Of the body in the heading frame [rad].
+        rests : bool
+            Whether the robot is to stand still: it does not turn then, and what is measured is the offset of the rates.
+        """
+        turned, self._yaw = yaw - self._yaw, yaw
+        if rates is None:
+            self.behind = self.rate = 0.0
+            return
+        roll, pitch = tilt
+        measured = (math.sin(roll) * rates[1] + math.cos(roll) * rates[2]) / math.cos(pitch)
+        if rests:
+            self.rate = 0.0
+            if abs(measured) < _STILL:
+                self._offset += min(dt / _LEARNS, 1.0) * (measured - self._offset)
+            return
+        measured -= self._offset
+        behind = (self.behind + turned + (commanded - measured) * dt) * (1 - dt / _MEMORY)
+        self.behind = min(max(behind, -_FARTHEST), _FARTHEST)
+        self.rate = min(max(_GAIN * self.behind, -_MOST), _MOST)
+
+    def forget(self) -> None:
+        """Forget what is missing: the robot is carried."""
+        self.behind = self.rate = 0.0

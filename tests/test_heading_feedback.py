@@ -1,0 +1,90 @@
+"""The heading: what is measured of the body's turning, and how it turns back."""
+
+import dataclasses
+import math
+
+import numpy as np
+import pytest
+
+import tarsus
+from tarsus.control.pose.heading_feedback import HeadingFeedback
+from tarsus.simulation import SensorSuite, SimulatedPlant, terrain
+
+DT = 0.04
+
+
+def turned(seconds, *, slips, commanded=0.0, offset=0.0, heading=None):
+    """Return how far a body has turned that follows at once and turns by its slip as well."""
+    heading, yaw = heading or HeadingFeedback(), 0.0
+    for _ in range(round(seconds / DT)):
+        rate = commanded + slips + heading.rate
+        yaw += rate * DT
+        heading.step((0.0, 0.0, rate + offset), commanded, DT, tilt=(0.0, 0.0), yaw=0.0, rests=False)
+    return yaw
+
+
+@pytest.mark.parametrize("commanded", [0.0, 0.3, -0.5])
+def test_a_body_that_has_slipped_turns_back(commanded):
+    heading = HeadingFeedback()
+    slipped = turned(2.0, slips=0.1, commanded=commanded, heading=heading) - 2.0 * commanded
+    assert 0.02 < slipped < 0.1
+    assert abs(slipped + turned(6.0, slips=0.0, commanded=commanded, heading=heading) - 6.0 * commanded) < 0.02
+
+
+@pytest.mark.parametrize(("at_rest", "least", "most"), [(5.0, 0.0, 0.01), (0.0, 0.1, 0.21)])
+def test_the_offset_of_the_rates_is_learnt_at_rest_and_turns_the_body_otherwise(at_rest, least, most):
+    heading, offset = HeadingFeedback(), math.radians(0.2)
+    for _ in range(round(at_rest / DT)):
+        heading.step((0.0, 0.0, offset), 0.0, DT, tilt=(0.0, 0.0), yaw=0.0, rests=True)
+    assert least <= -turned(60.0, slips=0.0, offset=offset, heading=heading) <= most
+
+
+def test_the_rate_and_what_is_made_up_for_are_bounded():
+    heading = HeadingFeedback()
+    turned(60.0, slips=2.0, heading=heading)
+    assert (heading.behind, heading.rate) == (-0.5, -0.15)
+
+
+def test_a_body_pose_that_turns_is_no_error():
+    heading = HeadingFeedback()
+    for tick in range(50):
+        yaw = 0.01 * (tick + 1)
+        heading.step((0.0, 0.0, 0.01 / DT), 0.0, DT, tilt=(0.0, 0.0), yaw=yaw, rests=False)
+    assert heading.behind == pytest.approx(0.0, abs=1e-12)
+
+
+def test_rates_of_a_tilted_body_are_those_about_the_vertical():
+    roll, pitch, heading = 0.3, -0.2, HeadingFeedback()
+    along_body = tarsus.Pose.from_rpy(roll, pitch, 0.4).rotation.T @ np.array([0.0, 0.0, 0.25])
+    heading.step(tuple(along_body), 0.25, DT, tilt=(roll, pitch), yaw=0.0, rests=False)
+    assert heading.behind == pytest.approx(0.0, abs=1e-12)
+
+
+def test_a_robot_at_rest_does_not_turn_and_goes_on_later():
+    heading = HeadingFeedback()
+    turned(1.0, slips=0.1, heading=heading)
+    behind = heading.behind
+    heading.step((0.0, 0.0, 0.3), 0.0, DT, tilt=(0.0, 0.0), yaw=0.0, rests=True)
+    assert (heading.behind, heading.rate) == (behind, 0.0)
+    heading.step((0.0, 0.0, 0.0), 0.0, DT, tilt=(0.0, 0.0), yaw=0.0, rests=False)
+    assert heading.rate < 0.0
+    heading.step(None, 0.0, DT, tilt=(0.0, 0.0), yaw=0.0, rests=False)
+    assert (heading.behind, heading.rate) == (0.0, 0.0)
+
+
+def farthest_off(sensors):
+    """Return the greatest angle between the body and its heading in a walk over blocks [deg]."""
+    robot, ground = tarsus.load_robot("phantomx"), terrain.Blocks(rise=0.06, size=0.12, clear=0.25, seed=5)
+    plant = SimulatedPlant(robot, terrain=ground, sensors=sensors, servos="ideal")
+    controller, found = tarsus.RobotController(robot), []
+    output = controller.output
+    plant.start(output)
+    for _ in range(450):
+        output = controller.step((0.06, 0.0, 0.0), 0.02, plant.step(output, 0.02))
+        found.append(abs(math.degrees(float(np.asarray(plant.state.body.rpy)[2]))))
+    return max(found)
+
+
+def test_in_physics_the_body_keeps_its_heading_over_rough_ground():
+    ideal = SensorSuite.named("ideal")
+    assert farthest_off(ideal) < 0.7 * farthest_off(dataclasses.replace(ideal, angular_rates=None))
