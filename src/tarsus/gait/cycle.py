@@ -57,7 +57,7 @@ def cycle_feet(
     # Relative to the body at mid-stance the foothold is `rest`; the next one is a cycle ahead.
     since_mid_stance = phase / gait.duty_factor - 0.5
     body = exponential_map(displacement, since_mid_stance)
-    ahead = exponential_map(displacement, xp.full_like(phase, 1 / gait.duty_factor))
+    ahead = exponential_map(displacement, xp.full_like(phase[:1, :1], 1 / gait.duty_factor))
     footholds = rest[..., None, :, :]
     swing_phase = xp.where(contacts, xp.zeros_like(phase), (phase - gait.duty_factor) / (1 - gait.duty_factor))
     landing = heading_to_ground(ahead, footholds[..., None, :])[..., 0, :]

@@ -155,8 +155,8 @@ class TransitionPlanner:
         timing = yield from cycle_timing(
             robot, parameters.gait, goal.stand, limits, self._joint_limits, cycle_time=parameters.cycle_time
         )
-        yield
         final = with_stroke_limits(limits, timing.stroke, timing.turning, duty_factor=parameters.gait.duty_factor)
+        yield
         stepping, on_path = yield from self._path_limits(parameters, path.start, goal, final, timing)
         if not on_path.feasible:
             return self._path_cause(on_path)

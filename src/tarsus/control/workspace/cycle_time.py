@@ -28,11 +28,12 @@ _LEAST_SIZE, _CYCLE_TIME_MARGIN = 0.25, 1.15
 _STRAIGHT = 8
 _TWISTS = np.array([(np.cos(a), np.sin(a), 0.0) for a in np.arange(_STRAIGHT) * np.pi / _STRAIGHT] + [(0.0, 0.0, 1.0)])
 _SAMPLES = 33
-_UNIT = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]])
+# Rest footholds of two robots with one leg [m].
+_UNIT = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]])[:, None, None]
 # Cycle times among which the fastest walk is searched, in shortest ones.
 _TRIED = np.geomspace(1.0, 4.0, 33)
 # Number of foot positions solved at once: larger arrays take disproportionately long; and of such blocks in one tick.
-_BLOCK, _BLOCKS = 1900, 3
+_BLOCK, _BLOCKS = 1900, 2
 
 
 class CycleTiming(NamedTuple):
@@ -85,10 +86,9 @@ def cycle_timing(
     size = max(_BLOCK // (robot.legs * len(cycle.shift)), 1)
     times = []
     for block, begin in enumerate(range(0, len(moves), size)):
-        times.append(cycle.shortest_times(robot, stance, slice(begin, begin + size), joint_limits))
-        # The first and the last stage also contain other work.
         if block % _BLOCKS == 0:
             yield
+        times.append(cycle.shortest_times(robot, stance, slice(begin, begin + size), joint_limits))
     # (sizes, twists): the shortest cycle for each size of each stroke.
     shortest = np.empty((len(_SIZES), len(_TWISTS)))
     shortest[0] = times[0][0]
@@ -165,13 +165,14 @@ class SteadyCycle:
     def __init__(self, gait: Gait, moves: Float[np.ndarray, "n 3"], swing_height: float) -> None:
         begin = gait.duty_factor - 0.02 if gait.duty_factor >= 0.5 else -0.02
         self.phases = np.linspace(begin, 1.02, round(_SAMPLES * (1.02 - begin) / (1.04 - gait.duty_factor)))
-        # Two feet with rest footholds 0 and 1: as complex numbers, positions are linear in rest footholds.
+        # With rest footholds 0 and 1: as complex numbers, positions are linear in rest footholds.
         feet, _ = cycle_feet(
-            Gait(gait.duty_factor, (0.0, 0.0)), _UNIT, moves, swing_height=np.array(swing_height), phases=self.phases
+            Gait(gait.duty_factor, (0.0,)), _UNIT, moves, swing_height=np.array(swing_height), phases=self.phases
         )
-        places = np.asarray(feet[..., 0] + 1j * feet[..., 1]).T
-        self.height: Float[np.ndarray, "m 1"] = feet[0, :, :1, 2]
-        self.shift, self.factor = places[0], places[1] - places[0]
+        # With the axes in memory in the order in which the legs are solved, these are solved a quarter faster.
+        at_0, at_1 = np.ascontiguousarray((feet[..., 0, 0] + 1j * feet[..., 0, 1]).swapaxes(1, 2))
+        self.height: Float[np.ndarray, "m 1"] = feet[0, 0, :, :, 2]
+        self.shift, self.factor = at_0, at_1 - at_0
 
     def shortest_times(
         self, robot: Robot, stance: StanceGeometry, part: slice, joint_limits: JointLimits

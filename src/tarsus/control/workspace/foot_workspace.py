@@ -67,8 +67,8 @@ def foot_workspace(
     yield
     rays = last_feasible + np.arange(_FINE + 1)[:, None, None] * (step / _FINE)
     reach = _first_zero(rays, margin(rays * _DIRECTIONS[:, None]), interpolation=1.0) - RESERVED_MARGIN
-    bounds = _sides(stance.rest, np.minimum(reach, spacing(_DIRECTIONS[:, None])))
     yield
+    bounds = _sides(stance.rest, np.minimum(reach, spacing(_DIRECTIONS[:, None])))
     for _ in range(_PASSES):
         edge = _edge(bounds, stance.rest)
         fraction = spacing(edge)
@@ -76,6 +76,7 @@ def foot_workspace(
         yield
         if beyond:
             fraction = np.minimum(fraction, _first_zero(_FRACTIONS, margin(_FRACTIONS * edge), interpolation=1.0))
+            yield
         short = fraction < 1 - _TOLERANCE
         if not short.any():
             break
