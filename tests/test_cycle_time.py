@@ -35,7 +35,7 @@ def strain(setup, limits, twist, cycle_time):
         setup.gait, setup.rest, share * np.array(twist), swing_height=np.asarray(setup.swing_height), phases=phases
     )
     stand = standing(setup)
-    angles = np.stack(stand.solve(setup.robot, feet[..., 0], feet[..., 1], feet[..., 2])[:3], axis=-1)
+    angles = np.stack(stand.solve(setup.robot.geometry, feet[..., 0], feet[..., 1], feet[..., 2])[:3], axis=-1)
     rate = np.diff(angles, axis=0) / (step * cycle_time)
     change = np.diff(rate, axis=0) / (step * cycle_time)
     speed, acceleration = joint_limits(setup.robot, None, None)

@@ -130,7 +130,7 @@ def test_knees_stay_out_of_the_ground():
     stand = standing(setup, POSTURES[2])
     bounds = polygons("mithi", POSTURES[2])
     points = random_points(np.random.default_rng(1), corners_of(bounds, stand.rest), 500)
-    angles = np.stack(stand.solve(setup.robot, points.real, points.imag, np.zeros(points.shape))[:3], axis=-1)
+    angles = np.stack(stand.solve(setup.robot.geometry, points.real, points.imag, np.zeros(points.shape))[:3], axis=-1)
     knees = knee_heights(setup.robot, angles, stand)
     assert knees.min() > 0
     # Without looking at them, they would be.
@@ -148,7 +148,7 @@ def test_the_leg_margin_is_negative_where_inverse_kinematics_fails(name):
     stand, rng = standing(setup), np.random.default_rng(5)
     points = stand.rest + rng.uniform(-0.3, 0.3, (4000, 6)) + 1j * rng.uniform(-0.3, 0.3, (4000, 6))
     slack = joint_margin(
-        setup.robot.geometry, stand.solve(setup.robot, points.real, points.imag, np.zeros(points.shape))
+        setup.robot.geometry, stand.solve(setup.robot.geometry, points.real, points.imag, np.zeros(points.shape))
     )
     found = inverse_kinematics(setup.robot, (feet_at(points) - stand.position) @ stand.rotation)
     rejected = found.reach != 0

@@ -18,7 +18,7 @@ def test_shifts_of_single_legs_add_up_to_that_of_the_robot(name, body):
     corners = polygon_ends(sides, stand.rest)[1]
     picked = np.random.default_rng(4).integers(0, 16, (50, 6))
     feet = stand.rest + corners[np.arange(6), picked]
-    angles = np.stack(stand.solve(setup.robot, feet.real, feet.imag, np.zeros(feet.shape))[:3], axis=-1)
+    angles = np.stack(stand.solve(setup.robot.geometry, feet.real, feet.imag, np.zeros(feet.shape))[:3], axis=-1)
     whole = centre_of_mass(setup.robot, angles) @ stand.rotation.T + stand.position
     found = centre + shift[np.arange(6), picked].sum(axis=-1)
     np.testing.assert_allclose(found, whole[:, 0] + 1j * whole[:, 1], atol=1e-12)

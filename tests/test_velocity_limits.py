@@ -71,7 +71,9 @@ def test_the_robot_is_stable_for_all_foot_positions_in_the_polygons(name, body):
         stand, rng = standing(setup, body), np.random.default_rng(2)
         corners = stand.rest[:, None] + polygon_ends(limits.bounds, stand.rest)[1]
         points = np.take_along_axis(corners[None], rng.integers(0, 16, (400, 6, 1)), axis=-1)[..., 0]
-        angles = np.stack(stand.solve(setup.robot, points.real, points.imag, np.zeros(points.shape))[:3], axis=-1)
+        angles = np.stack(
+            stand.solve(setup.robot.geometry, points.real, points.imag, np.zeros(points.shape))[:3], axis=-1
+        )
         for down in support_sets(setup.gait):
             margin = stability_margin(setup.robot, angles, pose_of(stand), np.broadcast_to(down, (400, 6)))
             assert margin.min() >= 0.002

@@ -96,6 +96,13 @@ class LegGeometry(NamedTuple):
             return self
         return LegGeometry(*(as_array(xp, values) for values in self))
 
+    def with_axes(self, count: int) -> LegGeometry:
+        """Return the constants of NumPy with axes after that of the legs.
+
+        With the positions of a foot on the last axes, arithmetic with these constants takes half the time.
+        """
+        return LegGeometry(*(values.reshape(*values.shape, *(1,) * count) for values in self))
+
     def take(self, index: Index, block: tuple[int, ...]) -> LegGeometry:
         """Return the constants of a block of the batch, as columns (see `tarsus.blocks.columns`)."""
         return LegGeometry(*(columns(values, index, block, tail=1) for values in self))

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import functools
+import math
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -11,9 +13,7 @@ from tarsus.control.limitation import Cause, Limitation, LimitationKind
 from tarsus.control.limiter.protocol import TwistGrant, TwistRequest
 from tarsus.control.transition.executor import TransitionExecutor
 from tarsus.errors import InputError
-
-if TYPE_CHECKING:
-    from jaxtyping import Float
+from tarsus.gait.stance.velocity_limits import VelocityLimits
 
 __all__ = ["WorkspaceLimiter", "top_speed"]
 
@@ -51,7 +51,7 @@ class WorkspaceLimiter:
         most = max(grant.fraction, 1.0)
         key = (request.twist, most, frequency, limits, pending, longest, speed)
         if key != self._key:
-            self._key, self._found = key, self._largest(np.array(request.twist), frequency, most)
+            self._key, self._found = key, self._largest(request.twist, frequency, most)
             walks = any(request.twist)
             fastest, longest = (top_speed(transitions, request.twist), longest) if walks else (1.0, 1.0)
             # Cycles get no longer than strokes at that speed allow.
@@ -62,7 +62,7 @@ class WorkspaceLimiter:
                 self._found = granted, slow if granted < 1 else None
         return grant.at_most(*self._found)
 
-    def _largest(self, twist: Float[np.ndarray, "3"], frequency: float, most: float) -> tuple[float, Limitation | None]:
+    def _largest(self, twist: tuple[float, ...], frequency: float, most: float) -> tuple[float, Limitation | None]:
         """Return the largest sustainable fraction, up to a greatest one, and what limits it."""
         transitions, pending = self._transitions, self._transitions.pending
         stances = [(transitions.current, transitions.footholds.limits)]
@@ -72,9 +72,9 @@ class WorkspaceLimiter:
         for transition, limits in stances:
             duty_factor = transition.parameters.gait.duty_factor
             stance_time = duty_factor * max(1 / frequency, transition.cycle_timing.cycle_time)
-            allowed, which = limits.feasible_fraction(twist, stance_time=stance_time, duty_factor=duty_factor)
-            if allowed < fraction:
-                fraction, leg = allowed, which
+            longest, which = _longest_stance(limits, twist, duty_factor)
+            if longest < fraction * stance_time:
+                fraction, leg = longest / stance_time, which
         cause = Cause(_CAUSE, self._names[leg])
         short = cause.limitation(LimitationKind.TWIST, asked=1.0, granted=fraction) if fraction < 1 else None
         return fraction, short
@@ -96,13 +96,22 @@ def top_speed(transitions: TransitionExecutor, direction: Sequence[float]) -> fl
         If `direction` is not three finite numbers, or all are 0.
     """
     try:
-        twist = np.array([float(speed) for speed in direction])
+        twist = tuple(float(speed) for speed in direction)
     except (TypeError, ValueError):
-        twist = np.zeros(0)
-    if twist.shape != (3,) or not np.isfinite(twist).all() or not twist.any():
+        twist = ()
+    if len(twist) != 3 or not all(map(math.isfinite, twist)) or not any(twist):
         raise InputError(f"direction is {direction!r}; it must be three finite numbers, not all 0: vx, vy, wz")
     current = transitions.current
     duty_factor = transitions.timing.gait.duty_factor
     stance_time = duty_factor * current.cycle_timing.cycle_time
-    fraction, _ = current.final_limits.feasible_fraction(twist, stance_time=stance_time, duty_factor=duty_factor)
-    return fraction
+    longest, _ = _longest_stance(current.final_limits, twist, duty_factor)
+    return longest / stance_time
+
+
+@functools.lru_cache(maxsize=64)
+def _longest_stance(limits: VelocityLimits, twist: tuple[float, ...], duty_factor: float) -> tuple[float, int]:
+    """Return for how long stances of a steady walk may last [s], and the leg that limits it.
+
+    The speed at which the feet reach the ends of their strokes is inverse to it: it is found once for all cycle times.
+    """
+    return limits.feasible_fraction(np.array(twist), stance_time=1.0, duty_factor=duty_factor)

@@ -182,7 +182,9 @@ def _reach_margin(robot: Robot, stances: list[StanceTarget]) -> Float[np.ndarray
     swing_height = rows[:, SWING_HEIGHT:]
     stand = StanceGeometry(rest, rotation[:, None], rows[:, :3].T[..., None], 0.0)
     height = np.stack([0 * swing_height, swing_height])
-    return np.asarray(joint_margin(robot.geometry, stand.solve(robot, rest.real, rest.imag, height)).min(axis=0))
+    return np.asarray(
+        joint_margin(robot.geometry, stand.solve(robot.geometry, rest.real, rest.imag, height)).min(axis=0)
+    )
 
 
 def reach_cause(robot: Robot, stand: StanceGeometry) -> Cause:

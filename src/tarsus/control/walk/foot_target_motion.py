@@ -153,5 +153,5 @@ def reachable_fraction(
     rotation = np.array([rotation_rows(*row) for row in rows[:, 3:SWING_HEIGHT].tolist()])[:, None, None]
     stance = StanceGeometry(np.zeros(robot.legs, dtype=complex), rotation, rows[:, :3].T[..., None, None], 0.0)
     points = (start + _TRIED[:, None] * (end - start)).T[..., None] + np.zeros(robot.legs)
-    works = (joint_margin(robot.geometry, stance.solve(robot, *points))[..., leg] >= 0).all(axis=0)
+    works = (joint_margin(robot.geometry, stance.solve(robot.geometry, *points))[..., leg] >= 0).all(axis=0)
     return 1.0 if works.all() else float(_TRIED[int(np.argmin(works))] - _TRIED[0])

@@ -193,14 +193,14 @@ class SteadyCycle:
         array, shape (n,)
             Durations [s].
         """
-        # (samples, moves, legs); the joints become the second axis.
-        places = self.shift[:, part, None] + self.factor[:, part, None] * stance.rest
-        solution = stance.solve(robot, places.real, places.imag, self.height[..., None])
-        angles = np.stack(solution[:3], axis=1)
+        # (legs, samples, moves); the joints become the first axis.
+        places = self.shift[:, part] + self.factor[:, part] * stance.rest[:, None, None]
+        solution = stance.solve(robot.geometry.with_axes(2), places.real, places.imag, self.height)
+        angles = np.stack(solution[:3])
         step = self.phases[1] - self.phases[0]
-        rate = np.diff(angles, axis=0) / step
-        change = np.diff(rate, axis=0) / step
-        speed, acceleration = joint_limits
-        by_speed = np.abs(rate).max(axis=0) / (_SPEED_FRACTION * speed.T[:, None])
-        by_acceleration = np.sqrt(np.abs(change).max(axis=0) / (_ACCELERATION_FRACTION * acceleration.T[:, None]))
-        return np.asarray(np.maximum(by_speed, by_acceleration).max(axis=(0, 2)))
+        rate = np.diff(angles, axis=2) / step
+        change = np.diff(rate, axis=2) / step
+        speed, acceleration = (limit.T[..., None] for limit in joint_limits)
+        by_speed = np.abs(rate).max(axis=2) / (_SPEED_FRACTION * speed)
+        by_acceleration = np.sqrt(np.abs(change).max(axis=2) / (_ACCELERATION_FRACTION * acceleration))
+        return np.asarray(np.maximum(by_speed, by_acceleration).max(axis=(0, 1)))

@@ -52,10 +52,10 @@ def velocity_limits(
     excluded : tuple of int
         Legs that do not step: their position is not bounded here, but may shift the centre of mass.
     """
-    check = StabilityCheck(robot, sets, excluded)
     found = list[VelocityLimits]()
     for stance in stances:
         sides = yield from foot_workspace(robot, stance, foot_distance=foot_distance)
+        check = StabilityCheck(robot, sets, excluded)
         centre, shift = check.centre_of_mass(stance, sides)
         yield
         fraction = safe_fraction(sets, sides, stance.rest, centre, margin=check.least_margin, shift=shift)
@@ -78,8 +78,8 @@ def shifted_limits(
     foot_distance : float
         Least distance between two feet [m].
     """
-    everywhere = StabilityCheck(robot, np.ones((1, robot.legs), dtype=bool))
     sides = yield from foot_workspace(robot, stance, foot_distance=foot_distance)
+    everywhere = StabilityCheck(robot, np.ones((1, robot.legs), dtype=bool))
     limits = _limits_in(everywhere, stance, sides, 1.0)
     centre, _ = everywhere.centre_of_mass(stance, sides)
     yield

@@ -44,13 +44,12 @@ class LegMargin:
     """
 
     def __init__(self, robot: Robot, stance: StanceGeometry, *, knees: bool = True) -> None:
-        self._g = g = robot.geometry
+        self._g = g = robot.geometry.with_axes(1)
         self._sideways = bool(g.side.any())
-        p, rest = stance.position, stance.rest
+        p, rest = stance.position, stance.rest[:, None]
         swing_heights = [(part * stance.swing_height, narrower) for part, narrower in _HEIGHTS]
         height, self._narrower = (np.array(column)[:, None, None] for column in zip(*swing_heights, strict=True))
-        at_rest = stance.to_body(rest.real - p[0], rest.imag - p[1], height[:, 0] - p[2])
-        self._at_rest = [part[:, None] for part in to_leg_frame(g, *at_rest)]
+        self._at_rest = to_leg_frame(g, *stance.to_body(rest.real - p[0], rest.imag - p[1], height - p[2]))
         # Unit steps over the ground along x and y of the heading frame, and the ground's normal, in the legs' frames.
         rows = stance.rotation[:2]
         self._along_x, self._along_y = (_in_legs(g, *row.tolist()) for row in rows)
@@ -61,7 +60,7 @@ class LegMargin:
         self._axis_height = up[0] * g.mount_x + up[1] * g.mount_y + up[2] * (g.mount_z + g.up) + above
         self._lowest_femur = _lowest_femur(g, up, above) if knees else -math.inf
         self._no_knees = np.zeros(len(_HEIGHTS), dtype=bool)
-        self._speed_at_rest = self._joint_speed(self._solve(np.zeros((1, len(rest))), np.zeros((1, len(rest)))))[0, 0]
+        self._speed_at_rest = self._joint_speed(self._solve(np.zeros_like(g.coxa), np.zeros_like(g.coxa)))[0]
 
     def __call__(self, out: Complex[np.ndarray, "*#batch #legs"]) -> Float[np.ndarray, "*batch legs"]:
         """Return the least margin over all heights, negative where the leg fails.
@@ -76,9 +75,9 @@ class LegMargin:
         array, shape (..., legs)
             Distance to the nearest bound: angles in [rad], reach as in `joint_margin`, knee height in [m].
         """
-        flat = out.reshape(-1, out.shape[-1])
-        blocks = math.ceil(len(flat) * self._g.coxa.size * len(self._no_knees) / _BLOCK)
-        parts = np.array_split(flat, blocks)
+        flat = np.ascontiguousarray(out.reshape(-1, out.shape[-1]).T)
+        blocks = math.ceil(flat.shape[1] * self._g.coxa.size * len(self._no_knees) / _BLOCK)
+        parts = np.array_split(flat, blocks, axis=1)
         # At each height, the knees are tested for all positions or for none, so that the result does not depend on the
         # blocks. They are lowest far out, in the last block.
         low, found = self._no_knees, []
@@ -86,12 +85,12 @@ class LegMargin:
             margin, low = self._at(part, low)
             found.append((part, margin, low))
         margins = [margin if (at == low).all() else self._at(part, low)[0] for part, margin, at in reversed(found)]
-        return np.concatenate(margins).reshape(*out.shape[:-1], -1)
+        return np.concatenate(margins, axis=1).T.reshape(*out.shape[:-1], -1)
 
     def _at(
-        self, out: Complex[np.ndarray, "*#batch legs"] | Complex[np.ndarray, "*#batch 1"], low: Bool[np.ndarray, "n"]
-    ) -> tuple[Float[np.ndarray, "..."], Bool[np.ndarray, "n"]]:
-        """Return the least margin ``(n, legs)``, and the heights at which knees are tested in any block so far."""
+        self, out: Complex[np.ndarray, "#legs n"], low: Bool[np.ndarray, "heights"]
+    ) -> tuple[Float[np.ndarray, "legs n"], Bool[np.ndarray, "heights"]]:
+        """Return the least margin ``(legs, n)``, and the heights at which knees are tested in any block so far."""
         solution = self._solve(out.real, out.imag)
         margin = joint_margin(self._g, solution)
         low = low | (solution.femur.min(axis=(1, 2)) <= self._lowest_femur)
@@ -100,15 +99,15 @@ class LegMargin:
         margin = np.minimum(margin, _SPEED_RATIO - self._joint_speed(solution) / self._speed_at_rest)
         return np.asarray(margin.min(axis=0)), low
 
-    def _solve(self, x: Float[np.ndarray, "*#batch"], y: Float[np.ndarray, "*#batch"]) -> Triangle:
-        """Return the joint angles ``(heights, n, legs)`` at positions relative to the rest footholds ``(n, legs)``."""
+    def _solve(self, x: Float[np.ndarray, "#legs n"], y: Float[np.ndarray, "#legs n"]) -> Triangle:
+        """Return the joint angles ``(heights, legs, n)`` at positions relative to the rest footholds ``(legs, n)``."""
         rest, (xx, xy, xz), (yx, yy, yz) = self._at_rest, self._along_x, self._along_y
         narrower = self._narrower
         in_x, in_y = rest[0] + narrower * (xx * x + yx * y), rest[1] + narrower * (xy * x + yy * y)
         in_z = rest[2] + narrower * (xz * x + yz * y) if self._rising else rest[2]
         return solve_triangle(np, self._g, in_x, in_y, in_z, knee=1, sideways=self._sideways)
 
-    def _joint_speed(self, s: Triangle) -> Float[np.ndarray, "m n legs"]:
+    def _joint_speed(self, s: Triangle) -> Float[np.ndarray, "heights legs n"]:
         """Return the greatest joint speed over the speed of the foot [rad/m]."""
         # In its plane, the leg's Jacobian has the determinant femur tibia sin(tibia angle): twice the area of the
         # triangle, which is half the root of `far near`. The sum of its squared elements is that of the squared
@@ -119,7 +118,7 @@ class LegMargin:
         in_plane = np.sqrt(g.farthest2 + g.tibia * g.tibia - s.far) / across
         return np.asarray(np.maximum(in_plane, 1 / np.sqrt(np.maximum(s.beside, 1e-18))))
 
-    def _above_ground(self, s: Triangle, heights: Bool[np.ndarray, "n"]) -> Float[np.ndarray, "k m legs"]:
+    def _above_ground(self, s: Triangle, heights: Bool[np.ndarray, "heights"]) -> Float[np.ndarray, "k legs n"]:
         """Return the height of each leg's femur axis or knee, whichever is lower, at some of the heights [m]."""
         g, (up_x, up_y, up_z) = self._g, self._up
         femur = s.femur[heights]
@@ -134,7 +133,7 @@ class LegMargin:
 
 def _in_legs(
     g: LegGeometry, x: float, y: float, z: float
-) -> tuple[Float[np.ndarray, "legs"], Float[np.ndarray, "legs"], float]:
+) -> tuple[Float[np.ndarray, "legs 1"], Float[np.ndarray, "legs 1"], float]:
     """Return the components of a vector of B in each leg's frame."""
     return g.cos_yaw * x + g.sin_yaw * y, g.cos_yaw * y - g.sin_yaw * x, z
 

@@ -46,7 +46,7 @@ def reachable_heights(
     levels = _TRIED * float(np.max(g.femur + g.tibia))
     stance = StanceGeometry(rest, np.array(rotation_rows(*posture[3:SWING_HEIGHT].tolist())), posture[:3], 0.0)
     places = rest + np.array(STROKE_PLACES)[:, None, None] * strokes
-    solution = stance.solve(robot, places.real, places.imag, levels[:, None])
+    solution = stance.solve(robot.geometry, places.real, places.imag, levels[:, None])
     beyond = np.asarray(~(joint_margin(g, solution) >= 0))
     ends = []
     for sign, way in ((-1, beyond[:, _LEVEL::-1]), (1, beyond[:, _LEVEL:])):

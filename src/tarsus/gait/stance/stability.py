@@ -227,7 +227,7 @@ class StabilityCheck:
     ) -> tuple[Complex[np.ndarray, "n legs"], complex]:
         """Return each leg's contribution to the centre of mass ``(n, legs)``, and that centre for the first row [m]."""
         feet = stance.rest + out
-        solution = stance.solve(self._robot, feet.real, feet.imag, np.zeros((1, 1)))
+        solution = stance.solve(self._robot.geometry, feet.real, feet.imag, np.zeros((1, 1)))
         points = forward_kinematics(self._robot, np.stack(solution[:3], axis=-1))
         moments = (points * self._weights[..., None]).sum(axis=-2) @ stance.rotation.T
         moments = moments[..., 0] + 1j * moments[..., 1]

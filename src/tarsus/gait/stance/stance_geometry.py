@@ -14,7 +14,6 @@ import numpy as np
 
 from tarsus.kinematics.triangle import Triangle, solve_triangle, to_leg_frame
 from tarsus.robot.geometry import LegGeometry
-from tarsus.robot.robot import Robot
 
 if TYPE_CHECKING:
     from jaxtyping import Complex, Float
@@ -58,21 +57,21 @@ class StanceGeometry(NamedTuple):
 
     def solve(
         self,
-        robot: Robot,
-        x: Float[np.ndarray, "*#batch legs"],
-        y: Float[np.ndarray, "*#batch legs"],
-        z: Float[np.ndarray, "*#batch #legs"],
+        geometry: LegGeometry,
+        x: Float[np.ndarray, "*#batch"],
+        y: Float[np.ndarray, "*#batch"],
+        z: Float[np.ndarray, "*#batch"],
     ) -> Triangle:
-        """Return the joint angles ``(..., legs)`` for feet in the heading frame.
+        """Return the joint angles for feet in the heading frame.
 
         Parameters
         ----------
-        robot : Robot
-            A single robot.
-        x, y, z : array, shape (..., legs)
+        geometry : LegGeometry
+            The legs of a single robot.
+        x, y, z : array, shape (..., legs), or as the geometry has further axes
             Positions of the feet, z over the ground plane [m].
         """
-        g, p = robot.geometry, self.position
+        g, p = geometry, self.position
         in_leg = to_leg_frame(g, *self.to_body(x - p[0], y - p[1], z - p[2]))
         return solve_triangle(np, g, *in_leg, knee=1, sideways=bool(g.side.any()))
 
