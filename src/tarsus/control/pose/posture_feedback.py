@@ -121,12 +121,10 @@ class PostureFeedback:
         velocity : complex
             Velocity of the body [m/s].
         feet : sequence of (complex, float)
-            The feet that stand: where, x + iy in the heading frame, and how much lower they could be [m].
+            The feet that stand, at least one: where, x + iy in the heading frame, and how much lower they could be [m].
         stands : bool
             Whether the body is to stand still: feet that are moved under their load slide down a slope.
         """
-        if not feet:
-            return PostureRates(0.0, (0.0, 0.0))
         fastest = self._scale * _MOST_CLIMB
         climb = min(max(_HEIGHT_GAIN * (plane.height + self.raised), -fastest), fastest)
         climb += plane.slope_x * velocity.real + plane.slope_y * velocity.imag
