@@ -17,13 +17,10 @@ import numpy as np
 if TYPE_CHECKING:
     from jaxtyping import Float
 
-__all__ = ["PEAK_RATE", "CriticallyDamped", "integral_factors"]
+__all__ = ["CriticallyDamped", "integral_factors"]
 
 # A filter this close to its target, and as slow, is at it [m, rad, m/s, rad/s].
-_SETTLED = 1e-11
-
-PEAK_RATE = 2 / math.e
-"""Greatest rate over bandwidth and half the range of the targets."""
+_SETTLED = 1e-7
 
 
 class CriticallyDamped(NamedTuple):
