@@ -42,6 +42,22 @@ def test_where_they_do_not_it_is_slower_and_they_do(fast, dt):
     assert change <= 1.001
 
 
+def test_where_no_high_acceleration_is_ahead_it_looks_again_once_that_is_half_over():
+    def way(time):
+        return np.array([[0.5, 0.2, -0.3]]) * np.sin(8 * time) ** 2
+
+    own, dt, time, looks = TimeScaling(way(0.0), SPEED, ACCELERATION, ANYWHERE), 0.01, 0.0, []
+    for tick in range(200):
+        steps = []
+        time = own.advance(lambda step, time=time, steps=steps: steps.append(step) or time + step, way, dt)
+        if len(steps) > 1:
+            looks.append(tick)
+        assert steps[-1] == dt
+    # With 64 % of the joints' acceleration at most, always at the world's pace.
+    assert len(looks) > 20
+    assert min(np.diff(looks)) == 2
+
+
 def test_a_path_beyond_the_joints_is_followed_as_far_as_possible():
     own = TimeScaling(np.zeros((1, 3)), SPEED, ACCELERATION, ANYWHERE)
     tried = []

@@ -69,7 +69,8 @@ class TimeScaling:
         self._ends: Float[np.ndarray, "2 legs 3"] = np.moveaxis(limits, -1, 0)[::-1].copy()
         self._speeds, self._target = np.zeros_like(angles), angles
         # The room is how far the joints are from their ends at least [rad].
-        self._last_dt, self._used, self._room = 0.01, 0.0, 0.0
+        # For how long it need not look ahead again [s].
+        self._last_dt, self._used, self._room, self._clear = 0.01, 0.0, 0.0, 0.0
 
     def advance(self, integrate: Callable[[float], _T], solve: Callable[[_T], np.ndarray], dt: float) -> _T:
         """Return the state of the walk after a tick.
@@ -83,7 +84,9 @@ class TimeScaling:
         dt : float
             Length of the tick [s].
         """
-        fastest = self._relaxed_rate(integrate, solve) if self._used > _HIGH else 1.0
+        self._clear -= dt
+        looks = self._used > _HIGH and self._clear <= 0.0
+        fastest = self._relaxed_rate(integrate, solve) if looks else 1.0
         rate = min(1.0, self.rate + _RISE * dt, max(fastest, self.rate - _FALL * dt))
         between = (dt + self._last_dt) / 2
         tries = _TRIES
@@ -167,7 +170,10 @@ class TimeScaling:
         """Return the rate at which the joints keep well within their acceleration for the next moments."""
         first, second = solve(integrate(_AHEAD)), solve(integrate(2 * _AHEAD))
         acceleration = np.abs(second - 2 * first + self.angles) / (_AHEAD * _AHEAD)
-        return math.sqrt(_AIM / max(float((acceleration / self._acceleration).max()), _AIM))
+        used = float((acceleration / self._acceleration).max())
+        # What is seen reaches twice as far.
+        self._clear = 0.0 if used > _AIM else _AHEAD
+        return math.sqrt(_AIM / max(used, _AIM))
 
     def _other_rate(self, speeds: Float[np.ndarray, "n 3"], rate: float, dt: float) -> float:
         """Return a rate at which the joints keep within speed and acceleration, or come closest to that."""
