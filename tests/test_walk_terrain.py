@@ -126,6 +126,19 @@ def test_a_tilted_body_levels_itself_and_one_that_does_not_use_its_attitude_stay
     np.testing.assert_allclose(found[1][:2], 0.0, atol=0.01)
 
 
+def test_a_body_whose_attitude_is_no_longer_measured_does_not_turn_on_and_on():
+    controller = WalkController(preset("strider"))
+
+    def inclined_after(seconds, attitude):
+        walked(controller, flat, (0.05, 0.0, 0.0), seconds, attitude=attitude)
+        down, feet = controller.contacts, controller.feet - controller.body.position
+        return np.linalg.lstsq(np.c_[feet[down, :2], np.ones(down.sum())], feet[down, 2], rcond=None)[0][0]
+
+    assert inclined_after(0.5, (0.0, -0.1)) > 0.02
+    assert abs(inclined_after(1.5, None)) < 0.01
+    assert abs(inclined_after(2.0, None)) < 0.01
+
+
 def test_turns_and_sideways_walks_feel_the_ground_too():
     controller = WalkController(preset("phantomx"), Gait.named("tetrapod"))
     twist = 0.6 * controller.top_speed((0.05, 0.05, 0.5)) * np.array([0.05, 0.05, 0.5])

@@ -33,6 +33,8 @@ __all__ = ["BodyMotion"]
 
 # How often height, tilt and lost way are looked at [s].
 _PERIOD = 0.04 - PHASE_TOLERANCE
+# An attitude that has not been measured for longer is not turned towards any more, and then unknown [s].
+_HOLDS, _TIMEOUT = 0.15, 2.0
 # How much lower the next footholds may be than the ground that is felt, over the roughness.
 _LOWER = 0.5
 
@@ -64,7 +66,7 @@ class BodyMotion:
     stopped : StoppedBody
         Whether an obstacle stops the body.
     tilt : (roll, pitch) or None
-        By how much the body was tilted more than commanded when measured last [rad].
+        By how much the body is tilted more than commanded [rad]; None where its attitude is unknown.
     lowered : float
         How much lower loaded feet are commanded than they stand [m].
     since : float
@@ -87,7 +89,25 @@ class BodyMotion:
         self.rates, self.drift, self.lowered = PostureRates(0.0, (0.0, 0.0)), 0j, 0.0
         self.tilt: tuple[float, float] | None = None
         self.heading = HeadingFeedback()
-        self.since = _PERIOD
+        self.since, self._unmeasured = _PERIOD, 0.0
+
+    def see(self, attitude: tuple[float, float] | None, state: GaitState, dt: float) -> None:
+        """Take the measured attitude.
+
+        Parameters
+        ----------
+        attitude : (roll, pitch) or None
+            Measured [rad]; None where it is not: the last one holds for a moment, then the body counts as level, as
+            feet that step would turn it on and on.
+        state, dt : GaitState, float
+            The gait state; time since the last call [s].
+        """
+        self._unmeasured += dt
+        if attitude is not None:
+            roll, pitch = state.posture.value[3:5].tolist()
+            self.tilt, self._unmeasured = (attitude[0] - roll, attitude[1] - pitch), 0.0
+        elif self.tilt is not None and self._unmeasured > _HOLDS:
+            self.tilt = (0.0, 0.0) if self._unmeasured <= _TIMEOUT else None
 
     @property
     def looks(self) -> bool:

@@ -136,10 +136,8 @@ class FeltGround:
         kept = self._inputs is not None and not (stopped or self.body.looks)
         if kept and self.contacts.as_planned(measured, down):
             return state, []
-        if valid.attitude is not None:
-            roll, pitch = state.posture.value[3:5].tolist()
-            self.body.tilt = (valid.attitude[0] - roll, valid.attitude[1] - pitch)
         dt, ticks, self._unread, self._ticks, self._inputs = self._unread, self._ticks, 0.0, 0, None
+        self.body.see(valid.attitude, state, dt)
         self.ground.see(valid, state)
         leaving, rests = timing.due(state, _LEAVING), self._rests and self.support.held
         estimated, age = self._loads.estimated, max(valid.contact_age, self._swings.lag - _USUAL_LAG)
