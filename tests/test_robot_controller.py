@@ -316,3 +316,19 @@ def test_readings_of_the_ground_reach_the_walk_controller():
         output = controller.step(STILL, DT, SensorReadings(attitude=(0.0, 0.1)))
     # The front is down: the feet there push it up.
     assert output.feet[0, 2] < output.feet[2, 2] - 0.01
+
+
+def test_a_robot_that_feels_uneven_ground_sits_down_over_all_feet_that_stand():
+    controller, plant, states = RobotController(STRIDER), IdealPlant(STRIDER), []
+    for leg, height in enumerate((0.01, 0.0, -0.01, 0.01, 0.0, -0.01)):
+        plant.environment.set_ground(leg, height)
+    plant.environment.set_tilt(0.0, 0.0)
+    plant.start(controller.output)
+    for tick in range(700):
+        command = Command(twist=(0.1, 0.0, 0.0) if tick < 300 else STILL, state="standing" if tick < 400 else "lying")
+        output = controller.step(command, DT, plant.step(controller.output, DT))
+        if output.state is RobotState.SITTING and RobotState.SITTING not in states:
+            assert output.contacts.all()
+        states.append(output.state)
+    assert states[-1] is RobotState.LYING
+    assert RobotState.FAULT not in states

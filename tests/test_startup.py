@@ -429,3 +429,24 @@ def test_the_example_of_the_page_runs(capsys):
     exec(example, {})
     (shown,) = re.findall(r"```text\n(.*?)```", PAGE, flags=re.DOTALL)
     assert capsys.readouterr().out == shown
+
+
+def test_feet_that_bear_load_on_uneven_ground_stay_where_they_are_until_the_robot_lies():
+    robot = preset("strider")
+    feet = np.asarray(default_stance(robot)) + np.outer([0.01, 0.0, 0.02, -0.01, 0.01, -0.02], [0, 0, 1])
+    angles, loaded = inverse_kinematics(robot, feet).require().angles, np.array([True, True, True, True, True, False])
+    down = sit_down(robot, angles, loaded=loaded)
+    lying = down.stages[-1]
+    assert lying.name == "lie down"
+    for stage in down.stages:
+        np.testing.assert_allclose(stage.feet_end[loaded], down.stages[0].feet[loaded], atol=1e-9)
+        np.testing.assert_array_equal(stage.contacts, loaded)
+    # Without that, three feet count as standing, and legs under load are retracted.
+    assert sit_down(robot, angles).stages[0].contacts.sum() == 3
+
+
+@pytest.mark.parametrize("loaded", [[True, True, False, False, False, False], [True, True, True, False, False, False]])
+def test_a_robot_that_its_loaded_feet_do_not_hold_sits_down_as_on_a_plane(loaded):
+    robot = preset("strider")
+    angles = inverse_kinematics(robot, default_stance(robot)).require().angles
+    assert sit_down(robot, angles, loaded=np.array(loaded)).stages[0].contacts.sum() > 3

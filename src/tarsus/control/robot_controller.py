@@ -217,7 +217,9 @@ class RobotController:
         angles = self._now.angles
         if state is RobotState.RISING:
             return stand_up(self.robot, angles, body_height=self.body_height, swing_height=self.swing_height)
-        return sit_down(self.robot, angles) if state is RobotState.SITTING else fold(self.robot, angles)
+        if state is RobotState.FOLDING:
+            return fold(self.robot, angles)
+        return sit_down(self.robot, angles, loaded=self._activity.bears if type(self._activity) is Walking else None)
 
     def _end_change(self, playing: Playing) -> None:
         """Go over to what follows a motion sequence."""

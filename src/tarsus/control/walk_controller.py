@@ -232,6 +232,11 @@ class WalkController:
         return down
 
     @property
+    def bears(self) -> Bool[np.ndarray, "legs"]:
+        """Which of the feet that should be on the ground bear load, as far as is felt: array of bool, shape (legs,)."""
+        return self.contacts & [self._walk.ground.contacts.supports(leg) for leg in range(self.robot.legs)]
+
+    @property
     def feels_ground(self) -> bool:
         """Whether readings have told anything of the ground: the feet follow it from then on."""
         return bool(self._tick.gait.felt)

@@ -16,7 +16,7 @@ from tarsus.kinematics.underside import belly_depth, underside_points
 if TYPE_CHECKING:
     from jaxtyping import Bool, Float
 
-__all__ = ["BodyTarget", "body_targets", "stage_to"]
+__all__ = ["BodyTarget", "body_targets", "levelling_rotation", "stage_to"]
 
 # Number of body heights to try between lying and standing.
 _HEIGHTS = 6
@@ -52,7 +52,7 @@ def body_targets(builder: SequenceBuilder, height: float) -> tuple[BodyTarget, .
     """
     robot, body = builder.robot, builder.body
     up = body.rotation[2]
-    upright = _levelling_rotation(body.rotation[:, 2]) @ body.rotation
+    upright = levelling_rotation(body.rotation[:, 2]) @ body.rotation
     underside = underside_points(robot)
     on_ground = (underside @ up + builder.height) < GROUND_TOLERANCE
     lowest = belly_depth(robot)
@@ -84,8 +84,14 @@ def _pose_above(body: Pose, rotation: Float[np.ndarray, "3 3"], pivot: Float[np.
     return Pose(rotation, np.array([position[0], position[1], height]))
 
 
-def _levelling_rotation(up: Float[np.ndarray, "3"]) -> Float[np.ndarray, "3 3"]:
-    """Return the smallest rotation that turns the unit vector `up` into z."""
+def levelling_rotation(up: Float[np.ndarray, "3"]) -> Float[np.ndarray, "3 3"]:
+    """Return the smallest rotation that turns a unit vector into z.
+
+    Parameters
+    ----------
+    up : array, shape (3,)
+        The vector.
+    """
     x, y, z = up
     sideways = -x * y / (1 + z)
     return np.array([[z + y * y / (1 + z), sideways, -x], [sideways, z + x * x / (1 + z), -y], up])

@@ -8,18 +8,20 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tarsus.arrays import Array
+from tarsus.control.startup.body_targets import levelling_rotation
 from tarsus.control.startup.builder import GROUND_TOLERANCE, SequenceBuilder, body_contacts
 from tarsus.errors import InputError, TarsusError
 from tarsus.kinematics.leg import checked_angles, forward_kinematics
+from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.rest import resting_pose
 from tarsus.kinematics.underside import belly_depth
 from tarsus.robot.joint_limits import JointLimits
 from tarsus.robot.robot import Robot
 
 if TYPE_CHECKING:
-    from jaxtyping import Float
+    from jaxtyping import Bool, Float
 
-__all__ = ["SERVO_SPEED_SHARE", "initial_state", "lying_state", "over_feet"]
+__all__ = ["SERVO_SPEED_SHARE", "initial_state", "lying_state", "over_feet", "uneven_state"]
 
 
 SERVO_SPEED_SHARE = 0.5
@@ -98,6 +100,42 @@ def initial_state(robot: Robot, angles: Float[Array, "legs 3"], joint_limits: Jo
     )
     lies = tilt < _LEVEL_TOLERANCE and abs(builder.height - belly_depth(robot)) < GROUND_TOLERANCE
     return builder.lie_down() if lies else builder
+
+
+def uneven_state(
+    robot: Robot, angles: Float[np.ndarray, "legs 3"], joint_limits: JointLimits, loaded: Bool[np.ndarray, "legs"]
+) -> SequenceBuilder:
+    """Return a builder with the robot standing on feet that are known to bear load, on ground of any height.
+
+    The plane of these feet is level, and the lowest of all feet on the ground.
+
+    Parameters
+    ----------
+    robot : Robot
+        A single robot.
+    angles : array, shape (legs, 3)
+        Joint angles [rad].
+    joint_limits, loaded : JointLimits, array of bool, shape (legs,)
+        Joint speeds and accelerations of the plan; which feet bear load, at least three.
+    """
+    angles = np.array(angles)
+    angles.setflags(write=False)
+    feet = forward_kinematics(robot, angles)[:, 3]
+    points, heights = np.insert(feet[loaded, :2], 2, 1.0, axis=-1), feet[loaded, 2]
+    slopes = np.linalg.lstsq(points, heights, rcond=None)[0][:2]
+    up = np.array([*-slopes, 1.0])
+    rotation = levelling_rotation(up / np.linalg.norm(up))
+    body = Pose(rotation, np.array([0.0, 0.0, -float((feet @ rotation[2]).min())]))
+    return SequenceBuilder(
+        robot=robot,
+        joint_limits=joint_limits,
+        angles=angles,
+        body=body,
+        contacts=loaded,
+        belly=False,
+        supports=np.zeros((0, 3)),
+        initial_margin=0.0,
+    )
 
 
 def lying_state(

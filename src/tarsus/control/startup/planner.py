@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from contextlib import suppress
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -12,7 +13,7 @@ from tarsus.arrays import Array
 from tarsus.control.sequence.sequence import MotionSequence
 from tarsus.control.startup.body_targets import BodyTarget, body_targets
 from tarsus.control.startup.builder import SequenceBuilder
-from tarsus.control.startup.initial_state import SERVO_SPEED_SHARE, initial_state, lying_state, over_feet
+from tarsus.control.startup.initial_state import SERVO_SPEED_SHARE, initial_state, lying_state, over_feet, uneven_state
 from tarsus.control.startup.level_body import level_body
 from tarsus.control.startup.raise_body import lower_body, raise_body
 from tarsus.errors import InputError, TarsusError, UnreachableError
@@ -31,12 +32,15 @@ from tarsus.robot.joint_limits import joint_limits
 from tarsus.robot.robot import Robot
 
 if TYPE_CHECKING:
-    from jaxtyping import Float
+    from jaxtyping import Bool, Float
 
 __all__ = ["DEFAULT_MARGIN", "fold", "sit_down", "stand_up"]
 
 DEFAULT_MARGIN = 0.010
 """Default of the least stability margin during changes of footholds [m]."""
+
+# Feet that a robot stands on at least.
+_LEAST_FEET = 3
 
 
 def stand_up(
@@ -115,6 +119,7 @@ def sit_down(
     margin: float = DEFAULT_MARGIN,
     joint_speed: Float[Array, "..."] | None = None,
     joint_acceleration: Float[Array, "3"] | Float[Array, "legs 3"] | None = None,
+    loaded: Bool[np.ndarray, "legs"] | None = None,
 ) -> MotionSequence:
     """Plan how the robot lowers its body to the ground over stationary feet.
 
@@ -133,6 +138,8 @@ def sit_down(
     joint_speed, joint_acceleration : float or array, shape (3,) or (legs, 3), optional
         Greatest joint speed [rad/s] and acceleration [rad/s^2]; by default half the servo's no-load
         speed, reached within 0.05 s.
+    loaded : array of bool, shape (legs,), optional
+        Feet that are known to bear load, on ground of any height; by default those on which the robot rests on a plane.
 
     Returns
     -------
@@ -152,16 +159,13 @@ def sit_down(
     limits = joint_limits(robot, joint_speed, joint_acceleration, share=SERVO_SPEED_SHARE)
     if angles is None:
         angles = inverse_kinematics(robot, default_stance(robot, swing_height=swing_height)).require().angles
-    start = replace(initial_state(over_feet(robot), angles, limits), swing_height=swing_height, margin=margin)
-    distances = foothold_distances(robot, start.body.inverse() @ start.feet)
-    feet = footholds_straight_out(robot, distances, -start.height)
-
-    def plan(target: BodyTarget) -> SequenceBuilder:
-        level = level_body(start, target, feet)
-        return level if level.belly else lower_body(level)
-
-    lying_first = sorted(body_targets(start, start.height), key=lambda target: not target.belly)
-    return _first_feasible(robot, lying_first, plan)
+    thin = over_feet(robot)
+    if loaded is not None and loaded.sum() >= _LEAST_FEET:
+        uneven = uneven_state(thin, np.asarray(angles), limits, loaded)
+        with suppress(TarsusError):
+            return _lying(robot, replace(uneven, swing_height=swing_height, margin=margin))
+    start = initial_state(thin, angles, limits)
+    return _lying(robot, replace(start, swing_height=swing_height, margin=margin))
 
 
 def fold(
@@ -217,6 +221,19 @@ def _first_feasible(
             errors.append(error)
     others = f" ({len(errors) - 1} alternatives fail too)" if len(errors) > 1 else ""
     raise type(errors[0])(f"{robot.name}: {errors[0]}{others}") from errors[0]
+
+
+def _lying(robot: Robot, start: SequenceBuilder) -> MotionSequence:
+    """Return the sequence that lays a robot on its belly."""
+    distances = foothold_distances(robot, start.body.inverse() @ start.feet)
+    feet = footholds_straight_out(robot, distances, -start.height)
+
+    def plan(target: BodyTarget) -> SequenceBuilder:
+        level = level_body(start, target, feet)
+        return level if level.belly else lower_body(level)
+
+    lying_first = sorted(body_targets(start, start.height), key=lambda target: not target.belly)
+    return _first_feasible(robot, lying_first, plan)
 
 
 def _folded(builder: SequenceBuilder, folded: Float[np.ndarray, "legs 3"]) -> SequenceBuilder:

@@ -104,6 +104,11 @@ class Walking:
         return self.controller.walk_state is WalkState.STANDING
 
     @property
+    def bears(self) -> Bool[np.ndarray, "legs"] | None:
+        """Which feet bear load: array of bool, shape (legs,); None where the ground is not felt."""
+        return self.controller.bears if self.controller.feels_ground else None
+
+    @property
     def snapshot(self) -> Snapshot:
         """The robot now."""
         walk = self.controller
@@ -139,7 +144,7 @@ class Playing:
 
     def __init__(self, sequence: MotionSequence, state: RobotState, *, before: Activity, end: RobotState) -> None:
         self.sequence, self.state, self.before, self.end = sequence, state, before, end
-        self._player = SequencePlayer(sequence)
+        self._player, self._felt = SequencePlayer(sequence), before.snapshot.felt
         self.returning = False
 
     def turn(self, *, back: bool) -> None:
@@ -165,7 +170,7 @@ class Playing:
     def snapshot(self) -> Snapshot:
         """The robot now."""
         now = self._player.now
-        return Snapshot(now.angles, now.body, None, now.contacts, now.belly, self.state, now.stage)
+        return Snapshot(now.angles, now.body, None, now.contacts, now.belly, self.state, now.stage, felt=self._felt)
 
 
 class Resting:
