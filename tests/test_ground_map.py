@@ -10,6 +10,7 @@ import tarsus
 from gait_robots import preset
 from tarsus.control.readings import SensorReadings, ValidReadings
 from tarsus.control.sensing.validation import ReadingsValidator
+from tarsus.control.terrain.ground_contact import not_sunk
 from tarsus.control.terrain.ground_map import GroundMap
 from tarsus.control.walk.state import GaitState
 from tarsus.errors import InputError
@@ -102,6 +103,13 @@ def stepping(leg=0, phase=0.1):
     return state, walk.ground.body.reach, walk.transitions.footholds
 
 
+def moved(state, leg, way):
+    """The state with a foothold moved."""
+    foothold = state.foothold.copy()
+    foothold[leg] += way
+    return state._replace(foothold=foothold)
+
+
 def choice(heights, leg=0, phase=0.1):
     """How far beside its foothold a foot of a walking robot is put down on ground of some heights."""
     (state, reach, footholds), known = stepping(leg, phase), GroundMap()
@@ -111,7 +119,8 @@ def choice(heights, leg=0, phase=0.1):
     known.step(feet, None, state, 0.03, drift=0j)
     known.choose(state, reach, footholds)
     chosen = dict(known.beside)
-    known.choose(state, reach, footholds)
+    # The step leads there now.
+    known.choose(moved(state, leg, chosen.get(leg, 0j)), reach, footholds)
     assert known.beside == chosen
     known.choose(state._replace(down=np.ones(6, dtype=bool)), reach, footholds)
     assert known.beside == {}
@@ -138,6 +147,57 @@ def test_a_foot_over_a_hole_gets_another_foothold_as_soon_as_there_is_one():
         known.choose(state, reach, footholds)
         assert bool(known.holes) == bool(depth)
     assert known.beside == {0: 0j}
+
+
+def test_a_foothold_that_moves_into_a_hole_is_left_for_another_one_until_the_foot_goes_down():
+    (state, reach, footholds), known = stepping(), GroundMap()
+    hole = np.abs(X + 1j * Y - (complex(state.foothold[0]) - state.origin) + 0.1) < 0.05
+    known.see(ValidReadings(ground=GroundHeights(heights=np.where(hole, -0.3, 0.0))), state)
+    known.step([(complex(foot), 0.0) for foot in REST[1:5]], None, state, 0.03, drift=0j)
+    known.choose(state, reach, footholds)
+    assert known.beside == {0: 0j}
+    back = moved(state, 0, -0.06 + 0j)
+    for phase, chooses in ((0.5, False), (0.4, True)):
+        known.choose(back._replace(swing_phase=np.full(6, phase)), reach, footholds)
+        assert (known.beside[0].real > 0.015) == chooses
+        # It is not held up: it goes down soon.
+        assert known.holes == {}
+
+
+def test_another_foothold_is_chosen_beside_that_of_the_step():
+    (state, reach, footholds), known = stepping(), GroundMap()
+    known.see(ValidReadings(ground=GroundHeights(heights=np.where(X > 0.1, -0.3, 0.0))), state)
+    known.step([(complex(foot), 0.0) for foot in REST[1:5]], None, state, 0.03, drift=0j)
+    known.choose(state, reach, footholds)
+    (chosen,), _ = known.beside.values(), known.holes[0]
+    known.choose(moved(state, 0, chosen), reach, footholds)
+    assert known.beside == {0: chosen}
+
+
+def test_a_foot_that_crosses_a_hole_is_known_until_it_is_down():
+    (state, reach, footholds), known = stepping(), GroundMap()
+    state = state._replace(foot=state.foothold - 0.15)
+    foothold = complex(state.foothold[0]) - state.origin
+    for ahead, crosses in ((-0.08, True), (0.25, False)):
+        hole = np.where(np.abs(X - foothold.real - ahead) < 0.03, -0.3, 0.0)
+        known.see(ValidReadings(ground=GroundHeights(heights=hole)), state)
+        known.step([(complex(foot), 0.0) for foot in REST[1:5]], None, state, 0.03, drift=0j)
+        known.choose(state, reach, footholds)
+        assert known.crossing == ({0} if crosses else set())
+        known.choose(state._replace(down=np.ones(6, dtype=bool)), reach, footholds)
+        assert known.crossing == set()
+
+
+@pytest.mark.parametrize("depth", [0.0, 0.3])
+def test_no_foot_over_a_hole_that_is_seen_stands_on_ground_that_its_switch_does_not_tell_of(depth):
+    (state, reach, footholds), known = stepping(), GroundMap()
+    places = [complex(foot) - state.origin for foot in state.foot]
+    hole = np.abs(X + 1j * Y - places[0]) < 0.05
+    known.see(ValidReadings(ground=GroundHeights(heights=np.where(hole, -depth, 0.0))), state)
+    known.step([(place, 0.0) for place in places[1:]], None, state, 0.03, drift=0j)
+    known.choose(state, reach, footholds)
+    near = not_sunk(state, known, places, [True] * 6, roughness=0.0, tips=False)
+    assert near == [depth == 0.0] * 6
 
 
 def test_a_foot_passes_over_what_is_on_its_way_and_rises_first_where_that_is_near():

@@ -90,3 +90,16 @@ def test_a_joint_that_reverses_at_once_brakes_as_hard_as_it_may(others):
     assert np.abs(speeds).max() < 4.3
     assert speeds[-1, 0, 0] < 0
     assert time > 0.1
+
+
+def test_a_walk_whose_feet_keep_to_their_paths_slows_down_where_joints_are_a_little_behind():
+    rates = {}
+    for exact in (False, True):
+        own, time = TimeScaling(np.zeros((1, 3)), SPEED, ACCELERATION, ANYWHERE), 0.0
+        for _ in range(5):
+            time = own.follow(
+                lambda step, time=time: time + step, lambda time: np.full((1, 3), 0.15), 0.01, exact=exact
+            )
+        rates[exact] = own.rate
+    assert rates[False] == 1.0
+    assert rates[True] < 0.9

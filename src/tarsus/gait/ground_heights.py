@@ -16,7 +16,7 @@ from tarsus.representation import represented
 if TYPE_CHECKING:
     from jaxtyping import Bool, Float, Shaped
 
-__all__ = ["GroundHeights", "Heights", "better_foothold", "highest_on_way", "is_steep", "lowest_near"]
+__all__ = ["GroundHeights", "Heights", "better_foothold", "is_steep", "lowest_near", "on_way"]
 
 Heights: TypeAlias = "Callable[[Shaped[np.ndarray, '...']], Shaped[np.ndarray, '...']]"
 """Heights of the ground at places x + iy [m]."""
@@ -135,17 +135,17 @@ def lowest_near(heights: Heights, places: Shaped[np.ndarray, "..."], *, within: 
     return np.asarray(heights(places[..., None] + within * _RING).min(axis=-1))
 
 
-def highest_on_way(heights: Heights, start: complex, end: complex) -> float:
-    """Return how high the ground is at most between two places [m].
+def on_way(heights: Heights, start: complex, end: complex) -> Float[np.ndarray, "n"]:
+    """Return the heights of the ground at places between two [m].
 
     Parameters
     ----------
     heights : callable
         Heights of the ground.
     start, end : complex
-        The places [m].
+        The two places [m].
     """
-    return float(heights(start + (end - start) * _ALONG).max())
+    return heights(start + (end - start) * _ALONG)
 
 
 def is_steep(heights: Heights, start: complex, end: complex) -> bool:

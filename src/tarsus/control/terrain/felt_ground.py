@@ -227,6 +227,7 @@ class FeltGround:
             scale=body.reach.scale,
             late=self.contacts.age,
             beside=self.ground.beside,
+            exact=bool(self.ground.crossing),
             in_air=self.condition.in_air,
         )
 

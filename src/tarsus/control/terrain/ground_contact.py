@@ -226,6 +226,6 @@ def not_sunk(
         How far ground is off the expected one [m]; whether the robot tips or feet step back: then, none may.
     """
     most = min(_HANGS + depth_allowance(roughness), _HANGS_LOW * float(state.posture.value[2]))
-    over = (state.ground_height - state.elevation + most).tolist()
-    near = [on and over[leg] > ground.at(places[leg]) for leg, on in enumerate(down)]
+    over, feet = (state.ground_height - state.elevation + most).tolist(), enumerate(zip(down, places, strict=True))
+    near = [on and over[leg] > ground.at(place) and not ground.is_hole(place) for leg, (on, place) in feet]
     return near if near == list(down) and not tips else [False] * len(near)

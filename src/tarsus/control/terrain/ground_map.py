@@ -17,7 +17,7 @@ from tarsus.control.walk.felt_feet import GroundUnder
 from tarsus.control.walk.state import GaitState
 from tarsus.gait.foot_plane import FootPlane, fitted_plane
 from tarsus.gait.foot_polygons import NORMALS_CONJUGATE
-from tarsus.gait.ground_heights import TRIED, GroundHeights, better_foothold, highest_on_way, is_steep, lowest_near
+from tarsus.gait.ground_heights import TRIED, GroundHeights, better_foothold, is_steep, lowest_near, on_way
 from tarsus.gait.stance.stance_geometry import SWING_HEIGHT
 
 if TYPE_CHECKING:
@@ -33,8 +33,8 @@ _STROKE_SHARE = 0.65
 _LOWERED = 0.35
 # How far off known heights may lie [m].
 _OFF = 0.03
-# Swing phase up to which a foothold is chosen.
-_CHOOSING = 0.3
+# Swing phase up to which a foothold is chosen, and up to which another one in place of a hole.
+_CHOOSING, _CHOOSING_AGAIN = 0.3, 0.45
 # A foothold this close to a hole counts as in it [m]: farther away ones are preferred, but may be missing.
 _EDGE = 0.012
 # Room of the body over the ground [m].
@@ -62,11 +62,13 @@ class GroundMap:
         How far from the foothold of its step each foot in the air is put down, in the heading frame [m].
     holes : dict of int to complex
         Where feet in the air would be put down into a hole, in the heading frame [m].
+    crossing : set of int
+        Legs whose feet in the air cross a hole on their way.
     """
 
     def __init__(self) -> None:
         self.plane, self.given, self.beside = FootPlane(), False, dict[int, complex]()
-        self.holes = dict[int, complex]()
+        self.holes, self.crossing = dict[int, complex](), set[int]()
         self._seen: GroundHeights | None = None
         # How far under the plane of the feet ground is that they step on [m].
         self._deepest = math.inf
@@ -197,17 +199,36 @@ class GroundMap:
             if down:
                 self.beside.pop(leg, None)
                 self.holes.pop(leg, None)
-            elif (leg not in self.beside or leg in self.holes) and 0 < phase < _CHOOSING:
+                self.crossing.discard(leg)
+                continue
+            start, end = ((complex(at[leg]) - state.origin) * turn for at in (state.foot, state.foothold))
+            again = phase < _CHOOSING_AGAIN and (leg in self.holes or self.is_hole(end))
+            if again if leg in self.beside else 0 < phase < _CHOOSING:
                 kept = np.abs((NORMALS_CONJUGATE * reach.strokes[leg]).real) / 2
                 slack = footholds.placement_bounds[leg] - kept.clip(_STROKE_SHARE * footholds.placement_radii[leg])
-                start, end = ((complex(at[leg]) - state.origin) * turn for at in (state.foot, state.foothold))
+                held, end = leg in self.holes or leg not in self.beside, end - self.beside.get(leg, 0j)
+                self.holes.pop(leg, None)
                 allowed = (slack.clip(0.0) >= _ALONG_TRIED).all(axis=1)
                 room = (reach.lowest[leg], highest[leg], reach.highest[leg])
                 self.beside[leg] = better_foothold(self._lies, self.plane.at, start, end, allowed=allowed, reach=room)
-                place = np.array(end + self.beside[leg])
-                self.holes.pop(leg, None)
-                if lowest_near(self._lies, place, within=_EDGE) < self.plane.at(place) - self._deepest:
+                place = end + self.beside[leg]
+                # Only a foot that has just lifted off is held up: others go down soon.
+                if held and self.is_hole(place):
                     self.holes[leg] = end
+                if on_way(self._lies, start, place).min() < self.plane.at(place) - self._deepest:
+                    self.crossing.add(leg)
+
+    def is_hole(self, place: complex) -> bool:
+        """Return whether the known ground at a place, or close to it, is too low to stand on.
+
+        Parameters
+        ----------
+        place : complex
+            The place [m].
+        """
+        if not self.given:
+            return False
+        return bool(lowest_near(self._lies, np.array(place), within=_EDGE) < self.plane.at(place) - self._deepest)
 
     def under(
         self,
@@ -236,7 +257,7 @@ class GroundMap:
         under = GroundUnder(elevation + expected, elevation + least, elevation + highest, clears=clears)
         if not self.given:
             return under
-        way = elevation + highest_on_way(self.expected, start, foothold)
+        way = elevation + float(on_way(self.expected, start, foothold).max())
         return under._replace(way=way, steep=is_steep(self.expected, start, foothold), clears=False)
 
     def rises(

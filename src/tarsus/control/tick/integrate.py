@@ -33,7 +33,10 @@ def integrated(walk: WalkComponents, tick: TickState, dt: float) -> TickState:
         )
 
     scaling = walk.time_scaling
-    after = (scaling.advance if inputs.felt is None else scaling.follow)(integrate, walk.solver.angles, dt)
+    if inputs.felt is None:
+        after = scaling.advance(integrate, walk.solver.angles, dt)
+    else:
+        after = scaling.follow(integrate, walk.solver.angles, dt, exact=inputs.felt.exact)
     targets.step(dt * walk.time_scaling.rate, after.down)
     return _finished(walk, tick, after, dt)
 

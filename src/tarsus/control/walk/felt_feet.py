@@ -103,6 +103,8 @@ class FeltInputs(NamedTuple):
         Whether the robot is in the air: all feet go to one height, to be put down together.
     scale : float
         By how much speeds are smaller than given, on short legs, 0 to 1.
+    exact : bool
+        Whether feet are to keep to their paths, as one of them crosses a hole.
     """
 
     under: list[GroundUnder | None]
@@ -122,3 +124,4 @@ class FeltInputs(NamedTuple):
     beside: Mapping[int, complex]
     in_air: bool = False
     scale: float = 1.0
+    exact: bool = False

@@ -26,8 +26,9 @@ _CAUGHT_UP = 1e-9
 _SIGNS = np.array([1.0, -1.0])[:, None, None]
 # Distance that a joint keeps from its limits where it catches up [rad].
 _SPARE = 1e-3
-# How far a joint may be behind before the walk becomes slower, and before it stands still [rad].
-_LEAST_LAG, _MOST_LAG = 0.2, 0.7
+# How far a joint may be behind before the walk becomes slower, and before it stands still [rad]; where feet are to keep
+# to their paths: some joints lag more than others, and a foot is lower then.
+_LAG, _EXACT_LAG = (0.2, 0.7), (0.02, 0.15)
 # Fraction of the joints' acceleration from which on to look ahead, the one to aim at then, and how far to look [s].
 _HIGH, _AIM, _AHEAD = 0.5, 0.75, 0.02
 
@@ -102,7 +103,9 @@ class TimeScaling:
         self.angles, self._target, self._speeds, self.rate, self._last_dt = angles, angles, speeds, rate, dt
         return after
 
-    def follow(self, integrate: Callable[[float], _T], solve: Callable[[_T], np.ndarray], dt: float) -> _T:
+    def follow(
+        self, integrate: Callable[[float], _T], solve: Callable[[_T], np.ndarray], dt: float, *, exact: bool = False
+    ) -> _T:
         """Return the state of a walk that feels the ground after a tick: its joints follow on their own.
 
         The feet's trajectories change with every contact, at once. Where that asks for more than a joint's speed or
@@ -112,10 +115,13 @@ class TimeScaling:
         ----------
         integrate, solve, dt
             As for `advance`.
+        exact : bool
+            Whether feet are to keep to their paths: the walk becomes slower sooner.
         """
         behind = None if self._target is self.angles else self._target - self.angles
         lag = 0.0 if behind is None else float(np.maximum.reduce(np.abs(behind), axis=None))
-        fastest = max(1 - max(lag - _LEAST_LAG, 0.0) / (_MOST_LAG - _LEAST_LAG), 0.0)
+        least, most = _EXACT_LAG if exact else _LAG
+        fastest = max(1 - max(lag - least, 0.0) / (most - least), 0.0)
         rate = self.rate = min(self.rate + _RISE * dt, max(fastest, self.rate - _FALL * dt), 1.0)
         after = integrate(dt * rate)
         target, between = solve(after), (dt + self._last_dt) / 2
