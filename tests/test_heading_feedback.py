@@ -13,13 +13,13 @@ from tarsus.simulation import SensorSuite, SimulatedPlant, terrain
 DT = 0.04
 
 
-def turned(seconds, *, slips, commanded=0.0, offset=0.0, heading=None):
-    """Return how far a body has turned that follows at once and turns by its slip as well."""
-    heading, yaw = heading or HeadingFeedback(), 0.0
+def turned(seconds, *, slips, commanded=0.0, offset=0.0, heading=None, yaw=0.0):
+    """Return how far a body has turned that follows at once and turns by its slip as well, its pose turned by a yaw."""
+    heading, pose, yaw = heading or HeadingFeedback(), yaw, 0.0
     for _ in range(round(seconds / DT)):
         rate = commanded + slips + heading.rate
         yaw += rate * DT
-        heading.step((0.0, 0.0, rate + offset), commanded, DT, tilt=(0.0, 0.0), yaw=0.0, rests=False)
+        heading.step((0.0, 0.0, rate + offset), commanded, DT, tilt=(0.0, 0.0), yaw=pose, rests=False)
     return yaw
 
 
@@ -47,10 +47,28 @@ def test_the_rate_and_what_is_made_up_for_are_bounded():
 
 def test_a_body_pose_that_turns_is_no_error():
     heading = HeadingFeedback()
+    heading.step((0.0, 0.0, 0.0), 0.0, DT, tilt=(0.0, 0.0), yaw=0.0, rests=False)
     for tick in range(50):
         yaw = 0.01 * (tick + 1)
         heading.step((0.0, 0.0, 0.01 / DT), 0.0, DT, tilt=(0.0, 0.0), yaw=yaw, rests=False)
     assert heading.behind == pytest.approx(0.0, abs=1e-12)
+
+
+def test_a_body_pose_that_turns_slowly_at_rest_is_no_offset_of_the_rates():
+    heading = HeadingFeedback()
+    for tick in range(100):
+        heading.step((0.0, 0.0, 0.015), 0.0, DT, tilt=(0.0, 0.0), yaw=0.015 * DT * tick, rests=True)
+    assert turned(20.0, slips=0.0, heading=heading, yaw=0.015 * DT * 99) == pytest.approx(0.0, abs=5e-3)
+
+
+@pytest.mark.parametrize("carried", [False, True])
+def test_a_body_pose_that_was_turned_before_or_while_the_robot_was_carried_is_no_error(carried):
+    heading = HeadingFeedback()
+    if carried:
+        turned(1.0, slips=0.0, heading=heading)
+        heading.forget()
+    heading.step((0.0, 0.0, 0.0), 0.0, DT, tilt=(0.0, 0.0), yaw=0.3, rests=False)
+    assert (heading.behind, heading.rate) == (0.0, 0.0)
 
 
 def test_rates_of_a_tilted_body_are_those_about_the_vertical():

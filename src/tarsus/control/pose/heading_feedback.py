@@ -28,7 +28,8 @@ class HeadingFeedback:
     """
 
     def __init__(self) -> None:
-        self.behind, self.rate, self._yaw, self._offset = 0.0, 0.0, 0.0, 0.0
+        self.behind, self.rate, self._offset = 0.0, 0.0, 0.0
+        self._yaw: float | None = None
 
     def step(
         self, rates: Vector | None, commanded: float, dt: float, *, tilt: tuple[float, float], yaw: float, rests: bool
@@ -44,26 +45,27 @@ class HeadingFeedback:
         tilt : (roll, pitch)
             Of the body against gravity [rad].
         yaw : float
-            Of the body in the heading frame [rad].
+            Of the body in the heading frame, as commanded [rad]: turning there is no error.
         rests : bool
             Whether the robot is to stand still: it does not turn then, and what is measured is the offset of the rates.
         """
-        turned, self._yaw = yaw - self._yaw, yaw
+        turned, self._yaw = 0.0 if self._yaw is None else yaw - self._yaw, yaw
         if rates is None:
             self.behind = self.rate = 0.0
             return
         roll, pitch = tilt
-        measured = (math.sin(roll) * rates[1] + math.cos(roll) * rates[2]) / math.cos(pitch)
+        measured = (math.sin(roll) * rates[1] + math.cos(roll) * rates[2]) / math.cos(pitch) - turned / dt
         if rests:
             self.rate = 0.0
             if abs(measured) < _STILL:
                 self._offset += min(dt / _LEARNS, 1.0) * (measured - self._offset)
             return
         measured -= self._offset
-        behind = (self.behind + turned + (commanded - measured) * dt) * (1 - dt / _MEMORY)
+        behind = (self.behind + (commanded - measured) * dt) * (1 - dt / _MEMORY)
         self.behind = min(max(behind, -_FARTHEST), _FARTHEST)
         self.rate = min(max(_GAIN * self.behind, -_MOST), _MOST)
 
     def forget(self) -> None:
-        """Forget what is missing: the robot is carried."""
+        """Forget what is missing, and how the body was turned: the robot is carried."""
         self.behind = self.rate = 0.0
+        self._yaw = None
