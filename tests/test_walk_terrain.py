@@ -9,6 +9,7 @@ from tarsus.control.limitation import LimitationKind
 from tarsus.control.loop.run import run
 from tarsus.control.readings import SensorReadings
 from tarsus.control.robot_controller import RobotController
+from tarsus.control.terrain.roughness import GroundAdaptation
 from tarsus.control.walk_controller import WalkController
 from tarsus.gait.gait import Gait
 from tarsus.simulation import SimulatedPlant, terrain
@@ -137,6 +138,18 @@ def test_a_body_whose_attitude_is_no_longer_measured_does_not_turn_on_and_on():
     assert inclined_after(0.5, (0.0, -0.1)) > 0.02
     assert abs(inclined_after(1.5, None)) < 0.01
     assert abs(inclined_after(2.0, None)) < 0.01
+
+
+def test_a_robot_on_a_slope_that_is_too_steep_walks_back_without_its_attitude_too():
+    controller = WalkController(preset("strider"), adaptation=GroundAdaptation(friction=0.42))
+
+    def place_after(seconds, speed, attitude):
+        walked(controller, lambda x: 0.15 * np.maximum(x - 0.2, 0.0), (speed, 0.0, 0.0), seconds, attitude=attitude)
+        return controller.body.position[0]
+
+    stopped = place_after(6.0, 0.1, (0.0, 0.0))
+    assert place_after(3.0, 0.1, None) == pytest.approx(stopped, abs=0.01)
+    assert place_after(3.0, -0.1, None) < stopped - 0.15
 
 
 def test_turns_and_sideways_walks_feel_the_ground_too():

@@ -158,9 +158,11 @@ class BodyMotion:
             self.heading.forget()
             return
         self._ground.step([(places[leg], over[leg]) for leg in bears], self.tilt, state, dt, drift=self.drift)
-        if self.tilt is not None:
-            level = self._ground.plane.levelled(self.tilt)
+        level = self._ground.plane.levelled(self.tilt)
+        # The way back stays open without an attitude, too.
+        if self.tilt is not None or self.slope.refuses:
             self.slope.step(level, complex(*twist[:2].tolist()))
+        if self.tilt is not None:
             self.stance.step(level, rest - self.stance.shift, self.roughness.drawn_in, walks=bool(twist.any()))
         self._fit_height(state, rest, over, down, bears, dt)
         velocity, yaw = complex(*state.twist.value[:2].tolist()) * pace, float(state.posture.value[5])
