@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tarsus.arrays import Array
+from tarsus.arrays import Array, require_shape
 from tarsus.control.startup.body_targets import levelling_rotation
 from tarsus.control.startup.builder import GROUND_TOLERANCE, SequenceBuilder, body_contacts
 from tarsus.errors import InputError, TarsusError
@@ -73,11 +73,7 @@ def initial_state(robot: Robot, angles: Float[Array, "legs 3"], joint_limits: Jo
     TarsusError
         If the robot has fallen over.
     """
-    _, measured = checked_angles(robot, angles)
-    if robot.batch_shape or measured.ndim != 2:
-        raise InputError("motion sequences are planned for a single robot in a single pose, not for a batch")
-    measured = measured.copy()
-    measured.setflags(write=False)
+    measured = _single_pose(robot, angles)
     rest = resting_pose(robot, measured)
     tilt = math.acos(min(max(float(rest.body.rotation[2, 2]), -1.0), 1.0))
     if not rest.stable or tilt > _MAX_TILT:
@@ -103,7 +99,7 @@ def initial_state(robot: Robot, angles: Float[Array, "legs 3"], joint_limits: Jo
 
 
 def uneven_state(
-    robot: Robot, angles: Float[np.ndarray, "legs 3"], joint_limits: JointLimits, loaded: Bool[np.ndarray, "legs"]
+    robot: Robot, angles: Float[Array, "legs 3"], joint_limits: JointLimits, loaded: Bool[np.ndarray, "legs"]
 ) -> SequenceBuilder:
     """Return a builder with the robot standing on feet that are known to bear load, on ground of any height.
 
@@ -117,10 +113,15 @@ def uneven_state(
         Joint angles [rad].
     joint_limits, loaded : JointLimits, array of bool, shape (legs,)
         Joint speeds and accelerations of the plan; which feet bear load, at least three.
+
+    Raises
+    ------
+    InputError
+        If the angles or the feet have the wrong shape, or the angles are not finite.
     """
-    angles = np.array(angles)
-    angles.setflags(write=False)
-    feet = forward_kinematics(robot, angles)[:, 3]
+    measured = _single_pose(robot, angles)
+    require_shape("loaded", loaded, (robot.legs,))
+    feet = forward_kinematics(robot, measured)[:, 3]
     points, heights = np.insert(feet[loaded, :2], 2, 1.0, axis=-1), feet[loaded, 2]
     slopes = np.linalg.lstsq(points, heights, rcond=None)[0][:2]
     up = np.array([*-slopes, 1.0])
@@ -129,7 +130,7 @@ def uneven_state(
     return SequenceBuilder(
         robot=robot,
         joint_limits=joint_limits,
-        angles=angles,
+        angles=measured,
         body=body,
         contacts=loaded,
         belly=False,
@@ -167,3 +168,13 @@ def lying_state(
             f"with its belly on the ground; {purpose} requires it to lie on its belly: use sit_down first"
         )
     return builder
+
+
+def _single_pose(robot: Robot, angles: Float[Array, "legs 3"]) -> Float[np.ndarray, "legs 3"]:
+    """Return the joint angles, refusing those of a batch."""
+    _, measured = checked_angles(robot, angles)
+    if robot.batch_shape or measured.ndim != 2:
+        raise InputError("motion sequences are planned for a single robot in a single pose, not for a batch")
+    single: Float[np.ndarray, "legs 3"] = measured.copy()
+    single.setflags(write=False)
+    return single

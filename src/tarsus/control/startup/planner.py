@@ -161,7 +161,7 @@ def sit_down(
         angles = inverse_kinematics(robot, default_stance(robot, swing_height=swing_height)).require().angles
     thin = over_feet(robot)
     if loaded is not None and loaded.sum() >= _LEAST_FEET:
-        uneven = uneven_state(thin, np.asarray(angles), limits, loaded)
+        uneven = uneven_state(thin, angles, limits, loaded)
         with suppress(TarsusError):
             return _lying(robot, replace(uneven, swing_height=swing_height, margin=margin))
     start = initial_state(thin, angles, limits)
