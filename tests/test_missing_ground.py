@@ -491,6 +491,18 @@ def test_a_foot_that_loses_its_ground_on_the_way_back_from_an_edge_has_met_that_
     assert (stepped(missing, [(0, 0.08, True, True)], behind).places[0] - REST[0]).real > 0
 
 
+def test_a_foot_that_loses_its_ground_on_the_way_back_after_another_attempt_has_met_that_edge():
+    missing = stepped(MissingGround(NAMES), [(0, 0.05, False, False)], roughness=0.02, twist=(0.1, 0.0, 0.0))
+    for _ in range(110):
+        limited(missing, 0.1, 0.0, 0.0)
+        stepped(missing, [], stands=[True] * 6, roughness=0.02)
+    assert limited(missing, 0.1, 0.0, 0.0).fraction == 1.0
+    limited(missing, -0.1, 0.0, 0.0)
+    behind = [REST[0] - 0.04, *REST[1:]]
+    stepped(missing, [], behind, stands=[True] * 6, twist=(-0.1, 0.0, 0.0))
+    assert (stepped(missing, [(0, 0.1, True, True)], behind).places[0] - REST[0]).real < 0
+
+
 def test_a_foot_that_has_found_no_ground_at_any_place_steps_first_on_the_way_back():
     missing = MissingGround(NAMES)
     for _ in range(4):

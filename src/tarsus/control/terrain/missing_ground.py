@@ -197,7 +197,8 @@ class MissingGround:
             self.back = -speed * self.tips * backed
             self._backed = (self._backed + speed * dt) * bool(self.tips)
             if self.refuses and self._again < _AGAIN and self._since > _WAITS:
-                self._again, self._way = self._again + 1, 0j
+                self._again += 1
+                self._leave()
             elif not self.refuses and self._since > _FORGETS:
                 self._again, self.obstacles.found = 0, 0j
             return
@@ -270,9 +271,13 @@ class MissingGround:
         for leg in self.obstacles.led_away(partial(leads_towards, velocity)):
             self._drop(leg)
         if any(request.twist) and not self.places and self._way:
-            self._left = 0j if self._way == self.obstacles.found else self._way
-            self._way, self._since = 0j, 0.0
+            self._leave()
         return grant
+
+    def _leave(self) -> None:
+        """Grant all twists from now on, and remember where the edge is."""
+        self._left = 0j if self._way == self.obstacles.found else self._way
+        self._way, self._since = 0j, 0.0
 
 
 def depth_allowance(roughness: float, scale: float = 1.0) -> float:
