@@ -467,6 +467,19 @@ def test_a_foot_that_has_barely_touched_is_no_support():
     assert contacts.supports(1)
 
 
+def test_a_foot_that_hangs_while_the_robot_rests_looks_for_the_ground_once_it_walks():
+    contacts, readings = FootContacts(6), [False, True, True, True, True, True]
+
+    def seeks_after(ticks, *, rests):
+        for _ in range(ticks):
+            contacts.step(readings, [True] * 6, 0.02, leaving=[False] * 6, rests=rests)
+        return not contacts.standing[0] and contacts.seeks(0)
+
+    assert seeks_after(200, rests=True)
+    assert seeks_after(50, rests=False)
+    assert not seeks_after(50, rests=False)
+
+
 def test_a_switch_that_stays_open_is_told_by_a_robot_that_does_not_tip():
     def suspected(tilts, readings, down=(False, True) * 3, *, shaking=False):
         contacts = FootContacts(6)

@@ -107,8 +107,9 @@ class FootContacts:
         for leg, leaves in enumerate(leaving or ()):
             stays = rests or (leaves and self._without[leg] < _LEAVES)
             self.standing[leg] = self.standing[leg] or (stays and self._settled[leg] > _SETTLED)
+        # Feet of a robot that rests are hardly lowered, and have found nothing yet once it walks.
         for leg, on in enumerate(down):
-            self._searched[leg] = self._searched[leg] + dt if on and not self.standing[leg] else 0.0
+            self._searched[leg] = self._searched[leg] + dt if on and not (rests or self.standing[leg]) else 0.0
 
     def find_open(
         self,
