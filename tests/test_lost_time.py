@@ -67,6 +67,21 @@ def test_a_command_that_leads_elsewhere_begins_anew(twist):
     assert other.fraction == 1.5
 
 
+def test_a_command_that_turns_elsewhere_little_by_little_begins_anew():
+    ground = Ground()
+    ground.walk(2.0, rate=0.0)
+    for angle in np.linspace(0.0, np.pi / 2, 50):
+        ground.walk(DT, twist=(0.1 * np.cos(angle), 0.1 * np.sin(angle), 0.0))
+    assert ground.fraction == 1.0
+
+
+def test_a_command_that_is_steered_a_little_leads_the_same_way():
+    ground = Ground()
+    ground.walk(2.0, rate=0.0)
+    ground.walk(DT, twist=(0.1, 0.0, 0.1))
+    assert ground.fraction == 1.5
+
+
 def test_a_walk_that_feels_nothing_has_lost_nothing():
     ground = Ground(felt=False)
     ground.walk(2.0, rate=0.0)

@@ -13,8 +13,8 @@ __all__ = ["LostTime"]
 _MEMORY, _WHOLE = 3.0, 1.0
 # The speed changes in this many steps: each has limits computed anew.
 _STEPS = 4
-# Cosine of the angle from which on a command leads elsewhere.
-_ELSEWHERE = 0.9
+# Cosine of the angle from which on a command leads elsewhere, and how far out turning counts as walking [m].
+_ELSEWHERE, _OUT = 0.9, 0.2
 
 
 class LostTime:
@@ -34,11 +34,11 @@ class LostTime:
 
     def limit(self, request: TwistRequest, grant: TwistGrant) -> TwistGrant:
         """Return the grant, with a greater fraction as long as time is to be made up for."""
-        twist, before = request.twist, self._twist
+        twist, first = request.twist, self._twist
         square = _dot(twist, twist)
-        if twist is not before:
-            self._twist = twist
-            self._lost *= _dot(twist, before) > _ELSEWHERE * math.sqrt(square * _dot(before, before))
+        # Small changes of the command add up: it is compared with the one with which time was lost first.
+        if not self._lost or _dot(twist, first) <= _ELSEWHERE * math.sqrt(square * _dot(first, first)):
+            self._twist, self._lost = twist, 0.0
         if request.state.felt and square:
             rate = self._rate()
             gained = max(_dot(request.state.twist.value.tolist(), twist) / square - 1, 0.0) * rate
@@ -48,5 +48,5 @@ class LostTime:
 
 
 def _dot(twist: Sequence[float], other: Sequence[float]) -> float:
-    """Return the inner product of two twists."""
-    return sum(a * b for a, b in zip(twist, other, strict=True))
+    """Return the inner product of two twists [m^2/s^2]."""
+    return twist[0] * other[0] + twist[1] * other[1] + _OUT * _OUT * twist[2] * other[2]
