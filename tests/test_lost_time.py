@@ -27,7 +27,7 @@ class Ground:
             state = SimpleNamespace(felt=self.felt, twist=SimpleNamespace(value=self.fraction * np.array(twist)))
             request = SimpleNamespace(twist=tuple(twist), dt=DT, state=state)
             self.fraction = self.limiter.limit(request, TwistGrant()).fraction
-            way += rate * self.fraction * DT
+            way += (rate or 0.0) * self.fraction * DT
         return way
 
 
@@ -82,13 +82,21 @@ def test_a_command_that_is_steered_a_little_leads_the_same_way():
     assert ground.fraction == 1.5
 
 
+def test_a_robot_that_is_carried_has_lost_nothing():
+    ground = Ground()
+    ground.walk(2.0, rate=0.0)
+    assert ground.fraction == 1.5
+    ground.walk(DT, rate=None)
+    assert ground.fraction == 1.0
+
+
 def test_a_walk_that_feels_nothing_has_lost_nothing():
     ground = Ground(felt=False)
     ground.walk(2.0, rate=0.0)
     assert ground.fraction == 1.0
 
 
-def walked(ground, *, seconds=14.0, **adaptation):
+def walked(ground, *, seconds=10.0, **adaptation):
     """Return way over the commanded one, and the greatest speed over it."""
     robot = tarsus.load_robot("strider")
     controller = tarsus.RobotController(robot, adaptation=tarsus.GroundAdaptation(**adaptation))
@@ -102,9 +110,11 @@ def walked(ground, *, seconds=14.0, **adaptation):
 
 
 def test_over_blocks_more_of_the_way_is_made_and_on_flat_ground_nothing_changes():
-    blocks = terrain.Blocks(rise=0.08, size=0.15, clear=0.25, seed=3)
-    (slower, steady), (way, fastest) = walked(blocks, catch_up=1.0), walked(blocks)
-    assert steady <= 1 + 1e-6
-    assert 1.1 < fastest <= 1.5 + 1e-6
-    assert way > slower + 0.04
+    more = 0.0
+    for seed in (1, 2):
+        blocks = terrain.Blocks(rise=0.08, size=0.15, clear=0.25, seed=seed)
+        (slower, steady), (way, fastest) = walked(blocks, catch_up=1.0), walked(blocks)
+        assert steady <= 1 + 1e-6 < fastest <= 1.5 + 1e-6
+        more += way - slower
+    assert more > 0.06
     assert walked(terrain.Flat(), seconds=4.0)[1] <= 1 + 1e-6

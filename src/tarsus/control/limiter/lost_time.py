@@ -25,10 +25,10 @@ class LostTime:
     most : float
         Greatest speed over the commanded one, at least 1.
     rate : callable
-        Returns the rate at which the ground lets the walk advance, 0 to 1.
+        Returns the rate at which the ground lets the walk advance, 0 to 1, or None while the robot is carried.
     """
 
-    def __init__(self, most: float, rate: Callable[[], float]) -> None:
+    def __init__(self, most: float, rate: Callable[[], float | None]) -> None:
         self._most, self._rate, self._lost = most, rate, 0.0
         self._twist: tuple[float, ...] = (0.0, 0.0, 0.0)
 
@@ -39,8 +39,10 @@ class LostTime:
         # Small changes of the command add up: it is compared with the one with which time was lost first.
         if not self._lost or _dot(twist, first) <= _ELSEWHERE * math.sqrt(square * _dot(first, first)):
             self._twist, self._lost = twist, 0.0
-        if request.state.felt and square:
-            rate = self._rate()
+        rate = self._rate() if request.state.felt and square else None
+        if rate is None:
+            self._lost = 0.0
+        else:
             gained = max(_dot(request.state.twist.value.tolist(), twist) / square - 1, 0.0) * rate
             self._lost = min(max(self._lost + request.dt * (1 - rate - gained), 0.0), _MEMORY)
         share = round(_STEPS * min(self._lost / _WHOLE, 1.0)) / _STEPS

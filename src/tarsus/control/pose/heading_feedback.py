@@ -8,8 +8,8 @@ from tarsus.control.readings import Vector
 
 __all__ = ["HeadingFeedback"]
 
-# Gain [1/s], greatest rate [rad/s], and what is made up for at most [rad].
-_GAIN, _MOST, _FARTHEST = 1.0, 0.15, 0.5
+# Gain [1/s], greatest rate [rad/s], its greatest change [rad/s^2], and what is made up for at most [rad].
+_GAIN, _MOST, _CHANGE, _FARTHEST = 1.0, 0.15, 0.5, 0.5
 # Time in which the difference is forgotten, and in which the offset of the rates is learnt at rest [s].
 _MEMORY, _LEARNS = 10.0, 1.0
 # A body at rest turns more slowly than this, offset included [rad/s].
@@ -56,14 +56,15 @@ class HeadingFeedback:
         roll, pitch = tilt
         measured = (math.sin(roll) * rates[1] + math.cos(roll) * rates[2]) / math.cos(pitch) - turned / dt
         if rests:
-            self.rate = 0.0
+            self.rate, self.behind = 0.0, self.behind * (1 - dt / _MEMORY)
             if abs(measured) < _STILL:
                 self._offset += min(dt / _LEARNS, 1.0) * (measured - self._offset)
             return
         measured -= self._offset
         behind = (self.behind + (commanded - measured) * dt) * (1 - dt / _MEMORY)
         self.behind = min(max(behind, -_FARTHEST), _FARTHEST)
-        self.rate = min(max(_GAIN * self.behind, -_MOST), _MOST)
+        wanted = min(max(_GAIN * self.behind, -_MOST), _MOST)
+        self.rate += min(max(wanted - self.rate, -_CHANGE * dt), _CHANGE * dt)
 
     def forget(self) -> None:
         """Forget what is missing, and how the body was turned: the robot is carried."""

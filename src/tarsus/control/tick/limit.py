@@ -27,9 +27,9 @@ def twist_limiters(walk: WalkComponents) -> list[TwistLimiter]:
     """
     ground, roughness = walk.ground, walk.ground.body.roughness
 
-    def rate() -> float:
+    def rate() -> float | None:
         if ground.condition.carried:
-            return 1.0
+            return None
         return 0.0 if ground.missing.refuses else ground.support.pace * walk.time_scaling.rate
 
     return [
