@@ -96,7 +96,7 @@ def test_a_robot_at_rest_does_not_turn_and_goes_on_later():
 
 
 def heading_after_a_twist_of_the_body(sensors):
-    """Return the greatest and the last angle between the body and its heading, of a body that is turned at 2 s [deg]."""
+    """Return the greatest and the last angle of a body off its heading that a torque turns at 2 s [deg]."""
     robot, found = tarsus.load_robot("strider"), []
     plant, controller = SimulatedPlant(robot, sensors=sensors, servos="ideal"), tarsus.RobotController(robot)
     output = controller.output
