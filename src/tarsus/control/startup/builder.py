@@ -49,10 +49,10 @@ class SequenceBuilder:
         Pose of B in G.
     contacts : array of bool, shape (legs,)
         Feet on the ground.
-    belly : bool
-        Whether the body lies on the ground.
     supports : array, shape (n, 3)
         Points in G other than feet that bear load: points of the body, or knees [m].
+    belly : bool
+        Whether the body lies on the ground.
     initial_margin : float
         Stability margin of the initial state [m].
     swing_height : float
@@ -68,9 +68,9 @@ class SequenceBuilder:
     angles: Float[np.ndarray, "legs 3"]
     body: Pose
     contacts: Bool[np.ndarray, "legs"]
-    belly: bool
     supports: Float[np.ndarray, "n 3"]
-    initial_margin: float
+    belly: bool = False
+    initial_margin: float = 0.0
     swing_height: float = 0.0
     margin: float = 0.0
     stages: tuple[Stage, ...] = ()

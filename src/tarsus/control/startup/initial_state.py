@@ -11,6 +11,7 @@ from tarsus.arrays import Array, require_shape
 from tarsus.control.startup.body_targets import levelling_rotation
 from tarsus.control.startup.builder import GROUND_TOLERANCE, SequenceBuilder, body_contacts
 from tarsus.errors import InputError, TarsusError
+from tarsus.gait.foot_plane import FootPlane, fitted_plane
 from tarsus.kinematics.leg import checked_angles, forward_kinematics
 from tarsus.kinematics.pose import Pose
 from tarsus.kinematics.rest import resting_pose
@@ -90,7 +91,6 @@ def initial_state(robot: Robot, angles: Float[Array, "legs 3"], joint_limits: Jo
         angles=measured,
         body=rest.body,
         contacts=down[:, 3].copy(),
-        belly=False,
         supports=np.concatenate([points[:, :3][down[:, :3]], body_contacts(robot, rest.body)]),
         initial_margin=float(rest.margin),
     )
@@ -122,9 +122,9 @@ def uneven_state(
     measured = _single_pose(robot, angles)
     require_shape("loaded", loaded, (robot.legs,))
     feet = forward_kinematics(robot, measured)[:, 3]
-    points, heights = np.insert(feet[loaded, :2], 2, 1.0, axis=-1), feet[loaded, 2]
-    slopes = np.linalg.lstsq(points, heights, rcond=None)[0][:2]
-    up = np.array([*-slopes, 1.0])
+    x, y, z = feet[loaded].T
+    plane = fitted_plane((x + 1j * y).tolist(), z.tolist(), FootPlane(), 1.0)
+    up = np.array([-plane.slope_x, -plane.slope_y, 1.0])
     rotation = levelling_rotation(up / np.linalg.norm(up))
     body = Pose(rotation, np.array([0.0, 0.0, -float((feet @ rotation[2]).min())]))
     return SequenceBuilder(
@@ -133,9 +133,7 @@ def uneven_state(
         angles=measured,
         body=body,
         contacts=loaded,
-        belly=False,
         supports=np.zeros((0, 3)),
-        initial_margin=0.0,
     )
 
 
