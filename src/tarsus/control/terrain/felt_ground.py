@@ -159,7 +159,6 @@ class FeltGround:
         footholds: FootholdTransfer,
         excluded: list[int],
         standing: bool,
-        rate: float,
     ) -> FeltInputs:
         """Return what the feet and the body do in a tick.
 
@@ -173,8 +172,8 @@ class FeltGround:
             The twist that is followed.
         footholds, excluded : FootholdTransfer, list of int
             Rest footholds, and how far from them feet may be put down; legs that bear no load.
-        standing, rate : bool, float
-            Whether the robot stands; the rate at which joints let the walk advance, 0 to 1.
+        standing : bool
+            Whether the robot stands.
         """
         due = None if standing else timing.due(state, dt)
         kept, before, self._idle = self._inputs, self._given, self._idle + dt
@@ -187,7 +186,7 @@ class FeltGround:
         down = [on and step for on, step in zip(state.down.tolist(), steps, strict=True)]
         places = [(foot - state.origin) * turn for foot in state.foot.tolist()]
         if self.body.looks:
-            rest, pace = footholds.rest, self.support.pace * rate
+            rest, pace = footholds.rest, self.support.pace
             feet = places, [on and leg not in self.missing.obstacles.legs for leg, on in enumerate(down)]
             self.body.step(state, self.measured, feet=feet, timing=timing, twist=twist, pace=pace, rest=rest)
             self.ground.choose(state, self.body.reach, footholds)

@@ -57,14 +57,7 @@ def _step_inputs(walk: WalkComponents, tick: TickState, dt: float) -> StepInputs
     if state.felt:
         footholds.shift(walk.ground.body.stance.shift)
         felt = walk.ground.inputs(
-            state,
-            dt,
-            timing=timing,
-            twist=tick.twist,
-            footholds=footholds,
-            excluded=excluded,
-            standing=standing,
-            rate=walk.time_scaling.rate,
+            state, dt, timing=timing, twist=tick.twist, footholds=footholds, excluded=excluded, standing=standing
         )
         hold_feet = hold_feet or walk.ground.support.waits
         if walk.ground.offsets is not None:
