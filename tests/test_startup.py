@@ -423,11 +423,16 @@ def test_invalid_input_is_rejected(changes, message):
 
 @pytest.mark.parametrize(
     ("angles", "loaded", "message"),
-    [(np.zeros((2, 6, 3)), [True] * 6, "a single robot in a single pose"), (None, [True] * 5, "loaded has shape")],
+    [
+        (np.zeros((2, 6, 3)), [True] * 6, "a single robot in a single pose"),
+        (None, [True] * 5, "loaded has shape"),
+        (None, [[True] * 6] * 2, "loaded has shape"),
+        (None, [1] * 6, "loaded holds int64 values; expected booleans"),
+    ],
 )
 def test_invalid_angles_and_feet_of_a_robot_on_uneven_ground_are_rejected(angles, loaded, message):
     with pytest.raises(InputError, match=message):
-        sit_down(preset("strider"), angles, loaded=np.array(loaded))
+        sit_down(preset("strider"), angles, loaded=loaded)
 
 
 PAGE = (Path(__file__).parents[1] / "docs" / "rising.md").read_text(encoding="utf-8")

@@ -38,6 +38,7 @@ class PendingTransitionLimiter:
         if planned is not None and self._transitions.timing.stands_before(planned.parameters.gait):
             self._fraction = 0.0
         if self._fraction == 1.0:
+            # What makes up for lost time stays.
             return grant
         limitation = None
         if self._fraction < _REPORTED and any(request.twist):

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tarsus.arrays import Array, require_shape
+from tarsus.arrays import Array
 from tarsus.control.startup.body_targets import levelling_rotation
 from tarsus.control.startup.builder import GROUND_TOLERANCE, SequenceBuilder, body_contacts
 from tarsus.errors import InputError, TarsusError
@@ -117,10 +117,9 @@ def uneven_state(
     Raises
     ------
     InputError
-        If the angles or the feet have the wrong shape, or the angles are not finite.
+        If the angles have the wrong shape or are not finite.
     """
     measured = _single_pose(robot, angles)
-    require_shape("loaded", loaded, (robot.legs,))
     feet = forward_kinematics(robot, measured)[:, 3]
     x, y, z = feet[loaded].T
     plane = fitted_plane((x + 1j * y).tolist(), z.tolist(), FootPlane(), 1.0)

@@ -20,6 +20,7 @@ from tarsus.errors import InputError, TarsusError, UnreachableError
 from tarsus.gait.walk_setup import require_number
 from tarsus.kinematics.folded_pose import folded_pose
 from tarsus.kinematics.inverse import inverse_kinematics
+from tarsus.kinematics.polygon import as_mask
 from tarsus.kinematics.stance import (
     default_body_height,
     default_stance,
@@ -160,8 +161,11 @@ def sit_down(
     if angles is None:
         angles = inverse_kinematics(robot, default_stance(robot, swing_height=swing_height)).require().angles
     thin = over_feet(robot)
-    if loaded is not None and loaded.sum() >= _LEAST_FEET:
-        uneven = uneven_state(thin, angles, limits, loaded)
+    bears = np.zeros(robot.legs, dtype=bool) if loaded is None else as_mask(np, loaded, name="loaded")
+    if bears.shape != (robot.legs,):
+        raise InputError(f"loaded has shape {bears.shape}; expected ({robot.legs},), one value for each leg")
+    if bears.sum() >= _LEAST_FEET:
+        uneven = uneven_state(thin, angles, limits, bears)
         with suppress(TarsusError):
             return _lying(robot, replace(uneven, swing_height=swing_height, margin=margin))
     start = initial_state(thin, angles, limits)

@@ -202,17 +202,17 @@ class GroundMap:
                 self.crossing.discard(leg)
                 continue
             start, end = ((complex(at[leg]) - state.origin) * turn for at in (state.foot, state.foothold))
-            again = phase < _CHOOSING_AGAIN and (leg in self.holes or self.is_hole(end))
-            if again if leg in self.beside else 0 < phase < _CHOOSING:
+            again = leg in self.beside and phase < _CHOOSING_AGAIN and (leg in self.holes or self.is_hole(end))
+            if again or (leg not in self.beside and 0 < phase < _CHOOSING):
                 kept = np.abs((NORMALS_CONJUGATE * reach.strokes[leg]).real) / 2
                 slack = footholds.placement_bounds[leg] - kept.clip(_STROKE_SHARE * footholds.placement_radii[leg])
+                # Only a foot that has just lifted off is held up: others go down soon.
                 held, end = leg in self.holes or leg not in self.beside, end - self.beside.get(leg, 0j)
                 self.holes.pop(leg, None)
                 allowed = (slack.clip(0.0) >= _ALONG_TRIED).all(axis=1)
                 room = (reach.lowest[leg], highest[leg], reach.highest[leg])
                 self.beside[leg] = better_foothold(self._lies, self.plane.at, start, end, allowed=allowed, reach=room)
                 place = end + self.beside[leg]
-                # Only a foot that has just lifted off is held up: others go down soon.
                 if held and self.is_hole(place):
                     self.holes[leg] = end
                 if on_way(self._lies, start, place).min() < self.plane.at(place) - self._deepest:

@@ -48,7 +48,8 @@ class GroundAdaptation:
     Raises
     ------
     InputError
-        If one is negative or not finite, cycles would be shorter, or the speed is 0 or higher.
+        If one is negative or not finite, cycles would be shorter, catching up slower than commanded, or the speed is 0
+        or higher than on even ground.
     """
 
     swing_height: float = 0.05
@@ -78,6 +79,8 @@ class Roughness:
 
     Attributes
     ----------
+    adaptation : GroundAdaptation
+        How far the walk may adapt.
     value : float
         Distance of footholds from the plane of the feet that is expected [m].
     """

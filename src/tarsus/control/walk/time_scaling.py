@@ -69,8 +69,8 @@ class TimeScaling:
         self._softest, self._slowest = float(self._hardest.min()) / 2, float(self._top_speed.min())
         self._ends: Float[np.ndarray, "2 legs 3"] = np.moveaxis(limits, -1, 0)[::-1].copy()
         self._speeds, self._target = np.zeros_like(angles), angles
-        # The room is how far the joints are from their ends at least [rad].
-        # For how long it need not look ahead again [s].
+        # The room is how far the joints are from their ends at least [rad]; clear is for how long it need not look
+        # ahead again [s].
         self._last_dt, self._used, self._room, self._clear = 0.01, 0.0, 0.0, 0.0
 
     def advance(self, integrate: Callable[[float], _T], solve: Callable[[_T], np.ndarray], dt: float) -> _T:

@@ -52,10 +52,11 @@ def velocity_limits(
     excluded : tuple of int
         Legs that do not step: their position is not bounded here, but may shift the centre of mass.
     """
-    found = list[VelocityLimits]()
+    found, check = list[VelocityLimits](), None
     for stance in stances:
         sides = yield from foot_workspace(robot, stance, foot_distance=foot_distance)
-        check = StabilityCheck(robot, sets, excluded)
+        # Prepared in this stage, which has little else to do.
+        check = check or StabilityCheck(robot, sets, excluded)
         centre, shift = check.centre_of_mass(stance, sides)
         yield
         fraction = safe_fraction(sets, sides, stance.rest, centre, margin=check.least_margin, shift=shift)
